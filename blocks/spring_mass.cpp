@@ -1,0 +1,86 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <titop/blocks/spring_mass.hpp>
+
+namespace titop {
+namespace {
+
+using Eigen::MatrixXd;
+
+const Interface& face() {
+  static const Interface shared{{{"child", 1, Takes::force}, {"parent", 1, Takes::accel}},
+                                {},
+                                {{"stretch", 1, Quantity::position}},
+                                {"stretch", "stretch_rate"}};
+  return shared;
+}
+
+void check_values(double m, double k, double c, double m0) {
+  if (!std::isfinite(m) || !std::isfinite(k) || !std::isfinite(c) || !std::isfinite(m0))
+    throw Error(
+        Code::not_finite,
+        fmt::format("SpringMass{{mass {}, stiffness {}, damping {}, parent_mass {}}}", m, k, c, m0),
+        "give finite numbers");
+  if (!(m > 0) || m0 < 0)
+    throw Error(Code::bad_inertia, fmt::format("SpringMass has mass {} and parent_mass {}", m, m0),
+                "mass must be positive [kg], parent_mass 0 or more");
+  if (k < 0 || c < 0)
+    throw Error(Code::bad_value, fmt::format("SpringMass has stiffness {} and damping {}", k, c),
+                "stiffness [N/m] and damping [N s/m] must be 0 or more");
+}
+
+class SpringMassBlock : public Block {
+ public:
+  explicit SpringMassBlock(const SpringMass& spec) : spec_(spec) {}
+  std::string_view type() const override { return "SpringMass"; }
+  const Interface& interface() const override { return face(); }
+
+  std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
+    const double m = spec_.mass.at(values), k = spec_.stiffness.at(values);
+    const double c = spec_.damping.at(values), m0 = spec_.parent_mass.at(values);
+    check_values(m, k, c, m0);
+    auto d = std::make_shared<Dynamics>();
+    d->A = (MatrixXd(2, 2) << 0, 1, -k / m, -c / m).finished();
+    d->B = (MatrixXd(2, 2) << 0, 0, 1 / m, -1).finished();
+    d->C = (MatrixXd(3, 2) << -k / m, -c / m, k, c, 1, 0).finished();
+    d->D = (MatrixXd(3, 2) << 1 / m, 0, 0, -m0, 0, 0).finished();
+    return d;
+  }
+
+  Pattern feedthrough() const override {
+    Pattern p = Pattern::Constant(3, 2, false);
+    p(0, 0) = p(1, 1) = true;
+    return p;
+  }
+
+  std::optional<Kinematics> kinematics(ParameterValues) const override {
+    Kinematics k{.reference = 1, .tau = {}, .Phi = {}};
+    k.tau = {MatrixXd::Identity(1, 1), MatrixXd::Identity(1, 1)};
+    k.Phi = {(MatrixXd(1, 2) << 1, 0).finished(), MatrixXd::Zero(1, 2)};
+    return k;
+  }
+
+  std::vector<Value> values() const override {
+    return {spec_.mass, spec_.stiffness, spec_.damping, spec_.parent_mass};
+  }
+
+  std::optional<Cause> why_singular(int channel, ParameterValues values) const override {
+    if (channel != 1 || spec_.parent_mass.at(values) != 0) return std::nullopt;
+    return Cause{"has parent mass 0",
+                 "give SpringMass{.parent_mass = ...}, or impose parent.accel instead"};
+  }
+
+ private:
+  SpringMass spec_;
+};
+
+}  // namespace
+
+BlockPtr as_block(const SpringMass& spec) {
+  check_values(spec.mass.nominal(), spec.stiffness.nominal(), spec.damping.nominal(),
+               spec.parent_mass.nominal());
+  return std::make_shared<SpringMassBlock>(spec);
+}
+
+}  // namespace titop

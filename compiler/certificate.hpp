@@ -1,0 +1,35 @@
+#pragma once
+
+#include <complex>
+#include <string>
+
+namespace titop {
+
+/// What was checked of a compiled system, and how well it holds. Every number is dimensionless;
+/// what is not listed was not checked.
+struct Certificate {
+  /// Largest |left - right| over (sum of magnitudes of the terms) among all equations of the
+  /// diagram AS WRITTEN, at one complex s, for one random input, all signals computed by the
+  /// compiled system. Rounding is about 1e-16 times the length of a row.
+  double residual = 0;
+  std::string residual_where;  ///< the equation or block that has it
+  std::complex<double> s;      ///< where it was evaluated
+  /// Largest relative difference between xdot, y of the dense model and of the factors, for one
+  /// random x, u; negative where no dense model has been written.
+  double dense_against_factors = -1;
+  /// Smallest pivot over the sum of magnitudes that formed it: 1 no cancellation, 1e-16 nothing
+  /// left. Invariant under any change of units.
+  double weakest_pivot = 1;
+  std::string weakest_where;  ///< signal
+  double pivot_growth = 1;  ///< largest entry met in the elimination over the largest at its start
+  /// Largest margin rho(|L^-1| |L|) of an algebraic loop, and its signals; 1 for no loop.
+  double margin = 1;
+  bool margin_is_exact = true;  ///< false where some loops were too large for it (see the notes)
+  std::string margin_where;
+  double seconds = 0;  ///< what this check cost
+};
+
+/// One line per item, in plain words.
+std::string to_string(const Certificate& certificate);
+
+}  // namespace titop

@@ -1,0 +1,349 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <titop/compiler/system_data.hpp>
+#include <titop/graph/drives.hpp>
+#include <titop/graph/linalg/dense.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXcd;
+using Eigen::VectorXd;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Numbers in [-1, 1] from a fixed seed: a certificate must be the same on every run.
+class Numbers {
+ public:
+  double next() {
+    state_ ^= state_ << 13;
+    state_ ^= state_ >> 7;
+    state_ ^= state_ << 17;
+    return static_cast<double>(state_ >> 11) * 0x1p-52 - 1.0;
+  }
+
+ private:
+  unsigned long long state_ = 0x9E3779B97F4A7C15ull;
+};
+
+/// A frequency inside the blocks' own range, off the axis so that no pole is near.
+std::complex<double> pick_s(const SystemData& d) {
+  double log_sum = 0;
+  int count = 0;
+  for (const int i : d.layout.state_nodes) {
+    const double size = std::sqrt(d.blocks[at(i)]->A.cwiseAbs().maxCoeff());
+    if (size > 0 && std::isfinite(size)) log_sum += std::log(size), ++count;
+    if (count >= 64) break;
+  }
+  const double w = count ? std::exp(log_sum / count) : 1;
+  return {0.37 * w, 0.93 * w};
+}
+
+/// Signals of the diagram as written, from those of the stage (whose nodes stand by name).
+class Values {
+ public:
+  Values(const SystemData& d, const Point& point)
+      : d_(d), point_(point), map_(d.written.signals.size(), -1) {
+    const Graph& w = d.written;
+    const Graph& g = d.stage.graph;
+    for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
+      const Node& from = g.nodes[at(i)];
+      const Node& to = w.nodes[at(from.declared)];
+      for (int k = 0; k < end_signal(g, i) - from.first_signal; ++k)
+        map_[at(to.first_signal + k)] = from.first_signal + k;
+    }
+    for (const Input& i : g.inputs) map_[at(w.inputs[at(i.declared)].signal)] = i.signal;
+  }
+  const MatrixXcd& of(int signal) const { return point_.signals[at(map_[at(signal)])]; }
+  /// Computed: active, or external, or at rest because no input moves it.
+  bool known(int signal) const {
+    const Signal& s = d_.stage.graph.signals[at(map_[at(signal)])];
+    return s.active || s.role == Signal::Role::external;
+  }
+
+ private:
+  const SystemData& d_;
+  const Point& point_;
+  std::vector<int> map_;
+};
+
+/// One equation: left - right, and the sum of magnitudes, row by row.
+struct Balance {
+  VectorXcd difference;
+  VectorXd magnitude;
+  bool known = true;
+
+  explicit Balance(int rows) : difference(VectorXcd::Zero(rows)), magnitude(VectorXd::Zero(rows)) {}
+  void add(const MatrixXcd& c, const MatrixXcd& value) {
+    difference += c * value;
+    magnitude += c.cwiseAbs() * value.cwiseAbs();
+  }
+  double relative() const {
+    double worst = 0;
+    for (Eigen::Index i = 0; i < difference.size(); ++i)
+      if (magnitude(i) > 0) worst = std::max(worst, std::abs(difference(i)) / magnitude.maxCoeff());
+    return worst;
+  }
+};
+
+/// The residual of the equations as the user wrote them.
+struct Residual {
+  const SystemData& d;
+  const Values& values;
+  std::complex<double> s;
+  double worst = 0;
+  std::string where;
+
+  void take(const Balance& b, const std::string& name) {
+    if (!b.known) return;
+    const double r = b.difference.allFinite() ? b.relative() : 1;
+    if (r > worst) worst = r, where = name;
+  }
+
+  void subtract(Balance& b, const MatrixXcd& factor, const Term& t,
+                const std::vector<Drive>& drive) {
+    b.known = b.known && values.known(t.signal);
+    MatrixXcd c = -factor * coefficient(d.written, t, d.stage.values);
+    b.add(t.of == Term::Of::position ? MatrixXcd(c / (s * s)) : c, values.of(t.signal));
+    if (t.of != Term::Of::reaction) return;
+    const int channel = d.written.signals[at(t.signal)].channel;
+    for (const int e : drive[at(channel)].added) add_force(b, -c, e, drive);
+  }
+
+  void add_force(Balance& b, const MatrixXcd& N, int e, const std::vector<Drive>& drive) {
+    const Equation& q = d.written.equations[at(e)];
+    const MatrixXcd f = q.part.whole() ? N : MatrixXcd(N * q.part.rows.transpose());
+    for (const Term& t : q.terms) subtract(b, f, t, drive);
+  }
+
+  void channels() {
+    const Graph& w = d.written;
+    const std::vector<Drive> drive = drives(w);
+    for (std::size_t c = 0; c < drive.size(); ++c) {
+      const Channel& channel = w.channels[c];
+      for (const int e : drive[c].accel) {
+        const Equation& q = w.equations[at(e)];
+        const MatrixXd S =
+            q.part.whole() ? MatrixXd::Identity(channel.size, channel.size) : q.part.rows;
+        Balance b(static_cast<int>(S.rows()));
+        b.known = values.known(channel.accel);
+        b.add(S, values.of(channel.accel));
+        for (const Term& t : q.terms) subtract(b, MatrixXd::Identity(S.rows(), S.rows()), t, drive);
+        take(b, print(w, q));
+      }
+      if (drive[c].N.rows() == 0) continue;
+      Balance b(static_cast<int>(drive[c].N.rows()));
+      b.known = values.known(channel.force);
+      b.add(drive[c].N, values.of(channel.force));
+      for (const auto* list : {&drive[c].force, &drive[c].added})
+        for (const int e : *list) add_force(b, drive[c].N, e, drive);
+      take(b, "the forces at " + channel_name(w, static_cast<int>(c)));
+    }
+    for (const Equation& q : w.equations) {
+      if (w.signals[at(q.target)].channel >= 0) continue;
+      const int n = w.signals[at(q.target)].size;
+      Balance b(n);
+      b.known = values.known(q.target);
+      b.add(MatrixXd::Identity(n, n), values.of(q.target));
+      for (const Term& t : q.terms) subtract(b, MatrixXd::Identity(n, n), t, drive);
+      take(b, print(w, q));
+    }
+  }
+
+  /// s x = A x + B u and y = C x + D u of every block.
+  void blocks() {
+    const Graph& w = d.written;
+    for (const Node& stage_node : d.stage.graph.nodes) {
+      const int index = stage_node.declared;
+      const Node& node = w.nodes[at(index)];
+      const Dynamics& m =
+          *d.blocks[static_cast<std::size_t>(&stage_node - d.stage.graph.nodes.data())];
+      const int end = end_signal(w, index);
+      const auto inputs = [&](Balance& b, const MatrixXd& matrix) {
+        for (int i = node.first_signal; i < end; ++i)
+          if (const Signal& u = w.signals[at(i)]; u.role == Signal::Role::input) {
+            b.known = b.known && (values.known(i) || matrix.middleCols(u.first, u.size).isZero(0));
+            b.add(-matrix.middleCols(u.first, u.size), values.of(i));
+          }
+      };
+      if (node.state >= 0 && values.known(node.state)) {
+        Balance b(static_cast<int>(m.A.rows()));
+        b.add(s * MatrixXcd::Identity(m.A.rows(), m.A.rows()), values.of(node.state));
+        b.add(-m.A, values.of(node.state));
+        inputs(b, m.B);
+        take(b, "the states of " + node.name);
+      }
+      for (int o = node.first_signal; o < end; ++o) {
+        const Signal& y = w.signals[at(o)];
+        if (y.role != Signal::Role::output || !values.known(o)) continue;
+        Balance b(y.size);
+        b.add(MatrixXd::Identity(y.size, y.size), values.of(o));
+        if (node.state >= 0) {
+          b.known = b.known && values.known(node.state);
+          b.add(-m.C.middleRows(y.first, y.size), values.of(node.state));
+        }
+        inputs(b, m.D.middleRows(y.first, y.size));
+        take(b, name_of(w, o));
+      }
+    }
+  }
+};
+
+void self_check(SystemData& d) {
+  Numbers random;
+  MatrixXcd u(static_cast<Eigen::Index>(d.layout.inputs.size()), 1);
+  for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = {random.next(), random.next()};
+  d.certificate.s = pick_s(d);
+  if (u.size() == 0) return;  // nothing moves
+  const Point point = solve_at(d, d.certificate.s, u);
+  const Values values(d, point);
+  Residual r{d, values, d.certificate.s, 0, {}};
+  r.channels();
+  r.blocks();
+  d.certificate.residual = r.worst;
+  d.certificate.residual_where = r.where;
+}
+
+/// Loop matrix of one strong component: its rows and unknowns of the equations, dense.
+MatrixXd loop_matrix(const SystemData& d, const Loop& loop) {
+  const Graph& g = d.stage.graph;
+  std::vector<int> column(g.signals.size(), -1);
+  int n = 0;
+  for (const int s : loop.signals) column[at(s)] = n, n += g.signals[at(s)].size;
+  MatrixXd L = MatrixXd::Zero(n, n);
+  int row = 0;
+  const auto put = [&](const MatrixXd& c, int signal) {
+    if (column[at(signal)] >= 0) L.block(row, column[at(signal)], c.rows(), c.cols()) += c;
+  };
+  for (const int r : loop.rows) {
+    const Row& q = d.stage.rows[at(r)];
+    if (row + q.size > n) return {};
+    if (q.equation >= 0) {
+      const Equation& e = g.equations[at(q.equation)];
+      const int size = g.signals[at(e.target)].size;
+      put(e.part.whole() ? MatrixXd::Identity(size, size) : e.part.rows, e.target);
+      for (const Term& t : e.terms) put(-*std::get<Matrix>(t.factors.front()).value, t.signal);
+    } else {
+      const Signal& y = g.signals[at(q.output)];
+      put(MatrixXd::Identity(y.size, y.size), q.output);
+      for (int i = g.nodes[at(q.node)].first_signal; i < end_signal(g, q.node); ++i)
+        if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input)
+          put(-d.blocks[at(q.node)]->D.block(y.first, u.first, y.size, u.size), i);
+    }
+    row += q.size;
+  }
+  return row == n ? L : MatrixXd();
+}
+
+constexpr int kExactUpTo = 120;  ///< unknowns; above it a dense inverse per loop costs too much
+
+void margins(SystemData& d) {
+  const Graph& g = d.stage.graph;
+  int skipped = 0;
+  for (Loop& loop : d.stage.loops) {
+    if (loop.unknowns > kExactUpTo) {
+      ++skipped;
+      continue;
+    }
+    const MatrixXd L = loop_matrix(d, loop);
+    if (L.size() == 0) continue;
+    const linalg::Inverse inverse = linalg::inverse(L);
+    if (inverse.rcond == 0) continue;
+    loop.margin = loop.unknowns == 1 ? 1 : linalg::perron(inverse.matrix.cwiseAbs() * L.cwiseAbs());
+    loop.margin_is_exact = true;
+    if (loop.margin > d.certificate.margin) {
+      d.certificate.margin = loop.margin;
+      d.certificate.margin_where = name_of(g, loop.signals.front());
+    }
+  }
+  if (skipped == 0) return;
+  d.certificate.margin_is_exact = false;
+  d.stage.notes.push_back(
+      {Note::Kind::info, "certify",
+       fmt::format("{} loop{} of more than {} unknowns: judged by {} pivots, "
+                   "not by {} margin",
+                   skipped, skipped == 1 ? "" : "s", kExactUpTo, skipped == 1 ? "its" : "their",
+                   skipped == 1 ? "its" : "their")});
+}
+
+}  // namespace
+
+double dense_difference(const SystemData& d, const StateSpace& m) {
+  if (m.A.size() == 0) return 0;
+  Numbers random;
+  VectorXd x(m.A.rows()), u(m.B.cols());
+  for (Eigen::Index i = 0; i < x.size(); ++i) x(i) = random.next();
+  for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = random.next();
+  const MatrixXd z = solve_unknowns(d, x, u);
+  double worst = 0;
+  for (const int i : d.layout.state_nodes) {
+    const Dynamics& b = *d.blocks[at(i)];
+    const Node& node = d.stage.graph.nodes[at(i)];
+    const int first = d.layout.state_first[at(i)];
+    VectorXd xdot = b.A * x.segment(first, b.A.rows());
+    for (int s = node.first_signal; s < node.state; ++s)
+      if (const Signal& in = d.stage.graph.signals[at(s)];
+          in.role == Signal::Role::input && in.active)
+        xdot += b.B.middleCols(in.first, in.size) * signal_value(d, s, z, x, u);
+    const auto A = m.A.middleRows(first, b.A.rows());
+    const auto B = m.B.middleRows(first, b.A.rows());
+    const VectorXd size = A.cwiseAbs() * x.cwiseAbs() + B.cwiseAbs() * u.cwiseAbs();
+    const VectorXd off = (xdot - A * x - B * u).cwiseAbs();
+    if (size.size() && size.maxCoeff() > 0)
+      worst = std::max(worst, off.maxCoeff() / size.maxCoeff());
+  }
+  return worst;
+}
+
+void certify(SystemData& d) {
+  const auto start = std::chrono::steady_clock::now();
+  const solve::Health& h = d.factors->health();
+  d.certificate.weakest_pivot = h.weakest;
+  if (h.weakest_variable >= 0)
+    d.certificate.weakest_where = name_of(d.stage.graph, d.joint.variables[at(h.weakest_variable)]);
+  d.certificate.pivot_growth = h.growth;
+  margins(d);
+  self_check(d);
+  d.certificate.seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double lost = 2.2e-16 * d.certificate.margin;
+  if (lost > 1e-8)
+    d.stage.notes.push_back(
+        {Note::Kind::warning, "certify",
+         fmt::format("the loop at {} has margin {:.2g}: about {:.0f} digits are left",
+                     d.certificate.margin_where, d.certificate.margin,
+                     std::max(0.0, -std::log10(lost)))});
+  if (d.certificate.residual > 1e-9)
+    d.stage.notes.push_back({Note::Kind::warning, "certify",
+                             fmt::format("{} holds only to {:.1g}", d.certificate.residual_where,
+                                         d.certificate.residual)});
+}
+
+}  // namespace titop::detail
+
+namespace titop {
+
+std::string to_string(const Certificate& c) {
+  std::string text;
+  text += fmt::format("equations as written hold to {:.1e} at s = {:.3g}{:+.3g}j{}\n", c.residual,
+                      c.s.real(), c.s.imag(),
+                      c.residual_where.empty() ? "" : " (worst: " + c.residual_where + ")");
+  text +=
+      c.dense_against_factors < 0
+          ? std::string("dense model not written yet\n")
+          : fmt::format("dense model agrees with the factors to {:.1e}\n", c.dense_against_factors);
+  text += fmt::format("weakest pivot keeps {:.1e} of its terms{}, growth {:.3g}\n", c.weakest_pivot,
+                      c.weakest_where.empty() ? "" : " (" + c.weakest_where + ")", c.pivot_growth);
+  text +=
+      fmt::format("largest loop margin {:.3g}{}{}\n", c.margin,
+                  c.margin_where.empty() ? "" : " (at " + c.margin_where + ")",
+                  c.margin_is_exact ? "" : "; loops too large for it are judged by their pivots");
+  return text;
+}
+
+}  // namespace titop

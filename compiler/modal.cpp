@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <numbers>
+#include <titop/compiler/modal.hpp>
+#include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/symmetric.hpp>
+
+namespace titop {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+/// qdot of each q: rows of A that are one unit vector. Empty if the states do not pair up.
+std::vector<std::pair<int, int>> pairs(const MatrixXd& A) {
+  const int n = static_cast<int>(A.rows());
+  std::vector<int> velocity(static_cast<std::size_t>(n), -1);
+  std::vector<char> is_velocity(static_cast<std::size_t>(n), 0);
+  for (int i = 0; i < n; ++i) {
+    int found = -1, count = 0;
+    for (int j = 0; j < n; ++j)
+      if (A(i, j) != 0) ++count, found = j;
+    if (count == 1 && A(i, found) == 1 && found != i) velocity[static_cast<std::size_t>(i)] = found;
+  }
+  std::vector<std::pair<int, int>> result;
+  for (int i = 0; i < n; ++i) {
+    const int v = velocity[static_cast<std::size_t>(i)];
+    if (v < 0 || velocity[static_cast<std::size_t>(v)] >= 0) continue;
+    if (is_velocity[static_cast<std::size_t>(v)]) return {};
+    is_velocity[static_cast<std::size_t>(v)] = 1;
+    result.emplace_back(i, v);
+  }
+  return 2 * static_cast<int>(result.size()) == n ? result : std::vector<std::pair<int, int>>{};
+}
+
+/// Squares of a diagonal scaling d that makes K symmetric (d_i K_ij / ... balanced along a
+/// spanning tree of its entries, strongest first), or empty if a zero stands against a nonzero.
+VectorXd symmetrizer(const MatrixXd& K) {
+  const auto n = K.rows();
+  VectorXd d2 = VectorXd::Zero(n);
+  for (Eigen::Index root = 0; root < n; ++root) {
+    if (d2(root) != 0) continue;
+    d2(root) = 1;
+    std::deque<Eigen::Index> queue{root};
+    while (!queue.empty()) {
+      const auto i = queue.front();
+      queue.pop_front();
+      for (Eigen::Index j = 0; j < n; ++j) {
+        // An entry that is only rounding says nothing about the ratio.
+        const double size = std::sqrt(std::abs(K(i, i) * K(j, j)));
+        if (i == j || d2(j) != 0 || K(i, j) == 0 || K(j, i) == 0) continue;
+        if (std::sqrt(std::abs(K(i, j) * K(j, i))) < 1e-6 * size) continue;
+        if (K(i, j) * K(j, i) < 0) return {};
+        d2(j) = d2(i) * std::abs(K(j, i) / K(i, j));
+        queue.push_back(j);
+      }
+    }
+  }
+  return d2;
+}
+
+}  // namespace
+
+SecondOrder second_order(const MatrixXd& A) {
+  SecondOrder result;
+  const auto list = pairs(A);
+  const auto n = static_cast<Eigen::Index>(list.size());
+  if (n == 0 || !A.allFinite()) return result;
+  MatrixXd K(n, n), Z(n, n);
+  for (const auto& [q, v] : list) {
+    result.q.push_back(q);
+    result.qdot.push_back(v);
+  }
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < n; ++j) {
+      const auto [q, v] = list[static_cast<std::size_t>(j)];
+      K(i, j) = -A(list[static_cast<std::size_t>(i)].second, q);
+      Z(i, j) = -A(list[static_cast<std::size_t>(i)].second, v);
+    }
+  const VectorXd d2 = symmetrizer(K);
+  if (d2.size() == 0) return result;
+  result.d = d2.cwiseSqrt();
+  const MatrixXd S = result.d.cwiseInverse().asDiagonal() * K * result.d.asDiagonal();
+  result.Z = result.d.cwiseInverse().asDiagonal() * Z * result.d.asDiagonal();
+  VectorXd size = S.diagonal().cwiseAbs().cwiseSqrt();
+  result.asymmetry = 0;
+  for (Eigen::Index i = 0; i < n; ++i)
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const double scale = size(i) * size(j);
+      const double off = std::abs(S(i, j) - S(j, i));
+      if (off > 0) result.asymmetry = std::max(result.asymmetry, scale > 0 ? off / scale : 1);
+    }
+  result.S = (S + S.transpose()) / 2;
+  result.found = result.asymmetry <= 1e-9;
+  return result;
+}
+
+namespace {
+
+std::string block_of(const std::string& state) { return state.substr(0, state.rfind('.')); }
+
+Pole make_pole(std::complex<double> s, bool pair) {
+  Pole p;
+  p.s = s;
+  p.pair = pair;
+  p.omega = std::abs(s);
+  p.hertz = p.omega / (2 * std::numbers::pi);
+  p.damping = p.omega > 0 ? -s.real() / p.omega + 0.0 : 0;
+  return p;
+}
+
+void set_blocks(Pole& pole, const StateSpace& model, const VectorXd& share) {
+  std::map<std::string, double> sum;
+  for (Eigen::Index i = 0; i < share.size(); ++i)
+    sum[block_of(model.states[static_cast<std::size_t>(i)])] += share(i);
+  const double total = share.sum();
+  for (const auto& [name, value] : sum)
+    if (total > 0 && value >= 0.05 * total) pole.blocks.emplace_back(name, value / total);
+  std::stable_sort(pole.blocks.begin(), pole.blocks.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+}
+
+/// Poles of yddot + Z ydot + S y = 0 where Z is diagonal in the modes of S; false if it is not.
+bool proportional_poles(const StateSpace& model, const SecondOrder& form, std::vector<Pole>& out) {
+  const SymmetricModes modes = eigh(form.S);
+  const MatrixXd Z = modes.V.transpose() * form.Z * modes.V;
+  const double size = Z.cwiseAbs().maxCoeff();
+  const MatrixXd off = Z - MatrixXd(Z.diagonal().asDiagonal());
+  if (size > 0 && off.cwiseAbs().maxCoeff() > 1e-13 * size) return false;
+  const double largest = modes.lambda.size() ? modes.lambda.cwiseAbs().maxCoeff() : 0;
+  for (Eigen::Index k = 0; k < modes.lambda.size(); ++k) {
+    // What is negative by rounding is a rigid motion.
+    const double w2 = std::abs(modes.lambda(k)) <= 1e-13 * largest ? 0 : modes.lambda(k);
+    const double half = Z(k, k) / 2;
+    const std::complex<double> root = std::sqrt(std::complex<double>(half * half - w2, 0));
+    VectorXd share = VectorXd::Zero(model.A.rows());
+    for (Eigen::Index i = 0; i < modes.V.rows(); ++i)
+      share(form.q[static_cast<std::size_t>(i)]) = modes.V(i, k) * modes.V(i, k);
+    const bool pair = root.imag() != 0;
+    for (const double sign : {1.0, -1.0}) {
+      Pole p = make_pole(-half + sign * root, pair);
+      if (size == 0 && pair) p = make_pole({0, sign * std::sqrt(w2)}, true);
+      set_blocks(p, model, share);
+      if (sign > 0 || !pair) out.push_back(std::move(p));
+    }
+  }
+  return true;
+}
+
+void general_poles(const StateSpace& model, std::vector<Pole>& out) {
+  const linalg::Eigensystem e = linalg::eigensystem(model.A);
+  for (Eigen::Index k = 0; k < e.values.size(); ++k) {
+    if (e.values(k).imag() < 0) continue;
+    Pole p = make_pole(e.values(k), e.values(k).imag() > 0);
+    set_blocks(p, model, e.V.col(k).cwiseProduct(e.W.row(k).transpose()).cwiseAbs());
+    out.push_back(std::move(p));
+  }
+}
+
+}  // namespace
+
+std::vector<Pole> poles(const StateSpace& model) {
+  std::vector<Pole> result;
+  if (model.order() == 0) return result;
+  const SecondOrder form = second_order(model.A);
+  if (!form.found || !proportional_poles(model, form, result)) {
+    result.clear();
+    general_poles(model, result);
+  }
+  std::stable_sort(result.begin(), result.end(), [](const Pole& a, const Pole& b) {
+    return a.omega != b.omega ? a.omega < b.omega : a.s.real() < b.s.real();
+  });
+  return result;
+}
+
+std::string to_string(const std::vector<Pole>& list) {
+  std::string text = fmt::format("{:>14} {:>14} {:>12}  {}\n", "rad/s", "Hz", "damping", "blocks");
+  for (const Pole& p : list) {
+    std::string blocks;
+    for (const auto& [name, share] : p.blocks)
+      blocks += fmt::format("{}{} {:.0f} %", blocks.empty() ? "" : ", ", name, 100 * share);
+    text += fmt::format("{:>14.7g} {:>14.7g} {:>12.4g}  {}{}\n", p.omega, p.hertz, p.damping,
+                        blocks, p.pair ? "" : "  (real)");
+  }
+  return text;
+}
+
+}  // namespace titop

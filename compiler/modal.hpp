@@ -1,0 +1,41 @@
+#pragma once
+
+#include <complex>
+#include <string>
+#include <titop/compiler/state_space.hpp>
+#include <vector>
+
+namespace titop {
+
+/// One pole, or one conjugate pair (then the one with positive imaginary part).
+struct Pole {
+  std::complex<double> s;  ///< [rad/s]
+  bool pair = false;       ///< stands for s and conj(s)
+  double omega = 0;        ///< |s| [rad/s]
+  double hertz = 0;        ///< |s| / 2 pi [Hz]
+  double damping = 0;      ///< -Re(s) / |s| [-]; 0 for s = 0
+  /// Blocks that take part, with their share (participation factors summed over the block's
+  /// states, of total 1), largest first, down to 5 %.
+  std::vector<std::pair<std::string, double>> blocks;
+};
+
+/// Poles sorted by frequency. Undamped and proportionally damped models are solved as symmetric
+/// problems, so that undamped poles lie on the axis exactly. O(n^3).
+std::vector<Pole> poles(const StateSpace& model);
+
+/// A table: rad/s, Hz, damping, blocks.
+std::string to_string(const std::vector<Pole>& poles);
+
+/// A second-order model hidden in A, if there is one: x = [q; qdot] in some order, qddot = -K q -
+/// Z qdot with K symmetric after the diagonal scaling d (q = d y).
+struct SecondOrder {
+  bool found = false;
+  std::vector<int> q, qdot;  ///< positions of the pairs among the states
+  Eigen::VectorXd d;         ///< scaling
+  Eigen::MatrixXd S;         ///< symmetric positive semidefinite: yddot = -S y - Z ydot
+  Eigen::MatrixXd Z;         ///< same scaling
+  double asymmetry = 0;      ///< of S, relative to its largest entry, before it was averaged
+};
+SecondOrder second_order(const Eigen::MatrixXd& A);
+
+}  // namespace titop

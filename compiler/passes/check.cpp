@@ -1,0 +1,303 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <titop/compiler/passes/passes.hpp>
+#include <titop/graph/drives.hpp>
+
+namespace titop::passes {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// What a term is, after its factors.
+struct Kind {
+  int size = 0;
+  Quantity quantity = Quantity::plain;
+  int frame = kNoFrame;
+};
+
+struct Checker {
+  const Graph& graph;
+  std::vector<Mistake> mistakes;
+  std::vector<Note> notes;
+  std::map<std::string, int, std::less<>> node_index;
+
+  explicit Checker(const Graph& g) : graph(g), mistakes(g.mistakes) {
+    for (std::size_t i = 0; i < g.nodes.size(); ++i)
+      node_index.emplace(g.nodes[i].name, static_cast<int>(i));
+  }
+
+  void add(Code code, std::string message, std::vector<std::string> details, std::string hint) {
+    mistakes.push_back({code, std::move(message), std::move(details), std::move(hint)});
+  }
+};
+
+std::string line(const std::string& text, const std::source_location& where) {
+  return fmt::format("{:<50} {}", text, to_string(where));
+}
+
+/// One factor of a term; false where the term makes no sense from here on.
+bool apply(Checker& c, Kind& kind, const Factor& factor, const std::string& text,
+           const std::source_location& where) {
+  if (const auto* k = std::get_if<Value>(&factor)) {
+    kind.quantity = Quantity::plain;
+    if (k->is_parameter() && k->owner() &&
+        k->index() >= static_cast<int>(c.graph.parameters.size())) {
+      c.add(Code::unknown_name, "a parameter of another diagram is used", {line(text, where)},
+            "make the parameter with param(...) of this diagram");
+      return false;
+    }
+    if (!std::isfinite(k->nominal()))
+      c.add(Code::not_finite, fmt::format("a gain is {}", k->nominal()), {line(text, where)},
+            "give a finite gain");
+  } else if (const auto* m = std::get_if<Matrix>(&factor)) {
+    if (m->value->cols() != kind.size) {
+      c.add(Code::size,
+            fmt::format("a {}x{} matrix multiplies a signal of size {}", m->value->rows(),
+                        m->value->cols(), kind.size),
+            {line(text, where)}, fmt::format("the matrix needs {} columns", kind.size));
+      return false;
+    }
+    if (!m->value->allFinite())
+      c.add(Code::not_finite, "a matrix has entries that are not finite", {line(text, where)},
+            "check the matrix' source");
+    kind = {static_cast<int>(m->value->rows()), Quantity::plain,
+            kind.frame == kNoFrame ? kNoFrame : kUnknownFrame};
+  } else if (const auto* p = std::get_if<Part>(&factor)) {
+    if (!p->whole()) kind.size = static_cast<int>(p->rows.rows());
+  } else if (const auto& T = std::get<Rotation>(factor); !T.is_identity() || !T.to().empty()) {
+    if (kind.size != 3 && kind.size != 6 && !(T.is_identity() && kind.size == 1)) {
+      c.add(Code::size, fmt::format("a rotation multiplies a signal of size {}", kind.size),
+            {line(text, where)}, "rotations act on vectors of 3 and dual vectors of 6");
+      return false;
+    }
+    const auto from = c.node_index.find(T.from()), to = c.node_index.find(T.to());
+    if (kind.frame >= 0 && from != c.node_index.end() && from->second != kind.frame) {
+      c.add(Code::frame,
+            fmt::format("the rotation {}<-{} meets a signal in {}", T.to(), T.from(),
+                        frame_name(c.graph, kind.frame)),
+            {line(text, where)}, "use its inverse(), or name the frames that it really has");
+    }
+    kind.frame = to != c.node_index.end() ? to->second : kUnknownFrame;
+  }
+  return true;
+}
+
+/// Kind of a term; size -1 where it makes no sense (already noted).
+Kind describe(Checker& c, const Term& term, const std::source_location& where) {
+  if (term.signal < 0) return {-1};
+  const Signal& s = c.graph.signals[at(term.signal)];
+  Kind kind{s.size, s.quantity, s.frame};
+  if (term.of == Term::Of::position) kind.quantity = Quantity::position;
+  const std::string text = print(c.graph, term);
+  for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f)
+    if (!apply(c, kind, *f, text, where)) return {-1};
+  return kind;
+}
+
+std::string frame_hint(const Checker& c, int target, const Term& term) {
+  const Signal& t = c.graph.signals[at(target)];
+  const Signal& s = c.graph.signals[at(term.signal)];
+  const std::string plain = print(c.graph, Term{term.signal, term.of, 1, {}});
+  if (t.channel >= 0 && s.channel >= 0 && t.quantity == Quantity::acceleration)
+    return fmt::format("write mount({}, {}, T_ba), or T_ba.inverse() * {}",
+                       c.graph.nodes[at(t.node)].name, channel_name(c.graph, s.channel), plain);
+  return fmt::format("write T * {} with the rotation T that takes it from one frame to the other",
+                     plain);
+}
+
+/// All terms of one right-hand side against what they drive. `expected.frame` kNoFrame adopts the
+/// first frame met.
+void check_terms(Checker& c, const std::string& target, int target_signal, Kind expected,
+                 const std::vector<Term>& terms, const std::string& text,
+                 const std::source_location& where) {
+  const bool adopts_frame = expected.frame == kNoFrame;
+  std::string from = target;
+  for (const Term& term : terms) {
+    const Kind kind = describe(c, term, where);
+    if (kind.size < 0) continue;
+    const std::string name = print(c.graph, term);
+    if (kind.size != expected.size) {
+      c.add(Code::size,
+            fmt::format("{} has size {}, its equation has {} of size {}", target, expected.size,
+                        name, kind.size),
+            {line(text, where)},
+            fmt::format("both sides must have {} rows; take .linear, .angular or "
+                        ".along(r), or give the {} another size",
+                        expected.size, target_signal < 0 ? "output" : "signal"));
+      continue;
+    }
+    if (expected.quantity == Quantity::plain && kind.quantity != Quantity::plain) {
+      expected.quantity = kind.quantity;
+      from = name;
+    } else if (kind.quantity != Quantity::plain && kind.quantity != expected.quantity) {
+      c.add(Code::quantity,
+            fmt::format("{} is of kind {}, {} of kind {}", from, to_string(expected.quantity), name,
+                        to_string(kind.quantity)),
+            {line(text, where)},
+            "a gain with units in front, as k * signal, makes it a plain signal");
+    }
+    if (kind.frame == kUnknownFrame) {
+      c.notes.push_back(
+          {Note::Kind::unchecked, "check",
+           fmt::format("{}: the frame of {} is unknown ({})", target, name, to_string(where))});
+    } else if (kind.frame != kNoFrame) {
+      if (expected.frame == kNoFrame && adopts_frame) {
+        expected.frame = kind.frame;
+        from = name;
+      } else if (expected.frame >= 0 && kind.frame != expected.frame) {
+        c.add(Code::frame,
+              fmt::format("{} is in {}, its equation is in {}", adopts_frame ? from : target,
+                          frame_name(c.graph, expected.frame), frame_name(c.graph, kind.frame)),
+              {line(text, where)},
+              target_signal < 0 ? "rotate one of them first" : frame_hint(c, target_signal, term));
+      }
+    }
+  }
+}
+
+void check_equation(Checker& c, const Equation& e) {
+  const Signal& s = c.graph.signals[at(e.target)];
+  const Kind expected{e.part.whole() ? s.size : static_cast<int>(e.part.rows.rows()), s.quantity,
+                      s.frame};
+  check_terms(c, name_of(c.graph, e.target) + e.part.name, e.target, expected, e.terms,
+              print(c.graph, e), e.where);
+}
+
+std::string added_at(const Graph& graph, int node) {
+  const Node& n = graph.nodes[at(node)];
+  return fmt::format("{} was added at {}", n.name, to_string(n.where));
+}
+
+/// Overlap of two driven parts of one channel.
+bool overlap(const Equation& a, const Equation& b) {
+  if (a.part.whole() || b.part.whole()) return true;
+  return (a.part.rows * b.part.rows.transpose()).cwiseAbs().maxCoeff() > 1e-12;
+}
+
+std::string free_way_out(const Graph& graph, const Channel& channel) {
+  const std::string name = channel_name(graph, static_cast<int>(&channel - graph.channels.data()));
+  const std::string accel = name_of(graph, channel.accel), force = name_of(graph, channel.force);
+  if (graph.nodes[at(channel.node)].block->interface().channels[at(channel.spec)].name != "parent")
+    return fmt::format("write {} = 0 to leave it free, or {} = 0 to lock it", force, accel);
+  const std::string& node = graph.nodes[at(channel.node)].name;
+  return channel.size == 6
+             ? fmt::format(
+                   "write mount({}, B.child(\"C1\"), T_ba) to fix it to a body B, {} = 0 to "
+                   "clamp it, or {} = 0 to leave it free",
+                   node, accel, force)
+             : fmt::format(
+                   "write {} = z.child.accel to fix it to a block z, {} = 0 to clamp it, or "
+                   "{} = 0 to leave it free",
+                   accel, accel, force);
+}
+
+void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
+  const Graph& g = c.graph;
+  const int index = static_cast<int>(&channel - g.channels.data());
+  std::vector<int> set = drive.accel;
+  set.insert(set.end(), drive.force.begin(), drive.force.end());
+  int rows = 0;
+  bool clash = false;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    const Equation& a = g.equations[at(set[i])];
+    rows += a.part.whole() ? channel.size : static_cast<int>(a.part.rows.rows());
+    for (std::size_t j = 0; j < i; ++j) {
+      const Equation& b = g.equations[at(set[j])];
+      if (!overlap(a, b)) continue;
+      clash = true;
+      const bool same = a.target == b.target;
+      c.add(Code::two_equations,
+            same ? fmt::format("{} is driven twice", name_of(g, a.target))
+                 : fmt::format("{} is driven on both sides, acceleration and force",
+                               channel_name(g, index)),
+            {line(print(g, b), b.where), line(print(g, a), a.where)},
+            same ? "keep one of them; to add a force write += instead of ="
+                 : "keep one of them; the other side can be read");
+    }
+  }
+  const bool child = channel.takes == Takes::force;
+  if (!clash && rows < channel.size && !child && drive.added.empty()) {
+    const std::string what =
+        rows == 0 ? name_of(g, channel.accel)
+                  : fmt::format("{} ({} of {} degrees of freedom)", name_of(g, channel.accel),
+                                channel.size - rows, channel.size);
+    c.add(Code::no_equation, fmt::format("{} is not driven", what), {added_at(g, channel.node)},
+          free_way_out(g, channel));
+  }
+}
+
+void check_one_way(Checker& c) {
+  const Graph& g = c.graph;
+  std::vector<int> driver(g.signals.size(), -1);
+  for (std::size_t i = 0; i < g.equations.size(); ++i) {
+    const Equation& e = g.equations[i];
+    if (e.target < 0 || g.signals[at(e.target)].channel >= 0) continue;
+    int& first = driver[at(e.target)];
+    if (first >= 0) {
+      const Equation& b = g.equations[at(first)];
+      c.add(Code::two_equations, fmt::format("{} is driven twice", name_of(g, e.target)),
+            {line(print(g, b), b.where), line(print(g, e), e.where)},
+            "keep one of them, or write their sum");
+    }
+    first = static_cast<int>(i);
+  }
+  for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
+    const Signal& sig = g.signals[at(s)];
+    if (sig.role == Signal::Role::input && sig.channel < 0 && driver[at(s)] < 0)
+      c.add(Code::no_equation, fmt::format("{} is not driven", name_of(g, s)),
+            {added_at(g, sig.node)},
+            fmt::format("write {} = ..., or {} = 0", name_of(g, s), name_of(g, s)));
+  }
+}
+
+void check_outputs(Checker& c) {
+  for (const Output& o : c.graph.outputs) {
+    if (!o.set) {
+      c.add(Code::no_equation, fmt::format("output {} is not set", o.name),
+            {"it was declared at " + to_string(o.where)},
+            fmt::format("write d.output(\"{}\") = ...", o.name));
+      continue;
+    }
+    std::string text = fmt::format("output(\"{}\") = ", o.name);
+    for (std::size_t i = 0; i < o.terms.size(); ++i)
+      if (o.terms[i].signal >= 0) text += (i ? " + " : "") + print(c.graph, o.terms[i]);
+    check_terms(c, "output " + o.name, -1, {o.size, Quantity::plain, kNoFrame}, o.terms, text,
+                o.where);
+  }
+}
+
+template <class List>
+void check_names(Checker& c, const List& list, std::string_view what) {
+  std::map<std::string, int> seen;
+  for (const auto& item : list) {
+    if (item.name.empty())
+      c.add(Code::duplicate_name, fmt::format("a {} has no name", what), {},
+            "give it a name of its own");
+    else if (++seen[item.name] == 2)
+      c.add(Code::duplicate_name, fmt::format("two {}s are called {}", what, item.name), {},
+            "names come out with the model: give each its own");
+  }
+}
+
+}  // namespace
+
+Stage check(Stage stage) {
+  Checker c(stage.graph);
+  check_names(c, stage.graph.nodes, "node");
+  check_names(c, stage.graph.inputs, "input");
+  check_names(c, stage.graph.outputs, "output");
+  check_names(c, stage.graph.parameters, "parameter");
+  for (const Equation& e : stage.graph.equations) check_equation(c, e);
+  const std::vector<Drive> all = drives(stage.graph);
+  for (std::size_t i = 0; i < all.size(); ++i) check_channel(c, stage.graph.channels[i], all[i]);
+  check_one_way(c);
+  check_outputs(c);
+  if (!c.mistakes.empty()) throw Error(std::move(c.mistakes));
+  stage.notes.insert(stage.notes.end(), c.notes.begin(), c.notes.end());
+  return stage;
+}
+
+}  // namespace titop::passes

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <titop/compiler/passes/incidence.hpp>
+
+namespace titop::passes {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+bool is_unknown(const Signal& s) {
+  return s.active && (s.role == Signal::Role::input || s.role == Signal::Role::output);
+}
+
+std::vector<Row> rows_of(const Graph& g) {
+  std::vector<Row> rows;
+  for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
+    if (g.nodes[at(i)].lowered) continue;
+    for (int o = g.nodes[at(i)].first_signal; o < end_signal(g, i); ++o) {
+      const Signal& y = g.signals[at(o)];
+      if (y.role == Signal::Role::output && y.row) rows.push_back({i, o, -1, y.size});
+    }
+  }
+  for (int e = 0; e < static_cast<int>(g.equations.size()); ++e) {
+    const Equation& equation = g.equations[at(e)];
+    const Signal& target = g.signals[at(equation.target)];
+    if (equation.active)
+      rows.push_back(
+          {-1, -1, e,
+           equation.part.whole() ? target.size : static_cast<int>(equation.part.rows.rows())});
+  }
+  return rows;
+}
+
+namespace {
+
+/// Calls visit(signal, pattern) for every unknown of a row.
+template <class Visit>
+void visit_entries(const Graph& g, const Row& row, const std::vector<Pattern>& feedthrough,
+                   Visit visit) {
+  if (row.equation >= 0) {
+    const Equation& e = g.equations[at(row.equation)];
+    const Signal& t = g.signals[at(e.target)];
+    if (is_unknown(t))
+      visit(e.target, e.part.whole()
+                          ? Pattern(Eigen::MatrixXd::Identity(t.size, t.size).array() != 0)
+                          : Pattern(e.part.rows.array() != 0));
+    for (const Term& term : e.terms)
+      if (is_unknown(g.signals[at(term.signal)])) visit(term.signal, structure(g, term));
+    return;
+  }
+  const Signal& y = g.signals[at(row.output)];
+  const Pattern& D = feedthrough[at(row.node)];
+  for (int i = g.nodes[at(row.node)].first_signal; i < end_signal(g, row.node); ++i) {
+    const Signal& u = g.signals[at(i)];
+    if (u.role != Signal::Role::input || !u.active) continue;
+    const auto block = D.block(y.first, u.first, y.size, u.size);
+    if (block.any()) visit(i, Pattern(block));
+  }
+  if (y.active) visit(row.output, Pattern(Eigen::MatrixXd::Identity(y.size, y.size).array() != 0));
+}
+
+std::vector<Pattern> all_feedthrough(const Graph& g) {
+  std::vector<Pattern> result;
+  for (const Node& node : g.nodes)
+    result.push_back(node.lowered ? Pattern() : node.block->feedthrough());
+  return result;
+}
+
+}  // namespace
+
+std::vector<int> mentioned(const Graph& g, const Row& row) {
+  std::vector<int> result;
+  if (row.equation >= 0) {
+    for (const Term& t : g.equations[at(row.equation)].terms)
+      if (g.signals[at(t.signal)].active) result.push_back(t.signal);
+    if (const int target = g.equations[at(row.equation)].target; g.signals[at(target)].active)
+      result.push_back(target);
+    return result;
+  }
+  const Node& node = g.nodes[at(row.node)];
+  const Signal& y = g.signals[at(row.output)];
+  const Pattern D = node.block->feedthrough();
+  for (int i = node.first_signal; i < end_signal(g, row.node); ++i) {
+    const Signal& s = g.signals[at(i)];
+    if (!s.active) continue;
+    if (s.role == Signal::Role::state || i == row.output ||
+        (s.role == Signal::Role::input && D.block(y.first, s.first, y.size, s.size).any()))
+      result.push_back(i);
+  }
+  return result;
+}
+
+Incidence incidence(const Graph& g, bool by_scalar) {
+  Incidence inc;
+  inc.rows = rows_of(g);
+  inc.first_col.assign(g.signals.size(), -1);
+  for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
+    const Signal& sig = g.signals[at(s)];
+    if (!is_unknown(sig)) continue;
+    inc.first_col[at(s)] = static_cast<int>(inc.signal_of.size());
+    for (int k = 0; k < (by_scalar ? sig.size : 1); ++k) {
+      inc.signal_of.push_back(s);
+      inc.col_size.push_back(by_scalar ? 1 : sig.size);
+    }
+  }
+  const std::vector<Pattern> feedthrough = all_feedthrough(g);
+  for (int r = 0; r < static_cast<int>(inc.rows.size()); ++r) {
+    const Row& row = inc.rows[at(r)];
+    const int first = static_cast<int>(inc.cols.size());
+    const int count = by_scalar ? row.size : 1;
+    inc.first_row.push_back(first);
+    inc.cols.resize(at(first + count));
+    inc.row_of_vertex.resize(at(first + count), r);
+    inc.row_size.resize(at(first + count), by_scalar ? 1 : row.size);
+    visit_entries(g, row, feedthrough, [&](int signal, const Pattern& p) {
+      const int col = inc.first_col[at(signal)];
+      if (!by_scalar) {
+        inc.cols[at(first)].push_back(col);
+        return;
+      }
+      for (Eigen::Index i = 0; i < p.rows(); ++i)
+        for (Eigen::Index j = 0; j < p.cols(); ++j)
+          if (p(i, j))
+            inc.cols[at(first) + static_cast<std::size_t>(i)].push_back(col + static_cast<int>(j));
+    });
+    for (int k = first; k < first + count; ++k) {
+      auto& list = inc.cols[at(k)];
+      std::sort(list.begin(), list.end());
+      list.erase(std::unique(list.begin(), list.end()), list.end());
+    }
+  }
+  return inc;
+}
+
+}  // namespace titop::passes

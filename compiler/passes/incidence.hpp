@@ -1,0 +1,30 @@
+#pragma once
+
+#include <titop/compiler/stage.hpp>
+#include <vector>
+
+namespace titop::passes {
+
+/// Which unknowns each row mentions, at one of two resolutions: whole signals, or scalars.
+struct Incidence {
+  std::vector<Row> rows;                  ///< row groups, canonical order
+  std::vector<int> first_row, first_col;  ///< first vertex of each row group / of each signal
+  std::vector<std::vector<int>> cols;     ///< row vertex -> column vertices, ascending
+  std::vector<int> signal_of;             ///< column vertex -> signal
+  std::vector<int> row_of_vertex;         ///< row vertex -> row group
+  std::vector<int> row_size, col_size;    ///< scalars per vertex (1 at scalar resolution)
+};
+
+/// All active rows of the graph.
+std::vector<Row> rows_of(const Graph& graph);
+
+/// Declared structure of the active rows and unknowns. O(entries).
+Incidence incidence(const Graph& graph, bool by_scalar);
+
+/// Active signals, one by one, that a row mentions: unknowns, states and inputs. For graph walks.
+std::vector<int> mentioned(const Graph& graph, const Row& row);
+
+/// True for signals that the equations determine: neither states nor external inputs.
+bool is_unknown(const Signal& signal);
+
+}  // namespace titop::passes

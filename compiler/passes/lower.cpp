@@ -1,0 +1,299 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <titop/compiler/passes/passes.hpp>
+#include <titop/graph/drives.hpp>
+#include <titop/graph/linalg/dense.hpp>
+
+namespace titop::passes {
+namespace {
+
+using Eigen::MatrixXd;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+// --- names in natural order -------------------------------------------------------------------
+
+template <class List>
+std::vector<int> sorted_by_name(const List& list) {
+  std::vector<int> order(list.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return natural_compare(list[at(a)].name, list[at(b)].name) < 0; });
+  return order;
+}
+
+/// The same graph with nodes, inputs and outputs in natural order of their names, so that nothing
+/// after this depends on the order in which the user wrote them.
+Graph by_name(const Graph& g) {
+  Graph out;
+  out.name = g.name;
+  out.parameters = g.parameters;
+  std::vector<int> signal(g.signals.size(), -1);
+  for (const int i : sorted_by_name(g.nodes)) {
+    const Node& node = g.nodes[at(i)];
+    const int added = add_node(out, node.name, node.block, node.where);
+    out.nodes[at(added)].declared = node.declared;
+    const int count = end_signal(g, i) - node.first_signal;
+    for (int k = 0; k < count; ++k)
+      signal[at(node.first_signal + k)] = out.nodes[at(added)].first_signal + k;
+  }
+  for (const int i : sorted_by_name(g.inputs)) {
+    const Input& input = g.inputs[at(i)];
+    signal[at(input.signal)] = add_input(out, input.name, input.size);
+    out.inputs.back().declared = input.declared;
+  }
+  const auto renamed = [&](std::vector<Term> terms) {
+    for (Term& t : terms) t.signal = signal[at(t.signal)];
+    return terms;
+  };
+  for (const Equation& e : g.equations) {
+    out.equations.push_back(e);
+    out.equations.back().target = signal[at(e.target)];
+    out.equations.back().terms = renamed(e.terms);
+  }
+  for (const int i : sorted_by_name(g.outputs)) {
+    out.outputs.push_back(g.outputs[at(i)]);
+    out.outputs.back().terms = renamed(g.outputs[at(i)].terms);
+  }
+  return out;
+}
+
+// --- terms as one numeric coefficient each ----------------------------------------------------
+
+/// A signal with its coefficient and declared structure.
+struct Part1 {
+  int signal;
+  MatrixXd c;
+  Pattern p;
+};
+using Sum1 = std::vector<Part1>;
+
+bool less(const Part1& a, const Part1& b) {
+  if (a.signal != b.signal) return a.signal < b.signal;
+  return std::lexicographical_compare(a.c.data(), a.c.data() + a.c.size(), b.c.data(),
+                                      b.c.data() + b.c.size());
+}
+
+Pattern product(const MatrixXd& m, const Pattern& p) {
+  return ((m.array() != 0).matrix().cast<int>() * p.cast<int>()).array() > 0;
+}
+
+Sum1 times(const MatrixXd& m, Sum1 sum) {
+  for (Part1& t : sum) t.c = m * t.c, t.p = product(m, t.p);
+  return sum;
+}
+
+void append(Sum1& sum, Sum1 more) {
+  for (Part1& t : more) sum.push_back(std::move(t));
+}
+
+/// One term per signal, in canonical order: the sum does not depend on how it was written.
+std::vector<Term> merged(Sum1 sum) {
+  std::sort(sum.begin(), sum.end(), less);
+  std::vector<Term> terms;
+  for (std::size_t i = 0; i < sum.size();) {
+    Part1 total = sum[i];
+    for (++i; i < sum.size() && sum[i].signal == total.signal; ++i) {
+      total.c += sum[i].c;
+      total.p = total.p.array() || sum[i].p.array();
+    }
+    Term term{.signal = total.signal};
+    term.factors.emplace_back(Matrix{std::make_shared<const MatrixXd>(std::move(total.c)),
+                                     std::make_shared<const Pattern>(std::move(total.p))});
+    terms.push_back(std::move(term));
+  }
+  return terms;
+}
+
+struct Lowering {
+  const Graph& g;
+  ParameterValues values;
+  std::vector<Drive> drive;
+  std::vector<char> visiting;  ///< channels whose position is being written out
+
+  Sum1 terms(const std::vector<Term>& list);
+  Sum1 position(int channel);
+  Sum1 body_position(const Channel& c, const Kinematics& k);
+  Sum1 added(int channel, const std::vector<int>& equations);
+  [[noreturn]] void no_position(int channel, const std::string& why) const;
+};
+
+void Lowering::no_position(int channel, const std::string& why) const {
+  throw Error(
+      Code::no_position,
+      fmt::format("the position of {} is not determined by the states", channel_name(g, channel)),
+      "integrate its acceleration with an Integrator, twice, or read a stretch or an angle", {why});
+}
+
+/// What these equations add up to on their channel, in the channel's own space.
+Sum1 Lowering::added(int channel, const std::vector<int>& equations) {
+  const int n = g.channels[at(channel)].size;
+  Sum1 sum;
+  for (const int e : equations) {
+    const Part& part = g.equations[at(e)].part;
+    append(sum, times(part.whole() ? MatrixXd::Identity(n, n) : MatrixXd(part.rows.transpose()),
+                      terms(g.equations[at(e)].terms)));
+  }
+  return sum;
+}
+
+Sum1 Lowering::terms(const std::vector<Term>& list) {
+  Sum1 sum;
+  for (const Term& t : list) {
+    const MatrixXd c = coefficient(g, t, values);
+    if (!c.allFinite())
+      throw Error(Code::not_finite, fmt::format("the coefficient of {} is not finite", print(g, t)),
+                  "look at its gains and parameters");
+    const int channel = g.signals[at(t.signal)].channel;
+    if (t.of == Term::Of::position) {
+      append(sum, times(c, position(channel)));
+      continue;
+    }
+    sum.push_back({t.signal, c, structure(g, t)});
+    if (t.of == Term::Of::reaction)
+      append(sum, times(-c, added(channel, drive[at(channel)].added)));
+  }
+  return sum;
+}
+
+/// The position of a channel in terms of states: the twin of the equation that drives its
+/// acceleration, or the block's own kinematics from the parent's position.
+Sum1 Lowering::position(int channel) {
+  const Channel& c = g.channels[at(channel)];
+  const Drive& d = drive[at(channel)];
+  if (visiting[at(channel)]) no_position(channel, "its chain leads back to itself");
+  visiting[at(channel)] = 1;
+  Sum1 sum;
+  if (!d.accel.empty()) {
+    if (d.N.rows() > 0) no_position(channel, "it is only partly held");
+    for (const int e : d.accel) {
+      const Equation& equation = g.equations[at(e)];
+      const MatrixXd embed = equation.part.whole() ? MatrixXd::Identity(c.size, c.size)
+                                                   : MatrixXd(equation.part.rows.transpose());
+      for (const Term& t : equation.terms) {
+        const Signal& s = g.signals[at(t.signal)];
+        if (s.channel < 0 || s.quantity != Quantity::acceleration)
+          no_position(channel, fmt::format("{} is driven by {}", name_of(g, c.accel), print(g, t)));
+        append(sum, times(embed * coefficient(g, t, values), position(s.channel)));
+      }
+    }
+  } else if (const auto k = g.nodes[at(c.node)].block->kinematics(values)) {
+    sum = body_position(c, *k);
+  } else {
+    no_position(channel,
+                fmt::format("{} does not say where its ports are", g.nodes[at(c.node)].name));
+  }
+  visiting[at(channel)] = 0;
+  return sum;
+}
+
+Sum1 Lowering::body_position(const Channel& c, const Kinematics& k) {
+  const Node& node = g.nodes[at(c.node)];
+  const auto deformation = [&](int spec, double sign) {
+    const MatrixXd& Phi = k.Phi[at(spec)];
+    return Sum1{{node.state, sign * Phi, Phi.array() != 0}};
+  };
+  if (c.spec != k.reference) {
+    Sum1 sum = times(k.tau[at(c.spec)], position(node.first_channel + k.reference));
+    if (node.state >= 0) append(sum, deformation(c.spec, 1));
+    return sum;
+  }
+  for (int spec = 0; spec < static_cast<int>(k.tau.size()); ++spec) {
+    const int other = node.first_channel + spec;
+    if (spec == k.reference || drive[at(other)].accel.empty()) continue;
+    const linalg::Inverse inverse = linalg::inverse(k.tau[at(spec)]);
+    if (inverse.rcond == 0) continue;
+    Sum1 sum = position(other);
+    if (node.state >= 0) append(sum, deformation(spec, -1));
+    return times(inverse.matrix, std::move(sum));
+  }
+  no_position(node.first_channel + c.spec, fmt::format("{} moves freely", node.name));
+}
+
+// --- equations --------------------------------------------------------------------------------
+
+Equation equation(int target, Part part, Sum1 sum, const std::source_location& where) {
+  return {.target = target,
+          .part = std::move(part),
+          .accumulate = false,
+          .terms = merged(std::move(sum)),
+          .where = where};
+}
+
+void lower_channel(Lowering& l, int channel, std::vector<Equation>& out) {
+  const Channel& c = l.g.channels[at(channel)];
+  const Drive& d = l.drive[at(channel)];
+  std::source_location where = l.g.nodes[at(c.node)].where;
+  for (const int e : d.accel) {
+    const Equation& old = l.g.equations[at(e)];
+    out.push_back(equation(c.accel, old.part, l.terms(old.terms), old.where));
+  }
+  if (d.N.rows() == 0) return;
+  std::vector<int> all = d.force;
+  all.insert(all.end(), d.added.begin(), d.added.end());
+  if (!all.empty()) where = l.g.equations[at(all.front())].where;
+  const bool whole = d.N.rows() == c.size;
+  Part part;
+  if (!whole) part = {d.N, ".free"};
+  Sum1 sum = l.added(channel, all);
+  out.push_back(equation(c.force, std::move(part),
+                         whole ? std::move(sum) : times(d.N, std::move(sum)), where));
+}
+
+/// out = D in, as an equation.
+void lower_algebraic(const Graph& g, int index, ParameterValues values,
+                     std::vector<Equation>& out) {
+  const Node& node = g.nodes[at(index)];
+  const auto d = node.block->dynamics(values);
+  const Pattern pattern = node.block->feedthrough();
+  const int end = end_signal(g, index);
+  for (int o = node.first_signal; o < end; ++o) {
+    const Signal& y = g.signals[at(o)];
+    if (y.role != Signal::Role::output) continue;
+    Sum1 sum;
+    for (int i = node.first_signal; i < end; ++i) {
+      const Signal& u = g.signals[at(i)];
+      if (u.role == Signal::Role::input)
+        sum.push_back({i, d->D.block(y.first, u.first, y.size, u.size),
+                       pattern.block(y.first, u.first, y.size, u.size)});
+    }
+    out.push_back(equation(o, {}, std::move(sum), node.where));
+  }
+}
+
+}  // namespace
+
+Stage lower(Stage stage) {
+  Graph g = by_name(stage.graph);
+  Lowering l{g, stage.values, drives(g), std::vector<char>(g.channels.size(), 0)};
+  std::vector<Equation> equations;
+  for (int c = 0; c < static_cast<int>(g.channels.size()); ++c) lower_channel(l, c, equations);
+  std::vector<int> one_way;
+  for (int e = 0; e < static_cast<int>(g.equations.size()); ++e)
+    if (g.signals[at(g.equations[at(e)].target)].channel < 0) one_way.push_back(e);
+  std::sort(one_way.begin(), one_way.end(),
+            [&](int a, int b) { return g.equations[at(a)].target < g.equations[at(b)].target; });
+  for (const int e : one_way) {
+    const Equation& old = g.equations[at(e)];
+    equations.push_back(equation(old.target, {}, l.terms(old.terms), old.where));
+  }
+  int algebraic = 0;
+  for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i)
+    if (g.nodes[at(i)].block->is_algebraic()) {
+      lower_algebraic(g, i, stage.values, equations);
+      g.nodes[at(i)].lowered = true;
+      ++algebraic;
+    }
+  for (Output& o : g.outputs) o.terms = merged(l.terms(o.terms));
+  g.equations = std::move(equations);
+  stage.graph = std::move(g);
+  stage.notes.push_back(
+      {Note::Kind::info, "lower",
+       fmt::format("{} nodes ({} of them as coefficients), {} equations", stage.graph.nodes.size(),
+                   algebraic, stage.graph.equations.size())});
+  return stage;
+}
+
+}  // namespace titop::passes

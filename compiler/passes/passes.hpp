@@ -1,0 +1,42 @@
+#pragma once
+
+#include <titop/compiler/stage.hpp>
+
+/// The passes before numbers, in their order. Each is a pure function: it takes a stage and gives
+/// the next one; it does not print, keeps nothing between calls, and throws only for the user's
+/// mistakes, all of them together. Every pass keeps `transfer(graph, s)`.
+namespace titop::passes {
+
+/// Sizes, quantities and frames agree; each channel is driven exactly once per degree of freedom;
+/// names are unique. First, so that mistakes are reported in the user's own words.
+/// Throws no_equation, two_equations, size, quantity, frame, unknown_name, duplicate_name,
+/// not_finite. O(terms).
+Stage check(Stage stage);
+
+/// Nodes, inputs and equations stand in natural order of their names; every driven part has
+/// exactly one equation; `+=`, reactions and positions are written out; every term has one numeric
+/// coefficient; Gain and Sum are equations. Throws no_position, not_finite. O(terms).
+Stage lower(Stage stage);
+
+/// Connected parts (ground not counted) without an input or without an output are set aside and
+/// listed; not so if the diagram has no inputs (outputs) at all: then all states count as driven
+/// (seen). O(terms).
+Stage split(Stage stage);
+
+/// Every kinematic chain is open: spanning tree over points, bodies and joints. Closed chains are
+/// refused by name (kinematic_loop). O(terms).
+Stage chains(Stage stage);
+
+/// Every row has its unknown: maximum bipartite matching by whole signals from each channel's
+/// default, by scalars only where that leaves a rest. Inversions are known. Throws structure, with
+/// both sides of the deficient part (Dulmage-Mendelsohn). O(terms) for trees.
+Stage match(Stage stage);
+
+/// Block triangular form: strong components are the algebraic loops, dependencies first. What no
+/// input reaches or no output sees is set aside and listed. O(terms).
+Stage order(Stage stage);
+
+/// The graph's invariants, checked after every pass; throws std::logic_error (a fault of ours).
+void verify(const Stage& stage);
+
+}  // namespace titop::passes

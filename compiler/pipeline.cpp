@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <titop/compiler/dot.hpp>
+#include <titop/compiler/passes/passes.hpp>
+#include <titop/compiler/solve/blame.hpp>
+#include <titop/compiler/system_data.hpp>
+
+namespace titop {
+
+std::string_view to_string(Note::Kind kind) {
+  switch (kind) {
+    case Note::Kind::info: return "info";
+    case Note::Kind::inverted: return "inverted";
+    case Note::Kind::removed: return "removed";
+    case Note::Kind::unchecked: return "unchecked";
+    case Note::Kind::warning: return "warning";
+  }
+  return "note";
+}
+
+namespace {
+
+struct Pass {
+  const char* name;
+  Stage (*run)(Stage);
+};
+
+/// The passes on the graph, top to bottom; then solve and certify work with numbers.
+constexpr Pass kPasses[] = {
+    {"check", passes::check},  // the user's mistakes, in the user's words: before anything moves
+    {"lower", passes::lower},  // one numeric coefficient per term; names decide the order from here
+    {"split", passes::split},  // parts without input or output: no later pass need look at them
+    {"chains", passes::chains},  // closed chains, found on the kinematics, before forces matter
+    {"match", passes::match},    // who determines whom: channel inversions come out here
+    {"order", passes::order},    // loops, and what no input reaches or no output sees
+};
+
+void dump(const Options& options, int number, const char* name, const Stage& stage) {
+  if (options.dump_to.empty()) return;
+  std::filesystem::create_directories(options.dump_to);
+  const auto path =
+      std::filesystem::path(options.dump_to) / fmt::format("{:02}-{}.dot", number, name);
+  std::ofstream(path) << to_dot(stage);
+}
+
+/// Runs f and adds its seconds to the list.
+template <class F>
+void timed(detail::SystemData& data, const char* name, F f) {
+  const auto start = std::chrono::steady_clock::now();
+  f();
+  data.seconds.emplace_back(
+      name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+}
+
+void solve_joint(detail::SystemData& d) {
+  d.layout = detail::make_layout(d.stage.graph);
+  for (const Node& node : d.stage.graph.nodes)
+    d.blocks.push_back(node.block->dynamics(d.stage.values));
+  d.joint = solve::joint(d.stage);
+  d.numbers = solve::numbers(d.stage, d.joint, d.blocks);
+  d.factors = std::make_unique<solve::Factors<double>>(d.joint.plan, d.numbers.entries);
+  if (d.factors->health().singular)
+    throw Error(solve::blame(d.stage, d.joint, d.blocks, d.factors->health()));
+  d.stage.notes.push_back(
+      {Note::Kind::info, "solve",
+       fmt::format("{} unknowns in {} fronts", d.joint.plan.unknowns, d.joint.plan.fronts.size())});
+}
+
+}  // namespace
+
+System compile(const Diagram& diagram, const Options& options) {
+  auto data = std::make_shared<detail::SystemData>();
+  data->written = diagram.graph();
+  data->options = options;
+  data->stage.graph = diagram.graph();
+  data->stage.values = nominal_values(diagram.graph());
+  dump(options, 0, "diagram", data->stage);
+  int number = 0;
+  for (const Pass& pass : kPasses) {
+    timed(*data, pass.name, [&] {
+      data->stage = pass.run(std::move(data->stage));
+      passes::verify(data->stage);
+    });
+    dump(options, ++number, pass.name, data->stage);
+  }
+  timed(*data, "solve", [&] { solve_joint(*data); });
+  timed(*data, "certify", [&] { detail::certify(*data); });
+  return System(std::move(data));
+}
+
+}  // namespace titop

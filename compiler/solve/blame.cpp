@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <Eigen/SVD>
+#include <algorithm>
+#include <titop/compiler/solve/blame.hpp>
+
+namespace titop::solve {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Rank of the channel's own direct term after scaling its rows and columns, at 1e-12.
+int direct_rank(const Graph& g, const Channel& c, const Dynamics& m) {
+  const Signal& gives = g.signals[at(c.takes == Takes::force ? c.accel : c.force)];
+  const Signal& takes = g.signals[at(c.takes == Takes::force ? c.force : c.accel)];
+  Eigen::MatrixXd D = m.D.block(gives.first, takes.first, c.size, c.size);
+  // Translations and rotations have units of their own: compare with the diagonal.
+  const Eigen::VectorXd size = D.diagonal().cwiseAbs().cwiseSqrt();
+  for (Eigen::Index i = 0; i < D.rows(); ++i)
+    for (Eigen::Index j = 0; j < D.cols(); ++j)
+      D(i, j) = size(i) > 0 && size(j) > 0 ? D(i, j) / (size(i) * size(j)) : 0;
+  Eigen::FullPivLU<Eigen::MatrixXd> lu(D);
+  lu.setThreshold(1e-12);
+  return static_cast<int>(lu.rank());
+}
+
+std::string written(const Graph& g, int signal) {
+  for (const Equation& e : g.equations)
+    if (e.target == signal) return fmt::format("{:<50} {}", print(g, e), to_string(e.where));
+  return name_of(g, signal);
+}
+
+Mistake improper(const Stage& stage, const Channel& c, int rank) {
+  const Graph& g = stage.graph;
+  const int index = static_cast<int>(&c - g.channels.data());
+  const bool child = c.takes == Takes::force;
+  const int driven = child ? c.accel : c.force, other = child ? c.force : c.accel;
+  const Node& node = g.nodes[at(c.node)];
+  Mistake m{Code::improper, {}, {}, {}};
+  m.message = fmt::format("{} is imposed, and {} would need derivatives of it", name_of(g, driven),
+                          name_of(g, other));
+  m.details.push_back(written(g, driven));
+  if (const auto cause = node.block->why_singular(c.spec, stage.values)) {
+    m.details.push_back(fmt::format("{} {}", node.name, cause->why));
+    m.hint = cause->way_out;
+    return m;
+  }
+  m.details.push_back(
+      fmt::format("the direct term of {} has rank {} of {}", channel_name(g, index), rank, c.size));
+  m.hint = child ? fmt::format(
+                       "leave the degrees of freedom free that {} cannot be driven in (keep "
+                       "more modes or residual vectors there), or impose {} instead",
+                       channel_name(g, index), name_of(g, other))
+                 : fmt::format("give {} mass in every direction, or impose {} instead", node.name,
+                               name_of(g, other));
+  return m;
+}
+
+const Loop* loop_of(const Stage& stage, int signal) {
+  for (const Loop& loop : stage.loops)
+    if (std::find(loop.signals.begin(), loop.signals.end(), signal) != loop.signals.end())
+      return &loop;
+  return nullptr;
+}
+
+}  // namespace
+
+Mistake blame(const Stage& stage, const Joint& joint,
+              const std::vector<std::shared_ptr<const Dynamics>>& blocks, const Health& health) {
+  const Graph& g = stage.graph;
+  std::vector<int> signals;
+  for (const int v : health.singular_variables) signals.push_back(joint.variables[at(v)]);
+  const Loop* loop = signals.empty() ? nullptr : loop_of(stage, signals.front());
+  const auto in_loop = [&](int s) {
+    return !loop || std::find(loop->signals.begin(), loop->signals.end(), s) != loop->signals.end();
+  };
+  for (const Inversion& inversion : stage.inversions) {
+    const Channel& c = g.channels[at(inversion.channel)];
+    if (!in_loop(c.takes == Takes::force ? c.force : c.accel)) continue;
+    const int rank = direct_rank(g, c, *blocks[at(c.node)]);
+    if (rank < c.size) return improper(stage, c, rank);
+  }
+  Mistake m{Code::ill_posed, {}, {}, {}};
+  std::string names;
+  for (const int s : signals) names += (names.empty() ? "" : ", ") + name_of(g, s);
+  m.message = fmt::format("the algebraic loop through {} has no unique solution", names);
+  if (loop) {
+    std::string all;
+    for (std::size_t i = 0; i < loop->signals.size() && i < 12; ++i)
+      all += (i ? ", " : "") + name_of(g, loop->signals[i]);
+    if (loop->signals.size() > 12) all += ", ...";
+    m.details.push_back(fmt::format("the loop: {} ({} unknowns)", all, loop->unknowns));
+  }
+  m.details.push_back("a pivot keeps no digits: the direct terms around the loop cancel");
+  m.hint = fmt::format(
+      "break the direct feedthrough around {}: give one block of the loop a state, or "
+      "change a gain",
+      signals.empty() ? "it" : name_of(g, signals.front()));
+  return m;
+}
+
+}  // namespace titop::solve

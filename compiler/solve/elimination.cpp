@@ -1,0 +1,197 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <titop/compiler/solve/elimination.hpp>
+
+namespace titop::solve {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// First column of each variable in a front: pivots first, then the border.
+std::vector<std::pair<int, int>> columns_of(const Front& f, const Plan& plan) {
+  std::vector<std::pair<int, int>> result;  // (variable, column), sorted by variable
+  int column = 0;
+  for (const auto* list : {&f.pivots, &f.border})
+    for (const int v : *list) {
+      result.emplace_back(v, column);
+      column += plan.structure.variable_size[at(v)];
+    }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+int column(const std::vector<std::pair<int, int>>& columns, int variable) {
+  return std::lower_bound(columns.begin(), columns.end(), std::pair(variable, 0))->second;
+}
+
+template <class T>
+double size_of(const T& x) {
+  using std::abs;
+  return static_cast<double>(abs(x));
+}
+
+}  // namespace
+
+template <class T>
+Factors<T>::Factors(const Plan& plan, const std::vector<RowEntries<T>>& entries) : plan_(&plan) {
+  std::vector<Matrix> left_over(plan.fronts.size());
+  fronts_.resize(plan.fronts.size());
+  for (std::size_t i = 0; i < plan.fronts.size(); ++i) {
+    const Front& front = plan.fronts[i];
+    fronts_[i].lu = assemble(front, entries, left_over);
+    eliminate(front, fronts_[i]);
+    if (health_.singular) return;
+    const int rest = front.row_count - front.pivot_count;
+    left_over[i] = fronts_[i].lu.bottomRightCorner(rest, front.border_count);
+  }
+}
+
+template <class T>
+typename Factors<T>::Matrix Factors<T>::assemble(const Front& front,
+                                                 const std::vector<RowEntries<T>>& entries,
+                                                 std::vector<Matrix>& left_over) const {
+  const auto columns = columns_of(front, *plan_);
+  Matrix F = Matrix::Zero(front.row_count, front.pivot_count + front.border_count);
+  Eigen::Index row = 0;
+  for (const int r : front.rows) {
+    const auto& variables = plan_->structure.variables[at(r)];
+    for (std::size_t k = 0; k < variables.size(); ++k) {
+      const auto& block = entries[at(r)][k];
+      F.block(row, column(columns, variables[k]), block.rows(), block.cols()) = block;
+    }
+    row += plan_->structure.row_size[at(r)];
+  }
+  for (const int child : front.children) {
+    Matrix& rest = left_over[at(child)];
+    Eigen::Index from = 0;
+    for (const int v : plan_->fronts[at(child)].border) {
+      const int size = plan_->structure.variable_size[at(v)];
+      F.block(row, column(columns, v), rest.rows(), size) = rest.middleCols(from, size);
+      from += size;
+    }
+    row += rest.rows();
+    rest.resize(0, 0);
+  }
+  return F;
+}
+
+/// LU of the pivot columns. The pivot of a column is the row where it stands out most against
+/// the row's own size, so that the choice does not depend on the rows' units. `bound` carries the
+/// sums of magnitudes that formed each entry: a pivot far below its bound is what cancellation
+/// has left.
+template <class T>
+void Factors<T>::eliminate(const Front& front, Factored& f) {
+  Matrix& A = f.lu;
+  const int rows = front.row_count, pivots = front.pivot_count;
+  f.order.resize(at(rows));
+  for (int i = 0; i < rows; ++i) f.order[at(i)] = i;
+  Eigen::MatrixXd bound =
+      A.unaryExpr([](const T& x) { return size_of(x); }).template cast<double>();
+  Eigen::VectorXd scale = bound.rowwise().maxCoeff();
+  const double start = bound.size() ? bound.maxCoeff() : 0;
+  for (int k = 0; k < pivots; ++k) {
+    int best = -1;
+    double best_score = 0;
+    for (int i = k; i < rows; ++i) {
+      const double score = scale(i) > 0 ? size_of(A(i, k)) / scale(i) : 0;
+      if (score > best_score) best_score = score, best = i;
+    }
+    const double left = best < 0 ? 0 : size_of(A(best, k)) / bound(best, k);
+    // What a column keeps after cancellation, over all its rows: invariant under scaling of both.
+    double keeps = left;
+    for (int i = k; i < rows; ++i)
+      if (bound(i, k) > 0) keeps = std::max(keeps, size_of(A(i, k)) / bound(i, k));
+    if (keeps < health_.weakest) {
+      health_.weakest = keeps;
+      int offset = 0;
+      for (const int v : front.pivots) {
+        if (offset + plan_->structure.variable_size[at(v)] > k) {
+          health_.weakest_variable = v;
+          break;
+        }
+        offset += plan_->structure.variable_size[at(v)];
+      }
+    }
+    const double eps = static_cast<double>(std::numeric_limits<double>::epsilon());
+    if (best < 0 || keeps < 4 * eps || !std::isfinite(best_score)) {
+      health_.singular = true;
+      health_.singular_variables = front.pivots;
+      return;
+    }
+    if (best != k) {
+      A.row(best).swap(A.row(k));
+      bound.row(best).swap(bound.row(k));
+      std::swap(scale(best), scale(k));
+      std::swap(f.order[at(best)], f.order[at(k)]);
+    }
+    const Eigen::Index right = A.cols() - k - 1;
+    for (int i = k + 1; i < rows; ++i) {
+      if (A(i, k) == T(0)) continue;
+      const T l = A(i, k) / A(k, k);
+      A(i, k) = l;
+      A.row(i).tail(right) -= l * A.row(k).tail(right);
+      bound.row(i).tail(right) += size_of(l) * bound.row(k).tail(right);
+    }
+  }
+  if (start > 0) {
+    const double end =
+        A.unaryExpr([](const T& x) { return size_of(x); }).template cast<double>().maxCoeff();
+    health_.growth = std::max(health_.growth, end / start);
+  }
+}
+
+template <class T>
+typename Factors<T>::Matrix Factors<T>::solve(const std::vector<Matrix>& rhs,
+                                              Eigen::Index columns) const {
+  std::vector<Matrix> y(fronts_.size()), left_over(fronts_.size());
+  for (std::size_t i = 0; i < fronts_.size(); ++i) {
+    const Front& front = plan_->fronts[i];
+    const Matrix& lu = fronts_[i].lu;
+    Matrix b = Matrix::Zero(front.row_count, columns);
+    Eigen::Index row = 0;
+    for (const int r : front.rows) {
+      const int size = plan_->structure.row_size[at(r)];
+      if (rhs[at(r)].size()) b.middleRows(row, size) = rhs[at(r)];
+      row += size;
+    }
+    for (const int child : front.children) {
+      b.middleRows(row, left_over[at(child)].rows()) = left_over[at(child)];
+      row += left_over[at(child)].rows();
+      left_over[at(child)].resize(0, 0);
+    }
+    Matrix p(b.rows(), columns);
+    for (int k = 0; k < front.row_count; ++k) p.row(k) = b.row(fronts_[i].order[at(k)]);
+    const int n = front.pivot_count, rest = front.row_count - n;
+    lu.topLeftCorner(n, n).template triangularView<Eigen::UnitLower>().solveInPlace(p.topRows(n));
+    if (rest > 0) p.bottomRows(rest).noalias() -= lu.bottomLeftCorner(rest, n) * p.topRows(n);
+    left_over[i] = p.bottomRows(rest);
+    y[i] = p.topRows(n);
+  }
+  Matrix z(plan_->unknowns, columns);
+  for (std::size_t i = fronts_.size(); i-- > 0;) {
+    const Front& front = plan_->fronts[i];
+    const Matrix& lu = fronts_[i].lu;
+    const int n = front.pivot_count;
+    Eigen::Index from = n;
+    for (const int v : front.border) {
+      const int size = plan_->structure.variable_size[at(v)];
+      y[i].noalias() -= lu.block(0, from, n, size) * z.middleRows(plan_->first[at(v)], size);
+      from += size;
+    }
+    lu.topLeftCorner(n, n).template triangularView<Eigen::Upper>().solveInPlace(y[i]);
+    Eigen::Index row = 0;
+    for (const int v : front.pivots) {
+      const int size = plan_->structure.variable_size[at(v)];
+      z.middleRows(plan_->first[at(v)], size) = y[i].middleRows(row, size);
+      row += size;
+    }
+    y[i].resize(0, 0);
+  }
+  return z;
+}
+
+template class Factors<double>;
+template class Factors<std::complex<double>>;
+
+}  // namespace titop::solve

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <titop/graph/graph.hpp>
+#include <vector>
+
+namespace titop {
+
+/// A line of the compile log.
+struct Note {
+  enum class Kind {
+    info,       ///< what a pass counted
+    inverted,   ///< a channel that is driven on the side that its block gives by default
+    removed,    ///< what cannot matter and is left out
+    unchecked,  ///< accepted without a check: frames behind a nameless rotation or a matrix
+    warning,    ///< digits are lost; the model says how many
+  };
+  Kind kind = Kind::info;
+  std::string pass;
+  std::string text;
+};
+
+std::string_view to_string(Note::Kind kind);
+
+/// A channel (or a one-way port) that the equations use against its block's default direction.
+struct Inversion {
+  int channel = -1;
+  bool forced = false;  ///< by the equations; otherwise one of several choices inside a loop
+};
+
+/// A strong component of the equations: an algebraic loop, or a signal by itself.
+struct Loop {
+  std::vector<int> signals;  ///< its unknowns
+  std::vector<int> rows;     ///< the rows matched to them (see `Rows`)
+  int unknowns = 0;          ///< scalars
+  double margin = 1;         ///< rho(|L^-1| |L|): 1 for no loop, 4/delta at distance delta from
+                             ///< singular; invariant under any change of units
+  bool margin_is_exact = false;
+};
+
+/// One row group of the equations: an output of a block, or an equation of the user.
+struct Row {
+  int node = -1, output = -1;  ///< block row: y of this signal
+  int equation = -1;           ///< or this equation
+  int size = 0;
+  bool active = true;  ///< false once `order` has found that nothing needs it
+};
+
+/// Which row determines which signal: pairs (row, signal), one per scalar where a signal is split.
+struct Matched {
+  std::vector<std::pair<int, int>> rows;
+};
+
+/// What travels through the passes: the graph and what is known about it so far.
+struct Stage {
+  Graph graph;
+  std::vector<double> values;         ///< parameter values
+  std::vector<Note> notes;            ///< the log
+  std::vector<Row> rows;              ///< after match: all rows
+  Matched matched;                    ///< after match
+  std::vector<Inversion> inversions;  ///< after match
+  std::vector<Loop> loops;            ///< after order: dependencies first
+};
+
+}  // namespace titop

@@ -1,0 +1,66 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <titop/compiler/state_space.hpp>
+#include <titop/graph/error.hpp>
+#include <titop/graph/linalg/dense.hpp>
+
+namespace titop {
+
+Eigen::MatrixXcd StateSpace::transfer(std::complex<double> s) const {
+  const auto n = A.rows();
+  if (n == 0) return D.cast<std::complex<double>>();
+  const linalg::Solution x =
+      linalg::solve(s * Eigen::MatrixXcd::Identity(n, n) - A, B.cast<std::complex<double>>());
+  if (!(x.rcond > 0) || !x.z.allFinite())
+    throw Error(Code::singular, fmt::format("s = {}{:+}j is a pole", s.real(), s.imag()),
+                "evaluate beside it");
+  return C * x.z + D;
+}
+
+namespace {
+
+int find(const std::vector<std::string>& names, const std::string& name, std::string_view what) {
+  const auto it = std::find(names.begin(), names.end(), name);
+  if (it != names.end()) return static_cast<int>(it - names.begin());
+  std::string all;
+  for (std::size_t i = 0; i < names.size() && i < 12; ++i) all += (i ? ", " : "") + names[i];
+  if (names.size() > 12) all += ", ...";
+  throw Error(Code::unknown_name, fmt::format("the model has no {} \"{}\"", what, name),
+              fmt::format("its {}s are: {}", what, all));
+}
+
+void print(std::string& text, std::string_view title, const Eigen::MatrixXd& m,
+           const std::vector<std::string>& rows, const std::vector<std::string>& cols) {
+  constexpr std::size_t most = 8;
+  const std::size_t nr = std::min(rows.size(), most), nc = std::min(cols.size(), most);
+  text += fmt::format("{} ({} x {})\n{:>20}", title, rows.size(), cols.size(), "");
+  for (std::size_t j = 0; j < nc; ++j) text += fmt::format(" {:>14.14}", cols[j]);
+  text += cols.size() > nc ? "  ...\n" : "\n";
+  for (std::size_t i = 0; i < nr; ++i) {
+    text += fmt::format("{:>20.20}", rows[i]);
+    for (std::size_t j = 0; j < nc; ++j)
+      text +=
+          fmt::format(" {:>14.7g}", m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+    text += "\n";
+  }
+  if (rows.size() > nr) text += fmt::format("{:>20} {} more rows\n", "...", rows.size() - nr);
+}
+
+}  // namespace
+
+int StateSpace::output(const std::string& name) const { return find(outputs, name, "output"); }
+int StateSpace::input(const std::string& name) const { return find(inputs, name, "input"); }
+int StateSpace::state(const std::string& name) const { return find(states, name, "state"); }
+
+std::string to_string(const StateSpace& m) {
+  std::string text = fmt::format("{} states, {} inputs, {} outputs\n", m.states.size(),
+                                 m.inputs.size(), m.outputs.size());
+  if (m.order() > 0 && !m.inputs.empty()) print(text, "B", m.B, m.states, m.inputs);
+  if (m.order() > 0) print(text, "A", m.A, m.states, m.states);
+  if (m.order() > 0 && !m.outputs.empty()) print(text, "C", m.C, m.outputs, m.states);
+  if (!m.inputs.empty() && !m.outputs.empty()) print(text, "D", m.D, m.outputs, m.inputs);
+  return text;
+}
+
+}  // namespace titop

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <string>
+#include <vector>
+
+namespace titop {
+
+/// One linear model: xdot = A x + B u, y = C x + D u, with names for every row and column.
+/// Inputs, outputs and states stand in the order in which the diagram declares them.
+struct StateSpace {
+  Eigen::MatrixXd A;                                 ///< n x n
+  Eigen::MatrixXd B;                                 ///< n x nu
+  Eigen::MatrixXd C;                                 ///< ny x n
+  Eigen::MatrixXd D;                                 ///< ny x nu
+  std::vector<std::string> states, inputs, outputs;  ///< "z1.stretch", "U(3)", ...
+
+  int order() const { return static_cast<int>(A.rows()); }
+
+  /// C (s - A)^-1 B + D, ny x nu. Throws singular if s is a pole. O(n^3).
+  Eigen::MatrixXcd transfer(std::complex<double> s) const;
+  /// Row of the output / column of the input / position of the state of this name; throws
+  /// unknown_name with the valid ones.
+  int output(const std::string& name) const;
+  int input(const std::string& name) const;
+  int state(const std::string& name) const;
+};
+
+/// The matrices with their names, for reading; wide models are cut and say so.
+std::string to_string(const StateSpace& model);
+
+}  // namespace titop

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <complex>
+#include <memory>
+#include <span>
+#include <string>
+#include <titop/compiler/certificate.hpp>
+#include <titop/compiler/modal.hpp>
+#include <titop/compiler/stage.hpp>
+#include <titop/compiler/state_space.hpp>
+#include <titop/graph/diagram.hpp>
+#include <vector>
+
+namespace titop {
+
+namespace detail {
+struct SystemData;
+}
+
+/// How to compile.
+struct Options {
+  /// Up to this many states, `state_space()` also removes what has no effect on the transfer
+  /// (pass `minimize`, O(n^3)); beyond it only what the structure shows. 0: never.
+  int minimize_up_to = 100;
+  /// Folder for one Graphviz file per pass (00-diagram.dot, 01-check.dot, ...); empty: none.
+  std::string dump_to;
+  /// Merge what differs by less than this (relative half-bandwidth) when minimizing; 0: only what
+  /// rounding cannot tell from nothing.
+  double resolution = 0;
+};
+
+/// A compiled diagram: the elimination plan, the factors and the blocks' data. Const, cheap to
+/// copy, may be shared between threads. The dense model is written from it on demand.
+class System {
+ public:
+  explicit System(std::shared_ptr<const detail::SystemData> data) : data_(std::move(data)) {}
+
+  int order() const;  ///< states, before `minimize`
+  const std::vector<std::string>& states() const;
+  const std::vector<std::string>& inputs() const;  ///< "u", or "U(1)" ... "U(6)"
+  const std::vector<std::string>& outputs() const;
+
+  /// xdot and y of x and u, through the factors: O(bodies).
+  struct Rates {
+    Eigen::VectorXd xdot, y;
+  };
+  Rates apply(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const;
+
+  /// Transfer matrix at s (outputs x inputs) through the factors of the same plan: O(bodies), full
+  /// accuracy at any mass ratio. Throws singular if s is a pole of the system or of a block.
+  Eigen::MatrixXcd transfer(std::complex<double> s) const;
+
+  /// transfer(j omega) for each omega [rad/s].
+  std::vector<Eigen::MatrixXcd> frequency_response(std::span<const double> omega) const;
+
+  /// transfer(0), real. Throws singular if the system has a pole at 0 (a free hinge, an
+  /// integrator).
+  Eigen::MatrixXd static_gain() const;
+
+  /// The minimal dense model. The first call writes it (O(n^2) per output of it) and, up to
+  /// Options::minimize_up_to states, minimizes it (O(n^3)); later calls return the same.
+  const StateSpace& state_space() const;
+
+  /// Poles of state_space() with frequency, damping and the blocks that take part. O(n^3).
+  std::vector<Pole> poles() const;
+
+  Certificate certificate() const;
+  /// What the passes did: counts, inversions, what was removed, what was not checked, timings.
+  const std::vector<Note>& notes() const;
+  /// The notes as text, one per line; after state_space() also what `minimize` did.
+  std::string log() const;
+  /// Seconds per pass, as text. Not part of log(), which is the same on every machine.
+  std::string timings() const;
+  /// The graph after the passes (for diagrams: `to_dot(system.graph())`).
+  const Stage& stage() const;
+
+ private:
+  std::shared_ptr<const detail::SystemData> data_;
+};
+
+/// Compiles a diagram: check, lower, split, chains, match, order, solve, certify (see
+/// compiler/pipeline.cpp, which reads like this line). Throws Error with all mistakes of the first
+/// pass that finds any. Cost: linear in the number of bodies for trees.
+System compile(const Diagram& diagram, const Options& options = {});
+
+}  // namespace titop

@@ -1,0 +1,10 @@
+# Runs PROGRAM and compares its output with EXPECTED, byte by byte.
+execute_process(COMMAND ${PROGRAM} OUTPUT_FILE output.txt ERROR_VARIABLE errors RESULT_VARIABLE code)
+if(NOT code EQUAL 0)
+  file(READ output.txt text)
+  message(FATAL_ERROR "exit code ${code}\n${text}\n${errors}")
+endif()
+execute_process(COMMAND diff -u ${EXPECTED} output.txt OUTPUT_VARIABLE difference RESULT_VARIABLE code)
+if(NOT code EQUAL 0)
+  message(FATAL_ERROR "the output differs from ${EXPECTED}:\n${difference}")
+endif()

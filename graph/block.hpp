@@ -1,0 +1,109 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <titop/graph/value.hpp>
+#include <vector>
+
+namespace titop {
+
+/// What a signal is. A plain signal (a controller's output, an external input) takes the quantity
+/// of what it drives; the others must agree.
+enum class Quantity { plain, acceleration, velocity, position, force };
+
+/// Which signal of a channel the block takes by default: a child channel takes the wrench and
+/// gives the acceleration (inverse dynamics), a parent channel the other way round (direct
+/// dynamics). The user may drive the other one: that inverts the channel.
+enum class Takes { force, accel };
+
+/// A two-way port: a pair (acceleration, wrench) of the same size.
+struct ChannelSpec {
+  std::string name;  ///< "parent", "C1", ...
+  int size = 6;      ///< degrees of freedom: 1 or 6
+  Takes takes = Takes::force;
+  std::string accel_name = "accel", force_name = "force";  ///< what the user calls the two signals
+};
+
+/// A one-way port.
+struct PortSpec {
+  std::string name;
+  int size = 1;
+  Quantity quantity = Quantity::plain;
+};
+
+/// The ports of a block and its states by name.
+///
+/// Order everywhere: inputs u = what each channel takes, in the order of `channels`, then `inputs`;
+/// outputs y = what each channel gives, in the same order, then `outputs`. By convention children
+/// come first and the parent last, as in the paper: y = [xdd_C; F_P], u = [F_C; xdd_P].
+struct Interface {
+  std::vector<ChannelSpec> channels;
+  std::vector<PortSpec> inputs, outputs;
+  std::vector<std::string> states;
+
+  int input_size() const;   ///< number of rows of u
+  int output_size() const;  ///< number of rows of y
+};
+
+/// xdot = A x + B u, y = C x + D u, in the order of `Interface`.
+struct Dynamics {
+  Eigen::MatrixXd A, B, C, D;
+};
+
+/// Where the acceleration ports are: the position of channel i is
+/// `x_i = tau[i] x_reference + Phi[i] x`, x the block's state vector; Phi[i] is size_i x n.
+struct Kinematics {
+  int reference = 0;  ///< index of the reference channel (the parent)
+  std::vector<Eigen::MatrixXd> tau;
+  std::vector<Eigen::MatrixXd> Phi;
+};
+
+/// A matrix of yes and no: may this output depend directly on this input?
+using Pattern = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// What a diagram is made of. Derive from it, return it from `as_block(spec)`, and `Diagram::add`
+/// takes your spec (README: "how to add a block"). Blocks are immutable and shared between nodes.
+class Block {
+ public:
+  virtual ~Block() = default;
+  /// Stable type name: "SpringMass", "FlexibleBody", ...
+  virtual std::string_view type() const = 0;
+  virtual const Interface& interface() const = 0;
+  /// The matrices for these parameter values. Called once per compile and update.
+  virtual std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const = 0;
+  /// The block alone at s, from its inputs to its states and outputs: X = (s - A)^-1 B and
+  /// Y = C X + D. Dense by default, O(states^3); blocks with modal data do it in O(states).
+  /// Throws singular if s is a pole of the block.
+  struct Response {
+    Eigen::MatrixXcd X, Y;
+  };
+  virtual Response response(std::complex<double> s, ParameterValues values) const;
+  /// Declared direct feedthrough, output_size x input_size. It must not depend on the numbers: a
+  /// mass of 0 or an angle of 0 is no structural zero. Default: everything.
+  virtual Pattern feedthrough() const;
+  /// Kinematic part, if the block has one; without it positions cannot be asked for beyond it.
+  virtual std::optional<Kinematics> kinematics(ParameterValues) const { return std::nullopt; }
+  /// The values that the matrices depend on (only those that are parameters matter).
+  virtual std::vector<Value> values() const { return {}; }
+  /// True if the block has no states and its rows may become plain equations (Gain, Sum).
+  virtual bool is_algebraic() const { return false; }
+  /// True if the vectors of its size-6 channels and size-6 plain ports live in the frame of its own
+  /// node (bodies); false for controllers and scalar blocks.
+  virtual bool has_frame() const { return true; }
+  /// Why the direct term of this channel alone cannot be inverted, as "z1 has ..." would continue
+  /// ("has parent mass 0"), and the way out. Used in the message of `improper`.
+  struct Cause {
+    std::string why, way_out;
+  };
+  virtual std::optional<Cause> why_singular(int channel, ParameterValues values) const;
+};
+
+using BlockPtr = std::shared_ptr<const Block>;
+
+std::string_view to_string(Quantity quantity);
+
+}  // namespace titop

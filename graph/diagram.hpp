@@ -1,0 +1,76 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <titop/graph/graph.hpp>
+#include <titop/graph/port.hpp>
+
+namespace titop {
+
+/// A spec that `Diagram::add` takes: `as_block(spec)` gives its block, `Handle` its user's view.
+template <class Spec>
+concept BlockSpec = requires(const Spec& spec, Graph* graph, int node) {
+  { as_block(spec) } -> std::convertible_to<BlockPtr>;
+  typename Spec::Handle;
+  { typename Spec::Handle(graph, node) };
+};
+
+/// An output of the diagram: `d.output("x3") = z1.stretch + z3.stretch;`
+class OutputRef {
+ public:
+  OutputRef(Graph* graph, int index) : graph_(graph), index_(index) {}
+  void operator=(const Rhs& rhs) const;
+  void operator=(Zero zero) const { *this = Rhs(zero); }
+
+ private:
+  Graph* graph_;
+  int index_;
+};
+
+/// What the user describes: blocks, equations on their ports, inputs, outputs, parameters.
+///
+/// It owns its graph, moves, and does not copy (`clone()` does); handles and ports point into it.
+/// Mistakes in names and equations are noted and come out together in `compile`; only data that
+/// make no block at all (a negative mass) are refused at once, by `add`, with the node's name.
+/// Inputs, outputs and states of the model follow the order in which they are declared here.
+class Diagram {
+ public:
+  explicit Diagram(std::string name);
+  Diagram(Diagram&&) = default;
+  Diagram& operator=(Diagram&&) = default;
+  Diagram(const Diagram&) = delete;
+  Diagram& operator=(const Diagram&) = delete;
+  Diagram clone() const;
+
+  /// Adds a node; its handle has the block's ports. O(ports); the block's data are shared.
+  template <BlockSpec Spec>
+  typename Spec::Handle add(std::string name, const Spec& spec,
+                            std::source_location at = std::source_location::current()) {
+    const int node = add_block(
+        std::move(name), [&] { return as_block(spec); }, at);
+    return {graph_.get(), node};
+  }
+
+  /// External input: `size` plain scalars that take the quantity and frame of what they drive.
+  InputRef input(std::string name, int size = 1,
+                 std::source_location at = std::source_location::current());
+
+  /// External output of `size` scalars, to be set once by `=`.
+  OutputRef output(std::string name, int size = 1,
+                   std::source_location at = std::source_location::current());
+
+  /// A number with a name, to be used wherever a block takes a number.
+  Param param(std::string name, double value,
+              std::source_location at = std::source_location::current());
+
+  const std::string& name() const { return graph_->name; }
+  const Graph& graph() const { return *graph_; }
+
+ private:
+  int add_block(std::string name, const std::function<BlockPtr()>& make, std::source_location at);
+  std::unique_ptr<Graph> graph_;
+};
+
+}  // namespace titop

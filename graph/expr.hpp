@@ -1,0 +1,95 @@
+#pragma once
+
+#include <concepts>
+#include <source_location>
+#include <titop/graph/graph.hpp>
+#include <vector>
+
+/// Linear combinations of signals, as the user writes them on the right of `=`.
+namespace titop {
+
+/// A sum of terms. Ports, signals and inputs turn into one; +, -, and products with a number, a
+/// parameter, a `Rotation` or a matrix make new ones. Nothing is checked here: sizes, quantities
+/// and frames are checked by the compiler, all together, where both sides can be shown.
+///
+///  - `-x`, `T_ba * x` and `x.linear` keep the quantity of x (T_ba also changes the frame);
+///  - `3.0 * x`, `k * x`, `M * x` give a plain signal: gains carry units.
+class Expr {
+ public:
+  Expr() = default;
+  Expr(Graph* graph, Term term) : graph_(graph) { terms_.push_back(std::move(term)); }
+  const Expr& expr() const { return *this; }
+  Graph* graph() const { return graph_; }
+  const std::vector<Term>& terms() const { return terms_; }
+
+  Expr plus(const Expr& other, double sign) const;
+  Expr times(const Factor& factor) const;
+  Expr negated() const;
+
+ private:
+  Graph* graph_ = nullptr;
+  std::vector<Term> terms_;
+};
+
+/// Anything that can stand on the right of `=`.
+template <class T>
+concept Readable = requires(const T& x) {
+  { x.expr() } -> std::convertible_to<Expr>;
+};
+
+template <Readable L, Readable R>
+Expr operator+(const L& l, const R& r) {
+  return l.expr().plus(r.expr(), 1);
+}
+template <Readable L, Readable R>
+Expr operator-(const L& l, const R& r) {
+  return l.expr().plus(r.expr(), -1);
+}
+template <Readable R>
+Expr operator-(const R& r) {
+  return r.expr().negated();
+}
+template <Readable R>
+Expr operator*(const Value& k, const R& r) {
+  return r.expr().times(k);
+}
+template <Readable L>
+Expr operator*(const L& l, const Value& k) {
+  return l.expr().times(k);
+}
+template <Readable R>
+Expr operator*(const Rotation& T_ba, const R& r) {
+  return r.expr().times(T_ba);
+}
+template <Readable R>
+Expr operator*(const Eigen::MatrixXd& M, const R& r) {
+  return r.expr().times(Matrix{std::make_shared<const Eigen::MatrixXd>(M), nullptr});
+}
+
+/// The literal 0, and nothing else: `= 0` compiles; `= 0.0`, `= false` and `= 3` do not.
+struct Zero {
+  std::source_location where;
+
+  template <std::same_as<int> Int>
+  consteval Zero(Int value, std::source_location at = std::source_location::current()) : where(at) {
+    if (value != 0) throw "only 0 may be written here; other constants need an input";
+  }
+};
+
+/// The right-hand side of `=`, with the source line it stands on.
+class Rhs {
+ public:
+  template <Readable T>
+  Rhs(const T& expression, std::source_location at = std::source_location::current())
+      : expression_(expression.expr()), where_(at) {}
+  Rhs(Zero zero) : where_(zero.where) {}
+
+  const Expr& expr() const { return expression_; }
+  const std::source_location& where() const { return where_; }
+
+ private:
+  Expr expression_;
+  std::source_location where_;
+};
+
+}  // namespace titop

@@ -1,0 +1,242 @@
+#include <fmt/format.h>
+
+#include <cctype>
+#include <titop/graph/graph.hpp>
+
+namespace titop {
+
+using Eigen::MatrixXd;
+
+std::string name_of(const Graph& graph, int signal) {
+  if (signal < 0) return "(nothing)";
+  const Signal& s = graph.signals[static_cast<std::size_t>(signal)];
+  if (s.role == Signal::Role::external) return graph.inputs[static_cast<std::size_t>(s.spec)].name;
+  const Node& node = graph.nodes[static_cast<std::size_t>(s.node)];
+  if (s.channel >= 0) {
+    const Channel& c = graph.channels[static_cast<std::size_t>(s.channel)];
+    const auto& spec = node.block->interface().channels[static_cast<std::size_t>(c.spec)];
+    return fmt::format("{}.{}", channel_name(graph, s.channel),
+                       signal == c.accel ? spec.accel_name : spec.force_name);
+  }
+  if (s.role == Signal::Role::state) return node.name + ".x";
+  const Interface& face = node.block->interface();
+  const auto& ports = s.role == Signal::Role::input ? face.inputs : face.outputs;
+  return fmt::format("{}.{}", node.name, ports[static_cast<std::size_t>(s.spec)].name);
+}
+
+std::string channel_name(const Graph& graph, int channel) {
+  const Channel& c = graph.channels[static_cast<std::size_t>(channel)];
+  const Node& node = graph.nodes[static_cast<std::size_t>(c.node)];
+  const auto& spec = node.block->interface().channels[static_cast<std::size_t>(c.spec)];
+  if (spec.name.empty()) return node.name;
+  if (spec.takes == Takes::force && spec.name != "child")
+    return fmt::format("{}.child(\"{}\")", node.name, spec.name);
+  return fmt::format("{}.{}", node.name, spec.name);
+}
+
+std::string frame_name(const Graph& graph, int frame) {
+  if (frame == kNoFrame) return "no frame";
+  if (frame == kUnknownFrame) return "an unknown frame";
+  return fmt::format("frame {}", graph.nodes[static_cast<std::size_t>(frame)].name);
+}
+
+std::vector<double> nominal_values(const Graph& graph) {
+  std::vector<double> values;
+  for (const Parameter& p : graph.parameters) values.push_back(p.value);
+  return values;
+}
+
+namespace {
+
+/// A rotation on a vector of 3 or a dual vector of 6.
+MatrixXd on_vector(const Matrix3& T, int size) {
+  if (size == 3) return T;
+  MatrixXd both = MatrixXd::Zero(6, 6);
+  both.topLeftCorner<3, 3>() = T;
+  both.bottomRightCorner<3, 3>() = T;
+  return both;
+}
+
+int rows_after(const Factor& factor, int rows) {
+  if (const auto* m = std::get_if<Matrix>(&factor))
+    return m->value->cols() == rows ? static_cast<int>(m->value->rows()) : -1;
+  if (const auto* p = std::get_if<Part>(&factor))
+    return p->whole() ? rows : p->rows.cols() == rows ? static_cast<int>(p->rows.rows()) : -1;
+  if (const auto* T = std::get_if<Rotation>(&factor))
+    return rows == 3 || rows == 6 || T->is_identity() ? rows : -1;
+  return rows;
+}
+
+}  // namespace
+
+int rows_of(const Graph& graph, const Term& term) {
+  int rows = graph.signals[static_cast<std::size_t>(term.signal)].size;
+  for (auto f = term.factors.rbegin(); f != term.factors.rend() && rows >= 0; ++f)
+    rows = rows_after(*f, rows);
+  return rows;
+}
+
+MatrixXd coefficient(const Graph& graph, const Term& term, ParameterValues values) {
+  const int size = graph.signals[static_cast<std::size_t>(term.signal)].size;
+  MatrixXd result = MatrixXd::Identity(size, size);
+  double scale = term.sign;
+  for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f) {
+    if (const auto* k = std::get_if<Value>(&*f))
+      scale *= k->at(values);
+    else if (const auto* m = std::get_if<Matrix>(&*f))
+      result = *m->value * result;
+    else if (const auto* p = std::get_if<Part>(&*f))
+      result = p->whole() ? result : MatrixXd(p->rows * result);
+    else if (const auto& T = std::get<Rotation>(*f); !T.is_identity())
+      result = on_vector(T.at(values), static_cast<int>(result.rows())) * result;
+  }
+  return scale == 1 ? result : MatrixXd(scale * result);
+}
+
+Pattern structure(const Graph& graph, const Term& term) {
+  const int size = graph.signals[static_cast<std::size_t>(term.signal)].size;
+  const auto product = [](const Pattern& a, const Pattern& b) {
+    return Pattern((a.cast<int>() * b.cast<int>()).array() > 0);
+  };
+  Pattern result = MatrixXd::Identity(size, size).array() != 0;
+  for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f) {
+    if (const auto* m = std::get_if<Matrix>(&*f))
+      result = product(m->pattern ? *m->pattern : Pattern(m->value->array() != 0), result);
+    else if (const auto* p = std::get_if<Part>(&*f))
+      result = p->whole() ? result : product(p->rows.array() != 0, result);
+    else if (const auto* T = std::get_if<Rotation>(&*f); T && !T->is_identity())
+      result =
+          product(on_vector(Matrix3::Ones(), static_cast<int>(result.rows())).array() != 0, result);
+  }
+  return result;
+}
+
+std::string print(const Graph& graph, const Term& term) {
+  std::string text = term.sign < 0 ? "-" : "";
+  std::string parts;
+  for (const Factor& f : term.factors) {
+    if (const auto* k = std::get_if<Value>(&f))
+      text += k->is_parameter()
+                  ? graph.parameters[static_cast<std::size_t>(k->index())].name + " * "
+                  : fmt::format("{:.6g} * ", k->nominal());
+    else if (const auto* T = std::get_if<Rotation>(&f)) {
+      if (!T->is_identity() || !T->to().empty())
+        text += T->to().empty() ? "T * " : fmt::format("T({}<-{}) * ", T->to(), T->from());
+    } else if (std::holds_alternative<Matrix>(f))
+      text += "M * ";
+    else
+      parts += std::get<Part>(f).name;
+  }
+  text += term.of == Term::Of::signal
+              ? name_of(graph, term.signal)
+              : channel_name(graph, graph.signals[static_cast<std::size_t>(term.signal)].channel) +
+                    (term.of == Term::Of::reaction ? ".reaction" : ".position");
+  return text + parts;
+}
+
+std::string print(const Graph& graph, const Equation& equation) {
+  std::string text = name_of(graph, equation.target) + equation.part.name;
+  text += equation.accumulate ? " += " : " = ";
+  if (equation.terms.empty()) return text + "0";
+  for (std::size_t i = 0; i < equation.terms.size(); ++i) {
+    Term term = equation.terms[i];
+    if (i > 0) text += term.sign < 0 ? " - " : " + ";
+    if (i > 0) term.sign = 1;
+    text += print(graph, term);
+  }
+  return text;
+}
+
+int add_node(Graph& graph, std::string name, BlockPtr block, std::source_location where) {
+  const int node = static_cast<int>(graph.nodes.size());
+  const Interface& face = block->interface();
+  const bool framed = block->has_frame();
+  graph.nodes.push_back({.name = std::move(name),
+                         .block = block,
+                         .first_signal = static_cast<int>(graph.signals.size()),
+                         .first_channel = static_cast<int>(graph.channels.size()),
+                         .declared = node,
+                         .where = where});
+  int u = 0, y = 0;
+  for (int i = 0; i < static_cast<int>(face.channels.size()); ++i) {
+    const ChannelSpec& spec = face.channels[static_cast<std::size_t>(i)];
+    const int first = static_cast<int>(graph.signals.size());
+    const bool takes_force = spec.takes == Takes::force;
+    Signal s{.node = node, .spec = i, .size = spec.size};
+    s.frame = framed && spec.size == 6 ? node : kNoFrame;
+    s.channel = static_cast<int>(graph.channels.size());
+    s.quantity = Quantity::acceleration;
+    s.role = takes_force ? Signal::Role::output : Signal::Role::input;
+    s.first = takes_force ? y : u;
+    graph.signals.push_back(s);
+    s.quantity = Quantity::force;
+    s.role = takes_force ? Signal::Role::input : Signal::Role::output;
+    s.first = takes_force ? u : y;
+    graph.signals.push_back(s);
+    graph.channels.push_back({node, i, spec.size, first, first + 1, spec.takes});
+    u += spec.size;
+    y += spec.size;
+  }
+  for (const bool in : {true, false}) {
+    const auto& ports = in ? face.inputs : face.outputs;
+    for (int i = 0; i < static_cast<int>(ports.size()); ++i) {
+      const PortSpec& spec = ports[static_cast<std::size_t>(i)];
+      Signal s{.role = in ? Signal::Role::input : Signal::Role::output,
+               .quantity = spec.quantity,
+               .node = node,
+               .spec = i,
+               .size = spec.size,
+               .first = in ? u : y};
+      s.frame = framed && spec.size == 6 ? node : kNoFrame;
+      graph.signals.push_back(s);
+      (in ? u : y) += spec.size;
+    }
+  }
+  if (const int n = static_cast<int>(face.states.size()); n > 0) {
+    graph.nodes.back().state = static_cast<int>(graph.signals.size());
+    graph.signals.push_back(Signal{.role = Signal::Role::state, .node = node, .size = n});
+  }
+  return node;
+}
+
+int add_input(Graph& graph, std::string name, int size) {
+  const int index = static_cast<int>(graph.inputs.size());
+  const int signal = static_cast<int>(graph.signals.size());
+  graph.signals.push_back(Signal{.role = Signal::Role::external, .spec = index, .size = size});
+  graph.inputs.push_back({std::move(name), signal, size, index});
+  return signal;
+}
+
+int end_signal(const Graph& graph, int node) {
+  const Node& n = graph.nodes[static_cast<std::size_t>(node)];
+  const Interface& face = n.block->interface();
+  return n.first_signal + 2 * static_cast<int>(face.channels.size()) +
+         static_cast<int>(face.inputs.size() + face.outputs.size()) + (n.state >= 0 ? 1 : 0);
+}
+
+int natural_compare(std::string_view a, std::string_view b) {
+  std::size_t i = 0, j = 0;
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  while (i < a.size() && j < b.size()) {
+    if (digit(a[i]) && digit(b[j])) {
+      std::size_t i0 = i, j0 = j;
+      while (i0 < a.size() && a[i0] == '0') ++i0;
+      while (j0 < b.size() && b[j0] == '0') ++j0;
+      std::size_t i1 = i0, j1 = j0;
+      while (i1 < a.size() && digit(a[i1])) ++i1;
+      while (j1 < b.size() && digit(b[j1])) ++j1;
+      if (i1 - i0 != j1 - j0) return i1 - i0 < j1 - j0 ? -1 : 1;
+      if (const int c = a.substr(i0, i1 - i0).compare(b.substr(j0, j1 - j0)); c != 0) return c;
+      i = i1;
+      j = j1;
+    } else if (a[i] != b[j]) {
+      return a[i] < b[j] ? -1 : 1;
+    } else {
+      ++i, ++j;
+    }
+  }
+  if (i < a.size() || j < b.size()) return i < a.size() ? 1 : -1;
+  return a.compare(b);  // "z01" and "z1" are different names
+}
+
+}  // namespace titop

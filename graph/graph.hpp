@@ -1,0 +1,147 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <source_location>
+#include <string>
+#include <titop/graph/block.hpp>
+#include <titop/graph/error.hpp>
+#include <titop/graph/rotation.hpp>
+#include <variant>
+#include <vector>
+
+/// The representation: a plain struct of vectors and indices that every pass reads and writes.
+/// A diagram is a set of linear equations between signals: each block gives the rows
+/// `y = C x + D u`, each equation drives one signal (or a part of it).
+namespace titop {
+
+/// Frame of a dual vector: the index of its node, or one of these.
+constexpr int kNoFrame = -1;       ///< scalars and plain signals: nothing to check
+constexpr int kUnknownFrame = -2;  ///< a nameless rotation or a matrix made it: listed in the log
+
+/// Which part of a signal: all of it, or the span of some orthonormal rows.
+struct Part {
+  Eigen::MatrixXd rows = {};  ///< m x size, orthonormal rows; 0 x 0 means all
+  std::string name = {};  ///< ".linear", ".angular", ".along(0, 0, 1)" for messages
+
+  bool whole() const { return rows.size() == 0; }
+};
+
+struct Signal {
+  enum class Role { input, output, state, external };  ///< of its block; external: of the diagram
+  Role role = Role::input;
+  Quantity quantity = Quantity::plain;
+  int node = -1;  ///< owner, -1 for external inputs
+  int spec = 0;   ///< channel index in the block's interface, or port index, or input index
+  int size = 1;
+  int first = 0;  ///< first row in the block's u or y
+  int frame = kNoFrame;
+  int channel = -1;    ///< index in Graph::channels, -1 for one-way ports
+  bool active = true;  ///< false once a pass has set it aside: it is 0, or nobody sees it
+  bool row = true;     ///< outputs: the block's row for it is in use
+};
+
+/// A pair of signals of one node.
+struct Channel {
+  int node = -1, spec = 0, size = 6;
+  int accel = -1, force = -1;  ///< signals
+  Takes takes = Takes::force;
+};
+
+struct Node {
+  std::string name = {};
+  BlockPtr block = {};
+  int first_signal = 0, first_channel = 0;
+  int state = -1;        ///< its state signal, -1 where it has no states
+  int declared = 0;      ///< position in the user's order
+  bool lowered = false;  ///< `lower` has turned its rows into equations
+  std::source_location where = {};
+};
+
+/// Part of a term's coefficient. Factors act from the last to the first.
+struct Matrix {
+  std::shared_ptr<const Eigen::MatrixXd> value;
+  std::shared_ptr<const Pattern> pattern = {};  ///< declared structure; none: where value is not 0
+};
+using Factor = std::variant<Value, Rotation, Matrix, Part>;
+
+/// sign * factors * signal.
+struct Term {
+  enum class Of { signal, reaction, position };
+  int signal = -1;  ///< for `reaction` the channel's force, for `position` its acceleration
+  Of of = Of::signal;
+  double sign = 1;
+  std::vector<Factor> factors = {};
+};
+
+/// target (or a part of it) = sum of terms. With `accumulate`, one more term of a force.
+struct Equation {
+  int target = -1;
+  Part part = {};
+  bool accumulate = false;
+  std::vector<Term> terms = {};
+  std::source_location where = {};
+  bool active = true;
+};
+
+struct Input {
+  std::string name = {};
+  int signal = -1, size = 1;
+  int declared = 0;  ///< position in the user's order
+};
+
+struct Output {
+  std::string name = {};
+  int size = 1;
+  bool set = false;
+  std::vector<Term> terms = {};
+  std::source_location where = {};
+  int declared = 0;  ///< position in the user's order
+};
+
+struct Parameter {
+  std::string name = {};
+  double value = 0;
+};
+
+struct Graph {
+  std::string name = {};
+  std::vector<Node> nodes;
+  std::vector<Channel> channels;
+  std::vector<Signal> signals;
+  std::vector<Equation> equations;
+  std::vector<Input> inputs;
+  std::vector<Output> outputs;
+  std::vector<Parameter> parameters;
+  std::vector<Mistake> mistakes;  ///< found while the user wrote it; thrown by `check`
+};
+
+/// "A1.parent.accel", "K.in", "u".
+std::string name_of(const Graph& graph, int signal);
+/// "A1.parent", "B.C1".
+std::string channel_name(const Graph& graph, int channel);
+/// "frame A1", "no frame", "an unknown frame".
+std::string frame_name(const Graph& graph, int frame);
+/// The nominal values of all parameters.
+std::vector<double> nominal_values(const Graph& graph);
+/// The matrix of a term (rows x signal size) for these parameter values, without regard to `of`.
+Eigen::MatrixXd coefficient(const Graph& graph, const Term& term, ParameterValues values);
+/// Where that matrix may be nonzero, whatever the values: a rotation by 0 is still a rotation.
+Pattern structure(const Graph& graph, const Term& term);
+/// Number of rows that the term has, -1 where its factors do not fit one another.
+int rows_of(const Graph& graph, const Term& term);
+/// The term as the user might write it: "-T_ba * A1.parent.force".
+std::string print(const Graph& graph, const Term& term);
+/// The equation as the user might write it.
+std::string print(const Graph& graph, const Equation& equation);
+/// Adds a node with all its signals and channels; returns its index. O(ports).
+int add_node(Graph& graph, std::string name, BlockPtr block, std::source_location where);
+/// Adds an external input with its signal; returns the signal.
+int add_input(Graph& graph, std::string name, int size);
+/// First signal that is not of this node any more.
+int end_signal(const Graph& graph, int node);
+
+/// Three-way comparison in natural order: "z2" before "z10".
+int natural_compare(std::string_view a, std::string_view b);
+
+}  // namespace titop

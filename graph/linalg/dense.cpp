@@ -1,0 +1,144 @@
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <cmath>
+#include <titop/graph/error.hpp>
+#include <titop/graph/linalg/dense.hpp>
+
+namespace titop::linalg {
+
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+double power_of_two_near(double x) {
+  return x > 0 && std::isfinite(x) ? std::exp2(std::round(std::log2(x))) : 1;
+}
+
+/// Scales so that every row and column has its largest entry near 1.
+struct Scaling {
+  VectorXd rows, cols;
+  explicit Scaling(MatrixXd a) : rows(VectorXd::Ones(a.rows())), cols(VectorXd::Ones(a.cols())) {
+    for (int sweep = 0; sweep < 4; ++sweep) {
+      for (Eigen::Index i = 0; i < a.rows(); ++i) {
+        const double f = 1 / power_of_two_near(std::sqrt(a.row(i).maxCoeff()));
+        a.row(i) *= f;
+        rows(i) *= f;
+      }
+      for (Eigen::Index j = 0; j < a.cols(); ++j) {
+        const double f = 1 / power_of_two_near(std::sqrt(a.col(j).maxCoeff()));
+        a.col(j) *= f;
+        cols(j) *= f;
+      }
+    }
+  }
+};
+
+}  // namespace
+
+Solution solve(const MatrixXcd& E, const MatrixXcd& F) {
+  if (E.rows() == 0) return {MatrixXcd(0, F.cols()), 1};
+  const Scaling scale(E.cwiseAbs());
+  const MatrixXcd S = scale.rows.asDiagonal() * E * scale.cols.asDiagonal();
+  const MatrixXcd R = scale.rows.asDiagonal() * F;
+  const Eigen::PartialPivLU<MatrixXcd> lu(S);
+  if ((lu.matrixLU().diagonal().array() == 0.0).any()) return {MatrixXcd(), 0};
+  MatrixXcd z = lu.solve(R);
+  z += lu.solve(R - S * z);
+  return {scale.cols.asDiagonal() * z, lu.rcond()};
+}
+
+Inverse inverse(const MatrixXd& M) {
+  if (M.rows() == 0) return {MatrixXd(0, 0), 1};
+  const Eigen::PartialPivLU<MatrixXd> lu(M);
+  if ((lu.matrixLU().diagonal().array() == 0.0).any()) return {MatrixXd(), 0};
+  return {lu.inverse(), lu.rcond()};
+}
+
+namespace {
+
+/// Diagonal similarity by powers of two that makes rows and columns alike [Parlett, Reinsch 1969].
+VectorXd balance(MatrixXd& A) {
+  const auto n = A.rows();
+  VectorXd d = VectorXd::Ones(n);
+  for (int sweep = 0; sweep < 20; ++sweep) {
+    bool changed = false;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const double c = A.col(i).cwiseAbs().sum() - std::abs(A(i, i));
+      const double r = A.row(i).cwiseAbs().sum() - std::abs(A(i, i));
+      if (c == 0 || r == 0) continue;
+      const double f = power_of_two_near(std::sqrt(r / c));
+      if (c * f + r / f >= 0.95 * (c + r)) continue;
+      A.col(i) *= f;
+      A.row(i) /= f;
+      d(i) *= f;
+      changed = true;
+    }
+    if (!changed) break;
+  }
+  return d;
+}
+
+void check(const MatrixXd& A, Eigen::ComputationInfo info) {
+  if (!A.allFinite())
+    throw Error(Code::not_finite, "eigenvalues of a matrix with entries that are not finite",
+                "look for overflow in the data");
+  if (info != Eigen::Success)
+    throw Error(Code::singular, "the eigenvalue iteration did not converge",
+                "look for entries that differ by more than 1e15");
+}
+
+}  // namespace
+
+Eigen::VectorXcd eigenvalues(const MatrixXd& A) {
+  if (A.rows() == 0) return {};
+  check(A, Eigen::Success);
+  MatrixXd balanced = A;
+  balance(balanced);
+  const Eigen::EigenSolver<MatrixXd> solver(balanced, /*computeEigenvectors=*/false);
+  check(A, solver.info());
+  return solver.eigenvalues();
+}
+
+Eigensystem eigensystem(const MatrixXd& A) {
+  if (A.rows() == 0) return {{}, MatrixXcd(0, 0), MatrixXcd(0, 0), 1};
+  check(A, Eigen::Success);
+  MatrixXd balanced = A;
+  const VectorXd d = balance(balanced);
+  const Eigen::EigenSolver<MatrixXd> solver(balanced);
+  check(A, solver.info());
+  Eigensystem result;
+  result.values = solver.eigenvalues();
+  const MatrixXcd V = solver.eigenvectors();
+  const Eigen::PartialPivLU<MatrixXcd> lu(V);
+  result.rcond_V = lu.rcond();
+  result.V = d.asDiagonal() * V;
+  result.W = lu.inverse() * d.cwiseInverse().asDiagonal();
+  for (Eigen::Index j = 0; j < result.V.cols(); ++j) {
+    const double norm = result.V.col(j).norm();
+    result.V.col(j) /= norm;
+    result.W.row(j) *= norm;
+  }
+  return result;
+}
+
+double perron(const MatrixXd& M) {
+  const auto n = M.rows();
+  if (n == 0) return 0;
+  VectorXd v = VectorXd::Ones(n);
+  double low = 0, high = 0;
+  for (int step = 0; step < 200; ++step) {
+    // The shift keeps the iteration from oscillating on cyclic matrices.
+    const VectorXd w = M * v + 1e-3 * M.maxCoeff() * v;
+    const VectorXd ratio = w.cwiseQuotient(v);
+    low = ratio.minCoeff();
+    high = ratio.maxCoeff();
+    v = w / w.maxCoeff();
+    v = v.cwiseMax(1e-300);
+    if (high - low <= 1e-3 * high) break;
+  }
+  return high - 1e-3 * M.maxCoeff();
+}
+
+}  // namespace titop::linalg

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+
+/// Eigen's heavy dense routines, instantiated once for the whole library.
+namespace titop::linalg {
+
+/// Solution of E z = F with a word on how well it is determined.
+struct Solution {
+  Eigen::MatrixXcd z;
+  double rcond = 0;  ///< reciprocal condition number of the equilibrated E (1-norm estimate)
+};
+
+/// Solves E z = F (n x n, n x m): rows and columns scaled by powers of two, LU with partial
+/// pivoting, one step of refinement. rcond = 0 where a pivot is exactly 0. O(n^3).
+Solution solve(const Eigen::MatrixXcd& E, const Eigen::MatrixXcd& F);
+
+/// Inverse of a square matrix and its reciprocal condition number; rcond = 0 if singular. O(n^3).
+struct Inverse {
+  Eigen::MatrixXd matrix;
+  double rcond = 0;
+};
+Inverse inverse(const Eigen::MatrixXd& M);
+
+/// Eigenvalues of a real square matrix after balancing by powers of two. O(n^3).
+/// Throws not_finite for entries that are not; singular if the iteration does not converge.
+Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
+
+/// Eigenvalues with right vectors V (columns, norm 1) and left vectors W = V^-1 (rows).
+struct Eigensystem {
+  Eigen::VectorXcd values;
+  Eigen::MatrixXcd V, W;
+  double rcond_V = 0;  ///< reciprocal condition number of V: near 0 where A is near defective
+};
+Eigensystem eigensystem(const Eigen::MatrixXd& A);
+
+/// Spectral radius of a matrix with nonnegative entries, by power iteration on the squared matrix
+/// with a shift; relative accuracy about 1e-3, enough for margins. O(n^2) per step.
+double perron(const Eigen::MatrixXd& M);
+
+}  // namespace titop::linalg

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <titop/graph/port.hpp>
+
+/// The usual ways to drive a parent channel. Each writes the equations that one could write by
+/// hand, with the caller's source line.
+namespace titop {
+
+/// A handle with a parent channel of N degrees of freedom.
+template <class Handle, int N>
+concept HasParent = requires(const Handle& body) {
+  { body.parent } -> std::convertible_to<DualPort<N>>;
+};
+
+namespace detail {
+/// child.accel = T_ba^-1 site.accel, site.force += T_ba child.force. The frames of T_ba are named
+/// after the two nodes if it has no names of its own.
+void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, SignalRef site_force,
+           const Rotation& T_ba, const std::source_location& at);
+void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location& at);
+}  // namespace detail
+
+/// Fixes `body` (frame a, at its parent point P) to the child point `site` of another body (frame
+/// b): same motion there, wrench back. T_ba: components in frame a to components in frame b.
+///     body.parent.accel = T_ba^-1 * site.accel;   site.force += T_ba * body.parent.force;
+template <class Handle>
+  requires HasParent<Handle, 6>
+void mount(const Handle& body, const DualPort<6>& site, const Rotation& T_ba = {},
+           std::source_location at = std::source_location::current()) {
+  detail::mount(body.parent.accel, body.parent.force, site.accel, site.force, T_ba, at);
+}
+
+/// The same on a single axis: body.parent.accel = site.accel; site.force += body.parent.force.
+template <class Handle>
+  requires HasParent<Handle, 1>
+void mount(const Handle& body, const DualPort<1>& site,
+           std::source_location at = std::source_location::current()) {
+  detail::mount(body.parent.accel, body.parent.force, site.accel, site.force, {}, at);
+}
+
+/// Fixes this point to the inertial frame: accel = 0.
+template <int N>
+void ground(const DualPort<N>& point, std::source_location at = std::source_location::current()) {
+  detail::drive_by_zero(point.accel, /*accumulate=*/false, at);
+}
+template <class Handle>
+  requires(HasParent<Handle, 6> || HasParent<Handle, 1>)
+void ground(const Handle& body, std::source_location at = std::source_location::current()) {
+  ground(body.parent, at);
+}
+
+/// Leaves free what is not driven at this point: the wrench there is what `+=` adds, 0 if nothing.
+/// After `b.parent.accel.linear = 0; release(b);` the body is pinned at P.
+template <int N>
+void release(const DualPort<N>& point, std::source_location at = std::source_location::current()) {
+  detail::drive_by_zero(point.force, /*accumulate=*/true, at);
+}
+template <class Handle>
+  requires(HasParent<Handle, 6> || HasParent<Handle, 1>)
+void release(const Handle& body, std::source_location at = std::source_location::current()) {
+  release(body.parent, at);
+}
+
+}  // namespace titop

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <titop/graph/diagram.hpp>
+
+namespace titop {
+
+/// out = gain * in, all plain signals of the same size. `lower` makes it a coefficient.
+/// A gain inside an equation, `k * x`, is the same thing without a name.
+struct Gain {
+  Value gain = 1;  ///< [unit of out / unit of in]
+  int size = 1;
+
+  struct Handle {
+    Handle(Graph* graph, int node);
+    Port<0, Kind::plain> in;
+    Reading out;
+  };
+};
+BlockPtr as_block(const Gain& spec);
+
+/// out = matrix * in, `matrix` rows x columns; a gain between vectors.
+struct MatrixGain {
+  Eigen::MatrixXd matrix;
+  using Handle = Gain::Handle;
+};
+BlockPtr as_block(const MatrixGain& spec);
+
+/// out = +-in1 +-in2 ..., one sign per input: Sum{.signs = "+-"}. Ports in1, in2, ...
+struct Sum {
+  std::string signs = "++";
+  int size = 1;
+
+  struct Handle {
+    Handle(Graph* graph, int node)
+        : out(graph, detail::port_signal(*graph, node, "out")), graph_(graph), node_(node) {}
+    /// Input number i, counted from 1.
+    Port<0, Kind::plain> in(int i) const;
+    Reading out;
+
+   private:
+    Graph* graph_;
+    int node_;
+  };
+};
+BlockPtr as_block(const Sum& spec);
+
+}  // namespace titop

@@ -1,0 +1,69 @@
+#include <fmt/format.h>
+
+#include <titop/graph/nodes/lti.hpp>
+
+namespace titop {
+namespace {
+
+using Eigen::MatrixXd;
+
+class LtiBlock : public Block {
+ public:
+  LtiBlock(std::string_view type, Dynamics matrices)
+      : type_(type), matrices_(std::make_shared<const Dynamics>(std::move(matrices))) {
+    const auto n = static_cast<int>(matrices_->A.rows());
+    face_.inputs.push_back({"in", static_cast<int>(matrices_->D.cols())});
+    face_.outputs.push_back({"out", static_cast<int>(matrices_->D.rows())});
+    for (int i = 1; i <= n; ++i) face_.states.push_back(fmt::format("x{}", i));
+  }
+  std::string_view type() const override { return type_; }
+  const Interface& interface() const override { return face_; }
+  std::shared_ptr<const Dynamics> dynamics(ParameterValues) const override { return matrices_; }
+  /// A controller that was given without a direct term has none: its data are its type.
+  Pattern feedthrough() const override {
+    return Pattern::Constant(matrices_->D.rows(), matrices_->D.cols(), !matrices_->D.isZero(0));
+  }
+  bool has_frame() const override { return false; }
+
+ private:
+  std::string_view type_;
+  Interface face_;
+  std::shared_ptr<const Dynamics> matrices_;
+};
+
+}  // namespace
+
+Lti::Handle::Handle(Graph* graph, int node)
+    : in(detail::SignalRef(graph, detail::port_signal(*graph, node, "in"))),
+      out(graph, detail::port_signal(*graph, node, "out")) {}
+
+BlockPtr as_block(const Lti& spec) {
+  Dynamics m{spec.A, spec.B, spec.C, spec.D};
+  const auto n = m.A.rows();
+  const auto nu = m.D.size() ? m.D.cols() : m.B.cols();
+  const auto ny = m.D.size() ? m.D.rows() : m.C.rows();
+  if (m.D.size() == 0) m.D = MatrixXd::Zero(ny, nu);
+  if (n == 0) m.B.resize(0, nu), m.C.resize(ny, 0), m.A.resize(0, 0);
+  if (m.A.cols() != n || m.B.rows() != n || m.B.cols() != nu || m.C.rows() != ny ||
+      m.C.cols() != n || nu == 0 || ny == 0)
+    throw Error(Code::size,
+                fmt::format("Lti: A is {}x{}, B {}x{}, C {}x{}, D {}x{}", spec.A.rows(),
+                            spec.A.cols(), spec.B.rows(), spec.B.cols(), spec.C.rows(),
+                            spec.C.cols(), spec.D.rows(), spec.D.cols()),
+                "A must be n x n, B n x nu, C ny x n, D ny x nu, with nu and ny at least 1");
+  for (const MatrixXd* matrix : {&m.A, &m.B, &m.C, &m.D})
+    if (!matrix->allFinite())
+      throw Error(Code::not_finite, "Lti: an entry is not finite", "check the matrices' source");
+  return std::make_shared<LtiBlock>("Lti", std::move(m));
+}
+
+BlockPtr as_block(const Integrator& spec) {
+  const int n = spec.size;
+  if (n < 1)
+    throw Error(Code::size, fmt::format("an Integrator of size {}", n), "give it 1 or more");
+  return std::make_shared<LtiBlock>("Integrator",
+                                    Dynamics{MatrixXd::Zero(n, n), MatrixXd::Identity(n, n),
+                                             MatrixXd::Identity(n, n), MatrixXd::Zero(n, n)});
+}
+
+}  // namespace titop

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <titop/graph/diagram.hpp>
+
+namespace titop {
+
+/// A controller or filter: xdot = A x + B in, out = C x + D in; plain signals without frames.
+/// Shapes are checked (code size), entries too (not_finite), when it is added.
+///
+///     auto K = d.add("K", Lti{.A = a, .B = b, .C = c, .D = Eigen::MatrixXd::Zero(1, 1)});
+///     K.in = h.rate;   h.torque = K.out;
+struct Lti {
+  Eigen::MatrixXd A;  ///< n x n; leave A, B and C empty for a pure D
+  Eigen::MatrixXd B;  ///< n x nu
+  Eigen::MatrixXd C;  ///< ny x n
+  Eigen::MatrixXd D;  ///< ny x nu; empty stands for 0
+
+  struct Handle {
+    Handle(Graph* graph, int node);
+    Port<0, Kind::plain> in;
+    Reading out;
+  };
+};
+BlockPtr as_block(const Lti& spec);
+
+/// out = integral of in, `size` scalars, 0 at the start; one state per scalar.
+/// On an acceleration it gives a velocity, on a velocity a position: that is what `out` counts as.
+struct Integrator {
+  int size = 1;
+  using Handle = Lti::Handle;
+};
+BlockPtr as_block(const Integrator& spec);
+
+}  // namespace titop

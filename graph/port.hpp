@@ -1,0 +1,224 @@
+#pragma once
+
+#include <string_view>
+#include <titop/graph/expr.hpp>
+
+/// Ports: what the user writes equations on. They point into their diagram, which must outlive
+/// them; copying one rebinds nothing: `=` between two ports is always an equation.
+namespace titop {
+
+enum class Kind { accel, force, plain };
+
+namespace detail {
+
+/// A signal, or part of one, that can be read.
+class SignalRef {
+ public:
+  SignalRef() = default;
+  SignalRef(Graph* graph, int signal, Term::Of of = Term::Of::signal)
+      : graph_(graph), signal_(signal), of_(of) {}
+
+  Expr expr() const;
+  Graph* graph() const { return graph_; }
+  int signal() const { return signal_; }
+  const Part& part() const { return part_; }
+
+  SignalRef linear() const;
+  SignalRef angular() const;
+  SignalRef along(const Vector3& r) const;
+
+ protected:
+  void set(const Rhs& rhs, bool accumulate, double sign) const;
+  void rebind(const SignalRef& other) { *this = other; }
+
+ private:
+  Graph* graph_ = nullptr;
+  int signal_ = -1;  ///< -1: a port that does not exist; that mistake is already noted
+  Term::Of of_ = Term::Of::signal;
+  Part part_;
+};
+
+template <class>
+constexpr bool never = false;
+
+}  // namespace detail
+
+/// A port of N scalars (1, 3 or 6; 0: any) that equations can drive.
+///  - `port = rhs;` writes its equation, `= 0` included. A second `=` is an error.
+///  - `port += rhs;` (forces only) adds a term, before or after `=`.
+template <int N, Kind K>
+class PortBase : public detail::SignalRef {
+ public:
+  PortBase() = default;
+  explicit PortBase(detail::SignalRef ref) : SignalRef(std::move(ref)) {}
+  PortBase(const PortBase&) = default;
+  // Port-to-port `=` must go through Rhs like any other right-hand side.
+  PortBase& operator=(const PortBase&)
+    requires detail::never<PortBase>
+  = delete;
+
+  void operator=(const Rhs& rhs) const { set(rhs, /*accumulate=*/false, 1); }
+  void operator=(Zero zero) const { set(Rhs(zero), /*accumulate=*/false, 1); }
+  void operator+=(const Rhs& rhs) const
+    requires(K == Kind::force)
+  {
+    set(rhs, /*accumulate=*/true, 1);
+  }
+  void operator+=(Zero zero) const
+    requires(K == Kind::force)
+  {
+    set(Rhs(zero), /*accumulate=*/true, 1);
+  }
+  void operator-=(const Rhs& rhs) const
+    requires(K == Kind::force)
+  {
+    set(rhs, /*accumulate=*/true, -1);
+  }
+  /// Makes this name mean another port; used by handles (`auto tip = z1; tip = z2;`).
+  void rebind(const PortBase& other) { SignalRef::rebind(other); }
+};
+
+template <int N, Kind K>
+class Port : public PortBase<N, K> {
+ public:
+  using PortBase<N, K>::PortBase;
+  using PortBase<N, K>::operator=;
+  Port() = default;
+  Port(const Port&) = default;
+  Port& operator=(const Port&)
+    requires detail::never<Port>
+  = delete;
+};
+
+/// Three components: the linear or the angular half of a dual vector.
+template <Kind K>
+class Port<3, K> : public PortBase<3, K> {
+ public:
+  using PortBase<3, K>::PortBase;
+  using PortBase<3, K>::operator=;
+  Port() = default;
+  Port(const Port&) = default;
+  Port& operator=(const Port&)
+    requires detail::never<Port>
+  = delete;
+  /// The component along the vector r (any length but 0), in the port's frame.
+  Port<1, K> along(const Vector3& r) const { return Port<1, K>(detail::SignalRef::along(r)); }
+};
+
+/// A dual vector (linear; angular).
+template <Kind K>
+class Port<6, K> : public PortBase<6, K> {
+ public:
+  Port() = default;
+  explicit Port(detail::SignalRef ref)
+      : PortBase<6, K>(ref), linear(ref.linear()), angular(ref.angular()) {}
+  using PortBase<6, K>::operator=;
+  Port(const Port&) = default;
+  Port& operator=(const Port&)
+    requires detail::never<Port>
+  = delete;
+  /// The linear component along the vector r (any length but 0).
+  Port<1, K> along(const Vector3& r) const { return linear.along(r); }
+  void rebind(const Port& other) {
+    PortBase<6, K>::rebind(other);
+    linear.rebind(other.linear);
+    angular.rebind(other.angular);
+  }
+
+  Port<3, K> linear, angular;
+};
+
+/// A signal of a block that can only be read.
+class Reading : public detail::SignalRef {
+ public:
+  using SignalRef::SignalRef;
+  explicit Reading(SignalRef ref) : SignalRef(std::move(ref)) {}
+};
+
+/// An external input of the diagram.
+class InputRef : public detail::SignalRef {
+ public:
+  using SignalRef::SignalRef;
+};
+
+/// A two-way port: acceleration and wrench at one point, in its body's frame.
+///  - child channel: `force` is the wrench applied BY the child ON the body at C;
+///  - parent channel: `force` is the wrench applied BY the body ON its parent at P.
+/// Exactly one of the two is driven, per degree of freedom; the other one can be read.
+template <int N>
+class DualPort {
+ public:
+  DualPort() = default;
+  DualPort(Graph* graph, int accel_signal, int force_signal)
+      : accel(detail::SignalRef(graph, accel_signal)),
+        force(detail::SignalRef(graph, force_signal)),
+        reaction(graph, force_signal, Term::Of::reaction),
+        position(graph, accel_signal, Term::Of::position) {}
+  DualPort(const DualPort&) = default;
+  /// A handle rebinds like a name; equations are written by its ports only.
+  DualPort& operator=(const DualPort& other) {
+    accel.rebind(other.accel);
+    force.rebind(other.force);
+    reaction = other.reaction;
+    position = other.position;
+    return *this;
+  }
+
+  Port<N, Kind::accel> accel;  ///< [m/s^2; rad/s^2]
+  Port<N, Kind::force> force;  ///< [N; N m]
+  /// Force less what was added by `+=`: what a support that imposes the motion does by itself.
+  Reading reaction;
+  /// Position [m; rad] in the states' own terms; only where the chain to ground determines it.
+  Reading position;
+};
+
+/// The channels that have names; also the only one, where there is just one.
+template <int N>
+class Children : public DualPort<N> {
+ public:
+  Children() = default;
+  Children(Graph* graph, int node);
+  /// The child channel of this name; an unknown name is reported with the valid ones.
+  DualPort<N> operator()(std::string_view name,
+                         std::source_location at = std::source_location::current()) const;
+
+ private:
+  Graph* graph_ = nullptr;
+  int node_ = -1;
+};
+
+namespace detail {
+/// Channel of a node by its position among the block's channels.
+template <int N>
+DualPort<N> channel(Graph* graph, int node, int spec) {
+  const auto& n = graph->nodes[static_cast<std::size_t>(node)];
+  const auto& c = graph->channels[static_cast<std::size_t>(n.first_channel + spec)];
+  return {graph, c.accel, c.force};
+}
+/// Signal index of a block's one-way port.
+int port_signal(const Graph& graph, int node, std::string_view name);
+/// Index of the block's channel `name` among its child channels, -1 if there is none.
+int find_channel(const Graph& graph, int node, std::string_view name);
+/// Notes the mistake "no channel of this name", with the names that exist.
+void note_unknown_channel(Graph& graph, int node, std::string_view name, std::source_location at);
+/// Index of the only channel of size N that is not "parent", -1 if there are several or none.
+int only_child(const Graph& graph, int node);
+}  // namespace detail
+
+template <int N>
+Children<N>::Children(Graph* graph, int node)
+    : DualPort<N>(detail::only_child(*graph, node) < 0
+                      ? DualPort<N>(graph, -2 - node, -2 - node)
+                      : detail::channel<N>(graph, node, detail::only_child(*graph, node))),
+      graph_(graph),
+      node_(node) {}
+
+template <int N>
+DualPort<N> Children<N>::operator()(std::string_view name, std::source_location at) const {
+  const int spec = detail::find_channel(*graph_, node_, name);
+  if (spec >= 0) return detail::channel<N>(graph_, node_, spec);
+  detail::note_unknown_channel(*graph_, node_, name, at);
+  return {graph_, -1, -1};
+}
+
+}  // namespace titop

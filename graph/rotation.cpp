@@ -1,0 +1,121 @@
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/SVD>
+#include <cmath>
+#include <titop/graph/error.hpp>
+#include <titop/graph/rotation.hpp>
+
+namespace titop {
+namespace {
+
+Matrix3 turn(const Vector3& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+}
+
+}  // namespace
+
+Rotation Rotation::about(const Vector3& axis, Value angle) {
+  const double length = axis.norm();
+  if (!std::isfinite(length) || length == 0 || !std::isfinite(angle.nominal()))
+    throw Error(Code::not_a_rotation,
+                fmt::format("no rotation about the axis ({}, {}, {}) by {}", axis.x(), axis.y(),
+                            axis.z(), angle.nominal()),
+                "give a finite axis other than 0 and a finite angle [rad]");
+  Rotation result;
+  if (angle.is_parameter())
+    result.steps_.push_back(Turn{axis / length, angle});
+  else
+    result.steps_.push_back(turn(axis / length, angle.nominal()));
+  return result;
+}
+
+Rotation Rotation::matrix(const Matrix3& T) {
+  const double off = (T.transpose() * T - Matrix3::Identity()).cwiseAbs().maxCoeff();
+  if (!(off <= 1e-9))  // also catches not-a-number
+    throw Error(Code::not_a_rotation,
+                fmt::format("the matrix is not orthogonal: T'T differs from I by {:.2g}", off),
+                "its columns must be the unit vectors of frame a in frame b; at most 1e-9 may be "
+                "missing, which is then repaired");
+  if (T.determinant() < 0)
+    throw Error(Code::not_a_rotation, "the matrix mirrors: its determinant is -1",
+                "its columns must form a right-handed frame");
+  const Eigen::JacobiSVD<Matrix3> svd(T, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Rotation result;
+  // An exact rotation (a permutation of axes, say) must stay exact.
+  result.steps_.push_back(off == 0 ? T : Matrix3(svd.matrixU() * svd.matrixV().transpose()));
+  return result;
+}
+
+Rotation Rotation::named(std::string to, std::string from) const {
+  Rotation result = *this;
+  result.to_ = std::move(to);
+  result.from_ = std::move(from);
+  return result;
+}
+
+Rotation Rotation::inverse() const {
+  Rotation result;
+  result.to_ = from_;
+  result.from_ = to_;
+  for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) {
+    if (const auto* T = std::get_if<Matrix3>(&*step)) {
+      result.steps_.push_back(Matrix3(T->transpose()));
+    } else {
+      const Turn& t = std::get<Turn>(*step);
+      result.steps_.push_back(Turn{-t.axis, t.angle});
+    }
+  }
+  return result;
+}
+
+Rotation operator*(const Rotation& T_cb, const Rotation& T_ba) {
+  if (!T_cb.from_.empty() && !T_ba.to_.empty() && T_cb.from_ != T_ba.to_)
+    throw Error(Code::frame,
+                fmt::format("the rotation {}<-{} cannot follow the rotation {}<-{}", T_cb.to_,
+                            T_cb.from_, T_ba.to_, T_ba.from_),
+                "compose T_cb * T_ba, or take the inverse of one of them");
+  Rotation result = T_cb;
+  result.from_ = T_ba.from_;
+  for (const auto& step : T_ba.steps_) {
+    auto* last = result.steps_.empty() ? nullptr : std::get_if<Matrix3>(&result.steps_.back());
+    const auto* next = std::get_if<Matrix3>(&step);
+    if (last && next)
+      *last = Matrix3(*last * *next);
+    else
+      result.steps_.push_back(step);
+  }
+  return result;
+}
+
+Matrix3 Rotation::at(ParameterValues values) const {
+  Matrix3 T = Matrix3::Identity();
+  for (const Step& step : steps_) {
+    if (const auto* M = std::get_if<Matrix3>(&step)) {
+      T = steps_.size() == 1 ? *M : Matrix3(T * *M);
+    } else {
+      const Turn& t = std::get<Turn>(step);
+      T = Matrix3(T * turn(t.axis, t.angle.at(values)));
+    }
+  }
+  return T;
+}
+
+Matrix3 Rotation::nominal() const {
+  Matrix3 T = Matrix3::Identity();
+  for (const Step& step : steps_) {
+    const auto* M = std::get_if<Matrix3>(&step);
+    T = Matrix3(T *
+                (M ? *M : turn(std::get<Turn>(step).axis, std::get<Turn>(step).angle.nominal())));
+  }
+  return T;
+}
+
+std::vector<Value> Rotation::values() const {
+  std::vector<Value> result;
+  for (const Step& step : steps_)
+    if (const auto* t = std::get_if<Turn>(&step)) result.push_back(t->angle);
+  return result;
+}
+
+}  // namespace titop

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <string>
+#include <titop/graph/linalg/kinematics.hpp>
+#include <titop/graph/value.hpp>
+#include <variant>
+#include <vector>
+
+namespace titop {
+
+/// Direction cosine matrix T_ba: `[v]_b = T_ba [v]_a`. On dual vectors it acts as diag(T_ba, T_ba).
+///
+/// It may carry the names of the two frames (the names of their nodes); then its direction is
+/// checked wherever it is used. Without names a rotated signal is in an unknown frame, which is
+/// accepted and listed in the compile log.
+///
+///     Rotation T_ba = Rotation::about({0, 0, 1}, pi / 2);
+///     Rotation T_bc = T_ba * T_ac;            // only b<-a after a<-c, where the names are known
+///     Rotation T_ab = T_ba.inverse();
+class Rotation {
+ public:
+  Rotation() = default;  ///< identity, no names
+
+  /// By `angle` [rad] about the unit vector along `axis` (any length but 0): the columns are the
+  /// axes of the turned frame a in frame b. `angle` may be a parameter. Throws not_a_rotation.
+  static Rotation about(const Vector3& axis, Value angle);
+
+  /// From its matrix. Throws not_a_rotation unless |T'T - I| <= 1e-9 and det T > 0; what is off
+  /// below that (digits of a file) is removed by the nearest rotation (polar decomposition).
+  static Rotation matrix(const Matrix3& T);
+
+  /// The same with frame names: `T.named("B", "A1")` takes components in A1 to components in B.
+  Rotation named(std::string to, std::string from) const;
+
+  /// T_ab from T_ba.
+  Rotation inverse() const;
+
+  /// T_cb * T_ba = T_ca. Throws frame if the inner names are known and differ.
+  friend Rotation operator*(const Rotation& T_cb, const Rotation& T_ba);
+
+  /// 3 x 3 matrix for these parameter values. O(number of composed rotations).
+  Matrix3 at(ParameterValues values) const;
+  /// The same at the nominal values.
+  Matrix3 nominal() const;
+
+  const std::string& to() const { return to_; }
+  const std::string& from() const { return from_; }
+  bool is_identity() const { return steps_.empty(); }
+  /// The values that its angles depend on.
+  std::vector<Value> values() const;
+
+ private:
+  struct Turn {
+    Vector3 axis;  ///< unit vector
+    Value angle;   ///< [rad]
+  };
+  using Step = std::variant<Matrix3, Turn>;
+  std::vector<Step> steps_;  ///< the product, left to right; neighbouring matrices are merged
+  std::string to_, from_;
+};
+
+}  // namespace titop
