@@ -1,0 +1,58 @@
+# Sourced by script/test, script/demo and .ci/run: Debian packages, quiet builds with a log.
+# shellcheck shell=bash
+set -euo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+mkdir -p build
+
+# Installs the named Debian packages that are missing; says nothing where all are there.
+need() {
+  local missing=() package
+  for package in "$@"; do
+    dpkg-query -W -f '${Status}' "$package" 2>/dev/null | grep -q '^install ok installed' ||
+      missing+=("$package")
+  done
+  ((${#missing[@]})) || return 0
+  if ! command -v apt-get >/dev/null; then
+    echo "these Debian 12 packages (or your system's like) must be installed: ${missing[*]}" >&2
+    exit 1
+  fi
+  local root=()
+  if ((EUID)); then
+    if ! command -v sudo >/dev/null || ! { [[ -t 0 ]] || sudo -n true 2>/dev/null; }; then
+      echo "packages are missing, and only root can install them; as root, run" >&2
+      echo "  apt-get update && apt-get install --no-install-recommends ${missing[*]}" >&2
+      exit 1
+    fi
+    root=(sudo)
+  fi
+  echo "installing ${missing[*]}"
+  local apt=("${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -qq)
+  logged build/apt.log "${apt[@]}" update
+  logged build/apt.log "${apt[@]}" install -y --no-install-recommends "${missing[@]}"
+}
+
+# logged LOG COMMAND...: the output goes to LOG and is shown only where the command fails.
+logged() {
+  local log=$1
+  shift
+  if ! "$@" >"$log" 2>&1; then
+    tail -n 200 "$log" >&2
+    echo "failed: $* (log: $log)" >&2
+    exit 1
+  fi
+}
+
+# build PRESET [TARGET...]: configures and builds. On a terminal ninja's own line shows progress;
+# elsewhere only a failure is shown.
+build() {
+  local preset=$1 targets=()
+  shift
+  (($# == 0)) || targets=(--target "$@")
+  logged "build/$preset-configure.log" cmake --preset "$preset"
+  local ninja=(cmake --build --preset "$preset" -j "${JOBS:-$(nproc)}" "${targets[@]}")
+  if [[ -t 1 ]]; then
+    "${ninja[@]}"
+  else
+    logged "build/$preset-build.log" "${ninja[@]}"
+  fi
+}
