@@ -1,7 +1,7 @@
 #pragma once
 
 #include <string>
-#include <titop/compiler/state_space.hpp>
+#include <titop/graph/state_space.hpp>
 #include <vector>
 
 namespace titop {

@@ -2,7 +2,7 @@
 
 #include <complex>
 #include <string>
-#include <titop/compiler/state_space.hpp>
+#include <titop/graph/state_space.hpp>
 #include <vector>
 
 namespace titop {

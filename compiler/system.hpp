@@ -7,7 +7,7 @@
 #include <titop/compiler/certificate.hpp>
 #include <titop/compiler/modal.hpp>
 #include <titop/compiler/stage.hpp>
-#include <titop/compiler/state_space.hpp>
+#include <titop/graph/state_space.hpp>
 #include <titop/graph/diagram.hpp>
 #include <vector>
 

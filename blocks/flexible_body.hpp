@@ -1,0 +1,45 @@
+#pragma once
+
+#include <titop/blocks/beam.hpp>
+#include <titop/blocks/modal_data.hpp>
+#include <titop/blocks/rigid_body.hpp>
+#include <titop/graph/diagram.hpp>
+
+namespace titop {
+
+/// Flexible body, the two-port M_PC and its N-port form: [Alazard 2015] eq. (14). With N
+/// mass-normalised modes clamped at P and W = [Phi_C' ... , -L_P] (N x inputs),
+///
+///     etadd = -diag(omega^2) eta - diag(2 xi omega) etad + W u        u = [F_C; ...; xdd_P]
+///     y     = W' (etadd) + [[0, tau_CP], [tau_CP', -D_P]] u           y = [xdd_C; ...; F_P]
+///
+/// which is (14) written once: between two children Phi_C Phi_C'', from P (tau_CP - Phi_C L_P), at
+/// P -D_P0 with the residual mass D_P0 = D_P - L_P' L_P. States: eta1 ... etaN [m sqrt(kg)], then
+/// their rates. Frame: the node's own. No child: the clamped-free appendage of Fig. 15.
+///
+/// The data are checked once, when it is made, and then shared by all nodes that use it. Throws
+/// bad_modes (shapes, omega <= 0, xi < 0, D_P0 negative beyond the data's digits, with the degree
+/// of freedom), bad_inertia (D_P not symmetric or with a negative mass), not_finite,
+/// duplicate_name. Cost of a compile: O(N (6 + 6 children)); of its transfer at s: the same.
+class FlexibleBody {
+ public:
+  FlexibleBody(ModalData data);
+  FlexibleBody(const Beam& beam);       ///< through modal_data(beam)
+  FlexibleBody(const RigidBody& body);  ///< no modes; parameters at their nominal values
+
+  const ModalData& data() const { return *data_; }
+  const BlockPtr& block() const { return block_; }
+
+  using Handle = BodyHandle;
+
+ private:
+  std::shared_ptr<const ModalData> data_;
+  BlockPtr block_;
+};
+
+BlockPtr as_block(const FlexibleBody& body);
+
+/// The modes' input matrix W = [Phi_C' ..., -L_P], N x (6 children + 6).
+Eigen::MatrixXd modal_input(const ModalData& data);
+
+}  // namespace titop

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <titop/blocks/rigid_body.hpp>
+#include <titop/graph/diagram.hpp>
+#include <titop/graph/mount.hpp>
+
+namespace titop {
+
+/// Revolute joint about the unit vector along r, [Alazard 2015] eq. (18) as a massless block of its
+/// own, in the frame of the body that it carries:
+///
+///     xdd_C = xdd_P + [0; r] thetadd
+///     F_P   = F_C                          (F_C: wrench by the carried body on the joint)
+///     C_m   = r' T_C                       the 13th channel
+///
+/// With a body mounted on its child point this is G_PC = E M_PC E'. States: angle and rate; small
+/// angles about the posture given by the mounting rotation.
+///
+/// Sign of the torque, as in the paper: C_m is the torque of the body ON its parent about r, so
+/// `torque = k * angle + c * rate` is the stable spring-damper, and a motor that exerts tau on the
+/// body is `torque = -tau`. Exactly one of `torque` and `accel` is driven: torque = 0 is a free
+/// hinge, accel = 0 a locked one.
+struct Hinge {
+  Vector3 axis = Vector3::UnitZ();  ///< r, any length but 0, in the joint's frame
+
+  struct Handle {
+    Handle(Graph* graph, int node);
+    DualPort<6> child;            ///< where the body hangs
+    DualPort<6> parent;           ///< where the joint hangs
+    Port<1, Kind::accel> accel;   ///< thetadd [rad/s^2]
+    Port<1, Kind::force> torque;  ///< C_m [N m]
+    Reading angle;                ///< theta [rad]
+    Reading rate;                 ///< thetad [rad/s]
+  };
+};
+BlockPtr as_block(const Hinge& spec);
+
+/// Hangs `body` on the child point `site` through a hinge called `name`, about `axis` (in the
+/// body's frame, which the joint shares), with T_ba the mounting rotation at angle 0, body to site.
+/// The hinge's torque or acceleration is still to be driven.
+///
+///     auto h = hinge(d, "drive", wing, hub.child("C1"), T_ba, {0, 1, 0});
+///     h.torque = k * h.angle + c * h.rate - u;     // spring-damper and a motor torque u on the
+///     wing
+template <class Handle>
+  requires HasParent<Handle, 6>
+Hinge::Handle hinge(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,
+                    const Rotation& T_ba, const Vector3& axis,
+                    std::source_location at = std::source_location::current()) {
+  const Hinge::Handle joint = d.add(name, Hinge{axis}, at);
+  const bool named = !T_ba.to().empty() || !T_ba.from().empty();
+  mount(joint, site, named ? T_ba.named(T_ba.to(), name) : T_ba, at);
+  mount(body, joint.child, {}, at);
+  return joint;
+}
+
+}  // namespace titop

@@ -1,0 +1,62 @@
+#include <titop/blocks/body_interface.hpp>
+#include <titop/blocks/port_hamiltonian.hpp>
+
+namespace titop {
+
+using Eigen::MatrixXd;
+
+namespace {
+
+/// J = [[0, I], [-I, 0]] and R = diag(0, damping).
+void set_structure(PortHamiltonian& s, const MatrixXd& damping) {
+  const auto n = damping.rows();
+  s.J = MatrixXd::Zero(2 * n, 2 * n);
+  s.J.topRightCorner(n, n).setIdentity();
+  s.J.bottomLeftCorner(n, n) = -MatrixXd::Identity(n, n);
+  s.R = MatrixXd::Zero(2 * n, 2 * n);
+  s.R.bottomRightCorner(n, n) = damping;
+}
+
+}  // namespace
+
+StateSpace PortHamiltonian::state_space() const {
+  const auto n = N.cols();
+  StateSpace m;
+  m.A = (J - R) * Q;
+  m.B = G;
+  m.C = N * m.A.bottomRows(n);
+  m.D = N * G.bottomRows(n) + P;
+  return m;
+}
+
+PortHamiltonian port_hamiltonian(const SpringMass& spec) {
+  const double m = spec.mass.nominal(), k = spec.stiffness.nominal();
+  const double c = spec.damping.nominal(), m0 = spec.parent_mass.nominal();
+  PortHamiltonian s;
+  s.Q = Eigen::Vector2d(k, 1 / m).asDiagonal();
+  set_structure(s, MatrixXd::Constant(1, 1, c));
+  s.G = (MatrixXd(2, 2) << 0, 0, 1, -m).finished();
+  s.N = (MatrixXd(2, 1) << 1 / m, -1).finished();
+  s.P = (MatrixXd(2, 2) << 0, 1, 1, -(m0 + m)).finished();
+  return s;
+}
+
+PortHamiltonian port_hamiltonian(const FlexibleBody& body) {
+  const ModalData& d = body.data();
+  const auto n = d.omega.size();
+  const MatrixXd W = modal_input(d);
+  PortHamiltonian s;
+  Eigen::VectorXd stiffness = Eigen::VectorXd::Ones(2 * n);
+  stiffness.head(n) = d.omega.cwiseAbs2();
+  s.Q = stiffness.asDiagonal();
+  set_structure(s, (2 * d.xi.cwiseProduct(d.omega)).asDiagonal());
+  s.G = MatrixXd::Zero(2 * n, W.cols());
+  s.G.bottomRows(n) = W;
+  s.N = W.transpose();
+  std::vector<Vector3> PC;
+  for (const ModalChild& c : d.children) PC.push_back(c.PC);
+  s.P = rigid_part(PC, d.D_P);
+  return s;
+}
+
+}  // namespace titop

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <titop/blocks/flexible_body.hpp>
+#include <titop/blocks/spring_mass.hpp>
+#include <titop/graph/state_space.hpp>
+
+namespace titop {
+
+/// A block as a port-Hamiltonian system, [Alazard 2015] eqs (7) and (17), with x = [q; p]:
+///
+///     H = x' Q x / 2,    xdot = (J - R) Q x + G u,    y = N pdot + P u
+///
+/// J skew, R symmetric and positive semidefinite. For modes q = eta and p = etadot (17 in modal
+/// coordinates, valid for any number of kept modes). The energy is that of the motion relative to
+/// P: dH/dt = (Q x)' G u - (Q x)' R (Q x), damping never adds any.
+struct PortHamiltonian {
+  Eigen::MatrixXd Q;  ///< 2n x 2n, Hessian of H
+  Eigen::MatrixXd J;  ///< 2n x 2n, interconnection
+  Eigen::MatrixXd R;  ///< 2n x 2n, dissipation
+  Eigen::MatrixXd G;  ///< 2n x inputs
+  Eigen::MatrixXd N;  ///< outputs x n
+  Eigen::MatrixXd P;  ///< outputs x inputs
+
+  double energy(const Eigen::VectorXd& x) const { return 0.5 * x.dot(Q * x); }  ///< H [J]
+  /// dH/dt = supplied power - dissipated power [W].
+  double supplied(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const {
+    return (Q * x).dot(G * u);
+  }
+  double dissipated(const Eigen::VectorXd& x) const { return (Q * x).dot(R * (Q * x)); }
+  /// A, B, C, D of the same system in the coordinates x, without names.
+  StateSpace state_space() const;
+};
+
+/// Eq. (7): q = stretch, p = m times its rate. Parameters at their nominal values.
+PortHamiltonian port_hamiltonian(const SpringMass& spec);
+/// Eq. (17) in modal coordinates.
+PortHamiltonian port_hamiltonian(const FlexibleBody& body);
+
+}  // namespace titop

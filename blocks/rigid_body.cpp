@@ -1,0 +1,153 @@
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <set>
+#include <titop/blocks/body_interface.hpp>
+#include <titop/blocks/rigid_body.hpp>
+
+namespace titop {
+
+using Eigen::MatrixXd;
+
+BodyHandle::BodyHandle(Graph* graph, int node)
+    : child(graph, node),
+      parent(detail::channel<6>(graph, node, detail::find_channel(*graph, node, "parent"))) {}
+
+void check_inertia(double mass, const Matrix3& inertia) {
+  if (!std::isfinite(mass) || !inertia.allFinite())
+    throw Error(Code::not_finite, "the mass or the inertia is not finite", "give finite numbers");
+  if (mass < 0)
+    throw Error(Code::bad_inertia, fmt::format("the mass is {} kg", mass),
+                "give a mass of 0 or more");
+  const double size = inertia.cwiseAbs().maxCoeff();
+  const double off = (inertia - inertia.transpose()).cwiseAbs().maxCoeff();
+  if (off > 1e-9 * size)
+    throw Error(Code::bad_inertia,
+                fmt::format("the inertia is not symmetric, by {:.2g} kg m^2", off),
+                "give the full symmetric matrix about the centre of mass");
+  const Eigen::SelfAdjointEigenSolver<Matrix3> solver((inertia + inertia.transpose()) / 2,
+                                                      Eigen::EigenvaluesOnly);
+  const Vector3 I = solver.eigenvalues();  // ascending
+  if (I(0) < -1e-9 * I.cwiseAbs().maxCoeff())
+    throw Error(
+        Code::bad_inertia,
+        fmt::format("the inertia is not positive: its smallest principal moment is {:.6g} kg m^2",
+                    I(0)),
+        "check the signs of the products of inertia");
+  if (I(2) > (I(0) + I(1)) * (1 + 1e-9))
+    throw Error(
+        Code::bad_inertia,
+        fmt::format("principal moments {:.6g}, {:.6g} and {:.6g} kg m^2 break the triangle "
+                    "inequality",
+                    I(0), I(1), I(2)),
+        "no mass distribution has them: the largest may not exceed the sum of the others; is "
+        "the inertia really about the centre of mass?");
+}
+
+Interface body_interface(const std::vector<std::string>& children, int modes) {
+  Interface face;
+  std::set<std::string> seen;
+  for (const std::string& name : children) {
+    if (name.empty() || name == "parent" || !seen.insert(name).second)
+      throw Error(Code::duplicate_name, fmt::format("a second point is called \"{}\"", name),
+                  "give every child point a name of its own, other than \"parent\"");
+    face.channels.push_back({name, 6, Takes::force});
+  }
+  face.channels.push_back({"parent", 6, Takes::accel});
+  for (const char* suffix : {"", "_rate"})
+    for (int i = 1; i <= modes; ++i) face.states.push_back(fmt::format("eta{}{}", i, suffix));
+  return face;
+}
+
+MatrixXd rigid_part(const std::vector<Vector3>& PC, const Matrix6& D_P) {
+  const auto n = static_cast<Eigen::Index>(6 * PC.size());
+  MatrixXd D = MatrixXd::Zero(n + 6, n + 6);
+  for (std::size_t i = 0; i < PC.size(); ++i) {
+    const Matrix6 tau_CP = tau(-PC[i]);
+    const auto row = static_cast<Eigen::Index>(6 * i);
+    D.block<6, 6>(row, n) = tau_CP;
+    D.block<6, 6>(n, row) = tau_CP.transpose();
+  }
+  D.bottomRightCorner<6, 6>() = -D_P;
+  return D;
+}
+
+Kinematics body_kinematics(const std::vector<Vector3>& PC, const std::vector<MatrixXd>& Phi_C) {
+  Kinematics k;
+  k.reference = static_cast<int>(PC.size());
+  for (const Vector3& v : PC) k.tau.emplace_back(tau(-v));
+  k.tau.emplace_back(Matrix6::Identity());
+  const auto modes = Phi_C.empty() ? 0 : Phi_C.front().cols();
+  for (const MatrixXd& Phi : Phi_C) {
+    MatrixXd on_states = MatrixXd::Zero(6, 2 * modes);
+    on_states.leftCols(modes) = Phi;
+    k.Phi.push_back(std::move(on_states));
+  }
+  k.Phi.emplace_back(MatrixXd::Zero(6, 2 * modes));
+  return k;
+}
+
+namespace {
+
+class RigidBodyBlock : public Block {
+ public:
+  explicit RigidBodyBlock(const RigidBody& spec) : spec_(spec) {
+    std::vector<std::string> names;
+    for (const ChildPoint& c : spec.children) {
+      names.push_back(c.name);
+      PC_.push_back(c.PC);
+    }
+    face_ = body_interface(names, 0);
+  }
+  std::string_view type() const override { return "RigidBody"; }
+  const Interface& interface() const override { return face_; }
+  std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
+    const double m = spec_.mass.at(values);
+    check_inertia(m, spec_.inertia);
+    auto d = std::make_shared<Dynamics>();
+    d->D = rigid_part(PC_, rigid_mass(m, spec_.inertia, -spec_.PA));
+    d->A.resize(0, 0);
+    d->B.resize(0, d->D.cols());
+    d->C.resize(d->D.rows(), 0);
+    return d;
+  }
+  /// Wrenches do not feed through to accelerations: between children there is no direct term.
+  Pattern feedthrough() const override {
+    const auto n = static_cast<Eigen::Index>(6 * PC_.size());
+    Pattern p = Pattern::Constant(n + 6, n + 6, true);
+    p.topLeftCorner(n, n).setConstant(false);
+    return p;
+  }
+  std::optional<Kinematics> kinematics(ParameterValues) const override {
+    return body_kinematics(PC_, std::vector<MatrixXd>(PC_.size(), MatrixXd(6, 0)));
+  }
+  std::vector<Value> values() const override { return {spec_.mass}; }
+  std::optional<Cause> why_singular(int channel, ParameterValues values) const override {
+    if (channel != static_cast<int>(PC_.size()))
+      return Cause{"is rigid: its child points cannot be driven by themselves",
+                   "impose the motion of its parent point, or give the body modes"};
+    if (spec_.mass.at(values) == 0)
+      return Cause{"has mass 0", "give RigidBody{.mass = ...}, or impose parent.accel instead"};
+    return Cause{"has a singular inertia",
+                 "give RigidBody{.inertia = ...} about every axis, or impose the motion about it"};
+  }
+
+ private:
+  RigidBody spec_;
+  std::vector<Vector3> PC_;
+  Interface face_;
+};
+
+}  // namespace
+
+BlockPtr as_block(const RigidBody& spec) {
+  check_inertia(spec.mass.nominal(), spec.inertia);
+  bool finite = spec.PA.allFinite();
+  for (const ChildPoint& c : spec.children) finite = finite && c.PC.allFinite();
+  if (!finite)
+    throw Error(Code::not_finite, "a position is not finite", "check PA and the child points");
+  return std::make_shared<RigidBodyBlock>(spec);
+}
+
+}  // namespace titop

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <titop/graph/diagram.hpp>
+#include <titop/graph/linalg/kinematics.hpp>
+#include <vector>
+
+namespace titop {
+
+/// A point of a body where a child may hang.
+struct ChildPoint {
+  std::string name;
+  Vector3 PC = Vector3::Zero();  ///< from the parent point P to C, in the body's frame [m]
+};
+
+/// Ports of a body: one parent point P, any number of child points by name.
+struct BodyHandle {
+  BodyHandle(Graph* graph, int node);
+  Children<6> child;   ///< child("C1"); also the only child point, where there is just one
+  DualPort<6> parent;  ///< P
+};
+
+/// Rigid body, [Alazard 2015] eq. (9) without modes: with D_P = tau_AP' diag(m I, I_A) tau_AP,
+///
+///     xdd_C = tau_CP xdd_P
+///     F_P   = sum over C of tau_CP' F_C - D_P xdd_P
+///
+/// No states. Port order: children in the order given, then the parent. Frame: the node's own.
+/// Refused (bad_inertia, not_finite) when it is added: a negative mass, an inertia that is not
+/// symmetric, not positive, or that breaks the triangle inequality; (duplicate_name) two child
+/// points of one name. A mass or inertia of 0 is allowed: a massless link; freeing it is improper.
+struct RigidBody {
+  Value mass = 1;                         ///< [kg]
+  Matrix3 inertia = Matrix3::Identity();  ///< about the centre of mass A [kg m^2]
+  Vector3 PA = Vector3::Zero();           ///< from P to the centre of mass [m]
+  std::vector<ChildPoint> children = {};
+
+  using Handle = BodyHandle;
+};
+BlockPtr as_block(const RigidBody& spec);
+
+/// Throws bad_inertia or not_finite unless some rigid body has this mass and inertia (about its
+/// centre of mass). Tolerance 1e-9 of the trace.
+void check_inertia(double mass, const Matrix3& inertia);
+
+}  // namespace titop

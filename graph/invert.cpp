@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <titop/graph/invert.hpp>
+
+namespace titop {
+namespace {
+
+using Eigen::MatrixXd;
+
+void add_names(std::vector<std::string>& names, const std::string& name, int size) {
+  for (int i = 1; i <= size; ++i)
+    names.push_back(size == 1 ? name : fmt::format("{}({})", name, i));
+}
+
+std::string dotted(const std::string& channel, const std::string& signal) {
+  return channel.empty() ? signal : channel + "." + signal;
+}
+
+/// First scalar and count of "parent", "C1.angular", "parent(3)" inside a channel.
+struct Range {
+  int first, count;
+};
+Range range_of(const std::string& text, const ChannelSpec& c) {
+  const std::string rest = text.substr(c.name.size());
+  if (rest.empty()) return {0, c.size};
+  if (rest == ".linear" && c.size == 6) return {0, 3};
+  if (rest == ".angular" && c.size == 6) return {3, 3};
+  if (rest.size() == 3 && rest.front() == '(' && rest.back() == ')' && rest[1] >= '1' &&
+      rest[1] - '0' <= c.size)
+    return {rest[1] - '1', 1};
+  return {0, 0};
+}
+
+}  // namespace
+
+StateSpace model_of(const BlockPtr& block) {
+  std::vector<double> none;
+  for (const Value& v : block->values())
+    if (v.is_parameter()) {
+      none.resize(std::max(none.size(), static_cast<std::size_t>(v.index()) + 1));
+      none[static_cast<std::size_t>(v.index())] = v.nominal();
+    }
+  const auto d = block->dynamics(none);
+  const Interface& face = block->interface();
+  StateSpace m{d->A, d->B, d->C, d->D, face.states, {}, {}};
+  for (const ChannelSpec& c : face.channels) {
+    const bool takes_force = c.takes == Takes::force;
+    add_names(m.inputs, dotted(c.name, takes_force ? c.force_name : c.accel_name), c.size);
+    add_names(m.outputs, dotted(c.name, takes_force ? c.accel_name : c.force_name), c.size);
+  }
+  for (const PortSpec& p : face.inputs) add_names(m.inputs, p.name, p.size);
+  for (const PortSpec& p : face.outputs) add_names(m.outputs, p.name, p.size);
+  return m;
+}
+
+StateSpace invert(const StateSpace& model, const std::vector<std::pair<int, int>>& pairs) {
+  std::vector<int> in, out;
+  for (const auto& [i, o] : pairs) in.push_back(i), out.push_back(o);
+  const MatrixXd D_oi = model.D(out, in);
+  Eigen::FullPivLU<MatrixXd> lu(D_oi);
+  lu.setThreshold(1e-13);
+  if (!lu.isInvertible())
+    throw Error(Code::improper,
+                fmt::format("the direct term from {} to {} has rank {} of {}",
+                            in.empty() ? "" : model.inputs[static_cast<std::size_t>(in.front())],
+                            out.empty() ? "" : model.outputs[static_cast<std::size_t>(out.front())],
+                            lu.rank(), pairs.size()),
+                "invert fewer degrees of freedom: the inverse would need derivatives");
+  // u_i = R (y_o - C_o x - D_or u_r); the rest follows by substitution.
+  const MatrixXd R = lu.inverse();
+  MatrixXd K = -R * model.D(out, Eigen::all);  // of all inputs; the swapped columns become R
+  K(Eigen::all, in) = R;
+  const MatrixXd X = -R * model.C(out, Eigen::all);
+  StateSpace result = model;
+  result.A += model.B(Eigen::all, in) * X;
+  result.C += model.D(Eigen::all, in) * X;
+  result.B(Eigen::all, in).setZero();
+  result.D(Eigen::all, in).setZero();
+  result.B += model.B(Eigen::all, in) * K;
+  result.D += model.D(Eigen::all, in) * K;
+  result.C(out, Eigen::all) = X;
+  result.D(out, Eigen::all) = K;
+  for (const auto& [i, o] : pairs)
+    std::swap(result.inputs[static_cast<std::size_t>(i)],
+              result.outputs[static_cast<std::size_t>(o)]);
+  return result;
+}
+
+StateSpace invert(const BlockPtr& block, const std::vector<std::string>& channels) {
+  std::vector<std::pair<int, int>> pairs;
+  for (const std::string& name : channels) {
+    int first = 0;
+    Range found{0, 0};
+    std::string all;
+    for (const ChannelSpec& c : block->interface().channels) {
+      all += fmt::format("{}\"{}\"", all.empty() ? "" : ", ", c.name);
+      if (found.count == 0 && name.compare(0, c.name.size(), c.name) == 0) {
+        found = range_of(name, c);
+        found.first += first;
+      }
+      first += c.size;
+    }
+    if (found.count == 0)
+      throw Error(
+          Code::unknown_name, fmt::format("a {} has no channel \"{}\"", block->type(), name),
+          fmt::format("its channels are {}; \".linear\", \".angular\" or \"(1)\" ... \"(6)\" may "
+                      "follow",
+                      all));
+    // By the interface's convention a channel's input and output have the same place.
+    for (int k = found.first; k < found.first + found.count; ++k) pairs.emplace_back(k, k);
+  }
+  return invert(model_of(block), pairs);
+}
+
+}  // namespace titop

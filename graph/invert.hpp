@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <titop/graph/diagram.hpp>
+#include <titop/graph/state_space.hpp>
+#include <vector>
+
+/// Channel inversion of a single block, as an operation of its own: the paper's Z^-1u, Z^-1l, Z^-1
+/// and G^-1p can be printed and compared. Scenes need none of this: there channels invert by
+/// themselves.
+namespace titop {
+
+/// A block alone, by its ports' names: inputs "child.force", "parent.accel(3)", ... at the nominal
+/// parameter values.
+StateSpace model_of(const BlockPtr& block);
+
+/// The block with cause and effect swapped in some channels: "parent" (all of it), "C1.angular",
+/// "C1.linear", "parent(3)" (one degree of freedom, 1 to 6), "" (a hinge's own axis). Every swapped
+/// input keeps its place and becomes the output's name, and the other way round; states stay.
+/// Inverting twice gives the same model again. Throws unknown_name, and improper if the swapped
+/// channels' direct term is singular together (it says of which rank). O(size^3).
+StateSpace invert(const BlockPtr& block, const std::vector<std::string>& channels);
+
+/// The same for a model, input and output numbers given pair by pair.
+StateSpace invert(const StateSpace& model, const std::vector<std::pair<int, int>>& pairs);
+
+template <BlockSpec Spec>
+StateSpace model_of(const Spec& spec) {
+  return model_of(as_block(spec));
+}
+template <BlockSpec Spec>
+StateSpace invert(const Spec& spec, const std::vector<std::string>& channels) {
+  return invert(as_block(spec), channels);
+}
+
+}  // namespace titop
