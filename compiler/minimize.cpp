@@ -9,7 +9,7 @@
 #include <titop/compiler/minimize.hpp>
 #include <titop/compiler/modal.hpp>
 #include <titop/graph/linalg/dense.hpp>
-#include <titop/graph/linalg/symmetric.hpp>
+#include <titop/graph/linalg/graded.hpp>
 
 namespace titop {
 namespace {
@@ -144,7 +144,7 @@ bool symmetric_modes(const StateSpace& model, Symmetric& s) {
     cv.col(i) = model.C.col(s.form.qdot[at(i)]) * s.form.d(i);
   }
   if (bq.size() && bq.cwiseAbs().maxCoeff() > 0) return false;
-  const SymmetricModes e = eigh(s.form.S);
+  const SymmetricModes e = eigh_graded(s.form.S).modes;
   const MatrixXd Z = e.V.transpose() * s.form.Z * e.V;
   const MatrixXd off = Z - MatrixXd(Z.diagonal().asDiagonal());
   if (off.size() && off.cwiseAbs().maxCoeff() > 1e-12 * std::max(Z.cwiseAbs().maxCoeff(), 1e-300))
@@ -199,12 +199,22 @@ std::vector<int> others(Index n, const std::vector<int>& taken) {
   return rest;
 }
 
+/// out = R keep on the span of the relations (rows W), with the states in units of `scale`:
+/// coefficients that are only rounding there are 0, so that zeros of the model stay zeros.
+MatrixXd solve_for(const MatrixXd& W, const std::vector<int>& out, const std::vector<int>& keep,
+                   const VectorXd& scale, double noise) {
+  const MatrixXd S = W * scale.asDiagonal();
+  MatrixXd R = -S(Eigen::all, out).fullPivLu().solve(S(Eigen::all, keep));
+  R = (R.array().abs() <= noise).select(0.0, R);
+  return scale(out).asDiagonal() * R * scale(keep).cwiseInverse().asDiagonal();
+}
+
 /// Relations W x = 0 hold for all that inputs can do (W: k x n, real): k states follow from the
 /// others and leave. V: right vectors still to be taken out, kept in step.
 void remove_unreachable(StateSpace& m, const MatrixXd& W, const std::vector<int>& out,
-                        MatrixXd* V) {
+                        const VectorXd& scale, double noise, MatrixXd* V) {
   const std::vector<int> keep = others(m.A.rows(), out);
-  const MatrixXd T_dep = -W(Eigen::all, out).fullPivLu().solve(W(Eigen::all, keep));
+  const MatrixXd T_dep = solve_for(W, out, keep, scale, noise);
   const MatrixXd A = m.A(keep, keep) + m.A(keep, out) * T_dep;
   const MatrixXd C = m.C(Eigen::all, keep) + m.C(Eigen::all, out) * T_dep;
   m.B = m.B(keep, Eigen::all).eval();
@@ -217,13 +227,10 @@ void remove_unreachable(StateSpace& m, const MatrixXd& W, const std::vector<int>
 }
 
 /// Motions in the span of V (n x k) show in no output: the others are taken relative to k states.
-void remove_unseen(StateSpace& m, const MatrixXd& V, const std::vector<int>& out) {
+void remove_unseen(StateSpace& m, const MatrixXd& V, const std::vector<int>& out,
+                   const VectorXd& scale, double noise) {
   const std::vector<int> keep = others(m.A.rows(), out);
-  const MatrixXd P = -V(out, Eigen::all)
-                          .transpose()
-                          .fullPivLu()
-                          .solve(V(keep, Eigen::all).transpose())
-                          .transpose();
+  const MatrixXd P = solve_for(V.transpose(), out, keep, scale.cwiseInverse(), noise).transpose();
   const MatrixXd A = m.A(keep, keep) + P * m.A(out, keep);
   const MatrixXd B = m.B(keep, Eigen::all) + P * m.B(out, Eigen::all);
   m.A = A;
@@ -308,6 +315,9 @@ void minimize_symmetric(const Symmetric& s, double resolution, Minimized& r) {
   }
   if (!tally(verdicts, s.modes, 2, r)) return;
   const Index states = r.model.A.rows();
+  VectorXd scale(states);
+  for (std::size_t i = 0; i < s.form.q.size(); ++i)
+    scale(s.form.q[i]) = scale(s.form.qdot[i]) = s.form.d(static_cast<Index>(i));
   MatrixXd V = on_both(s.form.d.asDiagonal() * s.Q(Eigen::all, unseen), s.form, states, false);
   if (!unreachable.empty()) {
     // Energy weight: the scaled coordinates; soft ones are chosen to depend on the others.
@@ -315,13 +325,14 @@ void minimize_symmetric(const Symmetric& s, double resolution, Minimized& r) {
     const MatrixXd W = left * s.form.d.cwiseInverse().asDiagonal();
     const std::vector<int> out = both_levels(pivots(left), s.form);
     r.notes.push_back("states that follow from the others: " + list(out, r.model.states));
-    remove_unreachable(r.model, on_both(W, s.form, states, true), out, &V);
+    remove_unreachable(r.model, on_both(W, s.form, states, true), out, scale, 64 * kEps, &V);
+    scale = scale(others(states, out)).eval();
   }
   if (!unseen.empty()) {
     const std::vector<int> out = pivots(V.transpose());
     r.notes.push_back("states that the others are now taken relative to: " +
                       list(out, r.model.states));
-    remove_unseen(r.model, V, out);
+    remove_unseen(r.model, V, out, scale, 64 * kEps);
   }
 }
 
@@ -366,16 +377,18 @@ void minimize_general(double resolution, Minimized& r) {
     }
   }
   if (!tally(verdicts, m, 1, r)) return;
+  VectorXd scale = e.scale;
   if (W.rows() > 0) {
     const std::vector<int> out = pivots(W);
     r.notes.push_back("states that follow from the others: " + list(out, r.model.states));
-    remove_unreachable(r.model, W, out, &V);
+    remove_unreachable(r.model, W, out, scale, 1e-12, &V);
+    scale = scale(others(n, out)).eval();
   }
   if (V.cols() > 0) {
     const std::vector<int> out = pivots(V.transpose());
     r.notes.push_back("states that the others are now taken relative to: " +
                       list(out, r.model.states));
-    remove_unseen(r.model, V, out);
+    remove_unseen(r.model, V, out, scale, 1e-12);
   }
 }
 

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 #include <map>
 #include <numbers>
 #include <titop/compiler/modal.hpp>
 #include <titop/graph/linalg/dense.hpp>
-#include <titop/graph/linalg/symmetric.hpp>
+#include <titop/graph/linalg/graded.hpp>
 
 namespace titop {
 namespace {
@@ -37,30 +36,28 @@ std::vector<std::pair<int, int>> pairs(const MatrixXd& A) {
   return 2 * static_cast<int>(result.size()) == n ? result : std::vector<std::pair<int, int>>{};
 }
 
-/// Squares of a diagonal scaling d that makes K symmetric (d_i K_ij / ... balanced along a
-/// spanning tree of its entries, strongest first), or empty if a zero stands against a nonzero.
+/// Squares of a diagonal scaling d that makes K symmetric: d_j^2 / d_i^2 = K_ji / K_ij along the
+/// maximum spanning tree of the couplings, since a weak coupling gives a noisy ratio. Empty if two
+/// entries have different signs.
 VectorXd symmetrizer(const MatrixXd& K) {
   const auto n = K.rows();
-  VectorXd d2 = VectorXd::Zero(n);
-  for (Eigen::Index root = 0; root < n; ++root) {
-    if (d2(root) != 0) continue;
-    d2(root) = 1;
-    std::deque<Eigen::Index> queue{root};
-    while (!queue.empty()) {
-      const auto i = queue.front();
-      queue.pop_front();
-      for (Eigen::Index j = 0; j < n; ++j) {
-        // An entry that is only rounding says nothing about the ratio.
-        const double size = std::sqrt(std::abs(K(i, i) * K(j, j)));
-        if (i == j || d2(j) != 0 || K(i, j) == 0 || K(j, i) == 0) continue;
-        if (std::sqrt(std::abs(K(i, j) * K(j, i))) < 1e-6 * size) continue;
-        if (K(i, j) * K(j, i) < 0) return {};
-        d2(j) = d2(i) * std::abs(K(j, i) / K(i, j));
-        queue.push_back(j);
-      }
+  VectorXd d2 = VectorXd::Zero(n), best = VectorXd::Constant(n, -1);
+  Eigen::VectorXi from = Eigen::VectorXi::Constant(n, -1);
+  for (Eigen::Index step = 0; step < n; ++step) {
+    Eigen::Index i = -1;
+    for (Eigen::Index j = 0; j < n; ++j)
+      if (d2(j) == 0 && (i < 0 || best(j) > best(i))) i = j;
+    const auto parent = from(i);
+    d2(i) = parent < 0 ? 1 : d2(parent) * std::abs(K(i, parent) / K(parent, i));
+    for (Eigen::Index j = 0; j < n; ++j) {
+      if (d2(j) != 0 || K(i, j) == 0 || K(j, i) == 0) continue;
+      if ((K(i, j) < 0) != (K(j, i) < 0)) continue;
+      const double strength =
+          std::sqrt(std::abs(K(i, j) / K(i, i))) * std::sqrt(std::abs(K(j, i) / K(j, j)));
+      if (strength > best(j)) best(j) = strength, from(j) = static_cast<int>(i);
     }
   }
-  return d2;
+  return d2.allFinite() && (d2.array() > 0).all() ? d2 : VectorXd();
 }
 
 }  // namespace
@@ -126,7 +123,7 @@ void set_blocks(Pole& pole, const StateSpace& model, const VectorXd& share) {
 
 /// Poles of yddot + Z ydot + S y = 0 where Z is diagonal in the modes of S; false if it is not.
 bool proportional_poles(const StateSpace& model, const SecondOrder& form, std::vector<Pole>& out) {
-  const SymmetricModes modes = eigh(form.S);
+  const SymmetricModes modes = eigh_graded(form.S).modes;
   const MatrixXd Z = modes.V.transpose() * form.Z * modes.V;
   const double size = Z.cwiseAbs().maxCoeff();
   const MatrixXd off = Z - MatrixXd(Z.diagonal().asDiagonal());
@@ -161,16 +158,45 @@ void general_poles(const StateSpace& model, std::vector<Pole>& out) {
   }
 }
 
+/// States that nothing depends on through A, or that depend on nothing (a free hinge's angle, then
+/// its rate; an integrator): exact poles at A(j, j), mostly 0, that a numerical eigenvalue routine
+/// would smear. Takes them out of the model, one after the other.
+void deflate(StateSpace& m, std::vector<Pole>& out) {
+  for (bool found = true; found;) {
+    found = false;
+    for (Eigen::Index j = 0; j < m.A.rows() && !found; ++j) {
+      const auto zero_but = [&](const auto& line) {
+        for (Eigen::Index i = 0; i < line.size(); ++i)
+          if (i != j && line(i) != 0) return false;
+        return true;
+      };
+      if (!zero_but(m.A.col(j)) && !zero_but(m.A.row(j))) continue;
+      found = true;
+      Pole p = make_pole(m.A(j, j), false);
+      p.blocks.emplace_back(block_of(m.states[static_cast<std::size_t>(j)]), 1.0);
+      out.push_back(std::move(p));
+      std::vector<Eigen::Index> keep;
+      for (Eigen::Index i = 0; i < m.A.rows(); ++i)
+        if (i != j) keep.push_back(i);
+      m.A = m.A(keep, keep).eval();
+      m.states.erase(m.states.begin() + j);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Pole> poles(const StateSpace& model) {
   std::vector<Pole> result;
-  if (model.order() == 0) return result;
-  const SecondOrder form = second_order(model.A);
-  if (!form.found || !proportional_poles(model, form, result)) {
-    result.clear();
-    general_poles(model, result);
+  StateSpace rest{model.A, {}, {}, {}, model.states, {}, {}};
+  deflate(rest, result);
+  std::vector<Pole> others;
+  const SecondOrder form = second_order(rest.A);
+  if (!form.found || !proportional_poles(rest, form, others)) {
+    others.clear();
+    if (rest.order() > 0) general_poles(rest, others);
   }
+  result.insert(result.end(), others.begin(), others.end());
   std::stable_sort(result.begin(), result.end(), [](const Pole& a, const Pole& b) {
     return a.omega != b.omega ? a.omega < b.omega : a.s.real() < b.s.real();
   });

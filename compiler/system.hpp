@@ -7,8 +7,8 @@
 #include <titop/compiler/certificate.hpp>
 #include <titop/compiler/modal.hpp>
 #include <titop/compiler/stage.hpp>
-#include <titop/graph/state_space.hpp>
 #include <titop/graph/diagram.hpp>
+#include <titop/graph/state_space.hpp>
 #include <vector>
 
 namespace titop {

@@ -102,7 +102,7 @@ Eigen::VectorXcd eigenvalues(const MatrixXd& A) {
 }
 
 Eigensystem eigensystem(const MatrixXd& A) {
-  if (A.rows() == 0) return {{}, MatrixXcd(0, 0), MatrixXcd(0, 0), 1};
+  if (A.rows() == 0) return {{}, MatrixXcd(0, 0), MatrixXcd(0, 0), {}, 1};
   check(A, Eigen::Success);
   MatrixXd balanced = A;
   const VectorXd d = balance(balanced);
@@ -113,6 +113,7 @@ Eigensystem eigensystem(const MatrixXd& A) {
   const MatrixXcd V = solver.eigenvectors();
   const Eigen::PartialPivLU<MatrixXcd> lu(V);
   result.rcond_V = lu.rcond();
+  result.scale = d;
   result.V = d.asDiagonal() * V;
   result.W = lu.inverse() * d.cwiseInverse().asDiagonal();
   for (Eigen::Index j = 0; j < result.V.cols(); ++j) {

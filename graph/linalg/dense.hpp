@@ -31,7 +31,8 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 struct Eigensystem {
   Eigen::VectorXcd values;
   Eigen::MatrixXcd V, W;
-  double rcond_V = 0;  ///< reciprocal condition number of V: near 0 where A is near defective
+  Eigen::VectorXd scale;  ///< the states' own sizes, by balancing (powers of two)
+  double rcond_V = 0;     ///< reciprocal condition number of V: near 0 where A is near defective
 };
 Eigensystem eigensystem(const Eigen::MatrixXd& A);
 
