@@ -1,0 +1,170 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <titop/blocks/fe/mesh.hpp>
+#include <titop/blocks/modal_checks.hpp>
+#include <titop/graph/error.hpp>
+
+namespace titop::fe {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+namespace {
+
+void check_matrix(const Mesh& mesh, const MatrixXd& S, char name, std::vector<Mistake>& mistakes) {
+  const auto n = static_cast<Index>(mesh.dofs.size());
+  if (S.rows() != n || S.cols() != n) {
+    mistakes.push_back({Code::size,
+                        fmt::format("{} of mesh {} is {} x {}, it has {} degrees of freedom", name,
+                                    mesh.name, S.rows(), S.cols(), n),
+                        {},
+                        ""});
+    return;
+  }
+  const double tolerance = 10 * std::pow(10, -mesh.digits);
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = j; i < n; ++i) {
+      if (!std::isfinite(S(i, j)) || !std::isfinite(S(j, i))) {
+        mistakes.push_back({Code::not_finite,
+                            fmt::format("{}({}, {}) of mesh {} is not finite", name,
+                                        dof_name(mesh, i), dof_name(mesh, j), mesh.name),
+                            {},
+                            ""});
+        return;
+      }
+      // In a semidefinite matrix no entry exceeds the geometric mean of its two diagonals: a
+      // measure of smallness that does not mix units.
+      const double size = std::sqrt(std::abs(S(i, i) * S(j, j)));
+      if (std::abs(S(i, j) - S(j, i)) <= tolerance * size) continue;
+      mistakes.push_back(
+          {Code::bad_value,
+           fmt::format("{} of mesh {} is not symmetric: {} at ({}, {}), {} at ({}, "
+                       "{})",
+                       name, mesh.name, S(i, j), dof_name(mesh, i), dof_name(mesh, j), S(j, i),
+                       dof_name(mesh, j), dof_name(mesh, i)),
+           {},
+           ""});
+      return;
+    }
+  }
+}
+
+/// Returns false if an index is out of range, so that nothing may be named.
+bool check_indices(const Mesh& mesh, std::vector<Mistake>& mistakes) {
+  const std::size_t before = mistakes.size();
+  for (std::size_t i = 0; i < mesh.dofs.size(); ++i) {
+    const Dof& dof = mesh.dofs[i];
+    if (dof.point < mesh.points.size() && dof.component >= 0 && dof.component < 6) continue;
+    mistakes.push_back({Code::bad_value,
+                        fmt::format("row {} of mesh {} is component {} of point {}, there are {} "
+                                    "points of 6 components",
+                                    i, mesh.name, dof.component, dof.point, mesh.points.size()),
+                        {},
+                        ""});
+  }
+  for (const Interface& interface : mesh.interfaces)
+    if (interface.point >= mesh.points.size())
+      mistakes.push_back(
+          {Code::bad_value,
+           fmt::format("interface {} of mesh {} is point {}, there are {}", interface.name,
+                       mesh.name, interface.point, mesh.points.size()),
+           {},
+           ""});
+  return mistakes.size() == before;
+}
+
+void check_names(const Mesh& mesh, std::vector<Mistake>& mistakes) {
+  std::set<std::string> names;
+  const auto add = [&](const std::string& name) {
+    if (!names.insert(name).second)
+      mistakes.push_back({Code::duplicate_name,
+                          fmt::format("mesh {} has two points or interfaces {}", mesh.name, name),
+                          {},
+                          ""});
+  };
+  for (const Point& point : mesh.points) add(point.name);
+  for (const Interface& interface : mesh.interfaces) add(interface.name);
+  std::set<std::pair<std::size_t, int>> rows;
+  for (std::size_t i = 0; i < mesh.dofs.size(); ++i)
+    if (!rows.insert({mesh.dofs[i].point, mesh.dofs[i].component}).second)
+      mistakes.push_back(
+          {Code::duplicate_name,
+           fmt::format("mesh {} has two rows {}", mesh.name, dof_name(mesh, static_cast<Index>(i))),
+           {},
+           ""});
+}
+
+}  // namespace
+
+void check(const Mesh& mesh) {
+  std::vector<Mistake> mistakes;
+  if (check_indices(mesh, mistakes)) {
+    check_names(mesh, mistakes);
+    check_matrix(mesh, mesh.M, 'M', mistakes);
+    check_matrix(mesh, mesh.K, 'K', mistakes);
+    for (const Point& point : mesh.points)
+      if (!point.position.allFinite())
+        mistakes.push_back({Code::not_finite,
+                            fmt::format("the position of point {} of mesh {} is not finite",
+                                        point.name, mesh.name),
+                            {},
+                            ""});
+  }
+  if (!mistakes.empty()) throw Error(std::move(mistakes));
+}
+
+std::string dof_name(const Mesh& mesh, Index row) {
+  const Dof& dof = mesh.dofs.at(static_cast<std::size_t>(row));
+  std::string name = mesh.points.at(dof.point).name;
+  for (const Interface& interface : mesh.interfaces)
+    if (interface.point == dof.point) name = interface.name;
+  return fmt::format("{}.{}", name, component_name(dof.component));
+}
+
+std::size_t find_point(const Mesh& mesh, const std::string& name) {
+  for (const Interface& interface : mesh.interfaces)
+    if (interface.name == name) return interface.point;
+  for (std::size_t i = 0; i < mesh.points.size(); ++i)
+    if (mesh.points[i].name == name) return i;
+  std::string known;
+  for (const Interface& interface : mesh.interfaces)
+    known += (known.empty() ? "" : ", ") + interface.name;
+  throw Error(Code::unknown_name, fmt::format("mesh {} has no point {}", mesh.name, name),
+              known.empty() ? std::string("it has no interfaces, only its points' own names")
+                            : "its interfaces are " + known);
+}
+
+std::array<Index, 6> interface_rows(const Mesh& mesh, const std::string& name) {
+  const std::size_t point = find_point(mesh, name);
+  std::array<Index, 6> rows;
+  rows.fill(-1);
+  for (std::size_t i = 0; i < mesh.dofs.size(); ++i)
+    if (mesh.dofs[i].point == point)
+      rows.at(static_cast<std::size_t>(mesh.dofs[i].component)) = static_cast<Index>(i);
+  std::string missing;
+  for (std::size_t c = 0; c < 6; ++c)
+    if (rows.at(c) < 0)
+      missing += std::string(missing.empty() ? "" : ", ") + component_name(int(c));
+  if (!missing.empty())
+    throw Error(Code::bad_modes,
+                fmt::format("point {} of mesh {} cannot be an interface: it has no degree of "
+                            "freedom {}",
+                            name, mesh.name, missing),
+                "tie it to a node with rotations (a rigid body element) in the finite-element "
+                "program");
+  return rows;
+}
+
+MatrixXd rigid_motions(const Mesh& mesh, const Vector3& P) {
+  MatrixXd R(static_cast<Index>(mesh.dofs.size()), 6);
+  for (std::size_t i = 0; i < mesh.dofs.size(); ++i) {
+    const Dof& dof = mesh.dofs[i];
+    R.row(static_cast<Index>(i)) = tau(P - mesh.points.at(dof.point).position).row(dof.component);
+  }
+  return R;
+}
+
+}  // namespace titop::fe

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <titop/blocks/modal_data.hpp>
+#include <titop/graph/linalg/kinematics.hpp>
+#include <vector>
+
+/// Finite-element models, free in space, and the road from them to `ModalData`.
+namespace titop::fe {
+
+/// A node: a place that degrees of freedom belong to.
+struct Point {
+  std::string name;
+  Vector3 position = Vector3::Zero();  ///< in the body's frame [m]
+};
+
+/// One row of M and K: a displacement of a point along a body axis (component 0, 1, 2: x, y, z)
+/// or its rotation about one (3, 4, 5: rx, ry, rz).
+struct Dof {
+  std::size_t point = 0;  ///< index into Mesh::points
+  int component = 0;      ///< 0..5
+};
+
+/// A point under a second name, where other bodies may be attached; it must have all six dofs.
+struct Interface {
+  std::string name;
+  std::size_t point = 0;  ///< index into Mesh::points
+};
+
+/// A free-free structure: no degree of freedom is held. SI units, body axes.
+struct Mesh {
+  std::string name;                   ///< for messages
+  std::vector<Point> points;          ///< names differ
+  std::vector<Dof> dofs;              ///< n, one per row of M and K
+  std::vector<Interface> interfaces;  ///< names differ from each other and from the points' names
+  Eigen::MatrixXd M;                  ///< n x n, symmetric, semidefinite [kg, kg m, kg m^2]
+  Eigen::MatrixXd K;                  ///< n x n, symmetric, semidefinite [N/m, N, N m]
+  double digits = 15;                 ///< decimal digits that M and K carry
+};
+
+/// Throws, all together, what contradicts itself: sizes of M and K (`size`), entries that are not
+/// finite (`not_finite`), asymmetry beyond the data's digits, indices out of range (`bad_value`),
+/// names or degrees of freedom given twice (`duplicate_name`). Cost n^2.
+void check(const Mesh& mesh);
+
+/// "17.x", "C.ry" (an interface's name before its point's). Row counts from 0.
+std::string dof_name(const Mesh& mesh, Eigen::Index row);
+
+/// Index into Mesh::points of the interface or point of this name; throws `unknown_name` with the
+/// list of interfaces.
+std::size_t find_point(const Mesh& mesh, const std::string& name);
+
+/// The rows of x, y, z, rx, ry, rz of the interface or point of this name; throws `unknown_name`,
+/// or `bad_modes` where one of the six is missing.
+std::array<Eigen::Index, 6> interface_rows(const Mesh& mesh, const std::string& name);
+
+/// R (n x 6): what every degree of freedom does when the body moves rigidly by one unit of each
+/// component of P (translations, rotations). Rows of tau_{point,P}; P in the body's frame [m].
+Eigen::MatrixXd rigid_motions(const Mesh& mesh, const Vector3& P);
+
+/// What to keep of the modes of a mesh.
+struct ModeOptions {
+  /// Number of lowest clamped modes; all of them if absent.
+  std::optional<int> kept = {};
+  /// Interfaces that get residual vectors, which make their static response exact: for a child the
+  /// six responses to a unit wrench there, for the parent those to a unit acceleration. At most six
+  /// modes more for each; name every child that something heavy or stiff hangs on.
+  std::vector<std::string> residual = {};
+  /// Damping ratios: none (undamped), one (for all), one per kept mode (a residual vector takes
+  /// that of the highest kept mode) or one per mode with the residual ones.
+  std::vector<double> xi = {};
+};
+
+/// Modes of the mesh clamped at `parent`, in the form of [Alazard 2015] eqs (9) to (14). With f all
+/// rows but the parent's and R = rigid_motions(mesh, P):
+///
+///     D_P = R'MR    M_rf = R'M(:,f)    Phi'M_ff Phi = I, Phi'K_ff Phi = diag(omega^2)
+///     L_P = Phi'M_rf'    Phi_C = rows of Phi at C
+///
+/// omega ascends. Residual vectors ([Craig 2006] ch. 17; usual in FE programs): X = K_ff^-1 B with
+/// B the unit wrenches at C (for the parent: M_rf'), made M-orthogonal to the kept modes, and modes
+/// of their own by the small eigenproblem (X'KX, X'MX). They are thus M- and K-orthogonal to all
+/// the rest and (14) holds as it is. Directions in which the kept modes leave nothing are dropped.
+///
+/// Massless degrees of freedom (M_ff singular) have infinite modes. With all modes these are
+/// condensed exactly, which needs that no child moves in them; with a number of kept modes they are
+/// cut like other high modes, and residual vectors hold their static part.
+///
+/// Throws what `check` and `interface_rows` throw; `duplicate_name` for a child named twice;
+/// `bad_modes` where K clamped at the parent is not definite (a mechanism: names a degree of
+/// freedom), M not semidefinite, or all modes are asked and a child has a massless degree of
+/// freedom; `bad_value` for more modes than there are; `size` for a wrong number of damping ratios.
+/// Cost about 20 n^3.
+ModalData modal_data(const Mesh& mesh, const std::string& parent,
+                     const std::vector<std::string>& children, const ModeOptions& options = {});
+
+}  // namespace titop::fe

@@ -1,0 +1,117 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <titop/blocks/fe/mesh_checks.hpp>
+#include <titop/graph/linalg/symmetric.hpp>
+#include <vector>
+
+namespace titop::fe {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// points x 3: the mass of each point along x, y, z.
+MatrixXd point_masses(const Mesh& mesh) {
+  const Index n = mesh.M.rows();
+  MatrixXd unit = MatrixXd::Zero(n, 3);
+  for (Index i = 0; i < n; ++i) {
+    const int c = mesh.dofs[static_cast<std::size_t>(i)].component;
+    if (c < 3) unit(i, c) = 1;
+  }
+  const MatrixXd sums = mesh.M * unit;
+  MatrixXd masses = MatrixXd::Zero(static_cast<Index>(mesh.points.size()), 3);
+  for (Index i = 0; i < n; ++i) {
+    const Dof& dof = mesh.dofs[static_cast<std::size_t>(i)];
+    if (dof.component < 3)
+      masses(static_cast<Index>(dof.point), dof.component) = sums(i, dof.component);
+  }
+  return masses;
+}
+
+std::optional<MassProperties> from_geometry(const Mesh& mesh) {
+  const MatrixXd masses = point_masses(mesh);
+  const double tolerance = 1e-6 * std::abs(masses.col(0).sum());
+  Matrix6 D = Matrix6::Zero();
+  for (Index i = 0; i < masses.rows(); ++i) {
+    const auto m = masses.row(i);
+    if (!(m.maxCoeff() - m.minCoeff() <= tolerance)) return std::nullopt;
+    const Vector3& position = mesh.points[static_cast<std::size_t>(i)].position;
+    D += rigid_mass(m.mean(), Matrix3::Zero(), -position);
+  }
+  return mass_properties(D);
+}
+
+std::string print(const char* source, const MassProperties& m) {
+  return fmt::format(
+      "{}: mass {:.8g} kg, centre of mass {:.6g} {:.6g} {:.6g} m, inertia there {:.6g} {:.6g} "
+      "{:.6g} "
+      "kg m^2\n",
+      source, m.mass.mean(), m.centre.x(), m.centre.y(), m.centre.z(), m.inertia(0, 0),
+      m.inertia(1, 1), m.inertia(2, 2));
+}
+
+}  // namespace
+
+MeshReport mesh_report(const Mesh& mesh) {
+  check(mesh);
+  MeshReport report;
+  const MatrixXd R = rigid_motions(mesh, Vector3::Zero());
+  report.mass = mass_properties(R.transpose() * (mesh.M * R));
+  report.geometry = from_geometry(mesh);
+  if (mesh.K.size() == 0) return report;
+  const MatrixXd KR = (mesh.K * R).cwiseAbs();
+  const double largest = mesh.K.cwiseAbs().maxCoeff();
+  // An entry that symmetry makes zero is as exact as the largest one K(i, j) could be,
+  // sqrt(K(i, i) K(j, j)).
+  const VectorXd root = mesh.K.diagonal().cwiseAbs().cwiseSqrt();
+  const MatrixXd pattern = (mesh.K.array() != 0).cast<double>();
+  const MatrixXd terms = root.asDiagonal() * pattern * root.asDiagonal() * R.cwiseAbs();
+  if (largest > 0) report.KR = KR.maxCoeff() / largest;
+  Index row = 0, column = 0;
+  report.KR_terms =
+      (terms.array() > 0).select(KR.cwiseQuotient(terms), 0.0).maxCoeff(&row, &column);
+  report.KR_worst = dof_name(mesh, row);
+  return report;
+}
+
+std::string to_string(const MeshReport& report) {
+  std::string text = print("from M", report.mass);
+  text += report.geometry ? print("from the points", *report.geometry)
+                          : "from the points: some have different masses along x, y and z\n";
+  text += fmt::format("misfit of R'MR to a rigid body {:.1e}\n", report.mass.misfit);
+  text += fmt::format(
+      "stiffness against rigid motions {:.1e} of the largest, {:.1e} of its terms, "
+      "worst at {}\n",
+      report.KR, report.KR_terms, report.KR_worst);
+  return text;
+}
+
+VectorXd omega_uncertainty(const Mesh& mesh, const std::string& parent, int count) {
+  const auto rows = interface_rows(mesh, parent);
+  std::vector<Index> f;
+  for (Index i = 0; i < mesh.M.rows(); ++i)
+    if (std::find(rows.begin(), rows.end(), i) == rows.end()) f.push_back(i);
+  const MatrixXd K = mesh.K(f, f), M = mesh.M(f, f);
+  const SymmetricModes modes = eigh_lowest(K, M, count);
+  // Entries (i, j) and (j, i) are one number of the file: the sum over both counts it once at
+  // double weight, whose square is twice the sum of the two squares.
+  const auto variance = [](const MatrixXd& S, const VectorXd& v) {
+    const MatrixXd squares = S.cwiseAbs2();
+    const VectorXd v2 = v.cwiseAbs2();
+    return 2 * v2.dot(squares * v2) - v2.cwiseAbs2().dot(squares.diagonal());
+  };
+  VectorXd result(count);
+  for (Index k = 0; k < count; ++k) {
+    const VectorXd v = modes.V.col(k);
+    const double lambda = modes.lambda(k);
+    const double spread = std::sqrt(variance(K, v) + lambda * lambda * variance(M, v));
+    result(k) = std::pow(10, -mesh.digits) * spread / (2 * lambda);
+  }
+  return result;
+}
+
+}  // namespace titop::fe

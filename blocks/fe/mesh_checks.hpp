@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <titop/blocks/fe/mesh.hpp>
+#include <titop/blocks/modal_checks.hpp>
+
+/// How good the matrices of a mesh are, before any modes are computed.
+namespace titop::fe {
+
+struct MeshReport {
+  MassProperties mass;  ///< from R'MR about the origin: what M weighs
+  /// From the points alone: the mass that M puts on each (its row sums over one direction) at the
+  /// point's position. The inertia leaves out the points' own rotary inertia and the distribution
+  /// between points; mass and centre must agree with `mass`. Absent where some point has not the
+  /// same mass along x, y and z.
+  std::optional<MassProperties> geometry;
+  double KR = 0;        ///< largest |K R| / largest |K|, R about the origin [m]: 0 for a free mesh
+  double KR_terms = 0;  ///< largest |K R| beside the terms that cancel in it, of which K(i, j) R(j)
+                        ///< counts as sqrt(K(i, i) K(j, j)) |R(j)|: independent of units; the
+                        ///< data's digits where the positions fit the matrices and nothing is held
+  std::string KR_worst;  ///< degree of freedom of that entry
+};
+
+/// Checks the mesh (throws what `check` throws) and weighs it. Cost 12 n^2.
+MeshReport mesh_report(const Mesh& mesh);
+
+/// One fact per line.
+std::string to_string(const MeshReport& report);
+
+/// What the digits of M and K cost: the standard deviation of each clamped omega, relative, if
+/// every entry of both is off by 10^-digits of itself at random,
+///
+///     d(omega^2) = v' dK v - omega^2 v' dM v,    v'Mv = 1
+///
+/// Modes clamped at `parent`, the `count` lowest. Large for slender solid meshes, whose bending
+/// stiffness is a small difference of large entries. Cost 20 n^3.
+Eigen::VectorXd omega_uncertainty(const Mesh& mesh, const std::string& parent, int count);
+
+}  // namespace titop::fe

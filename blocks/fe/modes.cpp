@@ -1,0 +1,278 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <set>
+#include <titop/blocks/fe/mesh.hpp>
+#include <titop/graph/error.hpp>
+#include <titop/graph/linalg/symmetric.hpp>
+
+/// modal_data: from the matrices of a mesh to its clamped modes.
+namespace titop::fe {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+/// A mesh clamped at its parent. f: all rows but the parent's.
+struct Clamped {
+  const Mesh& mesh;
+  std::vector<Index> f;  ///< n_f rows of the mesh
+  MatrixXd M, K;         ///< n_f x n_f
+  MatrixXd M_rf;         ///< 6 x n_f
+  Matrix6 D_P;
+};
+
+Clamped clamp(const Mesh& mesh, const std::string& parent) {
+  const auto rows = interface_rows(mesh, parent);
+  Clamped c{mesh, {}, {}, {}, {}, {}};
+  for (Index i = 0; i < mesh.M.rows(); ++i)
+    if (std::find(rows.begin(), rows.end(), i) == rows.end()) c.f.push_back(i);
+  const MatrixXd R = rigid_motions(mesh, mesh.points[find_point(mesh, parent)].position);
+  const MatrixXd MR = mesh.M * R;
+  const Matrix6 D_P = R.transpose() * MR;
+  c.D_P = (D_P + D_P.transpose()) / 2;
+  c.M_rf = MR(c.f, Eigen::all).transpose();
+  c.M = mesh.M(c.f, c.f);
+  c.K = mesh.K(c.f, c.f);
+  return c;
+}
+
+std::string name_of(const Clamped& c, Index row) {
+  return dof_name(c.mesh, c.f[static_cast<std::size_t>(row)]);
+}
+
+[[noreturn]] void refuse_mechanism(const Clamped& c, Index row) {
+  throw Error(Code::bad_modes,
+              fmt::format("mesh {} clamped at its parent moves without stiffness at {}",
+                          c.mesh.name, name_of(c, row)),
+              "a part is loose, or K was assembled with supports missing: modes of a mechanism "
+              "have no natural frequency");
+}
+
+/// A mode whose strain energy is within the rounding of K is a mechanism that slipped through the
+/// Cholesky factorization. |v|'|K||v| is what v'Kv = lambda is a small difference of.
+void require_stiffness(const Clamped& c, const SymmetricModes& modes) {
+  const MatrixXd size = c.K.cwiseAbs() * modes.V.cwiseAbs();
+  for (Index k = 0; k < modes.lambda.size(); ++k) {
+    const double terms = modes.V.col(k).cwiseAbs().dot(size.col(k));
+    if (modes.lambda(k) > 64 * std::numeric_limits<double>::epsilon() * terms) continue;
+    Index row = 0;
+    modes.V.col(k).cwiseAbs().maxCoeff(&row);
+    refuse_mechanism(c, row);
+  }
+}
+
+/// Rows of f at which one of the children has a degree of freedom.
+std::vector<Index> loaded_rows(const Clamped& c, const std::vector<std::string>& children) {
+  std::vector<Index> loaded;
+  for (const std::string& child : children)
+    for (const Index row : interface_rows(c.mesh, child)) {
+      const auto at = std::find(c.f.begin(), c.f.end(), row);
+      if (at != c.f.end()) loaded.push_back(at - c.f.begin());
+    }
+  return loaded;
+}
+
+/// M = E-part + Z-part in coordinates scaled to a unit diagonal: x = scale (E a + Z b), with
+/// M x = 0 on Z. A zero diagonal keeps scale 1.
+struct MassSplit {
+  VectorXd scale;   ///< n_f
+  MatrixXd E, Z;    ///< orthonormal: masses, massless motions
+  VectorXd masses;  ///< scaled mass of each column of E
+};
+
+MassSplit split_mass(const Clamped& c) {
+  MassSplit split;
+  split.scale = c.M.diagonal().unaryExpr([](double m) { return m > 0 ? 1 / std::sqrt(m) : 1.0; });
+  const SymmetricModes m = eigh(split.scale.asDiagonal() * c.M * split.scale.asDiagonal());
+  const double noise = 10 * double(c.M.rows()) * std::pow(10, -c.mesh.digits);
+  if (m.lambda(0) < -noise) {
+    Index row = 0;
+    m.V.col(0).cwiseAbs().maxCoeff(&row);
+    throw Error(
+        Code::bad_modes,
+        fmt::format("the mass matrix of mesh {} is not semidefinite: negative at {}, {:.3g} "
+                    "of its diagonal",
+                    c.mesh.name, name_of(c, row), m.lambda(0)));
+  }
+  const Index massless = (m.lambda.array() <= noise).count();
+  split.Z = m.V.leftCols(massless);
+  split.E = m.V.rightCols(m.V.cols() - massless);
+  split.masses = m.lambda.tail(m.V.cols() - massless);
+  return split;
+}
+
+void require_unloaded(const Clamped& c, const MassSplit& split, const std::vector<Index>& loaded) {
+  std::string names;
+  for (const Index row : loaded)
+    if (split.Z.row(row).norm() > 1e-6) names += (names.empty() ? "" : ", ") + name_of(c, row);
+  if (names.empty()) return;
+  throw Error(Code::bad_modes,
+              fmt::format("mesh {} has no mass at {}: a wrench there gives no finite acceleration",
+                          c.mesh.name, names),
+              "keep a number of modes, with residual vectors at that child (kept, residual), or "
+              "give the node some inertia");
+}
+
+/// All finite modes where M is singular: statics in the massless motions b, Z'K(E a + Z b) = 0.
+SymmetricModes condensed_modes(const Clamped& c, const std::vector<Index>& loaded) {
+  const MassSplit split = split_mass(c);
+  require_unloaded(c, split, loaded);
+  const MatrixXd K = split.scale.asDiagonal() * c.K * split.scale.asDiagonal();
+  const MatrixXd KZ = K * split.Z;
+  MatrixXd T = split.E;
+  T -= split.Z * solve_definite(split.Z.transpose() * KZ, KZ.transpose() * split.E);
+  const VectorXd root = split.masses.cwiseSqrt().cwiseInverse();
+  T = split.scale.asDiagonal() * T * root.asDiagonal();
+  SymmetricModes modes =
+      eigh_definite(T.transpose() * c.K * T, MatrixXd::Identity(root.size(), root.size()));
+  modes.V = T * modes.V;
+  return modes;
+}
+
+SymmetricModes clamped_modes(const Clamped& c, const std::vector<std::string>& children,
+                             std::optional<int> kept) {
+  const Index n = c.M.rows();
+  if (kept && (*kept < 0 || *kept > n))
+    throw Error(Code::bad_value,
+                fmt::format("{} modes asked of mesh {}, which has {}", *kept, c.mesh.name, n));
+  if (const Index row = weak_pivot(c.K); row >= 0) refuse_mechanism(c, row);
+  SymmetricModes modes;
+  if (weak_pivot(c.M, 10 * std::pow(10, -c.mesh.digits)) < 0) {
+    modes = eigh_definite(c.K, c.M);
+    if (kept) modes = {modes.lambda.head(*kept), modes.V.leftCols(*kept)};
+  } else if (kept) {
+    modes = eigh_lowest(c.K, c.M, *kept);
+  } else {
+    modes = condensed_modes(c, loaded_rows(c, children));
+  }
+  require_stiffness(c, modes);
+  return modes;
+}
+
+/// Unit wrenches at a child (n_f x 6), or the inertia loads of unit accelerations of the parent.
+MatrixXd unit_loads(const Clamped& c, const std::string& parent, const std::string& name) {
+  if (find_point(c.mesh, name) == find_point(c.mesh, parent)) return c.M_rf.transpose();
+  MatrixXd B = MatrixXd::Zero(c.M.rows(), 6);
+  const auto rows = loaded_rows(c, {name});
+  for (std::size_t j = 0; j < rows.size(); ++j) B(rows[j], static_cast<Index>(j)) = 1;
+  return B;
+}
+
+/// Columns of X made M-orthonormal, the one that has most left first. A column of which less than
+/// 1e-7 is left is a combination of the others to within the static response's own accuracy.
+MatrixXd independent(MatrixXd X, const MatrixXd& M) {
+  const auto norms = [&] { return VectorXd((X.cwiseProduct(M * X)).colwise().sum().cwiseSqrt()); };
+  const VectorXd size = norms();
+  for (Index j = 0; j < X.cols(); ++j)
+    if (size(j) > 0) X.col(j) /= size(j);
+  MatrixXd Q(X.rows(), 0);
+  while (X.cols() > 0) {
+    Index next = 0;
+    const double left = norms().maxCoeff(&next);
+    if (!(left > 1e-7)) break;
+    VectorXd q = X.col(next) / left;
+    q -= Q * (Q.transpose() * (M * q));  // once more: the first pass leaves rounding / left
+    q /= std::sqrt(q.dot(M * q));
+    Q.conservativeResize(Eigen::NoChange, Q.cols() + 1);
+    Q.rightCols(1) = q;
+    X -= q * (q.transpose() * (M * X));
+  }
+  return Q;
+}
+
+/// The loads are freed of the kept modes before the solve, not only their responses after it: what
+/// is left of a response may be 1e-10 of it.
+SymmetricModes residual_modes(const Clamped& c, const SymmetricModes& kept, const MatrixXd& loads) {
+  const VectorXd weight =
+      c.M.diagonal().unaryExpr([](double m) { return m > 0 ? 1 / std::sqrt(m) : 1.0; });
+  const MatrixXd MV = c.M * kept.V;
+  MatrixXd B = loads - MV * (kept.V.transpose() * loads);
+  std::vector<Index> columns;
+  for (Index j = 0; j < B.cols(); ++j)
+    if ((weight.asDiagonal() * B.col(j)).norm() >
+        1e-9 * (weight.asDiagonal() * loads.col(j)).norm())
+      columns.push_back(j);
+  MatrixXd X = solve_definite(c.K, B(Eigen::all, columns));
+  X -= kept.V * (MV.transpose() * X);
+  const MatrixXd Q = independent(std::move(X), c.M);
+  SymmetricModes modes = eigh(Q.transpose() * c.K * Q);
+  modes.V = Q * modes.V;
+  return modes;
+}
+
+void add_residual(const Clamped& c, const std::string& parent, const ModeOptions& options,
+                  SymmetricModes& modes) {
+  const auto count = static_cast<Index>(options.residual.size());
+  MatrixXd loads(c.M.rows(), 6 * count);
+  for (Index i = 0; i < count; ++i)
+    loads.middleCols(6 * i, 6) =
+        unit_loads(c, parent, options.residual[static_cast<std::size_t>(i)]);
+  const SymmetricModes more = residual_modes(c, modes, loads);
+  const Index N = modes.lambda.size(), total = N + more.lambda.size();
+  modes.lambda.conservativeResize(total);
+  modes.lambda.tail(total - N) = more.lambda;
+  modes.V.conservativeResize(Eigen::NoChange, total);
+  modes.V.rightCols(total - N) = more.V;
+}
+
+VectorXd damping(const Mesh& mesh, const std::vector<double>& xi, Index kept, Index total) {
+  for (const double x : xi)
+    if (!(x >= 0) || !std::isfinite(x))
+      throw Error(Code::bad_value,
+                  fmt::format("damping ratio {} of mesh {} is not a number >= 0", x, mesh.name));
+  const auto given = static_cast<Index>(xi.size());
+  if (given == 0) return VectorXd::Zero(total);
+  if (given != 1 && given != kept && given != total)
+    throw Error(Code::size,
+                fmt::format("{} damping ratios given for mesh {}, which has {} kept modes and {} "
+                            "residual vectors",
+                            given, mesh.name, kept, total - kept),
+                "give one for all, one per kept mode, or one for each including the residual "
+                "vectors");
+  VectorXd result = VectorXd::Constant(total, xi.back());
+  if (given > 1) result.head(given) = Eigen::Map<const VectorXd>(xi.data(), given);
+  return result;
+}
+
+void require_distinct(const Mesh& mesh, const std::vector<std::string>& children) {
+  std::set<std::string> seen;
+  for (const std::string& child : children)
+    if (!seen.insert(child).second)
+      throw Error(Code::duplicate_name,
+                  fmt::format("child {} of mesh {} is named twice", child, mesh.name));
+}
+
+}  // namespace
+
+ModalData modal_data(const Mesh& mesh, const std::string& parent,
+                     const std::vector<std::string>& children, const ModeOptions& options) {
+  check(mesh);
+  require_distinct(mesh, children);
+  require_distinct(mesh, options.residual);
+  const Clamped c = clamp(mesh, parent);
+  SymmetricModes modes = clamped_modes(c, children, options.kept);
+  const Index kept = modes.lambda.size();
+  if (!options.residual.empty()) add_residual(c, parent, options, modes);
+
+  ModalData data;
+  data.omega = modes.lambda.cwiseSqrt();
+  data.xi = damping(mesh, options.xi, kept, modes.lambda.size());
+  data.L_P = modes.V.transpose() * c.M_rf.transpose();
+  data.D_P = c.D_P;
+  data.digits = mesh.digits;
+  MatrixXd Phi = MatrixXd::Zero(mesh.M.rows(), modes.V.cols());  // the clamped rows stay zero
+  Phi(c.f, Eigen::all) = modes.V;
+  const Vector3 P = mesh.points[find_point(mesh, parent)].position;
+  for (const std::string& child : children)
+    data.children.push_back({child, mesh.points[find_point(mesh, child)].position - P,
+                             Phi(interface_rows(mesh, child), Eigen::all)});
+  return data;
+}
+
+}  // namespace titop::fe
