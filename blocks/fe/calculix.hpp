@@ -1,0 +1,65 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <titop/blocks/fe/mesh.hpp>
+#include <vector>
+
+/// Reader for the matrices that CalculiX writes with `*FREQUENCY, SOLVER=MATRIXSTORAGE`.
+///
+/// To have a structure with places where other bodies attach: make each place a `*RIGID BODY` with
+/// a REF NODE (its three displacements) and a ROT NODE (whose "displacements" 1..3 are the
+/// rotations of the body), hold nothing (no `*BOUNDARY`), and run the deck. The deck must be in SI
+/// units.
+namespace titop::fe {
+
+/// The four files of one run.
+struct CalculixFiles {
+  std::filesystem::path stiffness;  ///< .sti: `row column value`, counted from 1, one triangle
+  std::filesystem::path mass;       ///< .mas: likewise
+  std::filesystem::path dofs;       ///< .dof: `node.dof`, one line per row of the matrices
+  std::filesystem::path deck;       ///< .inp: `*NODE` (positions) and `*RIGID BODY`
+};
+
+/// stem + ".sti", ".mas", ".dof", ".inp"; e.g. stem = "data/beam".
+CalculixFiles calculix_files(const std::filesystem::path& stem);
+
+/// A reference node that gets a name, e.g. {"P", 900001}.
+struct CalculixInterface {
+  std::string name;
+  int node = 0;
+};
+
+/// What is read of a deck.
+struct CalculixDeck {
+  struct RigidBody {
+    int ref_node = 0;
+    int rot_node = 0;
+    int line = 0;
+  };
+  std::map<int, Vector3> nodes;  ///< positions [m] by node number
+  std::vector<RigidBody> rigid_bodies;
+};
+
+/// Node positions and rigid bodies of a deck. Of all its keywords these two are needed; what would
+/// change them without being read here (`*INCLUDE`, parameters of `*NODE` other than NSET, a rigid
+/// body without REF NODE or ROT NODE) is refused. Throws `bad_file` with file and line for each
+/// mistake: not a node number, not a number, a coordinate missing, two positions for one node.
+CalculixDeck read_calculix_deck(const std::filesystem::path& path);
+
+/// The free mesh: one point per node with degrees of freedom, named by its number; a rigid body is
+/// one point, named by its reference node, with displacements and rotations at that node's
+/// position. Nodes that depend on a rigid body have no row and are no points. M and K carry 14
+/// digits.
+///
+/// Throws `bad_file`, all mistakes of a file together, each with file, line, what was found and
+/// what was expected: not a number, not finite, too few or many columns, an index outside the rows
+/// of .dof, an entry given twice with different values, a row without diagonal entry (a truncated
+/// file, or fewer rows than .dof has), a label twice, a label without a node in the deck, an empty
+/// file, a last line without line end. Throws `unknown_name` for an interface that is not a point.
+/// Files with CR LF are read. Dense: 16 n^2 bytes for n rows.
+Mesh read_calculix(const CalculixFiles& files,
+                   const std::vector<CalculixInterface>& interfaces = {});
+
+}  // namespace titop::fe

@@ -1,0 +1,136 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <titop/blocks/fe/calculix.hpp>
+#include <titop/blocks/fe/text_file.hpp>
+
+/// read_calculix_deck: what the rows of the matrices mean.
+namespace titop::fe {
+
+namespace {
+
+/// A keyword with its parameters; CalculiX ignores case and blanks in it.
+struct Card {
+  std::string keyword;                            ///< "*NODE"
+  std::map<std::string, std::string> parameters;  ///< "REFNODE" -> "900001"
+  int line = 0;
+};
+
+std::string normal(std::string_view text) {
+  std::string result;
+  for (const char c : text)
+    if (c != ' ' && c != '\t')
+      result += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return result;
+}
+
+bool is_comment(std::string_view text) { return text.starts_with("**"); }
+
+class DeckReader {
+ public:
+  explicit DeckReader(const std::filesystem::path& path)
+      : file_(read_text(path)), lines_(lines_of(file_)) {}
+
+  CalculixDeck read() {
+    Card card;
+    while (at_ < lines_.size()) {
+      const TextLine line = lines_[at_++];
+      if (is_comment(line.text) || trim(line.text).empty()) continue;
+      if (line.text.starts_with('*')) {
+        card = read_card(line);
+        if (card.keyword == "*RIGIDBODY") read_rigid_body(card);
+      } else if (card.keyword == "*NODE") {
+        read_node(line);
+      }
+    }
+    if (deck_.nodes.empty() && mistakes_.empty())
+      mistakes_.add(bad_line(file_, 0, "no *NODE with positions", "the deck of the matrices"));
+    mistakes_.finish();
+    return std::move(deck_);
+  }
+
+ private:
+  /// A keyword line that ends in a comma goes on in the next line.
+  Card read_card(const TextLine& first) {
+    std::string text = normal(first.text);
+    while (text.ends_with(',') && at_ < lines_.size()) text += normal(lines_[at_++].text);
+    Card card;
+    card.line = first.number;
+    const auto fields = comma_fields(text);
+    card.keyword = fields.front();
+    for (std::size_t i = 1; i < fields.size(); ++i) {
+      const auto equals = fields[i].find('=');
+      const bool has_value = equals != std::string_view::npos;
+      card.parameters[std::string(fields[i].substr(0, equals))] =
+          has_value ? fields[i].substr(equals + 1) : std::string_view();
+    }
+    if (card.keyword == "*INCLUDE")
+      mistakes_.add(bad_line(file_, card.line, "*INCLUDE", "the included lines in its place"));
+    if (card.keyword == "*NODE")
+      for (const auto& [name, value] : card.parameters)
+        if (name != "NSET")
+          mistakes_.add(bad_line(file_, card.line, fmt::format("*NODE parameter {}", name),
+                                 "NSET only: this reader does not know what others do"));
+    return card;
+  }
+
+  void read_node(const TextLine& line) {
+    auto fields = comma_fields(line.text);
+    if (fields.size() == 5 && fields.back().empty()) fields.pop_back();
+    int node = 0;
+    Vector3 position;
+    const std::string found = fmt::format("'{}'", trim(line.text));
+    if (fields.size() != 4 || !parse(fields[0], node) || node <= 0 ||
+        !parse(fields[1], position.x()) || !parse(fields[2], position.y()) ||
+        !parse(fields[3], position.z())) {
+      mistakes_.add(bad_line(file_, line.number, found, "node, x, y, z with finite numbers"));
+      return;
+    }
+    const auto [at, is_new] = deck_.nodes.insert({node, position});
+    if (!is_new && at->second != position)
+      mistakes_.add(bad_line(file_, line.number, found,
+                             fmt::format("one position per node: node {} was at {}, {}, {}", node,
+                                         at->second.x(), at->second.y(), at->second.z())));
+  }
+
+  void read_rigid_body(const Card& card) {
+    CalculixDeck::RigidBody body;
+    body.line = card.line;
+    for (const auto& [name, node] :
+         {std::pair{"REF NODE", &body.ref_node}, std::pair{"ROT NODE", &body.rot_node}}) {
+      const auto at = card.parameters.find(normal(name));
+      if (at != card.parameters.end() && parse(std::string_view(at->second), *node)) continue;
+      mistakes_.add(bad_line(file_, card.line, fmt::format("a *RIGID BODY without {}", name),
+                             "REF NODE= and ROT NODE= with node numbers, so that its rows can be "
+                             "told from others"));
+      return;
+    }
+    for (const auto& other : deck_.rigid_bodies)
+      if (other.ref_node == body.ref_node || other.rot_node == body.rot_node ||
+          other.rot_node == body.ref_node || other.ref_node == body.rot_node)
+        mistakes_.add(bad_line(file_, card.line,
+                               fmt::format("nodes {} and {}, of which line {} uses one",
+                                           body.ref_node, body.rot_node, other.line),
+                               "different nodes for different rigid bodies"));
+    if (body.ref_node == body.rot_node)
+      mistakes_.add(bad_line(file_, card.line,
+                             fmt::format("node {} as REF NODE and ROT NODE", body.ref_node),
+                             "two different nodes"));
+    deck_.rigid_bodies.push_back(body);
+  }
+
+  TextFile file_;
+  std::vector<TextLine> lines_;
+  std::size_t at_ = 0;
+  CalculixDeck deck_;
+  FileMistakes mistakes_;
+};
+
+}  // namespace
+
+CalculixDeck read_calculix_deck(const std::filesystem::path& path) {
+  return DeckReader(path).read();
+}
+
+}  // namespace titop::fe

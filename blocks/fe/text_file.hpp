@@ -1,0 +1,62 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <titop/graph/error.hpp>
+#include <vector>
+
+/// What readers of text files share: lines with their numbers, numbers that do not depend on the
+/// locale, mistakes that name file and line.
+namespace titop::fe {
+
+/// A line without its line end (LF or CRLF); number counts from 1.
+struct TextLine {
+  int number = 0;
+  std::string_view text;
+};
+
+/// A whole text file in memory.
+struct TextFile {
+  std::string name;  ///< as in messages: the last part of the path
+  std::string content;
+  bool ends_in_line = true;  ///< the last line has its line end (true for an empty file)
+};
+
+/// Throws `bad_file` where the file cannot be opened or read, or is empty.
+TextFile read_text(const std::filesystem::path& path);
+
+/// All lines, views into file.content: keep the file alive.
+std::vector<TextLine> lines_of(const TextFile& file);
+
+/// Pieces between blanks (spaces and tabs), none of them empty.
+std::vector<std::string_view> words(std::string_view text);
+
+/// Pieces between commas, trimmed; empty ones are kept.
+std::vector<std::string_view> comma_fields(std::string_view text);
+
+/// Without leading and trailing blanks.
+std::string_view trim(std::string_view text);
+
+/// Number in C notation, no more and no less ("1e3", "+2.5", ".5"); false if the text is anything
+/// else, does not fit, or is infinite or not a number. Does not look at the locale.
+bool parse(std::string_view text, double& value);
+bool parse(std::string_view text, int& value);
+
+/// `bad_file`, "beam.sti:12: found ..., expected ...". Line 0: the file as a whole.
+Mistake bad_line(const TextFile& file, int line, const std::string& found,
+                 const std::string& expected);
+
+/// Collects mistakes; after twenty the rest is only counted. `finish` throws them, if any.
+class FileMistakes {
+ public:
+  void add(Mistake mistake);
+  bool empty() const { return mistakes_.empty(); }
+  void finish() const;
+
+ private:
+  std::vector<Mistake> mistakes_;
+  int more_ = 0;
+};
+
+}  // namespace titop::fe
