@@ -48,7 +48,7 @@ build() {
   local preset=$1 targets=()
   shift
   (($# == 0)) || targets=(--target "$@")
-  logged "build/$preset-configure.log" cmake --preset "$preset"
+  logged "build/$preset-configure.log" cmake --preset "$preset" -DTITOP_CI="${TITOP_CI:-OFF}"
   local ninja=(cmake --build --preset "$preset" -j "${JOBS:-$(nproc)}" "${targets[@]}")
   if [[ -t 1 ]]; then
     "${ninja[@]}"
