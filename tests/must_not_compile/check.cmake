@@ -1,11 +1,21 @@
-# FILE must compile as it stands (else the test proves nothing) and fail with -DMUST_NOT_COMPILE.
-set(flags -std=c++20 -fsyntax-only -I${INCLUDE} -isystem ${EIGEN})
-execute_process(COMMAND ${COMPILER} ${flags} ${FILE} RESULT_VARIABLE good ERROR_VARIABLE text)
-if(NOT good EQUAL 0)
+# SOURCE must compile as it stands (else the test proves nothing) and fail with -DMUST_NOT_COMPILE.
+# If it has a line "// expect: text", the compiler's message must contain that text: then it fails
+# for the right reason.
+set(compile ${COMPILER} -std=c++20 -fsyntax-only -I${INCLUDE} -isystem ${EIGEN} ${SOURCE})
+execute_process(COMMAND ${compile} RESULT_VARIABLE code ERROR_VARIABLE text)
+if(NOT code EQUAL 0)
   message(FATAL_ERROR "the positive control does not compile:\n${text}")
 endif()
-execute_process(COMMAND ${COMPILER} ${flags} -DMUST_NOT_COMPILE ${FILE}
-                RESULT_VARIABLE bad ERROR_VARIABLE text)
-if(bad EQUAL 0)
-  message(FATAL_ERROR "${FILE} compiles with MUST_NOT_COMPILE")
+
+execute_process(COMMAND ${compile} -DMUST_NOT_COMPILE RESULT_VARIABLE code ERROR_VARIABLE text)
+if(code EQUAL 0)
+  message(FATAL_ERROR "${SOURCE} compiles with MUST_NOT_COMPILE")
 endif()
+file(STRINGS ${SOURCE} expected REGEX "^// expect: ")
+foreach(line ${expected})
+  string(REGEX REPLACE "^// expect: " "" line "${line}")
+  string(FIND "${text}" "${line}" found)
+  if(found EQUAL -1)
+    message(FATAL_ERROR "it fails, but not with \"${line}\":\n${text}")
+  endif()
+endforeach()
