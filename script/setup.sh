@@ -1,8 +1,12 @@
 # Sourced by script/test, script/demo and .ci/run: Debian packages, quiet builds with a log.
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2034
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mkdir -p build
+
+# What building, testing and drawing need.
+packages=(g++ cmake ninja-build ccache libeigen3-dev libboost-dev libboost-graph-dev libfmt-dev
+  doctest-dev graphviz gnuplot-nox)
 
 # Installs the named Debian packages that are missing; says nothing where all are there.
 need() {
