@@ -5,8 +5,8 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 mkdir -p build
 
 # What building, testing and drawing need.
-packages=(g++ cmake ninja-build ccache libeigen3-dev libboost-dev libboost-graph-dev libfmt-dev
-  doctest-dev graphviz gnuplot-nox)
+packages=(g++ cmake ninja-build ccache libeigen3-dev libboost-dev libfmt-dev doctest-dev
+  graphviz gnuplot-nox)
 
 # Installs the named Debian packages that are missing; says nothing where all are there.
 need() {
@@ -47,7 +47,7 @@ logged() {
 }
 
 # build PRESET [TARGET...]: configures and builds. On a terminal ninja's own line shows progress;
-# elsewhere only a failure is shown.
+# elsewhere the output goes to a log, which is shown where the build fails.
 build() {
   local preset=$1 targets=()
   shift
@@ -57,6 +57,7 @@ build() {
   if [[ -t 1 ]]; then
     "${ninja[@]}"
   else
+    echo "building build/$preset (a few minutes the first time; build/$preset-build.log grows)"
     logged "build/$preset-build.log" "${ninja[@]}"
   fi
 }
