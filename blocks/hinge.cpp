@@ -65,7 +65,7 @@ class HingeBlock : public Block {
 }  // namespace
 
 Hinge::Handle::Handle(Graph* graph, int node)
-    : child(detail::channel<6>(graph, node, 0)),
+    : child(graph, node),
       parent(detail::channel<6>(graph, node, 1)),
       accel(detail::channel<1>(graph, node, 2).accel),
       torque(detail::channel<1>(graph, node, 2).force),

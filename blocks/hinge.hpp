@@ -25,7 +25,9 @@ struct Hinge {
 
   struct Handle {
     Handle(Graph* graph, int node);
-    DualPort<6> child;            ///< where the body hangs
+    Handle(const Handle&) = default;
+    Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
+    Children<6> child;            ///< where the body hangs
     DualPort<6> parent;           ///< where the joint hangs
     Port<1, Kind::accel> accel;   ///< thetadd [rad/s^2]
     Port<1, Kind::force> torque;  ///< C_m [N m]

@@ -16,6 +16,8 @@ struct ChildPoint {
 /// Ports of a body: one parent point P, any number of child points by name.
 struct BodyHandle {
   BodyHandle(Graph* graph, int node);
+  BodyHandle(const BodyHandle&) = default;
+  BodyHandle& operator=(const BodyHandle& other) { return detail::rebind(*this, other); }
   Children<6> child;   ///< child("C1"); also the only child point, where there is just one
   DualPort<6> parent;  ///< P
 };

@@ -31,6 +31,8 @@ struct SpringMass {
           parent(detail::channel<1>(graph, node, 1)),
           stretch(graph, detail::port_signal(*graph, node, "stretch")),
           position(child.position) {}
+    Handle(const Handle&) = default;
+    Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
     Children<1> child;   ///< C, on the mass
     DualPort<1> parent;  ///< P, on the other end of the spring
     Reading stretch;     ///< x_C − x_P [m]

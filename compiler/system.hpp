@@ -23,7 +23,7 @@ struct Options {
   /// (pass `minimize`, O(n^3)); beyond it only what the structure shows. 0: never.
   int minimize_up_to = 100;
   /// Folder for one Graphviz file per pass (00-diagram.dot, 01-check.dot, ...); empty: none.
-  std::string dump_to;
+  std::string dump_to = {};
   /// Merge what differs by less than this (relative half-bandwidth) when minimizing; 0: only what
   /// rounding cannot tell from nothing.
   double resolution = 0;

@@ -51,7 +51,7 @@ InputRef Diagram::input(std::string name, int size, std::source_location at) {
          "give it at least one scalar", at);
     size = 1;
   }
-  return {graph_.get(), add_input(*graph_, std::move(name), size)};
+  return {graph_.get(), add_input(*graph_, std::move(name), size, at)};
 }
 
 OutputRef Diagram::output(std::string name, int size, std::source_location at) {
@@ -69,7 +69,7 @@ Param Diagram::param(std::string name, double value, std::source_location at) {
   if (!std::isfinite(value))
     note(*graph_, Code::not_finite, fmt::format("parameter {} is {}", name, value),
          "give it a finite value", at);
-  graph_->parameters.push_back({std::move(name), value});
+  graph_->parameters.push_back({std::move(name), value, at});
   return {static_cast<int>(graph_->parameters.size()) - 1, value, graph_.get()};
 }
 
@@ -79,7 +79,12 @@ void OutputRef::operator=(const Rhs& rhs) const {
     note(*graph_, Code::two_equations, fmt::format("output {} is set twice", output.name),
          fmt::format("keep one of them; the first is at {}", to_string(output.where)), rhs.where());
   output.set = true;
+  if (rhs.expr().graph() && rhs.expr().graph() != graph_)
+    throw Error(Code::unknown_name,
+                fmt::format("output {} takes a signal from another diagram", output.name),
+                "take both sides from the same Diagram", {"written at " + to_string(rhs.where())});
   output.terms = rhs.expr().terms();
+  detail::note_foreign_parameters(*graph_, output.terms, rhs.where());
   output.where = rhs.where();
 }
 

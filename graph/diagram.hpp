@@ -21,6 +21,8 @@ concept BlockSpec = requires(const Spec& spec, Graph* graph, int node) {
 class OutputRef {
  public:
   OutputRef(Graph* graph, int index) : graph_(graph), index_(index) {}
+  OutputRef(const OutputRef&) = default;
+  OutputRef& operator=(const OutputRef&) = delete;  // it would set nothing
   void operator=(const Rhs& rhs) const;
   void operator=(Zero zero) const { *this = Rhs(zero); }
 

@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <cctype>
+#include <cmath>
 #include <titop/graph/graph.hpp>
 
 namespace titop {
@@ -111,21 +111,37 @@ Pattern structure(const Graph& graph, const Term& term) {
   return result;
 }
 
-std::string print(const Graph& graph, const Term& term) {
-  std::string text = term.sign < 0 ? "-" : "";
-  std::string parts;
+namespace {
+
+/// k where the matrix is k times the identity (what `lower` makes of a number), not-a-number else.
+double multiple_of_identity(const MatrixXd& m) {
+  if (m.rows() != m.cols() || m.size() == 0) return std::nan("");
+  const double k = m(0, 0);
+  return m == MatrixXd(k * MatrixXd::Identity(m.rows(), m.cols())) ? k : std::nan("");
+}
+
+/// The term without its sign; `negative` takes the sign.
+std::string print_unsigned(const Graph& graph, const Term& term, bool& negative) {
+  std::string text, parts;
+  negative = term.sign < 0;
   for (const Factor& f : term.factors) {
-    if (const auto* k = std::get_if<Value>(&f))
+    if (const auto* k = std::get_if<Value>(&f)) {
       text += k->is_parameter()
                   ? graph.parameters[static_cast<std::size_t>(k->index())].name + " * "
                   : fmt::format("{:.6g} * ", k->nominal());
-    else if (const auto* T = std::get_if<Rotation>(&f)) {
+    } else if (const auto* T = std::get_if<Rotation>(&f)) {
       if (!T->is_identity() || !T->to().empty())
         text += T->to().empty() ? "T * " : fmt::format("T({}<-{}) * ", T->to(), T->from());
-    } else if (std::holds_alternative<Matrix>(f))
-      text += "M * ";
-    else
+    } else if (const auto* m = std::get_if<Matrix>(&f)) {
+      const double gain = multiple_of_identity(*m->value);
+      negative = negative != (gain < 0);
+      if (std::isnan(gain))
+        text += "M * ";
+      else if (std::abs(gain) != 1)
+        text += fmt::format("{:.6g} * ", std::abs(gain));
+    } else {
       parts += std::get<Part>(f).name;
+    }
   }
   text += term.of == Term::Of::signal
               ? name_of(graph, term.signal)
@@ -134,15 +150,26 @@ std::string print(const Graph& graph, const Term& term) {
   return text + parts;
 }
 
+}  // namespace
+
+std::string print(const Graph& graph, const Term& term) {
+  bool negative = false;
+  const std::string text = print_unsigned(graph, term, negative);
+  return negative ? "-" + text : text;
+}
+
 std::string print(const Graph& graph, const Equation& equation) {
   std::string text = name_of(graph, equation.target) + equation.part.name;
-  text += equation.accumulate ? " += " : " = ";
-  if (equation.terms.empty()) return text + "0";
+  text += equation.accumulate ? " +=" : " =";
+  if (equation.terms.empty()) return text + " 0";
   for (std::size_t i = 0; i < equation.terms.size(); ++i) {
-    Term term = equation.terms[i];
-    if (i > 0) text += term.sign < 0 ? " - " : " + ";
-    if (i > 0) term.sign = 1;
-    text += print(graph, term);
+    bool negative = false;
+    const std::string term = print_unsigned(graph, equation.terms[i], negative);
+    if (i == 0)
+      text += negative ? " -" : " ";
+    else
+      text += negative ? " - " : " + ";
+    text += term;
   }
   return text;
 }
@@ -199,11 +226,11 @@ int add_node(Graph& graph, std::string name, BlockPtr block, std::source_locatio
   return node;
 }
 
-int add_input(Graph& graph, std::string name, int size) {
+int add_input(Graph& graph, std::string name, int size, std::source_location where) {
   const int index = static_cast<int>(graph.inputs.size());
   const int signal = static_cast<int>(graph.signals.size());
   graph.signals.push_back(Signal{.role = Signal::Role::external, .spec = index, .size = size});
-  graph.inputs.push_back({std::move(name), signal, size, index});
+  graph.inputs.push_back({std::move(name), signal, size, index, where});
   return signal;
 }
 

@@ -22,7 +22,7 @@ constexpr int kUnknownFrame = -2;  ///< a nameless rotation or a matrix made it:
 /// Which part of a signal: all of it, or the span of some orthonormal rows.
 struct Part {
   Eigen::MatrixXd rows = {};  ///< m x size, orthonormal rows; 0 x 0 means all
-  std::string name = {};  ///< ".linear", ".angular", ".along(0, 0, 1)" for messages
+  std::string name = {};      ///< ".linear", ".angular", ".along(0, 0, 1)" for messages
 
   bool whole() const { return rows.size() == 0; }
 };
@@ -88,6 +88,7 @@ struct Input {
   std::string name = {};
   int signal = -1, size = 1;
   int declared = 0;  ///< position in the user's order
+  std::source_location where = {};
 };
 
 struct Output {
@@ -102,6 +103,7 @@ struct Output {
 struct Parameter {
   std::string name = {};
   double value = 0;
+  std::source_location where = {};
 };
 
 struct Graph {
@@ -137,7 +139,7 @@ std::string print(const Graph& graph, const Equation& equation);
 /// Adds a node with all its signals and channels; returns its index. O(ports).
 int add_node(Graph& graph, std::string name, BlockPtr block, std::source_location where);
 /// Adds an external input with its signal; returns the signal.
-int add_input(Graph& graph, std::string name, int size);
+int add_input(Graph& graph, std::string name, int size, std::source_location where = {});
 /// First signal that is not of this node any more.
 int end_signal(const Graph& graph, int node);
 

@@ -45,6 +45,7 @@ void SignalRef::set(const Rhs& rhs, bool accumulate, double sign) const {
                 "take both sides from the same Diagram");
   Equation equation{signal_, part_, accumulate, rhs.expr().terms(), rhs.where()};
   for (Term& term : equation.terms) term.sign *= sign;
+  note_foreign_parameters(*graph_, equation.terms, rhs.where());
   graph_->equations.push_back(std::move(equation));
 }
 
@@ -94,6 +95,32 @@ int find_channel(const Graph& graph, int node, std::string_view name) {
   for (std::size_t i = 0; i < channels.size(); ++i)
     if (channels[i].name == name) return static_cast<int>(i);
   return -1;
+}
+
+int find_child(const Graph& graph, int node, std::string_view name) {
+  const int spec = find_channel(graph, node, name);
+  return spec >= 0 &&
+                 face_of(graph, node).channels[static_cast<std::size_t>(spec)].takes == Takes::force
+             ? spec
+             : -1;
+}
+
+void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms,
+                             const std::source_location& at) {
+  const auto look_at = [&](const Value& v) {
+    if (!v.is_parameter() || v.owner() == &graph) return;
+    graph.mistakes.push_back(
+        {Code::unknown_name,
+         fmt::format("a parameter of another diagram, nominally {}, is used", v.nominal()),
+         {"written at " + to_string(at)},
+         "make the parameter with param(...) of this diagram"});
+  };
+  for (const Term& term : terms)
+    for (const Factor& factor : term.factors) {
+      if (const auto* k = std::get_if<Value>(&factor)) look_at(*k);
+      if (const auto* T = std::get_if<Rotation>(&factor))
+        for (const Value& angle : T->values()) look_at(angle);
+    }
 }
 
 int only_child(const Graph& graph, int node) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string_view>
 #include <titop/graph/expr.hpp>
 
@@ -29,7 +30,6 @@ class SignalRef {
 
  protected:
   void set(const Rhs& rhs, bool accumulate, double sign) const;
-  void rebind(const SignalRef& other) { *this = other; }
 
  private:
   Graph* graph_ = nullptr;
@@ -40,6 +40,15 @@ class SignalRef {
 
 template <class>
 constexpr bool never = false;
+
+/// Makes a handle's name mean another node (`auto tip = z1; tip = z2;`). Ports cannot be assigned
+/// one by one: `=` on a port writes an equation.
+template <class Handle>
+Handle& rebind(Handle& name, const Handle& other) {
+  if (&name == &other) return name;
+  std::destroy_at(&name);
+  return *std::construct_at(&name, other);
+}
 
 }  // namespace detail
 
@@ -74,8 +83,6 @@ class PortBase : public detail::SignalRef {
   {
     set(rhs, /*accumulate=*/true, -1);
   }
-  /// Makes this name mean another port; used by handles (`auto tip = z1; tip = z2;`).
-  void rebind(const PortBase& other) { SignalRef::rebind(other); }
 };
 
 template <int N, Kind K>
@@ -119,20 +126,17 @@ class Port<6, K> : public PortBase<6, K> {
   = delete;
   /// The linear component along the vector r (any length but 0).
   Port<1, K> along(const Vector3& r) const { return linear.along(r); }
-  void rebind(const Port& other) {
-    PortBase<6, K>::rebind(other);
-    linear.rebind(other.linear);
-    angular.rebind(other.angular);
-  }
 
   Port<3, K> linear, angular;
 };
 
-/// A signal of a block that can only be read.
+/// A signal of a block that can only be read: nothing can be assigned to it.
 class Reading : public detail::SignalRef {
  public:
   using SignalRef::SignalRef;
   explicit Reading(SignalRef ref) : SignalRef(std::move(ref)) {}
+  Reading(const Reading&) = default;
+  Reading& operator=(const Reading&) = delete;
 };
 
 /// An external input of the diagram.
@@ -155,14 +159,8 @@ class DualPort {
         reaction(graph, force_signal, Term::Of::reaction),
         position(graph, accel_signal, Term::Of::position) {}
   DualPort(const DualPort&) = default;
-  /// A handle rebinds like a name; equations are written by its ports only.
-  DualPort& operator=(const DualPort& other) {
-    accel.rebind(other.accel);
-    force.rebind(other.force);
-    reaction = other.reaction;
-    position = other.position;
-    return *this;
-  }
+  /// `a.parent = b.child` would look like an equation and be none: write mount(a, b.child).
+  DualPort& operator=(const DualPort&) = delete;
 
   Port<N, Kind::accel> accel;  ///< [m/s^2; rad/s^2]
   Port<N, Kind::force> force;  ///< [N; N m]
@@ -197,8 +195,13 @@ DualPort<N> channel(Graph* graph, int node, int spec) {
 }
 /// Signal index of a block's one-way port.
 int port_signal(const Graph& graph, int node, std::string_view name);
-/// Index of the block's channel `name` among its child channels, -1 if there is none.
+/// Index of the block's channel `name`, -1 if there is none.
 int find_channel(const Graph& graph, int node, std::string_view name);
+/// The same among its child channels only.
+int find_child(const Graph& graph, int node, std::string_view name);
+/// Notes the mistake "parameter of another diagram" for every such parameter in these terms.
+void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms,
+                             const std::source_location& at);
 /// Notes the mistake "no channel of this name", with the names that exist.
 void note_unknown_channel(Graph& graph, int node, std::string_view name, std::source_location at);
 /// Index of the only channel of size N that is not "parent", -1 if there are several or none.
@@ -215,7 +218,7 @@ Children<N>::Children(Graph* graph, int node)
 
 template <int N>
 DualPort<N> Children<N>::operator()(std::string_view name, std::source_location at) const {
-  const int spec = detail::find_channel(*graph_, node_, name);
+  const int spec = detail::find_child(*graph_, node_, name);
   if (spec >= 0) return detail::channel<N>(graph_, node_, spec);
   detail::note_unknown_channel(*graph_, node_, name, at);
   return {graph_, -1, -1};

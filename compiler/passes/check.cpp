@@ -66,7 +66,13 @@ bool apply(Checker& c, Kind& kind, const Factor& factor, const std::string& text
     kind = {static_cast<int>(m->value->rows()), Quantity::plain,
             kind.frame == kNoFrame ? kNoFrame : kUnknownFrame};
   } else if (const auto* p = std::get_if<Part>(&factor)) {
-    if (!p->whole()) kind.size = static_cast<int>(p->rows.rows());
+    if (p->whole()) return true;
+    if (p->rows.cols() != kind.size) {
+      c.add(Code::size, fmt::format("{} is taken of a signal of size {}", p->name, kind.size),
+            {line(text, where)}, ".linear and .angular belong to dual vectors of 6");
+      return false;
+    }
+    kind.size = static_cast<int>(p->rows.rows());
   } else if (const auto& T = std::get<Rotation>(factor); !T.is_identity() || !T.to().empty()) {
     if (kind.size != 3 && kind.size != 6 && !(T.is_identity() && kind.size == 1)) {
       c.add(Code::size, fmt::format("a rotation multiplies a signal of size {}", kind.size),
@@ -271,13 +277,18 @@ void check_outputs(Checker& c) {
 
 template <class List>
 void check_names(Checker& c, const List& list, std::string_view what) {
-  std::map<std::string, int> seen;
+  std::map<std::string, std::source_location> seen;
   for (const auto& item : list) {
-    if (item.name.empty())
-      c.add(Code::duplicate_name, fmt::format("a {} has no name", what), {},
-            "give it a name of its own");
-    else if (++seen[item.name] == 2)
-      c.add(Code::duplicate_name, fmt::format("two {}s are called {}", what, item.name), {},
+    if (item.name.empty()) {
+      c.add(Code::duplicate_name, fmt::format("a {} has no name", what),
+            {"written at " + to_string(item.where)}, "give it a name of its own");
+      continue;
+    }
+    const auto [first, is_new] = seen.emplace(item.name, item.where);
+    if (!is_new)
+      c.add(Code::duplicate_name, fmt::format("two {}s are called {}", what, item.name),
+            {"the first is at " + to_string(first->second),
+             "the second is at " + to_string(item.where)},
             "names come out with the model: give each its own");
   }
 }

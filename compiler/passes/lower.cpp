@@ -41,7 +41,7 @@ Graph by_name(const Graph& g) {
   }
   for (const int i : sorted_by_name(g.inputs)) {
     const Input& input = g.inputs[at(i)];
-    signal[at(input.signal)] = add_input(out, input.name, input.size);
+    signal[at(input.signal)] = add_input(out, input.name, input.size, input.where);
     out.inputs.back().declared = input.declared;
   }
   const auto renamed = [&](std::vector<Term> terms) {
@@ -112,7 +112,11 @@ struct Lowering {
   ParameterValues values;
   std::vector<Drive> drive;
   std::vector<char> visiting;  ///< channels whose position is being written out
+  std::vector<Mistake> mistakes = {};
 
+  /// What one equation or output amounts to; its mistakes are kept, with the line it stands on.
+  template <class F>
+  Sum1 collect(const std::source_location& where, F amount);
   Sum1 terms(const std::vector<Term>& list);
   Sum1 position(int channel);
   Sum1 body_position(const Channel& c, const Kinematics& k);
@@ -125,6 +129,20 @@ void Lowering::no_position(int channel, const std::string& why) const {
       Code::no_position,
       fmt::format("the position of {} is not determined by the states", channel_name(g, channel)),
       "integrate its acceleration with an Integrator, twice, or read a stretch or an angle", {why});
+}
+
+template <class F>
+Sum1 Lowering::collect(const std::source_location& where, F amount) {
+  try {
+    return amount();
+  } catch (const Error& error) {
+    std::fill(visiting.begin(), visiting.end(), 0);
+    for (Mistake m : error.mistakes()) {
+      m.details.push_back("asked for at " + to_string(where));
+      mistakes.push_back(std::move(m));
+    }
+    return {};
+  }
 }
 
 /// What these equations add up to on their channel, in the channel's own space.
@@ -228,7 +246,8 @@ void lower_channel(Lowering& l, int channel, std::vector<Equation>& out) {
   std::source_location where = l.g.nodes[at(c.node)].where;
   for (const int e : d.accel) {
     const Equation& old = l.g.equations[at(e)];
-    out.push_back(equation(c.accel, old.part, l.terms(old.terms), old.where));
+    out.push_back(equation(c.accel, old.part,
+                           l.collect(old.where, [&] { return l.terms(old.terms); }), old.where));
   }
   if (d.N.rows() == 0) return;
   std::vector<int> all = d.force;
@@ -237,7 +256,7 @@ void lower_channel(Lowering& l, int channel, std::vector<Equation>& out) {
   const bool whole = d.N.rows() == c.size;
   Part part;
   if (!whole) part = {d.N, ".free"};
-  Sum1 sum = l.added(channel, all);
+  Sum1 sum = l.collect(where, [&] { return l.added(channel, all); });
   out.push_back(equation(c.force, std::move(part),
                          whole ? std::move(sum) : times(d.N, std::move(sum)), where));
 }
@@ -277,7 +296,8 @@ Stage lower(Stage stage) {
             [&](int a, int b) { return g.equations[at(a)].target < g.equations[at(b)].target; });
   for (const int e : one_way) {
     const Equation& old = g.equations[at(e)];
-    equations.push_back(equation(old.target, {}, l.terms(old.terms), old.where));
+    equations.push_back(equation(
+        old.target, {}, l.collect(old.where, [&] { return l.terms(old.terms); }), old.where));
   }
   int algebraic = 0;
   for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i)
@@ -286,7 +306,9 @@ Stage lower(Stage stage) {
       g.nodes[at(i)].lowered = true;
       ++algebraic;
     }
-  for (Output& o : g.outputs) o.terms = merged(l.terms(o.terms));
+  for (Output& o : g.outputs)
+    o.terms = merged(l.collect(o.where, [&] { return l.terms(o.terms); }));
+  if (!l.mistakes.empty()) throw Error(std::move(l.mistakes));
   g.equations = std::move(equations);
   stage.graph = std::move(g);
   stage.notes.push_back(

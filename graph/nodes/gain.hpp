@@ -12,6 +12,8 @@ struct Gain {
 
   struct Handle {
     Handle(Graph* graph, int node);
+    Handle(const Handle&) = default;
+    Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
     Port<0, Kind::plain> in;
     Reading out;
   };
@@ -33,6 +35,8 @@ struct Sum {
   struct Handle {
     Handle(Graph* graph, int node)
         : out(graph, detail::port_signal(*graph, node, "out")), graph_(graph), node_(node) {}
+    Handle(const Handle&) = default;
+    Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
     /// Input number i, counted from 1.
     Port<0, Kind::plain> in(int i) const;
     Reading out;

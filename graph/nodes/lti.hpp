@@ -10,13 +10,15 @@ namespace titop {
 ///     auto K = d.add("K", Lti{.A = a, .B = b, .C = c, .D = Eigen::MatrixXd::Zero(1, 1)});
 ///     K.in = h.rate;   h.torque = K.out;
 struct Lti {
-  Eigen::MatrixXd A;  ///< n x n; leave A, B and C empty for a pure D
-  Eigen::MatrixXd B;  ///< n x nu
-  Eigen::MatrixXd C;  ///< ny x n
-  Eigen::MatrixXd D;  ///< ny x nu; empty stands for 0
+  Eigen::MatrixXd A = {};  ///< n x n; leave A, B and C empty for a pure D
+  Eigen::MatrixXd B = {};  ///< n x nu
+  Eigen::MatrixXd C = {};  ///< ny x n
+  Eigen::MatrixXd D = {};  ///< ny x nu; empty stands for 0
 
   struct Handle {
     Handle(Graph* graph, int node);
+    Handle(const Handle&) = default;
+    Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
     Port<0, Kind::plain> in;
     Reading out;
   };
