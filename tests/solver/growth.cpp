@@ -1,0 +1,86 @@
+#include <doctest/doctest.h>
+
+#include "sparse_system.hpp"
+
+/// The plan alone: fronts, their largest size and the work grow linearly where nothing closes on
+/// itself. Counted, not timed.
+
+using namespace solver_test;
+using titop::solve::Front;
+using titop::solve::Plan;
+using titop::solve::plan;
+using titop_test::Rng;
+
+namespace {
+
+struct Count {
+  double fronts = 0, largest = 0, flops = 0;
+};
+Count count(const Plan& p) {
+  Count c;
+  c.fronts = static_cast<double>(p.fronts.size());
+  for (const Front& f : p.fronts) {
+    const double rows = f.row_count, pivots = f.pivot_count, cols = pivots + f.border_count;
+    c.largest = std::max({c.largest, rows, cols});
+    c.flops += 2 * rows * pivots * cols;
+  }
+  return c;
+}
+Count count(const Links& links, int n, int size) {
+  return count(plan(structure_of(links, std::vector<int>(at(n), size))));
+}
+
+}  // namespace
+
+TEST_CASE("solver: work on chains, trees and rings is linear in their size") {
+  for (const int size : {1, 6}) {
+    Rng rng(1);
+    const int n = 500, more = 8 * n;
+    const auto two = [&](auto make) {
+      return std::pair(count(make(n), n, size), count(make(more), more, size));
+    };
+    for (const auto& [name, counts] :
+         {std::pair(std::string("chain"), two(chain)), std::pair(std::string("ring"), two(ring)),
+          std::pair(std::string("tree"), two([&](int k) { return tree(k, rng); }))}) {
+      const auto& [small, large] = counts;
+      CAPTURE(name);
+      CAPTURE(size);
+      CHECK(large.fronts <= 8.1 * small.fronts);
+      CHECK(large.flops <= (name == "tree" ? 12 : 8.5) * small.flops);
+      if (name != "tree") CHECK(large.largest <= 5 * size);
+    }
+  }
+}
+
+// A row that mentions every arm of a star travels through every front: their width grows with the
+// number of arms, and so does the work per arm.
+TEST_CASE("solver: a star takes one front per arm, with few rows") {
+  const Plan p = plan(structure_of(star(200), std::vector<int>(200, 6)));
+  CHECK(p.fronts.size() <= 200);
+  for (const Front& f : p.fronts) CHECK(f.row_count <= 4 * 6);
+}
+
+TEST_CASE("solver: every scalar is eliminated once, children before their parents") {
+  for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+    Rng rng(seed);
+    for (const Kind& kind : kinds(rng)) {
+      const System s = random_system(kind.links, kind.n, rng, 2);
+      const Plan p = plan(s.structure);
+      std::vector<int> eliminated(s.structure.variable_size.size(), 0);
+      std::vector<int> entered(s.structure.row_size.size(), 0);
+      std::vector<int> used(p.fronts.size(), 0);
+      bool ordered = true;
+      for (std::size_t f = 0; f < p.fronts.size(); ++f) {
+        for (const int v : p.fronts[f].pivots) ++eliminated[at(v)];
+        for (const int r : p.fronts[f].rows) ++entered[at(r)];
+        for (const int c : p.fronts[f].children) ++used[at(c)], ordered = ordered && at(c) < f;
+      }
+      CAPTURE(seed);
+      CAPTURE(kind.name);
+      CHECK(std::count(eliminated.begin(), eliminated.end(), 1) == kind.n);
+      CHECK(std::count(entered.begin(), entered.end(), 1) == kind.n);
+      CHECK(std::count_if(used.begin(), used.end(), [](int n) { return n > 1; }) == 0);
+      CHECK(ordered);
+    }
+  }
+}

@@ -1,0 +1,155 @@
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <Eigen/QR>
+#include <titop/compiler/system.hpp>
+#include <titop/graph/mount.hpp>
+
+#include "oracle.hpp"
+#include "support/random_scene.hpp"
+
+/// Bodies of very different mass in one chain, against 50 digits: the factors keep them at every
+/// ratio.
+
+using namespace titop;
+using namespace solver_test;
+using titop_test::Rng;
+
+namespace {
+
+const std::vector<std::complex<double>> kPoints = {{0.1, 0.6}, {0.8, 5}, {5, 33}, {20, 140}};
+
+/// One for every second body, the ratio for the others.
+double scale(int body, double ratio) { return body % 2 ? ratio : 1; }
+
+/// Error of [xdd at the root; xdd at the tip] by the wrench at the root.
+struct Flexible {
+  std::vector<ModalData> data;
+  std::vector<Matrix3> T;
+
+  /// `independent`: the six modes move C in six orthogonal ways; otherwise Phi_C is random, of
+  /// condition 10 to 1000.
+  Flexible(std::uint64_t seed, int n, double ratio, bool independent) {
+    Rng rng(seed);
+    for (int i = 0; i < n; ++i) {
+      ModalData one = titop_test::random_modes(rng, 6, {"C"}, true);
+      if (independent) {
+        Eigen::MatrixXd& Phi_C = one.children.front().Phi_C;
+        const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(Phi_C).householderQ();
+        Phi_C = Q / std::sqrt(one.D_P(0, 0));
+      }
+      data.push_back(titop_test::scaled(one, {.mass = scale(i, ratio)}));
+      // What `Rotation` will hold: it repairs the last digit.
+      T.push_back(Rotation::matrix(rng.rotation()).nominal());
+    }
+  }
+  Diagram diagram() const {
+    Diagram d{"chain"};
+    const auto U = d.input("U", 6);
+    std::vector<BodyHandle> body;
+    for (std::size_t i = 0; i < data.size(); ++i)
+      body.push_back(d.add(fmt::format("b{}", i + 1), FlexibleBody(data[i])));
+    body.front().parent.force = -U;
+    for (std::size_t i = 1; i < body.size(); ++i)
+      mount(body[i], body[i - 1].child, Rotation::matrix(T[i - 1]));
+    d.output("root", 6) = body.front().parent.accel;
+    d.output("tip", 6) = body.back().child.accel;
+    return d;
+  }
+  Eigen::MatrixXcd exact(std::complex<double> s) const {
+    std::vector<Matrix50> Y, rotations;
+    for (const ModalData& body : data) Y.push_back(modal_transfer(body, Complex(s)));
+    for (const Matrix3& t : T) {
+      Eigen::MatrixXd both = Eigen::MatrixXd::Zero(6, 6);
+      both.topLeftCorner(3, 3) = both.bottomRightCorner(3, 3) = t;
+      rotations.emplace_back(both);
+    }
+    return rounded(chain_transfer(Y, rotations, 6));
+  }
+};
+
+struct Springs {
+  std::vector<double> m, k, c, m0;
+
+  Springs(std::uint64_t seed, int n, double ratio) {
+    Rng rng(seed);
+    for (int i = 0; i < n; ++i) {
+      m.push_back(rng.octaves(-1, 2) * scale(i, ratio));
+      k.push_back(rng.octaves(3, 9) * scale(i, ratio));
+      c.push_back(rng.octaves(-3, 0) * scale(i, ratio));
+      m0.push_back(i == 0 || rng.chance(0.5) ? rng.octaves(-1, 2) * scale(i, ratio) : 0);
+    }
+  }
+  Diagram diagram() const {
+    Diagram d{"chain"};
+    const auto u = d.input("u");
+    std::vector<SpringMass::Handle> z;
+    for (std::size_t i = 0; i < m.size(); ++i)
+      z.push_back(d.add(
+          fmt::format("z{}", i + 1),
+          SpringMass{.mass = m[i], .stiffness = k[i], .damping = c[i], .parent_mass = m0[i]}));
+    z.front().parent.force = -u;
+    for (std::size_t i = 1; i < z.size(); ++i) mount(z[i], z[i - 1].child);
+    d.output("root") = z.front().parent.accel;
+    d.output("tip") = z.back().child.accel;
+    return d;
+  }
+  Eigen::MatrixXcd exact(std::complex<double> s) const {
+    std::vector<Matrix50> Y;
+    for (std::size_t i = 0; i < m.size(); ++i)
+      Y.push_back(spring_transfer(m[i], k[i], c[i], m0[i], Complex(s)));
+    return rounded(chain_transfer(
+        Y, std::vector<Matrix50>(m.size() - 1, Matrix50(Eigen::MatrixXd::Identity(1, 1))), 1));
+  }
+};
+
+/// Largest difference of a p x p block over the block's largest entry, over all points: no floor,
+/// however small the block is beside others. Blocks of three: translations, rotations.
+template <class Scene>
+double error_of(const Scene& scene, Eigen::Index p) {
+  const System system = compile(scene.diagram());
+  Eigen::MatrixXd size, error;
+  for (const auto s : kPoints) {
+    const Eigen::MatrixXcd exact = scene.exact(s), difference = system.transfer(s) - exact;
+    size.conservativeResizeLike(Eigen::MatrixXd::Zero(exact.rows() / p, exact.cols() / p));
+    error.conservativeResizeLike(size * 0);
+    for (Eigen::Index i = 0; i < size.rows(); ++i)
+      for (Eigen::Index j = 0; j < size.cols(); ++j) {
+        const auto largest = [&](const Eigen::MatrixXcd& m) {
+          return m.block(p * i, p * j, p, p).cwiseAbs().maxCoeff();
+        };
+        size(i, j) = std::max(size(i, j), largest(exact));
+        error(i, j) = std::max(error(i, j), largest(difference));
+      }
+  }
+  return error.cwiseQuotient(size).maxCoeff();
+}
+
+}  // namespace
+
+TEST_CASE("mass ratios: ten flexible bodies, six degrees of freedom, against 50 digits") {
+  for (const double ratio : {1e-12, 1e-9, 1e-6, 1.0, 1e6, 1e9, 1e12}) {
+    double independent = 0, random = 0;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      independent = std::max(independent, error_of(Flexible(seed, 10, ratio, true), 3));
+      random = std::max(random, error_of(Flexible(seed, 10, ratio, false), 3));
+    }
+    MESSAGE(fmt::format("ratio {:.0e}: {:.1e}, random Phi_C {:.1e}", ratio, independent, random));
+    CAPTURE(ratio);
+    CHECK(independent <= 1e-12);
+    // A light body between heavy ones acts through (Phi_C Phi_C')^-1, whose condition is that of
+    // Phi_C squared: rounding its entries, each to the nearest double, costs up to 1e-11 by itself.
+    CHECK(random <= 1e-10);
+  }
+}
+
+TEST_CASE("mass ratios: scalar chains of 30, to 1e-14 of 50 digits") {
+  for (const double ratio : {1e-12, 1e-9, 1e-6, 1.0, 1e6, 1e9, 1e12}) {
+    double worst = 0;
+    for (std::uint64_t seed = 1; seed <= 5; ++seed)
+      worst = std::max(worst, error_of(Springs(seed, 30, ratio), 1));
+    MESSAGE(fmt::format("ratio {:.0e}: {:.1e}", ratio, worst));
+    CAPTURE(ratio);
+    CHECK(worst <= 1e-14);
+  }
+}

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <complex>
+#include <string>
+#include <titop/compiler/system.hpp>
+#include <vector>
+
+#include "support/random_scene.hpp"
+
+/// What is measured on a random scene; the tests compare it with their tolerances.
+namespace titop_test {
+
+/// Points on a line s = sigma + j omega, away from the poles of anything stable, inside the range
+/// of the scenes' frequencies.
+std::vector<std::complex<double>> points(std::uint64_t seed, int count);
+
+/// Rows and columns of a transfer matrix of the graph's own order, as the user declared them.
+Eigen::MatrixXcd as_declared(const titop::Graph& graph, const Eigen::MatrixXcd& transfer);
+
+/// Largest difference, "to 1e-x", of transfer(graph, s) before and after each pass. Runs verify and
+/// the promises below after each, which throw.
+struct PassError {
+  double worst = 0;
+  std::string pass;
+};
+PassError pass_error(const Scene& scene);
+
+/// The promises of passes::lower, match and order; throws std::logic_error where one is broken.
+void demand_lowered(const titop::Stage& stage);
+void demand_matched(const titop::Stage& stage);
+void demand_ordered(const titop::Stage& stage);
+
+/// System and dense model against transfer(diagram.graph(), s); apply against the dense model.
+struct SystemError {
+  double factored = 0, dense = 0, apply = 0;
+};
+SystemError system_error(const Scene& scene);
+
+/// Minimized model against the factors.
+double minimize_error(const Scene& scene);
+
+/// "" if both models have the same entries, bit by bit, under the same names; otherwise the first
+/// difference.
+std::string difference_by_name(const titop::StateSpace& a, const titop::StateSpace& b);
+
+/// Compiles in other units and brings the transfer back.
+double units_error(const Scene& scene, const Units& units);
+
+}  // namespace titop_test

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include "support/random_scene.hpp"
+
+/// Shared by the sources of random_scene: a scene while it is being drawn.
+namespace titop_test {
+
+struct Draft {
+  SceneOptions options;
+  Rng rng;
+  Scene scene;
+  int names = 0;
+  bool has_inputs = true, has_outputs = true;  ///< of the assembly that is being drawn
+
+  explicit Draft(const SceneOptions& o) : options(o), rng(o.seed) {}
+
+  /// A random letter first, so that the order of names is not the order of drawing.
+  std::string fresh(const char* kind) {
+    return fmt::format("{}{}{}", static_cast<char>('a' + rng.below(26)), kind, ++names);
+  }
+  void add(Scene::Step step) { scene.adds.push_back(std::move(step)); }
+  void equation(Scene::Step step) { scene.equations.push_back(std::move(step)); }
+
+  std::string input(std::vector<Dim> dims) {
+    const std::string name = fresh("u");
+    const int size = static_cast<int>(dims.size());
+    scene.inputs.push_back(std::move(dims));
+    add([=](Build& b) { b.inputs.emplace(name, b.d.input(name, size)); });
+    return name;
+  }
+  void output(std::vector<Dim> dims, std::function<titop::Expr(Build&)> value) {
+    const std::string name = fresh("y");
+    const int size = static_cast<int>(dims.size());
+    scene.outputs.push_back(std::move(dims));
+    equation([=](Build& b) { b.d.output(name, size) = value(b); });
+  }
+  bool damped() {
+    return options.damping == Damping::all || (options.damping == Damping::some && rng.chance(0.5));
+  }
+  bool may_prescribe() const { return options.prescribed && has_inputs; }
+};
+
+inline std::vector<Dim> dual(Dim linear, Dim angular) {
+  return {linear, linear, linear, angular, angular, angular};
+}
+
+/// A body or a spring-mass by its place in the tree; -1 for the root.
+std::vector<int> draw_tree(Draft& d, int count);
+
+/// A stable filter of order 1 or 2 from a signal of dimension `in` to one of dimension `out`, with
+/// this direct term.
+std::string draw_filter(Draft& d, Dim in, Dim out, double gain, double direct);
+
+/// A spring-mass; its parent mass is positive if that end is `free`.
+std::string draw_spring(Draft& d, bool free);
+/// Forces, controllers and outputs on a spring-mass that hangs in a scene.
+void use_spring(Draft& d, const std::string& z);
+
+void draw_scalar(Draft& d, int count);
+void draw_spatial(Draft& d, int count, bool with_springs);
+
+}  // namespace titop_test
