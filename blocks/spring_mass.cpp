@@ -48,6 +48,21 @@ class SpringMassBlock : public Block {
     return d;
   }
 
+  /// (6) with damping, written out: C (s - A)^-1 B + D cancels at low frequencies.
+  Response response(std::complex<double> s, ParameterValues values) const override {
+    const double m = spec_.mass.at(values), k = spec_.stiffness.at(values);
+    const double c = spec_.damping.at(values), m0 = spec_.parent_mass.at(values);
+    const std::complex<double> spring = k + c * s, inertia = m * s * s, den = inertia + spring;
+    if (den == 0.0)
+      throw Error(Code::singular,
+                  fmt::format("a SpringMass has a pole at s = {}{:+}j", s.real(), s.imag()),
+                  "evaluate beside the pole");
+    Response r{Eigen::MatrixXcd(2, 2), Eigen::MatrixXcd(3, 2)};
+    r.X << 1.0 / den, -m / den, s / den, -m * s / den;
+    r.Y << s * s / den, spring / den, spring / den, -m0 - m * spring / den, 1.0 / den, -m / den;
+    return r;
+  }
+
   Pattern feedthrough() const override {
     Pattern p = Pattern::Constant(3, 2, false);
     p(0, 0) = p(1, 1) = true;

@@ -80,9 +80,16 @@ class Factors {
     Matrix lu;               ///< row_count x (pivot_count + border_count), rows permuted
     std::vector<int> order;  ///< order[i]: which assembled row stands at place i
   };
+  /// Rows on their way from one front to the next.
+  struct LeftOver {
+    Matrix rows;
+    Eigen::VectorXd
+        keeps;  ///< per row: 1, or what cancellation has left of it where that is little
+  };
   Matrix assemble(const Front& front, const std::vector<RowEntries<T>>& entries,
-                  std::vector<Matrix>& left_over) const;
-  void eliminate(const Front& front, Factored& f);
+                  std::vector<LeftOver>& left_over, Eigen::VectorXd& keeps) const;
+  void eliminate(const Front& front, Factored& f, Eigen::VectorXd& keeps);
+  void note_weakest(const Front& front, int column, double left);
 
   const Plan* plan_;
   std::vector<Factored> fronts_;
