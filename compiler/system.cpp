@@ -126,12 +126,15 @@ std::pair<MatrixXd, MatrixXd> rates(const SystemData& d, const MatrixXd& x, cons
 StateSpace write_dense(const SystemData& d) {
   const auto n = static_cast<Eigen::Index>(d.layout.states.size());
   const auto m = static_cast<Eigen::Index>(d.layout.inputs.size());
-  MatrixXd x = MatrixXd::Zero(n, n + m), u = MatrixXd::Zero(m, n + m);
+  // Matrix products take columns in groups and sum the last, incomplete group in another order:
+  // fill it up, so that a column does not depend on its place.
+  const Eigen::Index columns = (n + m + 7) / 8 * 8;
+  MatrixXd x = MatrixXd::Zero(n, columns), u = MatrixXd::Zero(m, columns);
   x.leftCols(n).setIdentity();
-  u.rightCols(m).setIdentity();
+  u.middleCols(n, m).setIdentity();
   const auto [xdot, y] = rates(d, x, u);
-  return {xdot.leftCols(n), xdot.rightCols(m), y.leftCols(n),   y.rightCols(m),
-          d.layout.states,  d.layout.inputs,   d.layout.outputs};
+  return {xdot.leftCols(n), xdot.middleCols(n, m), y.leftCols(n),   y.middleCols(n, m),
+          d.layout.states,  d.layout.inputs,       d.layout.outputs};
 }
 
 Point solve_at(const SystemData& d, std::complex<double> s, const MatrixXcd& u) {
