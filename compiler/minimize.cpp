@@ -40,8 +40,10 @@ double against_background(const MatrixXd& rows, const ModeSet& m, Index j, const
   double most = 0;
   for (Index l = 0; l < rows.cols(); ++l) {
     double q2 = 0;
+    // The rows of a Jordan block may have any size: beside them everything would look like nothing.
     for (Index i = 0; i < rows.rows(); ++i)
-      q2 += rows(i, l) * rows(i, l) / std::max(m.distance(i, j), 0.01 * m.lambda(j));
+      if (!m.untouchable[at(i)])
+        q2 += rows(i, l) * rows(i, l) / std::max(m.distance(i, j), 0.01 * m.lambda(j));
     if (q2 > 0) most = std::max(most, mine(l) / std::sqrt(q2));
   }
   return most;
