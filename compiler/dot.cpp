@@ -1,5 +1,30 @@
+#include <fmt/format.h>
+
 #include <titop/compiler/dot.hpp>
+#include <titop/compiler/dot/picture.hpp>
+#include <titop/compiler/dot/text.hpp>
+
 namespace titop {
-std::string to_dot(const Stage& stage) { return "digraph \"" + stage.graph.name + "\" {}\n"; }
-std::string to_dot(const Diagram& diagram) { return "digraph \"" + diagram.name() + "\" {}\n"; }
+
+std::string to_dot(const Stage& stage) {
+  const dot::Picture p = dot::picture(stage);
+  return fmt::format(
+      "digraph {0} {{\n"
+      "  graph [rankdir=TB nodesep=0.35 ranksep=0.4 fontname=\"Helvetica\" fontsize=14 "
+      "fontcolor=\"{1}\" labelloc=b label=<{4}>];\n"
+      "  node [fontname=\"Helvetica\" fontsize=11 fontcolor=\"{1}\" color=\"{2}\" height=0.2 "
+      "width=0.2 margin=\"0.06,0.03\"];\n"
+      "  edge [fontname=\"Helvetica\" fontsize=9 fontcolor=\"{3}\" color=\"{2}\" arrowsize=0.7];\n"
+      "{5}{6}}}\n",
+      dot::quoted(stage.graph.name), dot::colour::ink, dot::colour::line, dot::colour::soft,
+      dot::draw_legend(p), dot::draw_nodes(p), dot::draw_wires(p));
+}
+
+std::string to_dot(const Diagram& diagram) {
+  Stage stage;
+  stage.graph = diagram.graph();
+  stage.values = nominal_values(stage.graph);
+  return to_dot(stage);
+}
+
 }  // namespace titop

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <string>
+#include <titop/compiler/stage.hpp>
+#include <vector>
+
+/// What a diagram's picture shows, before it is text. Everything is in natural order of names, so
+/// that neither the order of adds nor a run leaves a trace.
+///
+/// The tree stands on its head, as in the paper: parents above, children below. A block has its
+/// parent channel along its top and its children along its bottom, so accelerations run down and
+/// wrenches come back up beside them.
+namespace titop::dot {
+
+/// One side of a block: where a wire leaves or arrives. `loose`: it may go either way.
+enum class Side { top, bottom, loose };
+
+/// The end of a wire.
+struct Anchor {
+  std::string port;  ///< Graphviz text: "z1":c0f:s
+  Side side = Side::loose;
+};
+
+/// Something that is driven, with all that drives it: a port (or a part of one), or an output.
+struct Assignment {
+  int target = -1, output = -1;  ///< a signal, or an index in Graph::outputs
+  std::string part = {};         ///< ".linear" where only that is driven
+  std::vector<Term> terms = {};  ///< none: it is 0
+  bool active = true;
+};
+
+struct Picture {
+  const Stage& stage;
+  const Graph& graph;
+  std::vector<std::string> node_id, input_id, output_id;  ///< quoted, each once
+  std::vector<int> nodes, inputs, outputs;                ///< indices in natural order
+  std::vector<int> loop;                                  ///< per signal: 1, 2, ..., 0 for none
+  std::vector<char> inverted;                             ///< per channel
+  std::vector<std::string> zero;                          ///< per signal: "= 0", or empty
+  std::vector<Assignment> assignments;
+};
+
+Picture picture(const Stage& stage);
+
+/// How one term looks on its way.
+struct Look {
+  bool minus = false;
+  std::string box = {};                 ///< "k1", "T(A1←B)", "M 3x6"; empty: a plain wire
+  std::string before = {}, after = {};  ///< labels: size and frame, part
+  int rows = 1;
+  bool rotation = false;
+};
+
+Look look(const Picture& p, const Assignment& a, const Term& term);
+
+/// False once every signal of the node has been set aside.
+bool is_active(const Graph& g, int node);
+/// Which side of its block a signal stands on.
+Side side_of(const Graph& g, int signal);
+/// Name of a signal's cell in its block's table.
+std::string cell_name(const Graph& g, int signal);
+Anchor anchor(const Picture& p, int signal);
+
+/// The text of all blocks, external inputs and outputs; of all wires with the small nodes on
+/// them; of the legend (as an HTML-like label).
+std::string draw_nodes(const Picture& p);
+std::string draw_wires(const Picture& p);
+std::string draw_legend(const Picture& p);
+
+}  // namespace titop::dot

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <titop/compiler/dot/text.hpp>
+
+namespace titop::dot {
+namespace {
+
+constexpr std::string_view kUnprintable = "\xEF\xBF\xBD";  // U+FFFD
+
+/// Length of the valid UTF-8 character at the front of `text`, 0 if there is none.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char b = byte(0);
+  const std::size_t n = b < 0x80                ? 1
+                        : b >= 0xC2 && b < 0xE0 ? 2
+                        : b >= 0xE0 && b < 0xF0 ? 3
+                        : b >= 0xF0 && b < 0xF5 ? 4
+                                                : 0;
+  if (n == 0 || n > text.size()) return 0;
+  for (std::size_t i = 1; i < n; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  if (n == 1) return b >= 0x20 && b != 0x7F ? 1 : 0;
+  const unsigned char c = byte(1);  // overlong forms, surrogates, beyond U+10FFFF
+  if ((b == 0xE0 && c < 0xA0) || (b == 0xED && c > 0x9F)) return 0;
+  if ((b == 0xF0 && c < 0x90) || (b == 0xF4 && c > 0x8F)) return 0;
+  if ((b == 0xC2 && c < 0xA0) || (b == 0xEF && c == 0xBF && byte(2) >= 0xBE)) return 0;
+  return n;
+}
+
+template <class Put>
+void each_character(std::string_view text, Put put) {
+  while (!text.empty()) {
+    const std::size_t n = utf8_length(text);
+    put(n == 0 ? kUnprintable : text.substr(0, n));
+    text.remove_prefix(n == 0 ? 1 : n);
+  }
+}
+
+/// Entities are read in quoted labels too: a user's "&lt;" must not turn into "<".
+std::string escaped(std::string_view text, bool in_html) {
+  std::string out;
+  each_character(text, [&](std::string_view c) {
+    if (c == "&")
+      out += "&amp;";
+    else if (in_html && c == "<")
+      out += "&lt;";
+    else if (in_html && c == ">")
+      out += "&gt;";
+    else if (in_html && c == "\"")
+      out += "&quot;";
+    else if (!in_html && (c == "\"" || c == "\\"))
+      (out += '\\') += c;
+    else
+      out += c;
+  });
+  return out;
+}
+
+}  // namespace
+
+std::string clean(std::string_view text) {
+  std::string out;
+  each_character(text, [&](std::string_view c) { out += c; });
+  return out;
+}
+
+std::string quoted(std::string_view text) { return '"' + escaped(text, false) + '"'; }
+
+std::string html(std::string_view text) {
+  return text.empty() ? std::string("(no name)") : escaped(text, true);
+}
+
+std::string font(std::string_view text, int size, std::string_view colour) {
+  return fmt::format(R"(<FONT POINT-SIZE="{}" COLOR="{}">{}</FONT>)", size, colour, text);
+}
+
+namespace colour {
+namespace {
+/// Okabe and Ito's palette, which also colour-blind readers tell apart; fills are tints of it.
+constexpr std::array<std::string_view, 6> kLines = {"#D55E00", "#0072B2", "#009E73",
+                                                    "#AA4499", "#B8860B", "#56609C"};
+constexpr std::array<std::string_view, 6> kFills = {"#FBE3D3", "#D6E9F5", "#D5EFE7",
+                                                    "#F2DDEE", "#F6EBCB", "#DFE1F0"};
+std::size_t index(int number) { return static_cast<std::size_t>(number - 1) % kLines.size(); }
+}  // namespace
+
+std::string_view loop_line(int number) { return kLines[index(number)]; }
+std::string_view loop_fill(int number) { return kFills[index(number)]; }
+}  // namespace colour
+
+}  // namespace titop::dot
