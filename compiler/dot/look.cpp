@@ -125,17 +125,17 @@ Look look(const Picture& p, const Assignment& a, const Term& term) {
   const Reading r = read(g, term, to, from);
   Look result{.minus = r.minus, .box = r.box, .rotation = r.rotation};
   result.rows = rows_of(g, term);
-  result.before = extent(s.size, from);
+  result.before = extent(r.part.empty() ? s.size : result.rows, from);
   // Two frames with the same axes: no box, but both names.
-  if (!r.rotation && !to.empty() && to != from && !from.empty() && s.size > 1)
+  if (r.box.empty() && !to.empty() && to != from && !from.empty() && s.size > 1)
     result.before += "=" + to;
-  if (term.of == Term::Of::reaction) result.before = joined(".reaction", result.before);
-  if (term.of == Term::Of::position) result.before = joined(".position", result.before);
-  result.before = joined(r.part, result.before);
+  if (term.of == Term::Of::reaction) result.before = joined(result.before, ".reaction");
+  if (term.of == Term::Of::position) result.before = joined(result.before, ".position");
+  result.before = joined(result.before, r.part);
   if (r.rotation || result.rows != s.size) result.after = extent(result.rows, to);
-  result.after = joined(a.part, result.after);
+  result.after = joined(result.after, a.part);
   if (result.box.empty()) {
-    result.before = joined(a.part, result.before);
+    result.before = joined(result.before, a.part);
     result.after.clear();
   }
   return result;
