@@ -43,6 +43,18 @@ class HingeBlock : public Block {
     p.block<1, 3>(12, 3).setConstant(true);
     return p;
   }
+  /// Only its own axis moves the angle, and only angle and rate show it: at a given posture the
+  /// accelerations and wrenches on both sides know nothing of them.
+  Pattern moved_by() const override {
+    Pattern p = Pattern::Constant(1, 13, false);
+    p(0, 12) = true;
+    return p;
+  }
+  Pattern seen_by() const override {
+    Pattern p = Pattern::Constant(15, 1, false);
+    p(13, 0) = p(14, 0) = true;
+    return p;
+  }
   std::optional<Kinematics> kinematics(ParameterValues) const override {
     Kinematics k{.reference = 1, .tau = {}, .Phi = {}};
     k.tau = {MatrixXd::Identity(6, 6), MatrixXd::Identity(6, 6), MatrixXd::Zero(1, 6)};

@@ -184,7 +184,8 @@ struct Residual {
         Balance b(y.size);
         b.add(MatrixXd::Identity(y.size, y.size), values.of(o));
         if (node.state >= 0) {
-          b.known = b.known && values.known(node.state);
+          b.known =
+              b.known && (values.known(node.state) || m.C.middleRows(y.first, y.size).isZero(0));
           b.add(-m.C.middleRows(y.first, y.size), values.of(node.state));
         }
         inputs(b, m.D.middleRows(y.first, y.size));

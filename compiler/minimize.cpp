@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <titop/compiler/minimize.hpp>
 #include <titop/compiler/modal.hpp>
+#include <titop/compiler/name_order.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/graded.hpp>
 
@@ -394,9 +396,7 @@ void minimize_general(double resolution, Minimized& r) {
   }
 }
 
-}  // namespace
-
-Minimized minimize(const StateSpace& model, const MinimizeOptions& options) {
+Minimized minimize_as_it_stands(const StateSpace& model, const MinimizeOptions& options) {
   Minimized result;
   result.model = model;
   if (model.order() == 0 || (model.inputs.empty() && model.outputs.empty())) return result;
@@ -405,6 +405,17 @@ Minimized minimize(const StateSpace& model, const MinimizeOptions& options) {
     minimize_symmetric(s, options.resolution, result);
   else
     minimize_general(options.resolution, result);
+  return result;
+}
+
+}  // namespace
+
+Minimized minimize(const StateSpace& model, const MinimizeOptions& options) {
+  // By name, so that the last bits do not depend on the order in which the diagram was written.
+  const std::optional<NameOrder> order = name_order(model);
+  if (!order) return minimize_as_it_stands(model, options);
+  Minimized result = minimize_as_it_stands(by_name(model, *order), options);
+  result.model = as_before(result.model, model.states, *order);
   return result;
 }
 

@@ -37,6 +37,10 @@ Pattern Block::feedthrough() const {
   return Pattern::Constant(interface().output_size(), interface().input_size(), true);
 }
 
+Pattern Block::moved_by() const { return Pattern::Constant(1, interface().input_size(), true); }
+
+Pattern Block::seen_by() const { return Pattern::Constant(interface().output_size(), 1, true); }
+
 std::optional<Block::Cause> Block::why_singular(int, ParameterValues) const { return std::nullopt; }
 
 std::string_view to_string(Quantity quantity) {

@@ -85,6 +85,11 @@ class Block {
   /// Declared direct feedthrough, output_size x input_size. It must not depend on the numbers: a
   /// mass of 0 or an angle of 0 is no structural zero. Default: everything.
   virtual Pattern feedthrough() const;
+  /// Declared structure of the states as a whole, whatever the numbers: which inputs may move them
+  /// (1 x input_size), which outputs may see them (output_size x 1). Default: all. What no input of
+  /// the diagram moves, or no output sees, is left out by it.
+  virtual Pattern moved_by() const;
+  virtual Pattern seen_by() const;
   /// Kinematic part, if the block has one; without it positions cannot be asked for beyond it.
   virtual std::optional<Kinematics> kinematics(ParameterValues) const { return std::nullopt; }
   /// The values that the matrices depend on (only those that are parameters matter).

@@ -126,9 +126,12 @@ std::string print_unsigned(const Graph& graph, const Term& term, bool& negative)
   negative = term.sign < 0;
   for (const Factor& f : term.factors) {
     if (const auto* k = std::get_if<Value>(&f)) {
-      text += k->is_parameter()
-                  ? graph.parameters[static_cast<std::size_t>(k->index())].name + " * "
-                  : fmt::format("{:.6g} * ", k->nominal());
+      const double number = k->is_parameter() ? k->scale() : k->nominal();
+      negative = negative != (number < 0);
+      if (!k->is_parameter() || std::abs(number) != 1)
+        text += fmt::format("{:.6g} * ", std::abs(number));
+      if (k->is_parameter())
+        text += graph.parameters[static_cast<std::size_t>(k->index())].name + " * ";
     } else if (const auto* T = std::get_if<Rotation>(&f)) {
       if (!T->is_identity() || !T->to().empty())
         text += T->to().empty() ? "T * " : fmt::format("T({}<-{}) * ", T->to(), T->from());

@@ -40,7 +40,7 @@ StateSpace model_of(const BlockPtr& block) {
   for (const Value& v : block->values())
     if (v.is_parameter()) {
       none.resize(std::max(none.size(), static_cast<std::size_t>(v.index()) + 1));
-      none[static_cast<std::size_t>(v.index())] = v.nominal();
+      none[static_cast<std::size_t>(v.index())] = v.parameter();
     }
   const auto d = block->dynamics(none);
   const Interface& face = block->interface();

@@ -111,7 +111,7 @@ void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms,
     if (!v.is_parameter() || v.owner() == &graph) return;
     graph.mistakes.push_back(
         {Code::unknown_name,
-         fmt::format("a parameter of another diagram, nominally {}, is used", v.nominal()),
+         fmt::format("a parameter of another diagram, nominally {}, is used", v.parameter()),
          {"written at " + to_string(at)},
          "make the parameter with param(...) of this diagram"});
   };

@@ -20,22 +20,34 @@ struct Param {
 class Value {
  public:
   constexpr Value(double number = 0) : number_(number) {}
-  Value(const Param& p) : number_(p.nominal), index_(p.index), owner_(p.owner) {}
+  Value(const Param& p) : Value(1, p) {}
+  Value(double scale, const Param& p)
+      : number_(p.nominal), scale_(scale), index_(p.index), owner_(p.owner) {}
 
   /// The number for these parameter values. O(1).
   double at(ParameterValues values) const {
-    return index_ < 0 ? number_ : values[static_cast<std::size_t>(index_)];
+    return index_ < 0 ? number_ : scale_ * values[static_cast<std::size_t>(index_)];
   }
-  /// The number given by the user, or the parameter's nominal value.
-  double nominal() const { return number_; }
+  /// The number given by the user, or what the parameter's nominal value makes of it.
+  double nominal() const { return scale_ * number_; }
+  /// In front of the parameter: `-k` has -1, `2 * k` has 2.
+  double scale() const { return scale_; }
+  /// The parameter's own nominal value.
+  double parameter() const { return number_; }
   bool is_parameter() const { return index_ >= 0; }
   int index() const { return index_; }
   const void* owner() const { return owner_; }
 
  private:
   double number_ = 0;
+  double scale_ = 1;
   int index_ = -1;
   const void* owner_ = nullptr;
 };
+
+inline Value operator-(const Param& p) { return {-1, p}; }
+inline Value operator*(double scale, const Param& p) { return {scale, p}; }
+inline Value operator*(const Param& p, double scale) { return {scale, p}; }
+inline Value operator/(const Param& p, double divisor) { return {1 / divisor, p}; }
 
 }  // namespace titop

@@ -78,27 +78,41 @@ std::set<int> tied_to(const Points& points, const Equation& e) {
   return result;
 }
 
+/// Equations that impose the motion of a point. Default directions first: what is blamed for
+/// closing a chain is then its locked child point, if there is one.
+std::vector<int> motions(const Graph& g) {
+  std::vector<int> defaults, inverted;
+  for (int e = 0; e < static_cast<int>(g.equations.size()); ++e) {
+    const Signal& target = g.signals[at(g.equations[at(e)].target)];
+    if (!g.equations[at(e)].active || target.channel < 0 ||
+        target.quantity != Quantity::acceleration)
+      continue;
+    const auto& spec = g.nodes[at(target.node)].block->interface().channels[at(target.spec)];
+    if (spec.size == 1 && spec.name.empty()) continue;  // a joint's own axis is not a point
+    (spec.takes == Takes::accel ? defaults : inverted).push_back(e);
+  }
+  defaults.insert(defaults.end(), inverted.begin(), inverted.end());
+  return defaults;
+}
+
 }  // namespace
 
 Stage chains(Stage stage) {
-  Points points(stage.graph);
+  const Graph& g = stage.graph;
+  Points points(g);
   join_bodies(points, stage.values);
   std::vector<Mistake> mistakes;
   std::set<std::pair<int, int>> done;  // a joint may be written in parts (.linear, .angular)
-  for (const Equation& e : stage.graph.equations) {
-    const Signal& target = stage.graph.signals[at(e.target)];
-    if (!e.active || target.channel < 0 || target.quantity != Quantity::acceleration) continue;
-    if (points.g.channels[at(target.channel)].size == 1 &&
-        points.g.nodes[at(target.node)].block->interface().channels[at(target.spec)].name.empty())
-      continue;  // a joint's own axis is not a point
+  for (const int index : motions(g)) {
+    const Equation& e = g.equations[at(index)];
+    const int point = g.signals[at(e.target)].channel;
     for (const int other : tied_to(points, e)) {
-      if (!done.emplace(target.channel, other).second || points.join(target.channel, other))
-        continue;
+      if (!done.emplace(point, other).second || points.join(point, other)) continue;
       mistakes.push_back(
           {Code::kinematic_loop,
-           fmt::format("{} closes a chain", name_of(stage.graph, e.target)),
-           {fmt::format("{:<50} {}", print(stage.graph, e), to_string(e.where)),
-            "the chain: " + points.way(target.channel, other)},
+           fmt::format("{} closes a chain", name_of(g, e.target)),
+           {fmt::format("{:<50} {}", print(g, e), to_string(e.where)),
+            "the chain: " + points.way(point, other)},
            "closed chains are not offered yet: open one joint of the chain, or replace its last "
            "body by a spring that acts through forces"});
     }

@@ -80,11 +80,12 @@ std::vector<int> mentioned(const Graph& g, const Row& row) {
   }
   const Node& node = g.nodes[at(row.node)];
   const Signal& y = g.signals[at(row.output)];
-  const Pattern D = node.block->feedthrough();
+  const Pattern D = node.block->feedthrough(), sees = node.block->seen_by();
   for (int i = node.first_signal; i < end_signal(g, row.node); ++i) {
     const Signal& s = g.signals[at(i)];
     if (!s.active) continue;
-    if (s.role == Signal::Role::state || i == row.output ||
+    if ((s.role == Signal::Role::state && sees.middleRows(y.first, y.size).any()) ||
+        i == row.output ||
         (s.role == Signal::Role::input && D.block(y.first, s.first, y.size, s.size).any()))
       result.push_back(i);
   }

@@ -145,21 +145,18 @@ Mistake structure_mistake(const Graph& g, const Incidence& inc, const Matching& 
   return mistake;
 }
 
-// --- inversions
-// -----------------------------------------------------------------------------------
+// --- inversions ----------------------------------------------------------------------------------
 
-/// A channel is inverted where the row of the output that its block gives by default had to be
-/// spent on another unknown, because an equation determines that output.
-void find_inversions(Stage& stage, const Incidence& inc, const Matching& m) {
+/// A channel is inverted where an equation determines the signal that its block gives by default.
+/// (What the matching or the pivots turn round inside a loop, between blocks, is their own affair.)
+void find_inversions(Stage& stage) {
   const Graph& g = stage.graph;
-  std::vector<char> by_equation(g.signals.size(), 0);
-  for (std::size_t c = 0; c < m.col_to_row.size(); ++c)
-    if (inc.rows[at(inc.row_of_vertex[at(m.col_to_row[c])])].equation >= 0)
-      by_equation[at(inc.signal_of[c])] = 1;
+  std::vector<char> imposed(g.signals.size(), 0);
+  for (const Equation& e : g.equations)
+    if (e.active) imposed[at(e.target)] = 1;
   for (int i = 0; i < static_cast<int>(g.channels.size()); ++i) {
     const Channel& channel = g.channels[at(i)];
-    const int gives = channel.takes == Takes::force ? channel.accel : channel.force;
-    if (g.signals[at(gives)].active && by_equation[at(gives)])
+    if (imposed[at(channel.takes == Takes::force ? channel.accel : channel.force)])
       stage.inversions.push_back({i, /*forced=*/true});
   }
 }
@@ -176,7 +173,7 @@ Stage match(Stage stage) {
   if (!m.perfect() || inc.cols.size() != inc.signal_of.size())
     throw Error(structure_mistake(stage.graph, inc, m));
   stage.rows = inc.rows;
-  find_inversions(stage, inc, m);
+  find_inversions(stage);
   stage.matched.rows.clear();
   for (std::size_t r = 0; r < m.row_to_col.size(); ++r)
     stage.matched.rows.push_back({inc.row_of_vertex[r], inc.signal_of[at(m.row_to_col[r])]});

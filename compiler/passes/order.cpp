@@ -13,7 +13,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 using Digraph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
 
-/// signal -> signals that its row needs; states need the inputs of their block.
+/// signal -> signals that its row needs; states need the inputs that move them.
 std::vector<std::vector<int>> dependencies(const Stage& stage) {
   const Graph& g = stage.graph;
   std::vector<std::vector<int>> needs(g.signals.size());
@@ -35,8 +35,11 @@ std::vector<std::vector<int>> dependencies(const Stage& stage) {
   for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
     const Node& node = g.nodes[at(i)];
     if (node.state < 0 || !g.signals[at(node.state)].active) continue;
+    const Pattern moved = node.block->moved_by();
     for (int s = node.first_signal; s < end_signal(g, i); ++s)
-      if (g.signals[at(s)].role == Signal::Role::input) needs[at(node.state)].push_back(s);
+      if (const Signal& u = g.signals[at(s)];
+          u.role == Signal::Role::input && moved.middleCols(u.first, u.size).any())
+        needs[at(node.state)].push_back(s);
   }
   for (auto& list : needs) {
     std::sort(list.begin(), list.end());

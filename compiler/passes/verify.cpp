@@ -7,8 +7,8 @@
 namespace titop::passes {
 namespace {
 
-void demand(bool holds, const std::string& what) {
-  if (!holds) throw std::logic_error("titop, internal: " + what);
+void demand(bool holds, const char* what) {
+  if (!holds) throw std::logic_error(std::string("titop, internal: ") + what);
 }
 
 }  // namespace
@@ -24,21 +24,23 @@ void verify(const Stage& stage) {
   for (const Equation& e : g.equations) {
     demand(valid(e.target), "an equation without target");
     for (const Term& t : e.terms) {
-      demand(valid(t.signal), "a term without signal in " + print(g, e));
+      demand(valid(t.signal), "a term without signal");
       const int rows = e.part.whole() ? g.signals[static_cast<std::size_t>(e.target)].size
                                       : static_cast<int>(e.part.rows.rows());
-      demand(rows_of(g, t) == rows, "a term of the wrong size in " + print(g, e));
+      if (rows_of(g, t) != rows)  // the text costs more than the check
+        throw std::logic_error("titop, internal: a term of the wrong size in " + print(g, e));
     }
   }
   for (const Output& o : g.outputs)
-    for (const Term& t : o.terms) demand(valid(t.signal), "a term without signal in " + o.name);
+    for (const Term& t : o.terms) demand(valid(t.signal), "an output with a term without signal");
   if (stage.rows.empty()) return;
   int rows = 0, unknowns = 0;
   for (const Row& r : stage.rows)
     if (r.active) rows += r.size;
   for (const Signal& s : g.signals)
     if (is_unknown(s)) unknowns += s.size;
-  demand(rows == unknowns, fmt::format("{} rows for {} unknowns", rows, unknowns));
+  if (rows != unknowns)
+    throw std::logic_error(fmt::format("titop, internal: {} rows for {} unknowns", rows, unknowns));
 }
 
 }  // namespace titop::passes

@@ -10,6 +10,16 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+/// Declared: may the channel's output depend on its input at once?
+bool has_direct(const Graph& g, const Channel& c) {
+  const Signal& gives = g.signals[at(c.takes == Takes::force ? c.accel : c.force)];
+  const Signal& takes = g.signals[at(c.takes == Takes::force ? c.force : c.accel)];
+  return g.nodes[at(c.node)]
+      .block->feedthrough()
+      .block(gives.first, takes.first, c.size, c.size)
+      .any();
+}
+
 /// Rank of the channel's own direct term after scaling its rows and columns, at 1e-12.
 int direct_rank(const Graph& g, const Channel& c, const Dynamics& m) {
   const Signal& gives = g.signals[at(c.takes == Takes::force ? c.accel : c.force)];
@@ -75,12 +85,16 @@ Mistake blame(const Stage& stage, const Joint& joint,
   const auto in_loop = [&](int s) {
     return !loop || std::find(loop->signals.begin(), loop->signals.end(), s) != loop->signals.end();
   };
-  for (const Inversion& inversion : stage.inversions) {
-    const Channel& c = g.channels[at(inversion.channel)];
-    if (!in_loop(c.takes == Takes::force ? c.force : c.accel)) continue;
-    const int rank = direct_rank(g, c, *blocks[at(c.node)]);
-    if (rank < c.size) return improper(stage, c, rank);
-  }
+  // First the channels that their block could invert by itself if its numbers were others; then
+  // those that live on what hangs there (a hinge's own axis, a child point of a rigid body).
+  for (const bool by_itself : {true, false})
+    for (const Inversion& inversion : stage.inversions) {
+      const Channel& c = g.channels[at(inversion.channel)];
+      if (!in_loop(c.takes == Takes::force ? c.force : c.accel) || has_direct(g, c) != by_itself)
+        continue;
+      const int rank = direct_rank(g, c, *blocks[at(c.node)]);
+      if (rank < c.size) return improper(stage, c, rank);
+    }
   Mistake m{Code::ill_posed, {}, {}, {}};
   std::string names;
   for (const int s : signals) names += (names.empty() ? "" : ", ") + name_of(g, s);

@@ -136,7 +136,8 @@ TEST_CASE("quantities: a gain makes a plain signal; without one they must agree"
   auto z = good.add("z", spring());
   auto k = good.param("k", 7);
   z.parent.accel = 0;
-  z.child.force = -(k * z.stretch) - 3 * z.stretch + 0.0 * z.child.accel + z.stretch * Value(-1);
+  z.child.force = -k * z.stretch + 0.5 * k * z.stretch - k / 2 * z.stretch - 3 * z.stretch +
+                  0.0 * z.child.accel + z.stretch * Value(-1);
   good.output("x") = z.stretch;
   const auto poles = compile(good).poles();
   REQUIRE(poles.size() == 1);

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <optional>
+#include <titop/graph/state_space.hpp>
+#include <vector>
+
+namespace titop {
+
+/// Positions of a model's states, inputs and outputs in natural order of their names. What works on
+/// a model in this order gives the same bits however its diagram was written.
+struct NameOrder {
+  std::vector<int> states, inputs, outputs;
+};
+
+/// None where the names do not tell all rows and columns apart. O(n log n).
+std::optional<NameOrder> name_order(const StateSpace& model);
+
+/// The model in that order.
+StateSpace by_name(const StateSpace& model, const NameOrder& order);
+
+/// Back again: `states` are the names before; those that `model` has no more are left out.
+StateSpace as_before(const StateSpace& model, const std::vector<std::string>& states,
+                     const NameOrder& order);
+
+}  // namespace titop

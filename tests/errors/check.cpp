@@ -1,0 +1,289 @@
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <titop/titop.hpp>
+
+#include "support/mistakes.hpp"
+
+// Mistakes that the description itself shows: the pass `check`, and what is refused at once. What
+// belongs to ports, frames, quantities and sizes in equations is in tests/language.
+
+using namespace titop;
+using namespace titop_test;
+
+namespace {
+
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+RigidBody brick() { return {.mass = 4, .children = {{"C1", {1, 0, 0}}}}; }
+
+/// What adding this spec throws.
+template <class Spec>
+Error refused(const Spec& spec) {
+  Diagram d{"refused"};
+  return error_of([&] { d.add("X", spec); });
+}
+
+}  // namespace
+
+TEST_CASE("an Error prints code, message, details and the way out") {
+  const Error e({Mistake{Code::no_equation, "a is not driven", {"a was added at x.cpp:3"}, "do"},
+                 Mistake{Code::ill_posed, "b", {}, "change b"}});
+  CHECK(std::string(e.what()) ==
+        "error[no-equation]: a is not driven\n  a was added at x.cpp:3\n  do\n\n"
+        "error[ill-posed]: b\n  change b");
+  CHECK(e.has(Code::ill_posed));
+  CHECK_FALSE(e.has(Code::size));
+}
+
+TEST_CASE("the printed names of the codes are a stable interface") {
+  const std::vector<std::string> names{
+      "no-equation",  "two-equations",  "size",           "quantity",       "frame",
+      "unknown-name", "duplicate-name", "not-finite",     "not-a-rotation", "structure",
+      "ill-posed",    "improper",       "kinematic-loop", "bad-inertia",    "bad-modes",
+      "bad-file",     "bad-value",      "no-position",    "singular"};
+  for (std::size_t i = 0; i < names.size(); ++i) CHECK(to_string(static_cast<Code>(i)) == names[i]);
+}
+
+TEST_CASE("no-equation: an unmounted body, one-way ports, outputs") {
+  Diagram d{"scene"};
+  const auto body = next_line();
+  auto A = d.add("A", brick());
+  const auto gain = next_line();
+  auto K = d.add("K", Gain{});
+  const auto output = next_line();
+  d.output("y");
+  d.output("k") = K.out;
+  d.output("a", 6) = A.child.accel;
+  const Error e = compile_error(d);
+  CHECK(e.mistakes().size() == 3);
+  CHECK(says(e, Code::no_equation,
+             {"A.parent.accel is not driven", "A was added at", body, "mount(A, B.child(\"C1\")",
+              "A.parent.accel = 0", "A.parent.force = 0"}));
+  CHECK(says(e, Code::no_equation, {"K.in is not driven", gain, "K.in = 0"}));
+  CHECK(says(e, Code::no_equation, {"output y is not set", output, "d.output(\"y\") = "}));
+}
+
+TEST_CASE("no-equation: a channel that is driven in part says what is left") {
+  Diagram d{"scene"};
+  auto A = d.add("A", brick());
+  A.parent.accel.linear = 0;
+  A.parent.force.along({0, 1, 0}) = 0;
+  Diagram half{"half"};
+  auto B = half.add("B", brick());
+  B.parent.accel.linear = 0;
+  CHECK(says(compile_error(half), Code::no_equation,
+             {"B.parent.accel (3 of 6 degrees of freedom) is not driven"}));
+  CHECK(compile_error(d).has(Code::two_equations));
+}
+
+TEST_CASE("two-equations: outputs and one-way ports") {
+  Diagram d{"scene"};
+  auto u = d.input("u");
+  auto K = d.add("K", Gain{});
+  const auto in1 = next_line();
+  K.in = u;
+  const auto in2 = next_line();
+  K.in = 2 * u;
+  const auto out1 = next_line();
+  d.output("y") = K.out;
+  auto z = d.output("z");
+  z = u;
+  const auto out2 = next_line();
+  z = K.out;
+  const Error e = compile_error(d);
+  CHECK(e.mistakes().size() == 2);
+  CHECK(says(e, Code::two_equations, {"K.in is driven twice", in1, in2, "their sum"}));
+  CHECK(says(e, Code::two_equations, {"output z is set twice", out2}));
+}
+
+TEST_CASE("size: declarations and matrices of nodes") {
+  Diagram d{"scene"};
+  const auto input = next_line();
+  d.input("u", 0);
+  const auto output = next_line();
+  d.output("y", -1) = 0;
+  const Error e = compile_error(d);
+  CHECK(says(e, Code::size, {"input u has size 0", input}));
+  CHECK(says(e, Code::size, {"output y has size -1", output}));
+  CHECK(says(refused(Gain{.size = 0}), Code::size, {"X: a Gain of size 0", "X was added at"}));
+  CHECK(says(refused(Sum{.signs = ""}), Code::size, {"X: a Sum without inputs"}));
+  CHECK(says(refused(MatrixGain{.matrix = {}}), Code::size, {"X: a MatrixGain without entries"}));
+  CHECK(says(refused(Integrator{.size = 0}), Code::size, {"X: an Integrator of size 0"}));
+  CHECK(says(refused(Lti{.A = Eigen::MatrixXd::Zero(2, 2),
+                         .B = Eigen::MatrixXd::Zero(3, 1),
+                         .C = Eigen::MatrixXd::Zero(1, 2)}),
+             Code::size, {"X: Lti: A is 2x2, B 3x1, C 1x2", "A must be n x n"}));
+}
+
+TEST_CASE("size: the part of a signal that has no parts") {
+  Diagram d{"scene"};
+  auto z = d.add("z", SpringMass{});
+  ground(z);
+  const auto where = next_line();
+  d.output("y", 3) = z.parent.reaction.linear();
+  CHECK(says(compile_error(d), Code::size, {".linear is taken of a signal of size 1", where}));
+}
+
+TEST_CASE("unknown-name: names of a model") {
+  Diagram d{"scene"};
+  auto u = d.input("u");
+  auto z = d.add("z", SpringMass{});
+  ground(z);
+  z.child.force = u;
+  d.output("y") = z.stretch;
+  const StateSpace m = compile(d).state_space();
+  CHECK(m.state("z.stretch_rate") == 1);
+  CHECK(says(error_of([&] { return m.output("x"); }), Code::unknown_name,
+             {"no output \"x\"", "its outputs are: y"}));
+  CHECK(says(error_of([&] { return m.input("x"); }), Code::unknown_name, {"inputs are: u"}));
+  CHECK(says(error_of([&] { return m.state("x"); }), Code::unknown_name, {"z.stretch"}));
+}
+
+TEST_CASE("duplicate-name: nodes, inputs, outputs, parameters, points of a body") {
+  Diagram d{"scene"};
+  const auto first = next_line();
+  auto z1 = d.add("z", SpringMass{});
+  const auto second = next_line();
+  auto z2 = d.add("z", SpringMass{});
+  ground(z1), ground(z2);
+  const auto third = next_line();
+  d.input("u"), d.input("u");
+  const auto fourth = next_line();
+  d.output("y") = z1.stretch, d.output("y") = z2.stretch;
+  const auto fifth = next_line();
+  d.param("k", 1), d.param("k", 1);
+  const auto sixth = next_line();
+  d.input("");
+  const Error e = compile_error(d);
+  CHECK(e.mistakes().size() == 5);
+  CHECK(says(e, Code::duplicate_name, {"two nodes are called z", first, second}));
+  CHECK(says(e, Code::duplicate_name, {"two inputs are called u", third}));
+  CHECK(says(e, Code::duplicate_name, {"two outputs are called y", fourth}));
+  CHECK(says(e, Code::duplicate_name, {"two parameters are called k", fifth}));
+  CHECK(says(e, Code::duplicate_name, {"a input has no name", sixth}));
+  CHECK(says(refused(RigidBody{.children = {{"C1"}, {"C1"}}}), Code::duplicate_name,
+             {"X: a second point is called \"C1\""}));
+  CHECK(says(refused(RigidBody{.children = {{"parent"}}}), Code::duplicate_name, {"parent"}));
+}
+
+TEST_CASE("not-finite: parameters, gains, matrices, blocks") {
+  Diagram d{"scene"};
+  const auto param = next_line();
+  d.param("k", kNan);
+  auto z = d.add("z", SpringMass{});
+  ground(z);
+  const auto gain = next_line();
+  d.output("y") = kInf * z.stretch;
+  const auto matrix = next_line();
+  d.output("m") = Eigen::MatrixXd::Constant(1, 1, kNan) * z.stretch;
+  const Error e = compile_error(d);
+  CHECK(e.mistakes().size() == 3);
+  CHECK(says(e, Code::not_finite, {"parameter k is nan", param}));
+  CHECK(says(e, Code::not_finite, {"a gain is inf", gain}));
+  CHECK(says(e, Code::not_finite, {"a matrix has entries", matrix}));
+  CHECK(says(refused(SpringMass{.mass = kInf}), Code::not_finite, {"X: SpringMass{mass inf"}));
+  CHECK(says(refused(RigidBody{.mass = kNan}), Code::not_finite, {"X: the mass"}));
+  CHECK(says(refused(RigidBody{.PA = {kNan, 0, 0}}), Code::not_finite, {"X: a position"}));
+  CHECK(says(refused(Lti{.D = Eigen::MatrixXd::Constant(1, 1, kInf)}), Code::not_finite,
+             {"X: Lti: an entry"}));
+}
+
+TEST_CASE("not-finite: gains whose product overflows, with the line") {
+  Diagram d{"scene"};
+  auto z = d.add("z", SpringMass{});
+  ground(z);
+  const auto where = next_line();
+  d.output("y") = 1e200 * (1e200 * z.stretch);
+  CHECK(says(compile_error(d), Code::not_finite, {"1e+200 * 1e+200 * z.stretch", where}));
+}
+
+TEST_CASE("not-a-rotation") {
+  Matrix3 sheared = Matrix3::Identity(), mirror = Matrix3::Identity(),
+          rounded = Matrix3::Identity();
+  sheared(0, 1) = 1e-6;
+  mirror(2, 2) = -1;
+  rounded(0, 1) = 1e-10;
+  CHECK(says(error_of([&] { Rotation::matrix(sheared); }), Code::not_a_rotation,
+             {"not orthogonal", "1e-06"}));
+  CHECK(says(error_of([&] { Rotation::matrix(mirror); }), Code::not_a_rotation, {"mirrors"}));
+  CHECK(says(error_of([&] { Rotation::matrix(Matrix3::Constant(kNan)); }), Code::not_a_rotation,
+             {"not orthogonal"}));
+  CHECK(says(error_of([&] {
+               Rotation::about({0, 0, 0}, 1);
+             }),
+             Code::not_a_rotation, {"(0, 0, 0)", "axis"}));
+  CHECK(says(error_of([&] { Rotation::about({0, 0, 1}, kInf); }), Code::not_a_rotation, {"inf"}));
+  const Matrix3 T = Rotation::matrix(rounded).nominal();
+  CHECK((T.transpose() * T - Matrix3::Identity()).cwiseAbs().maxCoeff() <= 1e-15);
+}
+
+TEST_CASE("bad-inertia") {
+  CHECK(says(refused(SpringMass{.mass = -1}), Code::bad_inertia, {"X: SpringMass has mass -1"}));
+  CHECK(says(refused(SpringMass{.parent_mass = -1}), Code::bad_inertia, {"parent_mass -1"}));
+  CHECK(says(refused(RigidBody{.mass = -2}), Code::bad_inertia, {"X: the mass is -2 kg"}));
+  CHECK(says(refused(RigidBody{.inertia = Vector3(1, 1, 3).asDiagonal()}), Code::bad_inertia,
+             {"X: principal moments 1, 1 and 3", "triangle inequality", "X was added at"}));
+  CHECK(says(refused(RigidBody{.inertia = Vector3(1, 1, -0.5).asDiagonal()}), Code::bad_inertia,
+             {"X: the inertia is not positive", "-0.5"}));
+  Matrix3 skew = Matrix3::Identity();
+  skew(0, 1) = 0.1;
+  CHECK(says(refused(RigidBody{.inertia = skew}), Code::bad_inertia, {"not symmetric, by 0.1"}));
+}
+
+TEST_CASE("bad-modes") {
+  ModalData data;
+  data.omega = Eigen::Vector2d(3, 7);
+  data.xi = Eigen::Vector2d(0.01, 0.01);
+  data.L_P = Eigen::MatrixXd::Zero(2, 6);
+  data.L_P(0, 1) = 2;
+  data.D_P = rigid_mass(5, Matrix3::Identity(), Vector3::Zero());
+  CHECK(error_of([&] { FlexibleBody{data}; }).mistakes().empty());
+  ModalData heavy = data, short_of = data, still = data, child = data;
+  heavy.L_P(0, 1) = 3;
+  short_of.xi.resize(1);
+  still.omega(1) = 0;
+  child.children.push_back({"C1", {0, 0, 0}, Eigen::MatrixXd::Zero(6, 3)});
+  CHECK(says(error_of([&] { FlexibleBody{heavy}; }), Code::bad_modes,
+             {"D_P - L_P' L_P is negative in y"}));
+  CHECK(says(error_of([&] { FlexibleBody{short_of}; }), Code::bad_modes, {"xi is 1 x 1 for 2"}));
+  CHECK(says(error_of([&] { FlexibleBody{still}; }), Code::bad_modes, {"mode 2 has omega 0"}));
+  CHECK(says(error_of([&] { FlexibleBody{child}; }), Code::bad_modes,
+             {"Phi_C of C1 is 6 x 3 for 2 modes"}));
+}
+
+TEST_CASE("bad-value") {
+  CHECK(says(refused(SpringMass{.stiffness = -3}), Code::bad_value, {"X: SpringMass", "-3"}));
+  CHECK(says(refused(SpringMass{.damping = -3}), Code::bad_value, {"X: SpringMass", "-3"}));
+  CHECK(says(refused(Sum{.signs = "+*"}), Code::bad_value, {"X: Sum: sign '*'"}));
+  CHECK(says(refused(Hinge{.axis = {0, 0, 0}}), Code::bad_value, {"X: the axis (0, 0, 0)"}));
+  Diagram d{"scene"};
+  auto A = d.add("A", brick());
+  CHECK(says(error_of([&] {
+               A.parent.accel.along({0, 0, 0});
+             }),
+             Code::bad_value, {"A.parent.accel.along(0, 0, 0)", "other than 0"}));
+}
+
+TEST_CASE("all mistakes of the description come together, in one text") {
+  Diagram d{"five likely mistakes"};
+  auto u = d.input("u", 3);
+  auto B = d.add("B", brick());
+  auto A = d.add("A", brick());  // unmounted
+  auto z = d.add("z", SpringMass{});
+  B.parent.force = u;              // size
+  B.child.force = A.parent.force;  // frame
+  z.parent.accel = 0;
+  z.child.force = z.parent.force;
+  z.child.force = 0;                          // twice
+  d.output("x") = z.stretch + z.child.accel;  // quantity
+  const Error e = compile_error(d);
+  CHECK(e.mistakes().size() == 5);
+  for (const Code code :
+       {Code::size, Code::frame, Code::no_equation, Code::two_equations, Code::quantity}) {
+    CHECK(e.has(code));
+    CHECK(std::string(e.what()).find("error[" + std::string(to_string(code)) + "]: ") !=
+          std::string::npos);
+  }
+}
