@@ -31,25 +31,22 @@ double size_of(const T& x) {
   return static_cast<double>(abs(x));
 }
 
-/// Factors that give the columns the same size: means of binary exponents over the entries that
-/// are not 0, rows and columns in turn [Curtis, Reid 1972]. Two rounds leave a few octaves of
-/// units that differ by many decades.
+/// Factors that give the columns the same size: rows and columns are brought towards a largest
+/// entry of 1 together [Ruiz 2001]; each round halves the decades that units have put between
+/// them. Largest entries, not means: what is only rounding (a rotation by pi) must not count.
 Eigen::VectorXd column_scale(const Eigen::MatrixXd& bound) {
-  const Eigen::Index rows = bound.rows(), cols = bound.cols();
-  const Eigen::MatrixXd exponent =
-      bound.unaryExpr([](double x) { return x > 0 ? std::logb(x) : std::nan(""); });
-  Eigen::VectorXd r = Eigen::VectorXd::Zero(rows), c = Eigen::VectorXd::Zero(cols);
-  const auto mean = [](const auto& values, const auto& other) {
-    double sum = 0, count = 0;
-    for (Eigen::Index i = 0; i < values.size(); ++i)
-      if (!std::isnan(values(i))) sum += values(i) + other(i), ++count;
-    return count > 0 ? sum / count : 0;
+  Eigen::VectorXd r = Eigen::VectorXd::Ones(bound.rows()), c = Eigen::VectorXd::Ones(bound.cols());
+  const auto factor = [](double largest) {
+    return largest > 0 && std::isfinite(largest) ? 1 / std::sqrt(largest) : 1.0;
   };
-  for (int round = 0; round < 2; ++round) {
-    for (Eigen::Index i = 0; i < rows; ++i) r(i) = -mean(exponent.row(i), c);
-    for (Eigen::Index j = 0; j < cols; ++j) c(j) = -mean(exponent.col(j), r);
+  for (int round = 0; round < 6; ++round) {
+    const Eigen::MatrixXd scaled = r.asDiagonal() * bound * c.asDiagonal();
+    const Eigen::VectorXd row = scaled.rowwise().maxCoeff();
+    const Eigen::VectorXd col = scaled.colwise().maxCoeff();
+    r = r.cwiseProduct(row.unaryExpr(factor));
+    c = c.cwiseProduct(col.unaryExpr(factor));
   }
-  return c.unaryExpr([](double x) { return std::exp2(std::round(x)); });
+  return c.unaryExpr([](double x) { return std::exp2(std::round(std::log2(x))); });
 }
 
 /// Largest share that cancellation has left of a row's last `count` entries; 1 unless it is little:
