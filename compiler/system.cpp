@@ -223,7 +223,43 @@ std::vector<MatrixXcd> System::frequency_response(std::span<const double> omega)
   return result;
 }
 
-MatrixXd System::static_gain() const { return transfer(0).real(); }
+MatrixXd System::static_gain() const {
+  try {
+    return transfer(0).real();
+  } catch (const Error& error) {
+    // A block may have a pole at 0 that the system has not: a hinge that its spring holds.
+    if (!error.has(Code::singular)) throw;
+    return state_space().transfer(0).real();
+  }
+}
+
+namespace {
+
+/// Minimizes the dense model, compares its transfer with the factors' at the certificate's s, and
+/// keeps the full model where they part: nothing is removed on trust.
+void minimize_checked(const System& system, const detail::SystemData& d, StateSpace& dense) {
+  Minimized m = minimize(dense, {.resolution = d.options.resolution});
+  for (std::string& text : m.notes)
+    d.dense_notes.push_back({Note::Kind::removed, "minimize", std::move(text)});
+  if (m.removed == 0) return;
+  if (dense.inputs.empty() || dense.outputs.empty()) {
+    dense = std::move(m.model);
+    return;
+  }
+  const MatrixXcd G = system.transfer(d.certificate.s);
+  const double size = G.cwiseAbs().maxCoeff();
+  const double off = (m.model.transfer(d.certificate.s) - G).cwiseAbs().maxCoeff();
+  const double allowed = std::max(1e-8, 10 * d.options.resolution);
+  const bool keeps = off <= allowed * size;
+  d.dense_notes.push_back(
+      {keeps ? Note::Kind::info : Note::Kind::warning, "minimize",
+       fmt::format("transfer changed by {:.1e} at the certificate's s{}",
+                   size > 0 ? off / size : off,
+                   keeps ? "" : ": more than allowed, so nothing was removed")});
+  if (keeps) dense = std::move(m.model);
+}
+
+}  // namespace
 
 const StateSpace& System::state_space() const {
   std::call_once(data_->dense_once, [&] {
@@ -231,10 +267,7 @@ const StateSpace& System::state_space() const {
     StateSpace dense = detail::write_dense(d);
     d.dense_against_factors = detail::dense_difference(d, dense);
     if (dense.order() > 0 && dense.order() <= d.options.minimize_up_to) {
-      Minimized m = minimize(dense, {.resolution = d.options.resolution});
-      for (std::string& text : m.notes)
-        d.dense_notes.push_back({Note::Kind::removed, "minimize", std::move(text)});
-      dense = std::move(m.model);
+      minimize_checked(*this, d, dense);
     } else if (dense.order() > 0) {
       d.dense_notes.push_back(
           {Note::Kind::info, "minimize",

@@ -40,8 +40,8 @@ void print(std::string& text, std::string_view title, const Eigen::MatrixXd& m,
   for (std::size_t i = 0; i < nr; ++i) {
     text += fmt::format("{:>20.20}", rows[i]);
     for (std::size_t j = 0; j < nc; ++j)
-      text +=
-          fmt::format(" {:>14.7g}", m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
+      text += fmt::format(" {:>14.7g}",
+                          m(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) + 0.0);
     text += "\n";
   }
   if (rows.size() > nr) text += fmt::format("{:>20} {} more rows\n", "...", rows.size() - nr);

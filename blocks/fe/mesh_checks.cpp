@@ -91,6 +91,7 @@ std::string to_string(const MeshReport& report) {
 }
 
 VectorXd omega_uncertainty(const Mesh& mesh, const std::string& parent, int count) {
+  check(mesh);
   const auto rows = interface_rows(mesh, parent);
   std::vector<Index> f;
   for (Index i = 0; i < mesh.M.rows(); ++i)

@@ -35,7 +35,8 @@ std::string to_string(const MeshReport& report);
 ///     d(omega^2) = v' dK v - omega^2 v' dM v,    v'Mv = 1
 ///
 /// Modes clamped at `parent`, the `count` lowest. Large for slender solid meshes, whose bending
-/// stiffness is a small difference of large entries. Cost 20 n^3.
+/// stiffness is a small difference of large entries. Throws what `check`, `interface_rows` and
+/// `eigh_lowest` throw. Cost 20 n^3.
 Eigen::VectorXd omega_uncertainty(const Mesh& mesh, const std::string& parent, int count);
 
 }  // namespace titop::fe

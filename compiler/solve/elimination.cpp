@@ -31,22 +31,44 @@ double size_of(const T& x) {
   return static_cast<double>(abs(x));
 }
 
-/// Factors that give the columns the same size: rows and columns are brought towards a largest
-/// entry of 1 together [Ruiz 2001]; each round halves the decades that units have put between
-/// them. Largest entries, not means: what is only rounding (a rotation by pi) must not count.
-Eigen::VectorXd column_scale(const Eigen::MatrixXd& bound) {
-  Eigen::VectorXd r = Eigen::VectorXd::Ones(bound.rows()), c = Eigen::VectorXd::Ones(bound.cols());
+/// Brings rows and columns towards a largest entry of 1, in place [Ruiz 2001]; each round halves
+/// the decades that units have put between them. Returns the columns' factors.
+Eigen::VectorXd equilibrate(Eigen::MatrixXd& A) {
   const auto factor = [](double largest) {
     return largest > 0 && std::isfinite(largest) ? 1 / std::sqrt(largest) : 1.0;
   };
+  Eigen::VectorXd c = Eigen::VectorXd::Ones(A.cols());
   for (int round = 0; round < 6; ++round) {
-    const Eigen::MatrixXd scaled = r.asDiagonal() * bound * c.asDiagonal();
-    const Eigen::VectorXd row = scaled.rowwise().maxCoeff();
-    const Eigen::VectorXd col = scaled.colwise().maxCoeff();
-    r = r.cwiseProduct(row.unaryExpr(factor));
-    c = c.cwiseProduct(col.unaryExpr(factor));
+    const Eigen::VectorXd row = A.rowwise().maxCoeff().unaryExpr(factor);
+    const Eigen::VectorXd col = A.colwise().maxCoeff().transpose().unaryExpr(factor);
+    A = row.asDiagonal() * A * col.asDiagonal();
+    c = c.cwiseProduct(col);
   }
-  return c.unaryExpr([](double x) { return std::exp2(std::round(std::log2(x))); });
+  return c;
+}
+
+/// Factors that give the columns the same size whatever the units: means of binary exponents over
+/// the entries, rows and columns in turn [Curtis, Reid 1972]. Entries that equilibration leaves
+/// below 1e-13 are rounding (a rotation by pi) and do not count: they would draw the means along.
+Eigen::VectorXd column_scale(const Eigen::MatrixXd& bound) {
+  Eigen::MatrixXd scaled = bound;
+  Eigen::VectorXd result = equilibrate(scaled);
+  const Eigen::MatrixXd exponent =
+      scaled.unaryExpr([](double x) { return x > 1e-13 ? std::log2(x) : std::nan(""); });
+  Eigen::VectorXd r = Eigen::VectorXd::Zero(bound.rows()), c = Eigen::VectorXd::Zero(bound.cols());
+  const auto mean = [](const auto& values, const auto& other) {
+    double sum = 0, count = 0;
+    for (Eigen::Index i = 0; i < values.size(); ++i)
+      if (!std::isnan(values(i))) sum += values(i) + other(i), ++count;
+    return count > 0 ? sum / count : 0;
+  };
+  for (int round = 0; round < 4; ++round) {
+    for (Eigen::Index i = 0; i < r.size(); ++i) r(i) = -mean(exponent.row(i), c);
+    for (Eigen::Index j = 0; j < c.size(); ++j) c(j) = -mean(exponent.col(j), r);
+  }
+  for (Eigen::Index j = 0; j < c.size(); ++j)
+    result(j) = std::exp2(std::round(std::log2(result(j)) + c(j)));
+  return result;
 }
 
 /// Largest share that cancellation has left of a row's last `count` entries; 1 unless it is little:

@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
@@ -130,7 +131,8 @@ TEST_CASE("CalculiX beam: residual mass, ranks and effective masses of all modes
 }
 
 TEST_CASE("CalculiX beam: line ends of Windows change nothing") {
-  const auto folder = std::filesystem::temp_directory_path() / "titop_calculix_crlf";
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("titop_calculix_crlf_" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   for (const char* end : {".sti", ".mas", ".dof", ".inp"}) {
     std::ifstream in(kFolder + "beam_free_mat" + end);

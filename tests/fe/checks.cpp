@@ -1,9 +1,13 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <titop/blocks/beam.hpp>
 #include <titop/blocks/modal_checks.hpp>
+#include <vector>
 
 #include "dynamics.hpp"
 
@@ -131,6 +135,30 @@ TEST_CASE("rank of Phi_C: which degrees of freedom cannot be driven") {
   CHECK(to_string(modal_report(two)).find("Phi at C: rank 2") != std::string::npos);
 }
 
+TEST_CASE("combinations that cannot be driven are told apart, however the modes mix them") {
+  ModalData data = modal_data(boom());
+  data.children[0].PC = Vector3(1, 0, 0);
+  // Three motions: x with 2 rx, y with 0.8 rz, z with -0.5 ry; the modes are combinations of them.
+  MatrixXd motions = MatrixXd::Zero(6, 3);
+  motions(0, 0) = 1;
+  motions(3, 0) = 2;
+  motions(1, 1) = 1;
+  motions(5, 1) = 0.8;
+  motions(2, 2) = 1;
+  motions(4, 2) = -0.5;
+  const Matrix3 mixed = (Matrix3() << 1, 2, -1, 3, 1, 1, 0.5, -1, 2).finished();
+  data.children[0].Phi_C = motions * mixed;
+  ChildRank c = child_rank(data, data.children[0]);
+  CHECK(c.rank == 3);
+  std::sort(c.blocked.begin(), c.blocked.end());
+  CHECK(c.blocked == std::vector<std::string>{"x - 0.5 rx", "y - 1.25 rz", "z + 2 ry"});
+  // Rotations only, displacements of rounding: they are not taken for motions of their own scale.
+  data.children[0].Phi_C.topRows(3) *= 1e-17;
+  c = child_rank(data, data.children[0]);
+  CHECK(c.rank == 3);
+  CHECK(c.blocked == std::vector<std::string>{"x", "y", "z"});
+}
+
 TEST_CASE("effective masses: textbook's fractions, sums with the residual mass to one") {
   Beam beam = boom();
   beam.elements = 30;
@@ -140,7 +168,7 @@ TEST_CASE("effective masses: textbook's fractions, sums with the residual mass t
   // [Blevins 1979]: 61.31 %, 18.83 % of a cantilever's mass; a bar's 8 / pi^2.
   CHECK(std::abs(e.fraction(0, 2) - 0.6131) <= 2e-4);
   CHECK(std::abs(e.fraction(1, 1) - 0.6131) <= 2e-4);
-  CHECK(std::abs(e.fraction.col(0).maxCoeff() - 8 / (M_PI * M_PI)) <= 1e-3);
+  CHECK(std::abs(e.fraction.col(0).maxCoeff() - 8 / (std::numbers::pi * std::numbers::pi)) <= 1e-3);
   const Matrix6 D_P0 = residual_mass(data).D_P0;
   for (int j = 0; j < 6; ++j)
     CHECK(std::abs(e.total(j) + D_P0(j, j) / data.D_P(j, j) - 1) <= 1e-14);

@@ -1,0 +1,269 @@
+// A satellite from real finite-element data: a rigid hub, two booms read from CalculiX matrices,
+// one of them on a hinge with a motor. Described in thirty lines, compiled to one state-space
+// model, compared with M and K assembled by hand, and drawn.
+#include <Eigen/Geometry>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <numbers>
+#include <titop/titop.hpp>
+
+#include "by_hand/by_hand.hpp"
+
+using namespace titop;
+using std::numbers::pi;
+
+namespace {
+
+const RigidBody hub_spec{.mass = 85,  // [kg]
+                         .inertia = Vector3(9, 11, 13).asDiagonal(),
+                         .PA = {0.02, -0.01, 0.05},
+                         .children = {{"C1", {0.35, 0, 0.1}}, {"C2", {-0.35, 0.05, 0.1}}}};
+constexpr double kappa = 60, c = 0.8;  // hinge spring [N m/rad] and damper [N m s/rad]
+const Vector3 hinge_axis(0, 1, 0);     // in the boom's frame: across it
+const Vector3 turn1(0, 0, 1), turn2(1, 2, 9);
+constexpr double angle1 = pi / 12, angle2 = 2.9;
+
+/// The beam of examples/data/calculix_beam, 342 modes: six are kept, and the static response to a
+/// motion of its root. Damping 0.5 %.
+FlexibleBody read_boom() {
+  const fe::Mesh mesh =
+      fe::read_calculix(fe::calculix_files(TITOP_DATA_DIR "/calculix_beam/beam_free_mat"),
+                        {{"P", 900001}, {"C", 900003}});
+  return fe::modal_data(mesh, "P", {"C"}, {.kept = 6, .residual = {"P"}, .xi = {0.005}});
+}
+
+Diagram satellite(const FlexibleBody& boom) {
+  Diagram d{"satellite"};
+  auto W = d.input("W", 6);       // wrench on the hub at P [N; N m]
+  auto tau_m = d.input("tau_m");  // torque of the motor on boom 2 [N m]
+  auto hub = d.add("hub", hub_spec);
+  auto boom1 = d.add("boom1", boom);
+  auto boom2 = d.add("boom2", boom);
+  hub.parent.force = -W;
+  mount(boom1, hub.child("C1"), Rotation::about(turn1, angle1));
+  auto drive =
+      hinge(d, "drive", boom2, hub.child("C2"), Rotation::about(turn2, angle2), hinge_axis);
+  drive.torque = kappa * drive.angle + c * drive.rate - tau_m;
+
+  d.output("hub", 6) = hub.parent.accel;  // [m/s^2; rad/s^2]
+  d.output("tip1", 6) = boom1.child("C").accel;
+  d.output("tip2", 6) = boom2.child("C").accel;
+  d.output("theta") = drive.angle;  // [rad]
+  return d;
+}
+
+// --- the same by hand ----------------------------------------------------------------------------
+
+/// Kinetic energy of hub and booms in the coordinates [P; theta; eta1; eta2]; a boom's own
+/// coordinates are the motion of its root and its modes.
+by_hand::Structure by_hand_satellite(const ModalData& boom) {
+  const Eigen::Index N = boom.omega.size(), n = 7 + 2 * N;
+  by_hand::Structure a = by_hand::empty(n, 7, 19);
+  const by_hand::Matrix6 tau_AP = by_hand::tau(-hub_spec.PA);
+  by_hand::Matrix6 hub = by_hand::Matrix6::Zero();
+  hub.topLeftCorner<3, 3>().diagonal().setConstant(85);
+  hub.bottomRightCorner<3, 3>() = hub_spec.inertia;
+  a.M.topLeftCorner<6, 6>() = tau_AP.transpose() * hub * tau_AP;
+  by_hand::MatrixXd own(6 + N, 6 + N);
+  own << boom.D_P, boom.L_P.transpose(), boom.L_P, by_hand::MatrixXd::Identity(N, N);
+  for (Eigen::Index i = 0; i < 2; ++i) {
+    const Eigen::Matrix3d T_ba = i == 0 ? Eigen::AngleAxisd(angle1, turn1.normalized()).matrix()
+                                        : Eigen::AngleAxisd(angle2, turn2.normalized()).matrix();
+    by_hand::MatrixXd Y = by_hand::MatrixXd::Zero(6 + N, n);
+    Y.topLeftCorner<6, 6>() = by_hand::dual(T_ba.transpose()) *
+                              by_hand::tau(-hub_spec.children[static_cast<std::size_t>(i)].PC);
+    if (i == 1) Y.block<3, 1>(3, 6) = hinge_axis;
+    Y.block(6, 7 + i * N, N, N).setIdentity();
+    a.M += Y.transpose() * own * Y;
+    a.K.diagonal().segment(7 + i * N, N) = boom.omega.cwiseAbs2();
+    a.D.diagonal().segment(7 + i * N, N) = 2 * boom.xi.cwiseProduct(boom.omega);
+    by_hand::MatrixXd tip(6, 6 + N);
+    tip << by_hand::tau(-boom.children[0].PC), boom.children[0].Phi_C;
+    a.C.middleRows<6>(6 + 6 * i) = tip * Y;
+  }
+  a.K(6, 6) = kappa;
+  a.D(6, 6) = c;
+  a.C.topLeftCorner<6, 6>().setIdentity();
+  a.C(18, 6) = 1;
+  a.B.topLeftCorner<7, 7>().setIdentity();
+  return a;
+}
+
+bool cross_check(const System& system, const by_hand::Structure& a) {
+  std::printf("\nagainst M and K assembled by hand (%ld coordinates)\n",
+              static_cast<long>(a.M.rows()));
+  std::vector<by_hand::MatrixXcd> scene, dense, hand;
+  for (const double w : {0.3, 2.0, 10.0, 100.0, 500.0, 2000.0, 10000.0}) {
+    const by_hand::Complex s{0.1 * w, w};
+    scene.push_back(system.transfer(s));
+    dense.push_back(system.state_space().transfer(s));
+    by_hand::MatrixXcd G = by_hand::position_transfer(a, s);
+    G.topRows(18) *= s * s;
+    hand.push_back(G);
+  }
+  // Blocks of the definition: three translations or rotations; the angle and the motor by
+  // themselves.
+  double error = 0, dense_error = 0;
+  const auto part = [](const std::vector<by_hand::MatrixXcd>& all, Eigen::Index row,
+                       Eigen::Index rows, Eigen::Index col, Eigen::Index cols) {
+    std::vector<by_hand::MatrixXcd> result;
+    for (const auto& G : all) result.push_back(G.block(row, col, rows, cols));
+    return result;
+  };
+  for (const Eigen::Index row : {0, 18})
+    for (const Eigen::Index col : {0, 6}) {
+      const Eigen::Index r = row == 18 ? 1 : 3, k = col == 6 ? 1 : 3;
+      const Eigen::Index rows = row == 18 ? 1 : 18, cols = col == 6 ? 1 : 6;
+      const auto exact = part(hand, row, rows, col, cols);
+      error =
+          std::max(error, by_hand::transfer_error(part(scene, row, rows, col, cols), exact, r, k));
+      dense_error = std::max(
+          dense_error, by_hand::transfer_error(part(dense, row, rows, col, cols), exact, r, k));
+    }
+  bool ok = by_hand::agrees("  transfer", error, 1e-12);
+  ok &= by_hand::agrees("  dense model", dense_error, 1e-10);
+  ok &= by_hand::agrees(
+      "  poles",
+      by_hand::pole_error(by_hand::moving(system.poles()), by_hand::poles(by_hand::elastic(a, 6))),
+      1e-10);
+  const bool same_order = system.state_space().order() == 2 * (a.M.rows() - 6);
+  std::printf("  order: %ld %s\n", static_cast<long>(2 * (a.M.rows() - 6)),
+              same_order ? "yes" : "NO");
+  return ok && same_order;
+}
+
+// --- pictures ------------------------------------------------------------------------------------
+
+struct Curve {
+  const char *output, *input, *label;
+};
+constexpr std::array<Curve, 4> curves{{{"hub(3)", "W(3)", "hub  [m/s^2 / N]"},
+                                       {"tip1(3)", "W(3)", "tip of boom 1  [m/s^2 / N]"},
+                                       {"theta", "tau_m", "joint angle  [rad / N m]"},
+                                       {"tip2(3)", "tau_m", "tip of boom 2  [m/s^2 / N m]"}}};
+
+void write_bode_data(const System& system) {
+  const StateSpace& m = system.state_space();
+  std::ofstream csv("bode.csv");
+  csv.precision(9);
+  csv << "rad_per_s";
+  for (const Curve& k : curves)
+    csv << ",|" << k.output << "/" << k.input << "|,"
+        << "phase [deg]";
+  csv << "\n";
+  std::array<double, curves.size()> unwrapped{};
+  constexpr int points = 3000;
+  for (int i = 0; i <= points; ++i) {
+    const double w = std::pow(10.0, -0.5 + 4.5 * i / points);
+    const Eigen::MatrixXcd G = system.transfer({0, w});
+    csv << w;
+    for (std::size_t j = 0; j < curves.size(); ++j) {
+      const std::complex<double> g = G(m.output(curves[j].output), m.input(curves[j].input));
+      const double phase = std::arg(g) * 180 / pi;
+      unwrapped[j] = i == 0 ? phase : phase + 360 * std::round((unwrapped[j] - phase) / 360);
+      csv << "," << std::abs(g) << "," << unwrapped[j];
+    }
+    csv << "\n";
+  }
+}
+
+/// Two columns, one per input; magnitude above phase. Solid and dashed lines of different weight,
+/// so that it reads in black and white as well.
+void write_bode_script() {
+  std::ofstream gp("bode.gp");
+  gp << R"(# gnuplot bode.gp: bode.csv to bode.svg
+set terminal svg size 1200,760 font "Helvetica,15" background rgb "white"
+set output "bode.svg"
+set datafile separator ","
+set multiplot
+set logscale x
+set xrange [0.3162:10000]
+set mxtics 10
+set grid xtics ytics mxtics lt 1 lc rgb "#cccccc" lw 0.7, lt 1 lc rgb "#eeeeee" lw 0.5
+set border 3 lw 1.2
+set tics nomirror out scale 0.6,0.3
+set style line 1 lc rgb "#1d2f3f" lw 2.2 dt 1
+set style line 2 lc rgb "#d95f02" lw 1.5 dt (10,4)
+)";
+  for (std::size_t column = 0; column < 2; ++column) {
+    const double left = column == 0 ? 0.075 : 0.575;
+    gp << "\nset lmargin at screen " << left << "\nset rmargin at screen " << left + 0.41;
+    for (const bool phase : {false, true}) {
+      gp << (phase ? R"(
+set tmargin at screen 0.44
+set bmargin at screen 0.10
+unset label 1
+unset key
+unset logscale y
+set yrange [*:*]
+set format y "%g"
+set format x "10^{%L}"
+set ytics 180
+set ylabel "phase [deg]" offset 1,0
+set xlabel "frequency [rad/s]"
+)"
+                   : R"(
+set tmargin at screen 0.86
+set bmargin at screen 0.47
+set key at graph 0, 1.04 left bottom horizontal Left reverse samplen 4 width 2 maxrows 1
+set logscale y
+set format y "10^{%L}"
+set format x ""
+set ylabel "magnitude" offset 1,0
+unset xlabel
+)");
+      if (!phase)
+        gp << "set label 1 \"from "
+           << (column == 0 ? "the force on the hub along z" : "the motor torque")
+           << "\" at graph 0, 1.17 font \",18\"\nset ytics " << (column == 0 ? 10 : 100) << "\n";
+      gp << "plot \\\n";
+      for (std::size_t k = 0; k < 2; ++k) {
+        const std::size_t j = 2 * column + k;
+        gp << "  \"bode.csv\" skip 1 using 1:" << 2 + 2 * j + (phase ? 1 : 0) << " with lines ls "
+           << k + 1 << " title \"" << curves[j].label << (k == 0 ? "\", \\\n" : "\"\n");
+      }
+    }
+  }
+  gp << "unset multiplot\n";
+}
+
+/// Runs a drawing program; without it the text files are still there.
+void draw(const char* program, const char* command) {
+  if (std::system(command) != 0)
+    std::fprintf(stderr, "%s is missing or failed: its picture is not drawn\n", program);
+}
+
+}  // namespace
+
+int main() {
+  const FlexibleBody boom = read_boom();
+  std::printf("boom: %.4g kg, %ld modes and residual vectors, first three [Hz] %.5f %.5f %.5f\n\n",
+              boom.data().D_P(0, 0), static_cast<long>(boom.data().omega.size()),
+              boom.data().omega(0) / (2 * pi), boom.data().omega(1) / (2 * pi),
+              boom.data().omega(2) / (2 * pi));
+
+  const Diagram d = satellite(boom);
+  const System system = compile(d);
+  const StateSpace& model = system.state_space();
+  std::printf("%s", system.log().c_str());
+  std::printf("\nmodel: %d states, %zu inputs, %zu outputs; poles\n%s", model.order(),
+              model.inputs.size(), model.outputs.size(), to_string(system.poles()).c_str());
+
+  const Certificate cert = system.certificate();
+  std::printf("\ncertificate (numbers in certificate.txt)\n");
+  bool ok = by_hand::agrees("  every equation as written", cert.residual, 1e-11);
+  ok &= by_hand::agrees("  dense model against the factors", cert.dense_against_factors, 1e-12);
+  ok &= cross_check(system, by_hand_satellite(boom.data()));
+
+  std::ofstream("certificate.txt") << to_string(cert);
+  std::ofstream("satellite.dot") << to_dot(system.stage());
+  write_bode_data(system);
+  write_bode_script();
+  draw("dot", "dot -Tsvg satellite.dot -o satellite.svg 2>dot.log");
+  draw("gnuplot", "gnuplot bode.gp 2>gnuplot.log");
+  std::printf(
+      "\nsatellite.dot, satellite.svg: the diagram, by dot\n"
+      "bode.csv, bode.gp, bode.svg: the frequency response, by gnuplot\n");
+  return ok ? 0 : 1;
+}

@@ -1,0 +1,263 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <titop/blocks/flexible_body.hpp>
+#include <titop/blocks/hinge.hpp>
+#include <titop/blocks/modal_checks.hpp>
+#include <titop/blocks/port_hamiltonian.hpp>
+#include <titop/blocks/rigid_body.hpp>
+#include <titop/graph/error.hpp>
+#include <titop/graph/invert.hpp>
+#include <titop/graph/nodes/lti.hpp>
+
+#include "matrices.hpp"
+#include "support/random_scene.hpp"
+
+/// RigidBody, FlexibleBody, Hinge and Lti against their equations typed from the paper, their
+/// inverses, and what they refuse.
+
+using namespace titop;
+using namespace blocks_test;
+using titop_test::random_modes;
+using titop_test::Rng;
+
+namespace {
+
+/// tau from its definition: xdd_C = xdd_P + wdot x PC.
+MatrixXd tau_CP(const Vector3& PC) {
+  MatrixXd t = MatrixXd::Identity(6, 6);
+  for (int j = 0; j < 3; ++j) t.block<3, 1>(0, 3 + j) = Vector3::Unit(j).cross(PC);
+  return t;
+}
+
+/// (14), typed: outputs [xdd_C1; xdd_C2; F_P].
+StateSpace equation_14(const ModalData& d) {
+  const auto n = d.omega.size(), c = static_cast<Eigen::Index>(d.children.size());
+  StateSpace m;
+  const MatrixXd K = d.omega.array().square().matrix().asDiagonal();
+  const MatrixXd Z = (2 * d.xi.array() * d.omega.array()).matrix().asDiagonal();
+  m.A = MatrixXd::Zero(2 * n, 2 * n);
+  m.A << MatrixXd::Zero(n, n), MatrixXd::Identity(n, n), -K, -Z;
+  m.B = MatrixXd::Zero(2 * n, 6 * c + 6);
+  m.C = MatrixXd::Zero(6 * c + 6, 2 * n);
+  m.D = MatrixXd::Zero(6 * c + 6, 6 * c + 6);
+  for (Eigen::Index i = 0; i < c; ++i) {
+    const auto& child = d.children[static_cast<std::size_t>(i)];
+    const MatrixXd direct = tau_CP(child.PC) - child.Phi_C * d.L_P;
+    m.B.block(n, 6 * i, n, 6) = child.Phi_C.transpose();
+    m.C.middleRows(6 * i, 6) << -child.Phi_C * K, -child.Phi_C * Z;
+    for (Eigen::Index j = 0; j < c; ++j)
+      m.D.block(6 * i, 6 * j, 6, 6) =
+          child.Phi_C * d.children[static_cast<std::size_t>(j)].Phi_C.transpose();
+    m.D.block(6 * i, 6 * c, 6, 6) = direct;
+    m.D.block(6 * c, 6 * i, 6, 6) = direct.transpose();
+  }
+  m.B.block(n, 6 * c, n, 6) = -d.L_P;
+  m.C.bottomRows(6) << d.L_P.transpose() * K, d.L_P.transpose() * Z;
+  m.D.bottomRightCorner(6, 6) = -(d.D_P - d.L_P.transpose() * d.L_P);
+  return m;
+}
+
+template <class Make>
+std::string refusal(Make make) {
+  try {
+    make();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "accepted";
+}
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("FlexibleBody: (14) with none, one and three children") {
+  Rng rng(1);
+  for (const std::vector<std::string>& children :
+       {std::vector<std::string>{}, {"C"}, {"C1", "C2", "C3"}}) {
+    const ModalData d = random_modes(rng, 7, children, true);
+    const StateSpace exact = equation_14(d);
+    CHECK(off(model_of(FlexibleBody(d)), exact) <= 1e-15);
+    const auto block = as_block(FlexibleBody(d));
+    for (const Complex s : {Complex(0.1, 0.5), Complex(2, 17), Complex(0, 300)}) {
+      const auto r = block->response(s, {});
+      CHECK(off(r.Y, exact.transfer(s)) <= 1e-12);
+      CHECK(off(MatrixXcd(s * r.X - exact.A * r.X), exact.B) <= 1e-11);
+    }
+  }
+}
+
+TEST_CASE("RigidBody: wrenches and accelerations of a rigid body, by Newton and Euler") {
+  Rng rng(2);
+  const double m = 3;
+  const Vector3 PA = rng.matrix(3, 1), PC = rng.matrix(3, 1);
+  const Matrix3 T = rng.rotation();
+  const Matrix3 half = T * Vector3(1, 2, 2.5).asDiagonal() * T.transpose();
+  const Matrix3 I_A = (half + half.transpose()) / 2;
+  const RigidBody spec{.mass = m, .inertia = I_A, .PA = PA, .children = {{"C", PC}}};
+  const StateSpace model = model_of(spec);
+  CHECK(model.order() == 0);
+  for (int i = 0; i < 10; ++i) {
+    const Vector3 f = rng.matrix(3, 1), t = rng.matrix(3, 1), a = rng.matrix(3, 1),
+                  w = rng.matrix(3, 1);
+    VectorXd u(12), y(12);
+    u << f, t, a, w;
+    // At rest: a_A = a + w x PA; the body passes on to P what it does not keep for itself.
+    const Vector3 a_A = a + w.cross(PA);
+    const Vector3 F = f - m * a_A;
+    y << a + w.cross(PC), w, F, t + PC.cross(f) - I_A * w - m * PA.cross(a_A);
+    CHECK(off(VectorXd(model.D * u), y) <= 1e-14);
+  }
+  CHECK(off(model_of(FlexibleBody(spec)), model) <= 1e-15);
+}
+
+TEST_CASE("Hinge: (18) around a body, G = E M E'") {
+  Rng rng(4);
+  const Vector3 r = Vector3(1, -2, 0.5).normalized();
+  const StateSpace h = model_of(Hinge{.axis = Vector3(1, -2, 0.5)});
+  VectorXd u = rng.matrix(13, 1);
+  VectorXd y(13);
+  y << u.segment(6, 6), u.head(6), r.dot(u.segment(3, 3));
+  y.segment(3, 3) += r * u(12);
+  CHECK(off(VectorXd((h.D * u).head(13)), y) <= 1e-15);
+  CHECK(off(h.A, matrix(2, 2, {0, 1, 0, 0})) == 0);
+  CHECK(h.B(1, 12) == 1);
+  CHECK(h.B.cwiseAbs().sum() == 1);
+  CHECK(off(h.C.bottomRows(2), MatrixXd(MatrixXd::Identity(2, 2))) == 0);
+  CHECK(has(refusal([] { as_block(Hinge{.axis = Vector3::Zero()}); }), "error[bad-value]"));
+}
+
+TEST_CASE("Lti: response, and shapes that do not fit") {
+  Rng rng(5);
+  const Lti spec{
+      .A = rng.matrix(4, 4), .B = rng.matrix(4, 2), .C = rng.matrix(3, 4), .D = rng.matrix(3, 2)};
+  const Complex s(0.3, 2);
+  const auto r = as_block(spec)->response(s, {});
+  const MatrixXcd E = s * MatrixXcd::Identity(4, 4) - spec.A;
+  const MatrixXcd X = E.fullPivLu().solve(spec.B.cast<Complex>());
+  CHECK(off(r.X, X) <= 1e-14);
+  CHECK(off(r.Y, MatrixXcd(spec.C * X + spec.D)) <= 1e-14);
+  Lti broken = spec;
+  broken.B = rng.matrix(3, 2);
+  CHECK(has(refusal([&] { as_block(broken); }), "error[size]"));
+  broken = spec;
+  broken.A(1, 2) = std::nan("");
+  CHECK(has(refusal([&] { as_block(broken); }), "error[not-finite]"));
+}
+
+TEST_CASE("invert: twice is nothing; whole channels, halves and single degrees of freedom") {
+  Rng rng(6);
+  const ModalData d = random_modes(rng, 9, {"C"}, true);
+  const FlexibleBody body(d);
+  const StateSpace M = model_of(body);
+  const Complex s(0.4, 3);
+  const MatrixXcd G = M.transfer(s);
+  for (const std::vector<std::string>& channels : {std::vector<std::string>{"parent"},
+                                                   {"C"},
+                                                   {"C", "parent"},
+                                                   {"parent.linear"},
+                                                   {"parent.angular"},
+                                                   {"parent(5)"},
+                                                   {"C(1)", "parent(3)"},
+                                                   {"C.linear", "parent"}}) {
+    const StateSpace N = invert(body, channels);
+    CAPTURE(channels.front());
+    // Names say which were swapped; then y and u of any motion must satisfy both models.
+    MatrixXcd u = rng.matrix(12, 1).cast<Complex>();
+    MatrixXcd y = G * u;
+    std::vector<std::pair<int, int>> pairs;
+    for (int i = 0; i < 12; ++i)
+      if (N.inputs[static_cast<std::size_t>(i)] != M.inputs[static_cast<std::size_t>(i)]) {
+        pairs.emplace_back(i, i);
+        std::swap(u(i), y(i));
+      }
+    CHECK(!pairs.empty());
+    CHECK(off(MatrixXcd(N.transfer(s) * u), y) <= 1e-9);
+    CHECK(off(invert(N, pairs), M) <= 1e-10);
+    CHECK(N.states == M.states);
+  }
+}
+
+TEST_CASE("invert: the rank is told where the modes cannot move a point") {
+  Rng rng(8);
+  const ModalData d = random_modes(rng, 4, {"C"}, false);
+  const std::string text = refusal([&] { invert(FlexibleBody(d), {"C"}); });
+  CHECK(has(text, "error[improper]"));
+  CHECK(has(text, "rank 4 of 6"));
+}
+
+TEST_CASE("FlexibleBody: port-Hamiltonian form (17), power of the ports less damping") {
+  Rng rng(9);
+  const ModalData d = random_modes(rng, 6, {"C1", "C2"}, true);
+  const PortHamiltonian h = port_hamiltonian(FlexibleBody(d));
+  const StateSpace M = model_of(FlexibleBody(d));
+  CHECK(off(h.state_space(), M) <= 1e-14);
+  for (int i = 0; i < 10; ++i) {
+    const VectorXd x = rng.matrix(12, 1), u = rng.matrix(18, 1);
+    const VectorXd eta = x.head(6), rate = x.tail(6);
+    const VectorXd accel = (M.A * x + M.B * u).tail(6);
+    const double power = rate.dot(accel) + rate.dot(d.omega.cwiseAbs2().cwiseProduct(eta));
+    const double size = rate.cwiseAbs().dot(accel.cwiseAbs()) +
+                        rate.cwiseAbs().dot(d.omega.cwiseAbs2().cwiseProduct(eta.cwiseAbs()));
+    CHECK(std::abs(h.supplied(x, u) - h.dissipated(x) - power) <= 1e-13 * size);
+    CHECK(h.dissipated(x) >= 0);
+  }
+}
+
+TEST_CASE("bodies: inertias that no rigid body has") {
+  const auto refused = [](double mass, const Matrix3& inertia) {
+    return refusal([&] { as_block(RigidBody{.mass = mass, .inertia = inertia}); });
+  };
+  CHECK(has(refused(-1, Matrix3::Identity()), "error[bad-inertia]: the mass is -1"));
+  CHECK(has(refused(1, Vector3(1, 1, 2.5).asDiagonal()), "triangle"));
+  CHECK(has(refused(1, Vector3(1, 1, -0.5).asDiagonal()), "not positive"));
+  Matrix3 skew = Matrix3::Identity();
+  skew(0, 1) = 0.1;
+  CHECK(has(refused(1, skew), "not symmetric"));
+  CHECK(has(refused(std::nan(""), Matrix3::Identity()), "error[not-finite]"));
+  CHECK(refused(1, Vector3(1, 1, 2).asDiagonal()) == "accepted");  // a thin plate
+  CHECK(refused(0, Matrix3::Zero()) == "accepted");                // a massless link
+}
+
+TEST_CASE("bodies: modal data that contradict themselves, each with its cause") {
+  Rng rng(10);
+  const ModalData good = random_modes(rng, 5, {"C"}, true);
+  const auto refused = [&](auto change) {
+    ModalData d = good;
+    change(d);
+    return refusal([&] { FlexibleBody{d}; });
+  };
+  CHECK(refused([](ModalData&) {}) == "accepted");
+  CHECK(has(refused([](ModalData& d) { d.xi.resize(3); }), "error[bad-modes]: xi is 3 x 1"));
+  CHECK(has(refused([](ModalData& d) { d.L_P = MatrixXd::Zero(4, 6); }), "L_P is 4 x 6"));
+  CHECK(has(refused([](ModalData& d) { d.children[0].Phi_C = MatrixXd::Zero(6, 2); }),
+            "Phi_C of C is 6 x 2"));
+  CHECK(has(refused([](ModalData& d) { d.omega(2) = 0; }), "mode 3 has omega 0"));
+  CHECK(has(refused([](ModalData& d) { d.xi(1) = -0.1; }), "damping ratio -0.1"));
+  CHECK(has(refused([](ModalData& d) { d.L_P(0, 0) = std::nan(""); }), "error[not-finite]"));
+  CHECK(has(refused([](ModalData& d) { d.D_P(1, 4) += 0.1 * d.D_P(4, 4); }), "not symmetric"));
+  CHECK(has(refused([](ModalData& d) { d.D_P(2, 2) = -1; }), "error[bad-inertia]"));
+  for (int i = 0; i < 3; ++i) {
+    // One mode alone that carries twice the mass along one axis: that degree of freedom is named.
+    const std::string text = refused([i](ModalData& d) {
+      d.L_P.setZero();
+      d.L_P(0, i) = std::sqrt(2 * d.D_P(i, i));
+    });
+    CHECK(has(text, "error[bad-modes]: the modes carry more mass than there is"));
+    CHECK(has(text, std::string("negative in ") + component_name(i)));
+  }
+}
+
+TEST_CASE("bodies: two points of one name") {
+  CHECK(has(refusal([] {
+              as_block(RigidBody{.children = {{"C"}, {"C"}}});
+            }),
+            "error[duplicate-name]"));
+  CHECK(
+      has(refusal([] { as_block(RigidBody{.children = {{"parent"}}}); }), "error[duplicate-name]"));
+  Rng rng(11);
+  const ModalData d = random_modes(rng, 3, {"C", "C"}, false);
+  CHECK(has(refusal([&] { FlexibleBody{d}; }), "error[duplicate-name]"));
+}
