@@ -204,9 +204,9 @@ set ylabel "phase [deg]" offset 1,0
 set xlabel "frequency [rad/s]"
 )"
                    : R"(
-set tmargin at screen 0.86
+set tmargin at screen 0.85
 set bmargin at screen 0.47
-set key at graph 0, 1.04 left bottom horizontal Left reverse samplen 4 width 2 maxrows 1
+set key at graph 0, 1.04 left bottom Left reverse samplen 4 spacing 1.1
 set logscale y
 set format y "10^{%L}"
 set format x ""
@@ -216,7 +216,7 @@ unset xlabel
       if (!phase)
         gp << "set label 1 \"from "
            << (column == 0 ? "the force on the hub along z" : "the motor torque")
-           << "\" at graph 0, 1.17 font \",18\"\nset ytics " << (column == 0 ? 10 : 100) << "\n";
+           << "\" at graph 0, 1.25 font \",18\"\nset ytics " << (column == 0 ? 10 : 100) << "\n";
       gp << "plot \\\n";
       for (std::size_t k = 0; k < 2; ++k) {
         const std::size_t j = 2 * column + k;
