@@ -35,12 +35,13 @@ need() {
   logged build/apt.log "${apt[@]}" install -y --no-install-recommends "${missing[@]}"
 }
 
-# logged LOG COMMAND...: the output goes to LOG and is shown only where the command fails.
+# logged LOG COMMAND...: the output goes to LOG; only where the command fails its end is shown,
+# without ninja's lines of progress.
 logged() {
   local log=$1
   shift
   if ! "$@" >"$log" 2>&1; then
-    tail -n 200 "$log" >&2
+    sed '/^\[[0-9]*\/[0-9]*\] /d' "$log" | tail -n 200 >&2
     echo "failed: $* (log: $log)" >&2
     exit 1
   fi
