@@ -104,7 +104,7 @@ TEST_CASE("CalculiX beam: what its 14 digits cost is foreseen") {
     CHECK(error <= 4 * spread(k));
     sum += error / spread(k);
   }
-  CHECK(sum / 6 > 0.05);  // an estimate, not only a bound
+  CHECK(sum / 6 > 0.3);  // an estimate, not only a bound
 }
 
 TEST_CASE("CalculiX beam: residual mass, ranks and effective masses of all modes") {

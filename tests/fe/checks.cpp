@@ -152,6 +152,23 @@ TEST_CASE("combinations that cannot be driven are told apart, however the modes 
   CHECK(c.rank == 3);
   std::sort(c.blocked.begin(), c.blocked.end());
   CHECK(c.blocked == std::vector<std::string>{"x - 0.5 rx", "y - 1.25 rz", "z + 2 ry"});
+  // Two motions in y, z, ry, rz: of the plane of combinations at rest, two with three terms each.
+  motions.setZero();
+  motions.col(0) << 0, 1, 0, 0, 1, 1;
+  motions.col(1) << 0, 0, 1, 0, 1, -2;
+  ModalData plane = data;
+  plane.children[0].Phi_C = motions * mixed;
+  c = child_rank(plane, plane.children[0]);
+  CHECK(c.rank == 2);
+  REQUIRE(c.blocked.size() == 4);
+  CHECK(c.blocked[0] == "x");
+  CHECK(c.blocked[1] == "rx");
+  for (const std::size_t k : {2u, 3u}) {
+    INFO(c.blocked[k]);
+    const auto terms = 1 + std::count(c.blocked[k].begin(), c.blocked[k].end(), '+') +
+                       std::count(c.blocked[k].begin(), c.blocked[k].end(), '-');
+    CHECK(terms == 3);
+  }
   // Rotations only, displacements of rounding: they are not taken for motions of their own scale.
   data.children[0].Phi_C.topRows(3) *= 1e-17;
   c = child_rank(data, data.children[0]);

@@ -133,6 +133,21 @@ TEST_CASE("kept modes stay as they were, all shapes M- and K-orthonormal") {
   CHECK((stiffness - I).cwiseAbs().maxCoeff() <= 1e-11);
 }
 
+TEST_CASE("residual vectors of neighbours, nearly the same, stay orthonormal") {
+  const fe::Mesh mesh = boom();
+  std::vector<std::string> everywhere = {"C"};
+  for (int i = 1; i < 12; ++i) everywhere.push_back(std::to_string(i));
+  const ModalData data = fe::modal_data(mesh, "P", everywhere,
+                                        {.kept = 0, .residual = {"C", "P", "11", "10", "9", "8"}});
+  const Index N = data.omega.size();
+  CHECK(N > 20);
+  MatrixXd V = MatrixXd::Zero(mesh.M.rows(), N);
+  for (const ModalChild& child : data.children)
+    V(fe::interface_rows(mesh, child.name), Eigen::all) = child.Phi_C;
+  CHECK((V.transpose() * mesh.M * V - MatrixXd::Identity(N, N)).cwiseAbs().maxCoeff() <= 1e-12);
+  CHECK(scaled_error(flexibility(data), flexibility(mesh)) <= 1e-9);
+}
+
 TEST_CASE("a loaded cantilever: 2 modes and 6 residual vectors beat 12 and 24 modes") {
   const fe::Mesh mesh = boom();
   const VectorXd exact = loaded_omegas(mesh);
