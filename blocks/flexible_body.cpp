@@ -139,6 +139,7 @@ class FlexibleBodyBlock : public Block {
     d->C.rightCols(n) = W_.transpose() * (-c).asDiagonal();
     d->D = rigid_;
     if (n > 0) d->D += W_.transpose() * W_;
+    if (n > 0) d->modal = std::make_shared<const Modal>(Modal{W_, rigid_, w2, c});
     return d;
   }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/system_data.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
@@ -35,8 +36,8 @@ class Numbers {
 std::complex<double> pick_s(const SystemData& d) {
   double log_sum = 0;
   int count = 0;
-  for (const int i : d.layout.state_nodes) {
-    const double size = std::sqrt(d.blocks[at(i)]->A.cwiseAbs().maxCoeff());
+  for (const int i : d.layout().state_nodes) {
+    const double size = std::sqrt(d.numbers.blocks[at(i)]->A.cwiseAbs().maxCoeff());
     if (size > 0 && std::isfinite(size)) log_sum += std::log(size), ++count;
     if (count >= 64) break;
   }
@@ -47,10 +48,10 @@ std::complex<double> pick_s(const SystemData& d) {
 /// Signals of the diagram as written, from those of the stage (whose nodes stand by name).
 class Values {
  public:
-  Values(const SystemData& d, const Point& point)
-      : d_(d), point_(point), map_(d.written.signals.size(), -1) {
-    const Graph& w = d.written;
-    const Graph& g = d.stage.graph;
+  Values(const SystemData& d, const Evaluation<std::complex<double>>& point)
+      : d_(d), map_(d.skeleton->written.signals.size(), -1) {
+    const Graph& w = d.skeleton->written;
+    const Graph& g = d.graph();
     for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
       const Node& from = g.nodes[at(i)];
       const Node& to = w.nodes[at(from.declared)];
@@ -58,17 +59,18 @@ class Values {
         map_[at(to.first_signal + k)] = from.first_signal + k;
     }
     for (const Input& i : g.inputs) map_[at(w.inputs[at(i.declared)].signal)] = i.signal;
+    for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) values_.push_back(point.value(s));
   }
-  const MatrixXcd& of(int signal) const { return point_.signals[at(map_[at(signal)])]; }
+  const MatrixXcd& of(int signal) const { return values_[at(map_[at(signal)])]; }
   /// Computed: active, or external, or at rest because no input moves it.
   bool known(int signal) const {
-    const Signal& s = d_.stage.graph.signals[at(map_[at(signal)])];
+    const Signal& s = d_.graph().signals[at(map_[at(signal)])];
     return s.active || s.role == Signal::Role::external;
   }
 
  private:
   const SystemData& d_;
-  const Point& point_;
+  std::vector<MatrixXcd> values_;  ///< per signal of the stage's graph
   std::vector<int> map_;
 };
 
@@ -108,21 +110,21 @@ struct Residual {
   void subtract(Balance& b, const MatrixXcd& factor, const Term& t,
                 const std::vector<Drive>& drive) {
     b.known = b.known && values.known(t.signal);
-    MatrixXcd c = -factor * coefficient(d.written, t, d.stage.values);
+    MatrixXcd c = -factor * coefficient(d.skeleton->written, t, d.numbers.parameters);
     b.add(t.of == Term::Of::position ? MatrixXcd(c / (s * s)) : c, values.of(t.signal));
     if (t.of != Term::Of::reaction) return;
-    const int channel = d.written.signals[at(t.signal)].channel;
+    const int channel = d.skeleton->written.signals[at(t.signal)].channel;
     for (const int e : drive[at(channel)].added) add_force(b, -c, e, drive);
   }
 
   void add_force(Balance& b, const MatrixXcd& N, int e, const std::vector<Drive>& drive) {
-    const Equation& q = d.written.equations[at(e)];
+    const Equation& q = d.skeleton->written.equations[at(e)];
     const MatrixXcd f = q.part.whole() ? N : MatrixXcd(N * q.part.rows.transpose());
     for (const Term& t : q.terms) subtract(b, f, t, drive);
   }
 
   void channels() {
-    const Graph& w = d.written;
+    const Graph& w = d.skeleton->written;
     const std::vector<Drive> drive = drives(w);
     for (std::size_t c = 0; c < drive.size(); ++c) {
       const Channel& channel = w.channels[c];
@@ -157,12 +159,12 @@ struct Residual {
 
   /// s x = A x + B u and y = C x + D u of every block.
   void blocks() {
-    const Graph& w = d.written;
-    for (const Node& stage_node : d.stage.graph.nodes) {
+    const Graph& w = d.skeleton->written;
+    for (const Node& stage_node : d.graph().nodes) {
       const int index = stage_node.declared;
       const Node& node = w.nodes[at(index)];
       const Dynamics& m =
-          *d.blocks[static_cast<std::size_t>(&stage_node - d.stage.graph.nodes.data())];
+          *d.numbers.blocks[static_cast<std::size_t>(&stage_node - d.graph().nodes.data())];
       const int end = end_signal(w, index);
       const auto inputs = [&](Balance& b, const MatrixXd& matrix) {
         for (int i = node.first_signal; i < end; ++i)
@@ -197,11 +199,11 @@ struct Residual {
 
 void self_check(SystemData& d) {
   Numbers random;
-  MatrixXcd u(static_cast<Eigen::Index>(d.layout.inputs.size()), 1);
+  MatrixXcd u(static_cast<Eigen::Index>(d.layout().inputs.size()), 1);
   for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = {random.next(), random.next()};
   d.certificate.s = pick_s(d);
   if (u.size() == 0) return;  // nothing moves
-  const Point point = solve_at(d, d.certificate.s, u);
+  const Evaluation<std::complex<double>> point(d, d.certificate.s, u);
   const Values values(d, point);
   Residual r{d, values, d.certificate.s, 0, {}};
   r.channels();
@@ -212,7 +214,7 @@ void self_check(SystemData& d) {
 
 /// Loop matrix of one strong component: its rows and unknowns of the equations, dense.
 MatrixXd loop_matrix(const SystemData& d, const Loop& loop) {
-  const Graph& g = d.stage.graph;
+  const Graph& g = d.graph();
   std::vector<int> column(g.signals.size(), -1);
   int n = 0;
   for (const int s : loop.signals) column[at(s)] = n, n += g.signals[at(s)].size;
@@ -222,7 +224,7 @@ MatrixXd loop_matrix(const SystemData& d, const Loop& loop) {
     if (column[at(signal)] >= 0) L.block(row, column[at(signal)], c.rows(), c.cols()) += c;
   };
   for (const int r : loop.rows) {
-    const Row& q = d.stage.rows[at(r)];
+    const Row& q = d.skeleton->stage.rows[at(r)];
     if (row + q.size > n) return {};
     if (q.equation >= 0) {
       const Equation& e = g.equations[at(q.equation)];
@@ -234,7 +236,7 @@ MatrixXd loop_matrix(const SystemData& d, const Loop& loop) {
       put(MatrixXd::Identity(y.size, y.size), q.output);
       for (int i = g.nodes[at(q.node)].first_signal; i < end_signal(g, q.node); ++i)
         if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input)
-          put(-d.blocks[at(q.node)]->D.block(y.first, u.first, y.size, u.size), i);
+          put(-d.numbers.blocks[at(q.node)]->D.block(y.first, u.first, y.size, u.size), i);
     }
     row += q.size;
   }
@@ -243,10 +245,10 @@ MatrixXd loop_matrix(const SystemData& d, const Loop& loop) {
 
 constexpr int kExactUpTo = 120;  ///< unknowns; above it a dense inverse per loop costs too much
 
-void margins(SystemData& d) {
-  const Graph& g = d.stage.graph;
+void margins(SystemData& d, Stage& stage) {
+  const Graph& g = d.graph();
   int skipped = 0;
-  for (Loop& loop : d.stage.loops) {
+  for (Loop& loop : stage.loops) {
     if (loop.unknowns > kExactUpTo) {
       ++skipped;
       continue;
@@ -264,7 +266,7 @@ void margins(SystemData& d) {
   }
   if (skipped == 0) return;
   d.certificate.margin_is_exact = false;
-  d.stage.notes.push_back(
+  stage.notes.push_back(
       {Note::Kind::info, "certify",
        fmt::format("{} loop{} of more than {} unknowns: judged by {} pivots, "
                    "not by {} margin",
@@ -280,49 +282,48 @@ double dense_difference(const SystemData& d, const StateSpace& m) {
   VectorXd x(m.A.rows()), u(m.B.cols());
   for (Eigen::Index i = 0; i < x.size(); ++i) x(i) = random.next();
   for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = random.next();
-  const MatrixXd z = solve_unknowns(d, x, u);
+  solve::RowMatrix<double> known(x.size() + u.size(), 1);
+  known << x, u;
+  const Rates exact = rates(d, known);
+  VectorXd off = exact.xdot, size = VectorXd::Zero(x.size());
+  for (const auto& [matrix, vector] : {std::pair(&m.A, &x), std::pair(&m.B, &u)})
+    for (Eigen::Index j = 0; j < matrix->cols(); ++j) {  // once through memory
+      off -= matrix->col(j) * (*vector)(j);
+      size += matrix->col(j).cwiseAbs() * std::abs((*vector)(j));
+    }
   double worst = 0;
-  for (const int i : d.layout.state_nodes) {
-    const Dynamics& b = *d.blocks[at(i)];
-    const Node& node = d.stage.graph.nodes[at(i)];
-    const int first = d.layout.state_first[at(i)];
-    VectorXd xdot = b.A * x.segment(first, b.A.rows());
-    for (int s = node.first_signal; s < node.state; ++s)
-      if (const Signal& in = d.stage.graph.signals[at(s)];
-          in.role == Signal::Role::input && in.active)
-        xdot += b.B.middleCols(in.first, in.size) * signal_value(d, s, z, x, u);
-    const auto A = m.A.middleRows(first, b.A.rows());
-    const auto B = m.B.middleRows(first, b.A.rows());
-    const VectorXd size = A.cwiseAbs() * x.cwiseAbs() + B.cwiseAbs() * u.cwiseAbs();
-    const VectorXd off = (xdot - A * x - B * u).cwiseAbs();
-    if (size.size() && size.maxCoeff() > 0)
-      worst = std::max(worst, off.maxCoeff() / size.maxCoeff());
+  for (const int i : d.layout().state_nodes) {
+    const auto first = d.layout().state_first[at(i)],
+               n = static_cast<int>(d.numbers.blocks[at(i)]->A.rows());
+    const double largest = size.segment(first, n).maxCoeff();
+    if (largest > 0) worst = std::max(worst, off.segment(first, n).cwiseAbs().maxCoeff() / largest);
   }
   return worst;
 }
 
-void certify(SystemData& d) {
+void certify(SystemData& d, Stage& stage) {
   const auto start = std::chrono::steady_clock::now();
-  const solve::Health& h = d.factors->health();
+  const solve::Health h = d.factors->health();
   d.certificate.weakest_pivot = h.weakest;
   if (h.weakest_variable >= 0)
-    d.certificate.weakest_where = name_of(d.stage.graph, d.joint.variables[at(h.weakest_variable)]);
+    d.certificate.weakest_where =
+        name_of(d.graph(), d.skeleton->joint.variables[at(h.weakest_variable)]);
   d.certificate.pivot_growth = h.growth;
-  margins(d);
+  margins(d, stage);
   self_check(d);
   d.certificate.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double lost = 2.2e-16 * d.certificate.margin;
   if (lost > 1e-8)
-    d.stage.notes.push_back(
+    stage.notes.push_back(
         {Note::Kind::warning, "certify",
          fmt::format("the loop at {} has margin {:.2g}: about {:.0f} digits are left",
                      d.certificate.margin_where, d.certificate.margin,
                      std::max(0.0, -std::log10(lost)))});
   if (d.certificate.residual > 1e-9)
-    d.stage.notes.push_back({Note::Kind::warning, "certify",
-                             fmt::format("{} holds only to {:.1g}", d.certificate.residual_where,
-                                         d.certificate.residual)});
+    stage.notes.push_back({Note::Kind::warning, "certify",
+                           fmt::format("{} holds only to {:.1g}", d.certificate.residual_where,
+                                       d.certificate.residual)});
 }
 
 }  // namespace titop::detail

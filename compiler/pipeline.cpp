@@ -56,39 +56,44 @@ void timed(detail::SystemData& data, const char* name, F f) {
       name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 
-void solve_joint(detail::SystemData& d) {
-  d.layout = detail::make_layout(d.stage.graph);
-  for (const Node& node : d.stage.graph.nodes)
-    d.blocks.push_back(node.block->dynamics(d.stage.values));
-  d.joint = solve::joint(d.stage);
-  d.numbers = solve::numbers(d.stage, d.joint, d.blocks);
-  d.factors = std::make_unique<solve::Factors<double>>(d.joint.plan, d.numbers.entries);
-  if (d.factors->health().singular)
-    throw Error(solve::blame(d.stage, d.joint, d.blocks, d.factors->health()));
-  d.stage.notes.push_back(
-      {Note::Kind::info, "solve",
-       fmt::format("{} unknowns in {} fronts", d.joint.plan.unknowns, d.joint.plan.fronts.size())});
+void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
+  k.layout = detail::make_layout(k.stage.graph);
+  d.numbers.parameters = k.stage.values;
+  for (const Node& node : k.stage.graph.nodes)
+    d.numbers.blocks.push_back(node.block->dynamics(k.stage.values));
+  k.joint = solve::joint(k.stage, d.numbers.coefficients);
+  d.factors =
+      std::make_unique<const solve::Factors<double>>(k.joint.plan, detail::real_rows(k, d.numbers));
+  if (const solve::Health health = d.factors->health(); health.singular)
+    throw Error(solve::blame(k.stage, k.joint, d.numbers.blocks, health));
+  k.stage.notes.push_back({Note::Kind::info, "solve",
+                           fmt::format("{} unknowns in {} fronts", k.joint.plan->unknowns,
+                                       k.joint.plan->fronts.size())});
 }
 
 }  // namespace
 
 System compile(const Diagram& diagram, const Options& options) {
   auto data = std::make_shared<detail::SystemData>();
-  data->written = diagram.graph();
-  data->options = options;
-  data->stage.graph = diagram.graph();
-  data->stage.values = nominal_values(diagram.graph());
-  dump(options, 0, "diagram", data->stage);
+  auto skeleton = std::make_shared<detail::Skeleton>();
+  data->skeleton = skeleton;
+  skeleton->written = diagram.graph();
+  skeleton->options = options;
+  Stage& stage = skeleton->stage;
+  stage.graph = diagram.graph();
+  stage.values = nominal_values(diagram.graph());
+  dump(options, 0, "diagram", stage);
   int number = 0;
   for (const Pass& pass : kPasses) {
     timed(*data, pass.name, [&] {
-      data->stage = pass.run(std::move(data->stage));
-      passes::verify(data->stage);
+      stage = pass.run(std::move(stage));
+      passes::verify(stage);
     });
-    dump(options, ++number, pass.name, data->stage);
+    dump(options, ++number, pass.name, stage);
   }
-  timed(*data, "solve", [&] { solve_joint(*data); });
-  timed(*data, "certify", [&] { detail::certify(*data); });
+  timed(*data, "solve", [&] { solve_joint(*skeleton, *data); });
+  timed(*data, "certify", [&] { detail::certify(*data, stage); });
+  data->notes = stage.notes;
   return System(std::move(data));
 }
 

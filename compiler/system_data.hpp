@@ -2,13 +2,11 @@
 
 #include <memory>
 #include <mutex>
-#include <titop/compiler/solve/joint.hpp>
+#include <titop/compiler/solve/numbers.hpp>
 #include <titop/compiler/system.hpp>
 
-/// What a System holds, and the linear algebra that reads it; not for users.
+/// What stands behind a System. For the compiler's own files only.
 namespace titop::detail {
-
-using BlockMatrices = std::vector<std::shared_ptr<const Dynamics>>;
 
 /// Where the rows and columns of the model come from.
 struct Layout {
@@ -16,51 +14,56 @@ struct Layout {
   std::vector<int> state_first;   ///< per node: first row of x, -1 for none
   std::vector<int> input_first;   ///< per graph input: first column of u
   std::vector<int> output_first;  ///< per graph output: first row of y
+  std::vector<int> known_first;   ///< per signal: first row of [x; u], -1 for unknowns
   std::vector<std::string> states, inputs, outputs;
-};
 
-struct SystemData {
+  Eigen::Index order() const { return static_cast<Eigen::Index>(states.size()); }
+};
+Layout make_layout(const Graph& graph);
+
+/// What does not depend on numbers: shared by all systems that `update` makes of one another.
+struct Skeleton {
   Graph written;  ///< the diagram as the user wrote it
   Stage stage;    ///< after the passes
   Options options;
   solve::Joint joint;
-  BlockMatrices blocks;
-  solve::Numbers<double> numbers;
-  std::unique_ptr<solve::Factors<double>> factors;
   Layout layout;
+};
+
+struct SystemData {
+  std::shared_ptr<const Skeleton> skeleton;
+  solve::Numbers numbers;
+  std::unique_ptr<const solve::Factors<double>> factors;
   Certificate certificate;
+  std::vector<Note> notes;
   std::vector<std::pair<std::string, double>> seconds;  ///< per pass
 
   mutable std::once_flag dense_once;
   mutable StateSpace dense;
   mutable double dense_against_factors = -1;
   mutable std::vector<Note> dense_notes;
+
+  const Graph& graph() const { return skeleton->stage.graph; }
+  const Layout& layout() const { return skeleton->layout; }
 };
 
-Layout make_layout(const Graph& graph);
+/// The rows of the joint system with the numbers of the state space.
+solve::JointRows<double> real_rows(const Skeleton& skeleton, const solve::Numbers& numbers);
 
-/// All unknowns (joint variables) for the given states and inputs (one column each).
-Eigen::MatrixXd solve_unknowns(const SystemData& data, const Eigen::MatrixXd& x,
-                               const Eigen::MatrixXd& u);
+/// xdot and y for known = [x; u], column by column.
+struct Rates {
+  solve::RowMatrix<double> xdot, y;
+};
+Rates rates(const SystemData& data, const solve::RowMatrix<double>& known);
 
-/// Value of a signal (rows x columns), all signals being known through z, x and u.
-Eigen::MatrixXd signal_value(const SystemData& data, int signal, const Eigen::MatrixXd& z,
-                             const Eigen::MatrixXd& x, const Eigen::MatrixXd& u);
+/// The dense model before `minimize`, into buffers that are resized only if they do not fit.
+void write_dense(const SystemData& data, StateSpace& model);
 
-/// The dense model before `minimize`.
-StateSpace write_dense(const SystemData& data);
-
-/// Largest relative difference of xdot and y between the dense model and the factors, for one
-/// random x and u (fixed seed). O(n^2).
+/// Largest relative difference of xdot between the dense model and the factors, for one random x
+/// and u (fixed seed). O(n^2).
 double dense_difference(const SystemData& data, const StateSpace& dense);
 
-/// All signals at s for one column of inputs: value(signal) by the layout of the stage's graph.
-struct Point {
-  std::vector<Eigen::MatrixXcd> signals;  ///< per signal of the stage's graph: size x columns
-};
-Point solve_at(const SystemData& data, std::complex<double> s, const Eigen::MatrixXcd& u);
-
 /// Margins of the loops, certificate of the factors: see certify.cpp.
-void certify(SystemData& data);
+void certify(SystemData& data, Stage& stage);
 
 }  // namespace titop::detail

@@ -49,9 +49,19 @@ struct Interface {
   int output_size() const;  ///< number of rows of y
 };
 
-/// xdot = A x + B u, y = C x + D u, in the order of `Interface`.
+/// A body by its N modes: etadd = W u - stiffness * eta - damping * etad (entry by entry), and
+/// y = rigid u + W' etadd. States: eta, then etad.
+struct Modal {
+  Eigen::MatrixXd W;      ///< N x inputs
+  Eigen::MatrixXd rigid;  ///< outputs x inputs
+  Eigen::VectorXd stiffness, damping;
+};
+
+/// xdot = A x + B u, y = C x + D u, in the order of `Interface`. A block that has the modal form
+/// may say so: everything is then faster, and no different.
 struct Dynamics {
   Eigen::MatrixXd A, B, C, D;
+  std::shared_ptr<const Modal> modal = {};
 };
 
 /// Where the acceleration ports are: the position of channel i is

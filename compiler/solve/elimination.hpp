@@ -2,53 +2,26 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <titop/compiler/solve/plan.hpp>
 #include <vector>
 
-/// Elimination along the junctions: a row-merging LU of a block-sparse square system.
-///
-/// The system is a list of row groups, each over a few variable groups (port signals of 1 or 6
-/// scalars). To eliminate a variable, ALL rows that mention it are gathered into one small dense
-/// front; as many pivots as it (and every variable that now stands in this front alone) has
-/// scalars are taken there by row pivoting, and the rows left over go on to the next front. So
-/// every pivot search sees the whole column: a weak pivot is never forced, there is nothing to
-/// delay, and bodies of very different mass are compared only with their neighbours. On a tree of
-/// bodies this is the leaf-to-root recursion, one front per junction, O(bodies).
-///
-/// Order: the variable whose front would be smallest comes next (minimum degree on the merged
-/// rows, by priority queue), ties by index; indices follow the names, so the order does too.
+/// Elimination along the junctions: a row-merging LU of a block-sparse square system, front by
+/// front as the plan says. Instantiated for float, double, long double and 50 digits, real and
+/// complex.
 namespace titop::solve {
 
-/// Structure: which variables each row group mentions.
-struct Structure {
-  std::vector<int> variable_size;           ///< scalars of each variable group
-  std::vector<int> row_size;                ///< scalars of each row group
-  std::vector<std::vector<int>> variables;  ///< per row group, without repetition
-};
-
-/// One dense front.
-struct Front {
-  std::vector<int> rows;      ///< row groups that enter here for the first time
-  std::vector<int> children;  ///< fronts whose rows left over enter here
-  std::vector<int> pivots;    ///< variables eliminated here
-  std::vector<int> border;    ///< variables that remain, eliminated further up
-  int row_count = 0, pivot_count = 0, border_count = 0;  ///< scalars
-};
-
-/// The order of elimination: fronts, children before parents. Reused for every value.
-struct Plan {
-  Structure structure;
-  std::vector<Front> fronts;
-  int unknowns = 0;
-  std::vector<int> first;  ///< first scalar of each variable
-};
-
-/// Makes the plan. The structure must have a perfect matching (pass `match`).
-/// O(fronts log fronts) times the front size.
-Plan plan(Structure structure);
-
-/// Entries of one row group: coefficient blocks, in the order of Structure::variables.
+/// Where the coefficients come from.
 template <class T>
-using RowEntries = std::vector<Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>>;
+class Rows {
+ public:
+  virtual ~Rows() = default;
+  /// Adds row group r to a front: entry k of it (Plan::structure) begins `column[k]` to the right
+  /// of `at`, and rows are `stride` apart.
+  virtual void add(int r, T* at, std::ptrdiff_t stride, const int* column) const = 0;
+};
 
 /// How the numbers went.
 struct Health {
@@ -60,40 +33,55 @@ struct Health {
   std::vector<int> singular_variables;
 };
 
-/// The factors: per front L, U and the permutation.
+/// Row-major, so that the columns of a right-hand side stand side by side.
+template <class T>
+using RowMatrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// Powers of two that give the columns of each front the same size: found once from real numbers,
+/// they serve every s and every new value, because they answer for units, not for values.
+using ColumnScale = std::vector<std::vector<std::int16_t>>;
+
+/// The factors: per front L, U and the permutation. Fronts are shared between factors that differ
+/// elsewhere.
 template <class T>
 class Factors {
  public:
-  using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+  /// Factors the system. O(sum of front sizes^3). `scale`: of a similar system; found if absent.
+  Factors(std::shared_ptr<const Plan> plan, const Rows<T>& rows,
+          std::shared_ptr<const ColumnScale> scale = nullptr);
 
-  /// Factors the system; entries[r] belongs to row group r. O(sum of front sizes^3).
-  Factors(const Plan& plan, const std::vector<RowEntries<T>>& entries);
+  /// The factors where only these row groups have new coefficients: the fronts that they enter and
+  /// all above are made again, the others shared. O(those fronts) and one pointer per front.
+  Factors changed(const Rows<T>& rows, std::span<const int> row_groups) const;
 
-  /// Solves for right-hand sides given row group by row group (size x m each; empty means 0);
-  /// returns all unknowns (unknowns x m). O(sum of front sizes^2) per column.
-  Matrix solve(const std::vector<Matrix>& rhs, Eigen::Index columns) const;
+  /// Solves for right-hand sides (unknowns x m, in the order of Plan::row_first); returns the
+  /// unknowns (in the order of Plan::first). O(sum of front sizes^2) per column.
+  RowMatrix<T> solve(const RowMatrix<T>& rhs) const;
 
-  const Health& health() const { return health_; }
+  Health health() const;
+  const Plan& plan() const { return *plan_; }
+  const std::shared_ptr<const ColumnScale>& scale() const { return scale_; }
+  int fronts_made() const { return made_; }  ///< by the constructor or by changed()
+
+  /// One front's numbers.
+  struct Made {
+    std::vector<T> lu;          ///< row_count x columns, row-major; rows left over at the bottom
+    std::vector<int> order;     ///< order[i]: which assembled row stands at place i
+    std::vector<double> keeps;  ///< per row left over: 1, or what cancellation has left of it
+    double growth = 1, weakest = 1;
+    int weakest_column = -1;
+    bool singular = false;
+  };
+  const Made& made(std::size_t front) const { return *fronts_[front]; }
 
  private:
-  struct Factored {
-    Matrix lu;               ///< row_count x (pivot_count + border_count), rows permuted
-    std::vector<int> order;  ///< order[i]: which assembled row stands at place i
-  };
-  /// Rows on their way from one front to the next.
-  struct LeftOver {
-    Matrix rows;
-    Eigen::VectorXd
-        keeps;  ///< per row: 1, or what cancellation has left of it where that is little
-  };
-  Matrix assemble(const Front& front, const std::vector<RowEntries<T>>& entries,
-                  std::vector<LeftOver>& left_over, Eigen::VectorXd& keeps) const;
-  void eliminate(const Front& front, Factored& f, Eigen::VectorXd& keeps);
-  void note_weakest(const Front& front, int column, double left);
+  void make(int front, const Rows<T>& rows, ColumnScale* found);
 
-  const Plan* plan_;
-  std::vector<Factored> fronts_;
-  Health health_;
+  std::shared_ptr<const Plan> plan_;
+  std::shared_ptr<const ColumnScale> scale_;
+  std::vector<std::shared_ptr<const Made>> fronts_;
+  int made_ = 0;
+  int singular_ = -1;  ///< first singular front
 };
 
 }  // namespace titop::solve

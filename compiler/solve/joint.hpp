@@ -9,40 +9,62 @@
 /// user's equations, with signals that an equation merely copies or rotates written out.
 namespace titop::solve {
 
-/// coefficient * signal; the signal is a variable, a state or an input.
-template <class T>
-struct Piece {
-  int signal;
-  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> c;
-};
+/// Coefficients of terms, row-major; shared between systems that differ elsewhere.
+using Coefficient = std::shared_ptr<const RowMatrix<double>>;
 
-/// What does not depend on s: variables, what every signal is in terms of them, and the plan.
-struct Joint {
-  std::vector<int> variables;                       ///< signal of each variable
-  std::vector<int> variable_of;                     ///< signal -> variable, -1 if written out
-  std::vector<std::vector<Piece<double>>> meaning;  ///< signal -> variables, states and inputs
-  std::vector<int> rows;                            ///< Stage row of each row group
-  Plan plan;
-};
-
-/// Numbers of the joint system: real with D and C for the state space, complex with the blocks'
-/// transfers at one s.
-template <class T>
+/// What parameters may change: one entry per node, and one per term (see Joint).
 struct Numbers {
-  std::vector<RowEntries<T>> entries;
-  std::vector<std::vector<Piece<T>>> rhs;  ///< per row group: states and inputs on the right side
+  std::vector<double> parameters;
+  std::vector<std::shared_ptr<const Dynamics>> blocks;
+  std::vector<Coefficient> coefficients;
+};
+
+/// sign * left * right * (variable, state or input).
+struct Piece {
+  enum class Left {
+    one,          ///< identity
+    direct,       ///< a block of the node's direct term: D, or Y(s)
+    state,        ///< rows of the node's C; at some s it is part of Y(s) and does not count
+    coefficient,  ///< coefficients[left]
+  };
+  Left of = Left::one;
+  int left = -1;                             ///< node, or index of a coefficient
+  int row = 0, rows = 0, col = 0, cols = 0;  ///< the block of the node's matrix
+  int right = -1;                            ///< coefficients[right]; -1: identity
+  int entry = -1;                            ///< place in the row of the structure; -1: known
+  int signal = -1;                           ///< what is multiplied
+  double sign = 1;
+};
+
+/// A signal in terms of variables, states and inputs.
+struct Meaning {
+  int signal = -1;
+  int coefficient = -1;  ///< -1: identity
+};
+
+/// What does not depend on numbers: variables, what every signal is in terms of them, rows, plan.
+struct Joint {
+  std::vector<int> variables;    ///< signal of each variable
+  std::vector<int> variable_of;  ///< signal -> variable, -1 if written out or known
+  std::vector<int> meaning_begin = {0};
+  std::vector<Meaning> meanings;  ///< of all signals, signal by signal
+  std::vector<int> rows;          ///< Stage row of each row group
+  std::vector<int> piece_begin = {0};
+  std::vector<Piece> pieces;              ///< of all row groups
+  std::vector<int> equation_coefficient;  ///< equation -> coefficient of its first term
+  std::vector<int> output_coefficient;    ///< output -> the same
+  std::shared_ptr<const Plan> plan;
+
+  std::span<const Meaning> meaning(int signal) const;
+  std::span<const Piece> row(int r) const;
 };
 
 /// A whole equation whose terms are no targets themselves is written out (its pivot is 1 and needs
-/// no search); everything else stays an unknown: substituting further would be tearing.
-/// O(terms) and the cost of the plan.
-Joint joint(const Stage& stage);
+/// no search); everything else stays an unknown: substituting further would be tearing. Appends the
+/// coefficients of all terms to `coefficients`. O(terms) and the cost of the plan.
+Joint joint(const Stage& stage, std::vector<Coefficient>& coefficients);
 
-/// blocks[node] are the matrices of that node.
-Numbers<double> numbers(const Stage& stage, const Joint& joint,
-                        const std::vector<std::shared_ptr<const Dynamics>>& blocks);
-/// responses[node] is that node alone at s; states are written out by their inputs.
-Numbers<std::complex<double>> numbers(const Stage& stage, const Joint& joint,
-                                      const std::vector<Block::Response>& responses);
+/// The coefficient of a lowered term, row-major.
+Coefficient coefficient_of(const Term& term);
 
 }  // namespace titop::solve

@@ -1,116 +1,217 @@
 #include <algorithm>
 #include <functional>
 #include <queue>
-#include <titop/compiler/solve/elimination.hpp>
+#include <titop/compiler/solve/plan.hpp>
 
 namespace titop::solve {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Live row sets: original row groups first, then the rows that fronts leave over.
-struct Merging {
-  const Structure& s;
-  std::vector<std::vector<int>> vars;     ///< of each row set
-  std::vector<int> count;                 ///< scalars of rows in each set
-  std::vector<int> front_of;              ///< front that left this set over, -1 for originals
-  std::vector<std::vector<int>> sets_of;  ///< variable -> live row sets
-  std::vector<char> gone;                 ///< variables eliminated
-  std::vector<int> stamp;
-  int now = 0;
-
-  explicit Merging(const Structure& structure)
-      : s(structure),
-        vars(structure.variables),
-        count(structure.row_size),
-        front_of(structure.row_size.size(), -1),
-        sets_of(structure.variable_size.size()),
-        gone(structure.variable_size.size(), 0),
-        stamp(structure.variable_size.size(), 0) {
-    for (int r = 0; r < static_cast<int>(vars.size()); ++r)
-      for (const int v : vars[at(r)]) sets_of[at(v)].push_back(r);
+/// Live row sets: original row groups first, then the rows that fronts leave over. A variable's
+/// list of sets may hold dead ones; `live` counts the others. Every front replaces at least one set
+/// of each border variable by one, so no list outgrows its first size.
+class Merging {
+ public:
+  explicit Merging(Plan& plan) : p_(plan), s_(plan.structure) {
+    const auto sets = s_.row_size.size(), variables = s_.variable_size.size();
+    begin_.assign(variables + 1, 0);
+    for (const int v : s_.variables) ++begin_[at(v) + 1];
+    for (std::size_t v = 0; v < variables; ++v) begin_[v + 1] += begin_[v];
+    sets_.resize(s_.variables.size());
+    used_.assign(variables, 0);
+    for (int r = 0; r < static_cast<int>(sets); ++r)
+      for (const int v : s_.row(r)) sets_[at(begin_[at(v)] + used_[at(v)]++)] = r;
+    live_ = used_;
+    dead_.assign(sets, 0);
+    count_ = s_.row_size;
+    front_of_.assign(sets, -1);
+    gone_.assign(variables, 0);
+    stamp_.assign(variables, 0);
   }
 
-  /// All variables of the rows that mention v.
-  std::vector<int> front_variables(int v) {
-    ++now;
-    std::vector<int> all;
-    for (const int r : sets_of[at(v)])
-      for (const int w : vars[at(r)])
-        if (stamp[at(w)] != now) stamp[at(w)] = now, all.push_back(w);
-    return all;
-  }
+  bool gone(int v) const { return gone_[at(v)]; }
+  int live(int v) const { return live_[at(v)]; }
 
   /// Size of the front that eliminating v would need: its columns, then its rows.
   std::pair<int, int> cost(int v) {
-    int cols = 0, rows = 0;
-    for (const int w : front_variables(v)) cols += s.variable_size[at(w)];
-    for (const int r : sets_of[at(v)]) rows += count[at(r)];
-    return {cols, rows};
+    int columns = 0, rows = 0;
+    for (const int w : front_variables(v)) columns += s_.variable_size[at(w)];
+    for (const int r : sets_of(v)) rows += count_[at(r)];
+    return {columns, rows};
   }
+
+  /// Takes v out: one front from all rows that mention it. Returns its border.
+  std::span<const int> merge(int v);
+
+ private:
+  std::span<const int> variables_of(int set) const {
+    const int front = front_of_[at(set)];
+    return front < 0 ? s_.row(set) : p_.list(p_.fronts[at(front)].border);
+  }
+
+  /// The live sets of v; forgets the dead ones.
+  std::span<const int> sets_of(int v) {
+    int* const first = sets_.data() + begin_[at(v)];
+    int* const last =
+        std::remove_if(first, first + used_[at(v)], [&](int r) { return dead_[at(r)] != 0; });
+    used_[at(v)] = static_cast<int>(last - first);
+    return {first, at(used_[at(v)])};
+  }
+
+  /// All variables of the rows that mention v, as they come.
+  const std::vector<int>& front_variables(int v) {
+    ++now_;
+    found_.clear();
+    for (const int r : sets_of(v))
+      for (const int w : variables_of(r))
+        if (stamp_[at(w)] != now_) stamp_[at(w)] = now_, found_.push_back(w);
+    return found_;
+  }
+
+  void add_set(int v, int set) {
+    if (begin_[at(v)] + used_[at(v)] == begin_[at(v) + 1]) sets_of(v);
+    sets_[at(begin_[at(v)] + used_[at(v)]++)] = set;
+    ++live_[at(v)];
+  }
+
+  template <class Keep>
+  Front::Range list(Keep keep) {
+    Front::Range range{static_cast<int>(p_.lists.size()), 0};
+    keep();
+    range.count = static_cast<int>(p_.lists.size()) - range.begin;
+    return range;
+  }
+
+  Plan& p_;
+  const Structure& s_;
+  std::vector<int> begin_, sets_, used_, live_;  ///< variable -> row sets
+  std::vector<int> count_, front_of_;  ///< set -> scalars, and the front that left it over or -1
+  std::vector<char> dead_, gone_;
+  std::vector<int> stamp_, found_, merged_;
+  int now_ = 0;
 };
 
-/// Takes v out: one front from all rows that mention it.
-Front merge(Merging& m, int v, int index, std::vector<int>& touched) {
-  Front front;
-  const std::vector<int> sets = m.sets_of[at(v)];
-  std::vector<int> all = m.front_variables(v);
+std::span<const int> Merging::merge(int v) {
+  const auto sets = sets_of(v);
+  merged_.assign(sets.begin(), sets.end());
+  std::vector<int>& all = found_;
+  front_variables(v);
   std::sort(all.begin(), all.end());
-  for (const int r : sets) {
-    if (m.front_of[at(r)] < 0)
-      front.rows.push_back(r);
-    else
-      front.children.push_back(m.front_of[at(r)]);
-    front.row_count += m.count[at(r)];
-    for (const int w : m.vars[at(r)]) {
-      auto& list = m.sets_of[at(w)];
-      list.erase(std::find(list.begin(), list.end(), r));
+  Front f;
+  f.rows = list([&] {
+    for (const int r : merged_)
+      if (front_of_[at(r)] < 0) p_.lists.push_back(r);
+  });
+  f.children = list([&] {
+    for (const int r : merged_)
+      if (front_of_[at(r)] >= 0) p_.lists.push_back(front_of_[at(r)]);
+  });
+  for (const int r : merged_) {
+    f.row_count += count_[at(r)];
+    dead_[at(r)] = 1;
+    for (const int w : variables_of(r)) --live_[at(w)];
+  }
+  const auto size = [&](int w) { return s_.variable_size[at(w)]; };
+  f.pivots = list([&] {
+    for (const int w : all)
+      if (live_[at(w)] == 0) p_.lists.push_back(w), f.pivot_count += size(w), gone_[at(w)] = 1;
+  });
+  f.border = list([&] {
+    for (const int w : all)
+      if (live_[at(w)] > 0) p_.lists.push_back(w), f.border_count += size(w);
+  });
+  const int index = static_cast<int>(p_.fronts.size());
+  p_.fronts.push_back(f);
+  const auto border = p_.list(f.border);
+  if (f.left_over() <= 0) return border;
+  const int set = static_cast<int>(count_.size());
+  count_.push_back(f.left_over());
+  front_of_.push_back(index);
+  dead_.push_back(0);
+  for (const int w : border) add_set(w, set);
+  return border;
+}
+
+/// Beyond this many row sets a variable's cost is not counted but put at that number: it will be
+/// counted when fewer are left.
+constexpr int kMany = 64;
+
+void eliminate_all(Plan& p) {
+  Merging m(p);
+  using Entry = std::pair<std::pair<int, int>, int>;  // cost, variable
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  std::vector<std::pair<int, int>> cost(p.structure.variable_size.size());
+  const auto push = [&](int v, bool exact) {
+    cost[at(v)] = exact || m.live(v) <= kMany ? m.cost(v) : std::pair(m.live(v), 0);
+    queue.push({cost[at(v)], v});
+  };
+  for (int v = 0; v < static_cast<int>(cost.size()); ++v) push(v, false);
+  while (!queue.empty()) {
+    const auto [c, v] = queue.top();
+    queue.pop();
+    if (m.gone(v) || c != cost[at(v)]) continue;
+    if (c.second == 0 && m.live(v) > 0) {  // not counted yet
+      push(v, true);
+      continue;
     }
-    m.vars[at(r)].clear();
+    for (const int w : m.merge(v)) push(w, false);
   }
-  for (const int w : all) {
-    const bool here_only = m.sets_of[at(w)].empty();
-    (here_only ? front.pivots : front.border).push_back(w);
-    (here_only ? front.pivot_count : front.border_count) += m.s.variable_size[at(w)];
-    if (here_only) m.gone[at(w)] = 1;
+}
+
+/// Where every pivot, entry and row left over stands.
+void place(Plan& p) {
+  p.first.assign(p.structure.variable_size.size(), 0);
+  p.front_of_row.assign(p.structure.row_size.size(), -1);
+  p.entry_column.resize(p.structure.variables.size());
+  p.parent_column.assign(p.lists.size(), 0);
+  int row = 0;
+  for (const int size : p.structure.row_size) p.row_first.push_back(row), row += size;
+  std::vector<int> column(p.first.size(), 0);
+  for (int i = 0; i < static_cast<int>(p.fronts.size()); ++i) {
+    Front& f = p.fronts[at(i)];
+    f.first_unknown = p.unknowns;
+    f.first_carried = p.carried;
+    p.unknowns += f.pivot_count;
+    p.carried += std::max(0, f.left_over());
+    int next = 0;
+    for (const auto range : {f.pivots, f.border})
+      for (const int v : p.list(range))
+        column[at(v)] = next, next += p.structure.variable_size[at(v)];
+    for (const int v : p.list(f.pivots)) p.first[at(v)] = f.first_unknown + column[at(v)];
+    for (const int r : p.list(f.rows)) {
+      p.front_of_row[at(r)] = i;
+      for (int e = p.structure.row_begin[at(r)]; e < p.structure.row_begin[at(r) + 1]; ++e)
+        p.entry_column[at(e)] = column[at(p.structure.variables[at(e)])];
+    }
+    for (const int child : p.list(f.children)) {
+      Front& c = p.fronts[at(child)];
+      c.parent = i;
+      for (int k = c.border.begin; k < c.border.begin + c.border.count; ++k)
+        p.parent_column[at(k)] = column[at(p.lists[at(k)])];
+    }
   }
-  if (front.row_count > front.pivot_count) {
-    const int set = static_cast<int>(m.vars.size());
-    m.vars.push_back(front.border);
-    m.count.push_back(front.row_count - front.pivot_count);
-    m.front_of.push_back(index);
-    for (const int w : front.border) m.sets_of[at(w)].push_back(set);
-  }
-  touched = front.border;
-  return front;
 }
 
 }  // namespace
 
+void Structure::add_row(int size, std::vector<int> over) {
+  std::sort(over.begin(), over.end());
+  over.erase(std::unique(over.begin(), over.end()), over.end());
+  row_size.push_back(size);
+  variables.insert(variables.end(), over.begin(), over.end());
+  row_begin.push_back(static_cast<int>(variables.size()));
+}
+
+std::span<const int> Structure::row(int r) const {
+  return {variables.data() + row_begin[at(r)], at(row_begin[at(r) + 1] - row_begin[at(r)])};
+}
+
 Plan plan(Structure structure) {
   Plan result;
   result.structure = std::move(structure);
-  for (const int size : result.structure.variable_size) {
-    result.first.push_back(result.unknowns);
-    result.unknowns += size;
-  }
-  Merging m(result.structure);
-  using Entry = std::pair<std::pair<int, int>, int>;  // cost, variable
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-  std::vector<std::pair<int, int>> cost(m.gone.size());
-  const auto push = [&](int v) {
-    cost[at(v)] = m.cost(v);
-    queue.push({cost[at(v)], v});
-  };
-  for (int v = 0; v < static_cast<int>(m.gone.size()); ++v) push(v);
-  std::vector<int> touched;
-  while (!queue.empty()) {
-    const auto [c, v] = queue.top();
-    queue.pop();
-    if (m.gone[at(v)] || c != cost[at(v)]) continue;
-    result.fronts.push_back(merge(m, v, static_cast<int>(result.fronts.size()), touched));
-    for (const int w : touched) push(w);
-  }
+  eliminate_all(result);
+  place(result);
   return result;
 }
 

@@ -71,9 +71,10 @@ TEST_CASE("solver: every scalar is eliminated once, children before their parent
       std::vector<int> used(p.fronts.size(), 0);
       bool ordered = true;
       for (std::size_t f = 0; f < p.fronts.size(); ++f) {
-        for (const int v : p.fronts[f].pivots) ++eliminated[at(v)];
-        for (const int r : p.fronts[f].rows) ++entered[at(r)];
-        for (const int c : p.fronts[f].children) ++used[at(c)], ordered = ordered && at(c) < f;
+        for (const int v : p.list(p.fronts[f].pivots)) ++eliminated[at(v)];
+        for (const int r : p.list(p.fronts[f].rows)) ++entered[at(r)];
+        for (const int c : p.list(p.fronts[f].children))
+          ++used[at(c)], ordered = ordered && at(c) < f;
       }
       CAPTURE(seed);
       CAPTURE(kind.name);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Dense>
+#include <memory>
 #include <string>
 #include <titop/compiler/solve/elimination.hpp>
 #include <vector>
@@ -12,8 +13,50 @@ namespace solver_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-using titop::solve::RowEntries;
+using titop::solve::RowMatrix;
 using titop::solve::Structure;
+
+/// Coefficient blocks of one row group, in the order of its variables.
+template <class T>
+using RowEntries = std::vector<Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>>;
+
+template <class T>
+class EntryRows : public titop::solve::Rows<T> {
+ public:
+  explicit EntryRows(const std::vector<RowEntries<T>>& entries) : entries_(entries) {}
+  void add(int r, T* to, std::ptrdiff_t stride, const int* column) const override {
+    for (const auto& block : entries_[static_cast<std::size_t>(r)]) {
+      for (Eigen::Index i = 0; i < block.rows(); ++i)
+        for (Eigen::Index j = 0; j < block.cols(); ++j) to[i * stride + *column + j] += block(i, j);
+      ++column;
+    }
+  }
+
+ private:
+  const std::vector<RowEntries<T>>& entries_;
+};
+
+template <class T>
+titop::solve::Factors<T> factors_of(const Structure& structure,
+                                    const std::vector<RowEntries<T>>& entries) {
+  return {std::make_shared<const titop::solve::Plan>(plan(structure)), EntryRows<T>(entries)};
+}
+
+/// Unknowns in the order of the variables.
+template <class T>
+Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> solve(const titop::solve::Factors<T>& factors,
+                                                       const RowMatrix<T>& b) {
+  const RowMatrix<T> z = factors.solve(b);
+  Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> x(z.rows(), z.cols());
+  Eigen::Index row = 0;
+  const auto& plan = factors.plan();
+  for (std::size_t v = 0; v < plan.first.size(); ++v) {
+    const int size = plan.structure.variable_size[v];
+    x.middleRows(row, size) = z.middleRows(plan.first[v], size);
+    row += size;
+  }
+  return x;
+}
 
 inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -73,7 +116,7 @@ struct System {
     int row = 0;
     for (std::size_t r = 0; r < entries.size(); ++r) {
       for (std::size_t k = 0; k < entries[r].size(); ++k)
-        A.block(row, first[at(structure.variables[r][k])], entries[r][k].rows(),
+        A.block(row, first[at(structure.row(static_cast<int>(r))[k])], entries[r][k].rows(),
                 entries[r][k].cols()) = entries[r][k];
       row += structure.row_size[r];
     }
@@ -87,30 +130,23 @@ struct System {
     int row = 0;
     for (std::size_t r = 0; r < entries.size(); ++r) {
       for (std::size_t k = 0; k < entries[r].size(); ++k)
-        entries[r][k] = A.block(row, first[at(structure.variables[r][k])], entries[r][k].rows(),
-                                entries[r][k].cols());
+        entries[r][k] = A.block(row, first[at(structure.row(static_cast<int>(r))[k])],
+                                entries[r][k].rows(), entries[r][k].cols());
       row += structure.row_size[r];
     }
-  }
-  /// Right-hand sides, row group by row group.
-  std::vector<MatrixXd> split(const MatrixXd& b) const {
-    std::vector<MatrixXd> result;
-    int row = 0;
-    for (const int n : structure.row_size) result.push_back(b.middleRows(row, n)), row += n;
-    return result;
   }
 };
 
 inline Structure structure_of(const Links& links, const std::vector<int>& sizes) {
-  Structure s;
-  s.variable_size = s.row_size = sizes;
-  s.variables.resize(sizes.size());
-  for (std::size_t i = 0; i < sizes.size(); ++i) s.variables[i].push_back(static_cast<int>(i));
+  std::vector<std::vector<int>> over(sizes.size());
+  for (std::size_t i = 0; i < sizes.size(); ++i) over[i].push_back(static_cast<int>(i));
   for (const auto& [a, b] : links) {
-    s.variables[at(a)].push_back(b);
-    s.variables[at(b)].push_back(a);
+    over[at(a)].push_back(b);
+    over[at(b)].push_back(a);
   }
-  for (auto& list : s.variables) std::sort(list.begin(), list.end());
+  Structure s;
+  s.variable_size = sizes;
+  for (std::size_t i = 0; i < sizes.size(); ++i) s.add_row(sizes[i], over[i]);
   return s;
 }
 
@@ -122,7 +158,7 @@ inline System random_system(const Links& links, int n, titop_test::Rng& rng, dou
   System s{structure_of(links, sizes), {}};
   for (int r = 0; r < n; ++r) {
     RowEntries<double> row;
-    for (const int v : s.structure.variables[at(r)]) {
+    for (const int v : s.structure.row(r)) {
       MatrixXd block = rng.matrix(sizes[at(r)], sizes[at(v)]);
       if (v == r) block += diagonal * MatrixXd::Identity(sizes[at(r)], sizes[at(r)]);
       row.push_back(block);

@@ -5,9 +5,7 @@
 /// Verdict and weakest pivot do not depend on units: rows and columns scaled by powers of ten.
 
 using namespace solver_test;
-using titop::solve::Factors;
 using titop::solve::Health;
-using titop::solve::plan;
 using titop_test::Rng;
 
 namespace {
@@ -22,10 +20,9 @@ struct Solved {
   Health health;
   MatrixXd x;
 };
-Solved solve(const System& s, const MatrixXd& b) {
-  const auto p = plan(s.structure);
-  const Factors<double> factors(p, s.entries);
-  return {factors.health(), factors.solve(s.split(b), b.cols())};
+Solved solved(const System& s, const MatrixXd& b) {
+  const auto factors = factors_of(s.structure, s.entries);
+  return {factors.health(), solve<double>(factors, b)};
 }
 
 }  // namespace
@@ -42,7 +39,7 @@ TEST_CASE("solver: scaling rows and columns by 1e-9 to 1e9 changes neither verdi
       other.from_dense(rows.asDiagonal() * A * cols.asDiagonal());
       CAPTURE(seed);
       CAPTURE(kind.name);
-      const Solved one = solve(s, b), two = solve(other, rows.asDiagonal() * b);
+      const Solved one = solved(s, b), two = solved(other, rows.asDiagonal() * b);
       REQUIRE(one.health.singular == two.health.singular);
       const MatrixXd exact = A.fullPivLu().solve(b);
       const double e1 = (one.x - exact).norm() / exact.norm();

@@ -1,0 +1,288 @@
+#include <algorithm>
+#include <numeric>
+#include <titop/compiler/solve/propagation.hpp>
+#include <titop/compiler/system_data.hpp>
+
+/// The dense model from the factors. Every column of A and B answers one state or input that acts
+/// on some rows of the joint system (a source); every row of xdot and y reads some unknowns (a
+/// target). A body with N modes acts through its N modal forces, not its 2 N states: half the
+/// columns.
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using solve::Piece;
+using solve::RowMatrix;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// What acts on the rows of the joint system.
+struct Source {
+  int node = -1;      ///< of a state; -1: external inputs
+  Index first = 0;    ///< first column in [x; u]
+  Index columns = 0;  ///< modes where it acts through its modes, else states or inputs
+  const Modal* modal = nullptr;
+  std::vector<int> rows;    ///< row groups
+  std::vector<MatrixXd> c;  ///< right-hand sides, one matrix per row group
+  int front = 0;            ///< the first front it enters
+};
+
+/// Rows of xdot or y: sum of E * (unknowns of a variable) and of known terms.
+struct Target {
+  struct Part {
+    Index first = 0;  ///< of the unknowns, or of [x; u]
+    RowMatrix<double> E;
+  };
+  Index row = 0;    ///< first row of [xdot; y]
+  Index zeros = 0;  ///< rows above that nothing but the block's own A fills
+  Index rows = 0;
+  std::vector<Part> unknown, known;
+};
+
+class Writer {
+ public:
+  Writer(const SystemData& d, StateSpace& m)
+      : d_(d), k_(*d.skeleton), g_(d.graph()), m_(m), states_(d.layout().order()) {}
+
+  void write() {
+    shape();
+    find_sources();
+    find_targets();
+    solve::Propagation propagation(*d_.factors);
+    for (std::size_t i = 0; i < sources_.size();) i = batch(propagation, i);
+    add_known();
+    for (const int i : d_.layout().state_nodes) add_own(i);
+  }
+
+ private:
+  static constexpr Index kBatch = 48;  ///< columns at a time
+
+  void shape() {
+    const auto inputs = static_cast<Index>(d_.layout().inputs.size());
+    const auto outputs = static_cast<Index>(d_.layout().outputs.size());
+    m_.A.resize(states_, states_);
+    m_.B.resize(states_, inputs);
+    m_.C.resize(outputs, states_);
+    m_.D.resize(outputs, inputs);
+    m_.states = d_.layout().states;
+    m_.inputs = d_.layout().inputs;
+    m_.outputs = d_.layout().outputs;
+  }
+
+  const Dynamics& block(int node) const { return *d_.numbers.blocks[at(node)]; }
+  const RowMatrix<double>& coefficient(int i) const { return *d_.numbers.coefficients[at(i)]; }
+
+  // --- sources ---------------------------------------------------------------------------------
+
+  /// The known part of a piece on the right-hand side.
+  MatrixXd right_hand_side(const Piece& p, Index columns) const {
+    MatrixXd right = p.right < 0 ? MatrixXd(MatrixXd::Identity(columns, columns))
+                                 : MatrixXd(coefficient(p.right));
+    switch (p.of) {
+      case Piece::Left::one: break;
+      case Piece::Left::direct:
+        right = block(p.left).D.block(p.row, p.col, p.rows, p.cols) * right;
+        break;
+      case Piece::Left::state: right = block(p.left).C.middleRows(p.row, p.rows) * right; break;
+      case Piece::Left::coefficient: right = coefficient(p.left) * right; break;
+    }
+    return -p.sign * right;
+  }
+
+  void find_sources() {
+    std::vector<int> source_of(g_.signals.size(), -1);
+    for (const int i : d_.layout().state_nodes) {
+      const int x = g_.nodes[at(i)].state;
+      source_of[at(x)] = static_cast<int>(sources_.size());
+      sources_.push_back({i,
+                          d_.layout().known_first[at(x)],
+                          g_.signals[at(x)].size,
+                          block(i).modal.get(),
+                          {},
+                          {},
+                          0});
+    }
+    for (const Input& in : g_.inputs) {
+      source_of[at(in.signal)] = static_cast<int>(sources_.size());
+      sources_.push_back({-1, d_.layout().known_first[at(in.signal)], in.size, nullptr, {}, {}, 0});
+    }
+    // A body whose states are also read by equations acts through all of them.
+    for (const Piece& p : k_.joint.pieces)
+      if (p.entry < 0 && p.of != Piece::Left::state)
+        sources_[at(source_of[at(p.signal)])].modal = nullptr;
+    for (Source& s : sources_)
+      if (s.modal) s.columns = s.modal->W.rows();
+    for (int r = 0; r < static_cast<int>(k_.joint.rows.size()); ++r)
+      for (const Piece& p : k_.joint.row(r))
+        if (p.entry < 0) act(sources_[at(source_of[at(p.signal)])], r, p);
+    for (Source& s : sources_) {
+      s.front = static_cast<int>(k_.joint.plan->fronts.size());
+      for (const int r : s.rows) s.front = std::min(s.front, k_.joint.plan->front_of_row[at(r)]);
+    }
+    std::stable_sort(sources_.begin(), sources_.end(),
+                     [](const Source& a, const Source& b) { return a.front < b.front; });
+  }
+
+  void act(Source& s, int r, const Piece& p) const {
+    MatrixXd c = s.modal ? MatrixXd(-p.sign * s.modal->W.middleCols(p.row, p.rows).transpose())
+                         : right_hand_side(p, s.columns);
+    if (!s.rows.empty() && s.rows.back() == r) {
+      s.c.back() += c;
+      return;
+    }
+    s.rows.push_back(r);
+    s.c.push_back(std::move(c));
+  }
+
+  // --- targets ---------------------------------------------------------------------------------
+
+  void find_targets() {
+    for (const int i : d_.layout().state_nodes) {
+      const Node& node = g_.nodes[at(i)];
+      const Dynamics& b = block(i);
+      Target t;
+      t.row = d_.layout().state_first[at(i)];
+      t.zeros = b.modal ? b.modal->W.rows() : 0;
+      t.rows = b.A.rows() - t.zeros;
+      for (int s = node.first_signal; s < node.state; ++s)
+        if (const Signal& in = g_.signals[at(s)]; in.role == Signal::Role::input && in.active)
+          read(t, s, b.B.block(t.zeros, in.first, t.rows, in.size));
+      targets_.push_back(std::move(t));
+    }
+    for (std::size_t o = 0; o < g_.outputs.size(); ++o) {
+      Target t;
+      t.row = states_ + d_.layout().output_first[o];
+      t.rows = g_.outputs[o].size;
+      const auto& terms = g_.outputs[o].terms;
+      for (std::size_t n = 0; n < terms.size(); ++n)
+        read(t, terms[n].signal, coefficient(k_.joint.output_coefficient[o] + static_cast<int>(n)));
+      targets_.push_back(std::move(t));
+    }
+  }
+
+  void read(Target& t, int signal, const MatrixXd& factor) const {
+    for (const solve::Meaning& m : k_.joint.meaning(signal)) {
+      const int v = k_.joint.variable_of[at(m.signal)];
+      auto& parts = v >= 0 ? t.unknown : t.known;
+      const Index first =
+          v >= 0 ? k_.joint.plan->first[at(v)] : d_.layout().known_first[at(m.signal)];
+      const RowMatrix<double> E = m.coefficient < 0
+                                      ? RowMatrix<double>(factor)
+                                      : RowMatrix<double>(factor * coefficient(m.coefficient));
+      const auto same = std::find_if(parts.begin(), parts.end(),
+                                     [&](const Target::Part& p) { return p.first == first; });
+      if (same != parts.end())
+        same->E += E;
+      else
+        parts.push_back({first, E});
+    }
+  }
+
+  // --- columns ---------------------------------------------------------------------------------
+
+  /// Solves for the sources from `begin` on that fit into a batch; returns the next one.
+  std::size_t batch(solve::Propagation& propagation, std::size_t begin) {
+    std::size_t end = begin;
+    Index columns = 0;
+    do columns += sources_[end++].columns;
+    while (end < sources_.size() && columns + sources_[end].columns <= kBatch);
+    // Sums do not depend on the number of columns, so that filling up changes nothing.
+    columns = (columns + 15) / 16 * 16;
+    std::vector<int> rows;
+    rhs_.clear();
+    Index first = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Source& s = sources_[i];
+      for (std::size_t r = 0; r < s.rows.size(); ++r) {
+        rows.push_back(s.rows[r]);
+        const std::size_t old = rhs_.size();
+        rhs_.resize(old + at(s.c[r].rows() * columns), 0);
+        for (Index row = 0; row < s.c[r].rows(); ++row)
+          for (Index j = 0; j < s.columns; ++j)
+            rhs_[old + at(row * columns + first + j)] = s.c[r](row, j);
+      }
+      first += s.columns;
+    }
+    propagation.solve(rows, rhs_, columns, z_);
+    for (const Target& t : targets_) fill(t, begin, end, columns);
+    return end;
+  }
+
+  void fill(const Target& t, std::size_t begin, std::size_t end, Index columns) {
+    values_.assign(at(t.rows * columns), 0);
+    for (const Target::Part& p : t.unknown)
+      solve::multiply_add(t.rows, p.E.cols(), columns, p.E.data(), p.E.cols(),
+                          z_.data() + p.first * columns, values_.data());
+    const bool state = t.row < states_;
+    MatrixXd& by_x = state ? m_.A : m_.C;
+    MatrixXd& by_u = state ? m_.B : m_.D;
+    const Index row = state ? t.row : t.row - states_;
+    Index first = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Source& s = sources_[i];
+      for (Index j = 0; j < s.columns; ++j) {
+        const double* from = values_.data() + first + j;
+        if (s.modal) {
+          put(by_x, row, t, s.first + j, from, columns, -s.modal->stiffness(j));
+          put(by_x, row, t, s.first + s.columns + j, from, columns, -s.modal->damping(j));
+        } else if (s.node >= 0) {
+          put(by_x, row, t, s.first + j, from, columns, 1);
+        } else {
+          put(by_u, row, t, s.first - states_ + j, from, columns, 1);
+        }
+      }
+      first += s.columns;
+    }
+  }
+
+  static void put(MatrixXd& m, Index row, const Target& t, Index column, const double* from,
+                  Index stride, double factor) {
+    double* to = m.data() + column * m.rows() + row;
+    for (Index i = 0; i < t.zeros; ++i) *to++ = 0;
+    for (Index i = 0; i < t.rows; ++i) *to++ = factor * from[i * stride] + 0.0;  // no -0
+  }
+
+  void add_known() {
+    for (const Target& t : targets_) {
+      const bool state = t.row < states_;
+      const Index row = state ? t.row + t.zeros : t.row - states_;
+      for (const Target::Part& p : t.known)
+        if (p.first < states_)
+          (state ? m_.A : m_.C).block(row, p.first, t.rows, p.E.cols()) += p.E;
+        else
+          (state ? m_.B : m_.D).block(row, p.first - states_, t.rows, p.E.cols()) += p.E;
+    }
+  }
+
+  /// The block's own A: what it does with all its inputs at 0.
+  void add_own(int node) {
+    const Index first = d_.layout().state_first[at(node)];
+    const Dynamics& b = block(node);
+    if (!b.modal) {
+      m_.A.block(first, first, b.A.rows(), b.A.cols()) += b.A;
+      return;
+    }
+    const Index n = b.modal->W.rows();
+    for (Index i = 0; i < n; ++i) {
+      m_.A(first + i, first + n + i) = 1;
+      m_.A(first + n + i, first + i) -= b.modal->stiffness(i);
+      m_.A(first + n + i, first + n + i) -= b.modal->damping(i);
+    }
+  }
+
+  const SystemData& d_;
+  const Skeleton& k_;
+  const Graph& g_;
+  StateSpace& m_;
+  Index states_;
+  std::vector<Source> sources_;
+  std::vector<Target> targets_;
+  std::vector<double> rhs_, z_, values_;
+};
+
+}  // namespace
+
+void write_dense(const SystemData& data, StateSpace& model) { Writer(data, model).write(); }
+
+}  // namespace titop::detail

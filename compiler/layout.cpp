@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numeric>
+#include <titop/compiler/system_data.hpp>
+
+namespace titop::detail {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+template <class List>
+std::vector<int> as_declared(const List& list) {
+  std::vector<int> order(list.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b) { return list[at(a)].declared < list[at(b)].declared; });
+  return order;
+}
+
+/// "u", or "U(1)" ... "U(6)".
+void add_names(std::vector<std::string>& names, const std::string& name, int size) {
+  for (int i = 1; i <= size; ++i)
+    names.push_back(size == 1 ? name : fmt::format("{}({})", name, i));
+}
+
+}  // namespace
+
+Layout make_layout(const Graph& g) {
+  Layout l;
+  l.known_first.assign(g.signals.size(), -1);
+  l.state_first.assign(g.nodes.size(), -1);
+  for (const int i : as_declared(g.nodes)) {
+    const Node& node = g.nodes[at(i)];
+    if (node.state < 0 || !g.signals[at(node.state)].active) continue;
+    l.state_first[at(i)] = l.known_first[at(node.state)] = static_cast<int>(l.states.size());
+    l.state_nodes.push_back(i);
+    for (const std::string& s : node.block->interface().states)
+      l.states.push_back(node.name + "." + s);
+  }
+  l.input_first.resize(g.inputs.size());
+  for (const int i : as_declared(g.inputs)) {
+    const Input& input = g.inputs[at(i)];
+    l.input_first[at(i)] = static_cast<int>(l.inputs.size());
+    l.known_first[at(input.signal)] = static_cast<int>(l.states.size() + l.inputs.size());
+    add_names(l.inputs, input.name, input.size);
+  }
+  l.output_first.resize(g.outputs.size());
+  for (const int i : as_declared(g.outputs)) {
+    l.output_first[at(i)] = static_cast<int>(l.outputs.size());
+    add_names(l.outputs, g.outputs[at(i)].name, g.outputs[at(i)].size);
+  }
+  return l;
+}
+
+}  // namespace titop::detail

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <complex>
+#include <cstddef>
+
+/// The inner loops: y -= a x and its like over contiguous entries. Plain loops that a compiler
+/// turns into vector instructions; sums are never regrouped, so that every machine gets the same
+/// bits.
+///
+/// On x86-64 Linux each loop over doubles is compiled twice, and the wider vectors are taken where
+/// the processor has them: that changes no result either.
+#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
+    !defined(__SANITIZE_ADDRESS__)
+#define TITOP_WIDE __attribute__((target_clones("avx2", "default")))
+#else
+#define TITOP_WIDE
+#endif
+
+namespace titop::solve {
+
+/// y -= a x, n entries.
+template <class T>
+inline void subtract(std::ptrdiff_t n, const T& a, const T* x, T* y) {
+  for (std::ptrdiff_t j = 0; j < n; ++j) y[j] -= a * x[j];
+}
+
+/// The same with the product written out: the language's own also looks for infinities.
+template <class T>
+inline void subtract(std::ptrdiff_t n, const std::complex<T>& a, const std::complex<T>* x,
+                     std::complex<T>* y) {
+  const T re = a.real(), im = a.imag();
+  const T* u = reinterpret_cast<const T*>(x);
+  T* v = reinterpret_cast<T*>(y);
+  for (std::ptrdiff_t j = 0; j < n; ++j) {
+    const T s = u[2 * j], t = u[2 * j + 1];
+    v[2 * j] -= re * s - im * t;
+    v[2 * j + 1] -= re * t + im * s;
+  }
+}
+
+/// y += a x, n entries.
+inline void add(std::ptrdiff_t n, double a, const double* x, double* y) {
+  for (std::ptrdiff_t j = 0; j < n; ++j) y[j] += a * x[j];
+}
+
+}  // namespace titop::solve

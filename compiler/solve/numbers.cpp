@@ -1,0 +1,209 @@
+#include <algorithm>
+#include <titop/compiler/solve/kernels.hpp>
+#include <titop/compiler/solve/numbers.hpp>
+
+namespace titop::solve {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// A rectangle of a matrix of scalars T, in either order of storage.
+template <class T>
+struct View {
+  const T* data;
+  std::ptrdiff_t rows, cols, down, right;
+  const T& operator()(std::ptrdiff_t i, std::ptrdiff_t j) const {
+    return data[i * down + j * right];
+  }
+};
+
+View<double> view(const RowMatrix<double>& m) {
+  return {m.data(), m.rows(), m.cols(), m.cols(), 1};
+}
+template <class T>
+View<T> view(const Dense<T>& m, int row, int rows, int col, int cols) {
+  return {m.data() + row + col * m.rows(), rows, cols, 1, m.rows()};
+}
+
+/// to += sign * L
+template <class T, class L>
+void add_matrix(double sign, const View<L>& l, T* to, std::ptrdiff_t stride) {
+  for (std::ptrdiff_t i = 0; i < l.rows; ++i)
+    for (std::ptrdiff_t j = 0; j < l.cols; ++j) to[i * stride + j] += T(sign) * l(i, j);
+}
+
+/// to += sign * L * R, R row-major
+template <class T, class L>
+void add_product(double sign, const View<L>& l, const RowMatrix<double>& r, T* to,
+                 std::ptrdiff_t stride) {
+  for (std::ptrdiff_t i = 0; i < l.rows; ++i)
+    for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
+      const T a = T(sign) * l(i, k);
+      if (a == T(0)) continue;
+      const double* row = r.data() + k * r.cols();
+      for (std::ptrdiff_t j = 0; j < r.cols(); ++j) to[i * stride + j] += a * T(row[j]);
+    }
+}
+
+/// to -= sign * L * x, x with m columns
+template <class T, class L>
+void subtract_product(double sign, const View<L>& l, const T* x, std::ptrdiff_t m, T* to) {
+  for (std::ptrdiff_t i = 0; i < l.rows; ++i)
+    for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
+      const T a = T(sign) * l(i, k);
+      if (a != T(0)) subtract(m, a, x + k * m, to + i * m);
+    }
+}
+
+/// Calls take(view) with the piece's left matrix; `identity` where it is none.
+template <class T, class Take, class Identity>
+void with_left(const Piece& p, const Matrices<T>& m, const std::vector<Coefficient>& c,
+               Eigen::Index states, Take take, Identity identity) {
+  switch (p.of) {
+    case Piece::Left::one: identity(); break;
+    case Piece::Left::direct:
+      take(view(*m.direct[at(p.left)], p.row, p.rows, p.col, p.cols));
+      break;
+    case Piece::Left::state:
+      take(view(*m.output[at(p.left)], p.row, p.rows, 0, static_cast<int>(states)));
+      break;
+    case Piece::Left::coefficient: take(view(*c[at(p.left)])); break;
+  }
+}
+
+/// sign * left * right as a matrix.
+template <class T>
+Dense<T> dense(const Piece& p, const Matrices<T>& m, const std::vector<Coefficient>& c, int size) {
+  const auto right = [&] {
+    return p.right < 0 ? Dense<T>(Dense<T>::Identity(size, size))
+                       : Dense<T>(c[at(p.right)]->template cast<T>());
+  };
+  Dense<T> result;
+  with_left(
+      p, m, c, size,
+      [&](const auto& left) {
+        Dense<T> l(left.rows, left.cols);
+        for (Eigen::Index i = 0; i < l.rows(); ++i)
+          for (Eigen::Index k = 0; k < l.cols(); ++k) l(i, k) = T(left(i, k));
+        result = T(p.sign) * (l * right());
+      },
+      [&] { result = T(p.sign) * right(); });
+  return result;
+}
+
+}  // namespace
+
+template <class T>
+void JointRows<T>::add(int r, T* to, std::ptrdiff_t stride, const int* column) const {
+  for (const Piece& p : joint_.row(r)) {
+    if (p.entry < 0) {
+      if (written_out(p) && p.of != Piece::Left::state) add_state(p, r, to, stride, column);
+      continue;
+    }
+    T* const place = to + column[p.entry];
+    const RowMatrix<double>* right = p.right < 0 ? nullptr : coefficients_[at(p.right)].get();
+    with_left(
+        p, m_, coefficients_, 0,
+        [&](const auto& left) {
+          if (right)
+            add_product(p.sign, left, *right, place, stride);
+          else
+            add_matrix(p.sign, left, place, stride);
+        },
+        [&] {
+          if (right) return add_matrix(p.sign, view(*right), place, stride);
+          const int size = graph_.signals[at(p.signal)].size;
+          for (int i = 0; i < size; ++i) place[i * stride + i] += T(p.sign);
+        });
+  }
+}
+
+/// sign * left * right * x with x = X u, u of the state's node.
+template <class T>
+void JointRows<T>::add_state(const Piece& p, int r, T* to, std::ptrdiff_t stride,
+                             const int* column) const {
+  const auto variables = joint_.plan->structure.row(r);
+  by_inputs(p, [&](const Dense<T>& m, const Meaning& meaning) {
+    const int v = joint_.variable_of[at(meaning.signal)];
+    if (v < 0) return;
+    const auto entry = std::lower_bound(variables.begin(), variables.end(), v) - variables.begin();
+    const View<T> left = view(m, 0, static_cast<int>(m.rows()), 0, static_cast<int>(m.cols()));
+    if (meaning.coefficient < 0)
+      add_matrix(1, left, to + column[entry], stride);
+    else
+      add_product(1, left, *coefficients_[at(meaning.coefficient)], to + column[entry], stride);
+  });
+}
+
+/// Calls visit(matrix, meaning) for all that the inputs of a known state's node stand for.
+template <class T>
+template <class Visit>
+void JointRows<T>::by_inputs(const Piece& p, Visit visit) const {
+  const Signal& x = graph_.signals[at(p.signal)];
+  const Dense<T> m = dense(p, m_, coefficients_, x.size);
+  for (int i = graph_.nodes[at(x.node)].first_signal; i < p.signal; ++i) {
+    const Signal& u = graph_.signals[at(i)];
+    if (u.role != Signal::Role::input || !u.active) continue;
+    const Dense<T> by_u = m * m_.states[at(x.node)]->middleCols(u.first, u.size);
+    for (const Meaning& meaning : joint_.meaning(i)) visit(by_u, meaning);
+  }
+}
+
+template <class T>
+RowMatrix<T> JointRows<T>::rhs(const RowMatrix<T>& known, std::span<const int> first) const {
+  const Plan& plan = *joint_.plan;
+  RowMatrix<T> result = RowMatrix<T>::Zero(plan.unknowns, known.cols());
+  for (int r = 0; r < static_cast<int>(joint_.rows.size()); ++r)
+    for (const Piece& p : joint_.row(r))
+      if (p.entry < 0)
+        subtract_known(p, known, first, result.data() + plan.row_first[at(r)] * known.cols());
+  return result;
+}
+
+template <class T>
+void JointRows<T>::subtract_known(const Piece& p, const RowMatrix<T>& known,
+                                  std::span<const int> first, T* to) const {
+  const std::ptrdiff_t m = known.cols();
+  const auto value = [&](int signal) { return known.data() + first[at(signal)] * m; };
+  if (written_out(p) && p.of == Piece::Left::state) return;  // part of Y(s)
+  if (written_out(p)) {
+    by_inputs(p, [&](const Dense<T>& by_u, const Meaning& meaning) {
+      if (joint_.variable_of[at(meaning.signal)] >= 0) return;
+      const Dense<T> c =
+          meaning.coefficient < 0
+              ? by_u
+              : Dense<T>(by_u * coefficients_[at(meaning.coefficient)]->template cast<T>());
+      const View<T> left = view(c, 0, static_cast<int>(c.rows()), 0, static_cast<int>(c.cols()));
+      subtract_product(1, left, value(meaning.signal), m, to);
+    });
+    return;
+  }
+  if (p.right < 0 && p.of == Piece::Left::state)
+    return with_left(
+        p, m_, coefficients_, graph_.signals[at(p.signal)].size,
+        [&](const auto& left) { subtract_product(p.sign, left, value(p.signal), m, to); }, [] {});
+  const Dense<T> c = dense(p, m_, coefficients_, graph_.signals[at(p.signal)].size);
+  const View<T> left = view(c, 0, static_cast<int>(c.rows()), 0, static_cast<int>(c.cols()));
+  subtract_product(1, left, value(p.signal), m, to);
+}
+
+template <class T>
+void JointRows<T>::add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
+                             std::span<const int> first, RowMatrix<T>& to) const {
+  const std::ptrdiff_t m = known.cols();
+  for (const Meaning& meaning : joint_.meaning(signal)) {
+    const int v = joint_.variable_of[at(meaning.signal)];
+    const T* value = v >= 0 ? unknowns.data() + joint_.plan->first[at(v)] * m
+                            : known.data() + first[at(meaning.signal)] * m;
+    if (meaning.coefficient >= 0) {
+      subtract_product(-1, view(*coefficients_[at(meaning.coefficient)]), value, m, to.data());
+      continue;
+    }
+    for (std::ptrdiff_t i = 0; i < to.size(); ++i) to.data()[i] += value[i];
+  }
+}
+
+template class JointRows<double>;
+template class JointRows<std::complex<double>>;
+
+}  // namespace titop::solve

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <titop/compiler/solve/joint.hpp>
+
+namespace titop::solve {
+
+/// Column-major matrix of the scalar.
+template <class T>
+using Dense = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// A block at one s.
+template <class T>
+struct Response {
+  Dense<T> X;  ///< inputs to states
+  Dense<T> Y;  ///< inputs to outputs
+};
+
+/// The matrices of all nodes, by node: D and C for the state space (states are known), or Y(s) and
+/// X(s) at one s (states are written out by the inputs that move them).
+template <class T>
+struct Matrices {
+  std::vector<const Dense<T>*> direct;  ///< D or Y(s)
+  std::vector<const Dense<T>*> output;  ///< C; empty at one s
+  std::vector<const Dense<T>*> states;  ///< X(s); empty for the state space
+};
+
+/// The rows of the joint system with numbers.
+template <class T>
+class JointRows : public Rows<T> {
+ public:
+  JointRows(const Graph& graph, const Joint& joint, const std::vector<Coefficient>& coefficients,
+            Matrices<T> matrices)
+      : graph_(graph), joint_(joint), coefficients_(coefficients), m_(std::move(matrices)) {}
+
+  void add(int r, T* at, std::ptrdiff_t stride, const int* column) const override;
+
+  /// Right-hand sides, in the order of Plan::row_first, for known signals (inputs, and states where
+  /// these are known): signal i has the rows of `known` from first[i] on. O(rows) per column.
+  RowMatrix<T> rhs(const RowMatrix<T>& known, std::span<const int> first) const;
+
+  /// signal += its meaning in unknowns and known signals; `to`: signal size x columns.
+  void add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
+                 std::span<const int> first, RowMatrix<T>& to) const;
+
+ private:
+  /// A state, at one s.
+  bool written_out(const Piece& p) const {
+    return !m_.states.empty() &&
+           graph_.signals[static_cast<std::size_t>(p.signal)].role == Signal::Role::state;
+  }
+  void add_state(const Piece& p, int r, T* to, std::ptrdiff_t stride, const int* column) const;
+  void subtract_known(const Piece& p, const RowMatrix<T>& known, std::span<const int> first,
+                      T* to) const;
+  template <class Visit>
+  void by_inputs(const Piece& p, Visit visit) const;
+
+  const Graph& graph_;
+  const Joint& joint_;
+  const std::vector<Coefficient>& coefficients_;
+  Matrices<T> m_;
+};
+
+}  // namespace titop::solve

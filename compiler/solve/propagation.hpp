@@ -1,0 +1,38 @@
+#pragma once
+
+#include <titop/compiler/solve/elimination.hpp>
+
+namespace titop::solve {
+
+/// Many right-hand sides, each with a few rows that are not zero: what the dense model is written
+/// from. Forward only along these rows' fronts and what is above them; backward with
+/// -U^-1 (border of U) formed once per front. O(unknowns x front size) per column.
+class Propagation {
+ public:
+  explicit Propagation(const Factors<double>& factors);
+
+  /// Right-hand sides of these row groups, m columns each (row-major, group after group); the
+  /// unknowns, in the order of Plan::first, go to z (unknowns x m).
+  void solve(std::span<const int> row_groups, std::span<const double> rhs, std::ptrdiff_t m,
+             std::vector<double>& z);
+
+ private:
+  void forward(int front, std::ptrdiff_t m, std::vector<double>& z);
+  void back_substitute(int front, std::ptrdiff_t m, std::vector<double>& z) const;
+
+  const Factors<double>& factors_;
+  const Plan& plan_;
+  std::vector<std::size_t> begin_;  ///< per front: its part of border_
+  std::vector<double> border_;      ///< -U^-1 (border of U), row-major
+  std::vector<int> active_;         ///< fronts of the present right-hand sides
+  std::vector<char> is_active_;
+  std::vector<double> rows_;  ///< right-hand sides of all rows of active fronts
+  std::vector<double> carried_, assembled_;
+};
+
+/// y (rows x m) += a (rows x inner, `stride` apart) * x (inner x m), all row-major. The sum over
+/// `inner` runs in order, whatever m is.
+void multiply_add(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m, const double* a,
+                  std::ptrdiff_t stride, const double* x, double* y);
+
+}  // namespace titop::solve

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace titop::solve {
+
+/// Exponents of two that give the columns of a rows x columns matrix of magnitudes (row-major) the
+/// same size whatever the units: first largest entries brought to 1, rows and columns in turn [Ruiz
+/// 2001], then means of binary exponents over the entries [Curtis, Reid 1972]. Entries that the
+/// first step leaves below 1e-13 are rounding (a rotation by pi) and do not count in the second:
+/// they would draw the means along. O(rows x columns).
+std::vector<std::int16_t> column_scale(const double* magnitudes, int rows, int columns);
+
+}  // namespace titop::solve

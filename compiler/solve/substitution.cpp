@@ -1,0 +1,81 @@
+#include <titop/compiler/solve/elimination.hpp>
+#include <titop/compiler/solve/kernels.hpp>
+
+/// Solving with the factors: leaf to root with the right-hand sides, root to leaf with the
+/// unknowns.
+namespace titop::solve {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// The rows of a front, as they were assembled, then permuted and reduced by L. The first
+/// pivot_count rows stay, the rest is carried to the parent.
+template <class T>
+struct Forward {
+  const Plan& plan;
+  std::ptrdiff_t m;  ///< columns
+  RowMatrix<T>&z, carried;
+  std::vector<T> assembled = {}, rows = {};
+
+  void run(const Front& f, const typename Factors<T>::Made& made, const RowMatrix<T>& rhs) {
+    assembled.clear();
+    for (const int r : plan.list(f.rows)) {
+      const T* from = rhs.data() + plan.row_first[at(r)] * m;
+      assembled.insert(assembled.end(), from, from + plan.structure.row_size[at(r)] * m);
+    }
+    for (const int c : plan.list(f.children)) {
+      const Front& child = plan.fronts[at(c)];
+      const T* from = carried.data() + child.first_carried * m;
+      assembled.insert(assembled.end(), from, from + child.left_over() * m);
+    }
+    rows.resize(assembled.size());
+    for (int i = 0; i < f.row_count; ++i)
+      std::copy_n(assembled.data() + made.order[at(i)] * m, m, rows.data() + i * m);
+    const int n = f.columns();
+    for (int i = 1; i < f.row_count; ++i)
+      for (int k = 0; k < std::min(i, f.pivot_count); ++k)
+        if (const T& l = made.lu[at(i * n + k)]; l != T(0))
+          subtract(m, l, rows.data() + k * m, rows.data() + i * m);
+    std::copy_n(rows.data(), f.pivot_count * m, z.data() + f.first_unknown * m);
+    std::copy_n(rows.data() + f.pivot_count * m, f.left_over() * m,
+                carried.data() + f.first_carried * m);
+  }
+};
+
+/// Pivots of a front from its border and U, in place.
+template <class T>
+void backward(const Plan& plan, const Front& f, const typename Factors<T>::Made& made,
+              std::ptrdiff_t m, RowMatrix<T>& z) {
+  const int n = f.columns();
+  for (int i = f.pivot_count - 1; i >= 0; --i) {
+    T* to = z.data() + (f.first_unknown + i) * m;
+    const T* u = made.lu.data() + i * n + f.pivot_count;
+    for (const int v : plan.list(f.border)) {
+      const T* from = z.data() + plan.first[at(v)] * m;
+      for (int k = 0; k < plan.structure.variable_size[at(v)]; ++k, ++u, from += m)
+        subtract(m, *u, from, to);
+    }
+    for (int k = i + 1; k < f.pivot_count; ++k)
+      subtract(m, made.lu[at(i * n + k)], z.data() + (f.first_unknown + k) * m, to);
+    const T& pivot = made.lu[at(i * n + i)];
+    for (std::ptrdiff_t j = 0; j < m; ++j) to[j] /= pivot;
+  }
+}
+
+}  // namespace
+
+template <class T>
+RowMatrix<T> Factors<T>::solve(const RowMatrix<T>& rhs) const {
+  RowMatrix<T> z(plan_->unknowns, rhs.cols()), carried(plan_->carried, rhs.cols());
+  Forward<T> forward{*plan_, rhs.cols(), z, carried};
+  for (std::size_t i = 0; i < fronts_.size(); ++i) forward.run(plan_->fronts[i], *fronts_[i], rhs);
+  for (std::size_t i = fronts_.size(); i-- > 0;)
+    backward<T>(*plan_, plan_->fronts[i], *fronts_[i], rhs.cols(), z);
+  return z;
+}
+
+template RowMatrix<double> Factors<double>::solve(const RowMatrix<double>&) const;
+template RowMatrix<std::complex<double>> Factors<std::complex<double>>::solve(
+    const RowMatrix<std::complex<double>>&) const;
+
+}  // namespace titop::solve
