@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <titop/compiler/evaluate.hpp>
+#include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/system_data.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
@@ -11,7 +12,6 @@
 namespace titop::detail {
 namespace {
 
-using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
 using Eigen::VectorXd;
@@ -61,7 +61,7 @@ class Values {
     for (const Input& i : g.inputs) map_[at(w.inputs[at(i.declared)].signal)] = i.signal;
     for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) values_.push_back(point.value(s));
   }
-  const MatrixXcd& of(int signal) const { return values_[at(map_[at(signal)])]; }
+  const VectorXcd& of(int signal) const { return values_[at(map_[at(signal)])]; }
   /// Computed: active, or external, or at rest because no input moves it.
   bool known(int signal) const {
     const Signal& s = d_.graph().signals[at(map_[at(signal)])];
@@ -70,7 +70,7 @@ class Values {
 
  private:
   const SystemData& d_;
-  std::vector<MatrixXcd> values_;  ///< per signal of the stage's graph
+  std::vector<VectorXcd> values_;  ///< per signal of the stage's graph
   std::vector<int> map_;
 };
 
@@ -80,16 +80,37 @@ struct Balance {
   VectorXd magnitude;
   bool known = true;
 
-  explicit Balance(int rows) : difference(VectorXcd::Zero(rows)), magnitude(VectorXd::Zero(rows)) {}
-  void add(const MatrixXcd& c, const MatrixXcd& value) {
-    difference += c * value;
-    magnitude += c.cwiseAbs() * value.cwiseAbs();
+  explicit Balance(Eigen::Index rows)
+      : difference(VectorXcd::Zero(rows)), magnitude(VectorXd::Zero(rows)) {}
+
+  /// factor * c * value. A port signal counts by its largest entry: of a pinned point the
+  /// translation is 0 but for rounding, which its rotation has left there. States count one by one.
+  void add(const Eigen::Ref<const MatrixXd, 0, Eigen::OuterStride<>>& c, const VectorXcd& value,
+           bool by_entry = false, std::complex<double> factor = 1) {
+    double largest = 0;
+    for (const auto& v : value) largest = std::max(largest, solve::size_of(v));
+    const double scale = solve::size_of(factor);
+    for (Eigen::Index j = 0; j < c.cols(); ++j) {
+      const std::complex<double> v = factor * value(j);
+      const double size = scale * (by_entry ? solve::size_of(value(j)) : largest);
+      for (Eigen::Index i = 0; i < c.rows(); ++i) {
+        difference(i) += c(i, j) * v;
+        magnitude(i) += std::abs(c(i, j)) * size;
+      }
+    }
+  }
+  void add_identity(const VectorXcd& value, std::complex<double> factor, bool by_entry = false) {
+    const double largest = value.size() ? value.cwiseAbs().maxCoeff() : 0;
+    for (Eigen::Index i = 0; i < value.size(); ++i) {
+      difference(i) += factor * value(i);
+      magnitude(i) += std::abs(factor) * (by_entry ? std::abs(value(i)) : largest);
+    }
   }
   double relative() const {
+    const double largest = magnitude.size() ? magnitude.maxCoeff() : 0;
     double worst = 0;
-    for (Eigen::Index i = 0; i < difference.size(); ++i)
-      if (magnitude(i) > 0) worst = std::max(worst, std::abs(difference(i)) / magnitude.maxCoeff());
-    return worst;
+    for (const auto& d : difference) worst = std::max(worst, solve::size_of(d));
+    return worst > 0 ? worst / largest : 0;
   }
 };
 
@@ -98,33 +119,35 @@ struct Residual {
   const SystemData& d;
   const Values& values;
   std::complex<double> s;
+  const Graph& w = d.skeleton->written;
   double worst = 0;
-  std::string where;
+  std::string where = {};
 
-  void take(const Balance& b, const std::string& name) {
+  /// `name()` is only asked for where it is needed.
+  template <class Name>
+  void take(const Balance& b, Name name) {
     if (!b.known) return;
     const double r = b.difference.allFinite() ? b.relative() : 1;
-    if (r > worst) worst = r, where = name;
+    if (r > worst) worst = r, where = name();
   }
 
-  void subtract(Balance& b, const MatrixXcd& factor, const Term& t,
+  void subtract(Balance& b, const MatrixXd& factor, const Term& t,
                 const std::vector<Drive>& drive) {
     b.known = b.known && values.known(t.signal);
-    MatrixXcd c = -factor * coefficient(d.skeleton->written, t, d.numbers.parameters);
-    b.add(t.of == Term::Of::position ? MatrixXcd(c / (s * s)) : c, values.of(t.signal));
+    const MatrixXd c = -factor * coefficient(w, t, d.numbers.parameters);
+    b.add(c, values.of(t.signal), false, t.of == Term::Of::position ? 1.0 / (s * s) : 1.0);
     if (t.of != Term::Of::reaction) return;
-    const int channel = d.skeleton->written.signals[at(t.signal)].channel;
+    const int channel = w.signals[at(t.signal)].channel;
     for (const int e : drive[at(channel)].added) add_force(b, -c, e, drive);
   }
 
-  void add_force(Balance& b, const MatrixXcd& N, int e, const std::vector<Drive>& drive) {
-    const Equation& q = d.skeleton->written.equations[at(e)];
-    const MatrixXcd f = q.part.whole() ? N : MatrixXcd(N * q.part.rows.transpose());
+  void add_force(Balance& b, const MatrixXd& N, int e, const std::vector<Drive>& drive) {
+    const Equation& q = w.equations[at(e)];
+    const MatrixXd f = q.part.whole() ? N : MatrixXd(N * q.part.rows.transpose());
     for (const Term& t : q.terms) subtract(b, f, t, drive);
   }
 
   void channels() {
-    const Graph& w = d.skeleton->written;
     const std::vector<Drive> drive = drives(w);
     for (std::size_t c = 0; c < drive.size(); ++c) {
       const Channel& channel = w.channels[c];
@@ -132,66 +155,69 @@ struct Residual {
         const Equation& q = w.equations[at(e)];
         const MatrixXd S =
             q.part.whole() ? MatrixXd::Identity(channel.size, channel.size) : q.part.rows;
-        Balance b(static_cast<int>(S.rows()));
+        Balance b(S.rows());
         b.known = values.known(channel.accel);
         b.add(S, values.of(channel.accel));
         for (const Term& t : q.terms) subtract(b, MatrixXd::Identity(S.rows(), S.rows()), t, drive);
-        take(b, print(w, q));
+        take(b, [&] { return print(w, q); });
       }
       if (drive[c].N.rows() == 0) continue;
-      Balance b(static_cast<int>(drive[c].N.rows()));
+      Balance b(drive[c].N.rows());
       b.known = values.known(channel.force);
       b.add(drive[c].N, values.of(channel.force));
       for (const auto* list : {&drive[c].force, &drive[c].added})
         for (const int e : *list) add_force(b, drive[c].N, e, drive);
-      take(b, "the forces at " + channel_name(w, static_cast<int>(c)));
+      take(b, [&] { return "the forces at " + channel_name(w, static_cast<int>(c)); });
     }
     for (const Equation& q : w.equations) {
       if (w.signals[at(q.target)].channel >= 0) continue;
       const int n = w.signals[at(q.target)].size;
       Balance b(n);
       b.known = values.known(q.target);
-      b.add(MatrixXd::Identity(n, n), values.of(q.target));
+      b.add_identity(values.of(q.target), 1);
       for (const Term& t : q.terms) subtract(b, MatrixXd::Identity(n, n), t, drive);
-      take(b, print(w, q));
+      take(b, [&] { return print(w, q); });
+    }
+  }
+
+  /// Subtracts matrix * (inputs of the node). What is not known must not matter.
+  void subtract_inputs(Balance& b, const Node& node, int end, const MatrixXd& matrix,
+                       Eigen::Index row) {
+    for (int i = node.first_signal; i < end; ++i) {
+      const Signal& u = w.signals[at(i)];
+      if (u.role != Signal::Role::input) continue;
+      const auto c = matrix.block(row, u.first, b.difference.size(), u.size);
+      b.known = b.known && (values.known(i) || c.isZero(0));
+      b.add(c, values.of(i), false, -1);
     }
   }
 
   /// s x = A x + B u and y = C x + D u of every block.
   void blocks() {
-    const Graph& w = d.skeleton->written;
-    for (const Node& stage_node : d.graph().nodes) {
-      const int index = stage_node.declared;
+    for (std::size_t k = 0; k < d.graph().nodes.size(); ++k) {
+      const int index = d.graph().nodes[k].declared;
       const Node& node = w.nodes[at(index)];
-      const Dynamics& m =
-          *d.numbers.blocks[static_cast<std::size_t>(&stage_node - d.graph().nodes.data())];
+      const Dynamics& m = *d.numbers.blocks[k];
       const int end = end_signal(w, index);
-      const auto inputs = [&](Balance& b, const MatrixXd& matrix) {
-        for (int i = node.first_signal; i < end; ++i)
-          if (const Signal& u = w.signals[at(i)]; u.role == Signal::Role::input) {
-            b.known = b.known && (values.known(i) || matrix.middleCols(u.first, u.size).isZero(0));
-            b.add(-matrix.middleCols(u.first, u.size), values.of(i));
-          }
-      };
       if (node.state >= 0 && values.known(node.state)) {
-        Balance b(static_cast<int>(m.A.rows()));
-        b.add(s * MatrixXcd::Identity(m.A.rows(), m.A.rows()), values.of(node.state));
-        b.add(-m.A, values.of(node.state));
-        inputs(b, m.B);
-        take(b, "the states of " + node.name);
+        Balance b(m.A.rows());
+        b.add_identity(values.of(node.state), s, true);
+        b.add(m.A, values.of(node.state), true, -1);
+        subtract_inputs(b, node, end, m.B, 0);
+        take(b, [&] { return "the states of " + node.name; });
       }
       for (int o = node.first_signal; o < end; ++o) {
         const Signal& y = w.signals[at(o)];
         if (y.role != Signal::Role::output || !values.known(o)) continue;
         Balance b(y.size);
-        b.add(MatrixXd::Identity(y.size, y.size), values.of(o));
+        b.add_identity(values.of(o), 1);
         if (node.state >= 0) {
-          b.known =
-              b.known && (values.known(node.state) || m.C.middleRows(y.first, y.size).isZero(0));
-          b.add(-m.C.middleRows(y.first, y.size), values.of(node.state));
+          const auto C = m.C.middleRows(y.first, y.size);
+          b.known = b.known && (values.known(node.state) || C.isZero(0));
+          b.add(C, values.of(node.state), true, -1);
         }
-        inputs(b, m.D.middleRows(y.first, y.size));
-        take(b, name_of(w, o));
+        subtract_inputs(b, node, end, m.D, y.first);
+        take(b, [&] { return name_of(w, o); });
       }
     }
   }
@@ -199,13 +225,13 @@ struct Residual {
 
 void self_check(SystemData& d) {
   Numbers random;
-  MatrixXcd u(static_cast<Eigen::Index>(d.layout().inputs.size()), 1);
+  solve::RowMatrix<std::complex<double>> u(static_cast<Eigen::Index>(d.layout().inputs.size()), 1);
   for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = {random.next(), random.next()};
   d.certificate.s = pick_s(d);
   if (u.size() == 0) return;  // nothing moves
   const Evaluation<std::complex<double>> point(d, d.certificate.s, u);
   const Values values(d, point);
-  Residual r{d, values, d.certificate.s, 0, {}};
+  Residual r{d, values, d.certificate.s};
   r.channels();
   r.blocks();
   d.certificate.residual = r.worst;
@@ -215,13 +241,16 @@ void self_check(SystemData& d) {
 /// Loop matrix of one strong component: its rows and unknowns of the equations, dense.
 MatrixXd loop_matrix(const SystemData& d, const Loop& loop) {
   const Graph& g = d.graph();
-  std::vector<int> column(g.signals.size(), -1);
+  std::vector<int> column;  // of the loop's signals, which ascend
   int n = 0;
-  for (const int s : loop.signals) column[at(s)] = n, n += g.signals[at(s)].size;
+  for (const int s : loop.signals) column.push_back(n), n += g.signals[at(s)].size;
   MatrixXd L = MatrixXd::Zero(n, n);
   int row = 0;
   const auto put = [&](const MatrixXd& c, int signal) {
-    if (column[at(signal)] >= 0) L.block(row, column[at(signal)], c.rows(), c.cols()) += c;
+    const auto found = std::lower_bound(loop.signals.begin(), loop.signals.end(), signal);
+    if (found != loop.signals.end() && *found == signal)
+      L.block(row, column[static_cast<std::size_t>(found - loop.signals.begin())], c.rows(),
+              c.cols()) += c;
   };
   for (const int r : loop.rows) {
     const Row& q = d.skeleton->stage.rows[at(r)];
@@ -253,11 +282,15 @@ void margins(SystemData& d, Stage& stage) {
       ++skipped;
       continue;
     }
+    if (loop.unknowns == 1) {
+      loop.margin_is_exact = true;  // 1, whatever its coefficient
+      continue;
+    }
     const MatrixXd L = loop_matrix(d, loop);
     if (L.size() == 0) continue;
     const linalg::Inverse inverse = linalg::inverse(L);
     if (inverse.rcond == 0) continue;
-    loop.margin = loop.unknowns == 1 ? 1 : linalg::perron(inverse.matrix.cwiseAbs() * L.cwiseAbs());
+    loop.margin = linalg::perron(inverse.matrix.cwiseAbs() * L.cwiseAbs());
     loop.margin_is_exact = true;
     if (loop.margin > d.certificate.margin) {
       d.certificate.margin = loop.margin;

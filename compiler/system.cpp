@@ -151,6 +151,8 @@ const StateSpace& System::state_space() const {
   return data_->dense;
 }
 
+void System::write(StateSpace& model) const { detail::write_dense(*data_, model); }
+
 std::vector<Pole> System::poles() const { return titop::poles(state_space()); }
 
 Certificate System::certificate() const {

@@ -61,6 +61,10 @@ class System {
   /// Options::minimize_up_to states, minimizes it (O(n^3)); later calls return the same.
   const StateSpace& state_space() const;
 
+  /// The dense model before `minimize`, into a model of the caller's, whose memory is used again
+  /// where it fits: what a loop over parameters wants. O(n^2). Const and thread-safe.
+  void write(StateSpace& model) const;
+
   /// Poles of state_space() with frequency, damping and the blocks that take part. O(n^3).
   std::vector<Pole> poles() const;
 
