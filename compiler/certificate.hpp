@@ -22,11 +22,15 @@ struct Certificate {
   double weakest_pivot = 1;
   std::string weakest_where;  ///< signal
   double pivot_growth = 1;  ///< largest entry met in the elimination over the largest at its start
-  /// Largest margin rho(|L^-1| |L|) of an algebraic loop, and its signals; 1 for no loop.
+  /// Largest margin rho(|L^-1| |L|) of an algebraic loop with matrix L, and its first signal: 1 for
+  /// no loop, 4/delta at distance delta from singular; invariant under any change of units.
   double margin = 1;
   bool margin_is_exact = true;  ///< false where some loops were too large for it (see the notes)
   std::string margin_where;
-  double seconds = 0;  ///< what this check cost
+  int fronts = 0;         ///< of the elimination
+  int fronts_made = 0;    ///< of them, by the last compile or update; the others are shared
+  int plans_renewed = 0;  ///< updates since compile for which the old scaling no longer served
+  double seconds = 0;     ///< what this check cost
 };
 
 /// One line per item, in plain words.

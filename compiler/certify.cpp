@@ -45,33 +45,22 @@ std::complex<double> pick_s(const SystemData& d) {
   return {0.37 * w, 0.93 * w};
 }
 
-/// Signals of the diagram as written, from those of the stage (whose nodes stand by name).
+/// All signals at one s.
 class Values {
  public:
-  Values(const SystemData& d, const Evaluation<std::complex<double>>& point)
-      : d_(d), map_(d.skeleton->written.signals.size(), -1) {
-    const Graph& w = d.skeleton->written;
-    const Graph& g = d.graph();
-    for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
-      const Node& from = g.nodes[at(i)];
-      const Node& to = w.nodes[at(from.declared)];
-      for (int k = 0; k < end_signal(g, i) - from.first_signal; ++k)
-        map_[at(to.first_signal + k)] = from.first_signal + k;
-    }
-    for (const Input& i : g.inputs) map_[at(w.inputs[at(i.declared)].signal)] = i.signal;
-    for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) values_.push_back(point.value(s));
+  Values(const SystemData& d, const Evaluation<std::complex<double>>& point) : g_(d.graph()) {
+    for (int s = 0; s < static_cast<int>(g_.signals.size()); ++s) values_.push_back(point.value(s));
   }
-  const VectorXcd& of(int signal) const { return values_[at(map_[at(signal)])]; }
+  const VectorXcd& of(int signal) const { return values_[at(signal)]; }
   /// Computed: active, or external, or at rest because no input moves it.
   bool known(int signal) const {
-    const Signal& s = d_.graph().signals[at(map_[at(signal)])];
+    const Signal& s = g_.signals[at(signal)];
     return s.active || s.role == Signal::Role::external;
   }
 
  private:
-  const SystemData& d_;
-  std::vector<VectorXcd> values_;  ///< per signal of the stage's graph
-  std::vector<int> map_;
+  const Graph& g_;
+  std::vector<VectorXcd> values_;
 };
 
 /// One equation: left - right, and the sum of magnitudes, row by row.
@@ -119,7 +108,7 @@ struct Residual {
   const SystemData& d;
   const Values& values;
   std::complex<double> s;
-  const Graph& w = d.skeleton->written;
+  const Graph& w = *d.skeleton->stage.source;
   double worst = 0;
   std::string where = {};
 
@@ -148,7 +137,8 @@ struct Residual {
   }
 
   void channels() {
-    const std::vector<Drive> drive = drives(w);
+    const auto& cached = d.skeleton->stage.drives;
+    const std::vector<Drive> drive = cached ? *cached : drives(w);
     for (std::size_t c = 0; c < drive.size(); ++c) {
       const Channel& channel = w.channels[c];
       for (const int e : drive[c].accel) {
@@ -194,10 +184,9 @@ struct Residual {
 
   /// s x = A x + B u and y = C x + D u of every block.
   void blocks() {
-    for (std::size_t k = 0; k < d.graph().nodes.size(); ++k) {
-      const int index = d.graph().nodes[k].declared;
+    for (int index = 0; index < static_cast<int>(w.nodes.size()); ++index) {
       const Node& node = w.nodes[at(index)];
-      const Dynamics& m = *d.numbers.blocks[k];
+      const Dynamics& m = *d.numbers.blocks[at(index)];
       const int end = end_signal(w, index);
       if (node.state >= 0 && values.known(node.state)) {
         Balance b(m.A.rows());
@@ -238,75 +227,6 @@ void self_check(SystemData& d) {
   d.certificate.residual_where = r.where;
 }
 
-/// Loop matrix of one strong component: its rows and unknowns of the equations, dense.
-MatrixXd loop_matrix(const SystemData& d, const Loop& loop) {
-  const Graph& g = d.graph();
-  std::vector<int> column;  // of the loop's signals, which ascend
-  int n = 0;
-  for (const int s : loop.signals) column.push_back(n), n += g.signals[at(s)].size;
-  MatrixXd L = MatrixXd::Zero(n, n);
-  int row = 0;
-  const auto put = [&](const MatrixXd& c, int signal) {
-    const auto found = std::lower_bound(loop.signals.begin(), loop.signals.end(), signal);
-    if (found != loop.signals.end() && *found == signal)
-      L.block(row, column[static_cast<std::size_t>(found - loop.signals.begin())], c.rows(),
-              c.cols()) += c;
-  };
-  for (const int r : loop.rows) {
-    const Row& q = d.skeleton->stage.rows[at(r)];
-    if (row + q.size > n) return {};
-    if (q.equation >= 0) {
-      const Equation& e = g.equations[at(q.equation)];
-      const int size = g.signals[at(e.target)].size;
-      put(e.part.whole() ? MatrixXd::Identity(size, size) : e.part.rows, e.target);
-      for (const Term& t : e.terms) put(-*std::get<Matrix>(t.factors.front()).value, t.signal);
-    } else {
-      const Signal& y = g.signals[at(q.output)];
-      put(MatrixXd::Identity(y.size, y.size), q.output);
-      for (int i = g.nodes[at(q.node)].first_signal; i < end_signal(g, q.node); ++i)
-        if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input)
-          put(-d.numbers.blocks[at(q.node)]->D.block(y.first, u.first, y.size, u.size), i);
-    }
-    row += q.size;
-  }
-  return row == n ? L : MatrixXd();
-}
-
-constexpr int kExactUpTo = 120;  ///< unknowns; above it a dense inverse per loop costs too much
-
-void margins(SystemData& d, Stage& stage) {
-  const Graph& g = d.graph();
-  int skipped = 0;
-  for (Loop& loop : stage.loops) {
-    if (loop.unknowns > kExactUpTo) {
-      ++skipped;
-      continue;
-    }
-    if (loop.unknowns == 1) {
-      loop.margin_is_exact = true;  // 1, whatever its coefficient
-      continue;
-    }
-    const MatrixXd L = loop_matrix(d, loop);
-    if (L.size() == 0) continue;
-    const linalg::Inverse inverse = linalg::inverse(L);
-    if (inverse.rcond == 0) continue;
-    loop.margin = linalg::perron(inverse.matrix.cwiseAbs() * L.cwiseAbs());
-    loop.margin_is_exact = true;
-    if (loop.margin > d.certificate.margin) {
-      d.certificate.margin = loop.margin;
-      d.certificate.margin_where = name_of(g, loop.signals.front());
-    }
-  }
-  if (skipped == 0) return;
-  d.certificate.margin_is_exact = false;
-  stage.notes.push_back(
-      {Note::Kind::info, "certify",
-       fmt::format("{} loop{} of more than {} unknowns: judged by {} pivots, "
-                   "not by {} margin",
-                   skipped, skipped == 1 ? "" : "s", kExactUpTo, skipped == 1 ? "its" : "their",
-                   skipped == 1 ? "its" : "their")});
-}
-
 }  // namespace
 
 double dense_difference(const SystemData& d, const StateSpace& m) {
@@ -334,29 +254,27 @@ double dense_difference(const SystemData& d, const StateSpace& m) {
   return worst;
 }
 
-void certify(SystemData& d, Stage& stage) {
+void certify(SystemData& d) {
   const auto start = std::chrono::steady_clock::now();
   const solve::Health h = d.factors->health();
-  d.certificate.weakest_pivot = h.weakest;
+  Certificate& c = d.certificate;
+  c.weakest_pivot = h.weakest;
   if (h.weakest_variable >= 0)
-    d.certificate.weakest_where =
-        name_of(d.graph(), d.skeleton->joint.variables[at(h.weakest_variable)]);
-  d.certificate.pivot_growth = h.growth;
-  margins(d, stage);
+    c.weakest_where = name_of(d.graph(), d.skeleton->joint.variables[at(h.weakest_variable)]);
+  c.pivot_growth = h.growth;
+  c.fronts = static_cast<int>(d.skeleton->joint.plan->fronts.size());
+  c.fronts_made = d.factors->fronts_made();
+  worst_margin(d);
   self_check(d);
-  d.certificate.seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const double lost = 2.2e-16 * d.certificate.margin;
+  c.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double lost = 2.2e-16 * c.margin;
   if (lost > 1e-8)
-    stage.notes.push_back(
-        {Note::Kind::warning, "certify",
-         fmt::format("the loop at {} has margin {:.2g}: about {:.0f} digits are left",
-                     d.certificate.margin_where, d.certificate.margin,
-                     std::max(0.0, -std::log10(lost)))});
-  if (d.certificate.residual > 1e-9)
-    stage.notes.push_back({Note::Kind::warning, "certify",
-                           fmt::format("{} holds only to {:.1g}", d.certificate.residual_where,
-                                       d.certificate.residual)});
+    d.notes.push_back({Note::Kind::warning, "certify",
+                       fmt::format("the loop at {} has margin {:.2g}: about {:.0f} digits are left",
+                                   c.margin_where, c.margin, std::max(0.0, -std::log10(lost)))});
+  if (c.residual > 1e-9)
+    d.notes.push_back({Note::Kind::warning, "certify",
+                       fmt::format("{} holds only to {:.1g}", c.residual_where, c.residual)});
 }
 
 }  // namespace titop::detail

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <titop/compiler/dot.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/solve/blame.hpp>
@@ -64,6 +65,7 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
   k.joint = solve::joint(k.stage, d.numbers.coefficients);
   d.factors =
       std::make_unique<const solve::Factors<double>>(k.joint.plan, detail::real_rows(k, d.numbers));
+  k.dependents = detail::find_dependents(k.stage, k.joint);
   if (const solve::Health health = d.factors->health(); health.singular)
     throw Error(solve::blame(k.stage, k.joint, d.numbers.blocks, health));
   k.stage.notes.push_back({Note::Kind::info, "solve",
@@ -77,7 +79,6 @@ System compile(const Diagram& diagram, const Options& options) {
   auto data = std::make_shared<detail::SystemData>();
   auto skeleton = std::make_shared<detail::Skeleton>();
   data->skeleton = skeleton;
-  skeleton->written = diagram.graph();
   skeleton->options = options;
   Stage& stage = skeleton->stage;
   stage.graph = diagram.graph();
@@ -92,8 +93,13 @@ System compile(const Diagram& diagram, const Options& options) {
     dump(options, ++number, pass.name, stage);
   }
   timed(*data, "solve", [&] { solve_joint(*skeleton, *data); });
-  timed(*data, "certify", [&] { detail::certify(*data, stage); });
   data->notes = stage.notes;
+  timed(*data, "certify", [&] {
+    std::vector<int> loops(stage.loops.size());
+    std::iota(loops.begin(), loops.end(), 0);
+    detail::find_margins(*data, loops);
+    detail::certify(*data);
+  });
   return System(std::move(data));
 }
 

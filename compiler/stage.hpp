@@ -1,6 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <string>
+#include <titop/graph/drives.hpp>
 #include <titop/graph/graph.hpp>
 #include <vector>
 
@@ -33,9 +35,6 @@ struct Loop {
   std::vector<int> signals;  ///< its unknowns
   std::vector<int> rows;     ///< the rows matched to them (see `Rows`)
   int unknowns = 0;          ///< scalars
-  double margin = 1;         ///< rho(|L^-1| |L|): 1 for no loop, 4/delta at distance delta from
-                             ///< singular; invariant under any change of units
-  bool margin_is_exact = false;
 };
 
 /// One row group of the equations: an output of a block, or an equation of the user.
@@ -51,15 +50,33 @@ struct Matched {
   std::vector<std::pair<int, int>> rows;
 };
 
+/// Where an equation of the lowered graph comes from, so that it can be lowered again for other
+/// values of the parameters.
+struct Origin {
+  enum class Of {
+    accel,      ///< equation `index` of the source, on an acceleration
+    force,      ///< all that drives the force of channel `index`
+    one_way,    ///< equation `index` of the source, on a one-way port
+    algebraic,  ///< the row of output signal `index` of a node that has become coefficients
+    output,     ///< output `index` of the diagram
+  };
+  Of of = Of::accel;
+  int index = -1;
+  std::vector<int> parameters = {};  ///< that its coefficients depend on, ascending
+};
+
 /// What travels through the passes: the graph and what is known about it so far.
 struct Stage {
   Graph graph;
-  std::vector<double> values;         ///< parameter values
-  std::vector<Note> notes;            ///< the log
-  std::vector<Row> rows;              ///< after match: all rows
-  Matched matched;                    ///< after match
-  std::vector<Inversion> inversions;  ///< after match
-  std::vector<Loop> loops;            ///< after order: dependencies first
+  std::vector<double> values;           ///< parameter values
+  std::shared_ptr<const Graph> source;  ///< after lower: in its order, equations as written
+  std::vector<Origin> origins;          ///< after lower: of every equation, then of every output
+  std::shared_ptr<const std::vector<Drive>> drives;  ///< of source, where there are parameters
+  std::vector<Note> notes;                           ///< the log
+  std::vector<Row> rows;                             ///< after match: all rows
+  Matched matched;                                   ///< after match
+  std::vector<Inversion> inversions;                 ///< after match
+  std::vector<Loop> loops;                           ///< after order: dependencies first
 };
 
 }  // namespace titop

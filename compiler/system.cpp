@@ -162,9 +162,8 @@ Certificate System::certificate() const {
 }
 
 std::string System::log() const {
-  std::string text =
-      fmt::format("{}: {} states, {} inputs, {} outputs\n", data_->skeleton->written.name, order(),
-                  inputs().size(), outputs().size());
+  std::string text = fmt::format("{}: {} states, {} inputs, {} outputs\n", data_->graph().name,
+                                 order(), inputs().size(), outputs().size());
   for (const std::vector<Note>* list :
        {&data_->notes, const_cast<const std::vector<Note>*>(&data_->dense_notes)})
     for (const Note& n : *list)

@@ -9,6 +9,7 @@
 #include <titop/compiler/stage.hpp>
 #include <titop/graph/diagram.hpp>
 #include <titop/graph/state_space.hpp>
+#include <utility>
 #include <vector>
 
 namespace titop {
@@ -28,6 +29,9 @@ struct Options {
   /// rounding cannot tell from nothing.
   double resolution = 0;
 };
+
+/// Values of parameters by name: {{"k1", 12.0}, {"angle", 0.3}}.
+using ParameterList = std::vector<std::pair<std::string, double>>;
 
 /// A compiled diagram: the elimination plan, the factors and the blocks' data. Const, cheap to
 /// copy, may be shared between threads. The dense model is written from it on demand.
@@ -67,6 +71,17 @@ class System {
 
   /// Poles of state_space() with frequency, damping and the blocks that take part. O(n^3).
   std::vector<Pole> poles() const;
+
+  /// A new system where parameters (Diagram::param) have other values; those not named keep theirs.
+  /// It shares the plan with this one, and all fronts of the elimination that do not depend on
+  /// them: O(those fronts) and one pointer per block. States keep number and meaning. The scaling
+  /// is found anew where the old one no longer serves (Certificate::plans_renewed counts that).
+  /// Throws unknown_name (with the names there are), not_finite, what the blocks throw for values
+  /// that make no block (bad_inertia, bad_value), improper and ill_posed.
+  System update(const ParameterList& values) const;
+
+  /// All parameters and their values here, in the order of their making.
+  ParameterList parameters() const;
 
   Certificate certificate() const;
   /// What the passes did: counts, inversions, what was removed, what was not checked, timings.

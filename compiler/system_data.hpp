@@ -21,19 +21,29 @@ struct Layout {
 };
 Layout make_layout(const Graph& graph);
 
+/// What a parameter moves.
+struct Dependents {
+  std::vector<int> nodes;    ///< whose matrices change
+  std::vector<int> origins;  ///< equations and outputs whose coefficients change
+  std::vector<int> rows;     ///< row groups of the joint system in which either stands
+  std::vector<int> loops;    ///< Stage::loops with one of these rows
+};
+std::vector<Dependents> find_dependents(const Stage& stage, const solve::Joint& joint);
+
 /// What does not depend on numbers: shared by all systems that `update` makes of one another.
 struct Skeleton {
-  Graph written;  ///< the diagram as the user wrote it
-  Stage stage;    ///< after the passes
+  Stage stage;  ///< after the passes
   Options options;
   solve::Joint joint;
   Layout layout;
+  std::vector<Dependents> dependents;  ///< per parameter
 };
 
 struct SystemData {
   std::shared_ptr<const Skeleton> skeleton;
   solve::Numbers numbers;
   std::unique_ptr<const solve::Factors<double>> factors;
+  std::vector<double> margins;  ///< per loop of the stage; 0 where it was not found
   Certificate certificate;
   std::vector<Note> notes;
   std::vector<std::pair<std::string, double>> seconds;  ///< per pass
@@ -63,7 +73,12 @@ void write_dense(const SystemData& data, StateSpace& model);
 /// and u (fixed seed). O(n^2).
 double dense_difference(const SystemData& data, const StateSpace& dense);
 
-/// Margins of the loops, certificate of the factors: see certify.cpp.
-void certify(SystemData& data, Stage& stage);
+/// Margins of these loops of the stage, into SystemData::margins.
+void find_margins(SystemData& data, std::span<const int> loops);
+/// The largest of all margins, into the certificate.
+void worst_margin(SystemData& data);
+
+/// Certificate of the factors, once the margins are known: see certify.cpp.
+void certify(SystemData& data);
 
 }  // namespace titop::detail

@@ -110,14 +110,29 @@ std::vector<Term> merged(Sum1 sum) {
 struct Lowering {
   const Graph& g;
   ParameterValues values;
-  std::vector<Drive> drive;
+  std::shared_ptr<const std::vector<Drive>> all_drives;
+  const std::vector<Drive>& drive = *all_drives;
   std::vector<char> visiting;  ///< channels whose position is being written out
+  std::vector<int> met = {};   ///< parameters met since it was last cleared
   std::vector<Mistake> mistakes = {};
+
+  Lowering(const Graph& graph, ParameterValues v, std::shared_ptr<const std::vector<Drive>> d)
+      : g(graph), values(v), all_drives(std::move(d)), visiting(graph.channels.size(), 0) {}
+
+  /// What an equation or output of the lowered graph amounts to.
+  Sum1 amount(const Origin& origin);
+  void meet(const std::vector<Value>& list) {
+    for (const Value& v : list)
+      if (v.is_parameter()) met.push_back(v.index());
+  }
+  MatrixXd coefficient_of(const Term& t);
 
   /// What one equation or output amounts to; its mistakes are kept, with the line it stands on.
   template <class F>
   Sum1 collect(const std::source_location& where, F amount);
   Sum1 terms(const std::vector<Term>& list);
+  Sum1 force(int channel);
+  Sum1 algebraic(int output);
   Sum1 position(int channel);
   Sum1 body_position(const Channel& c, const Kinematics& k);
   Sum1 added(int channel, const std::vector<int>& equations);
@@ -160,7 +175,7 @@ Sum1 Lowering::added(int channel, const std::vector<int>& equations) {
 Sum1 Lowering::terms(const std::vector<Term>& list) {
   Sum1 sum;
   for (const Term& t : list) {
-    const MatrixXd c = coefficient(g, t, values);
+    const MatrixXd c = coefficient_of(t);
     if (!c.allFinite())
       throw Error(Code::not_finite, fmt::format("the coefficient of {} is not finite", print(g, t)),
                   "look at its gains and parameters");
@@ -194,10 +209,11 @@ Sum1 Lowering::position(int channel) {
         const Signal& s = g.signals[at(t.signal)];
         if (s.channel < 0 || s.quantity != Quantity::acceleration)
           no_position(channel, fmt::format("{} is driven by {}", name_of(g, c.accel), print(g, t)));
-        append(sum, times(embed * coefficient(g, t, values), position(s.channel)));
+        append(sum, times(embed * coefficient_of(t), position(s.channel)));
       }
     }
   } else if (const auto k = g.nodes[at(c.node)].block->kinematics(values)) {
+    meet(g.nodes[at(c.node)].block->values());
     sum = body_position(c, *k);
   } else {
     no_position(channel,
@@ -230,92 +246,158 @@ Sum1 Lowering::body_position(const Channel& c, const Kinematics& k) {
   no_position(node.first_channel + c.spec, fmt::format("{} moves freely", node.name));
 }
 
+MatrixXd Lowering::coefficient_of(const Term& t) {
+  for (const Factor& f : t.factors)
+    if (const auto* k = std::get_if<Value>(&f))
+      meet({*k});
+    else if (const auto* T = std::get_if<Rotation>(&f))
+      meet(T->values());
+  return coefficient(g, t, values);
+}
+
 // --- equations --------------------------------------------------------------------------------
 
-Equation equation(int target, Part part, Sum1 sum, const std::source_location& where) {
-  return {.target = target,
-          .part = std::move(part),
-          .accumulate = false,
-          .terms = merged(std::move(sum)),
-          .where = where};
-}
-
-void lower_channel(Lowering& l, int channel, std::vector<Equation>& out) {
-  const Channel& c = l.g.channels[at(channel)];
-  const Drive& d = l.drive[at(channel)];
-  std::source_location where = l.g.nodes[at(c.node)].where;
-  for (const int e : d.accel) {
-    const Equation& old = l.g.equations[at(e)];
-    out.push_back(equation(c.accel, old.part,
-                           l.collect(old.where, [&] { return l.terms(old.terms); }), old.where));
-  }
-  if (d.N.rows() == 0) return;
+Sum1 Lowering::force(int channel) {
+  const Drive& d = drive[at(channel)];
   std::vector<int> all = d.force;
   all.insert(all.end(), d.added.begin(), d.added.end());
-  if (!all.empty()) where = l.g.equations[at(all.front())].where;
-  const bool whole = d.N.rows() == c.size;
-  Part part;
-  if (!whole) part = {d.N, ".free"};
-  Sum1 sum = l.collect(where, [&] { return l.added(channel, all); });
-  out.push_back(equation(c.force, std::move(part),
-                         whole ? std::move(sum) : times(d.N, std::move(sum)), where));
+  Sum1 sum = added(channel, all);
+  return d.N.rows() == g.channels[at(channel)].size ? sum : times(d.N, std::move(sum));
 }
 
-/// out = D in, as an equation.
-void lower_algebraic(const Graph& g, int index, ParameterValues values,
-                     std::vector<Equation>& out) {
-  const Node& node = g.nodes[at(index)];
+/// out = D in.
+Sum1 Lowering::algebraic(int output) {
+  const Signal& y = g.signals[at(output)];
+  const Node& node = g.nodes[at(y.node)];
+  meet(node.block->values());
   const auto d = node.block->dynamics(values);
   const Pattern pattern = node.block->feedthrough();
-  const int end = end_signal(g, index);
-  for (int o = node.first_signal; o < end; ++o) {
-    const Signal& y = g.signals[at(o)];
-    if (y.role != Signal::Role::output) continue;
-    Sum1 sum;
-    for (int i = node.first_signal; i < end; ++i) {
-      const Signal& u = g.signals[at(i)];
-      if (u.role == Signal::Role::input)
-        sum.push_back({i, d->D.block(y.first, u.first, y.size, u.size),
-                       pattern.block(y.first, u.first, y.size, u.size)});
-    }
-    out.push_back(equation(o, {}, std::move(sum), node.where));
+  Sum1 sum;
+  for (int i = node.first_signal; i < end_signal(g, y.node); ++i)
+    if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input)
+      sum.push_back({i, d->D.block(y.first, u.first, y.size, u.size),
+                     pattern.block(y.first, u.first, y.size, u.size)});
+  return sum;
+}
+
+Sum1 Lowering::amount(const Origin& o) {
+  switch (o.of) {
+    case Origin::Of::accel:
+    case Origin::Of::one_way: return terms(g.equations[at(o.index)].terms);
+    case Origin::Of::force: return force(o.index);
+    case Origin::Of::algebraic: return algebraic(o.index);
+    case Origin::Of::output: return terms(g.outputs[at(o.index)].terms);
   }
+  return {};
+}
+
+/// The lowered equations, one after the other, each with its origin.
+struct Lowered {
+  Lowering& l;
+  std::vector<Equation> equations = {};
+  std::vector<Origin> origins = {};
+
+  std::vector<Term> terms(Origin origin, const std::source_location& where) {
+    l.met.clear();
+    std::vector<Term> result = merged(l.collect(where, [&] { return l.amount(origin); }));
+    std::sort(l.met.begin(), l.met.end());
+    l.met.erase(std::unique(l.met.begin(), l.met.end()), l.met.end());
+    origin.parameters = l.met;
+    origins.push_back(std::move(origin));
+    return result;
+  }
+
+  void equation(Origin origin, int target, Part part, const std::source_location& where) {
+    std::vector<Term> list = terms(std::move(origin), where);
+    equations.push_back({.target = target,
+                         .part = std::move(part),
+                         .accumulate = false,
+                         .terms = std::move(list),
+                         .where = where});
+  }
+
+  void channel(int index) {
+    const Channel& c = l.g.channels[at(index)];
+    const Drive& d = l.drive[at(index)];
+    for (const int e : d.accel)
+      equation({Origin::Of::accel, e}, c.accel, l.g.equations[at(e)].part,
+               l.g.equations[at(e)].where);
+    if (d.N.rows() == 0) return;
+    const std::vector<int>& first = d.force.empty() ? d.added : d.force;
+    equation({Origin::Of::force, index}, c.force,
+             d.N.rows() == c.size ? Part{} : Part{d.N, ".free"},
+             first.empty() ? l.g.nodes[at(c.node)].where : l.g.equations[at(first.front())].where);
+  }
+
+  void one_way() {
+    std::vector<int> list;
+    for (int e = 0; e < static_cast<int>(l.g.equations.size()); ++e)
+      if (l.g.signals[at(l.g.equations[at(e)].target)].channel < 0) list.push_back(e);
+    std::sort(list.begin(), list.end(), [&](int a, int b) {
+      return l.g.equations[at(a)].target < l.g.equations[at(b)].target;
+    });
+    for (const int e : list)
+      equation({Origin::Of::one_way, e}, l.g.equations[at(e)].target, {},
+               l.g.equations[at(e)].where);
+  }
+
+  void algebraic(int node) {
+    const Node& n = l.g.nodes[at(node)];
+    for (int o = n.first_signal; o < end_signal(l.g, node); ++o)
+      if (l.g.signals[at(o)].role == Signal::Role::output)
+        equation({Origin::Of::algebraic, o}, o, {}, n.where);
+  }
+};
+
+Graph without_equations(const Graph& g) {
+  return {.name = g.name,
+          .nodes = g.nodes,
+          .channels = g.channels,
+          .signals = g.signals,
+          .equations = {},
+          .inputs = g.inputs,
+          .outputs = g.outputs,
+          .parameters = g.parameters,
+          .mistakes = {}};
 }
 
 }  // namespace
 
 Stage lower(Stage stage) {
-  Graph g = by_name(stage.graph);
-  Lowering l{g, stage.values, drives(g), std::vector<char>(g.channels.size(), 0)};
-  std::vector<Equation> equations;
-  for (int c = 0; c < static_cast<int>(g.channels.size()); ++c) lower_channel(l, c, equations);
-  std::vector<int> one_way;
-  for (int e = 0; e < static_cast<int>(g.equations.size()); ++e)
-    if (g.signals[at(g.equations[at(e)].target)].channel < 0) one_way.push_back(e);
-  std::sort(one_way.begin(), one_way.end(),
-            [&](int a, int b) { return g.equations[at(a)].target < g.equations[at(b)].target; });
-  for (const int e : one_way) {
-    const Equation& old = g.equations[at(e)];
-    equations.push_back(equation(
-        old.target, {}, l.collect(old.where, [&] { return l.terms(old.terms); }), old.where));
-  }
+  stage.source = std::make_shared<const Graph>(by_name(stage.graph));
+  Graph g = without_equations(*stage.source);
+  auto all_drives = std::make_shared<const std::vector<Drive>>(drives(*stage.source));
+  Lowering l(*stage.source, stage.values, all_drives);
+  if (!g.parameters.empty()) stage.drives = std::move(all_drives);
+  Lowered out{l};
+  for (int c = 0; c < static_cast<int>(g.channels.size()); ++c) out.channel(c);
+  out.one_way();
   int algebraic = 0;
   for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i)
     if (g.nodes[at(i)].block->is_algebraic()) {
-      lower_algebraic(g, i, stage.values, equations);
+      out.algebraic(i);
       g.nodes[at(i)].lowered = true;
       ++algebraic;
     }
-  for (Output& o : g.outputs)
-    o.terms = merged(l.collect(o.where, [&] { return l.terms(o.terms); }));
+  for (int o = 0; o < static_cast<int>(g.outputs.size()); ++o)
+    g.outputs[at(o)].terms = out.terms({Origin::Of::output, o}, g.outputs[at(o)].where);
   if (!l.mistakes.empty()) throw Error(std::move(l.mistakes));
-  g.equations = std::move(equations);
+  g.equations = std::move(out.equations);
+  stage.origins = std::move(out.origins);
   stage.graph = std::move(g);
   stage.notes.push_back(
       {Note::Kind::info, "lower",
        fmt::format("{} nodes ({} of them as coefficients), {} equations", stage.graph.nodes.size(),
                    algebraic, stage.graph.equations.size())});
   return stage;
+}
+
+std::vector<std::vector<Term>> lower_again(const Stage& stage, const std::vector<int>& origins,
+                                           ParameterValues values) {
+  Lowering l(*stage.source, values, stage.drives);
+  std::vector<std::vector<Term>> result;
+  for (const int o : origins) result.push_back(merged(l.amount(stage.origins[at(o)])));
+  return result;
 }
 
 }  // namespace titop::passes

@@ -18,6 +18,11 @@ Stage check(Stage stage);
 /// coefficient; Gain and Sum are equations. Throws no_position, not_finite. O(terms).
 Stage lower(Stage stage);
 
+/// The terms of these equations and outputs (by their places in Stage::origins) for other parameter
+/// values, in the order asked for. Throws as `lower` does. O(these terms).
+std::vector<std::vector<Term>> lower_again(const Stage& stage, const std::vector<int>& origins,
+                                           ParameterValues values);
+
 /// Connected parts (ground not counted) without an input or without an output are set aside and
 /// listed; not so if the diagram has no inputs (outputs) at all: then all states count as driven
 /// (seen). O(terms).

@@ -1,0 +1,217 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <titop/compiler/passes/passes.hpp>
+#include <titop/compiler/solve/blame.hpp>
+#include <titop/compiler/system_data.hpp>
+
+/// New values of the parameters on the same plan: only what depends on them is made again.
+namespace titop {
+namespace detail {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+void sort_unique(std::vector<int>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+/// Which parameters each coefficient depends on, by its index.
+std::vector<const std::vector<int>*> parameters_of_coefficients(const Stage& stage,
+                                                                const solve::Joint& joint) {
+  std::vector<const std::vector<int>*> result;
+  const auto take = [&](int first, std::size_t terms, const Origin& origin) {
+    result.resize(std::max(result.size(), at(first) + terms), nullptr);
+    for (std::size_t k = 0; k < terms; ++k) result[at(first) + k] = &origin.parameters;
+  };
+  const Graph& g = stage.graph;
+  for (std::size_t e = 0; e < g.equations.size(); ++e)
+    take(joint.equation_coefficient[e], g.equations[e].terms.size(), stage.origins[e]);
+  for (std::size_t o = 0; o < g.outputs.size(); ++o)
+    take(joint.output_coefficient[o], g.outputs[o].terms.size(),
+         stage.origins[g.equations.size() + o]);
+  return result;
+}
+
+}  // namespace
+
+std::vector<Dependents> find_dependents(const Stage& stage, const solve::Joint& joint) {
+  const Graph& g = stage.graph;
+  std::vector<Dependents> result(g.parameters.size());
+  if (result.empty()) return result;
+  std::vector<std::vector<int>> of_node(g.nodes.size());
+  for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i)
+    for (const Value& v : g.nodes[at(i)].block->values())
+      if (v.is_parameter()) of_node[at(i)].push_back(v.index());
+  for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i)
+    for (const int p : of_node[at(i)]) result[at(p)].nodes.push_back(i);
+  for (int o = 0; o < static_cast<int>(stage.origins.size()); ++o)
+    for (const int p : stage.origins[at(o)].parameters) result[at(p)].origins.push_back(o);
+  const auto of_coefficient = parameters_of_coefficients(stage, joint);
+  std::vector<int> loop_of_row(stage.rows.size(), -1), row_of_equation(g.equations.size(), -1);
+  for (int l = 0; l < static_cast<int>(stage.loops.size()); ++l)
+    for (const int r : stage.loops[at(l)].rows) loop_of_row[at(r)] = l;
+  for (int r = 0; r < static_cast<int>(stage.rows.size()); ++r)
+    if (const int e = stage.rows[at(r)].equation; e >= 0) row_of_equation[at(e)] = r;
+  for (int r = 0; r < static_cast<int>(joint.rows.size()); ++r) {
+    const auto depends = [&](const std::vector<int>& parameters) {
+      for (const int p : parameters) result[at(p)].rows.push_back(r);
+    };
+    for (const solve::Piece& p : joint.row(r)) {
+      using Left = solve::Piece::Left;
+      if (p.of == Left::direct || p.of == Left::state) depends(of_node[at(p.left)]);
+      for (const int c : {p.of == Left::coefficient ? p.left : -1, p.right})
+        if (c >= 0 && at(c) < of_coefficient.size() && of_coefficient[at(c)])
+          depends(*of_coefficient[at(c)]);
+    }
+  }
+  for (Dependents& d : result) {
+    sort_unique(d.nodes);
+    sort_unique(d.rows);
+    const auto add_loop = [&](int stage_row) {
+      if (stage_row >= 0 && loop_of_row[at(stage_row)] >= 0)
+        d.loops.push_back(loop_of_row[at(stage_row)]);
+    };
+    for (const int r : d.rows) add_loop(joint.rows[at(r)]);
+    // Equations that are written out have no row of their own there.
+    for (const int o : d.origins)
+      if (at(o) < g.equations.size()) add_loop(row_of_equation[at(o)]);
+    sort_unique(d.loops);
+  }
+  return result;
+}
+
+namespace {
+
+/// The parameters that get another value, and the values of all.
+std::vector<int> set_values(const Graph& g, const ParameterList& list,
+                            std::vector<double>& values) {
+  std::vector<Mistake> mistakes;
+  std::vector<int> changed;
+  for (const auto& [name, value] : list) {
+    const auto found = std::find_if(g.parameters.begin(), g.parameters.end(),
+                                    [&](const Parameter& p) { return p.name == name; });
+    if (found == g.parameters.end()) {
+      std::string names;
+      for (const Parameter& p : g.parameters) names += (names.empty() ? "" : ", ") + p.name;
+      mistakes.push_back({Code::unknown_name,
+                          fmt::format("{} has no parameter {}", g.name, name),
+                          {},
+                          names.empty() ? "make one with Diagram::param and use it for a number"
+                                        : "its parameters are " + names});
+      continue;
+    }
+    if (!std::isfinite(value)) {
+      mistakes.push_back({Code::not_finite,
+                          fmt::format("parameter {} is set to {}", name, value),
+                          {},
+                          "give it a finite value"});
+      continue;
+    }
+    const int index = static_cast<int>(found - g.parameters.begin());
+    if (values[at(index)] == value) continue;
+    values[at(index)] = value;
+    changed.push_back(index);
+  }
+  if (!mistakes.empty()) throw Error(std::move(mistakes));
+  sort_unique(changed);
+  return changed;
+}
+
+template <class Member>
+std::vector<int> united(const Skeleton& k, const std::vector<int>& changed, Member member) {
+  std::vector<int> result;
+  for (const int p : changed) {
+    const std::vector<int>& list = k.dependents[at(p)].*member;
+    result.insert(result.end(), list.begin(), list.end());
+  }
+  if (changed.size() > 1) sort_unique(result);
+  return result;
+}
+
+void remake_blocks(const Skeleton& k, const std::vector<int>& nodes, solve::Numbers& n) {
+  for (const int i : nodes) {
+    const Node& node = k.stage.graph.nodes[at(i)];
+    try {
+      n.blocks[at(i)] = node.block->dynamics(n.parameters);
+    } catch (const Error& error) {
+      std::vector<Mistake> mistakes = error.mistakes();
+      for (Mistake& m : mistakes)
+        m.message = fmt::format("{} with the new values: {}", node.name, m.message);
+      throw Error(std::move(mistakes));
+    }
+  }
+}
+
+void remake_coefficients(const Skeleton& k, const std::vector<int>& origins, solve::Numbers& n) {
+  if (origins.empty()) return;
+  const auto terms = passes::lower_again(k.stage, origins, n.parameters);
+  const std::size_t equations = k.stage.graph.equations.size();
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    const std::size_t o = at(origins[i]);
+    const int first =
+        o < equations ? k.joint.equation_coefficient[o] : k.joint.output_coefficient[o - equations];
+    for (std::size_t t = 0; t < terms[i].size(); ++t)
+      n.coefficients[at(first) + t] = solve::coefficient_of(terms[i][t]);
+  }
+}
+
+/// True where the scaling found for the old values no longer serves: pivots that were good have
+/// lost half their digits, or none are left.
+bool outgrown(const solve::Health& now, const solve::Health& before) {
+  return now.singular || now.weakest < 1e-8 * before.weakest || now.growth > 1e8 * before.growth;
+}
+
+}  // namespace
+}  // namespace detail
+
+System System::update(const ParameterList& list) const {
+  using namespace detail;
+  const Skeleton& k = *data_->skeleton;
+  auto d = std::make_shared<SystemData>();
+  d->skeleton = data_->skeleton;
+  d->numbers = data_->numbers;
+  const std::vector<int> changed = set_values(k.stage.graph, list, d->numbers.parameters);
+  remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
+  remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers);
+  const auto rows = real_rows(k, d->numbers);
+  d->certificate.plans_renewed = data_->certificate.plans_renewed;
+  d->factors = std::make_unique<const solve::Factors<double>>(
+      data_->factors->changed(rows, united(k, changed, &Dependents::rows)));
+  if (outgrown(d->factors->health(), data_->factors->health())) {
+    d->factors = std::make_unique<const solve::Factors<double>>(k.joint.plan, rows);
+    ++d->certificate.plans_renewed;
+  }
+  if (const solve::Health health = d->factors->health(); health.singular) {
+    Stage stage = k.stage;
+    stage.values = d->numbers.parameters;
+    throw Error(solve::blame(stage, k.joint, d->numbers.blocks, health));
+  }
+  d->notes = data_->notes;
+  std::erase_if(d->notes, [](const Note& n) { return n.pass == "certify" || n.pass == "update"; });
+  std::string values;
+  for (const int p : changed)
+    values += fmt::format("{}{} = {:.6g}", values.empty() ? "" : ", ",
+                          k.stage.graph.parameters[static_cast<std::size_t>(p)].name,
+                          d->numbers.parameters[static_cast<std::size_t>(p)]);
+  d->notes.push_back(
+      {Note::Kind::info, "update",
+       fmt::format("{}: {} of {} fronts made again", values.empty() ? "no new value" : values,
+                   d->factors->fronts_made(), k.joint.plan->fronts.size())});
+  d->margins = data_->margins;
+  find_margins(*d, united(k, changed, &Dependents::loops));
+  certify(*d);
+  return System(std::move(d));
+}
+
+std::vector<std::pair<std::string, double>> System::parameters() const {
+  std::vector<std::pair<std::string, double>> result;
+  const auto& list = data_->graph().parameters;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    result.emplace_back(list[i].name, data_->numbers.parameters[i]);
+  return result;
+}
+
+}  // namespace titop

@@ -1,0 +1,145 @@
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <titop/titop.hpp>
+
+#include "support/close.hpp"
+#include "support/mistakes.hpp"
+
+/// New values on the old plan against a fresh compile of the same numbers.
+
+using namespace titop;
+using titop_test::error_of;
+using titop_test::matrix_error;
+using titop_test::says;
+
+namespace {
+
+struct Numbers {
+  double mass = 4.4, angle = 0.3, k = 26.3, gain = 1.3, out = 5.5;
+};
+
+FlexibleBody boom() {
+  return Beam{.length = 2.0,
+              .section = rectangle(0.06, 0.04),
+              .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
+              .elements = 3,
+              .modes = {.kept = 6, .xi = {0.005}}};
+}
+
+/// Hub, boom at an angle, hinge with a spring, controller gain: a parameter in every place.
+Diagram scene(const Numbers& n) {
+  Diagram d{"drive"};
+  auto U = d.input("U", 6);
+  auto B = d.add("B", RigidBody{.mass = d.param("mass", n.mass), .children = {{"C1", {1, 0, 0}}}});
+  auto A = d.add("A", boom());
+  auto tip = d.add("tip", RigidBody{.mass = 2.0});
+  auto g = d.add("g", Gain{.gain = d.param("gain", n.gain)});
+  B.parent.force = -U;
+  auto h = hinge(d, "h", A, B.child("C1"),
+                 Rotation::about({0, 3, 4}, Value(d.param("angle", n.angle))), {0, 0, 1});
+  mount(tip, A.child);
+  g.in = h.rate;
+  h.torque = d.param("k", n.k) * h.angle + g.out;
+  d.output("a", 6) = tip.parent.accel;
+  d.output("x") = d.param("out", n.out) * h.angle;
+  return d;
+}
+
+double distance(const System& a, const System& b) {
+  StateSpace m, n;
+  a.write(m);
+  b.write(n);
+  double worst = 0;
+  for (const auto& [x, y] :
+       {std::pair(&m.A, &n.A), std::pair(&m.B, &n.B), std::pair(&m.C, &n.C), std::pair(&m.D, &n.D)})
+    worst = std::max(worst, (*x - *y).cwiseAbs().maxCoeff() / y->cwiseAbs().maxCoeff());
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("update: the same model as a fresh compile, whatever parameter changes") {
+  const System before = compile(scene({}));
+  const std::vector<std::pair<ParameterList, Numbers>> cases{
+      {{{"mass", 9.0}}, {.mass = 9.0}},
+      {{{"angle", -1.2}}, {.angle = -1.2}},
+      {{{"k", 3.0}}, {.k = 3.0}},
+      {{{"gain", 0.0}}, {.gain = 0.0}},
+      {{{"out", -2.0}}, {.out = -2.0}},
+      {{{"mass", 1.0}, {"angle", 2.0}, {"k", 1e3}}, {.mass = 1.0, .angle = 2.0, .k = 1e3}}};
+  for (const auto& [list, numbers] : cases) {
+    CAPTURE(list.front().first);
+    const System updated = before.update(list), fresh = compile(scene(numbers));
+    CHECK(distance(updated, fresh) <= 1e-14);
+    CHECK(updated.states() == fresh.states());
+    CHECK(updated.certificate().residual <= 1e-13);
+    CHECK(distance(updated, before) >= 1e-7);
+    const std::complex<double> s{0.3, 7};
+    CHECK(matrix_error(updated.transfer(s), fresh.transfer(s)) <= 1e-13);
+  }
+}
+
+TEST_CASE("update: there and back is the same to the last bit") {
+  const System before = compile(scene({}));
+  const System back =
+      before.update({{"mass", 9.0}, {"k", 1.0}}).update({{"mass", 4.4}, {"k", 26.3}});
+  CHECK(distance(back, before) == 0);
+  CHECK(back.parameters() == before.parameters());
+}
+
+namespace {
+
+/// Balanced binary tree of springs; the mass of the last leaf is a parameter.
+Diagram tree(int levels) {
+  Diagram d{"tree"};
+  auto u = d.input("u");
+  const int n = (1 << levels) - 1;
+  std::vector<SpringMass::Handle> z;
+  z.reserve(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) {
+    z.push_back(d.add(fmt::format("z{}", i + 1),
+                      SpringMass{.mass = i + 1 == n ? Value(d.param("m", 1.0)) : Value(1.0),
+                                 .stiffness = 100.0,
+                                 .parent_mass = 0.5}));
+    if (i == 0)
+      ground(z[0]);
+    else
+      mount(z.back(), z[static_cast<std::size_t>((i - 1) / 2)].child);
+  }
+  z[0].child.force += u;
+  d.output("a") = z.back().child.accel;
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("update: one body changed makes only the fronts up to the root again") {
+  const System before = compile(tree(9));
+  const System after = before.update({{"m", 3.0}});
+  CHECK(before.certificate().fronts_made == before.certificate().fronts);
+  CHECK(after.certificate().fronts_made >= 1);
+  CHECK(after.certificate().fronts_made <= 4 * 9);
+  CHECK(after.certificate().fronts >= 500);
+  CHECK(before.update({{"m", 1.0}}).certificate().fronts_made == 0);
+}
+
+TEST_CASE("update: the scaling is found anew where it no longer serves, and that is counted") {
+  // Units change under it: a mass of 1 becomes 1e-250, and half of all exponents move.
+  const System before = compile(tree(3));
+  const System after = before.update({{"m", 1e-250}});
+  CHECK(after.certificate().residual <= 1e-12);
+  CHECK(after.certificate().plans_renewed <= 1);
+}
+
+TEST_CASE("update: unknown names, values that are none, values that make no block") {
+  const System s = compile(scene({}));
+  CHECK(says(error_of([&] {
+               s.update({{"mas", 1.0}});
+             }),
+             Code::unknown_name, {"drive has no parameter mas", "mass, gain, angle, k, out"}));
+  CHECK(says(error_of([&] { s.update({{"k", std::nan("")}}); }), Code::not_finite, {"k"}));
+  CHECK(says(error_of([&] { s.update({{"mass", -1.0}}); }), Code::bad_inertia, {"B", "-1"}));
+  CHECK(error_of([&] { s.update({{"a", 1.0}, {"b", 2.0}}); }).mistakes().size() == 2);
+  CHECK(says(error_of([&] { compile(tree(2)).update({{"K", 1.0}}); }), Code::unknown_name, {"m"}));
+}
