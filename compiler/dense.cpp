@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <numeric>
+#include <titop/compiler/parallel.hpp>
 #include <titop/compiler/solve/propagation.hpp>
 #include <titop/compiler/system_data.hpp>
 
@@ -42,15 +43,26 @@ struct Target {
 
 class Writer {
  public:
-  Writer(const SystemData& d, StateSpace& m)
-      : d_(d), k_(*d.skeleton), g_(d.graph()), m_(m), states_(d.layout().order()) {}
+  Writer(const SystemData& d, StateSpace& m, int threads)
+      : d_(d),
+        k_(*d.skeleton),
+        g_(d.graph()),
+        m_(m),
+        states_(d.layout().order()),
+        threads_(threads) {}
 
   void write() {
     shape();
     find_sources();
     find_targets();
-    solve::Propagation propagation(*d_.factors);
-    for (std::size_t i = 0; i < sources_.size();) i = batch(propagation, i);
+    const solve::Propagation propagation(*d_.factors);
+    const std::vector<std::size_t> begin = batches();
+    parallel(begin.size() - 1, threads_, [&] {
+      return [this, &propagation, &begin, space = solve::Propagation::Space{},
+              values = std::vector<double>{}](std::size_t i) mutable {
+        columns(propagation, begin[i], begin[i + 1], space, values);
+      };
+    });
     add_known();
     for (const int i : d_.layout().state_nodes) add_own(i);
   }
@@ -148,6 +160,7 @@ class Writer {
       for (int s = node.first_signal; s < node.state; ++s)
         if (const Signal& in = g_.signals[at(s)]; in.role == Signal::Role::input && in.active)
           read(t, s, b.B.block(t.zeros, in.first, t.rows, in.size));
+      join_neighbours(t);
       targets_.push_back(std::move(t));
     }
     for (std::size_t o = 0; o < g_.outputs.size(); ++o) {
@@ -179,50 +192,77 @@ class Writer {
     }
   }
 
+  /// Parts that read neighbours among the unknowns become one.
+  static void join_neighbours(Target& t) {
+    std::sort(t.unknown.begin(), t.unknown.end(),
+              [](const Target::Part& a, const Target::Part& b) { return a.first < b.first; });
+    std::vector<Target::Part> joined;
+    for (Target::Part& p : t.unknown) {
+      if (joined.empty() || joined.back().first + joined.back().E.cols() != p.first) {
+        joined.push_back(std::move(p));
+        continue;
+      }
+      RowMatrix<double> both(p.E.rows(), joined.back().E.cols() + p.E.cols());
+      both << joined.back().E, p.E;
+      joined.back().E = std::move(both);
+    }
+    t.unknown = std::move(joined);
+  }
+
   // --- columns ---------------------------------------------------------------------------------
 
-  /// Solves for the sources from `begin` on that fit into a batch; returns the next one.
-  std::size_t batch(solve::Propagation& propagation, std::size_t begin) {
-    std::size_t end = begin;
-    Index columns = 0;
-    do columns += sources_[end++].columns;
-    while (end < sources_.size() && columns + sources_[end].columns <= kBatch);
-    // Sums do not depend on the number of columns, so that filling up changes nothing.
-    columns = (columns + 15) / 16 * 16;
+  /// First sources of the batches, and the end.
+  std::vector<std::size_t> batches() const {
+    std::vector<std::size_t> begin;
+    Index columns = kBatch;
+    for (std::size_t i = 0; i < sources_.size(); ++i) {
+      if (columns + sources_[i].columns > kBatch) begin.push_back(i), columns = 0;
+      columns += sources_[i].columns;
+    }
+    begin.push_back(sources_.size());
+    return begin;
+  }
+
+  /// Solves for these sources and writes their columns.
+  void columns(const solve::Propagation& propagation, std::size_t begin, std::size_t end,
+               solve::Propagation::Space& space, std::vector<double>& values) {
+    Index m = 0;
+    for (std::size_t i = begin; i < end; ++i) m += sources_[i].columns;
+    m = (m + 15) / 16 * 16;  // no sum depends on the number of columns
     std::vector<int> rows;
-    rhs_.clear();
+    std::vector<double> rhs;
     Index first = 0;
     for (std::size_t i = begin; i < end; ++i) {
       const Source& s = sources_[i];
       for (std::size_t r = 0; r < s.rows.size(); ++r) {
         rows.push_back(s.rows[r]);
-        const std::size_t old = rhs_.size();
-        rhs_.resize(old + at(s.c[r].rows() * columns), 0);
+        const std::size_t old = rhs.size();
+        rhs.resize(old + at(s.c[r].rows() * m), 0);
         for (Index row = 0; row < s.c[r].rows(); ++row)
-          for (Index j = 0; j < s.columns; ++j)
-            rhs_[old + at(row * columns + first + j)] = s.c[r](row, j);
+          for (Index j = 0; j < s.columns; ++j) rhs[old + at(row * m + first + j)] = s.c[r](row, j);
       }
       first += s.columns;
     }
-    propagation.solve(rows, rhs_, columns, z_);
-    for (const Target& t : targets_) fill(t, begin, end, columns);
-    return end;
+    propagation.solve(rows, rhs, m, space);
+    for (const Target& t : targets_) {
+      values.assign(at(t.rows * m), 0);
+      for (const Target::Part& p : t.unknown)
+        solve::multiply_add(t.rows, p.E.cols(), m, p.E.data(), p.E.cols(),
+                            space.z.data() + p.first * m, values.data());
+      fill(t, begin, end, m, values);
+    }
   }
 
-  void fill(const Target& t, std::size_t begin, std::size_t end, Index columns) {
-    values_.assign(at(t.rows * columns), 0);
-    for (const Target::Part& p : t.unknown)
-      solve::multiply_add(t.rows, p.E.cols(), columns, p.E.data(), p.E.cols(),
-                          z_.data() + p.first * columns, values_.data());
+  void fill(const Target& t, std::size_t begin, std::size_t end, Index columns,
+            const std::vector<double>& values) {
     const bool state = t.row < states_;
     MatrixXd& by_x = state ? m_.A : m_.C;
     MatrixXd& by_u = state ? m_.B : m_.D;
     const Index row = state ? t.row : t.row - states_;
-    Index first = 0;
+    const double* from = values.data();
     for (std::size_t i = begin; i < end; ++i) {
       const Source& s = sources_[i];
-      for (Index j = 0; j < s.columns; ++j) {
-        const double* from = values_.data() + first + j;
+      for (Index j = 0; j < s.columns; ++j, ++from) {
         if (s.modal) {
           put(by_x, row, t, s.first + j, from, columns, -s.modal->stiffness(j));
           put(by_x, row, t, s.first + s.columns + j, from, columns, -s.modal->damping(j));
@@ -232,7 +272,6 @@ class Writer {
           put(by_u, row, t, s.first - states_ + j, from, columns, 1);
         }
       }
-      first += s.columns;
     }
   }
 
@@ -278,11 +317,13 @@ class Writer {
   Index states_;
   std::vector<Source> sources_;
   std::vector<Target> targets_;
-  std::vector<double> rhs_, z_, values_;
+  int threads_;
 };
 
 }  // namespace
 
-void write_dense(const SystemData& data, StateSpace& model) { Writer(data, model).write(); }
+void write_dense(const SystemData& data, StateSpace& model, int threads) {
+  Writer(data, model, threads).write();
+}
 
 }  // namespace titop::detail

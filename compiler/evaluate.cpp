@@ -1,16 +1,73 @@
 #include <fmt/format.h>
 
 #include <titop/compiler/evaluate.hpp>
+#include <titop/compiler/solve/scalar.hpp>
 
 namespace titop::detail {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-solve::Response<std::complex<double>> response(const Block& block, const Dynamics&,
-                                               std::complex<double> s, ParameterValues parameters) {
-  Block::Response r = block.response(s, parameters);
-  return {std::move(r.X), std::move(r.Y)};
+using solve::lift;
+using solve::lifted;
+
+/// In double and below the block itself knows best: its own formula cancels least.
+template <class T>
+solve::Response<T> response_in_double(const Block& block, const T& s, ParameterValues parameters) {
+  const Block::Response r = block.response(solve::Scalar<T>::round(s), parameters);
+  return {lifted<T>(r.X), lifted<T>(r.Y)};
+}
+
+/// Y = rigid + W' diag(s^2 / d) W, d = s^2 + damping s + stiffness.
+template <class T>
+solve::Response<T> modal_response(const Modal& m, const T& s) {
+  const auto n = m.W.rows();
+  const solve::Dense<T> W = lifted<T>(m.W);
+  solve::Response<T> r{solve::Dense<T>(2 * n, W.cols()), lifted<T>(m.rigid)};
+  for (Eigen::Index i = 0; i < n; ++i) {
+    const T d = s * s + lift<T>(m.damping(i)) * s + lift<T>(m.stiffness(i));
+    for (Eigen::Index j = 0; j < W.cols(); ++j) {
+      r.X(i, j) = W(i, j) / d;
+      r.X(n + i, j) = s * r.X(i, j);
+      for (Eigen::Index k = 0; k < W.cols(); ++k) r.Y(k, j) += W(i, k) * s * r.X(n + i, j);
+    }
+  }
+  return r;
+}
+
+/// X = (s - A)^-1 B by elimination with row pivoting, Y = C X + D.
+template <class T>
+solve::Response<T> general_response(const Dynamics& d, const T& s) {
+  const auto n = d.A.rows();
+  solve::Dense<T> E = -solve::Dense<T>(lifted<T>(d.A)), X = lifted<T>(d.B);
+  for (Eigen::Index i = 0; i < n; ++i) E(i, i) += s;
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::Index best = k;
+    for (Eigen::Index i = k + 1; i < n; ++i)
+      if (solve::size_of(E(i, k)) > solve::size_of(E(best, k))) best = i;
+    E.row(k).swap(E.row(best));
+    X.row(k).swap(X.row(best));
+    for (Eigen::Index i = 0; i < n; ++i) {
+      if (i == k || E(i, k) == T(0)) continue;
+      const T f = E(i, k) / E(k, k);
+      for (Eigen::Index j = k; j < n; ++j) E(i, j) -= f * E(k, j);
+      for (Eigen::Index j = 0; j < X.cols(); ++j) X(i, j) -= f * X(k, j);
+    }
+  }
+  for (Eigen::Index k = 0; k < n; ++k)
+    for (Eigen::Index j = 0; j < X.cols(); ++j) X(k, j) /= E(k, k);
+  solve::Dense<T> Y = lifted<T>(d.D);
+  for (Eigen::Index i = 0; i < Y.rows(); ++i)
+    for (Eigen::Index j = 0; j < Y.cols(); ++j)
+      for (Eigen::Index k = 0; k < n; ++k) Y(i, j) += lift<T>(d.C(i, k)) * X(k, j);
+  return {std::move(X), std::move(Y)};
+}
+
+template <class T>
+solve::Response<T> response(const Block& block, const Dynamics& d, const T& s,
+                            ParameterValues parameters) {
+  if (solve::Scalar<T>::epsilon() > 1e-16) return response_in_double(block, s, parameters);
+  return d.modal ? modal_response(*d.modal, s) : general_response(d, s);
 }
 
 /// Nodes whose rows or states are in use.
@@ -46,7 +103,8 @@ solve::Matrices<T> Evaluation<T>::respond(const T& s) {
 }
 
 template <class T>
-Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u)
+Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
+                          const Evaluation<std::complex<double>>* coarse)
     : data_(data),
       u_(u),
       first_(data.graph().signals.size(), -1),
@@ -54,13 +112,34 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
   const int states = static_cast<int>(data.layout().states.size());
   for (const Input& i : data.graph().inputs)
     first_[at(i.signal)] = data.layout().known_first[at(i.signal)] - states;
-  const solve::Factors<T> factors(data.skeleton->joint.plan, rows_, data.factors->scale());
-  if (factors.health().singular)
+  if (coarse) {
+    refine(*coarse);
+    return;
+  }
+  factors_ = std::make_unique<const solve::Factors<T>>(data.skeleton->joint.plan, rows_,
+                                                       data.factors->scale());
+  if (factors_->health().singular) {
+    const std::complex<double> z = solve::Scalar<T>::round(s);
     throw Error(Code::singular,
-                fmt::format("{} has a pole at s = {}{:+}j", data.graph().name,
-                            static_cast<double>(s.real()), static_cast<double>(s.imag())),
+                fmt::format("{} has a pole at s = {}{:+}j", data.graph().name, z.real(), z.imag()),
                 "evaluate beside it");
-  unknowns_ = factors.solve(rows_.rhs(u_, first_));
+  }
+  unknowns_ = factors_->solve(rows_.rhs(u_, first_));
+}
+
+template <class T>
+void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
+  using D = std::complex<double>;
+  const auto up = [](const solve::RowMatrix<D>& m) {
+    return solve::RowMatrix<T>(m.unaryExpr([](const D& x) { return solve::Scalar<T>::from(x); }));
+  };
+  const solve::RowMatrix<T> rhs = rows_.rhs(u_, first_);
+  unknowns_ = up(coarse.unknowns());
+  for (int step = 0; step < 3; ++step) {
+    const solve::RowMatrix<T> left = rows_.residual(rhs, unknowns_);
+    unknowns_ += up(
+        coarse.solve(left.unaryExpr([](const T& x) -> D { return solve::Scalar<T>::round(x); })));
+  }
 }
 
 template <class T>
@@ -90,12 +169,13 @@ solve::RowMatrix<T> Evaluation<T>::outputs() const {
       const int signal = g.outputs[o].terms[k].signal;
       const auto& c =
           *data_.numbers.coefficients[at(data_.skeleton->joint.output_coefficient[o]) + k];
-      y.middleRows(layout.output_first[o], g.outputs[o].size) +=
-          c.template cast<T>() * value(signal);
+      y.middleRows(layout.output_first[o], g.outputs[o].size) += lifted<T>(c) * value(signal);
     }
   return y;
 }
 
-template class Evaluation<std::complex<double>>;
+#define TITOP_INSTANTIATE(T) template class Evaluation<T>;
+TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
+#undef TITOP_INSTANTIATE
 
 }  // namespace titop::detail

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <titop/compiler/system_data.hpp>
 
 namespace titop::detail {
@@ -10,8 +11,11 @@ namespace titop::detail {
 template <class T>
 class Evaluation {
  public:
-  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block.
-  Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u);
+  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block. With
+  /// `coarse`, the same s and u in double, its factors serve: three steps of iterative refinement,
+  /// blocks and residuals in T.
+  Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
+             const Evaluation<std::complex<double>>* coarse = nullptr);
 
   /// signal size x columns.
   solve::RowMatrix<T> value(int signal) const;
@@ -19,7 +23,14 @@ class Evaluation {
   /// The diagram's outputs x columns.
   solve::RowMatrix<T> outputs() const;
 
+  const solve::RowMatrix<T>& unknowns() const { return unknowns_; }
+  solve::RowMatrix<T> solve(const solve::RowMatrix<T>& rhs) const { return factors_->solve(rhs); }
+  /// Of the elimination: see Certificate::weakest_pivot.
+  double weakest_pivot() const { return factors_->health().weakest; }
+
  private:
+  void refine(const Evaluation<std::complex<double>>& coarse);
+
   solve::Matrices<T> respond(const T& s);
 
   const SystemData& data_;
@@ -28,6 +39,7 @@ class Evaluation {
   std::map<std::pair<const Block*, const Dynamics*>, solve::Response<T>> responses_;
   std::vector<const solve::Response<T>*> of_node_;
   solve::JointRows<T> rows_;
+  std::unique_ptr<const solve::Factors<T>> factors_;
   solve::RowMatrix<T> unknowns_;
 };
 

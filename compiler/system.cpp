@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/minimize.hpp>
+#include <titop/compiler/parallel.hpp>
+#include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/compiler/system_data.hpp>
 
@@ -80,16 +82,67 @@ System::Rates System::apply(const VectorXd& x, const VectorXd& u) const {
   return {r.xdot, r.y};
 }
 
-MatrixXcd System::transfer(std::complex<double> s) const {
-  using T = std::complex<double>;
-  const auto m = static_cast<Eigen::Index>(inputs().size());
-  return detail::Evaluation<T>(*data_, s, solve::RowMatrix<T>::Identity(m, m)).outputs();
+namespace {
+
+using Double = std::complex<double>;
+using Extended = std::complex<long double>;
+
+template <class T>
+MatrixXcd rounded(const solve::RowMatrix<T>& m) {
+  return m.unaryExpr([](const T& x) -> Double { return solve::Scalar<T>::round(x); });
 }
 
-std::vector<MatrixXcd> System::frequency_response(std::span<const double> omega) const {
-  std::vector<MatrixXcd> result;
-  result.reserve(omega.size());
-  for (const double w : omega) result.push_back(transfer({0, w}));
+template <class T>
+solve::RowMatrix<T> unit_inputs(const detail::SystemData& d) {
+  const auto m = static_cast<Eigen::Index>(d.layout().inputs.size());
+  solve::RowMatrix<T> u = solve::RowMatrix<T>::Zero(m, m);
+  for (Eigen::Index i = 0; i < m; ++i) u(i, i) = T(1);
+  return u;
+}
+
+template <class T>
+MatrixXcd transfer_in(const detail::SystemData& d, Double s) {
+  return rounded<T>(
+      detail::Evaluation<T>(d, solve::Scalar<T>::from(s), unit_inputs<T>(d)).outputs());
+}
+
+MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
+  const detail::Evaluation<Double> coarse(d, s, unit_inputs<Double>(d));
+  return rounded<Extended>(
+      detail::Evaluation<Extended>(d, Extended(s), unit_inputs<Extended>(d), &coarse).outputs());
+}
+
+/// The coarsest whose rounding, over what cancellation leaves of the weakest pivot, is 1e-12.
+MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
+  constexpr double kEnough = 1e-12;
+  const detail::Evaluation<Double> plain(d, s, unit_inputs<Double>(d));
+  if (2e-16 <= kEnough * plain.weakest_pivot()) return rounded<Double>(plain.outputs());
+  const detail::Evaluation<Extended> more(d, Extended(s), unit_inputs<Extended>(d));
+  if (solve::Scalar<Extended>::epsilon() <= kEnough * more.weakest_pivot())
+    return rounded<Extended>(more.outputs());
+  return transfer_in<solve::Complex50>(d, s);
+}
+
+}  // namespace
+
+MatrixXcd System::transfer(std::complex<double> s, Precision precision) const {
+  switch (precision) {
+    case Precision::single: return transfer_in<std::complex<float>>(*data_, s);
+    case Precision::standard: return transfer_in<Double>(*data_, s);
+    case Precision::refined: return refined_transfer(*data_, s);
+    case Precision::extended: return transfer_in<Extended>(*data_, s);
+    case Precision::digits50: return transfer_in<solve::Complex50>(*data_, s);
+    case Precision::as_needed: return transfer_as_needed(*data_, s);
+  }
+  return {};
+}
+
+std::vector<MatrixXcd> System::frequency_response(std::span<const double> omega,
+                                                  int threads) const {
+  std::vector<MatrixXcd> result(omega.size());
+  detail::parallel(omega.size(), threads, [&] {
+    return [&](std::size_t i) { result[i] = transfer({0, omega[i]}); };
+  });
   return result;
 }
 
@@ -136,7 +189,7 @@ const StateSpace& System::state_space() const {
     const detail::SystemData& d = *data_;
     const Options& options = d.skeleton->options;
     StateSpace dense;
-    detail::write_dense(d, dense);
+    detail::write_dense(d, dense, 0);
     d.dense_against_factors = detail::dense_difference(d, dense);
     if (dense.order() > 0 && dense.order() <= options.minimize_up_to) {
       minimize_checked(*this, d, dense);
@@ -151,7 +204,9 @@ const StateSpace& System::state_space() const {
   return data_->dense;
 }
 
-void System::write(StateSpace& model) const { detail::write_dense(*data_, model); }
+void System::write(StateSpace& model, int threads) const {
+  detail::write_dense(*data_, model, threads);
+}
 
 std::vector<Pole> System::poles() const { return titop::poles(state_space()); }
 

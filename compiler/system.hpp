@@ -30,6 +30,17 @@ struct Options {
   double resolution = 0;
 };
 
+/// With what arithmetic a transfer is found, coarse to fine. All run through the same elimination
+/// on the same plan; blocks are evaluated with it too, from data that are doubles.
+enum class Precision {
+  single,    ///< float: 7 digits; blocks in double
+  standard,  ///< double: 16 digits
+  refined,   ///< factors in double, blocks and residuals in long double: three refinements
+  extended,  ///< long double: 19 digits on x86
+  digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower: an oracle
+  as_needed  ///< double, and finer where the weakest pivot has lost more than four digits
+};
+
 /// Values of parameters by name: {{"k1", 12.0}, {"angle", 0.3}}.
 using ParameterList = std::vector<std::pair<std::string, double>>;
 
@@ -52,10 +63,13 @@ class System {
 
   /// Transfer matrix at s (outputs x inputs) through the factors of the same plan: O(bodies), full
   /// accuracy at any mass ratio. Throws singular if s is a pole of the system or of a block.
-  Eigen::MatrixXcd transfer(std::complex<double> s) const;
+  Eigen::MatrixXcd transfer(std::complex<double> s,
+                            Precision precision = Precision::standard) const;
 
-  /// transfer(j omega) for each omega [rad/s].
-  std::vector<Eigen::MatrixXcd> frequency_response(std::span<const double> omega) const;
+  /// transfer(j omega) for each omega [rad/s], on `threads` threads (0: all cores); the same to the
+  /// last bit whatever their number. O(bodies) per frequency.
+  std::vector<Eigen::MatrixXcd> frequency_response(std::span<const double> omega,
+                                                   int threads = 0) const;
 
   /// transfer(0), real. Throws singular if the system has a pole at 0 (a free hinge, an
   /// integrator).
@@ -66,8 +80,9 @@ class System {
   const StateSpace& state_space() const;
 
   /// The dense model before `minimize`, into a model of the caller's, whose memory is used again
-  /// where it fits: what a loop over parameters wants. O(n^2). Const and thread-safe.
-  void write(StateSpace& model) const;
+  /// where it fits: what a loop over parameters wants. O(n^2), on `threads` threads (0: all cores),
+  /// the same to the last bit whatever their number.
+  void write(StateSpace& model, int threads = 0) const;
 
   /// Poles of state_space() with frequency, damping and the blocks that take part. O(n^3).
   std::vector<Pole> poles() const;

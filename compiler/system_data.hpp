@@ -67,7 +67,7 @@ struct Rates {
 Rates rates(const SystemData& data, const solve::RowMatrix<double>& known);
 
 /// The dense model before `minimize`, into buffers that are resized only if they do not fit.
-void write_dense(const SystemData& data, StateSpace& model);
+void write_dense(const SystemData& data, StateSpace& model, int threads);
 
 /// Largest relative difference of xdot between the dense model and the factors, for one random x
 /// and u (fixed seed). O(n^2).

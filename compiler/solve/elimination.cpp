@@ -208,6 +208,8 @@ Health Factors<T>::health() const {
 }
 
 template class Factors<double>;
-template class Factors<std::complex<double>>;
+#define TITOP_INSTANTIATE(T) template class Factors<T>;
+TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
+#undef TITOP_INSTANTIATE
 
 }  // namespace titop::solve

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/numbers.hpp>
+#include <titop/compiler/solve/scalar.hpp>
 
 namespace titop::solve {
 namespace {
@@ -29,7 +30,8 @@ View<T> view(const Dense<T>& m, int row, int rows, int col, int cols) {
 template <class T, class L>
 void add_matrix(double sign, const View<L>& l, T* to, std::ptrdiff_t stride) {
   for (std::ptrdiff_t i = 0; i < l.rows; ++i)
-    for (std::ptrdiff_t j = 0; j < l.cols; ++j) to[i * stride + j] += T(sign) * l(i, j);
+    for (std::ptrdiff_t j = 0; j < l.cols; ++j)
+      to[i * stride + j] += lift<T>(sign) * lift<T>(l(i, j));
 }
 
 /// to += sign * L * R, R row-major
@@ -38,10 +40,10 @@ void add_product(double sign, const View<L>& l, const RowMatrix<double>& r, T* t
                  std::ptrdiff_t stride) {
   for (std::ptrdiff_t i = 0; i < l.rows; ++i)
     for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
-      const T a = T(sign) * l(i, k);
+      const T a = lift<T>(sign) * lift<T>(l(i, k));
       if (a == T(0)) continue;
       const double* row = r.data() + k * r.cols();
-      for (std::ptrdiff_t j = 0; j < r.cols(); ++j) to[i * stride + j] += a * T(row[j]);
+      for (std::ptrdiff_t j = 0; j < r.cols(); ++j) to[i * stride + j] += a * lift<T>(row[j]);
     }
 }
 
@@ -50,7 +52,7 @@ template <class T, class L>
 void subtract_product(double sign, const View<L>& l, const T* x, std::ptrdiff_t m, T* to) {
   for (std::ptrdiff_t i = 0; i < l.rows; ++i)
     for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
-      const T a = T(sign) * l(i, k);
+      const T a = lift<T>(sign) * lift<T>(l(i, k));
       if (a != T(0)) subtract(m, a, x + k * m, to + i * m);
     }
 }
@@ -76,7 +78,7 @@ template <class T>
 Dense<T> dense(const Piece& p, const Matrices<T>& m, const std::vector<Coefficient>& c, int size) {
   const auto right = [&] {
     return p.right < 0 ? Dense<T>(Dense<T>::Identity(size, size))
-                       : Dense<T>(c[at(p.right)]->template cast<T>());
+                       : Dense<T>(lifted<T>(*c[at(p.right)]));
   };
   Dense<T> result;
   with_left(
@@ -84,10 +86,10 @@ Dense<T> dense(const Piece& p, const Matrices<T>& m, const std::vector<Coefficie
       [&](const auto& left) {
         Dense<T> l(left.rows, left.cols);
         for (Eigen::Index i = 0; i < l.rows(); ++i)
-          for (Eigen::Index k = 0; k < l.cols(); ++k) l(i, k) = T(left(i, k));
-        result = T(p.sign) * (l * right());
+          for (Eigen::Index k = 0; k < l.cols(); ++k) l(i, k) = lift<T>(left(i, k));
+        result = lift<T>(p.sign) * (l * right());
       },
-      [&] { result = T(p.sign) * right(); });
+      [&] { result = lift<T>(p.sign) * right(); });
   return result;
 }
 
@@ -113,7 +115,7 @@ void JointRows<T>::add(int r, T* to, std::ptrdiff_t stride, const int* column) c
         [&] {
           if (right) return add_matrix(p.sign, view(*right), place, stride);
           const int size = graph_.signals[at(p.signal)].size;
-          for (int i = 0; i < size; ++i) place[i * stride + i] += T(p.sign);
+          for (int i = 0; i < size; ++i) place[i * stride + i] += lift<T>(p.sign);
         });
   }
 }
@@ -169,10 +171,9 @@ void JointRows<T>::subtract_known(const Piece& p, const RowMatrix<T>& known,
   if (written_out(p)) {
     by_inputs(p, [&](const Dense<T>& by_u, const Meaning& meaning) {
       if (joint_.variable_of[at(meaning.signal)] >= 0) return;
-      const Dense<T> c =
-          meaning.coefficient < 0
-              ? by_u
-              : Dense<T>(by_u * coefficients_[at(meaning.coefficient)]->template cast<T>());
+      const Dense<T> c = meaning.coefficient < 0
+                             ? by_u
+                             : Dense<T>(by_u * lifted<T>(*coefficients_[at(meaning.coefficient)]));
       const View<T> left = view(c, 0, static_cast<int>(c.rows()), 0, static_cast<int>(c.cols()));
       subtract_product(1, left, value(meaning.signal), m, to);
     });
@@ -203,7 +204,37 @@ void JointRows<T>::add_value(int signal, const RowMatrix<T>& unknowns, const Row
   }
 }
 
+template <class T>
+RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const {
+  const Plan& plan = *joint_.plan;
+  const std::ptrdiff_t m = rhs.cols();
+  RowMatrix<T> result = rhs;
+  std::vector<int> column;
+  std::vector<T> row;
+  for (int r = 0; r < static_cast<int>(joint_.rows.size()); ++r) {
+    column.clear();
+    int width = 0;
+    for (const int v : plan.structure.row(r)) {
+      column.push_back(width);
+      width += plan.structure.variable_size[at(v)];
+    }
+    const int size = plan.structure.row_size[at(r)];
+    row.assign(at(width) * at(size), T(0));
+    add(r, row.data(), width, column.data());
+    for (int i = 0; i < size; ++i) {
+      const T* c = row.data() + i * width;
+      for (const int v : plan.structure.row(r))
+        for (int k = 0; k < plan.structure.variable_size[at(v)]; ++k, ++c)
+          subtract(m, *c, unknowns.data() + (plan.first[at(v)] + k) * m,
+                   result.data() + (plan.row_first[at(r)] + i) * m);
+    }
+  }
+  return result;
+}
+
 template class JointRows<double>;
-template class JointRows<std::complex<double>>;
+#define TITOP_INSTANTIATE(T) template class JointRows<T>;
+TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
+#undef TITOP_INSTANTIATE
 
 }  // namespace titop::solve

@@ -38,6 +38,9 @@ class JointRows : public Rows<T> {
   /// these are known): signal i has the rows of `known` from first[i] on. O(rows) per column.
   RowMatrix<T> rhs(const RowMatrix<T>& known, std::span<const int> first) const;
 
+  /// rhs - (these rows) * unknowns: what is left of every row. O(rows) per column.
+  RowMatrix<T> residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
+
   /// signal += its meaning in unknowns and known signals; `to`: signal size x columns.
   void add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
                  std::span<const int> first, RowMatrix<T>& to) const;

@@ -11,23 +11,29 @@ class Propagation {
  public:
   explicit Propagation(const Factors<double>& factors);
 
+  /// What one solution needs; each thread has its own.
+  struct Space {
+    std::vector<double> z;         ///< the unknowns, in the order of Plan::first (unknowns x m)
+    std::vector<int> active = {};  ///< fronts of the present right-hand sides
+    std::vector<char> is_active = {};
+    std::vector<double> rows = {}, carried = {}, assembled = {};
+  };
+
   /// Right-hand sides of these row groups, m columns each (row-major, group after group); the
-  /// unknowns, in the order of Plan::first, go to z (unknowns x m).
+  /// unknowns go to space.z.
   void solve(std::span<const int> row_groups, std::span<const double> rhs, std::ptrdiff_t m,
-             std::vector<double>& z);
+             Space& space) const;
 
  private:
-  void forward(int front, std::ptrdiff_t m, std::vector<double>& z);
+  void activate(std::span<const int> row_groups, std::span<const double> rhs, std::ptrdiff_t m,
+                Space& space) const;
+  void forward(int front, std::ptrdiff_t m, Space& space) const;
   void back_substitute(int front, std::ptrdiff_t m, std::vector<double>& z) const;
 
   const Factors<double>& factors_;
   const Plan& plan_;
   std::vector<std::size_t> begin_;  ///< per front: its part of border_
   std::vector<double> border_;      ///< -U^-1 (border of U), row-major
-  std::vector<int> active_;         ///< fronts of the present right-hand sides
-  std::vector<char> is_active_;
-  std::vector<double> rows_;  ///< right-hand sides of all rows of active fronts
-  std::vector<double> carried_, assembled_;
 };
 
 /// y (rows x m) += a (rows x inner, `stride` apart) * x (inner x m), all row-major. The sum over

@@ -1,5 +1,6 @@
 #include <titop/compiler/solve/elimination.hpp>
 #include <titop/compiler/solve/kernels.hpp>
+#include <titop/compiler/solve/scalar.hpp>
 
 /// Solving with the factors: leaf to root with the right-hand sides, root to leaf with the
 /// unknowns.
@@ -74,8 +75,9 @@ RowMatrix<T> Factors<T>::solve(const RowMatrix<T>& rhs) const {
   return z;
 }
 
-template RowMatrix<double> Factors<double>::solve(const RowMatrix<double>&) const;
-template RowMatrix<std::complex<double>> Factors<std::complex<double>>::solve(
-    const RowMatrix<std::complex<double>>&) const;
+#define TITOP_INSTANTIATE(T) template RowMatrix<T> Factors<T>::solve(const RowMatrix<T>&) const;
+TITOP_INSTANTIATE(double)
+TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
+#undef TITOP_INSTANTIATE
 
 }  // namespace titop::solve
