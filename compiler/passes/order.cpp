@@ -116,10 +116,11 @@ void find_loops(Stage& stage, const std::vector<std::vector<int>>& needs) {
     loop.unknowns += g.signals[at(s)].size;
   }
   std::vector<std::pair<int, int>> kept;
+  std::vector<char> listed(stage.rows.size(), 0);  // signals that share a row share its loop
   for (const auto& [row, signal] : stage.matched.rows) {
     if (!g.signals[at(signal)].active) continue;
-    auto& list = loops[at(component[at(signal)])].rows;
-    if (std::find(list.begin(), list.end(), row) == list.end()) list.push_back(row);
+    if (!listed[at(row)]) loops[at(component[at(signal)])].rows.push_back(row);
+    listed[at(row)] = 1;
     kept.emplace_back(row, signal);
   }
   stage.matched.rows = std::move(kept);
