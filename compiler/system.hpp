@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <titop/compiler/certificate.hpp>
+#include <titop/compiler/descriptor.hpp>
 #include <titop/compiler/modal.hpp>
 #include <titop/compiler/stage.hpp>
 #include <titop/graph/diagram.hpp>
@@ -83,6 +84,9 @@ class System {
   /// where it fits: what a loop over parameters wants. O(n^2), on `threads` threads (0: all cores),
   /// the same to the last bit whatever their number.
   void write(StateSpace& model, int threads = 0) const;
+
+  /// The model before elimination as sparse matrices (compiler/descriptor.hpp). O(bodies).
+  Descriptor descriptor() const;
 
   /// Poles of state_space() with frequency, damping and the blocks that take part. O(n^3).
   std::vector<Pole> poles() const;

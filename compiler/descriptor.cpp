@@ -1,0 +1,137 @@
+#include <titop/compiler/descriptor.hpp>
+#include <titop/compiler/system_data.hpp>
+
+namespace titop {
+namespace {
+
+using detail::SystemData;
+using solve::Piece;
+using solve::RowMatrix;
+using Triplets = std::vector<Eigen::Triplet<double>>;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+struct Builder {
+  const SystemData& d;
+  const detail::Skeleton& k = *d.skeleton;
+  const Graph& g = d.graph();
+  int states = static_cast<int>(d.layout().order());
+  Triplets A = {}, B = {}, C = {}, D = {};
+
+  /// Column of a variable or state in v, or of an input in u (then `known` says so).
+  struct Place {
+    int first;
+    bool input;
+  };
+  Place place(int signal) const {
+    if (const int v = k.joint.variable_of[at(signal)]; v >= 0)
+      return {states + k.joint.plan->first[at(v)], false};
+    const int first = d.layout().known_first[at(signal)];
+    return first < states ? Place{first, false} : Place{first - states, true};
+  }
+
+  static void put(Triplets& to, int row, int column, const Eigen::MatrixXd& m) {
+    for (int j = 0; j < m.cols(); ++j)
+      for (int i = 0; i < m.rows(); ++i)
+        if (m(i, j) != 0) to.emplace_back(row + i, column + j, m(i, j));
+  }
+
+  /// factor * signal, in rows of (by_v, by_u).
+  void add(Triplets& by_v, Triplets& by_u, int row, const Eigen::MatrixXd& factor, int signal) {
+    for (const solve::Meaning& m : k.joint.meaning(signal)) {
+      const Place p = place(m.signal);
+      put(p.input ? by_u : by_v, row, p.first,
+          m.coefficient < 0 ? factor
+                            : Eigen::MatrixXd(factor * *d.numbers.coefficients[at(m.coefficient)]));
+    }
+  }
+
+  void add_states() {
+    for (const int i : d.layout().state_nodes) {
+      const Node& node = g.nodes[at(i)];
+      const Dynamics& m = *d.numbers.blocks[at(i)];
+      const int first = d.layout().state_first[at(i)];
+      put(A, first, first, m.A);
+      for (int s = node.first_signal; s < node.state; ++s)
+        if (const Signal& u = g.signals[at(s)]; u.role == Signal::Role::input && u.active)
+          add(A, B, first, m.B.middleCols(u.first, u.size), s);
+    }
+  }
+
+  Eigen::MatrixXd left(const Piece& p, int size) const {
+    switch (p.of) {
+      case Piece::Left::one: return Eigen::MatrixXd::Identity(size, size);
+      case Piece::Left::direct:
+        return d.numbers.blocks[at(p.left)]->D.block(p.row, p.col, p.rows, p.cols);
+      case Piece::Left::state: return d.numbers.blocks[at(p.left)]->C.middleRows(p.row, p.rows);
+      case Piece::Left::coefficient: return *d.numbers.coefficients[at(p.left)];
+    }
+    return {};
+  }
+
+  void add_rows() {
+    for (int r = 0; r < static_cast<int>(k.joint.rows.size()); ++r)
+      for (const Piece& p : k.joint.row(r)) {
+        Eigen::MatrixXd c =
+            p.right < 0
+                ? left(p, g.signals[at(p.signal)].size)
+                : Eigen::MatrixXd(
+                      left(p, static_cast<int>(d.numbers.coefficients[at(p.right)]->rows())) *
+                      *d.numbers.coefficients[at(p.right)]);
+        const Place to = place(p.signal);
+        put(to.input ? B : A, states + k.joint.plan->row_first[at(r)], to.first, p.sign * c);
+      }
+  }
+
+  void add_outputs() {
+    for (std::size_t o = 0; o < g.outputs.size(); ++o)
+      for (std::size_t t = 0; t < g.outputs[o].terms.size(); ++t)
+        add(C, D, d.layout().output_first[o],
+            *d.numbers.coefficients[at(k.joint.output_coefficient[o]) + t],
+            g.outputs[o].terms[t].signal);
+  }
+
+  std::vector<std::string> names() const {
+    std::vector<std::string> result = d.layout().states;
+    result.resize(at(states + k.joint.plan->unknowns));
+    for (std::size_t v = 0; v < k.joint.variables.size(); ++v) {
+      const Signal& s = g.signals[at(k.joint.variables[v])];
+      const std::string name = name_of(g, k.joint.variables[v]);
+      for (int i = 0; i < s.size; ++i)
+        result[at(states + k.joint.plan->first[v] + i)] =
+            s.size == 1 ? name : name + "(" + std::to_string(i + 1) + ")";
+    }
+    return result;
+  }
+};
+
+Eigen::SparseMatrix<double> sparse(Eigen::Index rows, Eigen::Index cols, const Triplets& t) {
+  Eigen::SparseMatrix<double> m(rows, cols);
+  m.setFromTriplets(t.begin(), t.end());
+  return m;
+}
+
+}  // namespace
+
+Descriptor System::descriptor() const {
+  Builder b{*data_};
+  b.add_states();
+  b.add_rows();
+  b.add_outputs();
+  const Eigen::Index n = b.states + b.k.joint.plan->unknowns;
+  const auto nu = static_cast<Eigen::Index>(inputs().size());
+  const auto ny = static_cast<Eigen::Index>(outputs().size());
+  Triplets e;
+  for (int i = 0; i < b.states; ++i) e.emplace_back(i, i, 1.0);
+  return {.E = sparse(n, n, e),
+          .A = sparse(n, n, b.A),
+          .B = sparse(n, nu, b.B),
+          .C = sparse(ny, n, b.C),
+          .D = sparse(ny, nu, b.D),
+          .states = b.states,
+          .names = b.names(),
+          .inputs = inputs(),
+          .outputs = outputs()};
+}
+
+}  // namespace titop
