@@ -17,6 +17,12 @@ struct Certificate {
   /// Largest relative difference between xdot, y of the dense model and of the factors, for one
   /// random x, u; negative where no dense model has been written.
   double dense_against_factors = -1;
+  /// What writing the dense model down costs: the largest relative change of an output, for one
+  /// random input, that its rounding makes at s far below, at and above the blocks' frequencies
+  /// (residual of the factors' states in the dense model, carried to the outputs by the factors).
+  /// Negative where no dense model has been written. Above 1e-9 the log warns.
+  double dense_error = -1;
+  std::complex<double> dense_error_s;  ///< where it is largest
   /// Smallest pivot over the sum of magnitudes that formed it: 1 no cancellation, 1e-16 nothing
   /// left. Invariant under any change of units.
   double weakest_pivot = 1;

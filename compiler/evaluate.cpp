@@ -35,11 +35,24 @@ solve::Response<T> modal_response(const Modal& m, const T& s) {
   return r;
 }
 
-/// X = (s - A)^-1 B by elimination with row pivoting, Y = C X + D.
+/// (s - A)^-1 B: entry by entry for a body with modes, else by elimination with row pivoting.
 template <class T>
-solve::Response<T> general_response(const Dynamics& d, const T& s) {
-  const auto n = d.A.rows();
-  solve::Dense<T> E = -solve::Dense<T>(lifted<T>(d.A)), X = lifted<T>(d.B);
+solve::Dense<T> resolvent(const Dynamics& dynamics, const T& s, solve::Dense<T> X) {
+  const auto n = dynamics.A.rows();
+  if (dynamics.modal) {
+    const Modal& m = *dynamics.modal;
+    const auto modes = n / 2;
+    for (Eigen::Index i = 0; i < modes; ++i) {
+      const T c = lift<T>(m.damping(i)), d = s * s + c * s + lift<T>(m.stiffness(i));
+      for (Eigen::Index j = 0; j < X.cols(); ++j) {
+        const T eta = ((s + c) * X(i, j) + X(modes + i, j)) / d;
+        X(modes + i, j) = s * eta - X(i, j);
+        X(i, j) = eta;
+      }
+    }
+    return X;
+  }
+  solve::Dense<T> E = -solve::Dense<T>(lifted<T>(dynamics.A));
   for (Eigen::Index i = 0; i < n; ++i) E(i, i) += s;
   for (Eigen::Index k = 0; k < n; ++k) {
     Eigen::Index best = k;
@@ -56,10 +69,17 @@ solve::Response<T> general_response(const Dynamics& d, const T& s) {
   }
   for (Eigen::Index k = 0; k < n; ++k)
     for (Eigen::Index j = 0; j < X.cols(); ++j) X(k, j) /= E(k, k);
+  return X;
+}
+
+/// X = (s - A)^-1 B, Y = C X + D.
+template <class T>
+solve::Response<T> general_response(const Dynamics& d, const T& s) {
+  solve::Dense<T> X = resolvent<T>(d, s, lifted<T>(d.B));
   solve::Dense<T> Y = lifted<T>(d.D);
   for (Eigen::Index i = 0; i < Y.rows(); ++i)
     for (Eigen::Index j = 0; j < Y.cols(); ++j)
-      for (Eigen::Index k = 0; k < n; ++k) Y(i, j) += lift<T>(d.C(i, k)) * X(k, j);
+      for (Eigen::Index k = 0; k < X.rows(); ++k) Y(i, j) += lift<T>(d.C(i, k)) * X(k, j);
   return {std::move(X), std::move(Y)};
 }
 
@@ -106,6 +126,7 @@ template <class T>
 Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
                           const Evaluation<std::complex<double>>* coarse)
     : data_(data),
+      s_(s),
       u_(u),
       first_(data.graph().signals.size(), -1),
       rows_(data.graph(), data.skeleton->joint, data.numbers.coefficients, respond(s)) {
@@ -143,35 +164,69 @@ void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
 }
 
 template <class T>
-solve::RowMatrix<T> Evaluation<T>::value(int signal) const {
+solve::RowMatrix<T> Evaluation<T>::value_of(int signal, const solve::RowMatrix<T>& unknowns,
+                                            const solve::RowMatrix<T>& inputs) const {
   const Signal& s = data_.graph().signals[at(signal)];
-  solve::RowMatrix<T> result = solve::RowMatrix<T>::Zero(s.size, u_.cols());
+  solve::RowMatrix<T> result = solve::RowMatrix<T>::Zero(s.size, inputs.cols());
   if (s.role != Signal::Role::state) {
-    rows_.add_value(signal, unknowns_, u_, first_, result);
+    rows_.add_value(signal, unknowns, inputs, first_, result);
     return result;
   }
   if (!s.active) return result;
   const solve::Response<T>& r = *of_node_[at(s.node)];
   for (int i = data_.graph().nodes[at(s.node)].first_signal; i < signal; ++i)
     if (const Signal& in = data_.graph().signals[at(i)]; in.role == Signal::Role::input)
-      result += r.X.middleCols(in.first, in.size) * value(i);
+      result += r.X.middleCols(in.first, in.size) * value_of(i, unknowns, inputs);
   return result;
 }
 
 template <class T>
-solve::RowMatrix<T> Evaluation<T>::outputs() const {
+solve::RowMatrix<T> Evaluation<T>::value(int signal) const {
+  return value_of(signal, unknowns_, u_);
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::outputs_of(const solve::RowMatrix<T>& unknowns,
+                                              const solve::RowMatrix<T>& inputs,
+                                              const solve::RowMatrix<T>* states) const {
   const Graph& g = data_.graph();
   const Layout& layout = data_.layout();
   solve::RowMatrix<T> y =
-      solve::RowMatrix<T>::Zero(static_cast<Eigen::Index>(layout.outputs.size()), u_.cols());
+      solve::RowMatrix<T>::Zero(static_cast<Eigen::Index>(layout.outputs.size()), inputs.cols());
   for (std::size_t o = 0; o < g.outputs.size(); ++o)
     for (std::size_t k = 0; k < g.outputs[o].terms.size(); ++k) {
       const int signal = g.outputs[o].terms[k].signal;
+      const Signal& s = g.signals[at(signal)];
       const auto& c =
           *data_.numbers.coefficients[at(data_.skeleton->joint.output_coefficient[o]) + k];
-      y.middleRows(layout.output_first[o], g.outputs[o].size) += lifted<T>(c) * value(signal);
+      solve::RowMatrix<T> value = value_of(signal, unknowns, inputs);
+      if (states && s.role == Signal::Role::state && s.active)
+        value += states->middleRows(layout.known_first[at(signal)], s.size);
+      y.middleRows(layout.output_first[o], g.outputs[o].size) += lifted<T>(c) * value;
     }
   return y;
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::outputs() const {
+  return outputs_of(unknowns_, u_, nullptr);
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::forced(const solve::RowMatrix<T>& r) const {
+  const Layout& layout = data_.layout();
+  solve::RowMatrix<T> own(r.rows(), r.cols());  // (s - A)^-1 r of every block by itself
+  for (const int i : layout.state_nodes) {
+    const Dynamics& d = *data_.numbers.blocks[at(i)];
+    const auto first = layout.state_first[at(i)];
+    own.middleRows(first, d.A.rows()) =
+        resolvent(d, s_, solve::Dense<T>(r.middleRows(first, d.A.rows())));
+  }
+  std::vector<const Eigen::MatrixXd*> output;
+  for (const auto& block : data_.numbers.blocks) output.push_back(&block->C);
+  const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), r.cols());
+  return outputs_of(factors_->solve(rows_.rhs_of_states(own, layout.known_first, output)), none,
+                    &own);
 }
 
 #define TITOP_INSTANTIATE(T) template class Evaluation<T>;

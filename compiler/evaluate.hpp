@@ -23,17 +23,28 @@ class Evaluation {
   /// The diagram's outputs x columns.
   solve::RowMatrix<T> outputs() const;
 
+  /// What the outputs become when the states are also forced, xdot = A x + B u + r (r: states x
+  /// columns), less outputs(): C (s - A)^-1 r through the factors. O(bodies).
+  solve::RowMatrix<T> forced(const solve::RowMatrix<T>& r) const;
+
   const solve::RowMatrix<T>& unknowns() const { return unknowns_; }
   solve::RowMatrix<T> solve(const solve::RowMatrix<T>& rhs) const { return factors_->solve(rhs); }
   /// Of the elimination: see Certificate::weakest_pivot.
   double weakest_pivot() const { return factors_->health().weakest; }
 
  private:
+  /// Outputs from unknowns; the states' own parts are added where they are given.
+  solve::RowMatrix<T> outputs_of(const solve::RowMatrix<T>& unknowns,
+                                 const solve::RowMatrix<T>& inputs,
+                                 const solve::RowMatrix<T>* states) const;
+  solve::RowMatrix<T> value_of(int signal, const solve::RowMatrix<T>& unknowns,
+                               const solve::RowMatrix<T>& inputs) const;
   void refine(const Evaluation<std::complex<double>>& coarse);
 
   solve::Matrices<T> respond(const T& s);
 
   const SystemData& data_;
+  T s_;
   solve::RowMatrix<T> u_;
   std::vector<int> first_;  ///< per signal: first row of u
   std::map<std::pair<const Block*, const Dynamics*>, solve::Response<T>> responses_;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/minimize.hpp>
 #include <titop/compiler/parallel.hpp>
@@ -191,6 +192,13 @@ const StateSpace& System::state_space() const {
     StateSpace dense;
     detail::write_dense(d, dense, 0);
     d.dense_against_factors = detail::dense_difference(d, dense);
+    d.dense_error = detail::dense_error(d, dense);
+    if (const auto [error, at_s] = d.dense_error; error > 1e-9)
+      d.dense_notes.push_back(
+          {Note::Kind::warning, "dense",
+           fmt::format("written as A, B, C, D the model keeps {:.0f} digits at s = {:.3g}{:+.3g}j; "
+                       "System::transfer and apply keep them all",
+                       std::max(0.0, -std::log10(error)), at_s.real(), at_s.imag())});
     if (dense.order() > 0 && dense.order() <= options.minimize_up_to) {
       minimize_checked(*this, d, dense);
     } else if (dense.order() > 0) {
@@ -213,6 +221,8 @@ std::vector<Pole> System::poles() const { return titop::poles(state_space()); }
 Certificate System::certificate() const {
   Certificate c = data_->certificate;
   c.dense_against_factors = data_->dense_against_factors;
+  c.dense_error = data_->dense_error.error;
+  c.dense_error_s = data_->dense_error.s;
   return c;
 }
 

@@ -39,6 +39,12 @@ struct Skeleton {
   std::vector<Dependents> dependents;  ///< per parameter
 };
 
+/// What rounding the dense model costs, and where.
+struct DenseError {
+  double error = 0;
+  std::complex<double> s;
+};
+
 struct SystemData {
   std::shared_ptr<const Skeleton> skeleton;
   solve::Numbers numbers;
@@ -51,6 +57,7 @@ struct SystemData {
   mutable std::once_flag dense_once;
   mutable StateSpace dense;
   mutable double dense_against_factors = -1;
+  mutable DenseError dense_error{-1, {}};
   mutable std::vector<Note> dense_notes;
 
   const Graph& graph() const { return skeleton->stage.graph; }
@@ -72,6 +79,9 @@ void write_dense(const SystemData& data, StateSpace& model, int threads);
 /// Largest relative difference of xdot between the dense model and the factors, for one random x
 /// and u (fixed seed). O(n^2).
 double dense_difference(const SystemData& data, const StateSpace& dense);
+
+/// See Certificate::dense_error. O(n^2).
+DenseError dense_error(const SystemData& data, const StateSpace& dense);
 
 /// Margins of these loops of the stage, into SystemData::margins.
 void find_margins(SystemData& data, std::span<const int> loops);

@@ -205,6 +205,28 @@ void JointRows<T>::add_value(int signal, const RowMatrix<T>& unknowns, const Row
 }
 
 template <class T>
+RowMatrix<T> JointRows<T>::rhs_of_states(const RowMatrix<T>& states, std::span<const int> first,
+                                         const std::vector<const Eigen::MatrixXd*>& output) const {
+  const Plan& plan = *joint_.plan;
+  const std::ptrdiff_t m = states.cols();
+  RowMatrix<T> result = RowMatrix<T>::Zero(plan.unknowns, m);
+  for (int r = 0; r < static_cast<int>(joint_.rows.size()); ++r)
+    for (const Piece& p : joint_.row(r)) {
+      if (p.entry >= 0 || graph_.signals[at(p.signal)].role != Signal::Role::state) continue;
+      const int size = graph_.signals[at(p.signal)].size;
+      const T* x = states.data() + first[at(p.signal)] * m;
+      T* to = result.data() + plan.row_first[at(r)] * m;
+      if (p.of == Piece::Left::state) {
+        subtract_product(p.sign, view(*output[at(p.left)], p.row, p.rows, 0, size), x, m, to);
+        continue;
+      }
+      const Dense<T> c = dense(p, m_, coefficients_, size);
+      subtract_product(1, view(c, 0, static_cast<int>(c.rows()), 0, size), x, m, to);
+    }
+  return result;
+}
+
+template <class T>
 RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const {
   const Plan& plan = *joint_.plan;
   const std::ptrdiff_t m = rhs.cols();

@@ -38,6 +38,11 @@ class JointRows : public Rows<T> {
   /// these are known): signal i has the rows of `known` from first[i] on. O(rows) per column.
   RowMatrix<T> rhs(const RowMatrix<T>& known, std::span<const int> first) const;
 
+  /// Right-hand sides of all rows for given parts of the states (C of every block in `output`),
+  /// whether or not states are otherwise written out: what forcing the states does. O(rows).
+  RowMatrix<T> rhs_of_states(const RowMatrix<T>& states, std::span<const int> first,
+                             const std::vector<const Eigen::MatrixXd*>& output) const;
+
   /// rhs - (these rows) * unknowns: what is left of every row. O(rows) per column.
   RowMatrix<T> residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
 
