@@ -124,7 +124,7 @@ fe::Mesh beam_mesh(const Beam& beam) {
   mesh.name = "beam";
   for (std::size_t i = 0; i < nodes; ++i) {
     const double x = beam.length * static_cast<double>(i) / beam.elements;
-    mesh.points.push_back({std::to_string(i), Vector3(x, 0, 0)});
+    mesh.points.push_back({std::to_string(i), Vector3d(x, 0, 0)});
     for (int component = 0; component < 6; ++component) mesh.dofs.push_back({i, component});
   }
   mesh.interfaces = {{"P", 0}, {"C", nodes - 1}};

@@ -21,7 +21,7 @@ namespace titop {
 /// body is `torque = -tau`. Exactly one of `torque` and `accel` is driven: torque = 0 is a free
 /// hinge, accel = 0 a locked one.
 struct Hinge {
-  Vector3 axis = Vector3::UnitZ();  ///< r, any length but 0, in the joint's frame
+  Vector3d axis = Vector3d::UnitZ();  ///< r, any length but 0, in the joint's frame
 
   struct Handle {
     Handle(Graph* graph, int node);
@@ -47,7 +47,7 @@ BlockPtr as_block(const Hinge& spec);
 template <class Handle>
   requires HasParent<Handle, 6>
 Hinge::Handle hinge(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,
-                    const Rotation& T_ba, const Vector3& axis,
+                    const Rotation& T_ba, const Vector3d& axis,
                     std::source_location at = std::source_location::current()) {
   const Hinge::Handle joint = d.add(name, Hinge{axis}, at);
   const bool named = !T_ba.to().empty() || !T_ba.from().empty();

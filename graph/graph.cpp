@@ -49,7 +49,7 @@ std::vector<double> nominal_values(const Graph& graph) {
 namespace {
 
 /// A rotation on a vector of 3 or a dual vector of 6.
-MatrixXd on_vector(const Matrix3& T, int size) {
+MatrixXd on_vector(const Matrix3d& T, int size) {
   if (size == 3) return T;
   MatrixXd both = MatrixXd::Zero(6, 6);
   both.topLeftCorner<3, 3>() = T;
@@ -105,8 +105,8 @@ Pattern structure(const Graph& graph, const Term& term) {
     else if (const auto* p = std::get_if<Part>(&*f))
       result = p->whole() ? result : product(p->rows.array() != 0, result);
     else if (const auto* T = std::get_if<Rotation>(&*f); T && !T->is_identity())
-      result =
-          product(on_vector(Matrix3::Ones(), static_cast<int>(result.rows())).array() != 0, result);
+      result = product(on_vector(Matrix3d::Ones(), static_cast<int>(result.rows())).array() != 0,
+                       result);
   }
   return result;
 }

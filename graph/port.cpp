@@ -62,7 +62,7 @@ SignalRef SignalRef::angular() const {
   return half;
 }
 
-SignalRef SignalRef::along(const Vector3& r) const {
+SignalRef SignalRef::along(const Vector3d& r) const {
   if (!(r.norm() > 0) || !std::isfinite(r.norm()))
     throw Error(Code::bad_value,
                 fmt::format("{}.along({}, {}, {}): no direction", name_of(*graph_, signal_), r.x(),

@@ -26,7 +26,7 @@ class SignalRef {
 
   SignalRef linear() const;
   SignalRef angular() const;
-  SignalRef along(const Vector3& r) const;
+  SignalRef along(const Vector3d& r) const;
 
  protected:
   void set(const Rhs& rhs, bool accumulate, double sign) const;
@@ -109,7 +109,7 @@ class Port<3, K> : public PortBase<3, K> {
     requires detail::never<Port>
   = delete;
   /// The component along the vector r (any length but 0), in the port's frame.
-  Port<1, K> along(const Vector3& r) const { return Port<1, K>(detail::SignalRef::along(r)); }
+  Port<1, K> along(const Vector3d& r) const { return Port<1, K>(detail::SignalRef::along(r)); }
 };
 
 /// A dual vector (linear; angular).
@@ -125,7 +125,7 @@ class Port<6, K> : public PortBase<6, K> {
     requires detail::never<Port>
   = delete;
   /// The linear component along the vector r (any length but 0).
-  Port<1, K> along(const Vector3& r) const { return linear.along(r); }
+  Port<1, K> along(const Vector3d& r) const { return linear.along(r); }
 
   Port<3, K> linear, angular;
 };

@@ -158,7 +158,7 @@ std::array<Index, 6> interface_rows(const Mesh& mesh, const std::string& name) {
   return rows;
 }
 
-MatrixXd rigid_motions(const Mesh& mesh, const Vector3& P) {
+MatrixXd rigid_motions(const Mesh& mesh, const Vector3d& P) {
   MatrixXd R(static_cast<Index>(mesh.dofs.size()), 6);
   for (std::size_t i = 0; i < mesh.dofs.size(); ++i) {
     const Dof& dof = mesh.dofs[i];

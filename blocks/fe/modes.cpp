@@ -268,7 +268,7 @@ ModalData modal_data(const Mesh& mesh, const std::string& parent,
   data.digits = mesh.digits;
   MatrixXd Phi = MatrixXd::Zero(mesh.M.rows(), modes.V.cols());  // the clamped rows stay zero
   Phi(c.f, Eigen::all) = modes.V;
-  const Vector3 P = mesh.points[find_point(mesh, parent)].position;
+  const Vector3d P = mesh.points[find_point(mesh, parent)].position;
   for (const std::string& child : children)
     data.children.push_back({child, mesh.points[find_point(mesh, child)].position - P,
                              Phi(interface_rows(mesh, child), Eigen::all)});

@@ -200,34 +200,34 @@ TEST_CASE("not-finite: gains whose product overflows, with the line") {
 }
 
 TEST_CASE("not-a-rotation") {
-  Matrix3 sheared = Matrix3::Identity(), mirror = Matrix3::Identity(),
-          rounded = Matrix3::Identity();
+  Matrix3d sheared = Matrix3d::Identity(), mirror = Matrix3d::Identity(),
+           rounded = Matrix3d::Identity();
   sheared(0, 1) = 1e-6;
   mirror(2, 2) = -1;
   rounded(0, 1) = 1e-10;
   CHECK(says(error_of([&] { Rotation::matrix(sheared); }), Code::not_a_rotation,
              {"not orthogonal", "1e-06"}));
   CHECK(says(error_of([&] { Rotation::matrix(mirror); }), Code::not_a_rotation, {"mirrors"}));
-  CHECK(says(error_of([&] { Rotation::matrix(Matrix3::Constant(kNan)); }), Code::not_a_rotation,
+  CHECK(says(error_of([&] { Rotation::matrix(Matrix3d::Constant(kNan)); }), Code::not_a_rotation,
              {"not orthogonal"}));
   CHECK(says(error_of([&] {
                Rotation::about({0, 0, 0}, 1);
              }),
              Code::not_a_rotation, {"(0, 0, 0)", "axis"}));
   CHECK(says(error_of([&] { Rotation::about({0, 0, 1}, kInf); }), Code::not_a_rotation, {"inf"}));
-  const Matrix3 T = Rotation::matrix(rounded).nominal();
-  CHECK((T.transpose() * T - Matrix3::Identity()).cwiseAbs().maxCoeff() <= 1e-15);
+  const Matrix3d T = Rotation::matrix(rounded).nominal();
+  CHECK((T.transpose() * T - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-15);
 }
 
 TEST_CASE("bad-inertia") {
   CHECK(says(refused(SpringMass{.mass = -1}), Code::bad_inertia, {"X: SpringMass has mass -1"}));
   CHECK(says(refused(SpringMass{.parent_mass = -1}), Code::bad_inertia, {"parent_mass -1"}));
   CHECK(says(refused(RigidBody{.mass = -2}), Code::bad_inertia, {"X: the mass is -2 kg"}));
-  CHECK(says(refused(RigidBody{.inertia = Vector3(1, 1, 3).asDiagonal()}), Code::bad_inertia,
+  CHECK(says(refused(RigidBody{.inertia = Vector3d(1, 1, 3).asDiagonal()}), Code::bad_inertia,
              {"X: principal moments 1, 1 and 3", "triangle inequality", "X was added at"}));
-  CHECK(says(refused(RigidBody{.inertia = Vector3(1, 1, -0.5).asDiagonal()}), Code::bad_inertia,
+  CHECK(says(refused(RigidBody{.inertia = Vector3d(1, 1, -0.5).asDiagonal()}), Code::bad_inertia,
              {"X: the inertia is not positive", "-0.5"}));
-  Matrix3 skew = Matrix3::Identity();
+  Matrix3d skew = Matrix3d::Identity();
   skew(0, 1) = 0.1;
   CHECK(says(refused(RigidBody{.inertia = skew}), Code::bad_inertia, {"not symmetric, by 0.1"}));
 }
@@ -238,7 +238,7 @@ TEST_CASE("bad-modes") {
   data.xi = Eigen::Vector2d(0.01, 0.01);
   data.L_P = Eigen::MatrixXd::Zero(2, 6);
   data.L_P(0, 1) = 2;
-  data.D_P = rigid_mass(5, Matrix3::Identity(), Vector3::Zero());
+  data.D_P = rigid_mass(5, Matrix3d::Identity(), Vector3d::Zero());
   CHECK(error_of([&] { FlexibleBody{data}; }).mistakes().empty());
   ModalData heavy = data, short_of = data, still = data, child = data;
   heavy.L_P(0, 1) = 3;

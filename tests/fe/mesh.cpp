@@ -67,13 +67,13 @@ double transfer_error(const fe::Mesh& mesh, const std::vector<std::string>& chil
 
 TEST_CASE("rigid motions carry points by rotation about P") {
   fe::Mesh mesh = boom();
-  mesh.points[2].position = Vector3(1, 2, 3);
-  const MatrixXd R = fe::rigid_motions(mesh, Vector3(1, 1, 1));
+  mesh.points[2].position = Vector3d(1, 2, 3);
+  const MatrixXd R = fe::rigid_motions(mesh, Vector3d(1, 1, 1));
   // P turns by 1 rad/s about x: the point at (0, 1, 2) from it moves by x cross that.
-  const Vector3 moved = Vector3(1, 0, 0).cross(Vector3(0, 1, 2));
+  const Vector3d moved = Vector3d(1, 0, 0).cross(Vector3d(0, 1, 2));
   CHECK((R.block<3, 1>(12, 3) - moved).norm() == 0);
-  CHECK(R.block<3, 3>(15, 3) == Matrix3::Identity());
-  CHECK(R.block<3, 3>(12, 0) == Matrix3::Identity());
+  CHECK(R.block<3, 3>(15, 3) == Matrix3d::Identity());
+  CHECK(R.block<3, 3>(12, 0) == Matrix3d::Identity());
   CHECK(R.block<3, 3>(15, 0).isZero(0));
 }
 
@@ -124,7 +124,7 @@ TEST_CASE("names that are not there, or twice, or without six degrees of freedom
           fe::modal_data(mesh, "P", {"C"}, {.kept = -1});
         }).starts_with("error[bad-value]"));
   mesh.dofs[27].point = 3;  // C loses rx, its neighbour has it twice: take another name for the row
-  mesh.points.push_back({"x", Vector3(9, 0, 0)});
+  mesh.points.push_back({"x", Vector3d(9, 0, 0)});
   mesh.dofs[27].point = 5;
   contains(message_of([&] { fe::modal_data(mesh, "P", {"C"}); }),
            "error[bad-modes]: point C of mesh beam cannot be an interface: it has no degree of "
@@ -188,7 +188,7 @@ TEST_CASE("a mass beside its node: singular without a zero on the diagonal") {
     const auto first = static_cast<Index>(6 * point);
     mesh.M.middleRows(first, 6).setZero();
     mesh.M.middleCols(first, 6).setZero();
-    mesh.M.block(first, first, 6, 6) = rigid_mass(2, Matrix3::Zero(), Vector3(0.1, 0.2, -0.3));
+    mesh.M.block(first, first, 6, 6) = rigid_mass(2, Matrix3d::Zero(), Vector3d(0.1, 0.2, -0.3));
   }
   CHECK(fe::modal_data(mesh, "P", {"C"}).omega.size() == 6 + 3 * 3);
   CHECK(transfer_error(mesh, {"C"}) <= 1e-12);

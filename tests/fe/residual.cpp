@@ -62,7 +62,7 @@ double scaled_error(const Matrix6& a, const Matrix6& b) {
 }
 
 /// A heavy body at C: 40 kg, its centre of mass 0.3 m ahead.
-Matrix6 load() { return rigid_mass(40, Vector3(2, 3, 4).asDiagonal(), Vector3(-0.3, 0, 0)); }
+Matrix6 load() { return rigid_mass(40, Vector3d(2, 3, 4).asDiagonal(), Vector3d(-0.3, 0, 0)); }
 
 /// omegas of the structure clamped at P with the load at C, from M and K.
 VectorXd loaded_omegas(const fe::Mesh& mesh) {

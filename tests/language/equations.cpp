@@ -22,7 +22,7 @@ SpringMass spring(double mass = 2, double stiffness = 26) {
 /// A mass of 4 kg with its centre at (1, 2, 0) m from P.
 RigidBody brick() {
   return {.mass = 4,
-          .inertia = Vector3(1, 2, 2.5).asDiagonal(),
+          .inertia = Vector3d(1, 2, 2.5).asDiagonal(),
           .PA = {1, 2, 0},
           .children = {{"C1", {1, 0, 0}}, {"C2", {0, 1, 0}}}};
 }
@@ -133,12 +133,12 @@ TEST_CASE("a pin: no linear acceleration, no torque but the given one") {
   d.output("pin", 3) = b.parent.force.linear;
   const Eigen::MatrixXd G = compile(d).static_gain();
   // Inertia about P: I_A + m (|a|^2 I - a a').
-  const Vector3 a(1, 2, 0);
-  const Matrix3 J = Matrix3(Vector3(1, 2, 2.5).asDiagonal()) +
-                    4 * (a.squaredNorm() * Matrix3::Identity() - a * a.transpose());
-  const Matrix3 alpha = J.inverse();
+  const Vector3d a(1, 2, 0);
+  const Matrix3d J = Matrix3d(Vector3d(1, 2, 2.5).asDiagonal()) +
+                     4 * (a.squaredNorm() * Matrix3d::Identity() - a * a.transpose());
+  const Matrix3d alpha = J.inverse();
   CHECK(matrix_error(G.topRows(3), alpha) <= 1e-14);
-  Matrix3 pin;  // - m alpha x a
+  Matrix3d pin;  // - m alpha x a
   for (int i = 0; i < 3; ++i) pin.col(i) = -4 * alpha.col(i).cross(a);
   CHECK(matrix_error(G.bottomRows(3), pin) <= 1e-14);
 }

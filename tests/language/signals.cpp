@@ -16,7 +16,7 @@ const Complex kS(0.3, 1.7);
 
 RigidBody brick(std::vector<ChildPoint> children = {{"C1", {1, 0, 0}}}) {
   return {.mass = 4,
-          .inertia = Vector3(1, 2, 2.5).asDiagonal(),
+          .inertia = Vector3d(1, 2, 2.5).asDiagonal(),
           .PA = {1, 2, 0},
           .children = std::move(children)};
 }
@@ -70,7 +70,7 @@ TEST_CASE("frames: mount, named and nameless rotations give one model; nameless 
     both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = kTurn.nominal();
     return both;
   }();
-  const Matrix6 D = rigid_mass(4, Vector3(1, 2, 2.5).asDiagonal(), {-1, -2, 0});
+  const Matrix6 D = rigid_mass(4, Vector3d(1, 2, 2.5).asDiagonal(), {-1, -2, 0});
   const Matrix6 Y = T.transpose() * tau({-1, 0, 0});
   const Matrix6 exact = Y * Matrix6(D + Y.transpose() * D * Y).inverse();
   CHECK(matrix_error(G.real(), exact) <= 1e-13);
@@ -114,7 +114,7 @@ TEST_CASE("frames: rotations compose where the inner names agree") {
   CHECK(T_ca.to() == "C");
   CHECK(T_ca.from() == "A");
   CHECK(matrix_error(T_ca.nominal(), Rotation::about({1, 2, 3}, 1.4).nominal()) <= 1e-15);
-  CHECK(matrix_error((kTurn * kTurn.inverse()).nominal(), Matrix3::Identity()) <= 1e-15);
+  CHECK(matrix_error((kTurn * kTurn.inverse()).nominal(), Matrix3d::Identity()) <= 1e-15);
   CHECK(says(error_of([] { return kTurn.named("C", "B") * kTurn.named("A", "B"); }), Code::frame,
              {"C<-B", "A<-B", "inverse"}));
 }
