@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <fstream>
 #include <limits>
 #include <titop/titop.hpp>
 
@@ -44,6 +45,14 @@ TEST_CASE("the printed names of the codes are a stable interface") {
       "ill-posed",    "improper",       "kinematic-loop", "bad-inertia",    "bad-modes",
       "bad-file",     "bad-value",      "no-position",    "singular"};
   for (std::size_t i = 0; i < names.size(); ++i) CHECK(to_string(static_cast<Code>(i)) == names[i]);
+  CHECK(to_string(static_cast<Code>(names.size())) == "unknown");  // none is left out here
+
+  std::ifstream file(TITOP_SOURCE_DIR "/README.md");
+  const std::string readme{std::istreambuf_iterator<char>(file), {}};
+  for (const std::string& name : names) {
+    INFO(name, " in the README's table");
+    CHECK(readme.find("\n| `" + name + "` | ") != std::string::npos);
+  }
 }
 
 TEST_CASE("no-equation: an unmounted body, one-way ports, outputs") {
@@ -257,13 +266,16 @@ TEST_CASE("bad-value") {
   CHECK(says(refused(SpringMass{.stiffness = -3}), Code::bad_value, {"X: SpringMass", "-3"}));
   CHECK(says(refused(SpringMass{.damping = -3}), Code::bad_value, {"X: SpringMass", "-3"}));
   CHECK(says(refused(Sum{.signs = "+*"}), Code::bad_value, {"X: Sum: sign '*'"}));
+  CHECK(says(error_of([] { FlexibleBody{Beam{}}; }), Code::bad_value, {"length of the beam is 0"}));
+  CHECK(says(error_of([] { rectangle(-1, 1); }), Code::bad_value, {"width of a rectangle is -1"}));
+  CHECK(says(error_of([] { tube(1, 2); }), Code::bad_value, {"tube", "outer, inner"}));
   CHECK(says(refused(Hinge{.axis = {0, 0, 0}}), Code::bad_value, {"X: the axis (0, 0, 0)"}));
   Diagram d{"scene"};
   auto A = d.add("A", brick());
   CHECK(says(error_of([&] {
                A.parent.accel.along({0, 0, 0});
              }),
-             Code::bad_value, {"A.parent.accel.along(0, 0, 0)", "other than 0"}));
+             Code::bad_value, {"A.parent.accel.linear.along(0, 0, 0)", "other than 0"}));
 }
 
 TEST_CASE("all mistakes of the description come together, in one text") {

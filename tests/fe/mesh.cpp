@@ -117,9 +117,10 @@ TEST_CASE("names that are not there, or twice, or without six degrees of freedom
         }).starts_with("error[unknown-name]"));
   CHECK(message_of([&] {
           fe::modal_data(mesh, "P", {"C", "1", "C"});
-        }) == "error[duplicate-name]: child C of mesh beam is named twice");
-  CHECK(message_of([&] { fe::modal_data(mesh, "P", {"C"}, {.kept = 25}); }) ==
-        "error[bad-value]: 25 modes asked of mesh beam, which has 24");
+        }).starts_with("error[duplicate-name]: child C of mesh beam is named twice\n  "));
+  CHECK(message_of([&] {
+          fe::modal_data(mesh, "P", {"C"}, {.kept = 25});
+        }).starts_with("error[bad-value]: 25 modes asked of mesh beam, which has 24\n  "));
   CHECK(message_of([&] {
           fe::modal_data(mesh, "P", {"C"}, {.kept = -1});
         }).starts_with("error[bad-value]"));
@@ -202,8 +203,9 @@ TEST_CASE("massless rotations with few modes and residual vectors") {
   const ModalData all = fe::modal_data(mesh, "P", {});
   const ModalData few = fe::modal_data(mesh, "P", {"C"}, {.kept = 4, .residual = {"C"}});
   for (Index k = 0; k < 4; ++k) CHECK(fe_test::relative(few.omega(k), all.omega(k)) <= 1e-12);
-  CHECK(message_of([&] { fe::modal_data(mesh, "P", {"C"}, {.kept = 13}); }) ==
-        "error[bad-value]: 13 modes asked, 12 of 24 can be told from infinite ones");
+  CHECK(message_of([&] { fe::modal_data(mesh, "P", {"C"}, {.kept = 13}); })
+            .starts_with(
+                "error[bad-value]: 13 modes asked, 12 of 24 can be told from infinite ones\n  "));
 }
 
 TEST_CASE("a child at the parent's own place does not move with the modes") {

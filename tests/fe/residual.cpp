@@ -194,5 +194,6 @@ TEST_CASE("damping: one for all, one per kept mode, one for each") {
       "residual vectors\n  give one for all, one per kept mode, or one for each "
       "including the residual vectors");
   CHECK_THROWS_WITH(xi({-0.1}),
-                    "error[bad-value]: damping ratio -0.1 of mesh beam is not a number >= 0");
+                    "error[bad-value]: damping ratio -0.1 of mesh beam is not a number >= 0\n  "
+                    "give fractions of critical damping: 0.005 is half a percent");
 }
