@@ -130,8 +130,8 @@ std::string print_unsigned(const Graph& graph, const Term& term, bool& negative)
       negative = negative != (number < 0);
       if (!k->is_parameter() || std::abs(number) != 1)
         text += fmt::format("{:.6g} * ", std::abs(number));
-      if (k->is_parameter())
-        text += graph.parameters[static_cast<std::size_t>(k->index())].name + " * ";
+      if (const auto i = static_cast<std::size_t>(k->index()); k->is_parameter())
+        text += (i < graph.parameters.size() ? graph.parameters[i].name : "(no parameter)") + " * ";
     } else if (const auto* T = std::get_if<Rotation>(&f)) {
       if (!T->is_identity() || !T->to().empty())
         text += T->to().empty() ? "T * " : fmt::format("T({}<-{}) * ", T->to(), T->from());

@@ -247,13 +247,29 @@ TEST_CASE("child(name) works on every block; .child where there is just one") {
   const auto c3 = next_line();
   b.child("C3").force = 0;
   b.child("parent").force = 0;  // it is no child point
-  b.child.force = 0;            // there are two
-  ground(z), ground(b), ground(h), h.torque = 0;
+  const auto written = next_line();
+  b.child.force = 0;  // there are two
+  const auto mounted = next_line();
+  mount(h, b.child);  // mentions it twice
+  auto a = d.add("a", RigidBody{});
+  const auto read = next_line();
+  d.output("none", 1) = a.child.accel.linear.along({1, 0, 0});
+  ground(a);
+  const auto c4 = next_line();
+  d.output("c4", 1) = b.child("C4").accel.along({1, 0, 0});
+  ground(z), ground(b), h.torque = 0;
   const Error e = compile_error(d);
-  CHECK(e.mistakes().size() == 3);
+  CHECK(e.mistakes().size() == 6);
   CHECK(says(e, Code::unknown_name, {"b has no child point \"C3\"", c3, "C1, C2"}));
   CHECK(says(e, Code::unknown_name, {"b has no child point \"parent\"", "C1, C2"}));
-  CHECK(says(e, Code::unknown_name, {"b.child: b has not exactly one child point", "C1, C2"}));
+  for (const auto& line : {written, mounted})
+    CHECK(says(e, Code::unknown_name,
+               {"b.child: b has not exactly one child point", line, "C1, C2"}));
+  CHECK(says(e, Code::unknown_name,
+             {"a.child: a has not exactly one child point", read, "a has no child points"}));
+  CHECK(says(e, Code::unknown_name, {"b has no child point \"C4\"", c4, "C1, C2"}));
+  CHECK(error_of([&] { transfer(d.graph(), kS); }).mistakes().size() == 6);
+  CHECK(to_dot(d).find("a.child") == std::string::npos);  // drawn all the same, without it
 }
 
 TEST_CASE("source lines are the user's, also through mount, ground, release and hinge") {

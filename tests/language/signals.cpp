@@ -246,12 +246,63 @@ TEST_CASE("a parameter of another diagram is refused wherever it is used") {
     CHECK(says(e, Code::unknown_name, {"parameter of another diagram", line, "param("}));
 }
 
+TEST_CASE("a parameter that this diagram has no number for is refused, beside other mistakes") {
+  Diagram other{"other"}, d{"own"};
+  other.param("first", 1);
+  auto k = other.param("second", 10);
+  const auto line = next_line();
+  auto z = d.add("z", SpringMass{.stiffness = k});
+  d.output("x", 2) = k * z.stretch;
+  const Error e = compile_error(d);
+  CHECK(e.mistakes().size() == 4);
+  CHECK(says(e, Code::unknown_name, {"z takes a parameter of another diagram", line}));
+  CHECK(says(e, Code::unknown_name, {"a parameter of another diagram, nominally 10, is used"}));
+  CHECK(says(e, Code::size, {"output x has size 2"}));
+  CHECK(error_of([&] { transfer(d.graph(), kS); }).has(Code::unknown_name));
+  CHECK(to_dot(d).find("\"z\" [shape=plain") != std::string::npos);
+}
+
+TEST_CASE("parts of inputs and readings: halves of 6, components of 3") {
+  Diagram d{"parts"};
+  auto U = d.input("U", 6), f = d.input("f", 3);
+  auto B = d.add("B", brick());
+  B.parent.accel = 0;
+  B.child.force.linear = U.linear();
+  B.child.force.angular = 0;
+  B.child.force.linear += Eigen::MatrixXd(Vector3d(0, 0, 1)) * f.along({3, 0, 4});
+  d.output("support") = B.parent.reaction.linear().along({0, 0, 2});
+  d.output("load") = U.angular().along({0, 1, 0});
+  // B passes on to its support what it is loaded with.
+  Eigen::MatrixXd exact = Eigen::MatrixXd::Zero(2, 9);
+  exact(0, 2) = 1;
+  exact(0, 6) = 0.6;
+  exact(0, 8) = 0.8;
+  exact(1, 4) = 1;
+  CHECK(matrix_error(compile(d).static_gain(), exact) <= 1e-15);
+
+  CHECK(says(error_of([&] {
+               U.along({1, 0, 0});
+             }),
+             Code::size, {"U has size 6 and no part .along(1, 0, 0)", ".linear or .angular"}));
+  CHECK(says(error_of([&] {
+               B.parent.reaction.along({1, 0, 0});
+             }),
+             Code::size, {"B.parent.reaction has size 6"}));
+  CHECK(says(error_of([&] { U.linear().angular(); }), Code::size,
+             {"U.linear has no part .angular", "whole dual vectors"}));
+  CHECK(says(error_of([&] {
+               f.along({1, 0, 0}).along({1, 0, 0});
+             }),
+             Code::size, {"f.along(1, 0, 0) has size 1"}));
+}
+
 TEST_CASE("signals of another diagram are refused") {
   Diagram a{"a"}, b{"b"};
   auto za = a.add("za", spring());
   auto zb = b.add("zb", spring());
+  const auto line = next_line();
   CHECK(says(error_of([&] { za.parent.accel = zb.child.accel; }), Code::unknown_name,
-             {"za.parent.accel", "another diagram"}));
+             {"za.parent.accel", "another diagram", line}));
   CHECK(says(error_of([&] { za.child.force = za.parent.force + zb.parent.force; }),
              Code::unknown_name, {"two diagrams"}));
   CHECK(says(error_of([&] { a.output("x") = zb.stretch; }), Code::unknown_name,
