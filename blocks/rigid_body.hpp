@@ -42,7 +42,7 @@ struct RigidBody {
 BlockPtr as_block(const RigidBody& spec);
 
 /// Throws bad_inertia or not_finite unless some rigid body has this mass and inertia (about its
-/// centre of mass). Tolerance 1e-9 of the trace.
+/// centre of mass), to 1e-9 of its largest entry or principal moment.
 void check_inertia(double mass, const Matrix3d& inertia);
 
 }  // namespace titop
