@@ -11,7 +11,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-// As printed in the design, to the letter.
+// As a user types Figs. 17 and 18 of the paper.
 Diagram spacecraft(const FlexibleBody& bus, const FlexibleBody& wing, const Rotation& T_ba1,
                    const Rotation& T_ba2) {
   Diagram d{"spacecraft"};   // Figs. 17, 18
