@@ -17,7 +17,8 @@ using std::numbers::pi;
 
 void require_positive(double value, const char* what) {
   if (!(value > 0) || !std::isfinite(value))
-    throw Error(Code::bad_value, fmt::format("{} is {}, not a positive number", what, value));
+    throw Error(Code::bad_value, fmt::format("{} is {}, not a positive number", what, value),
+                "give it in metres");
 }
 
 double shear_modulus(const Material& m) { return m.G ? *m.G : m.E / (2 * (1 + *m.nu)); }
@@ -74,9 +75,11 @@ Section circle(double diameter) { return tube(diameter, 0); }
 Section tube(double outer_diameter, double inner_diameter) {
   require_positive(outer_diameter, "outer diameter of a tube");
   if (!(inner_diameter >= 0 && inner_diameter < outer_diameter))
-    throw Error(Code::bad_value, fmt::format("inner diameter of a tube is {}, not between 0 and "
-                                             "the outer one, {}",
-                                             inner_diameter, outer_diameter));
+    throw Error(Code::bad_value,
+                fmt::format("inner diameter of a tube is {}, not between 0 and "
+                            "the outer one, {}",
+                            inner_diameter, outer_diameter),
+                "the order is tube(outer, inner), in metres");
   // Differences of powers as products, which keep the digits of a thin wall.
   const double D = outer_diameter, d = inner_diameter;
   const double area = pi / 4 * (D - d) * (D + d);
@@ -91,7 +94,7 @@ void check(const Beam& beam) {
       mistakes.push_back({Code::bad_value,
                           fmt::format("{} of the beam is {}, not a positive number", what, value),
                           {},
-                          ""});
+                          "Beam must give it, in SI units"});
   };
   positive(beam.length, "length");
   positive(beam.section.area, "section.area");
@@ -124,7 +127,7 @@ fe::Mesh beam_mesh(const Beam& beam) {
   mesh.name = "beam";
   for (std::size_t i = 0; i < nodes; ++i) {
     const double x = beam.length * static_cast<double>(i) / beam.elements;
-    mesh.points.push_back({std::to_string(i), Vector3(x, 0, 0)});
+    mesh.points.push_back({std::to_string(i), Vector3d(x, 0, 0)});
     for (int component = 0; component < 6; ++component) mesh.dofs.push_back({i, component});
   }
   mesh.interfaces = {{"P", 0}, {"C", nodes - 1}};

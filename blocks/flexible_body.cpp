@@ -144,7 +144,7 @@ class FlexibleBodyBlock : public Block {
   }
 
   std::shared_ptr<const ModalData> data_;
-  std::vector<Vector3> PC_;
+  std::vector<Vector3d> PC_;
   Interface face_;
   MatrixXd W_;      ///< N x inputs
   MatrixXd rigid_;  ///< outputs x inputs

@@ -20,7 +20,7 @@ const Interface& face() {
 
 class HingeBlock : public Block {
  public:
-  explicit HingeBlock(const Vector3& r) : r_(r) {
+  explicit HingeBlock(const Vector3d& r) : r_(r) {
     auto d = std::make_shared<Dynamics>();
     d->A = (MatrixXd(2, 2) << 0, 1, 0, 0).finished();
     d->B = MatrixXd::Zero(2, 13);
@@ -70,7 +70,7 @@ class HingeBlock : public Block {
   }
 
  private:
-  Vector3 r_;
+  Vector3d r_;
   std::shared_ptr<const Dynamics> matrices_;
 };
 

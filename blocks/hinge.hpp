@@ -21,7 +21,7 @@ namespace titop {
 /// body is `torque = -tau`. Exactly one of `torque` and `accel` is driven: torque = 0 is a free
 /// hinge, accel = 0 a locked one.
 struct Hinge {
-  Vector3 axis = Vector3::UnitZ();  ///< r, any length but 0, in the joint's frame
+  Vector3d axis = Vector3d::UnitZ();  ///< r, any length but 0, in the joint's frame
 
   struct Handle {
     Handle(Graph* graph, int node);
@@ -42,12 +42,11 @@ BlockPtr as_block(const Hinge& spec);
 /// The hinge's torque or acceleration is still to be driven.
 ///
 ///     auto h = hinge(d, "drive", wing, hub.child("C1"), T_ba, {0, 1, 0});
-///     h.torque = k * h.angle + c * h.rate - u;     // spring-damper and a motor torque u on the
-///     wing
+///     h.torque = k * h.angle + c * h.rate - u;  // spring-damper; a motor turns the wing by u
 template <class Handle>
   requires HasParent<Handle, 6>
 Hinge::Handle hinge(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,
-                    const Rotation& T_ba, const Vector3& axis,
+                    const Rotation& T_ba, const Vector3d& axis,
                     std::source_location at = std::source_location::current()) {
   const Hinge::Handle joint = d.add(name, Hinge{axis}, at);
   const bool named = !T_ba.to().empty() || !T_ba.from().empty();

@@ -86,10 +86,10 @@ MassProperties mass_properties(const Matrix6& D_P) {
   result.mass = D_P.diagonal().head<3>();
   const double m = result.mass.mean();
   if (m > 0) {
-    const Matrix3 S = (D_P.topRightCorner<3, 3>() - D_P.bottomLeftCorner<3, 3>()) / (2 * m);
-    result.centre = -Vector3(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)) / 2;
+    const Matrix3d S = (D_P.topRightCorner<3, 3>() - D_P.bottomLeftCorner<3, 3>()) / (2 * m);
+    result.centre = -Vector3d(S(2, 1) - S(1, 2), S(0, 2) - S(2, 0), S(1, 0) - S(0, 1)) / 2;
   }
-  const Matrix3 S = cross(-result.centre);
+  const Matrix3d S = cross(-result.centre);
   result.inertia = D_P.bottomRightCorner<3, 3>() + m * S * S;
   const Vector6 scale = unit_scale(D_P);
   const Matrix6 rest = D_P - rigid_mass(m, result.inertia, -result.centre);

@@ -12,9 +12,9 @@ namespace titop {
 
 /// A 6 x 6 mass matrix read as that of a rigid body.
 struct MassProperties {
-  Vector3 mass = Vector3::Zero();     ///< seen along x, y, z: three times the same [kg]
-  Vector3 centre = Vector3::Zero();   ///< centre of mass from P [m]
-  Matrix3 inertia = Matrix3::Zero();  ///< about the centre of mass [kg m^2]
+  Vector3d mass = Vector3d::Zero();     ///< seen along x, y, z: three times the same [kg]
+  Vector3d centre = Vector3d::Zero();   ///< centre of mass from P [m]
+  Matrix3d inertia = Matrix3d::Zero();  ///< about the centre of mass [kg m^2]
   double misfit = 0;  ///< largest |D_P - rigid_mass(...)| relative to sqrt(D_ii D_jj): 0 if D_P is
                       ///< a rigid body's; what FE programs leave out shows here
 };

@@ -10,7 +10,7 @@ namespace titop {
 /// A child point of a flexible body, as the modes see it.
 struct ModalChild {
   std::string name;
-  Vector3 PC = Vector3::Zero();  ///< vector from P to C in the body's frame [m]
+  Vector3d PC = Vector3d::Zero();  ///< vector from P to C in the body's frame [m]
   Eigen::MatrixXd Phi_C;  ///< 6 x N: the modes' displacements and rotations at C [1/sqrt(kg)]
 };
 

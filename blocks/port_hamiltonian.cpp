@@ -53,7 +53,7 @@ PortHamiltonian port_hamiltonian(const FlexibleBody& body) {
   s.G = MatrixXd::Zero(2 * n, W.cols());
   s.G.bottomRows(n) = W;
   s.N = W.transpose();
-  std::vector<Vector3> PC;
+  std::vector<Vector3d> PC;
   for (const ModalChild& c : d.children) PC.push_back(c.PC);
   s.P = rigid_part(PC, d.D_P);
   return s;

@@ -14,7 +14,7 @@ BodyHandle::BodyHandle(Graph* graph, int node)
     : child(graph, node),
       parent(detail::channel<6>(graph, node, detail::find_channel(*graph, node, "parent"))) {}
 
-void check_inertia(double mass, const Matrix3& inertia) {
+void check_inertia(double mass, const Matrix3d& inertia) {
   if (!std::isfinite(mass) || !inertia.allFinite())
     throw Error(Code::not_finite, "the mass or the inertia is not finite", "give finite numbers");
   if (mass < 0)
@@ -26,9 +26,9 @@ void check_inertia(double mass, const Matrix3& inertia) {
     throw Error(Code::bad_inertia,
                 fmt::format("the inertia is not symmetric, by {:.2g} kg m^2", off),
                 "give the full symmetric matrix about the centre of mass");
-  const Eigen::SelfAdjointEigenSolver<Matrix3> solver((inertia + inertia.transpose()) / 2,
-                                                      Eigen::EigenvaluesOnly);
-  const Vector3 I = solver.eigenvalues();  // ascending
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver((inertia + inertia.transpose()) / 2,
+                                                       Eigen::EigenvaluesOnly);
+  const Vector3d I = solver.eigenvalues();  // ascending
   if (I(0) < -1e-9 * I.cwiseAbs().maxCoeff())
     throw Error(
         Code::bad_inertia,
@@ -60,7 +60,7 @@ Interface body_interface(const std::vector<std::string>& children, int modes) {
   return face;
 }
 
-MatrixXd rigid_part(const std::vector<Vector3>& PC, const Matrix6& D_P) {
+MatrixXd rigid_part(const std::vector<Vector3d>& PC, const Matrix6& D_P) {
   const auto n = static_cast<Eigen::Index>(6 * PC.size());
   MatrixXd D = MatrixXd::Zero(n + 6, n + 6);
   for (std::size_t i = 0; i < PC.size(); ++i) {
@@ -73,10 +73,10 @@ MatrixXd rigid_part(const std::vector<Vector3>& PC, const Matrix6& D_P) {
   return D;
 }
 
-Kinematics body_kinematics(const std::vector<Vector3>& PC, const std::vector<MatrixXd>& Phi_C) {
+Kinematics body_kinematics(const std::vector<Vector3d>& PC, const std::vector<MatrixXd>& Phi_C) {
   Kinematics k;
   k.reference = static_cast<int>(PC.size());
-  for (const Vector3& v : PC) k.tau.emplace_back(tau(-v));
+  for (const Vector3d& v : PC) k.tau.emplace_back(tau(-v));
   k.tau.emplace_back(Matrix6::Identity());
   const auto modes = Phi_C.empty() ? 0 : Phi_C.front().cols();
   for (const MatrixXd& Phi : Phi_C) {
@@ -135,7 +135,7 @@ class RigidBodyBlock : public Block {
 
  private:
   RigidBody spec_;
-  std::vector<Vector3> PC_;
+  std::vector<Vector3d> PC_;
   Interface face_;
 };
 

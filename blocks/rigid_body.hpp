@@ -10,7 +10,7 @@ namespace titop {
 /// A point of a body where a child may hang.
 struct ChildPoint {
   std::string name;
-  Vector3 PC = Vector3::Zero();  ///< from the parent point P to C, in the body's frame [m]
+  Vector3d PC = Vector3d::Zero();  ///< from the parent point P to C, in the body's frame [m]
 };
 
 /// Ports of a body: one parent point P, any number of child points by name.
@@ -32,9 +32,9 @@ struct BodyHandle {
 /// symmetric, not positive, or that breaks the triangle inequality; (duplicate_name) two child
 /// points of one name. A mass or inertia of 0 is allowed: a massless link; freeing it is improper.
 struct RigidBody {
-  Value mass = 1;                         ///< [kg]
-  Matrix3 inertia = Matrix3::Identity();  ///< about the centre of mass A [kg m^2]
-  Vector3 PA = Vector3::Zero();           ///< from P to the centre of mass [m]
+  Value mass = 1;                           ///< [kg]
+  Matrix3d inertia = Matrix3d::Identity();  ///< about the centre of mass A [kg m^2]
+  Vector3d PA = Vector3d::Zero();           ///< from P to the centre of mass [m]
   std::vector<ChildPoint> children = {};
 
   using Handle = BodyHandle;
@@ -42,7 +42,7 @@ struct RigidBody {
 BlockPtr as_block(const RigidBody& spec);
 
 /// Throws bad_inertia or not_finite unless some rigid body has this mass and inertia (about its
-/// centre of mass). Tolerance 1e-9 of the trace.
-void check_inertia(double mass, const Matrix3& inertia);
+/// centre of mass), to 1e-9 of its largest entry or principal moment.
+void check_inertia(double mass, const Matrix3d& inertia);
 
 }  // namespace titop

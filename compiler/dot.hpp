@@ -6,7 +6,7 @@
 
 namespace titop {
 
-/// Graphviz text of a diagram at any stage of the compiler: one cluster per node with its ports,
+/// Graphviz text of a diagram at any stage of the compiler: one box per node with its ports,
 /// edges with size and frame, algebraic loops in colour, inverted channels marked. Node names in
 /// the text are the user's own, so two runs give the same text. O(terms).
 std::string to_dot(const Stage& stage);

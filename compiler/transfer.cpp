@@ -118,6 +118,7 @@ void add_definition(Assembly& a, int column, int size, const std::vector<Term>& 
 }  // namespace
 
 MatrixXcd transfer(const Graph& graph, std::complex<double> s, ParameterValues values) {
+  if (!graph.mistakes.empty()) throw Error(graph.mistakes);
   const std::vector<double> nominal = nominal_values(graph);
   Assembly a(graph, values.empty() ? ParameterValues(nominal) : values, s);
   for (int i = 0; i < static_cast<int>(graph.nodes.size()); ++i)

@@ -40,9 +40,9 @@ FlexibleBody make_wing() {
   return data;
 }
 
-RigidBody make_bus(const Vector3& PA, const Vector3& C1, const Vector3& C2) {
+RigidBody make_bus(const Vector3d& PA, const Vector3d& C1, const Vector3d& C2) {
   return {.mass = 120,  // [kg]
-          .inertia = Vector3(20, 25, 30).asDiagonal(),
+          .inertia = Vector3d(20, 25, 30).asDiagonal(),
           .PA = PA,
           .children = {{"C1", C1}, {"C2", C2}}};
 }
@@ -51,7 +51,7 @@ RigidBody make_bus(const Vector3& PA, const Vector3& C1, const Vector3& C2) {
 
 /// Coordinates: motion of P (6), then what the nodes 1 and 2 of each wing do relative to it (12
 /// each, in the wing's frame).
-by_hand::Structure by_hand_spacecraft(const Vector3& PA, const std::array<Vector3, 2>& C,
+by_hand::Structure by_hand_spacecraft(const Vector3d& PA, const std::array<Vector3d, 2>& C,
                                       const std::array<Eigen::Matrix3d, 2>& T_ba) {
   const by_hand::Beam wing = by_hand::tube(3, 0.05, 0.045, 70e9, 2700, 2);
   const by_hand::FreeBeam fe = by_hand::free_beam(wing);
@@ -105,8 +105,8 @@ int main() {
   bool ok = true;
 
   // Two wings somewhere, turned anyhow.
-  const Vector3 PA(0.1, -0.05, 0.2), C1(0.5, 0.3, -0.1), C2(-0.4, 0.2, 0.3);
-  const Vector3 axis1 = Vector3::UnitZ(), axis2(1, 2, -1);
+  const Vector3d PA(0.1, -0.05, 0.2), C1(0.5, 0.3, -0.1), C2(-0.4, 0.2, 0.3);
+  const Vector3d axis1 = Vector3d::UnitZ(), axis2(1, 2, -1);
   const System skew = compile(spacecraft(make_bus(PA, C1, C2), wing, Rotation::about(axis1, 0.4),
                                          Rotation::about(axis2, 2.5)));
   const by_hand::Structure a =
@@ -128,12 +128,12 @@ int main() {
 
   // Mounted symmetrically. Stretching and twisting in opposite phase leave the bus at rest, and
   // only those: opposite bending turns it. No input moves them, so they are not in the model.
-  const Vector3 right(0.5, 0, 0), left(-0.5, 0, 0);
-  const System symmetric = compile(
-      spacecraft(make_bus(Vector3::Zero(), right, left), wing, {}, Rotation::about({0, 0, 1}, pi)));
+  const Vector3d right(0.5, 0, 0), left(-0.5, 0, 0);
+  const System symmetric = compile(spacecraft(make_bus(Vector3d::Zero(), right, left), wing, {},
+                                              Rotation::about({0, 0, 1}, pi)));
   const by_hand::Structure b = by_hand_spacecraft(
-      Vector3::Zero(), {right, left},
-      {Eigen::Matrix3d::Identity(), Vector3(-1, -1, 1).asDiagonal().toDenseMatrix()});
+      Vector3d::Zero(), {right, left},
+      {Eigen::Matrix3d::Identity(), Vector3d(-1, -1, 1).asDiagonal().toDenseMatrix()});
   std::printf("symmetric: order %d of %d, from M and K %d\n", symmetric.state_space().order(),
               symmetric.order(), by_hand::least_order(b));
   ok &= symmetric.state_space().order() == by_hand::least_order(b);

@@ -19,7 +19,7 @@ enum class Joint { free, driven, motor, controller };
 constexpr double k = 800, c = 6;  // spring [N m/rad] and damper [N m s/rad] of the motor
 constexpr double gain = 900, lead = 12,
                  corner = 150;       // controller: gain + lead s / (1 + s / corner)
-const Vector3 axis(0, 1, 0);         // of the elbow, in the forearm's frame
+const Vector3d axis(0, 1, 0);        // of the elbow, in the forearm's frame
 constexpr double elbow_angle = 0.8;  // posture, about y [rad]
 
 Beam arm(double length) {

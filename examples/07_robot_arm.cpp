@@ -16,7 +16,7 @@ namespace {
 /// One link with the joint before it; the posture turns it against the link before.
 struct Link {
   double length, diameter;  ///< [m], of a tube with walls of 10 %
-  Vector3 axis;             ///< of the joint, in the link's frame; also the axis of the posture
+  Vector3d axis;            ///< of the joint, in the link's frame; also the axis of the posture
   double posture;           ///< [rad]
   double k, c;              ///< of the drive [N m/rad], [N m s/rad]
 };

@@ -12,7 +12,7 @@ using titop::BlockPtr;
 using titop::Dynamics;
 using titop::Interface;
 using titop::Kinematics;
-using titop::Vector3;
+using titop::Vector3d;
 
 // --- the block -----------------------------------------------------------------------------------
 
@@ -25,7 +25,7 @@ using titop::Vector3;
 /// the direct term is -m (I - r r').
 struct ProofMass {
   double mass = 1, stiffness = 1, damping = 0;  ///< [kg], [N/m], [N s/m]
-  Vector3 axis = Vector3::UnitZ();              ///< r, unit vector in the frame of the block
+  Vector3d axis = Vector3d::UnitZ();            ///< r, unit vector in the frame of the block
 
   struct Handle {
     Handle(titop::Graph* graph, int node)
@@ -46,7 +46,7 @@ class ProofMassBlock : public Block {
     face_.outputs = {{"stroke", 1, titop::Quantity::position}};
     face_.states = {"delta", "deltad"};
     const double m = p.mass, k = p.stiffness, c = p.damping;
-    const Vector3& r = p.axis;
+    const Vector3d& r = p.axis;
     matrices_->A = (MatrixXd(2, 2) << 0, 1, -k / m, -c / m).finished();
     matrices_->B = MatrixXd::Zero(2, 7);  // inputs: xdd_P (6), coil
     matrices_->B.block<1, 3>(1, 0) = -r.transpose();
@@ -56,7 +56,7 @@ class ProofMassBlock : public Block {
     matrices_->C.topRightCorner<3, 1>() = c * r;
     matrices_->C(6, 0) = 1;
     matrices_->D = MatrixXd::Zero(7, 7);
-    matrices_->D.topLeftCorner<3, 3>() = -m * (titop::Matrix3::Identity() - r * r.transpose());
+    matrices_->D.topLeftCorner<3, 3>() = -m * (titop::Matrix3d::Identity() - r * r.transpose());
     matrices_->D.block<3, 1>(0, 6) = -r;
   }
   std::string_view type() const override { return "ProofMass"; }
@@ -89,7 +89,7 @@ const Beam mast{.length = 4,
                 .material = {.E = 70e9, .nu = 0.25, .rho = 2700},
                 .elements = 3};
 const ProofMass tuned{
-    .mass = 0.5, .stiffness = 0.5 * 19.0 * 19.0, .damping = 3.5, .axis = Vector3::UnitZ()};
+    .mass = 0.5, .stiffness = 0.5 * 19.0 * 19.0, .damping = 3.5, .axis = Vector3d::UnitZ()};
 
 enum class Damper { none, mounted };
 

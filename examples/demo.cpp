@@ -16,12 +16,12 @@ using std::numbers::pi;
 namespace {
 
 const RigidBody hub_spec{.mass = 85,  // [kg]
-                         .inertia = Vector3(9, 11, 13).asDiagonal(),
+                         .inertia = Vector3d(9, 11, 13).asDiagonal(),
                          .PA = {0.02, -0.01, 0.05},
                          .children = {{"C1", {0.35, 0, 0.1}}, {"C2", {-0.35, 0.05, 0.1}}}};
 constexpr double kappa = 60, c = 0.8;  // hinge spring [N m/rad] and damper [N m s/rad]
-const Vector3 hinge_axis(0, 1, 0);     // in the boom's frame: across it
-const Vector3 turn1(0, 0, 1), turn2(1, 2, 9);
+const Vector3d hinge_axis(0, 1, 0);    // in the boom's frame: across it
+const Vector3d turn1(0, 0, 1), turn2(1, 2, 9);
 constexpr double angle1 = pi / 12, angle2 = 2.9;
 
 /// The beam of examples/data/calculix_beam, 342 modes: six are kept, and the static response to a

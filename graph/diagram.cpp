@@ -84,6 +84,7 @@ void OutputRef::operator=(const Rhs& rhs) const {
                 fmt::format("output {} takes a signal from another diagram", output.name),
                 "take both sides from the same Diagram", {"written at " + to_string(rhs.where())});
   output.terms = rhs.expr().terms();
+  detail::note_missing(*graph_, output.terms, rhs.where());
   detail::note_foreign_parameters(*graph_, output.terms, rhs.where());
   output.where = rhs.where();
 }

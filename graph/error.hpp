@@ -56,8 +56,7 @@ class Error : public std::exception {
  public:
   explicit Error(std::vector<Mistake> mistakes);
   explicit Error(Mistake mistake);
-  Error(Code code, std::string message, std::string hint = {},
-        std::vector<std::string> details = {});
+  Error(Code code, std::string message, std::string hint, std::vector<std::string> details = {});
 
   const char* what() const noexcept override { return text_.c_str(); }
   const std::vector<Mistake>& mistakes() const { return mistakes_; }

@@ -13,7 +13,7 @@ namespace titop {
 /// and frames are checked by the compiler, all together, where both sides can be shown.
 ///
 ///  - `-x`, `T_ba * x` and `x.linear` keep the quantity of x (T_ba also changes the frame);
-///  - `3.0 * x`, `k * x`, `M * x` give a plain signal: gains carry units.
+///  - `3.0 * x`, `k * x`, `x / 2.0`, `M * x` give a plain signal: gains carry units.
 class Expr {
  public:
   Expr() = default;
@@ -56,6 +56,10 @@ Expr operator*(const Value& k, const R& r) {
 template <Readable L>
 Expr operator*(const L& l, const Value& k) {
   return l.expr().times(k);
+}
+template <Readable L>
+Expr operator/(const L& l, double divisor) {
+  return l.expr().times(Value(1 / divisor));
 }
 template <Readable R>
 Expr operator*(const Rotation& T_ba, const R& r) {

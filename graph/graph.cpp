@@ -49,7 +49,7 @@ std::vector<double> nominal_values(const Graph& graph) {
 namespace {
 
 /// A rotation on a vector of 3 or a dual vector of 6.
-MatrixXd on_vector(const Matrix3& T, int size) {
+MatrixXd on_vector(const Matrix3d& T, int size) {
   if (size == 3) return T;
   MatrixXd both = MatrixXd::Zero(6, 6);
   both.topLeftCorner<3, 3>() = T;
@@ -105,8 +105,8 @@ Pattern structure(const Graph& graph, const Term& term) {
     else if (const auto* p = std::get_if<Part>(&*f))
       result = p->whole() ? result : product(p->rows.array() != 0, result);
     else if (const auto* T = std::get_if<Rotation>(&*f); T && !T->is_identity())
-      result =
-          product(on_vector(Matrix3::Ones(), static_cast<int>(result.rows())).array() != 0, result);
+      result = product(on_vector(Matrix3d::Ones(), static_cast<int>(result.rows())).array() != 0,
+                       result);
   }
   return result;
 }
@@ -130,8 +130,8 @@ std::string print_unsigned(const Graph& graph, const Term& term, bool& negative)
       negative = negative != (number < 0);
       if (!k->is_parameter() || std::abs(number) != 1)
         text += fmt::format("{:.6g} * ", std::abs(number));
-      if (k->is_parameter())
-        text += graph.parameters[static_cast<std::size_t>(k->index())].name + " * ";
+      if (const auto i = static_cast<std::size_t>(k->index()); k->is_parameter())
+        text += (i < graph.parameters.size() ? graph.parameters[i].name : "(no parameter)") + " * ";
     } else if (const auto* T = std::get_if<Rotation>(&f)) {
       if (!T->is_identity() || !T->to().empty())
         text += T->to().empty() ? "T * " : fmt::format("T({}<-{}) * ", T->to(), T->from());

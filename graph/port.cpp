@@ -1,26 +1,19 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <titop/graph/port.hpp>
 
 namespace titop::detail {
 namespace {
 
-/// A port that was never one: "the only child" of a body that has none, or several.
-bool missing(Graph* graph, int signal, const std::source_location& where) {
-  if (!graph || signal >= 0) return !graph;
-  if (signal <= -2) note_unknown_channel(*graph, -2 - signal, "child", where);
-  return true;
-}
-
-int size_of(const Graph* graph, int signal, const Part& part) {
-  if (!graph || signal < 0) return 6;
+int size_of(const Graph& graph, int signal, const Part& part) {
   if (!part.whole()) return static_cast<int>(part.rows.rows());
-  return graph->signals[static_cast<std::size_t>(signal)].size;
+  return signal < 0 ? 6 : graph.signals[static_cast<std::size_t>(signal)].size;
 }
 
-std::string named(const Graph& graph, int node, std::string_view what) {
-  return fmt::format("{}.{}", graph.nodes[static_cast<std::size_t>(node)].name, what);
+std::string text_of(const Graph& graph, const Expr& signal) {
+  return print(graph, signal.terms().front());
 }
 
 const Interface& face_of(const Graph& graph, int node) {
@@ -30,64 +23,72 @@ const Interface& face_of(const Graph& graph, int node) {
 }  // namespace
 
 Expr SignalRef::expr() const {
-  if (missing(graph_, signal_, {})) return Expr(graph_, Term{.signal = -1});
+  if (signal_ < 0) return Expr(graph_, Term{.signal = signal_});
   Term term{.signal = signal_, .of = of_};
   if (!part_.whole()) term.factors.emplace_back(part_);
   return Expr(graph_, std::move(term));
 }
 
 void SignalRef::set(const Rhs& rhs, bool accumulate, double sign) const {
-  if (missing(graph_, signal_, rhs.where())) return;
+  if (!graph_) return;
   if (rhs.expr().graph() && rhs.expr().graph() != graph_)
     throw Error(Code::unknown_name,
                 fmt::format("the equation of {} takes a signal from another diagram",
                             name_of(*graph_, signal_)),
-                "take both sides from the same Diagram");
+                "take both sides from the same Diagram", {"written at " + to_string(rhs.where())});
+  note_missing(*graph_, {Term{.signal = signal_}}, rhs.where());
+  note_missing(*graph_, rhs.expr().terms(), rhs.where());
+  if (signal_ < 0) return;
   Equation equation{signal_, part_, accumulate, rhs.expr().terms(), rhs.where()};
   for (Term& term : equation.terms) term.sign *= sign;
   note_foreign_parameters(*graph_, equation.terms, rhs.where());
   graph_->equations.push_back(std::move(equation));
 }
 
-SignalRef SignalRef::linear() const {
+SignalRef SignalRef::half(std::string name, Eigen::Index first) const {
+  if (!part_.whole())
+    throw Error(Code::size, fmt::format("{} has no part {}", text_of(*graph_, expr()), name),
+                ".linear and .angular belong to whole dual vectors of 6");
   SignalRef half = *this;
-  half.part_ = {Eigen::MatrixXd::Identity(3, 6), ".linear"};
+  half.part_ = {Eigen::MatrixXd::Zero(3, 6), std::move(name)};
+  half.part_.rows.middleCols(first, 3).setIdentity();
   return half;
 }
 
-SignalRef SignalRef::angular() const {
-  SignalRef half = *this;
-  half.part_ = {Eigen::MatrixXd::Zero(3, 6), ".angular"};
-  half.part_.rows.rightCols(3).setIdentity();
-  return half;
-}
+SignalRef SignalRef::linear() const { return half(".linear", 0); }
 
-SignalRef SignalRef::along(const Vector3& r) const {
+SignalRef SignalRef::angular() const { return half(".angular", 3); }
+
+SignalRef SignalRef::along(const Vector3d& r) const {
+  const std::string name = fmt::format(".along({}, {}, {})", r.x(), r.y(), r.z());
   if (!(r.norm() > 0) || !std::isfinite(r.norm()))
-    throw Error(Code::bad_value,
-                fmt::format("{}.along({}, {}, {}): no direction", name_of(*graph_, signal_), r.x(),
-                            r.y(), r.z()),
+    throw Error(Code::bad_value, fmt::format("{}{}: no direction", text_of(*graph_, expr()), name),
                 "give a finite vector other than 0");
+  if (const int size = size_of(*graph_, signal_, part_); size != 3)
+    throw Error(
+        Code::size,
+        fmt::format("{} has size {} and no part {}", text_of(*graph_, expr()), size, name),
+        "along(r) belongs to vectors of 3: take .linear or .angular of a dual vector first");
   SignalRef component = *this;
-  component.part_.rows = (r.normalized().transpose() * part_.rows).eval();
-  component.part_.name += fmt::format(".along({}, {}, {})", r.x(), r.y(), r.z());
-  if (size_of(graph_, signal_, part_) != 3)
-    throw Error(Code::size, fmt::format("{} has no direction", name_of(*graph_, signal_)),
-                "along(r) belongs to vectors of size 3");
+  component.part_.rows = part_.whole() ? Eigen::MatrixXd(r.normalized().transpose())
+                                       : Eigen::MatrixXd(r.normalized().transpose() * part_.rows);
+  component.part_.name += name;
   return component;
 }
 
 int port_signal(const Graph& graph, int node, std::string_view name) {
   const Node& n = graph.nodes[static_cast<std::size_t>(node)];
   const Interface& face = n.block->interface();
+  std::string names;
   int signal = n.first_signal + 2 * static_cast<int>(face.channels.size());
   for (const auto* ports : {&face.inputs, &face.outputs})
     for (const PortSpec& p : *ports) {
       if (p.name == name) return signal;
+      names += (names.empty() ? "" : ", ") + p.name;
       ++signal;
     }
-  throw Error(Code::unknown_name, fmt::format("{} does not exist", named(graph, node, name)),
-              fmt::format("a {} has no such port", n.block->type()));
+  throw Error(Code::unknown_name, fmt::format("{}.{} does not exist", n.name, name),
+              fmt::format("the one-way ports of this {} are: {}", n.block->type(), names));
 }
 
 int find_channel(const Graph& graph, int node, std::string_view name) {
@@ -134,6 +135,11 @@ int only_child(const Graph& graph, int node) {
   return found;
 }
 
+void note_missing(Graph& graph, const std::vector<Term>& terms, const std::source_location& at) {
+  for (const Term& term : terms)
+    if (term.signal <= -2) note_unknown_channel(graph, -2 - term.signal, "child", at);
+}
+
 void note_unknown_channel(Graph& graph, int node, std::string_view name, std::source_location at) {
   std::string names;
   for (const ChannelSpec& c : face_of(graph, node).channels)
@@ -143,10 +149,15 @@ void note_unknown_channel(Graph& graph, int node, std::string_view name, std::so
   mistake.message = name == "child"
                         ? fmt::format("{}.child: {} has not exactly one child point", who, who)
                         : fmt::format("{} has no child point \"{}\"", who, name);
-  if (at.line() != 0) mistake.details.push_back("written at " + to_string(at));
+  mistake.details.push_back("written at " + to_string(at));
   mistake.hint = names.empty() ? fmt::format("{} has no child points; add one to its data", who)
                                : fmt::format("its child points are: {}", names);
-  graph.mistakes.push_back(std::move(mistake));
+  // mount asks for a port twice.
+  const bool known =
+      std::any_of(graph.mistakes.begin(), graph.mistakes.end(), [&](const Mistake& m) {
+        return m.message == mistake.message && m.details == mistake.details;
+      });
+  if (!known) graph.mistakes.push_back(std::move(mistake));
 }
 
 }  // namespace titop::detail

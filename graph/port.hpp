@@ -26,14 +26,18 @@ class SignalRef {
 
   SignalRef linear() const;
   SignalRef angular() const;
-  SignalRef along(const Vector3& r) const;
+  SignalRef along(const Vector3d& r) const;
 
  protected:
   void set(const Rhs& rhs, bool accumulate, double sign) const;
 
  private:
+  SignalRef half(std::string name, Eigen::Index first) const;
+
   Graph* graph_ = nullptr;
-  int signal_ = -1;  ///< -1: a port that does not exist; that mistake is already noted
+  /// -1: a port that does not exist; that mistake is already noted. -2 - node: `.child` of a node
+  /// that has none or several; noted where it is used, with that line.
+  int signal_ = -1;
   Term::Of of_ = Term::Of::signal;
   Part part_;
 };
@@ -109,7 +113,7 @@ class Port<3, K> : public PortBase<3, K> {
     requires detail::never<Port>
   = delete;
   /// The component along the vector r (any length but 0), in the port's frame.
-  Port<1, K> along(const Vector3& r) const { return Port<1, K>(detail::SignalRef::along(r)); }
+  Port<1, K> along(const Vector3d& r) const { return Port<1, K>(detail::SignalRef::along(r)); }
 };
 
 /// A dual vector (linear; angular).
@@ -125,7 +129,7 @@ class Port<6, K> : public PortBase<6, K> {
     requires detail::never<Port>
   = delete;
   /// The linear component along the vector r (any length but 0).
-  Port<1, K> along(const Vector3& r) const { return linear.along(r); }
+  Port<1, K> along(const Vector3d& r) const { return linear.along(r); }
 
   Port<3, K> linear, angular;
 };
@@ -202,7 +206,9 @@ int find_child(const Graph& graph, int node, std::string_view name);
 /// Notes the mistake "parameter of another diagram" for every such parameter in these terms.
 void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms,
                              const std::source_location& at);
-/// Notes the mistake "no channel of this name", with the names that exist.
+/// Notes the mistake "not exactly one child" for every such port in these terms.
+void note_missing(Graph& graph, const std::vector<Term>& terms, const std::source_location& at);
+/// Notes the mistake "no channel of this name", with the names that exist; once per line.
 void note_unknown_channel(Graph& graph, int node, std::string_view name, std::source_location at);
 /// Index of the only channel of size N that is not "parent", -1 if there are several or none.
 int only_child(const Graph& graph, int node);

@@ -9,13 +9,13 @@
 namespace titop {
 namespace {
 
-Matrix3 turn(const Vector3& axis, double angle) {
+Matrix3d turn(const Vector3d& axis, double angle) {
   return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
 }
 
 }  // namespace
 
-Rotation Rotation::about(const Vector3& axis, Value angle) {
+Rotation Rotation::about(const Vector3d& axis, Value angle) {
   const double length = axis.norm();
   if (!std::isfinite(length) || length == 0 || !std::isfinite(angle.nominal()))
     throw Error(Code::not_a_rotation,
@@ -30,8 +30,8 @@ Rotation Rotation::about(const Vector3& axis, Value angle) {
   return result;
 }
 
-Rotation Rotation::matrix(const Matrix3& T) {
-  const double off = (T.transpose() * T - Matrix3::Identity()).cwiseAbs().maxCoeff();
+Rotation Rotation::matrix(const Matrix3d& T) {
+  const double off = (T.transpose() * T - Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(off <= 1e-9))  // also catches not-a-number
     throw Error(Code::not_a_rotation,
                 fmt::format("the matrix is not orthogonal: T'T differs from I by {:.2g}", off),
@@ -40,10 +40,10 @@ Rotation Rotation::matrix(const Matrix3& T) {
   if (T.determinant() < 0)
     throw Error(Code::not_a_rotation, "the matrix mirrors: its determinant is -1",
                 "its columns must form a right-handed frame");
-  const Eigen::JacobiSVD<Matrix3> svd(T, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::JacobiSVD<Matrix3d> svd(T, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Rotation result;
   // An exact rotation (a permutation of axes, say) must stay exact.
-  result.steps_.push_back(off == 0 ? T : Matrix3(svd.matrixU() * svd.matrixV().transpose()));
+  result.steps_.push_back(off == 0 ? T : Matrix3d(svd.matrixU() * svd.matrixV().transpose()));
   return result;
 }
 
@@ -59,8 +59,8 @@ Rotation Rotation::inverse() const {
   result.to_ = from_;
   result.from_ = to_;
   for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) {
-    if (const auto* T = std::get_if<Matrix3>(&*step)) {
-      result.steps_.push_back(Matrix3(T->transpose()));
+    if (const auto* T = std::get_if<Matrix3d>(&*step)) {
+      result.steps_.push_back(Matrix3d(T->transpose()));
     } else {
       const Turn& t = std::get<Turn>(*step);
       result.steps_.push_back(Turn{-t.axis, t.angle});
@@ -78,35 +78,35 @@ Rotation operator*(const Rotation& T_cb, const Rotation& T_ba) {
   Rotation result = T_cb;
   result.from_ = T_ba.from_;
   for (const auto& step : T_ba.steps_) {
-    auto* last = result.steps_.empty() ? nullptr : std::get_if<Matrix3>(&result.steps_.back());
-    const auto* next = std::get_if<Matrix3>(&step);
+    auto* last = result.steps_.empty() ? nullptr : std::get_if<Matrix3d>(&result.steps_.back());
+    const auto* next = std::get_if<Matrix3d>(&step);
     if (last && next)
-      *last = Matrix3(*last * *next);
+      *last = Matrix3d(*last * *next);
     else
       result.steps_.push_back(step);
   }
   return result;
 }
 
-Matrix3 Rotation::at(ParameterValues values) const {
-  Matrix3 T = Matrix3::Identity();
+Matrix3d Rotation::at(ParameterValues values) const {
+  Matrix3d T = Matrix3d::Identity();
   for (const Step& step : steps_) {
-    if (const auto* M = std::get_if<Matrix3>(&step)) {
-      T = steps_.size() == 1 ? *M : Matrix3(T * *M);
+    if (const auto* M = std::get_if<Matrix3d>(&step)) {
+      T = steps_.size() == 1 ? *M : Matrix3d(T * *M);
     } else {
       const Turn& t = std::get<Turn>(step);
-      T = Matrix3(T * turn(t.axis, t.angle.at(values)));
+      T = Matrix3d(T * turn(t.axis, t.angle.at(values)));
     }
   }
   return T;
 }
 
-Matrix3 Rotation::nominal() const {
-  Matrix3 T = Matrix3::Identity();
+Matrix3d Rotation::nominal() const {
+  Matrix3d T = Matrix3d::Identity();
   for (const Step& step : steps_) {
-    const auto* M = std::get_if<Matrix3>(&step);
-    T = Matrix3(T *
-                (M ? *M : turn(std::get<Turn>(step).axis, std::get<Turn>(step).angle.nominal())));
+    const auto* M = std::get_if<Matrix3d>(&step);
+    T = Matrix3d(T *
+                 (M ? *M : turn(std::get<Turn>(step).axis, std::get<Turn>(step).angle.nominal())));
   }
   return T;
 }

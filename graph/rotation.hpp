@@ -23,11 +23,11 @@ class Rotation {
 
   /// By `angle` [rad] about the unit vector along `axis` (any length but 0): the columns are the
   /// axes of the turned frame a in frame b. `angle` may be a parameter. Throws not_a_rotation.
-  static Rotation about(const Vector3& axis, Value angle);
+  static Rotation about(const Vector3d& axis, Value angle);
 
   /// From its matrix. Throws not_a_rotation unless |T'T - I| <= 1e-9 and det T > 0; what is off
   /// below that (digits of a file) is removed by the nearest rotation (polar decomposition).
-  static Rotation matrix(const Matrix3& T);
+  static Rotation matrix(const Matrix3d& T);
 
   /// The same with frame names: `T.named("B", "A1")` takes components in A1 to components in B.
   Rotation named(std::string to, std::string from) const;
@@ -39,9 +39,9 @@ class Rotation {
   friend Rotation operator*(const Rotation& T_cb, const Rotation& T_ba);
 
   /// 3 x 3 matrix for these parameter values. O(number of composed rotations).
-  Matrix3 at(ParameterValues values) const;
+  Matrix3d at(ParameterValues values) const;
   /// The same at the nominal values.
-  Matrix3 nominal() const;
+  Matrix3d nominal() const;
 
   const std::string& to() const { return to_; }
   const std::string& from() const { return from_; }
@@ -51,10 +51,10 @@ class Rotation {
 
  private:
   struct Turn {
-    Vector3 axis;  ///< unit vector
-    Value angle;   ///< [rad]
+    Vector3d axis;  ///< unit vector
+    Value angle;    ///< [rad]
   };
-  using Step = std::variant<Matrix3, Turn>;
+  using Step = std::variant<Matrix3d, Turn>;
   std::vector<Step> steps_;  ///< the product, left to right; neighbouring matrices are merged
   std::string to_, from_;
 };

@@ -56,8 +56,8 @@ int StateSpace::state(const std::string& name) const { return find(states, name,
 std::string to_string(const StateSpace& m) {
   std::string text = fmt::format("{} states, {} inputs, {} outputs\n", m.states.size(),
                                  m.inputs.size(), m.outputs.size());
-  if (m.order() > 0 && !m.inputs.empty()) print(text, "B", m.B, m.states, m.inputs);
   if (m.order() > 0) print(text, "A", m.A, m.states, m.states);
+  if (m.order() > 0 && !m.inputs.empty()) print(text, "B", m.B, m.states, m.inputs);
   if (m.order() > 0 && !m.outputs.empty()) print(text, "C", m.C, m.outputs, m.states);
   if (!m.inputs.empty() && !m.outputs.empty()) print(text, "D", m.D, m.outputs, m.inputs);
   return text;

@@ -38,7 +38,7 @@ struct CalculixDeck {
     int rot_node = 0;
     int line = 0;
   };
-  std::map<int, Vector3> nodes;  ///< positions [m] by node number
+  std::map<int, Vector3d> nodes;  ///< positions [m] by node number
   std::vector<RigidBody> rigid_bodies;
 };
 

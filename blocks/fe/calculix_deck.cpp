@@ -79,7 +79,7 @@ class DeckReader {
     auto fields = comma_fields(line.text);
     if (fields.size() == 5 && fields.back().empty()) fields.pop_back();
     int node = 0;
-    Vector3 position;
+    Vector3d position;
     const std::string found = fmt::format("'{}'", trim(line.text));
     if (fields.size() != 4 || !parse(fields[0], node) || node <= 0 ||
         !parse(fields[1], position.x()) || !parse(fields[2], position.y()) ||

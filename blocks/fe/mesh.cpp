@@ -21,7 +21,7 @@ void check_matrix(const Mesh& mesh, const MatrixXd& S, char name, std::vector<Mi
                         fmt::format("{} of mesh {} is {} x {}, it has {} degrees of freedom", name,
                                     mesh.name, S.rows(), S.cols(), n),
                         {},
-                        ""});
+                        "M and K have one row and one column per degree of freedom"});
     return;
   }
   const double tolerance = 10 * std::pow(10, -mesh.digits);
@@ -32,7 +32,7 @@ void check_matrix(const Mesh& mesh, const MatrixXd& S, char name, std::vector<Mi
                             fmt::format("{}({}, {}) of mesh {} is not finite", name,
                                         dof_name(mesh, i), dof_name(mesh, j), mesh.name),
                             {},
-                            ""});
+                            "give finite numbers"});
         return;
       }
       // In a semidefinite matrix no entry exceeds the geometric mean of its two diagonals: a
@@ -46,7 +46,7 @@ void check_matrix(const Mesh& mesh, const MatrixXd& S, char name, std::vector<Mi
                        name, mesh.name, S(i, j), dof_name(mesh, i), dof_name(mesh, j), S(j, i),
                        dof_name(mesh, j), dof_name(mesh, i)),
            {},
-           ""});
+           "give both triangles, or raise the tolerance by Mesh::digits"});
       return;
     }
   }
@@ -63,7 +63,7 @@ bool check_indices(const Mesh& mesh, std::vector<Mistake>& mistakes) {
                                     "points of 6 components",
                                     i, mesh.name, dof.component, dof.point, mesh.points.size()),
                         {},
-                        ""});
+                        "points count from 0, components are 0 to 5"});
   }
   for (const Interface& interface : mesh.interfaces)
     if (interface.point >= mesh.points.size())
@@ -72,7 +72,7 @@ bool check_indices(const Mesh& mesh, std::vector<Mistake>& mistakes) {
            fmt::format("interface {} of mesh {} is point {}, there are {}", interface.name,
                        mesh.name, interface.point, mesh.points.size()),
            {},
-           ""});
+           "points count from 0"});
   return mistakes.size() == before;
 }
 
@@ -83,7 +83,7 @@ void check_names(const Mesh& mesh, std::vector<Mistake>& mistakes) {
       mistakes.push_back({Code::duplicate_name,
                           fmt::format("mesh {} has two points or interfaces {}", mesh.name, name),
                           {},
-                          ""});
+                          "give each a name of its own"});
   };
   for (const Point& point : mesh.points) add(point.name);
   for (const Interface& interface : mesh.interfaces) add(interface.name);
@@ -94,7 +94,7 @@ void check_names(const Mesh& mesh, std::vector<Mistake>& mistakes) {
           {Code::duplicate_name,
            fmt::format("mesh {} has two rows {}", mesh.name, dof_name(mesh, static_cast<Index>(i))),
            {},
-           ""});
+           "give each degree of freedom one row"});
 }
 
 }  // namespace
@@ -111,7 +111,7 @@ void check(const Mesh& mesh) {
                             fmt::format("the position of point {} of mesh {} is not finite",
                                         point.name, mesh.name),
                             {},
-                            ""});
+                            "give finite coordinates [m]"});
   }
   if (!mistakes.empty()) throw Error(std::move(mistakes));
 }
@@ -158,7 +158,7 @@ std::array<Index, 6> interface_rows(const Mesh& mesh, const std::string& name) {
   return rows;
 }
 
-MatrixXd rigid_motions(const Mesh& mesh, const Vector3& P) {
+MatrixXd rigid_motions(const Mesh& mesh, const Vector3d& P) {
   MatrixXd R(static_cast<Index>(mesh.dofs.size()), 6);
   for (std::size_t i = 0; i < mesh.dofs.size(); ++i) {
     const Dof& dof = mesh.dofs[i];

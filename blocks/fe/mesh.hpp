@@ -15,7 +15,7 @@ namespace titop::fe {
 /// A node: a place that degrees of freedom belong to.
 struct Point {
   std::string name;
-  Vector3 position = Vector3::Zero();  ///< in the body's frame [m]
+  Vector3d position = Vector3d::Zero();  ///< in the body's frame [m]
 };
 
 /// One row of M and K: a displacement of a point along a body axis (component 0, 1, 2: x, y, z)
@@ -60,7 +60,7 @@ std::array<Eigen::Index, 6> interface_rows(const Mesh& mesh, const std::string& 
 
 /// R (n x 6): what every degree of freedom does when the body moves rigidly by one unit of each
 /// component of P (translations, rotations). Rows of tau_{point,P}; P in the body's frame [m].
-Eigen::MatrixXd rigid_motions(const Mesh& mesh, const Vector3& P);
+Eigen::MatrixXd rigid_motions(const Mesh& mesh, const Vector3d& P);
 
 /// What to keep of the modes of a mesh.
 struct ModeOptions {

@@ -39,8 +39,8 @@ std::optional<MassProperties> from_geometry(const Mesh& mesh) {
   for (Index i = 0; i < masses.rows(); ++i) {
     const auto m = masses.row(i);
     if (!(m.maxCoeff() - m.minCoeff() <= tolerance)) return std::nullopt;
-    const Vector3& position = mesh.points[static_cast<std::size_t>(i)].position;
-    D += rigid_mass(m.mean(), Matrix3::Zero(), -position);
+    const Vector3d& position = mesh.points[static_cast<std::size_t>(i)].position;
+    D += rigid_mass(m.mean(), Matrix3d::Zero(), -position);
   }
   return mass_properties(D);
 }
@@ -59,7 +59,7 @@ std::string print(const char* source, const MassProperties& m) {
 MeshReport mesh_report(const Mesh& mesh) {
   check(mesh);
   MeshReport report;
-  const MatrixXd R = rigid_motions(mesh, Vector3::Zero());
+  const MatrixXd R = rigid_motions(mesh, Vector3d::Zero());
   report.mass = mass_properties(R.transpose() * (mesh.M * R));
   report.geometry = from_geometry(mesh);
   if (mesh.K.size() == 0) return report;

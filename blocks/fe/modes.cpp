@@ -98,7 +98,8 @@ MassSplit split_mass(const Clamped& c) {
         Code::bad_modes,
         fmt::format("the mass matrix of mesh {} is not semidefinite: negative at {}, {:.3g} "
                     "of its diagonal",
-                    c.mesh.name, name_of(c, row), m.lambda(0)));
+                    c.mesh.name, name_of(c, row), m.lambda(0)),
+        "check the signs of point masses and their offsets, or Mesh::digits");
   }
   const Index massless = (m.lambda.array() <= noise).count();
   split.Z = m.V.leftCols(massless);
@@ -140,7 +141,8 @@ SymmetricModes clamped_modes(const Clamped& c, const std::vector<std::string>& c
   const Index n = c.M.rows();
   if (kept && (*kept < 0 || *kept > n))
     throw Error(Code::bad_value,
-                fmt::format("{} modes asked of mesh {}, which has {}", *kept, c.mesh.name, n));
+                fmt::format("{} modes asked of mesh {}, which has {}", *kept, c.mesh.name, n),
+                "leave ModeOptions::kept out to keep them all");
   if (const Index row = weak_pivot(c.K); row >= 0) refuse_mechanism(c, row);
   SymmetricModes modes;
   if (weak_pivot(c.M, 10 * std::pow(10, -c.mesh.digits)) < 0) {
@@ -225,7 +227,8 @@ VectorXd damping(const Mesh& mesh, const std::vector<double>& xi, Index kept, In
   for (const double x : xi)
     if (!(x >= 0) || !std::isfinite(x))
       throw Error(Code::bad_value,
-                  fmt::format("damping ratio {} of mesh {} is not a number >= 0", x, mesh.name));
+                  fmt::format("damping ratio {} of mesh {} is not a number >= 0", x, mesh.name),
+                  "give fractions of critical damping: 0.005 is half a percent");
   const auto given = static_cast<Index>(xi.size());
   if (given == 0) return VectorXd::Zero(total);
   if (given != 1 && given != kept && given != total)
@@ -245,7 +248,8 @@ void require_distinct(const Mesh& mesh, const std::vector<std::string>& children
   for (const std::string& child : children)
     if (!seen.insert(child).second)
       throw Error(Code::duplicate_name,
-                  fmt::format("child {} of mesh {} is named twice", child, mesh.name));
+                  fmt::format("child {} of mesh {} is named twice", child, mesh.name),
+                  "name it once");
 }
 
 }  // namespace
@@ -268,7 +272,7 @@ ModalData modal_data(const Mesh& mesh, const std::string& parent,
   data.digits = mesh.digits;
   MatrixXd Phi = MatrixXd::Zero(mesh.M.rows(), modes.V.cols());  // the clamped rows stay zero
   Phi(c.f, Eigen::all) = modes.V;
-  const Vector3 P = mesh.points[find_point(mesh, parent)].position;
+  const Vector3d P = mesh.points[find_point(mesh, parent)].position;
   for (const std::string& child : children)
     data.children.push_back({child, mesh.points[find_point(mesh, child)].position - P,
                              Phi(interface_rows(mesh, child), Eigen::all)});

@@ -27,11 +27,15 @@ TextFile read_text(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   std::error_code ignored;
   if (!stream || std::filesystem::is_directory(path, ignored))
-    throw Error(Code::bad_file, fmt::format("{}: cannot be opened", path.string()));
+    throw Error(Code::bad_file, fmt::format("{}: cannot be opened", path.string()),
+                "check the path; without / at its front it starts from the working directory");
   TextFile file{path.filename().string(), {std::istreambuf_iterator<char>(stream), {}}, true};
-  if (stream.bad()) throw Error(Code::bad_file, fmt::format("{}: cannot be read", path.string()));
+  if (stream.bad())
+    throw Error(Code::bad_file, fmt::format("{}: cannot be read", path.string()),
+                "check the disk and the permissions");
   if (file.content.empty())
-    throw Error(Code::bad_file, fmt::format("{}: the file is empty", path.string()));
+    throw Error(Code::bad_file, fmt::format("{}: the file is empty", path.string()),
+                "let the program that wrote it run to its end");
   file.ends_in_line = file.content.back() == '\n';
   return file;
 }
@@ -88,7 +92,7 @@ Mistake bad_line(const TextFile& file, int line, const std::string& found,
                  const std::string& expected) {
   const std::string where =
       line > 0 ? fmt::format("{}:{}", file.name, line) : std::string(file.name);
-  return {Code::bad_file, fmt::format("{}: found {}, expected {}", where, found, expected), {}, ""};
+  return {Code::bad_file, fmt::format("{}: found {}, expected {}", where, found, expected), {}, {}};
 }
 
 void FileMistakes::add(Mistake mistake) {

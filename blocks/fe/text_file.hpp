@@ -43,7 +43,8 @@ std::string_view trim(std::string_view text);
 bool parse(std::string_view text, double& value);
 bool parse(std::string_view text, int& value);
 
-/// `bad_file`, "beam.sti:12: found ..., expected ...". Line 0: the file as a whole.
+/// `bad_file`, "beam.sti:12: found ..., expected ...": what is expected is the way out. Line 0: the
+/// file as a whole.
 Mistake bad_line(const TextFile& file, int line, const std::string& found,
                  const std::string& expected);
 

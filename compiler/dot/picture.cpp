@@ -75,19 +75,20 @@ std::vector<Assignment> collect(const Graph& g, const std::vector<int>& outputs)
       all.push_back({.target = e.target, .part = e.part.name, .terms = {}, .active = e.active});
     Assignment& a = all[place->second];
     a.active = a.active || e.active;
-    for (const Term& t : e.terms)
-      if (t.signal >= 0) a.terms.push_back(t);
+    a.terms.insert(a.terms.end(), e.terms.begin(), e.terms.end());
   }
   const auto name = [&](const Assignment& a) { return name_of(g, a.target) + a.part; };
   std::stable_sort(all.begin(), all.end(), [&](const Assignment& a, const Assignment& b) {
     return natural_compare(name(a), name(b)) < 0;
   });
   for (const int i : outputs) all.push_back({.output = i, .terms = g.outputs[at(i)].terms});
-  for (Assignment& a : all)
+  for (Assignment& a : all) {
+    std::erase_if(a.terms, [](const Term& t) { return t.signal < 0; });  // the user's mistakes
     std::stable_sort(a.terms.begin(), a.terms.end(), [&](const Term& s, const Term& t) {
       const int c = natural_compare(name_of(g, s.signal), name_of(g, t.signal));
       return c != 0 ? c < 0 : natural_compare(print(g, s), print(g, t)) < 0;
     });
+  }
   return all;
 }
 

@@ -43,12 +43,6 @@ bool apply(Checker& c, Kind& kind, const Factor& factor, const std::string& text
            const std::source_location& where) {
   if (const auto* k = std::get_if<Value>(&factor)) {
     kind.quantity = Quantity::plain;
-    if (k->is_parameter() && k->owner() &&
-        k->index() >= static_cast<int>(c.graph.parameters.size())) {
-      c.add(Code::unknown_name, "a parameter of another diagram is used", {line(text, where)},
-            "make the parameter with param(...) of this diagram");
-      return false;
-    }
     if (!std::isfinite(k->nominal()))
       c.add(Code::not_finite, fmt::format("a gain is {}", k->nominal()), {line(text, where)},
             "give a finite gain");
@@ -130,7 +124,7 @@ void check_terms(Checker& c, const std::string& target, int target_signal, Kind 
             fmt::format("{} has size {}, its equation has {} of size {}", target, expected.size,
                         name, kind.size),
             {line(text, where)},
-            fmt::format("both sides must have {} rows; take .linear, .angular or "
+            fmt::format("both sides must have size {}; take .linear, .angular or "
                         ".along(r), or give the {} another size",
                         expected.size, target_signal < 0 ? "output" : "signal"));
       continue;

@@ -18,25 +18,29 @@ namespace {
 
 void require_square(const MatrixXd& S, const char* name) {
   if (S.rows() != S.cols())
-    throw Error(Code::size, fmt::format("{} is {} x {}, not square", name, S.rows(), S.cols()));
+    throw Error(Code::size, fmt::format("{} is {} x {}, not square", name, S.rows(), S.cols()),
+                "give as many rows as columns");
   for (Index j = 0; j < S.cols(); ++j)
     for (Index i = j; i < S.rows(); ++i)
       if (!std::isfinite(S(i, j)))
-        throw Error(Code::not_finite, fmt::format("{}({}, {}) is {}", name, i, j, S(i, j)));
+        throw Error(Code::not_finite, fmt::format("{}({}, {}) is {}", name, i, j, S(i, j)),
+                    "give finite numbers");
 }
 
 void require_pair(const MatrixXd& K, const MatrixXd& M) {
   require_square(K, "K");
   require_square(M, "M");
   if (K.rows() != M.rows())
-    throw Error(Code::size, fmt::format("K is {0} x {0}, M is {1} x {1}", K.rows(), M.rows()));
+    throw Error(Code::size, fmt::format("K is {0} x {0}, M is {1} x {1}", K.rows(), M.rows()),
+                "give both the same size");
 }
 
 Eigen::LLT<MatrixXd> cholesky(const MatrixXd& S, const char* name) {
   Eigen::LLT<MatrixXd> llt(S);
   if (S.rows() > 0 && llt.info() != Eigen::Success)
     throw Error(Code::singular,
-                fmt::format("{} is not positive definite at row {}", name, weak_pivot(S)));
+                fmt::format("{} is not positive definite at row {}", name, weak_pivot(S)),
+                "hold what moves freely there, or give it stiffness or mass");
   return llt;
 }
 
@@ -56,7 +60,8 @@ SymmetricModes solve(const MatrixXd& S) {
   if (S.rows() == 0) return {VectorXd(0), MatrixXd(0, 0)};
   Eigen::SelfAdjointEigenSolver<MatrixXd> solver(S);
   if (solver.info() != Eigen::Success)
-    throw Error(Code::singular, "the symmetric eigenvalue iteration did not converge");
+    throw Error(Code::singular, "the symmetric eigenvalue iteration did not converge",
+                "look for entries of extreme size");
   return {solver.eigenvalues(), solver.eigenvectors()};
 }
 
@@ -95,7 +100,8 @@ SymmetricModes eigh_definite(const MatrixXd& K, const MatrixXd& M) {
   llt_M.matrixU().solveInPlace<Eigen::OnTheRight>(W);
   const Eigen::BDCSVD<MatrixXd> svd(W, Eigen::ComputeFullV);
   if (svd.info() != Eigen::Success)
-    throw Error(Code::singular, "the singular value iteration did not converge");
+    throw Error(Code::singular, "the singular value iteration did not converge",
+                "look for entries of extreme size");
   MatrixXd V = svd.matrixV().rowwise().reverse();
   llt_M.matrixU().solveInPlace(V);
   return {svd.singularValues().reverse().array().square(), with_signs(std::move(V))};
@@ -110,9 +116,11 @@ SymmetricModes eigh_lowest(const MatrixXd& K, const MatrixXd& M, Index count) {
       n == 0 ? 0.0 : double(n) * std::numeric_limits<double>::epsilon() * inverse.lambda(n - 1);
   const Index finite = (inverse.lambda.array() > noise).count();
   if (count < 0 || count > finite)
-    throw Error(Code::bad_value, fmt::format("{} modes asked, {} of {} can be told from infinite "
-                                             "ones",
-                                             count, finite, n));
+    throw Error(Code::bad_value,
+                fmt::format("{} modes asked, {} of {} can be told from infinite "
+                            "ones",
+                            count, finite, n),
+                "ask for fewer modes");
   const VectorXd mu = inverse.lambda.tail(count).reverse();
   MatrixXd V = inverse.V.rightCols(count).rowwise().reverse();
   llt_K.matrixU().solveInPlace(V);
@@ -140,7 +148,8 @@ Index weak_pivot(const MatrixXd& S, double tolerance) {
 MatrixXd solve_definite(const MatrixXd& K, const MatrixXd& B) {
   require_square(K, "K");
   if (K.rows() != B.rows())
-    throw Error(Code::size, fmt::format("K has {} rows, B has {}", K.rows(), B.rows()));
+    throw Error(Code::size, fmt::format("K has {} rows, B has {}", K.rows(), B.rows()),
+                "give both the same number of rows");
   if (K.rows() == 0) return B;
   return cholesky(K, "K").solve(B);
 }

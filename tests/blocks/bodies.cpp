@@ -24,9 +24,9 @@ using titop_test::Rng;
 namespace {
 
 /// tau from its definition: xdd_C = xdd_P + wdot x PC.
-MatrixXd tau_CP(const Vector3& PC) {
+MatrixXd tau_CP(const Vector3d& PC) {
   MatrixXd t = MatrixXd::Identity(6, 6);
-  for (int j = 0; j < 3; ++j) t.block<3, 1>(0, 3 + j) = Vector3::Unit(j).cross(PC);
+  for (int j = 0; j < 3; ++j) t.block<3, 1>(0, 3 + j) = Vector3d::Unit(j).cross(PC);
   return t;
 }
 
@@ -92,21 +92,21 @@ TEST_CASE("FlexibleBody: (14) with none, one and three children") {
 TEST_CASE("RigidBody: wrenches and accelerations of a rigid body, by Newton and Euler") {
   Rng rng(2);
   const double m = 3;
-  const Vector3 PA = rng.matrix(3, 1), PC = rng.matrix(3, 1);
-  const Matrix3 T = rng.rotation();
-  const Matrix3 half = T * Vector3(1, 2, 2.5).asDiagonal() * T.transpose();
-  const Matrix3 I_A = (half + half.transpose()) / 2;
+  const Vector3d PA = rng.matrix(3, 1), PC = rng.matrix(3, 1);
+  const Matrix3d T = rng.rotation();
+  const Matrix3d half = T * Vector3d(1, 2, 2.5).asDiagonal() * T.transpose();
+  const Matrix3d I_A = (half + half.transpose()) / 2;
   const RigidBody spec{.mass = m, .inertia = I_A, .PA = PA, .children = {{"C", PC}}};
   const StateSpace model = model_of(spec);
   CHECK(model.order() == 0);
   for (int i = 0; i < 10; ++i) {
-    const Vector3 f = rng.matrix(3, 1), t = rng.matrix(3, 1), a = rng.matrix(3, 1),
-                  w = rng.matrix(3, 1);
+    const Vector3d f = rng.matrix(3, 1), t = rng.matrix(3, 1), a = rng.matrix(3, 1),
+                   w = rng.matrix(3, 1);
     VectorXd u(12), y(12);
     u << f, t, a, w;
     // At rest: a_A = a + w x PA; the body passes on to P what it does not keep for itself.
-    const Vector3 a_A = a + w.cross(PA);
-    const Vector3 F = f - m * a_A;
+    const Vector3d a_A = a + w.cross(PA);
+    const Vector3d F = f - m * a_A;
     y << a + w.cross(PC), w, F, t + PC.cross(f) - I_A * w - m * PA.cross(a_A);
     CHECK(off(VectorXd(model.D * u), y) <= 1e-14);
   }
@@ -115,8 +115,8 @@ TEST_CASE("RigidBody: wrenches and accelerations of a rigid body, by Newton and 
 
 TEST_CASE("Hinge: (18) around a body, G = E M E'") {
   Rng rng(4);
-  const Vector3 r = Vector3(1, -2, 0.5).normalized();
-  const StateSpace h = model_of(Hinge{.axis = Vector3(1, -2, 0.5)});
+  const Vector3d r = Vector3d(1, -2, 0.5).normalized();
+  const StateSpace h = model_of(Hinge{.axis = Vector3d(1, -2, 0.5)});
   VectorXd u = rng.matrix(13, 1);
   VectorXd y(13);
   y << u.segment(6, 6), u.head(6), r.dot(u.segment(3, 3));
@@ -126,7 +126,7 @@ TEST_CASE("Hinge: (18) around a body, G = E M E'") {
   CHECK(h.B(1, 12) == 1);
   CHECK(h.B.cwiseAbs().sum() == 1);
   CHECK(off(h.C.bottomRows(2), MatrixXd(MatrixXd::Identity(2, 2))) == 0);
-  CHECK(has(refusal([] { as_block(Hinge{.axis = Vector3::Zero()}); }), "error[bad-value]"));
+  CHECK(has(refusal([] { as_block(Hinge{.axis = Vector3d::Zero()}); }), "error[bad-value]"));
 }
 
 TEST_CASE("Lti: response, and shapes that do not fit") {
@@ -207,18 +207,18 @@ TEST_CASE("FlexibleBody: port-Hamiltonian form (17), power of the ports less dam
 }
 
 TEST_CASE("bodies: inertias that no rigid body has") {
-  const auto refused = [](double mass, const Matrix3& inertia) {
+  const auto refused = [](double mass, const Matrix3d& inertia) {
     return refusal([&] { as_block(RigidBody{.mass = mass, .inertia = inertia}); });
   };
-  CHECK(has(refused(-1, Matrix3::Identity()), "error[bad-inertia]: the mass is -1"));
-  CHECK(has(refused(1, Vector3(1, 1, 2.5).asDiagonal()), "triangle"));
-  CHECK(has(refused(1, Vector3(1, 1, -0.5).asDiagonal()), "not positive"));
-  Matrix3 skew = Matrix3::Identity();
+  CHECK(has(refused(-1, Matrix3d::Identity()), "error[bad-inertia]: the mass is -1"));
+  CHECK(has(refused(1, Vector3d(1, 1, 2.5).asDiagonal()), "triangle"));
+  CHECK(has(refused(1, Vector3d(1, 1, -0.5).asDiagonal()), "not positive"));
+  Matrix3d skew = Matrix3d::Identity();
   skew(0, 1) = 0.1;
   CHECK(has(refused(1, skew), "not symmetric"));
-  CHECK(has(refused(std::nan(""), Matrix3::Identity()), "error[not-finite]"));
-  CHECK(refused(1, Vector3(1, 1, 2).asDiagonal()) == "accepted");  // a thin plate
-  CHECK(refused(0, Matrix3::Zero()) == "accepted");                // a massless link
+  CHECK(has(refused(std::nan(""), Matrix3d::Identity()), "error[not-finite]"));
+  CHECK(refused(1, Vector3d(1, 1, 2).asDiagonal()) == "accepted");  // a thin plate
+  CHECK(refused(0, Matrix3d::Zero()) == "accepted");                // a massless link
 }
 
 TEST_CASE("bodies: modal data that contradict themselves, each with its cause") {

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <fstream>
 #include <limits>
 #include <titop/titop.hpp>
 
@@ -44,6 +45,14 @@ TEST_CASE("the printed names of the codes are a stable interface") {
       "ill-posed",    "improper",       "kinematic-loop", "bad-inertia",    "bad-modes",
       "bad-file",     "bad-value",      "no-position",    "singular"};
   for (std::size_t i = 0; i < names.size(); ++i) CHECK(to_string(static_cast<Code>(i)) == names[i]);
+  CHECK(to_string(static_cast<Code>(names.size())) == "unknown");  // none is left out here
+
+  std::ifstream file(TITOP_SOURCE_DIR "/README.md");
+  const std::string readme{std::istreambuf_iterator<char>(file), {}};
+  for (const std::string& name : names) {
+    INFO(name, " in the README's table");
+    CHECK(readme.find("\n| `" + name + "` | ") != std::string::npos);
+  }
 }
 
 TEST_CASE("no-equation: an unmounted body, one-way ports, outputs") {
@@ -200,34 +209,34 @@ TEST_CASE("not-finite: gains whose product overflows, with the line") {
 }
 
 TEST_CASE("not-a-rotation") {
-  Matrix3 sheared = Matrix3::Identity(), mirror = Matrix3::Identity(),
-          rounded = Matrix3::Identity();
+  Matrix3d sheared = Matrix3d::Identity(), mirror = Matrix3d::Identity(),
+           rounded = Matrix3d::Identity();
   sheared(0, 1) = 1e-6;
   mirror(2, 2) = -1;
   rounded(0, 1) = 1e-10;
   CHECK(says(error_of([&] { Rotation::matrix(sheared); }), Code::not_a_rotation,
              {"not orthogonal", "1e-06"}));
   CHECK(says(error_of([&] { Rotation::matrix(mirror); }), Code::not_a_rotation, {"mirrors"}));
-  CHECK(says(error_of([&] { Rotation::matrix(Matrix3::Constant(kNan)); }), Code::not_a_rotation,
+  CHECK(says(error_of([&] { Rotation::matrix(Matrix3d::Constant(kNan)); }), Code::not_a_rotation,
              {"not orthogonal"}));
   CHECK(says(error_of([&] {
                Rotation::about({0, 0, 0}, 1);
              }),
              Code::not_a_rotation, {"(0, 0, 0)", "axis"}));
   CHECK(says(error_of([&] { Rotation::about({0, 0, 1}, kInf); }), Code::not_a_rotation, {"inf"}));
-  const Matrix3 T = Rotation::matrix(rounded).nominal();
-  CHECK((T.transpose() * T - Matrix3::Identity()).cwiseAbs().maxCoeff() <= 1e-15);
+  const Matrix3d T = Rotation::matrix(rounded).nominal();
+  CHECK((T.transpose() * T - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-15);
 }
 
 TEST_CASE("bad-inertia") {
   CHECK(says(refused(SpringMass{.mass = -1}), Code::bad_inertia, {"X: SpringMass has mass -1"}));
   CHECK(says(refused(SpringMass{.parent_mass = -1}), Code::bad_inertia, {"parent_mass -1"}));
   CHECK(says(refused(RigidBody{.mass = -2}), Code::bad_inertia, {"X: the mass is -2 kg"}));
-  CHECK(says(refused(RigidBody{.inertia = Vector3(1, 1, 3).asDiagonal()}), Code::bad_inertia,
+  CHECK(says(refused(RigidBody{.inertia = Vector3d(1, 1, 3).asDiagonal()}), Code::bad_inertia,
              {"X: principal moments 1, 1 and 3", "triangle inequality", "X was added at"}));
-  CHECK(says(refused(RigidBody{.inertia = Vector3(1, 1, -0.5).asDiagonal()}), Code::bad_inertia,
+  CHECK(says(refused(RigidBody{.inertia = Vector3d(1, 1, -0.5).asDiagonal()}), Code::bad_inertia,
              {"X: the inertia is not positive", "-0.5"}));
-  Matrix3 skew = Matrix3::Identity();
+  Matrix3d skew = Matrix3d::Identity();
   skew(0, 1) = 0.1;
   CHECK(says(refused(RigidBody{.inertia = skew}), Code::bad_inertia, {"not symmetric, by 0.1"}));
 }
@@ -238,7 +247,7 @@ TEST_CASE("bad-modes") {
   data.xi = Eigen::Vector2d(0.01, 0.01);
   data.L_P = Eigen::MatrixXd::Zero(2, 6);
   data.L_P(0, 1) = 2;
-  data.D_P = rigid_mass(5, Matrix3::Identity(), Vector3::Zero());
+  data.D_P = rigid_mass(5, Matrix3d::Identity(), Vector3d::Zero());
   CHECK(error_of([&] { FlexibleBody{data}; }).mistakes().empty());
   ModalData heavy = data, short_of = data, still = data, child = data;
   heavy.L_P(0, 1) = 3;
@@ -257,13 +266,16 @@ TEST_CASE("bad-value") {
   CHECK(says(refused(SpringMass{.stiffness = -3}), Code::bad_value, {"X: SpringMass", "-3"}));
   CHECK(says(refused(SpringMass{.damping = -3}), Code::bad_value, {"X: SpringMass", "-3"}));
   CHECK(says(refused(Sum{.signs = "+*"}), Code::bad_value, {"X: Sum: sign '*'"}));
+  CHECK(says(error_of([] { FlexibleBody{Beam{}}; }), Code::bad_value, {"length of the beam is 0"}));
+  CHECK(says(error_of([] { rectangle(-1, 1); }), Code::bad_value, {"width of a rectangle is -1"}));
+  CHECK(says(error_of([] { tube(1, 2); }), Code::bad_value, {"tube", "outer, inner"}));
   CHECK(says(refused(Hinge{.axis = {0, 0, 0}}), Code::bad_value, {"X: the axis (0, 0, 0)"}));
   Diagram d{"scene"};
   auto A = d.add("A", brick());
   CHECK(says(error_of([&] {
                A.parent.accel.along({0, 0, 0});
              }),
-             Code::bad_value, {"A.parent.accel.along(0, 0, 0)", "other than 0"}));
+             Code::bad_value, {"A.parent.accel.linear.along(0, 0, 0)", "other than 0"}));
 }
 
 TEST_CASE("all mistakes of the description come together, in one text") {

@@ -15,7 +15,7 @@ using Complex = std::complex<double>;
 namespace {
 
 RigidBody brick(double mass = 4) {
-  return {.mass = mass, .inertia = mass * Matrix3::Identity(), .children = {{"C1", {1, 0, 0}}}};
+  return {.mass = mass, .inertia = mass * Matrix3d::Identity(), .children = {{"C1", {1, 0, 0}}}};
 }
 
 /// A spring-mass under the force k * (its own acceleration) + u: alone it would need m a = k a + u.
@@ -94,7 +94,7 @@ TEST_CASE("improper: a massless body set free; a point that the modes cannot mov
   data.omega = Eigen::VectorXd::Constant(1, 3.0);
   data.xi = Eigen::VectorXd::Constant(1, 0.01);
   data.L_P = Eigen::MatrixXd::Zero(1, 6);
-  data.D_P = rigid_mass(5, Matrix3::Identity(), Vector3::Zero());
+  data.D_P = rigid_mass(5, Matrix3d::Identity(), Vector3d::Zero());
   data.children.push_back({"C1", {1, 0, 0}, Eigen::MatrixXd::Identity(6, 1)});
   Diagram locked{"locked"};
   auto v = locked.input("v", 6);
@@ -207,7 +207,7 @@ TEST_CASE("no false alarm: bodies of very different mass, and any unit") {
       T.topLeftCorner<3, 3>() = T.bottomRightCorner<3, 3>() =
           Rotation::about({1, 1, 0}, 0.3).nominal();
       const Matrix6 Y = T.transpose() * tau({-1, 0, 0});
-      const Matrix6 one = rigid_mass(unit, unit * Matrix3::Identity(), Vector3::Zero());
+      const Matrix6 one = rigid_mass(unit, unit * Matrix3d::Identity(), Vector3d::Zero());
       const Matrix6 exact = Matrix6(one + ratio * Y.transpose() * one * Y).inverse();
       CHECK(matrix_error(system.static_gain(), exact) <= 1e-12);
     }

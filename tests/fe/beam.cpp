@@ -215,18 +215,18 @@ TEST_CASE("mass and inertia of the mesh") {
   const fe::MeshReport report = fe::mesh_report(mesh);
   const double m = 2700 * kArea * 2;
   for (int i = 0; i < 3; ++i) CHECK(relative(report.mass.mass(i), m) <= 1e-14);
-  CHECK((report.mass.centre - Vector3(1, 0, 0)).norm() <= 1e-14);
-  const Vector3 expected(2700 * (kIy + kIz) * 2, m * 4 / 12, m * 4 / 12);
+  CHECK((report.mass.centre - Vector3d(1, 0, 0)).norm() <= 1e-14);
+  const Vector3d expected(2700 * (kIy + kIz) * 2, m * 4 / 12, m * 4 / 12);
   for (int i = 0; i < 3; ++i) CHECK(relative(report.mass.inertia(i, i), expected(i)) <= 1e-13);
   CHECK(report.KR_terms <= 1e-14);
   // Masses of the points: half an element at the ends.
   REQUIRE(report.geometry.has_value());
   CHECK(relative(report.geometry->inertia(1, 1), m * (4.0 / 12 + 4.0 / 6 / 25)) <= 1e-12);
   CHECK(mesh.points.size() == 6);
-  CHECK(mesh.points[2].position == Vector3(0.8, 0, 0));
+  CHECK(mesh.points[2].position == Vector3d(0.8, 0, 0));
   const ModalData at_2 = fe::modal_data(mesh, "2", {"P", "C", "4"});
   CHECK(at_2.omega.size() == 30);
-  CHECK(at_2.children[0].PC == Vector3(-0.8, 0, 0));
+  CHECK(at_2.children[0].PC == Vector3d(-0.8, 0, 0));
 }
 
 TEST_CASE("sections") {

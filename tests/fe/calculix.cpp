@@ -45,8 +45,8 @@ TEST_CASE("CalculiX beam: rows, points, rotation nodes") {
   const auto P = fe::interface_rows(mesh, "P"), C = fe::interface_rows(mesh, "C");
   CHECK(fe::dof_name(mesh, P[4]) == "P.ry");
   CHECK(fe::dof_name(mesh, C[0]) == "C.x");
-  CHECK(mesh.points[fe::find_point(mesh, "C")].position == Vector3(1, 0, 0));
-  CHECK(mesh.points[fe::find_point(mesh, "9")].position == Vector3(0.05, -0.03, -0.02));
+  CHECK(mesh.points[fe::find_point(mesh, "C")].position == Vector3d(1, 0, 0));
+  CHECK(mesh.points[fe::find_point(mesh, "9")].position == Vector3d(0.05, -0.03, -0.02));
   CHECK(fe::interface_rows(mesh, "900003") == C);
   CHECK((mesh.K - mesh.K.transpose()).cwiseAbs().maxCoeff() == 0);
   CHECK(mesh.K(0, 0) == 2.4887054236899e+09);
@@ -62,7 +62,7 @@ TEST_CASE("CalculiX beam: clamped-free frequencies of the program's own run") {
     INFO("mode ", k + 1);
     CHECK(relative(data.omega(static_cast<Eigen::Index>(k)), expected[k]) <= 1e-8);
   }
-  CHECK(data.children[0].PC == Vector3(1, 0, 0));
+  CHECK(data.children[0].PC == Vector3d(1, 0, 0));
   CHECK(data.xi.isZero(0));
 }
 
@@ -70,16 +70,16 @@ TEST_CASE("CalculiX beam: mass and stiffness against rigid motions") {
   const fe::MeshReport report = fe::mesh_report(beam());
   const double m = 2700 * 0.06 * 0.04 * 1.0;
   for (int i = 0; i < 3; ++i) CHECK(relative(report.mass.mass(i), m) <= 1e-12);
-  CHECK((report.mass.centre - Vector3(0.5, 0, 0)).norm() <= 1e-12);
+  CHECK((report.mass.centre - Vector3d(0.5, 0, 0)).norm() <= 1e-12);
   // Solid box about its centre.
-  const Vector3 box = m / 12 * Vector3(0.0036 + 0.0016, 1 + 0.0016, 1 + 0.0036);
-  CHECK((report.mass.inertia - Matrix3(box.asDiagonal())).cwiseAbs().maxCoeff() <= 1e-11);
+  const Vector3d box = m / 12 * Vector3d(0.0036 + 0.0016, 1 + 0.0016, 1 + 0.0036);
+  CHECK((report.mass.inertia - Matrix3d(box.asDiagonal())).cwiseAbs().maxCoeff() <= 1e-11);
   CHECK(report.mass.misfit <= 1e-12);
   CHECK(report.KR <= 2e-14);
   CHECK(report.KR_terms <= 1e-13);
   REQUIRE(report.geometry.has_value());
   CHECK(relative(report.geometry->mass.x(), m) <= 1e-12);
-  CHECK((report.geometry->centre - Vector3(0.5, 0, 0)).norm() <= 1e-12);
+  CHECK((report.geometry->centre - Vector3d(0.5, 0, 0)).norm() <= 1e-12);
   CHECK(fe::to_string(report).find("mass 6.48 kg, centre of mass 0.5 ") != std::string::npos);
 }
 

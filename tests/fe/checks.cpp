@@ -38,10 +38,10 @@ MatrixXd rounded(const MatrixXd& A, double digits) {
 }  // namespace
 
 TEST_CASE("mass properties of a rigid body come back") {
-  const Matrix3 I = (Matrix3() << 3, 0.2, -0.1, 0.2, 4, 0.3, -0.1, 0.3, 5).finished();
-  const Vector3 centre(0.4, -0.7, 1.1);
+  const Matrix3d I = (Matrix3d() << 3, 0.2, -0.1, 0.2, 4, 0.3, -0.1, 0.3, 5).finished();
+  const Vector3d centre(0.4, -0.7, 1.1);
   const MassProperties m = mass_properties(rigid_mass(12, I, -centre));
-  CHECK(m.mass == Vector3(12, 12, 12));
+  CHECK(m.mass == Vector3d(12, 12, 12));
   CHECK((m.centre - centre).norm() <= 1e-15);
   CHECK((m.inertia - I).cwiseAbs().maxCoeff() <= 1e-14);
   CHECK(m.misfit <= 1e-15);
@@ -53,7 +53,7 @@ TEST_CASE("mass properties of a rigid body come back") {
 
 TEST_CASE("residual mass of all modes is M_rr - M_rf M_ff^-1 M_fr") {
   const fe::Mesh mesh = beam_mesh(boom());
-  const MatrixXd R = fe::rigid_motions(mesh, Vector3::Zero());
+  const MatrixXd R = fe::rigid_motions(mesh, Vector3d::Zero());
   const Index n = mesh.M.rows() - 6;
   const MatrixXd M_rf = R.transpose() * mesh.M.rightCols(n), M_ff = mesh.M.bottomRightCorner(n, n);
   const Matrix6 expected = R.transpose() * mesh.M * R - M_rf * M_ff.ldlt().solve(M_rf.transpose());
@@ -137,7 +137,7 @@ TEST_CASE("rank of Phi_C: which degrees of freedom cannot be driven") {
 
 TEST_CASE("combinations that cannot be driven are told apart, however the modes mix them") {
   ModalData data = modal_data(boom());
-  data.children[0].PC = Vector3(1, 0, 0);
+  data.children[0].PC = Vector3d(1, 0, 0);
   // Three motions: x with 2 rx, y with 0.8 rz, z with -0.5 ry; the modes are combinations of them.
   MatrixXd motions = MatrixXd::Zero(6, 3);
   motions(0, 0) = 1;
@@ -146,7 +146,7 @@ TEST_CASE("combinations that cannot be driven are told apart, however the modes 
   motions(5, 1) = 0.8;
   motions(2, 2) = 1;
   motions(4, 2) = -0.5;
-  const Matrix3 mixed = (Matrix3() << 1, 2, -1, 3, 1, 1, 0.5, -1, 2).finished();
+  const Matrix3d mixed = (Matrix3d() << 1, 2, -1, 3, 1, 1, 0.5, -1, 2).finished();
   data.children[0].Phi_C = motions * mixed;
   ChildRank c = child_rank(data, data.children[0]);
   CHECK(c.rank == 3);

@@ -12,7 +12,7 @@
 namespace fe_test {
 
 using titop::Matrix6;
-using titop::Vector3;
+using titop::Vector3d;
 using Complex = std::complex<double>;
 
 /// |a - b| / |b|.
@@ -76,7 +76,7 @@ Eigen::MatrixXcd direct_transfer(const titop::fe::Mesh& mesh, const std::string&
   const C s = s_double;
   const Eigen::Index n = mesh.M.rows(), m = 6 * static_cast<Eigen::Index>(children.size());
   const auto rows_P = titop::fe::interface_rows(mesh, parent);
-  const Vector3 P = mesh.points[titop::fe::find_point(mesh, parent)].position;
+  const Vector3d P = mesh.points[titop::fe::find_point(mesh, parent)].position;
   const MatrixR R = titop::fe::rigid_motions(mesh, P).template cast<Real>();
   std::vector<Eigen::Index> f;
   for (Eigen::Index i = 0; i < n; ++i)

@@ -176,8 +176,10 @@ TEST_CASE("massless degrees of freedom: finite modes only") {
   const SymmetricModes modes = eigh_lowest(K, M, 4);
   CHECK(largest(modes.lambda - expected.lambda) <= 1e-13 * expected.lambda(3));
   CHECK(orthogonality(modes.V, M) <= 1e-13);
-  CHECK(message_of([&] { eigh_lowest(K, M, 5); }) ==
-        "error[bad-value]: 5 modes asked, 4 of 6 can be told from infinite ones");
+  CHECK(
+      message_of([&] {
+        eigh_lowest(K, M, 5);
+      }).starts_with("error[bad-value]: 5 modes asked, 4 of 6 can be told from infinite ones\n  "));
 }
 
 TEST_CASE("refusals name the row") {
@@ -185,21 +187,31 @@ TEST_CASE("refusals name the row") {
   const MatrixXd M = random_definite(5, 9);
   MatrixXd bad = M;
   bad(3, 3) = -1;
-  CHECK(message_of([&] { eigh(K, bad); }) ==
-        "error[singular]: M is not positive definite at row 3");
-  CHECK(message_of([&] { eigh_definite(bad, M); }) ==
-        "error[singular]: K is not positive definite at row 3");
-  CHECK(message_of([&] { eigh_lowest(bad, M, 2); }) ==
-        "error[singular]: K is not positive definite at row 3");
-  CHECK(message_of([&] { solve_definite(bad, M); }) ==
-        "error[singular]: K is not positive definite at row 3");
-  CHECK(message_of([&] { eigh(K, MatrixXd::Identity(4, 4)); }) ==
-        "error[size]: K is 5 x 5, M is 4 x 4");
-  CHECK(message_of([&] { eigh(MatrixXd::Zero(2, 3)); }) == "error[size]: S is 2 x 3, not square");
-  CHECK(message_of([&] { solve_definite(K, MatrixXd::Zero(4, 1)); }) ==
-        "error[size]: K has 5 rows, B has 4");
+  CHECK(message_of([&] {
+          eigh(K, bad);
+        }).starts_with("error[singular]: M is not positive definite at row 3\n  "));
+  CHECK(message_of([&] {
+          eigh_definite(bad, M);
+        }).starts_with("error[singular]: K is not positive definite at row 3\n  "));
+  CHECK(message_of([&] {
+          eigh_lowest(bad, M, 2);
+        }).starts_with("error[singular]: K is not positive definite at row 3\n  "));
+  CHECK(message_of([&] {
+          solve_definite(bad, M);
+        }).starts_with("error[singular]: K is not positive definite at row 3\n  "));
+  CHECK(message_of([&] {
+          eigh(K, MatrixXd::Identity(4, 4));
+        }).starts_with("error[size]: K is 5 x 5, M is 4 x 4\n  "));
+  CHECK(message_of([&] {
+          eigh(MatrixXd::Zero(2, 3));
+        }).starts_with("error[size]: S is 2 x 3, not square\n  "));
+  CHECK(message_of([&] {
+          solve_definite(K, MatrixXd::Zero(4, 1));
+        }).starts_with("error[size]: K has 5 rows, B has 4\n  "));
   K(2, 1) = std::numeric_limits<double>::quiet_NaN();
-  CHECK(message_of([&] { eigh_definite(K, M); }) == "error[not-finite]: K(2, 1) is nan");
+  CHECK(message_of([&] {
+          eigh_definite(K, M);
+        }).starts_with("error[not-finite]: K(2, 1) is nan\n  "));
 }
 
 TEST_CASE("weak_pivot does not depend on units") {

@@ -67,13 +67,13 @@ double transfer_error(const fe::Mesh& mesh, const std::vector<std::string>& chil
 
 TEST_CASE("rigid motions carry points by rotation about P") {
   fe::Mesh mesh = boom();
-  mesh.points[2].position = Vector3(1, 2, 3);
-  const MatrixXd R = fe::rigid_motions(mesh, Vector3(1, 1, 1));
+  mesh.points[2].position = Vector3d(1, 2, 3);
+  const MatrixXd R = fe::rigid_motions(mesh, Vector3d(1, 1, 1));
   // P turns by 1 rad/s about x: the point at (0, 1, 2) from it moves by x cross that.
-  const Vector3 moved = Vector3(1, 0, 0).cross(Vector3(0, 1, 2));
+  const Vector3d moved = Vector3d(1, 0, 0).cross(Vector3d(0, 1, 2));
   CHECK((R.block<3, 1>(12, 3) - moved).norm() == 0);
-  CHECK(R.block<3, 3>(15, 3) == Matrix3::Identity());
-  CHECK(R.block<3, 3>(12, 0) == Matrix3::Identity());
+  CHECK(R.block<3, 3>(15, 3) == Matrix3d::Identity());
+  CHECK(R.block<3, 3>(12, 0) == Matrix3d::Identity());
   CHECK(R.block<3, 3>(15, 0).isZero(0));
 }
 
@@ -117,14 +117,15 @@ TEST_CASE("names that are not there, or twice, or without six degrees of freedom
         }).starts_with("error[unknown-name]"));
   CHECK(message_of([&] {
           fe::modal_data(mesh, "P", {"C", "1", "C"});
-        }) == "error[duplicate-name]: child C of mesh beam is named twice");
-  CHECK(message_of([&] { fe::modal_data(mesh, "P", {"C"}, {.kept = 25}); }) ==
-        "error[bad-value]: 25 modes asked of mesh beam, which has 24");
+        }).starts_with("error[duplicate-name]: child C of mesh beam is named twice\n  "));
+  CHECK(message_of([&] {
+          fe::modal_data(mesh, "P", {"C"}, {.kept = 25});
+        }).starts_with("error[bad-value]: 25 modes asked of mesh beam, which has 24\n  "));
   CHECK(message_of([&] {
           fe::modal_data(mesh, "P", {"C"}, {.kept = -1});
         }).starts_with("error[bad-value]"));
   mesh.dofs[27].point = 3;  // C loses rx, its neighbour has it twice: take another name for the row
-  mesh.points.push_back({"x", Vector3(9, 0, 0)});
+  mesh.points.push_back({"x", Vector3d(9, 0, 0)});
   mesh.dofs[27].point = 5;
   contains(message_of([&] { fe::modal_data(mesh, "P", {"C"}); }),
            "error[bad-modes]: point C of mesh beam cannot be an interface: it has no degree of "
@@ -188,7 +189,7 @@ TEST_CASE("a mass beside its node: singular without a zero on the diagonal") {
     const auto first = static_cast<Index>(6 * point);
     mesh.M.middleRows(first, 6).setZero();
     mesh.M.middleCols(first, 6).setZero();
-    mesh.M.block(first, first, 6, 6) = rigid_mass(2, Matrix3::Zero(), Vector3(0.1, 0.2, -0.3));
+    mesh.M.block(first, first, 6, 6) = rigid_mass(2, Matrix3d::Zero(), Vector3d(0.1, 0.2, -0.3));
   }
   CHECK(fe::modal_data(mesh, "P", {"C"}).omega.size() == 6 + 3 * 3);
   CHECK(transfer_error(mesh, {"C"}) <= 1e-12);
@@ -202,8 +203,9 @@ TEST_CASE("massless rotations with few modes and residual vectors") {
   const ModalData all = fe::modal_data(mesh, "P", {});
   const ModalData few = fe::modal_data(mesh, "P", {"C"}, {.kept = 4, .residual = {"C"}});
   for (Index k = 0; k < 4; ++k) CHECK(fe_test::relative(few.omega(k), all.omega(k)) <= 1e-12);
-  CHECK(message_of([&] { fe::modal_data(mesh, "P", {"C"}, {.kept = 13}); }) ==
-        "error[bad-value]: 13 modes asked, 12 of 24 can be told from infinite ones");
+  CHECK(message_of([&] { fe::modal_data(mesh, "P", {"C"}, {.kept = 13}); })
+            .starts_with(
+                "error[bad-value]: 13 modes asked, 12 of 24 can be told from infinite ones\n  "));
 }
 
 TEST_CASE("a child at the parent's own place does not move with the modes") {

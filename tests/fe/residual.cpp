@@ -62,7 +62,7 @@ double scaled_error(const Matrix6& a, const Matrix6& b) {
 }
 
 /// A heavy body at C: 40 kg, its centre of mass 0.3 m ahead.
-Matrix6 load() { return rigid_mass(40, Vector3(2, 3, 4).asDiagonal(), Vector3(-0.3, 0, 0)); }
+Matrix6 load() { return rigid_mass(40, Vector3d(2, 3, 4).asDiagonal(), Vector3d(-0.3, 0, 0)); }
 
 /// omegas of the structure clamped at P with the load at C, from M and K.
 VectorXd loaded_omegas(const fe::Mesh& mesh) {
@@ -194,5 +194,6 @@ TEST_CASE("damping: one for all, one per kept mode, one for each") {
       "residual vectors\n  give one for all, one per kept mode, or one for each "
       "including the residual vectors");
   CHECK_THROWS_WITH(xi({-0.1}),
-                    "error[bad-value]: damping ratio -0.1 of mesh beam is not a number >= 0");
+                    "error[bad-value]: damping ratio -0.1 of mesh beam is not a number >= 0\n  "
+                    "give fractions of critical damping: 0.005 is half a percent");
 }

@@ -197,7 +197,7 @@ TEST_CASE("positions are sums of stretches down to the ground, also through turn
 TEST_CASE("positions of bodies follow their mounting") {
   Diagram d{"positions"};
   auto t = d.input("t");
-  const Vector3 PC(1, 2, 3);
+  const Vector3d PC(1, 2, 3);
   auto B = d.add("B", RigidBody{.mass = 4, .children = {{"C1", PC}}});
   auto A = d.add("A", RigidBody{.mass = 2, .children = {{"F", PC}}});
   ground(B);

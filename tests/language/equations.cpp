@@ -22,7 +22,7 @@ SpringMass spring(double mass = 2, double stiffness = 26) {
 /// A mass of 4 kg with its centre at (1, 2, 0) m from P.
 RigidBody brick() {
   return {.mass = 4,
-          .inertia = Vector3(1, 2, 2.5).asDiagonal(),
+          .inertia = Vector3d(1, 2, 2.5).asDiagonal(),
           .PA = {1, 2, 0},
           .children = {{"C1", {1, 0, 0}}, {"C2", {0, 1, 0}}}};
 }
@@ -133,12 +133,12 @@ TEST_CASE("a pin: no linear acceleration, no torque but the given one") {
   d.output("pin", 3) = b.parent.force.linear;
   const Eigen::MatrixXd G = compile(d).static_gain();
   // Inertia about P: I_A + m (|a|^2 I - a a').
-  const Vector3 a(1, 2, 0);
-  const Matrix3 J = Matrix3(Vector3(1, 2, 2.5).asDiagonal()) +
-                    4 * (a.squaredNorm() * Matrix3::Identity() - a * a.transpose());
-  const Matrix3 alpha = J.inverse();
+  const Vector3d a(1, 2, 0);
+  const Matrix3d J = Matrix3d(Vector3d(1, 2, 2.5).asDiagonal()) +
+                     4 * (a.squaredNorm() * Matrix3d::Identity() - a * a.transpose());
+  const Matrix3d alpha = J.inverse();
   CHECK(matrix_error(G.topRows(3), alpha) <= 1e-14);
-  Matrix3 pin;  // - m alpha x a
+  Matrix3d pin;  // - m alpha x a
   for (int i = 0; i < 3; ++i) pin.col(i) = -4 * alpha.col(i).cross(a);
   CHECK(matrix_error(G.bottomRows(3), pin) <= 1e-14);
 }
@@ -247,13 +247,29 @@ TEST_CASE("child(name) works on every block; .child where there is just one") {
   const auto c3 = next_line();
   b.child("C3").force = 0;
   b.child("parent").force = 0;  // it is no child point
-  b.child.force = 0;            // there are two
-  ground(z), ground(b), ground(h), h.torque = 0;
+  const auto written = next_line();
+  b.child.force = 0;  // there are two
+  const auto mounted = next_line();
+  mount(h, b.child);  // mentions it twice
+  auto a = d.add("a", RigidBody{});
+  const auto read = next_line();
+  d.output("none", 1) = a.child.accel.linear.along({1, 0, 0});
+  ground(a);
+  const auto c4 = next_line();
+  d.output("c4", 1) = b.child("C4").accel.along({1, 0, 0});
+  ground(z), ground(b), h.torque = 0;
   const Error e = compile_error(d);
-  CHECK(e.mistakes().size() == 3);
+  CHECK(e.mistakes().size() == 6);
   CHECK(says(e, Code::unknown_name, {"b has no child point \"C3\"", c3, "C1, C2"}));
   CHECK(says(e, Code::unknown_name, {"b has no child point \"parent\"", "C1, C2"}));
-  CHECK(says(e, Code::unknown_name, {"b.child: b has not exactly one child point", "C1, C2"}));
+  for (const auto& line : {written, mounted})
+    CHECK(says(e, Code::unknown_name,
+               {"b.child: b has not exactly one child point", line, "C1, C2"}));
+  CHECK(says(e, Code::unknown_name,
+             {"a.child: a has not exactly one child point", read, "a has no child points"}));
+  CHECK(says(e, Code::unknown_name, {"b has no child point \"C4\"", c4, "C1, C2"}));
+  CHECK(error_of([&] { transfer(d.graph(), kS); }).mistakes().size() == 6);
+  CHECK(to_dot(d).find("a.child") == std::string::npos);  // drawn all the same, without it
 }
 
 TEST_CASE("source lines are the user's, also through mount, ground, release and hinge") {

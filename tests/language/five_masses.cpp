@@ -12,7 +12,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-// As printed in the design, to the letter.
+// As the README prints it.
 Diagram five_masses() {  // [Alazard 2015] Fig. 7, Table 1 right
   Diagram d{"five masses"};
   auto u = d.input("u");                                              // actuator force [N]

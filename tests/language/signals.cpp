@@ -16,7 +16,7 @@ const Complex kS(0.3, 1.7);
 
 RigidBody brick(std::vector<ChildPoint> children = {{"C1", {1, 0, 0}}}) {
   return {.mass = 4,
-          .inertia = Vector3(1, 2, 2.5).asDiagonal(),
+          .inertia = Vector3d(1, 2, 2.5).asDiagonal(),
           .PA = {1, 2, 0},
           .children = std::move(children)};
 }
@@ -70,7 +70,7 @@ TEST_CASE("frames: mount, named and nameless rotations give one model; nameless 
     both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = kTurn.nominal();
     return both;
   }();
-  const Matrix6 D = rigid_mass(4, Vector3(1, 2, 2.5).asDiagonal(), {-1, -2, 0});
+  const Matrix6 D = rigid_mass(4, Vector3d(1, 2, 2.5).asDiagonal(), {-1, -2, 0});
   const Matrix6 Y = T.transpose() * tau({-1, 0, 0});
   const Matrix6 exact = Y * Matrix6(D + Y.transpose() * D * Y).inverse();
   CHECK(matrix_error(G.real(), exact) <= 1e-13);
@@ -114,7 +114,7 @@ TEST_CASE("frames: rotations compose where the inner names agree") {
   CHECK(T_ca.to() == "C");
   CHECK(T_ca.from() == "A");
   CHECK(matrix_error(T_ca.nominal(), Rotation::about({1, 2, 3}, 1.4).nominal()) <= 1e-15);
-  CHECK(matrix_error((kTurn * kTurn.inverse()).nominal(), Matrix3::Identity()) <= 1e-15);
+  CHECK(matrix_error((kTurn * kTurn.inverse()).nominal(), Matrix3d::Identity()) <= 1e-15);
   CHECK(says(error_of([] { return kTurn.named("C", "B") * kTurn.named("A", "B"); }), Code::frame,
              {"C<-B", "A<-B", "inverse"}));
 }
@@ -137,11 +137,11 @@ TEST_CASE("quantities: a gain makes a plain signal; without one they must agree"
   auto k = good.param("k", 7);
   z.parent.accel = 0;
   z.child.force = -k * z.stretch + 0.5 * k * z.stretch - k / 2 * z.stretch - 3 * z.stretch +
-                  0.0 * z.child.accel + z.stretch * Value(-1);
+                  0.0 * z.child.accel + z.stretch * Value(-1) - z.stretch / 0.5;
   good.output("x") = z.stretch;
   const auto poles = compile(good).poles();
   REQUIRE(poles.size() == 1);
-  CHECK(relative(poles[0].s, Complex(0, std::sqrt((26 + 7 + 3 + 1) / 2.0))) <= 1e-15);
+  CHECK(relative(poles[0].s, Complex(0, std::sqrt((26 + 7 + 3 + 1 + 2) / 2.0))) <= 1e-15);
 
   Diagram bad{"mixed"};
   auto y = bad.add("y", spring());
@@ -246,12 +246,63 @@ TEST_CASE("a parameter of another diagram is refused wherever it is used") {
     CHECK(says(e, Code::unknown_name, {"parameter of another diagram", line, "param("}));
 }
 
+TEST_CASE("a parameter that this diagram has no number for is refused, beside other mistakes") {
+  Diagram other{"other"}, d{"own"};
+  other.param("first", 1);
+  auto k = other.param("second", 10);
+  const auto line = next_line();
+  auto z = d.add("z", SpringMass{.stiffness = k});
+  d.output("x", 2) = k * z.stretch;
+  const Error e = compile_error(d);
+  CHECK(e.mistakes().size() == 4);
+  CHECK(says(e, Code::unknown_name, {"z takes a parameter of another diagram", line}));
+  CHECK(says(e, Code::unknown_name, {"a parameter of another diagram, nominally 10, is used"}));
+  CHECK(says(e, Code::size, {"output x has size 2"}));
+  CHECK(error_of([&] { transfer(d.graph(), kS); }).has(Code::unknown_name));
+  CHECK(to_dot(d).find("\"z\" [shape=plain") != std::string::npos);
+}
+
+TEST_CASE("parts of inputs and readings: halves of 6, components of 3") {
+  Diagram d{"parts"};
+  auto U = d.input("U", 6), f = d.input("f", 3);
+  auto B = d.add("B", brick());
+  B.parent.accel = 0;
+  B.child.force.linear = U.linear();
+  B.child.force.angular = 0;
+  B.child.force.linear += Eigen::MatrixXd(Vector3d(0, 0, 1)) * f.along({3, 0, 4});
+  d.output("support") = B.parent.reaction.linear().along({0, 0, 2});
+  d.output("load") = U.angular().along({0, 1, 0});
+  // B passes on to its support what it is loaded with.
+  Eigen::MatrixXd exact = Eigen::MatrixXd::Zero(2, 9);
+  exact(0, 2) = 1;
+  exact(0, 6) = 0.6;
+  exact(0, 8) = 0.8;
+  exact(1, 4) = 1;
+  CHECK(matrix_error(compile(d).static_gain(), exact) <= 1e-15);
+
+  CHECK(says(error_of([&] {
+               U.along({1, 0, 0});
+             }),
+             Code::size, {"U has size 6 and no part .along(1, 0, 0)", ".linear or .angular"}));
+  CHECK(says(error_of([&] {
+               B.parent.reaction.along({1, 0, 0});
+             }),
+             Code::size, {"B.parent.reaction has size 6"}));
+  CHECK(says(error_of([&] { U.linear().angular(); }), Code::size,
+             {"U.linear has no part .angular", "whole dual vectors"}));
+  CHECK(says(error_of([&] {
+               f.along({1, 0, 0}).along({1, 0, 0});
+             }),
+             Code::size, {"f.along(1, 0, 0) has size 1"}));
+}
+
 TEST_CASE("signals of another diagram are refused") {
   Diagram a{"a"}, b{"b"};
   auto za = a.add("za", spring());
   auto zb = b.add("zb", spring());
+  const auto line = next_line();
   CHECK(says(error_of([&] { za.parent.accel = zb.child.accel; }), Code::unknown_name,
-             {"za.parent.accel", "another diagram"}));
+             {"za.parent.accel", "another diagram", line}));
   CHECK(says(error_of([&] { za.child.force = za.parent.force + zb.parent.force; }),
              Code::unknown_name, {"two diagrams"}));
   CHECK(says(error_of([&] { a.output("x") = zb.stretch; }), Code::unknown_name,

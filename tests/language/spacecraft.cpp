@@ -11,7 +11,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-// As printed in the design, to the letter.
+// As a user types Figs. 17 and 18 of the paper.
 Diagram spacecraft(const FlexibleBody& bus, const FlexibleBody& wing, const Rotation& T_ba1,
                    const Rotation& T_ba2) {
   Diagram d{"spacecraft"};   // Figs. 17, 18
@@ -42,7 +42,7 @@ ModalData body(double mass, const std::vector<std::string>& children, double see
   d.omega = Eigen::Vector3d(3 + seed, 8, 21);
   d.xi = Eigen::Vector3d(0.01, 0.02, 0.005);
   d.L_P = 0.3 * numbers(3, 6, seed);
-  d.D_P = rigid_mass(mass, Vector3(3, 4, 5).asDiagonal(), {0.2, -0.1, 0.3});
+  d.D_P = rigid_mass(mass, Vector3d(3, 4, 5).asDiagonal(), {0.2, -0.1, 0.3});
   for (const std::string& name : children) {
     const double own = seed + static_cast<double>(d.children.size());
     d.children.push_back({name, numbers(3, 1, own + 5), 0.2 * numbers(6, 3, own)});
@@ -50,7 +50,7 @@ ModalData body(double mass, const std::vector<std::string>& children, double see
   return d;
 }
 
-Eigen::MatrixXd on_dual(const Matrix3& T) {
+Eigen::MatrixXd on_dual(const Matrix3d& T) {
   Eigen::MatrixXd both = Eigen::MatrixXd::Zero(6, 6);
   both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = T;
   return both;

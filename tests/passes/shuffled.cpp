@@ -62,11 +62,11 @@ StateSpace satellite(unsigned seed) {
   data.L_P = Eigen::MatrixXd::Zero(3, 6);
   data.L_P << 0.1, 1.2, 0.3, -0.2, 0.5, 0.9, 0.7, -0.4, 0.6, 0.3, -0.8, 0.1, 0.2, 0.1, -0.9, 0.4,
       0.3, 0.2;
-  data.D_P = rigid_mass(9, Vector3(4, 5, 6).asDiagonal(), {-0.5, 0, 0.1});
+  data.D_P = rigid_mass(9, Vector3d(4, 5, 6).asDiagonal(), {-0.5, 0, 0.1});
   data.children.push_back({"F", {2, 0, 0.3}, 0.1 * Eigen::MatrixXd::Ones(6, 3)});
   const FlexibleBody wing(data);
   const RigidBody hub{.mass = 70,
-                      .inertia = Vector3(20, 30, 40).asDiagonal(),
+                      .inertia = Vector3d(20, 30, 40).asDiagonal(),
                       .PA = {0.1, 0, -0.2},
                       .children = {{"C1", {1, 0, 0}}, {"C2", {-1, 0.1, 0}}}};
   std::map<std::string, BodyHandle> body;

@@ -1,7 +1,10 @@
 #include <doctest/doctest.h>
 
+#include <titop/compiler/passes/passes.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/mount.hpp>
 
+#include "support/promises.hpp"
 #include "support/random_checks.hpp"
 
 /// The central property, on 200 seeded random diagrams: every pass keeps the transfer and its own
@@ -12,6 +15,12 @@ using namespace titop_test;
 namespace {
 
 constexpr std::uint64_t kScenes = 200;
+
+titop::Stage lowered(const titop::Diagram& d) {
+  titop::Stage stage;
+  stage.graph = d.graph();
+  return titop::passes::lower(titop::passes::check(std::move(stage)));
+}
 
 }  // namespace
 
@@ -47,6 +56,22 @@ TEST_CASE("random graphs: the minimized model has the same transfer to 1e-9") {
       CHECK_NOTHROW(error = minimize_error(random_scene(options)));
       CHECK(error <= 1e-9);
     }
+}
+
+TEST_CASE("promises of split and chains: broken before the pass, or where it would refuse") {
+  titop::Diagram d{"two"};
+  auto u = d.input("u");
+  auto a = d.add("a", titop::SpringMass{}), b = d.add("b", titop::SpringMass{});
+  auto alone = d.add("alone", titop::SpringMass{});
+  ground(a), ground(alone);
+  mount(b, a.child);
+  b.child.force = u;
+  d.output("x") = b.position;
+  CHECK_THROWS(demand_split(lowered(d)));
+  CHECK_NOTHROW(demand_split(titop::passes::split(lowered(d))));
+  CHECK_NOTHROW(demand_open(lowered(d)));
+  alone.child.accel = 0;  // between two walls
+  CHECK_THROWS(demand_open(lowered(d)));
 }
 
 TEST_CASE("random graphs: the generator covers what it promises") {

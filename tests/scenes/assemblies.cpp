@@ -14,7 +14,7 @@ namespace {
 /// A link of the chain: a beam, the rotation before it, and whether a hinge is in between.
 struct Link {
   Tube tube;
-  Vector3 axis;
+  Vector3d axis;
   double angle;
   bool hinged;
   double k, c;
@@ -32,7 +32,7 @@ Diagram scene(const Chain& chain) {
   Diagram d{"chain"};
   auto base =
       d.add("base",
-            RigidBody{.mass = kBase, .inertia = kBase * Matrix3::Identity(), .children = {{"J"}}});
+            RigidBody{.mass = kBase, .inertia = kBase * Matrix3d::Identity(), .children = {{"J"}}});
   if (chain.grounded)
     ground(base);
   else
@@ -136,7 +136,7 @@ TEST_CASE("symmetric wings: opposite stretching and twisting is not in the model
   Diagram d{"symmetric"};
   auto W = d.input("W", 6);
   auto h = d.add("hub", RigidBody{.mass = 30,
-                                  .inertia = Vector3(3, 4, 5).asDiagonal(),
+                                  .inertia = Vector3d(3, 4, 5).asDiagonal(),
                                   .children = {{"L", {-0.3, 0, 0}}, {"R", {0.3, 0, 0}}}});
   const FlexibleBody body = wing.beam();
   auto left = d.add("left", body), right = d.add("right", body);

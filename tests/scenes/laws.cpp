@@ -13,8 +13,8 @@ using namespace titop;
 namespace {
 
 const Tube kTube{1.4, 0.04, 0.03, 3};
-const Vector3 kPA(0.1, -0.2, 0.05), kC(0.4, 0.3, -0.2), kAxis(1, 3, -2);
-const Matrix3 kInertia = (Matrix3() << 5, 0.4, -0.3, 0.4, 6, 0.2, -0.3, 0.2, 7).finished();
+const Vector3d kPA(0.1, -0.2, 0.05), kC(0.4, 0.3, -0.2), kAxis(1, 3, -2);
+const Matrix3d kInertia = (Matrix3d() << 5, 0.4, -0.3, 0.4, 6, 0.2, -0.3, 0.2, 7).finished();
 constexpr double kMass = 40, kAngle = 1.1;
 
 RigidBody hub() { return {.mass = kMass, .inertia = kInertia, .PA = kPA, .children = {{"C", kC}}}; }
@@ -64,7 +64,8 @@ TEST_CASE("reciprocity: collocated wrenches and accelerations give a symmetric t
 
 TEST_CASE("a body described in a turned frame is the same body") {
   const ModalData straight = modal_data(kTube.beam());
-  const Matrix3 T = Eigen::AngleAxisd(0.7, Vector3(2, -1, 1).normalized()).matrix();  // to the new
+  const Matrix3d T =
+      Eigen::AngleAxisd(0.7, Vector3d(2, -1, 1).normalized()).matrix();  // to the new
   const by_hand::Matrix6 TT = by_hand::dual(T);
   ModalData turned = straight;
   turned.L_P = straight.L_P * TT.transpose();

@@ -25,7 +25,7 @@ double scale(int body, double ratio) { return body % 2 ? ratio : 1; }
 /// Error of [xdd at the root; xdd at the tip] by the wrench at the root.
 struct Flexible {
   std::vector<ModalData> data;
-  std::vector<Matrix3> T;
+  std::vector<Matrix3d> T;
 
   /// `independent`: the six modes move C in six orthogonal ways; otherwise Phi_C is random, of
   /// condition 10 to 1000.
@@ -59,7 +59,7 @@ struct Flexible {
   Eigen::MatrixXcd exact(std::complex<double> s) const {
     std::vector<Matrix50> Y, rotations;
     for (const ModalData& body : data) Y.push_back(modal_transfer(body, Complex(s)));
-    for (const Matrix3& t : T) {
+    for (const Matrix3d& t : T) {
       Eigen::MatrixXd both = Eigen::MatrixXd::Zero(6, 6);
       both.topLeftCorner(3, 3) = both.bottomRightCorner(3, 3) = t;
       rotations.emplace_back(both);

@@ -18,17 +18,12 @@ std::vector<std::complex<double>> points(std::uint64_t seed, int count);
 Eigen::MatrixXcd as_declared(const titop::Graph& graph, const Eigen::MatrixXcd& transfer);
 
 /// Largest difference, "to 1e-x", of transfer(graph, s) before and after each pass. Runs verify and
-/// the promises below after each, which throw.
+/// the promises of support/promises.hpp after each, which throw.
 struct PassError {
   double worst = 0;
   std::string pass;
 };
 PassError pass_error(const Scene& scene);
-
-/// The promises of passes::lower, match and order; throws std::logic_error where one is broken.
-void demand_lowered(const titop::Stage& stage);
-void demand_matched(const titop::Stage& stage);
-void demand_ordered(const titop::Stage& stage);
 
 /// System and dense model against transfer(diagram.graph(), s); apply against the dense model.
 struct SystemError {

@@ -71,10 +71,10 @@ std::string draw_filter(Draft& d, Dim in, Dim out, double gain, double direct) {
 
 ModalData random_modes(Rng& rng, int modes, const std::vector<std::string>& children, bool damped) {
   const double m = rng.octaves(-1, 4), radius = rng.between(0.3, 1);
-  const Vector3 parts = Vector3::Constant(0.2) + rng.matrix(3, 1).cwiseAbs();
-  const Matrix3 T = rng.rotation();
-  const Vector3 principal(parts(0) + parts(1), parts(1) + parts(2), parts(2) + parts(0));
-  const Matrix3 inertia = m * radius * radius * T * principal.asDiagonal() * T.transpose();
+  const Vector3d parts = Vector3d::Constant(0.2) + rng.matrix(3, 1).cwiseAbs();
+  const Matrix3d T = rng.rotation();
+  const Vector3d principal(parts(0) + parts(1), parts(1) + parts(2), parts(2) + parts(0));
+  const Matrix3d inertia = m * radius * radius * T * principal.asDiagonal() * T.transpose();
   ModalData data;
   data.D_P = rigid_mass(m, (inertia + inertia.transpose()) / 2, rng.matrix(3, 1));
   data.omega.resize(modes);

@@ -41,9 +41,9 @@ ModalData beam_with(const std::vector<std::string>& sites, bool damped) {
 Scene::Step rigid_step(Rng& rng, const Body& body) {
   const ModalData like = random_modes(rng, 0, body.sites, false);
   const double m = like.D_P(0, 0);
-  const Vector3 PA = rng.matrix(3, 1);
-  const Matrix3 inertia =
-      rigid_mass(0, rng.between(0.5, 2) * Matrix3::Identity() * m, PA).bottomRightCorner<3, 3>();
+  const Vector3d PA = rng.matrix(3, 1);
+  const Matrix3d inertia =
+      rigid_mass(0, rng.between(0.5, 2) * Matrix3d::Identity() * m, PA).bottomRightCorner<3, 3>();
   return [=](Build& b) {
     const double L = b.units.length, M = b.units.mass;
     RigidBody spec{.mass = m * M, .inertia = inertia * M * L * L, .PA = PA * L};
@@ -78,10 +78,10 @@ Rotation draw_rotation(Draft& d) {
   return kind == 1 ? T * Rotation::matrix(d.rng.rotation()).inverse() : T;
 }
 
-Vector3 draw_axis(Draft& d) {
-  if (d.rng.chance(0.3)) return Vector3::Unit(d.rng.below(3));
-  Vector3 r = d.rng.matrix(3, 1);
-  return r.norm() > 0.1 ? r : Vector3(Vector3::UnitZ());
+Vector3d draw_axis(Draft& d) {
+  if (d.rng.chance(0.3)) return Vector3d::Unit(d.rng.below(3));
+  Vector3d r = d.rng.matrix(3, 1);
+  return r.norm() > 0.1 ? r : Vector3d(Vector3d::UnitZ());
 }
 
 /// What acts on the joint: nothing, spring and damper, a motor, a controller, a lock, a motion.
@@ -121,7 +121,7 @@ void draw_joint(Draft& d, const Body& body, const Body& on, const std::string& s
   const int kind = d.rng.below(4);
   if (kind == 0) {
     const std::string h = d.fresh("h");
-    const Vector3 axis = draw_axis(d);
+    const Vector3d axis = draw_axis(d);
     d.add([=](Build& b) { b.hinges.emplace(h, b.d.add(h, Hinge{axis})); });
     d.equation([=](Build& b) { mount(b.hinges.at(h), b.bodies.at(p).child(site), T); });
     d.equation([=](Build& b) { mount(b.bodies.at(a), b.hinges.at(h).child); });
@@ -142,7 +142,7 @@ enum class Root { ground, prescribed, released, pinned, turning, sliding };
 
 void hold_partly(Draft& d, const std::string& a, Root root) {
   if (root == Root::sliding) {
-    const Vector3 r = draw_axis(d);
+    const Vector3d r = draw_axis(d);
     d.equation([=](Build& b) { b.bodies.at(a).parent.accel.along(r) = 0; });
     d.equation([=](Build& b) { release(b.bodies.at(a)); });
     return;
@@ -185,7 +185,7 @@ Root draw_root(Draft& d, const std::string& a) {
 
 void draw_force(Draft& d, const std::string& a) {
   const int kind = d.rng.below(3);
-  const Vector3 r = draw_axis(d);
+  const Vector3d r = draw_axis(d);
   const std::string u = d.input(kind == 0   ? dual(kForce, kTorque)
                                 : kind == 1 ? std::vector<Dim>{kForce, kForce, kForce}
                                             : std::vector<Dim>{kForce});
@@ -198,7 +198,7 @@ void draw_force(Draft& d, const std::string& a) {
 }
 
 void draw_output(Draft& d, const std::string& a) {
-  const Vector3 r = draw_axis(d);
+  const Vector3d r = draw_axis(d);
   const auto six = dual(kAccel, kAngularAccel);
   switch (d.rng.below(4)) {
     case 0: d.output(six, [=](Build& b) { return b.bodies.at(a).child("T").accel.expr(); }); break;
@@ -215,7 +215,7 @@ void draw_output(Draft& d, const std::string& a) {
 /// Collocated feedback of accelerations: it adds to the mass, so that the loop is never singular.
 void draw_controller(Draft& d, const std::string& a) {
   if (d.rng.chance(0.5)) {
-    const Vector3 r = draw_axis(d);
+    const Vector3d r = draw_axis(d);
     const std::string K = draw_filter(d, kAccel, kForce, 0.1, d.rng.between(0.1, 2));
     d.equation([=](Build& b) { b.filters.at(K).in = b.bodies.at(a).child("T").accel.along(r); });
     d.equation([=](Build& b) { b.bodies.at(a).child("T").force.along(r) -= b.filters.at(K).out; });
@@ -235,7 +235,7 @@ void draw_controller(Draft& d, const std::string& a) {
 
 /// A row of spring-masses along one direction of the body.
 void draw_slosh(Draft& d, const std::string& a) {
-  const Vector3 r = draw_axis(d);
+  const Vector3d r = draw_axis(d);
   const std::string z = draw_spring(d, false);
   d.equation(
       [=](Build& b) { b.springs.at(z).parent.accel = b.bodies.at(a).child("T").accel.along(r); });
@@ -251,7 +251,7 @@ void draw_slosh(Draft& d, const std::string& a) {
 /// Holds the tip: by the ground where nothing else does, by an input where the modes can follow.
 void draw_tip(Draft& d, const Body& body, Root root) {
   const std::string a = body.name;
-  const Vector3 r = draw_axis(d);
+  const Vector3d r = draw_axis(d);
   const int kind = d.rng.below(2);
   if (root == Root::released && d.rng.chance(0.3)) {
     d.equation([=](Build& b) {

@@ -15,7 +15,7 @@ SpringMass spring(double mass, double stiffness, double parent_mass = 0) {
 
 RigidBody brick(double mass) {
   return {.mass = mass,
-          .inertia = Vector3(1, 2, 2.5).asDiagonal(),
+          .inertia = Vector3d(1, 2, 2.5).asDiagonal(),
           .PA = {0.3, -0.2, 0.1},
           .children = {{"C1", {1, 0, 0.5}}, {"C2", {-1, 0.4, 0}}}};
 }
@@ -26,7 +26,7 @@ FlexibleBody wing() {
   d.xi = Eigen::Vector2d(0.01, 0.02);
   d.L_P = Eigen::MatrixXd::Zero(2, 6);
   d.L_P << 0.1, 1.2, 0.3, -0.2, 0.5, 0.9, 0.7, -0.4, 0.6, 0.3, -0.8, 0.1;
-  d.D_P = rigid_mass(9, Vector3(4, 5, 6).asDiagonal(), {-0.5, 0, 0.1});
+  d.D_P = rigid_mass(9, Vector3d(4, 5, 6).asDiagonal(), {-0.5, 0, 0.1});
   Eigen::MatrixXd Phi(6, 2);
   Phi << 0.1, 0.2, 0.5, -0.3, 0.2, 0.4, 0.1, 0, -0.2, 0.3, 0.4, 0.1;
   d.children.push_back({"F", {2, 0, 0.3}, Phi});
@@ -118,7 +118,7 @@ Diagram pins() {
   const Rotation to_end = Rotation{}.named("end", "link");  // a slider along (3, 4, 0)
   const auto rail = link.child("C1");
   end.parent.accel.angular = to_end * rail.accel.angular;
-  for (const Vector3& r : {Vector3(-4, 3, 0), Vector3(0, 0, 1)})
+  for (const Vector3d& r : {Vector3d(-4, 3, 0), Vector3d(0, 0, 1)})
     end.parent.accel.along(r) = to_end * rail.accel.along(r);
   end.parent.force.along({3, 4, 0}) = -f;
   rail.force += to_end.inverse() * end.parent.force;
@@ -135,7 +135,7 @@ Diagram hinges() {
   auto motor = d.input("motor"), sweep = d.input("sweep");
   auto hub = d.add(
       "hub", RigidBody{.mass = 50,
-                       .inertia = Vector3(20, 30, 40).asDiagonal(),
+                       .inertia = Vector3d(20, 30, 40).asDiagonal(),
                        .children = {{"C1", {1, 0, 0}}, {"C2", {0, 1, 0}}, {"C3", {0, 0, 1}}}});
   auto arm1 = d.add("arm1", wing());
   auto arm2 = d.add("arm2", brick(3)), arm3 = d.add("arm3", brick(4));

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <titop/compiler/stage.hpp>
+
+/// What each pass promises, written down a second time; std::logic_error where a promise is broken.
+namespace titop_test {
+
+/// One numeric coefficient per term, every degree of freedom of a channel driven once.
+void demand_lowered(const titop::Stage& stage);
+
+/// What is active hangs together with an input and an output, unless the diagram has none at all;
+/// all that does so is active.
+void demand_split(const titop::Stage& stage);
+
+/// Bodies and joints, as edges between points and the ground, form no closed chain.
+void demand_open(const titop::Stage& stage);
+
+/// Every row and every unknown in use are matched, each of them once.
+void demand_matched(const titop::Stage& stage);
+
+/// Every unknown in one loop, dependencies first.
+void demand_ordered(const titop::Stage& stage);
+
+}  // namespace titop_test
