@@ -176,7 +176,7 @@ solve::RowMatrix<T> Evaluation<T>::value_of(int signal, const solve::RowMatrix<T
   const solve::Response<T>& r = *of_node_[at(s.node)];
   for (int i = data_.graph().nodes[at(s.node)].first_signal; i < signal; ++i)
     if (const Signal& in = data_.graph().signals[at(i)]; in.role == Signal::Role::input)
-      result += r.X.middleCols(in.first, in.size) * value_of(i, unknowns, inputs);
+      result += r.X.middleCols(in.first, in.size).lazyProduct(value_of(i, unknowns, inputs));
   return result;
 }
 
@@ -202,7 +202,7 @@ solve::RowMatrix<T> Evaluation<T>::outputs_of(const solve::RowMatrix<T>& unknown
       solve::RowMatrix<T> value = value_of(signal, unknowns, inputs);
       if (states && s.role == Signal::Role::state && s.active)
         value += states->middleRows(layout.known_first[at(signal)], s.size);
-      y.middleRows(layout.output_first[o], g.outputs[o].size) += lifted<T>(c) * value;
+      y.middleRows(layout.output_first[o], g.outputs[o].size) += lifted<T>(c).lazyProduct(value);
     }
   return y;
 }

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <numeric>
+#include <system_error>
 #include <titop/compiler/dot.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/solve/blame.hpp>
@@ -42,10 +43,15 @@ constexpr Pass kPasses[] = {
 
 void dump(const Options& options, int number, const char* name, const Stage& stage) {
   if (options.dump_to.empty()) return;
-  std::filesystem::create_directories(options.dump_to);
+  std::error_code failed;
+  std::filesystem::create_directories(options.dump_to, failed);
   const auto path =
       std::filesystem::path(options.dump_to) / fmt::format("{:02}-{}.dot", number, name);
-  std::ofstream(path) << to_dot(stage);
+  std::ofstream file(path);
+  file << to_dot(stage);
+  if (failed || !file)
+    throw Error(Code::bad_file, fmt::format("{} cannot be written", path.string()),
+                "give Options::dump_to a folder that can be made and written to");
 }
 
 /// Runs f and adds its seconds to the list.

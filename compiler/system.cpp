@@ -227,8 +227,12 @@ Certificate System::certificate() const {
 }
 
 std::string System::log() const {
-  std::string text = fmt::format("{}: {} states, {} inputs, {} outputs\n", data_->graph().name,
-                                 order(), inputs().size(), outputs().size());
+  const auto count = [](std::size_t n, const char* what) {
+    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  };
+  std::string text =
+      fmt::format("{}: {}, {}, {}\n", data_->graph().name, count(states().size(), "state"),
+                  count(inputs().size(), "input"), count(outputs().size(), "output"));
   for (const std::vector<Note>* list :
        {&data_->notes, const_cast<const std::vector<Note>*>(&data_->dense_notes)})
     for (const Note& n : *list)

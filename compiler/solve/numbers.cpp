@@ -87,7 +87,7 @@ Dense<T> dense(const Piece& p, const Matrices<T>& m, const std::vector<Coefficie
         Dense<T> l(left.rows, left.cols);
         for (Eigen::Index i = 0; i < l.rows(); ++i)
           for (Eigen::Index k = 0; k < l.cols(); ++k) l(i, k) = lift<T>(left(i, k));
-        result = lift<T>(p.sign) * (l * right());
+        result = lift<T>(p.sign) * l.lazyProduct(right());
       },
       [&] { result = lift<T>(p.sign) * right(); });
   return result;
@@ -146,7 +146,7 @@ void JointRows<T>::by_inputs(const Piece& p, Visit visit) const {
   for (int i = graph_.nodes[at(x.node)].first_signal; i < p.signal; ++i) {
     const Signal& u = graph_.signals[at(i)];
     if (u.role != Signal::Role::input || !u.active) continue;
-    const Dense<T> by_u = m * m_.states[at(x.node)]->middleCols(u.first, u.size);
+    const Dense<T> by_u = m.lazyProduct(m_.states[at(x.node)]->middleCols(u.first, u.size));
     for (const Meaning& meaning : joint_.meaning(i)) visit(by_u, meaning);
   }
 }
@@ -173,7 +173,7 @@ void JointRows<T>::subtract_known(const Piece& p, const RowMatrix<T>& known,
       if (joint_.variable_of[at(meaning.signal)] >= 0) return;
       const Dense<T> c = meaning.coefficient < 0
                              ? by_u
-                             : Dense<T>(by_u * lifted<T>(*coefficients_[at(meaning.coefficient)]));
+                             : Dense<T>(by_u.lazyProduct(lifted<T>(*coefficients_[at(meaning.coefficient)])));
       const View<T> left = view(c, 0, static_cast<int>(c.rows()), 0, static_cast<int>(c.cols()));
       subtract_product(1, left, value(meaning.signal), m, to);
     });

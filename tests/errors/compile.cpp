@@ -212,3 +212,12 @@ TEST_CASE("no false alarm: bodies of very different mass, and any unit") {
       CHECK(matrix_error(system.static_gain(), exact) <= 1e-12);
     }
 }
+
+TEST_CASE("bad-file: a folder for the drawings that cannot be made") {
+  Diagram d{"drawn"};
+  auto z = d.add("z", SpringMass{});
+  ground(z);
+  d.output("x") = z.stretch;
+  const Error error = titop_test::error_of([&] { compile(d, {.dump_to = "/dev/null/passes"}); });
+  CHECK(titop_test::says(error, Code::bad_file, {"/dev/null/passes/00-diagram.dot", "dump_to"}));
+}
