@@ -281,13 +281,21 @@ DenseError dense_error(const SystemData& d, const StateSpace& m) {
   return worst;
 }
 
+namespace {
+
+std::string variable_name(const SystemData& d, int variable) {
+  const int signal = d.skeleton->joint.variables[at(variable)];
+  return signal < 0 ? "a sum of many terms" : name_of(d.graph(), signal);
+}
+
+}  // namespace
+
 void certify(SystemData& d) {
   const auto start = std::chrono::steady_clock::now();
   const solve::Health h = d.factors->health();
   Certificate& c = d.certificate;
   c.weakest_pivot = h.weakest;
-  if (h.weakest_variable >= 0)
-    c.weakest_where = name_of(d.graph(), d.skeleton->joint.variables[at(h.weakest_variable)]);
+  if (h.weakest_variable >= 0) c.weakest_where = variable_name(d, h.weakest_variable);
   c.pivot_growth = h.growth;
   c.fronts = static_cast<int>(d.skeleton->joint.plan->fronts.size());
   c.fronts_made = d.factors->fronts_made();

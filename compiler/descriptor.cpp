@@ -70,16 +70,20 @@ struct Builder {
   }
 
   void add_rows() {
+    const solve::Plan& plan = *k.joint.plan;
     for (int r = 0; r < static_cast<int>(k.joint.rows.size()); ++r)
       for (const Piece& p : k.joint.row(r)) {
-        Eigen::MatrixXd c =
+        const int size = p.signal < 0 ? p.rows : g.signals[at(p.signal)].size;
+        const Eigen::MatrixXd c =
             p.right < 0
-                ? left(p, g.signals[at(p.signal)].size)
+                ? left(p, size)
                 : Eigen::MatrixXd(
                       left(p, static_cast<int>(d.numbers.coefficients[at(p.right)]->rows())) *
                       *d.numbers.coefficients[at(p.right)]);
-        const Place to = place(p.signal);
-        put(to.input ? B : A, states + k.joint.plan->row_first[at(r)], to.first, p.sign * c);
+        const Place to =
+            p.entry < 0 ? place(p.signal)
+                        : Place{states + plan.first[at(plan.structure.row(r)[at(p.entry)])], false};
+        put(to.input ? B : A, states + plan.row_first[at(r)], to.first, p.sign * c);
       }
   }
 
@@ -95,11 +99,12 @@ struct Builder {
     std::vector<std::string> result = d.layout().states;
     result.resize(at(states + k.joint.plan->unknowns));
     for (std::size_t v = 0; v < k.joint.variables.size(); ++v) {
-      const Signal& s = g.signals[at(k.joint.variables[v])];
-      const std::string name = name_of(g, k.joint.variables[v]);
-      for (int i = 0; i < s.size; ++i)
+      const int size = k.joint.plan->structure.variable_size[v];
+      const int signal = k.joint.variables[v];
+      const std::string name = signal < 0 ? "partial sum " + std::to_string(v) : name_of(g, signal);
+      for (int i = 0; i < size; ++i)
         result[at(states + k.joint.plan->first[v] + i)] =
-            s.size == 1 ? name : name + "(" + std::to_string(i + 1) + ")";
+            size == 1 ? name : name + "(" + std::to_string(i + 1) + ")";
     }
     return result;
   }

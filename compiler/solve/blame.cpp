@@ -80,7 +80,8 @@ Mistake blame(const Stage& stage, const Joint& joint,
               const std::vector<std::shared_ptr<const Dynamics>>& blocks, const Health& health) {
   const Graph& g = stage.graph;
   std::vector<int> signals;
-  for (const int v : health.singular_variables) signals.push_back(joint.variables[at(v)]);
+  for (const int v : health.singular_variables)
+    if (joint.variables[at(v)] >= 0) signals.push_back(joint.variables[at(v)]);
   const Loop* loop = signals.empty() ? nullptr : loop_of(stage, signals.front());
   const auto in_loop = [&](int s) {
     return !loop || std::find(loop->signals.begin(), loop->signals.end(), s) != loop->signals.end();

@@ -40,6 +40,8 @@ struct Builder {
   Structure structure = {};
   std::vector<int> by = written_out_by(stage);
   std::vector<int> over = {};  ///< variables of the row being made
+  Pattern declared = {};       ///< of the block that was asked last
+  const Block* declared_of = nullptr;
 
   void take_coefficients() {
     const auto take = [&](const std::vector<Term>& terms, std::vector<int>& first) {
@@ -113,12 +115,21 @@ struct Builder {
           e.terms[k].signal);
   }
 
+  /// A block with states may pass every input on at some s; one without only what it declares.
+  bool passes(const Node& n, const Signal& y, const Signal& u) {
+    if (n.state >= 0) return true;
+    if (declared_of != n.block.get()) declared = n.block->feedthrough();
+    declared_of = n.block.get();
+    return declared.block(y.first, u.first, y.size, u.size).any();
+  }
+
   void add_block_row(int node, int output) {
     const Node& n = g.nodes[at(node)];
     const Signal& y = g.signals[at(output)];
     add({}, output);
     for (int i = n.first_signal; i < end_signal(g, node); ++i)
-      if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input && u.active)
+      if (const Signal& u = g.signals[at(i)];
+          u.role == Signal::Role::input && u.active && passes(n, y, u))
         add({.of = Piece::Left::direct,
              .left = node,
              .row = y.first,
@@ -151,8 +162,62 @@ struct Builder {
     }
   }
 
+  /// The row is complete. A row over many variables (a hub's force, a sum of a thousand sensors)
+  /// would travel through the fronts of all of them: it becomes partial sums, unknowns of their
+  /// own.
   void close_row(int stage_row, int size) {
-    structure.add_row(size, over);
+    std::sort(over.begin(), over.end());
+    over.erase(std::unique(over.begin(), over.end()), over.end());
+    if (!reads_states())
+      while (over.size() > kMost) sum_up(stage_row, size);
+    finish_row(stage_row, size, over);
+  }
+
+  /// An equation that reads states stands, at some s, for the inputs that move them: it stays
+  /// whole.
+  bool reads_states() const {
+    return std::any_of(j.pieces.begin() + j.piece_begin.back(), j.pieces.end(),
+                       [&](const Piece& p) {
+                         return p.entry < 0 && p.of != Piece::Left::state &&
+                                g.signals[at(p.signal)].role == Signal::Role::state;
+                       });
+  }
+
+  static constexpr std::size_t kMost = 12, kTogether = 4;
+
+  /// Replaces each four neighbouring variables of the row by their partial sum.
+  void sum_up(int stage_row, int size) {
+    const auto begin = j.pieces.begin() + j.piece_begin.back();
+    std::vector<Piece> all(begin, j.pieces.end()), top;
+    j.pieces.erase(begin, j.pieces.end());
+    std::vector<int> sums;
+    const auto group_of = [&](int variable) {
+      return static_cast<std::size_t>(std::lower_bound(over.begin(), over.end(), variable) -
+                                      over.begin()) /
+             kTogether;
+    };
+    std::vector<std::vector<Piece>> groups((over.size() + kTogether - 1) / kTogether);
+    for (const Piece& p : all) (p.entry < 0 ? top : groups[group_of(p.entry)]).push_back(p);
+    for (std::size_t k = 0; k < groups.size(); ++k) {
+      const int sum = static_cast<int>(j.variables.size());
+      j.variables.push_back(-1);
+      structure.variable_size.push_back(size);
+      sums.push_back(sum);
+      top.push_back({.of = Piece::Left::one, .rows = size, .entry = sum});
+      groups[k].push_back({.of = Piece::Left::one, .rows = size, .entry = sum, .sign = -1});
+      std::vector<int> members(
+          over.begin() + static_cast<std::ptrdiff_t>(k * kTogether),
+          over.begin() + static_cast<std::ptrdiff_t>(std::min(over.size(), (k + 1) * kTogether)));
+      members.push_back(sum);
+      j.pieces.insert(j.pieces.end(), groups[k].begin(), groups[k].end());
+      finish_row(stage_row, size, members);
+    }
+    j.pieces.insert(j.pieces.end(), top.begin(), top.end());
+    over = std::move(sums);
+  }
+
+  void finish_row(int stage_row, int size, const std::vector<int>& variables_of_row) {
+    structure.add_row(size, variables_of_row);
     const auto variables = structure.row(static_cast<int>(j.rows.size()));
     for (std::size_t p = at(j.piece_begin.back()); p < j.pieces.size(); ++p)
       if (int& entry = j.pieces[p].entry; entry >= 0)

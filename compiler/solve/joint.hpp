@@ -32,7 +32,7 @@ struct Piece {
   int row = 0, rows = 0, col = 0, cols = 0;  ///< the block of the node's matrix
   int right = -1;                            ///< coefficients[right]; -1: identity
   int entry = -1;                            ///< place in the row of the structure; -1: known
-  int signal = -1;                           ///< what is multiplied
+  int signal = -1;                           ///< what is multiplied; -1: a partial sum of size rows
   double sign = 1;
 };
 
@@ -44,7 +44,7 @@ struct Meaning {
 
 /// What does not depend on numbers: variables, what every signal is in terms of them, rows, plan.
 struct Joint {
-  std::vector<int> variables;    ///< signal of each variable
+  std::vector<int> variables;    ///< signal of each variable; -1: a partial sum of a long row
   std::vector<int> variable_of;  ///< signal -> variable, -1 if written out or known
   std::vector<int> meaning_begin = {0};
   std::vector<Meaning> meanings;  ///< of all signals, signal by signal

@@ -114,7 +114,7 @@ void JointRows<T>::add(int r, T* to, std::ptrdiff_t stride, const int* column) c
         },
         [&] {
           if (right) return add_matrix(p.sign, view(*right), place, stride);
-          const int size = graph_.signals[at(p.signal)].size;
+          const int size = p.signal < 0 ? p.rows : graph_.signals[at(p.signal)].size;
           for (int i = 0; i < size; ++i) place[i * stride + i] += lift<T>(p.sign);
         });
   }
@@ -171,9 +171,10 @@ void JointRows<T>::subtract_known(const Piece& p, const RowMatrix<T>& known,
   if (written_out(p)) {
     by_inputs(p, [&](const Dense<T>& by_u, const Meaning& meaning) {
       if (joint_.variable_of[at(meaning.signal)] >= 0) return;
-      const Dense<T> c = meaning.coefficient < 0
-                             ? by_u
-                             : Dense<T>(by_u.lazyProduct(lifted<T>(*coefficients_[at(meaning.coefficient)])));
+      const Dense<T> c =
+          meaning.coefficient < 0
+              ? by_u
+              : Dense<T>(by_u.lazyProduct(lifted<T>(*coefficients_[at(meaning.coefficient)])));
       const View<T> left = view(c, 0, static_cast<int>(c.rows()), 0, static_cast<int>(c.cols()));
       subtract_product(1, left, value(meaning.signal), m, to);
     });
