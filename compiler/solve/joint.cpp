@@ -115,9 +115,12 @@ struct Builder {
           e.terms[k].signal);
   }
 
-  /// A block with states may pass every input on at some s; one without only what it declares.
+  /// A block with states may pass every input on at some s; one without only what it declares. That
+  /// is looked at where there are many ports: a hub of a few is better off in one front, where its
+  /// pivots are chosen among all its rows (the satellite of the demo keeps a digit more).
   bool passes(const Node& n, const Signal& y, const Signal& u) {
-    if (n.state >= 0) return true;
+    constexpr std::size_t kFew = 8;
+    if (n.state >= 0 || n.block->interface().channels.size() <= kFew) return true;
     if (declared_of != n.block.get()) declared = n.block->feedthrough();
     declared_of = n.block.get();
     return declared.block(y.first, u.first, y.size, u.size).any();
