@@ -1,0 +1,21 @@
+# gnuplot -e "data='F'; labels='F'; count=N; output='F.svg'; title=''; xlabel=''; ylabel=''" lines.gp
+# Log-log lines in black and white: each has its own points and dashes and its name at its end.
+set terminal svg size 860,600 font "sans,15" background "white" enhanced
+set output output
+set monochrome
+set datafile separator ","
+set title title
+set xlabel xlabel
+set ylabel ylabel
+set logscale y
+if (!exists("linear")) set logscale x
+set format y "10^{%T}"
+set grid back linetype 1 linecolor rgb "#cccccc" dashtype solid linewidth 0.5
+set border 3
+set tics nomirror
+set rmargin 30
+set offsets graph 0.02, graph 0.02, 0, 0
+array points[12] = [7, 4, 5, 6, 9, 8, 11, 10, 13, 12, 2, 1]
+plot for [i=1:count] data index i-1 using 1:2 with linespoints linecolor rgb "black" \
+       linewidth (i == 1 ? 2 : 1) dashtype i pointtype points[i] pointsize 0.8 notitle, \
+     labels using 1:2:3 with labels left offset 1,0 noenhanced notitle

@@ -1,0 +1,181 @@
+# The table in docs/bench/README.md from times.csv, octave.csv, growth.csv and accuracy.csv.
+
+FNR == 1 { file = FILENAME; sub(/.*\//, "", file); next }
+file == "times.csv" || file == "octave.csv" {
+  if ($5 == "") next
+  key = $1 SUBSEP $2 SUBSEP $3 SUBSEP $4
+  seconds[key] = $5
+  if ($7 != "") marked[key] = $7
+  if ($6 > worst[$4]) worst[$4] = $6
+}
+file == "octave.csv" && $5 != "" && $7 == "" { note_octave($2 SUBSEP $3, $4, $5) }
+file == "growth.csv" {
+  if (!($1 in points)) scenes[++scene_count] = $1
+  k = ++points[$1]
+  bodies[$1, k] = $2; built[$1, k] = $4; compiled[$1, k] = $5; answered[$1, k] = $6
+  changed[$1, k] = $7; bytes[$1, k] = $9 + $10; peak[$1, k] = $11
+}
+file == "accuracy.csv" {
+  if (!(($1, $4) in met)) { met[$1, $4] = 1; method[++method_count] = $1 SUBSEP $4 }
+  error[$1, $4, $3] = $5
+  if (!($3 in exponent_met)) { exponent_met[$3] = 1; exponent[++exponent_count] = $3 }
+}
+
+# The fastest of the control package's ways (or of Octave's dense matrices), by BLAS, and sparse.
+function note_octave(point, name, s,   kind) {
+  kind = name ~ /sparse/ ? "sparse" : name ~ /reference/ ? "reference" : "best"
+  if (kind == "sparse" && name ~ /reference/) return
+  if (!((point, kind) in octave_best) || s < octave_best[point, kind]) {
+    octave_best[point, kind] = s
+    sub(/^Octave /, "", name)
+    octave_way[point, kind] = name
+  }
+}
+
+function time(s) {
+  if (s == "") return "-"
+  return s < 1e-3 ? sprintf("%.3g µs", 1e6 * s) : s < 1 ? sprintf("%.3g ms", 1e3 * s) : sprintf("%.3g s", s)
+}
+function ratio(a, b) { return a == "" || b == "" ? "-" : sprintf("%.3g", a / b) }
+function get(task, scene, n, name,   key) {
+  key = task SUBSEP scene SUBSEP n SUBSEP name
+  return key in seconds ? seconds[key] : ""
+}
+function mark(task, scene, n, name) {
+  return (task, scene, n, name) in marked ? " (" marked[task, scene, n, name] ")" : ""
+}
+function octave_time(scene, n, kind) {
+  return (scene SUBSEP n SUBSEP kind) in octave_best ? octave_best[scene SUBSEP n, kind] : ""
+}
+
+function row(task, scene, n, aim,   t, o, l) {
+  t = get(task, scene, n, "titop")
+  if (t == "") return
+  o = octave_time(scene, n, "best")
+  l = get(task, scene, n, "sparse LU")
+  printf "| %s | %s%s | %s | %s | %s | %s | %s | %s | %s | %s | %s | %s |\n", scene " " n, time(t), \
+    mark(task, scene, n, "titop"), time(o), octave_way[scene SUBSEP n, "best"], ratio(o, t), \
+    ratio(octave_time(scene, n, "reference"), t), ratio(octave_time(scene, n, "sparse"), t), \
+    time(l) mark(task, scene, n, "sparse LU"), ratio(l, t), \
+    ratio(get("compile", scene, n, "dense LU"), t), \
+    ratio(t, get(task ~ /factor/ ? "factor" : "compile", scene, n, \
+                 task ~ /factor/ ? "factorization alone" : "memset of A")), aim
+}
+function head(title, floor) {
+  printf "\n## %s\n\n", title
+  print "| case | titop | Octave | its best way | ratio | ... reference BLAS | ... sparse matrices | sparse LU | ratio | dense LU ratio | titop over " floor " | aim |"
+  print "|---|---|---|---|---|---|---|---|---|---|---|---|"
+}
+
+function slope(scene, column,   i, n, x, y, a, b, c, d) {
+  for (i = 1; i <= points[scene]; ++i) {
+    x = log(bodies[scene, i])
+    y = log(column == "compile" ? compiled[scene, i] : bytes[scene, i])
+    ++n; a += x; b += y; c += x * x; d += x * y
+  }
+  return n > 1 ? sprintf("%.2f", (n * d - a * b) / (n * c - a * a)) : "-"
+}
+function growth_row(scene,   k) {
+  k = points[scene]
+  printf "| %s | %d to %d | %s | %s | %s | %s | %s | %s | %.0f | %.0f |\n", scene, \
+    bodies[scene, 1], bodies[scene, k], time(built[scene, k]), time(compiled[scene, k]), \
+    slope(scene, "compile"), time(answered[scene, k]), time(changed[scene, k]), \
+    slope(scene, "bytes"), bytes[scene, k] / bodies[scene, k], peak[scene, k] / bodies[scene, k]
+}
+
+function change_row(scene, n,   one, all, whole) {
+  one = get("change one", scene, n, "titop")
+  all = get("change all", scene, n, "titop")
+  whole = get("whole", scene, n, "titop")
+  if (one == "") return
+  printf "| %s %d | %s | %s | %s | %s | %.2g %% | %.2g %% |\n", scene, n, \
+    time(get("diagram", scene, n, "titop")), time(whole), time(all), time(one), \
+    100 * one / all, 100 * one / whole
+}
+
+function response_row(task, scene, n,   t) {
+  t = get(task, scene, n, "titop")
+  if (t == "") return
+  printf "| %s %s %d | %s | %s | %s | %s | %s | %s |\n", task, scene, n, time(t), \
+    time(get(task, scene, n, "titop all cores")), time(get(task, scene, n, "sparse LU")), \
+    ratio(get(task, scene, n, "sparse LU"), t), time(get(task, scene, n, "dense model")), \
+    ratio(get(task, scene, n, "dense model"), t)
+}
+
+END {
+  print "# Measured\n"
+  print "Written by `bench/run`; all in one run on " cpu ", " cores " cores, load " load " before it, " \
+    date ", " commit ", " compiler ", Octave " octave " with OpenBLAS. Each time is the best of some" \
+    " repetitions. titop starts from a built Diagram; the others get the scene as matrices, free of" \
+    " charge: blocks, u = K y + E w, z = F y + G w, free channels inverted beforehand."
+  head("First compile, to the dense model in a warm buffer", "memset of A")
+  row("compile", "D", 1, ""); row("compile", "D", 10, "Octave 20"); row("compile", "D", 50, "Octave 80")
+  row("compile", "D", 100, ""); row("compile", "D", 200, "Octave 200"); row("compile", "D", 500, "")
+  row("compile", "F", 10, ""); row("compile", "F", 50, ""); row("compile", "K", 10, ""); row("compile", "K", 50, "")
+  row("compile", "A", 100, ""); row("compile", "A", 1000, "")
+  head("Recompile with new values of all bodies, to the dense model", "memset of A")
+  row("recompile", "D", 1, "Octave 30"); row("recompile", "D", 10, "Octave 100")
+  row("recompile", "D", 50, "Octave 400"); row("recompile", "D", 200, "Octave 600, sparse LU 20")
+  head("First compile, to factors and one product by them", "one sparse factorization")
+  row("factor", "A", 100, "Octave 100"); row("factor", "A", 1000, "Octave 1000")
+  row("factor", "BL", 100, ""); row("factor", "BL", 1000, ""); row("factor", "C", 100, ""); row("factor", "C", 1000, "")
+  row("factor", "D", 50, ""); row("factor", "D", 200, ""); row("factor", "A", 100000, ""); row("factor", "BL", 100000, "")
+  row("factor", "C", 100000, "")
+  head("Recompile with new values of all bodies, to factors and one product", "one sparse factorization")
+  row("refactor", "A", 100, "Octave 1000"); row("refactor", "A", 1000, "Octave 1000")
+  row("refactor", "BL", 100, "Octave 1000"); row("refactor", "BL", 1000, "Octave 1000")
+  row("refactor", "C", 100, "Octave 1000"); row("refactor", "C", 1000, "Octave 1000")
+  row("refactor", "D", 50, ""); row("refactor", "D", 200, ""); row("refactor", "A", 100000, "")
+
+  print "\n## Changes, without a dense model\n"
+  print "T is a balanced binary tree; \"all\" changes every body's angle or mass on the same plan.\n"
+  print "| case | Diagram alone | compile | all changed | one changed | one over all | one over compile |"
+  print "|---|---|---|---|---|---|---|"
+  split("T D K C A BL", list, " ")
+  for (i = 1; i <= 6; ++i) change_row(list[i], 1000)
+  change_row("F", 100)
+
+  print "\n## Responses\n"
+  print "| task | titop | on all cores | sparse LU | ratio | dense model | ratio |"
+  print "|---|---|---|---|---|---|---|"
+  split("transfer sweep apply", list, " ")
+  for (i = 1; i <= 3; ++i) {
+    response_row(list[i], "D", 10); response_row(list[i], "D", 200); response_row(list[i], "D", 1000)
+    response_row(list[i], "K", 200); response_row(list[i], "A", 1000); response_row(list[i], "A", 10000)
+    response_row(list[i], "BL", 1000)
+  }
+
+  print "\n## Growth, a process per point\n"
+  print "Times and bytes at the largest size. Aim: slopes of at most 1.1.\n"
+  print "| case | bodies | Diagram | compile | slope | transfer | one changed | slope of memory | bytes per body | peak per body |"
+  print "|---|---|---|---|---|---|---|---|---|---|"
+  for (i = 1; i <= scene_count; ++i) growth_row(scenes[i])
+
+  print "\n## Accuracy\n"
+  print "Ten bodies scaled by 10^k and 10^-k in turn: largest relative error of the transfer, per 3 x 3" \
+    " block (or scalar), at s = (0.05 + j) omega, against 100 digits.\n"
+  printf "| case | method |"
+  for (i = 1; i <= exponent_count; ++i) printf " k = %s |", exponent[i]
+  printf "\n|---|---|"
+  for (i = 1; i <= exponent_count; ++i) printf "---|"
+  print ""
+  for (m = 1; m <= method_count; ++m) {
+    split(method[m], part, SUBSEP)
+    printf "| %s | %s |", part[1], part[2]
+    for (i = 1; i <= exponent_count; ++i) printf " %s |", error[part[1], part[2], exponent[i]]
+    print ""
+  }
+
+  print "\n## Agreement\n"
+  print "Largest relative difference from titop's result (entries over their row's largest), over all" \
+    " points of a method; a point beyond 1e-6 is marked and left out of charts.\n"
+  print "| method | worst |\n|---|---|"
+  for (name in worst) print "| " name " | " worst[name] " |" | "sort"
+  close("sort")
+  print "\n## Charts\n"
+  while (("ls " dir_of(FILENAME) "*.svg" | getline chart) > 0) {
+    sub(/.*\//, "", chart)
+    print "![" chart "](" chart ")"
+  }
+}
+function dir_of(path) { sub(/[^\/]*$/, "", path); return path }

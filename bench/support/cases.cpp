@@ -1,0 +1,175 @@
+#include "cases.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <optional>
+#include <random>
+#include <stdexcept>
+
+namespace titop_bench {
+
+using titop::Beam;
+using titop::Diagram;
+using titop::FlexibleBody;
+using titop::Rotation;
+using titop::SpringMass;
+using titop::Value;
+
+namespace {
+
+constexpr std::array kNames{"A", "BL", "C", "D", "F", "K", "T"};
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+class Random {
+ public:
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
+  }
+  int below(int n) { return static_cast<int>(engine_() % static_cast<unsigned>(n)); }
+  titop::Vector3 axis() {
+    const double x = between(-1, 1), y = between(-1, 1);
+    return {x, y, between(-1, 1)};
+  }
+
+ private:
+  std::mt19937_64 engine_{20150401};
+};
+
+/// The diagram's parameter, and which bodies have it.
+class Variation {
+ public:
+  Variation(Diagram& d, const SceneOptions& options, int n) : varies_(options.varies), one_(n / 2) {
+    if (varies_ != Varies::nothing) p_ = d.param("p", options.p);
+  }
+  Value operator()(double number, int body) const {
+    return p_ && (varies_ == Varies::all || body == one_) ? number * *p_ : Value(number);
+  }
+
+ private:
+  Varies varies_;
+  int one_;
+  std::optional<titop::Param> p_;
+};
+
+/// BL is the same structure as A: half of every mass but the last is the parent mass of the next.
+Diagram scalar(Case c, int n, const SceneOptions& options) {
+  Diagram d{"case " + name_of(c)};
+  Random random;
+  const Variation varied(d, options, n);
+  auto u = d.input("u");
+  std::vector<SpringMass::Handle> z;
+  z.reserve(at(n));
+  double half = 0;
+  for (int i = 0; i < n; ++i) {
+    const double m = random.between(0.5, 2) * (i % 2 ? options.ratio : 1 / options.ratio);
+    const double own = c == Case::BL && i + 1 < n ? m / 2 : m;
+    const double stiffness = random.between(50, 200);
+    z.push_back(d.add(fmt::format("z{}", i + 1), SpringMass{.mass = varied(own, i),
+                                                            .stiffness = stiffness,
+                                                            .damping = 0.1,
+                                                            .parent_mass = varied(half, i)}));
+    half = m - own;
+    if (i == 0)
+      ground(z[0]);
+    else
+      mount(z.back(), z[at(c == Case::C ? random.below(i) : i - 1)].child);
+  }
+  z.back().child.force = u;
+  d.output("a") = z.back().child.accel;
+  return d;
+}
+
+/// 2 m of aluminium, its lowest six modes clamped at P. E and rho together: the frequencies stay.
+FlexibleBody beam(double scale) {
+  return Beam{.length = 2.0,
+              .section = titop::rectangle(0.06, 0.04),
+              .material = {.E = 70e9 * scale, .nu = 0.33, .rho = 2700 * scale},
+              .elements = 4,
+              .modes = {.kept = 6, .xi = {0.005}}};
+}
+
+/// 40 N m/rad and a lag of 0.2 s.
+titop::Lti controller() {
+  const auto scalar = [](double x) { return Eigen::MatrixXd::Constant(1, 1, x); };
+  return {.A = scalar(-5), .B = scalar(1), .C = scalar(3), .D = scalar(40)};
+}
+
+void controlled_hinge(Diagram& d, int i, const FlexibleBody::Handle& body,
+                      const titop::DualPort<6>& site, const Rotation& T) {
+  auto h = hinge(d, fmt::format("J{}", i + 1), body, site, T, {0, 0, 1});
+  auto K = d.add(fmt::format("K{}", i + 1), controller());
+  K.in = h.angle;
+  h.torque = K.out + 8.0 * h.rate;
+}
+
+Diagram flexible(Case c, int n, const SceneOptions& options) {
+  Diagram d{"case " + name_of(c)};
+  Random random;
+  const Variation varied(d, options, n);
+  const FlexibleBody light = beam(1 / options.ratio);
+  const FlexibleBody heavy = options.ratio == 1 ? light : beam(options.ratio);
+  auto U = d.input("U", 6);
+  std::vector<FlexibleBody::Handle> b;
+  b.reserve(at(n));
+  b.push_back(d.add("B1", light));
+  b[0].parent.force = -U;
+  for (int i = 1; i < n; ++i) {
+    b.push_back(d.add(fmt::format("B{}", i + 1), i % 2 ? heavy : light));
+    const auto& site = b[at(c == Case::T ? (i - 1) / 2 : i - 1)].child;
+    const titop::Vector3 axis = random.axis();
+    const Rotation T = Rotation::about(axis, varied(random.between(0.1, 3), i));
+    if (c == Case::K)
+      controlled_hinge(d, i, b.back(), site, T);
+    else
+      mount(b.back(), site, T);
+  }
+  d.output("a", 6) = b.back().child.accel;
+  return d;
+}
+
+Diagram fan(int n, const SceneOptions& options) {
+  Diagram d{"case F"};
+  Random random;
+  const Variation varied(d, options, n);
+  titop::RigidBody hub{.mass = 1000, .inertia = titop::Vector3(400, 500, 600).asDiagonal()};
+  for (int i = 0; i < n; ++i) hub.children.push_back({fmt::format("C{}", i + 1), random.axis()});
+  const FlexibleBody wing = beam(1);
+  auto U = d.input("U", 6);
+  auto B = d.add("B", hub);
+  B.parent.force = -U;
+  for (int i = 0; i < n; ++i) {
+    auto A = d.add(fmt::format("A{}", i + 1), wing);
+    const titop::Vector3 axis = random.axis();
+    const Rotation T = Rotation::about(axis, varied(random.between(0.1, 3), i));
+    mount(A, B.child(fmt::format("C{}", i + 1)), T);
+    if (i + 1 == n) d.output("a", 6) = A.child.accel;
+  }
+  return d;
+}
+
+}  // namespace
+
+std::string name_of(Case c) { return kNames[static_cast<std::size_t>(c)]; }
+
+Case case_of(const std::string& name) {
+  for (std::size_t i = 0; i < kNames.size(); ++i)
+    if (kNames[i] == name) return static_cast<Case>(i);
+  throw std::invalid_argument("no case " + name);
+}
+
+Diagram scene(Case c, int n, const SceneOptions& options) {
+  switch (c) {
+    case Case::A:
+    case Case::BL:
+    case Case::C: return scalar(c, n, options);
+    case Case::D:
+    case Case::K:
+    case Case::T: return flexible(c, n, options);
+    case Case::F: return fan(n, options);
+  }
+  throw std::invalid_argument("no such case");
+}
+
+}  // namespace titop_bench

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <titop/titop.hpp>
+#include <vector>
+
+/// The scenes that are timed, each at any size. Random numbers come from a fixed seed.
+namespace titop_bench {
+
+enum class Case {
+  A,   ///< chain of spring-masses on the ground
+  BL,  ///< the same with each mass split between its two sides: a loop at every junction
+  C,   ///< random tree of spring-masses on the ground
+  D,   ///< chain of flexible bodies (6 modes), random rotations, free root
+  F,   ///< [Alazard 2015] Fig. 17: one hub with n flexible appendages
+  K,   ///< chain of flexible bodies with a hinge and a controller at every joint, free root
+  T,   ///< balanced binary tree of flexible bodies, free root
+};
+
+/// "A", "BL", ...
+std::string name_of(Case c);
+Case case_of(const std::string& name);
+
+/// What parameter "p" multiplies: masses (A, BL, C) or mounting angles (D, F, K, T).
+enum class Varies {
+  nothing,  ///< there is no parameter
+  one,      ///< that of body n/2
+  all,      ///< those of all bodies
+};
+
+struct SceneOptions {
+  double ratio = 1;  ///< bodies are scaled by it and by 1/it in turn (A to D and K)
+  Varies varies = Varies::nothing;
+  double p = 1;  ///< nominal value of the parameter
+};
+
+/// The diagram of case c with n bodies (F: appendages). From the force at the last mass (A, BL, C)
+/// or the wrench at the root to the acceleration of the last body.
+titop::Diagram scene(Case c, int n, const SceneOptions& options = {});
+
+}  // namespace titop_bench

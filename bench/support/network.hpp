@@ -1,0 +1,28 @@
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <array>
+#include <titop/compiler/system.hpp>
+#include <vector>
+
+/// The common input of all other methods: the scene as a control engineer's tools take it.
+namespace titop_bench {
+
+using Sparse = Eigen::SparseMatrix<double>;
+
+/// xdot = A x + B u, y = C x + D u, block diagonal in the order in which the diagram declares the
+/// blocks; u = K y + E w, z = F y + G w. A channel that the scene drives against its block's
+/// default is inverted in the block beforehand, as the paper does by hand; where the block alone
+/// does not allow that (a hinge), its input is one more unknown: a unit gain q with
+/// `input = q out, q in = q out + (what must vanish)`.
+struct Network {
+  Sparse A, B, C, D, K, E, F, G;
+  std::vector<std::array<int, 3>> blocks;  ///< states, inputs and outputs of each
+
+  int states() const { return static_cast<int>(A.rows()); }
+};
+
+/// Of a compiled scene, at its parameter values. O(scalars log) but for the inversions.
+Network network_of(const titop::System& system);
+
+}  // namespace titop_bench
