@@ -49,7 +49,7 @@ block() {
 draw_task() {
   local name=$1 task=$2 scene=$3 title=$4 method
   rm -f "$work/$name.dat"
-  for method in titop "titop all cores" "titop on one core" "sparse LU" "dense LU" "dense model" \
+  for method in titop "titop all cores" "titop on one core" "titop descriptor" "sparse LU" "dense LU" "dense model" \
     "factorization alone" "memset of A"; do
     series "$out/times.csv" "$task" "$scene" "$method" | block "$name" "$method"
   done

@@ -48,13 +48,14 @@ function octave_time(scene, n, kind) {
   return (scene SUBSEP n SUBSEP kind) in octave_best ? octave_best[scene SUBSEP n, kind] : ""
 }
 
-function row(task, scene, n, aim,   t, o, l) {
+function row(task, scene, n, aim,   t, o, l, d) {
   t = get(task, scene, n, "titop")
+  d = get(task, scene, n, "titop descriptor")
   if (t == "") return
   o = octave_time(scene, n, "best")
   l = get(task, scene, n, "sparse LU")
-  printf "| %s | %s%s | %s | %s | %s | %s | %s | %s | %s | %s | %s | %s |\n", scene " " n, time(t), \
-    mark(task, scene, n, "titop"), time(o), octave_way[scene SUBSEP n, "best"], ratio(o, t), \
+  printf "| %s | %s%s%s | %s | %s | %s | %s | %s | %s | %s | %s | %s | %s |\n", scene " " n, time(t), \
+    mark(task, scene, n, "titop"), d == "" ? "" : " (descriptor " time(d) ")", time(o), octave_way[scene SUBSEP n, "best"], ratio(o, t), \
     ratio(octave_time(scene, n, "reference"), t), ratio(octave_time(scene, n, "sparse"), t), \
     time(l) mark(task, scene, n, "sparse LU"), ratio(l, t), \
     ratio(get("compile", scene, n, "dense LU"), t), \
@@ -170,12 +171,10 @@ END {
   print "Largest relative difference from titop's result (entries over their row's largest), over all" \
     " points of a method; a point beyond 1e-6 is marked and left out of charts.\n"
   print "| method | worst |\n|---|---|"
+  fflush()
   for (name in worst) print "| " name " | " worst[name] " |" | "sort"
   close("sort")
   print "\n## Charts\n"
-  while (("ls " dir_of(FILENAME) "*.svg" | getline chart) > 0) {
-    sub(/.*\//, "", chart)
-    print "![" chart "](" chart ")"
-  }
+  command = "cd '" out "' && ls *.svg"
+  while ((command | getline chart) > 0) print "![" chart "](" chart ")"
 }
-function dir_of(path) { sub(/[^\/]*$/, "", path); return path }

@@ -1,7 +1,7 @@
 % octave-cli octave.m SCENE LIMIT LABEL FILE...: the model of each network (programs/network.cpp), sizes
 % ascending, in all ways that Octave and its control package have; one CSV row each on stdout. A way
-% is left out where, grown with the cube of n, it would take longer than LIMIT seconds. The error is
-% that of [A B; C D] V against titop's, per row over the row's magnitude.
+% is left out where, by the growth of the last two sizes, it would take longer than LIMIT seconds.
+% The error is that of [A B; C D] V against titop's, per row over the row's magnitude.
 1;
 
 % --- ways: each takes the network and returns A, B, C, D -------------------------------------
@@ -103,12 +103,13 @@ list = argv ();
 scene = list{1}; limit = str2double (list{2}); label = list{3};  % which BLAS
 ways = {"names", @by_names; "append", @by_append; "mconnect", @by_mconnect; "lft", @by_lft; ...
         "dense matrices", @by_hand; "sparse matrices", @by_sparse};
-last = zeros (rows (ways), 2);
+last = [zeros(rows (ways), 2), 1.5 * ones(rows (ways), 1)];  % n, seconds, exponent
 for f = 4 : numel (list)
   s = network (list{f});
   for k = 1 : rows (ways)
     note = "";
-    if last(k,1) && last(k,2) * (s.n / last(k,1)) ^ 3 > limit
+    exponent = min (3, max (1, last(k,3) + 0.5));
+    if last(k,1) && last(k,2) * (s.n / last(k,1)) ^ exponent > limit
       printf ("compile,%s,%d,Octave %s%s,,,given up\n", scene, s.n, ways{k,1}, label);
       continue;
     end
@@ -117,7 +118,10 @@ for f = 4 : numel (list)
       if ! (err <= 1e-6)
         note = "disagrees";
       end
-      last(k,:) = [s.n, seconds];
+      if last(k,1)
+        last(k,3) = log (seconds / last(k,2)) / log (s.n / last(k,1));
+      end
+      last(k,1:2) = [s.n, seconds];
       printf ("compile,%s,%d,Octave %s%s,%.4g,%.2g,%s\n", scene, s.n, ways{k,1}, label, seconds, err, note);
     catch e
       printf ("compile,%s,%d,Octave %s%s,,,%s\n", scene, s.n, ways{k,1}, label, strrep (e.message, ",", ";"));

@@ -126,6 +126,22 @@ Prepared titop_refactor(Case c, int n) {
           [=] { return difference(sweep->product, sweep->probe(compiled(sweep->at(sweep->p)))); }};
 }
 
+/// Sparse E, A, B, C, D instead of factors.
+Prepared titop_descriptor(Case c, int n) {
+  struct Data {
+    Diagram diagram;
+    titop::Descriptor model = {};
+  };
+  const auto data = std::make_shared<Data>(Data{scene(c, n)});
+  return {[=] { data->model = compiled(data->diagram).descriptor(); }, {}};
+}
+
+Prepared titop_redescriptor(Case c, int n) {
+  const auto sweep = std::make_shared<Sweep>(c, n);
+  const auto model = std::make_shared<titop::Descriptor>();
+  return {[=] { *model = sweep->next().descriptor(); }, {}};
+}
+
 // --- what a user would pick instead ------------------------------------------------------------
 
 struct Other : Reference {
@@ -213,8 +229,8 @@ Method method(const char* task, Case c, const char* name, const std::vector<int>
 
 std::vector<Method> methods() {
   const std::vector<int> bodies{1, 2, 5, 10, 20, 50, 100, 200, 500};
-  const std::vector<int> masses{1, 10, 100, 1000};
-  const std::vector<int> many{1, 10, 100, 1000, 10000, 100000};
+  const std::vector<int> masses{1, 3, 10, 30, 100, 300, 1000};
+  const std::vector<int> many{1, 3, 10, 30, 100, 300, 1000, 10000, 100000};
   std::vector<Method> list;
   for (const Case c : {Case::D, Case::F, Case::K, Case::A, Case::BL, Case::C}) {
     const bool scalar = c == Case::A || c == Case::BL || c == Case::C;
@@ -228,9 +244,11 @@ std::vector<Method> methods() {
     list.push_back(method("recompile", c, "sparse LU", sizes, sparse_recompile));
     const auto& long_sizes = scalar ? many : bodies;
     list.push_back(method("factor", c, "titop", long_sizes, titop_factor));
+    list.push_back(method("factor", c, "titop descriptor", long_sizes, titop_descriptor));
     list.push_back(method("factor", c, "sparse LU", long_sizes, sparse_factor));
     list.push_back(method("factor", c, "factorization alone", long_sizes, sparse_factorization));
     list.push_back(method("refactor", c, "titop", long_sizes, titop_refactor));
+    list.push_back(method("refactor", c, "titop descriptor", long_sizes, titop_redescriptor));
     list.push_back(method("refactor", c, "sparse LU", long_sizes, sparse_refactor));
   }
   return list;

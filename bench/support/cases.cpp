@@ -28,7 +28,7 @@ class Random {
     return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
   }
   int below(int n) { return static_cast<int>(engine_() % static_cast<unsigned>(n)); }
-  titop::Vector3 axis() {
+  Eigen::Vector3d axis() {
     const double x = between(-1, 1), y = between(-1, 1);
     return {x, y, between(-1, 1)};
   }
@@ -118,7 +118,7 @@ Diagram flexible(Case c, int n, const SceneOptions& options) {
   for (int i = 1; i < n; ++i) {
     b.push_back(d.add(fmt::format("B{}", i + 1), i % 2 ? heavy : light));
     const auto& site = b[at(c == Case::T ? (i - 1) / 2 : i - 1)].child;
-    const titop::Vector3 axis = random.axis();
+    const Eigen::Vector3d axis = random.axis();
     const Rotation T = Rotation::about(axis, varied(random.between(0.1, 3), i));
     if (c == Case::K)
       controlled_hinge(d, i, b.back(), site, T);
@@ -133,7 +133,7 @@ Diagram fan(int n, const SceneOptions& options) {
   Diagram d{"case F"};
   Random random;
   const Variation varied(d, options, n);
-  titop::RigidBody hub{.mass = 1000, .inertia = titop::Vector3(400, 500, 600).asDiagonal()};
+  titop::RigidBody hub{.mass = 1000, .inertia = Eigen::Vector3d(400, 500, 600).asDiagonal()};
   for (int i = 0; i < n; ++i) hub.children.push_back({fmt::format("C{}", i + 1), random.axis()});
   const FlexibleBody wing = beam(1);
   auto U = d.input("U", 6);
@@ -141,7 +141,7 @@ Diagram fan(int n, const SceneOptions& options) {
   B.parent.force = -U;
   for (int i = 0; i < n; ++i) {
     auto A = d.add(fmt::format("A{}", i + 1), wing);
-    const titop::Vector3 axis = random.axis();
+    const Eigen::Vector3d axis = random.axis();
     const Rotation T = Rotation::about(axis, varied(random.between(0.1, 3), i));
     mount(A, B.child(fmt::format("C{}", i + 1)), T);
     if (i + 1 == n) d.output("a", 6) = A.child.accel;

@@ -23,7 +23,7 @@ struct Line {
   int n = 0;          ///< of what is prepared
   Prepared prepared = {};
   double difference = 0, seconds = 0;
-  double growth = 3;  ///< exponent from the last size to this one
+  double growth = 1.5;  ///< exponent from the last size to this one
 };
 
 bool too_long(const Line& line, int n) {
