@@ -16,15 +16,20 @@ best_octave() {
     END { for (n in best) print n "," best[n] }' "$1" | sort -g
 }
 
-# Names at the ends of the lines, moved apart (by a factor of 1.5 or `gap`) where they would meet.
+# Names at the ends of the lines, moved apart where they would meet: by a twenty-fifth of the chart.
 labels_of() {
-  awk -F, -v OFS=, -v gap="${gap:-1.5}" '
+  awk -F, -v OFS=, '
     /^#/ { name = substr($0, 3); next }
-    NF == 2 { x[name] = $1; y[name] = $2 }
-    END { for (n in x) print x[n], y[n], n }' "$1" | sort -t, -k1,1g -k2,2g |
-    awk -F, -v OFS=, -v gap="${gap:-1.5}" '
-      $1 == last && $2 < y * gap { $2 = y * gap }
-      { last = $1; y = $2; print }'
+    NF == 2 {
+      x[name] = $1; y[name] = $2
+      if (low == "" || $2 < low) low = $2
+      if ($2 > high) high = $2
+    }
+    END { for (n in x) print x[n], y[n], exp(log(high / low + 10) / 25), n }' "$1" |
+    sort -t, -k1,1g -k2,2g |
+    awk -F, -v OFS=, '
+      $1 == last && $2 < y * $3 { $2 = y * $3 }
+      { last = $1; y = $2; print $1, $2, $4 }'
 }
 
 # chart NAME TITLE XLABEL YLABEL: draws $work/NAME.dat, blocks of lines under "# name".
@@ -58,7 +63,7 @@ draw_task() {
       best_octave "$out/octave.csv" "$scene" '(names|append|mconnect|lft|dense matrices)$' |
         block "$name" "best of Octave with control"
       best_octave "$out/octave.csv" "$scene" 'sparse matrices$' |
-        block "$name" "Octave, sparse matrices"
+        block "$name" "Octave sparse matrices"
       ;;
   esac
   chart "$name" "$title" "bodies" "seconds"
@@ -77,7 +82,7 @@ draw_growth() {
     points=$(awk -F, -v s=$scene -v c="$column" -v per="$per" \
       '$1 == s { v = c == "bytes" ? $9 + $10 : $c; print $2 "," v / (per ? $2 : 1) }' \
       "$out/growth.csv")
-    [[ -z $points ]] || echo "$points" | block "$name" "$scene, slope $(echo "$points" | slope)"
+    [[ -z $points ]] || echo "$points" | block "$name" "$scene (slope $(echo "$points" | slope))"
   done
   chart "$name" "$title" "bodies" "$ylabel"
 }
@@ -91,7 +96,7 @@ draw_accuracy() {
         '$1 == s && $4 == m { print $3 "," ($5 < 1e-17 ? 1e-17 : $5) }' "$out/accuracy.csv" |
         block "accuracy-$scene" "$method"
     done
-  gap=4 chart "accuracy-$scene" "case $scene, ten bodies scaled by 10^{+-k} in turn" "k" \
+  chart "accuracy-$scene" "case $scene, ten bodies scaled by 10^k and 10^{-k} in turn" "k" \
     "largest relative error of the transfer" "linear=1"
 }
 
