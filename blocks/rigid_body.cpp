@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <set>
 #include <titop/blocks/body_interface.hpp>
 #include <titop/blocks/rigid_body.hpp>
@@ -55,6 +57,14 @@ Interface body_interface(const std::vector<std::string>& children, int modes) {
     face.channels.push_back({name, 6, Takes::force});
   }
   face.channels.push_back({"parent", 6, Takes::accel});
+  if (children.size() > 16) {
+    face.by_name.resize(face.channels.size());
+    std::iota(face.by_name.begin(), face.by_name.end(), 0);
+    std::sort(face.by_name.begin(), face.by_name.end(), [&](int a, int b) {
+      return face.channels[static_cast<std::size_t>(a)].name <
+             face.channels[static_cast<std::size_t>(b)].name;
+    });
+  }
   for (const char* suffix : {"", "_rate"})
     for (int i = 1; i <= modes; ++i) face.states.push_back(fmt::format("eta{}{}", i, suffix));
   return face;
@@ -90,6 +100,18 @@ Kinematics body_kinematics(const std::vector<Vector3d>& PC, const std::vector<Ma
 
 namespace {
 
+/// `rigid_part` by its nonzero blocks.
+std::vector<Gains> rigid_gains(const std::vector<Vector3d>& PC, const Matrix6& D_P) {
+  const int n = static_cast<int>(6 * PC.size());
+  std::vector<Gains> result;
+  for (int i = 0; i < n; i += 6)
+    result.push_back({i, n, tau(-PC[static_cast<std::size_t>(i / 6)])});
+  for (int i = 0; i < n; i += 6)
+    result.push_back({n, i, tau(-PC[static_cast<std::size_t>(i / 6)]).transpose()});
+  result.push_back({n, n, -D_P});
+  return result;
+}
+
 class RigidBodyBlock : public Block {
  public:
   explicit RigidBodyBlock(const RigidBody& spec) : spec_(spec) {
@@ -106,10 +128,15 @@ class RigidBodyBlock : public Block {
     const double m = spec_.mass.at(values);
     check_inertia(m, spec_.inertia);
     auto d = std::make_shared<Dynamics>();
-    d->D = rigid_part(PC_, rigid_mass(m, spec_.inertia, -spec_.PA));
+    const Matrix6 D_P = rigid_mass(m, spec_.inertia, -spec_.PA);
+    if (is_algebraic())
+      d->sparse = rigid_gains(PC_, D_P);
+    else
+      d->D = rigid_part(PC_, D_P);
+    const auto n = static_cast<Eigen::Index>(6 * PC_.size() + 6);
     d->A.resize(0, 0);
-    d->B.resize(0, d->D.cols());
-    d->C.resize(d->D.rows(), 0);
+    d->B.resize(0, n);
+    d->C.resize(n, 0);
     return d;
   }
   /// Wrenches do not feed through to accelerations: between children there is no direct term.
@@ -123,6 +150,9 @@ class RigidBodyBlock : public Block {
     return body_kinematics(PC_, std::vector<MatrixXd>(PC_.size(), MatrixXd(6, 0)));
   }
   std::vector<Value> values() const override { return {spec_.mass}; }
+  /// A hub of many ports is its equations: each point moves with P, each wrench goes to P. A hub of
+  /// few stays together, so that its pivots are chosen among all its rows (a digit more).
+  bool is_algebraic() const override { return PC_.size() > 7; }
   std::optional<Cause> why_singular(int channel, ParameterValues values) const override {
     if (channel != static_cast<int>(PC_.size()))
       return Cause{"is rigid: its child points cannot be driven by themselves",

@@ -205,7 +205,12 @@ struct Residual {
           b.known = b.known && (values.known(node.state) || C.isZero(0));
           b.add(C, values.of(node.state), true, -1);
         }
-        subtract_inputs(b, node, end, m.D, y.first);
+        if (m.sparse.empty()) subtract_inputs(b, node, end, m.D, y.first);
+        for (const Gains& part : m.gains_of_row(y.first)) {
+          const int i = input_signal(w, index, part.column);
+          b.known = b.known && values.known(i);
+          b.add(part.gain, values.of(i), false, -1);
+        }
         take(b, [&] { return name_of(w, o); });
       }
     }

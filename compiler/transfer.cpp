@@ -82,7 +82,7 @@ void add_block(Assembly& a, const Node& node, int index, std::complex<double> s)
     if (node.state >= 0) a.add(-d->C.middleRows(y.first, y.size), node.state);
     for (int i = node.first_signal; i < end; ++i)
       if (const Signal& u = a.graph.signals[at(i)]; u.role == Signal::Role::input)
-        a.add(-d->D.block(y.first, u.first, y.size, u.size), i);
+        a.add(-d->direct(y.first, u.first, y.size, u.size), i);
     a.row += y.size;
   }
 }
@@ -125,7 +125,8 @@ MatrixXcd transfer(const Graph& graph, std::complex<double> s, ParameterValues v
     if (!graph.nodes[at(i)].lowered) add_block(a, graph.nodes[at(i)], i, s);
   for (std::size_t c = 0; c < a.drive.size(); ++c) add_channel(a, graph.channels[c], a.drive[c]);
   for (const Equation& e : graph.equations)
-    if (const Signal& target = graph.signals[at(e.target)]; target.channel < 0 && e.active)
+    if (const Signal& target = graph.signals[at(e.target)];
+        (target.channel < 0 || e.of_block) && e.active)
       add_definition(a, a.column[at(e.target)], target.size, e.terms);
   int column = a.unknowns;
   for (const Output& o : graph.outputs) {

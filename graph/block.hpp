@@ -4,6 +4,7 @@
 #include <complex>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <titop/graph/value.hpp>
@@ -44,9 +45,12 @@ struct Interface {
   std::vector<ChannelSpec> channels;
   std::vector<PortSpec> inputs, outputs;
   std::vector<std::string> states;
+  std::vector<int> by_name = {};  ///< optional, for very many channels: their indices, by name
 
   int input_size() const;   ///< number of rows of u
   int output_size() const;  ///< number of rows of y
+  /// Index of the channel called `name`, -1 if there is none. O(channels), by `by_name` O(log).
+  int find_channel(std::string_view name) const;
 };
 
 /// A body by its N modes: etadd = W u - stiffness * eta - damping * etad (entry by entry), and
@@ -57,11 +61,28 @@ struct Modal {
   Eigen::VectorXd stiffness, damping;
 };
 
+/// A block of a direct term: from its row and column on.
+struct Gains {
+  int row = 0, column = 0;
+  Eigen::MatrixXd gain;
+};
+
 /// xdot = A x + B u, y = C x + D u, in the order of `Interface`. A block that has the modal form
 /// may say so: everything is then faster, and no different.
+///
+/// An algebraic block of very many ports gives D by its nonzero blocks, one per pair of ports,
+/// ascending by row and then by column; D is then 0 x 0.
 struct Dynamics {
   Eigen::MatrixXd A, B, C, D;
   std::shared_ptr<const Modal> modal = {};
+  std::vector<Gains> sparse = {};
+
+  /// The entries of `sparse` that start at this row.
+  std::span<const Gains> gains_of_row(int row) const;
+  /// The rows x cols block of D at (row, col): of one output port and one input port.
+  Eigen::MatrixXd direct(int row, int col, int rows, int cols) const;
+  /// D as one matrix.
+  Eigen::MatrixXd dense_direct() const;
 };
 
 /// Where the acceleration ports are: the position of channel i is
@@ -104,7 +125,8 @@ class Block {
   virtual std::optional<Kinematics> kinematics(ParameterValues) const { return std::nullopt; }
   /// The values that the matrices depend on (only those that are parameters matter).
   virtual std::vector<Value> values() const { return {}; }
-  /// True if the block has no states and its rows may become plain equations (Gain, Sum).
+  /// True if the block has no states and its rows become plain equations (a Gain, a Sum, a rigid
+  /// hub of many ports).
   virtual bool is_algebraic() const { return false; }
   /// True if the vectors of its size-6 channels and size-6 plain ports live in the frame of its own
   /// node (bodies); false for controllers and scalar blocks.

@@ -28,7 +28,7 @@ std::vector<Drive> drives(const Graph& graph) {
   std::vector<Drive> result(graph.channels.size());
   for (int e = 0; e < static_cast<int>(graph.equations.size()); ++e) {
     const Equation& equation = graph.equations[static_cast<std::size_t>(e)];
-    if (equation.target < 0) continue;
+    if (equation.target < 0 || equation.of_block) continue;
     const Signal& target = graph.signals[static_cast<std::size_t>(equation.target)];
     if (target.channel < 0) continue;
     Drive& drive = result[static_cast<std::size_t>(target.channel)];

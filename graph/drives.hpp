@@ -13,8 +13,9 @@ struct Drive {
   Eigen::MatrixXd N;                     ///< rows: the others; there the force is driven
 };
 
-/// The drives of all channels. S and N together are an orthonormal basis of the channel's space
-/// (the unit vectors where no direction is oblique). O(equations).
+/// The drives of all channels, by what the user wrote (not by rows of blocks). S and N together are
+/// an orthonormal basis of the channel's space (the unit vectors where no direction is oblique).
+/// O(equations).
 std::vector<Drive> drives(const Graph& graph);
 
 /// Orthonormal rows spanning the complement of the orthonormal rows of S (m x n).

@@ -237,6 +237,22 @@ int add_input(Graph& graph, std::string name, int size, std::source_location whe
   return signal;
 }
 
+int input_signal(const Graph& g, int node, int column) {
+  const Node& n = g.nodes[static_cast<std::size_t>(node)];
+  const auto first = g.channels.begin() + n.first_channel;
+  const auto last = first + static_cast<std::ptrdiff_t>(n.block->interface().channels.size());
+  const auto taken = [&](const Channel& c) { return c.takes == Takes::force ? c.force : c.accel; };
+  const auto first_row = [&](int s) { return g.signals[static_cast<std::size_t>(s)].first; };
+  const auto found = std::partition_point(
+      first, last, [&](const Channel& c) { return first_row(taken(c)) < column; });
+  if (found != last && first_row(taken(*found)) == column) return taken(*found);
+  for (int s = n.first_signal; s < end_signal(g, node); ++s)
+    if (g.signals[static_cast<std::size_t>(s)].role == Signal::Role::input &&
+        first_row(s) == column)
+      return s;
+  return -1;
+}
+
 int end_signal(const Graph& graph, int node) {
   const Node& n = graph.nodes[static_cast<std::size_t>(node)];
   const Interface& face = n.block->interface();

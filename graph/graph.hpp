@@ -82,6 +82,7 @@ struct Equation {
   std::vector<Term> terms = {};
   std::source_location where = {};
   bool active = true;
+  bool of_block = false;  ///< a row of a block that `lower` has turned into equations
 };
 
 struct Input {
@@ -140,6 +141,8 @@ std::string print(const Graph& graph, const Equation& equation);
 int add_node(Graph& graph, std::string name, BlockPtr block, std::source_location where);
 /// Adds an external input with its signal; returns the signal.
 int add_input(Graph& graph, std::string name, int size, std::source_location where = {});
+/// The node's input signal whose first row in the block's u is `column`. O(log channels).
+int input_signal(const Graph& graph, int node, int column);
 /// First signal that is not of this node any more.
 int end_signal(const Graph& graph, int node);
 

@@ -44,7 +44,7 @@ StateSpace model_of(const BlockPtr& block) {
     }
   const auto d = block->dynamics(none);
   const Interface& face = block->interface();
-  StateSpace m{d->A, d->B, d->C, d->D, face.states, {}, {}};
+  StateSpace m{d->A, d->B, d->C, d->dense_direct(), face.states, {}, {}};
   for (const ChannelSpec& c : face.channels) {
     const bool takes_force = c.takes == Takes::force;
     add_names(m.inputs, dotted(c.name, takes_force ? c.force_name : c.accel_name), c.size);

@@ -92,10 +92,7 @@ int port_signal(const Graph& graph, int node, std::string_view name) {
 }
 
 int find_channel(const Graph& graph, int node, std::string_view name) {
-  const auto& channels = face_of(graph, node).channels;
-  for (std::size_t i = 0; i < channels.size(); ++i)
-    if (channels[i].name == name) return static_cast<int>(i);
-  return -1;
+  return face_of(graph, node).find_channel(name);
 }
 
 int find_child(const Graph& graph, int node, std::string_view name) {

@@ -84,7 +84,7 @@ std::vector<int> motions(const Graph& g) {
   std::vector<int> defaults, inverted;
   for (int e = 0; e < static_cast<int>(g.equations.size()); ++e) {
     const Signal& target = g.signals[at(g.equations[at(e)].target)];
-    if (!g.equations[at(e)].active || target.channel < 0 ||
+    if (!g.equations[at(e)].active || g.equations[at(e)].of_block || target.channel < 0 ||
         target.quantity != Quantity::acceleration)
       continue;
     const auto& spec = g.nodes[at(target.node)].block->interface().channels[at(target.spec)];

@@ -114,6 +114,8 @@ struct Lowering {
   const std::vector<Drive>& drive = *all_drives;
   std::vector<char> visiting;  ///< channels whose position is being written out
   std::vector<int> met = {};   ///< parameters met since it was last cleared
+  int asked = -1;              ///< node whose matrices are at hand
+  std::shared_ptr<const Dynamics> at_hand = {};
   std::vector<Mistake> mistakes = {};
 
   Lowering(const Graph& graph, ParameterValues v, std::shared_ptr<const std::vector<Drive>> d)
@@ -270,9 +272,17 @@ Sum1 Lowering::algebraic(int output) {
   const Signal& y = g.signals[at(output)];
   const Node& node = g.nodes[at(y.node)];
   meet(node.block->values());
-  const auto d = node.block->dynamics(values);
-  const Pattern pattern = node.block->feedthrough();
+  if (asked != y.node) at_hand = node.block->dynamics(values);
+  asked = y.node;
+  const auto d = at_hand;
   Sum1 sum;
+  if (!d->sparse.empty()) {
+    for (const Gains& part : d->gains_of_row(y.first))
+      sum.push_back({input_signal(g, y.node, part.column), part.gain,
+                     Pattern::Constant(part.gain.rows(), part.gain.cols(), true)});
+    return sum;
+  }
+  const Pattern pattern = node.block->feedthrough();
   for (int i = node.first_signal; i < end_signal(g, y.node); ++i)
     if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input)
       sum.push_back({i, d->D.block(y.first, u.first, y.size, u.size),
@@ -344,8 +354,10 @@ struct Lowered {
   void algebraic(int node) {
     const Node& n = l.g.nodes[at(node)];
     for (int o = n.first_signal; o < end_signal(l.g, node); ++o)
-      if (l.g.signals[at(o)].role == Signal::Role::output)
+      if (l.g.signals[at(o)].role == Signal::Role::output) {
         equation({Origin::Of::algebraic, o}, o, {}, n.where);
+        equations.back().of_block = true;
+      }
   }
 };
 

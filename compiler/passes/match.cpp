@@ -153,7 +153,7 @@ void find_inversions(Stage& stage) {
   const Graph& g = stage.graph;
   std::vector<char> imposed(g.signals.size(), 0);
   for (const Equation& e : g.equations)
-    if (e.active) imposed[at(e.target)] = 1;
+    if (e.active && !e.of_block) imposed[at(e.target)] = 1;
   for (int i = 0; i < static_cast<int>(g.channels.size()); ++i) {
     const Channel& channel = g.channels[at(i)];
     if (imposed[at(channel.takes == Takes::force ? channel.accel : channel.force)])

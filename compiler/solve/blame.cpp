@@ -11,9 +11,13 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Declared: may the channel's output depend on its input at once?
-bool has_direct(const Graph& g, const Channel& c) {
+bool has_direct(const Graph& g, const Channel& c, const Dynamics& m) {
   const Signal& gives = g.signals[at(c.takes == Takes::force ? c.accel : c.force)];
   const Signal& takes = g.signals[at(c.takes == Takes::force ? c.force : c.accel)];
+  if (!m.sparse.empty())
+    return std::any_of(m.sparse.begin(), m.sparse.end(), [&](const Gains& s) {
+      return s.row == gives.first && s.column == takes.first;
+    });
   return g.nodes[at(c.node)]
       .block->feedthrough()
       .block(gives.first, takes.first, c.size, c.size)
@@ -24,7 +28,7 @@ bool has_direct(const Graph& g, const Channel& c) {
 int direct_rank(const Graph& g, const Channel& c, const Dynamics& m) {
   const Signal& gives = g.signals[at(c.takes == Takes::force ? c.accel : c.force)];
   const Signal& takes = g.signals[at(c.takes == Takes::force ? c.force : c.accel)];
-  Eigen::MatrixXd D = m.D.block(gives.first, takes.first, c.size, c.size);
+  Eigen::MatrixXd D = m.direct(gives.first, takes.first, c.size, c.size);
   // Translations and rotations have units of their own: compare with the diagonal.
   const Eigen::VectorXd size = D.diagonal().cwiseAbs().cwiseSqrt();
   for (Eigen::Index i = 0; i < D.rows(); ++i)
@@ -91,9 +95,11 @@ Mistake blame(const Stage& stage, const Joint& joint,
   for (const bool by_itself : {true, false})
     for (const Inversion& inversion : stage.inversions) {
       const Channel& c = g.channels[at(inversion.channel)];
-      if (!in_loop(c.takes == Takes::force ? c.force : c.accel) || has_direct(g, c) != by_itself)
+      const Dynamics& own = *blocks[at(c.node)];
+      if (!in_loop(c.takes == Takes::force ? c.force : c.accel) ||
+          has_direct(g, c, own) != by_itself)
         continue;
-      const int rank = direct_rank(g, c, *blocks[at(c.node)]);
+      const int rank = direct_rank(g, c, own);
       if (rank < c.size) return improper(stage, c, rank);
     }
   Mistake m{Code::ill_posed, {}, {}, {}};

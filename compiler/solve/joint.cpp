@@ -40,8 +40,6 @@ struct Builder {
   Structure structure = {};
   std::vector<int> by = written_out_by(stage);
   std::vector<int> over = {};  ///< variables of the row being made
-  Pattern declared = {};       ///< of the block that was asked last
-  const Block* declared_of = nullptr;
 
   void take_coefficients() {
     const auto take = [&](const std::vector<Term>& terms, std::vector<int>& first) {
@@ -115,24 +113,12 @@ struct Builder {
           e.terms[k].signal);
   }
 
-  /// A block with states may pass every input on at some s; one without only what it declares. That
-  /// is looked at where there are many ports: a hub of a few is better off in one front, where its
-  /// pivots are chosen among all its rows (the satellite of the demo keeps a digit more).
-  bool passes(const Node& n, const Signal& y, const Signal& u) {
-    constexpr std::size_t kFew = 8;
-    if (n.state >= 0 || n.block->interface().channels.size() <= kFew) return true;
-    if (declared_of != n.block.get()) declared = n.block->feedthrough();
-    declared_of = n.block.get();
-    return declared.block(y.first, u.first, y.size, u.size).any();
-  }
-
   void add_block_row(int node, int output) {
     const Node& n = g.nodes[at(node)];
     const Signal& y = g.signals[at(output)];
     add({}, output);
     for (int i = n.first_signal; i < end_signal(g, node); ++i)
-      if (const Signal& u = g.signals[at(i)];
-          u.role == Signal::Role::input && u.active && passes(n, y, u))
+      if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input && u.active)
         add({.of = Piece::Left::direct,
              .left = node,
              .row = y.first,

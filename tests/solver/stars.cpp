@@ -4,6 +4,7 @@
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"
+#include "support/mistakes.hpp"
 
 /// A hub with very many appendages, and sums of very many terms: rows over all of them become
 /// partial sums, and the work stays linear in their number.
@@ -13,9 +14,9 @@ using titop_test::matrix_error;
 
 namespace {
 
-Diagram star(int n) {
+Diagram star(int n, double mass = 100) {
   Diagram d{"star"};
-  RigidBody hub{.mass = 100, .inertia = 40 * Eigen::Matrix3d::Identity()};
+  RigidBody hub{.mass = d.param("mass", mass), .inertia = 40 * Eigen::Matrix3d::Identity()};
   for (int i = 0; i < n; ++i)
     hub.children.push_back({fmt::format("C{}", i + 1), {std::cos(i), std::sin(i), 0.1 * i}});
   const FlexibleBody wing = Beam{.length = 2.0,
@@ -38,6 +39,21 @@ Diagram star(int n) {
   d.output("sum") = sum;
   return d;
 }
+
+/// A hub of 40 points whose free parent has no mass at all: nothing else hangs there.
+Diagram bare_hub(double mass) {
+  Diagram d{"bare"};
+  RigidBody hub{.mass = mass};
+  for (int i = 0; i < 40; ++i) hub.children.push_back({fmt::format("C{}", i + 1), {0.1 * i, 0, 0}});
+  auto U = d.input("U", 6);
+  auto B = d.add("B", hub);
+  B.parent.force = -U;
+  d.output("a", 6) = B.child("C40").accel;
+  for (int i = 0; i < 40; ++i) B.child(fmt::format("C{}", i + 1)).force = 0;
+  return d;
+}
+
+std::vector<Note> notes_of(const Diagram& d) { return compile(d, {.minimize_up_to = 0}).notes(); }
 
 /// Of the elimination.
 int fronts(int n) { return compile(star(n), {.minimize_up_to = 0}).certificate().fronts; }
@@ -65,4 +81,37 @@ TEST_CASE("star: fronts and entries grow linearly") {
   const auto a = entries(40), b = entries(80), c = entries(160);
   CHECK(double(c - b) <= 2.2 * double(b - a));
   CHECK(fronts(160) <= 5 * fronts(40));
+}
+
+TEST_CASE("star: a new mass of the hub on the old plan") {
+  const System changed = compile(star(14)).update({{"mass", 37}});
+  const std::complex<double> s{0.7, 9};
+  CHECK(matrix_error(changed.transfer(s), transfer(star(14, 37).graph(), s)) <= 1e-11);
+}
+
+TEST_CASE("star: its one inversion is the hub's parent, as with few appendages") {
+  for (const int n : {3, 14}) {
+    std::vector<std::string> inverted;
+    for (const Note& note : notes_of(star(n)))
+      if (note.kind == Note::Kind::inverted) inverted.push_back(note.text);
+    CHECK(inverted == std::vector<std::string>{"B.parent: takes B.parent.force, gives "
+                                               "B.parent.accel"});
+  }
+}
+
+TEST_CASE("star: a hub of many points without mass is named") {
+  CHECK(titop_test::says(titop_test::compile_error(bare_hub(0)), Code::improper,
+                         {"B.parent.force", "B has mass 0", "RigidBody{.mass"}));
+}
+
+TEST_CASE("star: a child point is found by its name, an unknown one is refused") {
+  Diagram d = bare_hub(3);
+  RigidBody hub{.mass = 3};
+  for (int i = 0; i < 40; ++i) hub.children.push_back({fmt::format("C{}", i + 1), {0.1 * i, 0, 0}});
+  auto B = d.add("B2", hub);
+  const Error wrong = titop_test::error_of([&] {
+    ground(B.child("C41"));
+    compile(d);
+  });
+  CHECK(titop_test::says(wrong, Code::unknown_name, {"B2", "C41"}));
 }
