@@ -301,8 +301,8 @@ TEST_CASE("signals of another diagram are refused") {
   auto za = a.add("za", spring());
   auto zb = b.add("zb", spring());
   const auto line = next_line();
-  CHECK(says(error_of([&] { za.parent.accel = zb.child.accel; }), Code::unknown_name,
-             {"za.parent.accel", "another diagram", line}));
+  const Error wrong = error_of([&] { za.parent.accel = zb.child.accel; });
+  CHECK(says(wrong, Code::unknown_name, {"za.parent.accel", "another diagram", line}));
   CHECK(says(error_of([&] { za.child.force = za.parent.force + zb.parent.force; }),
              Code::unknown_name, {"two diagrams"}));
   CHECK(says(error_of([&] { a.output("x") = zb.stretch; }), Code::unknown_name,
