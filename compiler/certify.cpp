@@ -217,19 +217,19 @@ struct Residual {
   }
 };
 
-void self_check(SystemData& d) {
+void self_check(const SystemData& d, Certificate& certificate) {
   Numbers random;
   solve::RowMatrix<std::complex<double>> u(static_cast<Eigen::Index>(d.layout().inputs.size()), 1);
   for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = {random.next(), random.next()};
-  d.certificate.s = pick_s(d);
+  certificate.s = pick_s(d);
   if (u.size() == 0) return;  // nothing moves
-  const Evaluation<std::complex<double>> point(d, d.certificate.s, u);
+  const Evaluation<std::complex<double>> point(d, certificate.s, u);
   const Values values(d, point);
-  Residual r{d, values, d.certificate.s};
+  Residual r{d, values, certificate.s};
   r.channels();
   r.blocks();
-  d.certificate.residual = r.worst;
-  d.certificate.residual_where = r.where;
+  certificate.residual = r.worst;
+  certificate.residual_where = r.where;
 }
 
 }  // namespace
@@ -267,7 +267,7 @@ DenseError dense_error(const SystemData& d, const StateSpace& m) {
   DenseError worst;
   if (u.size() == 0 || m.C.rows() == 0 || m.A.size() == 0) return worst;
   for (const double factor : {1e-4, 1e-2, 1.0, 1e2}) {
-    const T s = factor * d.certificate.s;
+    const T s = factor * d.checked().certificate.s;
     const Evaluation<T> point(d, s, u);
     solve::RowMatrix<T> x(m.A.rows(), 1);
     for (const int i : d.layout().state_nodes) {
@@ -295,26 +295,37 @@ std::string variable_name(const SystemData& d, int variable) {
 
 }  // namespace
 
-void certify(SystemData& d) {
+const Check& SystemData::checked() const {
+  std::call_once(check_once, [&] { check = certify(*this); });
+  return check;
+}
+
+Check certify(const SystemData& d) {
   const auto start = std::chrono::steady_clock::now();
   const solve::Health h = d.factors->health();
-  Certificate& c = d.certificate;
+  Check check{{}, d.notes};
+  Certificate& c = check.certificate;
   c.weakest_pivot = h.weakest;
   if (h.weakest_variable >= 0) c.weakest_where = variable_name(d, h.weakest_variable);
   c.pivot_growth = h.growth;
   c.fronts = static_cast<int>(d.skeleton->joint.plan->fronts.size());
   c.fronts_made = d.factors->fronts_made();
-  worst_margin(d);
-  self_check(d);
+  c.plans_renewed = d.plans_renewed;
+  std::vector<double> margins = *d.margins;
+  find_margins(d, d.changed_loops, margins);
+  worst_margin(d, margins, check);
+  self_check(d, c);
   c.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double lost = 2.2e-16 * c.margin;
   if (lost > 1e-8)
-    d.notes.push_back({Note::Kind::warning, "certify",
-                       fmt::format("the loop at {} has margin {:.2g}: about {:.0f} digits are left",
-                                   c.margin_where, c.margin, std::max(0.0, -std::log10(lost)))});
+    check.notes.push_back(
+        {Note::Kind::warning, "certify",
+         fmt::format("the loop at {} has margin {:.2g}: about {:.0f} digits are left",
+                     c.margin_where, c.margin, std::max(0.0, -std::log10(lost)))});
   if (c.residual > 1e-9)
-    d.notes.push_back({Note::Kind::warning, "certify",
-                       fmt::format("{} holds only to {:.1g}", c.residual_where, c.residual)});
+    check.notes.push_back({Note::Kind::warning, "certify",
+                           fmt::format("{} holds only to {:.1g}", c.residual_where, c.residual)});
+  return check;
 }
 
 }  // namespace titop::detail

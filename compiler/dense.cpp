@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 #include <titop/compiler/parallel.hpp>
+#include <titop/compiler/solve/products.hpp>
 #include <titop/compiler/solve/propagation.hpp>
 #include <titop/compiler/system_data.hpp>
 
@@ -34,10 +35,11 @@ struct Target {
   struct Part {
     Index first = 0;  ///< of the unknowns, or of [x; u]
     RowMatrix<double> E;
+    RowMatrix<double> Et = {};  ///< transposed, with columns of zeros up to Target::padded
   };
-  Index row = 0;    ///< first row of [xdot; y]
-  Index zeros = 0;  ///< rows above that nothing but the block's own A fills
+  Index row = 0;  ///< first row of [xdot; y]
   Index rows = 0;
+  Index padded = 0;  ///< rows, up to a multiple of 4
   std::vector<Part> unknown, known;
 };
 
@@ -57,7 +59,7 @@ class Writer {
     find_targets();
     const solve::Propagation propagation(*d_.factors);
     const std::vector<std::size_t> begin = batches();
-    parallel(begin.size() - 1, threads_, [&] {
+    parallel(begin.size() - 1, threads(begin.size() - 1), [&] {
       return [this, &propagation, &begin, space = solve::Propagation::Space{},
               values = std::vector<double>{}](std::size_t i) mutable {
         columns(propagation, begin[i], begin[i + 1], space, values);
@@ -69,6 +71,13 @@ class Writer {
 
  private:
   static constexpr Index kBatch = 48;  ///< columns at a time
+
+  /// A thread costs more to start than a small model to write.
+  int threads(std::size_t batches) const {
+    constexpr double kWorthIt = 1e6;  // entries of the solutions
+    const double entries = static_cast<double>(batches) * kBatch * k_.joint.plan->unknowns;
+    return entries < kWorthIt ? 1 : threads_;
+  }
 
   void shape() {
     const auto inputs = static_cast<Index>(d_.layout().inputs.size());
@@ -155,13 +164,11 @@ class Writer {
       const Dynamics& b = block(i);
       Target t;
       t.row = d_.layout().state_first[at(i)];
-      t.zeros = b.modal ? b.modal->W.rows() : 0;
-      t.rows = b.A.rows() - t.zeros;
+      t.rows = b.A.rows();
       for (int s = node.first_signal; s < node.state; ++s)
         if (const Signal& in = g_.signals[at(s)]; in.role == Signal::Role::input && in.active)
-          read(t, s, b.B.block(t.zeros, in.first, t.rows, in.size));
-      join_neighbours(t);
-      targets_.push_back(std::move(t));
+          read(t, s, b.B.middleCols(in.first, in.size));
+      add(std::move(t));
     }
     for (std::size_t o = 0; o < g_.outputs.size(); ++o) {
       Target t;
@@ -170,8 +177,18 @@ class Writer {
       const auto& terms = g_.outputs[o].terms;
       for (std::size_t n = 0; n < terms.size(); ++n)
         read(t, terms[n].signal, coefficient(k_.joint.output_coefficient[o] + static_cast<int>(n)));
-      targets_.push_back(std::move(t));
+      add(std::move(t));
     }
+  }
+
+  void add(Target t) {
+    join_neighbours(t);
+    t.padded = (t.rows + 3) / 4 * 4;
+    for (Target::Part& p : t.unknown) {
+      p.Et = RowMatrix<double>::Zero(p.E.cols(), t.padded);
+      p.Et.leftCols(t.rows) = p.E.transpose();
+    }
+    targets_.push_back(std::move(t));
   }
 
   void read(Target& t, int signal, const MatrixXd& factor) const {
@@ -188,7 +205,7 @@ class Writer {
       if (same != parts.end())
         same->E += E;
       else
-        parts.push_back({first, E});
+        parts.push_back({first, E, {}});
     }
   }
 
@@ -228,7 +245,7 @@ class Writer {
                solve::Propagation::Space& space, std::vector<double>& values) {
     Index m = 0;
     for (std::size_t i = begin; i < end; ++i) m += sources_[i].columns;
-    m = (m + 15) / 16 * 16;  // no sum depends on the number of columns
+    m = (m + 7) / 8 * 8;  // no sum depends on the number of columns
     std::vector<int> rows;
     std::vector<double> rhs;
     Index first = 0;
@@ -244,48 +261,46 @@ class Writer {
       first += s.columns;
     }
     propagation.solve(rows, rhs, m, space);
+    const std::vector<solve::Column> to = columns_of(begin, end);
     for (const Target& t : targets_) {
-      values.assign(at(t.rows * m), 0);
+      values.resize(at(t.padded * m));
+      if (t.unknown.empty()) std::fill(values.begin(), values.end(), 0.0);
       for (const Target::Part& p : t.unknown)
-        solve::multiply_add(t.rows, p.E.cols(), m, p.E.data(), p.E.cols(),
-                            space.z.data() + p.first * m, values.data());
-      fill(t, begin, end, m, values);
+        solve::multiply_transposed(t.padded, p.E.cols(), m, p.Et.data(),
+                                   space.z.data() + p.first * m, values.data(),
+                                   &p != t.unknown.data());
+      solve::scatter(to, t.row < states_, t.row < states_ ? t.row : t.row - states_, t.rows,
+                     values.data(), t.padded);
     }
   }
 
-  void fill(const Target& t, std::size_t begin, std::size_t end, Index columns,
-            const std::vector<double>& values) {
-    const bool state = t.row < states_;
-    MatrixXd& by_x = state ? m_.A : m_.C;
-    MatrixXd& by_u = state ? m_.B : m_.D;
-    const Index row = state ? t.row : t.row - states_;
-    const double* from = values.data();
+  /// Where the columns of these sources go.
+  std::vector<solve::Column> columns_of(std::size_t begin, std::size_t end) {
+    std::vector<solve::Column> result;
+    Index from = 0;
+    const auto to = [&](MatrixXd& state, MatrixXd& output, Index column, double factor) {
+      result.push_back({from, factor, state.data() + column * state.rows(),
+                        output.data() + column * output.rows()});
+    };
     for (std::size_t i = begin; i < end; ++i) {
       const Source& s = sources_[i];
-      for (Index j = 0; j < s.columns; ++j, ++from) {
+      for (Index j = 0; j < s.columns; ++j, ++from)
         if (s.modal) {
-          put(by_x, row, t, s.first + j, from, columns, -s.modal->stiffness(j));
-          put(by_x, row, t, s.first + s.columns + j, from, columns, -s.modal->damping(j));
+          to(m_.A, m_.C, s.first + j, -s.modal->stiffness(j));
+          to(m_.A, m_.C, s.first + s.columns + j, -s.modal->damping(j));
         } else if (s.node >= 0) {
-          put(by_x, row, t, s.first + j, from, columns, 1);
+          to(m_.A, m_.C, s.first + j, 1);
         } else {
-          put(by_u, row, t, s.first - states_ + j, from, columns, 1);
+          to(m_.B, m_.D, s.first - states_ + j, 1);
         }
-      }
     }
-  }
-
-  static void put(MatrixXd& m, Index row, const Target& t, Index column, const double* from,
-                  Index stride, double factor) {
-    double* to = m.data() + column * m.rows() + row;
-    for (Index i = 0; i < t.zeros; ++i) *to++ = 0;
-    for (Index i = 0; i < t.rows; ++i) *to++ = factor * from[i * stride] + 0.0;  // no -0
+    return result;
   }
 
   void add_known() {
     for (const Target& t : targets_) {
       const bool state = t.row < states_;
-      const Index row = state ? t.row + t.zeros : t.row - states_;
+      const Index row = state ? t.row : t.row - states_;
       for (const Target::Part& p : t.known)
         if (p.first < states_)
           (state ? m_.A : m_.C).block(row, p.first, t.rows, p.E.cols()) += p.E;

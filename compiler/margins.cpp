@@ -63,24 +63,25 @@ double margin(const SystemData& d, const Loop& loop) {
 
 }  // namespace
 
-void find_margins(SystemData& d, std::span<const int> loops) {
+void find_margins(const SystemData& d, std::span<const int> loops, std::vector<double>& margins) {
   const std::vector<Loop>& all = d.skeleton->stage.loops;
-  d.margins.resize(all.size(), 0);
-  for (const int i : loops) d.margins[at(i)] = margin(d, all[at(i)]);
+  margins.resize(all.size(), 0);
+  for (const int i : loops) margins[at(i)] = margin(d, all[at(i)]);
 }
 
-void worst_margin(SystemData& d) {
+void worst_margin(const SystemData& d, std::span<const double> margins, Check& check) {
+  Certificate& c = check.certificate;
   const std::vector<Loop>& loops = d.skeleton->stage.loops;
   int skipped = 0;
   for (std::size_t i = 0; i < loops.size(); ++i) {
     skipped += loops[i].unknowns > kExactUpTo;
-    if (d.margins[i] <= d.certificate.margin) continue;
-    d.certificate.margin = d.margins[i];
-    d.certificate.margin_where = name_of(d.graph(), loops[i].signals.front());
+    if (margins[i] <= c.margin) continue;
+    c.margin = margins[i];
+    c.margin_where = name_of(d.graph(), loops[i].signals.front());
   }
-  d.certificate.margin_is_exact = skipped == 0;
+  c.margin_is_exact = skipped == 0;
   if (skipped > 0)
-    d.notes.push_back(
+    check.notes.push_back(
         {Note::Kind::info, "certify",
          fmt::format("{} loop{} of more than {} unknowns: judged by {} pivots, "
                      "not by {} margin",

@@ -103,8 +103,10 @@ System compile(const Diagram& diagram, const Options& options) {
   timed(*data, "certify", [&] {
     std::vector<int> loops(stage.loops.size());
     std::iota(loops.begin(), loops.end(), 0);
-    detail::find_margins(*data, loops);
-    detail::certify(*data);
+    std::vector<double> margins;
+    detail::find_margins(*data, loops, margins);
+    data->margins = std::make_shared<const std::vector<double>>(std::move(margins));
+    data->checked();
   });
   return System(std::move(data));
 }

@@ -71,7 +71,7 @@ const std::vector<std::string>& System::states() const { return data_->layout().
 const std::vector<std::string>& System::inputs() const { return data_->layout().inputs; }
 const std::vector<std::string>& System::outputs() const { return data_->layout().outputs; }
 const Stage& System::stage() const { return data_->skeleton->stage; }
-const std::vector<Note>& System::notes() const { return data_->notes; }
+const std::vector<Note>& System::notes() const { return data_->checked().notes; }
 
 System::Rates System::apply(const VectorXd& x, const VectorXd& u) const {
   if (x.size() != order() || u.size() != static_cast<Eigen::Index>(inputs().size()))
@@ -170,9 +170,9 @@ void minimize_checked(const System& system, const detail::SystemData& d, StateSp
     dense = std::move(m.model);
     return;
   }
-  const MatrixXcd G = system.transfer(d.certificate.s);
+  const MatrixXcd G = system.transfer(d.checked().certificate.s);
   const double size = G.cwiseAbs().maxCoeff();
-  const double off = (m.model.transfer(d.certificate.s) - G).cwiseAbs().maxCoeff();
+  const double off = (m.model.transfer(d.checked().certificate.s) - G).cwiseAbs().maxCoeff();
   const double allowed = std::max(1e-8, 10 * d.skeleton->options.resolution);
   const bool keeps = off <= allowed * size;
   d.dense_notes.push_back(
@@ -219,7 +219,7 @@ void System::write(StateSpace& model, int threads) const {
 std::vector<Pole> System::poles() const { return titop::poles(state_space()); }
 
 Certificate System::certificate() const {
-  Certificate c = data_->certificate;
+  Certificate c = data_->checked().certificate;
   c.dense_against_factors = data_->dense_against_factors;
   c.dense_error = data_->dense_error.error;
   c.dense_error_s = data_->dense_error.s;
@@ -234,7 +234,7 @@ std::string System::log() const {
       fmt::format("{}: {}, {}, {}\n", data_->graph().name, count(states().size(), "state"),
                   count(inputs().size(), "input"), count(outputs().size(), "output"));
   for (const std::vector<Note>* list :
-       {&data_->notes, const_cast<const std::vector<Note>*>(&data_->dense_notes)})
+       {&notes(), const_cast<const std::vector<Note>*>(&data_->dense_notes)})
     for (const Note& n : *list)
       text += fmt::format("  {:<9} {:<10} {}\n", n.pass, to_string(n.kind), n.text);
   return text;

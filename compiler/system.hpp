@@ -95,6 +95,8 @@ class System {
   /// It shares the plan with this one, and all fronts of the elimination that do not depend on
   /// them: O(those fronts) and one pointer per block. States keep number and meaning. The scaling
   /// is found anew where the old one no longer serves (Certificate::plans_renewed counts that).
+  /// Pivots are judged at once; the rest of the certificate, and the warnings that come of it, are
+  /// found when certificate(), notes(), log() or state_space() is first asked for: O(bodies).
   /// Throws unknown_name (with the names there are), not_finite, what the blocks throw for values
   /// that make no block (bad_inertia, bad_value), improper and ill_posed.
   System update(const ParameterList& values) const;

@@ -45,14 +45,25 @@ struct DenseError {
   std::complex<double> s;
 };
 
+/// What `certify` finds.
+struct Check {
+  Certificate certificate;
+  std::vector<Note> notes;  ///< all of the system, its own at the end
+};
+
 struct SystemData {
   std::shared_ptr<const Skeleton> skeleton;
   solve::Numbers numbers;
   std::unique_ptr<const solve::Factors<double>> factors;
-  std::vector<double> margins;  ///< per loop of the stage; 0 where it was not found
-  Certificate certificate;
-  std::vector<Note> notes;
+  /// Per loop of the stage as compiled; 0 where it was not found.
+  std::shared_ptr<const std::vector<double>> margins;
+  std::vector<int> changed_loops;                       ///< by updates since
+  int plans_renewed = 0;                                ///< by updates since
+  std::vector<Note> notes;                              ///< but those of `certify`
   std::vector<std::pair<std::string, double>> seconds;  ///< per pass
+
+  mutable std::once_flag check_once;
+  mutable Check check;
 
   mutable std::once_flag dense_once;
   mutable StateSpace dense;
@@ -62,6 +73,8 @@ struct SystemData {
 
   const Graph& graph() const { return skeleton->stage.graph; }
   const Layout& layout() const { return skeleton->layout; }
+  /// The certificate: found by `compile`; of an updated system when it is first asked for.
+  const Check& checked() const;
 };
 
 /// The rows of the joint system with the numbers of the state space.
@@ -83,12 +96,12 @@ double dense_difference(const SystemData& data, const StateSpace& dense);
 /// See Certificate::dense_error. O(n^2).
 DenseError dense_error(const SystemData& data, const StateSpace& dense);
 
-/// Margins of these loops of the stage, into SystemData::margins.
-void find_margins(SystemData& data, std::span<const int> loops);
-/// The largest of all margins, into the certificate.
-void worst_margin(SystemData& data);
+/// Margins of these loops of the stage, others left as they are.
+void find_margins(const SystemData& data, std::span<const int> loops, std::vector<double>& margins);
+/// The largest of these margins, one per loop, into the certificate.
+void worst_margin(const SystemData& data, std::span<const double> margins, Check& check);
 
-/// Certificate of the factors, once the margins are known: see certify.cpp.
-void certify(SystemData& data);
+/// Certificate of the factors: see certify.cpp.
+Check certify(const SystemData& data);
 
 }  // namespace titop::detail

@@ -177,12 +177,12 @@ System System::update(const ParameterList& list) const {
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
   remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers);
   const auto rows = real_rows(k, d->numbers);
-  d->certificate.plans_renewed = data_->certificate.plans_renewed;
+  d->plans_renewed = data_->plans_renewed;
   d->factors = std::make_unique<const solve::Factors<double>>(
       data_->factors->changed(rows, united(k, changed, &Dependents::rows)));
   if (outgrown(d->factors->health(), data_->factors->health())) {
     d->factors = std::make_unique<const solve::Factors<double>>(k.joint.plan, rows);
-    ++d->certificate.plans_renewed;
+    ++d->plans_renewed;
   }
   if (const solve::Health health = d->factors->health(); health.singular) {
     Stage stage = k.stage;
@@ -190,7 +190,7 @@ System System::update(const ParameterList& list) const {
     throw Error(solve::blame(stage, k.joint, d->numbers.blocks, health));
   }
   d->notes = data_->notes;
-  std::erase_if(d->notes, [](const Note& n) { return n.pass == "certify" || n.pass == "update"; });
+  std::erase_if(d->notes, [](const Note& n) { return n.pass == "update"; });
   std::string values;
   for (const int p : changed)
     values += fmt::format("{}{} = {:.6g}", values.empty() ? "" : ", ",
@@ -201,8 +201,10 @@ System System::update(const ParameterList& list) const {
        fmt::format("{}: {} of {} fronts made again", values.empty() ? "no new value" : values,
                    d->factors->fronts_made(), k.joint.plan->fronts.size())});
   d->margins = data_->margins;
-  find_margins(*d, united(k, changed, &Dependents::loops));
-  certify(*d);
+  d->changed_loops = united(k, changed, &Dependents::loops);
+  d->changed_loops.insert(d->changed_loops.end(), data_->changed_loops.begin(),
+                          data_->changed_loops.end());
+  sort_unique(d->changed_loops);
   return System(std::move(d));
 }
 

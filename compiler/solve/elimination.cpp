@@ -169,17 +169,15 @@ template <class T>
 Factors<T> Factors<T>::changed(const Rows<T>& rows, std::span<const int> row_groups) const {
   Factors result(*this);
   result.made_ = 0;
-  std::vector<int> todo;
+  std::vector<char> todo(fronts_.size(), 0);
   for (const int r : row_groups)
-    for (int f = plan_->front_of_row[at(r)]; f >= 0; f = plan_->fronts[at(f)].parent)
-      todo.push_back(f);
-  std::sort(todo.begin(), todo.end());
-  todo.erase(std::unique(todo.begin(), todo.end()), todo.end());
-  for (const int f : todo) {
+    for (int f = plan_->front_of_row[at(r)]; f >= 0 && !todo[at(f)];
+         f = plan_->fronts[at(f)].parent)
+      todo[at(f)] = 1;
+  for (int f = 0; f < static_cast<int>(fronts_.size()) && result.singular_ < 0; ++f) {
+    if (!todo[at(f)]) continue;
     result.make(f, rows, nullptr);
-    if (!result.fronts_[at(f)]->singular) continue;
-    result.singular_ = f;
-    break;
+    if (result.fronts_[at(f)]->singular) result.singular_ = f;
   }
   return result;
 }

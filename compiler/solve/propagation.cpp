@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <titop/compiler/solve/kernels.hpp>
+#include <titop/compiler/solve/products.hpp>
 #include <titop/compiler/solve/propagation.hpp>
 
 namespace titop::solve {
@@ -8,27 +9,7 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 std::size_t at(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
 
-constexpr std::ptrdiff_t kTile = 16;  ///< columns whose sums stay in registers
-
 }  // namespace
-
-TITOP_WIDE void multiply_add(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m,
-                             const double* a, std::ptrdiff_t stride, const double* x, double* y) {
-  std::ptrdiff_t j = 0;
-  for (; j + kTile <= m; j += kTile)
-    for (std::ptrdiff_t i = 0; i < rows; ++i) {
-      double sum[kTile];
-      for (std::ptrdiff_t t = 0; t < kTile; ++t) sum[t] = y[i * m + j + t];
-      for (std::ptrdiff_t k = 0; k < inner; ++k) {
-        const double f = a[i * stride + k];
-        for (std::ptrdiff_t t = 0; t < kTile; ++t) sum[t] += f * x[k * m + j + t];
-      }
-      for (std::ptrdiff_t t = 0; t < kTile; ++t) y[i * m + j + t] = sum[t];
-    }
-  for (std::ptrdiff_t i = 0; j < m && i < rows; ++i)
-    for (std::ptrdiff_t k = 0; k < inner; ++k)
-      add(m - j, a[i * stride + k], x + k * m + j, y + i * m + j);
-}
 
 Propagation::Propagation(const Factors<double>& factors)
     : factors_(factors), plan_(factors.plan()) {
@@ -53,35 +34,53 @@ Propagation::Propagation(const Factors<double>& factors)
   }
 }
 
-void Propagation::forward(int index, std::ptrdiff_t m, Space& space) const {
-  const Front& f = plan_.fronts[at(index)];
-  const auto& made = factors_.made(at(index));
-  space.assembled.assign(at(f.row_count) * at(m), 0);
-  std::ptrdiff_t row = 0;
+/// The rows of a front as they come: nullptr where nothing has reached them yet.
+void Propagation::gather(const Front& f, std::ptrdiff_t m, Space& space) const {
+  space.come.assign(at(f.row_count), nullptr);
+  std::size_t row = 0;
   for (const int r : plan_.list(f.rows)) {
     const int size = plan_.structure.row_size[at(r)];
-    std::copy_n(space.rows.data() + plan_.row_first[at(r)] * m, size * m,
-                space.assembled.data() + row * m);
-    row += size;
+    if (space.is_set[at(r)])
+      for (int k = 0; k < size; ++k)
+        space.come[row + at(k)] = space.rows.data() + (plan_.row_first[at(r)] + k) * m;
+    row += at(size);
   }
   for (const int c : plan_.list(f.children)) {
     const Front& child = plan_.fronts[at(c)];
     if (space.is_active[at(c)])
-      std::copy_n(space.carried.data() + child.first_carried * m, child.left_over() * m,
-                  space.assembled.data() + row * m);
-    row += child.left_over();
+      for (int k = 0; k < child.left_over(); ++k)
+        if (space.is_carried[at(child.first_carried + k)])
+          space.come[row + at(k)] = space.carried.data() + (child.first_carried + k) * m;
+    row += at(child.left_over());
   }
+}
+
+/// L^-1 of the rows that are not zero.
+void Propagation::forward(int index, std::ptrdiff_t m, Space& space) const {
+  const Front& f = plan_.fronts[at(index)];
+  const auto& made = factors_.made(at(index));
+  gather(f, m, space);
   const std::ptrdiff_t n = f.columns();
   double* const top = space.z.data() + f.first_unknown * m;
   double* const rest = space.carried.data() + f.first_carried * m;
-  const auto place = [&](std::ptrdiff_t i) {
-    return i < f.pivot_count ? top + i * m : rest + (i - f.pivot_count) * m;
-  };
-  for (int i = 0; i < f.row_count; ++i)
-    std::copy_n(space.assembled.data() + made.order[at(i)] * m, m, place(i));
-  for (std::ptrdiff_t i = 1; i < f.row_count; ++i)
-    for (std::ptrdiff_t k = 0; k < std::min<std::ptrdiff_t>(i, f.pivot_count); ++k)
-      if (const double l = made.lu[at(i * n + k)]; l != 0) subtract(m, l, top + k * m, place(i));
+  std::vector<char>& full = space.full;
+  full.assign(at(f.row_count), 0);
+  for (std::ptrdiff_t i = 0; i < f.row_count; ++i) {
+    double* const to = i < f.pivot_count ? top + i * m : rest + (i - f.pivot_count) * m;
+    if (const double* from = space.come[at(made.order[at(i)])])
+      std::copy_n(from, m, to), full[at(i)] = 1;
+    for (std::ptrdiff_t k = 0; k < std::min<std::ptrdiff_t>(i, f.pivot_count); ++k) {
+      const double l = made.lu[at(i * n + k)];
+      if (l == 0 || !full[at(k)]) continue;
+      if (!full[at(i)]) std::fill_n(to, m, 0.0);
+      full[at(i)] = 1;
+      subtract(m, l, top + k * m, to);
+    }
+    if (i >= f.pivot_count)
+      space.is_carried[at(f.first_carried + i - f.pivot_count)] = full[at(i)];
+    else if (!full[at(i)])
+      std::fill_n(to, m, 0.0);
+  }
 }
 
 void Propagation::back_substitute(int index, std::ptrdiff_t m, std::vector<double>& z) const {
@@ -99,35 +98,40 @@ void Propagation::back_substitute(int index, std::ptrdiff_t m, std::vector<doubl
 void Propagation::activate(std::span<const int> row_groups, std::span<const double> rhs,
                            std::ptrdiff_t m, Space& space) const {
   space.is_active.resize(plan_.fronts.size(), 0);
+  space.is_set.resize(plan_.structure.row_size.size(), 0);
+  space.is_carried.resize(at(plan_.carried), 0);
   space.active.clear();
   for (const int r : row_groups)
     for (int f = plan_.front_of_row[at(r)]; f >= 0 && !space.is_active[at(f)];
          f = plan_.fronts[at(f)].parent)
       space.is_active[at(f)] = 1, space.active.push_back(f);
   std::sort(space.active.begin(), space.active.end());
-  for (const int f : space.active)
-    for (const int r : plan_.list(plan_.fronts[at(f)].rows))
-      std::fill_n(space.rows.data() + plan_.row_first[at(r)] * m,
-                  plan_.structure.row_size[at(r)] * m, 0.0);
   const double* from = rhs.data();
   for (const int r : row_groups) {
     const std::ptrdiff_t count = plan_.structure.row_size[at(r)] * m;
     double* const to = space.rows.data() + plan_.row_first[at(r)] * m;
-    for (std::ptrdiff_t i = 0; i < count; ++i) to[i] += from[i];
+    if (space.is_set[at(r)])
+      for (std::ptrdiff_t i = 0; i < count; ++i) to[i] += from[i];
+    else
+      std::copy_n(from, count, to);
+    space.is_set[at(r)] = 1;
     from += count;
   }
 }
 
 void Propagation::solve(std::span<const int> row_groups, std::span<const double> rhs,
                         std::ptrdiff_t m, Space& space) const {
-  space.z.assign(at(plan_.unknowns) * at(m), 0);
+  space.z.resize(at(plan_.unknowns) * at(m));
   space.rows.resize(at(plan_.unknowns) * at(m));
   space.carried.resize(at(plan_.carried) * at(m));
   activate(row_groups, rhs, m, space);
   for (const int f : space.active) forward(f, m, space);
   for (int i = static_cast<int>(plan_.fronts.size()) - 1; i >= 0; --i) {
     const Front& f = plan_.fronts[at(i)];
-    if (space.is_active[at(i)]) back_substitute(i, m, space.z);
+    bool add = space.is_active[at(i)];  // otherwise nothing stands there yet
+    if (add) back_substitute(i, m, space.z);
+    double* const top = space.z.data() + f.first_unknown * m;
+    if (!add && f.border_count == 0) std::fill_n(top, f.pivot_count * m, 0.0);
     const double* w = border_.data() + begin_[at(i)];
     const auto border = plan_.list(f.border);
     for (std::size_t b = 0; b < border.size();) {
@@ -135,12 +139,13 @@ void Propagation::solve(std::span<const int> row_groups, std::span<const double>
       int size = 0;  // of neighbours among the unknowns, taken together
       for (; b < border.size() && plan_.first[at(border[b])] == first + size; ++b)
         size += plan_.structure.variable_size[at(border[b])];
-      multiply_add(f.pivot_count, size, m, w, f.border_count, space.z.data() + first * m,
-                   space.z.data() + f.first_unknown * m);
+      multiply(f.pivot_count, size, m, w, f.border_count, space.z.data() + first * m, top, add);
+      add = true;
       w += size;
     }
   }
   for (const int f : space.active) space.is_active[at(f)] = 0;
+  for (const int r : row_groups) space.is_set[at(r)] = 0;
 }
 
 }  // namespace titop::solve

@@ -16,17 +16,20 @@ class Propagation {
     std::vector<double> z;         ///< the unknowns, in the order of Plan::first (unknowns x m)
     std::vector<int> active = {};  ///< fronts of the present right-hand sides
     std::vector<char> is_active = {};
-    std::vector<double> rows = {}, carried = {}, assembled = {};
+    std::vector<double> rows = {}, carried = {};
+    std::vector<char> is_set = {}, is_carried = {}, full = {};  ///< where rows are not zero
+    std::vector<const double*> come = {};                       ///< the rows of the present front
   };
 
-  /// Right-hand sides of these row groups, m columns each (row-major, group after group); the
-  /// unknowns go to space.z.
+  /// Right-hand sides of these row groups, m columns each (a multiple of 8; row-major, group after
+  /// group); the unknowns go to space.z.
   void solve(std::span<const int> row_groups, std::span<const double> rhs, std::ptrdiff_t m,
              Space& space) const;
 
  private:
   void activate(std::span<const int> row_groups, std::span<const double> rhs, std::ptrdiff_t m,
                 Space& space) const;
+  void gather(const Front& front, std::ptrdiff_t m, Space& space) const;
   void forward(int front, std::ptrdiff_t m, Space& space) const;
   void back_substitute(int front, std::ptrdiff_t m, std::vector<double>& z) const;
 
@@ -35,10 +38,5 @@ class Propagation {
   std::vector<std::size_t> begin_;  ///< per front: its part of border_
   std::vector<double> border_;      ///< -U^-1 (border of U), row-major
 };
-
-/// y (rows x m) += a (rows x inner, `stride` apart) * x (inner x m), all row-major. The sum over
-/// `inner` runs in order, whatever m is.
-void multiply_add(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m, const double* a,
-                  std::ptrdiff_t stride, const double* x, double* y);
 
 }  // namespace titop::solve
