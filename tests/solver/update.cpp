@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"
@@ -130,6 +131,28 @@ TEST_CASE("update: the scaling is found anew where it no longer serves, and that
   const System after = before.update({{"m", 1e-250}});
   CHECK(after.certificate().residual <= 1e-12);
   CHECK(after.certificate().plans_renewed <= 1);
+}
+
+TEST_CASE("update: the certificate, asked for late, is of the new values and warns of them") {
+  // A ring of two signals with gain g around has margin (1 + r) / (1 - r), r = g^(1/2).
+  Diagram d{"loop"};
+  const Param g = d.param("g", 0.25), other = d.param("other", 1.0);
+  auto u = d.input("u");
+  auto sum = d.add("sum", Sum{.signs = "++"});
+  sum.in(1) = other * u;
+  sum.in(2) = g * sum.out;
+  d.output("y") = sum.out;
+  const System before = compile(d);
+  const System after = before.update({{"g", 1 - 1e-9}}).update({{"other", 2.0}});
+  CHECK(before.certificate().margin == doctest::Approx(3).epsilon(1e-2));
+  CHECK(after.certificate().margin >= 1e9);
+  const auto warns = [](const System& s) {
+    return std::any_of(s.notes().begin(), s.notes().end(),
+                       [](const Note& n) { return n.kind == Note::Kind::warning; });
+  };
+  CHECK(warns(after));
+  CHECK(!warns(before));
+  CHECK(after.update({{"g", 0.25}}).certificate().margin == doctest::Approx(3).epsilon(1e-2));
 }
 
 TEST_CASE("update: unknown names, values that are none, values that make no block") {
