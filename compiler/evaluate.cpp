@@ -158,9 +158,27 @@ void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
   unknowns_ = up(coarse.unknowns());
   for (int step = 0; step < 3; ++step) {
     const solve::RowMatrix<T> left = rows_.residual(rhs, unknowns_);
-    unknowns_ += up(
+    correction_ = up(
         coarse.solve(left.unaryExpr([](const T& x) -> D { return solve::Scalar<T>::round(x); })));
+    unknowns_ += correction_;
   }
+}
+
+template <class T>
+double Evaluation<T>::last_change() const {
+  const solve::RowMatrix<T> y = outputs();
+  const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), u_.cols());
+  const solve::RowMatrix<T> change = outputs_of(correction_, none, nullptr);
+  double worst = 0;
+  for (Eigen::Index i = 0; i < y.rows(); ++i) {
+    double size = 0, off = 0;
+    for (Eigen::Index j = 0; j < y.cols(); ++j) {
+      size = std::max(size, solve::size_of(solve::Scalar<T>::round(y(i, j))));
+      off = std::max(off, solve::size_of(solve::Scalar<T>::round(change(i, j))));
+    }
+    if (off > 0) worst = std::max(worst, off / size);
+  }
+  return worst;
 }
 
 template <class T>

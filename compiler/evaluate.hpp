@@ -29,6 +29,9 @@ class Evaluation {
 
   const solve::RowMatrix<T>& unknowns() const { return unknowns_; }
   solve::RowMatrix<T> solve(const solve::RowMatrix<T>& rhs) const { return factors_->solve(rhs); }
+  /// With `coarse`: the largest change of an output by the last step of refinement, over the
+  /// largest entry of its row: about the error of the step before.
+  double last_change() const;
   /// Of the elimination: see Certificate::weakest_pivot.
   double weakest_pivot() const { return factors_->health().weakest; }
 
@@ -52,6 +55,7 @@ class Evaluation {
   solve::JointRows<T> rows_;
   std::unique_ptr<const solve::Factors<T>> factors_;
   solve::RowMatrix<T> unknowns_;
+  solve::RowMatrix<T> correction_;  ///< of the last step of refinement
 };
 
 }  // namespace titop::detail

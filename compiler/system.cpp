@@ -113,11 +113,14 @@ MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
       detail::Evaluation<Extended>(d, Extended(s), unit_inputs<Extended>(d), &coarse).outputs());
 }
 
-/// The coarsest whose rounding, over what cancellation leaves of the weakest pivot, is 1e-12.
+/// The coarsest whose rounding, over what cancellation leaves of the weakest pivot, is 1e-12; for
+/// the refined one the last step says so.
 MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
   constexpr double kEnough = 1e-12;
   const detail::Evaluation<Double> plain(d, s, unit_inputs<Double>(d));
   if (2e-16 <= kEnough * plain.weakest_pivot()) return rounded<Double>(plain.outputs());
+  const detail::Evaluation<Extended> refined(d, Extended(s), unit_inputs<Extended>(d), &plain);
+  if (refined.last_change() <= kEnough) return rounded<Extended>(refined.outputs());
   const detail::Evaluation<Extended> more(d, Extended(s), unit_inputs<Extended>(d));
   if (solve::Scalar<Extended>::epsilon() <= kEnough * more.weakest_pivot())
     return rounded<Extended>(more.outputs());

@@ -39,7 +39,8 @@ enum class Precision {
   refined,   ///< factors in double, blocks and residuals in long double: three refinements
   extended,  ///< long double: 19 digits on x86
   digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower: an oracle
-  as_needed  ///< double, and finer where the weakest pivot has lost more than four digits
+  as_needed  ///< double, and finer where the weakest pivot has lost more than four digits: refined
+             ///< if that settles, else long double or 50 digits
 };
 
 /// Values of parameters by name: {{"k1", 12.0}, {"angle", 0.3}}.
@@ -63,9 +64,10 @@ class System {
   Rates apply(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const;
 
   /// Transfer matrix at s (outputs x inputs) through the factors of the same plan: O(bodies), full
-  /// accuracy at any mass ratio. Throws singular if s is a pole of the system or of a block.
+  /// accuracy at any mass ratio unless a coarser precision is asked for. Throws singular if s is a
+  /// pole of the system or of a block.
   Eigen::MatrixXcd transfer(std::complex<double> s,
-                            Precision precision = Precision::standard) const;
+                            Precision precision = Precision::as_needed) const;
 
   /// transfer(j omega) for each omega [rad/s], on `threads` threads (0: all cores); the same to the
   /// last bit whatever their number. O(bodies) per frequency.
