@@ -3,6 +3,7 @@
 /// titop: from a block diagram of flexible bodies to one minimal state-space model.
 #include <titop/blocks/axis.hpp>
 #include <titop/blocks/beam.hpp>
+#include <titop/blocks/bushing.hpp>
 #include <titop/blocks/fe/calculix.hpp>
 #include <titop/blocks/fe/mesh.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
