@@ -12,6 +12,7 @@
 #include <titop/blocks/joint.hpp>
 #include <titop/blocks/modal_checks.hpp>
 #include <titop/blocks/port_hamiltonian.hpp>
+#include <titop/blocks/posture.hpp>
 #include <titop/blocks/rigid_body.hpp>
 #include <titop/blocks/slide.hpp>
 #include <titop/blocks/spring_mass.hpp>
