@@ -1,6 +1,5 @@
 #pragma once
 
-#include <titop/blocks/rigid_body.hpp>
 #include <titop/graph/diagram.hpp>
 #include <titop/graph/mount.hpp>
 
@@ -35,6 +34,7 @@ struct Hinge {
     Reading rate;                 ///< thetad [rad/s]
   };
 };
+/// Throws bad_value if the axis has no direction.
 BlockPtr as_block(const Hinge& spec);
 
 /// Hangs `body` on the child point `site` through a hinge called `name`, about `axis` (in the
@@ -49,9 +49,7 @@ Hinge::Handle hinge(Diagram& d, std::string name, const Handle& body, const Dual
                     const Rotation& T_ba, const Vector3d& axis,
                     std::source_location at = std::source_location::current()) {
   const Hinge::Handle joint = d.add(name, Hinge{axis}, at);
-  const bool named = !T_ba.to().empty() || !T_ba.from().empty();
-  mount(joint, site, named ? T_ba.named(T_ba.to(), name) : T_ba, at);
-  mount(body, joint.child, {}, at);
+  detail::mount_through(joint, name, body, site, T_ba, at);
   return joint;
 }
 

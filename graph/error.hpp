@@ -23,7 +23,7 @@ enum class Code {
   structure,       ///< every channel is driven and still the equations contradict in pattern
   ill_posed,       ///< an algebraic loop without a unique solution
   improper,        ///< the transfer would need derivatives of an input
-  kinematic_loop,  ///< bodies close a chain
+  kinematic_loop,  ///< bodies close a chain; links that do not meet
   bad_inertia,     ///< no rigid body has this inertia
   bad_modes,       ///< modal data that contradict themselves
   bad_file,        ///< a file that cannot be read as what it should be

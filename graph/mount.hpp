@@ -13,10 +13,10 @@ concept HasParent = requires(const Handle& body) {
 };
 
 namespace detail {
-/// child.accel = T_ba^-1 site.accel, site.force += T_ba child.force. The frames of T_ba are named
-/// after the two nodes if it has no names of its own.
+/// child.accel = T_ba^-1 site.accel, site.force += sign * T_ba child.force. The frames of T_ba are
+/// named after the two nodes if it has no names of its own.
 void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, SignalRef site_force,
-           const Rotation& T_ba, const std::source_location& at);
+           const Rotation& T_ba, const std::source_location& at, double sign = 1);
 void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location& at);
 }  // namespace detail
 
@@ -30,7 +30,10 @@ void mount(const Handle& body, const DualPort<6>& site, const Rotation& T_ba = {
   detail::mount(body.parent.accel, body.parent.force, site.accel, site.force, T_ba, at);
 }
 
-/// The same on a single axis: body.parent.accel = site.accel; site.force += body.parent.force.
+/// The same on a single axis: body.parent.accel = site.accel; site.force += body.parent.force. The
+/// site may be one axis of a point with six degrees of freedom: `mount(z, hub.child("C").along(r))`
+/// hangs a spring-mass on it that moves along r, `.about(r)` one that turns about r (then with an
+/// inertia [kg m^2] for a mass). What it weighs is felt along r only.
 template <class Handle>
   requires HasParent<Handle, 1>
 void mount(const Handle& body, const DualPort<1>& site,
@@ -38,7 +41,19 @@ void mount(const Handle& body, const DualPort<1>& site,
   detail::mount(body.parent.accel, body.parent.force, site.accel, site.force, {}, at);
 }
 
-/// Fixes this point to the inertial frame: accel = 0.
+namespace detail {
+/// Hangs `body` on `site` through the joint of this name, in whose frame the body is.
+template <class Joint, class Handle>
+void mount_through(const Joint& joint, const std::string& name, const Handle& body,
+                   const DualPort<6>& site, const Rotation& T_ba, const std::source_location& at) {
+  const bool named = !T_ba.to().empty() || !T_ba.from().empty();
+  mount(joint, site, named ? T_ba.named(T_ba.to(), name) : T_ba, at);
+  mount(body, joint.child, {}, at);
+}
+}  // namespace detail
+
+/// Fixes this point to the inertial frame: accel = 0. Also one axis of it, the others left to be
+/// driven or released: `ground(beam.parent.along({0, 0, 1}))`.
 template <int N>
 void ground(const DualPort<N>& point, std::source_location at = std::source_location::current()) {
   detail::drive_by_zero(point.accel, /*accumulate=*/false, at);

@@ -130,6 +130,8 @@ class Port<6, K> : public PortBase<6, K> {
   = delete;
   /// The linear component along the vector r (any length but 0).
   Port<1, K> along(const Vector3d& r) const { return linear.along(r); }
+  /// The angular component about the vector r (any length but 0).
+  Port<1, K> about(const Vector3d& r) const { return angular.along(r); }
 
   Port<3, K> linear, angular;
 };
@@ -172,6 +174,31 @@ class DualPort {
   Reading reaction;
   /// Position [m; rad] in the states' own terms; only where the chain to ground determines it.
   Reading position;
+
+  /// One axis of the six: the point's motion along r and the force along r, as a port for blocks of
+  /// one axis. r: any length but 0, in the port's frame.
+  DualPort<1> along(const Vector3d& r) const
+    requires(N == 6)
+  {
+    return part([&](const detail::SignalRef& s) { return s.linear().along(r); });
+  }
+  /// The same about r: angular acceleration and torque.
+  DualPort<1> about(const Vector3d& r) const
+    requires(N == 6)
+  {
+    return part([&](const detail::SignalRef& s) { return s.angular().along(r); });
+  }
+
+ private:
+  template <int>
+  friend class DualPort;
+  DualPort(const detail::SignalRef& a, const detail::SignalRef& f, const detail::SignalRef& r,
+           const detail::SignalRef& x)
+      : accel(a), force(f), reaction(r), position(x) {}
+  template <class Take>
+  DualPort<1> part(Take take) const {
+    return {take(accel), take(force), take(reaction), take(position)};
+  }
 };
 
 /// The channels that have names; also the only one, where there is just one.

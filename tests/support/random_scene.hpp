@@ -6,7 +6,9 @@
 #include <string>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/hinge.hpp>
+#include <titop/blocks/joint.hpp>
 #include <titop/blocks/rigid_body.hpp>
+#include <titop/blocks/slide.hpp>
 #include <titop/blocks/spring_mass.hpp>
 #include <titop/graph/nodes/gain.hpp>
 #include <titop/graph/nodes/lti.hpp>
@@ -32,7 +34,7 @@ inline constexpr Dim kForce{1, 1, -2}, kTorque{2, 1, -2}, kAccel{1, 0, -2}, kAng
 
 enum class Family {
   scalar,   ///< one degree of freedom per junction: SpringMass
-  spatial,  ///< six: rigid and flexible bodies, beams, hinges
+  spatial,  ///< six: rigid and flexible bodies, beams, hinges and slides
   mixed     ///< spatial, with spring-masses hanging on the bodies along oblique directions
 };
 enum class Shape { chain, tree, star };
@@ -60,7 +62,12 @@ struct Build {
   std::map<std::string, titop::InputRef> inputs;
   std::map<std::string, titop::SpringMass::Handle> springs;
   std::map<std::string, titop::BodyHandle> bodies;
-  std::map<std::string, titop::Hinge::Handle> hinges;
+  /// Hinges and slides, under the same names for both.
+  struct OneAxis {
+    titop::DualPort<6> child, parent;
+    titop::Joint::AxisPorts axis;
+  };
+  std::map<std::string, OneAxis> joints;
   std::map<std::string, titop::Lti::Handle> filters;
   std::map<std::string, titop::Gain::Handle> gains;  ///< and MatrixGain
   std::map<std::string, titop::Sum::Handle> sums;

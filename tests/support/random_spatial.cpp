@@ -85,34 +85,52 @@ Vector3d draw_axis(Draft& d) {
 }
 
 /// What acts on the joint: nothing, spring and damper, a motor, a controller, a lock, a motion.
-void draw_hinge(Draft& d, const std::string& h) {
+void draw_mechanism(Draft& d, const std::string& h, bool turns) {
+  const Dim position = turns ? kAngle : kLength, force = turns ? kTorque : kForce;
+  const Dim stiffness{force.length - position.length, force.mass, force.time};
   int kind = d.rng.below(6);
   if (kind == 3 && !d.options.controllers) kind = 1;
   if ((kind == 2 && !d.has_inputs) || (kind == 5 && !d.may_prescribe())) kind = 1;
   const double k = d.rng.octaves(2, 8);
   const double c = kind == 1 && !d.damped() ? 0 : d.rng.octaves(-2, 2);
   if (kind != 1 && kind != 3) ++d.scene.loose;
-  if (kind == 0) d.equation([=](Build& b) { b.hinges.at(h).torque = 0; });
-  if (kind == 4) d.equation([=](Build& b) { b.hinges.at(h).accel = 0; });
+  if (kind == 0) d.equation([=](Build& b) { b.joints.at(h).axis.force = 0; });
+  if (kind == 4) d.equation([=](Build& b) { b.joints.at(h).axis.accel = 0; });
   if (kind == 1)
     d.equation([=](Build& b) {
-      const double unit = kTorque.factor(b.units);
-      const auto& joint = b.hinges.at(h);
-      joint.torque = k * unit * joint.angle + c * unit * b.units.time * joint.rate;
+      const double unit = stiffness.factor(b.units);
+      const auto& axis = b.joints.at(h).axis;
+      axis.force = k * unit * axis.position + c * unit * b.units.time * axis.rate;
     });
   if (kind == 2 || kind == 5) {
-    const std::string u = d.input({kind == 2 ? kTorque : kAngularAccel});
-    if (kind == 2) d.equation([=](Build& b) { b.hinges.at(h).torque = -b.inputs.at(u); });
-    if (kind == 5) d.equation([=](Build& b) { b.hinges.at(h).accel = b.inputs.at(u); });
+    const std::string u = d.input({kind == 2 ? force : turns ? kAngularAccel : kAccel});
+    if (kind == 2) d.equation([=](Build& b) { b.joints.at(h).axis.force = -b.inputs.at(u); });
+    if (kind == 5) d.equation([=](Build& b) { b.joints.at(h).axis.accel = b.inputs.at(u); });
   }
   if (kind == 3) {
-    const std::string K = draw_filter(d, kAngle, kTorque, 4, k);
-    d.equation([=](Build& b) { b.filters.at(K).in = b.hinges.at(h).angle; });
-    d.equation([=](Build& b) { b.hinges.at(h).torque = b.filters.at(K).out; });
+    const std::string K = draw_filter(d, position, force, 4, k);
+    d.equation([=](Build& b) { b.filters.at(K).in = b.joints.at(h).axis.position; });
+    d.equation([=](Build& b) { b.joints.at(h).axis.force = b.filters.at(K).out; });
   }
   if (!d.has_outputs || !d.rng.chance(0.5)) return;
-  d.output({kAngle}, [=](Build& b) { return b.hinges.at(h).angle.expr(); });
-  if (kind >= 4) d.output({kTorque}, [=](Build& b) { return b.hinges.at(h).torque.expr(); });
+  d.output({position}, [=](Build& b) { return b.joints.at(h).axis.position.expr(); });
+  if (kind >= 4) d.output({force}, [=](Build& b) { return b.joints.at(h).axis.force.expr(); });
+}
+
+/// Adds a hinge or a slide; which of them, the axis has decided, so that no number is drawn for it.
+bool draw_axis_joint(Draft& d, const std::string& h) {
+  const Vector3d r = draw_axis(d);
+  const bool turns = r.x() >= 0;
+  d.add([=](Build& b) {
+    if (turns) {
+      const auto j = b.d.add(h, Hinge{r});
+      b.joints.emplace(h, Build::OneAxis{j.child, j.parent, {j.accel, j.torque, j.angle, j.rate}});
+    } else {
+      const auto j = b.d.add(h, Slide{r});
+      b.joints.emplace(h, Build::OneAxis{j.child, j.parent, {j.accel, j.force, j.travel, j.rate}});
+    }
+  });
+  return turns;
 }
 
 void draw_joint(Draft& d, const Body& body, const Body& on, const std::string& site) {
@@ -121,11 +139,10 @@ void draw_joint(Draft& d, const Body& body, const Body& on, const std::string& s
   const int kind = d.rng.below(4);
   if (kind == 0) {
     const std::string h = d.fresh("h");
-    const Vector3d axis = draw_axis(d);
-    d.add([=](Build& b) { b.hinges.emplace(h, b.d.add(h, Hinge{axis})); });
-    d.equation([=](Build& b) { mount(b.hinges.at(h), b.bodies.at(p).child(site), T); });
-    d.equation([=](Build& b) { mount(b.bodies.at(a), b.hinges.at(h).child); });
-    draw_hinge(d, h);
+    const bool turns = draw_axis_joint(d, h);
+    d.equation([=](Build& b) { mount(b.joints.at(h), b.bodies.at(p).child(site), T); });
+    d.equation([=](Build& b) { mount(b.bodies.at(a), b.joints.at(h).child); });
+    draw_mechanism(d, h, turns);
   } else if (kind == 1) {
     d.equation([=](Build& b) {
       b.bodies.at(a).parent.accel = T.named(p, a).inverse() * b.bodies.at(p).child(site).accel;

@@ -1,0 +1,149 @@
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+#include <titop/blocks/bushing.hpp>
+
+namespace titop {
+namespace {
+
+using Eigen::MatrixXd;
+
+const Interface& face() {
+  static const Interface shared{
+      {{"child", 6, Takes::accel}, {"parent", 6, Takes::accel}},
+      {},
+      {{"displacement", 6, Quantity::position}, {"rate", 6, Quantity::velocity}},
+      {"x", "y", "z", "rx", "ry", "rz", "x_rate", "y_rate", "z_rate", "rx_rate", "ry_rate",
+       "rz_rate"}};
+  return shared;
+}
+
+/// Entries have different units: each is judged against the diagonal of its row and column.
+void check_matrix(const Matrix6& m, std::string_view what) {
+  const auto refuse = [&](const std::string& why, const char* hint) {
+    throw Error(Code::bad_value, fmt::format("the Bushing's {} is {}", what, why), hint);
+  };
+  if (!m.allFinite())
+    throw Error(Code::not_finite, fmt::format("the Bushing's {} is not finite", what),
+                "give finite numbers");
+  Vector6 size = Vector6::Zero();
+  for (int i = 0; i < 6; ++i) {
+    if (m(i, i) < 0)
+      refuse(fmt::format("{} on axis {}", m(i, i), face().states[static_cast<std::size_t>(i)]),
+             "springs and dampers must be 0 or more");
+    size(i) = std::sqrt(m(i, i));
+  }
+  Matrix6 scaled = Matrix6::Zero();
+  for (int i = 0; i < 6; ++i)
+    for (int j = 0; j < 6; ++j) {
+      const double scale = size(i) * size(j);
+      if (std::abs(m(i, j) - m(j, i)) > 1e-9 * std::max(scale, std::abs(m(i, j))))
+        refuse(fmt::format("not symmetric: {} and {} at ({}, {})", m(i, j), m(j, i), i + 1, j + 1),
+               "give the full symmetric matrix, (x, y, z, rx, ry, rz)");
+      if (scale == 0 && m(i, j) != 0)
+        refuse(fmt::format("not positive semidefinite: 0 on the diagonal beside {} at ({}, {})",
+                           m(i, j), i + 1, j + 1),
+               "a coupled axis needs a stiffness of its own");
+      if (scale > 0) scaled(i, j) = m(i, j) / scale;
+    }
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled, Eigen::EigenvaluesOnly);
+  if (const double least = solver.eigenvalues()(0); least < -1e-9)
+    refuse(fmt::format("not positive semidefinite: scaled to a diagonal of 1 its least eigenvalue "
+                       "is {:.3g}",
+                       least),
+           "check the signs and sizes of the coupling terms");
+}
+
+class BushingBlock : public Block {
+ public:
+  explicit BushingBlock(const Bushing& spec) : spec_(spec) {}
+  std::string_view type() const override { return "Bushing"; }
+  const Interface& interface() const override { return face(); }
+  std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
+    const Matrix6 K = spec_.stiffness.at(values), C = spec_.damping.at(values);
+    check_matrix(K, "stiffness");
+    check_matrix(C, "damping");
+    const MatrixXd I = MatrixXd::Identity(6, 6), O = MatrixXd::Zero(6, 6);
+    auto d = std::make_shared<Dynamics>();
+    d->A = (MatrixXd(12, 12) << O, I, O, O).finished();
+    d->B = (MatrixXd(12, 12) << O, O, I, -I).finished();
+    d->C = (MatrixXd(24, 12) << K, C, K, C, I, O, O, I).finished();
+    d->D = MatrixXd::Zero(24, 12);
+    return d;
+  }
+  Pattern feedthrough() const override { return Pattern::Constant(24, 12, false); }
+  std::optional<Kinematics> kinematics(ParameterValues) const override {
+    Kinematics k{.reference = 1, .tau = {}, .Phi = {}};
+    k.tau.assign(2, MatrixXd::Identity(6, 6));
+    k.Phi = {MatrixXd::Identity(6, 12), MatrixXd::Zero(6, 12)};
+    return k;
+  }
+  std::vector<Value> values() const override {
+    std::vector<Value> all = spec_.stiffness.values();
+    const std::vector<Value> more = spec_.damping.values();
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  std::optional<Cause> why_singular(int, ParameterValues) const override {
+    return Cause{"is a massless spring",
+                 "give the body on it mass and inertia, or impose its "
+                 "motion instead of the force on it"};
+  }
+
+ private:
+  Bushing spec_;
+};
+
+/// Adds the force of a massless end to the balance at `point`: that of a child point counts what
+/// hangs there, that of a parent point what the body does.
+void tie(const DualPort<6>& end, const DualPort<6>& point, double on_child, const Rotation& T,
+         const std::source_location& at) {
+  const int signal = point.accel.signal();
+  bool parent = false;
+  if (signal >= 0) {
+    const Graph& g = *point.accel.graph();
+    const Signal& s = g.signals[static_cast<std::size_t>(signal)];
+    const Block& block = *g.nodes[static_cast<std::size_t>(s.node)].block;
+    parent = block.interface().channels[static_cast<std::size_t>(s.spec)].name == "parent";
+  }
+  detail::mount(end.accel, end.force, point.accel, point.force, T, at,
+                parent ? -on_child : on_child);
+}
+
+}  // namespace
+
+Matrix6 SixAxes::at(ParameterValues values) const {
+  if (full_) return *full_;
+  Matrix6 m = Matrix6::Zero();
+  for (int i = 0; i < 6; ++i) m(i, i) = diagonal_[static_cast<std::size_t>(i)].at(values);
+  return m;
+}
+
+Matrix6 SixAxes::nominal() const {
+  if (full_) return *full_;
+  Matrix6 m = Matrix6::Zero();
+  for (int i = 0; i < 6; ++i) m(i, i) = diagonal_[static_cast<std::size_t>(i)].nominal();
+  return m;
+}
+
+std::vector<Value> SixAxes::values() const {
+  return full_ ? std::vector<Value>{} : std::vector<Value>(diagonal_.begin(), diagonal_.end());
+}
+
+BlockPtr as_block(const Bushing& spec) {
+  check_matrix(spec.stiffness.nominal(), "stiffness");
+  check_matrix(spec.damping.nominal(), "damping");
+  return std::make_shared<BushingBlock>(spec);
+}
+
+Bushing::Handle bushing(Diagram& d, std::string name, const DualPort<6>& a, const DualPort<6>& b,
+                        const Rotation& T_ba, const Bushing& spec, std::source_location at) {
+  const Bushing::Handle result = d.add(name, spec, at);
+  const bool named = !T_ba.to().empty() || !T_ba.from().empty();
+  tie(result.child, a, /*on_child=*/-1, {}, at);
+  tie(result.parent, b, /*on_child=*/1, named ? T_ba.named(T_ba.to(), name) : T_ba, at);
+  return result;
+}
+
+}  // namespace titop

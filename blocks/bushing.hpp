@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <titop/graph/diagram.hpp>
+#include <titop/graph/mount.hpp>
+
+namespace titop {
+
+/// A symmetric matrix on the six degrees of freedom (x, y, z, rx, ry, rz): its diagonal, where
+/// every number may be a parameter, or all of it (6 x 6; a vector of 6 is a diagonal).
+class SixAxes {
+ public:
+  SixAxes() : SixAxes(0, 0, 0, 0, 0, 0) {}
+  SixAxes(Value x, Value y, Value z, Value rx, Value ry, Value rz)
+      : diagonal_{x, y, z, rx, ry, rz} {}
+  template <class M>
+  SixAxes(const Eigen::MatrixBase<M>& m) : SixAxes() {
+    static_assert(M::RowsAtCompileTime == 6 || M::RowsAtCompileTime == Eigen::Dynamic);
+    if constexpr (M::ColsAtCompileTime == 1)
+      full_ = std::make_shared<const Matrix6>(Vector6(m).asDiagonal());
+    else
+      full_ = std::make_shared<const Matrix6>(m);
+  }
+  Matrix6 at(ParameterValues values) const;
+  Matrix6 nominal() const;
+  std::vector<Value> values() const;
+
+ private:
+  std::array<Value, 6> diagonal_;
+  std::shared_ptr<const Matrix6> full_;  ///< instead of the diagonal
+};
+
+/// Spring-damper of six axes between two points (bushing, isolator), massless, in the frame of the
+/// body at its child end. With the relative displacement q = x_C - x_P [m; rad]:
+///
+///     F_P = F_C = K q + C qd        (F_P: by the bushing on its parent; F_C: by the child on it)
+///     qdd = xdd_C - xdd_P
+///
+/// States: q (x, y, z, rx, ry, rz), then qd. Both ends take the acceleration, u = [xdd_C; xdd_P],
+/// y = [F_C; F_P; q; qd]; nothing feeds through.
+///
+/// In the posture both ends coincide, and K and C are about that point, K from static tests or from
+/// its elastic centre E by tau_EC' K_E tau_EC. Preloads are not in it.
+///
+/// K and C are symmetric and positive semidefinite, checked when it is added (bad_value;
+/// not_finite); an axis without stiffness is a free one.
+struct Bushing {
+  SixAxes stiffness;     ///< K [N/m, N, N m/rad]
+  SixAxes damping = {};  ///< C [N s/m, N s, N m s/rad]
+
+  struct Handle {
+    Handle(Graph* graph, int node)
+        : child(detail::channel<6>(graph, node, 0)),
+          parent(detail::channel<6>(graph, node, 1)),
+          displacement(graph, detail::port_signal(*graph, node, "displacement")),
+          rate(graph, detail::port_signal(*graph, node, "rate")) {}
+    Handle(const Handle&) = default;
+    Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
+    DualPort<6> child;     ///< C, where the body hangs
+    DualPort<6> parent;    ///< P, where the bushing hangs
+    Reading displacement;  ///< q = x_C - x_P [m; rad], 6
+    Reading rate;          ///< qd [m/s; rad/s], 6
+  };
+};
+BlockPtr as_block(const Bushing& spec);
+
+/// Hangs `body` on the child point `site` through a bushing called `name`, in the frame of the
+/// body, with T_ba the mounting rotation, body to site. On the ground: add it, `ground` it and
+/// `mount(body, b.child)`.
+///
+///     auto iso = bushing(d, "isolator", wheel, hub.child("W"), T_ba,
+///                        {.stiffness = {4e4, 4e4, 9e4, 300, 300, 100}, .damping = c});
+template <class Handle>
+  requires HasParent<Handle, 6>
+Bushing::Handle bushing(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,
+                        const Rotation& T_ba, const Bushing& spec,
+                        std::source_location at = std::source_location::current()) {
+  const Bushing::Handle result = d.add(name, spec, at);
+  detail::mount_through(result, name, body, site, T_ba, at);
+  return result;
+}
+
+/// The same between any two points a (its child end, whose frame it has) and b, both of which have
+/// their own equations already or are left free: it only adds its force to both. For a parent point
+/// this `+=` alone is a release. T_ba: frame of a to frame of b.
+///
+///     bushing(d, "snubber", wheel.child("rim"), hub.child("S"), T_ba, {.stiffness = k});
+Bushing::Handle bushing(Diagram& d, std::string name, const DualPort<6>& a, const DualPort<6>& b,
+                        const Rotation& T_ba, const Bushing& spec,
+                        std::source_location at = std::source_location::current());
+
+}  // namespace titop
