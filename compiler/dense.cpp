@@ -324,6 +324,7 @@ class Writer {
 
 void write_dense(const SystemData& data, StateSpace& model, int threads) {
   Writer(data, model, threads).write();
+  data.states.reduce(model);
 }
 
 }  // namespace titop::detail

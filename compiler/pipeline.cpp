@@ -36,9 +36,10 @@ constexpr Pass kPasses[] = {
     {"check", passes::check},  // the user's mistakes, in the user's words: before anything moves
     {"lower", passes::lower},  // one numeric coefficient per term; names decide the order from here
     {"split", passes::split},  // parts without input or output: no later pass need look at them
-    {"chains", passes::chains},  // closed chains, found on the kinematics, before forces matter
+    {"chains", passes::chains},  // what closes a chain twice is released: no rank can fail below
     {"match", passes::match},    // who determines whom: channel inversions come out here
     {"order", passes::order},    // loops, and what no input reaches or no output sees
+    {"close", passes::close},    // dependent coordinates, among the states that are left
 };
 
 void dump(const Options& options, int number, const char* name, const Stage& stage) {
@@ -65,6 +66,7 @@ void timed(detail::SystemData& data, const char* name, F f) {
 
 void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
   k.layout = detail::make_layout(k.stage.graph);
+  d.states = detail::StateMap(k.stage.dependents, k.layout);
   d.numbers.parameters = k.stage.values;
   for (const Node& node : k.stage.graph.nodes)
     d.numbers.blocks.push_back(node.block->dynamics(k.stage.values));

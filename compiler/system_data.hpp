@@ -3,6 +3,7 @@
 #include <memory>
 #include <mutex>
 #include <titop/compiler/solve/numbers.hpp>
+#include <titop/compiler/state_map.hpp>
 #include <titop/compiler/system.hpp>
 
 /// What stands behind a System. For the compiler's own files only.
@@ -15,8 +16,9 @@ struct Layout {
   std::vector<int> input_first;   ///< per graph input: first column of u
   std::vector<int> output_first;  ///< per graph output: first row of y
   std::vector<int> known_first;   ///< per signal: first row of [x; u], -1 for unknowns
-  std::vector<std::string> states, inputs, outputs;
+  std::vector<std::string> states, inputs, outputs;  ///< states: of all blocks
 
+  /// States of all blocks, before those leave that follow from others (StateMap).
   Eigen::Index order() const { return static_cast<Eigen::Index>(states.size()); }
 };
 Layout make_layout(const Graph& graph);
@@ -48,6 +50,7 @@ struct DenseError {
 struct SystemData {
   std::shared_ptr<const Skeleton> skeleton;
   solve::Numbers numbers;
+  StateMap states;  ///< those of the model
   std::unique_ptr<const solve::Factors<double>> factors;
   std::vector<double> margins;  ///< per loop of the stage; 0 where it was not found
   Certificate certificate;
@@ -67,7 +70,7 @@ struct SystemData {
 /// The rows of the joint system with the numbers of the state space.
 solve::JointRows<double> real_rows(const Skeleton& skeleton, const solve::Numbers& numbers);
 
-/// xdot and y for known = [x; u], column by column.
+/// xdot and y for known = [x; u], column by column; x and xdot of all blocks' states.
 struct Rates {
   solve::RowMatrix<double> xdot, y;
 };

@@ -173,6 +173,7 @@ System System::update(const ParameterList& list) const {
   auto d = std::make_shared<SystemData>();
   d->skeleton = data_->skeleton;
   d->numbers = data_->numbers;
+  d->states = data_->states;
   const std::vector<int> changed = set_values(k.stage.graph, list, d->numbers.parameters);
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
   remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers);

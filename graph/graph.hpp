@@ -38,6 +38,7 @@ struct Signal {
   int frame = kNoFrame;
   int channel = -1;    ///< index in Graph::channels, -1 for one-way ports
   bool active = true;  ///< false once a pass has set it aside: it is 0, or nobody sees it
+  bool at_rest = false;  ///< set aside because nothing moves it
   bool row = true;     ///< outputs: the block's row for it is in use
 };
 

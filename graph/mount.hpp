@@ -13,10 +13,10 @@ concept HasParent = requires(const Handle& body) {
 };
 
 namespace detail {
-/// child.accel = T_ba^-1 site.accel, site.force += T_ba child.force. The frames of T_ba are named
+/// child.accel = T_ba^-1 site.accel, site.force += sign * T_ba child.force. The frames of T_ba are named
 /// after the two nodes if it has no names of its own.
 void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, SignalRef site_force,
-           const Rotation& T_ba, const std::source_location& at);
+           const Rotation& T_ba, const std::source_location& at, double sign = 1);
 void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location& at);
 }  // namespace detail
 
@@ -36,6 +36,20 @@ template <class Handle>
 void mount(const Handle& body, const DualPort<1>& site,
            std::source_location at = std::source_location::current()) {
   detail::mount(body.parent.accel, body.parent.force, site.accel, site.force, {}, at);
+}
+
+/// Joins two child points, `point` of a body (frame a) and `site` of another (frame b): same motion,
+/// opposite wrenches. What closes a chain: the bodies hang on something already.
+///     point.accel = T_ba^-1 * site.accel;   site.force += -(T_ba * point.force);
+inline void weld(const DualPort<6>& point, const DualPort<6>& site, const Rotation& T_ba = {},
+                 std::source_location at = std::source_location::current()) {
+  detail::mount(point.accel, point.force, site.accel, site.force, T_ba, at, -1);
+}
+
+/// The same on a single axis.
+inline void weld(const DualPort<1>& point, const DualPort<1>& site,
+                 std::source_location at = std::source_location::current()) {
+  detail::mount(point.accel, point.force, site.accel, site.force, {}, at, -1);
 }
 
 /// Fixes this point to the inertial frame: accel = 0.

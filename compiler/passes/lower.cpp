@@ -284,6 +284,7 @@ Sum1 Lowering::amount(const Origin& o) {
   switch (o.of) {
     case Origin::Of::accel:
     case Origin::Of::one_way: return terms(g.equations[at(o.index)].terms);
+    case Origin::Of::released: return {};
     case Origin::Of::force: return force(o.index);
     case Origin::Of::algebraic: return algebraic(o.index);
     case Origin::Of::output: return terms(g.outputs[at(o.index)].terms);
@@ -396,7 +397,11 @@ std::vector<std::vector<Term>> lower_again(const Stage& stage, const std::vector
                                            ParameterValues values) {
   Lowering l(*stage.source, values, stage.drives);
   std::vector<std::vector<Term>> result;
-  for (const int o : origins) result.push_back(merged(l.amount(stage.origins[at(o)])));
+  for (const int o : origins) {
+    const Origin& origin = stage.origins[at(o)];
+    Sum1 sum = l.amount(origin);
+    result.push_back(merged(origin.times.size() ? times(origin.times, std::move(sum)) : sum));
+  }
   return result;
 }
 

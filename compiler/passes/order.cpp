@@ -87,6 +87,7 @@ void set_aside(Stage& stage, const std::vector<std::vector<int>>& needs) {
     if (sig.role == Signal::Role::external || !sig.active || (moved[at(s)] && seen[at(s)]))
       continue;
     sig.active = false;
+    sig.at_rest = !moved[at(s)];
     if (sig.role != Signal::Role::state) continue;
     const std::string& name = g.nodes[at(sig.node)].name;
     stage.notes.push_back({Note::Kind::removed, "order",
