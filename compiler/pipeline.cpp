@@ -76,6 +76,7 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
   k.dependents = detail::find_dependents(k.stage, k.joint);
   if (const solve::Health health = d.factors->health(); health.singular)
     throw Error(solve::blame(k.stage, k.joint, d.numbers.blocks, health));
+  detail::judge_internal_forces(k, d);
   k.stage.notes.push_back({Note::Kind::info, "solve",
                            fmt::format("{} unknowns in {} fronts", k.joint.plan->unknowns,
                                        k.joint.plan->fronts.size())});
@@ -83,14 +84,15 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
 
 }  // namespace
 
-System compile(const Diagram& diagram, const Options& options) {
+namespace {
+
+std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options) {
   auto data = std::make_shared<detail::SystemData>();
   auto skeleton = std::make_shared<detail::Skeleton>();
   data->skeleton = skeleton;
   skeleton->options = options;
   Stage& stage = skeleton->stage;
-  stage.graph = diagram.graph();
-  stage.values = nominal_values(diagram.graph());
+  stage = std::move(stage_0);
   dump(options, 0, "diagram", stage);
   int number = 0;
   for (const Pass& pass : kPasses) {
@@ -108,7 +110,30 @@ System compile(const Diagram& diagram, const Options& options) {
     detail::find_margins(*data, loops);
     detail::certify(*data);
   });
-  return System(std::move(data));
+  return data;
 }
+
+}  // namespace
+
+System compile(const Diagram& diagram, const Options& options) {
+  Stage stage;
+  stage.graph = diagram.graph();
+  stage.values = nominal_values(diagram.graph());
+  return System(run(std::move(stage), options));
+}
+
+namespace detail {
+
+std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector<double>& values) {
+  Stage stage;
+  stage.graph = *old.stage.source;
+  stage.values = values;
+  stage.dependents = old.stage.dependents;
+  Options options = old.options;
+  options.dump_to.clear();
+  return run(std::move(stage), options);
+}
+
+}  // namespace detail
 
 }  // namespace titop

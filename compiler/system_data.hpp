@@ -86,6 +86,15 @@ double dense_difference(const SystemData& data, const StateSpace& dense);
 /// See Certificate::dense_error. O(n^2).
 DenseError dense_error(const SystemData& data, const StateSpace& dense);
 
+/// What is released in a closed chain (Stage::released) leaves internal forces undetermined: throws
+/// kinematic_loop for every output and controller that reads one, or notes them as minimal-norm
+/// where Options::internal_forces says so. One solution per released direction.
+void judge_internal_forces(Skeleton& skeleton, const SystemData& data);
+
+/// All passes once more for these values of the parameters. States that followed from the others
+/// still do, where that keeps the digits.
+std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector<double>& values);
+
 /// Margins of these loops of the stage, into SystemData::margins.
 void find_margins(SystemData& data, std::span<const int> loops);
 /// The largest of all margins, into the certificate.

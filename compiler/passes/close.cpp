@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <titop/compiler/passes/close/integrals.hpp>
 #include <titop/compiler/passes/passes.hpp>
 
@@ -20,7 +21,8 @@ struct Closer {
   const Coordinates& coordinates;
   std::vector<Note> notes = {};
   std::vector<Dependent> dependents = {};
-  std::vector<Scalar> positions = {};  ///< dependent on position level
+  std::set<std::pair<int, int>> before = {};  ///< states that followed from the others before
+  std::vector<Scalar> positions = {};         ///< dependent on position level
 
   std::optional<closing::Meaning> classify(const Scalar& s) const {
     using Role = Relations::Role;
@@ -43,7 +45,9 @@ struct Closer {
     for (Component& c : components(lines, meaning)) {
       std::vector<int> preferred;
       for (int i = 0; i < static_cast<int>(c.scalars.size()); ++i)
-        if (std::binary_search(positions.begin(), positions.end(), c.scalars[at(i)]))
+        if (std::binary_search(positions.begin(), positions.end(), c.scalars[at(i)]) ||
+            (c.relations.role[at(i)] != Relations::Role::unknown &&
+             before.contains(state(c.scalars[at(i)], level))))
           preferred.push_back(i);
       const Independent found = independent(std::move(c.relations), preferred);
       warn(c, lines, found, level);
@@ -111,6 +115,7 @@ Stage close(Stage stage) {
     (i.level == 1 ? on_rates : on_positions).push_back(std::move(line));
   }
   Closer closer{g, coordinates};
+  for (const Dependent& d : stage.dependents) closer.before.emplace(d.node, d.state);
   closer.close(on_positions, Level::position);
   closer.close(on_rates, Level::velocity);
   stage.dependents = std::move(closer.dependents);

@@ -107,7 +107,10 @@ Independent independent(Relations r, const std::vector<int>& preferred) {
   result.dropped = e.take(columns_of(r, Role::unknown), kRankTolerance);
   const std::size_t unknowns = e.pivots.size();
   std::vector<int> all = columns_of(r, Role::integral);
-  e.take(preferred, kGoodPivot);
+  std::vector<int> wanted;  // a preferred column may be an unknown by now
+  for (const int c : preferred)
+    if (r.role[at(c)] != Role::unknown) wanted.push_back(c);
+  e.take(wanted, kGoodPivot);
   e.take(all, kGoodPivot);
   const std::vector<int> rest = columns_of(r, Role::coordinate);
   all.insert(all.end(), rest.begin(), rest.end());
@@ -136,6 +139,10 @@ Independent independent(Relations r, const std::vector<int>& preferred) {
 
 Redundant redundant(const MatrixXd& rows, MatrixXd& known) {
   Redundant result;
+  if (rows.cols() == 0) {  // nothing moves at all
+    result.directions = MatrixXd::Identity(rows.rows(), rows.rows());
+    return result;
+  }
   MatrixXd left = rows;
   for (int twice = 0; twice < 2; ++twice)
     if (known.cols() > 0) left -= (left * known) * known.transpose();
