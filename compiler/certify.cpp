@@ -124,7 +124,10 @@ struct Residual {
                 const std::vector<Drive>& drive) {
     b.known = b.known && values.known(t.signal);
     const MatrixXd c = -factor * coefficient(w, t, d.numbers.parameters);
-    b.add(c, values.of(t.signal), false, t.of == Term::Of::position ? 1.0 / (s * s) : 1.0);
+    b.add(c, values.of(t.signal), false,
+          t.of == Term::Of::position ? 1.0 / (s * s)
+          : t.of == Term::Of::rate   ? 1.0 / s
+                                     : 1.0);
     if (t.of != Term::Of::reaction) return;
     const int channel = w.signals[at(t.signal)].channel;
     for (const int e : drive[at(channel)].added) add_force(b, -c, e, drive);
@@ -239,8 +242,7 @@ std::vector<std::pair<int, int>> segments(const SystemData& d) {
     const int begin = d.layout().state_first[at(i)],
               end = begin + static_cast<int>(d.numbers.blocks[at(i)]->A.rows());
     const auto first = std::lower_bound(kept.begin(), kept.end(), begin);
-    result.emplace_back(first - kept.begin(),
-                        std::lower_bound(first, kept.end(), end) - first);
+    result.emplace_back(first - kept.begin(), std::lower_bound(first, kept.end(), end) - first);
   }
   return result;
 }
@@ -292,7 +294,8 @@ DenseError dense_error(const SystemData& d, const StateSpace& m) {
     VectorXcd left = -s * x;
     for (Eigen::Index j = 0; j < m.A.cols(); ++j) left += m.A.col(j) * x(j);
     left += m.B * u;
-    const solve::RowMatrix<T> change = point.forced(d.states.expanded(solve::RowMatrix<T>(left))), y = point.outputs();
+    const solve::RowMatrix<T> change = point.forced(d.states.expanded(solve::RowMatrix<T>(left))),
+                              y = point.outputs();
     // What C itself costs in rounding is one product: below what is looked for here.
     const double error = change.cwiseAbs().maxCoeff() / y.cwiseAbs().maxCoeff();
     if (error > worst.error) worst = {error, s};

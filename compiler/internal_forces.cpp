@@ -16,7 +16,8 @@ constexpr double kMoves = 1e-7;  ///< of the largest internal force; rounding gi
 /// All signals for a unit wrench in every released direction, one column each.
 class SelfStress {
  public:
-  SelfStress(const Skeleton& k, const SystemData& d) : g_(k.stage.graph), first_(k.layout.known_first) {
+  SelfStress(const Skeleton& k, const SystemData& d)
+      : g_(k.stage.graph), first_(k.layout.known_first) {
     std::vector<int> begin;
     Eigen::Index columns = 0;
     for (int r = 0; r < static_cast<int>(k.joint.rows.size()); ++r) {
@@ -77,10 +78,11 @@ struct Judge {
       const std::string name = channel_name(g, r.channel);
       if (joints.find(name) == std::string::npos) joints += (joints.empty() ? "" : ", ") + name;
     }
-    notes.push_back({Note::Kind::warning, "solve",
-                     fmt::format("{} reads {}, an internal force that motion does not determine: the "
-                                 "smallest wrench at {} is taken",
-                                 reader, name_of(g, signal), joints)});
+    notes.push_back(
+        {Note::Kind::warning, "solve",
+         fmt::format("{} reads {}, an internal force that motion does not determine: the "
+                     "smallest wrench at {} is taken",
+                     reader, name_of(g, signal), joints)});
     mistakes.push_back(
         {Code::kinematic_loop,
          fmt::format("{} reads {}, an internal force that is not determined", reader,

@@ -129,6 +129,7 @@ std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector
   stage.graph = *old.stage.source;
   stage.values = values;
   stage.dependents = old.stage.dependents;
+  stage.motions = old.stage.motions;
   Options options = old.options;
   options.dump_to.clear();
   return run(std::move(stage), options);

@@ -67,6 +67,16 @@ struct Origin {
   Eigen::MatrixXd times = {};        ///< rows of it that are kept (pass `chains`); empty: all
 };
 
+/// Integrators that `lower` adds for motions that no state holds.
+struct RigidMotion {
+  enum class Half { whole, linear, angular };  ///< whole: of a scalar point
+  int signal = -1;                             ///< the acceleration, in Stage::graph
+  Half half = Half::whole;
+  bool twice = false;  ///< its output is the position, else the rate
+  int node = -1;       ///< the Integrator
+  auto operator<=>(const RigidMotion&) const = default;
+};
+
 /// A closing equation that says something twice: in these directions the joint is released.
 struct Released {
   int equation = -1;  ///< of the released force (new), in Stage::graph
@@ -91,6 +101,7 @@ struct Stage {
   std::shared_ptr<const Graph> source;  ///< after lower: in its order, equations as written
   std::vector<Origin> origins;          ///< after lower: of every equation, then of every output
   std::shared_ptr<const std::vector<Drive>> drives;  ///< of source, where there are parameters
+  std::vector<RigidMotion> motions;                  ///< after lower
   std::vector<Note> notes;                           ///< the log
   std::vector<Row> rows;                             ///< after match: all rows
   Matched matched;                                   ///< after match

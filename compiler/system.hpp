@@ -22,8 +22,8 @@ struct SystemData;
 /// Wrenches in closed chains that hold more than once, which motion does not determine.
 enum class InternalForces {
   refuse,        ///< whoever reads one is refused by name
-  minimal_norm,  ///< the joint that closes the chain has the smallest wrench that will do, forces [N]
-                 ///< and torques [N m] alike; what reads it is marked in the log
+  minimal_norm,  ///< the joint that closes the chain has the smallest wrench that will do, forces
+                 ///< [N] and torques [N m] alike; what reads it is marked in the log
 };
 
 /// How to compile.
@@ -104,8 +104,9 @@ class System {
   /// them: O(those fronts) and one pointer per block. States keep number and meaning. The scaling
   /// is found anew where the old one no longer serves (Certificate::plans_renewed counts that).
   /// Throws unknown_name (with the names there are), not_finite, what the blocks throw for values
-  /// that make no block (bad_inertia, bad_value), improper and ill_posed. Where closed chains change
-  /// their geometry all is compiled again; if other states then depend on the rest the log says so.
+  /// that make no block (bad_inertia, bad_value), improper and ill_posed. Where closed chains
+  /// change their geometry all is compiled again; if other states then depend on the rest the log
+  /// says so.
   System update(const ParameterList& values) const;
 
   /// All parameters and their values here, in the order of their making.

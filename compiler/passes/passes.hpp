@@ -15,7 +15,8 @@ Stage check(Stage stage);
 
 /// Nodes, inputs and equations stand in natural order of their names; every driven part has
 /// exactly one equation; `+=`, reactions and positions are written out; every term has one numeric
-/// coefficient; Gain and Sum are equations. Throws no_position, not_finite. O(terms).
+/// coefficient; Gain and Sum are equations. Positions and rates that
+/// no state holds get Integrators, listed, once per assembly. Throws not_finite. O(terms).
 Stage lower(Stage stage);
 
 /// The terms of these equations and outputs (by their places in Stage::origins) for other parameter

@@ -60,8 +60,7 @@ TEST_CASE("internal forces: refused by name, or the smallest at the closing join
   CHECK(says(compile_error(welded(true)), Code::kinematic_loop,
              {"output inner reads B.parent.force", "not determined", "B.child(\"far\")",
               "InternalForces::minimal_norm", "redundant.cpp"}));
-  const System system =
-      compile(welded(true), {.internal_forces = InternalForces::minimal_norm});
+  const System system = compile(welded(true), {.internal_forces = InternalForces::minimal_norm});
   CHECK(system.log().find("output inner reads B.parent.force, an internal force") !=
         std::string::npos);
   // With nothing at the closing weld the first one carries all: F = -D_B a.
@@ -100,7 +99,8 @@ TEST_CASE("rigid four-bar, four sprung pins: order 2, three closing equations re
   auto crank = d.add("crank", link()), coupler = d.add("coupler", link()),
        rocker = d.add("rocker", link());
   ground(base);
-  const Rotation up = Rotation::about({0, 0, 1}, pi / 2), down = Rotation::about({0, 0, 1}, -pi / 2);
+  const Rotation up = Rotation::about({0, 0, 1}, pi / 2),
+                 down = Rotation::about({0, 0, 1}, -pi / 2);
   const Vector3d z{0, 0, 1};
   auto p1 = hinge(d, "p1", crank, base.child("J1"), up, z);
   auto p2 = hinge(d, "p2", coupler, crank.child, down, z);
@@ -116,19 +116,23 @@ TEST_CASE("rigid four-bar, four sprung pins: order 2, three closing equations re
   CHECK(system.order() == 2);
   CHECK(system.log().find("3 of 6 closing equations are redundant (z, about x, about y)") !=
         std::string::npos);
-  const double inertia = 2 * (I + m / 4) + m;  // crank and rocker about their pins, coupler moves by 1
+  const double inertia =
+      2 * (I + m / 4) + m;  // crank and rocker about their pins, coupler moves by 1
   const double omega = std::sqrt(4 * k / inertia);
   REQUIRE(system.poles().size() == 1);
   CHECK(std::abs(system.poles()[0].omega / omega - 1) <= 1e-14);
-  // A force along the coupler on the crank's tip, which points along y of the world: -y of the crank.
+  // A force along the coupler on the crank's tip, which points along y of the world: -y of the
+  // crank.
   const Complex s{0.1, 3};
-  const Complex phi = 1.0 / (inertia * s * s + 4 * k);  // torque of a unit force along y of the crank
+  const Complex phi =
+      1.0 / (inertia * s * s + 4 * k);  // torque of a unit force along y of the crank
   const MatrixXcd G = system.transfer(s);
   CHECK(std::abs(G(0, 1) / -phi - 1.0) <= 1e-12);
   CHECK(std::abs(G(1, 1) / (-s * s * phi) - 1.0) <= 1e-12);
 }
 
-TEST_CASE("both ends of a rigid body on the ground: nothing moves, the second support is released") {
+TEST_CASE(
+    "both ends of a rigid body on the ground: nothing moves, the second support is released") {
   Diagram d{"held twice"};
   auto A = d.add("A", block(4, {1, 0, 0}));
   ground(A);

@@ -21,9 +21,10 @@ struct Finder {
     if (!added) return place->second;
     const Node& n = g.nodes[at(node)];
     const Twin twin = twins.of_input(n.first_signal);
-    auto result = twin.rates.empty() && twin.integrals.empty() ? of_accelerations(twin)
-                  : twin.points.empty()                        ? of_rates(twin)
-                                                               : std::nullopt;
+    auto result = twin.rates.empty() && twin.integrals.empty() && twin.states.empty()
+                      ? of_accelerations(twin)
+                  : twin.points.empty() ? of_rates(twin)
+                                        : std::nullopt;
     if (result) result->node = node;
     return found[node] = std::move(result);
   }
@@ -45,28 +46,31 @@ struct Finder {
       add(result.form, c, inner->form);
     }
     for (const auto& [signal, c] : twin.rates) {
-      const auto own = angle_of(signal);
-      if (!own) return std::nullopt;
-      add(result.form, {Column::Kind::states, g.signals[at(signal)].node}, c * *own);
+      const Signal& y = g.signals[at(signal)];
+      const auto d = g.nodes[at(y.node)].block->dynamics(values);
+      if (!d->D.middleRows(y.first, y.size).isZero(0) ||
+          !add_positions(result.form, y.node, c * d->C.middleRows(y.first, y.size)))
+        return std::nullopt;
     }
+    for (const auto& [signal, c] : twin.states)
+      if (!add_positions(result.form, g.signals[at(signal)].node, c)) return std::nullopt;
     for (const auto& [signal, c] : twin.others)
       add(result.form, {Column::Kind::prescribed, signal, 1}, c);
     return result;
   }
 
-  /// The output in terms of the position states, of which it shows the rates; none if it shows
-  /// more.
-  std::optional<MatrixXd> angle_of(int signal) const {
-    const Signal& y = g.signals[at(signal)];
-    const auto d = g.nodes[at(y.node)].block->dynamics(values);
-    if (!d->D.middleRows(y.first, y.size).isZero(0)) return std::nullopt;
-    MatrixXd C = d->C.middleRows(y.first, y.size), result = MatrixXd::Zero(y.size, C.cols());
+  /// What shows the rates of states (C, rows x states) as the same of these states themselves;
+  /// false if it shows more.
+  bool add_positions(Form& form, int node, MatrixXd C) const {
+    MatrixXd result = MatrixXd::Zero(C.rows(), C.cols());
     for (Index j = 0; j < C.cols(); ++j)
-      if (const int rate = coordinates.rate_of(y.node, static_cast<int>(j)); rate >= 0) {
+      if (const int rate = coordinates.rate_of(node, static_cast<int>(j)); rate >= 0) {
         result.col(j) = C.col(rate);
         C.col(rate).setZero();
       }
-    return C.isZero(0) ? std::optional(result) : std::nullopt;
+    if (!C.isZero(0)) return false;
+    add(form, {Column::Kind::states, node}, result);
+    return true;
   }
 };
 

@@ -87,7 +87,7 @@ void Motion::add_ties(const Twins& twins) {
     tie.S = q.part.whole() ? MatrixXd::Identity(target.size, target.size) : q.part.rows;
     const Twin twin = twins.of(q.terms);
     tie.points = twin.points;
-    for (const auto* list : {&twin.rates, &twin.integrals, &twin.others})
+    for (const auto* list : {&twin.rates, &twin.integrals, &twin.states, &twin.others})
       for (const auto& [signal, c] : *list) add(tie.own, {Column::Kind::prescribed, signal}, c);
     const Channel& c = g_.channels[at(target.channel)];
     (c.takes == Takes::accel ? ties_ : inverted).push_back(std::move(tie));

@@ -36,7 +36,9 @@ void Twins::add(Twin& to, const Eigen::MatrixXd& factor, int signal,
     visiting[at(signal)] = 0;
     return;
   }
-  if (s.role == Signal::Role::output && is_integrator(s.node))
+  if (s.role == Signal::Role::state)
+    put(to.states, signal, factor);
+  else if (s.role == Signal::Role::output && is_integrator(s.node))
     put(to.integrals, signal, factor);
   else if (s.role == Signal::Role::output && s.quantity == Quantity::velocity)
     put(to.rates, signal, factor);

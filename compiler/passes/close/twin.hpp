@@ -11,6 +11,7 @@ struct Twin {
   std::map<int, Eigen::MatrixXd> points;     ///< channel -> coefficient of its position
   std::map<int, Eigen::MatrixXd> rates;      ///< one-way output of a velocity -> coefficient
   std::map<int, Eigen::MatrixXd> integrals;  ///< output of an Integrator -> coefficient
+  std::map<int, Eigen::MatrixXd> states;     ///< state signal -> coefficient
   std::map<int, Eigen::MatrixXd> others;     ///< any other signal: an input, a controller, a force
 };
 
