@@ -130,7 +130,7 @@ struct Residual {
                                      : 1.0);
     if (t.of != Term::Of::reaction) return;
     const int channel = w.signals[at(t.signal)].channel;
-    for (const int e : drive[at(channel)].added) add_force(b, -c, e, drive);
+    for (const int e : drive[at(channel)].added) add_force(b, c, e, drive);
   }
 
   void add_force(Balance& b, const MatrixXd& N, int e, const std::vector<Drive>& drive) {

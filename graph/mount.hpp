@@ -40,16 +40,16 @@ void mount(const Handle& body, const DualPort<1>& site,
 
 /// Joins two child points, `point` of a body (frame a) and `site` of another (frame b): same motion,
 /// opposite wrenches. What closes a chain: the bodies hang on something already.
-///     point.accel = T_ba^-1 * site.accel;   site.force += -(T_ba * point.force);
+///     point.accel = T_ba^-1 * site.accel;   site.force += -(T_ba * point.reaction);
 inline void weld(const DualPort<6>& point, const DualPort<6>& site, const Rotation& T_ba = {},
                  std::source_location at = std::source_location::current()) {
-  detail::mount(point.accel, point.force, site.accel, site.force, T_ba, at, -1);
+  detail::mount(point.accel, point.reaction, site.accel, site.force, T_ba, at, -1);
 }
 
 /// The same on a single axis.
 inline void weld(const DualPort<1>& point, const DualPort<1>& site,
                  std::source_location at = std::source_location::current()) {
-  detail::mount(point.accel, point.force, site.accel, site.force, {}, at, -1);
+  detail::mount(point.accel, point.reaction, site.accel, site.force, {}, at, -1);
 }
 
 /// Fixes this point to the inertial frame: accel = 0.

@@ -16,10 +16,17 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 /// One of the two levels on which chains close.
 enum class Level { position, velocity };
 
+/// A rank decided by a narrow margin.
+struct Doubt {
+  std::string joints;
+  double pivot = 0;
+  bool taken = false;  ///< as a constraint; the other decision would keep two more states
+};
+
 struct Closer {
   const Graph& g;
   const Coordinates& coordinates;
-  std::vector<Note> notes = {};
+  std::vector<Doubt> doubts = {};
   std::vector<Dependent> dependents = {};
   std::set<std::pair<int, int>> before = {};  ///< states that followed from the others before
   std::vector<Scalar> positions = {};         ///< dependent on position level
@@ -75,12 +82,7 @@ struct Closer {
       if (const int e = lines[at(l)].equation; e >= 0)
         names += (names.empty() ? "" : ", ") + name_of(g, g.equations[at(e)].target);
     const bool taken = found.weakest < 1e3 * kRankTolerance;
-    notes.push_back(
-        {Note::Kind::warning, "close",
-         fmt::format("the chain closed by {} is near a singular posture: {} states more or less "
-                     "(pivot {:.1e}, tolerance {:.0e}) would be {} without this decision",
-                     names, 2, taken ? found.weakest : found.dropped, kRankTolerance,
-                     taken ? "kept" : "dependent")});
+    doubts.push_back({std::move(names), taken ? found.weakest : found.dropped, taken});
   }
 };
 
@@ -119,7 +121,16 @@ Stage close(Stage stage) {
   closer.close(on_positions, Level::position);
   closer.close(on_rates, Level::velocity);
   stage.dependents = std::move(closer.dependents);
-  stage.notes.insert(stage.notes.end(), closer.notes.begin(), closer.notes.end());
+  int order = -static_cast<int>(stage.dependents.size());
+  for (const Signal& x : g.signals)
+    if (x.role == Signal::Role::state && x.active) order += x.size;
+  for (const Doubt& d : closer.doubts)
+    stage.notes.push_back(
+        {Note::Kind::warning, "close",
+         fmt::format("the chain closed by {} is near a singular posture (pivot {:.1e}, tolerance "
+                     "{:.0e}): order {}, or {} if that were taken for {}",
+                     d.joints, d.pivot, kRankTolerance, order, d.taken ? order + 2 : order - 2,
+                     d.taken ? "nothing" : "a constraint")});
   std::sort(stage.dependents.begin(), stage.dependents.end(), [](const auto& a, const auto& b) {
     return std::pair(a.node, a.state) < std::pair(b.node, b.state);
   });
