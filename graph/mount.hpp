@@ -13,8 +13,8 @@ concept HasParent = requires(const Handle& body) {
 };
 
 namespace detail {
-/// child.accel = T_ba^-1 site.accel, site.force += sign * T_ba child.force. The frames of T_ba are named
-/// after the two nodes if it has no names of its own.
+/// child.accel = T_ba^-1 site.accel, site.force += sign * T_ba child.force. The frames of T_ba are
+/// named after the two nodes if it has no names of its own.
 void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, SignalRef site_force,
            const Rotation& T_ba, const std::source_location& at, double sign = 1);
 void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location& at);
@@ -38,8 +38,8 @@ void mount(const Handle& body, const DualPort<1>& site,
   detail::mount(body.parent.accel, body.parent.force, site.accel, site.force, {}, at);
 }
 
-/// Joins two child points, `point` of a body (frame a) and `site` of another (frame b): same motion,
-/// opposite wrenches. What closes a chain: the bodies hang on something already.
+/// Joins two child points, `point` of a body (frame a) and `site` of another (frame b): same
+/// motion, opposite wrenches. What closes a chain: the bodies hang on something already.
 ///     point.accel = T_ba^-1 * site.accel;   site.force += -(T_ba * point.reaction);
 inline void weld(const DualPort<6>& point, const DualPort<6>& site, const Rotation& T_ba = {},
                  std::source_location at = std::source_location::current()) {
