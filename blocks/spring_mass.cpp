@@ -69,10 +69,11 @@ class SpringMassBlock : public Block {
     return p;
   }
 
-  std::optional<Kinematics> kinematics(ParameterValues) const override {
+  std::optional<Kinematics> kinematics(ParameterValues values) const override {
     Kinematics k{.reference = 1, .tau = {}, .Phi = {}};
     k.tau = {MatrixXd::Identity(1, 1), MatrixXd::Identity(1, 1)};
     k.Phi = {(MatrixXd(1, 2) << 1, 0).finished(), MatrixXd::Zero(1, 2)};
+    k.stiffness = Eigen::Vector2d(spec_.stiffness.at(values), 0);
     return k;
   }
 

@@ -124,10 +124,13 @@ struct Residual {
                 const std::vector<Drive>& drive) {
     b.known = b.known && values.known(t.signal);
     const MatrixXd c = -factor * coefficient(w, t, d.numbers.parameters);
-    b.add(c, values.of(t.signal), false, t.of == Term::Of::position ? 1.0 / (s * s) : 1.0);
+    b.add(c, values.of(t.signal), false,
+          t.of == Term::Of::position ? 1.0 / (s * s)
+          : t.of == Term::Of::rate   ? 1.0 / s
+                                     : 1.0);
     if (t.of != Term::Of::reaction) return;
     const int channel = w.signals[at(t.signal)].channel;
-    for (const int e : drive[at(channel)].added) add_force(b, -c, e, drive);
+    for (const int e : drive[at(channel)].added) add_force(b, c, e, drive);
   }
 
   void add_force(Balance& b, const MatrixXd& N, int e, const std::vector<Drive>& drive) {
@@ -234,25 +237,42 @@ void self_check(const SystemData& d, Certificate& certificate) {
 
 }  // namespace
 
+namespace {
+
+/// The model's states block by block: first and count.
+std::vector<std::pair<int, int>> segments(const SystemData& d) {
+  std::vector<std::pair<int, int>> result;
+  const std::vector<int>& kept = d.states.kept();
+  for (const int i : d.layout().state_nodes) {
+    const int begin = d.layout().state_first[at(i)],
+              end = begin + static_cast<int>(d.numbers.blocks[at(i)]->A.rows());
+    const auto first = std::lower_bound(kept.begin(), kept.end(), begin);
+    result.emplace_back(first - kept.begin(), std::lower_bound(first, kept.end(), end) - first);
+  }
+  return result;
+}
+
+}  // namespace
+
 double dense_difference(const SystemData& d, const StateSpace& m) {
   if (m.A.size() == 0) return 0;
   Numbers random;
   VectorXd x(m.A.rows()), u(m.B.cols());
   for (Eigen::Index i = 0; i < x.size(); ++i) x(i) = random.next();
   for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = random.next();
-  solve::RowMatrix<double> known(x.size() + u.size(), 1);
-  known << x, u;
+  const VectorXd all = d.states.expanded(x);
+  solve::RowMatrix<double> known(all.size() + u.size(), 1);
+  known << all, u;
   const Rates exact = rates(d, known);
-  VectorXd off = exact.xdot, size = VectorXd::Zero(x.size());
+  VectorXd off = d.states.kept_rows(VectorXd(exact.xdot)), size = VectorXd::Zero(x.size());
   for (const auto& [matrix, vector] : {std::pair(&m.A, &x), std::pair(&m.B, &u)})
     for (Eigen::Index j = 0; j < matrix->cols(); ++j) {  // once through memory
       off -= matrix->col(j) * (*vector)(j);
       size += matrix->col(j).cwiseAbs() * std::abs((*vector)(j));
     }
   double worst = 0;
-  for (const int i : d.layout().state_nodes) {
-    const auto first = d.layout().state_first[at(i)],
-               n = static_cast<int>(d.numbers.blocks[at(i)]->A.rows());
+  for (const auto& [first, n] : segments(d)) {
+    if (n == 0) continue;
     const double largest = size.segment(first, n).maxCoeff();
     if (largest > 0) worst = std::max(worst, off.segment(first, n).cwiseAbs().maxCoeff() / largest);
   }
@@ -269,16 +289,18 @@ DenseError dense_error(const SystemData& d, const StateSpace& m) {
   for (const double factor : {1e-4, 1e-2, 1.0, 1e2}) {
     const T s = factor * d.checked().certificate.s;
     const Evaluation<T> point(d, s, u);
-    solve::RowMatrix<T> x(m.A.rows(), 1);
+    solve::RowMatrix<T> x(d.layout().order(), 1);
     for (const int i : d.layout().state_nodes) {
       const int state = d.graph().nodes[at(i)].state;
       x.middleRows(d.layout().state_first[at(i)], d.graph().signals[at(state)].size) =
           point.value(state);
     }
+    x = d.states.kept_rows(x);
     VectorXcd left = -s * x;
     for (Eigen::Index j = 0; j < m.A.cols(); ++j) left += m.A.col(j) * x(j);
     left += m.B * u;
-    const solve::RowMatrix<T> change = point.forced(left), y = point.outputs();
+    const solve::RowMatrix<T> change = point.forced(d.states.expanded(solve::RowMatrix<T>(left))),
+                              y = point.outputs();
     // What C itself costs in rounding is one product: below what is looked for here.
     const double error = change.cwiseAbs().maxCoeff() / y.cwiseAbs().maxCoeff();
     if (error > worst.error) worst = {error, s};

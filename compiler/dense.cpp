@@ -339,6 +339,7 @@ class Writer {
 
 void write_dense(const SystemData& data, StateSpace& model, int threads) {
   Writer(data, model, threads).write();
+  data.states.reduce(model);
 }
 
 }  // namespace titop::detail

@@ -4,6 +4,7 @@
 namespace titop {
 namespace {
 
+using detail::StateMap;
 using detail::SystemData;
 using solve::Piece;
 using solve::RowMatrix;
@@ -95,8 +96,34 @@ struct Builder {
             g.outputs[o].terms[t].signal);
   }
 
+  /// The model's states first, then those that follow from them: these have 0 = T x - x in place
+  /// of their derivatives.
+  void set_dependents_apart() {
+    if (d.states.trivial()) return;
+    std::vector<int> place(at(states), -1);
+    int next = 0;
+    for (const int i : d.states.kept()) place[at(i)] = next++;
+    for (const StateMap::Row& row : d.states.dependent()) place[at(row.state)] = next++;
+    const auto moved = [&](const Triplets& list, bool rows, bool columns) {
+      Triplets result;
+      for (const auto& t : list) {
+        const int i = rows && t.row() < states ? place[at(t.row())] : t.row();
+        const int j = columns && t.col() < states ? place[at(t.col())] : t.col();
+        if (!rows || i < d.states.order() || i >= states) result.emplace_back(i, j, t.value());
+      }
+      return result;
+    };
+    A = moved(A, true, true), B = moved(B, true, false), C = moved(C, false, true);
+    for (const StateMap::Row& row : d.states.dependent()) {
+      A.emplace_back(place[at(row.state)], place[at(row.state)], -1.0);
+      for (const auto& [from, factor] : row.of) A.emplace_back(place[at(row.state)], from, factor);
+    }
+  }
+
   std::vector<std::string> names() const {
-    std::vector<std::string> result = d.layout().states;
+    std::vector<std::string> result = d.states.names();
+    for (const StateMap::Row& row : d.states.dependent())
+      result.push_back(d.layout().states[at(row.state)]);
     result.resize(at(states + k.joint.plan->unknowns));
     for (std::size_t v = 0; v < k.joint.variables.size(); ++v) {
       const int size = k.joint.plan->structure.variable_size[v];
@@ -123,17 +150,18 @@ Descriptor System::descriptor() const {
   b.add_states();
   b.add_rows();
   b.add_outputs();
+  b.set_dependents_apart();
   const Eigen::Index n = b.states + b.k.joint.plan->unknowns;
   const auto nu = static_cast<Eigen::Index>(inputs().size());
   const auto ny = static_cast<Eigen::Index>(outputs().size());
   Triplets e;
-  for (int i = 0; i < b.states; ++i) e.emplace_back(i, i, 1.0);
+  for (int i = 0; i < order(); ++i) e.emplace_back(i, i, 1.0);
   return {.E = sparse(n, n, e),
           .A = sparse(n, n, b.A),
           .B = sparse(n, nu, b.B),
           .C = sparse(ny, n, b.C),
           .D = sparse(ny, nu, b.D),
-          .states = b.states,
+          .states = order(),
           .names = b.names(),
           .inputs = inputs(),
           .outputs = outputs()};

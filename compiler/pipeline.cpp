@@ -36,9 +36,10 @@ constexpr Pass kPasses[] = {
     {"check", passes::check},  // the user's mistakes, in the user's words: before anything moves
     {"lower", passes::lower},  // one numeric coefficient per term; names decide the order from here
     {"split", passes::split},  // parts without input or output: no later pass need look at them
-    {"chains", passes::chains},  // closed chains, found on the kinematics, before forces matter
+    {"chains", passes::chains},  // what closes a chain twice is released: no rank can fail below
     {"match", passes::match},    // who determines whom: channel inversions come out here
     {"order", passes::order},    // loops, and what no input reaches or no output sees
+    {"close", passes::close},    // dependent coordinates, among the states that are left
 };
 
 void dump(const Options& options, int number, const char* name, const Stage& stage) {
@@ -65,6 +66,7 @@ void timed(detail::SystemData& data, const char* name, F f) {
 
 void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
   k.layout = detail::make_layout(k.stage.graph);
+  d.states = detail::StateMap(k.stage.dependents, k.layout);
   d.numbers.parameters = k.stage.values;
   for (const Node& node : k.stage.graph.nodes)
     d.numbers.blocks.push_back(node.block->dynamics(k.stage.values));
@@ -74,6 +76,7 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
   k.dependents = detail::find_dependents(k.stage, k.joint);
   if (const solve::Health health = d.factors->health(); health.singular)
     throw Error(solve::blame(k.stage, k.joint, d.numbers.blocks, health));
+  detail::judge_internal_forces(k, d);
   k.stage.notes.push_back({Note::Kind::info, "solve",
                            fmt::format("{} unknowns in {} fronts", k.joint.plan->unknowns,
                                        k.joint.plan->fronts.size())});
@@ -81,14 +84,15 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
 
 }  // namespace
 
-System compile(const Diagram& diagram, const Options& options) {
+namespace {
+
+std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options) {
   auto data = std::make_shared<detail::SystemData>();
   auto skeleton = std::make_shared<detail::Skeleton>();
   data->skeleton = skeleton;
   skeleton->options = options;
   Stage& stage = skeleton->stage;
-  stage.graph = diagram.graph();
-  stage.values = nominal_values(diagram.graph());
+  stage = std::move(stage_0);
   dump(options, 0, "diagram", stage);
   int number = 0;
   for (const Pass& pass : kPasses) {
@@ -100,15 +104,45 @@ System compile(const Diagram& diagram, const Options& options) {
   }
   timed(*data, "solve", [&] { solve_joint(*skeleton, *data); });
   data->notes = stage.notes;
-  timed(*data, "certify", [&] {
-    std::vector<int> loops(stage.loops.size());
-    std::iota(loops.begin(), loops.end(), 0);
-    std::vector<double> margins;
-    detail::find_margins(*data, loops, margins);
-    data->margins = std::make_shared<const std::vector<double>>(std::move(margins));
-    data->checked();
-  });
+  data->margins = std::make_shared<const std::vector<double>>(stage.loops.size(), 0.0);
+  data->changed_loops.resize(stage.loops.size());
+  std::iota(data->changed_loops.begin(), data->changed_loops.end(), 0);
+  return data;
+}
+
+/// The margins stay with the system, so that an update need find only those that it moves.
+void certify_now(detail::SystemData& data) {
+  std::vector<double> margins;
+  detail::find_margins(data, data.changed_loops, margins);
+  data.margins = std::make_shared<const std::vector<double>>(std::move(margins));
+  data.changed_loops.clear();
+  data.checked();
+}
+
+}  // namespace
+
+System compile(const Diagram& diagram, const Options& options) {
+  Stage stage;
+  stage.graph = diagram.graph();
+  stage.values = nominal_values(diagram.graph());
+  auto data = run(std::move(stage), options);
+  timed(*data, "certify", [&] { certify_now(*data); });
   return System(std::move(data));
 }
+
+namespace detail {
+
+std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector<double>& values) {
+  Stage stage;
+  stage.graph = *old.stage.source;
+  stage.values = values;
+  stage.dependents = old.stage.dependents;
+  stage.motions = old.stage.motions;
+  Options options = old.options;
+  options.dump_to.clear();
+  return run(std::move(stage), options);
+}
+
+}  // namespace detail
 
 }  // namespace titop

@@ -55,6 +55,7 @@ struct Matched {
 struct Origin {
   enum class Of {
     accel,      ///< equation `index` of the source, on an acceleration
+    released,   ///< nothing: a joint lets go of what is held twice
     force,      ///< all that drives the force of channel `index`
     one_way,    ///< equation `index` of the source, on a one-way port
     algebraic,  ///< the row of output signal `index` of a node that has become coefficients
@@ -63,6 +64,34 @@ struct Origin {
   Of of = Of::accel;
   int index = -1;
   std::vector<int> parameters = {};  ///< that its coefficients depend on, ascending
+  Eigen::MatrixXd times = {};        ///< rows of it that are kept (pass `chains`); empty: all
+};
+
+/// Integrators that `lower` adds for motions that no state holds.
+struct RigidMotion {
+  enum class Half { whole, linear, angular };  ///< whole: of a scalar point
+  int signal = -1;                             ///< the acceleration, in Stage::graph
+  Half half = Half::whole;
+  bool twice = false;  ///< its output is the position, else the rate
+  int node = -1;       ///< the Integrator
+  auto operator<=>(const RigidMotion&) const = default;
+};
+
+/// A closing equation that says something twice: in these directions the joint is released.
+struct Released {
+  int equation = -1;  ///< of the released force (new), in Stage::graph
+  int channel = -1;   ///< whose wrench is not determined there
+};
+
+/// A state that follows from others, because chains are closed or because it integrates what other
+/// states hold: x(node, state) = sum of factor * x(node, state).
+struct Dependent {
+  struct Share {
+    int node = -1, state = -1;
+    double factor = 0;
+  };
+  int node = -1, state = -1;
+  std::vector<Share> of = {};
 };
 
 /// What travels through the passes: the graph and what is known about it so far.
@@ -72,11 +101,15 @@ struct Stage {
   std::shared_ptr<const Graph> source;  ///< after lower: in its order, equations as written
   std::vector<Origin> origins;          ///< after lower: of every equation, then of every output
   std::shared_ptr<const std::vector<Drive>> drives;  ///< of source, where there are parameters
+  std::vector<RigidMotion> motions;                  ///< after lower
   std::vector<Note> notes;                           ///< the log
   std::vector<Row> rows;                             ///< after match: all rows
   Matched matched;                                   ///< after match
   std::vector<Inversion> inversions;                 ///< after match
   std::vector<Loop> loops;                           ///< after order: dependencies first
+  bool closes = false;                ///< after chains: chains close, or Integrators may hold twins
+  std::vector<Released> released;     ///< after chains
+  std::vector<Dependent> dependents;  ///< after close: by node and state
 };
 
 }  // namespace titop

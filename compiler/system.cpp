@@ -66,8 +66,8 @@ Rates rates(const SystemData& d, const RowMatrix<double>& known) {
 
 }  // namespace detail
 
-int System::order() const { return static_cast<int>(data_->layout().states.size()); }
-const std::vector<std::string>& System::states() const { return data_->layout().states; }
+int System::order() const { return data_->states.order(); }
+const std::vector<std::string>& System::states() const { return data_->states.names(); }
 const std::vector<std::string>& System::inputs() const { return data_->layout().inputs; }
 const std::vector<std::string>& System::outputs() const { return data_->layout().outputs; }
 const Stage& System::stage() const { return data_->skeleton->stage; }
@@ -77,10 +77,11 @@ System::Rates System::apply(const VectorXd& x, const VectorXd& u) const {
   if (x.size() != order() || u.size() != static_cast<Eigen::Index>(inputs().size()))
     throw Error(Code::size, fmt::format("apply: x has {} entries, u has {}", x.size(), u.size()),
                 fmt::format("x needs {}, u needs {}", order(), inputs().size()));
-  solve::RowMatrix<double> known(x.size() + u.size(), 1);
-  known << x, u;
+  const VectorXd all = data_->states.expanded(x);
+  solve::RowMatrix<double> known(all.size() + u.size(), 1);
+  known << all, u;
   const detail::Rates r = detail::rates(*data_, known);
-  return {r.xdot, r.y};
+  return {data_->states.kept_rows(VectorXd(r.xdot)), r.y};
 }
 
 namespace {

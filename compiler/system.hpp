@@ -19,6 +19,13 @@ namespace detail {
 struct SystemData;
 }
 
+/// Wrenches in closed chains that hold more than once, which motion does not determine.
+enum class InternalForces {
+  refuse,        ///< whoever reads one is refused by name
+  minimal_norm,  ///< the joint that closes the chain has the smallest wrench that will do, forces
+                 ///< [N] and torques [N m] alike; what reads it is marked in the log
+};
+
 /// How to compile.
 struct Options {
   /// Up to this many states, `state_space()` also removes what has no effect on the transfer
@@ -29,6 +36,7 @@ struct Options {
   /// Merge what differs by less than this (relative half-bandwidth) when minimizing; 0: only what
   /// rounding cannot tell from nothing.
   double resolution = 0;
+  InternalForces internal_forces = InternalForces::refuse;
 };
 
 /// With what arithmetic a transfer is found, coarse to fine. All run through the same elimination
@@ -100,7 +108,9 @@ class System {
   /// Pivots are judged at once; the rest of the certificate, and the warnings that come of it, are
   /// found when certificate(), notes(), log() or state_space() is first asked for: O(bodies).
   /// Throws unknown_name (with the names there are), not_finite, what the blocks throw for values
-  /// that make no block (bad_inertia, bad_value), improper and ill_posed.
+  /// that make no block (bad_inertia, bad_value), improper and ill_posed. Where closed chains
+  /// change their geometry all is compiled again; if other states then depend on the rest the log
+  /// says so.
   System update(const ParameterList& values) const;
 
   /// All parameters and their values here, in the order of their making.
@@ -120,7 +130,7 @@ class System {
   std::shared_ptr<const detail::SystemData> data_;
 };
 
-/// Compiles a diagram: check, lower, split, chains, match, order, solve, certify (see
+/// Compiles a diagram: check, lower, split, chains, match, order, close, solve, certify (see
 /// compiler/pipeline.cpp, which reads like this line). Throws Error with all mistakes of the first
 /// pass that finds any. Cost: linear in the number of bodies for trees.
 System compile(const Diagram& diagram, const Options& options = {});

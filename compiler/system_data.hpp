@@ -3,6 +3,7 @@
 #include <memory>
 #include <mutex>
 #include <titop/compiler/solve/numbers.hpp>
+#include <titop/compiler/state_map.hpp>
 #include <titop/compiler/system.hpp>
 
 /// What stands behind a System. For the compiler's own files only.
@@ -15,8 +16,9 @@ struct Layout {
   std::vector<int> input_first;   ///< per graph input: first column of u
   std::vector<int> output_first;  ///< per graph output: first row of y
   std::vector<int> known_first;   ///< per signal: first row of [x; u], -1 for unknowns
-  std::vector<std::string> states, inputs, outputs;
+  std::vector<std::string> states, inputs, outputs;  ///< states: of all blocks
 
+  /// States of all blocks, before those leave that follow from others (StateMap).
   Eigen::Index order() const { return static_cast<Eigen::Index>(states.size()); }
 };
 Layout make_layout(const Graph& graph);
@@ -54,6 +56,7 @@ struct Check {
 struct SystemData {
   std::shared_ptr<const Skeleton> skeleton;
   solve::Numbers numbers;
+  StateMap states;  ///< those of the model
   std::unique_ptr<const solve::Factors<double>> factors;
   /// Per loop of the stage as compiled; 0 where it was not found.
   std::shared_ptr<const std::vector<double>> margins;
@@ -80,7 +83,7 @@ struct SystemData {
 /// The rows of the joint system with the numbers of the state space.
 solve::JointRows<double> real_rows(const Skeleton& skeleton, const solve::Numbers& numbers);
 
-/// xdot and y for known = [x; u], column by column.
+/// xdot and y for known = [x; u], column by column; x and xdot of all blocks' states.
 struct Rates {
   solve::RowMatrix<double> xdot, y;
 };
@@ -100,6 +103,15 @@ DenseError dense_error(const SystemData& data, const StateSpace& dense);
 void find_margins(const SystemData& data, std::span<const int> loops, std::vector<double>& margins);
 /// The largest of these margins, one per loop, into the certificate.
 void worst_margin(const SystemData& data, std::span<const double> margins, Check& check);
+/// What is released in a closed chain (Stage::released) leaves internal forces undetermined: throws
+/// kinematic_loop for every output and controller that reads one, or notes them as minimal-norm
+/// where Options::internal_forces says so. One solution per released direction.
+void judge_internal_forces(Skeleton& skeleton, const SystemData& data);
+
+/// All passes once more for these values of the parameters. States that followed from the others
+/// still do, where that keeps the digits.
+std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector<double>& values);
+
 
 /// Certificate of the factors: see certify.cpp.
 Check certify(const SystemData& data);

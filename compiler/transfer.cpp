@@ -47,7 +47,10 @@ struct Assembly {
   void subtract(const MatrixXcd& factor, const std::vector<Term>& terms) {
     for (const Term& t : terms) {
       const MatrixXcd c = factor * coefficient(graph, t, values);
-      add(t.of == Term::Of::position ? MatrixXcd(-c / (s * s)) : MatrixXcd(-c), t.signal);
+      add(t.of == Term::Of::position ? MatrixXcd(-c / (s * s))
+          : t.of == Term::Of::rate   ? MatrixXcd(-c / s)
+                                     : MatrixXcd(-c),
+          t.signal);
       if (t.of != Term::Of::reaction) continue;
       const int channel = graph.signals[at(t.signal)].channel;
       subtract_equations(-c, drive[at(channel)].added);

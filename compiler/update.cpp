@@ -158,6 +158,47 @@ void remake_coefficients(const Skeleton& k, const std::vector<int>& origins, sol
   }
 }
 
+/// True if new values change what pass `close` looked at: the kinematics of a block, or equations
+/// between motions. Masses and stiffnesses do not.
+bool moves_chains(const Skeleton& k, const std::vector<int>& changed, ParameterValues before,
+                  ParameterValues now) {
+  const Stage& stage = k.stage;
+  if (stage.dependents.empty() && stage.released.empty()) return false;
+  for (const int i : united(k, changed, &Dependents::nodes)) {
+    const auto a = stage.graph.nodes[at(i)].block->kinematics(before),
+               b = stage.graph.nodes[at(i)].block->kinematics(now);
+    if (a && (a->tau != b->tau || a->Phi != b->Phi)) return true;
+  }
+  const auto origins = united(k, changed, &Dependents::origins);
+  return std::any_of(origins.begin(), origins.end(), [&](int o) {
+    const Origin::Of of = stage.origins[at(o)].of;
+    return of == Origin::Of::accel || of == Origin::Of::one_way || of == Origin::Of::algebraic;
+  });
+}
+
+/// "k = 3, angle = 0.2"
+std::string text_of(const Skeleton& k, const std::vector<int>& changed, ParameterValues values) {
+  std::string text;
+  for (const int p : changed)
+    text += fmt::format("{}{} = {:.6g}", text.empty() ? "" : ", ",
+                        k.stage.graph.parameters[at(p)].name, values[at(p)]);
+  return text.empty() ? "no new value" : text;
+}
+
+/// All passes again; says so, and whether the states are others.
+System compiled_again(const SystemData& old, const std::vector<int>& changed,
+                      const std::vector<double>& values) {
+  auto d = compile_again(*old.skeleton, values);
+  d->plans_renewed = old.plans_renewed + 1;
+  d->notes.push_back({Note::Kind::info, "update",
+                      fmt::format("{}: closed chains move, all compiled again",
+                                  text_of(*old.skeleton, changed, values))});
+  if (d->states.names() != old.states.names())
+    d->notes.push_back({Note::Kind::warning, "update",
+                        "other states depend on the rest than before: the model's states differ"});
+  return System(std::move(d));
+}
+
 /// True where the scaling found for the old values no longer serves: pivots that were good have
 /// lost half their digits, or none are left.
 bool outgrown(const solve::Health& now, const solve::Health& before) {
@@ -173,7 +214,10 @@ System System::update(const ParameterList& list) const {
   auto d = std::make_shared<SystemData>();
   d->skeleton = data_->skeleton;
   d->numbers = data_->numbers;
+  d->states = data_->states;
   const std::vector<int> changed = set_values(k.stage.graph, list, d->numbers.parameters);
+  if (moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))
+    return compiled_again(*data_, changed, d->numbers.parameters);
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
   remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers);
   const auto rows = real_rows(k, d->numbers);
@@ -191,14 +235,9 @@ System System::update(const ParameterList& list) const {
   }
   d->notes = data_->notes;
   std::erase_if(d->notes, [](const Note& n) { return n.pass == "update"; });
-  std::string values;
-  for (const int p : changed)
-    values += fmt::format("{}{} = {:.6g}", values.empty() ? "" : ", ",
-                          k.stage.graph.parameters[static_cast<std::size_t>(p)].name,
-                          d->numbers.parameters[static_cast<std::size_t>(p)]);
   d->notes.push_back(
       {Note::Kind::info, "update",
-       fmt::format("{}: {} of {} fronts made again", values.empty() ? "no new value" : values,
+       fmt::format("{}: {} of {} fronts made again", text_of(k, changed, d->numbers.parameters),
                    d->factors->fronts_made(), k.joint.plan->fronts.size())});
   d->margins = data_->margins;
   d->changed_loops = united(k, changed, &Dependents::loops);

@@ -91,6 +91,10 @@ struct Kinematics {
   int reference = 0;  ///< index of the reference channel (the parent)
   std::vector<Eigen::MatrixXd> tau;
   std::vector<Eigen::MatrixXd> Phi;
+  /// Stiffness of every state in the block's potential energy, sum of stiffness x^2 / 2 [J per unit
+  /// squared]; 0 where it stores none. Empty: states as of modes of mass 1, stiffness = omega^2.
+  /// It decides which coordinates of a closed chain depend on the others (soft ones).
+  Eigen::VectorXd stiffness = {};
 };
 
 /// A matrix of yes and no: may this output depend directly on this input?

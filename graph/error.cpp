@@ -24,7 +24,6 @@ std::string_view to_string(Code code) {
     case Code::bad_modes: return "bad-modes";
     case Code::bad_file: return "bad-file";
     case Code::bad_value: return "bad-value";
-    case Code::no_position: return "no-position";
     case Code::singular: return "singular";
   }
   return "unknown";

@@ -23,12 +23,11 @@ enum class Code {
   structure,       ///< every channel is driven and still the equations contradict in pattern
   ill_posed,       ///< an algebraic loop without a unique solution
   improper,        ///< the transfer would need derivatives of an input
-  kinematic_loop,  ///< bodies close a chain; links that do not meet
+  kinematic_loop,  ///< a closed chain that does not meet, or whose internal forces are asked for
   bad_inertia,     ///< no rigid body has this inertia
   bad_modes,       ///< modal data that contradict themselves
   bad_file,        ///< a file that cannot be read as what it should be
   bad_value,       ///< a number outside its range
-  no_position,     ///< the states do not determine this position
   singular,        ///< a matrix that must be inverted is singular, or s is a pole
 };
 

@@ -149,7 +149,9 @@ std::string print_unsigned(const Graph& graph, const Term& term, bool& negative)
   text += term.of == Term::Of::signal
               ? name_of(graph, term.signal)
               : channel_name(graph, graph.signals[static_cast<std::size_t>(term.signal)].channel) +
-                    (term.of == Term::Of::reaction ? ".reaction" : ".position");
+                    (term.of == Term::Of::reaction   ? ".reaction"
+                     : term.of == Term::Of::position ? ".position"
+                                                     : ".rate");
   return text + parts;
 }
 

@@ -36,9 +36,10 @@ struct Signal {
   int size = 1;
   int first = 0;  ///< first row in the block's u or y
   int frame = kNoFrame;
-  int channel = -1;    ///< index in Graph::channels, -1 for one-way ports
-  bool active = true;  ///< false once a pass has set it aside: it is 0, or nobody sees it
-  bool row = true;     ///< outputs: the block's row for it is in use
+  int channel = -1;      ///< index in Graph::channels, -1 for one-way ports
+  bool active = true;    ///< false once a pass has set it aside: it is 0, or nobody sees it
+  bool at_rest = false;  ///< set aside because nothing moves it
+  bool row = true;       ///< outputs: the block's row for it is in use
 };
 
 /// A pair of signals of one node.
@@ -67,8 +68,8 @@ using Factor = std::variant<Value, Rotation, Matrix, Part>;
 
 /// sign * factors * signal.
 struct Term {
-  enum class Of { signal, reaction, position };
-  int signal = -1;  ///< for `reaction` the channel's force, for `position` its acceleration
+  enum class Of { signal, reaction, position, rate };
+  int signal = -1;  ///< for `reaction` the channel's force, for the last two its acceleration
   Of of = Of::signal;
   double sign = 1;
   std::vector<Factor> factors = {};

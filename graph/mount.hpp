@@ -52,6 +52,20 @@ void mount_through(const Joint& joint, const std::string& name, const Handle& bo
 }
 }  // namespace detail
 
+/// Joins two child points, `point` of a body (frame a) and `site` of another (frame b): same
+/// motion, opposite wrenches. What closes a chain: the bodies hang on something already.
+///     point.accel = T_ba^-1 * site.accel;   site.force += -(T_ba * point.reaction);
+inline void weld(const DualPort<6>& point, const DualPort<6>& site, const Rotation& T_ba = {},
+                 std::source_location at = std::source_location::current()) {
+  detail::mount(point.accel, point.reaction, site.accel, site.force, T_ba, at, -1);
+}
+
+/// The same on a single axis.
+inline void weld(const DualPort<1>& point, const DualPort<1>& site,
+                 std::source_location at = std::source_location::current()) {
+  detail::mount(point.accel, point.reaction, site.accel, site.force, {}, at, -1);
+}
+
 /// Fixes this point to the inertial frame: accel = 0. Also one axis of it, the others left to be
 /// driven or released: `ground(beam.parent.along({0, 0, 1}))`.
 template <int N>

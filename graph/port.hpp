@@ -163,7 +163,8 @@ class DualPort {
       : accel(detail::SignalRef(graph, accel_signal)),
         force(detail::SignalRef(graph, force_signal)),
         reaction(graph, force_signal, Term::Of::reaction),
-        position(graph, accel_signal, Term::Of::position) {}
+        position(graph, accel_signal, Term::Of::position),
+        rate(graph, accel_signal, Term::Of::rate) {}
   DualPort(const DualPort&) = default;
   /// `a.parent = b.child` would look like an equation and be none: write mount(a, b.child).
   DualPort& operator=(const DualPort&) = delete;
@@ -172,8 +173,13 @@ class DualPort {
   Port<N, Kind::force> force;  ///< [N; N m]
   /// Force less what was added by `+=`: what a support that imposes the motion does by itself.
   Reading reaction;
-  /// Position [m; rad] in the states' own terms; only where the chain to ground determines it.
+  /// Displacement from rest [m; rad], small, in the body's frame; the rotation is a rotation
+  /// vector. Where the states determine it (a chain to the ground) it costs nothing. Motions that
+  /// they do not hold, rigid ones and prescribed ones, get their integrators, for the linear and
+  /// the angular half, once for all points that move along: one per degree of freedom for a rate,
+  /// two for a position, 0 at the start.
   Reading position;
+  Reading rate;  ///< velocity [m/s; rad/s], likewise
 
   /// One axis of the six: the point's motion along r and the force along r, as a port for blocks of
   /// one axis. r: any length but 0, in the port's frame.

@@ -131,6 +131,7 @@ Look look(const Picture& p, const Assignment& a, const Term& term) {
     result.before += "=" + to;
   if (term.of == Term::Of::reaction) result.before = joined(result.before, ".reaction");
   if (term.of == Term::Of::position) result.before = joined(result.before, ".position");
+  if (term.of == Term::Of::rate) result.before = joined(result.before, ".rate");
   result.before = joined(result.before, r.part);
   if (r.rotation || result.rows != s.size) result.after = extent(result.rows, to);
   result.after = joined(result.after, a.part);

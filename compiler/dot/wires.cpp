@@ -76,8 +76,9 @@ class Drawing {
 
   /// Of a term as it leaves its block, and of what arrives.
   Quantity read_as(const Term& t) const {
-    return t.of == Term::Of::position ? Quantity::position
-                                      : p_.graph.signals[at(t.signal)].quantity;
+    return t.of == Term::Of::rate       ? Quantity::velocity
+           : t.of == Term::Of::position ? Quantity::position
+                                        : p_.graph.signals[at(t.signal)].quantity;
   }
   Quantity quantity(const Term& t) const {
     return a_.target >= 0 ? p_.graph.signals[at(a_.target)].quantity : read_as(t);

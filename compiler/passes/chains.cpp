@@ -1,123 +1,260 @@
 #include <fmt/format.h>
 
+#include <Eigen/QR>
 #include <algorithm>
-#include <deque>
-#include <set>
+#include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/passes/union_find.hpp>
+#include <titop/graph/drives.hpp>
 
 namespace titop::passes {
 namespace {
 
+using Eigen::Index;
+using Eigen::MatrixXd;
+using namespace closing;
+
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Points are the channels; one more vertex is the ground. Bodies are uncut edges, joints are
-/// edges that may close a chain.
-struct Points {
+constexpr double kGap = 1e-6;       ///< a loop that is open by more does not close
+constexpr double kExactGap = 1e-9;  ///< by more it is noted
+
+// --- is there anything to look at?
+// ----------------------------------------------------------------
+
+/// Points and the ground, joined by what might tie them: false if nothing is tied twice.
+struct Quick {
   const Graph& g;
-  int ground;
-  UnionFind joined;
-  std::vector<std::vector<int>> tree;  ///< neighbours in the spanning forest
+  UnionFind joined = UnionFind(static_cast<int>(g.channels.size()) + 1);
+  int ground = static_cast<int>(g.channels.size());
 
-  explicit Points(const Graph& graph)
-      : g(graph),
-        ground(static_cast<int>(graph.channels.size())),
-        joined(ground + 1),
-        tree(graph.channels.size() + 1) {}
-
-  bool join(int a, int b) {
-    if (!joined.unite(a, b)) return false;
-    tree[at(a)].push_back(b);
-    tree[at(b)].push_back(a);
-    return true;
-  }
-
-  std::string name(int point) const {
-    return point == ground ? "the ground" : channel_name(g, point);
-  }
-
-  /// The points on the way from a to b through the forest.
-  std::string way(int a, int b) const {
-    std::vector<int> from(tree.size(), -1);
-    std::deque<int> queue{b};
-    from[at(b)] = b;
-    while (!queue.empty() && from[at(a)] < 0) {
-      const int p = queue.front();
-      queue.pop_front();
-      for (const int q : tree[at(p)])
-        if (from[at(q)] < 0) from[at(q)] = p, queue.push_back(q);
+  bool bodies(ParameterValues values) {
+    for (const Node& node : g.nodes) {
+      const auto& channels = node.block->interface().channels;
+      if (channels.empty()) continue;
+      const auto k = channels.size() < 2 ? std::nullopt : node.block->kinematics(values);
+      for (int i = 1; i < static_cast<int>(channels.size()); ++i)
+        if (!k) joined.unite(node.first_channel, node.first_channel + i);
+      for (int i = 0; k && i < static_cast<int>(channels.size()); ++i)
+        if (i != k->reference)
+          joined.unite(node.first_channel + i,
+                       k->tau[at(i)].isZero(0) ? ground : node.first_channel + k->reference);
     }
-    std::string text = name(a);
-    for (int p = a; p != b; p = from[at(p)]) text += " - " + name(from[at(p)]);
-    return text;
+    return false;
+  }
+
+  bool tied_twice(const Equation& e) {
+    const Signal& target = g.signals[at(e.target)];
+    if (!e.active || target.channel < 0 || target.quantity != Quantity::acceleration) return false;
+    bool points = false;
+    for (const Term& t : e.terms) {
+      const Signal& s = g.signals[at(t.signal)];
+      if (s.channel < 0 && s.node >= 0 && g.nodes[at(s.node)].lowered) return true;
+      if (s.channel < 0 || s.quantity != Quantity::acceleration) continue;
+      points = true;
+      if (!joined.unite(target.channel, s.channel)) return true;
+    }
+    return !points && !joined.unite(target.channel, ground);
+  }
+
+  bool closes(ParameterValues values) {
+    for (const Node& node : g.nodes)
+      if (node.block->type() == "Integrator") return true;
+    bodies(values);
+    return std::any_of(g.equations.begin(), g.equations.end(),
+                       [&](const Equation& e) { return tied_twice(e); });
   }
 };
 
-/// Channels of one block that move together rigidly, but for its own deformation.
-void join_bodies(Points& points, ParameterValues values) {
-  for (const Node& node : points.g.nodes) {
-    if (node.block->interface().channels.size() < 2) continue;
-    const auto k = node.block->kinematics(values);
-    if (!k) continue;
-    for (std::size_t i = 0; i < k->tau.size(); ++i)
-      if (static_cast<int>(i) != k->reference && !k->tau[i].isZero(0))
-        points.join(node.first_channel + k->reference, node.first_channel + static_cast<int>(i));
+// --- geometry
+// -------------------------------------------------------------------------------------
+
+std::string way(const Motion& motion, const Closing& c) {
+  std::string text;
+  for (std::size_t i = 0; i < c.chain.size(); ++i) {
+    if (i == 8 && c.chain.size() > 10) {
+      text += fmt::format(" - ... - {}", motion.name(c.chain.back()));
+      break;
+    }
+    text += (i ? " - " : "") + motion.name(c.chain[i]);
+  }
+  return text;
+}
+
+struct Checker {
+  const Graph& g;
+  const Motion& motion;
+  const Coordinates& coordinates;
+  std::vector<Mistake> mistakes = {};
+  std::vector<Note> notes = {};
+
+  void check(const Closing& c) {
+    const Equation& e = g.equations[at(c.tie->equation)];
+    const auto refuse = [&](std::string what, std::string hint) {
+      mistakes.push_back({Code::kinematic_loop,
+                          std::move(what),
+                          {fmt::format("{:<50} {}", print(g, e), to_string(e.where)),
+                           "the chain: " + way(motion, c)},
+                          std::move(hint)});
+    };
+    if (const int node = motion.silent(c.chain); node >= 0)
+      return refuse(fmt::format("{} closes a chain through {}, which does not say where its ports "
+                                "are",
+                                name_of(g, e.target), g.nodes[at(node)].name),
+                    "give its block kinematics() (README: how to add a block), or open one joint");
+    for (const auto& [column, matrix] : c.form)
+      if (column.kind == Column::Kind::states)
+        for (Index j = 0; j < matrix.cols(); ++j)
+          if (!matrix.col(j).isZero(0) && coordinates.rate_of(column.id, static_cast<int>(j)) < 0)
+            return refuse(
+                fmt::format(
+                    "{} closes a chain through {}, whose state {} has no rate among its "
+                    "states",
+                    name_of(g, e.target), g.nodes[at(column.id)].name,
+                    g.nodes[at(column.id)].block->interface().states[static_cast<std::size_t>(j)]),
+                "positions in kinematics() must be states whose derivatives are states too");
+    if (c.gap > kGap)
+      refuse(fmt::format("{} closes a chain that does not meet: off by {:.1e} of its size",
+                         name_of(g, e.target), c.gap),
+             "look at the lengths and rotations around the chain; joints hold at the posture that "
+             "the rotations give");
+    else if (c.gap > kExactGap)
+      notes.push_back(
+          {Note::Kind::warning, "chains",
+           fmt::format("{} closes its chain to {:.1e} only", name_of(g, e.target), c.gap)});
+  }
+};
+
+// --- what is said twice
+// ---------------------------------------------------------------------------
+
+MatrixXd orthonormal_rows(const MatrixXd& m) {
+  const Eigen::HouseholderQR<MatrixXd> qr(m.transpose());
+  MatrixXd Q = (qr.householderQ() * MatrixXd::Identity(m.cols(), m.rows())).transpose();
+  Q = (Q.array().abs() < 1e-12).select(0.0, Q);
+  for (Index i = 0; i < Q.rows(); ++i) Q.row(i).normalize();
+  // The span of unit vectors is spanned by them: their zeros and ones stay exact.
+  const Eigen::VectorXd share = Q.colwise().squaredNorm();
+  MatrixXd units(0, Q.cols());
+  for (Index j = 0; j < share.size(); ++j)
+    if (share(j) > 1 - 1e-12) {
+      units.conservativeResize(units.rows() + 1, Q.cols());
+      units.bottomRows(1) = Eigen::RowVectorXd::Unit(Q.cols(), j);
+    }
+  return units.rows() == Q.rows() ? units : Q;
+}
+
+/// The rows of an equation that `rows` keeps, as an equation.
+void keep_rows(Graph& g, Equation& e, const MatrixXd& rows) {
+  const int size = g.signals[at(e.target)].size;
+  e.part = {e.part.whole() ? rows : MatrixXd(rows * e.part.rows), e.part.name + ".independent"};
+  if (e.part.rows.rows() == size && e.part.rows.isIdentity(0)) e.part = {};
+  for (Term& t : e.terms) {
+    const auto& m = std::get<Matrix>(t.factors.front());
+    const Pattern p = structure(g, t);
+    const Pattern kept = ((rows.array() != 0).cast<int>().matrix() * p.cast<int>()).array() > 0;
+    t.factors = {Matrix{std::make_shared<const MatrixXd>(rows * *m.value),
+                        std::make_shared<const Pattern>(kept)}};
   }
 }
 
-/// Points that this equation ties its target to: other accelerations, or the ground. An
-/// acceleration that an input or a controller prescribes ties to nothing.
-std::set<int> tied_to(const Points& points, const Equation& e) {
-  std::set<int> result;
-  for (const Term& t : e.terms) {
-    const Signal& s = points.g.signals[at(t.signal)];
-    if (s.channel < 0 || s.quantity != Quantity::acceleration) return {};
-    result.insert(s.channel);
+/// In these directions (rows, in the space of the equation's rows) the joint lets go.
+void release(Stage& stage, int equation, const MatrixXd& directions) {
+  Graph& g = stage.graph;
+  const MatrixXd S = g.equations[at(equation)].part.whole()
+                         ? MatrixXd::Identity(directions.cols(), directions.cols())
+                         : g.equations[at(equation)].part.rows;
+  const int channel = g.signals[at(g.equations[at(equation)].target)].channel;
+  const MatrixXd kept = complement(directions, static_cast<int>(directions.cols()));
+  Equation force{.target = g.channels[at(channel)].force,
+                 .part = {directions * S, ".redundant"},
+                 .where = g.equations[at(equation)].where};
+  if (directions.rows() == g.channels[at(channel)].size) force.part = {};
+  Origin nothing{.of = Origin::Of::released, .index = equation};
+  if (kept.rows() == 0) {
+    g.equations[at(equation)] = force;
+    stage.origins[at(equation)] = nothing;
+    stage.released.push_back({equation, channel});
+    return;
   }
-  if (e.terms.empty()) result.insert(points.ground);
-  return result;
+  keep_rows(g, g.equations[at(equation)], kept);
+  stage.origins[at(equation)].times = kept;
+  stage.released.push_back({static_cast<int>(g.equations.size()), channel});
+  stage.origins.insert(stage.origins.begin() + static_cast<std::ptrdiff_t>(g.equations.size()),
+                       nothing);
+  g.equations.push_back(std::move(force));
 }
 
-/// Equations that impose the motion of a point. Default directions first: what is blamed for
-/// closing a chain is then its locked child point, if there is one.
-std::vector<int> motions(const Graph& g) {
-  std::vector<int> defaults, inverted;
-  for (int e = 0; e < static_cast<int>(g.equations.size()); ++e) {
-    const Signal& target = g.signals[at(g.equations[at(e)].target)];
-    if (!g.equations[at(e)].active || g.equations[at(e)].of_block || target.channel < 0 ||
-        target.quantity != Quantity::acceleration)
-      continue;
-    const auto& spec = g.nodes[at(target.node)].block->interface().channels[at(target.spec)];
-    if (spec.size == 1 && spec.name.empty()) continue;  // a joint's own axis is not a point
-    (spec.takes == Takes::accel ? defaults : inverted).push_back(e);
+std::string direction_names(const MatrixXd& directions) {
+  static constexpr const char* kNames[] = {"x", "y", "z", "about x", "about y", "about z"};
+  if (directions.cols() != 6 || directions.rows() == directions.cols()) return {};
+  std::string text;
+  for (Index i = 0; i < directions.rows(); ++i) {
+    Index j = 0;
+    if (!(directions.row(i).cwiseAbs().maxCoeff(&j) > 1 - 1e-12)) return {};
+    text += (i ? ", " : "") + std::string(kNames[j]);
   }
-  defaults.insert(defaults.end(), inverted.begin(), inverted.end());
-  return defaults;
+  return " (" + text + ")";
+}
+
+void release_redundant(Stage& stage, const std::vector<Closing>& closings) {
+  std::vector<Line> lines;
+  for (const Closing& c : closings) lines.push_back(line_of(c));
+  const Coordinates coordinates(stage.graph, stage.values);
+  // Whatever moves at all counts, prescribed motions too: they must agree with what is said twice.
+  const auto classify = [&](const Scalar& s) -> std::optional<closing::Meaning> {
+    const bool state = s.column.kind == Column::Kind::states;
+    return closing::Meaning{state ? Relations::Role::coordinate : Relations::Role::unknown,
+                            state ? coordinates.weight(s.column.id, s.index) : 0};
+  };
+  for (Component& c : components(lines, classify)) {
+    const MatrixXd before = c.relations.R;
+    const Factors factors = scale(c.relations);
+    MatrixXd known(before.cols(), 0);
+    for (std::size_t i = 0; i < c.lines.size(); ++i) {
+      const Line& line = lines[at(c.lines[i])];
+      const auto rows = static_cast<Index>(line.unit.size());
+      const Redundant r = redundant(c.relations.R.middleRows(c.first_row[i], rows), known);
+      const std::string name =
+          name_of(stage.graph, stage.graph.equations[at(line.equation)].target);
+      if (r.doubtful())
+        stage.notes.push_back(
+            {Note::Kind::warning, "chains",
+             fmt::format("{}: {} of {} closing equations are independent, by a narrow margin "
+                         "(smallest kept {:.1e}, largest dropped {:.1e}, tolerance {:.0e})",
+                         name, rows - r.directions.rows(), rows, r.weakest, r.dropped,
+                         kRankTolerance)});
+      if (r.directions.rows() == 0) continue;
+      const MatrixXd directions =
+          orthonormal_rows(r.directions * factors.row.segment(c.first_row[i], rows).asDiagonal());
+      stage.notes.push_back(
+          {Note::Kind::info, "chains",
+           fmt::format("{}: {} of {} closing equations are redundant{}; internal forces there are "
+                       "not determined",
+                       name, directions.rows(), rows, direction_names(directions))});
+      release(stage, line.equation, directions);
+    }
+  }
 }
 
 }  // namespace
 
 Stage chains(Stage stage) {
-  const Graph& g = stage.graph;
-  Points points(g);
-  join_bodies(points, stage.values);
-  std::vector<Mistake> mistakes;
-  std::set<std::pair<int, int>> done;  // a joint may be written in parts (.linear, .angular)
-  for (const int index : motions(g)) {
-    const Equation& e = g.equations[at(index)];
-    const int point = g.signals[at(e.target)].channel;
-    for (const int other : tied_to(points, e)) {
-      if (!done.emplace(point, other).second || points.join(point, other)) continue;
-      mistakes.push_back(
-          {Code::kinematic_loop,
-           fmt::format("{} closes a chain", name_of(g, e.target)),
-           {fmt::format("{:<50} {}", print(g, e), to_string(e.where)),
-            "the chain: " + points.way(point, other)},
-           "closed chains are not offered yet: open one joint of the chain, or replace its last "
-           "body by a spring that acts through forces"});
-    }
+  if (!Quick{stage.graph}.closes(stage.values)) return stage;
+  stage.closes = true;
+  const Twins twins(stage.graph);
+  const Motion motion(stage.graph, stage.values, twins);
+  const Coordinates coordinates(stage.graph, stage.values);
+  Checker checker{stage.graph, motion, coordinates};
+  std::vector<Closing> closings;
+  for (const Tie& tie : motion.ties()) {
+    if (!tie.closes || !stage.graph.equations[at(tie.equation)].active) continue;
+    closings.push_back(motion.closing(tie));
+    checker.check(closings.back());
   }
-  if (!mistakes.empty()) throw Error(std::move(mistakes));
+  if (!checker.mistakes.empty()) throw Error(std::move(checker.mistakes));
+  stage.notes.insert(stage.notes.end(), checker.notes.begin(), checker.notes.end());
+  if (!closings.empty()) release_redundant(stage, closings);
   return stage;
 }
 

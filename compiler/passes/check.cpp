@@ -91,6 +91,7 @@ Kind describe(Checker& c, const Term& term, const std::source_location& where) {
   const Signal& s = c.graph.signals[at(term.signal)];
   Kind kind{s.size, s.quantity, s.frame};
   if (term.of == Term::Of::position) kind.quantity = Quantity::position;
+  if (term.of == Term::Of::rate) kind.quantity = Quantity::velocity;
   const std::string text = print(c.graph, term);
   for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f)
     if (!apply(c, kind, *f, text, where)) return {-1};

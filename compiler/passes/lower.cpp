@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <numeric>
+#include <set>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/nodes/lti.hpp>
 
 namespace titop::passes {
 namespace {
@@ -117,9 +119,18 @@ struct Lowering {
   int asked = -1;              ///< node whose matrices are at hand
   std::shared_ptr<const Dynamics> at_hand = {};
   std::vector<Mistake> mistakes = {};
+  std::vector<RigidMotion> motions;
+  std::set<RigidMotion> missing = {};  ///< motions that have no Integrator yet
 
-  Lowering(const Graph& graph, ParameterValues v, std::shared_ptr<const std::vector<Drive>> d)
-      : g(graph), values(v), all_drives(std::move(d)), visiting(graph.channels.size(), 0) {}
+  enum class Level { position, rate };
+
+  Lowering(const Graph& graph, ParameterValues v, std::shared_ptr<const std::vector<Drive>> d,
+           std::vector<RigidMotion> m)
+      : g(graph),
+        values(v),
+        all_drives(std::move(d)),
+        visiting(graph.channels.size(), 0),
+        motions(std::move(m)) {}
 
   /// What an equation or output of the lowered graph amounts to.
   Sum1 amount(const Origin& origin);
@@ -135,17 +146,49 @@ struct Lowering {
   Sum1 terms(const std::vector<Term>& list);
   Sum1 force(int channel);
   Sum1 algebraic(int output);
-  Sum1 position(int channel);
-  Sum1 body_position(const Channel& c, const Kinematics& k);
+  Sum1 twin(int channel, Level level);
+  Sum1 body_twin(const Channel& c, const Kinematics& k, Level level);
+  Sum1 own_motion(int channel) const;
+  Sum1 integrated(Sum1 sum, Level level);
   Sum1 added(int channel, const std::vector<int>& equations);
-  [[noreturn]] void no_position(int channel, const std::string& why) const;
 };
 
-void Lowering::no_position(int channel, const std::string& why) const {
-  throw Error(
-      Code::no_position,
-      fmt::format("the position of {} is not determined by the states", channel_name(g, channel)),
-      "integrate its acceleration with an Integrator, twice, or read a stretch or an angle", {why});
+/// A motion that no state holds: stands for the integral of the acceleration until `integrated`.
+Sum1 Lowering::own_motion(int channel) const {
+  const Channel& c = g.channels[at(channel)];
+  const MatrixXd I = MatrixXd::Identity(c.size, c.size);
+  return {{c.accel, I, I.array() != 0}};
+}
+
+/// Accelerations in a twin become the outputs of their Integrators; those that are missing are
+/// noted.
+Sum1 Lowering::integrated(Sum1 sum, Level level) {
+  Sum1 result;
+  for (Part1& p : sum) {
+    const Signal& s = g.signals[at(p.signal)];
+    if (s.role == Signal::Role::state) {
+      result.push_back(std::move(p));
+      continue;
+    }
+    const int step = s.size == 6 ? 3 : s.size;
+    for (int first = 0; first < s.size; first += step) {
+      if (!p.p.middleCols(first, step).any()) continue;
+      const RigidMotion wanted{p.signal,
+                               s.size != 6  ? RigidMotion::Half::whole
+                               : first == 0 ? RigidMotion::Half::linear
+                                            : RigidMotion::Half::angular,
+                               level == Level::position, -1};
+      const auto found = std::find_if(motions.begin(), motions.end(), [&](const RigidMotion& m) {
+        return m.signal == wanted.signal && m.half == wanted.half && m.twice == wanted.twice;
+      });
+      if (found == motions.end())
+        missing.insert(wanted);
+      else
+        result.push_back({g.nodes[at(found->node)].first_signal + 1, p.c.middleCols(first, step),
+                          p.p.middleCols(first, step)});
+    }
+  }
+  return result;
 }
 
 template <class F>
@@ -182,8 +225,9 @@ Sum1 Lowering::terms(const std::vector<Term>& list) {
       throw Error(Code::not_finite, fmt::format("the coefficient of {} is not finite", print(g, t)),
                   "look at its gains and parameters");
     const int channel = g.signals[at(t.signal)].channel;
-    if (t.of == Term::Of::position) {
-      append(sum, times(c, position(channel)));
+    if (t.of == Term::Of::position || t.of == Term::Of::rate) {
+      const Level level = t.of == Term::Of::rate ? Level::rate : Level::position;
+      append(sum, integrated(times(c, twin(channel, level)), level));
       continue;
     }
     sum.push_back({t.signal, c, structure(g, t)});
@@ -193,59 +237,65 @@ Sum1 Lowering::terms(const std::vector<Term>& list) {
   return sum;
 }
 
-/// The position of a channel in terms of states: the twin of the equation that drives its
-/// acceleration, or the block's own kinematics from the parent's position.
-Sum1 Lowering::position(int channel) {
+/// The position or rate of a channel in terms of states and of motions that no state holds: the
+/// twin of the equation that drives its acceleration, or the block's own kinematics from the
+/// parent's position.
+Sum1 Lowering::twin(int channel, Level level) {
   const Channel& c = g.channels[at(channel)];
   const Drive& d = drive[at(channel)];
-  if (visiting[at(channel)]) no_position(channel, "its chain leads back to itself");
+  const bool back = visiting[at(channel)];  // round a closed chain: the motion of all of it
+  if (back || (!d.accel.empty() && d.N.rows() > 0)) return own_motion(channel);
   visiting[at(channel)] = 1;
   Sum1 sum;
   if (!d.accel.empty()) {
-    if (d.N.rows() > 0) no_position(channel, "it is only partly held");
     for (const int e : d.accel) {
       const Equation& equation = g.equations[at(e)];
       const MatrixXd embed = equation.part.whole() ? MatrixXd::Identity(c.size, c.size)
                                                    : MatrixXd(equation.part.rows.transpose());
       for (const Term& t : equation.terms) {
         const Signal& s = g.signals[at(t.signal)];
-        if (s.channel < 0 || s.quantity != Quantity::acceleration)
-          no_position(channel, fmt::format("{} is driven by {}", name_of(g, c.accel), print(g, t)));
-        append(sum, times(embed * coefficient_of(t), position(s.channel)));
+        if (s.channel < 0 || s.quantity != Quantity::acceleration || t.of != Term::Of::signal) {
+          visiting[at(channel)] = 0;
+          return own_motion(channel);  // prescribed
+        }
+        append(sum, times(embed * coefficient_of(t), twin(s.channel, level)));
       }
     }
   } else if (const auto k = g.nodes[at(c.node)].block->kinematics(values)) {
     meet(g.nodes[at(c.node)].block->values());
-    sum = body_position(c, *k);
+    sum = body_twin(c, *k, level);
   } else {
-    no_position(channel,
-                fmt::format("{} does not say where its ports are", g.nodes[at(c.node)].name));
+    sum = own_motion(channel);
   }
   visiting[at(channel)] = 0;
   return sum;
 }
 
-Sum1 Lowering::body_position(const Channel& c, const Kinematics& k) {
+Sum1 Lowering::body_twin(const Channel& c, const Kinematics& k, Level level) {
   const Node& node = g.nodes[at(c.node)];
   const auto deformation = [&](int spec, double sign) {
-    const MatrixXd& Phi = k.Phi[at(spec)];
-    return Sum1{{node.state, sign * Phi, Phi.array() != 0}};
+    MatrixXd Phi = sign * k.Phi[at(spec)];
+    if (level == Level::rate) Phi = Phi * node.block->dynamics(values)->A;
+    Pattern pattern = Phi.array() != 0;
+    return Sum1{{node.state, std::move(Phi), std::move(pattern)}};
   };
   if (c.spec != k.reference) {
-    Sum1 sum = times(k.tau[at(c.spec)], position(node.first_channel + k.reference));
+    Sum1 sum = times(k.tau[at(c.spec)], twin(node.first_channel + k.reference, level));
     if (node.state >= 0) append(sum, deformation(c.spec, 1));
     return sum;
   }
   for (int spec = 0; spec < static_cast<int>(k.tau.size()); ++spec) {
     const int other = node.first_channel + spec;
     if (spec == k.reference || drive[at(other)].accel.empty()) continue;
-    const linalg::Inverse inverse = linalg::inverse(k.tau[at(spec)]);
+    const linalg::Inverse inverse = k.tau[at(spec)].rows() == k.tau[at(spec)].cols()
+                                        ? linalg::inverse(k.tau[at(spec)])
+                                        : linalg::Inverse{};
     if (inverse.rcond == 0) continue;
-    Sum1 sum = position(other);
+    Sum1 sum = twin(other, level);
     if (node.state >= 0) append(sum, deformation(spec, -1));
     return times(inverse.matrix, std::move(sum));
   }
-  no_position(node.first_channel + c.spec, fmt::format("{} moves freely", node.name));
+  return own_motion(node.first_channel + c.spec);
 }
 
 MatrixXd Lowering::coefficient_of(const Term& t) {
@@ -294,6 +344,7 @@ Sum1 Lowering::amount(const Origin& o) {
   switch (o.of) {
     case Origin::Of::accel:
     case Origin::Of::one_way: return terms(g.equations[at(o.index)].terms);
+    case Origin::Of::released: return {};
     case Origin::Of::force: return force(o.index);
     case Origin::Of::algebraic: return algebraic(o.index);
     case Origin::Of::output: return terms(g.outputs[at(o.index)].terms);
@@ -375,11 +426,100 @@ Graph without_equations(const Graph& g) {
 
 }  // namespace
 
+namespace {
+
+/// "hub.parent.angular_rate"
+std::string name_of(const Graph& g, const RigidMotion& m) {
+  const std::string half = m.half == RigidMotion::Half::linear    ? "linear_"
+                           : m.half == RigidMotion::Half::angular ? "angular_"
+                                                                  : "";
+  return channel_name(g, g.signals[at(m.signal)].channel) + "." + half +
+         (m.twice ? "position" : "rate");
+}
+
+/// Integrators of the acceleration, once or twice, as a user would write them.
+void add_integrators(Graph& g, const std::set<RigidMotion>& missing,
+                     std::vector<RigidMotion>& motions) {
+  std::set<RigidMotion> all = missing;
+  for (RigidMotion m : missing)
+    if (m.twice) {
+      m.twice = false;
+      const bool there = std::any_of(motions.begin(), motions.end(), [&](const RigidMotion& o) {
+        return o.signal == m.signal && o.half == m.half && !o.twice;
+      });
+      if (!there) all.insert(m);
+    }
+  const auto find = [&](const RigidMotion& m, bool twice) {
+    return std::find_if(motions.begin(), motions.end(),
+                        [&](const RigidMotion& o) {
+                          return o.signal == m.signal && o.half == m.half && o.twice == twice;
+                        })
+        ->node;
+  };
+  for (const bool twice : {false, true})
+    for (RigidMotion m : all) {
+      if (m.twice != twice) continue;
+      const int size = g.signals[at(m.signal)].size;
+      const bool half = m.half != RigidMotion::Half::whole;
+      const Node& owner = g.nodes[at(g.signals[at(m.signal)].node)];
+      m.node = add_node(g, name_of(g, m), as_block(Integrator{half ? 3 : size}), owner.where);
+      Term from{.signal = m.signal};
+      if (twice) {
+        from.signal = g.nodes[at(find(m, false))].first_signal + 1;
+      } else if (half) {
+        const int first = m.half == RigidMotion::Half::angular ? 3 : 0;
+        from.factors.emplace_back(
+            Part{MatrixXd::Identity(6, 6).middleRows(first, 3), first ? ".angular" : ".linear"});
+      }
+      g.equations.push_back({.target = g.nodes[at(m.node)].first_signal, .terms = {from}});
+      motions.push_back(m);
+    }
+}
+
+/// Integrators for positions and rates that no state holds: once per assembly, as far as the
+/// coefficients of those asked for may reach them.
+void add_rigid_motions(Stage& stage, Graph& g) {
+  std::set<RigidMotion> missing;
+  {
+    Lowering l(g, stage.values, std::make_shared<const std::vector<Drive>>(drives(g)),
+               stage.motions);
+    const auto look = [&](const std::vector<Term>& terms) {
+      for (const Term& t : terms)
+        if (t.of == Term::Of::position || t.of == Term::Of::rate) l.terms({t});
+    };
+    for (const Equation& e : g.equations) look(e.terms);
+    for (const Output& o : g.outputs) look(o.terms);
+    missing = l.missing;
+  }
+  if (missing.empty()) return;
+  add_integrators(g, missing, stage.motions);
+  // In order of names again; the motions follow by theirs.
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const RigidMotion& m : stage.motions)
+    names.emplace_back(titop::name_of(g, m.signal), g.nodes[at(m.node)].name);
+  g = by_name(g);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    RigidMotion& m = stage.motions[i];
+    for (int n = 0; n < static_cast<int>(g.nodes.size()); ++n)
+      if (g.nodes[at(n)].name == names[i].second) m.node = n;
+    for (const Channel& c : g.channels)
+      if (titop::name_of(g, c.accel) == names[i].first) m.signal = c.accel;
+  }
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) list += (i ? ", " : "") + names[i].second;
+  stage.notes.push_back(
+      {Note::Kind::info, "lower", "motions that no other state holds are integrated: " + list});
+}
+
+}  // namespace
+
 Stage lower(Stage stage) {
-  stage.source = std::make_shared<const Graph>(by_name(stage.graph));
+  Graph source = by_name(stage.graph);
+  add_rigid_motions(stage, source);
+  stage.source = std::make_shared<const Graph>(std::move(source));
   Graph g = without_equations(*stage.source);
   auto all_drives = std::make_shared<const std::vector<Drive>>(drives(*stage.source));
-  Lowering l(*stage.source, stage.values, all_drives);
+  Lowering l(*stage.source, stage.values, all_drives, stage.motions);
   if (!g.parameters.empty()) stage.drives = std::move(all_drives);
   Lowered out{l};
   for (int c = 0; c < static_cast<int>(g.channels.size()); ++c) out.channel(c);
@@ -406,9 +546,13 @@ Stage lower(Stage stage) {
 
 std::vector<std::vector<Term>> lower_again(const Stage& stage, const std::vector<int>& origins,
                                            ParameterValues values) {
-  Lowering l(*stage.source, values, stage.drives);
+  Lowering l(*stage.source, values, stage.drives, stage.motions);
   std::vector<std::vector<Term>> result;
-  for (const int o : origins) result.push_back(merged(l.amount(stage.origins[at(o)])));
+  for (const int o : origins) {
+    const Origin& origin = stage.origins[at(o)];
+    Sum1 sum = l.amount(origin);
+    result.push_back(merged(origin.times.size() ? times(origin.times, std::move(sum)) : sum));
+  }
   return result;
 }
 

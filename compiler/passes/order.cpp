@@ -79,6 +79,8 @@ void set_aside(Stage& stage, const std::vector<std::vector<int>>& needs) {
   }
   for (const Output& o : g.outputs)
     for (const Term& t : o.terms) sinks.push_back(t.signal);
+  // A released joint's wrench is 0 by choice: what it would move is still to be judged (solve).
+  for (const Released& r : stage.released) sources.push_back(g.equations[at(r.equation)].target);
   if (g.inputs.empty()) sources.insert(sources.end(), states.begin(), states.end());
   if (g.outputs.empty()) sinks.insert(sinks.end(), states.begin(), states.end());
   const std::vector<char> moved = reach(reversed(needs), sources), seen = reach(needs, sinks);
@@ -87,6 +89,7 @@ void set_aside(Stage& stage, const std::vector<std::vector<int>>& needs) {
     if (sig.role == Signal::Role::external || !sig.active || (moved[at(s)] && seen[at(s)]))
       continue;
     sig.active = false;
+    sig.at_rest = !moved[at(s)];
     if (sig.role != Signal::Role::state) continue;
     const std::string& name = g.nodes[at(sig.node)].name;
     stage.notes.push_back({Note::Kind::removed, "order",

@@ -15,7 +15,8 @@ Stage check(Stage stage);
 
 /// Nodes, inputs and equations stand in natural order of their names; every driven part has
 /// exactly one equation; `+=`, reactions and positions are written out; every term has one numeric
-/// coefficient; Gain and Sum are equations. Throws no_position, not_finite. O(terms).
+/// coefficient; Gain and Sum are equations. Positions and rates that
+/// no state holds get Integrators, listed, once per assembly. Throws not_finite. O(terms).
 Stage lower(Stage stage);
 
 /// The terms of these equations and outputs (by their places in Stage::origins) for other parameter
@@ -28,8 +29,12 @@ std::vector<std::vector<Term>> lower_again(const Stage& stage, const std::vector
 /// (seen). O(terms).
 Stage split(Stage stage);
 
-/// Every kinematic chain is open: spanning tree over points, bodies and joints. Closed chains are
-/// refused by name (kinematic_loop). O(terms).
+/// Closed kinematic chains, through the ground or among bodies, are consistent: where a closing
+/// equation says what others say already (two rigid bodies welded at two points, a planar mechanism
+/// of 6-dof joints), the joint is released in these directions and listed, so that every closing
+/// equation left is independent; the motion is the same. Throws kinematic_loop where the geometry
+/// does not close, and where a body on the chain does not say where its ports are. O(terms) where
+/// all chains are open, else O(rows^2 columns) per connected set of chains (compiler/passes/close).
 Stage chains(Stage stage);
 
 /// Every row has its unknown: maximum bipartite matching by whole signals from each channel's
@@ -40,6 +45,13 @@ Stage match(Stage stage);
 /// Block triangular form: strong components are the algebraic loops, dependencies first. What no
 /// input reaches or no output sees is set aside and listed. O(terms).
 Stage order(Stage stage);
+
+/// States that follow from others are known, on position and on velocity level: dependent
+/// coordinates of closed chains, and Integrators of accelerations or rates that the states hold
+/// already. They leave the model (Stage::dependents); states that an input prescribes stay. Ranks
+/// are decided after scaling; decisions near the tolerance are noted with both orders. Cost as
+/// `chains`.
+Stage close(Stage stage);
 
 /// The graph's invariants, checked after every pass; throws std::logic_error (a fault of ours).
 void verify(const Stage& stage);

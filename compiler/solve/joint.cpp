@@ -24,6 +24,8 @@ std::vector<int> written_out_by(const Stage& stage) {
   for (int i = 0; i < static_cast<int>(g.equations.size()); ++i) {
     const Equation& e = g.equations[at(i)];
     if (!e.active || !e.part.whole() || !is_unknown(g.signals[at(e.target)])) continue;
+    // What is released keeps its row: internal forces are found by its right-hand side.
+    if (stage.origins[at(i)].of == Origin::Of::released) continue;
     const bool plain = std::all_of(e.terms.begin(), e.terms.end(), [&](const Term& t) {
       return times_target[at(t.signal)] == 0 && g.signals[at(t.signal)].role != Signal::Role::state;
     });

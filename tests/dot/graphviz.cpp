@@ -66,7 +66,7 @@ TEST_CASE("Graphviz reads every stage of every scene") {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(folder.path)) files.push_back(entry.path());
     std::sort(files.begin(), files.end());
-    REQUIRE(files.size() == 7);
+    REQUIRE(files.size() == 8);
     CHECK(files.front().filename() == "00-diagram.dot");
     CHECK(read(files.front()) == to_dot(d));
     for (const fs::path& file : files) {

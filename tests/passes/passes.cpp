@@ -45,7 +45,8 @@ struct Pass {
 };
 constexpr Pass kPasses[] = {{"check", passes::check}, {"lower", passes::lower},
                             {"split", passes::split}, {"chains", passes::chains},
-                            {"match", passes::match}, {"order", passes::order}};
+                            {"match", passes::match}, {"order", passes::order},
+                            {"close", passes::close}};
 
 Stage run_until(const Diagram& d, std::string_view last) {
   Stage stage = start(d);
@@ -87,7 +88,8 @@ TEST_CASE("every pass keeps the transfer, and so do the system and its dense mod
     CHECK(system.certificate().residual <= 1e-14);
     CHECK(system.certificate().dense_against_factors <= 1e-13);
     CHECK(system.certificate().seconds > 0);  // what the check costs is told
-    for (const char* pass : {"check", "lower", "split", "chains", "match", "order", "solve"})
+    for (const char* pass :
+         {"check", "lower", "split", "chains", "match", "order", "close", "solve"})
       CHECK(system.timings().find("  " + std::string(pass) + " ") != std::string::npos);
     CHECK(system.timings().find("  certify ") != std::string::npos);
   }

@@ -58,7 +58,7 @@ TEST_CASE("random graphs: the minimized model has the same transfer to 1e-9") {
     }
 }
 
-TEST_CASE("promises of split and chains: broken before the pass, or where it would refuse") {
+TEST_CASE("promises of split and close: broken before the pass") {
   titop::Diagram d{"two"};
   auto u = d.input("u");
   auto a = d.add("a", titop::SpringMass{}), b = d.add("b", titop::SpringMass{});
@@ -69,9 +69,11 @@ TEST_CASE("promises of split and chains: broken before the pass, or where it wou
   d.output("x") = b.position;
   CHECK_THROWS(demand_split(lowered(d)));
   CHECK_NOTHROW(demand_split(titop::passes::split(lowered(d))));
-  CHECK_NOTHROW(demand_open(lowered(d)));
-  alone.child.accel = 0;  // between two walls
-  CHECK_THROWS(demand_open(lowered(d)));
+  CHECK_NOTHROW(demand_not_redundant(lowered(d)));
+  CHECK_NOTHROW(demand_closed(lowered(d)));
+  alone.child.accel = 0;  // between two walls: one stretch, and it is 0
+  CHECK_NOTHROW(demand_not_redundant(lowered(d)));
+  CHECK_THROWS(demand_closed(lowered(d)));
 }
 
 TEST_CASE("random graphs: the generator covers what it promises") {

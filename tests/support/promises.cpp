@@ -1,7 +1,7 @@
 #include "support/promises.hpp"
 
+#include <Eigen/SVD>
 #include <algorithm>
-#include <map>
 #include <set>
 #include <stdexcept>
 #include <titop/compiler/passes/incidence.hpp>
@@ -92,45 +92,138 @@ void demand_split(const Stage& stage) {
 
 namespace {
 
-using Edges = std::set<std::pair<int, int>>;
+using Eigen::Index;
+using Eigen::MatrixXd;
 
-/// Between channels, and the ground (-1): motions that bodies carry on and equations impose.
-Edges chain_edges(const Stage& stage) {
-  const Graph& g = stage.graph;
-  Edges edges;
-  for (const Node& node : g.nodes)
-    if (const auto k = node.block->kinematics(stage.values))
-      for (int i = 0; i < static_cast<int>(k->tau.size()); ++i)
-        if (i != k->reference && !k->tau[at(i)].isZero(0))
-          edges.emplace(node.first_channel + k->reference, node.first_channel + i);
-  for (const Equation& e : g.equations) {
-    const Signal& target = g.signals[at(e.target)];
-    if (!e.active || target.channel < 0 || target.quantity != Quantity::acceleration) continue;
-    if (channel_name(g, target.channel) == g.nodes[at(target.node)].name) continue;  // a joint's
-    const bool prescribed = std::any_of(e.terms.begin(), e.terms.end(), [&](const Term& t) {
-      const Signal& s = g.signals[at(t.signal)];
-      return s.channel < 0 || s.quantity != Quantity::acceleration;
-    });
-    if (prescribed) continue;
-    if (e.terms.empty()) edges.emplace(target.channel, -1);
-    for (const Term& t : e.terms) edges.emplace(target.channel, g.signals[at(t.signal)].channel);
+/// All that bodies and equations say about positions, as rows over: twins of all signals, then all
+/// states. States of modes in units of 1/omega.
+struct Constraints {
+  const Graph& g;
+  std::vector<Index> column;  ///< per signal; states too
+  std::vector<int> rate_of;   ///< per column of a state: column of its rate, -1
+  MatrixXd rows;
+  Index columns = 0;
+
+  explicit Constraints(const Stage& stage) : g(stage.graph) {
+    for (const Signal& s : g.signals) column.push_back(std::exchange(columns, columns + s.size));
+    rate_of.assign(at(static_cast<int>(columns)), -1);
+    rows.resize(0, columns);
+    for (const Node& node : g.nodes) body(node, stage.values);
+    for (const Equation& e : g.equations) {
+      const Signal& target = g.signals[at(e.target)];
+      const bool motion = target.quantity == Quantity::acceleration && target.channel >= 0;
+      if (!motion && (target.channel >= 0 || target.node < 0)) continue;
+      if (!motion && !g.nodes[at(target.node)].lowered) continue;
+      MatrixXd row = MatrixXd::Zero(e.part.whole() ? target.size : e.part.rows.rows(), columns);
+      row.middleCols(column[at(e.target)], target.size) =
+          e.part.whole() ? MatrixXd::Identity(target.size, target.size) : e.part.rows;
+      for (const Term& t : e.terms)
+        row.middleCols(column[at(t.signal)], g.signals[at(t.signal)].size) -=
+            coefficient(g, t, stage.values);
+      add(row);
+    }
   }
-  return edges;
+
+  void add(const MatrixXd& more) {
+    rows.conservativeResize(rows.rows() + more.rows(), columns);
+    rows.bottomRows(more.rows()) = more;
+  }
+
+  void body(const Node& node, ParameterValues values) {
+    const auto k = node.block->kinematics(values);
+    if (node.state >= 0) pair_up(node, values);
+    for (int i = 0; k && i < static_cast<int>(k->tau.size()); ++i) {
+      if (i == k->reference) continue;
+      const auto position = [&](int spec) {
+        return column[at(g.channels[at(node.first_channel + spec)].accel)];
+      };
+      MatrixXd row = MatrixXd::Zero(k->tau[at(i)].rows(), columns);
+      row.middleCols(position(i), row.rows()).setIdentity();
+      row.middleCols(position(k->reference), k->tau[at(i)].cols()) -= k->tau[at(i)];
+      if (node.state >= 0)
+        row.middleCols(column[at(node.state)], k->Phi[at(i)].cols()) -= k->Phi[at(i)];
+      add(row);
+    }
+  }
+
+  void pair_up(const Node& node, ParameterValues values) {
+    const auto d = node.block->dynamics(values);
+    for (Index i = 0; i < d->A.rows(); ++i)
+      for (Index j = 0; j < d->A.rows(); ++j)
+        if (d->A(i, j) == 1 && (d->A.row(i).array() != 0).count() == 1 && i != j)
+          rate_of[at(static_cast<int>(column[at(node.state)] + i))] =
+              static_cast<int>(column[at(node.state)] + j);
+  }
+
+  /// Motions that satisfy all rows, one per column, states at rest left out.
+  MatrixXd motions() const {
+    MatrixXd all = rows;
+    for (const Signal& s : g.signals)
+      if (s.role == Signal::Role::state && s.at_rest)
+        for (int i = 0; i < s.size; ++i) {
+          all.conservativeResize(all.rows() + 1, columns);
+          all.bottomRows(1) = Eigen::RowVectorXd::Unit(
+              columns, column[at(static_cast<int>(&s - g.signals.data()))] + i);
+        }
+    return null_space(all);
+  }
+
+  static MatrixXd null_space(const MatrixXd& m) {
+    if (m.rows() == 0) return MatrixXd::Identity(m.cols(), m.cols());
+    const Eigen::JacobiSVD<MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(
+        m, Eigen::ComputeFullV);
+    Index rank = 0;
+    while (rank < svd.singularValues().size() &&
+           svd.singularValues()(rank) > 1e-9 * svd.singularValues()(0))
+      ++rank;
+    return svd.matrixV().rightCols(m.cols() - rank);
+  }
+};
+
+Index rank_of(const MatrixXd& m) {
+  if (m.size() == 0) return 0;
+  const Eigen::JacobiSVD<MatrixXd> svd(m);
+  return (svd.singularValues().array() > 1e-9).count();
 }
 
 }  // namespace
 
-/// Takes off what hangs at one end only until nothing is left.
-void demand_open(const Stage& stage) {
-  Edges edges = chain_edges(stage);
-  for (std::size_t before = edges.size() + 1; before > edges.size();) {
-    before = edges.size();
-    std::map<int, int> degree;
-    for (const auto& [a, b] : edges) ++degree[a], ++degree[b];
-    std::erase_if(edges,
-                  [&](const auto& e) { return degree[e.first] < 2 || degree[e.second] < 2; });
+void demand_not_redundant(const Stage& stage) {
+  const Constraints c(stage);
+  demand(rank_of(c.rows) == c.rows.rows(), "closing equations are independent");
+}
+
+void demand_closed(const Stage& stage) {
+  const Constraints c(stage);
+  const Graph& g = stage.graph;
+  const MatrixXd N = c.motions();
+  std::set<std::pair<int, int>> gone;
+  for (const Dependent& d : stage.dependents) gone.emplace(d.node, d.state);
+  std::vector<Index> positions;
+  Index kept = 0, kept_rates = 0;
+  for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
+    const Node& node = g.nodes[at(i)];
+    if (node.state < 0 || !g.signals[at(node.state)].active) continue;
+    for (int k = 0; k < g.signals[at(node.state)].size; ++k) {
+      const Index column = c.column[at(node.state)] + k;
+      const int rate = c.rate_of[at(static_cast<int>(column))];
+      if (rate < 0) continue;
+      positions.push_back(column);
+      kept += !gone.contains({i, k});
+      kept_rates += !gone.contains({i, rate - static_cast<int>(c.column[at(node.state)])});
+    }
   }
-  demand(edges.empty(), "every kinematic chain is open");
+  const Index rank = rank_of(N(positions, Eigen::all));
+  demand(kept == rank && kept_rates == rank, "as many states as the motions show");
+  for (const Dependent& d : stage.dependents) {
+    const auto place = [&](int node, int state) {
+      return c.column[at(g.nodes[at(node)].state)] + state;
+    };
+    if (c.rate_of[at(static_cast<int>(place(d.node, d.state)))] < 0) continue;
+    MatrixXd off = N.row(place(d.node, d.state));
+    for (const Dependent::Share& s : d.of) off -= s.factor * N.row(place(s.node, s.state));
+    demand(off.cwiseAbs().maxCoeff() <= 1e-8, "a dependent state is the sum it is said to be");
+  }
 }
 
 void demand_matched(const Stage& stage) {

@@ -12,8 +12,14 @@ void demand_lowered(const titop::Stage& stage);
 /// all that does so is active.
 void demand_split(const titop::Stage& stage);
 
-/// Bodies and joints, as edges between points and the ground, form no closed chain.
-void demand_open(const titop::Stage& stage);
+/// No closing equation says what others say: bodies and motions, as one matrix on all positions,
+/// coordinates and prescribed motions, have full row rank.
+void demand_not_redundant(const titop::Stage& stage);
+
+/// Every state that left is the given sum of the others for all motions that bodies and equations
+/// allow, and those that stay are as many as these motions show: the rank of the states on the null
+/// space of that matrix, on position and on velocity level. Integrators not counted.
+void demand_closed(const titop::Stage& stage);
 
 /// Every row and every unknown in use are matched, each of them once.
 void demand_matched(const titop::Stage& stage);

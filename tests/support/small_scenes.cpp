@@ -176,7 +176,7 @@ const std::vector<NamedScene>& scenes() {
       {"five masses", [] { return five_masses_scene(kMasses, kStiffnesses); }, 10, {}},
       {"locked and released", fig_12, 4, {"z1.parent", "z2.child"}},
       {"loose parts", loose_parts, 4, {}},
-      {"controllers", controllers, 8, {}},
+      {"controllers", controllers, 6, {}},
       {"pins and sliders", pins, 4, {"end.parent", "hub.parent", "link.parent"}},
       {"hinges", hinges, 8, {"h1", "hub.parent"}},
       {"held", held, 4, {"z1.child", "z1.parent"}}};

@@ -1,0 +1,144 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <titop/compiler/passes/close/integrals.hpp>
+#include <titop/compiler/passes/passes.hpp>
+
+namespace titop::passes {
+namespace {
+
+using Eigen::Index;
+using namespace closing;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// One of the two levels on which chains close.
+enum class Level { position, velocity };
+
+/// A rank decided by a narrow margin.
+struct Doubt {
+  std::string joints;
+  double pivot = 0;
+  bool taken = false;  ///< as a constraint; the other decision would keep two more states
+};
+
+struct Closer {
+  const Graph& g;
+  const Coordinates& coordinates;
+  std::vector<Doubt> doubts = {};
+  std::vector<Dependent> dependents = {};
+  std::set<std::pair<int, int>> before = {};  ///< states that followed from the others before
+  std::vector<Scalar> positions = {};         ///< dependent on position level
+
+  std::optional<closing::Meaning> classify(const Scalar& s) const {
+    using Role = Relations::Role;
+    if (s.column.kind == Column::Kind::integral) return closing::Meaning{Role::integral, 0};
+    if (s.column.kind != Column::Kind::states) return closing::Meaning{Role::unknown, 0};
+    const Signal& x = g.signals[at(g.nodes[at(s.column.id)].state)];
+    if (x.at_rest) return std::nullopt;
+    if (!x.active) return closing::Meaning{Role::unknown, 0};
+    return closing::Meaning{Role::coordinate, coordinates.weight(s.column.id, s.index)};
+  }
+
+  /// The state that stands for this scalar on this level.
+  std::pair<int, int> state(const Scalar& s, Level level) const {
+    const bool own = s.column.kind == Column::Kind::integral || level == Level::position;
+    return {s.column.id, own ? s.index : coordinates.rate_of(s.column.id, s.index)};
+  }
+
+  void close(const std::vector<Line>& lines, Level level) {
+    const auto meaning = [&](const Scalar& s) { return classify(s); };
+    for (Component& c : components(lines, meaning)) {
+      std::vector<int> preferred;
+      for (int i = 0; i < static_cast<int>(c.scalars.size()); ++i)
+        if (std::binary_search(positions.begin(), positions.end(), c.scalars[at(i)]) ||
+            (c.relations.role[at(i)] != Relations::Role::unknown &&
+             before.contains(state(c.scalars[at(i)], level))))
+          preferred.push_back(i);
+      const Independent found = independent(std::move(c.relations), preferred);
+      warn(c, lines, found, level);
+      for (std::size_t d = 0; d < found.dependent.size(); ++d) {
+        const Scalar& s = c.scalars[at(found.dependent[d])];
+        const auto [node, index] = state(s, level);
+        Dependent dependent{node, index};
+        for (std::size_t i = 0; i < found.independent.size(); ++i)
+          if (const double t = found.T(static_cast<Index>(d), static_cast<Index>(i)); t != 0) {
+            const auto [of, at_index] = state(c.scalars[at(found.independent[i])], level);
+            dependent.of.push_back({of, at_index, t});
+          }
+        dependents.push_back(std::move(dependent));
+        if (level == Level::position) positions.push_back(s);
+      }
+    }
+    std::sort(positions.begin(), positions.end());
+  }
+
+  void warn(const Component& c, const std::vector<Line>& lines, const Independent& found,
+            Level level) {
+    if (!found.doubtful() || level != Level::position) return;
+    std::string names;
+    for (const int l : c.lines)
+      if (const int e = lines[at(l)].equation; e >= 0)
+        names += (names.empty() ? "" : ", ") + name_of(g, g.equations[at(e)].target);
+    const bool taken = found.weakest < 1e3 * kRankTolerance;
+    doubts.push_back({std::move(names), taken ? found.weakest : found.dropped, taken});
+  }
+};
+
+std::string list(const Graph& g, const std::vector<Dependent>& dependents) {
+  std::string text;
+  for (std::size_t i = 0; i < dependents.size() && i < 8; ++i) {
+    const Node& node = g.nodes[at(dependents[i].node)];
+    text +=
+        (i ? ", " : "") + node.name + "." + node.block->interface().states[at(dependents[i].state)];
+  }
+  return dependents.size() > 8 ? text + fmt::format(", and {} more", dependents.size() - 8) : text;
+}
+
+}  // namespace
+
+Stage close(Stage stage) {
+  if (!stage.closes) return stage;
+  const Graph& g = stage.graph;
+  const Twins twins(g);
+  const Motion motion(g, stage.values, twins);
+  const Coordinates coordinates(g, stage.values);
+  std::vector<Line> closed, on_positions, on_rates;
+  for (const Tie& tie : motion.ties())
+    if (tie.closes) closed.push_back(line_of(motion.closing(tie)));
+  on_positions = on_rates = closed;
+  for (const Integral& i : integrals(g, motion, twins, coordinates, stage.values)) {
+    const int n = g.signals[at(g.nodes[at(i.node)].state)].size;
+    Line line;
+    add(line.form, -Eigen::MatrixXd::Identity(n, n), i.form);
+    add(line.form, {Column::Kind::integral, i.node}, Eigen::MatrixXd::Identity(n, n));
+    for (int k = 0; k < n; ++k) line.unit.push_back(n == 6 && k >= 3 ? 1 : 0);
+    (i.level == 1 ? on_rates : on_positions).push_back(std::move(line));
+  }
+  Closer closer{g, coordinates};
+  for (const Dependent& d : stage.dependents) closer.before.emplace(d.node, d.state);
+  closer.close(on_positions, Level::position);
+  closer.close(on_rates, Level::velocity);
+  stage.dependents = std::move(closer.dependents);
+  int order = -static_cast<int>(stage.dependents.size());
+  for (const Signal& x : g.signals)
+    if (x.role == Signal::Role::state && x.active) order += x.size;
+  for (const Doubt& d : closer.doubts)
+    stage.notes.push_back(
+        {Note::Kind::warning, "close",
+         fmt::format("the chain closed by {} is near a singular posture (pivot {:.1e}, tolerance "
+                     "{:.0e}): order {}, or {} if that were taken for {}",
+                     d.joints, d.pivot, kRankTolerance, order, d.taken ? order + 2 : order - 2,
+                     d.taken ? "nothing" : "a constraint")});
+  std::sort(stage.dependents.begin(), stage.dependents.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.node, a.state) < std::pair(b.node, b.state);
+  });
+  if (!stage.dependents.empty())
+    stage.notes.push_back({Note::Kind::info, "close",
+                           fmt::format("{} states follow from the others: {}",
+                                       stage.dependents.size(), list(g, stage.dependents))});
+  return stage;
+}
+
+}  // namespace titop::passes

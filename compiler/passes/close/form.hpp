@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <compare>
+#include <map>
+
+/// Positions as linear forms in what they are made of: small displacements about the posture.
+namespace titop::passes::closing {
+
+/// What a displacement is made of. The same columns serve on position and on velocity level.
+struct Column {
+  enum class Kind {
+    root,        ///< of an assembly that nothing holds; id: channel of its root point
+    angle,       ///< what a joint leaves free; id: equation
+    prescribed,  ///< double integral of a signal that is no acceleration of a point; id: signal
+    states,      ///< the states of a block; id: node
+    integral,    ///< the states of an Integrator; id: node
+  };
+  Kind kind = Kind::root;
+  int id = 0;
+  int level = 0;  ///< prescribed: 0 for accelerations, 1 for rates
+  auto operator<=>(const Column&) const = default;
+};
+
+/// Sum of matrix * column; all matrices have the same number of rows.
+using Form = std::map<Column, Eigen::MatrixXd>;
+
+inline void add(Form& to, const Column& column, const Eigen::MatrixXd& matrix) {
+  const auto [place, added] = to.try_emplace(column, matrix);
+  if (!added) place->second += matrix;
+}
+
+/// to += factor * form
+inline void add(Form& to, const Eigen::MatrixXd& factor, const Form& form) {
+  for (const auto& [column, matrix] : form) add(to, column, factor * matrix);
+}
+
+}  // namespace titop::passes::closing

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <titop/compiler/passes/close/lines.hpp>
+#include <titop/compiler/passes/close/motion.hpp>
+
+namespace titop::passes::closing {
+
+/// What an Integrator integrates, as a displacement: its output is the displacement's rate
+/// (level 1) or the displacement itself (level 2).
+struct Integral {
+  int node = -1, level = 1;
+  Form form;
+};
+
+/// All Integrators whose input has one level: accelerations (level 1), or rates and Integrators of
+/// accelerations (level 2). A signal that is neither counts as what stands beside it; what mixes
+/// levels, or integrates a position, is not listed and keeps its states.
+std::vector<Integral> integrals(const Graph& graph, const Motion& motion, const Twins& twins,
+                                const Coordinates& coordinates, ParameterValues values);
+
+}  // namespace titop::passes::closing

@@ -1,0 +1,115 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <titop/compiler/passes/close/lines.hpp>
+#include <titop/compiler/passes/union_find.hpp>
+
+namespace titop::passes::closing {
+namespace {
+
+using Eigen::Index;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// Per line its group: lines that share a column have the same.
+std::vector<int> groups(const std::vector<Line>& lines) {
+  UnionFind joined(static_cast<int>(lines.size()));
+  std::map<Column, int> first;
+  for (int l = 0; l < static_cast<int>(lines.size()); ++l)
+    for (const auto& [column, matrix] : lines[at(l)].form)
+      if (const auto [place, added] = first.try_emplace(column, l); !added)
+        joined.unite(place->second, l);
+  std::vector<int> result;
+  for (int l = 0; l < static_cast<int>(lines.size()); ++l) result.push_back(joined.find(l));
+  return result;
+}
+
+/// Scalars with an entry other than 0, in order, with what they mean.
+std::map<Scalar, Meaning> scalars_of(const std::vector<Line>& lines, const std::vector<int>& own,
+                                     const Classify& classify) {
+  std::map<Scalar, Meaning> result;
+  for (const int l : own)
+    for (const auto& [column, matrix] : lines[at(l)].form)
+      for (Index j = 0; j < matrix.cols(); ++j)
+        if (const Scalar s{column, static_cast<int>(j)};
+            !matrix.col(j).isZero(0) && !result.contains(s))
+          if (const auto meaning = classify(s)) result.emplace(s, *meaning);
+  return result;
+}
+
+Component component(const std::vector<Line>& lines, std::vector<int> own,
+                    const Classify& classify) {
+  Component c{.lines = std::move(own)};
+  std::map<Scalar, int> place;
+  const auto scalars = scalars_of(lines, c.lines, classify);
+  c.relations.weight.resize(static_cast<Index>(scalars.size()));
+  for (const auto& [scalar, meaning] : scalars) {
+    const int i = static_cast<int>(c.scalars.size());
+    place[scalar] = i;
+    c.scalars.push_back(scalar);
+    c.relations.role.push_back(meaning.role);
+    c.relations.weight(i) = meaning.weight;
+  }
+  int rows = 0, units = 0;
+  for (const int l : c.lines) {
+    c.first_row.push_back(rows);
+    rows += static_cast<int>(lines[at(l)].unit.size());
+    for (const int u : lines[at(l)].unit) c.relations.unit.push_back(units + u);
+    units += 3;
+  }
+  c.relations.R = Eigen::MatrixXd::Zero(rows, static_cast<Index>(scalars.size()));
+  for (std::size_t i = 0; i < c.lines.size(); ++i)
+    for (const auto& [column, matrix] : lines[at(c.lines[i])].form)
+      for (Index j = 0; j < matrix.cols(); ++j)
+        if (const auto found = place.find({column, static_cast<int>(j)}); found != place.end())
+          c.relations.R.col(found->second).segment(c.first_row[i], matrix.rows()) += matrix.col(j);
+  return c;
+}
+
+}  // namespace
+
+std::vector<Component> components(const std::vector<Line>& lines, const Classify& classify) {
+  const std::vector<int> group = groups(lines);
+  std::map<int, std::vector<int>> members;
+  for (int l = 0; l < static_cast<int>(lines.size()); ++l) members[group[at(l)]].push_back(l);
+  std::vector<Component> result;
+  for (auto& [first, own] : members) result.push_back(component(lines, std::move(own), classify));
+  return result;
+}
+
+const Coordinates::Pairs& Coordinates::of(int node) const {
+  const auto [place, added] = pairs_.try_emplace(node);
+  if (!added) return place->second;
+  Pairs& p = place->second;
+  const Block& block = *g_.nodes[at(node)].block;
+  const auto d = block.dynamics(values_);
+  const Index n = d->A.rows();
+  p.rate.assign(at(n), -1);
+  p.weight = Eigen::VectorXd::Zero(n);
+  const auto k = block.kinematics(values_);
+  for (Index i = 0; i < n; ++i) {
+    if (!d->B.row(i).isZero(0)) continue;
+    int found = -1, count = 0;
+    for (Index j = 0; j < n && count < 2; ++j)
+      if (d->A(i, j) != 0) ++count, found = static_cast<int>(j);
+    if (count != 1 || d->A(i, found) != 1 || found == i) continue;
+    p.rate[at(i)] = found;
+    const double stiffness = k && k->stiffness.size() == n ? k->stiffness(i) : -d->A(found, i);
+    if (stiffness > 0) p.weight(i) = 1 / std::sqrt(stiffness);
+  }
+  return p;
+}
+
+Line line_of(const Closing& closing) {
+  Line line{.form = closing.form, .unit = {}, .equation = closing.tie->equation};
+  const Eigen::MatrixXd& S = closing.tie->S;
+  for (Index i = 0; i < S.rows(); ++i) {
+    const bool six = S.cols() == 6;
+    const bool linear = !six || !S.row(i).head(3).isZero(0);
+    const bool angular = six && !S.row(i).tail(3).isZero(0);
+    line.unit.push_back(linear && angular ? 2 : angular ? 1 : 0);
+  }
+  return line;
+}
+
+}  // namespace titop::passes::closing

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <titop/compiler/passes/close/form.hpp>
+#include <titop/compiler/passes/close/motion.hpp>
+#include <titop/compiler/passes/close/relations.hpp>
+
+namespace titop::passes::closing {
+
+/// Rows of homogeneous relations, still as forms.
+struct Line {
+  Form form = {};
+  std::vector<int> unit = {};  ///< per row: translations 0, rotations 1, mixed 2
+  int equation = -1;           ///< of a closing equation
+};
+
+/// One scalar column.
+struct Scalar {
+  Column column;
+  int index = 0;
+  auto operator<=>(const Scalar&) const = default;
+};
+
+/// Lines that share columns, as a matrix.
+struct Component {
+  std::vector<int> lines = {};
+  std::vector<int> first_row = {};  ///< per line
+  std::vector<Scalar> scalars = {};
+  Relations relations = {};
+};
+
+/// What a scalar column is; none: it is 0 and left out.
+struct Meaning {
+  Relations::Role role = Relations::Role::unknown;
+  double weight = 0;
+};
+using Classify = std::function<std::optional<Meaning>(const Scalar&)>;
+
+/// The connected components of these lines, in order of their first lines. O(entries).
+std::vector<Component> components(const std::vector<Line>& lines, const Classify& classify);
+
+/// Which state is the rate of which, and the stiffness of each: as far as they are coordinates.
+class Coordinates {
+ public:
+  Coordinates(const Graph& graph, ParameterValues values) : g_(graph), values_(values) {}
+  /// State that is the rate of this one, -1 if none is.
+  int rate_of(int node, int state) const { return of(node).rate[static_cast<std::size_t>(state)]; }
+  /// 1 / sqrt(stiffness), 0 where it stores no energy.
+  double weight(int node, int state) const { return of(node).weight(state); }
+
+ private:
+  struct Pairs {
+    std::vector<int> rate;
+    Eigen::VectorXd weight;
+  };
+  const Pairs& of(int node) const;
+  const Graph& g_;
+  ParameterValues values_;
+  mutable std::map<int, Pairs> pairs_;
+};
+
+/// A closing equation as lines of translations and rotations.
+Line line_of(const Closing& closing);
+
+}  // namespace titop::passes::closing

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <titop/compiler/passes/close/twin.hpp>
+#include <titop/compiler/stage.hpp>
+
+namespace titop::passes::closing {
+
+/// An equation between accelerations, read between positions: S x_target = sum of c x_point + own.
+struct Tie {
+  int equation = -1, target = -1;              ///< target: a channel
+  Eigen::MatrixXd S = {};                      ///< rows x size, orthonormal rows
+  std::map<int, Eigen::MatrixXd> points = {};  ///< channel -> rows x size
+  Form own = {};                               ///< prescribed columns
+  bool closes = false;                         ///< no edge of the tree: it closes a chain
+};
+
+/// A closing equation: form + gap * (position of the meeting point) = 0, where `gap` is 0 if the
+/// geometry closes.
+struct Closing {
+  const Tie* tie = nullptr;
+  Form form = {};
+  double gap = 0;               ///< relative; 0 where the meeting point is the ground
+  std::vector<int> chain = {};  ///< points on the way round, for messages
+};
+
+/// Points (channels) and the ground, joined by bodies and by equations: a spanning forest, body
+/// edges first, so that only equations ever close a chain; then equations by name, those against a
+/// block's default direction last.
+class Motion {
+ public:
+  Motion(const Graph& graph, ParameterValues values, const Twins& twins);
+
+  const std::vector<Tie>& ties() const { return ties_; }
+  /// Both ways from the tie to where they meet: what lies beyond the chain is exactly 0.
+  Closing closing(const Tie& tie) const;
+  /// Position of a point from the root of its assembly.
+  Form position(int channel) const;
+  /// The point as the user knows it.
+  std::string name(int point) const;
+  /// A body on this chain that does not say where its ports are: its node, else -1.
+  int silent(const std::vector<int>& chain) const;
+
+ private:
+  struct Edge {
+    int to = -1, from = -1;  ///< x_to = R x_from + own
+    Eigen::MatrixXd R = {};
+    Form own = {};
+    bool rigid = true;     ///< keeps what is rigid rigid: no gear
+    int silent = -1;       ///< node whose ports are anywhere
+    bool one_way = false;  ///< R has no inverse
+  };
+
+  void add_bodies(ParameterValues values);
+  void add_body(int node, ParameterValues values);
+  void add_ties(const Twins& twins);
+  std::optional<Edge> edge_of(const Tie& tie) const;
+  Edge reversed(const Edge& edge) const;
+  void plant();
+  int meeting(int a, int b) const;
+  bool rigid_between(int point, int above) const;
+  /// form += factor * x_point, down to `above` (-1: the root); what multiplies x_above. `sizes`
+  /// grows to the largest entries met on the way.
+  Eigen::MatrixXd walk(Form& form, Eigen::MatrixXd factor, int point, int above,
+                       Eigen::MatrixXd* sizes = nullptr) const;
+  void add_root(Form& form, const Eigen::MatrixXd& factor, int root) const;
+
+  const Graph& g_;
+  int ground_;
+  std::vector<Tie> ties_;
+  std::vector<Edge> edges_;
+  std::vector<std::vector<int>> at_point_;  ///< edges of the forest
+  std::vector<Edge> up_;                    ///< per point: from the one above it
+  std::vector<int> depth_, root_;
+};
+
+}  // namespace titop::passes::closing

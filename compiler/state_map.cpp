@@ -1,0 +1,61 @@
+#include <titop/compiler/state_map.hpp>
+#include <titop/compiler/system_data.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// M T by columns.
+MatrixXd times_map(const MatrixXd& M, const StateMap& map) {
+  MatrixXd result = M(Eigen::all, map.kept());
+  MatrixXd size = result.cwiseAbs();
+  std::vector<char> touched(at(map.order()), 0);
+  for (const StateMap::Row& row : map.dependent())
+    for (const auto& [place, factor] : row.of) {
+      result.col(place) += factor * M.col(row.state);
+      size.col(place) += std::abs(factor) * M.col(row.state).cwiseAbs();
+      touched[at(place)] = 1;
+    }
+  constexpr double kRounding = 64 * 2.220446049250313e-16;
+  for (Index j = 0; j < result.cols(); ++j)
+    if (touched[at(j)])
+      result.col(j) =
+          (result.col(j).array().abs() <= kRounding * size.col(j).array()).select(0, result.col(j));
+  return result;
+}
+
+}  // namespace
+
+StateMap::StateMap(const std::vector<Dependent>& dependents, const Layout& l) : names_(l.states) {
+  const auto n = l.states.size();
+  std::vector<char> leaves(n, 0);
+  for (const Dependent& d : dependents) leaves[at(l.state_first[at(d.node)] + d.state)] = 1;
+  std::vector<int> place(n, -1);
+  names_.clear();
+  for (std::size_t i = 0; i < n; ++i) {
+    if (leaves[i]) continue;
+    place[i] = static_cast<int>(kept_.size());
+    kept_.push_back(static_cast<int>(i));
+    names_.push_back(l.states[i]);
+  }
+  for (const Dependent& d : dependents) {
+    Row row{l.state_first[at(d.node)] + d.state, {}};
+    for (const Dependent::Share& s : d.of)
+      row.of.emplace_back(place[at(l.state_first[at(s.node)] + s.state)], s.factor);
+    rows_.push_back(std::move(row));
+  }
+}
+
+void StateMap::reduce(StateSpace& m) const {
+  if (trivial()) return;
+  m.A = times_map(m.A(kept_, Eigen::all), *this);
+  m.B = m.B(kept_, Eigen::all).eval();
+  m.C = times_map(m.C, *this);
+  m.states = names_;
+}
+
+}  // namespace titop::detail

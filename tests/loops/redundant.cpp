@@ -1,0 +1,143 @@
+#include <doctest/doctest.h>
+
+#include <numbers>
+
+#include "assembly.hpp"
+#include "support/mistakes.hpp"
+
+/// Chains that are held more than once: motion is determined, internal forces are not.
+
+using namespace loop_test;
+using namespace titop;
+
+namespace {
+
+RigidBody block(double mass, const Vector3d& far) {
+  return {.mass = mass,
+          .inertia = mass * Vector3d(0.2, 0.3, 0.4).asDiagonal(),
+          .PA = far / 3,
+          .children = {{"near", far / 2}, {"far", far}}};
+}
+
+/// Two bodies welded at two points.
+Diagram welded(bool forces) {
+  Diagram d{"welded twice"};
+  auto A = d.add("A", block(4, {1, 0.5, 0.2})), B = d.add("B", block(3, {0.5, 0.25, 0.1}));
+  A.parent.force = -d.input("U", 6);
+  mount(B, A.child("near"));
+  weld(B.child("far"), A.child("far"));
+  d.output("a", 6) = A.parent.accel;
+  d.output("b", 6) = B.child("near").accel;
+  if (forces) d.output("inner", 6) = B.parent.force;
+  return d;
+}
+
+by_hand::Matrix6 mass(double m, const Vector3d& A) {
+  by_hand::Matrix6 D = by_hand::Matrix6::Zero();
+  D.topLeftCorner<3, 3>().diagonal().setConstant(m);
+  D.bottomRightCorner<3, 3>() = (m * Vector3d(0.2, 0.3, 0.4)).asDiagonal();
+  const by_hand::Matrix6 t = by_hand::tau(-A);
+  return t.transpose() * D * t;
+}
+
+}  // namespace
+
+TEST_CASE("two rigid bodies welded at two points move as one; the closing weld is released") {
+  const System system = compile(welded(false));
+  CHECK(system.order() == 0);
+  const Vector3d near(0.5, 0.25, 0.1), far_B(0.5, 0.25, 0.1);
+  const by_hand::Matrix6 M =
+      mass(4, Vector3d(1, 0.5, 0.2) / 3) + mass(3, Vector3d(near + far_B / 3));
+  MatrixXd exact(12, 6);
+  exact.topRows(6) = M.inverse();
+  exact.bottomRows(6) = by_hand::tau(-(near + far_B / 2)) * M.inverse();
+  CHECK(error_3({system.transfer({0, 1})}, {exact.cast<Complex>()}) <= 1e-13);
+  CHECK(system.log().find("6 of 6 closing equations are redundant") != std::string::npos);
+}
+
+TEST_CASE("internal forces: refused by name, or the smallest at the closing joint, and marked") {
+  using namespace titop_test;
+  CHECK(says(compile_error(welded(true)), Code::kinematic_loop,
+             {"output inner reads B.parent.force", "not determined", "B.child(\"far\")",
+              "InternalForces::minimal_norm", "redundant.cpp"}));
+  const System system = compile(welded(true), {.internal_forces = InternalForces::minimal_norm});
+  CHECK(system.log().find("output inner reads B.parent.force, an internal force") !=
+        std::string::npos);
+  // With nothing at the closing weld the first one carries all: F = -D_B a.
+  const MatrixXcd G = system.transfer({0, 1});
+  const by_hand::Matrix6 D = mass(3, Vector3d(0.5, 0.25, 0.1) / 3);
+  const MatrixXcd at_B = by_hand::tau(-Vector3d(0.5, 0.25, 0.1)) * G.topRows(6);
+  CHECK(error_3({G.bottomRows(6)}, {MatrixXcd(-D * at_B)}) <= 1e-12);
+}
+
+TEST_CASE("a controller that reads an internal force is refused") {
+  using namespace titop_test;
+  Diagram e{"controlled"};
+  auto A = e.add("A", block(4, {1, 0.5, 0.2})), B = e.add("B", block(3, {0.5, 0.25, 0.1}));
+  auto K = e.add("K", Integrator{});
+  A.parent.force = -e.input("U", 6);
+  mount(B, A.child("near"));
+  weld(B.child("far"), A.child("far"));
+  K.in = 1.0 * B.parent.force.along({1, 0, 0});
+  e.output("k") = K.out;
+  CHECK(says(compile_error(e), Code::kinematic_loop, {"K.in reads", "not determined"}));
+}
+
+TEST_CASE("rigid four-bar, four sprung pins: order 2, three closing equations redundant") {
+  // Crank, coupler and rocker of length 1, pins 1 apart: a parallelogram. Crank and rocker turn by
+  // phi, the coupler only translates; every pin is turned by phi against its spring.
+  constexpr double m = 2, k = 30;
+  const double I = m / 12;  // slender links about their middle, about every axis
+  Diagram d{"parallelogram"};
+  const auto link = [&] {
+    return RigidBody{.mass = m,
+                     .inertia = I * Matrix3d::Identity(),
+                     .PA = {0.5, 0, 0},
+                     .children = {{"C", {1, 0, 0}}}};
+  };
+  auto base = d.add("base", RigidBody{.mass = 1, .children = {{"J1"}, {"J2", {1, 0, 0}}}});
+  auto crank = d.add("crank", link()), coupler = d.add("coupler", link()),
+       rocker = d.add("rocker", link());
+  ground(base);
+  const Rotation up = Rotation::about({0, 0, 1}, pi / 2),
+                 down = Rotation::about({0, 0, 1}, -pi / 2);
+  const Vector3d z{0, 0, 1};
+  auto p1 = hinge(d, "p1", crank, base.child("J1"), up, z);
+  auto p2 = hinge(d, "p2", coupler, crank.child, down, z);
+  auto p3 = hinge(d, "p3", rocker, base.child("J2"), up, z);
+  auto p4 = d.add("p4", Hinge{z});
+  mount(p4, rocker.child, down);
+  weld(coupler.child, p4.child);
+  for (const auto& p : {p1, p2, p3, p4}) p.torque = k * p.angle;
+  crank.child("C").force += d.input("F", 6);
+  d.output("turn") = p4.angle;
+  d.output("tip", 6) = coupler.child.accel;
+  const System system = compile(d);
+  CHECK(system.order() == 2);
+  CHECK(system.log().find("3 of 6 closing equations are redundant (z, about x, about y)") !=
+        std::string::npos);
+  const double inertia =
+      2 * (I + m / 4) + m;  // crank and rocker about their pins, coupler moves by 1
+  const double omega = std::sqrt(4 * k / inertia);
+  REQUIRE(system.poles().size() == 1);
+  CHECK(std::abs(system.poles()[0].omega / omega - 1) <= 1e-14);
+  // A force along the coupler on the crank's tip, which points along y of the world: -y of the
+  // crank.
+  const Complex s{0.1, 3};
+  const Complex phi =
+      1.0 / (inertia * s * s + 4 * k);  // torque of a unit force along y of the crank
+  const MatrixXcd G = system.transfer(s);
+  CHECK(std::abs(G(0, 1) / -phi - 1.0) <= 1e-12);
+  CHECK(std::abs(G(1, 1) / (-s * s * phi) - 1.0) <= 1e-12);
+}
+
+TEST_CASE(
+    "both ends of a rigid body on the ground: nothing moves, the second support is released") {
+  Diagram d{"held twice"};
+  auto A = d.add("A", block(4, {1, 0, 0}));
+  ground(A);
+  ground(A.child("far"));
+  A.child("near").force = d.input("F", 6);
+  d.output("a", 6) = A.child("near").accel;
+  CHECK(compile(d).transfer({0, 1}).isZero(0));
+}
