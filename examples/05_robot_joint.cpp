@@ -14,7 +14,7 @@ using std::numbers::pi;
 
 namespace {
 
-enum class Joint { free, driven, motor, controller };
+enum class Mechanism { free, driven, motor, controller };
 
 constexpr double k = 800, c = 6;  // spring [N m/rad] and damper [N m s/rad] of the motor
 constexpr double gain = 900, lead = 12,
@@ -29,7 +29,7 @@ Beam arm(double length) {
           .elements = 2};
 }
 
-Diagram robot(Joint kind) {
+Diagram robot(Mechanism kind) {
   Diagram d{"robot"};
   auto W = d.input("W", 6);  // wrench on the hand, in the forearm's frame
   auto upper = d.add("upper", FlexibleBody{arm(0.8)});
@@ -40,15 +40,15 @@ Diagram robot(Joint kind) {
   d.output("xdd", 6) = forearm.child.accel;
 
   switch (kind) {
-    case Joint::free: elbow.torque = 0; break;
-    case Joint::driven:
+    case Mechanism::free: elbow.torque = 0; break;
+    case Mechanism::driven:
       elbow.accel = d.input("thetadd");  // the angle follows a given motion ...
       d.output("C_m") = elbow.torque;    // ... and this is what it costs
       break;
-    case Joint::motor:  // gear and friction, and the motor's torque u
+    case Mechanism::motor:  // gear and friction, and the motor's torque u
       elbow.torque = k * elbow.angle + c * elbow.rate - d.input("u");
       break;
-    case Joint::controller: {
+    case Mechanism::controller: {
       auto K = d.add("K", Lti{.A = Eigen::MatrixXd::Constant(1, 1, -corner),
                               .B = Eigen::MatrixXd::Constant(1, 1, corner),
                               .C = Eigen::MatrixXd::Constant(1, 1, -lead * corner),
@@ -58,7 +58,7 @@ Diagram robot(Joint kind) {
       break;
     }
   }
-  if (kind != Joint::driven) d.output("theta") = elbow.angle;
+  if (kind != Mechanism::driven) d.output("theta") = elbow.angle;
   return d;
 }
 
@@ -89,10 +89,10 @@ by_hand::Structure by_hand_robot() {
   return a;
 }
 
-by_hand::MatrixXcd hand_transfer(Joint kind, by_hand::Complex s) {
+by_hand::MatrixXcd hand_transfer(Mechanism kind, by_hand::Complex s) {
   by_hand::Structure a = by_hand_robot();
-  if (kind == Joint::motor) a.K(0, 0) += k, a.D(0, 0) += c;
-  if (kind == Joint::driven) {
+  if (kind == Mechanism::motor) a.K(0, 0) += k, a.D(0, 0) += c;
+  if (kind == Mechanism::driven) {
     // theta is given: the other coordinates feel -M_q,theta thetadd, and the joint's torque on the
     // forearm, -C_m, is what the row of theta asks for.
     by_hand::Structure q = by_hand::empty(24, 7, 7);
@@ -109,26 +109,26 @@ by_hand::MatrixXcd hand_transfer(Joint kind, by_hand::Complex s) {
     return G;
   }
   by_hand::MatrixXcd G = by_hand::position_transfer(a, s);
-  if (kind == Joint::controller) {  // close u -> theta with -K(s)
+  if (kind == Mechanism::controller) {  // close u -> theta with -K(s)
     const by_hand::Complex K = gain + lead * s / (1.0 + s / corner);
     const by_hand::MatrixXcd column = G.col(6) * (K / (1.0 + K * G(6, 6)));
     G -= column * G.row(6).eval();
   }
   G.topRows(6) *= s * s;
-  return kind == Joint::free ? by_hand::MatrixXcd(G.leftCols(6)) : G;
+  return kind == Mechanism::free ? by_hand::MatrixXcd(G.leftCols(6)) : G;
 }
 
-std::vector<by_hand::Complex> hand_poles(Joint kind) {
+std::vector<by_hand::Complex> hand_poles(Mechanism kind) {
   by_hand::Structure a = by_hand_robot();
-  if (kind == Joint::free) return by_hand::poles(by_hand::elastic(a, 1));
-  if (kind == Joint::motor) a.K(0, 0) += k, a.D(0, 0) += c;
-  if (kind == Joint::driven) {
+  if (kind == Mechanism::free) return by_hand::poles(by_hand::elastic(a, 1));
+  if (kind == Mechanism::motor) a.K(0, 0) += k, a.D(0, 0) += c;
+  if (kind == Mechanism::driven) {
     by_hand::Structure q = by_hand::empty(24, 0, 0);
     q.M = a.M.bottomRightCorner(24, 24);
     q.K = a.K.bottomRightCorner(24, 24);
     return by_hand::poles(q);
   }
-  if (kind == Joint::motor) return by_hand::poles(a);
+  if (kind == Mechanism::motor) return by_hand::poles(a);
   // Controller: one state more, x_K' = corner (theta - x_K).
   const by_hand::Index n = 25;
   by_hand::MatrixXd A = by_hand::MatrixXd::Zero(2 * n + 1, 2 * n + 1);
@@ -147,9 +147,9 @@ std::vector<by_hand::Complex> hand_poles(Joint kind) {
 int main() {
   bool ok = true;
   for (const auto& [kind, name, order] :
-       {std::tuple{Joint::free, "free", 50}, std::tuple{Joint::driven, "driven", 48},
-        std::tuple{Joint::motor, "spring, damper and motor", 50},
-        std::tuple{Joint::controller, "controller", 51}}) {
+       {std::tuple{Mechanism::free, "free", 50}, std::tuple{Mechanism::driven, "driven", 48},
+        std::tuple{Mechanism::motor, "spring, damper and motor", 50},
+        std::tuple{Mechanism::controller, "controller", 51}}) {
     const System system = compile(robot(kind));
     const StateSpace& model = system.state_space();
     const auto poles = system.poles();

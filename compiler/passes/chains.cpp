@@ -19,8 +19,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double kGap = 1e-6;       ///< a loop that is open by more does not close
 constexpr double kExactGap = 1e-9;  ///< by more it is noted
 
-// --- is there anything to look at?
-// ----------------------------------------------------------------
+// --- is there anything to look at? --------------------------------------------------------------
 
 /// Points and the ground, joined by what might tie them: false if nothing is tied twice.
 struct Quick {
@@ -28,7 +27,7 @@ struct Quick {
   UnionFind joined = UnionFind(static_cast<int>(g.channels.size()) + 1);
   int ground = static_cast<int>(g.channels.size());
 
-  bool bodies(ParameterValues values) {
+  void bodies(ParameterValues values) {
     for (const Node& node : g.nodes) {
       const auto& channels = node.block->interface().channels;
       if (channels.empty()) continue;
@@ -40,12 +39,12 @@ struct Quick {
           joined.unite(node.first_channel + i,
                        k->tau[at(i)].isZero(0) ? ground : node.first_channel + k->reference);
     }
-    return false;
   }
 
   bool tied_twice(const Equation& e) {
     const Signal& target = g.signals[at(e.target)];
-    if (!e.active || target.channel < 0 || target.quantity != Quantity::acceleration) return false;
+    if (!e.active || e.of_block || target.channel < 0 || target.quantity != Quantity::acceleration)
+      return false;
     bool points = false;
     for (const Term& t : e.terms) {
       const Signal& s = g.signals[at(t.signal)];
@@ -66,8 +65,7 @@ struct Quick {
   }
 };
 
-// --- geometry
-// -------------------------------------------------------------------------------------
+// --- geometry -----------------------------------------------------------------------------------
 
 std::string way(const Motion& motion, const Closing& c) {
   std::string text;

@@ -82,7 +82,7 @@ void Motion::add_ties(const Twins& twins) {
   for (int e = 0; e < static_cast<int>(g_.equations.size()); ++e) {
     const Equation& q = g_.equations[at(e)];
     const Signal& target = g_.signals[at(q.target)];
-    if (target.channel < 0 || target.quantity != Quantity::acceleration) continue;
+    if (q.of_block || target.channel < 0 || target.quantity != Quantity::acceleration) continue;
     Tie tie{.equation = e, .target = target.channel};
     tie.S = q.part.whole() ? MatrixXd::Identity(target.size, target.size) : q.part.rows;
     const Twin twin = twins.of(q.terms);
