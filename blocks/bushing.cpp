@@ -73,10 +73,12 @@ class BushingBlock : public Block {
     return d;
   }
   Pattern feedthrough() const override { return Pattern::Constant(24, 12, false); }
-  std::optional<Kinematics> kinematics(ParameterValues) const override {
+  std::optional<Kinematics> kinematics(ParameterValues values) const override {
     Kinematics k{.reference = 1, .tau = {}, .Phi = {}};
     k.tau.assign(2, MatrixXd::Identity(6, 6));
     k.Phi = {MatrixXd::Identity(6, 12), MatrixXd::Zero(6, 12)};
+    k.stiffness = Eigen::VectorXd::Zero(12);
+    k.stiffness.head(6) = spec_.stiffness.at(values).diagonal();
     return k;
   }
   std::vector<Value> values() const override {

@@ -199,11 +199,11 @@ class DualPort {
   template <int>
   friend class DualPort;
   DualPort(const detail::SignalRef& a, const detail::SignalRef& f, const detail::SignalRef& r,
-           const detail::SignalRef& x)
-      : accel(a), force(f), reaction(r), position(x) {}
+           const detail::SignalRef& x, const detail::SignalRef& v)
+      : accel(a), force(f), reaction(r), position(x), rate(v) {}
   template <class Take>
   DualPort<1> part(Take take) const {
-    return {take(accel), take(force), take(reaction), take(position)};
+    return {take(accel), take(force), take(reaction), take(position), take(rate)};
   }
 };
 

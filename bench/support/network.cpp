@@ -37,7 +37,8 @@ class Export {
     equation_.assign(signals, -1);
     u_.assign(signals, -1), y_.assign(signals, -1), free_.assign(signals, -1);
     for (int e = 0; e < static_cast<int>(graph_.equations.size()); ++e)
-      if (graph_.equations[at(e)].active) equation_[at(graph_.equations[at(e)].target)] = e;
+      if (graph_.equations[at(e)].active && !graph_.equations[at(e)].of_block)
+        equation_[at(graph_.equations[at(e)].target)] = e;
   }
 
   Network operator()() {
@@ -47,7 +48,7 @@ class Export {
       return graph_.nodes[at(i)].declared < graph_.nodes[at(j)].declared;
     });
     for (const int i : order)
-      if (!graph_.nodes[at(i)].lowered) add_node(i);
+      if (is_block(graph_.nodes[at(i)])) add_node(i);
     for (const int e : equation_)
       if (e >= 0) add_equation(graph_.equations[at(e)]);
     add_outputs();
@@ -55,6 +56,11 @@ class Export {
   }
 
  private:
+  /// A hub of many ports is one too; sums and gains are in the equations.
+  static bool is_block(const titop::Node& node) {
+    return !node.lowered || !node.block->interface().channels.empty();
+  }
+
   bool driven(int signal) const { return equation_[at(signal)] >= 0; }
 
   /// The signal across the channel.
@@ -76,7 +82,7 @@ class Export {
   void add_node(int node) {
     const titop::Node& n = graph_.nodes[at(node)];
     const auto d = n.block->dynamics(stage_.values);
-    StateSpace m{d->A, d->B, d->C, d->D, {}, {}, {}};
+    StateSpace m{d->A, d->B, d->C, d->dense_direct(), {}, {}, {}};
     for (const int s : inverted(node))
       if (!invert_channel(m, s)) add_unit_gain(s);
     place_signals(node, m);

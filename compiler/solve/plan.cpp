@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <functional>
 #include <queue>
+#include <titop/compiler/solve/dissection.hpp>
 #include <titop/compiler/solve/plan.hpp>
+#include <tuple>
 
 namespace titop::solve {
 namespace {
@@ -137,18 +139,19 @@ std::span<const int> Merging::merge(int v) {
 /// counted when fewer are left.
 constexpr int kMany = 64;
 
-void eliminate_all(Plan& p) {
+/// `when`: variables with a smaller number go first; empty: no matter.
+void eliminate_all(Plan& p, const std::vector<int>& when) {
   Merging m(p);
-  using Entry = std::pair<std::pair<int, int>, int>;  // cost, variable
+  using Entry = std::tuple<int, std::pair<int, int>, int>;  // when, cost, variable
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
   std::vector<std::pair<int, int>> cost(p.structure.variable_size.size());
   const auto push = [&](int v, bool exact) {
     cost[at(v)] = exact || m.live(v) <= kMany ? m.cost(v) : std::pair(m.live(v), 0);
-    queue.push({cost[at(v)], v});
+    queue.push({when.empty() ? 0 : when[at(v)], cost[at(v)], v});
   };
   for (int v = 0; v < static_cast<int>(cost.size()); ++v) push(v, false);
   while (!queue.empty()) {
-    const auto [c, v] = queue.top();
+    const auto [turn, c, v] = queue.top();
     queue.pop();
     if (m.gone(v) || c != cost[at(v)]) continue;
     if (c.second == 0 && m.live(v) > 0) {  // not counted yet
@@ -207,10 +210,28 @@ std::span<const int> Structure::row(int r) const {
   return {variables.data() + row_begin[at(r)], at(row_begin[at(r) + 1] - row_begin[at(r)])};
 }
 
+namespace {
+
+double work(const Plan& p) {
+  double flops = 0;
+  for (const Front& f : p.fronts) flops += 2.0 * f.row_count * f.pivot_count * f.columns();
+  return flops;
+}
+
+bool wide(const Front& f) { return f.columns() > 128; }
+
+}  // namespace
+
 Plan plan(Structure structure) {
   Plan result;
   result.structure = std::move(structure);
-  eliminate_all(result);
+  eliminate_all(result, {});
+  if (std::any_of(result.fronts.begin(), result.fronts.end(), wide)) {
+    Plan cut;
+    cut.structure = result.structure;
+    eliminate_all(cut, dissection(cut.structure));
+    if (work(cut) < work(result)) result = std::move(cut);
+  }
   place(result);
   return result;
 }

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "sparse_system.hpp"
 
 /// The plan alone: fronts, their largest size and the work grow linearly where nothing closes on
@@ -49,6 +51,21 @@ TEST_CASE("solver: work on chains, trees and rings is linear in their size") {
       CHECK(large.flops <= (name == "tree" ? 12 : 8.5) * small.flops);
       if (name != "tree") CHECK(large.largest <= 5 * size);
     }
+  }
+}
+
+/// Exponent of the work from n to 16 n groups.
+double exponent(const Count& small, const Count& large) {
+  return std::log(large.flops / small.flops) / std::log(16.0);
+}
+
+TEST_CASE("solver: work on ladders is linear, on planar grids it grows about as n^1.5") {
+  for (const int size : {1, 6}) {
+    CAPTURE(size);
+    CHECK(exponent(count(grid(2, 200), 400, size), count(grid(2, 3200), 6400, size)) <= 1.02);
+    const double planar =
+        exponent(count(grid(32, 32), 1024, size), count(grid(128, 128), 16384, size));
+    CHECK(planar <= 1.65);
   }
 }
 
