@@ -1,6 +1,6 @@
 // A satellite from real finite-element data: a rigid hub, two booms read from CalculiX matrices,
 // one of them on a hinge with a motor. Described in thirty lines, compiled to one state-space
-// model, compared with M and K assembled by hand, and drawn.
+// model, compared with M and K assembled by hand, and drawn. Then the hub's attitude is controlled.
 #include <Eigen/Geometry>
 #include <cstdio>
 #include <cstdlib>
@@ -33,7 +33,12 @@ FlexibleBody read_boom() {
   return fe::modal_data(mesh, "P", {"C"}, {.kept = 6, .residual = {"P"}, .xi = {0.005}});
 }
 
-Diagram satellite(const FlexibleBody& boom) {
+/// Torque on the hub by its own attitude and rate: -(kp angle + kd rate).
+struct AttitudeLaw {
+  double kp = 0, kd = 0;  // [N m/rad], [N m s/rad]
+};
+
+Diagram satellite(const FlexibleBody& boom, const AttitudeLaw* law = nullptr) {
   Diagram d{"satellite"};
   auto W = d.input("W", 6);       // wrench on the hub at P [N; N m]
   auto tau_m = d.input("tau_m");  // torque of the motor on boom 2 [N m]
@@ -45,6 +50,9 @@ Diagram satellite(const FlexibleBody& boom) {
   auto drive =
       hinge(d, "drive", boom2, hub.child("C2"), Rotation::about(turn2, angle2), hinge_axis);
   drive.torque = kappa * drive.angle + c * drive.rate - tau_m;
+  if (law)
+    hub.parent.force.angular +=
+        law->kp * hub.parent.position.angular() + law->kd * hub.parent.rate.angular();
 
   d.output("hub", 6) = hub.parent.accel;  // [m/s^2; rad/s^2]
   d.output("tip1", 6) = boom1.child("C").accel;
@@ -131,6 +139,25 @@ bool cross_check(const System& system, const by_hand::Structure& a) {
   std::printf("  order: %ld %s\n", static_cast<long>(2 * (a.M.rows() - 6)),
               same_order ? "yes" : "NO");
   return ok && same_order;
+}
+
+/// Only the hub's rotations get integrators: translation stays as free as it was.
+bool control_attitude(const FlexibleBody& boom) {
+  const AttitudeLaw law{.kp = 40, .kd = 40};
+  const System system = compile(satellite(boom, &law));
+  const std::vector<Pole> poles = system.poles();
+  std::printf(
+      "\nattitude held by %g N m/rad and %g N m s/rad on the hub: order %d, slowest poles\n%s",
+      law.kp, law.kd, system.state_space().order(),
+      to_string(std::vector<Pole>(poles.begin(), poles.begin() + 5)).c_str());
+  by_hand::Structure a = by_hand_satellite(boom.data());
+  a.K.diagonal().segment<3>(3).array() += law.kp;
+  a.D.diagonal().segment<3>(3).array() += law.kd;
+  bool ok = by_hand::agrees(
+      "  closed-loop poles against M, D and K",
+      by_hand::pole_error(by_hand::moving(poles), by_hand::poles(by_hand::elastic(a, 3))), 1e-10);
+  ok &= system.state_space().order() == 2 * (a.M.rows() - 3);
+  return ok;
 }
 
 // --- pictures ------------------------------------------------------------------------------------
@@ -255,6 +282,7 @@ int main() {
   bool ok = by_hand::agrees("  every equation as written", cert.residual, 1e-11);
   ok &= by_hand::agrees("  dense model against the factors", cert.dense_against_factors, 1e-12);
   ok &= cross_check(system, by_hand_satellite(boom.data()));
+  ok &= control_attitude(boom);
 
   std::ofstream("certificate.txt") << to_string(cert);
   std::ofstream("satellite.dot") << to_dot(system.stage());

@@ -1,0 +1,237 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <titop/compiler/passes/lower/amounts.hpp>
+#include <titop/graph/linalg/dense.hpp>
+
+namespace titop::passes {
+namespace {
+
+using Eigen::MatrixXd;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+bool less(const Summand& a, const Summand& b) {
+  if (a.signal != b.signal) return a.signal < b.signal;
+  return std::lexicographical_compare(a.c.data(), a.c.data() + a.c.size(), b.c.data(),
+                                      b.c.data() + b.c.size());
+}
+
+Pattern product(const MatrixXd& m, const Pattern& p) {
+  return ((m.array() != 0).matrix().cast<int>() * p.cast<int>()).array() > 0;
+}
+
+void append(Amount& sum, Amount more) {
+  for (Summand& t : more) sum.push_back(std::move(t));
+}
+
+}  // namespace
+
+Amount times(const MatrixXd& m, Amount sum) {
+  for (Summand& t : sum) t.c = m * t.c, t.p = product(m, t.p);
+  return sum;
+}
+
+std::vector<Term> merged(Amount sum) {
+  std::sort(sum.begin(), sum.end(), less);
+  std::vector<Term> terms;
+  for (std::size_t i = 0; i < sum.size();) {
+    Summand total = sum[i];
+    for (++i; i < sum.size() && sum[i].signal == total.signal; ++i) {
+      total.c += sum[i].c;
+      total.p = total.p.array() || sum[i].p.array();
+    }
+    Term term{.signal = total.signal};
+    term.factors.emplace_back(Matrix{std::make_shared<const MatrixXd>(std::move(total.c)),
+                                     std::make_shared<const Pattern>(std::move(total.p))});
+    terms.push_back(std::move(term));
+  }
+  return terms;
+}
+
+/// A motion that no state holds: stands for the integral of the acceleration until `integrated`.
+Amount Lowering::own_motion(int channel) const {
+  const Channel& c = g.channels[at(channel)];
+  const MatrixXd I = MatrixXd::Identity(c.size, c.size);
+  return {{c.accel, I, I.array() != 0}};
+}
+
+/// Accelerations in a twin become the outputs of their Integrators; those that are missing are
+/// noted.
+Amount Lowering::integrated(Amount sum, Level level) {
+  Amount result;
+  for (Summand& p : sum) {
+    const Signal& s = g.signals[at(p.signal)];
+    if (s.role == Signal::Role::state) {
+      result.push_back(std::move(p));
+      continue;
+    }
+    const int step = s.size == 6 ? 3 : s.size;
+    for (int first = 0; first < s.size; first += step) {
+      if (!p.p.middleCols(first, step).any()) continue;
+      const RigidMotion wanted{p.signal,
+                               s.size != 6  ? RigidMotion::Half::whole
+                               : first == 0 ? RigidMotion::Half::linear
+                                            : RigidMotion::Half::angular,
+                               level == Level::position, -1};
+      const auto found = std::find_if(motions.begin(), motions.end(), [&](const RigidMotion& m) {
+        return m.signal == wanted.signal && m.half == wanted.half && m.twice == wanted.twice;
+      });
+      if (found == motions.end())
+        missing.insert(wanted);
+      else
+        result.push_back({g.nodes[at(found->node)].first_signal + 1, p.c.middleCols(first, step),
+                          p.p.middleCols(first, step)});
+    }
+  }
+  return result;
+}
+
+/// What these equations add up to on their channel, in the channel's own space.
+Amount Lowering::added(int channel, const std::vector<int>& equations) {
+  const int n = g.channels[at(channel)].size;
+  Amount sum;
+  for (const int e : equations) {
+    const Part& part = g.equations[at(e)].part;
+    append(sum, times(part.whole() ? MatrixXd::Identity(n, n) : MatrixXd(part.rows.transpose()),
+                      terms(g.equations[at(e)].terms)));
+  }
+  return sum;
+}
+
+Amount Lowering::terms(const std::vector<Term>& list) {
+  Amount sum;
+  for (const Term& t : list) {
+    const MatrixXd c = coefficient_of(t);
+    if (!c.allFinite())
+      throw Error(Code::not_finite, fmt::format("the coefficient of {} is not finite", print(g, t)),
+                  "look at its gains and parameters");
+    const int channel = g.signals[at(t.signal)].channel;
+    if (t.of == Term::Of::position || t.of == Term::Of::rate) {
+      const Level level = t.of == Term::Of::rate ? Level::rate : Level::position;
+      append(sum, integrated(times(c, twin(channel, level)), level));
+      continue;
+    }
+    sum.push_back({t.signal, c, structure(g, t)});
+    if (t.of == Term::Of::reaction)
+      append(sum, times(-c, added(channel, drive[at(channel)].added)));
+  }
+  return sum;
+}
+
+/// The position or rate of a channel in terms of states and of motions that no state holds: the
+/// twin of the equation that drives its acceleration, or the block's own kinematics from the
+/// parent's position.
+Amount Lowering::twin(int channel, Level level) {
+  const Channel& c = g.channels[at(channel)];
+  const Drive& d = drive[at(channel)];
+  const bool back = visiting[at(channel)];  // round a closed chain: the motion of all of it
+  if (back || (!d.accel.empty() && d.N.rows() > 0)) return own_motion(channel);
+  visiting[at(channel)] = 1;
+  Amount sum;
+  if (!d.accel.empty()) {
+    for (const int e : d.accel) {
+      const Equation& equation = g.equations[at(e)];
+      const MatrixXd embed = equation.part.whole() ? MatrixXd::Identity(c.size, c.size)
+                                                   : MatrixXd(equation.part.rows.transpose());
+      for (const Term& t : equation.terms) {
+        const Signal& s = g.signals[at(t.signal)];
+        if (s.channel < 0 || s.quantity != Quantity::acceleration || t.of != Term::Of::signal) {
+          visiting[at(channel)] = 0;
+          return own_motion(channel);  // prescribed
+        }
+        append(sum, times(embed * coefficient_of(t), twin(s.channel, level)));
+      }
+    }
+  } else if (const auto k = g.nodes[at(c.node)].block->kinematics(values)) {
+    meet(g.nodes[at(c.node)].block->values());
+    sum = body_twin(c, *k, level);
+  } else {
+    sum = own_motion(channel);
+  }
+  visiting[at(channel)] = 0;
+  return sum;
+}
+
+Amount Lowering::body_twin(const Channel& c, const Kinematics& k, Level level) {
+  const Node& node = g.nodes[at(c.node)];
+  const auto deformation = [&](int spec, double sign) {
+    MatrixXd Phi = sign * k.Phi[at(spec)];
+    if (level == Level::rate) Phi = Phi * node.block->dynamics(values)->A;
+    Pattern pattern = Phi.array() != 0;
+    return Amount{{node.state, std::move(Phi), std::move(pattern)}};
+  };
+  if (c.spec != k.reference) {
+    Amount sum = times(k.tau[at(c.spec)], twin(node.first_channel + k.reference, level));
+    if (node.state >= 0) append(sum, deformation(c.spec, 1));
+    return sum;
+  }
+  for (int spec = 0; spec < static_cast<int>(k.tau.size()); ++spec) {
+    const int other = node.first_channel + spec;
+    if (spec == k.reference || drive[at(other)].accel.empty()) continue;
+    const linalg::Inverse inverse = k.tau[at(spec)].rows() == k.tau[at(spec)].cols()
+                                        ? linalg::inverse(k.tau[at(spec)])
+                                        : linalg::Inverse{};
+    if (inverse.rcond == 0) continue;
+    Amount sum = twin(other, level);
+    if (node.state >= 0) append(sum, deformation(spec, -1));
+    return times(inverse.matrix, std::move(sum));
+  }
+  return own_motion(node.first_channel + c.spec);
+}
+
+MatrixXd Lowering::coefficient_of(const Term& t) {
+  for (const Factor& f : t.factors)
+    if (const auto* k = std::get_if<Value>(&f))
+      meet({*k});
+    else if (const auto* T = std::get_if<Rotation>(&f))
+      meet(T->values());
+  return coefficient(g, t, values);
+}
+
+// --- equations --------------------------------------------------------------------------------
+
+Amount Lowering::force(int channel) {
+  const Drive& d = drive[at(channel)];
+  std::vector<int> all = d.force;
+  all.insert(all.end(), d.added.begin(), d.added.end());
+  Amount sum = added(channel, all);
+  return d.N.rows() == g.channels[at(channel)].size ? sum : times(d.N, std::move(sum));
+}
+
+/// out = D in.
+Amount Lowering::algebraic(int output) {
+  const Signal& y = g.signals[at(output)];
+  const Node& node = g.nodes[at(y.node)];
+  meet(node.block->values());
+  if (asked != y.node) at_hand = node.block->dynamics(values);
+  asked = y.node;
+  const auto d = at_hand;
+  Amount sum;
+  if (!d->sparse.empty()) {
+    for (const Gains& part : d->gains_of_row(y.first))
+      sum.push_back({input_signal(g, y.node, part.column), part.gain,
+                     Pattern::Constant(part.gain.rows(), part.gain.cols(), true)});
+    return sum;
+  }
+  const Pattern pattern = node.block->feedthrough();
+  for (int i = node.first_signal; i < end_signal(g, y.node); ++i)
+    if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input)
+      sum.push_back({i, d->D.block(y.first, u.first, y.size, u.size),
+                     pattern.block(y.first, u.first, y.size, u.size)});
+  return sum;
+}
+
+Amount Lowering::amount(const Origin& o) {
+  switch (o.of) {
+    case Origin::Of::accel:
+    case Origin::Of::one_way: return terms(g.equations[at(o.index)].terms);
+    case Origin::Of::released: return {};
+    case Origin::Of::force: return force(o.index);
+    case Origin::Of::algebraic: return algebraic(o.index);
+    case Origin::Of::output: return terms(g.outputs[at(o.index)].terms);
+  }
+  return {};
+}
+
+}  // namespace titop::passes

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <set>
+#include <titop/compiler/stage.hpp>
+
+/// What the right-hand sides of equations and outputs amount to: signals with one numeric
+/// coefficient each. Reactions and positions are written out; so are accumulated forces.
+namespace titop::passes {
+
+/// A signal with its coefficient and declared structure.
+struct Summand {
+  int signal;
+  Eigen::MatrixXd c;
+  Pattern p;  ///< where c may be nonzero, whatever the numbers
+};
+using Amount = std::vector<Summand>;
+
+/// One term per signal, in canonical order: the sum does not depend on how it was written.
+std::vector<Term> merged(Amount sum);
+/// m * sum.
+Amount times(const Eigen::MatrixXd& m, Amount sum);
+
+/// Writes right-hand sides out, for one set of parameter values.
+struct Lowering {
+  const Graph& g;  ///< as the user wrote it, in order of names
+  ParameterValues values;
+  std::shared_ptr<const std::vector<Drive>> all_drives;
+  const std::vector<Drive>& drive = *all_drives;
+  std::vector<char> visiting;  ///< channels whose position is being written out
+  std::vector<int> met = {};   ///< parameters met since it was last cleared
+  int asked = -1;              ///< node whose matrices are at hand
+  std::shared_ptr<const Dynamics> at_hand = {};
+  std::vector<Mistake> mistakes = {};
+  std::vector<RigidMotion> motions;
+  std::set<RigidMotion> missing = {};  ///< motions that have no Integrator yet
+
+  enum class Level { position, rate };
+
+  Lowering(const Graph& graph, ParameterValues v, std::shared_ptr<const std::vector<Drive>> d,
+           std::vector<RigidMotion> m)
+      : g(graph),
+        values(v),
+        all_drives(std::move(d)),
+        visiting(graph.channels.size(), 0),
+        motions(std::move(m)) {}
+
+  /// What an equation or output of the lowered graph amounts to.
+  Amount amount(const Origin& origin);
+  void meet(const std::vector<Value>& list) {
+    for (const Value& v : list)
+      if (v.is_parameter()) met.push_back(v.index());
+  }
+  Eigen::MatrixXd coefficient_of(const Term& t);
+
+  /// What one equation or output amounts to; its mistakes are kept, with the line it stands on.
+  template <class F>
+  Amount collect(const std::source_location& where, F amount);
+  Amount terms(const std::vector<Term>& list);
+  /// All that drives the channel's force.
+  Amount force(int channel);
+  /// The row of this output signal of an algebraic node.
+  Amount algebraic(int output);
+  Amount twin(int channel, Level level);
+  Amount body_twin(const Channel& c, const Kinematics& k, Level level);
+  Amount own_motion(int channel) const;
+  Amount integrated(Amount sum, Level level);
+  Amount added(int channel, const std::vector<int>& equations);
+};
+
+template <class F>
+Amount Lowering::collect(const std::source_location& where, F amount) {
+  try {
+    return amount();
+  } catch (const Error& error) {
+    std::fill(visiting.begin(), visiting.end(), 0);
+    for (Mistake m : error.mistakes()) {
+      m.details.push_back("asked for at " + to_string(where));
+      mistakes.push_back(std::move(m));
+    }
+    return {};
+  }
+}
+
+}  // namespace titop::passes

@@ -1,0 +1,98 @@
+#include <algorithm>
+#include <titop/compiler/passes/lower/amounts.hpp>
+#include <titop/compiler/passes/lower/by_name.hpp>
+#include <titop/compiler/passes/lower/rigid_motions.hpp>
+#include <titop/graph/drives.hpp>
+#include <titop/graph/nodes/lti.hpp>
+
+namespace titop::passes {
+namespace {
+
+using Eigen::MatrixXd;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// "hub.parent.angular_rate"
+std::string name_of(const Graph& g, const RigidMotion& m) {
+  const std::string half = m.half == RigidMotion::Half::linear    ? "linear_"
+                           : m.half == RigidMotion::Half::angular ? "angular_"
+                                                                  : "";
+  return channel_name(g, g.signals[at(m.signal)].channel) + "." + half +
+         (m.twice ? "position" : "rate");
+}
+
+/// Integrators of the acceleration, once or twice, as a user would write them.
+void add_integrators(Graph& g, const std::set<RigidMotion>& missing,
+                     std::vector<RigidMotion>& motions) {
+  std::set<RigidMotion> all = missing;
+  for (RigidMotion m : missing)
+    if (m.twice) {
+      m.twice = false;
+      const bool there = std::any_of(motions.begin(), motions.end(), [&](const RigidMotion& o) {
+        return o.signal == m.signal && o.half == m.half && !o.twice;
+      });
+      if (!there) all.insert(m);
+    }
+  const auto find = [&](const RigidMotion& m, bool twice) {
+    return std::find_if(motions.begin(), motions.end(),
+                        [&](const RigidMotion& o) {
+                          return o.signal == m.signal && o.half == m.half && o.twice == twice;
+                        })
+        ->node;
+  };
+  for (const bool twice : {false, true})
+    for (RigidMotion m : all) {
+      if (m.twice != twice) continue;
+      const int size = g.signals[at(m.signal)].size;
+      const bool half = m.half != RigidMotion::Half::whole;
+      const Node& owner = g.nodes[at(g.signals[at(m.signal)].node)];
+      m.node = add_node(g, name_of(g, m), as_block(Integrator{half ? 3 : size}), owner.where);
+      Term from{.signal = m.signal};
+      if (twice) {
+        from.signal = g.nodes[at(find(m, false))].first_signal + 1;
+      } else if (half) {
+        const int first = m.half == RigidMotion::Half::angular ? 3 : 0;
+        from.factors.emplace_back(
+            Part{MatrixXd::Identity(6, 6).middleRows(first, 3), first ? ".angular" : ".linear"});
+      }
+      g.equations.push_back({.target = g.nodes[at(m.node)].first_signal, .terms = {from}});
+      motions.push_back(m);
+    }
+}
+
+}  // namespace
+
+void add_rigid_motions(Stage& stage, Graph& g) {
+  std::set<RigidMotion> missing;
+  {
+    Lowering l(g, stage.values, std::make_shared<const std::vector<Drive>>(drives(g)),
+               stage.motions);
+    const auto look = [&](const std::vector<Term>& terms) {
+      for (const Term& t : terms)
+        if (t.of == Term::Of::position || t.of == Term::Of::rate) l.terms({t});
+    };
+    for (const Equation& e : g.equations) look(e.terms);
+    for (const Output& o : g.outputs) look(o.terms);
+    missing = l.missing;
+  }
+  if (missing.empty()) return;
+  add_integrators(g, missing, stage.motions);
+  // In order of names again; the motions follow by theirs.
+  std::vector<std::pair<std::string, std::string>> names;
+  for (const RigidMotion& m : stage.motions)
+    names.emplace_back(titop::name_of(g, m.signal), g.nodes[at(m.node)].name);
+  g = by_name(g);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    RigidMotion& m = stage.motions[i];
+    for (int n = 0; n < static_cast<int>(g.nodes.size()); ++n)
+      if (g.nodes[at(n)].name == names[i].second) m.node = n;
+    for (const Channel& c : g.channels)
+      if (titop::name_of(g, c.accel) == names[i].first) m.signal = c.accel;
+  }
+  std::string list;
+  for (std::size_t i = 0; i < names.size(); ++i) list += (i ? ", " : "") + names[i].second;
+  stage.notes.push_back(
+      {Note::Kind::info, "lower", "motions that no other state holds are integrated: " + list});
+}
+
+}  // namespace titop::passes
