@@ -17,10 +17,16 @@ class SixAxes {
   template <class M>
   SixAxes(const Eigen::MatrixBase<M>& m) : SixAxes() {
     static_assert(M::RowsAtCompileTime == 6 || M::RowsAtCompileTime == Eigen::Dynamic);
-    if constexpr (M::ColsAtCompileTime == 1)
-      full_ = std::make_shared<const Matrix6>(Vector6(m).asDiagonal());
+    if (m.rows() != 6 || (m.cols() != 6 && m.cols() != 1))
+      throw Error(Code::size, "stiffness and damping of six axes are 6 x 6",
+                  "give a 6 x 6 matrix, a vector of 6, or six numbers");
+    Matrix6 K = Matrix6::Zero();
+    if (m.cols() == 1)
+      for (Eigen::Index i = 0; i < 6; ++i) K(i, i) = m(i, 0);
     else
-      full_ = std::make_shared<const Matrix6>(m);
+      for (Eigen::Index j = 0; j < 6; ++j)
+        for (Eigen::Index i = 0; i < 6; ++i) K(i, j) = m(i, j);
+    full_ = std::make_shared<const Matrix6>(K);
   }
   Matrix6 at(ParameterValues values) const;
   Matrix6 nominal() const;

@@ -35,7 +35,7 @@ struct Certificate {
   std::string margin_where;
   int fronts = 0;         ///< of the elimination
   int fronts_made = 0;    ///< of them, by the last compile or update; the others are shared
-  int plans_renewed = 0;  ///< updates since compile for which the old scaling no longer served
+  int plans_renewed = 0;  ///< updates since compile that could not keep plan and scaling
   double seconds = 0;     ///< what this check cost
 };
 

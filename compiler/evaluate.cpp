@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <limits>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 
@@ -178,7 +179,11 @@ double Evaluation<T>::last_change() const {
     }
     if (off > 0) worst = std::max(worst, off / size);
   }
-  return worst;
+  return solve::RowMatrix<std::complex<double>>(y.unaryExpr([](const T& x) -> std::complex<double> {
+           return solve::Scalar<T>::round(x);
+         })).allFinite()
+             ? worst
+             : std::numeric_limits<double>::infinity();
 }
 
 template <class T>

@@ -107,6 +107,7 @@ struct Stage {
   Matched matched;                                   ///< after match
   std::vector<Inversion> inversions;                 ///< after match
   std::vector<Loop> loops;                           ///< after order: dependencies first
+  bool chained = false;                              ///< after chains: some chain is closed
   bool closes = false;                ///< after chains: chains close, or Integrators may hold twins
   std::vector<Released> released;     ///< after chains
   std::vector<Dependent> dependents;  ///< after close: by node and state

@@ -193,6 +193,7 @@ const StateSpace& System::state_space() const {
   std::call_once(data_->dense_once, [&] {
     const detail::SystemData& d = *data_;
     const Options& options = d.skeleton->options;
+    d.dense_notes.clear();  // of an attempt that threw
     StateSpace dense;
     detail::write_dense(d, dense, 0);
     d.dense_against_factors = detail::dense_difference(d, dense);
@@ -212,6 +213,7 @@ const StateSpace& System::state_space() const {
                        dense.order(), options.minimize_up_to)});
     }
     d.dense = std::move(dense);
+    d.dense_ready.store(true, std::memory_order_release);
   });
   return data_->dense;
 }
@@ -224,9 +226,11 @@ std::vector<Pole> System::poles() const { return titop::poles(state_space()); }
 
 Certificate System::certificate() const {
   Certificate c = data_->checked().certificate;
-  c.dense_against_factors = data_->dense_against_factors;
-  c.dense_error = data_->dense_error.error;
-  c.dense_error_s = data_->dense_error.s;
+  if (data_->dense_ready.load(std::memory_order_acquire)) {
+    c.dense_against_factors = data_->dense_against_factors;
+    c.dense_error = data_->dense_error.error;
+    c.dense_error_s = data_->dense_error.s;
+  }
   return c;
 }
 
@@ -237,10 +241,12 @@ std::string System::log() const {
   std::string text =
       fmt::format("{}: {}, {}, {}\n", data_->graph().name, count(states().size(), "state"),
                   count(inputs().size(), "input"), count(outputs().size(), "output"));
-  for (const std::vector<Note>* list :
-       {&notes(), const_cast<const std::vector<Note>*>(&data_->dense_notes)})
-    for (const Note& n : *list)
+  const auto add = [&](const std::vector<Note>& list) {
+    for (const Note& n : list)
       text += fmt::format("  {:<9} {:<10} {}\n", n.pass, to_string(n.kind), n.text);
+  };
+  add(notes());
+  if (data_->dense_ready.load(std::memory_order_acquire)) add(data_->dense_notes);
   return text;
 }
 

@@ -108,9 +108,11 @@ class System {
   /// Pivots are judged at once; the rest of the certificate, and the warnings that come of it, are
   /// found when certificate(), notes(), log() or state_space() is first asked for: O(bodies).
   /// Throws unknown_name (with the names there are), not_finite, what the blocks throw for values
-  /// that make no block (bad_inertia, bad_value), improper and ill_posed. Where closed chains
-  /// change their geometry all is compiled again; if other states then depend on the rest the log
-  /// says so.
+  /// that make no block (bad_inertia, bad_value), improper and ill_posed.
+  ///
+  /// Where new values change how a closed chain moves, or bring a term in or leave one out, all
+  /// passes run again, at the cost of `compile` and with its throws; the log says so, and warns if
+  /// other states are kept than before.
   System update(const ParameterList& values) const;
 
   /// All parameters and their values here, in the order of their making.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <titop/compiler/solve/numbers.hpp>
@@ -73,6 +74,7 @@ struct SystemData {
   mutable double dense_against_factors = -1;
   mutable DenseError dense_error{-1, {}};
   mutable std::vector<Note> dense_notes;
+  mutable std::atomic<bool> dense_ready = false;  ///< all of the above may be read
 
   const Graph& graph() const { return skeleton->stage.graph; }
   const Layout& layout() const { return skeleton->layout; }
@@ -111,7 +113,6 @@ void judge_internal_forces(Skeleton& skeleton, const SystemData& data);
 /// All passes once more for these values of the parameters. States that followed from the others
 /// still do, where that keeps the digits.
 std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector<double>& values);
-
 
 /// Certificate of the factors: see certify.cpp.
 Check certify(const SystemData& data);

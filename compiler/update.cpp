@@ -145,17 +145,24 @@ void remake_blocks(const Skeleton& k, const std::vector<int>& nodes, solve::Numb
   }
 }
 
-void remake_coefficients(const Skeleton& k, const std::vector<int>& origins, solve::Numbers& n) {
-  if (origins.empty()) return;
+/// False where the new values bring in or leave out a term: the plan does not serve any more.
+bool remake_coefficients(const Skeleton& k, const std::vector<int>& origins, solve::Numbers& n) {
+  if (origins.empty()) return true;
   const auto terms = passes::lower_again(k.stage, origins, n.parameters);
   const std::size_t equations = k.stage.graph.equations.size();
   for (std::size_t i = 0; i < origins.size(); ++i) {
     const std::size_t o = at(origins[i]);
     const int first =
         o < equations ? k.joint.equation_coefficient[o] : k.joint.output_coefficient[o - equations];
-    for (std::size_t t = 0; t < terms[i].size(); ++t)
+    const auto& made = o < equations ? k.stage.graph.equations[o].terms
+                                     : k.stage.graph.outputs[o - equations].terms;
+    if (made.size() != terms[i].size()) return false;
+    for (std::size_t t = 0; t < made.size(); ++t) {
+      if (made[t].signal != terms[i][t].signal) return false;
       n.coefficients[at(first) + t] = solve::coefficient_of(terms[i][t]);
+    }
   }
+  return true;
 }
 
 /// True if new values change what pass `close` looked at: the kinematics of a block, or equations
@@ -163,16 +170,23 @@ void remake_coefficients(const Skeleton& k, const std::vector<int>& origins, sol
 bool moves_chains(const Skeleton& k, const std::vector<int>& changed, ParameterValues before,
                   ParameterValues now) {
   const Stage& stage = k.stage;
-  if (stage.dependents.empty() && stage.released.empty()) return false;
+  if (!stage.chained && stage.dependents.empty()) return false;
   for (const int i : united(k, changed, &Dependents::nodes)) {
     const auto a = stage.graph.nodes[at(i)].block->kinematics(before),
                b = stage.graph.nodes[at(i)].block->kinematics(now);
     if (a && (a->tau != b->tau || a->Phi != b->Phi)) return true;
   }
   const auto origins = united(k, changed, &Dependents::origins);
+  if (!stage.released.empty() && !origins.empty()) return true;  // who reads an internal force?
   return std::any_of(origins.begin(), origins.end(), [&](int o) {
     const Origin::Of of = stage.origins[at(o)].of;
-    return of == Origin::Of::accel || of == Origin::Of::one_way || of == Origin::Of::algebraic;
+    if (of == Origin::Of::accel) return true;
+    if (of != Origin::Of::one_way && of != Origin::Of::algebraic) return false;
+    // Gains, sums and Integrators pass motions on; controllers, and hubs with their masses, do not.
+    const Graph& g = stage.graph;
+    const Node& node = g.nodes[at(g.signals[at(g.equations[at(o)].target)].node)];
+    return node.block->interface().channels.empty() &&
+           (node.lowered || node.block->type() == "Integrator");
   });
 }
 
@@ -191,7 +205,8 @@ System compiled_again(const SystemData& old, const std::vector<int>& changed,
   auto d = compile_again(*old.skeleton, values);
   d->plans_renewed = old.plans_renewed + 1;
   d->notes.push_back({Note::Kind::info, "update",
-                      fmt::format("{}: closed chains move, all compiled again",
+                      fmt::format("{}: closed chains or the equations' terms change, all compiled "
+                                  "again",
                                   text_of(*old.skeleton, changed, values))});
   if (d->states.names() != old.states.names())
     d->notes.push_back({Note::Kind::warning, "update",
@@ -219,7 +234,8 @@ System System::update(const ParameterList& list) const {
   if (moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))
     return compiled_again(*data_, changed, d->numbers.parameters);
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
-  remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers);
+  if (!remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers))
+    return compiled_again(*data_, changed, d->numbers.parameters);
   const auto rows = real_rows(k, d->numbers);
   d->plans_renewed = data_->plans_renewed;
   d->factors = std::make_unique<const solve::Factors<double>>(

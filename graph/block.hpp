@@ -108,7 +108,8 @@ class Block {
   /// Stable type name: "SpringMass", "FlexibleBody", ...
   virtual std::string_view type() const = 0;
   virtual const Interface& interface() const = 0;
-  /// The matrices for these parameter values. Called once per compile and update.
+  /// The matrices for these parameter values. Called several times per compile: keep them where
+  /// they do not depend on parameters.
   virtual std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const = 0;
   /// The block alone at s, from its inputs to its states and outputs: X = (s - A)^-1 B and
   /// Y = C X + D. Dense by default, O(states^3); blocks with modal data do it in O(states).
@@ -125,7 +126,8 @@ class Block {
   /// the diagram moves, or no output sees, is left out by it.
   virtual Pattern moved_by() const;
   virtual Pattern seen_by() const;
-  /// Kinematic part, if the block has one; without it positions cannot be asked for beyond it.
+  /// Kinematic part, if the block has one; no chain may close through a block without. A state in
+  /// Phi needs another state as its rate: one 1 in its row of A, nothing in its row of B.
   virtual std::optional<Kinematics> kinematics(ParameterValues) const { return std::nullopt; }
   /// The values that the matrices depend on (only those that are parameters matter).
   virtual std::vector<Value> values() const { return {}; }

@@ -23,7 +23,8 @@ enum class Code {
   structure,       ///< every channel is driven and still the equations contradict in pattern
   ill_posed,       ///< an algebraic loop without a unique solution
   improper,        ///< the transfer would need derivatives of an input
-  kinematic_loop,  ///< a closed chain that does not meet, or whose internal forces are asked for
+  kinematic_loop,  ///< a closed chain (or the links of a posture) that does not meet, that goes
+                   ///< through a block without kinematics, or whose internal forces are asked for
   bad_inertia,     ///< no rigid body has this inertia
   bad_modes,       ///< modal data that contradict themselves
   bad_file,        ///< a file that cannot be read as what it should be

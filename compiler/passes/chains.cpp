@@ -206,9 +206,8 @@ void release_redundant(Stage& stage, const std::vector<Closing>& closings) {
                             state ? coordinates.weight(s.column.id, s.index) : 0};
   };
   for (Component& c : components(lines, classify)) {
-    const MatrixXd before = c.relations.R;
     const Factors factors = scale(c.relations);
-    MatrixXd known(before.cols(), 0);
+    MatrixXd known(c.relations.R.cols(), 0);
     for (std::size_t i = 0; i < c.lines.size(); ++i) {
       const Line& line = lines[at(c.lines[i])];
       const auto rows = static_cast<Index>(line.unit.size());
@@ -252,7 +251,8 @@ Stage chains(Stage stage) {
   }
   if (!checker.mistakes.empty()) throw Error(std::move(checker.mistakes));
   stage.notes.insert(stage.notes.end(), checker.notes.begin(), checker.notes.end());
-  if (!closings.empty()) release_redundant(stage, closings);
+  stage.chained = !closings.empty();
+  if (stage.chained) release_redundant(stage, closings);
   return stage;
 }
 

@@ -1,3 +1,4 @@
+#include <cstring>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/products.hpp>
 
@@ -5,7 +6,15 @@ namespace titop::solve {
 namespace {
 
 /// Four entries in one register.
-using Lane = double __attribute__((vector_size(32), aligned(8), may_alias));
+using Lane = double __attribute__((vector_size(32)));
+
+/// Wherever it stands. (By reference: a vector returned by value has another ABI without AVX.)
+[[gnu::always_inline]] inline void load(Lane& to, const double* from) {
+  std::memcpy(&to, from, sizeof to);
+}
+[[gnu::always_inline]] inline void store(double* to, const Lane& from) {
+  std::memcpy(to, &from, sizeof from);
+}
 
 struct Product {
   std::ptrdiff_t inner, m;
@@ -24,12 +33,13 @@ template <int R>
     double* const y = p.y + i * p.m + j;
     Lane left[R], right[R];
     for (int r = 0; r < R; ++r) {
-      left[r] = p.add ? *reinterpret_cast<const Lane*>(y + r * p.m) : Lane{};
-      right[r] = p.add ? *reinterpret_cast<const Lane*>(y + r * p.m + 4) : Lane{};
+      left[r] = right[r] = Lane{};
+      if (p.add) load(left[r], y + r * p.m), load(right[r], y + r * p.m + 4);
     }
     for (std::ptrdiff_t k = 0; k < p.inner; ++k) {
-      const Lane x = *reinterpret_cast<const Lane*>(p.x + k * p.m + j);
-      const Lane z = *reinterpret_cast<const Lane*>(p.x + k * p.m + j + 4);
+      Lane x, z;
+      load(x, p.x + k * p.m + j);
+      load(z, p.x + k * p.m + j + 4);
       for (int r = 0; r < R; ++r) {
         const double a = p.a[(i + r) * p.stride + k];
         left[r] += a * x;
@@ -37,8 +47,8 @@ template <int R>
       }
     }
     for (int r = 0; r < R; ++r) {
-      *reinterpret_cast<Lane*>(y + r * p.m) = left[r];
-      *reinterpret_cast<Lane*>(y + r * p.m + 4) = right[r];
+      store(y + r * p.m, left[r]);
+      store(y + r * p.m + 4, right[r]);
     }
   }
 }
@@ -50,19 +60,20 @@ template <int R, int C>
   double* const y = p.y + j * p.stride + i;
   Lane sum[C][R];
   for (int c = 0; c < C; ++c)
-    for (int r = 0; r < R; ++r)
-      sum[c][r] = p.add ? *reinterpret_cast<const Lane*>(y + c * p.stride + 4 * r) : Lane{};
+    for (int r = 0; r < R; ++r) {
+      sum[c][r] = Lane{};
+      if (p.add) load(sum[c][r], y + c * p.stride + 4 * r);
+    }
   for (std::ptrdiff_t k = 0; k < p.inner; ++k) {
     Lane a[R];
-    for (int r = 0; r < R; ++r)
-      a[r] = *reinterpret_cast<const Lane*>(p.a + k * p.stride + i + 4 * r);
+    for (int r = 0; r < R; ++r) load(a[r], p.a + k * p.stride + i + 4 * r);
     for (int c = 0; c < C; ++c) {
       const double x = p.x[k * p.m + j + c];
       for (int r = 0; r < R; ++r) sum[c][r] += a[r] * x;
     }
   }
   for (int c = 0; c < C; ++c)
-    for (int r = 0; r < R; ++r) *reinterpret_cast<Lane*>(y + c * p.stride + 4 * r) = sum[c][r];
+    for (int r = 0; r < R; ++r) store(y + c * p.stride + 4 * r, sum[c][r]);
 }
 
 }  // namespace
@@ -93,9 +104,11 @@ TITOP_WIDE void scatter(std::span<const Column> columns, bool state, std::ptrdif
     const double* const from = values + c.from * stride;
     double* const to = (state ? c.state : c.output) + row;
     std::ptrdiff_t i = 0;
-    for (; i + 4 <= rows; i += 4)
-      *reinterpret_cast<Lane*>(to + i) =
-          c.factor * *reinterpret_cast<const Lane*>(from + i) + Lane{};
+    for (; i + 4 <= rows; i += 4) {
+      Lane v;
+      load(v, from + i);
+      store(to + i, c.factor * v + Lane{});
+    }
     for (; i < rows; ++i) to[i] = c.factor * from[i] + 0.0;
   }
 }

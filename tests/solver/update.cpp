@@ -155,6 +155,34 @@ TEST_CASE("update: the certificate, asked for late, is of the new values and war
   CHECK(after.update({{"g", 0.25}}).certificate().margin == doctest::Approx(3).epsilon(1e-2));
 }
 
+TEST_CASE("update: gains on positions and rates, from and to 0") {
+  const auto scene = [](double kp, double kd) {
+    Diagram d{"attitude"};
+    auto W = d.input("W", 6);
+    auto B = d.add("B", RigidBody{.mass = 20, .inertia = Vector3d(3, 4, 5).asDiagonal()});
+    B.parent.force = d.param("kp", kp) * B.parent.position + d.param("kd", kd) * B.parent.rate - W;
+    d.output("x", 6) = B.parent.position;
+    return d;
+  };
+  const std::complex<double> s{0.4, 1.3};
+  for (const auto& [kp, kd] : {std::pair(7.0, 2.0), std::pair(0.0, 2.0), std::pair(7.0, 0.0)}) {
+    const System from = compile(scene(kp, kd));
+    for (const auto& [p, q] : {std::pair(5.0, 1.0), std::pair(0.0, 3.0), std::pair(6.0, 0.0)}) {
+      CAPTURE(kp);
+      CAPTURE(kd);
+      CAPTURE(p);
+      CAPTURE(q);
+      const System to = from.update({{"kp", p}, {"kd", q}});
+      // One body about its centre of mass: x = W / (m s^2 + kd s + kp), axis by axis.
+      const Eigen::VectorXd m = (Eigen::VectorXd(6) << 20, 20, 20, 3, 4, 5).finished();
+      Eigen::MatrixXcd exact = Eigen::MatrixXcd::Zero(6, 6);
+      for (Eigen::Index i = 0; i < 6; ++i) exact(i, i) = 1.0 / (m(i) * s * s + q * s + p);
+      CHECK(matrix_error(to.transfer(s), exact) <= 1e-13);
+      CHECK(to.certificate().residual <= 1e-13);
+    }
+  }
+}
+
 TEST_CASE("update: unknown names, values that are none, values that make no block") {
   const System s = compile(scene({}));
   CHECK(says(error_of([&] {

@@ -34,7 +34,17 @@ struct Finder {
     for (const auto& [channel, c] : twin.points) add(result.form, c, motion.position(channel));
     for (const auto& [signal, c] : twin.others)
       add(result.form, {Column::Kind::prescribed, signal, 0}, c);
+    for (const auto& [column, matrix] : result.form)
+      if (column.kind == Column::Kind::states && !all_have_rates(column.id, matrix))
+        return std::nullopt;  // it keeps its states
     return result;
+  }
+
+  bool all_have_rates(int node, const MatrixXd& matrix) const {
+    for (Index j = 0; j < matrix.cols(); ++j)
+      if (!matrix.col(j).isZero(0) && coordinates.rate_of(node, static_cast<int>(j)) < 0)
+        return false;
+    return true;
   }
 
   std::optional<Integral> of_rates(const Twin& twin) {

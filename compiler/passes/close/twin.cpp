@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <titop/compiler/passes/close/twin.hpp>
 
 namespace titop::passes::closing {
@@ -22,18 +23,18 @@ bool Twins::is_integrator(int node) const {
   return node >= 0 && g_.nodes[at(node)].block->type() == "Integrator";
 }
 
-void Twins::add(Twin& to, const Eigen::MatrixXd& factor, int signal,
-                std::vector<char>& visiting) const {
+void Twins::add(Twin& to, const Eigen::MatrixXd& factor, int signal, std::vector<int>& way) const {
   if (factor.isZero(0)) return;
   const Signal& s = g_.signals[at(signal)];
   if (s.channel >= 0 && s.quantity == Quantity::acceleration)
     return put(to.points, s.channel, factor);
   const bool lowered = s.node >= 0 && g_.nodes[at(s.node)].lowered;
-  if (const int e = equation_of_[at(signal)]; lowered && e >= 0 && !visiting[at(signal)]) {
-    visiting[at(signal)] = 1;
+  if (const int e = equation_of_[at(signal)];
+      lowered && e >= 0 && std::find(way.begin(), way.end(), signal) == way.end()) {
+    way.push_back(signal);
     for (const Term& t : g_.equations[at(e)].terms)
-      add(to, factor * coefficient(g_, t, {}), t.signal, visiting);
-    visiting[at(signal)] = 0;
+      add(to, factor * coefficient(g_, t, {}), t.signal, way);
+    way.pop_back();
     return;
   }
   if (s.role == Signal::Role::state)
@@ -48,8 +49,8 @@ void Twins::add(Twin& to, const Eigen::MatrixXd& factor, int signal,
 
 Twin Twins::of(const std::vector<Term>& terms) const {
   Twin result;
-  std::vector<char> visiting(g_.signals.size(), 0);
-  for (const Term& t : terms) add(result, coefficient(g_, t, {}), t.signal, visiting);
+  std::vector<int> way;
+  for (const Term& t : terms) add(result, coefficient(g_, t, {}), t.signal, way);
   return result;
 }
 

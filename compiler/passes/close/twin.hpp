@@ -20,14 +20,15 @@ struct Twin {
 class Twins {
  public:
   explicit Twins(const Graph& graph);
-  /// O(terms that it stands for).
+  /// O(terms that it stands for, counted along every way through gains and sums).
   Twin of(const std::vector<Term>& terms) const;
   /// Of the input of a one-way port: what its equation says.
   Twin of_input(int signal) const;
   bool is_integrator(int node) const;
 
  private:
-  void add(Twin& to, const Eigen::MatrixXd& factor, int signal, std::vector<char>& visiting) const;
+  /// `way`: the gains and sums that are being followed through.
+  void add(Twin& to, const Eigen::MatrixXd& factor, int signal, std::vector<int>& way) const;
 
   const Graph& g_;
   std::vector<int> equation_of_;  ///< of one-way targets and outputs of lowered nodes; -1: none

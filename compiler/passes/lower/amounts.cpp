@@ -27,6 +27,11 @@ void append(Amount& sum, Amount more) {
 
 }  // namespace
 
+Amount times(const MatrixXd& m, const Pattern& declared, Amount sum) {
+  for (Summand& t : sum) t.c = m * t.c, t.p = (declared.cast<int>() * t.p.cast<int>()).array() > 0;
+  return sum;
+}
+
 Amount times(const MatrixXd& m, Amount sum) {
   for (Summand& t : sum) t.c = m * t.c, t.p = product(m, t.p);
   return sum;
@@ -109,7 +114,7 @@ Amount Lowering::terms(const std::vector<Term>& list) {
     const int channel = g.signals[at(t.signal)].channel;
     if (t.of == Term::Of::position || t.of == Term::Of::rate) {
       const Level level = t.of == Term::Of::rate ? Level::rate : Level::position;
-      append(sum, integrated(times(c, twin(channel, level)), level));
+      append(sum, integrated(times(c, structure(g, t), twin(channel, level)), level));
       continue;
     }
     sum.push_back({t.signal, c, structure(g, t)});
@@ -140,7 +145,8 @@ Amount Lowering::twin(int channel, Level level) {
           visiting[at(channel)] = 0;
           return own_motion(channel);  // prescribed
         }
-        append(sum, times(embed * coefficient_of(t), twin(s.channel, level)));
+        append(sum, times(embed * coefficient_of(t), product(embed, structure(g, t)),
+                          twin(s.channel, level)));
       }
     }
   } else if (const auto k = g.nodes[at(c.node)].block->kinematics(values)) {

@@ -19,6 +19,8 @@ using Amount = std::vector<Summand>;
 std::vector<Term> merged(Amount sum);
 /// m * sum.
 Amount times(const Eigen::MatrixXd& m, Amount sum);
+/// The same with the declared structure of m: an entry that is 0 now need not stay 0.
+Amount times(const Eigen::MatrixXd& m, const Pattern& declared, Amount sum);
 
 /// Writes right-hand sides out, for one set of parameter values.
 struct Lowering {

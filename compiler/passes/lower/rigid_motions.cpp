@@ -67,13 +67,14 @@ void add_rigid_motions(Stage& stage, Graph& g) {
   {
     Lowering l(g, stage.values, std::make_shared<const std::vector<Drive>>(drives(g)),
                stage.motions);
-    const auto look = [&](const std::vector<Term>& terms) {
+    const auto look = [&](const std::vector<Term>& terms, const std::source_location& where) {
       for (const Term& t : terms)
-        if (t.of == Term::Of::position || t.of == Term::Of::rate) l.terms({t});
+        if (t.of == Term::Of::position || t.of == Term::Of::rate)
+          l.collect(where, [&] { return l.terms({t}); });
     };
-    for (const Equation& e : g.equations) look(e.terms);
-    for (const Output& o : g.outputs) look(o.terms);
-    missing = l.missing;
+    for (const Equation& e : g.equations) look(e.terms, e.where);
+    for (const Output& o : g.outputs) look(o.terms, o.where);
+    missing = l.missing;  // what is wrong with these terms, `lower` finds again
   }
   if (missing.empty()) return;
   add_integrators(g, missing, stage.motions);
