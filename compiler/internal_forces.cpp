@@ -11,7 +11,14 @@ using solve::RowMatrix;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-constexpr double kMoves = 1e-7;  ///< of the largest internal force; rounding gives 1e-12
+constexpr double kMoves = 1e-7;   ///< of what could cancel in a sum; rounding gives 1e-12
+constexpr double kNoise = 1e-10;  ///< of the largest internal force: zero
+
+/// One term of a sum.
+struct Share {
+  int signal = -1;
+  Eigen::MatrixXd c;
+};
 
 /// All signals for a unit wrench in every released direction, one column each.
 class SelfStress {
@@ -49,11 +56,25 @@ class SelfStress {
     return v;
   }
 
-  /// Accelerations and states follow the motion, which is determined: what they show is rounding.
-  bool moves(const RowMatrix<double>& v, int signal) const {
-    const Quantity q = g_.signals[at(signal)].quantity;
-    return (q == Quantity::force || q == Quantity::plain) && v.size() > 0 &&
-           v.cwiseAbs().maxCoeff() > kMoves * largest_;
+  /// The first signal by which a sum depends on internal forces, -1 if it does not: what it shows
+  /// is more than rounding leaves of what cancels in it. Accelerations and states follow the motion
+  /// and do not count.
+  int shown_by(const std::vector<Share>& sum) const {
+    if (sum.empty()) return -1;
+    const Eigen::Index rows = sum.front().c.rows(), columns = known_.cols();
+    RowMatrix<double> total = RowMatrix<double>::Zero(rows, columns), size = total;
+    int first = -1;
+    for (const Share& share : sum) {
+      const Quantity q = g_.signals[at(share.signal)].quantity;
+      if (q != Quantity::force && q != Quantity::plain) continue;
+      const RowMatrix<double> v = value(share.signal);
+      total += share.c * v;
+      size += kMoves * (share.c.cwiseAbs() * v.cwiseAbs());
+      size.colwise() += kNoise * largest_ * share.c.cwiseAbs().rowwise().sum();
+      if (first < 0 && v.size() > 0 && v.cwiseAbs().maxCoeff() > kNoise * largest_)
+        first = share.signal;
+    }
+    return (total.cwiseAbs().array() > size.array()).any() ? first : -1;
   }
 
  private:
@@ -94,27 +115,70 @@ struct Judge {
          "Options{.internal_forces = InternalForces::minimal_norm}"});
   }
 
+  std::vector<Share> terms(const std::vector<Term>& list, int first) const {
+    std::vector<Share> sum;
+    for (std::size_t t = 0; t < list.size(); ++t)
+      sum.push_back({list[t].signal, *d.numbers.coefficients[at(first) + t]});
+    return sum;
+  }
+
   void outputs() {
     const Graph& g = k.stage.graph;
     for (std::size_t o = 0; o < g.outputs.size(); ++o)
-      for (std::size_t t = 0; t < g.outputs[o].terms.size(); ++t) {
-        const int signal = g.outputs[o].terms[t].signal;
-        const auto& c = *d.numbers.coefficients[at(k.joint.output_coefficient[o]) + t];
-        if (!stress.moves(c * stress.value(signal), signal)) continue;
+      if (const int signal =
+              stress.shown_by(terms(g.outputs[o].terms, k.joint.output_coefficient[o]));
+          signal >= 0)
         found("output " + g.outputs[o].name, signal, g.outputs[o].where);
-        break;
-      }
   }
 
   void controllers() {
     const Graph& g = k.stage.graph;
-    for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
-      const Signal& in = g.signals[at(s)];
-      if (in.role != Signal::Role::input || in.channel >= 0 || !in.active ||
-          g.nodes[at(in.node)].lowered || !stress.moves(stress.value(s), s))
+    for (std::size_t e = 0; e < g.equations.size(); ++e) {
+      const Signal& in = g.signals[at(g.equations[e].target)];
+      if (!g.equations[e].active || in.role != Signal::Role::input || in.channel >= 0 ||
+          g.nodes[at(in.node)].lowered)
         continue;
-      found(name_of(g, s), s, g.nodes[at(in.node)].where);
+      if (const int signal =
+              stress.shown_by(terms(g.equations[e].terms, k.joint.equation_coefficient[e]));
+          signal >= 0)
+        found(name_of(g, g.equations[e].target), signal, g.equations[e].where);
     }
+  }
+
+  /// Self-stress is in balance on every body; a body where it is not is moved by it.
+  void bodies() {
+    const Graph& g = k.stage.graph;
+    for (const Row& row : k.stage.rows) {
+      if (!row.active) continue;
+      std::vector<Share> sum;
+      if (row.node >= 0)
+        sum = balance(row);
+      else if (const Equation& e = g.equations[at(row.equation)]; e.of_block) {
+        sum = terms(e.terms, k.joint.equation_coefficient[at(row.equation)]);
+        const int n = g.signals[at(e.target)].size;
+        sum.push_back({e.target, -Eigen::MatrixXd::Identity(n, n)});
+      }
+      if (sum.empty()) continue;
+      const int y = row.node >= 0 ? row.output : g.equations[at(row.equation)].target;
+      const Node& node = g.nodes[at(g.signals[at(y)].node)];
+      if (node.block->interface().channels.empty()) continue;
+      if (const int signal = stress.shown_by(sum); signal >= 0) {
+        found("the motion of " + node.name, signal, node.where);
+        return;  // all that hangs on it moves as well
+      }
+    }
+  }
+
+  /// What a block's row says of its channels' signals: D u - y.
+  std::vector<Share> balance(const Row& row) const {
+    const Graph& g = k.stage.graph;
+    const Signal& y = g.signals[at(row.output)];
+    std::vector<Share> sum{{row.output, -Eigen::MatrixXd::Identity(y.size, y.size)}};
+    for (int i = g.nodes[at(row.node)].first_signal; i < end_signal(g, row.node); ++i)
+      if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input && u.active)
+        sum.push_back(
+            {i, d.numbers.blocks[at(row.node)]->direct(y.first, u.first, y.size, u.size)});
+    return sum;
   }
 };
 
@@ -127,6 +191,7 @@ void judge_internal_forces(Skeleton& k, const SystemData& d) {
   Judge judge{k, d, stress};
   judge.outputs();
   judge.controllers();
+  judge.bodies();
   if (!judge.mistakes.empty() && k.options.internal_forces == InternalForces::refuse)
     throw Error(std::move(judge.mistakes));
   k.stage.notes.insert(k.stage.notes.end(), judge.notes.begin(), judge.notes.end());

@@ -83,6 +83,41 @@ TEST_CASE("a controller that reads an internal force is refused") {
   CHECK(says(compile_error(e), Code::kinematic_loop, {"K.in reads", "not determined"}));
 }
 
+TEST_CASE("an internal force in other units, or one that moves another body, is refused too") {
+  using namespace titop_test;
+  {
+    Diagram d{"giganewtons"};
+    auto A = d.add("A", block(4, {1, 0.5, 0.2})), B = d.add("B", block(3, {0.5, 0.25, 0.1}));
+    A.parent.force = -d.input("U", 6);
+    mount(B, A.child("near"));
+    weld(B.child("far"), A.child("far"));
+    d.output("F", 6) = 1e-9 * B.parent.force;
+    CHECK(says(compile_error(d), Code::kinematic_loop, {"output F reads B.parent.force"}));
+  }
+  Diagram d{"driven"};
+  auto A = d.add("A", block(4, {1, 0.5, 0.2})), B = d.add("B", block(3, {0.5, 0.25, 0.1}));
+  auto C = d.add("C", block(2, {1, 0, 0}));
+  A.parent.force = -d.input("U", 6);
+  mount(B, A.child("near"));
+  weld(B.child("far"), A.child("far"));
+  C.parent.force = Eigen::MatrixXd(0.5 * Eigen::MatrixXd::Identity(6, 6)) * B.parent.force;
+  d.output("c", 6) = C.parent.accel;
+  CHECK(says(compile_error(d), Code::kinematic_loop, {"the motion of C", "not determined"}));
+}
+
+TEST_CASE("what both supports of a body held twice bear together is determined") {
+  Diagram d{"held twice"};
+  auto A = d.add("A", block(4, {1, 0, 0}));
+  ground(A);
+  ground(A.child("far"));
+  A.child("near").force = d.input("F", 6);
+  d.output("borne", 3) = A.child("far").reaction.linear() - A.parent.force.linear;
+  const MatrixXcd G = compile(d).transfer({0, 1});
+  MatrixXcd exact = MatrixXcd::Zero(3, 6);
+  exact.leftCols(3) = -MatrixXcd::Identity(3, 3);
+  CHECK((G - exact).cwiseAbs().maxCoeff() <= 1e-13);
+}
+
 TEST_CASE("rigid four-bar, four sprung pins: order 2, three closing equations redundant") {
   // Crank, coupler and rocker of length 1, pins 1 apart: a parallelogram. Crank and rocker turn by
   // phi, the coupler only translates; every pin is turned by phi against its spring.
