@@ -109,8 +109,8 @@ void add(const Method& method, bool quick) {
     const std::string name = fmt::format("{}/{}/{}/{}", method.task, method.scene, n, method.name);
     benchmark::RegisterBenchmark(name.c_str(),
                                  [line, n](benchmark::State& state) { measure(state, line, n); })
-        ->MinTime(quick ? 0.005 : 0.2)
-        ->Repetitions(quick ? 1 : 3)
+        ->MinTime(quick ? 0.005 : 0.1)
+        ->Repetitions(quick ? 1 : 2)
         ->UseRealTime();
   }
 }
