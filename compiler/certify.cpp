@@ -235,10 +235,6 @@ void self_check(const SystemData& d, Certificate& certificate) {
   certificate.residual_where = r.where;
 }
 
-}  // namespace
-
-namespace {
-
 /// The model's states block by block: first and count.
 std::vector<std::pair<int, int>> segments(const SystemData& d) {
   std::vector<std::pair<int, int>> result;

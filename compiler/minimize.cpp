@@ -183,8 +183,7 @@ bool symmetric_modes(const StateSpace& model, Symmetric& s) {
   return true;
 }
 
-// --- taking modes out
-// -----------------------------------------------------------------------------
+// --- taking modes out ---------------------------------------------------------------------------
 
 /// Columns that stand best for the rows of W (k x n): pivoted QR.
 std::vector<int> pivots(const MatrixXd& W) {
@@ -340,8 +339,7 @@ void minimize_symmetric(const Symmetric& s, double resolution, Minimized& r) {
   }
 }
 
-// --- everything else
-// --------------------------------------------------------------------------------
+// --- everything else ----------------------------------------------------------------------------
 
 void minimize_general(double resolution, Minimized& r) {
   const linalg::Eigensystem e = linalg::eigensystem(r.model.A);

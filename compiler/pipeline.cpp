@@ -82,10 +82,6 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
                                        k.joint.plan->fronts.size())});
 }
 
-}  // namespace
-
-namespace {
-
 std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options) {
   auto data = std::make_shared<detail::SystemData>();
   auto skeleton = std::make_shared<detail::Skeleton>();

@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-bool orthonormal_rows(const MatrixXd& m) {
+bool has_orthonormal_rows(const MatrixXd& m) {
   return m.rows() <= m.cols() &&
          (m * m.transpose() - MatrixXd::Identity(m.rows(), m.rows())).cwiseAbs().maxCoeff() <= 1e-9;
 }
@@ -108,7 +108,7 @@ std::optional<Motion::Edge> Motion::edge_of(const Tie& tie) const {
   const auto& [point, c] = *tie.points.begin();
   e.from = point;
   if (c.cols() != tie.S.cols()) return std::nullopt;  // a scalar point beside one of six
-  e.rigid = orthonormal_rows(c);
+  e.rigid = has_orthonormal_rows(c);
   if (!e.rigid && (c.rows() != c.cols() || free.rows() > 0 || !(linalg::inverse(c).rcond > 1e-3)))
     return std::nullopt;
   // What the joint leaves free is counted from the other side: any completion of c will do.
@@ -227,7 +227,7 @@ Closing Motion::closing(const Tie& tie) const {
   // A gear passes on motions that are not rigid: there the whole assembly's motion counts.
   const bool rigid = top >= 0 && top != ground_ && rigid_between(tie.target, top) &&
                      rigid_between(other, top) &&
-                     (tie.points.empty() || orthonormal_rows(tie.points.begin()->second));
+                     (tie.points.empty() || has_orthonormal_rows(tie.points.begin()->second));
   if (top != ground_ && !rigid) top = -1;
   MatrixXd sizes = tie.S.cwiseAbs();  // how far the way round leads
   MatrixXd here = walk(result.form, tie.S, tie.target, top, &sizes);
