@@ -17,9 +17,11 @@ bool less(const Summand& a, const Summand& b) {
                                       b.c.data() + b.c.size());
 }
 
-Pattern product(const MatrixXd& m, const Pattern& p) {
-  return ((m.array() != 0).matrix().cast<int>() * p.cast<int>()).array() > 0;
+Pattern product(const Pattern& a, const Pattern& b) {
+  return (a.cast<int>() * b.cast<int>()).array() > 0;
 }
+
+Pattern product(const MatrixXd& m, const Pattern& p) { return product(Pattern(m.array() != 0), p); }
 
 void append(Amount& sum, Amount more) {
   for (Summand& t : more) sum.push_back(std::move(t));
@@ -28,7 +30,7 @@ void append(Amount& sum, Amount more) {
 }  // namespace
 
 Amount times(const MatrixXd& m, const Pattern& declared, Amount sum) {
-  for (Summand& t : sum) t.c = m * t.c, t.p = (declared.cast<int>() * t.p.cast<int>()).array() > 0;
+  for (Summand& t : sum) t.c = m * t.c, t.p = product(declared, t.p);
   return sum;
 }
 
@@ -124,66 +126,98 @@ Amount Lowering::terms(const std::vector<Term>& list) {
   return sum;
 }
 
-/// The position or rate of a channel in terms of states and of motions that no state holds: the
-/// twin of the equation that drives its acceleration, or the block's own kinematics from the
-/// parent's position.
+/// The position or rate of a channel in terms of states and of motions that no state holds: along
+/// the equations that drive accelerations, and through bodies by their kinematics.
 Amount Lowering::twin(int channel, Level level) {
-  const Channel& c = g.channels[at(channel)];
-  const Drive& d = drive[at(channel)];
-  const bool back = visiting[at(channel)];  // round a closed chain: the motion of all of it
-  if (back || (!d.accel.empty() && d.N.rows() > 0)) return own_motion(channel);
-  visiting[at(channel)] = 1;
+  const int n = g.channels[at(channel)].size;
+  const MatrixXd I = MatrixXd::Identity(n, n);
   Amount sum;
-  if (!d.accel.empty()) {
-    for (const int e : d.accel) {
-      const Equation& equation = g.equations[at(e)];
-      const MatrixXd embed = equation.part.whole() ? MatrixXd::Identity(c.size, c.size)
-                                                   : MatrixXd(equation.part.rows.transpose());
-      for (const Term& t : equation.terms) {
-        const Signal& s = g.signals[at(t.signal)];
-        if (s.channel < 0 || s.quantity != Quantity::acceleration || t.of != Term::Of::signal) {
-          visiting[at(channel)] = 0;
-          return own_motion(channel);  // prescribed
-        }
-        append(sum, times(embed * coefficient_of(t), product(embed, structure(g, t)),
-                          twin(s.channel, level)));
-      }
-    }
-  } else if (const auto k = g.nodes[at(c.node)].block->kinematics(values)) {
-    meet(g.nodes[at(c.node)].block->values());
-    sum = body_twin(c, *k, level);
-  } else {
-    sum = own_motion(channel);
-  }
-  visiting[at(channel)] = 0;
+  walk(sum, {channel, I, I.array() != 0}, level);
   return sum;
 }
 
-Amount Lowering::body_twin(const Channel& c, const Kinematics& k, Level level) {
+/// Adds factor * twin. A chain is walked along, however long it is; only where an equation has
+/// several terms the way forks.
+void Lowering::walk(Amount& sum, Step at_channel, Level level) {
+  std::vector<int> way;
+  std::optional<Step> next = std::move(at_channel);
+  while (next) {
+    const Step here = std::move(*next);
+    next.reset();
+    const Drive& d = drive[at(here.channel)];
+    const bool back = visiting[at(here.channel)];  // round a closed chain: the motion of all of it
+    if (back || (!d.accel.empty() && d.N.rows() > 0)) {
+      append(sum, times(here.factor, here.declared, own_motion(here.channel)));
+      break;
+    }
+    visiting[at(here.channel)] = 1;
+    way.push_back(here.channel);
+    if (d.accel.empty()) {
+      next = through_body(sum, here, level);
+      continue;
+    }
+    std::vector<Step> ties;
+    if (!find_ties(here, ties)) {  // prescribed
+      append(sum, times(here.factor, here.declared, own_motion(here.channel)));
+      break;
+    }
+    if (ties.size() == 1) next = std::move(ties.front());
+    for (Step& tie : ties)
+      if (ties.size() > 1) walk(sum, std::move(tie), level);
+  }
+  for (const int channel : way) visiting[at(channel)] = 0;
+}
+
+/// The points that this one's driven acceleration follows; false where something else drives it.
+bool Lowering::find_ties(const Step& here, std::vector<Step>& ties) {
+  const int n = g.channels[at(here.channel)].size;
+  for (const int e : drive[at(here.channel)].accel) {
+    const Equation& equation = g.equations[at(e)];
+    const MatrixXd embed =
+        equation.part.whole() ? MatrixXd::Identity(n, n) : MatrixXd(equation.part.rows.transpose());
+    for (const Term& t : equation.terms) {
+      const Signal& s = g.signals[at(t.signal)];
+      if (s.channel < 0 || s.quantity != Quantity::acceleration || t.of != Term::Of::signal)
+        return false;
+      ties.push_back({s.channel, here.factor * embed * coefficient_of(t),
+                      product(here.declared, product(embed, structure(g, t)))});
+    }
+  }
+  return true;
+}
+
+/// From a point of a body to its parent point, or from that to another that is driven.
+std::optional<Lowering::Step> Lowering::through_body(Amount& sum, const Step& here, Level level) {
+  const Channel& c = g.channels[at(here.channel)];
   const Node& node = g.nodes[at(c.node)];
-  const auto deformation = [&](int spec, double sign) {
-    MatrixXd Phi = sign * k.Phi[at(spec)];
+  const auto k = node.block->kinematics(values);
+  const auto add_deformation = [&](int spec, const Step& by, double sign) {
+    if (node.state < 0) return;
+    MatrixXd Phi = sign * k->Phi[at(spec)];
     if (level == Level::rate) Phi = Phi * node.block->dynamics(values)->A;
-    Pattern pattern = Phi.array() != 0;
-    return Amount{{node.state, std::move(Phi), std::move(pattern)}};
+    sum.push_back({node.state, by.factor * Phi, product(by.declared, Pattern(Phi.array() != 0))});
   };
-  if (c.spec != k.reference) {
-    Amount sum = times(k.tau[at(c.spec)], twin(node.first_channel + k.reference, level));
-    if (node.state >= 0) append(sum, deformation(c.spec, 1));
-    return sum;
+  if (k) meet(node.block->values());
+  if (k && c.spec != k->reference) {
+    const MatrixXd& tau = k->tau[at(c.spec)];
+    add_deformation(c.spec, here, 1);
+    return Step{node.first_channel + k->reference, here.factor * tau,
+                product(here.declared, Pattern(tau.array() != 0))};
   }
-  for (int spec = 0; spec < static_cast<int>(k.tau.size()); ++spec) {
+  for (int spec = 0; k && spec < static_cast<int>(k->tau.size()); ++spec) {
     const int other = node.first_channel + spec;
-    if (spec == k.reference || drive[at(other)].accel.empty()) continue;
-    const linalg::Inverse inverse = k.tau[at(spec)].rows() == k.tau[at(spec)].cols()
-                                        ? linalg::inverse(k.tau[at(spec)])
-                                        : linalg::Inverse{};
+    const MatrixXd& tau = k->tau[at(spec)];
+    if (spec == k->reference || drive[at(other)].accel.empty() || tau.rows() != tau.cols())
+      continue;
+    const linalg::Inverse inverse = linalg::inverse(tau);
     if (inverse.rcond == 0) continue;
-    Amount sum = twin(other, level);
-    if (node.state >= 0) append(sum, deformation(spec, -1));
-    return times(inverse.matrix, std::move(sum));
+    Step step{other, here.factor * inverse.matrix,
+              product(here.declared, Pattern(inverse.matrix.array() != 0))};
+    add_deformation(spec, step, -1);
+    return step;
   }
-  return own_motion(node.first_channel + c.spec);
+  append(sum, times(here.factor, here.declared, own_motion(here.channel)));
+  return std::nullopt;
 }
 
 MatrixXd Lowering::coefficient_of(const Term& t) {

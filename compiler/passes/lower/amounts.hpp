@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <set>
 #include <titop/compiler/stage.hpp>
 
@@ -63,7 +64,15 @@ struct Lowering {
   /// The row of this output signal of an algebraic node.
   Amount algebraic(int output);
   Amount twin(int channel, Level level);
-  Amount body_twin(const Channel& c, const Kinematics& k, Level level);
+  /// A point on the way, and by what its motion counts.
+  struct Step {
+    int channel;
+    Eigen::MatrixXd factor;
+    Pattern declared;
+  };
+  void walk(Amount& sum, Step at_channel, Level level);
+  bool find_ties(const Step& here, std::vector<Step>& ties);
+  std::optional<Step> through_body(Amount& sum, const Step& here, Level level);
   Amount own_motion(int channel) const;
   Amount integrated(Amount sum, Level level);
   Amount added(int channel, const std::vector<int>& equations);
