@@ -41,10 +41,10 @@ class SpringMassBlock : public Block {
     const double c = spec_.damping.at(values), m0 = spec_.parent_mass.at(values);
     check_values(m, k, c, m0);
     auto d = std::make_shared<Dynamics>();
-    d->A = (MatrixXd(2, 2) << 0, 1, -k / m, -c / m).finished();
-    d->B = (MatrixXd(2, 2) << 0, 0, 1 / m, -1).finished();
-    d->C = (MatrixXd(3, 2) << -k / m, -c / m, k, c, 1, 0).finished();
-    d->D = (MatrixXd(3, 2) << 1 / m, 0, 0, -m0, 0, 0).finished();
+    d->A = Eigen::Matrix2d{{0, 1}, {-k / m, -c / m}};
+    d->B = Eigen::Matrix2d{{0, 0}, {1 / m, -1}};
+    d->C = Eigen::Matrix<double, 3, 2>{{-k / m, -c / m}, {k, c}, {1, 0}};
+    d->D = Eigen::Matrix<double, 3, 2>{{1 / m, 0}, {0, -m0}, {0, 0}};
     return d;
   }
 
@@ -71,8 +71,9 @@ class SpringMassBlock : public Block {
 
   std::optional<Kinematics> kinematics(ParameterValues values) const override {
     Kinematics k{.reference = 1, .tau = {}, .Phi = {}};
-    k.tau = {MatrixXd::Identity(1, 1), MatrixXd::Identity(1, 1)};
-    k.Phi = {(MatrixXd(1, 2) << 1, 0).finished(), MatrixXd::Zero(1, 2)};
+    k.tau.assign(2, MatrixXd::Identity(1, 1));
+    k.Phi.assign(2, MatrixXd::Zero(1, 2));
+    k.Phi[0](0, 0) = 1;  // the stretch
     k.stiffness = Eigen::Vector2d(spec_.stiffness.at(values), 0);
     return k;
   }

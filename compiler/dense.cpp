@@ -40,8 +40,21 @@ struct Target {
   Index row = 0;  ///< first row of [xdot; y]
   Index rows = 0;
   Index padded = 0;  ///< rows, up to a multiple of 4
+  Index place = 0;   ///< among the values of a column
   std::vector<Part> unknown, known;
 };
+
+/// Room for solutions. A thread keeps it from model to model while it is small: fresh memory would
+/// cost as much as the work.
+struct Room {
+  solve::Propagation::Space space;
+  std::vector<double> values;
+};
+Room& room_of_thread() {
+  static thread_local Room room;
+  return room;
+}
+constexpr std::size_t kKeep = 1 << 17;  ///< numbers: 1 MB each of four
 
 class Writer {
  public:
@@ -60,11 +73,11 @@ class Writer {
     const solve::Propagation propagation(*d_.factors);
     const std::vector<std::size_t> begin = batches();
     parallel(begin.size() - 1, threads(begin.size() - 1), [&] {
-      return [this, &propagation, &begin, space = solve::Propagation::Space{},
-              values = std::vector<double>{}](std::size_t i) mutable {
-        columns(propagation, begin[i], begin[i + 1], space, values);
+      return [this, &propagation, &begin, &room = room_of_thread()](std::size_t i) {
+        columns(propagation, begin[i], begin[i + 1], room);
       };
     });
+    if (room_of_thread().space.z.size() > kKeep) room_of_thread() = {};
     add_known();
     for (const int i : d_.layout().state_nodes) add_own(i);
   }
@@ -74,7 +87,7 @@ class Writer {
 
   /// A thread costs more to start than a small model to write.
   int threads(std::size_t batches) const {
-    constexpr double kWorthIt = 1e6;  // entries of the solutions
+    constexpr double kWorthIt = 1.5e5;  // entries of the solutions, about 2 ns each
     const double entries = static_cast<double>(batches) * kBatch * k_.joint.plan->unknowns;
     return entries < kWorthIt ? 1 : threads_;
   }
@@ -162,12 +175,15 @@ class Writer {
     for (const int i : d_.layout().state_nodes) {
       const Node& node = g_.nodes[at(i)];
       const Dynamics& b = block(i);
+      // Coordinates move with their rates, whatever acts: no input enters their rows.
+      const Index still = b.modal ? b.modal->W.rows() : 0;
       Target t;
-      t.row = d_.layout().state_first[at(i)];
-      t.rows = b.A.rows();
+      t.row = d_.layout().state_first[at(i)] + still;
+      t.rows = b.A.rows() - still;
+      if (still) state_runs_.push_back({-1, t.row - still, still});
       for (int s = node.first_signal; s < node.state; ++s)
         if (const Signal& in = g_.signals[at(s)]; in.role == Signal::Role::input && in.active)
-          read(t, s, b.B.middleCols(in.first, in.size));
+          read(t, s, b.B.block(still, in.first, t.rows, in.size));
       add(std::move(t));
     }
     for (std::size_t o = 0; o < g_.outputs.size(); ++o) {
@@ -184,6 +200,12 @@ class Writer {
   void add(Target t) {
     join_neighbours(t);
     t.padded = (t.rows + 3) / 4 * 4;
+    t.place = values_;
+    values_ += t.padded;
+    if (t.row < states_)
+      state_runs_.push_back({t.place, t.row, t.rows});
+    else
+      output_runs_.push_back({t.place, t.row - states_, t.rows});
     for (Target::Part& p : t.unknown) {
       p.Et = RowMatrix<double>::Zero(p.E.cols(), t.padded);
       p.Et.leftCols(t.rows) = p.E.transpose();
@@ -242,7 +264,8 @@ class Writer {
 
   /// Solves for these sources and writes their columns.
   void columns(const solve::Propagation& propagation, std::size_t begin, std::size_t end,
-               solve::Propagation::Space& space, std::vector<double>& values) {
+               Room& room) {
+    auto& [space, values] = room;
     Index m = 0;
     for (std::size_t i = begin; i < end; ++i) m += sources_[i].columns;
     m = (m + 7) / 8 * 8;  // no sum depends on the number of columns
@@ -261,40 +284,37 @@ class Writer {
       first += s.columns;
     }
     propagation.solve(rows, rhs, m, space);
-    const std::vector<solve::Column> to = columns_of(begin, end);
+    values.resize(at(values_ * m));
     for (const Target& t : targets_) {
-      values.resize(at(t.padded * m));
-      if (t.unknown.empty()) std::fill(values.begin(), values.end(), 0.0);
+      if (t.unknown.empty())
+        for (Index j = 0; j < m; ++j)
+          std::fill_n(values.data() + j * values_ + t.place, t.padded, 0.0);
       for (const Target::Part& p : t.unknown)
         solve::multiply_transposed(t.padded, p.E.cols(), m, p.Et.data(),
-                                   space.z.data() + p.first * m, values.data(),
+                                   space.z.data() + p.first * m, values.data() + t.place, values_,
                                    &p != t.unknown.data());
-      solve::scatter(to, t.row < states_, t.row < states_ ? t.row : t.row - states_, t.rows,
-                     values.data(), t.padded);
     }
+    write_columns(begin, end, values.data());
   }
 
-  /// Where the columns of these sources go.
-  std::vector<solve::Column> columns_of(std::size_t begin, std::size_t end) {
-    std::vector<solve::Column> result;
-    Index from = 0;
-    const auto to = [&](MatrixXd& state, MatrixXd& output, Index column, double factor) {
-      result.push_back({from, factor, state.data() + column * state.rows(),
-                        output.data() + column * output.rows()});
+  /// The columns of these sources from the values of their solutions.
+  void write_columns(std::size_t begin, std::size_t end, const double* values) {
+    const auto write = [&](MatrixXd& state, MatrixXd& output, Index column, double factor) {
+      solve::write_runs(state_runs_, factor, values, state.data() + column * state.rows());
+      solve::write_runs(output_runs_, factor, values, output.data() + column * output.rows());
     };
     for (std::size_t i = begin; i < end; ++i) {
       const Source& s = sources_[i];
-      for (Index j = 0; j < s.columns; ++j, ++from)
+      for (Index j = 0; j < s.columns; ++j, values += values_)
         if (s.modal) {
-          to(m_.A, m_.C, s.first + j, -s.modal->stiffness(j));
-          to(m_.A, m_.C, s.first + s.columns + j, -s.modal->damping(j));
+          write(m_.A, m_.C, s.first + j, -s.modal->stiffness(j));
+          write(m_.A, m_.C, s.first + s.columns + j, -s.modal->damping(j));
         } else if (s.node >= 0) {
-          to(m_.A, m_.C, s.first + j, 1);
+          write(m_.A, m_.C, s.first + j, 1);
         } else {
-          to(m_.B, m_.D, s.first - states_ + j, 1);
+          write(m_.B, m_.D, s.first - states_ + j, 1);
         }
     }
-    return result;
   }
 
   void add_known() {
@@ -332,6 +352,8 @@ class Writer {
   Index states_;
   std::vector<Source> sources_;
   std::vector<Target> targets_;
+  Index values_ = 0;                                  ///< of all targets, per column
+  std::vector<solve::Run> state_runs_, output_runs_;  ///< where they go
   int threads_;
 };
 

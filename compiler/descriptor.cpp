@@ -31,19 +31,23 @@ struct Builder {
     return first < states ? Place{first, false} : Place{first - states, true};
   }
 
-  static void put(Triplets& to, int row, int column, const Eigen::MatrixXd& m) {
+  template <class Matrix>
+  static void put(Triplets& to, int row, int column, const Matrix& m, double sign = 1) {
     for (int j = 0; j < m.cols(); ++j)
       for (int i = 0; i < m.rows(); ++i)
-        if (m(i, j) != 0) to.emplace_back(row + i, column + j, m(i, j));
+        if (const double x = m(i, j); x != 0) to.emplace_back(row + i, column + j, sign * x);
   }
 
   /// factor * signal, in rows of (by_v, by_u).
-  void add(Triplets& by_v, Triplets& by_u, int row, const Eigen::MatrixXd& factor, int signal) {
+  template <class Matrix>
+  void add(Triplets& by_v, Triplets& by_u, int row, const Matrix& factor, int signal) {
     for (const solve::Meaning& m : k.joint.meaning(signal)) {
       const Place p = place(m.signal);
-      put(p.input ? by_u : by_v, row, p.first,
-          m.coefficient < 0 ? factor
-                            : Eigen::MatrixXd(factor * *d.numbers.coefficients[at(m.coefficient)]));
+      Triplets& to = p.input ? by_u : by_v;
+      if (m.coefficient < 0)
+        put(to, row, p.first, factor);
+      else
+        put(to, row, p.first, Eigen::MatrixXd(factor * coefficient(m.coefficient)));
     }
   }
 
@@ -59,40 +63,48 @@ struct Builder {
     }
   }
 
-  Eigen::MatrixXd left(const Piece& p, int size) const {
+  const RowMatrix<double>& coefficient(int i) const { return *d.numbers.coefficients[at(i)]; }
+
+  /// Calls take(left matrix of the piece); `size`: of the identity.
+  template <class Take>
+  void with_left(const Piece& p, Eigen::Index size, Take take) const {
     switch (p.of) {
-      case Piece::Left::one: return Eigen::MatrixXd::Identity(size, size);
+      case Piece::Left::one: return take(Eigen::MatrixXd::Identity(size, size));
       case Piece::Left::direct:
-        return d.numbers.blocks[at(p.left)]->D.block(p.row, p.col, p.rows, p.cols);
-      case Piece::Left::state: return d.numbers.blocks[at(p.left)]->C.middleRows(p.row, p.rows);
-      case Piece::Left::coefficient: return *d.numbers.coefficients[at(p.left)];
+        return take(d.numbers.blocks[at(p.left)]->D.block(p.row, p.col, p.rows, p.cols));
+      case Piece::Left::state:
+        return take(d.numbers.blocks[at(p.left)]->C.middleRows(p.row, p.rows));
+      case Piece::Left::coefficient: return take(coefficient(p.left));
     }
-    return {};
+  }
+
+  void add_piece(int row, const Piece& p, const Place& at_) {
+    Triplets& to = at_.input ? B : A;
+    if (p.right >= 0) {
+      const RowMatrix<double>& right = coefficient(p.right);
+      return with_left(p, right.rows(), [&](const auto& left) {
+        put(to, row, at_.first, Eigen::MatrixXd(left * right), p.sign);
+      });
+    }
+    with_left(p, p.signal < 0 ? p.rows : g.signals[at(p.signal)].size,
+              [&](const auto& left) { put(to, row, at_.first, left, p.sign); });
   }
 
   void add_rows() {
     const solve::Plan& plan = *k.joint.plan;
     for (int r = 0; r < static_cast<int>(k.joint.rows.size()); ++r)
-      for (const Piece& p : k.joint.row(r)) {
-        const int size = p.signal < 0 ? p.rows : g.signals[at(p.signal)].size;
-        const Eigen::MatrixXd c =
-            p.right < 0
-                ? left(p, size)
-                : Eigen::MatrixXd(
-                      left(p, static_cast<int>(d.numbers.coefficients[at(p.right)]->rows())) *
-                      *d.numbers.coefficients[at(p.right)]);
-        const Place to =
-            p.entry < 0 ? place(p.signal)
-                        : Place{states + plan.first[at(plan.structure.row(r)[at(p.entry)])], false};
-        put(to.input ? B : A, states + plan.row_first[at(r)], to.first, p.sign * c);
-      }
+      for (const Piece& p : k.joint.row(r))
+        add_piece(states + plan.row_first[at(r)], p,
+                  p.entry < 0
+                      ? place(p.signal)
+                      : Place{states + plan.first[at(plan.structure.row(r)[at(p.entry)])], false});
   }
 
   void add_outputs() {
     for (std::size_t o = 0; o < g.outputs.size(); ++o)
       for (std::size_t t = 0; t < g.outputs[o].terms.size(); ++t)
         add(C, D, d.layout().output_first[o],
-            *d.numbers.coefficients[at(k.joint.output_coefficient[o]) + t],
+            coefficient(k.joint.output_coefficient[o] + static_cast<int>(t)),
             g.outputs[o].terms[t].signal);
   }
 

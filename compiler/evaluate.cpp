@@ -192,7 +192,7 @@ solve::RowMatrix<T> Evaluation<T>::value_of(int signal, const solve::RowMatrix<T
   const Signal& s = data_.graph().signals[at(signal)];
   solve::RowMatrix<T> result = solve::RowMatrix<T>::Zero(s.size, inputs.cols());
   if (s.role != Signal::Role::state) {
-    rows_.add_value(signal, unknowns, inputs, first_, result);
+    rows_.add_value(signal, unknowns, inputs, first_, result.data());
     return result;
   }
   if (!s.active) return result;
@@ -206,6 +206,26 @@ solve::RowMatrix<T> Evaluation<T>::value_of(int signal, const solve::RowMatrix<T
 template <class T>
 solve::RowMatrix<T> Evaluation<T>::value(int signal) const {
   return value_of(signal, unknowns_, u_);
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::values(std::span<const int> first) const {
+  const Graph& g = data_.graph();
+  solve::RowMatrix<T> result = solve::RowMatrix<T>::Zero(first.back(), u_.cols());
+  for (int i = 0; i < static_cast<int>(g.signals.size()); ++i) {
+    const Signal& s = g.signals[at(i)];
+    if (s.role != Signal::Role::state) {
+      rows_.add_value(i, unknowns_, u_, first_, result.data() + first[at(i)] * u_.cols());
+      continue;
+    }
+    if (!s.active) continue;
+    const solve::Dense<T>& X = of_node_[at(s.node)]->X;
+    for (int k = g.nodes[at(s.node)].first_signal; k < i; ++k)  // inputs stand before states
+      if (const Signal& in = g.signals[at(k)]; in.role == Signal::Role::input)
+        result.middleRows(first[at(i)], s.size) +=
+            X.middleCols(in.first, in.size).lazyProduct(result.middleRows(first[at(k)], in.size));
+  }
+  return result;
 }
 
 template <class T>

@@ -20,6 +20,9 @@ class Evaluation {
   /// signal size x columns.
   solve::RowMatrix<T> value(int signal) const;
 
+  /// All signals, one below the other: signal i from row first[i] on; first[signals] is the end.
+  solve::RowMatrix<T> values(std::span<const int> first) const;
+
   /// The diagram's outputs x columns.
   solve::RowMatrix<T> outputs() const;
 

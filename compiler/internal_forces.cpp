@@ -52,7 +52,7 @@ class SelfStress {
   RowMatrix<double> value(int signal) const {
     RowMatrix<double> v = RowMatrix<double>::Zero(g_.signals[at(signal)].size, known_.cols());
     if (g_.signals[at(signal)].role != Signal::Role::state)
-      rows_->add_value(signal, unknowns_, known_, first_, v);
+      rows_->add_value(signal, unknowns_, known_, first_, v.data());
     return v;
   }
 

@@ -41,7 +41,7 @@ Rates rates(const SystemData& d, const RowMatrix<double>& known) {
   const RowMatrix<double> z = d.factors->solve(rows.rhs(known, l.known_first));
   const auto value = [&](int signal) {
     RowMatrix<double> v = RowMatrix<double>::Zero(g.signals[at(signal)].size, known.cols());
-    rows.add_value(signal, z, known, l.known_first, v);
+    rows.add_value(signal, z, known, l.known_first, v.data());
     return v;
   };
   Rates r{RowMatrix<double>(l.order(), known.cols()),

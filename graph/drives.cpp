@@ -40,16 +40,22 @@ std::vector<Drive> drives(const Graph& graph) {
   }
   for (std::size_t c = 0; c < result.size(); ++c) {
     const int n = graph.channels[c].size;
-    MatrixXd& S = result[c].S;
+    std::vector<int>& accel = result[c].accel;
+    const auto part = [&](int e) -> const Part& {
+      return graph.equations[static_cast<std::size_t>(e)].part;
+    };
+    if (accel.empty() || part(accel.front()).whole()) {  // by far the most
+      (accel.empty() ? result[c].N : result[c].S).setIdentity(n, n);
+      (accel.empty() ? result[c].S : result[c].N).resize(0, n);
+      continue;
+    }
     // The basis must not depend on the order in which the parts were written.
-    std::stable_sort(result[c].accel.begin(), result[c].accel.end(), [&](int a, int b) {
-      return graph.equations[static_cast<std::size_t>(a)].part.name <
-             graph.equations[static_cast<std::size_t>(b)].part.name;
-    });
+    std::stable_sort(accel.begin(), accel.end(),
+                     [&](int a, int b) { return part(a).name < part(b).name; });
+    MatrixXd& S = result[c].S;
     S.resize(0, n);
-    for (const int e : result[c].accel) {
-      const Part& part = graph.equations[static_cast<std::size_t>(e)].part;
-      const MatrixXd rows = part.whole() ? MatrixXd::Identity(n, n) : part.rows;
+    for (const int e : accel) {
+      const MatrixXd rows = part(e).whole() ? MatrixXd::Identity(n, n) : part(e).rows;
       S.conservativeResize(S.rows() + rows.rows(), n);
       S.bottomRows(rows.rows()) = rows;
     }

@@ -90,7 +90,8 @@ MatrixXd coefficient(const Graph& graph, const Term& term, ParameterValues value
     else if (const auto& T = std::get<Rotation>(*f); !T.is_identity())
       result = on_vector(T.at(values), static_cast<int>(result.rows())) * result;
   }
-  return scale == 1 ? result : MatrixXd(scale * result);
+  if (scale != 1) result *= scale;
+  return result;
 }
 
 Pattern structure(const Graph& graph, const Term& term) {
@@ -98,7 +99,7 @@ Pattern structure(const Graph& graph, const Term& term) {
   const auto product = [](const Pattern& a, const Pattern& b) {
     return Pattern((a.cast<int>() * b.cast<int>()).array() > 0);
   };
-  Pattern result = MatrixXd::Identity(size, size).array() != 0;
+  Pattern result = Pattern::Identity(size, size);
   for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f) {
     if (const auto* m = std::get_if<Matrix>(&*f))
       result = product(m->pattern ? *m->pattern : Pattern(m->value->array() != 0), result);
@@ -228,6 +229,7 @@ int add_node(Graph& graph, std::string name, BlockPtr block, std::source_locatio
     graph.nodes.back().state = static_cast<int>(graph.signals.size());
     graph.signals.push_back(Signal{.role = Signal::Role::state, .node = node, .size = n});
   }
+  graph.nodes.back().end_signal = static_cast<int>(graph.signals.size());
   return node;
 }
 
@@ -256,10 +258,7 @@ int input_signal(const Graph& g, int node, int column) {
 }
 
 int end_signal(const Graph& graph, int node) {
-  const Node& n = graph.nodes[static_cast<std::size_t>(node)];
-  const Interface& face = n.block->interface();
-  return n.first_signal + 2 * static_cast<int>(face.channels.size()) +
-         static_cast<int>(face.inputs.size() + face.outputs.size()) + (n.state >= 0 ? 1 : 0);
+  return graph.nodes[static_cast<std::size_t>(node)].end_signal;
 }
 
 int natural_compare(std::string_view a, std::string_view b) {

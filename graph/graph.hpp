@@ -53,6 +53,7 @@ struct Node {
   std::string name = {};
   BlockPtr block = {};
   int first_signal = 0, first_channel = 0;
+  int end_signal = 0;    ///< one past its last signal
   int state = -1;        ///< its state signal, -1 where it has no states
   int declared = 0;      ///< position in the user's order
   bool lowered = false;  ///< `lower` has turned its rows into equations

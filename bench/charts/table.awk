@@ -154,7 +154,7 @@ END {
 
   print "\n## Accuracy\n"
   print "Ten bodies scaled by 10^k and 10^-k in turn: largest relative error of the transfer, per 3 x 3" \
-    " block (or scalar), at s = (0.05 + j) omega, against 100 digits.\n"
+    " block (or scalar), at s = (0.05 + j) omega, against 150 digits.\n"
   printf "| case | method |"
   for (i = 1; i <= exponent_count; ++i) printf " k = %s |", exponent[i]
   printf "\n|---|---|"

@@ -15,7 +15,7 @@ using titop::Signal;
 namespace {
 
 using Number = boost::multiprecision::cpp_complex_100;
-using Real = boost::multiprecision::cpp_bin_float_100;
+using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<150>>;
 
 std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 

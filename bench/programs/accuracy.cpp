@@ -12,7 +12,7 @@
 #include "support/cases.hpp"
 
 /// Digits left where neighbouring bodies differ by the square of a ratio: ten bodies scaled by it
-/// and by 1/it in turn, the transfer by each method against 100 digits, at s = (0.05 + j) omega.
+/// and by 1/it in turn, the transfer by each method against 150 digits, at s = (0.05 + j) omega.
 namespace titop_bench {
 namespace {
 

@@ -34,7 +34,9 @@ std::vector<Row> rows_of(const Graph& g) {
 
 namespace {
 
-/// Calls visit(signal, pattern) for every unknown of a row.
+Pattern identity(int n) { return Eigen::MatrixXd::Identity(n, n).array() != 0; }
+
+/// Calls visit(signal, pattern) for every unknown of a row; pattern() gives its structure.
 template <class Visit>
 void visit_entries(const Graph& g, const Row& row, const std::vector<Pattern>& feedthrough,
                    Visit visit) {
@@ -42,11 +44,11 @@ void visit_entries(const Graph& g, const Row& row, const std::vector<Pattern>& f
     const Equation& e = g.equations[at(row.equation)];
     const Signal& t = g.signals[at(e.target)];
     if (is_unknown(t))
-      visit(e.target, e.part.whole()
-                          ? Pattern(Eigen::MatrixXd::Identity(t.size, t.size).array() != 0)
-                          : Pattern(e.part.rows.array() != 0));
+      visit(e.target,
+            [&] { return e.part.whole() ? identity(t.size) : Pattern(e.part.rows.array() != 0); });
     for (const Term& term : e.terms)
-      if (is_unknown(g.signals[at(term.signal)])) visit(term.signal, structure(g, term));
+      if (is_unknown(g.signals[at(term.signal)]))
+        visit(term.signal, [&] { return structure(g, term); });
     return;
   }
   const Signal& y = g.signals[at(row.output)];
@@ -55,9 +57,9 @@ void visit_entries(const Graph& g, const Row& row, const std::vector<Pattern>& f
     const Signal& u = g.signals[at(i)];
     if (u.role != Signal::Role::input || !u.active) continue;
     const auto block = D.block(y.first, u.first, y.size, u.size);
-    if (block.any()) visit(i, Pattern(block));
+    if (block.any()) visit(i, [&] { return Pattern(block); });
   }
-  if (y.active) visit(row.output, Pattern(Eigen::MatrixXd::Identity(y.size, y.size).array() != 0));
+  if (y.active) visit(row.output, [&] { return identity(y.size); });
 }
 
 std::vector<Pattern> all_feedthrough(const Graph& g) {
@@ -69,26 +71,35 @@ std::vector<Pattern> all_feedthrough(const Graph& g) {
 
 }  // namespace
 
+void Mentioned::add_equation(int equation, std::vector<int>& to) const {
+  const Equation& e = g_.equations[at(equation)];
+  for (const Term& t : e.terms)
+    if (g_.signals[at(t.signal)].active) to.push_back(t.signal);
+  if (g_.signals[at(e.target)].active) to.push_back(e.target);
+}
+
+void Mentioned::add(const Row& row, std::vector<int>& to) {
+  if (row.equation >= 0) return add_equation(row.equation, to);
+  const Node& node = g_.nodes[at(row.node)];
+  if (node_ != row.node) {
+    node_ = row.node;
+    direct_ = node.block->feedthrough();
+    seen_ = node.block->seen_by();
+  }
+  const Signal& y = g_.signals[at(row.output)];
+  for (int i = node.first_signal; i < end_signal(g_, row.node); ++i) {
+    const Signal& s = g_.signals[at(i)];
+    if (!s.active) continue;
+    if ((s.role == Signal::Role::state && seen_.middleRows(y.first, y.size).any()) ||
+        i == row.output ||
+        (s.role == Signal::Role::input && direct_.block(y.first, s.first, y.size, s.size).any()))
+      to.push_back(i);
+  }
+}
+
 std::vector<int> mentioned(const Graph& g, const Row& row) {
   std::vector<int> result;
-  if (row.equation >= 0) {
-    for (const Term& t : g.equations[at(row.equation)].terms)
-      if (g.signals[at(t.signal)].active) result.push_back(t.signal);
-    if (const int target = g.equations[at(row.equation)].target; g.signals[at(target)].active)
-      result.push_back(target);
-    return result;
-  }
-  const Node& node = g.nodes[at(row.node)];
-  const Signal& y = g.signals[at(row.output)];
-  const Pattern D = node.block->feedthrough(), sees = node.block->seen_by();
-  for (int i = node.first_signal; i < end_signal(g, row.node); ++i) {
-    const Signal& s = g.signals[at(i)];
-    if (!s.active) continue;
-    if ((s.role == Signal::Role::state && sees.middleRows(y.first, y.size).any()) ||
-        i == row.output ||
-        (s.role == Signal::Role::input && D.block(y.first, s.first, y.size, s.size).any()))
-      result.push_back(i);
-  }
+  Mentioned(g).add(row, result);
   return result;
 }
 
@@ -114,12 +125,13 @@ Incidence incidence(const Graph& g, bool by_scalar) {
     inc.cols.resize(at(first + count));
     inc.row_of_vertex.resize(at(first + count), r);
     inc.row_size.resize(at(first + count), by_scalar ? 1 : row.size);
-    visit_entries(g, row, feedthrough, [&](int signal, const Pattern& p) {
+    visit_entries(g, row, feedthrough, [&](int signal, auto pattern) {
       const int col = inc.first_col[at(signal)];
       if (!by_scalar) {
         inc.cols[at(first)].push_back(col);
         return;
       }
+      const Pattern p = pattern();
       for (Eigen::Index i = 0; i < p.rows(); ++i)
         for (Eigen::Index j = 0; j < p.cols(); ++j)
           if (p(i, j))

@@ -21,7 +21,21 @@ std::vector<Row> rows_of(const Graph& graph);
 /// Declared structure of the active rows and unknowns. O(entries).
 Incidence incidence(const Graph& graph, bool by_scalar);
 
-/// Active signals, one by one, that a row mentions: unknowns, states and inputs. For graph walks.
+/// Active signals, one by one, that a row mentions: unknowns, states and inputs. For graph walks;
+/// rows of one node in turn ask its block once.
+class Mentioned {
+ public:
+  explicit Mentioned(const Graph& graph) : g_(graph) {}
+  /// Appends them to `to`.
+  void add(const Row& row, std::vector<int>& to);
+
+ private:
+  void add_equation(int equation, std::vector<int>& to) const;
+
+  const Graph& g_;
+  int node_ = -1;  ///< whose patterns are at hand
+  Pattern direct_ = {}, seen_ = {};
+};
 std::vector<int> mentioned(const Graph& graph, const Row& row);
 
 /// True for signals that the equations determine: neither states nor external inputs.

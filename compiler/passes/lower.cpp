@@ -119,6 +119,7 @@ Stage lower(Stage stage) {
 std::vector<std::vector<Term>> lower_again(const Stage& stage, const std::vector<int>& origins,
                                            ParameterValues values) {
   Lowering l(*stage.source, values, stage.drives, stage.motions);
+  l.numbers_only = true;
   std::vector<std::vector<Term>> result;
   for (const int o : origins) {
     const Origin& origin = stage.origins[at(o)];

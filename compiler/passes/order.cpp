@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/compressed_sparse_row_graph.hpp>
 #include <boost/graph/strong_components.hpp>
+#include <numeric>
+#include <span>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/compiler/passes/passes.hpp>
 
@@ -11,17 +13,46 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-using Digraph = boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS>;
+/// Arrows between signals: those from s are to[begin[s]] ... to[begin[s + 1]].
+struct Arrows {
+  std::vector<int> begin, to;
+
+  std::span<const int> from(int s) const {
+    return {to.data() + begin[at(s)], at(begin[at(s) + 1] - begin[at(s)])};
+  }
+  int signals() const { return static_cast<int>(begin.size()) - 1; }
+};
+
+/// Sorted, without repetition. O(pairs + signals).
+Arrows arrows(const std::vector<std::pair<int, int>>& pairs, std::size_t signals) {
+  Arrows a{std::vector<int>(signals + 1, 0), std::vector<int>(pairs.size())};
+  for (const auto& [from, to] : pairs) ++a.begin[at(from) + 1];
+  std::partial_sum(a.begin.begin(), a.begin.end(), a.begin.begin());
+  std::vector<int> next(a.begin.begin(), a.begin.end() - 1);
+  for (const auto& [from, to] : pairs) a.to[at(next[at(from)]++)] = to;
+  int end = 0;
+  for (std::size_t s = 0; s < signals; ++s) {
+    const auto first = a.to.begin() + a.begin[s], last = a.to.begin() + next[s];
+    std::sort(first, last);
+    a.begin[s] = end;
+    end = static_cast<int>(std::unique_copy(first, last, a.to.begin() + end) - a.to.begin());
+  }
+  a.begin[signals] = end;
+  a.to.resize(at(end));
+  return a;
+}
 
 /// signal -> signals that its row needs; states need the inputs that move them.
-std::vector<std::vector<int>> dependencies(const Stage& stage) {
+Arrows dependencies(const Stage& stage) {
   const Graph& g = stage.graph;
-  std::vector<std::vector<int>> needs(g.signals.size());
+  std::vector<std::pair<int, int>> needs;
+  std::vector<int> list;
+  Mentioned mentioned(g);
   for (const auto& [row, signal] : stage.matched.rows) {
-    std::vector<int> list = mentioned(g, stage.rows[at(row)]);
-    auto& to = needs[at(signal)];
+    list.clear();
+    mentioned.add(stage.rows[at(row)], list);
     for (const int s : list)
-      if (s != signal) to.push_back(s);
+      if (s != signal) needs.emplace_back(signal, s);
   }
   // Signals that share a row (a channel that is partly free) live and die together.
   std::vector<int> first_of(stage.rows.size(), -1);
@@ -29,8 +60,8 @@ std::vector<std::vector<int>> dependencies(const Stage& stage) {
     int& first = first_of[at(row)];
     if (first < 0) first = signal;
     if (first == signal) continue;
-    needs[at(first)].push_back(signal);
-    needs[at(signal)].push_back(first);
+    needs.emplace_back(first, signal);
+    needs.emplace_back(signal, first);
   }
   for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
     const Node& node = g.nodes[at(i)];
@@ -39,29 +70,26 @@ std::vector<std::vector<int>> dependencies(const Stage& stage) {
     for (int s = node.first_signal; s < end_signal(g, i); ++s)
       if (const Signal& u = g.signals[at(s)];
           u.role == Signal::Role::input && moved.middleCols(u.first, u.size).any())
-        needs[at(node.state)].push_back(s);
+        needs.emplace_back(node.state, s);
   }
-  for (auto& list : needs) {
-    std::sort(list.begin(), list.end());
-    list.erase(std::unique(list.begin(), list.end()), list.end());
-  }
-  return needs;
+  return arrows(needs, g.signals.size());
 }
 
-std::vector<std::vector<int>> reversed(const std::vector<std::vector<int>>& needs) {
-  std::vector<std::vector<int>> feeds(needs.size());
-  for (int i = 0; i < static_cast<int>(needs.size()); ++i)
-    for (const int j : needs[at(i)]) feeds[at(j)].push_back(i);
-  return feeds;
+Arrows reversed(const Arrows& needs) {
+  std::vector<std::pair<int, int>> feeds;
+  feeds.reserve(needs.to.size());
+  for (int i = 0; i < needs.signals(); ++i)
+    for (const int j : needs.from(i)) feeds.emplace_back(j, i);
+  return arrows(feeds, at(needs.signals()));
 }
 
-std::vector<char> reach(const std::vector<std::vector<int>>& next, std::vector<int> front) {
-  std::vector<char> seen(next.size(), 0);
+std::vector<char> reach(const Arrows& next, std::vector<int> front) {
+  std::vector<char> seen(at(next.signals()), 0);
   for (const int s : front) seen[at(s)] = 1;
   while (!front.empty()) {
     const int s = front.back();
     front.pop_back();
-    for (const int t : next[at(s)])
+    for (const int t : next.from(s))
       if (!seen[at(t)]) seen[at(t)] = 1, front.push_back(t);
   }
   return seen;
@@ -69,7 +97,7 @@ std::vector<char> reach(const std::vector<std::vector<int>>& next, std::vector<i
 
 /// Signals that an input (or, without inputs, any state) moves, and that an output (or any state)
 /// sees; the rest is set aside.
-void set_aside(Stage& stage, const std::vector<std::vector<int>>& needs) {
+void set_aside(Stage& stage, const Arrows& needs) {
   Graph& g = stage.graph;
   std::vector<int> sources, sinks, states;
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
@@ -98,19 +126,33 @@ void set_aside(Stage& stage, const std::vector<std::vector<int>>& needs) {
   }
 }
 
-void find_loops(Stage& stage, const std::vector<std::vector<int>>& needs) {
-  const Graph& g = stage.graph;
-  Digraph digraph(g.signals.size());
-  for (int s = 0; s < static_cast<int>(g.signals.size()); ++s)
+using Digraph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_property,
+                                                   boost::no_property, boost::no_property, int>;
+
+/// Strong component of every signal; components come out dependencies first.
+std::pair<std::vector<int>, int> components(const Graph& g, const Arrows& needs) {
+  std::vector<std::pair<int, int>> edges;
+  for (int s = 0; s < needs.signals(); ++s)
     if (is_unknown(g.signals[at(s)]))
-      for (const int t : needs[at(s)])
-        if (is_unknown(g.signals[at(t)]))
-          boost::add_edge(static_cast<std::size_t>(s), static_cast<std::size_t>(t), digraph);
-  std::vector<int> component(g.signals.size());
-  const auto property = boost::get(boost::vertex_index, digraph);
-  // Components come out dependencies first.
+      for (const int t : needs.from(s))
+        if (is_unknown(g.signals[at(t)])) edges.emplace_back(s, t);
+  const Digraph digraph(boost::edges_are_sorted, edges.begin(), edges.end(), needs.signals());
+  std::vector<int> component(g.signals.size()), root(g.signals.size());
+  std::vector<boost::default_color_type> color(g.signals.size());
+  std::vector<int> time(g.signals.size());
+  const auto index = boost::get(boost::vertex_index, digraph);
+  const auto map = [&](auto& list) {
+    return boost::make_iterator_property_map(list.begin(), index);
+  };
   const int count = boost::strong_components(
-      digraph, boost::make_iterator_property_map(component.begin(), property));
+      digraph, map(component),
+      boost::root_map(map(root)).color_map(map(color)).discover_time_map(map(time)));
+  return {std::move(component), count};
+}
+
+void find_loops(Stage& stage, const Arrows& needs) {
+  const Graph& g = stage.graph;
+  const auto [component, count] = components(g, needs);
   std::vector<Loop> loops(at(count));
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
     if (!is_unknown(g.signals[at(s)])) continue;

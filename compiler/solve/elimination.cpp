@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <numeric>
 #include <titop/compiler/solve/elimination.hpp>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
@@ -25,50 +28,75 @@ void add_child(const Plan& plan, const Front& child, const typename Factors<T>::
   }
 }
 
-/// The work on one front. `bound` carries the sums of magnitudes that formed each entry: a pivot
-/// far below its bound is what cancellation has left. `keeps` says so of whole rows, from front to
-/// front: a row of which only rounding is left must not pass for a good one further up.
-template <class T>
-struct Work {
-  const Front& front;
-  typename Factors<T>::Made& m;
-  std::ptrdiff_t n;               ///< columns
-  std::vector<double> bound;      ///< as m.lu
-  std::vector<double> keeps;      ///< per row
-  std::vector<double> row_scale;  ///< per row: its size, the columns having been given the same
+TITOP_WIDE void eliminate_wide(std::ptrdiff_t k, std::ptrdiff_t rows, std::ptrdiff_t n, double* a,
+                               double* bounds) {
+  eliminate_below(k, rows, n, a, bounds, [](double x) { return std::abs(x); });
+}
 
-  Work(const Front& f, typename Factors<T>::Made& made)
-      : front(f), m(made), n(f.columns()), keeps(at(f.row_count), 1) {
-    m.lu.assign(at(front.row_count) * at(front.columns()), T(0));
-    m.order.resize(at(front.row_count));
-    for (int i = 0; i < front.row_count; ++i) m.order[at(i)] = i;
+/// 2^e for the exponents of ColumnScale, from the bits: std::ldexp costs more than the rest.
+double power_of_two(std::int16_t e) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52);
+}
+
+}  // namespace
+
+/// The work on one front, its buffers kept from front to front. `bound` carries the sums of
+/// magnitudes that formed each entry: a pivot far below its bound is what cancellation has left.
+/// `keeps` says so of whole rows, from front to front: a row of which only rounding is left must
+/// not pass for a good one further up.
+template <class T>
+struct Factors<T>::Work {
+  std::vector<double> bound = {};  ///< as Made::lu
+  std::vector<double> keeps = {};  ///< per row
+  std::vector<double> row_scale =
+      {};                           ///< per row: its size, the columns having been given the same
+  std::vector<double> column = {};  ///< the factors that do so
+  Made* m = nullptr;
+  int rows = 0, pivots = 0;
+  std::ptrdiff_t n = 0;  ///< columns
+
+  void begin(const Front& front, Made& made) {
+    m = &made, rows = front.row_count, pivots = front.pivot_count, n = front.columns();
+    made.lu.assign(at(rows) * static_cast<std::size_t>(n), T(0));
+    made.order.resize(at(rows));
+    std::iota(made.order.begin(), made.order.end(), 0);
+    keeps.assign(at(rows), 1);
   }
 
-  T* row(int i) { return m.lu.data() + i * n; }
+  T* row(int i) { return m->lu.data() + i * n; }
   double* bounds(int i) { return bound.data() + i * n; }
 
   double largest() const {
     double result = 0;
-    for (const T& x : m.lu) result = std::max(result, size_of(x));
+    for (const T& x : m->lu) result = std::max(result, size_of(x));
     return result;
   }
 
-  void start() {
-    bound.resize(m.lu.size());
-    for (std::size_t i = 0; i < m.lu.size(); ++i) bound[i] = size_of(m.lu[i]);
-    for (int i = 0; i < front.row_count; ++i)
+  /// Bounds of what has been assembled; returns its largest entry.
+  double take_bounds() {
+    bound.resize(m->lu.size());
+    double largest = 0;
+    for (std::size_t i = 0; i < m->lu.size(); ++i) {
+      bound[i] = size_of(m->lu[i]);
+      largest = std::max(largest, bound[i]);
+    }
+    for (int i = 0; i < rows; ++i)
       if (keeps[at(i)] != 1)
         for (std::ptrdiff_t j = 0; j < n; ++j) bounds(i)[j] /= keeps[at(i)];
+    return largest;
   }
 
-  void scale_rows(const std::vector<std::int16_t>& columns) {
-    std::vector<double> factor(columns.size());
-    for (std::size_t j = 0; j < columns.size(); ++j) factor[j] = std::ldexp(1.0, columns[j]);
-    row_scale.assign(at(front.row_count), 0);
-    for (int i = 0; i < front.row_count; ++i)
+  void scale_rows(const std::int16_t* exponents) {
+    column.resize(static_cast<std::size_t>(n));
+    for (std::ptrdiff_t j = 0; j < n; ++j)
+      column[static_cast<std::size_t>(j)] = power_of_two(exponents[j]);
+    row_scale.assign(at(rows), 0);
+    for (int i = 0; i < rows; ++i) {
+      double size = 0;
       for (std::ptrdiff_t j = 0; j < n; ++j)
-        row_scale[at(i)] =
-            std::max(row_scale[at(i)], bounds(i)[j] * factor[static_cast<std::size_t>(j)]);
+        size = std::max(size, bounds(i)[j] * column[static_cast<std::size_t>(j)]);
+      row_scale[at(i)] = size;
+    }
   }
 
   /// The pivot of a column is the row where it stands out most against the row's own size: the
@@ -76,14 +104,14 @@ struct Work {
   int pivot(int k) {
     int best = -1;
     double best_score = 0, left = 0;
-    for (int i = k; i < front.row_count; ++i) {
+    for (int i = k; i < rows; ++i) {
       const double size = size_of(row(i)[k]), from = bounds(i)[k];
       const double score = row_scale[at(i)] > 0 ? size / row_scale[at(i)] : 0;
       if (score > best_score) best_score = score, best = i;
       // What a column keeps after cancellation, over all its rows: invariant under any scaling.
       if (from > 0) left = std::max(left, size / from);
     }
-    if (left < m.weakest) m.weakest = left, m.weakest_column = k;
+    if (left < m->weakest) m->weakest = left, m->weakest_column = k;
     return left < 4 * Scalar<T>::epsilon() || !std::isfinite(best_score) ? -1 : best;
   }
 
@@ -92,39 +120,40 @@ struct Work {
     std::swap_ranges(row(a), row(a) + n, row(b));
     std::swap_ranges(bounds(a), bounds(a) + n, bounds(b));
     std::swap(row_scale[at(a)], row_scale[at(b)]);
-    std::swap(m.order[at(a)], m.order[at(b)]);
+    std::swap(m->order[at(a)], m->order[at(b)]);
   }
 
   void eliminate(int k) {
-    const std::ptrdiff_t right = n - k - 1;
-    const T* from = row(k) + k;
-    for (int i = k + 1; i < front.row_count; ++i) {
-      T* to = row(i) + k;
-      if (to[0] == T(0)) continue;
-      const T l = to[0] / from[0];
-      to[0] = l;
-      subtract(right, l, from + 1, to + 1);
-      add(right, size_of(l), bounds(k) + k + 1, bounds(i) + k + 1);
-    }
+    if constexpr (std::is_same_v<T, double>)
+      eliminate_wide(k, rows, n, m->lu.data(), bound.data());
+    else
+      eliminate_below(k, rows, n, m->lu.data(), bound.data(), size_of<T>);
   }
 
   /// Largest share that cancellation has left of a row left over; 1 unless it is little: ordinary
   /// losses are not to add up along a long chain.
   double kept(int i) {
     double share = 0;
-    for (std::ptrdiff_t j = front.pivot_count; j < n; ++j)
+    for (std::ptrdiff_t j = pivots; j < n; ++j) {
+      if (size_of(row(i)[j]) > 1e-6 * bounds(i)[j]) return 1;
       if (bounds(i)[j] > 0) share = std::max(share, size_of(row(i)[j]) / bounds(i)[j]);
-    return share > 1e-6 || share == 0 ? 1 : share;
+    }
+    return share == 0 ? 1 : share;
+  }
+
+  /// Made::keeps, which stays empty where nothing has cancelled.
+  void finish(double start) {
+    for (int i = pivots; i < rows; ++i)
+      if (const double share = kept(i); share != 1) {
+        m->keeps.resize(at(rows - pivots), 1);
+        m->keeps[at(i - pivots)] = share;
+      }
+    if (start > 0) m->growth = largest() / start;
   }
 };
 
-}  // namespace
-
 template <class T>
-void Factors<T>::make(int index, const Rows<T>& rows, ColumnScale* found) {
-  const Front& front = plan_->fronts[at(index)];
-  auto made = std::make_shared<Made>();
-  Work<T> w(front, *made);
+void Factors<T>::assemble(const Front& front, const Rows<T>& rows, Work& w) const {
   int row = 0;
   for (const int r : plan_->list(front.rows)) {
     rows.add(r, w.row(row), w.n, plan_->entry_column.data() + plan_->structure.row_begin[at(r)]);
@@ -132,14 +161,24 @@ void Factors<T>::make(int index, const Rows<T>& rows, ColumnScale* found) {
   }
   for (const int c : plan_->list(front.children)) {
     const Front& child = plan_->fronts[at(c)];
-    add_child<T>(*plan_, child, *fronts_[at(c)], w.row(row), w.n);
-    std::copy(fronts_[at(c)]->keeps.begin(), fronts_[at(c)]->keeps.end(), w.keeps.begin() + row);
+    const Made& made = *fronts_[at(c)];
+    add_child<T>(*plan_, child, made, w.row(row), w.n);
+    std::copy(made.keeps.begin(), made.keeps.end(), w.keeps.begin() + row);
     row += child.left_over();
   }
-  const double start = w.largest();
-  w.start();
-  if (found) (*found)[at(index)] = column_scale(w.bound.data(), front.row_count, front.columns());
-  w.scale_rows((*scale_)[at(index)]);
+}
+
+template <class T>
+void Factors<T>::make(int index, const Rows<T>& rows, Work& w, ColumnScale* found) {
+  const Front& front = plan_->fronts[at(index)];
+  auto made = std::make_shared<Made>();
+  w.begin(front, *made);
+  assemble(front, rows, w);
+  const double start = w.take_bounds();
+  if (found)
+    column_scale(w.bound.data(), front.row_count, front.columns(),
+                 found->data() + front.first_column);
+  w.scale_rows(scale_->data() + front.first_column);
   for (int k = 0; k < front.pivot_count && !made->singular; ++k) {
     const int best = w.pivot(k);
     made->singular = best < 0;
@@ -147,8 +186,7 @@ void Factors<T>::make(int index, const Rows<T>& rows, ColumnScale* found) {
     w.swap(k, best);
     w.eliminate(k);
   }
-  for (int i = front.pivot_count; i < front.row_count; ++i) made->keeps.push_back(w.kept(i));
-  if (start > 0) made->growth = w.largest() / start;
+  w.finish(start);
   fronts_[at(index)] = std::move(made);
   ++made_;
 }
@@ -158,9 +196,10 @@ Factors<T>::Factors(std::shared_ptr<const Plan> plan, const Rows<T>& rows,
                     std::shared_ptr<const ColumnScale> scale)
     : plan_(std::move(plan)), scale_(std::move(scale)), fronts_(plan_->fronts.size()) {
   std::shared_ptr<ColumnScale> found;
-  if (!scale_) scale_ = found = std::make_shared<ColumnScale>(fronts_.size());
+  if (!scale_) scale_ = found = std::make_shared<ColumnScale>(at(plan_->columns));
+  Work work;
   for (int i = 0; i < static_cast<int>(fronts_.size()) && singular_ < 0; ++i) {
-    make(i, rows, found.get());
+    make(i, rows, work, found.get());
     if (fronts_[at(i)]->singular) singular_ = i;
   }
 }
@@ -174,9 +213,10 @@ Factors<T> Factors<T>::changed(const Rows<T>& rows, std::span<const int> row_gro
     for (int f = plan_->front_of_row[at(r)]; f >= 0 && !todo[at(f)];
          f = plan_->fronts[at(f)].parent)
       todo[at(f)] = 1;
+  Work work;
   for (int f = 0; f < static_cast<int>(fronts_.size()) && result.singular_ < 0; ++f) {
     if (!todo[at(f)]) continue;
-    result.make(f, rows, nullptr);
+    result.make(f, rows, work, nullptr);
     if (result.fronts_[at(f)]->singular) result.singular_ = f;
   }
   return result;

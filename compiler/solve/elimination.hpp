@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <boost/container/small_vector.hpp>
 #include <complex>
 #include <cstdint>
 #include <memory>
@@ -39,7 +40,8 @@ using RowMatrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 
 /// Powers of two that give the columns of each front the same size: found once from real numbers,
 /// they serve every s and every new value, because they answer for units, not for values.
-using ColumnScale = std::vector<std::vector<std::int16_t>>;
+/// Front after front (Front::first_column), within -1000 ... 1000.
+using ColumnScale = std::vector<std::int16_t>;
 
 /// The factors: per front L, U and the permutation. Fronts are shared between factors that differ
 /// elsewhere.
@@ -65,9 +67,11 @@ class Factors {
 
   /// One front's numbers.
   struct Made {
-    std::vector<T> lu;          ///< row_count x columns, row-major; rows left over at the bottom
-    std::vector<int> order;     ///< order[i]: which assembled row stands at place i
-    std::vector<double> keeps;  ///< per row left over: 1, or what cancellation has left of it
+    /// row_count x columns, row-major; rows left over at the bottom. The fronts of scalar diagrams
+    /// are many and tiny: they ask for no memory of their own.
+    boost::container::small_vector<T, 8> lu;
+    boost::container::small_vector<int, 4> order;  ///< which assembled row stands at place i
+    std::vector<double> keeps;  ///< per row left over what cancellation has left; none: 1 of all
     double growth = 1, weakest = 1;
     int weakest_column = -1;
     bool singular = false;
@@ -75,7 +79,9 @@ class Factors {
   const Made& made(std::size_t front) const { return *fronts_[front]; }
 
  private:
-  void make(int front, const Rows<T>& rows, ColumnScale* found);
+  struct Work;
+  void make(int front, const Rows<T>& rows, Work& work, ColumnScale* found);
+  void assemble(const Front& front, const Rows<T>& rows, Work& work) const;
 
   std::shared_ptr<const Plan> plan_;
   std::shared_ptr<const ColumnScale> scale_;

@@ -11,7 +11,7 @@
 /// the processor has them: that changes no result either.
 #if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
     !defined(__SANITIZE_ADDRESS__)
-#define TITOP_WIDE __attribute__((target_clones("avx2", "default")))
+#define TITOP_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
 #else
 #define TITOP_WIDE
 #endif
@@ -41,6 +41,34 @@ inline void subtract(std::ptrdiff_t n, const std::complex<T>& a, const std::comp
 /// y += a x, n entries.
 inline void add(std::ptrdiff_t n, double a, const double* x, double* y) {
   for (std::ptrdiff_t j = 0; j < n; ++j) y[j] += a * x[j];
+}
+
+/// a b for a number b that is real in any case.
+template <class T>
+inline T times(const T& a, double b) {
+  return a * T(b);
+}
+template <class T>
+inline std::complex<T> times(const std::complex<T>& a, double b) {
+  return {a.real() * static_cast<T>(b), a.imag() * static_cast<T>(b)};
+}
+
+/// One step of elimination in a rows x n array: below row k, everything right of column k. `bounds`
+/// gets the sums of magnitudes.
+template <class T, class Size>
+inline void eliminate_below(std::ptrdiff_t k, std::ptrdiff_t rows, std::ptrdiff_t n, T* a,
+                            double* bounds, Size size) {
+  const T* from = a + k * n + k;
+  const double* const bound = bounds + k * n + k + 1;
+  const std::ptrdiff_t right = n - k - 1;
+  for (std::ptrdiff_t i = k + 1; i < rows; ++i) {
+    T* to = a + i * n + k;
+    if (to[0] == T(0)) continue;
+    const T l = to[0] / from[0];
+    to[0] = l;
+    subtract(right, l, from + 1, to + 1);
+    add(right, size(l), bound, bounds + i * n + k + 1);
+  }
 }
 
 }  // namespace titop::solve

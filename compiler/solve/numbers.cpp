@@ -30,8 +30,7 @@ View<T> view(const Dense<T>& m, int row, int rows, int col, int cols) {
 template <class T, class L>
 void add_matrix(double sign, const View<L>& l, T* to, std::ptrdiff_t stride) {
   for (std::ptrdiff_t i = 0; i < l.rows; ++i)
-    for (std::ptrdiff_t j = 0; j < l.cols; ++j)
-      to[i * stride + j] += lift<T>(sign) * lift<T>(l(i, j));
+    for (std::ptrdiff_t j = 0; j < l.cols; ++j) to[i * stride + j] += times(lift<T>(l(i, j)), sign);
 }
 
 /// to += sign * L * R, R row-major
@@ -40,10 +39,10 @@ void add_product(double sign, const View<L>& l, const RowMatrix<double>& r, T* t
                  std::ptrdiff_t stride) {
   for (std::ptrdiff_t i = 0; i < l.rows; ++i)
     for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
-      const T a = lift<T>(sign) * lift<T>(l(i, k));
+      const T a = times(lift<T>(l(i, k)), sign);
       if (a == T(0)) continue;
       const double* row = r.data() + k * r.cols();
-      for (std::ptrdiff_t j = 0; j < r.cols(); ++j) to[i * stride + j] += a * lift<T>(row[j]);
+      for (std::ptrdiff_t j = 0; j < r.cols(); ++j) to[i * stride + j] += times(a, row[j]);
     }
 }
 
@@ -52,7 +51,7 @@ template <class T, class L>
 void subtract_product(double sign, const View<L>& l, const T* x, std::ptrdiff_t m, T* to) {
   for (std::ptrdiff_t i = 0; i < l.rows; ++i)
     for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
-      const T a = lift<T>(sign) * lift<T>(l(i, k));
+      const T a = times(lift<T>(l(i, k)), sign);
       if (a != T(0)) subtract(m, a, x + k * m, to + i * m);
     }
 }
@@ -191,17 +190,17 @@ void JointRows<T>::subtract_known(const Piece& p, const RowMatrix<T>& known,
 
 template <class T>
 void JointRows<T>::add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
-                             std::span<const int> first, RowMatrix<T>& to) const {
-  const std::ptrdiff_t m = known.cols();
+                             std::span<const int> first, T* to) const {
+  const std::ptrdiff_t m = known.cols(), size = graph_.signals[at(signal)].size * m;
   for (const Meaning& meaning : joint_.meaning(signal)) {
     const int v = joint_.variable_of[at(meaning.signal)];
     const T* value = v >= 0 ? unknowns.data() + joint_.plan->first[at(v)] * m
                             : known.data() + first[at(meaning.signal)] * m;
     if (meaning.coefficient >= 0) {
-      subtract_product(-1, view(*coefficients_[at(meaning.coefficient)]), value, m, to.data());
+      subtract_product(-1, view(*coefficients_[at(meaning.coefficient)]), value, m, to);
       continue;
     }
-    for (std::ptrdiff_t i = 0; i < to.size(); ++i) to.data()[i] += value[i];
+    for (std::ptrdiff_t i = 0; i < size; ++i) to[i] += value[i];
   }
 }
 

@@ -46,9 +46,9 @@ class JointRows : public Rows<T> {
   /// rhs - (these rows) * unknowns: what is left of every row. O(rows) per column.
   RowMatrix<T> residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
 
-  /// signal += its meaning in unknowns and known signals; `to`: signal size x columns.
+  /// signal += its meaning in unknowns and known signals; `to`: signal size x columns, row-major.
   void add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
-                 std::span<const int> first, RowMatrix<T>& to) const;
+                 std::span<const int> first, T* to) const;
 
  private:
   /// A state, at one s.

@@ -175,6 +175,8 @@ void place(Plan& p) {
     Front& f = p.fronts[at(i)];
     f.first_unknown = p.unknowns;
     f.first_carried = p.carried;
+    f.first_column = p.columns;
+    p.columns += f.columns();
     p.unknowns += f.pivot_count;
     p.carried += std::max(0, f.left_over());
     int next = 0;

@@ -45,6 +45,7 @@ struct Front {
   int parent = -1;        ///< the front that takes the rows left over; -1 if there are none
   int first_unknown = 0;  ///< place of the first pivot among the unknowns
   int first_carried = 0;  ///< place of the first row left over among all such rows
+  int first_column = 0;   ///< place of the first column among those of all fronts
 
   int columns() const { return pivot_count + border_count; }
   int left_over() const { return row_count - pivot_count; }
@@ -61,7 +62,7 @@ struct Plan {
   std::vector<int> front_of_row;   ///< row group -> the front where it enters
   std::vector<int> entry_column;   ///< entry of the structure -> first column in that front
   std::vector<int> parent_column;  ///< parallel to `lists`, for borders: first column in the parent
-  int unknowns = 0, carried = 0;
+  int unknowns = 0, carried = 0, columns = 0;
 
   std::span<const int> list(Front::Range r) const {
     return {lists.data() + r.begin, static_cast<std::size_t>(r.count)};

@@ -12,22 +12,19 @@ namespace titop::solve {
 void multiply(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m, const double* a,
               std::ptrdiff_t stride, const double* x, double* y, bool add);
 
-/// The same transposed: y (m x rows) = (a x)', added to y or not, where a stands as its transpose
-/// (inner x rows, row-major) and rows and m are multiples of 4.
+/// The same transposed: y (m x rows, `y_stride` apart) = (a x)', added to y or not, where a stands
+/// as its transpose (inner x rows, row-major); rows is a multiple of 4, m of 8.
 void multiply_transposed(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m,
-                         const double* at, const double* x, double* y, bool add);
+                         const double* at, const double* x, double* y, std::ptrdiff_t y_stride,
+                         bool add);
 
-/// A column of the dense model: `factor` times column `from` of a solution.
-struct Column {
-  std::ptrdiff_t from = 0;
-  double factor = 1;
-  double* state = nullptr;   ///< where it begins in A or B
-  double* output = nullptr;  ///< where it begins in C or D
+/// Where some values of a column go.
+struct Run {
+  std::ptrdiff_t from = -1;  ///< their place among the values; -1: zeros
+  std::ptrdiff_t to = 0, count = 0;
 };
 
-/// Rows `row` ... of all these columns, of the states or of the outputs; column `from` of the
-/// values begins at from * stride. No -0 is written.
-void scatter(std::span<const Column> columns, bool state, std::ptrdiff_t row, std::ptrdiff_t rows,
-             const double* values, std::ptrdiff_t stride);
+/// Writes factor * values to a column, run by run. No -0 is written.
+void write_runs(std::span<const Run> runs, double factor, const double* values, double* column);
 
 }  // namespace titop::solve

@@ -9,29 +9,50 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 std::size_t at(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
 
+/// x = U^-1 x for rows of n entries, U in the upper triangle of lu.
+void solve_upper(const double* lu, std::ptrdiff_t stride, std::ptrdiff_t pivots, double* x,
+                 std::ptrdiff_t n) {
+  for (std::ptrdiff_t r = pivots - 1; r >= 0; --r) {
+    double* const row = x + r * n;
+    for (std::ptrdiff_t k = r + 1; k < pivots; ++k) subtract(n, lu[r * stride + k], x + k * n, row);
+    for (std::ptrdiff_t j = 0; j < n; ++j) row[j] /= lu[r * stride + r];
+  }
+}
+
 }  // namespace
 
 Propagation::Propagation(const Factors<double>& factors)
     : factors_(factors), plan_(factors.plan()) {
   std::size_t total = 0;
   for (const Front& f : plan_.fronts) {
-    begin_.push_back(total);
-    total += at(f.pivot_count) * at(f.border_count);
+    const std::size_t pivots = at(f.pivot_count);
+    Place p{total, total + pivots * pivots, 0};
+    p.border = p.carry + at(f.left_over()) * pivots;
+    total = p.border + pivots * at(f.border_count);
+    place_.push_back(p);
   }
-  border_.resize(total);
-  for (std::size_t i = 0; i < plan_.fronts.size(); ++i) {
-    const Front& f = plan_.fronts[i];
-    const std::vector<double>& lu = factors.made(i).lu;
-    const std::ptrdiff_t n = f.columns(), b = f.border_count;
-    double* const w = border_.data() + begin_[i];
-    for (std::ptrdiff_t r = f.pivot_count - 1; r >= 0; --r) {
-      double* const row = w + r * b;
-      for (std::ptrdiff_t j = 0; j < b; ++j) row[j] = -lu[at(r * n + f.pivot_count + j)];
-      for (std::ptrdiff_t k = r + 1; k < f.pivot_count; ++k)
-        subtract(b, lu[at(r * n + k)], w + k * b, row);
-      for (std::ptrdiff_t j = 0; j < b; ++j) row[j] /= lu[at(r * n + r)];
-    }
+  formed_.resize(total);
+  for (int i = 0; i < static_cast<int>(plan_.fronts.size()); ++i) form(i, formed_.data());
+}
+
+void Propagation::form(int index, double* to) const {
+  const Front& f = plan_.fronts[at(index)];
+  const double* const lu = factors_.made(at(index)).lu.data();
+  const std::ptrdiff_t n = f.columns(), pivots = f.pivot_count, b = f.border_count;
+  double* const own = to + place_[at(index)].own;
+  for (std::ptrdiff_t r = 0; r < f.row_count; ++r) {  // L^-1, then -L' L^-1: the same recursion
+    double* const row = own + r * pivots;
+    std::fill_n(row, pivots, 0.0);
+    if (r < pivots) row[r] = 1;
+    for (std::ptrdiff_t k = 0; k < std::min(r, pivots); ++k)
+      if (const double l = lu[r * n + k]; l != 0)
+        subtract(std::min(k + 1, pivots), l, own + k * pivots, row);
   }
+  solve_upper(lu, n, pivots, own, pivots);
+  double* const border = to + place_[at(index)].border;
+  for (std::ptrdiff_t r = 0; r < pivots; ++r)
+    for (std::ptrdiff_t j = 0; j < b; ++j) border[r * b + j] = -lu[r * n + pivots + j];
+  solve_upper(lu, n, pivots, border, b);
 }
 
 /// The rows of a front as they come: nullptr where nothing has reached them yet.
@@ -55,43 +76,54 @@ void Propagation::gather(const Front& f, std::ptrdiff_t m, Space& space) const {
   }
 }
 
-/// L^-1 of the rows that are not zero.
+/// What the front's rows give to its unknowns and carry upwards.
 void Propagation::forward(int index, std::ptrdiff_t m, Space& space) const {
   const Front& f = plan_.fronts[at(index)];
-  const auto& made = factors_.made(at(index));
+  const auto& order = factors_.made(at(index)).order;
   gather(f, m, space);
-  const std::ptrdiff_t n = f.columns();
+  bool any = false;
+  double* const r = space.pivot_rows.data();
+  for (std::ptrdiff_t i = 0; i < f.pivot_count; ++i) {
+    const double* from = space.come[at(order[at(i)])];
+    any = any || from;
+    from ? std::copy_n(from, m, r + i * m) : std::fill_n(r + i * m, m, 0.0);
+  }
   double* const top = space.z.data() + f.first_unknown * m;
   double* const rest = space.carried.data() + f.first_carried * m;
-  std::vector<char>& full = space.full;
-  full.assign(at(f.row_count), 0);
-  for (std::ptrdiff_t i = 0; i < f.row_count; ++i) {
-    double* const to = i < f.pivot_count ? top + i * m : rest + (i - f.pivot_count) * m;
-    if (const double* from = space.come[at(made.order[at(i)])])
-      std::copy_n(from, m, to), full[at(i)] = 1;
-    for (std::ptrdiff_t k = 0; k < std::min<std::ptrdiff_t>(i, f.pivot_count); ++k) {
-      const double l = made.lu[at(i * n + k)];
-      if (l == 0 || !full[at(k)]) continue;
-      if (!full[at(i)]) std::fill_n(to, m, 0.0);
-      full[at(i)] = 1;
-      subtract(m, l, top + k * m, to);
-    }
-    if (i >= f.pivot_count)
-      space.is_carried[at(f.first_carried + i - f.pivot_count)] = full[at(i)];
-    else if (!full[at(i)])
-      std::fill_n(to, m, 0.0);
+  for (std::ptrdiff_t i = f.pivot_count; i < f.row_count; ++i) {
+    double* const to = rest + (i - f.pivot_count) * m;
+    const double* from = space.come[at(order[at(i)])];
+    from ? std::copy_n(from, m, to) : std::fill_n(to, m, 0.0);
+    space.is_carried[at(f.first_carried + i - f.pivot_count)] = any || from;
   }
+  if (!any) {
+    std::fill_n(top, f.pivot_count * m, 0.0);
+    return;
+  }
+  const Place& p = place_[at(index)];
+  const std::ptrdiff_t n = f.pivot_count;
+  multiply(f.left_over(), n, m, formed_.data() + p.carry, n, r, rest, true);
+  if (n > 1) return multiply(n, n, m, formed_.data() + p.own, n, r, top, false);
+  // A division rounds once, a product with the inverse twice.
+  const double pivot = factors_.made(at(index)).lu.front();
+  for (std::ptrdiff_t j = 0; j < m; ++j) top[j] = r[j] / pivot;
 }
 
-void Propagation::back_substitute(int index, std::ptrdiff_t m, std::vector<double>& z) const {
+/// The front's unknowns from those of its border; `add`: something stands there already.
+void Propagation::add_border(int index, std::ptrdiff_t m, bool add, std::vector<double>& z) const {
   const Front& f = plan_.fronts[at(index)];
-  const std::vector<double>& lu = factors_.made(at(index)).lu;
-  const std::ptrdiff_t n = f.columns();
   double* const top = z.data() + f.first_unknown * m;
-  for (std::ptrdiff_t i = f.pivot_count - 1; i >= 0; --i) {
-    for (std::ptrdiff_t k = i + 1; k < f.pivot_count; ++k)
-      subtract(m, lu[at(i * n + k)], top + k * m, top + i * m);
-    for (std::ptrdiff_t j = 0; j < m; ++j) top[i * m + j] /= lu[at(i * n + i)];
+  if (!add && f.border_count == 0) std::fill_n(top, f.pivot_count * m, 0.0);
+  const double* w = formed_.data() + place_[at(index)].border;
+  const auto border = plan_.list(f.border);
+  for (std::size_t b = 0; b < border.size();) {
+    const int first = plan_.first[at(border[b])];
+    int size = 0;  // of neighbours among the unknowns, taken together
+    for (; b < border.size() && plan_.first[at(border[b])] == first + size; ++b)
+      size += plan_.structure.variable_size[at(border[b])];
+    multiply(f.pivot_count, size, m, w, f.border_count, z.data() + first * m, top, add);
+    add = true;
+    w += size;
   }
 }
 
@@ -125,25 +157,12 @@ void Propagation::solve(std::span<const int> row_groups, std::span<const double>
   space.rows.resize(at(plan_.unknowns) * at(m));
   space.carried.resize(at(plan_.carried) * at(m));
   activate(row_groups, rhs, m, space);
+  std::size_t most = 0;
+  for (const int f : space.active) most = std::max(most, at(plan_.fronts[at(f)].pivot_count));
+  space.pivot_rows.resize(most * at(m));
   for (const int f : space.active) forward(f, m, space);
-  for (int i = static_cast<int>(plan_.fronts.size()) - 1; i >= 0; --i) {
-    const Front& f = plan_.fronts[at(i)];
-    bool add = space.is_active[at(i)];  // otherwise nothing stands there yet
-    if (add) back_substitute(i, m, space.z);
-    double* const top = space.z.data() + f.first_unknown * m;
-    if (!add && f.border_count == 0) std::fill_n(top, f.pivot_count * m, 0.0);
-    const double* w = border_.data() + begin_[at(i)];
-    const auto border = plan_.list(f.border);
-    for (std::size_t b = 0; b < border.size();) {
-      const int first = plan_.first[at(border[b])];
-      int size = 0;  // of neighbours among the unknowns, taken together
-      for (; b < border.size() && plan_.first[at(border[b])] == first + size; ++b)
-        size += plan_.structure.variable_size[at(border[b])];
-      multiply(f.pivot_count, size, m, w, f.border_count, space.z.data() + first * m, top, add);
-      add = true;
-      w += size;
-    }
-  }
+  for (int i = static_cast<int>(plan_.fronts.size()) - 1; i >= 0; --i)
+    add_border(i, m, space.is_active[at(i)], space.z);
   for (const int f : space.active) space.is_active[at(f)] = 0;
   for (const int r : row_groups) space.is_set[at(r)] = 0;
 }

@@ -5,8 +5,10 @@
 namespace titop::solve {
 
 /// Many right-hand sides, each with a few rows that are not zero: what the dense model is written
-/// from. Forward only along these rows' fronts and what is above them; backward with
-/// -U^-1 (border of U) formed once per front. O(unknowns x front size) per column.
+/// from. Forward only along these rows' fronts and what is above them. Each front becomes a few
+/// small products, formed once: its rows split into those of the pivots, r, and the rest, r', it
+/// carries r' - L' L^-1 r upwards, and on the way back its unknowns are
+/// U^-1 L^-1 r - U^-1 (border of U) (border unknowns). O(unknowns x front size) per column.
 class Propagation {
  public:
   explicit Propagation(const Factors<double>& factors);
@@ -16,9 +18,9 @@ class Propagation {
     std::vector<double> z;         ///< the unknowns, in the order of Plan::first (unknowns x m)
     std::vector<int> active = {};  ///< fronts of the present right-hand sides
     std::vector<char> is_active = {};
-    std::vector<double> rows = {}, carried = {};
-    std::vector<char> is_set = {}, is_carried = {}, full = {};  ///< where rows are not zero
-    std::vector<const double*> come = {};                       ///< the rows of the present front
+    std::vector<double> rows = {}, carried = {}, pivot_rows = {};
+    std::vector<char> is_set = {}, is_carried = {};  ///< where rows are not zero
+    std::vector<const double*> come = {};            ///< the rows of the present front
   };
 
   /// Right-hand sides of these row groups, m columns each (a multiple of 8; row-major, group after
@@ -31,12 +33,20 @@ class Propagation {
                 Space& space) const;
   void gather(const Front& front, std::ptrdiff_t m, Space& space) const;
   void forward(int front, std::ptrdiff_t m, Space& space) const;
-  void back_substitute(int front, std::ptrdiff_t m, std::vector<double>& z) const;
+  void add_border(int front, std::ptrdiff_t m, bool add, std::vector<double>& z) const;
+  void form(int front, double* to) const;
+
+  /// Where a front's matrices begin, row-major one after the other.
+  struct Place {
+    std::size_t own = 0;     ///< U^-1 L^-1: pivots x pivots
+    std::size_t carry = 0;   ///< -L' L^-1: rows left over x pivots
+    std::size_t border = 0;  ///< -U^-1 (border of U): pivots x border
+  };
 
   const Factors<double>& factors_;
   const Plan& plan_;
-  std::vector<std::size_t> begin_;  ///< per front: its part of border_
-  std::vector<double> border_;      ///< -U^-1 (border of U), row-major
+  std::vector<Place> place_;
+  std::vector<double> formed_;
 };
 
 }  // namespace titop::solve

@@ -1,83 +1,106 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scaling.hpp>
+#include <vector>
 
 namespace titop::solve {
 namespace {
 
-constexpr float kNone = -1e30F;  ///< the exponent of 0
-
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+/// Exponents of two, in sixteenths: whole numbers, whose sums and largest a compiler may take in
+/// any order, and every machine gets the same.
+constexpr int kOne = 16;
+constexpr int kNone = -(1 << 24);  ///< the exponent of 0
+constexpr int kRounding = -691;    ///< 1e-13
+
 /// log2 to within 0.09, from the bits: exponents are all that scaling needs.
-float exponent(double x) {
+int exponent(double x) {
   if (!(x > 0) || !std::isfinite(x)) return kNone;
   const auto bits = std::bit_cast<std::uint64_t>(x);
-  const auto mantissa = static_cast<float>(bits & 0xFFFFFFFFFFFFFull) * 0x1p-52F;
-  return static_cast<float>(static_cast<int>(bits >> 52)) - 1023.0F + mantissa;
+  return static_cast<int>(bits >> 48) - 1023 * kOne;
 }
 
+/// All in one buffer: fronts are small and many.
 struct Exponents {
   int rows, columns;
-  std::vector<float> e;     ///< of the entries as they are
-  std::vector<float> r, c;  ///< added to them: of the rows, of the columns
+  std::vector<int> buffer;
+  int* e = buffer.data();       ///< of the entries as they are
+  int* r = e + rows * columns;  ///< added to them: of the rows,
+  int* c = r + rows;            ///< of the columns
+  int* sum = c + columns;       ///< per column: largest entry, or sum
+  int* count = sum + columns;
 
-  Exponents(const double* a, int m, int n) : rows(m), columns(n), e(at(m * n)), r(at(m)), c(at(n)) {
-    for (std::size_t i = 0; i < e.size(); ++i) e[i] = exponent(a[i]);
+  Exponents(const double* a, int m, int n) : rows(m), columns(n), buffer(at(m * n + m + 3 * n)) {
+    for (int i = 0; i < m * n; ++i) e[i] = exponent(a[i]);
   }
 
   /// Half way towards a largest entry of 1 in every row and column.
   void towards_one() {
-    std::vector<float> largest(at(columns), kNone);
+    std::fill_n(sum, columns, kNone);
     for (int i = 0; i < rows; ++i) {
-      const float* row = e.data() + i * columns;
-      float top = kNone;
+      const int *row = e + i * columns, own = r[i];
+      int top = kNone;
       for (int j = 0; j < columns; ++j) {
-        top = std::max(top, row[j] + c[at(j)]);
-        largest[at(j)] = std::max(largest[at(j)], row[j] + r[at(i)] + c[at(j)]);
+        const int entry = row[j] + c[j];
+        top = std::max(top, entry);
+        sum[j] = std::max(sum[j], entry + own);
       }
-      if (top > kNone / 2) r[at(i)] -= (top + r[at(i)]) / 2;
+      if (top > kNone / 2) r[i] -= (top + own) / 2;
     }
     for (int j = 0; j < columns; ++j)
-      if (largest[at(j)] > kNone / 2) c[at(j)] -= largest[at(j)] / 2;
+      if (sum[j] > kNone / 2) c[j] -= sum[j] / 2;
   }
 
   /// Forgets entries that are rounding beside the others.
   void drop_rounding() {
     for (int i = 0; i < rows; ++i)
-      for (int j = 0; j < columns; ++j)
-        if (float& x = e[at(i * columns + j)]; x + r[at(i)] + c[at(j)] < -43.2F) x = kNone;
+      for (int j = 0; j < columns; ++j) {
+        int& x = e[i * columns + j];
+        x = x + r[i] + c[j] < kRounding ? kNone : x;
+      }
   }
 
   /// Rows, then columns, to a mean of 0.
   void centre() {
-    std::vector<float> sum(at(columns), 0), count(at(columns), 0);
+    std::fill_n(sum, columns, 0);
+    std::fill_n(count, columns, 0);
     for (int i = 0; i < rows; ++i) {
-      const float* row = e.data() + i * columns;
-      float total = 0, number = 0;
-      for (int j = 0; j < columns; ++j)
-        if (row[j] > kNone / 2) total += row[j] + c[at(j)], ++number;
-      if (number > 0) r[at(i)] = -total / number;
-      for (int j = 0; j < columns; ++j)
-        if (row[j] > kNone / 2) sum[at(j)] += row[j] + r[at(i)], ++count[at(j)];
+      const int* row = e + i * columns;
+      int total = 0, number = 0;
+      for (int j = 0; j < columns; ++j) {
+        total += row[j] > kNone / 2 ? row[j] + c[j] : 0;
+        number += row[j] > kNone / 2;
+      }
+      if (number > 0) r[i] = -total / number;
+      const int own = r[i];
+      for (int j = 0; j < columns; ++j) {
+        sum[j] += row[j] > kNone / 2 ? row[j] + own : 0;
+        count[j] += row[j] > kNone / 2;
+      }
     }
     for (int j = 0; j < columns; ++j)
-      if (count[at(j)] > 0) c[at(j)] = -sum[at(j)] / count[at(j)];
+      if (count[j] > 0) c[j] = -sum[j] / count[j];
   }
 };
 
-}  // namespace
-
-std::vector<std::int16_t> column_scale(const double* magnitudes, int rows, int columns) {
-  Exponents x(magnitudes, rows, columns);
+TITOP_WIDE void balance(Exponents& x) {
   for (int round = 0; round < 4; ++round) x.towards_one();
   x.drop_rounding();
   for (int round = 0; round < 3; ++round) x.centre();
-  std::vector<std::int16_t> result(at(columns));
-  for (int j = 0; j < columns; ++j)
-    result[at(j)] = static_cast<std::int16_t>(std::lround(std::clamp(x.c[at(j)], -1000.F, 1000.F)));
-  return result;
+}
+
+}  // namespace
+
+void column_scale(const double* magnitudes, int rows, int columns, std::int16_t* exponents) {
+  Exponents x(magnitudes, rows, columns);
+  balance(x);
+  for (int j = 0; j < columns; ++j) {
+    const int rounded = (x.c[j] + (x.c[j] < 0 ? -kOne : kOne) / 2) / kOne;
+    exponents[j] = static_cast<std::int16_t>(std::clamp(rounded, -1000, 1000));
+  }
 }
 
 }  // namespace titop::solve

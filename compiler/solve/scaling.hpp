@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 namespace titop::solve {
 
@@ -9,7 +8,8 @@ namespace titop::solve {
 /// same size whatever the units: first largest entries brought to 1, rows and columns in turn [Ruiz
 /// 2001], then means of binary exponents over the entries [Curtis, Reid 1972]. Entries that the
 /// first step leaves below 1e-13 are rounding (a rotation by pi) and do not count in the second:
-/// they would draw the means along. O(rows x columns).
-std::vector<std::int16_t> column_scale(const double* magnitudes, int rows, int columns);
+/// they would draw the means along. Writes `columns` exponents, within -1000 ... 1000.
+/// O(rows x columns).
+void column_scale(const double* magnitudes, int rows, int columns, std::int16_t* exponents);
 
 }  // namespace titop::solve

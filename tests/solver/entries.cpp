@@ -9,7 +9,7 @@
 #include "oracle.hpp"
 #include "support/random_scene.hpp"
 
-/// The entries of the dense A of well-conditioned scenes, one by one, against 50 digits.
+/// The entries of the dense A of well-conditioned scenes, one by one, against 150 digits.
 
 using namespace titop;
 using namespace solver_test;
@@ -100,30 +100,30 @@ struct Chain {
     return model;
   }
   /// Of the eta'' rows and eta columns: -(M^-1) diag(omega^2), M over [x_P of the root; all eta].
-  Matrix50 stiffness_part() const {
+  BigMatrix stiffness_part() const {
     const int n = static_cast<int>(data.size()), size = 6 + 6 * n;
-    Matrix50 M(size, size), way(6, size);  // way: x_P of the present body
+    BigMatrix M(size, size), way(6, size);  // way: x_P of the present body
     for (int i = 0; i < 6; ++i) way(i, i) = Complex(1);
     for (int b = 0; b < n; ++b) {
       add_body(M, way, b);
       way = next(way, b);
     }
-    Matrix50 E(size, 6 * n);
+    BigMatrix E(size, 6 * n);
     for (int j = 0; j < 6 * n; ++j) {
       const Real w = data[at(j / 6)].omega(j % 6);
       E(6 + j, j) = Complex(-w * w);
     }
-    const Matrix50 z = solve(std::move(M), std::move(E));
-    Matrix50 result(6 * n, 6 * n);
+    const BigMatrix z = solve(std::move(M), std::move(E));
+    BigMatrix result(6 * n, 6 * n);
     for (int i = 0; i < 6 * n; ++i)
       for (int j = 0; j < 6 * n; ++j) result(i, j) = z(6 + i, j);
     return result;
   }
   /// M += [way; eta]' [D_P, L_P'; L_P, I] [way; eta].
-  void add_body(Matrix50& M, const Matrix50& way, int b) const {
+  void add_body(BigMatrix& M, const BigMatrix& way, int b) const {
     const ModalData& d = data[at(b)];
     const int size = way.cols;
-    Matrix50 Y(12, size), own(12, 12), Yt(size, 12);
+    BigMatrix Y(12, size), own(12, 12), Yt(size, 12);
     for (int i = 0; i < 6; ++i) {
       for (int j = 0; j < size; ++j) Y(i, j) = way(i, j);
       Y(6 + i, 6 + 6 * b + i) = Complex(1);
@@ -135,22 +135,22 @@ struct Chain {
     }
     for (int i = 0; i < 12; ++i)
       for (int j = 0; j < size; ++j) Yt(j, i) = Y(i, j);
-    const Matrix50 more = Yt * (own * Y);
+    const BigMatrix more = Yt * (own * Y);
     for (int i = 0; i < size; ++i)
       for (int j = 0; j < size; ++j) M(i, j) = M(i, j) + more(i, j);
   }
   /// x_P of the next body: T' (tau x_P + Phi_C eta).
-  Matrix50 next(const Matrix50& way, int b) const {
+  BigMatrix next(const BigMatrix& way, int b) const {
     const ModalChild& c = data[at(b)].children.front();
     Eigen::MatrixXd tau = Eigen::MatrixXd::Identity(6, 6), back = Eigen::MatrixXd::Zero(6, 6);
     const Vector3d CP = -c.PC;
     tau.topRightCorner(3, 3) << 0, -CP.z(), CP.y(), CP.z(), 0, -CP.x(), -CP.y(), CP.x(), 0;
     back.topLeftCorner(3, 3) = back.bottomRightCorner(3, 3) = T[at(b)].transpose();
-    Matrix50 here = Matrix50(tau) * way;
+    BigMatrix here = BigMatrix(tau) * way;
     for (int i = 0; i < 6; ++i)
       for (int k = 0; k < 6; ++k)
         here(i, 6 + 6 * b + k) = here(i, 6 + 6 * b + k) + Complex(c.Phi_C(i, k));
-    return Matrix50(back) * here;
+    return BigMatrix(back) * here;
   }
 };
 

@@ -9,7 +9,7 @@
 #include "support/mistakes.hpp"
 #include "support/random_scene.hpp"
 
-/// The same elimination in every precision, against the oracle's own 50 digits.
+/// The same elimination in every precision, against the oracle's own 150 digits.
 
 using namespace titop;
 using namespace solver_test;
@@ -40,10 +40,10 @@ struct Chain {
     return d;
   }
   Eigen::MatrixXcd exact(std::complex<double> s) const {
-    std::vector<Matrix50> Y;
+    std::vector<BigMatrix> Y;
     for (const ModalData& body : data) Y.push_back(modal_transfer(body, Complex(s)));
     return rounded(chain_transfer(
-        Y, std::vector<Matrix50>(data.size() - 1, Matrix50(Eigen::MatrixXd::Identity(6, 6))), 6));
+        Y, std::vector<BigMatrix>(data.size() - 1, BigMatrix(Eigen::MatrixXd::Identity(6, 6))), 6));
   }
 };
 

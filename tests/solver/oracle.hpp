@@ -6,12 +6,12 @@
 #include <titop/blocks/modal_data.hpp>
 #include <vector>
 
-/// Transfers of chains in 50 digits, from the same doubles that the library is given: block
+/// Transfers of chains in 150 digits, from the same doubles that the library is given: block
 /// matrices by their formulas at s, then Gaussian elimination with partial pivoting. No library
 /// code but `ModalData` and its plain fields.
 namespace solver_test {
 
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<50>,
+using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<150>,
                                            boost::multiprecision::et_off>;
 
 struct Complex {
@@ -34,13 +34,13 @@ inline Complex operator/(const Complex& a, const Complex& b) {
   return {(a.re * b.re + a.im * b.im) / d, (a.im * b.re - a.re * b.im) / d};
 }
 
-struct Matrix50 {
+struct BigMatrix {
   int rows, cols;
   std::vector<Complex> entries;
 
-  Matrix50(int r, int c) : rows(r), cols(c), entries(static_cast<std::size_t>(r * c)) {}
-  explicit Matrix50(const Eigen::MatrixXd& m)
-      : Matrix50(static_cast<int>(m.rows()), static_cast<int>(m.cols())) {
+  BigMatrix(int r, int c) : rows(r), cols(c), entries(static_cast<std::size_t>(r * c)) {}
+  explicit BigMatrix(const Eigen::MatrixXd& m)
+      : BigMatrix(static_cast<int>(m.rows()), static_cast<int>(m.cols())) {
     for (int i = 0; i < rows; ++i)
       for (int j = 0; j < cols; ++j) (*this)(i, j) = Complex(m(i, j));
   }
@@ -49,8 +49,8 @@ struct Matrix50 {
     return entries[static_cast<std::size_t>(i * cols + j)];
   }
 };
-inline Matrix50 operator*(const Matrix50& a, const Matrix50& b) {
-  Matrix50 c(a.rows, b.cols);
+inline BigMatrix operator*(const BigMatrix& a, const BigMatrix& b) {
+  BigMatrix c(a.rows, b.cols);
   for (int i = 0; i < a.rows; ++i)
     for (int k = 0; k < a.cols; ++k)
       if (!a(i, k).is_zero())
@@ -59,7 +59,7 @@ inline Matrix50 operator*(const Matrix50& a, const Matrix50& b) {
 }
 
 /// X = E^-1 F in place of F; zeros of E are skipped, so that banded systems cost little.
-inline Matrix50 solve(Matrix50 E, Matrix50 F) {
+inline BigMatrix solve(BigMatrix E, BigMatrix F) {
   const int n = E.rows;
   for (int k = 0; k < n; ++k) {
     int best = k;
@@ -88,10 +88,10 @@ inline Matrix50 solve(Matrix50 E, Matrix50 F) {
 }
 
 /// (14) at s for a body with one child: [xdd_C; F_P] by [F_C; xdd_P], 12 x 12. The direct term is
-/// formed in 50 digits from L_P, Phi_C and D_P.
-inline Matrix50 modal_transfer(const titop::ModalData& d, const Complex& s) {
+/// formed in 150 digits from L_P, Phi_C and D_P.
+inline BigMatrix modal_transfer(const titop::ModalData& d, const Complex& s) {
   const titop::ModalChild& c = d.children.front();
-  Matrix50 Y(12, 12);
+  BigMatrix Y(12, 12);
   for (int i = 0; i < 6; ++i) {
     Y(i, 6 + i) = Complex(1);
     Y(6 + i, i) = Complex(1);
@@ -120,9 +120,9 @@ inline Matrix50 modal_transfer(const titop::ModalData& d, const Complex& s) {
 }
 
 /// (6) with damping at s: [xdd_C; f_P] by [f_C; xdd_P].
-inline Matrix50 spring_transfer(double m, double k, double c, double m0, const Complex& s) {
+inline BigMatrix spring_transfer(double m, double k, double c, double m0, const Complex& s) {
   const Complex spring = Complex(k) + Complex(c) * s, den = Complex(m) * s * s + spring;
-  Matrix50 Y(2, 2);
+  BigMatrix Y(2, 2);
   Y(0, 0) = s * s / den;
   Y(0, 1) = Y(1, 0) = spring / den;
   Y(1, 1) = Complex(-m0) - Complex(m) * spring / den;
@@ -132,18 +132,18 @@ inline Matrix50 spring_transfer(double m, double k, double c, double m0, const C
 /// Chain of two-ports Y[i] with p degrees of freedom per junction, T[i] from the frame of body i +
 /// 1 to that of body i; wrench U at the free root (F_P = -U), nothing at the tip. Returns the
 /// accelerations [xdd at the root; xdd at the tip], 2p x p.
-inline Matrix50 chain_transfer(const std::vector<Matrix50>& Y, const std::vector<Matrix50>& T,
-                               int p) {
+inline BigMatrix chain_transfer(const std::vector<BigMatrix>& Y, const std::vector<BigMatrix>& T,
+                                int p) {
   const int n = static_cast<int>(Y.size()), size = (2 * n + 1) * p;
   // Unknowns body by body: xdd_P, F_P; at last xdd at the tip.
-  Matrix50 E(size, size), F(size, p);
+  BigMatrix E(size, size), F(size, p);
   int row = 0;
   for (int i = 0; i < p; ++i, ++row) {
     E(row, p + i) = Complex(1);
     F(row, i) = Complex(-1);
   }
   for (int b = 0; b < n; ++b) {
-    const Matrix50& y = Y[static_cast<std::size_t>(b)];
+    const BigMatrix& y = Y[static_cast<std::size_t>(b)];
     const int a_P = 2 * b * p, F_P = a_P + p, a_next = a_P + 2 * p, F_next = a_next + p;
     for (int i = 0; i < p; ++i, ++row) {  // xdd_C = T a_next, F_C = T F_next
       for (int j = 0; j < p; ++j) E(row, a_P + j) = y(i, p + j);
@@ -152,7 +152,7 @@ inline Matrix50 chain_transfer(const std::vector<Matrix50>& Y, const std::vector
           E(row, a_next + j) = Complex(i == j ? -1.0 : 0.0);
           continue;
         }
-        const Matrix50& t = T[static_cast<std::size_t>(b)];
+        const BigMatrix& t = T[static_cast<std::size_t>(b)];
         E(row, a_next + j) = Complex(0) - t(i, j);
         for (int k = 0; k < p; ++k) E(row, F_next + j) = E(row, F_next + j) + y(i, k) * t(k, j);
       }
@@ -166,8 +166,8 @@ inline Matrix50 chain_transfer(const std::vector<Matrix50>& Y, const std::vector
               E(row, F_next + j) + y(p + i, k) * T[static_cast<std::size_t>(b)](k, j);
     }
   }
-  const Matrix50 z = solve(std::move(E), std::move(F));
-  Matrix50 result(2 * p, p);
+  const BigMatrix z = solve(std::move(E), std::move(F));
+  BigMatrix result(2 * p, p);
   for (int j = 0; j < p; ++j)
     for (int i = 0; i < p; ++i) {
       result(i, j) = z(i, j);
@@ -177,7 +177,7 @@ inline Matrix50 chain_transfer(const std::vector<Matrix50>& Y, const std::vector
 }
 
 /// Rounded to double.
-inline Eigen::MatrixXcd rounded(const Matrix50& m) {
+inline Eigen::MatrixXcd rounded(const BigMatrix& m) {
   Eigen::MatrixXcd result(m.rows, m.cols);
   for (int i = 0; i < m.rows; ++i)
     for (int j = 0; j < m.cols; ++j)

@@ -17,11 +17,15 @@ bool less(const Summand& a, const Summand& b) {
                                       b.c.data() + b.c.size());
 }
 
+/// None of none.
 Pattern product(const Pattern& a, const Pattern& b) {
+  if (a.size() == 0 || b.size() == 0) return {};
   return (a.cast<int>() * b.cast<int>()).array() > 0;
 }
 
-Pattern product(const MatrixXd& m, const Pattern& p) { return product(Pattern(m.array() != 0), p); }
+Pattern product(const MatrixXd& m, const Pattern& p) {
+  return p.size() == 0 ? Pattern() : product(Pattern(m.array() != 0), p);
+}
 
 void append(Amount& sum, Amount more) {
   for (Summand& t : more) sum.push_back(std::move(t));
@@ -40,17 +44,22 @@ Amount times(const MatrixXd& m, Amount sum) {
 }
 
 std::vector<Term> merged(Amount sum) {
-  std::sort(sum.begin(), sum.end(), less);
+  if (sum.size() > 1) std::sort(sum.begin(), sum.end(), less);
   std::vector<Term> terms;
+  terms.reserve(sum.size());
   for (std::size_t i = 0; i < sum.size();) {
-    Summand total = sum[i];
+    Summand total = std::move(sum[i]);
     for (++i; i < sum.size() && sum[i].signal == total.signal; ++i) {
       total.c += sum[i].c;
-      total.p = total.p.array() || sum[i].p.array();
+      if (total.p.size() == 0 || sum[i].p.size() == 0)
+        total.p.resize(0, 0);
+      else
+        total.p = total.p.array() || sum[i].p.array();
     }
+    Matrix matrix{.value = std::make_shared<const MatrixXd>(std::move(total.c))};
+    if (total.p.size()) matrix.pattern = std::make_shared<const Pattern>(std::move(total.p));
     Term term{.signal = total.signal};
-    term.factors.emplace_back(Matrix{std::make_shared<const MatrixXd>(std::move(total.c)),
-                                     std::make_shared<const Pattern>(std::move(total.p))});
+    term.factors.emplace_back(std::move(matrix));
     terms.push_back(std::move(term));
   }
   return terms;
@@ -95,13 +104,12 @@ Amount Lowering::integrated(Amount sum, Level level) {
 }
 
 /// What these equations add up to on their channel, in the channel's own space.
-Amount Lowering::added(int channel, const std::vector<int>& equations) {
-  const int n = g.channels[at(channel)].size;
+Amount Lowering::added(const std::vector<int>& equations) {
   Amount sum;
   for (const int e : equations) {
     const Part& part = g.equations[at(e)].part;
-    append(sum, times(part.whole() ? MatrixXd::Identity(n, n) : MatrixXd(part.rows.transpose()),
-                      terms(g.equations[at(e)].terms)));
+    Amount more = terms(g.equations[at(e)].terms);
+    append(sum, part.whole() ? std::move(more) : times(part.rows.transpose(), std::move(more)));
   }
   return sum;
 }
@@ -109,7 +117,7 @@ Amount Lowering::added(int channel, const std::vector<int>& equations) {
 Amount Lowering::terms(const std::vector<Term>& list) {
   Amount sum;
   for (const Term& t : list) {
-    const MatrixXd c = coefficient_of(t);
+    MatrixXd c = coefficient_of(t);
     if (!c.allFinite())
       throw Error(Code::not_finite, fmt::format("the coefficient of {} is not finite", print(g, t)),
                   "look at its gains and parameters");
@@ -119,9 +127,8 @@ Amount Lowering::terms(const std::vector<Term>& list) {
       append(sum, integrated(times(c, structure(g, t), twin(channel, level)), level));
       continue;
     }
-    sum.push_back({t.signal, c, structure(g, t)});
-    if (t.of == Term::Of::reaction)
-      append(sum, times(-c, added(channel, drive[at(channel)].added)));
+    if (t.of == Term::Of::reaction) append(sum, times(-c, added(drive[at(channel)].added)));
+    sum.push_back({t.signal, std::move(c), numbers_only ? Pattern() : structure(g, t)});
   }
   return sum;
 }
@@ -223,7 +230,7 @@ std::optional<Lowering::Step> Lowering::through_body(Amount& sum, const Step& he
 MatrixXd Lowering::coefficient_of(const Term& t) {
   for (const Factor& f : t.factors)
     if (const auto* k = std::get_if<Value>(&f))
-      meet({*k});
+      meet(*k);
     else if (const auto* T = std::get_if<Rotation>(&f))
       meet(T->values());
   return coefficient(g, t, values);
@@ -233,9 +240,8 @@ MatrixXd Lowering::coefficient_of(const Term& t) {
 
 Amount Lowering::force(int channel) {
   const Drive& d = drive[at(channel)];
-  std::vector<int> all = d.force;
-  all.insert(all.end(), d.added.begin(), d.added.end());
-  Amount sum = added(channel, all);
+  Amount sum = added(d.force);
+  append(sum, added(d.added));
   return d.N.rows() == g.channels[at(channel)].size ? sum : times(d.N, std::move(sum));
 }
 

@@ -12,7 +12,7 @@ namespace titop::passes {
 struct Summand {
   int signal;
   Eigen::MatrixXd c;
-  Pattern p;  ///< where c may be nonzero, whatever the numbers
+  Pattern p;  ///< where c may be nonzero, whatever the numbers; 0 x 0 if not asked for
 };
 using Amount = std::vector<Summand>;
 
@@ -36,6 +36,7 @@ struct Lowering {
   std::vector<Mistake> mistakes = {};
   std::vector<RigidMotion> motions;
   std::set<RigidMotion> missing = {};  ///< motions that have no Integrator yet
+  bool numbers_only = false;           ///< structure is known already: none is found
 
   enum class Level { position, rate };
 
@@ -49,9 +50,11 @@ struct Lowering {
 
   /// What an equation or output of the lowered graph amounts to.
   Amount amount(const Origin& origin);
+  void meet(const Value& v) {
+    if (v.is_parameter()) met.push_back(v.index());
+  }
   void meet(const std::vector<Value>& list) {
-    for (const Value& v : list)
-      if (v.is_parameter()) met.push_back(v.index());
+    for (const Value& v : list) meet(v);
   }
   Eigen::MatrixXd coefficient_of(const Term& t);
 
@@ -75,7 +78,7 @@ struct Lowering {
   std::optional<Step> through_body(Amount& sum, const Step& here, Level level);
   Amount own_motion(int channel) const;
   Amount integrated(Amount sum, Level level);
-  Amount added(int channel, const std::vector<int>& equations);
+  Amount added(const std::vector<int>& equations);
 };
 
 template <class F>

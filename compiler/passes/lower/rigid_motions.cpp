@@ -60,9 +60,22 @@ void add_integrators(Graph& g, const std::set<RigidMotion>& missing,
     }
 }
 
+bool asks_for_motion(const std::vector<Term>& terms) {
+  return std::any_of(terms.begin(), terms.end(), [](const Term& t) {
+    return t.of == Term::Of::position || t.of == Term::Of::rate;
+  });
+}
+
+bool asks_for_motion(const Graph& g) {
+  const auto asks = [](const auto& item) { return asks_for_motion(item.terms); };
+  return std::any_of(g.equations.begin(), g.equations.end(), asks) ||
+         std::any_of(g.outputs.begin(), g.outputs.end(), asks);
+}
+
 }  // namespace
 
 void add_rigid_motions(Stage& stage, Graph& g) {
+  if (!asks_for_motion(g)) return;
   std::set<RigidMotion> missing;
   {
     Lowering l(g, stage.values, std::make_shared<const std::vector<Drive>>(drives(g)),
