@@ -14,8 +14,9 @@ using titop::Signal;
 
 namespace {
 
-using Number = boost::multiprecision::cpp_complex_100;
-using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<150>>;
+using Digits = boost::multiprecision::cpp_bin_float<150>;
+using Real = boost::multiprecision::number<Digits>;
+using Number = boost::multiprecision::number<boost::multiprecision::complex_adaptor<Digits>>;
 
 std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
