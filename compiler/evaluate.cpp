@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/solve/scalar.hpp>
@@ -142,9 +144,11 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
                                                        data.factors->scale());
   if (factors_->health().singular) {
     const std::complex<double> z = solve::Scalar<T>::round(s);
-    throw Error(Code::singular,
-                fmt::format("{} has a pole at s = {}{:+}j", data.graph().name, z.real(), z.imag()),
-                "evaluate beside it");
+    throw Error(
+        Code::singular,
+        fmt::format("{} has a pole at s = {}{:+}j, or no digit is left there in this precision",
+                    data.graph().name, z.real(), z.imag()),
+        "evaluate beside it, or with Precision::digits50");
   }
   unknowns_ = factors_->solve(rows_.rhs(u_, first_));
 }
@@ -167,23 +171,88 @@ void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
 
 template <class T>
 double Evaluation<T>::last_change() const {
-  const solve::RowMatrix<T> y = outputs();
-  const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), u_.cols());
-  const solve::RowMatrix<T> change = outputs_of(correction_, none, nullptr);
-  double worst = 0;
-  for (Eigen::Index i = 0; i < y.rows(); ++i) {
-    double size = 0, off = 0;
-    for (Eigen::Index j = 0; j < y.cols(); ++j) {
-      size = std::max(size, solve::size_of(solve::Scalar<T>::round(y(i, j))));
-      off = std::max(off, solve::size_of(solve::Scalar<T>::round(change(i, j))));
-    }
-    if (off > 0) worst = std::max(worst, off / size);
+  return relative_to_outputs(correction_);
+}
+
+template <class T>
+double Evaluation<T>::improve() {
+  const solve::RowMatrix<T> correction =
+      factors_->solve(rows_.residual(rows_.rhs(u_, first_), unknowns_));
+  unknowns_ += correction;
+  return relative_to_outputs(correction);
+}
+
+template <class T>
+double Evaluation<T>::rounding() const {
+  const solve::RowMatrix<double> sizes = rows_.magnitudes(rows_.rhs(u_, first_), unknowns_);
+  std::uint64_t state = 0x9E3779B97F4A7C15ull;
+  solve::RowMatrix<T> off(sizes.rows(), sizes.cols());
+  for (Eigen::Index i = 0; i < off.rows(); ++i) {
+    state ^= state << 13, state ^= state >> 7, state ^= state << 17;
+    const double unit = (state >> 63 ? 1 : -1) * solve::Scalar<T>::epsilon();
+    for (Eigen::Index j = 0; j < off.cols(); ++j) off(i, j) = solve::lift<T>(unit * sizes(i, j));
   }
-  return solve::RowMatrix<std::complex<double>>(y.unaryExpr([](const T& x) -> std::complex<double> {
-           return solve::Scalar<T>::round(x);
-         })).allFinite()
-             ? worst
-             : std::numeric_limits<double>::infinity();
+  return relative_to_outputs(factors_->solve(off));
+}
+
+namespace {
+
+/// The first rows of groups that share a unit: ports, dual vectors in halves; and the end.
+template <class List>
+std::vector<Eigen::Index> groups(const List& list, const std::vector<int>& first, int begin,
+                                 Eigen::Index end) {
+  std::vector<Eigen::Index> result;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    result.push_back(first[i] - begin);
+    if (list[i].size == 6) result.push_back(first[i] - begin + 3);
+  }
+  std::sort(result.begin(), result.end());
+  result.push_back(end);
+  return result;
+}
+
+/// Largest entries of the blocks that these groups make.
+template <class Matrix>
+Eigen::MatrixXd block_sizes(const Matrix& m, const std::vector<Eigen::Index>& rows,
+                            const std::vector<Eigen::Index>& cols) {
+  const auto n = [](const auto& list) { return static_cast<Eigen::Index>(list.size()) - 1; };
+  Eigen::MatrixXd result(n(rows), n(cols));
+  for (Eigen::Index i = 0; i < result.rows(); ++i)
+    for (Eigen::Index j = 0; j < result.cols(); ++j)
+      result(i, j) = m.block(rows[at(static_cast<int>(i))], cols[at(static_cast<int>(j))],
+                             rows[at(static_cast<int>(i) + 1)] - rows[at(static_cast<int>(i))],
+                             cols[at(static_cast<int>(j) + 1)] - cols[at(static_cast<int>(j))])
+                         .cwiseAbs()
+                         .maxCoeff();
+  return result;
+}
+
+}  // namespace
+
+template <class T>
+double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) const {
+  const auto rounded = [](const solve::RowMatrix<T>& m) {
+    return Eigen::MatrixXcd(
+        m.unaryExpr([](const T& x) -> std::complex<double> { return solve::Scalar<T>::round(x); }));
+  };
+  const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), u_.cols());
+  const Eigen::MatrixXcd y = rounded(outputs());
+  const Eigen::MatrixXcd change = rounded(outputs_of(unknowns, none, nullptr));
+  if (!y.allFinite() || !change.allFinite()) return std::numeric_limits<double>::infinity();
+  const Layout& layout = data_.layout();
+  const auto rows = groups(data_.graph().outputs, layout.output_first, 0, y.rows());
+  auto cols = groups(data_.graph().inputs, layout.input_first, 0, y.cols());
+  if (u_.cols() != u_.rows()) cols = {0, y.cols()};  // not one column per input
+  const Eigen::MatrixXd size = block_sizes(y, rows, cols), off = block_sizes(change, rows, cols);
+  double worst = 0;
+  for (Eigen::Index i = 0; i < size.rows(); ++i)
+    for (Eigen::Index j = 0; j < size.cols(); ++j) {
+      // A block that is 0 by symmetry is nothing but rounding: it counts beside its neighbours.
+      const double beside = std::sqrt(size.row(i).maxCoeff()) * std::sqrt(size.col(j).maxCoeff());
+      const bool noise = size(i, j) <= 1e3 * off(i, j);
+      if (off(i, j) > 0) worst = std::max(worst, off(i, j) / (noise ? beside : size(i, j)));
+    }
+  return worst;
 }
 
 template <class T>
@@ -256,20 +325,53 @@ solve::RowMatrix<T> Evaluation<T>::outputs() const {
 }
 
 template <class T>
-solve::RowMatrix<T> Evaluation<T>::forced(const solve::RowMatrix<T>& r) const {
-  const Layout& layout = data_.layout();
-  solve::RowMatrix<T> own(r.rows(), r.cols());  // (s - A)^-1 r of every block by itself
-  for (const int i : layout.state_nodes) {
+solve::RowMatrix<T> Evaluation<T>::own_response(const solve::RowMatrix<T>& r) const {
+  solve::RowMatrix<T> own(r.rows(), r.cols());
+  for (const int i : data_.layout().state_nodes) {
     const Dynamics& d = *data_.numbers.blocks[at(i)];
-    const auto first = layout.state_first[at(i)];
+    const auto first = data_.layout().state_first[at(i)];
     own.middleRows(first, d.A.rows()) =
         resolvent(d, s_, solve::Dense<T>(r.middleRows(first, d.A.rows())));
   }
+  return own;
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::unknowns_of(const solve::RowMatrix<T>& own) const {
   std::vector<const Eigen::MatrixXd*> output;
   for (const auto& block : data_.numbers.blocks) output.push_back(&block->C);
+  return factors_->solve(rows_.rhs_of_states(own, data_.layout().known_first, output));
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::forced(const solve::RowMatrix<T>& r) const {
+  const solve::RowMatrix<T> own = own_response(r);
   const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), r.cols());
-  return outputs_of(factors_->solve(rows_.rhs_of_states(own, layout.known_first, output)), none,
-                    &own);
+  return outputs_of(unknowns_of(own), none, &own);
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::states() const {
+  solve::RowMatrix<T> x(data_.layout().order(), u_.cols());
+  for (const int i : data_.layout().state_nodes) {
+    const int state = data_.graph().nodes[at(i)].state;
+    x.middleRows(data_.layout().state_first[at(i)], data_.graph().signals[at(state)].size) =
+        value(state);
+  }
+  return x;
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::forced_states(const solve::RowMatrix<T>& r) const {
+  solve::RowMatrix<T> x = own_response(r);
+  const solve::RowMatrix<T> unknowns = unknowns_of(x);
+  const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), r.cols());
+  for (const int i : data_.layout().state_nodes) {
+    const int state = data_.graph().nodes[at(i)].state;
+    x.middleRows(data_.layout().state_first[at(i)], data_.graph().signals[at(state)].size) +=
+        value_of(state, unknowns, none);
+  }
+  return x;
 }
 
 #define TITOP_INSTANTIATE(T) template class Evaluation<T>;

@@ -108,24 +108,48 @@ MatrixXcd transfer_in(const detail::SystemData& d, Double s) {
       detail::Evaluation<T>(d, solve::Scalar<T>::from(s), unit_inputs<T>(d)).outputs());
 }
 
+MatrixXcd standard_transfer(const detail::SystemData& d, Double s) {
+  detail::Evaluation<Double> point(d, s, unit_inputs<Double>(d));
+  point.improve();
+  return rounded<Double>(point.outputs());
+}
+
 MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
   const detail::Evaluation<Double> coarse(d, s, unit_inputs<Double>(d));
   return rounded<Extended>(
       detail::Evaluation<Extended>(d, Extended(s), unit_inputs<Extended>(d), &coarse).outputs());
 }
 
-/// The coarsest whose rounding, over what cancellation leaves of the weakest pivot, is 1e-12; for
-/// the refined one the last step says so.
-MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
-  constexpr double kEnough = 1e-12;
-  const detail::Evaluation<Double> plain(d, s, unit_inputs<Double>(d));
-  if (2e-16 <= kEnough * plain.weakest_pivot()) return rounded<Double>(plain.outputs());
-  const detail::Evaluation<Extended> refined(d, Extended(s), unit_inputs<Extended>(d), &plain);
-  if (refined.last_change() <= kEnough) return rounded<Extended>(refined.outputs());
-  const detail::Evaluation<Extended> more(d, Extended(s), unit_inputs<Extended>(d));
-  if (solve::Scalar<Extended>::epsilon() <= kEnough * more.weakest_pivot())
-    return rounded<Extended>(more.outputs());
+constexpr double kEnough = 1e-12;
+
+/// What is lost in double, once a step of refinement has mended what the elimination loses: by the
+/// weakest pivot, by what rounding does to the outputs, by what that step leaves.
+double lost_by(detail::Evaluation<Double>& e) {
+  const double change = e.improve();
+  return std::max({2e-16 / e.weakest_pivot(), e.rounding(), change * change});
+}
+
+/// Finer than double, where double costs `lost`: refined or long double if their own rounding
+/// (2000 times finer) leaves enough, else 50 digits.
+MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
+                         const detail::Evaluation<Double>& plain, double lost) {
+  const double kFiner = solve::Scalar<Extended>::epsilon() / solve::Scalar<Double>::epsilon();
+  if (lost * kFiner <= kEnough) {
+    const detail::Evaluation<Extended> refined(d, Extended(s), unit_inputs<Extended>(d), &plain);
+    if (refined.last_change() <= kEnough) return rounded<Extended>(refined.outputs());
+    const detail::Evaluation<Extended> more(d, Extended(s), unit_inputs<Extended>(d));
+    if (solve::Scalar<Extended>::epsilon() <= kEnough * more.weakest_pivot())
+      return rounded<Extended>(more.outputs());
+  }
   return transfer_in<solve::Complex50>(d, s);
+}
+
+/// The coarsest precision whose rounding changes the outputs by no more than kEnough.
+MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
+  detail::Evaluation<Double> plain(d, s, unit_inputs<Double>(d));
+  const double lost = lost_by(plain);
+  if (lost <= kEnough) return rounded<Double>(plain.outputs());
+  return finer_transfer(d, s, plain, lost);
 }
 
 }  // namespace
@@ -133,7 +157,7 @@ MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
 MatrixXcd System::transfer(std::complex<double> s, Precision precision) const {
   switch (precision) {
     case Precision::single: return transfer_in<std::complex<float>>(*data_, s);
-    case Precision::standard: return transfer_in<Double>(*data_, s);
+    case Precision::standard: return standard_transfer(*data_, s);
     case Precision::refined: return refined_transfer(*data_, s);
     case Precision::extended: return transfer_in<Extended>(*data_, s);
     case Precision::digits50: return transfer_in<solve::Complex50>(*data_, s);

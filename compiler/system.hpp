@@ -18,6 +18,9 @@ namespace titop {
 namespace detail {
 struct SystemData;
 }
+class Excitation;
+struct Simulation;
+struct Trajectory;
 
 /// Wrenches in closed chains that hold more than once, which motion does not determine.
 enum class InternalForces {
@@ -43,7 +46,7 @@ struct Options {
 /// on the same plan; blocks are evaluated with it too, from data that are doubles.
 enum class Precision {
   single,    ///< float: 7 digits; blocks in double
-  standard,  ///< double: 16 digits
+  standard,  ///< double: 16 digits; one step of refinement mends what the elimination loses
   refined,   ///< factors in double, blocks and residuals in long double: three refinements
   extended,  ///< long double: 19 digits on x86
   digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower: an oracle
@@ -129,6 +132,8 @@ class System {
   const Stage& stage() const;
 
  private:
+  friend Trajectory simulate(const System&, const Excitation&, const Simulation&);
+
   std::shared_ptr<const detail::SystemData> data_;
 };
 

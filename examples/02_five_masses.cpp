@@ -1,6 +1,7 @@
 // Blocks joined by equations: each line of the paper's Table 1 is one line here. Without inputs the
 // scene still has its modes (Fig. 1); with an actuator, the model of x_3 holds the ten states that
 // the transfer needs, and eight where two masses swing alike (Figs. 7, 8).
+#include <cmath>
 #include <cstdio>
 #include <titop/titop.hpp>
 
@@ -115,7 +116,8 @@ int main() {
   std::printf("xdd_3 / u at 3 rad/s: %.12f\n", fig8.transfer({0, 3})(5, 0).real());
   const Eigen::MatrixXd rest = fig8.static_gain();
   std::printf("x at rest under 1 N:");
-  for (int i = 0; i < 5; ++i) std::printf(" %.7f", rest(i, 0) + 0.0);
+  for (int i = 0; i < 5; ++i)  // two of them are 0 but for rounding, of either sign
+    std::printf(" %.7f", std::round(rest(i, 0) * 1e7) / 1e7 + 0.0);
   std::printf(" m\n");
 
   std::printf("\nu to x_3 alone\n");

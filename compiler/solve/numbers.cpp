@@ -226,11 +226,11 @@ RowMatrix<T> JointRows<T>::rhs_of_states(const RowMatrix<T>& states, std::span<c
   return result;
 }
 
+/// Calls visit(scalar row, coefficient, scalar unknown) for all entries of the rows.
 template <class T>
-RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const {
+template <class Visit>
+void JointRows<T>::visit_entries(Visit visit) const {
   const Plan& plan = *joint_.plan;
-  const std::ptrdiff_t m = rhs.cols();
-  RowMatrix<T> result = rhs;
   std::vector<int> column;
   std::vector<T> row;
   for (int r = 0; r < static_cast<int>(joint_.rows.size()); ++r) {
@@ -243,14 +243,34 @@ RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>&
     const int size = plan.structure.row_size[at(r)];
     row.assign(at(width) * at(size), T(0));
     add(r, row.data(), width, column.data());
-    for (int i = 0; i < size; ++i) {
-      const T* c = row.data() + i * width;
+    const T* c = row.data();
+    for (int i = 0; i < size; ++i)
       for (const int v : plan.structure.row(r))
         for (int k = 0; k < plan.structure.variable_size[at(v)]; ++k, ++c)
-          subtract(m, *c, unknowns.data() + (plan.first[at(v)] + k) * m,
-                   result.data() + (plan.row_first[at(r)] + i) * m);
-    }
+          visit(plan.row_first[at(r)] + i, *c, plan.first[at(v)] + k);
   }
+}
+
+template <class T>
+RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const {
+  const std::ptrdiff_t m = rhs.cols();
+  RowMatrix<T> result = rhs;
+  visit_entries([&](int row, const T& c, int unknown) {
+    subtract(m, c, unknowns.data() + unknown * m, result.data() + row * m);
+  });
+  return result;
+}
+
+template <class T>
+RowMatrix<double> JointRows<T>::magnitudes(const RowMatrix<T>& rhs,
+                                           const RowMatrix<T>& unknowns) const {
+  const std::ptrdiff_t m = rhs.cols();
+  RowMatrix<double> result = rhs.unaryExpr([](const T& x) { return size_of(x); });
+  visit_entries([&](int row, const T& c, int unknown) {
+    const double size = size_of(c);
+    for (std::ptrdiff_t j = 0; j < m; ++j)
+      result.data()[row * m + j] += size * size_of(unknowns.data()[unknown * m + j]);
+  });
   return result;
 }
 

@@ -46,6 +46,9 @@ class JointRows : public Rows<T> {
   /// rhs - (these rows) * unknowns: what is left of every row. O(rows) per column.
   RowMatrix<T> residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
 
+  /// Sums of magnitudes that form each row: |rhs| + |these rows| |unknowns|. O(rows) per column.
+  RowMatrix<double> magnitudes(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
+
   /// signal += its meaning in unknowns and known signals; `to`: signal size x columns, row-major.
   void add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
                  std::span<const int> first, T* to) const;
@@ -61,6 +64,8 @@ class JointRows : public Rows<T> {
                       T* to) const;
   template <class Visit>
   void by_inputs(const Piece& p, Visit visit) const;
+  template <class Visit>
+  void visit_entries(Visit visit) const;
 
   const Graph& graph_;
   const Joint& joint_;
