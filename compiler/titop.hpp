@@ -19,6 +19,7 @@
 #include <titop/compiler/dot.hpp>
 #include <titop/compiler/minimize.hpp>
 #include <titop/compiler/modal.hpp>
+#include <titop/compiler/simulate.hpp>
 #include <titop/compiler/sweep.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/compiler/transfer.hpp>

@@ -13,7 +13,7 @@ using Eigen::VectorXd;
 namespace {
 
 /// Energy, and the two sides of its balance, along a trajectory under u(t) from rest.
-struct Trajectory {
+struct Course {
   double stored = 0, supplied = 0, dissipated = 0, largest = 0;  ///< [J]
   VectorXd x;
 };
@@ -21,11 +21,11 @@ struct Trajectory {
 /// Implicit midpoint rule: x+ = x + h f((x + x+) / 2). On a quadratic energy it keeps the balance
 /// exactly: H(x+) - H(x) = h * (power at the midpoint).
 template <class Input>
-Trajectory integrate(const PortHamiltonian& s, double h, int steps, Input u) {
+Course integrate(const PortHamiltonian& s, double h, int steps, Input u) {
   const auto n = s.Q.rows();
   const MatrixXd A = (s.J - s.R) * s.Q, I = MatrixXd::Identity(n, n);
   const Eigen::PartialPivLU<MatrixXd> left(I - h / 2 * A);
-  Trajectory t{.x = VectorXd::Zero(n)};
+  Course t{.x = VectorXd::Zero(n)};
   for (int i = 0; i < steps; ++i) {
     const VectorXd load = u((i + 0.5) * h);
     const VectorXd next = left.solve((I + h / 2 * A) * t.x + h * (s.G * load));
@@ -39,7 +39,7 @@ Trajectory integrate(const PortHamiltonian& s, double h, int steps, Input u) {
   return t;
 }
 
-bool report(const char* name, const Trajectory& t) {
+bool report(const char* name, const Course& t) {
   std::printf("%s: supplied %.6f J, dissipated %.6f J, stored %.6f J\n", name, t.supplied,
               t.dissipated, t.stored);
   return by_hand::agrees("  balance", std::abs(t.stored - t.supplied + t.dissipated) / t.largest,
@@ -62,7 +62,7 @@ int main() {
   // Eq. (7), by hand: H = p^2 / 2m + k q^2 / 2, qdot = p / m, pdot = -k q - c qdot + f - m xdd_P.
   const SpringMass spring{.mass = 2, .stiffness = 50, .damping = 0.3, .parent_mass = 0.5};
   const PortHamiltonian s = port_hamiltonian(spring);
-  const Trajectory a = integrate(s, 1e-3, 5000, [](double t) -> VectorXd {
+  const Course a = integrate(s, 1e-3, 5000, [](double t) -> VectorXd {
     return Eigen::Vector2d(3 * std::sin(4 * t), 0.5 * std::cos(7 * t));  // [N], [m/s^2]
   });
   bool ok = report("spring-mass", a);
@@ -81,7 +81,7 @@ int main() {
                                  .elements = 4,
                                  .modes = {.xi = {0.01}}};
   const PortHamiltonian b = port_hamiltonian(beam);
-  const Trajectory c = integrate(b, 2e-4, 10000, [](double t) {
+  const Course c = integrate(b, 2e-4, 10000, [](double t) {
     VectorXd u = VectorXd::Zero(12);
     u(2) = 2 * std::sin(30 * t);    // force at the tip along z [N]
     u(7) = 4 * std::exp(-t);        // acceleration of the root along y [m/s^2]

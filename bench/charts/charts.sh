@@ -100,6 +100,26 @@ draw_accuracy() {
     "largest relative error of the transfer" "linear=1"
 }
 
+# Error of time integration against step and against seconds; the slope over what is neither rounding
+# nor a failure.
+draw_integration() {
+  local scene=$1 n=$2 method points order
+  rm -f "$work/integration-$scene$n".dat "$work/work-precision-$scene$n".dat
+  for method in exact midpoint Newmark rk4 "rk4 unguarded" "explicit Euler"; do
+    points=$(awk -F, -v s="$scene" -v n="$n" -v m="$method" '
+      $1 == s && $2 == n && $3 == m && $5 < 1e3 { print $4 "," ($5 < 1e-16 ? 1e-16 : $5) "," $6 }' \
+      "$out/integration.csv")
+    order=$(echo "$points" | awk -F, '$2 > 1e-10 && $2 < 1e-2' | slope)
+    echo "$points" | cut -d, -f1,2 | block "integration-$scene$n" "$method${order:+ (slope $order)}"
+    echo "$points" | awk -F, 'NF { print $3 "," $2 }' | sort -g |
+      block "work-precision-$scene$n" "$method"
+  done
+  chart "integration-$scene$n" "case $scene, $n bodies: error of time integration" \
+    "step times fastest frequency" "largest error of a state"
+  chart "work-precision-$scene$n" "case $scene, $n bodies: error against cost" "seconds of all steps" \
+    "largest error of a state"
+}
+
 draw_all() {
   local scene
   for scene in D F K A BL C; do
@@ -115,4 +135,7 @@ draw_all() {
   draw_growth growth-compile 5 "first compile, no dense model" "seconds" ""
   draw_growth growth-memory bytes "memory of Diagram and System" "bytes per body" per
   for scene in A BL D; do draw_accuracy "$scene"; done
+  draw_integration A 10
+  draw_integration D 5
+  [[ $mode == quick ]] || draw_integration D 50
 }

@@ -14,9 +14,8 @@ using titop::Signal;
 
 namespace {
 
-using Digits = boost::multiprecision::cpp_bin_float<150>;
-using Real = boost::multiprecision::number<Digits>;
-using Number = boost::multiprecision::number<boost::multiprecision::complex_adaptor<Digits>>;
+using Number = boost::multiprecision::cpp_complex_100;
+using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<150>>;
 
 std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <functional>
+#include <titop/compiler/system.hpp>
+#include <vector>
+
+/// Time responses of a compiled system.
+namespace titop {
+
+/// The inputs over time: what a step needs are their values at its two ends, from inside. Between
+/// them every method takes them as linear, so that steps, samples and ramps are taken exactly.
+class Excitation {
+ public:
+  /// u(begin), u(end) of the step from begin to end [s], both from inside.
+  using Ends = std::pair<Eigen::VectorXd, Eigen::VectorXd>;
+  using Over = std::function<Ends(double begin, double end)>;
+
+  explicit Excitation(Over over) : over_(std::move(over)) {}
+  Ends operator()(double begin, double end) const { return over_(begin, end); }
+
+  /// All inputs are 0: the free motion from Simulation::x0.
+  static Excitation none();
+  /// u from time 0 on.
+  static Excitation step(Eigen::VectorXd u);
+  /// Any function of time [s] without jumps inside a step; taken as linear in every step.
+  static Excitation function(std::function<Eigen::VectorXd(double)> u);
+  /// Samples held for `period` [s] each, as by a digital controller: column k from k * period on,
+  /// the last one for ever. Periods must be whole numbers of steps (`simulate` throws bad_value,
+  /// with the steps that fit). Throws bad_value for a period that is not positive, size for no
+  /// sample.
+  static Excitation held(Eigen::MatrixXd samples, double period);
+  /// A record: column k at times[k], ascending, linear in between, constant before and after; jumps
+  /// are two equal times, and steps must end there (`simulate` throws bad_value). Throws size,
+  /// bad_value.
+  static Excitation recorded(std::vector<double> times, Eigen::MatrixXd samples);
+
+ private:
+  Over over_;
+};
+
+/// How a step is taken. Cost per step of n states, b bodies; error per unit of time of steps h.
+enum class Stepper {
+  automatic,  ///< exact up to 200 states, midpoint beyond
+  exact,      ///< matrix exponential, once O(n^3), then O(n^2): no error but rounding for inputs
+              ///< that are linear in every step, at any step
+  midpoint,   ///< implicit midpoint rule through the factors, O(b), h^2: stable at any step, keeps
+              ///< the energy of what is undamped; high modes stay bounded, but turn too slowly
+  rk4         ///< classic Runge-Kutta, O(b), h^4: refuses steps beyond its limit of stability
+};
+const char* to_string(Stepper stepper);
+
+struct Simulation {
+  double step = 0;   ///< [s]
+  double until = 0;  ///< [s]: a whole number of steps
+  Stepper stepper = Stepper::automatic;
+  Eigen::VectorXd x0 = {};  ///< states at time 0, in the order of System::states(); none: 0
+  bool keep_states = false;
+};
+
+/// What comes out, a column per time.
+struct Trajectory {
+  std::vector<double> time;  ///< [s]: 0, step, ..., until
+  Eigen::MatrixXd y;         ///< outputs x times; where an input jumps, just after it (the last
+                             ///< time: just before)
+  Eigen::MatrixXd x;         ///< states x times, or their last column alone
+  Stepper stepper = Stepper::exact;  ///< the one that was taken
+  std::vector<std::string> states, outputs;
+};
+
+/// The response of the system (its states, before `minimize`: x0 keeps its meaning) from x0 to
+/// `excitation`. Throws bad_value for steps that are not positive or do not divide `until`, and for
+/// an rk4 step beyond the limit of stability, which it names; size for x0 or inputs of another
+/// size; not_finite where the response overflows (an unstable system), with the time.
+///
+/// Sources: [Hairer, Lubich, Wanner 2006] IV.2 (midpoint), [Van Loan 1978] (exponential).
+Trajectory simulate(const System& system, const Excitation& excitation,
+                    const Simulation& simulation);
+
+/// The largest step [s] that rk4 may take: where h * (every stable pole) stays in its region of
+/// stability |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 (2.83 / omega of an undamped pole, 2.79 / sigma
+/// of a real one); infinite without poles. Poles that grow by themselves do not count. O(n^3).
+double rk4_limit(const System& system);
+
+}  // namespace titop

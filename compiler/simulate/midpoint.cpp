@@ -1,0 +1,41 @@
+#include <titop/compiler/evaluate.hpp>
+#include <titop/compiler/simulate/steppers.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::VectorXd;
+using Complex = std::complex<double>;
+using Columns = solve::RowMatrix<Complex>;
+
+class Midpoint : public StepRule {
+ public:
+  Midpoint(const SystemData& d, double h)
+      : d_(d),
+        s_(2 / h),
+        inputs_(static_cast<Eigen::Index>(d.layout().inputs.size())),
+        point_(d, s_, Columns::Identity(inputs_, inputs_)),
+        by_inputs_(point_.states().real()) {}
+
+  VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) const override {
+    const VectorXd all = d_.states.expanded(x);
+    VectorXd middle = point_.forced_states((s_.real() * all).cast<Complex>()).real();
+    middle.noalias() += by_inputs_ * (0.5 * (u0 + u1));
+    return 2 * d_.states.kept_rows(middle) - x;
+  }
+
+ private:
+  const SystemData& d_;
+  Complex s_;
+  Eigen::Index inputs_;
+  Evaluation<Complex> point_;
+  Eigen::MatrixXd by_inputs_;  ///< all blocks' states x inputs
+};
+
+}  // namespace
+
+std::unique_ptr<StepRule> midpoint_rule(const SystemData& data, double h) {
+  return std::make_unique<Midpoint>(data, h);
+}
+
+}  // namespace titop::detail
