@@ -1,6 +1,7 @@
 // A satellite from real finite-element data: a rigid hub, two booms read from CalculiX matrices,
-// one of them on a hinge with a motor. Described in thirty lines, compiled to one state-space
-// model, compared with M and K assembled by hand, and drawn. Then the hub's attitude is controlled.
+// one of them on a hinge with a motor. Described in thirty lines (scenes/satellite.cpp), compiled
+// to one state-space model, compared with M and K assembled by hand, and drawn. Then the hub's
+// attitude is controlled.
 #include <Eigen/Geometry>
 #include <cstdio>
 #include <cstdlib>
@@ -9,57 +10,13 @@
 #include <titop/titop.hpp>
 
 #include "by_hand/by_hand.hpp"
+#include "scenes/satellite.hpp"
 
 using namespace titop;
+using namespace scenes;
 using std::numbers::pi;
 
 namespace {
-
-const RigidBody hub_spec{.mass = 85,  // [kg]
-                         .inertia = Vector3d(9, 11, 13).asDiagonal(),
-                         .PA = {0.02, -0.01, 0.05},
-                         .children = {{"C1", {0.35, 0, 0.1}}, {"C2", {-0.35, 0.05, 0.1}}}};
-constexpr double kappa = 60, c = 0.8;  // hinge spring [N m/rad] and damper [N m s/rad]
-const Vector3d hinge_axis(0, 1, 0);    // in the boom's frame: across it
-const Vector3d turn1(0, 0, 1), turn2(1, 2, 9);
-constexpr double angle1 = pi / 12, angle2 = 2.9;
-
-/// The beam of examples/data/calculix_beam, 342 modes: six are kept, and the static response to a
-/// motion of its root. Damping 0.5 %.
-FlexibleBody read_boom() {
-  const fe::Mesh mesh =
-      fe::read_calculix(fe::calculix_files(TITOP_DATA_DIR "/calculix_beam/beam_free_mat"),
-                        {{"P", 900001}, {"C", 900003}});
-  return fe::modal_data(mesh, "P", {"C"}, {.kept = 6, .residual = {"P"}, .xi = {0.005}});
-}
-
-/// Torque on the hub by its own attitude and rate: -(kp angle + kd rate).
-struct AttitudeLaw {
-  double kp = 0, kd = 0;  // [N m/rad], [N m s/rad]
-};
-
-Diagram satellite(const FlexibleBody& boom, const AttitudeLaw* law = nullptr) {
-  Diagram d{"satellite"};
-  auto W = d.input("W", 6);       // wrench on the hub at P [N; N m]
-  auto tau_m = d.input("tau_m");  // torque of the motor on boom 2 [N m]
-  auto hub = d.add("hub", hub_spec);
-  auto boom1 = d.add("boom1", boom);
-  auto boom2 = d.add("boom2", boom);
-  hub.parent.force = -W;
-  mount(boom1, hub.child("C1"), Rotation::about(turn1, angle1));
-  auto drive =
-      hinge(d, "drive", boom2, hub.child("C2"), Rotation::about(turn2, angle2), hinge_axis);
-  drive.torque = kappa * drive.angle + c * drive.rate - tau_m;
-  if (law)
-    hub.parent.force.angular +=
-        law->kp * hub.parent.position.angular() + law->kd * hub.parent.rate.angular();
-
-  d.output("hub", 6) = hub.parent.accel;  // [m/s^2; rad/s^2]
-  d.output("tip1", 6) = boom1.child("C").accel;
-  d.output("tip2", 6) = boom2.child("C").accel;
-  d.output("theta") = drive.angle;  // [rad]
-  return d;
-}
 
 // --- the same by hand ----------------------------------------------------------------------------
 

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <titop/compiler/system.hpp>
+#include <vector>
+
+/// In which coordinates generated code computes, and how good they are.
+namespace titop::emit {
+
+/// The model's matrices in its own states, or in modes: x = to_states z, z = from_states x, with A
+/// in 1 x 1 and 2 x 2 blocks along its diagonal.
+struct Form {
+  bool modal = false;
+  Eigen::MatrixXd A, B, C, D;
+  Eigen::MatrixXd A_h, B_h;                 ///< held over a sample time; empty without one
+  Eigen::MatrixXd to_states, from_states;   ///< n x n; empty unless modal
+  double error = 0;                         ///< of its transfer, see response_error
+  double static_error = 0, step_error = 0;  ///< of its static gain, of its trajectory
+};
+
+/// Where transfers are compared, and what they are by the factored system.
+struct Points {
+  std::vector<std::complex<double>> s;
+  std::vector<Eigen::MatrixXcd> exact;
+  /// Outputs and inputs whose transfer is nothing but rounding (50 digits say so): 0 by nature,
+  /// with nothing to compare to.
+  std::vector<Eigen::Index> silent_outputs, silent_inputs;
+};
+
+/// Eight points beside the poles (damping 0.1), from below the slowest to above the fastest. One of
+/// them is also evaluated in 50 digits.
+Points response_points(const System& system, const std::vector<Pole>& poles);
+
+/// Largest difference of C (s - A)^-1 B + D to the exact transfers, over all points but the silent:
+/// each entry
+/// relative to the geometric mean of the largest entries of its row and column there, or to 1e-6 of
+/// the terms that cancel in it, |C| |X| + |D|, where that is more (what is zero by symmetry).
+double response_error(const Form& form, const Points& points);
+/// The same at s = 0.
+double static_error(const Form& form, const Eigen::MatrixXd& exact, const Points& points);
+
+/// The same for a trajectory: largest difference of y(k) from x(0) = 0 to `exact` (ny x steps),
+/// each output relative to the largest |C| |x| + |D| |u| that it had.
+double step_error(const Form& form, const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& exact,
+                  const Points& points);
+
+/// Inputs of the trajectory, nu x steps: numbers from -1 to 1 without rounding.
+Eigen::MatrixXd trajectory_inputs(Eigen::Index inputs, Eigen::Index steps);
+
+/// The matrices as they are.
+Form own_form(const StateSpace& model);
+
+/// Modes of the second-order form where damping is proportional, of A otherwise. Its error says
+/// whether it may be used: it is large where A is defective (free rigid motion beside modes).
+Form modal_form(const StateSpace& model);
+
+/// Adds A_h, B_h; block by block where the form is modal.
+void add_hold(Form& form, double sample_time);
+
+/// Ends of the blocks on the diagonal of a block-diagonal A: first rows, and n at the end.
+std::vector<Eigen::Index> diagonal_blocks(const Eigen::MatrixXd& A);
+
+}  // namespace titop::emit

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <titop/compiler/emit/cpp/form.hpp>
+#include <titop/compiler/emit/cpp/header.hpp>
+#include <vector>
+
+namespace titop::emit {
+
+/// What the generated test knows from elsewhere than the header's matrices.
+struct Expected {
+  Points points;
+  std::vector<Pole> poles;
+  std::optional<Eigen::MatrixXd> static_gain;  ///< none where there is a pole at 0
+  Eigen::MatrixXd inputs, outputs;             ///< a trajectory; empty without a sample time
+};
+
+/// The text of NAME_test.cpp.
+std::string test_text(const Naming& names, const Form& form, const Expected& expected);
+
+}  // namespace titop::emit

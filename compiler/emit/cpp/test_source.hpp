@@ -1,0 +1,300 @@
+#pragma once
+
+/// The source of the generated test, with @KEYS@ for what differs from model to model.
+namespace titop::emit {
+
+inline constexpr const char* kHead = R"(// Written by titop from the diagram @DIAGRAM@; do not edit.
+// Proves @NAME@.hpp: its matrices are recovered by calling it, and compared with numbers that do not
+// come from them. A program by itself; with TITOP_TEST_WITHOUT_MAIN part of another.
+#ifndef TITOP_TEST_WITHOUT_MAIN
+#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
+#endif
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "@NAME@.hpp"
+
+namespace {
+
+using Complex = std::complex<double>;
+using Columns = std::vector<std::vector<double>>;
+
+/// f of every unit vector: the columns of a linear function's matrix.
+template <class Vector, class Function>
+Columns columns(Function f) {
+  Columns result;
+  Vector v{};
+  for (double& entry : v) {
+    entry = 1;
+    const auto column = f(v);
+    result.emplace_back(column.begin(), column.end());
+    entry = 0;
+  }
+  return result;
+}
+
+const Columns A = columns<@NAME@::State>([](auto& x) { return @NAME@::derivative(x, {}); });
+const Columns B = columns<@NAME@::Input>([](auto& u) { return @NAME@::derivative({}, u); });
+const Columns C = columns<@NAME@::State>([](auto& x) { return @NAME@::output(x, {}); });
+const Columns D = columns<@NAME@::Input>([](auto& u) { return @NAME@::output({}, u); });
+
+/// s - A, factored with partial pivoting on scaled rows.
+class Resolvent {
+ public:
+  explicit Resolvent(Complex s) : lu_(A.size(), std::vector<Complex>(A.size())), row_(A.size()) {
+    const std::size_t n = A.size();
+    for (std::size_t i = 0; i < n; ++i) {
+      row_[i] = i;
+      for (std::size_t j = 0; j < n; ++j) lu_[i][j] = (i == j ? s : 0.0) - A[j][i];
+      double largest = 0;
+      for (const Complex& entry : lu_[i]) largest = std::max(largest, std::abs(entry));
+      scale_.push_back(largest > 0 ? 1 / largest : 1);
+    }
+    for (std::size_t k = 0; k < n; ++k) eliminate(k);
+  }
+  std::vector<Complex> solve(const std::vector<Complex>& b) const {
+    const std::size_t n = b.size();
+    std::vector<Complex> x(n);
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] = b[row_[i]];
+      for (std::size_t j = 0; j < i; ++j) x[i] -= lu_[i][j] * x[j];
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      for (std::size_t j = i + 1; j < n; ++j) x[i] -= lu_[i][j] * x[j];
+      x[i] /= lu_[i][i];
+    }
+    return x;
+  }
+
+ private:
+  void eliminate(std::size_t k) {
+    std::size_t pivot = k;
+    for (std::size_t i = k; i < lu_.size(); ++i)
+      if (scale_[i] * std::abs(lu_[i][k]) > scale_[pivot] * std::abs(lu_[pivot][k])) pivot = i;
+    std::swap(lu_[k], lu_[pivot]);
+    std::swap(row_[k], row_[pivot]);
+    std::swap(scale_[k], scale_[pivot]);
+    for (std::size_t i = k + 1; i < lu_.size(); ++i) {
+      if (lu_[i][k] == 0.0) continue;
+      lu_[i][k] /= lu_[k][k];
+      for (std::size_t j = k + 1; j < lu_.size(); ++j) lu_[i][j] -= lu_[i][k] * lu_[k][j];
+    }
+  }
+
+  std::vector<std::vector<Complex>> lu_;
+  std::vector<std::size_t> row_;
+  std::vector<double> scale_;
+};
+
+}  // namespace
+
+TEST_CASE("@NAME@: size") {
+  CHECK(A.size() == @N@);
+  CHECK(B.size() == @NU@);
+  CHECK(@NAME@::output({}, {}).size() == @NY@);
+}
+)";
+
+inline constexpr const char* kTransfer = R"(
+namespace {
+
+/// What is 0 by nature, so that only rounding is left of it: not compared.
+const std::vector<std::size_t> silent_outputs = @SILENT_OUTPUTS@;
+const std::vector<std::size_t> silent_inputs = @SILENT_INPUTS@;
+bool contains(const std::vector<std::size_t>& list, std::size_t i) {
+  return std::find(list.begin(), list.end(), i) != list.end();
+}
+
+/// Column j of C (s - A)^-1 B + D, and of the terms that it is the sum of.
+struct Response {
+  std::vector<Complex> value;
+  std::vector<double> terms;
+};
+Response response(const Resolvent& resolvent, std::size_t j) {
+  const std::vector<Complex> x = resolvent.solve({B[j].begin(), B[j].end()});
+  Response r{{D[j].begin(), D[j].end()}, {}};
+  for (std::size_t i = 0; i < D[j].size(); ++i) {
+    r.terms.push_back(std::abs(D[j][i]));
+    for (std::size_t k = 0; k < x.size(); ++k) {
+      r.value[i] += C[k][i] * x[k];
+      r.terms[i] += std::abs(C[k][i] * x[k]);
+    }
+  }
+  return r;
+}
+
+/// Worst entry against `expected`, outputs x inputs by columns: relative to the geometric mean of
+/// the largest entries of its row and column, or to 1e-6 of the terms that cancel in it.
+double transfer_error(Complex s, const double (*expected)[2]) {
+  const Resolvent resolvent(s);
+  const std::size_t nu = D.size(), ny = D[0].size();
+  std::vector<double> row(ny), column(nu);
+  const auto exact = [&](std::size_t i, std::size_t j) {
+    return Complex(expected[j * ny + i][0], expected[j * ny + i][1]);
+  };
+  for (std::size_t j = 0; j < nu; ++j)
+    for (std::size_t i = 0; i < ny; ++i) {
+      row[i] = std::max(row[i], std::abs(exact(i, j)));
+      column[j] = std::max(column[j], std::abs(exact(i, j)));
+    }
+  double worst = 0;
+  for (std::size_t j = 0; j < nu; ++j) {
+    if (contains(silent_inputs, j)) continue;
+    const Response found = response(resolvent, j);
+    for (std::size_t i = 0; i < ny; ++i) {
+      if (contains(silent_outputs, i)) continue;
+      const double off = std::abs(found.value[i] - exact(i, j));
+      const double size = std::max(std::sqrt(row[i]) * std::sqrt(column[j]), 1e-6 * found.terms[i]);
+      if (!(off <= 0)) worst = std::isfinite(off) ? std::max(worst, off / size) : HUGE_VAL;
+    }
+  }
+  return worst;
+}
+
+}  // namespace
+
+// Of the factored system, in which no A, B, C, D were formed.
+TEST_CASE("@NAME@: transfer") {
+  const double tolerance = @TOLERANCE@;
+@CHECKS@}
+)";
+
+inline constexpr const char* kPoles = R"(
+namespace {
+
+struct Pole {
+  double re, im;  // im > 0 stands for the conjugate as well
+};
+const Pole poles[] = @POLES@;
+
+/// The eigenvalue of A next to p, by inverse iteration.
+Complex eigenvalue_near(Complex p) {
+  const Complex shift = p + 1e-10 * std::abs(p) * Complex(0.6, 0.8);
+  const Resolvent resolvent(shift);
+  std::vector<Complex> x(A.size());
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] = 1 + 0.1 * static_cast<double>(i * i % 7);
+  Complex found;
+  for (int step = 0; step < 6; ++step) {
+    const std::vector<Complex> y = resolvent.solve(x);
+    std::size_t at = 0;
+    for (std::size_t i = 0; i < y.size(); ++i)
+      if (std::abs(y[i]) > std::abs(y[at])) at = i;
+    found = shift - x[at] / y[at];
+    for (std::size_t i = 0; i < y.size(); ++i) x[i] = y[i] / y[at];
+  }
+  return found;
+}
+
+}  // namespace
+
+TEST_CASE("@NAME@: poles") {
+  Complex sum = 0;
+  double size = 0, trace = 0;
+  std::size_t count = 0;
+  for (const Pole& p : poles) {
+    count += p.im > 0 ? 2 : 1;
+    sum += p.im > 0 ? Complex(2 * p.re) : Complex(p.re, p.im);
+    size += std::hypot(p.re, p.im);
+  }
+  for (std::size_t i = 0; i < A.size(); ++i) trace += A[i][i];
+  CHECK(count == A.size());
+  CHECK(std::abs(trace - sum) <= 1e-10 * size);
+  for (const std::size_t k : std::vector<std::size_t>@WHICH@) {
+    const Complex p(poles[k].re, poles[k].im);
+    INFO("pole ", p.real(), " ", p.imag());
+    CHECK(std::abs(eigenvalue_near(p) - p) <= @TOLERANCE@ * std::abs(p));
+  }
+}
+)";
+
+inline constexpr const char* kStaticGain = R"(
+TEST_CASE("@NAME@: static gain") {
+  static const double expected[][2] = @VALUES@;
+  CHECK(transfer_error(0, expected) <= @TOLERANCE@);
+}
+)";
+
+inline constexpr const char* kTrajectory = R"(
+namespace {
+
+/// Numbers from -1 to 1 without rounding.
+@NAME@::Input input_at(std::size_t k) {
+  @NAME@::Input u{};
+  std::size_t j = 0;
+  for (double& entry : u)
+    entry = (static_cast<double>((7 * k * k + 37 * k + 101 * j++) % 17) - 8) / 8;
+  return u;
+}
+
+/// Largest |C| |x| + |D| |u| of each output so far.
+void grow(std::vector<double>& size, const @NAME@::State& x, const @NAME@::Input& u) {
+  for (std::size_t i = 0; i < size.size(); ++i) {
+    double terms = 0;
+    for (std::size_t k = 0; k < C.size(); ++k) terms += std::abs(C[k][i] * x[k]);
+    for (std::size_t j = 0; j < D.size(); ++j) terms += std::abs(D[j][i] * u[j]);
+    size[i] = std::max(size[i], terms);
+  }
+}
+
+}  // namespace
+
+// In long double, from the model's own states.
+TEST_CASE("@NAME@: trajectory") {
+  static const double expected[][@NY@] = @VALUES@;
+  std::vector<double> off(@NY@), size(@NY@);
+  @NAME@::State x{};
+  for (std::size_t k = 0; k < @STEPS@; ++k) {
+    const @NAME@::Input u = input_at(k);
+    const @NAME@::Output y = @NAME@::output(x, u);
+    for (std::size_t i = 0; i < off.size(); ++i)
+      off[i] = std::max(off[i], std::abs(y[i] - expected[k][i]));
+    grow(size, x, u);
+    x = @NAME@::step(x, u);
+  }
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    if (contains(silent_outputs, i)) continue;
+    INFO(@NAME@::output_names[i]);
+    CHECK(off[i] <= @TOLERANCE@ * size[i]);
+  }
+}
+)";
+
+inline constexpr const char* kTaylor = R"(
+// exp(A h) x + integral: @SUBSTEPS@ parts of each step, 24 terms of Taylor's series each.
+TEST_CASE("@NAME@: step against derivative") {
+  std::vector<double> off(@NY@), size(@NY@);
+  @NAME@::State x{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const @NAME@::Input u = input_at(k);
+    @NAME@::State series = x;
+    for (int part = 0; part < @SUBSTEPS@; ++part) {
+      @NAME@::State term = @NAME@::derivative(series, u);
+      for (int power = 1; power <= 24; ++power) {
+        for (std::size_t i = 0; i < term.size(); ++i) {
+          term[i] *= @NAME@::sample_time / @SUBSTEPS@ / power;
+          series[i] += term[i];
+        }
+        term = @NAME@::derivative(term, {});
+      }
+    }
+    x = @NAME@::step(x, u);
+    const @NAME@::Output y = @NAME@::output(x, {}), by_series = @NAME@::output(series, {});
+    for (std::size_t i = 0; i < off.size(); ++i)
+      off[i] = std::max(off[i], std::abs(y[i] - by_series[i]));
+    grow(size, x, {});
+  }
+  for (std::size_t i = 0; i < off.size(); ++i) {
+    if (contains(silent_outputs, i)) continue;
+    INFO(@NAME@::output_names[i]);
+    CHECK(off[i] <= 1e-8 * size[i]);
+  }
+}
+)";
+
+}  // namespace titop::emit
