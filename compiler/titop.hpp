@@ -18,6 +18,7 @@
 #include <titop/blocks/spring_mass.hpp>
 #include <titop/compiler/dot.hpp>
 #include <titop/compiler/emit/cpp.hpp>
+#include <titop/compiler/emit/files.hpp>
 #include <titop/compiler/emit/hold.hpp>
 #include <titop/compiler/minimize.hpp>
 #include <titop/compiler/modal.hpp>

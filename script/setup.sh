@@ -6,7 +6,7 @@ mkdir -p build
 
 # What building, testing and drawing need.
 packages=(g++ cmake ninja-build ccache libeigen3-dev libboost-dev libfmt-dev doctest-dev
-  graphviz gnuplot-nox)
+  nlohmann-json3-dev graphviz gnuplot-nox)
 
 # Installs the named Debian packages that are missing; says nothing where all are there.
 need() {

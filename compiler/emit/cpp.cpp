@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <titop/compiler/emit/cpp.hpp>
 #include <titop/compiler/emit/cpp/form.hpp>
@@ -10,6 +8,7 @@
 #include <titop/compiler/emit/cpp/test.hpp>
 #include <titop/compiler/emit/cpp/text.hpp>
 #include <titop/compiler/emit/hold.hpp>
+#include <titop/compiler/emit/write_file.hpp>
 #include <titop/graph/error.hpp>
 
 namespace titop {
@@ -94,18 +93,6 @@ void refuse_few_digits(const Form& form, const std::string& name) {
               "leave out what they do not see");
 }
 
-void write_file(const std::filesystem::path& path, const std::string& text) {
-  std::ifstream old(path, std::ios::binary);
-  if (old && std::string(std::istreambuf_iterator<char>(old), {}) == text) return;
-  old.close();
-  std::ofstream file(path, std::ios::binary);
-  file << text;
-  file.flush();
-  if (!file)
-    throw Error(Code::bad_file, fmt::format("{}: cannot be written", path.string()),
-                "check that the folder exists and may be written to");
-}
-
 }  // namespace
 
 CppModel generate_cpp(const System& system, const CppOptions& options) {
@@ -133,8 +120,8 @@ CppModel generate_cpp(const System& system, const CppOptions& options) {
 }
 
 void write(const CppModel& model, const std::filesystem::path& folder) {
-  write_file(folder / (model.name + ".hpp"), model.header);
-  write_file(folder / (model.name + "_test.cpp"), model.test);
+  emit::write_file(folder / (model.name + ".hpp"), model.header);
+  emit::write_file(folder / (model.name + "_test.cpp"), model.test);
 }
 
 }  // namespace titop

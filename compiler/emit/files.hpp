@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <titop/compiler/system.hpp>
+
+/// Models as files for other programs. Numbers are written so that they read back to the last bit.
+/// All throw bad_file where a file cannot be written.
+namespace titop {
+
+/// A MATLAB/Octave function: the file's name without .m must be an identifier (bad_value).
+///
+///     m = satellite ();  G = m.C * ((s * eye (m.n) - m.A) \ m.B) + m.D;
+///     sys = ss (m.A, m.B, m.C, m.D);     % with the control package
+///
+/// m.states, m.inputs, m.outputs are cell arrays of the names; index (m.inputs, "tau_m") by
+/// find (strcmp (m.inputs, "tau_m")). O(n^2).
+void write_matlab(const StateSpace& model, const std::filesystem::path& file);
+
+/// A Python module and its arrays: FOLDER/NAME.py, NAME_A.npy, NAME_B.npy, NAME_C.npy, NAME_D.npy.
+/// NAME must be an identifier (bad_value). `import NAME` gives A, B, C, D, states, inputs, outputs,
+/// transfer(s) and poles(). O(n^2).
+void write_numpy(const StateSpace& model, const std::filesystem::path& folder,
+                 const std::string& name);
+
+/// Frequency response as comma-separated values: a column rad_per_s, then for every output and
+/// input re(OUTPUT/INPUT) and im(OUTPUT/INPUT), quoted where a name has a comma or a quote; a line
+/// per omega [rad/s]. O(bodies) per frequency.
+void write_csv(const System& system, std::span<const double> omega,
+               const std::filesystem::path& file);
+
+/// The whole model and what is known about it as one JSON object: "format" ("titop model 1"),
+/// "name", "states", "inputs", "outputs", "A", "B", "C", "D" (lists of rows), "poles",
+/// "certificate" (the fields of `Certificate`; null where a number is not finite or was not found)
+/// and "notes" (pass, kind, text). Keys keep this order, so that the text is stable. O(n^3) for the
+/// poles.
+std::string model_json(const System& system);
+void write_json(const System& system, const std::filesystem::path& file);
+
+}  // namespace titop

@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include <titop/compiler/emit/cpp/text.hpp>
+#include <titop/compiler/emit/files.hpp>
+#include <titop/compiler/emit/write_file.hpp>
+#include <titop/graph/error.hpp>
+
+namespace titop {
+
+namespace {
+
+/// Single quotes: no escapes are read in them by either program.
+std::string quoted(const std::string& name) {
+  std::string text = "'";
+  for (const char c : name) {
+    if (c == '\'') text += '\'';
+    text += c == '\n' || c == '\r' ? ' ' : c;
+  }
+  return text + "'";
+}
+
+std::string names(const char* field, const std::vector<std::string>& list) {
+  std::string text = fmt::format("  m.{} = {{\n", field);
+  for (const std::string& name : list) text += "    " + quoted(name) + "\n";
+  return text + "  };\n";
+}
+
+std::string matrix(const char* field, const Eigen::MatrixXd& M) {
+  if (M.size() == 0) return fmt::format("  m.{} = zeros ({}, {});\n", field, M.rows(), M.cols());
+  std::string text = fmt::format("  m.{} = [\n", field);
+  for (Eigen::Index i = 0; i < M.rows(); ++i) {
+    for (Eigen::Index j = 0; j < M.cols(); ++j)
+      text += fmt::format("{}{}", j > 0 ? ", " : "    ", M(i, j));
+    text += "\n";
+  }
+  return text + "  ];\n";
+}
+
+}  // namespace
+
+void write_matlab(const StateSpace& model, const std::filesystem::path& file) {
+  const std::string name = file.stem().string();
+  if (!emit::is_identifier(name) || file.extension() != ".m")
+    throw Error(Code::bad_value, fmt::format("{} cannot be a MATLAB function", file.string()),
+                "give a path whose last part is an identifier and .m, such as satellite.m");
+  emit::write_file(
+      file, fmt::format("function m = {} ()\n"
+                        "  % Written by titop: xdot = A x + B u, y = C x + D u, with names.\n"
+                        "  m.n = {};\n",
+                        name, model.order()) +
+                names("states", model.states) + names("inputs", model.inputs) +
+                names("outputs", model.outputs) + matrix("A", model.A) + matrix("B", model.B) +
+                matrix("C", model.C) + matrix("D", model.D) + "end\n");
+}
+
+}  // namespace titop
