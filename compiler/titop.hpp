@@ -5,8 +5,12 @@
 #include <titop/blocks/beam.hpp>
 #include <titop/blocks/bushing.hpp>
 #include <titop/blocks/fe/calculix.hpp>
+#include <titop/blocks/fe/dmig.hpp>
+#include <titop/blocks/fe/grids.hpp>
 #include <titop/blocks/fe/mesh.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
+#include <titop/blocks/fe/modal_csv.hpp>
+#include <titop/blocks/fe/op4.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/hinge.hpp>
 #include <titop/blocks/joint.hpp>
@@ -14,6 +18,7 @@
 #include <titop/blocks/port_hamiltonian.hpp>
 #include <titop/blocks/posture.hpp>
 #include <titop/blocks/rigid_body.hpp>
+#include <titop/blocks/scaled.hpp>
 #include <titop/blocks/slide.hpp>
 #include <titop/blocks/spring_mass.hpp>
 #include <titop/compiler/dot.hpp>

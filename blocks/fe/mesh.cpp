@@ -57,13 +57,14 @@ bool check_indices(const Mesh& mesh, std::vector<Mistake>& mistakes) {
   const std::size_t before = mistakes.size();
   for (std::size_t i = 0; i < mesh.dofs.size(); ++i) {
     const Dof& dof = mesh.dofs[i];
-    if (dof.point < mesh.points.size() && dof.component >= 0 && dof.component < 6) continue;
+    if (dof.point < mesh.points.size() && dof.component >= 0 && dof.component <= kGeneralised)
+      continue;
     mistakes.push_back({Code::bad_value,
                         fmt::format("row {} of mesh {} is component {} of point {}, there are {} "
                                     "points of 6 components",
                                     i, mesh.name, dof.component, dof.point, mesh.points.size()),
                         {},
-                        "points count from 0, components are 0 to 5"});
+                        "points count from 0, components are 0 to 5, or kGeneralised"});
   }
   for (const Interface& interface : mesh.interfaces)
     if (interface.point >= mesh.points.size())
@@ -121,6 +122,7 @@ std::string dof_name(const Mesh& mesh, Index row) {
   std::string name = mesh.points.at(dof.point).name;
   for (const Interface& interface : mesh.interfaces)
     if (interface.point == dof.point) name = interface.name;
+  if (dof.component == kGeneralised) return name;
   return fmt::format("{}.{}", name, component_name(dof.component));
 }
 
@@ -142,7 +144,7 @@ std::array<Index, 6> interface_rows(const Mesh& mesh, const std::string& name) {
   std::array<Index, 6> rows;
   rows.fill(-1);
   for (std::size_t i = 0; i < mesh.dofs.size(); ++i)
-    if (mesh.dofs[i].point == point)
+    if (mesh.dofs[i].point == point && mesh.dofs[i].component < kGeneralised)
       rows.at(static_cast<std::size_t>(mesh.dofs[i].component)) = static_cast<Index>(i);
   std::string missing;
   for (std::size_t c = 0; c < 6; ++c)
@@ -159,10 +161,11 @@ std::array<Index, 6> interface_rows(const Mesh& mesh, const std::string& name) {
 }
 
 MatrixXd rigid_motions(const Mesh& mesh, const Vector3d& P) {
-  MatrixXd R(static_cast<Index>(mesh.dofs.size()), 6);
+  MatrixXd R = MatrixXd::Zero(static_cast<Index>(mesh.dofs.size()), 6);
   for (std::size_t i = 0; i < mesh.dofs.size(); ++i) {
     const Dof& dof = mesh.dofs[i];
-    R.row(static_cast<Index>(i)) = tau(P - mesh.points.at(dof.point).position).row(dof.component);
+    if (dof.component < kGeneralised)
+      R.row(static_cast<Index>(i)) = tau(P - mesh.points.at(dof.point).position).row(dof.component);
   }
   return R;
 }

@@ -18,11 +18,14 @@ struct Point {
   Vector3d position = Vector3d::Zero();  ///< in the body's frame [m]
 };
 
+constexpr int kGeneralised = 6;
+
 /// One row of M and K: a displacement of a point along a body axis (component 0, 1, 2: x, y, z)
-/// or its rotation about one (3, 4, 5: rx, ry, rz).
+/// or its rotation about one (3, 4, 5: rx, ry, rz). Or a generalised coordinate, such as that of a
+/// fixed-interface mode, which no rigid motion moves (kGeneralised; a point of its own names it).
 struct Dof {
   std::size_t point = 0;  ///< index into Mesh::points
-  int component = 0;      ///< 0..5
+  int component = 0;      ///< 0..5, or kGeneralised
 };
 
 /// A point under a second name, where other bodies may be attached; it must have all six dofs.

@@ -100,10 +100,10 @@ TEST_CASE("a mesh that contradicts itself") {
   contains(message_of([&] { check(mesh); }), "error[duplicate-name]: mesh beam has two rows C.rx");
   mesh = boom();
   mesh.dofs[8] = {9, 2};
-  mesh.dofs[9].component = 6;
+  mesh.dofs[9].component = 7;
   mesh.interfaces[0].point = 5;
   contains(message_of([&] { check(mesh); }), "row 8 of mesh beam is component 2 of point 9");
-  contains(message_of([&] { check(mesh); }), "row 9 of mesh beam is component 6 of point 1");
+  contains(message_of([&] { check(mesh); }), "row 9 of mesh beam is component 7 of point 1");
   contains(message_of([&] { check(mesh); }), "interface P of mesh beam is point 5, there are 5");
 }
 

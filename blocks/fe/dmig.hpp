@@ -1,0 +1,25 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <titop/blocks/fe/grids.hpp>
+
+/// Reader for direct matrix input at grids (DMIG), which Nastran writes by EXTSEOUT(DMIGPCH) or
+/// PUNCH.
+namespace titop::fe {
+
+/// The stiffness and mass of these names, e.g. "KAAX", "MAAX". Rows: all degrees of freedom that
+/// either has, by grid and component; where only one has them the other is 0 there.
+///
+/// Entries stand in fields of 8 or 16 columns (DMIG, DMIG*), with continuations; real, square (form
+/// 1) or symmetric (form 6: one triangle, or both alike). Other cards are passed over. `digits`
+/// counts what the longest numbers of the file carry.
+///
+/// Throws bad_file, all mistakes together, with file and line: a field that is no number, a
+/// component outside 0 to 6, an entry twice with different values, a column before its matrix's
+/// header, a complex or rectangular matrix, entries without value, an unknown name (with those
+/// there are).
+GridMatrices read_dmig(const std::filesystem::path& path, const std::string& stiffness,
+                       const std::string& mass);
+
+}  // namespace titop::fe

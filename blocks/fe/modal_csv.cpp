@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <titop/blocks/fe/modal_csv.hpp>
+#include <titop/blocks/fe/text_file.hpp>
+#include <titop/blocks/scaled.hpp>
+
+namespace titop::fe {
+
+namespace {
+
+using Fields = std::vector<std::string_view>;
+
+class Reader {
+ public:
+  explicit Reader(const TextFile& file) : file_(file) {
+    for (const TextLine& line : lines_of(file)) {
+      const std::string_view text = trim(line.text.substr(0, line.text.find('#')));
+      if (!text.empty()) read(line.number, comma_fields(text));
+    }
+    if (D_P_rows_ != 6) mistake(0, fmt::format("{} lines D_P", D_P_rows_), "six, row by row");
+    mistakes_.finish();
+  }
+
+  ModalData data() const {
+    ModalData d = data_;
+    const auto n = static_cast<Eigen::Index>(modes_.size());
+    d.omega.resize(n), d.xi.resize(n), d.L_P.resize(n, 6);
+    for (ModalChild& child : d.children) child.Phi_C.resize(6, n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      const std::vector<double>& mode = modes_[static_cast<std::size_t>(k)];
+      d.omega(k) = mode[0];
+      d.xi(k) = mode[1];
+      for (Eigen::Index i = 0; i < 6; ++i) d.L_P(k, i) = mode[static_cast<std::size_t>(2 + i)];
+      for (std::size_t c = 0; c < d.children.size(); ++c)
+        for (std::size_t i = 0; i < 6; ++i)
+          d.children[c].Phi_C(static_cast<Eigen::Index>(i), k) = mode[8 + 6 * c + i];
+    }
+    d.D_P.diagonal().head<3>().array() += at_P_;
+    return scaled(std::move(d), units_);
+  }
+
+ private:
+  void mistake(int line, const std::string& found, const std::string& expected) {
+    mistakes_.add(bad_line(file_, line, found, expected));
+  }
+
+  /// So many numbers behind the first `skip` fields; empty where they are not there.
+  std::vector<double> numbers(int line, const Fields& fields, std::size_t skip, std::size_t count) {
+    if (fields.size() != skip + count) {
+      mistake(line, fmt::format("{} fields", fields.size()),
+              fmt::format("{} behind {}", skip + count - 1, fields[0]));
+      return {};
+    }
+    std::vector<double> values(count);
+    for (std::size_t i = 0; i < count; ++i)
+      if (!parse(fields[skip + i], values[i])) {
+        mistake(line, fmt::format("'{}' as field {}", fields[skip + i], skip + i + 1),
+                "a finite number");
+        return {};
+      }
+    return values;
+  }
+
+  void read(int line, const Fields& fields) {
+    const std::string_view word = fields[0];
+    if (word == "units") return read_units(line, fields);
+    if (word == "digits") return read_one(line, fields, data_.digits);
+    if (word == "at P") return read_one(line, fields, at_P_);
+    if (word == "D_P") return read_D_P(line, fields);
+    if (word == "child") return read_child(line, fields);
+    if (word == "mode") return read_mode(line, fields);
+    if (word == "modal mass") return read_modal_mass(line, fields);
+    mistake(line, fmt::format("'{}'", word), "units, digits, D_P, at P, child, mode or modal mass");
+  }
+
+  void read_units(int line, const Fields& fields) {
+    const auto values = numbers(line, fields, 1, 3);
+    if (values.empty()) return;
+    units_ = {values[0], values[1], values[2]};
+    for (const double v : values)
+      if (!(v > 0)) return mistake(line, fmt::format("a unit of {}", v), "a positive number");
+  }
+
+  void read_one(int line, const Fields& fields, double& value) {
+    const auto values = numbers(line, fields, 1, 1);
+    if (values.empty()) return;
+    if (values[0] < 0) return mistake(line, fmt::format("{}", values[0]), "a number of 0 or more");
+    value = values[0];
+  }
+
+  void read_D_P(int line, const Fields& fields) {
+    const auto values = numbers(line, fields, 1, 6);
+    if (++D_P_rows_ > 6 || values.empty()) return;
+    for (std::size_t i = 0; i < 6; ++i)
+      data_.D_P(D_P_rows_ - 1, static_cast<Eigen::Index>(i)) = values[i];
+  }
+
+  void read_child(int line, const Fields& fields) {
+    if (!modes_.empty()) return mistake(line, "a child behind a mode", "children before modes");
+    if (fields.size() < 2 || fields[1].empty()) return mistake(line, "no name", "the child's name");
+    const auto values = numbers(line, fields, 2, 3);
+    if (values.empty()) return;
+    data_.children.push_back(
+        {std::string(fields[1]), Vector3d(values[0], values[1], values[2]), {}});
+  }
+
+  void read_mode(int line, const Fields& fields) {
+    auto values = numbers(line, fields, 1, 8 + 6 * data_.children.size());
+    if (!values.empty()) modes_.push_back(std::move(values));
+  }
+
+  void read_modal_mass(int line, const Fields& fields) {
+    const auto values = numbers(line, fields, 1, 1);
+    if (values.empty()) return;
+    if (modes_.empty() || !(values[0] > 0))
+      return mistake(line, fmt::format("a modal mass of {}", values[0]),
+                     "a positive number behind a mode");
+    for (std::size_t i = 2; i < modes_.back().size(); ++i) modes_.back()[i] /= std::sqrt(values[0]);
+  }
+
+  const TextFile& file_;
+  FileMistakes mistakes_;
+  ModalData data_;
+  DataUnits units_;
+  double at_P_ = 0;
+  int D_P_rows_ = 0;
+  std::vector<std::vector<double>> modes_;  ///< omega, xi, L_P, Phi of each child
+};
+
+}  // namespace
+
+ModalData read_modal_csv(const std::filesystem::path& path) {
+  const TextFile file = read_text(path);
+  return Reader(file).data();
+}
+
+std::string modal_csv(const ModalData& data) {
+  std::string text = fmt::format("digits, {}\n", data.digits);
+  for (int i = 0; i < 6; ++i) {
+    text += "D_P";
+    for (int j = 0; j < 6; ++j) text += fmt::format(", {}", data.D_P(i, j));
+    text += "\n";
+  }
+  for (const ModalChild& c : data.children)
+    text += fmt::format("child, {}, {}, {}, {}\n", c.name, c.PC.x(), c.PC.y(), c.PC.z());
+  for (Eigen::Index k = 0; k < data.omega.size(); ++k) {
+    text += fmt::format("mode, {}, {}", data.omega(k), data.xi(k));
+    for (Eigen::Index i = 0; i < 6; ++i) text += fmt::format(", {}", data.L_P(k, i));
+    for (const ModalChild& c : data.children)
+      for (Eigen::Index i = 0; i < 6; ++i) text += fmt::format(", {}", c.Phi_C(i, k));
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace titop::fe

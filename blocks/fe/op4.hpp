@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+/// Reader for the matrices that Nastran writes by OUTPUT4 (also DMAP's MATOP4 of EXTSEOUT).
+namespace titop::fe {
+
+struct Op4Matrix {
+  std::string name;  ///< as in the file, in capitals
+  int form = 2;      ///< Nastran's: 1 square, 2 rectangular, 6 symmetric
+  Eigen::MatrixXd value;
+  double digits = 15;  ///< decimal digits that the entries carry: by precision, or by the format
+};
+
+/// All real matrices of a file, in its order. It is text or binary, dense or sparse (with or
+/// without BIGMAT, each matrix by itself), single or double precision, with words of 4 or 8 bytes
+/// in either byte order: that is found out from the file.
+///
+/// Throws bad_file, naming the file, the matrix and the record (binary: with its byte) or line: a
+/// record that ends early or has another length than it says, a column or row outside the matrix, a
+/// value that is no finite number, a complex matrix, one of more than 1e8 entries, a name twice.
+/// Dense: 8 bytes per entry.
+std::vector<Op4Matrix> read_op4(const std::filesystem::path& path);
+
+/// The matrix of this name (capitals or not); throws unknown_name with those there are.
+const Op4Matrix& find_matrix(const std::vector<Op4Matrix>& matrices, const std::string& name);
+
+}  // namespace titop::fe

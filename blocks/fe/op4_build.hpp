@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <titop/blocks/fe/op4.hpp>
+
+/// What the readers of the two forms of OP4, text and binary, share.
+namespace titop::fe::detail {
+
+/// Throws bad_file for this place of the file.
+using Refuse = std::function<void(const std::string& found, const std::string& expected)>;
+
+/// First record of a matrix.
+struct Op4Header {
+  std::string name;
+  long long columns = 0, rows = 0, form = 0, type = 0;
+  bool bigmat = false;  ///< rows was negative, or 65536 and more
+};
+
+/// The empty matrix of this header; refuses what cannot be one.
+Op4Matrix make_matrix(const Op4Header& header, const Refuse& refuse);
+
+/// Puts values into a column from a row on (both from 0); refuses rows outside, values that are not
+/// finite.
+void put_values(Op4Matrix& matrix, long long row, long long column, std::span<const double> values,
+                const Refuse& refuse);
+
+/// Words per value: 1 single, 2 double (of 4 bytes).
+inline int words_per_value(long long type) { return type == 1 ? 1 : 2; }
+
+/// The head of a string in a column of a sparse matrix.
+struct Op4String {
+  long long row = 0;    ///< from 0
+  long long words = 0;  ///< of its values
+};
+/// Without BIGMAT both are packed into one integer.
+inline Op4String unpacked(long long is) { return {(is & 0xffff) - 1, (is >> 16) - 1}; }
+
+std::vector<Op4Matrix> read_op4_binary(const std::string& name, std::span<const char> bytes);
+std::vector<Op4Matrix> read_op4_text(const std::filesystem::path& path);
+
+}  // namespace titop::fe::detail
