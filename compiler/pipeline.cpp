@@ -6,6 +6,7 @@
 #include <fstream>
 #include <numeric>
 #include <system_error>
+#include <titop/compiler/compile_graph.hpp>
 #include <titop/compiler/dot.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/solve/blame.hpp>
@@ -118,15 +119,19 @@ void certify_now(detail::SystemData& data) {
 }  // namespace
 
 System compile(const Diagram& diagram, const Options& options) {
-  Stage stage;
-  stage.graph = diagram.graph();
-  stage.values = nominal_values(diagram.graph());
-  auto data = run(std::move(stage), options);
-  timed(*data, "certify", [&] { certify_now(*data); });
-  return System(std::move(data));
+  return System(detail::compile_graph(diagram.graph(), options));
 }
 
 namespace detail {
+
+std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Options& options) {
+  Stage stage;
+  stage.graph = graph;
+  stage.values = nominal_values(graph);
+  auto data = run(std::move(stage), options);
+  timed(*data, "certify", [&] { certify_now(*data); });
+  return data;
+}
 
 std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector<double>& values) {
   Stage stage;

@@ -1,0 +1,210 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <titop/compiler/compile_graph.hpp>
+#include <titop/compiler/economy/ray.hpp>
+#include <titop/compiler/economy/reduced_data.hpp>
+#include <titop/compiler/economy/sharpen.hpp>
+
+/// `compile` for a scene, step by step.
+namespace titop {
+namespace {
+
+using detail::ReducedData;
+using detail::Small;
+using Eigen::Index;
+using std::numbers::pi;
+
+constexpr double kPhase = 1;  ///< step of the phase grid: a bound of 1 / cos(1 / 2) = 1.14 samples
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// All that one scene needs, for any accuracy.
+class Economy {
+ public:
+  Economy(const Diagram& diagram, const Scene& scene, const Options& options)
+      : scene_(scene), full_(nullptr) {
+    detail::check(scene);
+    const Graph graph = detail::restricted(diagram.graph(), scene);
+    if (graph.inputs.empty() || graph.outputs.empty())
+      throw Error(
+          Code::bad_value,
+          fmt::format("{} has no {}", graph.name, graph.inputs.empty() ? "input" : "output"),
+          "a scene asks from inputs to outputs: give the diagram both");
+    timed("compile", [&] {
+      data_ = detail::compile_graph(graph, options);
+      full_ = System(data_);
+    });
+    timed("modes", [&] {
+      const detail::Coordinates c = detail::coordinates(full_, *data_);
+      whole_ = detail::whole(full_, c, data_->graph(), detail::positions_read(graph));
+      band_ = detail::band_of(scene, whole_);
+      detail::sharpen(whole_, full_, 1.2 * band_.high);
+    });
+    timed("samples", [&] {
+      samples_ =
+          detail::sample(full_, scene, detail::sample_points(scene, band_, whole_, {}, kPhase));
+    });
+    sequence_ = std::make_unique<detail::Sequence>(whole_, samples_, band_.high);
+    compiled_ = {"structure", coordinates_of(diagram), static_cast<int>(whole_.order()), 0,
+                 "what the scene's inputs reach and its outputs see"};
+  }
+
+  /// The first model of the sequence whose bound is at most this.
+  ReducedSystem reach(double accuracy) {
+    const double start = now();
+    const std::size_t step = first_within(accuracy);
+    ReducedData d{full_, sequence_->model(step), bounds_.at(step), {compiled_}, {}, {}, seconds_};
+    d.steps.push_back({"whole", static_cast<int>(whole_.order()), static_cast<int>(d.small.order()),
+                       d.bound.worst,
+                       "modes of the band, and static-like vectors of those above it"});
+    d.modes = modes(d.small);
+    d.seconds.emplace_back("reduce", now() - start);
+    return ReducedSystem(std::make_shared<const ReducedData>(std::move(d)));
+  }
+
+ private:
+  template <class F>
+  void timed(const char* name, F f) {
+    const double start = now();
+    f();
+    seconds_.emplace_back(name, now() - start);
+  }
+
+  static int coordinates_of(const Diagram& diagram) {
+    int states = 0;
+    for (const Node& n : diagram.graph().nodes)
+      states += static_cast<int>(n.block->interface().states.size());
+    return (states + 1) / 2;
+  }
+
+  const ErrorBound& bound_of(std::size_t step) {
+    const auto found = bounds_.find(step);
+    if (found != bounds_.end()) return found->second;
+    return bounds_.emplace(step, bound(sequence_->model(step))).first->second;
+  }
+
+  /// The bound costs more than the error on the samples, which goes first.
+  std::size_t first_within(double accuracy) {
+    const double target = accuracy * std::cos(kPhase / 2);
+    for (std::size_t k = 0; true; ++k) {
+      const auto& steps = sequence_->steps();
+      if (k == steps.size() && !sequence_->grow()) refuse(accuracy);
+      if (steps[k].error <= target && bound_of(k).worst <= accuracy) return k;
+    }
+  }
+
+  [[noreturn]] void refuse(double accuracy) {
+    const auto& steps = sequence_->steps();
+    std::size_t best = 0;
+    for (std::size_t k = 1; k < steps.size(); ++k)
+      if (steps[k].error < steps[best].error) best = k;
+    const ErrorBound& b = bound_of(best);
+    throw Error(
+        Code::bad_value,
+        fmt::format("an accuracy of {:.1e} cannot be met: {:.1e} is reached with {} "
+                    "coordinates, from {} to {} at {:.4g} Hz",
+                    accuracy, b.worst, sequence_->model(best).order(), b.input, b.output, b.hertz),
+        fmt::format("ask for {:.0e}, or use compile(diagram): rounding in the modes of the "
+                    "whole ends there",
+                    2 * b.worst));
+  }
+
+  ErrorBound bound(const Small& small) const {
+    const auto points = detail::sample_points(scene_, band_, whole_, small.poles(), kPhase);
+    const detail::Samples check = detail::sample(full_, scene_, points);
+    ErrorBound b;
+    b.kind = !whole_.proportional ? BoundKind::estimate : scene_.bound;
+    b.samples = static_cast<int>(points.size() + samples_.s.size());
+    const double rounding = full_.certificate().residual;
+    b.pairs = Eigen::MatrixXd::Zero(check.peak.rows(), check.peak.cols());
+    double worst = -1;
+    for (std::size_t k = 0; k < check.s.size(); ++k) {
+      const Eigen::MatrixXd e =
+          (check.H[k] - small.transfer(check.s[k])).cwiseAbs().cwiseQuotient(check.peak);
+      b.pairs = b.pairs.cwiseMax(e);
+      Index i = 0, j = 0;
+      if (const double here = e.maxCoeff(&i, &j); here > worst) {
+        worst = here;
+        b.output = full_.outputs()[at(i)];
+        b.input = full_.inputs()[at(j)];
+        b.hertz = check.omega[k] / (2 * pi);
+      }
+    }
+    b.peak = check.peak;
+    b.pairs = (b.pairs.array() / std::cos(kPhase / 2)).max(rounding);
+    b.worst = b.pairs.maxCoeff();
+    return b;
+  }
+
+  std::vector<KeptMode> modes(const Small& m) const {
+    std::vector<KeptMode> result;
+    const Eigen::MatrixXd shares = whole_.shares * m.V.cwiseAbs2();
+    for (Index j = 0; j < m.order(); ++j) {
+      KeptMode mode;
+      const double omega = std::sqrt(m.k(j));
+      mode.hertz = omega / (2 * pi);
+      if (m.Z.size() > 0 && omega > 0) mode.damping = m.Z(j, j) / (2 * omega);
+      mode.exact = m.V.col(j).cwiseAbs().maxCoeff() == 1;
+      for (Index i = 0; i < shares.rows(); ++i)
+        if (shares(i, j) >= 0.05) mode.blocks.emplace_back(whole_.blocks[at(i)], shares(i, j));
+      std::stable_sort(mode.blocks.begin(), mode.blocks.end(),
+                       [](const auto& a, const auto& b) { return a.second > b.second; });
+      result.push_back(std::move(mode));
+    }
+    return result;
+  }
+
+  Scene scene_;
+  std::shared_ptr<const detail::SystemData> data_;
+  System full_;
+  detail::Whole whole_;
+  detail::Band band_;
+  detail::Samples samples_;
+  std::unique_ptr<detail::Sequence> sequence_;
+  std::map<std::size_t, ErrorBound> bounds_;  ///< by step of the sequence, as far as asked for
+  EconomyStep compiled_;
+  std::vector<std::pair<std::string, double>> seconds_;
+};
+
+/// Seconds of one transfer, over enough of them to be told from the clock's own step.
+double seconds_of(const ModalModel& m, double omega) {
+  constexpr int count = 200;
+  const double start = now();
+  double sum = 0;
+  for (int k = 0; k < count; ++k) sum += std::abs(m.transfer({0.01 * omega, omega + k})(0, 0));
+  return std::isfinite(sum) ? (now() - start) / count : 0;
+}
+
+}  // namespace
+
+ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options& options) {
+  return Economy(diagram, scene, options).reach(scene.accuracy);
+}
+
+std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
+                            std::span<const double> accuracies, const Options& options) {
+  Economy economy(diagram, scene, options);
+  std::vector<WhatIf> result;
+  for (const double accuracy : accuracies) {
+    try {
+      const ReducedSystem system = economy.reach(accuracy);
+      result.push_back({accuracy, system.order(), system.bound().worst,
+                        seconds_of(system.modal(), 2 * pi * std::max(1e-3, scene.band_hz[1])),
+                        system});
+    } catch (const Error& error) {
+      if (!error.has(Code::bad_value)) throw;
+    }
+  }
+  return result;
+}
+
+}  // namespace titop

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <titop/compiler/economy/scene.hpp>
+#include <titop/compiler/economy/sequence.hpp>
+
+/// Sampling on the ray of a scene. For the compiler's own files only.
+namespace titop::detail {
+
+/// Ends of the band [rad/s]; a band from 0 starts at 1e-4 of its upper end, where everything is as
+/// at 0 and blocks with poles at 0 can be evaluated.
+struct Band {
+  double low = 0, high = 0;
+};
+Band band_of(const Scene& scene, const Whole& whole);
+
+/// Points of the band for the difference of two models with these poles [rad/s, of positive
+/// imaginary part for pairs], by the scene's kind of bound: phase steps of at most `step`.
+std::vector<double> sample_points(const Scene& scene, const Band& band, const Whole& whole,
+                                  const std::vector<std::complex<double>>& small, double step);
+
+/// The factored system there, on all cores. O(points * bodies).
+Samples sample(const System& system, const Scene& scene, std::vector<double> omega);
+
+/// (zeta + j sqrt(1 - zeta^2)) omega.
+std::complex<double> on_ray(const Scene& scene, double omega);
+
+}  // namespace titop::detail

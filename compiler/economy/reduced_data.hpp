@@ -1,0 +1,19 @@
+#pragma once
+
+#include <titop/compiler/economy/reduced_system.hpp>
+#include <titop/compiler/economy/small.hpp>
+
+/// What stands behind a ReducedSystem. For the compiler's own files only.
+namespace titop::detail {
+
+struct ReducedData {
+  System full;
+  Small small;
+  ErrorBound bound;
+  std::vector<EconomyStep> steps;
+  std::vector<KeptMode> modes;
+  std::vector<std::string> warnings;
+  std::vector<std::pair<std::string, double>> seconds;
+};
+
+}  // namespace titop::detail

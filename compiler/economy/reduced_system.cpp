@@ -1,0 +1,50 @@
+#include <fmt/format.h>
+
+#include <titop/compiler/economy/reduced_data.hpp>
+
+namespace titop {
+
+int ReducedSystem::order() const { return state_space().order(); }
+const std::vector<std::string>& ReducedSystem::inputs() const { return data_->full.inputs(); }
+const std::vector<std::string>& ReducedSystem::outputs() const { return data_->full.outputs(); }
+const System& ReducedSystem::full() const { return data_->full; }
+const ErrorBound& ReducedSystem::bound() const { return data_->bound; }
+const std::vector<EconomyStep>& ReducedSystem::steps() const { return data_->steps; }
+const std::vector<KeptMode>& ReducedSystem::modes() const { return data_->modes; }
+const std::vector<std::string>& ReducedSystem::warnings() const { return data_->warnings; }
+
+Eigen::MatrixXcd ReducedSystem::transfer(std::complex<double> s) const {
+  return data_->small.transfer(s);
+}
+
+std::string ReducedSystem::timings() const {
+  std::string text;
+  for (const auto& [step, seconds] : data_->seconds)
+    text += fmt::format("  {:<9} {:>10.1f} ms\n", step, 1e3 * seconds);
+  return text;
+}
+
+std::string to_string(const ReducedSystem& system) {
+  std::string text = fmt::format("{}: {} states of {}\n", system.full().stage().graph.name,
+                                 system.order(), system.full().order());
+  for (const EconomyStep& s : system.steps())
+    text += fmt::format("  {:<9} {:>5} -> {:>4} coordinates, {}: {}\n", s.name, s.before, s.after,
+                        s.error == 0 ? "exact" : fmt::format("error {:.1e}", s.error), s.text);
+  const ErrorBound& b = system.bound();
+  text += fmt::format(
+      "  bound     {:.1e}{}, {} of {} transfers\n", b.worst,
+      b.input.empty() ? "" : fmt::format(" from {} to {} at {:.4g} Hz", b.input, b.output, b.hertz),
+      b.kind == BoundKind::theorem ? "a theorem" : "an estimate", b.samples);
+  for (const std::string& w : system.warnings()) text += fmt::format("  warning   {}\n", w);
+  for (std::size_t k = 0; k < system.modes().size(); ++k) {
+    const KeptMode& m = system.modes()[k];
+    std::string blocks;
+    for (const auto& [name, share] : m.blocks)
+      blocks += fmt::format("{}{} {:.0f} %", blocks.empty() ? "" : ", ", name, 100 * share);
+    text += fmt::format("  mode{:<5} {:>12.6g} Hz, damping {:.3g}, {}: {}\n", k + 1, m.hertz,
+                        m.damping, m.exact ? "mode" : "vector", blocks);
+  }
+  return text;
+}
+
+}  // namespace titop

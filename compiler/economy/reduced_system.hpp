@@ -1,0 +1,125 @@
+#pragma once
+
+#include <titop/compiler/economy/scene.hpp>
+
+namespace titop {
+
+namespace detail {
+struct ReducedData;
+}
+
+/// How far a reduced system is from the full one, over the scene's band.
+struct ErrorBound {
+  Eigen::MatrixXd pairs;      ///< outputs x inputs, relative as Scene says
+  Eigen::MatrixXd peak;       ///< what counts as 1 for each pair: |error| <= pairs * peak
+  double worst = 0;           ///< the largest of `pairs`
+  std::string input, output;  ///< of that pair
+  double hertz = 0;           ///< where it was found [Hz]
+  BoundKind kind = BoundKind::estimate;
+  int samples = 0;  ///< transfers of the full factored system that it took
+};
+
+/// What one step left out.
+struct EconomyStep {
+  std::string name;           ///< "structure", "bodies", "symmetry", "whole"
+  int before = 0, after = 0;  ///< second-order coordinates
+  double error = 0;           ///< what it cost, relative as Scene says; 0: exact
+  std::string text;           ///< in plain words
+};
+
+/// A coordinate of the reduced system.
+struct KeptMode {
+  double hertz = 0;    ///< of its mode [Hz]
+  double damping = 0;  ///< ratio; 0 for motions without stiffness
+  bool exact = false;  ///< a mode of the full system; else a static-like vector above the band
+  /// Blocks that take part, with their share of its elastic energy, largest first, down to 5 %.
+  std::vector<std::pair<std::string, double>> blocks;
+};
+
+/// M qdd + D qd + K q = B u, y = C q + C_rate qd + C_accel qdd + direct u, with M = I, D symmetric
+/// semidefinite (0 if undamped), K diagonal >= 0: stable as the structure is.
+struct SecondOrderModel {
+  Eigen::MatrixXd M, D, K;             ///< r x r
+  Eigen::MatrixXd B;                   ///< r x inputs
+  Eigen::MatrixXd C, C_rate, C_accel;  ///< outputs x r
+  Eigen::MatrixXd direct;              ///< outputs x inputs
+  std::vector<std::string> coordinates, inputs, outputs;
+  /// Outputs x inputs. O(r^3).
+  Eigen::MatrixXcd transfer(std::complex<double> s) const;
+};
+
+/// xdot = A x + B u, y = C x + D u with A of 2 x 2 blocks on the diagonal: one per mode.
+struct ModalModel {
+  std::vector<Eigen::Matrix2d> A;
+  Eigen::MatrixXd B, C, D;  ///< 2r x inputs, outputs x 2r, outputs x inputs
+  std::vector<std::string> inputs, outputs;
+  int order() const { return 2 * static_cast<int>(A.size()); }
+  /// Outputs x inputs. O(r).
+  Eigen::MatrixXcd transfer(std::complex<double> s) const;
+};
+
+/// A small system that answers a scene, and how well. Inputs and outputs are those of the full
+/// system, in the same order: one can replace the other. Const, cheap to copy.
+class ReducedSystem {
+ public:
+  explicit ReducedSystem(std::shared_ptr<const detail::ReducedData> data)
+      : data_(std::move(data)) {}
+
+  int order() const;  ///< states of state_space()
+  const std::vector<std::string>& inputs() const;
+  const std::vector<std::string>& outputs() const;
+  /// The full system with the scene's inputs and outputs.
+  const System& full() const;
+
+  /// Outputs x inputs, O(order), O(order^3) where modes are coupled by damping. transfer(0), where
+  /// there is one, is the full system's.
+  Eigen::MatrixXcd transfer(std::complex<double> s) const;
+
+  StateSpace state_space() const;         ///< dense; states "mode1", "mode1_rate", ...
+  SecondOrderModel second_order() const;  ///< the structure kept
+  ModalModel modal() const;               ///< 2 x 2 blocks. O(order^3) if damping couples modes
+
+  const ErrorBound& bound() const;
+  const std::vector<EconomyStep>& steps() const;
+  const std::vector<KeptMode>& modes() const;
+  /// Where data end inside the band or just above it, and other doubts.
+  const std::vector<std::string>& warnings() const;
+  /// Seconds per step, as text: not part of to_string, which is the same on every machine.
+  std::string timings() const;
+
+ private:
+  std::shared_ptr<const detail::ReducedData> data_;
+};
+
+/// What was left out, what is kept, and the bound.
+std::string to_string(const ReducedSystem& system);
+
+/// The smallest model found for this question (design.md: "no more than the scene needs"): the
+/// diagram is compiled for the scene's inputs and outputs; what symmetric bodies cannot show goes
+/// exactly; above Scene::whole_up_to coordinates bodies lose modes, with residual vectors; the
+/// whole is then reduced to modes of the band and static-like vectors of the modes above it
+/// (modal with static correction, second-order structure kept). The result is checked against the
+/// full factored system and refined until the bound is below the accuracy.
+///
+/// Throws what `compile(diagram)` throws; bad_value for a scene out of range, for parts that are no
+/// passive structure (controllers, filters: their states are named), and where the accuracy cannot
+/// be met, with what was reached and where; unknown_name for inputs and outputs that are not there.
+/// Cost: one symmetric eigenproblem of the coordinates, O(n^3), and some hundred transfers.
+ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options& options = {});
+
+/// One line of `what_if`.
+struct WhatIf {
+  double accuracy = 0;  ///< asked for
+  int order = 0;        ///< states
+  double bound = 0;     ///< reached
+  double seconds = 0;   ///< of one transfer of the modal model, measured here
+  ReducedSystem system;
+};
+
+/// The same question for several accuracies (Scene::accuracy is not used): one eigenproblem and one
+/// nested sequence for all, so that more accuracy never gives a smaller order. Those that cannot be
+/// met are left out. In the order given.
+std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
+                            std::span<const double> accuracies, const Options& options = {});
+
+}  // namespace titop

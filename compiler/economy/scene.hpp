@@ -1,0 +1,45 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <titop/compiler/system.hpp>
+#include <vector>
+
+namespace titop {
+
+/// What an error bound is worth.
+enum class BoundKind {
+  estimate,  ///< poles up to twice the band's upper end count one by one, the rest as ten more
+  theorem    ///< every pole of both models counts: up to rounding no peak can hide between samples
+};
+
+/// The question: from these inputs to these outputs, over this band, this well.
+///
+/// The error of a pair (input, output) is the largest difference of the transfer over the band,
+/// over the largest magnitude of the pair itself there. Pairs that are zero, by symmetry say, are
+/// compared with 1e-6 of what their row and their column suggest: units cancel. Both are taken on
+/// the ray s = (zeta + j sqrt(1 - zeta^2)) omega, zeta the damping floor, since an undamped peak
+/// has no finite height; there a mode looks as it would with damping zeta more.
+struct Scene {
+  std::vector<std::string> inputs = {};    ///< "W", or one of its scalars, "W(3)"; empty: all
+  std::vector<std::string> outputs = {};   ///< likewise
+  std::array<double, 2> band_hz = {0, 0};  ///< lower and upper end [Hz]; {0, 0}: static gain only
+  double accuracy = 1e-3;                  ///< largest error of any pair, between 1e-12 and 1
+  double damping_floor = 0.002;            ///< zeta, between 1e-6 and 0.5
+  BoundKind bound = BoundKind::estimate;   ///< a theorem costs many times the samples
+  /// Up to this many coordinates the whole is reduced at once (one symmetric eigenproblem); beyond
+  /// it bodies lose modes first, those that matter least to the whole.
+  int whole_up_to = 2000;
+};
+
+namespace detail {
+
+/// Throws bad_value for a band, accuracy or damping floor out of range, all together.
+void check(const Scene& scene);
+
+/// The graph with these inputs and outputs only; single scalars become inputs and outputs of their
+/// own. Throws unknown_name with the names there are. O(graph).
+Graph restricted(const Graph& graph, const Scene& scene);
+
+}  // namespace detail
+}  // namespace titop

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <titop/compiler/economy/small.hpp>
+
+/// The order in which modes and vectors come in. For the compiler's own files only.
+namespace titop::detail {
+
+/// The full transfer on samples of the ray, and what counts as 1 for each pair.
+struct Samples {
+  std::vector<double> omega;            ///< [rad/s], ascending
+  std::vector<std::complex<double>> s;  ///< on the ray
+  std::vector<Eigen::MatrixXcd> H;      ///< outputs x inputs
+  Eigen::MatrixXd peak;                 ///< outputs x inputs, with the floor of pairs that are 0
+};
+
+/// Largest |H - Hr| / peak over the samples, per pair.
+Eigen::MatrixXd errors(const Samples& full, const Small& small);
+
+/// One nested sequence of ever better models: it does not depend on the accuracy asked for, so that
+/// more accuracy never gives a smaller order.
+///
+/// Each step looks where the error is largest, for one input and one output (unit vectors: units
+/// cancel, and what symmetry separates stays apart). If dropped modes of the band explain half of
+/// it there, the one with the largest term comes in; otherwise the static-like response
+/// (Lambda - omega^2)^-1 b of the modes above the band to that input and, where outputs do not read
+/// what the inputs drive, the same for that output. W is 0 on the band's modes: nothing that comes
+/// in can have a pole in the band that the whole has not.
+class Sequence {
+ public:
+  /// `high`: upper end of the band [rad/s].
+  Sequence(const Whole& whole, const Samples& samples, double high);
+
+  /// One step more; false where nothing helps any more.
+  bool grow();
+
+  /// One model of the sequence.
+  struct Step {
+    Eigen::Index kept = 0, columns = 0;  ///< modes of the band and columns of W so far
+    double error = 0;                    ///< on the samples
+  };
+  const std::vector<Step>& steps() const { return steps_; }
+  Small model(std::size_t step) const;
+
+ private:
+  struct Worst {
+    Eigen::Index output = 0, input = 0;
+    std::size_t sample = 0;
+    double error = 0;
+  };
+  Worst evaluate();
+  bool stalled() const;
+  bool extend(const Worst& worst);
+  bool keep_one(const Worst& worst, double least);
+  bool add_columns(const Worst& worst);
+  bool add(Eigen::VectorXd column);
+  void note(const Worst& worst);
+
+  const Whole& whole_;
+  const Samples& samples_;
+  Eigen::Index inside_ = 0;  ///< elastic modes in the band
+  bool collocated_ = false;
+  std::vector<Eigen::Index> kept_;
+  std::vector<char> is_kept_;
+  Eigen::MatrixXd W_;  ///< elastic modes x columns
+  Small model_;
+  Worst worst_;
+  std::vector<Eigen::MatrixXcd> error_;
+  std::vector<Step> steps_;
+};
+
+}  // namespace titop::detail

@@ -1,0 +1,83 @@
+#include <cmath>
+#include <optional>
+#include <titop/compiler/economy/sharpen.hpp>
+#include <titop/compiler/parallel.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+
+/// The pair that sees a mode best, beside what else there is.
+struct Pair {
+  Index output = 0, input = 0;
+};
+
+/// 1 / H of the pair at s; 0 where s is a pole to the last bit.
+Complex inverse(const System& system, const Pair& pair, Complex s) {
+  try {
+    return 1.0 / system.transfer(s)(pair.output, pair.input);
+  } catch (const Error& error) {
+    if (!error.has(Code::singular)) throw;
+    return 0;
+  }
+}
+
+/// The root of s^2 + d s + lambda = 0 above the real axis.
+Complex pole(double lambda, double d) { return {-d / 2, std::sqrt(lambda - d * d / 4)}; }
+
+/// The pole beside a guess that is good to 1e-7 or so; none if the function is not that of one pole
+/// there.
+std::optional<Complex> find_pole(const System& system, const Pair& pair, Complex guess) {
+  constexpr double kNear = 1e-6;  // relative distance of the first two points
+  Complex a = guess * (1 + kNear), b = guess * (1 - kNear);
+  Complex fa = inverse(system, pair, a), fb = inverse(system, pair, b);
+  if (!(std::abs(fa + fb) <= 0.1 * std::abs(fa - fb))) return std::nullopt;
+  for (int step = 0; step < 4 && fa != fb; ++step) {
+    const Complex next = b - fb * (b - a) / (fb - fa);
+    if (!(std::abs(next - guess) <= kNear * std::abs(guess))) return std::nullopt;
+    a = b, fa = fb;
+    b = next;
+    if (std::abs(b - a) <= 1e-15 * std::abs(b)) break;
+    fb = inverse(system, pair, b);
+    if (fb == 0.0) break;
+  }
+  return b;
+}
+
+Pair best_pair(const Whole& w, Index j) {
+  Pair best;
+  double largest = -1;
+  for (Index i = 0; i < w.ca.rows(); ++i) {
+    const double row = w.ca.row(i).norm() + w.cv.row(i).norm();
+    const double c = std::abs(w.ca(i, j)) + std::abs(w.cv(i, j));
+    for (Index m = 0; m < w.b.cols(); ++m) {
+      const double size = row * w.b.col(m).norm();
+      if (size > 0 && c * std::abs(w.b(j, m)) > largest * size)
+        largest = c * std::abs(w.b(j, m)) / size, best = {i, m};
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+void sharpen(Whole& w, const System& system, double high) {
+  if (!w.proportional) return;
+  Index count = 0;
+  while (count < w.elastic() && w.lambda(count) <= high * high) ++count;
+  parallel(static_cast<std::size_t>(count), 0, [&] {
+    return [&](std::size_t i) {
+      const auto j = static_cast<Index>(i);
+      const double d = w.damping(j), lambda = w.lambda(j);
+      if (d * d >= lambda) return;
+      const auto found = find_pole(system, best_pair(w, j), pole(lambda, d));
+      if (!found) return;
+      w.lambda(j) = std::norm(*found);
+      if (w.Z.size() > 0) w.Z(j, j) = std::max(0.0, -2 * found->real());
+    };
+  });
+}
+
+}  // namespace titop::detail

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <titop/compiler/economy/whole.hpp>
+
+namespace titop::detail {
+
+/// Frequencies of the modes up to `high` [rad/s] anew, as poles of the factored transfer (zeros of
+/// 1 / H of the pair that sees the mode best, by secants in s^2): G has lost the digits by which
+/// the mass of a body exceeds that of its modes, the factors have not. Modes that no pair sees well
+/// keep theirs, and all do where damping couples them. About four transfers per mode.
+void sharpen(Whole& whole, const System& system, double high);
+
+}  // namespace titop::detail
