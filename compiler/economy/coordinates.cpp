@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <titop/compiler/economy/coordinates.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
@@ -265,6 +266,15 @@ MatrixXd flexibility(const Coordinates& c, const MatrixXd& A_ee) {
   return (G + G.transpose()) / 2;
 }
 
+void find_shares(Coordinates& c, const Graph& graph) {
+  std::map<int, Index> row;
+  for (const int node : c.nodes)
+    if (row.emplace(node, static_cast<Index>(row.size())).second)
+      c.blocks.push_back(graph.nodes[at(node)].name);
+  c.shares = MatrixXd::Zero(static_cast<Index>(row.size()), c.n_elastic);
+  for (Index i = 0; i < c.n_elastic; ++i) c.shares(row[c.nodes[at(i)]], i) = 1;
+}
+
 /// Those with stiffness first.
 std::vector<Index> elastic_first(const MatrixXd& A_total, Index& n_elastic) {
   std::vector<Index> order, loose;
@@ -280,6 +290,7 @@ std::vector<Index> elastic_first(const MatrixXd& A_total, Index& n_elastic) {
 Coordinates coordinates(const System& system, const SystemData& data) {
   Coordinates c;
   const Raw raw = read(system, data);
+  c.is_silent.assign(at(raw.m.C.rows()), 0);
   if (raw.all() == 0) {
     c.B.resize(0, raw.m.B.cols());
     c.C_q.resize(raw.m.C.rows(), 0);
@@ -328,6 +339,7 @@ Coordinates coordinates(const System& system, const SystemData& data) {
   c.C_q = columns(raw.m.C, raw.pairs.position) * T(Eigen::all, order);
   c.C_v = columns(raw.m.C, raw.pairs.rate) * T(Eigen::all, order);
   c.direct = raw.m.D;
+  find_shares(c, data.graph());
   return c;
 }
 

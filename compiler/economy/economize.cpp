@@ -9,6 +9,7 @@
 #include <titop/compiler/economy/ray.hpp>
 #include <titop/compiler/economy/reduced_data.hpp>
 #include <titop/compiler/economy/sharpen.hpp>
+#include <titop/compiler/economy/twins.hpp>
 
 /// `compile` for a scene, step by step.
 namespace titop {
@@ -44,25 +45,36 @@ class Economy {
       full_ = System(data_);
     });
     timed("modes", [&] {
-      const detail::Coordinates c = detail::coordinates(full_, *data_);
-      whole_ = detail::whole(full_, c, data_->graph(), detail::positions_read(graph));
+      detail::Coordinates c = detail::coordinates(full_, *data_);
+      note("structure", coordinates_of(diagram), c.size(),
+           "what the scene's inputs reach and its outputs see, without tied coordinates");
+      const Index before = c.size();
+      const detail::Twins twins = detail::join_twins(c, data_->graph());
+      if (twins.removed > 0)
+        note("symmetry", before, c.size(),
+             fmt::format("{} move alike", fmt::join(twins.pairs, "; ")));
+      if (c.size() > scene.whole_up_to)
+        throw Error(Code::bad_value,
+                    fmt::format("{} has {} coordinates, more than Scene::whole_up_to = {}",
+                                graph.name, c.size(), scene.whole_up_to),
+                    "raise it (the cost grows with its cube), or give bodies fewer modes and "
+                    "residual vectors at the points that carry load (fe::ModeOptions)");
+      whole_ = detail::whole(full_, c, detail::positions_read(graph));
       band_ = detail::band_of(scene, whole_);
       detail::sharpen(whole_, full_, 1.2 * band_.high);
     });
     timed("samples", [&] {
-      samples_ =
-          detail::sample(full_, scene, detail::sample_points(scene, band_, whole_, {}, kPhase));
+      samples_ = detail::sample(full_, scene, whole_,
+                                detail::sample_points(scene, band_, whole_, {}, kPhase));
     });
     sequence_ = std::make_unique<detail::Sequence>(whole_, samples_, band_.high);
-    compiled_ = {"structure", coordinates_of(diagram), static_cast<int>(whole_.order()), 0,
-                 "what the scene's inputs reach and its outputs see"};
   }
 
   /// The first model of the sequence whose bound is at most this.
   ReducedSystem reach(double accuracy) {
     const double start = now();
     const std::size_t step = first_within(accuracy);
-    ReducedData d{full_, sequence_->model(step), bounds_.at(step), {compiled_}, {}, {}, seconds_};
+    ReducedData d{full_, sequence_->model(step), bounds_.at(step), steps_, {}, {}, seconds_};
     d.steps.push_back({"whole", static_cast<int>(whole_.order()), static_cast<int>(d.small.order()),
                        d.bound.worst,
                        "modes of the band, and static-like vectors of those above it"});
@@ -77,6 +89,10 @@ class Economy {
     const double start = now();
     f();
     seconds_.emplace_back(name, now() - start);
+  }
+
+  void note(const char* name, Index before, Index after, std::string text) {
+    steps_.push_back({name, static_cast<int>(before), static_cast<int>(after), 0, std::move(text)});
   }
 
   static int coordinates_of(const Diagram& diagram) {
@@ -120,7 +136,7 @@ class Economy {
 
   ErrorBound bound(const Small& small) const {
     const auto points = detail::sample_points(scene_, band_, whole_, small.poles(), kPhase);
-    const detail::Samples check = detail::sample(full_, scene_, points);
+    const detail::Samples check = detail::sample(full_, scene_, whole_, points);
     ErrorBound b;
     b.kind = !whole_.proportional ? BoundKind::estimate : scene_.bound;
     b.samples = static_cast<int>(points.size() + samples_.s.size());
@@ -171,7 +187,7 @@ class Economy {
   detail::Samples samples_;
   std::unique_ptr<detail::Sequence> sequence_;
   std::map<std::size_t, ErrorBound> bounds_;  ///< by step of the sequence, as far as asked for
-  EconomyStep compiled_;
+  std::vector<EconomyStep> steps_;
   std::vector<std::pair<std::string, double>> seconds_;
 };
 

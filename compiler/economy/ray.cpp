@@ -36,42 +36,18 @@ std::vector<Complex> merged(std::vector<Complex> poles, const std::vector<Comple
   return poles;
 }
 
-/// log of a typical size of every pair: row + column, by least squares over the pairs that are not
-/// 0, so that units cancel.
-MatrixXd typical(const MatrixXd& peak) {
-  Eigen::VectorXd row = Eigen::VectorXd::Zero(peak.rows()),
-                  column = Eigen::VectorXd::Zero(peak.cols());
-  for (int sweep = 0; sweep < 50; ++sweep) {
-    for (Index i = 0; i < peak.rows(); ++i) {
-      double sum = 0, count = 0;
-      for (Index j = 0; j < peak.cols(); ++j)
-        if (peak(i, j) > 0) sum += std::log(peak(i, j)) - column(j), ++count;
-      row(i) = count > 0 ? sum / count : 0;
-    }
-    for (Index j = 0; j < peak.cols(); ++j) {
-      double sum = 0, count = 0;
-      for (Index i = 0; i < peak.rows(); ++i)
-        if (peak(i, j) > 0) sum += std::log(peak(i, j)) - row(i), ++count;
-      column(j) = count > 0 ? sum / count : 0;
-    }
+/// What every pair would be at s if output and input saw all modes alike: norms of what the output
+/// reads and the input drives, each mode weighed by its response [Cauchy, Schwarz]. Units cancel
+/// against the pair's own.
+MatrixXd alike(const Whole& w, Complex s) {
+  MatrixXd out = MatrixXd::Zero(w.ca.rows(), 1), in = MatrixXd::Zero(1, w.b.cols());
+  for (Index j = 0; j < w.order(); ++j) {
+    const double weight = 1 / std::abs(s * (s + w.damping(j)) + w.lambda(j));
+    for (Index i = 0; i < out.size(); ++i)
+      out(i) += weight * std::norm(s * (s * w.ca(i, j) + w.cv(i, j)) + w.cq(i, j));
+    for (Index m = 0; m < in.size(); ++m) in(m) += weight * w.b(j, m) * w.b(j, m);
   }
-  return row.replicate(1, peak.cols()) + column.transpose().replicate(peak.rows(), 1);
-}
-
-/// Pairs far below what their row and column suggest are compared with that (Scene).
-MatrixXd floored(const MatrixXd& peak) {
-  if (peak.size() == 0) return peak;
-  const MatrixXd size = typical(peak).array().exp();
-  const MatrixXd Q = peak.cwiseQuotient(size);
-  const double overall = Q.maxCoeff();
-  MatrixXd result = peak;
-  for (Index i = 0; i < peak.rows(); ++i)
-    for (Index j = 0; j < peak.cols(); ++j) {
-      const double suggested = Q.row(i).maxCoeff() * Q.col(j).maxCoeff() / overall;
-      result(i, j) = std::max(peak(i, j), 1e-6 * suggested * size(i, j));
-      if (!(result(i, j) > 0)) result(i, j) = 1;  // nothing at all reaches this output
-    }
-  return result;
+  return out.cwiseSqrt() * in.cwiseSqrt();
 }
 
 }  // namespace
@@ -112,17 +88,22 @@ std::vector<double> sample_points(const Scene& scene, const Band& band, const Wh
   return points;
 }
 
-Samples sample(const System& system, const Scene& scene, std::vector<double> omega) {
+Samples sample(const System& system, const Scene& scene, const Whole& w,
+               std::vector<double> omega) {
   Samples result;
   result.omega = std::move(omega);
   result.H.resize(result.omega.size());
-  for (const double w : result.omega) result.s.push_back(on_ray(scene, w));
+  for (const double omega_k : result.omega) result.s.push_back(on_ray(scene, omega_k));
   parallel(result.s.size(), 0,
            [&] { return [&](std::size_t i) { result.H[i] = system.transfer(result.s[i]); }; });
-  result.peak = MatrixXd::Zero(static_cast<Index>(system.outputs().size()),
-                               static_cast<Index>(system.inputs().size()));
-  for (const auto& H : result.H) result.peak = result.peak.cwiseMax(H.cwiseAbs());
-  result.peak = floored(result.peak);
+  result.peak = MatrixXd::Zero(w.ca.rows(), w.b.cols());
+  for (std::size_t k = 0; k < result.s.size(); ++k) {
+    for (Index i = 0; i < w.ca.rows(); ++i)
+      if (w.is_silent[static_cast<std::size_t>(i)]) result.H[k].row(i).setZero();
+    result.peak = result.peak.cwiseMax(result.H[k].cwiseAbs());
+    result.peak = result.peak.cwiseMax(1e-6 * alike(w, result.s[k]));
+  }
+  result.peak = (result.peak.array() > 0).select(result.peak, 1);  // nothing gets there
   return result;
 }
 

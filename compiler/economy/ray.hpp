@@ -18,8 +18,10 @@ Band band_of(const Scene& scene, const Whole& whole);
 std::vector<double> sample_points(const Scene& scene, const Band& band, const Whole& whole,
                                   const std::vector<std::complex<double>>& small, double step);
 
-/// The factored system there, on all cores. O(points * bodies).
-Samples sample(const System& system, const Scene& scene, std::vector<double> omega);
+/// The factored system there, on all cores; outputs that symmetry silences are 0. O(points *
+/// bodies).
+Samples sample(const System& system, const Scene& scene, const Whole& whole,
+               std::vector<double> omega);
 
 /// (zeta + j sqrt(1 - zeta^2)) omega.
 std::complex<double> on_ray(const Scene& scene, double omega);

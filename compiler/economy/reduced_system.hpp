@@ -21,7 +21,7 @@ struct ErrorBound {
 
 /// What one step left out.
 struct EconomyStep {
-  std::string name;           ///< "structure", "bodies", "symmetry", "whole"
+  std::string name;           ///< "structure", "symmetry", "whole"
   int before = 0, after = 0;  ///< second-order coordinates
   double error = 0;           ///< what it cost, relative as Scene says; 0: exact
   std::string text;           ///< in plain words
@@ -94,17 +94,17 @@ class ReducedSystem {
 /// What was left out, what is kept, and the bound.
 std::string to_string(const ReducedSystem& system);
 
-/// The smallest model found for this question (design.md: "no more than the scene needs"): the
-/// diagram is compiled for the scene's inputs and outputs; what symmetric bodies cannot show goes
-/// exactly; above Scene::whole_up_to coordinates bodies lose modes, with residual vectors; the
-/// whole is then reduced to modes of the band and static-like vectors of the modes above it
-/// (modal with static correction, second-order structure kept). The result is checked against the
-/// full factored system and refined until the bound is below the accuracy.
+/// A small model that answers this question (design.md: "no more than the scene needs"). The
+/// diagram is compiled for the scene's inputs and outputs alone; what symmetric bodies cannot show
+/// goes exactly; the rest becomes modes of the band and static-like vectors of the modes above it,
+/// with the second-order structure kept. The result is checked against the full factored system,
+/// and grows until the bound is below the accuracy.
 ///
-/// Throws what `compile(diagram)` throws; bad_value for a scene out of range, for parts that are no
-/// passive structure (controllers, filters: their states are named), and where the accuracy cannot
-/// be met, with what was reached and where; unknown_name for inputs and outputs that are not there.
-/// Cost: one symmetric eigenproblem of the coordinates, O(n^3), and some hundred transfers.
+/// Throws what `compile(diagram)` throws; bad_value for a scene out of range or too large, for
+/// parts that are no passive structure (controllers, filters: their states are named), and where
+/// the accuracy cannot be met, with what was reached and where; unknown_name for inputs and outputs
+/// that are not there. Cost: one symmetric eigenproblem, O(n^3) of the coordinates, and some
+/// hundred transfers of the full system.
 ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options& options = {});
 
 /// One line of `what_if`.

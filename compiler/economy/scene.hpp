@@ -16,10 +16,11 @@ enum class BoundKind {
 /// The question: from these inputs to these outputs, over this band, this well.
 ///
 /// The error of a pair (input, output) is the largest difference of the transfer over the band,
-/// over the largest magnitude of the pair itself there. Pairs that are zero, by symmetry say, are
-/// compared with 1e-6 of what their row and their column suggest: units cancel. Both are taken on
-/// the ray s = (zeta + j sqrt(1 - zeta^2)) omega, zeta the damping floor, since an undamped peak
-/// has no finite height; there a mode looks as it would with damping zeta more.
+/// over the largest magnitude of the pair itself there. Pairs that are nearly zero, by symmetry
+/// say, are compared with 1e-6 of what they would be if input and output saw all modes alike: units
+/// cancel. Both are taken on the ray s = (zeta + j sqrt(1 - zeta^2)) omega, zeta the damping floor,
+/// since an undamped peak has no finite height; there a mode looks as it would with damping zeta
+/// more.
 struct Scene {
   std::vector<std::string> inputs = {};    ///< "W", or one of its scalars, "W(3)"; empty: all
   std::vector<std::string> outputs = {};   ///< likewise
@@ -27,8 +28,8 @@ struct Scene {
   double accuracy = 1e-3;                  ///< largest error of any pair, between 1e-12 and 1
   double damping_floor = 0.002;            ///< zeta, between 1e-6 and 0.5
   BoundKind bound = BoundKind::estimate;   ///< a theorem costs many times the samples
-  /// Up to this many coordinates the whole is reduced at once (one symmetric eigenproblem); beyond
-  /// it bodies lose modes first, those that matter least to the whole.
+  /// Up to this many coordinates the whole is reduced, by one symmetric eigenproblem of O(n^3);
+  /// more are refused.
   int whole_up_to = 2000;
 };
 

@@ -1,7 +1,6 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <titop/compiler/economy/whole.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
@@ -62,18 +61,19 @@ void turn_clusters(VectorXd& lambda, MatrixXd& phi, const MatrixXd& b, const Mat
   }
 }
 
-void find_shares(Whole& w, const Coordinates& c, const Graph& graph, const Scaled& s) {
-  std::map<int, Index> row;
-  for (const int node : c.nodes)
-    if (row.emplace(node, static_cast<Index>(row.size())).second)
-      w.blocks.push_back(graph.nodes[at(node)].name);
-  w.shares = MatrixXd::Zero(static_cast<Index>(row.size()), w.order());
-  const MatrixXd Ky = c.diagonal ? s.y : MatrixXd(s.K * s.y);
-  for (Index i = 0; i < c.n_elastic; ++i)
-    w.shares.row(row[c.nodes[at(i)]]).head(c.n_elastic) +=
-        s.y.row(i).cwiseProduct(Ky.row(i)).cwiseAbs();
-  for (Index i = c.n_elastic; i < c.size(); ++i) w.shares(row[c.nodes[at(i)]], i) = 1;
-  for (Index j = 0; j < w.order(); ++j) w.shares.col(j) /= w.shares.col(j).sum();
+/// Elastic energy by blocks; loose motions belong to their own block.
+MatrixXd shares(const Coordinates& c, const Scaled& s) {
+  const Index n = c.n_elastic;
+  MatrixXd result = MatrixXd::Zero(static_cast<Index>(c.blocks.size()), c.size());
+  if (n > 0) {
+    const MatrixXd Ky = c.diagonal ? s.y : MatrixXd(s.K * s.y);
+    result.leftCols(n) = c.shares * s.y.cwiseProduct(Ky).cwiseAbs();
+  }
+  for (Index j = 0; j < n; ++j) result.col(j) /= result.col(j).sum();
+  for (Index j = n; j < c.size(); ++j)
+    for (Index i = 0; i < result.rows(); ++i)
+      if (c.names[at(j)].starts_with(c.blocks[at(i)] + ".")) result(i, j) = 1;
+  return result;
 }
 
 /// What the transfer at one real s has beside the modes. Above the poles of a damped structure, and
@@ -87,6 +87,8 @@ MatrixXd rest(const System& system, const Whole& w) {
   const VectorXd stiff = (w.lambda.array() + s * s).matrix();
   if (w.Z.size() == 0) {
     x.array().colwise() /= stiff.array();
+  } else if (w.proportional) {
+    x.array().colwise() /= stiff.array() + s * w.Z.diagonal().array();
   } else {
     x = solve_definite(s * w.Z + MatrixXd(stiff.asDiagonal()), w.b);
   }
@@ -102,11 +104,11 @@ bool is_diagonal(const MatrixXd& Z) {
 
 }  // namespace
 
-Whole whole(const System& system, const Coordinates& c, const Graph& graph,
-            std::vector<char> is_position) {
+Whole whole(const System& system, const Coordinates& c, std::vector<char> is_position) {
   Whole w;
   const Index n = c.n_elastic;
   w.is_position = std::move(is_position);
+  w.is_silent = c.is_silent;
   w.loose = c.size() - n;
   w.lambda = VectorXd::Zero(c.size());
   MatrixXd phi = MatrixXd::Zero(c.size(), c.size());
@@ -131,10 +133,11 @@ Whole whole(const System& system, const Coordinates& c, const Graph& graph,
       w.proportional = is_diagonal(w.Z);
       if (w.proportional) w.Z = MatrixXd(w.Z.diagonal().asDiagonal());
     }
-    find_shares(w, c, graph, s);
+    w.shares = shares(c, s);
   } else {
-    find_shares(w, c, graph, {});
+    w.shares = shares(c, {});
   }
+  w.blocks = c.blocks;
   const MatrixXd cq = c.C_q * phi;
   w.cv = c.C_v * phi;
   w.ca = MatrixXd::Zero(cq.rows(), cq.cols());
@@ -143,6 +146,8 @@ Whole whole(const System& system, const Coordinates& c, const Graph& graph,
   w.cq.leftCols(n).setZero();
   if (w.Z.size() > 0) w.cv += w.ca * w.Z;
   w.D0 = rest(system, w);
+  for (Index i = 0; i < w.D0.rows(); ++i)
+    if (w.is_silent[at(i)]) w.D0.row(i).setZero();
   return w;
 }
 

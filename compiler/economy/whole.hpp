@@ -22,6 +22,7 @@ struct Whole {
   Eigen::MatrixXd Z;              ///< n x n, symmetric, semidefinite; 0 x 0 where nothing is damped
   bool proportional = true;       ///< Z is diagonal, to rounding
   std::vector<char> is_position;  ///< per output
+  std::vector<char> is_silent;    ///< per output: 0 by symmetry
   std::vector<std::string> blocks;  ///< that have coordinates
   Eigen::MatrixXd shares;           ///< blocks x n: of a mode's elastic energy, of sum 1
 
@@ -34,8 +35,7 @@ struct Whole {
 /// Modes of these coordinates; of the clusters of equal frequency those that inputs and outputs
 /// tell apart. D0 is what the factored system's transfer leaves at one real s beside the modes, so
 /// that it also holds what they miss. Throws what `coordinates` throws. O(n^3).
-Whole whole(const System& system, const Coordinates& c, const Graph& graph,
-            std::vector<char> is_position);
+Whole whole(const System& system, const Coordinates& c, std::vector<char> is_position);
 
 /// Which outputs of a graph are positions (all their terms are), scalar by scalar, as declared.
 std::vector<char> positions_read(const Graph& graph);

@@ -39,7 +39,7 @@ TEST_CASE("bushing: a body on it, diagonal and full matrices, against M, D, K") 
     CAPTURE(coupled);
     const Matrix6 K = coupled ? seen_from({0.1, -0.2, 0.05}, kK) : Matrix6(kK.asDiagonal());
     const Matrix6 C = coupled ? seen_from({0, 0.1, 0.1}, kC) : Matrix6(kC.asDiagonal());
-    Scene scene;
+    Setup scene;
     const Bushing spec = coupled
                              ? Bushing{.stiffness = K, .damping = C}
                              : Bushing{.stiffness = {4e4, 5e4, 9e4, 900, 700, 300}, .damping = kC};
@@ -59,12 +59,12 @@ TEST_CASE("bushing: between ports of every kind it is the same") {
   const auto all = first(12);
   const auto exact = part(exact_transfers(a), all, all);
   {
-    Scene scene;  // the boom's parent point is left free: the bushing's `+=` releases it
+    Setup scene;  // the boom's parent point is left free: the bushing's `+=` releases it
     bushing(scene.d, "iso", scene.boom.parent, scene.hub.child("C"), mounting(), spec);
     CHECK(error_3(responses(compile(scene.d), kPoints), exact) <= 1e-10);
   }
   {
-    Scene scene;  // seen from the hub: the bushing in the hub's frame
+    Setup scene;  // seen from the hub: the bushing in the hub's frame
     const Matrix3d T = Eigen::AngleAxisd(kAngle, kTurn.normalized()).matrix();
     const Matrix6 TT = by_hand::dual(T);
     Matrix6 Kh = TT * K * TT.transpose();

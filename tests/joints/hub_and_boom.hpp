@@ -53,12 +53,12 @@ inline by_hand::Structure assemble(const MatrixXd& S, const MatrixXd& K, const M
 }
 
 /// The library's side of it: a diagram with hub and boom, inputs W and F, outputs P and tip.
-struct Scene {
+struct Setup {
   titop::Diagram d{"hub and boom"};
   titop::InputRef W = d.input("W", 6), F = d.input("F", 6);
   titop::BodyHandle hub = d.add("hub", joint_test::hub());
   titop::BodyHandle boom = d.add("boom", titop::FlexibleBody{kBoom.beam()});
-  Scene() {
+  Setup() {
     hub.parent.force = -W;
     boom.child.force = F;
     d.output("P", 6) = hub.parent.accel;

@@ -34,7 +34,7 @@ MatrixXd diagonal(std::initializer_list<double> d) {
 }  // namespace
 
 TEST_CASE("slide: spring, damper and actuator, against M, D, K") {
-  Scene scene;
+  Setup scene;
   auto s = slide(scene.d, "jack", scene.boom, scene.hub.child("C"), mounting(), 5 * kR);
   s.force = 2e4 * s.travel + 30 * s.rate - scene.d.input("u");
   scene.d.output("x") = s.travel;
@@ -52,7 +52,7 @@ TEST_CASE("slide: driven, it costs what the boom takes to follow; free, it has n
   const auto a = assemble(columns({linear(kR)}), diagonal({0}), diagonal({0}));
   const auto exact = exact_transfers(a);
   {
-    Scene scene;
+    Setup scene;
     auto s = slide(scene.d, "jack", scene.boom, scene.hub.child("C"), mounting(), kR);
     s.accel = scene.d.input("xdd");
     scene.d.output("f") = s.force;
@@ -72,7 +72,7 @@ TEST_CASE("slide: driven, it costs what the boom takes to follow; free, it has n
     CHECK(by_hand::transfer_error(responses(system, kPoints), driven) <= 1e-11);
     CHECK(system.state_space().order() == 2 * 12);
   }
-  Scene scene;
+  Setup scene;
   auto s = slide(scene.d, "jack", scene.boom, scene.hub.child("C"), mounting(), kR);
   s.force = 0;
   const System system = compile(scene.d);
@@ -101,7 +101,7 @@ TEST_CASE("joint: any axes, free, sprung and locked, against M, D, K") {
     const VectorXd damping = VectorXd::LinSpaced(k, 5, 1);
     for (const bool sprung : {true, false}) {
       if (!sprung && k == 6) continue;  // two separate structures
-      Scene scene;
+      Setup scene;
       auto j = joint(scene.d, "j", scene.boom, scene.hub.child("C"), mounting(), c.axes);
       for (Index i = 0; i < k; ++i) {
         const std::string& given = c.axes[at(i)].name;
@@ -130,20 +130,20 @@ TEST_CASE("joint: any axes, free, sprung and locked, against M, D, K") {
 
 TEST_CASE("joint: one axis is a hinge or a slide; two are hinges one after the other") {
   const auto with = [](auto hang) {
-    Scene scene;
+    Setup scene;
     hang(scene);
     return responses(compile(scene.d), kPoints);
   };
-  const auto hinged = with([](Scene& s) {
+  const auto hinged = with([](Setup& s) {
     auto h = hinge(s.d, "h", s.boom, s.hub.child("C"), mounting(), kR);
     h.torque = 700 * h.angle;
   });
-  CHECK(error_3(with([](Scene& s) {
+  CHECK(error_3(with([](Setup& s) {
                   auto j = joint(s.d, "j", s.boom, s.hub.child("C"), mounting(), {about(kR, "a")});
                   j.axis("a").force = 700 * j.axis("a").position;
                 }),
                 hinged) <= 1e-13);
-  const auto series = with([](Scene& s) {
+  const auto series = with([](Setup& s) {
     auto outer = s.d.add("outer", Hinge{{0, 1, 0}});
     mount(outer, s.hub.child("C"), mounting());
     auto inner = s.d.add("inner", Hinge{kR});
@@ -152,7 +152,7 @@ TEST_CASE("joint: one axis is a hinge or a slide; two are hinges one after the o
     outer.torque = 700 * outer.angle;
     inner.torque = 0;
   });
-  CHECK(error_3(with([](Scene& s) {
+  CHECK(error_3(with([](Setup& s) {
                   auto j = joint(s.d, "j", s.boom, s.hub.child("C"), mounting(),
                                  universal({0, 1, 0}, kR));
                   j.axis("axis1").force = 700 * j.axis("axis1").position;
@@ -161,9 +161,9 @@ TEST_CASE("joint: one axis is a hinge or a slide; two are hinges one after the o
 }
 
 TEST_CASE("joint: locked on all its axes it is a mount, driven on one it prescribes it") {
-  Scene fixed;
+  Setup fixed;
   mount(fixed.boom, fixed.hub.child("C"), mounting());
-  Scene locked;
+  Setup locked;
   auto j = joint(locked.d, "j", locked.boom, locked.hub.child("C"), mounting(), ball());
   for (const char* name : {"rx", "ry", "rz"}) j.axis(name).accel = 0;
   CHECK(error_3(responses(compile(locked.d), kPoints), responses(compile(fixed.d), kPoints)) <=
@@ -241,7 +241,7 @@ TEST_CASE("positions go through joints") {
 }
 
 TEST_CASE("joint: states, ports and errors have the axes' names") {
-  Scene scene;
+  Setup scene;
   auto j = joint(scene.d, "gimbal", scene.boom, scene.hub.child("C"), mounting(),
                  {about({1, 0, 0}, "roll"), about({0, 1, 0})});
   for (const char* name : {"roll", "axis2"}) {
@@ -278,7 +278,7 @@ TEST_CASE("joints refuse axes that are none, and a joint by itself must be drive
              {"X: a second axis is called \"a\""}));
   CHECK(says(refused(Joint{{about({1, 0, 0}, "child")}}), Code::duplicate_name, {"\"child\""}));
 
-  Scene scene;
+  Setup scene;
   slide(scene.d, "jack", scene.boom, scene.hub.child("C"), mounting(), kR);
   CHECK(says(titop_test::compile_error(scene.d), Code::no_equation,
              {"jack.accel is not driven", "jack.force = 0", "jack.accel = 0"}));

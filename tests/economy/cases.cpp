@@ -1,0 +1,153 @@
+#include <doctest/doctest.h>
+
+#include "economy/scenes.hpp"
+#include "support/close.hpp"
+#include "support/mistakes.hpp"
+
+using namespace titop;
+using namespace titop_test;
+using Eigen::MatrixXd;
+
+namespace {
+
+/// A beam with a rigid body at its tip of so many times its mass; wrench and acceleration there.
+Diagram loaded(const FlexibleBody& beam, double times) {
+  Diagram d{"loaded"};
+  auto U = d.input("U", 6);
+  const double m = times * beam.data().D_P(0, 0);
+  auto b = d.add("beam", beam);
+  auto tip = d.add("tip", RigidBody{.mass = m,
+                                    .inertia = Vector3d(0.02, 0.03, 0.04).asDiagonal() * m,
+                                    .PA = {0.05, 0.02, 0.01}});
+  b.parent.accel = 0;
+  mount(tip, b.child("C"), Rotation{});
+  tip.parent.force += -U;
+  d.output("a", 6) = tip.parent.accel;
+  return d;
+}
+
+/// A free hub with two beams that turning by pi about z exchanges; forces on the hub.
+Diagram twins(const FlexibleBody& beam, double off = 0) {
+  Diagram d{"twins"};
+  auto U = d.input("U", 6);
+  auto hub = d.add("hub", RigidBody{.mass = 20,
+                                    .inertia = Vector3d(1, 2, 3).asDiagonal(),
+                                    .children = {{"C1", {0.3, 0, 0}}, {"C2", {-0.3 + off, 0, 0}}}});
+  auto left = d.add("left", beam), right = d.add("right", beam);
+  hub.parent.force = -U;
+  const Matrix3d turn = Vector3d(-1, -1, 1).asDiagonal();
+  mount(left, hub.child("C1"), Rotation{});
+  mount(right, hub.child("C2"), Rotation::matrix(turn));
+  d.output("a", 6) = hub.parent.accel;
+  d.output("tips", 3) = left.child("C").accel.linear;
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("a cantilever whose tip carries 50 times its mass") {
+  const Diagram d = loaded(slim_beam(8), 50);
+  for (const double accuracy : {1e-2, 1e-5}) {
+    const titop::Scene scene{.band_hz = {0, 60}, .accuracy = accuracy};
+    const ReducedSystem r = compile(d, scene);
+    CHECK(on_fine_grid(r, scene).bound <= 1);
+    CHECK(r.bound().worst <= accuracy);
+    CHECK(r.order() <= 32);
+  }
+}
+
+TEST_CASE("a free-free structure: rigid motion is in the static part, positions keep theirs") {
+  const FlexibleBody beam = slim_beam(6);
+  for (const bool positions : {false, true}) {
+    Diagram d{"free"};
+    auto U = d.input("U", 6);
+    auto b1 = d.add("b1", beam), b2 = d.add("b2", beam);
+    b1.parent.force = -U;
+    mount(b2, b1.child("C"), Rotation::about({0, 1, 1}, 0.8));
+    if (positions)
+      d.output("x", 6) = b1.parent.position;
+    else
+      d.output("a", 6) = b2.child("C").accel;
+    const titop::Scene scene{.band_hz = {positions ? 1.0 : 0.0, 50}, .accuracy = 1e-4};
+    const ReducedSystem r = compile(d, scene);
+    CHECK(on_fine_grid(r, scene).bound <= 1);
+    CHECK(r.order() <= r.full().order() / 2);
+    int rigid = 0;
+    for (const KeptMode& m : r.modes()) rigid += m.hertz == 0;
+    CHECK(rigid == (positions ? 6 : 0));
+  }
+}
+
+TEST_CASE("symmetric appendages, common motion only: half their modes go exactly") {
+  const FlexibleBody beam = slim_beam(6);  // 36 modes
+  titop::Scene scene{.inputs = {"U(3)"}, .outputs = {"a(3)"}, .band_hz = {0, 60}, .accuracy = 1e-6};
+  const ReducedSystem r = compile(twins(beam), scene);
+  REQUIRE(r.steps().size() == 3);
+  CHECK(r.steps()[1].name == "symmetry");
+  CHECK(r.steps()[1].before == 72);
+  CHECK(r.steps()[1].after == 36);
+  CHECK(r.steps()[1].error == 0);
+  CHECK(on_fine_grid(r, scene).bound <= 1);
+  // One tip is read: both move alike, whoever looks at one of them.
+  scene.outputs = {"a", "tips"};
+  CHECK(compile(twins(beam), scene).steps()[1].after == 36);
+  scene.accuracy = 1e-4;
+  // Not all inputs are driven alike, or the places differ by a millimetre: nothing goes.
+  scene.inputs = {"U"};
+  CHECK(compile(twins(beam), scene).steps().size() == 2);
+  scene.inputs = {"U(3)"};
+  CHECK(compile(twins(beam, 1e-3), scene).steps().size() == 2);
+}
+
+TEST_CASE("a high mode of one body that another's lock brings down into the band is kept") {
+  // Clamped at P and locked at C by a body of 1e4 masses, the beam's first bending mode is the
+  // second one with both ends held; what the body's own modes say of frequencies is far off.
+  Diagram d{"locked"};
+  const FlexibleBody beam = slim_beam(8);
+  auto U = d.input("U", 6);
+  auto rail = d.add("rail", beam), boom = d.add("boom", beam);
+  const double m = 1e4 * beam.data().D_P(0, 0);
+  auto block = d.add("block", RigidBody{.mass = m, .inertia = Matrix3d::Identity() * m});
+  rail.parent.accel = 0;
+  mount(block, rail.child("C"), Rotation{});
+  mount(boom, rail.child("C"), Rotation::about({0, 0, 1}, 0.5));
+  boom.child("C").force = U;
+  d.output("a", 6) = boom.child("C").accel;
+  const titop::Scene scene{.band_hz = {0, 60}, .accuracy = 1e-4};
+  const ReducedSystem r = compile(d, scene);
+  const Against fine = on_fine_grid(r, scene);
+  CHECK(fine.bound <= 1);
+  CHECK(fine.error <= 1e-4);
+}
+
+TEST_CASE("wrong scenes are refused by name") {
+  const Diagram d = loaded(slim_beam(3), 1);
+  const auto refused = [&](const titop::Scene& scene) {
+    return error_of([&] { compile(d, scene); });
+  };
+  CHECK(says(refused({.band_hz = {5, 2}}), Code::bad_value, {"5 to 2 Hz"}));
+  CHECK(says(refused({.band_hz = {0, 9}, .accuracy = 0}), Code::bad_value, {"accuracy is 0"}));
+  CHECK(says(refused({.band_hz = {0, 9}, .damping_floor = 0}), Code::bad_value, {"damping floor"}));
+  CHECK(says(refused({.inputs = {"V"}, .band_hz = {0, 9}}), Code::unknown_name, {"input V", "U"}));
+  CHECK(says(refused({.outputs = {"a(7)"}, .band_hz = {0, 9}}), Code::unknown_name, {"a(7)"}));
+  const Diagram damped = frame(slim_beam(5, 0.005));
+  const Error error = error_of([&] {
+    compile(damped, titop::Scene{.band_hz = {0, 30}, .accuracy = 1e-12});
+  });
+  CHECK(says(error, Code::bad_value, {"cannot be met", "coordinates, from U("}));
+}
+
+TEST_CASE("a controller in the loop is refused, its state named") {
+  Diagram d{"loop"};
+  auto U = d.input("U");
+  auto z = d.add("z", SpringMass{.mass = 2.0, .stiffness = 30.0});
+  auto K = d.add("K", Lti{.A = MatrixXd::Constant(1, 1, -3.0),
+                          .B = MatrixXd::Constant(1, 1, 2.0),
+                          .C = MatrixXd::Constant(1, 1, 1.0)});
+  z.parent.accel = 0;
+  K.in = z.stretch;
+  z.child.force = U - K.out;
+  d.output("x") = z.stretch;
+  const Error error = error_of([&] { compile(d, titop::Scene{.band_hz = {0, 9}}); });
+  CHECK(says(error, Code::bad_value, {"K.", "passive", "compile(diagram)"}));
+}
