@@ -22,10 +22,10 @@
 #include <titop/blocks/slide.hpp>
 #include <titop/blocks/spring_mass.hpp>
 #include <titop/compiler/dot.hpp>
+#include <titop/compiler/economy/reduced_system.hpp>
 #include <titop/compiler/emit/cpp.hpp>
 #include <titop/compiler/emit/files.hpp>
 #include <titop/compiler/emit/hold.hpp>
-#include <titop/compiler/economy/reduced_system.hpp>
 #include <titop/compiler/minimize.hpp>
 #include <titop/compiler/modal.hpp>
 #include <titop/compiler/simulate.hpp>

@@ -81,7 +81,9 @@ void remove_input_signals(Graph& g) {
   }
   g.signals = std::move(kept);
   for (Node& n : g.nodes) {
+    const int count = n.end_signal - n.first_signal;
     n.first_signal = place[at(n.first_signal)];
+    n.end_signal = n.first_signal + count;
     if (n.state >= 0) n.state = place[at(n.state)];
   }
   for (Channel& c : g.channels) c.accel = place[at(c.accel)], c.force = place[at(c.force)];

@@ -1,5 +1,5 @@
 // Generated C++ as text: names, choice of states, refusals. That it compiles and is right is proved
-// by compiling it: tests/interop/generated_cpp.cpp and examples/13_generated_code.cpp.
+// by compiling it: tests/interop/generated_cpp.cpp and examples/15_generated_code.cpp.
 #include <doctest/doctest.h>
 
 #include <cstdlib>
