@@ -21,7 +21,7 @@ Diagram loaded(const FlexibleBody& beam, double times) {
                                     .PA = {0.05, 0.02, 0.01}});
   b.parent.accel = 0;
   mount(tip, b.child("C"), Rotation{});
-  tip.parent.force += -U;
+  b.child("C").force += U;
   d.output("a", 6) = tip.parent.accel;
   return d;
 }
@@ -52,7 +52,9 @@ TEST_CASE("a cantilever whose tip carries 50 times its mass") {
     const ReducedSystem r = compile(d, scene);
     CHECK(on_fine_grid(r, scene).bound <= 1);
     CHECK(r.bound().worst <= accuracy);
-    CHECK(r.order() <= 32);
+    CHECK(r.full().order() == 96);
+    CHECK(r.order() >= 12);  // the six modes of a heavy body on a spring
+    CHECK(r.order() <= 40);
   }
 }
 
