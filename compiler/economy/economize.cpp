@@ -140,7 +140,6 @@ class Economy {
     ErrorBound b;
     b.kind = !whole_.proportional ? BoundKind::estimate : scene_.bound;
     b.samples = static_cast<int>(points.size() + samples_.s.size());
-    const double rounding = full_.certificate().residual;
     b.pairs = Eigen::MatrixXd::Zero(check.peak.rows(), check.peak.cols());
     double worst = -1;
     for (std::size_t k = 0; k < check.s.size(); ++k) {
@@ -156,7 +155,7 @@ class Economy {
       }
     }
     b.peak = check.peak;
-    b.pairs = (b.pairs.array() / std::cos(kPhase / 2)).max(rounding);
+    b.pairs = b.pairs / std::cos(kPhase / 2) + detail::rounding(whole_, check);
     b.worst = b.pairs.maxCoeff();
     return b;
   }

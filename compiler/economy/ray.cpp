@@ -107,4 +107,10 @@ Samples sample(const System& system, const Scene& scene, const Whole& w,
   return result;
 }
 
+MatrixXd rounding(const Whole& w, const Samples& samples) {
+  MatrixXd size = MatrixXd::Zero(w.ca.rows(), w.b.cols());
+  for (const Complex& s : samples.s) size = size.cwiseMax(alike(w, s));
+  return (5e-14 * size.cwiseQuotient(samples.peak)).array() + 1e-12;
+}
+
 }  // namespace titop::detail

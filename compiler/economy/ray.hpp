@@ -23,6 +23,10 @@ std::vector<double> sample_points(const Scene& scene, const Band& band, const Wh
 Samples sample(const System& system, const Scene& scene, const Whole& whole,
                std::vector<double> omega);
 
+/// What rounding may do to the error of each pair there, relative to its peak: 1e-12 of the
+/// transfer itself (System::transfer), and some units of what would be there without cancellation.
+Eigen::MatrixXd rounding(const Whole& whole, const Samples& samples);
+
 /// (zeta + j sqrt(1 - zeta^2)) omega.
 std::complex<double> on_ray(const Scene& scene, double omega);
 
