@@ -17,7 +17,7 @@ using titop::StateSpace;
 using titop::System;
 
 /// One scene for all three tasks; the last result of the method that is timed.
-struct Scene {
+struct Setup {
   System system;
   Network network;
   StateSpace model = {};
@@ -25,7 +25,7 @@ struct Scene {
   std::vector<MatrixXcd> response = {};
   VectorXd x, u, product = {};
 
-  Scene(Case c, int n, int frequencies)
+  Setup(Case c, int n, int frequencies)
       : system(compile(scene(c, n), {.minimize_up_to = 0})),
         network(network_of(system)),
         x(VectorXd::LinSpaced(system.order(), -1, 1)),
@@ -44,7 +44,7 @@ struct Scene {
 
 /// `answer(scene, s)` at each frequency.
 template <class Answer>
-Prepared sweep(const std::shared_ptr<Scene>& scene, Answer answer) {
+Prepared sweep(const std::shared_ptr<Setup>& scene, Answer answer) {
   return {[=] {
             scene->response.clear();
             for (const double w : scene->omega) scene->response.push_back(answer({0, w}));
@@ -53,29 +53,29 @@ Prepared sweep(const std::shared_ptr<Scene>& scene, Answer answer) {
 }
 
 Prepared titop_sweep(Case c, int n, int frequencies, int threads) {
-  const auto scene = std::make_shared<Scene>(c, n, frequencies);
+  const auto scene = std::make_shared<Setup>(c, n, frequencies);
   return {[=] { scene->response = scene->system.frequency_response(scene->omega, threads); }, {}};
 }
 
 Prepared sparse_sweep(Case c, int n, int frequencies) {
-  const auto scene = std::make_shared<Scene>(c, n, frequencies);
+  const auto scene = std::make_shared<Setup>(c, n, frequencies);
   const auto pencil = std::make_shared<SparsePencil>(scene->network);
   return sweep(scene, [=](std::complex<double> s) { return pencil->transfer(s); });
 }
 
 Prepared dense_sweep(Case c, int n, int frequencies) {
-  const auto scene = std::make_shared<Scene>(c, n, frequencies);
+  const auto scene = std::make_shared<Setup>(c, n, frequencies);
   scene->system.write(scene->model);
   return sweep(scene, [=](std::complex<double> s) { return scene->model.transfer(s); });
 }
 
 Prepared titop_apply(Case c, int n) {
-  const auto scene = std::make_shared<Scene>(c, n, 0);
+  const auto scene = std::make_shared<Setup>(c, n, 0);
   return {[=] { scene->product = scene->system.apply(scene->x, scene->u).xdot; }, {}};
 }
 
 Prepared sparse_apply(Case c, int n) {
-  const auto scene = std::make_shared<Scene>(c, n, 0);
+  const auto scene = std::make_shared<Setup>(c, n, 0);
   const auto lu = std::make_shared<SparseLu>(scene->network);
   lu->factorize();
   return {[=] { scene->product = lu->apply(scene->x, scene->u); },
@@ -83,7 +83,7 @@ Prepared sparse_apply(Case c, int n) {
 }
 
 Prepared dense_apply(Case c, int n) {
-  const auto scene = std::make_shared<Scene>(c, n, 0);
+  const auto scene = std::make_shared<Setup>(c, n, 0);
   StateSpace& m = scene->model;
   scene->system.write(m);
   return {[=, &m] {

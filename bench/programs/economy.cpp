@@ -1,0 +1,203 @@
+/// bench_economy [quick]: what accuracy costs. Rows of CSV: for every scene and accuracy the states
+/// that `what_if` keeps, its bound, seconds of one transfer and of one step of simulation beside
+/// the full system's; and what plain truncation by frequency needs for the same error (0: all there
+/// is).
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <numbers>
+#include <titop/compiler/compile_graph.hpp>
+#include <titop/compiler/economy/ray.hpp>
+#include <titop/compiler/economy/sharpen.hpp>
+#include <titop/titop.hpp>
+
+using namespace titop;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+namespace {
+
+double seconds_of(const std::function<void()>& f) {
+  using clock = std::chrono::steady_clock;
+  const auto start = clock::now();
+  int count = 0;
+  double passed = 0;
+  for (; passed < 0.05; ++count) {
+    f();
+    passed = std::chrono::duration<double>(clock::now() - start).count();
+  }
+  return passed / count;
+}
+
+/// The beam of examples/data/calculix_beam: 342 modes.
+FlexibleBody calculix_beam(bool quick, double xi = 0) {
+  const fe::Mesh mesh =
+      fe::read_calculix(fe::calculix_files(TITOP_DATA_DIR "/calculix_beam/beam_free_mat"),
+                        {{"P", 900001}, {"C", 900003}});
+  fe::ModeOptions options;
+  if (quick) options.kept = 20;
+  if (xi > 0) options.xi = {xi};
+  return fe::modal_data(mesh, "P", {"C"}, options);
+}
+
+Diagram frame(const FlexibleBody& beam) {
+  Diagram d{"frame"};
+  auto U = d.input("U", 6);
+  auto b1 = d.add("b1", beam), b2 = d.add("b2", beam), b3 = d.add("b3", beam);
+  b1.parent.accel = 0;
+  mount(b2, b1.child("C"), Rotation::about({1, 2, 3}, 0.7));
+  mount(b3, b2.child("C"), Rotation::about({3, -1, 1}, -1.1));
+  b3.child("C").force = U;
+  d.output("a", 6) = b3.child("C").accel;
+  return d;
+}
+
+Diagram heavy(const FlexibleBody& beam) {
+  Diagram d{"heavy"};
+  const double m = 50 * beam.data().D_P(0, 0);
+  auto U = d.input("U", 6);
+  auto b = d.add("beam", beam);
+  auto tip = d.add("tip", RigidBody{.mass = m, .inertia = Matrix3d::Identity() * 0.01 * m});
+  b.parent.accel = 0;
+  mount(tip, b.child("C"), Rotation{});
+  b.child("C").force += U;
+  d.output("a", 6) = tip.parent.accel;
+  return d;
+}
+
+/// The satellite of examples/demo.cpp.
+Diagram satellite(const FlexibleBody& boom) {
+  Diagram d{"satellite"};
+  auto W = d.input("W", 6);
+  auto tau_m = d.input("tau_m");
+  auto hub =
+      d.add("hub", RigidBody{.mass = 85,
+                             .inertia = Vector3d(9, 11, 13).asDiagonal(),
+                             .PA = {0.02, -0.01, 0.05},
+                             .children = {{"C1", {0.35, 0, 0.1}}, {"C2", {-0.35, 0.05, 0.1}}}});
+  auto boom1 = d.add("boom1", boom), boom2 = d.add("boom2", boom);
+  hub.parent.force = -W;
+  mount(boom1, hub.child("C1"), Rotation::about({0, 0, 1}, std::numbers::pi / 12));
+  auto drive =
+      hinge(d, "drive", boom2, hub.child("C2"), Rotation::about({1, 2, 9}, 2.9), {0, 1, 0});
+  drive.torque = 60 * drive.angle + 0.8 * drive.rate - tau_m;
+  d.output("hub", 6) = hub.parent.accel;
+  d.output("tip1", 6) = boom1.child("C").accel;
+  d.output("tip2", 6) = boom2.child("C").accel;
+  d.output("theta") = drive.angle;
+  return d;
+}
+
+/// A generated structure: `modes` clamped modes in clusters of ten, damping 0.5 %, three points.
+Diagram generated(int modes) {
+  std::uint64_t state = 6;
+  const auto random = [&] {  // splitmix64, in [-1, 1)
+    std::uint64_t z = (state += 0x9E3779B97F4A7C15ull);
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+  };
+  ModalData data;
+  data.omega.resize(modes);
+  data.xi = VectorXd::Constant(modes, 0.005);
+  data.L_P = MatrixXd(modes, 6);
+  data.D_P = Matrix6::Identity() * 1000;
+  for (const char* name : {"C1", "C2", "C3"})
+    data.children.push_back({name, Vector3d(1, 2, 3), MatrixXd(6, modes)});
+  for (int j = 0; j < modes; ++j) {
+    const int cluster = j / 10;
+    data.omega(j) = 2 * std::numbers::pi * (1 + 0.8 * cluster) * (1 + 0.02 * random());
+    for (int k = 0; k < 6; ++k) data.L_P(j, k) = random();
+    for (auto& child : data.children)
+      for (int k = 0; k < 6; ++k) child.Phi_C(k, j) = 0.1 * random();
+  }
+  Diagram d{"generated"};
+  auto U = d.input("U", 3);
+  auto body = d.add("body", FlexibleBody(data));
+  body.parent.accel = 0;
+  body.child("C1").force.linear = U;
+  d.output("a1", 3) = body.child("C1").accel.linear;
+  d.output("v2", 3) = body.child("C2").rate.linear();
+  return d;
+}
+
+/// Modes that plain truncation by frequency needs for this error on the ray; 0 where none do.
+class Plain {
+ public:
+  Plain(const Diagram& d, const Scene& scene) : system_(detail::compile_graph(d.graph(), {})) {
+    const auto data = detail::compile_graph(detail::restricted(d.graph(), scene), {});
+    system_ = System(data);
+    whole_ = detail::whole(system_, detail::coordinates(system_, *data),
+                           detail::positions_read(d.graph()));
+    const detail::Band band = detail::band_of(scene, whole_);
+    detail::sharpen(whole_, system_, 1.2 * band.high);
+    samples_ =
+        detail::sample(system_, scene, whole_, detail::sample_points(scene, band, whole_, {}, 2));
+  }
+  long needed(double accuracy) const {
+    const long n = static_cast<long>(whole_.order());
+    for (long k = 0; k < n; k += std::max(1L, k / 20))
+      if (error(k) <= accuracy) return k;
+    return 0;
+  }
+
+ private:
+  double error(long count) const {
+    std::vector<Eigen::Index> kept;
+    for (long k = 0; k < count; ++k) kept.push_back(k);
+    return detail::errors(samples_, detail::project(whole_, kept, MatrixXd(whole_.elastic(), 0)))
+        .maxCoeff();
+  }
+  System system_;
+  detail::Whole whole_;
+  detail::Samples samples_;
+};
+
+/// One step of x = A x + B u with the full matrix, and with 2 x 2 blocks.
+double full_step(const StateSpace& m) {
+  VectorXd x = VectorXd::Ones(m.order()), y = x;
+  return seconds_of([&] { y.noalias() = m.A * x; });
+}
+double modal_step(const ModalModel& m) {
+  VectorXd x = VectorXd::Ones(m.order()), y = x;
+  return seconds_of([&] {
+    for (std::size_t k = 0; k < m.A.size(); ++k)
+      y.segment<2>(2 * static_cast<Eigen::Index>(k)).noalias() =
+          m.A[k] * x.segment<2>(2 * static_cast<Eigen::Index>(k));
+  });
+}
+
+void table(const char* name, const Diagram& d, const Scene& scene, bool quick) {
+  const std::vector<double> accuracies =
+      quick ? std::vector<double>{1e-1, 1e-3}
+            : std::vector<double>{1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 3e-8, 1e-8};
+  const std::vector<WhatIf> rows = what_if(d, scene, accuracies);
+  if (rows.empty()) return;
+  const System& full = rows.front().system.full();
+  const double w = 2 * std::numbers::pi * scene.band_hz[1];
+  const double full_transfer = seconds_of([&] { (void)full.transfer({0.01 * w, w}); });
+  StateSpace dense;
+  full.write(dense);
+  const double step = full_step(dense);
+  const Plain plain(d, scene);
+  for (const WhatIf& r : rows) {
+    fmt::print("{},{:.0e},{},{},{:.2e},{},{:.2e},{:.2e},{:.2e},{:.2e}\n", name, r.accuracy, r.order,
+               full.order(), r.bound, 2 * plain.needed(r.bound), r.seconds, full_transfer,
+               modal_step(r.system.modal()), step);
+    std::fflush(stdout);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const bool quick = argc > 1 && std::strcmp(argv[1], "quick") == 0;
+  fmt::print("scene,accuracy,states,full,bound,plain,transfer,full_transfer,step,full_step\n");
+  table("frame", frame(calculix_beam(quick)), {.band_hz = {0, 261}}, quick);
+  table("heavy", heavy(calculix_beam(quick)), {.band_hz = {0, 261}}, quick);
+  table("satellite", satellite(calculix_beam(quick, 0.005)), {.band_hz = {0, 300}}, quick);
+  table("generated", generated(quick ? 60 : 500), {.band_hz = {0, 5}}, quick);
+}
