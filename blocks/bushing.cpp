@@ -3,6 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <titop/blocks/bushing.hpp>
+#include <titop/blocks/specified.hpp>
 
 namespace titop {
 namespace {
@@ -55,9 +56,10 @@ void check_matrix(const Matrix6& m, std::string_view what) {
            "check the signs and sizes of the coupling terms");
 }
 
-class BushingBlock : public Block {
+class BushingBlock : public Block, public Specified<Bushing> {
  public:
   explicit BushingBlock(const Bushing& spec) : spec_(spec) {}
+  const Bushing& spec() const override { return spec_; }
   std::string_view type() const override { return "Bushing"; }
   const Interface& interface() const override { return face(); }
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {

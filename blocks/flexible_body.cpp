@@ -3,6 +3,7 @@
 #include <titop/blocks/body_interface.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/modal_checks.hpp>
+#include <titop/blocks/specified.hpp>
 
 namespace titop {
 
@@ -61,7 +62,7 @@ void check_mass(const ModalData& d) {
         "check units and signs of L_P against D_P, or ModalData::digits");
 }
 
-class FlexibleBodyBlock : public Block {
+class FlexibleBodyBlock : public Block, public Specified<ModalData> {
  public:
   explicit FlexibleBodyBlock(std::shared_ptr<const ModalData> data) : data_(std::move(data)) {
     std::vector<std::string> names;
@@ -74,6 +75,7 @@ class FlexibleBodyBlock : public Block {
     rigid_ = rigid_part(PC_, data_->D_P);
     matrices_ = make_matrices();
   }
+  const ModalData& spec() const override { return *data_; }
   std::string_view type() const override { return "FlexibleBody"; }
   const Interface& interface() const override { return face_; }
   std::shared_ptr<const Dynamics> dynamics(ParameterValues) const override { return matrices_; }

@@ -2,6 +2,7 @@
 
 #include <set>
 #include <titop/blocks/joint_block.hpp>
+#include <titop/blocks/specified.hpp>
 #include <titop/graph/error.hpp>
 
 namespace titop {
@@ -48,11 +49,15 @@ MatrixXd twists(const std::vector<Axis>& axes, const std::vector<AxisNames>& nam
   return S;
 }
 
-class JointBlock : public Block {
+class JointBlock : public Block, public Specified<std::vector<Axis>> {
  public:
   JointBlock(std::string_view type, const std::vector<Axis>& axes,
              const std::vector<AxisNames>& names, std::string carries)
-      : type_(type), carries_(std::move(carries)), face_(face_of(names)), S_(twists(axes, names)) {
+      : type_(type),
+        carries_(std::move(carries)),
+        axes_(axes),
+        face_(face_of(names)),
+        S_(twists(axes, names)) {
     const Index k = S_.cols();
     auto d = std::make_shared<Dynamics>();
     d->A = MatrixXd::Zero(2 * k, 2 * k);
@@ -68,6 +73,7 @@ class JointBlock : public Block {
     d->D.block(12, 0, k, 6) = S_.transpose();  // Q from F_C
     matrices_ = std::move(d);
   }
+  const std::vector<Axis>& spec() const override { return axes_; }
   std::string_view type() const override { return type_; }
   const Interface& interface() const override { return face_; }
   std::shared_ptr<const Dynamics> dynamics(ParameterValues) const override { return matrices_; }
@@ -113,6 +119,7 @@ class JointBlock : public Block {
  private:
   std::string_view type_;
   std::string carries_;
+  std::vector<Axis> axes_;
   Interface face_;
   MatrixXd S_;  ///< 6 x k
   std::shared_ptr<const Dynamics> matrices_;

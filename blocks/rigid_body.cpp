@@ -7,6 +7,7 @@
 #include <set>
 #include <titop/blocks/body_interface.hpp>
 #include <titop/blocks/rigid_body.hpp>
+#include <titop/blocks/specified.hpp>
 
 namespace titop {
 
@@ -112,7 +113,7 @@ std::vector<Gains> rigid_gains(const std::vector<Vector3d>& PC, const Matrix6& D
   return result;
 }
 
-class RigidBodyBlock : public Block {
+class RigidBodyBlock : public Block, public Specified<RigidBody> {
  public:
   explicit RigidBodyBlock(const RigidBody& spec) : spec_(spec) {
     std::vector<std::string> names;
@@ -122,6 +123,7 @@ class RigidBodyBlock : public Block {
     }
     face_ = body_interface(names, 0);
   }
+  const RigidBody& spec() const override { return spec_; }
   std::string_view type() const override { return "RigidBody"; }
   const Interface& interface() const override { return face_; }
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <titop/blocks/specified.hpp>
 #include <titop/blocks/spring_mass.hpp>
 
 namespace titop {
@@ -30,9 +31,10 @@ void check_values(double m, double k, double c, double m0) {
                 "stiffness [N/m] and damping [N s/m] must be 0 or more");
 }
 
-class SpringMassBlock : public Block {
+class SpringMassBlock : public Block, public Specified<SpringMass> {
  public:
   explicit SpringMassBlock(const SpringMass& spec) : spec_(spec) {}
+  const SpringMass& spec() const override { return spec_; }
   std::string_view type() const override { return "SpringMass"; }
   const Interface& interface() const override { return face(); }
 

@@ -19,6 +19,7 @@
 #include <titop/blocks/posture.hpp>
 #include <titop/blocks/rigid_body.hpp>
 #include <titop/blocks/scaled.hpp>
+#include <titop/blocks/scene/scene.hpp>
 #include <titop/blocks/slide.hpp>
 #include <titop/blocks/spring_mass.hpp>
 #include <titop/compiler/dot.hpp>

@@ -30,7 +30,9 @@ Rotation Rotation::about(const Vector3d& axis, Value angle) {
   return result;
 }
 
-Rotation Rotation::matrix(const Matrix3d& T) {
+namespace {
+
+void check_rotation(const Matrix3d& T) {
   const double off = (T.transpose() * T - Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(off <= 1e-9))  // also catches not-a-number
     throw Error(Code::not_a_rotation,
@@ -40,10 +42,29 @@ Rotation Rotation::matrix(const Matrix3d& T) {
   if (T.determinant() < 0)
     throw Error(Code::not_a_rotation, "the matrix mirrors: its determinant is -1",
                 "its columns must form a right-handed frame");
+}
+
+}  // namespace
+
+Rotation Rotation::of_steps(std::vector<Step> steps) {
+  for (const Step& step : steps)
+    if (const auto* T = std::get_if<Matrix3d>(&step))
+      check_rotation(*T);
+    else if (const double off = std::get<Turn>(step).axis.norm() - 1; !(std::abs(off) <= 1e-9))
+      throw Error(Code::not_a_rotation, fmt::format("an axis of length {}", off + 1),
+                  "give a unit vector");
+  Rotation result;
+  result.steps_ = std::move(steps);
+  return result;
+}
+
+Rotation Rotation::matrix(const Matrix3d& T) {
+  check_rotation(T);
   const Eigen::JacobiSVD<Matrix3d> svd(T, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Rotation result;
   // An exact rotation (a permutation of axes, say) must stay exact.
-  result.steps_.push_back(off == 0 ? T : Matrix3d(svd.matrixU() * svd.matrixV().transpose()));
+  const bool exact = (T.transpose() * T - Matrix3d::Identity()).isZero(0);
+  result.steps_.push_back(exact ? T : Matrix3d(svd.matrixU() * svd.matrixV().transpose()));
   return result;
 }
 

@@ -49,13 +49,19 @@ class Rotation {
   /// The values that its angles depend on.
   std::vector<Value> values() const;
 
- private:
   struct Turn {
     Vector3d axis;  ///< unit vector
-    Value angle;    ///< [rad]
+    Value angle;    ///< [rad], a parameter
   };
   using Step = std::variant<Matrix3d, Turn>;
-  std::vector<Step> steps_;  ///< the product, left to right; neighbouring matrices are merged
+  /// The product, left to right; neighbouring matrices are merged.
+  const std::vector<Step>& steps() const { return steps_; }
+  /// The rotation of these steps, to the last bit (from a file). Throws not_a_rotation as `matrix`
+  /// does, and repairs nothing.
+  static Rotation of_steps(std::vector<Step> steps);
+
+ private:
+  std::vector<Step> steps_;
   std::string to_, from_;
 };
 

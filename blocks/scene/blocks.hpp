@@ -1,0 +1,28 @@
+#pragma once
+
+#include <functional>
+#include <titop/blocks/scene/json.hpp>
+#include <titop/graph/block.hpp>
+
+/// Blocks by type name: what they were made from, as JSON, and back.
+namespace titop::scene {
+
+/// Numbers that may be parameters.
+using WriteValue = std::function<Json(const Value&)>;
+using ReadValue = std::function<Value(const Place&)>;
+/// The name under which shared modal data stand in the file.
+using NameBody = std::function<std::string(const Block&)>;
+using FindBody = std::function<BlockPtr(const Place&)>;
+
+/// The fields of this block behind "name" and "type". Throws bad_value for a type of the user's
+/// own.
+void write_block(const Block& block, const WriteValue& value, const NameBody& body, Json& json);
+
+/// The block of this place. Throws bad_file, and what as_block throws.
+BlockPtr read_block(const Place& place, const ReadValue& value, const FindBody& body);
+
+/// Shared modal data.
+Json body_json(const Block& flexible_body);
+BlockPtr read_body(const Place& place);
+
+}  // namespace titop::scene

@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <titop/blocks/scene/json.hpp>
+#include <titop/graph/error.hpp>
+
+namespace titop::scene {
+
+using Eigen::Index;
+
+Json rows(const Eigen::MatrixXd& M) {
+  Json result = Json::array();
+  for (Index i = 0; i < M.rows(); ++i) result.push_back(list(M.row(i)));
+  return result;
+}
+
+Json list(const Eigen::VectorXd& v) {
+  Json result = Json::array();
+  for (const double x : v) result.push_back(x);
+  return result;
+}
+
+void Place::refuse(const std::string& expected) const {
+  std::string found = json_->dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (found.size() > 60) found = found.substr(0, 57) + "...";
+  throw Error(Code::bad_file,
+              fmt::format("{}: {}: found {}, expected {}", file_,
+                          path_.empty() ? "the whole" : path_, found, expected),
+              {});
+}
+
+Place Place::at(const char* key) const {
+  if (!has(key)) refuse(fmt::format("an object with \"{}\"", key));
+  return {(*json_)[key], file_, path_ + (path_.empty() ? "" : ".") + key};
+}
+
+Place Place::item(std::size_t index) const {
+  return {(*json_)[index], file_, fmt::format("{}[{}]", path_, index)};
+}
+
+std::size_t Place::size() const {
+  if (!json_->is_array()) refuse("a list");
+  return json_->size();
+}
+
+std::vector<std::string> Place::keys() const {
+  if (!json_->is_object()) refuse("an object");
+  std::vector<std::string> result;
+  for (const auto& [key, value] : json_->items()) result.push_back(key);
+  return result;
+}
+
+void Place::only(std::initializer_list<const char*> allowed) const {
+  for (const std::string& key : keys())
+    if (std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
+      std::string all;
+      for (const char* k : allowed) all += (all.empty() ? "" : ", ") + std::string(k);
+      refuse(fmt::format("no \"{}\" among {}", key, all));
+    }
+}
+
+double Place::number() const {
+  if (!json_->is_number()) refuse("a number");
+  return json_->get<double>();
+}
+
+int Place::integer() const {
+  if (!json_->is_number_integer() || json_->get<std::int64_t>() < -1'000'000'000 ||
+      json_->get<std::int64_t>() > 1'000'000'000)
+    refuse("an integer");
+  return json_->get<int>();
+}
+
+bool Place::yes() const {
+  if (!json_->is_boolean()) refuse("true or false");
+  return json_->get<bool>();
+}
+
+std::string Place::text() const {
+  if (!json_->is_string()) refuse("a text");
+  return json_->get<std::string>();
+}
+
+Eigen::VectorXd Place::vector(Index count) const {
+  if (!json_->is_array() || (count >= 0 && static_cast<Index>(json_->size()) != count))
+    refuse(count < 0 ? "a list of numbers" : fmt::format("a list of {} numbers", count));
+  Eigen::VectorXd v(static_cast<Index>(json_->size()));
+  for (Index i = 0; i < v.size(); ++i) v(i) = item(static_cast<std::size_t>(i)).number();
+  return v;
+}
+
+Eigen::MatrixXd Place::matrix(Index row_count, Index columns) const {
+  if (!json_->is_array() || (row_count >= 0 && static_cast<Index>(json_->size()) != row_count))
+    refuse(row_count < 0 ? "a list of rows" : fmt::format("a list of {} rows", row_count));
+  const auto n = static_cast<Index>(json_->size());
+  Eigen::MatrixXd M(n, std::max<Index>(columns, 0));
+  for (Index i = 0; i < n; ++i) {
+    const Eigen::VectorXd row = item(static_cast<std::size_t>(i)).vector(columns);
+    if (i == 0 && columns < 0) M.resize(n, columns = row.size());
+    M.row(i) = row;
+  }
+  return M;
+}
+
+}  // namespace titop::scene

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <initializer_list>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+/// What the writer and the reader of scenes share.
+namespace titop::scene {
+
+using Json = nlohmann::ordered_json;
+
+/// A matrix as a list of its rows, a vector as a list.
+Json rows(const Eigen::MatrixXd& M);
+Json list(const Eigen::VectorXd& v);
+
+/// A place in a scene file, with its path for messages: "blocks[3].mass". Whatever is not as asked
+/// throws bad_file with that path.
+class Place {
+ public:
+  Place(const Json& json, std::string file) : json_(&json), file_(std::move(file)) {}
+
+  bool has(const char* key) const { return json_->is_object() && json_->contains(key); }
+  /// The value of this key, which must be there.
+  Place at(const char* key) const;
+  Place item(std::size_t index) const;
+  std::size_t size() const;  ///< of a list
+  /// Refuses keys that are none of these.
+  void only(std::initializer_list<const char*> keys) const;
+
+  double number() const;
+  int integer() const;
+  bool yes() const;
+  std::string text() const;
+  Eigen::VectorXd vector(Eigen::Index size = -1) const;                   ///< -1: any size
+  Eigen::MatrixXd matrix(Eigen::Index rows, Eigen::Index columns) const;  ///< -1: any
+
+  bool is_number() const { return json_->is_number(); }
+  std::vector<std::string> keys() const;  ///< of an object, in the file's order
+  [[noreturn]] void refuse(const std::string& expected) const;
+
+ private:
+  Place(const Json& json, std::string file, std::string path)
+      : json_(&json), file_(std::move(file)), path_(std::move(path)) {}
+
+  const Json* json_;
+  std::string file_, path_;
+};
+
+}  // namespace titop::scene

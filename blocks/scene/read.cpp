@@ -1,0 +1,220 @@
+#include <fmt/format.h>
+
+#include <map>
+#include <titop/blocks/fe/text_file.hpp>
+#include <titop/blocks/scene/blocks.hpp>
+#include <titop/blocks/scene/json.hpp>
+#include <titop/blocks/scene/scene.hpp>
+
+namespace titop {
+
+using scene::Json;
+using scene::Place;
+
+namespace {
+
+/// A block that is made already.
+struct Ready {
+  BlockPtr block;
+  struct Handle {
+    Handle(Graph* graph_of, int node_of) : graph(graph_of), node(node_of) {}
+    Graph* graph;
+    int node;
+  };
+};
+BlockPtr as_block(const Ready& ready) { return ready.block; }
+
+class Reader {
+ public:
+  explicit Reader(const Place& all) : diagram(all.at("name").text()) {
+    all.only(
+        {"format", "name", "parameters", "bodies", "blocks", "inputs", "equations", "outputs"});
+    if (all.at("format").text() != "titop scene 1") all.at("format").refuse("\"titop scene 1\"");
+    each(all.at("parameters"), [&](const Place& p) { read_parameter(p); });
+    for (const std::string& name : all.at("bodies").keys())
+      bodies_[name] = scene::read_body(all.at("bodies").at(name.c_str()));
+    each(all.at("blocks"), [&](const Place& p) { read_block(p); });
+    each(all.at("inputs"), [&](const Place& p) { read_input(p); });
+    each(all.at("equations"), [&](const Place& p) { read_equation(p); });
+    each(all.at("outputs"), [&](const Place& p) { read_output(p); });
+  }
+
+  Diagram diagram;
+
+ private:
+  template <class Read>
+  static void each(const Place& list, Read read) {
+    for (std::size_t i = 0; i < list.size(); ++i) read(list.item(i));
+  }
+
+  void read_parameter(const Place& p) {
+    p.only({"name", "value"});
+    const std::string name = p.at("name").text();
+    if (parameters_.contains(name)) p.at("name").refuse("a name that no parameter before has");
+    parameters_[name] = diagram.param(name, p.at("value").number());
+  }
+
+  Value read_value(const Place& p) const {
+    if (p.is_number()) return p.number();
+    if (!p.has("parameter")) p.refuse("a number or {\"parameter\": name}");
+    p.only({"parameter", "scale"});
+    const auto at = parameters_.find(p.at("parameter").text());
+    if (at == parameters_.end()) p.at("parameter").refuse("the name of a parameter");
+    return {p.has("scale") ? p.at("scale").number() : 1, at->second};
+  }
+
+  void read_block(const Place& p) {
+    const std::string name = p.at("name").text();
+    if (nodes_.contains(name)) p.at("name").refuse("a name that no block before has");
+    const auto body = [&](const Place& place) {
+      const auto at = bodies_.find(place.text());
+      if (at == bodies_.end()) place.refuse("a name among the bodies");
+      return at->second;
+    };
+    const auto value = [&](const Place& place) { return read_value(place); };
+    const Ready::Handle handle = diagram.add(name, Ready{scene::read_block(p, value, body)});
+    graph_ = handle.graph;
+    nodes_[name] = handle.node;
+  }
+
+  void read_input(const Place& p) {
+    p.only({"name", "size"});
+    const std::string name = p.at("name").text();
+    if (inputs_.contains(name)) p.at("name").refuse("a name that no input before has");
+    const InputRef input = diagram.input(name, p.at("size").integer());
+    graph_ = input.graph();
+    inputs_[name] = input.signal();
+  }
+
+  int channel_signal(const Place& p, const Node& node) const {
+    const int spec = node.block->interface().find_channel(p.item(1).text());
+    if (spec < 0) p.item(1).refuse("a channel of " + node.name);
+    const std::string which = p.item(2).text();
+    if (which != "accel" && which != "force") p.item(2).refuse("accel or force");
+    const Channel& c = graph_->channels[static_cast<std::size_t>(node.first_channel + spec)];
+    return which == "accel" ? c.accel : c.force;
+  }
+
+  int read_signal(const Place& p) const {
+    if (p.size() < 1 || p.size() > 3)
+      p.refuse("[block, channel, \"accel\" or \"force\"], [block, port] or [input]");
+    const std::string name = p.item(0).text();
+    if (p.size() == 1) {
+      const auto at = inputs_.find(name);
+      if (at == inputs_.end()) p.item(0).refuse("the name of an input");
+      return at->second;
+    }
+    const auto at = nodes_.find(name);
+    if (at == nodes_.end()) p.item(0).refuse("the name of a block");
+    const Node& node = graph_->nodes[static_cast<std::size_t>(at->second)];
+    if (p.size() == 3) return channel_signal(p, node);
+    try {
+      return detail::port_signal(*graph_, at->second, p.item(1).text());
+    } catch (const Error&) {
+      p.item(1).refuse("a one-way port of " + name);
+    }
+  }
+
+  static Part read_part(const Place& p) {
+    p.only({"part", "rows"});
+    return {p.at("rows").matrix(-1, -1), p.at("part").text()};
+  }
+
+  Rotation read_rotation(const Place& p) const {
+    p.only({"rotation", "to", "from"});
+    std::vector<Rotation::Step> steps;
+    each(p.at("rotation"), [&](const Place& step) {
+      if (!step.has("about")) {
+        steps.emplace_back(Matrix3d(step.matrix(3, 3)));
+        return;
+      }
+      step.only({"about", "angle"});
+      steps.emplace_back(Rotation::Turn{step.at("about").vector(3), read_value(step.at("angle"))});
+    });
+    return Rotation::of_steps(std::move(steps)).named(p.at("to").text(), p.at("from").text());
+  }
+
+  Factor read_factor(const Place& p) const {
+    if (p.has("rotation")) return read_rotation(p);
+    if (p.has("part")) return read_part(p);
+    if (!p.has("matrix")) return read_value(p);
+    p.only({"matrix"});
+    return Matrix{std::make_shared<const Eigen::MatrixXd>(p.at("matrix").matrix(-1, -1)), nullptr};
+  }
+
+  Term::Of read_of(const Place& p) const {
+    if (!p.has("read")) return Term::Of::signal;
+    const std::string what = p.at("read").text();
+    if (what == "reaction") return Term::Of::reaction;
+    if (what == "position") return Term::Of::position;
+    if (what != "rate") p.at("read").refuse("reaction, position or rate");
+    return Term::Of::rate;
+  }
+
+  std::vector<Term> read_terms(const Place& list) const {
+    std::vector<Term> terms;
+    each(list, [&](const Place& p) {
+      p.only({"signal", "read", "sign", "factors"});
+      Term term{.signal = read_signal(p.at("signal")), .of = read_of(p)};
+      const Signal& s = graph_->signals[static_cast<std::size_t>(term.signal)];
+      if (term.of != Term::Of::signal && s.channel < 0)
+        p.at("read").refuse("nothing: only channels have reactions, positions and rates");
+      if (p.has("sign")) term.sign = p.at("sign").number();
+      if (p.has("factors"))
+        each(p.at("factors"), [&](const Place& f) { term.factors.push_back(read_factor(f)); });
+      terms.push_back(std::move(term));
+    });
+    return terms;
+  }
+
+  void read_equation(const Place& p) {
+    p.only({"of", "part", "add", "terms"});
+    Equation e{.target = read_signal(p.at("of"))};
+    const Signal& s = graph_->signals[static_cast<std::size_t>(e.target)];
+    if (s.channel < 0 && s.role != Signal::Role::input)
+      p.at("of").refuse("a signal that can be driven: a channel's, or a port that goes in");
+    if (p.has("part")) e.part = read_part(p.at("part"));
+    if (!e.part.whole() && e.part.rows.cols() != s.size)
+      p.at("part").refuse(fmt::format("rows of {} numbers", s.size));
+    e.accumulate = p.has("add") && p.at("add").yes();
+    if (e.accumulate && s.quantity != Quantity::force)
+      p.at("add").refuse("forces only to be added to");
+    e.terms = read_terms(p.at("terms"));
+    graph_->equations.push_back(std::move(e));
+  }
+
+  void read_output(const Place& p) {
+    p.only({"name", "size", "terms"});
+    const OutputRef output = diagram.output(p.at("name").text(), p.at("size").integer());
+    if (!p.has("terms")) return;
+    output = 0;
+    if (p.at("terms").size() == 0) return;
+    if (!graph_) p.at("terms").refuse("none, in a scene without blocks and inputs");
+    graph_->outputs.back().terms = read_terms(p.at("terms"));
+  }
+
+  Graph* graph_ = nullptr;  ///< of the diagram, once it has a block or an input
+  std::map<std::string, Param> parameters_;
+  std::map<std::string, BlockPtr> bodies_;
+  std::map<std::string, int> nodes_, inputs_;
+};
+
+}  // namespace
+
+Diagram parse_scene(std::string_view json, const std::string& file) {
+  Json all;
+  try {
+    all = Json::parse(json);
+  } catch (const Json::parse_error& error) {
+    throw Error(Code::bad_file, fmt::format("{}: no JSON text at byte {}", file, error.byte),
+                "look at it with a JSON program such as jq, which shows the place");
+  }
+  return std::move(Reader(Place(all, file)).diagram);
+}
+
+Diagram read_scene(const std::filesystem::path& path) {
+  const fe::TextFile file = fe::read_text(path);
+  return parse_scene(file.content, file.name);
+}
+
+}  // namespace titop

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <titop/graph/diagram.hpp>
+
+/// Diagrams as text: JSON, stable, the same to the last bit when read again. docs/scene.schema.json
+/// describes it.
+namespace titop {
+
+/// The diagram before any pass, equations as they were written:
+///
+///     {"format": "titop scene 1", "name": "masses",
+///      "parameters": [{"name": "k", "value": 10}],
+///      "bodies": {"body1": {"omega": [...], ...}},                       # shared modal data
+///      "blocks": [{"name": "z1", "type": "SpringMass", "mass": 1,
+///                  "stiffness": {"parameter": "k"}, ...}],
+///      "inputs": [{"name": "u", "size": 1}],
+///      "equations": [{"of": ["z1", "parent", "accel"], "terms": []},      # = 0
+///                    {"of": ["z1", "child", "force"], "add": true,       # +=
+///                     "terms": [{"signal": ["u"], "sign": -1, "factors": [2.5]}]}],
+///      "outputs": [{"name": "x", "size": 1, "terms": [{"signal": ["z1", "stretch"]}]}]}
+///
+/// A signal is [block, channel, "accel" or "force"], [block, port] or [input]; a term may read its
+/// "position", "rate" or "reaction" ("read"). Factors act from the last to the first: numbers,
+/// parameters, {"rotation": ...}, {"matrix": ...}, {"part": ...}. Keys keep this order; numbers
+/// have the digits that give them back.
+///
+/// Throws the mistakes noted in the diagram, bad_value for a block of the user's own type (there is
+/// no name to make it by) and duplicate_name for two blocks, inputs or parameters of one name.
+/// O(size).
+std::string scene_json(const Diagram& diagram);
+
+/// The diagram of such a text; `file` is for messages. Compiling it gives the same model, to the
+/// last bit, as compiling the diagram that was written. Throws bad_file, with the place in the text
+/// ("blocks[3].mass"), what was found and what was expected; what `Diagram::add` throws for data
+/// that make no block. Source lines in later messages are those of the reader.
+Diagram parse_scene(std::string_view json, const std::string& file = "scene");
+
+/// The same with files. Throw bad_file.
+void write_scene(const Diagram& diagram, const std::filesystem::path& file);
+Diagram read_scene(const std::filesystem::path& file);
+
+}  // namespace titop

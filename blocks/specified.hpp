@@ -1,0 +1,16 @@
+#pragma once
+
+namespace titop {
+
+/// A block that remembers what it was made from, for the scene file. Spec: SpringMass, RigidBody,
+/// ModalData, Bushing, or the axes of a joint.
+template <class Spec>
+class Specified {
+ public:
+  virtual const Spec& spec() const = 0;
+
+ protected:
+  ~Specified() = default;
+};
+
+}  // namespace titop

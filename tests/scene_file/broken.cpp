@@ -1,0 +1,96 @@
+// Broken scene files: each is refused with its place in the text, what was found and what was
+// expected.
+#include <doctest/doctest.h>
+
+#include <titop/blocks/scene/scene.hpp>
+#include <titop/titop.hpp>
+
+using namespace titop;
+
+namespace {
+
+const std::string kGood = R"({"format": "titop scene 1", "name": "cart",
+"parameters": [{"name": "k", "value": 10}], "bodies": {},
+"blocks": [{"name": "z", "type": "SpringMass", "mass": 1, "stiffness": {"parameter": "k", "scale": 2},
+            "damping": 0, "parent_mass": 0.5},
+           {"name": "K", "type": "Lti", "A": [[-1]], "B": [[1]], "C": [[1]], "D": [[0]]}],
+"inputs": [{"name": "u", "size": 1}],
+"equations": [{"of": ["z", "parent", "force"], "terms": [{"signal": ["u"], "sign": -1}]},
+              {"of": ["z", "child", "force"], "add": true,
+               "terms": [{"signal": ["K", "out"], "factors": [0.25]}]},
+              {"of": ["K", "in"], "terms": [{"signal": ["z", "stretch"]}]}],
+"outputs": [{"name": "a", "size": 1, "terms": [{"signal": ["z", "parent", "accel"]}]}]})";
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  const auto at = text.find(what);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, what.size(), with);
+}
+
+void refused(const std::string& what, const std::string& with, const std::string& words) {
+  try {
+    parse_scene(replaced(kGood, what, with), "cart.json");
+    FAIL("not refused: " << with);
+  } catch (const Error& error) {
+    const std::string said = error.what();
+    INFO(said);
+    CHECK(said.find(words) != std::string::npos);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("a scene typed by hand") {
+  const System system = compile(parse_scene(kGood));
+  CHECK(system.order() == 3);
+  // Two masses, 1 and 0.5, on a spring of 20; the filter pushes by a quarter of the stretch.
+  const std::complex<double> s{0.3, 2};
+  const auto K = 0.25 / (s + 1.0);
+  // m s^2 x = K d - 20 d, m0 s^2 p = u + 20 d, d = x - p
+  const auto d = -2.0 / (s * s - K + 20.0 + 40.0);
+  const auto expected = 2.0 * (1.0 + 20.0 * d);
+  CHECK(std::abs(system.transfer(s)(0, 0) - expected) <= 1e-14 * std::abs(expected));
+}
+
+TEST_CASE("broken scenes are refused with their place") {
+  refused("\"format\"", "format", "cart.json: no JSON text at byte");
+  refused("titop scene 1", "titop scene 9", "cart.json: format: found \"titop scene 9\", expected");
+  refused("\"mass\": 1", "\"mass\": \"1\"",
+          "cart.json: blocks[0].mass: found \"1\", expected a number");
+  refused("\"mass\": 1,", "", "blocks[0]: found {\"name\":\"z\"");
+  refused("\"damping\"", "\"dampening\"", "expected no \"dampening\" among");
+  refused("\"parent_mass\": 0.5", "\"parent_mass\": 0.5, \"x\": 1",
+          "expected no \"x\" among name, type");
+  refused("SpringMass", "SpringMess",
+          "blocks[0].type: found \"SpringMess\", expected one of SpringMass");
+  refused("\"parameter\": \"k\"", "\"parameter\": \"q\"",
+          "blocks[0].stiffness.parameter: found \"q\"");
+  refused("\"name\": \"K\"", "\"name\": \"z\"",
+          "blocks[1].name: found \"z\", expected a name that no");
+  refused("[[-1]]", "[[-1, 2]]", "blocks[1].A[0]: found [-1,2], expected a list of 1 numbers");
+  refused("[\"u\"]", "[\"w\"]",
+          "equations[0].terms[0].signal[0]: found \"w\", expected the name of an");
+  refused("[\"z\", \"parent\", \"force\"]", "[\"z\", \"parent\", \"speed\"]",
+          "equations[0].of[2]: found \"speed\", expected accel or force");
+  refused("[\"z\", \"parent\", \"force\"]", "[\"z\", \"uncle\", \"force\"]",
+          "equations[0].of[1]: found \"uncle\", expected a channel of z");
+  refused("[\"K\", \"in\"]", "[\"K\", \"inn\"]", "equations[2].of[1]: found \"inn\"");
+  refused("[\"K\", \"in\"]", "[\"K\", \"out\"]", "expected a signal that can be driven");
+  refused("[\"K\", \"in\"]", "[]", "equations[2].of: found []");
+  refused("\"size\": 1}]", "\"size\": 1.5}]", "inputs[0].size: found 1.5, expected an integer");
+  refused("\"sign\": -1", "\"read\": \"rate\"", "only channels have reactions");
+  refused("[0.25]", "[[1]]", "equations[1].terms[0].factors[0]: found [1], expected a number or");
+}
+
+TEST_CASE("numbers that make no block are refused with the block's name") {
+  try {
+    parse_scene(replaced(kGood, "\"mass\": 1", "\"mass\": -1"));
+    FAIL("not refused");
+  } catch (const Error& error) {
+    CHECK(error.has(Code::bad_inertia));
+  }
+  // Mistakes of the equations come out in compile, as for a diagram in C++.
+  const Diagram d =
+      parse_scene(replaced(kGood, "[\"K\", \"in\"]", "[\"z\", \"child\", \"accel\"]"));
+  CHECK_THROWS_AS(compile(d), Error);
+}
