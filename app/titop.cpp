@@ -1,0 +1,167 @@
+// The command line. Exit codes: 0 done, 1 the scene or a file is refused (the errors are on
+// stderr), 2 not understood.
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <titop/blocks/scene/scene.hpp>
+#include <titop/titop.hpp>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+using namespace titop;
+
+constexpr const char* kUsage = R"(usage:
+  titop check SCENE.json                 compiles, says how many states, inputs and outputs
+  titop compile SCENE.json               log, poles and certificate
+  titop draw SCENE.json FILE.dot         the diagram for Graphviz (dot -Tsvg FILE.dot)
+  titop draw --compiled SCENE.json FILE.dot    the same after all passes
+  titop export SCENE.json FILE           the model; what is written follows from FILE:
+      NAME.hpp     C++17 header, and beside it NAME_test.cpp that proves it
+      NAME.m       MATLAB or Octave function
+      NAME.py      Python module, and its arrays NAME_A.npy ...
+      FILE.json    all there is, with poles, certificate and notes
+      FILE.csv     frequency response; needs --omega
+options:
+  --sample-time SECONDS                  for .hpp: also `step`
+  --omega LOW HIGH COUNT                 for .csv: rad/s, logarithmic
+  --minimize-up-to STATES                100 if left out; 0: never
+exit code: 0 done, 1 refused (errors on stderr), 2 not understood
+)";
+
+/// What was typed.
+struct Arguments {
+  std::vector<std::string> words;  ///< without options
+  bool compiled = false;
+  double sample_time = 0;
+  std::vector<double> omega;  ///< LOW HIGH COUNT
+  int minimize_up_to = Options{}.minimize_up_to;
+};
+
+/// Not understood: what is wrong with the words.
+struct Misuse {
+  std::string what;
+};
+
+double number(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+    throw Misuse{fmt::format("'{}' is no number", text)};
+  return value;
+}
+
+Arguments parse(const std::vector<std::string>& all) {
+  Arguments a;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto next = [&] {
+      if (++i == all.size()) throw Misuse{fmt::format("{} needs more", all[i - 1])};
+      return number(all[i]);
+    };
+    if (all[i] == "--compiled") {
+      a.compiled = true;
+    } else if (all[i] == "--sample-time") {
+      a.sample_time = next();
+    } else if (all[i] == "--minimize-up-to") {
+      a.minimize_up_to = static_cast<int>(next());
+    } else if (all[i] == "--omega") {
+      for (int k = 0; k < 3; ++k) a.omega.push_back(next());
+    } else if (all[i].rfind("--", 0) == 0) {
+      throw Misuse{fmt::format("there is no option {}", all[i])};
+    } else {
+      a.words.push_back(all[i]);
+    }
+  }
+  return a;
+}
+
+System compiled(const Arguments& a) {
+  return compile(read_scene(a.words[1]), {.minimize_up_to = a.minimize_up_to});
+}
+
+void check(const Arguments& a) {
+  const System system = compiled(a);
+  std::fputs(fmt::format("{}: {} states, {} inputs, {} outputs\n", system.stage().graph.name,
+                         system.order(), system.inputs().size(), system.outputs().size())
+                 .c_str(),
+             stdout);
+}
+
+void show(const Arguments& a) {
+  const System system = compiled(a);
+  const std::string poles = to_string(system.poles());
+  std::fputs((system.log() + poles + to_string(system.certificate())).c_str(), stdout);
+}
+
+void draw(const Arguments& a) {
+  const std::string text =
+      a.compiled ? to_dot(compiled(a).stage()) : to_dot(read_scene(a.words[1]));
+  std::ofstream file(a.words[2], std::ios::binary);
+  file << text;
+  file.flush();
+  if (!file)
+    throw Error(Code::bad_file, fmt::format("{}: cannot be written", a.words[2]),
+                "check that the folder exists and may be written to");
+}
+
+std::vector<double> omega(const Arguments& a) {
+  if (a.omega.size() != 3) throw Misuse{"a .csv needs --omega LOW HIGH COUNT, once"};
+  const double low = a.omega[0], high = a.omega[1];
+  const int count = static_cast<int>(a.omega[2]);
+  if (!(low > 0) || !(high >= low) || count < 1 || a.omega[2] > 1e6)
+    throw Misuse{"--omega needs 0 < LOW <= HIGH and a COUNT from 1 to 1000000"};
+  std::vector<double> list;
+  for (int i = 0; i < count; ++i)
+    list.push_back(count == 1 ? low : low * std::pow(high / low, double(i) / (count - 1)));
+  return list;
+}
+
+void export_model(const Arguments& a) {
+  const fs::path file = a.words[2], folder = file.parent_path();
+  const std::string name = file.stem().string(), kind = file.extension().string();
+  if (kind == ".csv") return write_csv(compiled(a), omega(a), file);
+  if (kind == ".json") return write_json(compiled(a), file);
+  if (kind == ".m") return write_matlab(compiled(a).state_space(), file);
+  if (kind == ".py") return write_numpy(compiled(a).state_space(), folder, name);
+  if (kind != ".hpp") throw Misuse{fmt::format("'{}' ends in none of the known ways", a.words[2])};
+  write(generate_cpp(compiled(a), {.name = name, .sample_time = a.sample_time}), folder);
+}
+
+struct Command {
+  const char* name;
+  std::size_t words;  ///< with its own
+  void (*run)(const Arguments&);
+};
+constexpr Command kCommands[] = {
+    {"check", 2, check}, {"compile", 2, show}, {"draw", 3, draw}, {"export", 3, export_model}};
+
+void run(const std::vector<std::string>& all) {
+  const Arguments a = parse(all);
+  if (a.words.empty()) throw Misuse{"what is to be done?"};
+  for (const Command& command : kCommands) {
+    if (a.words[0] != command.name) continue;
+    if (a.words.size() != command.words)
+      throw Misuse{fmt::format("{} takes {} files", command.name, command.words - 1)};
+    return command.run(a);
+  }
+  throw Misuse{fmt::format("there is no command {}", a.words[0])};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  run({argv + 1, argv + argc});
+  return 0;
+} catch (const Misuse& misuse) {
+  std::fputs(fmt::format("titop: {}\n{}", misuse.what, kUsage).c_str(), stderr);
+  return 2;
+} catch (const std::exception& error) {
+  std::fputs(fmt::format("{}\n", error.what()).c_str(), stderr);
+  return 1;
+}

@@ -1,0 +1,109 @@
+// The command line: what it prints, what it writes, its exit codes.
+#include <doctest/doctest.h>
+
+#include <titop/blocks/scene/scene.hpp>
+#include <titop/titop.hpp>
+
+#include "support/five_masses.hpp"
+#include "support/folder.hpp"
+
+using namespace titop;
+using namespace titop_test;
+
+namespace {
+
+struct Run {
+  int code = 0;
+  std::string out, err;
+};
+
+class Shell {
+ public:
+  Shell() { write_scene(diagram(), folder.path / "masses.json"); }
+  static Diagram diagram() { return five_masses_scene({1, 2, 3, 4, 5}, {10, 26, 33, 20, 95}); }
+
+  Run titop(const std::string& words) const {
+    const std::string command = "'" TITOP_PROGRAM "' " + words + " >out 2>err; echo $? >code";
+    REQUIRE(folder.run(command) == 0);
+    return {std::stoi(folder.read("code")), folder.read("out"), folder.read("err")};
+  }
+  Folder folder;
+};
+
+bool has(const std::string& text, const std::string& words) {
+  return text.find(words) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("check and compile say what there is") {
+  const Shell shell;
+  Run r = shell.titop("check masses.json");
+  CHECK(r.code == 0);
+  CHECK(r.out == "five masses: 10 states, 1 inputs, 6 outputs\n");
+  CHECK(r.err.empty());
+  r = shell.titop("compile masses.json");
+  CHECK(r.code == 0);
+  const System system = compile(Shell::diagram());
+  CHECK(has(r.out, to_string(system.poles())));
+  CHECK(has(r.out, "equations as written hold to"));
+}
+
+TEST_CASE("draw writes what to_dot says") {
+  const Shell shell;
+  CHECK(shell.titop("draw masses.json a.dot").code == 0);
+  CHECK(shell.folder.read("a.dot") == to_dot(Shell::diagram()));
+  CHECK(shell.titop("draw --compiled masses.json b.dot").code == 0);
+  CHECK(shell.folder.read("b.dot") == to_dot(compile(Shell::diagram()).stage()));
+}
+
+TEST_CASE("export writes by the file's ending") {
+  const Shell shell;
+  const System system = compile(Shell::diagram());
+  CHECK(shell.titop("export masses.json m.json").code == 0);
+  CHECK(has(shell.folder.read("m.json"), "\"format\": \"titop model 1\""));
+  CHECK(shell.titop("export masses.json m.m").code == 0);
+  CHECK(has(shell.folder.read("m.m"), "function m = m ()"));
+  CHECK(shell.titop("export masses.json m.py").code == 0);
+  CHECK(has(shell.folder.read("m_A.npy"), "NUMPY"));
+  CHECK(shell.titop("export masses.json masses.hpp --sample-time 0.01").code == 0);
+  const CppModel cpp = generate_cpp(system, {.name = "masses", .sample_time = 0.01});
+  CHECK(shell.folder.read("masses.hpp") == cpp.header);
+  CHECK(shell.folder.read("masses_test.cpp") == cpp.test);
+  CHECK(shell.titop("export masses.json g.csv --omega 1 100 3").code == 0);
+  const std::vector<double> omega = {1, 10, 100};
+  write_csv(system, omega, shell.folder.path / "expected.csv");
+  CHECK(shell.folder.read("g.csv") == shell.folder.read("expected.csv"));
+}
+
+TEST_CASE("a scene that is refused: exit code 1 and the error on stderr") {
+  const Shell shell;
+  shell.folder.write("broken.json", "{\"format\": 1}");
+  Run r = shell.titop("check broken.json");
+  CHECK(r.code == 1);
+  CHECK(r.out.empty());
+  CHECK(has(r.err, "error[bad-file]: broken.json"));
+  CHECK(shell.titop("check none.json").code == 1);
+  CHECK(shell.titop("export masses.json none/m.json").code == 1);
+  Diagram open{"open"};
+  open.add("z", SpringMass{});
+  write_scene(open, shell.folder.path / "open.json");
+  r = shell.titop("compile open.json");
+  CHECK(r.code == 1);
+  CHECK(has(r.err, "error[no-equation]: z.parent"));
+}
+
+TEST_CASE("what is not understood: exit code 2 and the usage on stderr") {
+  const Shell shell;
+  for (const char* words :
+       {"", "fly masses.json", "check", "check masses.json more", "check --fast masses.json",
+        "export masses.json m.txt", "export masses.json g.csv",
+        "export masses.json g.csv --omega 1 x 3", "export masses.json g.csv --omega 3 1 3",
+        "export masses.json m.hpp --sample-time"}) {
+    INFO(words);
+    const Run r = shell.titop(words);
+    CHECK(r.code == 2);
+    CHECK(has(r.err, "usage:"));
+    CHECK(r.out.empty());
+  }
+}
