@@ -12,10 +12,10 @@ namespace titop::fe {
 namespace detail {
 
 Op4Matrix make_matrix(const Op4Header& h, const Refuse& refuse) {
-  if (h.columns < 1 || h.rows < 1 || h.columns > 100'000'000 || h.rows > 100'000'000 ||
-      h.columns * h.rows > 100'000'000)
+  if (h.columns < 1 || h.rows < 1 || h.columns > 25'000'000 || h.rows > 25'000'000 ||
+      h.columns * h.rows > 25'000'000)
     refuse(fmt::format("a matrix of {} rows and {} columns", h.rows, h.columns),
-           "1 to 1e8 entries: reduce larger models in Nastran (Craig-Bampton)");
+           "1 to 25 million entries: reduce larger models in Nastran (Craig-Bampton)");
   if (h.type == 3 || h.type == 4) refuse("a complex matrix", "a real one, type 1 or 2");
   if (h.type != 1 && h.type != 2)
     refuse(fmt::format("type {}", h.type), "1 (real single) or 2 (real double)");

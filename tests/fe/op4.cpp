@@ -234,7 +234,7 @@ TEST_CASE("broken binary files are refused with matrix, record and byte") {
   says(with(16, 4), "m.op4: matrix SMALL, record 1 (byte 0): found a complex matrix");
   says(with(16, 9), "found type 9");
   says(with(8, 0), "a matrix of 0 rows and 3 columns");
-  says(with(4, 90000000), "1 to 1e8 entries");
+  says(with(4, 90000000), "1 to 25 million entries");
   says(with(28, 20), "lengths before and behind it differ");
   says(with(32, 4000), "record 2 (byte 32): found a record of 4000 bytes where");
   says(with(36, -3), "found column -3, expected 1 to 3");
