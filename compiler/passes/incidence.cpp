@@ -36,9 +36,46 @@ namespace {
 
 Pattern identity(int n) { return Eigen::MatrixXd::Identity(n, n).array() != 0; }
 
+/// Rows that see the states (a column) times inputs that move them.
+Pattern through(const Pattern& sees, const Pattern& moved) {
+  return (sees.cast<int>().matrix() * moved.cast<int>().matrix()).array() > 0;
+}
+
+/// Declared structure of a node.
+struct Declared {
+  Pattern direct;  ///< D or, through its states, all that the inputs move in time
+  Pattern moved;   ///< which inputs move the states; empty where states do not count
+};
+
+std::vector<Declared> all_declared(const Graph& g, Sight sight) {
+  std::vector<Declared> result;
+  for (const Node& node : g.nodes) {
+    result.emplace_back();
+    if (node.lowered) continue;
+    result.back().direct = node.block->feedthrough();
+    if (sight == Sight::at_once || node.state < 0 || !g.signals[at(node.state)].active) continue;
+    result.back().moved = node.block->moved_by();
+    result.back().direct =
+        result.back().direct || through(node.block->seen_by(), result.back().moved);
+  }
+  return result;
+}
+
+/// The inputs of a node whose states an equation reads in these rows.
+template <class Visit>
+void visit_inputs(const Graph& g, int node, const Pattern& sees, const Pattern& moved,
+                  Visit visit) {
+  for (int i = g.nodes[at(node)].first_signal; i < end_signal(g, node); ++i) {
+    const Signal& u = g.signals[at(i)];
+    if (u.role != Signal::Role::input || !u.active) continue;
+    if (const Pattern p = through(sees, moved.middleCols(u.first, u.size)); p.any())
+      visit(i, [&] { return p; });
+  }
+}
+
 /// Calls visit(signal, pattern) for every unknown of a row; pattern() gives its structure.
 template <class Visit>
-void visit_entries(const Graph& g, const Row& row, const std::vector<Pattern>& feedthrough,
+void visit_entries(const Graph& g, const Row& row, const std::vector<Declared>& declared,
                    Visit visit) {
   if (row.equation >= 0) {
     const Equation& e = g.equations[at(row.equation)];
@@ -47,12 +84,15 @@ void visit_entries(const Graph& g, const Row& row, const std::vector<Pattern>& f
       visit(e.target,
             [&] { return e.part.whole() ? identity(t.size) : Pattern(e.part.rows.array() != 0); });
     for (const Term& term : e.terms)
-      if (is_unknown(g.signals[at(term.signal)]))
+      if (const Signal& s = g.signals[at(term.signal)]; is_unknown(s))
         visit(term.signal, [&] { return structure(g, term); });
+      else if (s.role == Signal::Role::state && declared[at(s.node)].moved.size() > 0)
+        visit_inputs(g, s.node, structure(g, term).rowwise().any(), declared[at(s.node)].moved,
+                     visit);
     return;
   }
   const Signal& y = g.signals[at(row.output)];
-  const Pattern& D = feedthrough[at(row.node)];
+  const Pattern& D = declared[at(row.node)].direct;
   for (int i = g.nodes[at(row.node)].first_signal; i < end_signal(g, row.node); ++i) {
     const Signal& u = g.signals[at(i)];
     if (u.role != Signal::Role::input || !u.active) continue;
@@ -60,13 +100,6 @@ void visit_entries(const Graph& g, const Row& row, const std::vector<Pattern>& f
     if (block.any()) visit(i, [&] { return Pattern(block); });
   }
   if (y.active) visit(row.output, [&] { return identity(y.size); });
-}
-
-std::vector<Pattern> all_feedthrough(const Graph& g) {
-  std::vector<Pattern> result;
-  for (const Node& node : g.nodes)
-    result.push_back(node.lowered ? Pattern() : node.block->feedthrough());
-  return result;
 }
 
 }  // namespace
@@ -103,7 +136,7 @@ std::vector<int> mentioned(const Graph& g, const Row& row) {
   return result;
 }
 
-Incidence incidence(const Graph& g, bool by_scalar) {
+Incidence incidence(const Graph& g, bool by_scalar, Sight sight) {
   Incidence inc;
   inc.rows = rows_of(g);
   inc.first_col.assign(g.signals.size(), -1);
@@ -116,7 +149,7 @@ Incidence incidence(const Graph& g, bool by_scalar) {
       inc.col_size.push_back(by_scalar ? 1 : sig.size);
     }
   }
-  const std::vector<Pattern> feedthrough = all_feedthrough(g);
+  const std::vector<Declared> declared = all_declared(g, sight);
   for (int r = 0; r < static_cast<int>(inc.rows.size()); ++r) {
     const Row& row = inc.rows[at(r)];
     const int first = static_cast<int>(inc.cols.size());
@@ -125,7 +158,7 @@ Incidence incidence(const Graph& g, bool by_scalar) {
     inc.cols.resize(at(first + count));
     inc.row_of_vertex.resize(at(first + count), r);
     inc.row_size.resize(at(first + count), by_scalar ? 1 : row.size);
-    visit_entries(g, row, feedthrough, [&](int signal, auto pattern) {
+    visit_entries(g, row, declared, [&](int signal, auto pattern) {
       const int col = inc.first_col[at(signal)];
       if (!by_scalar) {
         inc.cols[at(first)].push_back(col);

@@ -18,8 +18,11 @@ struct Incidence {
 /// All active rows of the graph.
 std::vector<Row> rows_of(const Graph& graph);
 
+/// At what a row looks: at once, or at some s, where a state stands for the inputs that move it.
+enum class Sight { at_once, through_states };
+
 /// Declared structure of the active rows and unknowns. O(entries).
-Incidence incidence(const Graph& graph, bool by_scalar);
+Incidence incidence(const Graph& graph, bool by_scalar, Sight sight = Sight::at_once);
 
 /// Active signals, one by one, that a row mentions: unknowns, states and inputs. For graph walks;
 /// rows of one node in turn ask its block once.

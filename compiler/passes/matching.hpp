@@ -1,0 +1,23 @@
+#pragma once
+
+#include <titop/compiler/passes/incidence.hpp>
+
+namespace titop::passes {
+
+/// Which row vertex determines which column vertex; -1 for none.
+struct Matching {
+  std::vector<int> row_to_col, col_to_row;
+  int missing() const;  ///< rows and columns without a partner
+};
+
+/// Maximum bipartite matching between rows and columns of the same size, from each channel's
+/// default. O(entries) where the defaults do, else O(entries) per row that they leave.
+Matching maximum_matching(const Graph& graph, const Incidence& incidence);
+
+/// What is wrong with a graph without a perfect matching, in ports: per independent part the
+/// equations that are too many, the signals that nothing determines (Dulmage-Mendelsohn), and the
+/// channels whose other side may be driven instead, each of them tried. O(entries) per channel.
+std::vector<Mistake> structure_mistakes(const Graph& graph, const Incidence& incidence,
+                                        const Matching& matching);
+
+}  // namespace titop::passes

@@ -1,0 +1,172 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <titop/compiler/passes/matching.hpp>
+#include <titop/compiler/passes/union_find.hpp>
+
+/// The structurally singular part, in the user's words.
+namespace titop::passes {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Rows that alternating paths reach from the free rows: more equations than unknowns.
+std::vector<char> too_many(const Incidence& inc, const Matching& m) {
+  std::vector<char> seen(inc.cols.size(), 0);
+  std::vector<int> rows;
+  for (int r = 0; r < static_cast<int>(inc.cols.size()); ++r)
+    if (m.row_to_col[at(r)] < 0) seen[at(r)] = 1, rows.push_back(r);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (const int c : inc.cols[at(rows[i])])
+      if (const int r = m.col_to_row[at(c)]; r >= 0 && !seen[at(r)])
+        seen[at(r)] = 1, rows.push_back(r);
+  return seen;
+}
+
+/// Columns that alternating paths reach from the free columns: more unknowns than equations.
+std::vector<char> too_few(const Incidence& inc, const Matching& m) {
+  std::vector<std::vector<int>> rows_of_col(inc.signal_of.size());
+  for (int r = 0; r < static_cast<int>(inc.cols.size()); ++r)
+    for (const int c : inc.cols[at(r)]) rows_of_col[at(c)].push_back(r);
+  std::vector<char> seen(inc.signal_of.size(), 0);
+  std::vector<int> cols;
+  for (int c = 0; c < static_cast<int>(inc.signal_of.size()); ++c)
+    if (m.col_to_row[at(c)] < 0) seen[at(c)] = 1, cols.push_back(c);
+  for (std::size_t i = 0; i < cols.size(); ++i)
+    for (const int r : rows_of_col[at(cols[i])])
+      if (const int c = m.row_to_col[at(r)]; c >= 0 && !seen[at(c)])
+        seen[at(c)] = 1, cols.push_back(c);
+  return seen;
+}
+
+std::string joined(const std::set<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+/// One independent part: equations too many, signals that nothing determines, or both.
+struct Part {
+  std::set<int> rows, signals;    ///< row groups; signals
+  std::vector<int> cures;         ///< equations whose channel may be driven on its other side
+  int too_many = 0, too_few = 0;  ///< scalars
+};
+
+struct Singular {
+  const Graph& g;
+  const Incidence& inc;
+  const Matching& m;
+  std::vector<char> over = too_many(inc, m), under = too_few(inc, m);
+  int rows = static_cast<int>(inc.cols.size());
+  UnionFind parts = UnionFind(rows + static_cast<int>(inc.signal_of.size()));
+
+  int other_side(int equation) const {
+    const int target = g.equations[at(equation)].target;
+    if (g.signals[at(target)].channel < 0) return -1;
+    const Channel& c = g.channels[at(g.signals[at(target)].channel)];
+    return c.accel == target ? c.force : c.accel;
+  }
+
+  /// Driving the channel's other side instead, whatever drives it, leaves less to be determined.
+  bool cures(int equation) const {
+    Graph other = g;
+    other.equations[at(equation)].target = other_side(equation);
+    other.equations[at(equation)].terms.clear();
+    const Incidence i = incidence(other, /*by_scalar=*/true, Sight::through_states);
+    return maximum_matching(other, i).missing() < m.missing();
+  }
+
+  /// What hangs together, and what one channel may bring together.
+  std::vector<int> connect() {
+    for (int r = 0; r < rows; ++r)
+      for (const int c : inc.cols[at(r)])
+        if (over[at(r)] || under[at(c)]) parts.unite(r, rows + c);
+    std::set<int> equations;
+    for (int r = 0; r < rows; ++r)
+      if (const int e = inc.rows[at(inc.row_of_vertex[at(r)])].equation; over[at(r)] && e >= 0)
+        equations.insert(e);
+    std::vector<int> good;
+    for (const int e : equations) {
+      const int side = other_side(e);
+      if (side < 0 || inc.first_col[at(side)] < 0 || !cures(e)) continue;
+      good.push_back(e);
+      for (int r = 0; r < rows; ++r)
+        if (inc.rows[at(inc.row_of_vertex[at(r)])].equation == e)
+          for (int k = 0; k < g.signals[at(side)].size; ++k)
+            parts.unite(r, rows + inc.first_col[at(side)] + k);
+    }
+    return good;
+  }
+
+  std::map<int, Part> find() {
+    const std::vector<int> good = connect();
+    std::map<int, Part> result;
+    for (int r = 0; r < rows; ++r) {
+      if (!over[at(r)]) continue;
+      Part& p = result[parts.find(r)];
+      const int row = inc.row_of_vertex[at(r)];
+      p.rows.insert(row);
+      p.too_many += m.row_to_col[at(r)] < 0;
+      const int e = inc.rows[at(row)].equation;
+      if (std::find(good.begin(), good.end(), e) != good.end() &&
+          std::find(p.cures.begin(), p.cures.end(), e) == p.cures.end())
+        p.cures.push_back(e);
+    }
+    for (int c = 0; c < static_cast<int>(under.size()); ++c) {
+      if (!under[at(c)]) continue;
+      Part& p = result[parts.find(rows + c)];
+      p.signals.insert(inc.signal_of[at(c)]);
+      p.too_few += m.col_to_row[at(c)] < 0;
+    }
+    return result;
+  }
+
+  std::string describe(const Row& row) const {
+    if (row.equation < 0)
+      return fmt::format("what {} gives at {}", g.nodes[at(row.node)].name, name_of(g, row.output));
+    const Equation& e = g.equations[at(row.equation)];
+    return fmt::format("{:<50} {}", print(g, e), to_string(e.where));
+  }
+
+  Mistake mistake(const Part& p) const {
+    Mistake result{Code::structure, "every channel is driven, but ", {}, {}};
+    std::set<std::string> here, there, sides;
+    for (const int r : p.rows) {
+      const Row& row = inc.rows[at(r)];
+      here.insert(name_of(g, row.equation < 0 ? row.output : g.equations[at(row.equation)].target));
+      result.details.push_back("too much here:  " + describe(row));
+    }
+    for (const int s : p.signals) {
+      there.insert(name_of(g, s));
+      result.details.push_back("nothing determines:  " + name_of(g, s));
+    }
+    if (p.too_many > 0)
+      result.message += p.too_many == 1 ? "one equation is too many here: " + joined(here)
+                                        : fmt::format("{} equations are too many here: {}",
+                                                      p.too_many, joined(here));
+    if (p.too_few > 0)
+      result.message +=
+          fmt::format("{}{} missing there: {}", p.too_many > 0 ? "; " : "",
+                      p.too_few == 1 ? "one is" : fmt::format("{} are", p.too_few), joined(there));
+    for (const int e : p.cures)
+      sides.insert(fmt::format("{} instead of {}", name_of(g, other_side(e)),
+                               name_of(g, g.equations[at(e)].target)));
+    result.hint = sides.empty() ? "leave out one of these equations, or give the blocks between "
+                                  "them modes or joints to move by"
+                                : "drive the other side of one of these channels: " + joined(sides);
+    return result;
+  }
+};
+
+}  // namespace
+
+std::vector<Mistake> structure_mistakes(const Graph& g, const Incidence& inc, const Matching& m) {
+  Singular singular{g, inc, m};
+  std::vector<Mistake> result;
+  for (const auto& [root, part] : singular.find()) result.push_back(singular.mistake(part));
+  return result;
+}
+
+}  // namespace titop::passes
