@@ -33,7 +33,8 @@ class Numbers {
   unsigned long long state_ = 0x9E3779B97F4A7C15ull;
 };
 
-/// A frequency inside the blocks' own range, off the axis so that no pole is near.
+}  // namespace
+
 std::complex<double> pick_s(const SystemData& d) {
   double log_sum = 0;
   int count = 0;
@@ -45,6 +46,8 @@ std::complex<double> pick_s(const SystemData& d) {
   const double w = count ? std::exp(log_sum / count) : 1;
   return {0.37 * w, 0.93 * w};
 }
+
+namespace {
 
 using Complex = std::complex<double>;
 
@@ -359,7 +362,7 @@ double dense_difference(const SystemData& d, const StateSpace& m) {
   VectorXd x(m.A.rows()), u(m.B.cols());
   for (Eigen::Index i = 0; i < x.size(); ++i) x(i) = random.next();
   for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = random.next();
-  const VectorXd all = d.states.expanded(x);
+  const VectorXd all = d.states.expanded(x, u);
   solve::RowMatrix<double> known(all.size() + u.size(), 1);
   known << all, u;
   const Rates exact = rates(d, known);
@@ -388,7 +391,7 @@ DenseError dense_error(const SystemData& d, const StateSpace& m) {
   for (const double factor : {1e-4, 1e-2, 1.0, 1e2}) {
     const T s = factor * d.checked().certificate.s;
     const Evaluation<T> point(d, s, u);
-    const solve::RowMatrix<T> x = d.states.kept_rows(point.states());
+    const solve::RowMatrix<T> x = d.states.model_states(point.states(), u, s);
     VectorXcd left = -s * x;
     for (Eigen::Index j = 0; j < m.A.cols(); ++j) left += m.A.col(j) * x(j);
     left += m.B * u;
@@ -402,6 +405,14 @@ DenseError dense_error(const SystemData& d, const StateSpace& m) {
 }
 
 namespace {
+
+constexpr double kFewDigits = 1e-7;  ///< distance from singular at which 9 digits are left
+
+/// "about 2 digits are": what a loop keeps at this distance from singular.
+std::string digits_at(double distance) {
+  const double digits = std::max(0.0, std::round(std::log10(distance / 1.1e-16)));
+  return digits == 1 ? "about one digit is" : fmt::format("about {:.0f} digits are", digits);
+}
 
 std::string variable_name(const SystemData& d, int variable) {
   const int signal = d.skeleton->joint.variables[at(variable)];
@@ -431,12 +442,16 @@ Check certify(const SystemData& d) {
   worst_margin(d, margins, check);
   self_check(d, check);
   c.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const double lost = 2.2e-16 * c.margin;
-  if (lost > 1e-8)
-    check.notes.push_back(
-        {Note::Kind::warning, "certify",
-         fmt::format("the loop at {} has margin {:.2g}: about {:.0f} digits are left",
-                     c.margin_where, c.margin, std::max(0.0, -std::log10(lost)))});
+  // At distance delta from singular the margin is about 4/delta, and a pivot keeps delta/2.
+  const double by_margin = 4 / c.margin, by_pivot = 2 * c.weakest_pivot;
+  if (by_margin < kFewDigits)
+    check.notes.push_back({Note::Kind::warning, "certify",
+                           fmt::format("the loop at {} has margin {:.2g}: {} left", c.margin_where,
+                                       c.margin, digits_at(by_margin))});
+  else if (by_pivot < kFewDigits)
+    check.notes.push_back({Note::Kind::warning, "certify",
+                           fmt::format("the pivot at {} keeps {:.1e} of its terms: {} left",
+                                       c.weakest_where, c.weakest_pivot, digits_at(by_pivot))});
   if (c.residual > kWarn)
     check.notes.push_back({Note::Kind::warning, "certify",
                            fmt::format("{} holds only to {:.1g}", c.residual_where, c.residual)});

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 #include <titop/compiler/parallel.hpp>
+#include <titop/compiler/solve/piece_matrix.hpp>
 #include <titop/compiler/solve/products.hpp>
 #include <titop/compiler/solve/propagation.hpp>
 #include <titop/compiler/system_data.hpp>
@@ -109,21 +110,6 @@ class Writer {
 
   // --- sources ---------------------------------------------------------------------------------
 
-  /// The known part of a piece on the right-hand side.
-  MatrixXd right_hand_side(const Piece& p, Index columns) const {
-    MatrixXd right = p.right < 0 ? MatrixXd(MatrixXd::Identity(columns, columns))
-                                 : MatrixXd(coefficient(p.right));
-    switch (p.of) {
-      case Piece::Left::one: break;
-      case Piece::Left::direct:
-        right = block(p.left).D.block(p.row, p.col, p.rows, p.cols) * right;
-        break;
-      case Piece::Left::state: right = block(p.left).C.middleRows(p.row, p.rows) * right; break;
-      case Piece::Left::coefficient: right = coefficient(p.left) * right; break;
-    }
-    return -p.sign * right;
-  }
-
   void find_sources() {
     std::vector<int> source_of(g_.signals.size(), -1);
     for (const int i : d_.layout().state_nodes) {
@@ -160,7 +146,7 @@ class Writer {
 
   void act(Source& s, int r, const Piece& p) const {
     MatrixXd c = s.modal ? MatrixXd(-p.sign * s.modal->W.middleCols(p.row, p.rows).transpose())
-                         : right_hand_side(p, s.columns);
+                         : MatrixXd(-solve::matrix_of(p, g_, d_.numbers));
     if (!s.rows.empty() && s.rows.back() == r) {
       s.c.back() += c;
       return;

@@ -1,4 +1,5 @@
 #include <titop/compiler/descriptor.hpp>
+#include <titop/compiler/solve/piece_matrix.hpp>
 #include <titop/compiler/system_data.hpp>
 
 namespace titop {
@@ -30,6 +31,8 @@ struct Builder {
     const int first = d.layout().known_first[at(signal)];
     return first < states ? Place{first, false} : Place{first - states, true};
   }
+
+  const RowMatrix<double>& coefficient(int i) const { return *d.numbers.coefficients[at(i)]; }
 
   template <class Matrix>
   static void put(Triplets& to, int row, int column, const Matrix& m, double sign = 1) {
@@ -63,41 +66,16 @@ struct Builder {
     }
   }
 
-  const RowMatrix<double>& coefficient(int i) const { return *d.numbers.coefficients[at(i)]; }
-
-  /// Calls take(left matrix of the piece); `size`: of the identity.
-  template <class Take>
-  void with_left(const Piece& p, Eigen::Index size, Take take) const {
-    switch (p.of) {
-      case Piece::Left::one: return take(Eigen::MatrixXd::Identity(size, size));
-      case Piece::Left::direct:
-        return take(d.numbers.blocks[at(p.left)]->D.block(p.row, p.col, p.rows, p.cols));
-      case Piece::Left::state:
-        return take(d.numbers.blocks[at(p.left)]->C.middleRows(p.row, p.rows));
-      case Piece::Left::coefficient: return take(coefficient(p.left));
-    }
-  }
-
-  void add_piece(int row, const Piece& p, const Place& at_) {
-    Triplets& to = at_.input ? B : A;
-    if (p.right >= 0) {
-      const RowMatrix<double>& right = coefficient(p.right);
-      return with_left(p, right.rows(), [&](const auto& left) {
-        put(to, row, at_.first, Eigen::MatrixXd(left * right), p.sign);
-      });
-    }
-    with_left(p, p.signal < 0 ? p.rows : g.signals[at(p.signal)].size,
-              [&](const auto& left) { put(to, row, at_.first, left, p.sign); });
-  }
-
   void add_rows() {
     const solve::Plan& plan = *k.joint.plan;
     for (int r = 0; r < static_cast<int>(k.joint.rows.size()); ++r)
-      for (const Piece& p : k.joint.row(r))
-        add_piece(states + plan.row_first[at(r)], p,
-                  p.entry < 0
-                      ? place(p.signal)
-                      : Place{states + plan.first[at(plan.structure.row(r)[at(p.entry)])], false});
+      for (const Piece& p : k.joint.row(r)) {
+        const Place to =
+            p.entry < 0 ? place(p.signal)
+                        : Place{states + plan.first[at(plan.structure.row(r)[at(p.entry)])], false};
+        put(to.input ? B : A, states + plan.row_first[at(r)], to.first,
+            solve::matrix_of(p, g, d.numbers));
+      }
   }
 
   void add_outputs() {
@@ -112,6 +90,7 @@ struct Builder {
   /// of their derivatives.
   void set_dependents_apart() {
     if (d.states.trivial()) return;
+    shift_by_inputs();
     std::vector<int> place(at(states), -1);
     int next = 0;
     for (const int i : d.states.kept()) place[at(i)] = next++;
@@ -129,7 +108,24 @@ struct Builder {
     for (const StateMap::Row& row : d.states.dependent()) {
       A.emplace_back(place[at(row.state)], place[at(row.state)], -1.0);
       for (const auto& [from, factor] : row.of) A.emplace_back(place[at(row.state)], from, factor);
+      for (int j = 0; j < d.states.by_input().cols(); ++j)
+        if (const double r = d.states.by_input()(row.state, j); r != 0)
+          B.emplace_back(place[at(row.state)], j, r);
     }
+  }
+
+  /// Kept states of the blocks are those of the model + R u.
+  void shift_by_inputs() {
+    const Eigen::MatrixXd& R = d.states.by_input();
+    if (R.size() == 0) return;
+    std::vector<char> kept(at(states), 0);
+    for (const int i : d.states.kept()) kept[at(i)] = 1;
+    const auto shift = [&](const Triplets& by_v, Triplets& by_u) {
+      for (const auto& t : by_v)
+        for (int j = 0; t.col() < states && kept[at(t.col())] && j < R.cols(); ++j)
+          if (R(t.col(), j) != 0) by_u.emplace_back(t.row(), j, t.value() * R(t.col(), j));
+    };
+    shift(A, B), shift(C, D);
   }
 
   std::vector<std::string> names() const {

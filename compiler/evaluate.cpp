@@ -132,7 +132,7 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
       s_(s),
       u_(u),
       first_(data.graph().signals.size(), -1),
-      rows_(data.graph(), data.skeleton->joint, data.numbers.coefficients, respond(s)) {
+      rows_(data.graph(), data.skeleton->as_written(), data.numbers.coefficients, respond(s)) {
   const int states = static_cast<int>(data.layout().states.size());
   for (const Input& i : data.graph().inputs)
     first_[at(i.signal)] = data.layout().known_first[at(i.signal)] - states;
@@ -140,10 +140,15 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
     refine(*coarse);
     return;
   }
-  factors_ = std::make_unique<const solve::Factors<T>>(data.skeleton->joint.plan, rows_,
-                                                       data.factors->scale());
-  if (factors_->health().singular) {
+  factors_ = std::make_unique<const solve::Factors<T>>(data.skeleton->as_written().plan, rows_,
+                                                       data.scale());
+  if (const solve::Health h = factors_->health(); h.singular) {
     const std::complex<double> z = solve::Scalar<T>::round(s);
+    if (!h.finite)
+      throw Error(
+          Code::not_finite,
+          fmt::format("{} at s = {}{:+}j: numbers overflow", data.graph().name, z.real(), z.imag()),
+          "take an s of smaller or larger modulus, or other units");
     throw Error(
         Code::singular,
         fmt::format("{} has a pole at s = {}{:+}j, or no digit is left there in this precision",

@@ -110,7 +110,8 @@ struct Stage {
   bool chained = false;                              ///< after chains: some chain is closed
   bool closes = false;                ///< after chains: chains close, or Integrators may hold twins
   std::vector<Released> released;     ///< after chains
-  std::vector<Dependent> dependents;  ///< after close: by node and state
+  std::vector<Dependent> dependents;  ///< after close: by node and state; after solve: all
+  std::vector<Dependent> before;      ///< those of the system that `update` starts from
 };
 
 }  // namespace titop

@@ -9,6 +9,15 @@ using Eigen::MatrixXd;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
+constexpr double kRounding = 64 * 2.220446049250313e-16;
+
+/// to += M R; what cancels to rounding is 0.
+void add_product(MatrixXd& to, const MatrixXd& M, const MatrixXd& R) {
+  const MatrixXd size = to.cwiseAbs() + M.cwiseAbs() * R.cwiseAbs();
+  to += M * R;
+  to = (to.array().abs() <= kRounding * size.array()).select(0, to);
+}
+
 /// M T by columns.
 MatrixXd times_map(const MatrixXd& M, const StateMap& map) {
   MatrixXd result = M(Eigen::all, map.kept());
@@ -20,7 +29,6 @@ MatrixXd times_map(const MatrixXd& M, const StateMap& map) {
       size.col(place) += std::abs(factor) * M.col(row.state).cwiseAbs();
       touched[at(place)] = 1;
     }
-  constexpr double kRounding = 64 * 2.220446049250313e-16;
   for (Index j = 0; j < result.cols(); ++j)
     if (touched[at(j)])
       result.col(j) =
@@ -52,6 +60,10 @@ StateMap::StateMap(const std::vector<Dependent>& dependents, const Layout& l) : 
 
 void StateMap::reduce(StateSpace& m) const {
   if (trivial()) return;
+  if (by_input_.size() > 0) {
+    add_product(m.B, m.A, by_input_);
+    add_product(m.D, m.C, by_input_);
+  }
   m.A = times_map(m.A(kept_, Eigen::all), *this);
   m.B = m.B(kept_, Eigen::all).eval();
   m.C = times_map(m.C, *this);

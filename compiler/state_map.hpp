@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <complex>
 #include <string>
 #include <titop/compiler/stage.hpp>
 #include <titop/graph/state_space.hpp>
@@ -10,15 +11,23 @@ namespace titop::detail {
 
 struct Layout;
 
-/// From the states of the model to those of all blocks, x_blocks = T x: the map that pass `close`
-/// found, applied around the solve. The model is A_kept = (A T)(kept rows), C = C T.
+/// From the states x of the model to those of all blocks, x_blocks = T x + R u: the map that pass
+/// `close` and the reduction of singular scenes (compiler/reduce.hpp) found, applied around the
+/// solve. The model is A = (A T)(kept rows), B = (B + A R)(kept rows), C T, D + C R. R is 0 but
+/// where a force acts on a massless point.
 class StateMap {
  public:
   StateMap() = default;
   StateMap(const std::vector<Dependent>& dependents, const Layout& layout);
+  /// by_input: R, blocks' states x inputs. shifts: a kept state of the blocks, driven by u at s, is
+  /// x + sum of shifts[j] s^j u, kept states x inputs.
+  void set_inputs(Eigen::MatrixXd by_input, std::vector<Eigen::MatrixXd> shifts) {
+    by_input_ = std::move(by_input), shifts_ = std::move(shifts);
+  }
 
   bool trivial() const { return rows_.empty(); }
-  const std::vector<int>& kept() const { return kept_; }  ///< among the blocks' states
+  const Eigen::MatrixXd& by_input() const { return by_input_; }  ///< empty: 0
+  const std::vector<int>& kept() const { return kept_; }         ///< among the blocks' states
   const std::vector<std::string>& names() const { return names_; }
   int order() const { return static_cast<int>(kept_.size()); }
 
@@ -43,6 +52,24 @@ class StateMap {
     }
     return all;
   }
+  /// T x + R u.
+  template <class Matrix>
+  Matrix expanded(const Matrix& x, const Matrix& u) const {
+    Matrix all = expanded(x);
+    if (by_input_.size() > 0) all += by_input_.cast<typename Matrix::Scalar>() * u;
+    return all;
+  }
+  /// The model's states where the blocks' states and the inputs are these at s.
+  template <class Matrix>
+  Matrix model_states(const Matrix& all, const Matrix& u, std::complex<double> s) const {
+    Matrix x = kept_rows(all);
+    std::complex<double> power = 1;
+    for (const Eigen::MatrixXd& shift : shifts_) {
+      x -= power * (shift.cast<std::complex<double>>() * u);
+      power *= s;
+    }
+    return x;
+  }
   /// The kept rows of a matrix over all blocks' states.
   template <class Matrix>
   Matrix kept_rows(const Matrix& all) const {
@@ -57,6 +84,8 @@ class StateMap {
   std::vector<int> kept_;
   std::vector<std::string> names_;
   std::vector<Row> rows_;
+  Eigen::MatrixXd by_input_;
+  std::vector<Eigen::MatrixXd> shifts_;
 };
 
 }  // namespace titop::detail

@@ -34,11 +34,13 @@ solve::JointRows<double> real_rows(const Skeleton& k, const solve::Numbers& numb
   return {k.stage.graph, k.joint, numbers.coefficients, std::move(m)};
 }
 
-Rates rates(const SystemData& d, const RowMatrix<double>& known) {
+Rates rates(const SystemData& d, const RowMatrix<double>& known, const RowMatrix<double>& more) {
   const Graph& g = d.graph();
   const Layout& l = d.layout();
   const auto rows = real_rows(*d.skeleton, d.numbers);
-  const RowMatrix<double> z = d.factors->solve(rows.rhs(known, l.known_first));
+  RowMatrix<double> rhs = rows.rhs(known, l.known_first);
+  if (more.size() > 0) rhs += more;
+  const RowMatrix<double> z = d.factors->solve(rhs);
   const auto value = [&](int signal) {
     RowMatrix<double> v = RowMatrix<double>::Zero(g.signals[at(signal)].size, known.cols());
     rows.add_value(signal, z, known, l.known_first, v.data());
@@ -77,7 +79,7 @@ System::Rates System::apply(const VectorXd& x, const VectorXd& u) const {
   if (x.size() != order() || u.size() != static_cast<Eigen::Index>(inputs().size()))
     throw Error(Code::size, fmt::format("apply: x has {} entries, u has {}", x.size(), u.size()),
                 fmt::format("x needs {}, u needs {}", order(), inputs().size()));
-  const VectorXd all = data_->states.expanded(x);
+  const VectorXd all = data_->states.expanded(x, u);
   solve::RowMatrix<double> known(all.size() + u.size(), 1);
   known << all, u;
   const detail::Rates r = detail::rates(*data_, known);

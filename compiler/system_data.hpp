@@ -3,6 +3,7 @@
 #include <atomic>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <titop/compiler/solve/numbers.hpp>
 #include <titop/compiler/state_map.hpp>
 #include <titop/compiler/system.hpp>
@@ -37,9 +38,13 @@ std::vector<Dependents> find_dependents(const Stage& stage, const solve::Joint& 
 struct Skeleton {
   Stage stage;  ///< after the passes
   Options options;
-  solve::Joint joint;
+  solve::Joint joint;                         ///< of the state space: regular
+  std::optional<solve::Joint> before_reduce;  ///< as written, where that is singular there
   Layout layout;
   std::vector<Dependents> dependents;  ///< per parameter
+
+  /// The equations as written: for transfers, which need no state space.
+  const solve::Joint& as_written() const { return before_reduce ? *before_reduce : joint; }
 };
 
 /// What rounding the dense model costs, and where.
@@ -59,6 +64,8 @@ struct SystemData {
   solve::Numbers numbers;
   StateMap states;  ///< those of the model
   std::unique_ptr<const solve::Factors<double>> factors;
+  /// Of the equations as written, where they are others than those of the factors.
+  std::shared_ptr<const solve::ColumnScale> scale_as_written;
   /// Per loop of the stage as compiled; 0 where it was not found.
   std::shared_ptr<const std::vector<double>> margins;
   std::vector<int> changed_loops;                       ///< by updates since
@@ -80,6 +87,9 @@ struct SystemData {
   const Layout& layout() const { return skeleton->layout; }
   /// The certificate: found by `compile`; of an updated system when it is first asked for.
   const Check& checked() const;
+  const std::shared_ptr<const solve::ColumnScale>& scale() const {
+    return scale_as_written ? scale_as_written : factors->scale();
+  }
 };
 
 /// The rows of the joint system with the numbers of the state space.
@@ -89,7 +99,12 @@ solve::JointRows<double> real_rows(const Skeleton& skeleton, const solve::Number
 struct Rates {
   solve::RowMatrix<double> xdot, y;
 };
-Rates rates(const SystemData& data, const solve::RowMatrix<double>& known);
+/// `more`: added to the right-hand sides of the joint system, where it is not empty.
+Rates rates(const SystemData& data, const solve::RowMatrix<double>& known,
+            const solve::RowMatrix<double>& more = {});
+
+/// A frequency inside the blocks' own range, off the axis so that no pole is near.
+std::complex<double> pick_s(const SystemData& data);
 
 /// The dense model before `minimize`, into buffers that are resized only if they do not fit.
 void write_dense(const SystemData& data, StateSpace& model, int threads);

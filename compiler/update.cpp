@@ -231,7 +231,7 @@ System System::update(const ParameterList& list) const {
   d->numbers = data_->numbers;
   d->states = data_->states;
   const std::vector<int> changed = set_values(k.stage.graph, list, d->numbers.parameters);
-  if (moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))
+  if (k.before_reduce || moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))
     return compiled_again(*data_, changed, d->numbers.parameters);
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
   if (!remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers))
@@ -244,11 +244,8 @@ System System::update(const ParameterList& list) const {
     d->factors = std::make_unique<const solve::Factors<double>>(k.joint.plan, rows);
     ++d->plans_renewed;
   }
-  if (const solve::Health health = d->factors->health(); health.singular) {
-    Stage stage = k.stage;
-    stage.values = d->numbers.parameters;
-    throw Error(solve::blame(stage, k.joint, d->numbers.blocks, health));
-  }
+  if (d->factors->health().singular)  // it may reduce: a mass of 0
+    return compiled_again(*data_, changed, d->numbers.parameters);
   d->notes = data_->notes;
   std::erase_if(d->notes, [](const Note& n) { return n.pass == "update"; });
   d->notes.push_back(

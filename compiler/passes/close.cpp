@@ -4,7 +4,6 @@
 #include <set>
 #include <titop/compiler/passes/close/integrals.hpp>
 #include <titop/compiler/passes/passes.hpp>
-#include <utility>
 
 namespace titop::passes {
 namespace {
@@ -100,7 +99,6 @@ std::string list(const Graph& g, const std::vector<Dependent>& dependents) {
 }  // namespace
 
 Stage close(Stage stage) {
-  const auto before = std::exchange(stage.dependents, {});
   if (!stage.closes) return stage;
   const Graph& g = stage.graph;
   const Twins twins(g);
@@ -119,7 +117,7 @@ Stage close(Stage stage) {
     (i.level == 1 ? on_rates : on_positions).push_back(std::move(line));
   }
   Closer closer{g, coordinates};
-  for (const Dependent& d : before) closer.before.emplace(d.node, d.state);
+  for (const Dependent& d : stage.before) closer.before.emplace(d.node, d.state);
   closer.close(on_positions, Level::position);
   closer.close(on_rates, Level::velocity);
   stage.dependents = std::move(closer.dependents);

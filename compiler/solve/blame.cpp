@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <set>
 #include <titop/compiler/solve/blame.hpp>
 
 namespace titop::solve {
@@ -79,6 +80,59 @@ const Loop* loop_of(const Stage& stage, int signal) {
 }
 
 }  // namespace
+
+namespace {
+
+/// The equations among these rows, and those on the ports of the blocks among them.
+std::vector<std::string> equations_around(const Stage& stage, const std::vector<int>& rows) {
+  const Graph& g = stage.graph;
+  std::set<int> equations;
+  std::set<int> outputs, nodes;
+  for (const int r : rows) {
+    const Row& row = stage.rows[at(r)];
+    if (row.equation >= 0) equations.insert(row.equation);
+    if (row.equation < 0) outputs.insert(row.output), nodes.insert(row.node);
+  }
+  for (int e = 0; e < static_cast<int>(g.equations.size()); ++e) {
+    const Signal& target = g.signals[at(g.equations[at(e)].target)];
+    if (outputs.contains(g.equations[at(e)].target) ||
+        (target.role == Signal::Role::input && nodes.contains(target.node)))
+      equations.insert(e);
+  }
+  std::vector<std::string> result;
+  for (const int e : equations)
+    if (result.size() < 6) result.push_back(written(g, g.equations[at(e)].target));
+  if (equations.size() > 6) result.push_back(fmt::format("and {} more", equations.size() - 6));
+  return result;
+}
+
+}  // namespace
+
+Mistake massless(const Stage& stage, const std::vector<int>& rows) {
+  const Graph& g = stage.graph;
+  Mistake m{Code::improper, {}, {}, {}};
+  for (const int r : rows) {
+    const Row& row = stage.rows[at(r)];
+    const int signal = row.equation >= 0 ? g.equations[at(row.equation)].target : row.output;
+    const int channel = g.signals[at(signal)].channel;
+    const bool inverted =
+        std::any_of(stage.inversions.begin(), stage.inversions.end(),
+                    [&](const Inversion& i) { return i.channel == channel && channel >= 0; });
+    if (!inverted) continue;
+    const Channel& c = g.channels[at(channel)];
+    const auto cause = g.nodes[at(c.node)].block->why_singular(c.spec, stage.values);
+    if (!cause) continue;
+    m.details = {written(g, c.takes == Takes::force ? c.accel : c.force),
+                 fmt::format("{} {}", g.nodes[at(c.node)].name, cause->why)};
+    m.hint = cause->way_out;
+    return m;
+  }
+  m.details = equations_around(stage, rows);
+  m.hint =
+      "give what stands between these equations mass, or a block of their loop a state or another "
+      "gain; or ask for positions and not for accelerations";
+  return m;
+}
 
 Mistake blame(const Stage& stage, const Joint& joint,
               const std::vector<std::shared_ptr<const Dynamics>>& blocks, const Health& health) {

@@ -10,4 +10,8 @@ namespace titop::solve {
 Mistake blame(const Stage& stage, const Joint& joint,
               const std::vector<std::shared_ptr<const Dynamics>>& blocks, const Health& health);
 
+/// What leaves no acceleration free in these rows (of Stage::rows), as details and hint of an
+/// `improper` mistake: the equation that imposes a force on a massless point, and why.
+Mistake massless(const Stage& stage, const std::vector<int>& rows);
+
 }  // namespace titop::solve

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
 #include <titop/compiler/solve/elimination.hpp>
 #include <titop/compiler/solve/kernels.hpp>
@@ -12,6 +13,10 @@ namespace titop::solve {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// A pivot that keeps less than this many units of rounding has no digit left: 1e-14 of its terms
+/// is a pivot of one to two digits, 1e-15 is rounding.
+constexpr double kNothingLeft = 16;
 
 /// Adds the rows that a child front left over; their `keeps` go along.
 template <class T>
@@ -112,7 +117,36 @@ struct Factors<T>::Work {
       if (from > 0) left = std::max(left, size / from);
     }
     if (left < m->weakest) m->weakest = left, m->weakest_column = k;
-    return left < 4 * Scalar<T>::epsilon() || !std::isfinite(best_score) ? -1 : best;
+    return left < kNothingLeft * Scalar<T>::epsilon() || !std::isfinite(best_score) ? -1 : best;
+  }
+
+  /// The column has no pivot: the row of which least is left gets one, of its own size. What was
+  /// left of the column is rounding.
+  int patch(int k) {
+    int best = k;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = k; i < rows; ++i) {
+      row(i)[k] = T(0);
+      double left = 0;
+      for (std::ptrdiff_t j = k + 1; j < n; ++j)
+        if (row_scale[at(i)] > 0)
+          left = std::max(
+              left, size_of(row(i)[j]) * column[static_cast<std::size_t>(j)] / row_scale[at(i)]);
+      if (left < least) least = left, best = i;
+    }
+    const double size = row_scale[at(best)] > 0 ? row_scale[at(best)] : 1;
+    const double value = size / column[at(k)];
+    row(best)[k] = lift<T>(value);
+    bounds(best)[k] = value;
+    m->patched.emplace_back(k, value);
+    return best;
+  }
+
+  void judge_finite() {
+    double sum = 0;
+    for (const double b : bound) sum += 0 * b;
+    m->finite = sum == 0;
+    m->singular = m->singular || !m->finite;
   }
 
   void swap(int a, int b) {
@@ -180,12 +214,14 @@ void Factors<T>::make(int index, const Rows<T>& rows, Work& w, ColumnScale* foun
                  found->data() + front.first_column);
   w.scale_rows(scale_->data() + front.first_column);
   for (int k = 0; k < front.pivot_count && !made->singular; ++k) {
-    const int best = w.pivot(k);
+    int best = w.pivot(k);
+    if (best < 0 && no_pivot_ == NoPivot::patch) best = w.patch(k);
     made->singular = best < 0;
     if (made->singular) break;
     w.swap(k, best);
     w.eliminate(k);
   }
+  w.judge_finite();
   w.finish(start);
   fronts_[at(index)] = std::move(made);
   ++made_;
@@ -193,8 +229,11 @@ void Factors<T>::make(int index, const Rows<T>& rows, Work& w, ColumnScale* foun
 
 template <class T>
 Factors<T>::Factors(std::shared_ptr<const Plan> plan, const Rows<T>& rows,
-                    std::shared_ptr<const ColumnScale> scale)
-    : plan_(std::move(plan)), scale_(std::move(scale)), fronts_(plan_->fronts.size()) {
+                    std::shared_ptr<const ColumnScale> scale, NoPivot no_pivot)
+    : plan_(std::move(plan)),
+      scale_(std::move(scale)),
+      fronts_(plan_->fronts.size()),
+      no_pivot_(no_pivot) {
   std::shared_ptr<ColumnScale> found;
   if (!scale_) scale_ = found = std::make_shared<ColumnScale>(at(plan_->columns));
   Work work;
@@ -241,8 +280,36 @@ Health Factors<T>::health() const {
   if (singular_ < 0) return h;
   const auto pivots = plan_->list(plan_->fronts[at(singular_)].pivots);
   h.singular = true;
+  h.finite = fronts_[at(singular_)]->finite;
   h.singular_variables.assign(pivots.begin(), pivots.end());
   return h;
+}
+
+/// The scalar row that entered as row `place` of a front, here or in a child.
+template <class T>
+int Factors<T>::original_row(int index, int place) const {
+  const Front& front = plan_->fronts[at(index)];
+  for (const int r : plan_->list(front.rows)) {
+    if (place < plan_->structure.row_size[at(r)]) return plan_->row_first[at(r)] + place;
+    place -= plan_->structure.row_size[at(r)];
+  }
+  for (const int c : plan_->list(front.children)) {
+    const Front& child = plan_->fronts[at(c)];
+    if (place < child.left_over())
+      return original_row(c, fronts_[at(c)]->order[at(child.pivot_count + place)]);
+    place -= child.left_over();
+  }
+  return -1;
+}
+
+template <class T>
+std::vector<Patch> Factors<T>::patches() const {
+  std::vector<Patch> result;
+  for (int f = 0; f < static_cast<int>(fronts_.size()); ++f)
+    for (const auto& [column, value] : fronts_[at(f)]->patched)
+      result.push_back({original_row(f, fronts_[at(f)]->order[at(column)]),
+                        plan_->fronts[at(f)].first_unknown + column, value});
+  return result;
 }
 
 template class Factors<double>;

@@ -31,7 +31,21 @@ struct Health {
                        ///< 1 no cancellation, 1e-16 nothing left; invariant under units
   int weakest_variable = -1;
   bool singular = false;  ///< a pivot with no digits left: `singular_variables` depend
+  bool finite = true;     ///< false where numbers have overflown: `singular_variables` are met then
   std::vector<int> singular_variables;
+};
+
+/// What to do where a column has no pivot with a digit left.
+enum class NoPivot {
+  stop,   ///< there: the factors are of no use
+  patch,  ///< add one entry to the matrix and go on: the factors are of L + sum of patches
+};
+
+/// An entry added to the matrix in place of a pivot that is not there.
+struct Patch {
+  int row = -1;      ///< scalar row, in the order of Plan::row_first
+  int unknown = -1;  ///< scalar unknown, in the order of Plan::first
+  double value = 1;  ///< of the size of its row and column
 };
 
 /// Row-major, so that the columns of a right-hand side stand side by side.
@@ -50,7 +64,7 @@ class Factors {
  public:
   /// Factors the system. O(sum of front sizes^3). `scale`: of a similar system; found if absent.
   Factors(std::shared_ptr<const Plan> plan, const Rows<T>& rows,
-          std::shared_ptr<const ColumnScale> scale = nullptr);
+          std::shared_ptr<const ColumnScale> scale = nullptr, NoPivot no_pivot = NoPivot::stop);
 
   /// The factors where only these row groups have new coefficients: the fronts that they enter and
   /// all above are made again, the others shared. O(those fronts) and one pointer per front.
@@ -64,6 +78,8 @@ class Factors {
   const Plan& plan() const { return *plan_; }
   const std::shared_ptr<const ColumnScale>& scale() const { return scale_; }
   int fronts_made() const { return made_; }  ///< by the constructor or by changed()
+  /// Where the matrix had no pivot (NoPivot::patch); at least as many as its rank lacks.
+  std::vector<Patch> patches() const;
 
   /// One front's numbers.
   struct Made {
@@ -74,7 +90,8 @@ class Factors {
     std::vector<double> keeps;  ///< per row left over what cancellation has left; none: 1 of all
     double growth = 1, weakest = 1;
     int weakest_column = -1;
-    bool singular = false;
+    bool singular = false, finite = true;
+    std::vector<std::pair<int, double>> patched;  ///< column without pivot, what stands there now
   };
   const Made& made(std::size_t front) const { return *fronts_[front]; }
 
@@ -82,10 +99,12 @@ class Factors {
   struct Work;
   void make(int front, const Rows<T>& rows, Work& work, ColumnScale* found);
   void assemble(const Front& front, const Rows<T>& rows, Work& work) const;
+  int original_row(int front, int place) const;
 
   std::shared_ptr<const Plan> plan_;
   std::shared_ptr<const ColumnScale> scale_;
   std::vector<std::shared_ptr<const Made>> fronts_;
+  NoPivot no_pivot_ = NoPivot::stop;
   int made_ = 0;
   int singular_ = -1;  ///< first singular front
 };

@@ -1,0 +1,168 @@
+#include <titop/compiler/hidden.hpp>
+#include <titop/compiler/passes/close/lines.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using solve::Kept;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+constexpr double kTie = 1 + 1e-9;  ///< less is rounding: the first in order of names is taken
+
+/// Sums of many numbers, entry by entry.
+struct KeptRow {
+  std::vector<Kept> entries;
+
+  explicit KeptRow(Index n) : entries(at(n)) {}
+  void add(double factor, const RowVectorXd& row) {
+    for (Index i = 0; i < row.size(); ++i)
+      entries[at(i)].add(factor * row(i), std::abs(factor * row(i)));
+  }
+  RowVectorXd cleaned() const {
+    RowVectorXd row(static_cast<Index>(entries.size()));
+    for (Index i = 0; i < row.size(); ++i) row(i) = entries[at(i)].cleaned();
+    return row;
+  }
+};
+
+KeptRow& grown(std::vector<KeptRow>& list, std::size_t j, Index n) {
+  while (list.size() <= j) list.emplace_back(n);
+  return list[j];
+}
+
+}  // namespace
+
+Followers::Followers(const Skeleton& k, const SystemData& d)
+    : layout_(d.layout()), inputs_(static_cast<Index>(d.layout().inputs.size())) {
+  const Index n = layout_.order();
+  is_rate_.assign(at(n), 0);
+  before_.assign(at(n), 0);
+  weight_ = Eigen::VectorXd::Zero(n);
+  const passes::closing::Coordinates coordinates(k.stage.graph, k.stage.values);
+  for (const int node : layout_.state_nodes) {
+    const int first = layout_.state_first[at(node)];
+    const Index count = d.numbers.blocks[at(node)]->A.rows();
+    node_.resize(at(first + count), node), first_.resize(at(first + count), first);
+    for (int i = 0; i < count; ++i) {
+      const int rate = coordinates.rate_of(node, i);
+      if (rate < 0) continue;
+      is_rate_[at(first + rate)] = 1;
+      weight_(first + i) = weight_(first + rate) = coordinates.weight(node, i);
+    }
+  }
+  for (const Dependent& b : k.stage.before)
+    if (layout_.state_first[at(b.node)] >= 0)
+      before_[at(layout_.state_first[at(b.node)] + b.state)] = 1;
+  for (const Dependent& dep : k.stage.dependents) {
+    Follower& f = of_state_[layout_.state_first[at(dep.node)] + dep.state];
+    for (const Dependent::Share& s : dep.of)
+      f.of[layout_.state_first[at(s.node)] + s.state] = s.factor;
+  }
+}
+
+/// Writes a constraint in independent states.
+void Followers::substitute(Hidden& c) const {
+  KeptRow g(c.g.size());
+  std::vector<KeptRow> h;
+  for (std::size_t j = 0; j < c.h.size(); ++j) grown(h, j, inputs_).add(1, c.h[j]);
+  for (Index i = 0; i < c.g.size(); ++i) {
+    if (c.g(i) == 0) continue;
+    const auto found = of_state_.find(static_cast<int>(i));
+    if (found == of_state_.end()) {
+      g.entries[at(i)].add(c.g(i), std::abs(c.g(i)));
+      continue;
+    }
+    for (const auto& [of, factor] : found->second.of)
+      g.entries[at(of)].add(c.g(i) * factor, std::abs(c.g(i) * factor));
+    for (std::size_t j = 0; j < found->second.by.size(); ++j)
+      grown(h, j, inputs_).add(c.g(i), found->second.by[j]);
+  }
+  c.g = g.cleaned();
+  c.h.clear();
+  for (const KeptRow& row : h) c.h.push_back(row.cleaned());
+}
+
+int Followers::choose(const Hidden& c) const {
+  // Rates first, then coordinates that store energy, then the others.
+  const auto tier = [&](Index i) { return is_rate_[at(i)] ? 0 : weight_(i) > 0 ? 1 : 2; };
+  int best_tier = 3;
+  for (Index i = 0; i < c.g.size(); ++i)
+    if (c.g(i) != 0) best_tier = std::min(best_tier, tier(i));
+  double largest = 0, largest_before = 0;
+  int best = -1, best_before = -1;
+  for (Index i = 0; i < c.g.size(); ++i) {
+    if (c.g(i) == 0 || tier(i) != best_tier) continue;
+    const double size = std::abs(c.g(i)) * (weight_(i) > 0 ? weight_(i) : 1);
+    if (size > kTie * largest) largest = size, best = static_cast<int>(i);
+    if (before_[at(i)] && size > kTie * largest_before)
+      largest_before = size, best_before = static_cast<int>(i);
+  }
+  return largest_before >= 1e-3 * largest ? best_before : best;
+}
+
+void Followers::follow(int state, const Hidden& c) {
+  Follower f;
+  for (Index i = 0; i < c.g.size(); ++i)
+    if (c.g(i) != 0 && i != state) f.of[static_cast<int>(i)] = -c.g(i) / c.g(state);
+  for (const RowVectorXd& h : c.h) f.by.push_back(h / -c.g(state));
+  for (auto& [other, old] : of_state_) {
+    const auto found = old.of.find(state);
+    if (found == old.of.end()) continue;
+    const double factor = found->second;
+    old.of.erase(found);
+    for (const auto& [of, share] : f.of) {
+      Kept sum{old.of[of], std::abs(old.of[of])};
+      sum.add(factor * share, std::abs(factor * share));
+      if ((old.of[of] = sum.cleaned()) == 0) old.of.erase(of);
+    }
+    std::vector<KeptRow> by;
+    for (std::size_t j = 0; j < old.by.size(); ++j) grown(by, j, inputs_).add(1, old.by[j]);
+    for (std::size_t j = 0; j < f.by.size(); ++j) grown(by, j, inputs_).add(factor, f.by[j]);
+    old.by.clear();
+    for (const KeptRow& row : by) old.by.push_back(row.cleaned());
+  }
+  of_state_[state] = std::move(f);
+  added_.push_back(state);
+}
+
+std::vector<Hidden> Followers::add(std::vector<Hidden> constraints) {
+  std::vector<Hidden> rest;
+  for (Hidden& c : constraints) {
+    substitute(c);
+    if (const int state = choose(c); state >= 0)
+      follow(state, c);
+    else
+      rest.push_back(std::move(c));
+  }
+  return rest;
+}
+
+std::vector<Dependent> Followers::dependents() const {
+  std::vector<Dependent> result;
+  for (const auto& [state, f] : of_state_) {
+    Dependent d{node_[at(state)], state - first_[at(state)], {}};
+    for (const auto& [of, factor] : f.of)
+      d.of.push_back({node_[at(of)], of - first_[at(of)], factor});
+    result.push_back(std::move(d));
+  }
+  std::sort(result.begin(), result.end(), [](const Dependent& a, const Dependent& b) {
+    return std::pair(a.node, a.state) < std::pair(b.node, b.state);
+  });
+  return result;
+}
+
+std::vector<MatrixXd> Followers::by_input() const {
+  std::vector<MatrixXd> result;
+  for (const auto& [state, f] : of_state_)
+    for (std::size_t j = 0; j < f.by.size(); ++j) {
+      while (result.size() <= j) result.push_back(MatrixXd::Zero(layout_.order(), inputs_));
+      result[j].row(state) = f.by[j];
+    }
+  return result;
+}
+
+}  // namespace titop::detail

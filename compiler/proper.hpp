@@ -1,0 +1,21 @@
+#pragma once
+
+#include <titop/compiler/hidden.hpp>
+
+namespace titop::detail {
+
+/// Where inputs come in with their derivatives.
+struct Derivatives {
+  /// by_input[j]: what u^(j) adds to the blocks' states that follow, blocks' states x inputs.
+  std::vector<Eigen::MatrixXd> by_input;
+  /// forcing[j]: what u^(j + 1) adds to the rows of the joint system, rows x inputs.
+  std::vector<solve::RowMatrix<double>> forcing;
+  std::vector<Hidden> constraints;  ///< all, in the order in which they were met
+};
+
+/// Shifts the states of the model by multiples of inputs and their derivatives so that only inputs
+/// themselves are left in it (StateMap::set_inputs, noted). Throws improper where a derivative
+/// still reaches an output. O(bodies) per input and derivative.
+void make_proper(Skeleton& k, SystemData& d, const Derivatives& derivatives);
+
+}  // namespace titop::detail

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <titop/compiler/system_data.hpp>
+
+/// Singular scenes that still have a proper transfer: massless junctions, springs in series, a
+/// force on a massless point.
+///
+/// The joint system of the state space, 0 = L z + G x + H u, may be singular although the diagram's
+/// equations are not: where y L = 0, the equations leave y G x + y H u = 0, a hidden constraint on
+/// the states (the forces of two springs in series are equal). It makes one state depend on the
+/// others and on u, and its derivative takes the place of one of the rows that y combines. This is
+/// repeated until L is regular: the order is then the number of poles of the equations as written.
+/// Derivatives of inputs that come in this way must not reach an output; states may be shifted by
+/// multiples of inputs so that they do not.
+namespace titop::detail {
+
+/// Replaces k.joint and d.factors, which has patches, by regular ones; completes
+/// k.stage.dependents and d.states; keeps the equations as written in k.before_reduce. Throws
+/// improper (input, output, number of derivatives and the equation that makes it), or what
+/// solve::blame says where a constraint repeats or contradicts what is known. O(bodies) per missing
+/// pivot.
+void reduce(Skeleton& k, SystemData& d);
+
+}  // namespace titop::detail

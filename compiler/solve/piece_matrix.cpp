@@ -1,0 +1,21 @@
+#include <titop/compiler/solve/piece_matrix.hpp>
+
+namespace titop::solve {
+
+Eigen::MatrixXd matrix_of(const Piece& p, const Graph& g, const Numbers& numbers) {
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
+  const int size = p.signal < 0 ? p.rows : g.signals[at(p.signal)].size;
+  const Eigen::MatrixXd right = p.right < 0 ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(size, size))
+                                            : Eigen::MatrixXd(*numbers.coefficients[at(p.right)]);
+  switch (p.of) {
+    case Piece::Left::one: return p.sign * right;
+    case Piece::Left::direct:
+      return p.sign * numbers.blocks[at(p.left)]->D.block(p.row, p.col, p.rows, p.cols) * right;
+    case Piece::Left::state:
+      return p.sign * numbers.blocks[at(p.left)]->C.middleRows(p.row, p.rows) * right;
+    case Piece::Left::coefficient: return p.sign * *numbers.coefficients[at(p.left)] * right;
+  }
+  return {};
+}
+
+}  // namespace titop::solve

@@ -1,0 +1,11 @@
+#pragma once
+
+#include <titop/compiler/solve/joint.hpp>
+
+namespace titop::solve {
+
+/// sign * left * right of a piece for the state space (D and C of the blocks), rows x size, size
+/// that of its signal or, for a partial sum, its rows.
+Eigen::MatrixXd matrix_of(const Piece& piece, const Graph& graph, const Numbers& numbers);
+
+}  // namespace titop::solve
