@@ -10,7 +10,6 @@
 #include <titop/compiler/dot.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/reduce.hpp>
-#include <titop/compiler/solve/blame.hpp>
 #include <titop/compiler/system_data.hpp>
 
 namespace titop {
@@ -73,12 +72,10 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
   for (const Node& node : k.stage.graph.nodes)
     d.numbers.blocks.push_back(node.block->dynamics(k.stage.values));
   k.joint = solve::joint(k.stage, d.numbers.coefficients);
-  d.factors = std::make_unique<const solve::Factors<double>>(
-      k.joint.plan, detail::real_rows(k, d.numbers), nullptr, solve::NoPivot::patch);
+  d.factors =
+      std::make_unique<const solve::Factors<double>>(k.joint.plan, detail::real_rows(k, d.numbers));
   k.dependents = detail::find_dependents(k.stage, k.joint);
-  if (const solve::Health health = d.factors->health(); health.singular)
-    throw Error(solve::blame(k.stage, k.joint, d.numbers.blocks, health));
-  if (!d.factors->patches().empty()) detail::reduce(k, d);
+  if (d.factors->health().singular) detail::reduce(k, d);
   detail::judge_internal_forces(k, d);
   k.stage.notes.push_back({Note::Kind::info, "solve",
                            fmt::format("{} unknowns in {} fronts", k.joint.plan->unknowns,

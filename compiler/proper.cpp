@@ -90,14 +90,23 @@ void refuse_derivatives(const Skeleton& k, const SystemData& d, const Derivative
   if (!any) return;
   const std::complex<double> s = pick_s(d);
   const MatrixXd size = magnitudes(d, s);
-  std::vector<Mistake> mistakes;
-  for (Index i = 0; i < size.rows(); ++i)
-    for (Index j = 0; j < size.cols(); ++j)
-      for (std::size_t n = e.P.size(); n-- > 1;) {
-        if (std::abs(e.P[n](i, j)) * std::pow(std::abs(s), n) <= kSeen * size(i, j)) continue;
-        mistakes.push_back(improper(k, d, first_with(v, j), i, j, n));
-        break;
-      }
+  const auto derivatives = [&](Index i, Index j) {
+    for (std::size_t n = e.P.size(); n-- > 1;)
+      if (std::abs(e.P[n](i, j)) * std::pow(std::abs(s), n) > kSeen * size(i, j)) return n;
+    return std::size_t{0};
+  };
+  std::vector<Mistake> mistakes;  // the first scalar pair of each input and output
+  const Graph& g = d.graph();
+  for (std::size_t o = 0; o < g.outputs.size(); ++o)
+    for (std::size_t u = 0; u < g.inputs.size(); ++u) {
+      const Index i0 = d.layout().output_first[o], j0 = d.layout().input_first[u];
+      std::optional<Mistake> first;
+      for (Index i = i0; i < i0 + g.outputs[o].size && !first; ++i)
+        for (Index j = j0; j < j0 + g.inputs[u].size && !first; ++j)
+          if (const std::size_t n = derivatives(i, j); n > 0)
+            first = improper(k, d, first_with(v, j), i, j, n);
+      if (first) mistakes.push_back(std::move(*first));
+    }
   if (!mistakes.empty()) throw Error(std::move(mistakes));
 }
 

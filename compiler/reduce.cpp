@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <set>
 #include <titop/compiler/hidden.hpp>
 #include <titop/compiler/proper.hpp>
 #include <titop/compiler/reduce.hpp>
@@ -136,6 +138,7 @@ class Reducer {
 
   void run() {
     k_.before_reduce = k_.joint;
+    factor();
     d_.scale_as_written = d_.factors->scale();
     while (!d_.factors->patches().empty()) step();
     finish();
@@ -144,31 +147,39 @@ class Reducer {
  private:
   void step() {
     const std::vector<Hidden> found = constraints();
-    if (const std::vector<Hidden> rest = followers_.add(found); !rest.empty())
-      throw Error(solve::blame(k_.stage, k_.joint, d_.numbers.blocks, health()));
+    if (const std::vector<Hidden> rest = followers_.add(found); !rest.empty()) refuse(rest);
     constraints_.insert(constraints_.end(), found.begin(), found.end());
     Substitution substitution(k_, d_);
     for (const Hidden& c : found) substitution.replace(c);
     Joint joint = substitution.joint();
     move_forcing(joint, found);
     k_.joint = std::move(joint);
+    factor();
+  }
+
+  void factor() {
     d_.factors = std::make_unique<const solve::Factors<double>>(
         k_.joint.plan, real_rows(k_, d_.numbers), nullptr, solve::NoPivot::patch);
     if (const solve::Health h = d_.factors->health(); h.singular)
-      throw Error(solve::blame(k_.stage, k_.joint, d_.numbers.blocks, h));
+      throw Error(solve::overflow(k_.stage, k_.joint, h));
   }
 
-  /// What has no pivot, as blame() wants it.
-  solve::Health health() const {
-    solve::Health h = d_.factors->health();
-    h.singular = true;
-    const solve::Plan& plan = *k_.joint.plan;
-    for (const solve::Patch& p : d_.factors->patches())
-      for (int v = 0; v < static_cast<int>(plan.first.size()); ++v)
-        if (plan.first[at(v)] <= p.unknown &&
-            p.unknown < plan.first[at(v)] + plan.structure.variable_size[at(v)])
-          h.singular_variables.push_back(v);
-    return h;
+  /// Constraints that determine no state: one mistake for each set of rows.
+  void refuse(const std::vector<Hidden>& rest) const {
+    std::map<std::vector<int>, std::set<int>> inputs_of;
+    for (const Hidden& c : rest) {
+      std::set<int>& inputs = inputs_of[c.rows];
+      const std::vector<int>& first = d_.layout().input_first;
+      for (int i = 0; i < static_cast<int>(first.size()); ++i)
+        for (const RowVectorXd& h : c.h)
+          if (!h.segment(first[at(i)], k_.stage.graph.inputs[at(i)].size).isZero(0))
+            inputs.insert(i);
+    }
+    std::vector<Mistake> mistakes;
+    for (const auto& [rows, inputs] : inputs_of)
+      mistakes.push_back(
+          solve::blame(k_.stage, d_.numbers.blocks, rows, {inputs.begin(), inputs.end()}));
+    throw Error(std::move(mistakes));
   }
 
   std::vector<Hidden> constraints() const {

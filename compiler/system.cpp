@@ -156,16 +156,33 @@ MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
 
 }  // namespace
 
-MatrixXcd System::transfer(std::complex<double> s, Precision precision) const {
+namespace {
+
+MatrixXcd transfer_with(const detail::SystemData& d, Double s, Precision precision) {
   switch (precision) {
-    case Precision::single: return transfer_in<std::complex<float>>(*data_, s);
-    case Precision::standard: return standard_transfer(*data_, s);
-    case Precision::refined: return refined_transfer(*data_, s);
-    case Precision::extended: return transfer_in<Extended>(*data_, s);
-    case Precision::digits50: return transfer_in<solve::Complex50>(*data_, s);
-    case Precision::as_needed: return transfer_as_needed(*data_, s);
+    case Precision::single: return transfer_in<std::complex<float>>(d, s);
+    case Precision::standard: return standard_transfer(d, s);
+    case Precision::refined: return refined_transfer(d, s);
+    case Precision::extended: return transfer_in<Extended>(d, s);
+    case Precision::digits50: return transfer_in<solve::Complex50>(d, s);
+    case Precision::as_needed: return transfer_as_needed(d, s);
   }
   return {};
+}
+
+void refuse_overflow(const std::string& what) {
+  throw Error(Code::not_finite, what + " overflows",
+              "take other units, or smaller gains: all numbers must stay below 1e308");
+}
+
+}  // namespace
+
+MatrixXcd System::transfer(std::complex<double> s, Precision precision) const {
+  MatrixXcd G = transfer_with(*data_, s, precision);
+  if (!G.allFinite())
+    refuse_overflow(
+        fmt::format("the transfer of {} at s = {}{:+}j", data_->graph().name, s.real(), s.imag()));
+  return G;
 }
 
 std::vector<MatrixXcd> System::frequency_response(std::span<const double> omega,
@@ -222,6 +239,8 @@ const StateSpace& System::state_space() const {
     d.dense_notes.clear();  // of an attempt that threw
     StateSpace dense;
     detail::write_dense(d, dense, 0);
+    for (const MatrixXd* m : {&dense.A, &dense.B, &dense.C, &dense.D})
+      if (!m->allFinite()) refuse_overflow("the dense model of " + d.graph().name);
     d.dense_against_factors = detail::dense_difference(d, dense);
     d.dense_error = detail::dense_error(d, dense);
     if (const auto [error, at_s] = d.dense_error; error > 1e-9)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/passes/passes.hpp>
-#include <titop/compiler/solve/blame.hpp>
 #include <titop/compiler/system_data.hpp>
 
 /// New values of the parameters on the same plan: only what depends on them is made again.

@@ -38,8 +38,10 @@ Stage split(Stage stage);
 Stage chains(Stage stage);
 
 /// Every row has its unknown: maximum bipartite matching by whole signals from each channel's
-/// default, by scalars only where that leaves a rest. Inversions are known. Throws structure, with
-/// both sides of the deficient part (Dulmage-Mendelsohn). O(terms) for trees.
+/// default, by scalars only where that leaves a rest, and through states where that leaves one too
+/// (a point without mass between springs: `reduce` takes care of it). Inversions are known. Throws
+/// structure, with both sides of every deficient part (Dulmage-Mendelsohn) and the channels to be
+/// driven on their other side. O(terms) for trees.
 Stage match(Stage stage);
 
 /// Block triangular form: strong components are the algebraic loops, dependencies first. What no

@@ -72,17 +72,6 @@ Mistake improper(const Stage& stage, const Channel& c, int rank) {
   return m;
 }
 
-const Loop* loop_of(const Stage& stage, int signal) {
-  for (const Loop& loop : stage.loops)
-    if (std::find(loop.signals.begin(), loop.signals.end(), signal) != loop.signals.end())
-      return &loop;
-  return nullptr;
-}
-
-}  // namespace
-
-namespace {
-
 /// The equations among these rows, and those on the ports of the blocks among them.
 std::vector<std::string> equations_around(const Stage& stage, const std::vector<int>& rows) {
   const Graph& g = stage.graph;
@@ -106,15 +95,19 @@ std::vector<std::string> equations_around(const Stage& stage, const std::vector<
   return result;
 }
 
+/// The port that a row is for.
+int port_of(const Stage& stage, int row) {
+  const Row& r = stage.rows[at(row)];
+  return r.equation >= 0 ? stage.graph.equations[at(r.equation)].target : r.output;
+}
+
 }  // namespace
 
 Mistake massless(const Stage& stage, const std::vector<int>& rows) {
   const Graph& g = stage.graph;
   Mistake m{Code::improper, {}, {}, {}};
   for (const int r : rows) {
-    const Row& row = stage.rows[at(r)];
-    const int signal = row.equation >= 0 ? g.equations[at(row.equation)].target : row.output;
-    const int channel = g.signals[at(signal)].channel;
+    const int channel = g.signals[at(port_of(stage, r))].channel;
     const bool inverted =
         std::any_of(stage.inversions.begin(), stage.inversions.end(),
                     [&](const Inversion& i) { return i.channel == channel && channel >= 0; });
@@ -134,15 +127,13 @@ Mistake massless(const Stage& stage, const std::vector<int>& rows) {
   return m;
 }
 
-Mistake blame(const Stage& stage, const Joint& joint,
-              const std::vector<std::shared_ptr<const Dynamics>>& blocks, const Health& health) {
+Mistake blame(const Stage& stage, const std::vector<std::shared_ptr<const Dynamics>>& blocks,
+              const std::vector<int>& rows, const std::vector<int>& inputs) {
   const Graph& g = stage.graph;
-  std::vector<int> signals;
-  for (const int v : health.singular_variables)
-    if (joint.variables[at(v)] >= 0) signals.push_back(joint.variables[at(v)]);
-  const Loop* loop = signals.empty() ? nullptr : loop_of(stage, signals.front());
-  const auto in_loop = [&](int s) {
-    return !loop || std::find(loop->signals.begin(), loop->signals.end(), s) != loop->signals.end();
+  std::vector<int> ports;
+  for (const int r : rows) ports.push_back(port_of(stage, r));
+  const auto concerns = [&](int signal) {
+    return std::find(ports.begin(), ports.end(), signal) != ports.end();
   };
   // First the channels that their block could invert by itself if its numbers were others; then
   // those that live on what hangs there (a hinge's own axis, a child point of a rigid body).
@@ -150,29 +141,36 @@ Mistake blame(const Stage& stage, const Joint& joint,
     for (const Inversion& inversion : stage.inversions) {
       const Channel& c = g.channels[at(inversion.channel)];
       const Dynamics& own = *blocks[at(c.node)];
-      if (!in_loop(c.takes == Takes::force ? c.force : c.accel) ||
-          has_direct(g, c, own) != by_itself)
-        continue;
+      if (!(concerns(c.force) || concerns(c.accel)) || has_direct(g, c, own) != by_itself) continue;
       const int rank = direct_rank(g, c, own);
       if (rank < c.size) return improper(stage, c, rank);
     }
   Mistake m{Code::ill_posed, {}, {}, {}};
-  std::string names;
-  for (const int s : signals) names += (names.empty() ? "" : ", ") + name_of(g, s);
+  std::string names, driven;
+  for (const int s : ports) names += (names.empty() ? "" : ", ") + name_of(g, s);
+  for (const int i : inputs) driven += (driven.empty() ? "" : ", ") + g.inputs[at(i)].name;
   m.message = fmt::format("the algebraic loop through {} has no unique solution", names);
-  if (loop) {
-    std::string all;
-    for (std::size_t i = 0; i < loop->signals.size() && i < 12; ++i)
-      all += (i ? ", " : "") + name_of(g, loop->signals[i]);
-    if (loop->signals.size() > 12) all += ", ...";
-    m.details.push_back(fmt::format("the loop: {} ({} unknowns)", all, loop->unknowns));
-  }
-  m.details.push_back("a pivot keeps no digits: the direct terms around the loop cancel");
+  m.details = equations_around(stage, rows);
+  m.details.push_back(
+      inputs.empty() ? "together these say nothing that fixes the ports: one of them is said twice"
+                     : fmt::format("together these say that a combination of {} is 0", driven));
+  m.details.push_back("without any one of these ports the others would be determined");
   m.hint = fmt::format(
       "break the direct feedthrough around {}: give one block of the loop a state, or "
       "change a gain",
-      signals.empty() ? "it" : name_of(g, signals.front()));
+      ports.empty() ? "it" : name_of(g, ports.front()));
   return m;
+}
+
+Mistake overflow(const Stage& stage, const Joint& joint, const Health& health) {
+  std::string names;
+  for (const int v : health.singular_variables)
+    if (const int s = joint.variables[at(v)]; s >= 0)
+      names += (names.empty() ? "" : ", ") + name_of(stage.graph, s);
+  return {Code::not_finite,
+          fmt::format("numbers overflow at {}", names.empty() ? "a sum of many terms" : names),
+          {},
+          "take other units, or smaller gains: products along the equations must stay below 1e308"};
 }
 
 }  // namespace titop::solve

@@ -4,11 +4,16 @@
 
 namespace titop::solve {
 
-/// What to tell the user about a joint system without a unique solution: `improper` where a
-/// channel is inverted whose direct term alone is singular (a force on a massless point, a locked
-/// point that the modes cannot move), `ill_posed` otherwise, with the loop's signals.
-Mistake blame(const Stage& stage, const Joint& joint,
-              const std::vector<std::shared_ptr<const Dynamics>>& blocks, const Health& health);
+/// What to tell the user about rows (of Stage::rows) that depend on one another and determine no
+/// state: `improper` where one of them inverts a channel whose direct term alone is singular (a
+/// force on a massless body, a locked point that the modes cannot move), `ill_posed` otherwise.
+/// `rows` is minimal: any of them left out, the others are independent. `inputs`: those that they
+/// would make 0.
+Mistake blame(const Stage& stage, const std::vector<std::shared_ptr<const Dynamics>>& blocks,
+              const std::vector<int>& rows, const std::vector<int>& inputs);
+
+/// Numbers that are not finite any more (Health::finite): at which ports.
+Mistake overflow(const Stage& stage, const Joint& joint, const Health& health);
 
 /// What leaves no acceleration free in these rows (of Stage::rows), as details and hint of an
 /// `improper` mistake: the equation that imposes a force on a massless point, and why.

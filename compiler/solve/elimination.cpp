@@ -149,6 +149,15 @@ struct Factors<T>::Work {
     m->singular = m->singular || !m->finite;
   }
 
+  /// What rounding has left of the rows below k is 0.
+  void clean(int k) {
+    for (std::ptrdiff_t e = (k + 1) * n; e < static_cast<std::ptrdiff_t>(m->lu.size()); ++e)
+      if (T& x = m->lu[static_cast<std::size_t>(e)];
+          e % n > k &&
+          size_of(x) <= kNothingLeft * Scalar<T>::epsilon() * bound[static_cast<std::size_t>(e)])
+        x = T(0);
+  }
+
   void swap(int a, int b) {
     if (a == b) return;
     std::swap_ranges(row(a), row(a) + n, row(b));
@@ -220,6 +229,7 @@ void Factors<T>::make(int index, const Rows<T>& rows, Work& w, ColumnScale* foun
     if (made->singular) break;
     w.swap(k, best);
     w.eliminate(k);
+    if (no_pivot_ == NoPivot::patch) w.clean(k);
   }
   w.judge_finite();
   w.finish(start);

@@ -38,7 +38,8 @@ struct Health {
 /// What to do where a column has no pivot with a digit left.
 enum class NoPivot {
   stop,   ///< there: the factors are of no use
-  patch,  ///< add one entry to the matrix and go on: the factors are of L + sum of patches
+  patch,  ///< add one entry to the matrix and go on: the factors are of L + sum of patches; what is
+          ///< left of an entry below rounding is 0, so that what depends on what stays exact
 };
 
 /// An entry added to the matrix in place of a pivot that is not there.

@@ -1,0 +1,61 @@
+#include <doctest/doctest.h>
+
+#include "singular/networks.hpp"
+#include "support/random_checks.hpp"
+
+/// 10,000 random changes of all units by factors from 1e-9 to 1e9: no verdict flips.
+
+using namespace titop;
+using titop_test::Rng;
+using titop_test::Units;
+
+namespace {
+
+Units random_units(Rng& rng) {
+  const auto factor = [&] { return std::pow(10.0, rng.below(19) - 9); };
+  const double length = factor(), mass = factor();
+  return {.length = length, .mass = mass, .time = factor()};
+}
+
+/// What `compile` says: the order, or the code of the refusal.
+std::string verdict(const Diagram& d) {
+  try {
+    return std::to_string(compile(d, {.minimize_up_to = 0}).order());
+  } catch (const Error& e) {
+    return std::string(to_string(e.mistakes().front().code));
+  }
+}
+
+/// m a = k a + u - ...: singular where k = m, whatever the unit.
+Diagram cancelled(double mass, const Units& u, double share) {
+  Diagram d{"cancelled"};
+  auto z =
+      d.add("z", SpringMass{.mass = mass * u.mass, .stiffness = 26 * u.mass / (u.time * u.time)});
+  auto K = d.add("K", Lti{.D = Eigen::MatrixXd::Constant(1, 1, share * (mass * u.mass))});
+  ground(z);
+  K.in = z.child.accel;
+  z.child.force = d.input("u") + K.out;
+  d.output("a") = z.child.accel;
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("10,000 changes of units: random scenes, points without mass, feedthroughs that cancel") {
+  for (std::uint64_t seed = 1; seed <= 10000; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    const Units units = random_units(rng);
+    if (seed % 4 == 0) {
+      const auto scene = titop_test::random_scene(titop_test::random_options(seed % 400));
+      CHECK(verdict(scene.build(units)) == verdict(scene.build()));
+    } else if (seed % 4 == 1) {
+      const double share = seed % 8 == 1 ? 1 : 1 - 1e-13;
+      CHECK(verdict(cancelled(rng.octaves(-3, 3), units, share)) ==
+            (share == 1 ? "improper" : "2"));
+    } else {
+      const auto network = singular_test::random_network(seed, units);
+      CHECK(verdict(network.diagram) == std::to_string(network.order));
+    }
+  }
+}
