@@ -72,31 +72,71 @@ std::vector<int> columns_of(const Relations& r, Role role) {
 
 }  // namespace
 
-Factors scale(Relations& r) {
+namespace {
+
+/// Factors for rows (those of one number together) and for columns, each from what has its factor
+/// already, so that none depends on units: columns that store energy begin; then come, in turn, the
+/// rows that they reach, the columns that these reach, and so on.
+struct Scaling {
+  Relations& r;
   Factors f{VectorXd::Ones(r.R.rows()), VectorXd::Ones(r.R.cols())};
-  for (Index j = 0; j < r.R.cols(); ++j)
-    if (r.weight(j) > 0) f.column(j) = r.weight(j), r.R.col(j) *= r.weight(j);
-  const int units = r.unit.empty() ? 0 : *std::max_element(r.unit.begin(), r.unit.end()) + 1;
-  MatrixXd largest = MatrixXd::Zero(units, 3);  // of energetic, other, unknown columns
-  for (Index i = 0; i < r.R.rows(); ++i)
-    for (Index j = 0; j < r.R.cols(); ++j) {
-      const int kind = r.weight(j) > 0 ? 0 : r.role[at(j)] == Role::unknown ? 2 : 1;
-      double& most = largest(r.unit[at(i)], kind);
-      most = std::max(most, std::abs(r.R(i, j)));
+  std::vector<char> row_done = std::vector<char>(at(r.R.rows()), 0),
+                    column_done = std::vector<char>(at(r.R.cols()), 0);
+
+  std::vector<std::vector<Index>> rows_of = {};  ///< by number
+
+  void start() {
+    for (Index i = 0; i < r.R.rows(); ++i) {
+      if (at(r.unit[at(i)]) >= rows_of.size()) rows_of.resize(at(r.unit[at(i)]) + 1);
+      rows_of[at(r.unit[at(i)])].push_back(i);
     }
-  for (Index i = 0; i < r.R.rows(); ++i)
-    for (int kind = 0; kind < 3; ++kind)
-      if (const double size = largest(r.unit[at(i)], kind); size > 0) {
-        f.row(i) = 1 / size;
-        r.R.row(i) /= size;
-        break;
-      }
-  for (Index j = 0; j < r.R.cols(); ++j) {
-    if (r.weight(j) > 0) continue;
-    if (const double size = r.R.col(j).cwiseAbs().maxCoeff(); size > 0)
-      f.column(j) = 1 / size, r.R.col(j) /= size;
+    for (Index j = 0; j < r.R.cols(); ++j)
+      if (r.weight(j) > 0) scale_column(j, r.weight(j));
   }
-  return f;
+  void scale_column(Index j, double factor) {
+    f.column(j) = factor, r.R.col(j) *= factor;
+    column_done[at(j)] = 1;
+  }
+  /// Rows of this number by their largest entry, in columns that are done or in all.
+  bool rows(std::size_t unit, bool all) {
+    double largest = 0;
+    if (rows_of[unit].empty() || row_done[at(rows_of[unit].front())]) return false;
+    for (const Index i : rows_of[unit])
+      for (Index j = 0; j < r.R.cols(); ++j)
+        if (all || column_done[at(j)]) largest = std::max(largest, std::abs(r.R(i, j)));
+    if (largest == 0) return false;
+    for (const Index i : rows_of[unit])
+      f.row(i) = 1 / largest, r.R.row(i) /= largest, row_done[at(i)] = 1;
+    return true;
+  }
+  bool columns() {
+    bool any = false;
+    for (Index j = 0; j < r.R.cols(); ++j) {
+      if (column_done[at(j)]) continue;
+      double largest = 0;
+      for (Index i = 0; i < r.R.rows(); ++i)
+        if (row_done[at(i)]) largest = std::max(largest, std::abs(r.R(i, j)));
+      if (largest > 0) scale_column(j, 1 / largest), any = true;
+    }
+    return any;
+  }
+  void run() {
+    start();
+    for (bool more = true; more;) {
+      more = false;
+      for (std::size_t u = 0; u < rows_of.size(); ++u) more = rows(u, false) || more;
+      more = columns() || more;
+      for (std::size_t u = 0; u < rows_of.size() && !more; ++u) more = rows(u, true);
+    }
+  }
+};
+
+}  // namespace
+
+Factors scale(Relations& relations) {
+  Scaling scaling{relations};
+  scaling.run();
+  return std::move(scaling.f);
 }
 
 Independent independent(Relations r, const std::vector<int>& preferred) {
