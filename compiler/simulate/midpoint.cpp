@@ -15,13 +15,16 @@ class Midpoint : public StepRule {
         s_(2 / h),
         inputs_(static_cast<Eigen::Index>(d.layout().inputs.size())),
         point_(d, s_, Columns::Identity(inputs_, inputs_)),
-        by_inputs_(point_.states().real()) {}
+        by_inputs_(d.states
+                       .model_states(Columns(point_.states()),
+                                     Columns(Columns::Identity(inputs_, inputs_)), s_)
+                       .real()) {}
 
   VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) const override {
-    const VectorXd all = d_.states.expanded(x);
-    VectorXd middle = point_.forced_states((s_.real() * all).cast<Complex>()).real();
+    const Columns forced = (s_.real() * d_.states.expanded(x)).cast<Complex>();
+    VectorXd middle = d_.states.kept_rows(Columns(point_.forced_states(forced))).real();
     middle.noalias() += by_inputs_ * (0.5 * (u0 + u1));
-    return 2 * d_.states.kept_rows(middle) - x;
+    return 2 * middle - x;
   }
 
  private:
@@ -29,7 +32,7 @@ class Midpoint : public StepRule {
   Complex s_;
   Eigen::Index inputs_;
   Evaluation<Complex> point_;
-  Eigen::MatrixXd by_inputs_;  ///< all blocks' states x inputs
+  Eigen::MatrixXd by_inputs_;  ///< the model's states x inputs
 };
 
 }  // namespace
