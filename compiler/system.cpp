@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/evaluate.hpp>
-#include <titop/compiler/minimize.hpp>
 #include <titop/compiler/parallel.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/system.hpp>
@@ -204,39 +203,12 @@ MatrixXd System::static_gain() const {
   }
 }
 
-namespace {
-
-/// Minimizes the dense model, compares its transfer with the factors' at the certificate's s, and
-/// keeps the full model where they part: nothing is removed on trust.
-void minimize_checked(const System& system, const detail::SystemData& d, StateSpace& dense) {
-  Minimized m = minimize(dense, {.resolution = d.skeleton->options.resolution});
-  for (std::string& text : m.notes)
-    d.dense_notes.push_back({Note::Kind::removed, "minimize", std::move(text)});
-  if (m.removed == 0) return;
-  if (dense.inputs.empty() || dense.outputs.empty()) {
-    dense = std::move(m.model);
-    return;
-  }
-  const MatrixXcd G = system.transfer(d.checked().certificate.s);
-  const double size = G.cwiseAbs().maxCoeff();
-  const double off = (m.model.transfer(d.checked().certificate.s) - G).cwiseAbs().maxCoeff();
-  const double allowed = std::max(1e-8, 10 * d.skeleton->options.resolution);
-  const bool keeps = off <= allowed * size;
-  d.dense_notes.push_back(
-      {keeps ? Note::Kind::info : Note::Kind::warning, "minimize",
-       fmt::format("transfer changed by {:.1e} at the certificate's s{}",
-                   size > 0 ? off / size : off,
-                   keeps ? "" : ": more than allowed, so nothing was removed")});
-  if (keeps) dense = std::move(m.model);
-}
-
-}  // namespace
-
 const StateSpace& System::state_space() const {
   std::call_once(data_->dense_once, [&] {
     const detail::SystemData& d = *data_;
     const Options& options = d.skeleton->options;
     d.dense_notes.clear();  // of an attempt that threw
+    d.dense_order = {};
     StateSpace dense;
     detail::write_dense(d, dense, 0);
     for (const MatrixXd* m : {&dense.A, &dense.B, &dense.C, &dense.D})
@@ -249,8 +221,10 @@ const StateSpace& System::state_space() const {
            fmt::format("written as A, B, C, D the model keeps {:.0f} digits at s = {:.3g}{:+.3g}j; "
                        "System::transfer and apply keep them all",
                        std::max(0.0, -std::log10(error)), at_s.real(), at_s.imag())});
+    d.dense_order.order = d.dense_order.highest = dense.order();
+    d.dense_order.judged = dense.order() == 0;
     if (dense.order() > 0 && dense.order() <= options.minimize_up_to) {
-      minimize_checked(*this, d, dense);
+      detail::minimize_checked(*this, d, dense);
     } else if (dense.order() > 0) {
       d.dense_notes.push_back(
           {Note::Kind::info, "minimize",
@@ -261,6 +235,11 @@ const StateSpace& System::state_space() const {
     d.dense_ready.store(true, std::memory_order_release);
   });
   return data_->dense;
+}
+
+const OrderVerdict& System::order_verdict() const {
+  state_space();
+  return data_->dense_order;
 }
 
 void System::write(StateSpace& model, int threads) const {

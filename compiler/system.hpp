@@ -6,6 +6,7 @@
 #include <string>
 #include <titop/compiler/certificate.hpp>
 #include <titop/compiler/descriptor.hpp>
+#include <titop/compiler/minimize.hpp>
 #include <titop/compiler/modal.hpp>
 #include <titop/compiler/stage.hpp>
 #include <titop/graph/diagram.hpp>
@@ -40,6 +41,9 @@ struct Options {
   /// rounding cannot tell from nothing.
   double resolution = 0;
   InternalForces internal_forces = InternalForces::refuse;
+  /// Up to this many states the minimal order is found in exact arithmetic as well, where the data
+  /// allow it (compiler/exact_order.hpp), and decides what `minimize` takes out. 0: never.
+  int exact_up_to = 0;
 };
 
 /// With what arithmetic a transfer is found, coarse to fine. All run through the same elimination
@@ -92,6 +96,10 @@ class System {
   /// The minimal dense model. The first call writes it (O(n^2) per output of it) and, up to
   /// Options::minimize_up_to states, minimizes it (O(n^3)); later calls return the same.
   const StateSpace& state_space() const;
+
+  /// How sure the order of state_space() is, what was removed and at what cost; writes the model
+  /// where that has not been done.
+  const OrderVerdict& order_verdict() const;
 
   /// The dense model before `minimize`, into a model of the caller's, whose memory is used again
   /// where it fits: what a loop over parameters wants. O(n^2), on `threads` threads (0: all cores),

@@ -81,6 +81,7 @@ struct SystemData {
   mutable double dense_against_factors = -1;
   mutable DenseError dense_error{-1, {}};
   mutable std::vector<Note> dense_notes;
+  mutable OrderVerdict dense_order;
   mutable std::atomic<bool> dense_ready = false;  ///< all of the above may be read
 
   const Graph& graph() const { return skeleton->stage.graph; }
@@ -128,6 +129,14 @@ void judge_internal_forces(Skeleton& skeleton, const SystemData& data);
 /// All passes once more for these values of the parameters. States that followed from the others
 /// still do, where that keeps the digits.
 std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector<double>& values);
+
+/// Potential energy x' E x / 2 of the model's states (order x order): of closed chains, whose
+/// independent coordinates share springs. Empty where a block does not say what it stores. O(n^3).
+Eigen::MatrixXd potential_energy(const SystemData& data);
+
+/// Replaces the dense model by the minimal one where its transfer beside the modes that leave stays
+/// within 1e-8 (or ten times Options::resolution), and says so in dense_order and dense_notes.
+void minimize_checked(const System& system, const SystemData& data, StateSpace& dense);
 
 /// Certificate of the factors: see certify.cpp.
 Check certify(const SystemData& data);

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <titop/compiler/exact/integers.hpp>
+#include <titop/graph/graph.hpp>
+#include <vector>
+
+/// Doubles as fractions. For the compiler's own files.
+namespace titop::exact {
+
+/// Dense, row by row.
+struct Matrix {
+  Eigen::Index rows = 0, cols = 0;
+  std::vector<Fraction> entries;
+
+  Matrix(Eigen::Index r, Eigen::Index c)
+      : rows(r), cols(c), entries(static_cast<std::size_t>(r * c)) {}
+  Fraction& operator()(Eigen::Index i, Eigen::Index j) {
+    return entries[static_cast<std::size_t>(i * cols + j)];
+  }
+  const Fraction& operator()(Eigen::Index i, Eigen::Index j) const {
+    return entries[static_cast<std::size_t>(i * cols + j)];
+  }
+  static Matrix identity(Eigen::Index n);
+  Matrix transposed() const;
+};
+Matrix operator*(const Matrix& a, const Matrix& b);
+Matrix operator*(const Fraction& k, Matrix m);
+
+/// Every double as the fraction that it is.
+Matrix fractions(const Eigen::MatrixXd& m);
+
+/// Orthonormal rows as the fractions of small denominator that they stand for: 0.6 is 3/5. Throws
+/// Undecided, with `what`, where they stand for none, or these are not orthonormal.
+Matrix orthonormal_fractions(const Eigen::MatrixXd& rows, const std::string& what);
+
+/// The matrix of a term, as `coefficient` of graph.hpp. Throws Undecided.
+Matrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues values);
+
+}  // namespace titop::exact

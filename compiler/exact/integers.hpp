@@ -1,0 +1,62 @@
+#pragma once
+
+#include <boost/multiprecision/cpp_int.hpp>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// Linear algebra in integers of any length: ranks without rounding. For the compiler's own files.
+namespace titop::exact {
+
+using Integer = boost::multiprecision::cpp_int;
+using Fraction = boost::multiprecision::cpp_rational;
+
+/// Thrown inside: why something is not decided.
+struct Undecided {
+  std::string why;
+};
+
+/// Entries that are not 0, by ascending column. Only the direction counts: any multiple will do.
+using Row = std::vector<std::pair<int, Integer>>;
+
+/// Columns with their fractions, in any order and with repetitions, which are added up.
+using Fractions = std::map<int, Fraction>;
+
+/// The shortest integer row in the same direction. O(entries).
+Row to_row(const Fractions& entries);
+
+/// Rows in echelon form: every row has its own leading column.
+class Echelon {
+ public:
+  explicit Echelon(int bits) : bits_(bits) {}
+
+  /// The row less what the rows here say; empty if it says nothing new.
+  Row reduced(Row row) const;
+  /// Takes it in, reduced. False if it says nothing new. Throws Undecided beyond `bits`.
+  bool add(Row row);
+
+  int rank() const { return static_cast<int>(rows_.size()); }
+  /// By leading column.
+  const std::map<int, Row>& rows() const { return rows_; }
+
+ private:
+  int bits_;
+  std::map<int, Row> rows_;
+};
+
+/// A square matrix over one common denominator, which does not matter to its invariant subspaces.
+struct Square {
+  std::vector<std::vector<std::pair<int, Integer>>> columns;
+  Row times(const Row& v) const;
+};
+
+/// The smallest subspace with these rows that the matrix keeps: span(v, M v, M^2 v, ...). Cost
+/// O(n^3) operations on integers that grow with n.
+Echelon krylov(const Square& M, std::vector<Row> start, int bits);
+
+/// Rank of the products of the rows of a by the rows of b.
+int rank_of_products(const Echelon& a, const Echelon& b, int bits);
+
+}  // namespace titop::exact

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+#include <titop/graph/graph.hpp>
+#include <titop/graph/state_space.hpp>
+
+namespace titop {
+
+/// The order of a transfer without any rounding, or why it is not decided.
+struct ExactOrder {
+  bool decided = false;
+  int order = 0;       ///< the minimal order of the transfer
+  int reachable = 0;   ///< dimension of what the inputs reach
+  int observable = 0;  ///< dimension of what the outputs see
+  int states = 0;      ///< of the equations it was found from
+  std::string why_not;
+};
+
+struct ExactOptions {
+  int states = 40;      ///< larger problems are refused: cost grows as states^3 digits
+  int unknowns = 2000;  ///< scalar port signals and states of a diagram: likewise
+  int bits = 200'000;   ///< and so are those whose numbers outgrow this
+};
+
+/// Minimal order of what the graph's equations say (those that `transfer(graph, s)` solves), in
+/// integers of any length: every double is a fraction with a power of two below. Ranks of
+/// [B, A B, ...], [C; C A; ...] and of their product, by elimination without division.
+///
+/// Exact for the numbers that the blocks' matrices hold, as doubles: k / m has been rounded if m is
+/// no power of two (equal ratios stay equal). A rotation counts as exact if its entries are
+/// fractions of denominators up to 1000 (0.6 is 3/5) and these are orthonormal; parts (.along)
+/// likewise; other matrices count as they stand. Another rotation is refused by name: with rounded
+/// cosines a redundant constraint becomes an independent one. Not decided either: a diagram without
+/// inputs or without outputs; equations that do not determine the outputs without derivatives; more
+/// states, unknowns or bits than the options say. Throws nothing of its own but the mistakes that
+/// the graph has noted; what blocks throw for bad values passes through. Cost: milliseconds for
+/// whole numbers, even with a hundred states; states^3 products of numbers that grow otherwise.
+ExactOrder exact_order(const Graph& graph, const ExactOptions& options = {},
+                       ParameterValues values = {});
+
+/// The same of A, B, C as they stand.
+ExactOrder exact_order(const StateSpace& model, const ExactOptions& options = {});
+
+/// "exact: order 8 (of 10 states, 8 are reached, 8 are seen)", or "not decided exactly: ...".
+std::string to_string(const ExactOrder& result);
+
+}  // namespace titop

@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <cmath>
+#include <titop/compiler/minimize/clusters.hpp>
+
+/// Models of any other kind: eigenvalues with left and right vectors.
+namespace titop::modes {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// Eigenvalues that rounding has made a complex pair become two real ones; their vectors stay a
+/// basis of the same plane.
+void make_real(linalg::Eigensystem& e, double noise) {
+  for (Index j = 0; j + 1 < e.values.size(); ++j) {
+    if (!(e.values(j).imag() > 0) || e.values(j).imag() > noise) continue;
+    e.values(j) = e.values(j + 1) = e.values(j).real();
+    const Eigen::VectorXcd v = e.V.col(j);
+    const Eigen::RowVectorXcd w = e.W.row(j);
+    e.V.col(j) = v.real();
+    e.V.col(j + 1) = v.imag();
+    e.W.row(j) = 2 * w.real();
+    e.W.row(j + 1) = -2 * w.imag();
+  }
+}
+
+/// Numbers the clusters: chains of eigenvalues of the upper half plane (and the axis) with gaps up
+/// to what counts as equal. O(n^2).
+void find_clusters(const linalg::Eigensystem& e, double noise, double resolution, ModeSet& m) {
+  const Index n = e.values.size();
+  m.cluster.assign(at(n), -1);
+  int count = 0;
+  for (Index first = 0; first < n; ++first) {
+    if (m.cluster[at(first)] >= 0) continue;
+    m.cluster[at(first)] = count;
+    std::vector<Index> open{first};
+    while (!open.empty()) {
+      const Index i = open.back();
+      open.pop_back();
+      for (Index j = 0; j < n; ++j) {
+        const double same =
+            noise + std::max(kSameFrequency, 2 * resolution) * std::abs(e.values(i));
+        if (m.cluster[at(j)] < 0 && std::abs(e.values(i) - e.values(j)) <= same)
+          m.cluster[at(j)] = count, open.push_back(j);
+      }
+    }
+    ++count;
+  }
+}
+
+void turn_clusters(const StateSpace& model, const ModeSet& m, linalg::Eigensystem& e) {
+  const Index n = e.values.size();
+  for (Index first = 0; first < n; ++first) {
+    std::vector<Index> members, partners;
+    bool real = false, complex = false;
+    for (Index j = 0; j < n; ++j) {
+      if (m.cluster[at(j)] != m.cluster[at(first)] || e.values(j).imag() < 0) continue;
+      members.push_back(j);
+      if (e.values(j).imag() > 0) partners.push_back(j + 1);
+      (e.values(j).imag() > 0 ? complex : real) = true;
+    }
+    if (members.size() < 2 || members.front() != first || (real && complex)) continue;
+    const MatrixXcd b = unit_columns(MatrixXcd(e.W(members, Eigen::all) * model.B));
+    const MatrixXcd c = unit_columns(MatrixXcd((model.C * e.V(Eigen::all, members)).adjoint()));
+    const MatrixXcd U = turn(b, c);
+    e.V(Eigen::all, members) = (e.V(Eigen::all, members) * U).eval();
+    e.W(members, Eigen::all) = (U.adjoint() * e.W(members, Eigen::all)).eval();
+    if (!complex) continue;
+    e.V(Eigen::all, partners) = e.V(Eigen::all, members).conjugate().eval();
+    e.W(partners, Eigen::all) = e.W(members, Eigen::all).conjugate().eval();
+  }
+}
+
+/// First order: rounding of size eps |A| in A turns w_j by (w_j dA v_i) / (s_j - s_i) into w_i.
+void find_mixing(const linalg::Eigensystem& e, const VectorXd& left, const VectorXd& right,
+                 double size, ModeSet& m) {
+  const Index n = e.values.size();
+  m.distance.resize(n, n);
+  m.mixing.resize(n, n);
+  for (Index j = 0; j < n; ++j)
+    for (Index i = 0; i < n; ++i) {
+      const double gap = std::abs(e.values(i) - e.values(j));
+      m.distance(i, j) = gap;
+      const double noise = kEps * size * std::max(left(j) * right(i), left(i) * right(j));
+      m.mixing(i, j) = gap > 0 ? std::min(1.0, noise / gap) : 1;
+    }
+}
+
+/// Poles at 0 and ill-conditioned ones: clusters or Jordan blocks, kept whole.
+void set_apart(const VectorXd& condition, ModeSet& m) {
+  const Index n = m.size();
+  const double largest = n ? m.lambda.maxCoeff() : 0;
+  m.apart.assign(at(n), "");
+  m.needed.assign(at(n), 0);
+  for (Index j = 0; j < n; ++j) {
+    if (m.lambda(j) <= 1e9 * kEps * largest)
+      m.apart[at(j)] = kAtZero;
+    else if (!(condition(j) <= 1e6))
+      m.apart[at(j)] = "it is ill-conditioned, as multiple poles are";
+  }
+}
+
+/// Poles at 0 are needed if [A, B] and [A', C'] have full rank. A, B, C: balanced.
+void find_needed(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C, ModeSet& m) {
+  if (std::find(m.apart.begin(), m.apart.end(), kAtZero) == m.apart.end()) return;
+  const auto full = [](const MatrixXd& a, const MatrixXd& b) {
+    if (b.cols() == 0) return true;
+    MatrixXd both(a.rows(), a.cols() + b.cols());
+    both << a, std::max(a.rowwise().norm().maxCoeff(), 1.0) * unit_columns(b);
+    return clearly_full_rank(both);
+  };
+  const bool needed = full(A, B) && full(A.transpose(), C.transpose());
+  for (std::size_t j = 0; j < m.apart.size(); ++j) m.needed[j] = needed && m.apart[j] == kAtZero;
+}
+
+}  // namespace
+
+General general_modes(const StateSpace& model, double resolution) {
+  General g{linalg::eigensystem(model.A), {}};
+  linalg::Eigensystem& e = g.e;
+  ModeSet& m = g.modes;
+  const Index n = e.values.size();
+  const MatrixXd balanced = e.scale.cwiseInverse().asDiagonal() * model.A * e.scale.asDiagonal();
+  const double size = balanced.norm();
+  make_real(e, 100 * kEps * size);
+  find_clusters(e, 100 * kEps * size, resolution, m);
+  turn_clusters(model, m, e);
+  m.lambda = m.omega = e.values.cwiseAbs();
+  m.b = (e.W * model.B).cwiseAbs();
+  m.c = (model.C * e.V).transpose().cwiseAbs();
+  for (Index j = 0; j < n; ++j)
+    m.states.push_back(e.values(j).imag() > 0 ? 2 : e.values(j).imag() < 0 ? 0 : 1);
+  const VectorXd left = (e.W * e.scale.asDiagonal()).rowwise().norm(),
+                 right = (e.scale.cwiseInverse().asDiagonal() * e.V).colwise().norm();
+  find_mixing(e, left, right, size, m);
+  set_apart(left.cwiseProduct(right), m);
+  find_needed(balanced, e.scale.cwiseInverse().asDiagonal() * model.B,
+              model.C * e.scale.asDiagonal(), m);
+  return g;
+}
+
+}  // namespace titop::modes

@@ -1,0 +1,136 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <titop/compiler/minimize/judge.hpp>
+
+namespace titop::modes {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kNothing = 1e-17;  ///< far narrower than the spacing of doubles at a pole
+constexpr double kDoubtful = 1e-9;  ///< above it a mode always stays
+constexpr double kFarOff = 1e-6;    ///< above it not even exact arithmetic makes a mode leave
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// What all modes do near the frequency of mode j, per port: sqrt(sum rows_i^2 w_i).
+VectorXd background(const MatrixXd& rows, const ModeSet& m, Index j) {
+  VectorXd sum = VectorXd::Zero(rows.cols());
+  // The rows of a Jordan block may have any size: beside them everything would look like nothing.
+  for (Index i = 0; i < rows.rows(); ++i)
+    if (m.apart[at(i)].empty())
+      sum += rows.row(i).transpose().cwiseAbs2() / std::max(m.distance(i, j), 0.01 * m.lambda(j));
+  return sum.cwiseSqrt();
+}
+
+/// Rounding's part in the row of mode j: what the other modes may have put into it.
+VectorXd rounding(const MatrixXd& rows, const ModeSet& m, Index j) {
+  VectorXd sum = VectorXd::Zero(rows.cols());
+  for (Index i = 0; i < rows.rows(); ++i) {
+    const bool same = m.cluster[at(i)] == m.cluster[at(j)];
+    sum += (same ? kEps : m.mixing(i, j)) * rows.row(i).transpose();
+  }
+  return sum;
+}
+
+/// Largest ratio; what has no background counts as nothing.
+double largest(const VectorXd& mine, const VectorXd& background) {
+  double most = 0;
+  for (Index l = 0; l < mine.size(); ++l)
+    if (background(l) > 0) most = std::max(most, mine(l) / background(l));
+  return most;
+}
+
+/// One side of a mode, inputs or outputs: its size against the background, and rounding's.
+struct Side {
+  double size, noise;
+  Side(const MatrixXd& rows, const ModeSet& m, Index j) {
+    const VectorXd all = background(rows, m, j);
+    size = largest(rows.row(j), all);
+    noise = largest(rounding(rows, m, j), all);
+  }
+  /// All states are driven, or seen.
+  explicit Side(double lambda) : size(std::sqrt(lambda)), noise(0) {}
+};
+
+Verdict judge(const ModeSet& m, Index j, double resolution) {
+  Verdict v;
+  if (!m.apart[at(j)].empty()) {
+    v.doubtful = !m.needed[at(j)];
+    return v;
+  }
+  const bool inputs = m.b.cols() > 0, outputs = m.c.cols() > 0;
+  const Side b = inputs ? Side(m.b, m, j) : Side(m.lambda(j));
+  const Side c = outputs ? Side(m.c, m, j) : Side(m.lambda(j));
+  v.visibility = b.size * c.size / (2 * m.lambda(j));
+  v.bound = std::max(c.size * b.noise, b.size * c.noise) / (2 * m.lambda(j));
+  v.unreachable = inputs && (!outputs || b.size <= c.size);
+  v.drop = (v.visibility <= 10 * v.bound && v.visibility <= kDoubtful) ||
+           v.visibility <= kNothing || v.visibility <= resolution;
+  v.doubtful =
+      !v.drop && v.visibility <= kDoubtful && v.visibility <= 1e4 * std::max(v.bound, kEps * kEps);
+  return v;
+}
+
+}  // namespace
+
+std::vector<Verdict> judge(const ModeSet& m, double resolution) {
+  std::vector<Verdict> verdicts;
+  for (Index j = 0; j < m.size(); ++j) verdicts.push_back(judge(m, j, resolution));
+  return verdicts;
+}
+
+bool drop_down_to(int exact, int order, const ModeSet& m, std::vector<Verdict>& verdicts) {
+  std::vector<std::size_t> weakest(verdicts.size());
+  std::iota(weakest.begin(), weakest.end(), 0);
+  std::stable_sort(weakest.begin(), weakest.end(), [&](std::size_t a, std::size_t b) {
+    return verdicts[a].visibility < verdicts[b].visibility;
+  });
+  int left = order - exact;
+  for (Verdict& v : verdicts) v.drop = v.doubtful = false;
+  for (const std::size_t j : weakest) {
+    const bool may = m.apart[j].empty() && m.states[j] > 0 && verdicts[j].visibility <= kFarOff;
+    if (!may || m.states[j] > left) continue;
+    verdicts[j].drop = true;
+    left -= m.states[j];
+  }
+  return left == 0;
+}
+
+OrderVerdict sum_up(const std::vector<Verdict>& verdicts, const ModeSet& m, int order) {
+  OrderVerdict r;
+  r.judged = true;
+  r.order = order;
+  int fewer = 0, more = 0;
+  for (std::size_t j = 0; j < verdicts.size(); ++j) {
+    const Verdict& v = verdicts[j];
+    if (m.states[j] == 0) continue;
+    const auto report = [&](std::string why) {
+      return JudgedMode{m.omega(static_cast<Index>(j)), m.states[j], v.visibility, v.bound,
+                        std::move(why)};
+    };
+    if (v.drop) {
+      r.order -= m.states[j];
+      more += v.visibility > kNothing ? m.states[j] : 0;
+      r.to_more = std::max(r.to_more, v.visibility);
+      r.removed.push_back(report(v.unreachable ? "no input moves it" : "no output sees it"));
+    } else {
+      r.to_fewer = m.apart[j].empty() ? std::min(r.to_fewer, v.visibility) : r.to_fewer;
+      if (!v.doubtful) continue;
+      fewer += m.states[j];
+      r.undecided.push_back(report(!m.apart[j].empty() ? m.apart[j]
+                                   : v.unreachable     ? "inputs hardly move it"
+                                                       : "outputs hardly see it"));
+    }
+  }
+  r.lowest = r.order - fewer;
+  r.highest = r.order + more;
+  return r;
+}
+
+}  // namespace titop::modes

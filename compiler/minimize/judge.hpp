@@ -1,0 +1,26 @@
+#pragma once
+
+#include <titop/compiler/minimize.hpp>
+#include <titop/compiler/minimize/modes.hpp>
+
+/// Which modes matter: visibility against its own rounding bound (compiler/minimize.hpp).
+namespace titop::modes {
+
+struct Verdict {
+  double visibility = 1, bound = 0;
+  bool unreachable = false;  ///< the weak side is the inputs' (else the outputs')
+  bool drop = false;
+  bool doubtful = false;  ///< kept, and yet rounding may be all there is
+};
+
+/// One verdict per mode. O(n^2 ports).
+std::vector<Verdict> judge(const ModeSet& modes, double resolution);
+
+/// The least visible modes are dropped, and no others, until `order` states have become `exact`;
+/// never one of visibility above 1e-6. False if that does not come out.
+bool drop_down_to(int exact, int order, const ModeSet& modes, std::vector<Verdict>& verdicts);
+
+/// What the verdicts come to, for a model of `order` states.
+OrderVerdict sum_up(const std::vector<Verdict>& verdicts, const ModeSet& modes, int order);
+
+}  // namespace titop::modes

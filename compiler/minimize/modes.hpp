@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <titop/compiler/modal.hpp>
+#include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/state_space.hpp>
+#include <vector>
+
+/// Modes of one model, with all that is needed to say which of them matter. For the compiler's own
+/// files.
+namespace titop::modes {
+
+/// Sizes of what drives each mode and of what it shows.
+struct ModeSet {
+  Eigen::VectorXd lambda;          ///< of each mode: omega^2, or |s|
+  Eigen::VectorXd omega;           ///< |s| [rad/s]
+  Eigen::MatrixXd b, c;            ///< modes x nu, modes x ny: magnitudes
+  std::vector<int> cluster;        ///< modes of one frequency share a number
+  std::vector<int> states;         ///< of each mode; 0: the conjugate partner counts for it
+  Eigen::MatrixXd distance;        ///< |lambda_i - lambda_j|
+  Eigen::MatrixXd mixing;          ///< e_ij: how much of mode i rounding may put into mode j
+  std::vector<std::string> apart;  ///< why it is not judged: pole at 0, ill-conditioned; or ""
+  std::vector<char> needed;        ///< not judged, and yet known to be part of a minimal model
+
+  Eigen::Index size() const { return lambda.size(); }
+};
+
+/// An undamped or proportionally damped model: real modes Q of yddot = -S y - Z ydot.
+struct Symmetric {
+  std::vector<int> q, qdot;  ///< pairs among the states
+  Eigen::MatrixXd D;         ///< q = D y
+  Eigen::MatrixXd D_inverse;
+  ModeSet modes;
+  Eigen::MatrixXd Q;  ///< in y
+};
+/// None where the model has no such form, by a diagonal D or, with its potential energy, by D' E D
+/// = I. Modes within 2 * resolution count as equal. O(n^3).
+std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolution,
+                                         const Eigen::MatrixXd& energy = {});
+
+/// Any other model: eigenvalues with left and right vectors.
+struct General {
+  linalg::Eigensystem e;
+  ModeSet modes;
+};
+General general_modes(const StateSpace& model, double resolution);
+
+}  // namespace titop::modes

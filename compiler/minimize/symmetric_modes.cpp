@@ -1,0 +1,151 @@
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <titop/compiler/minimize/clusters.hpp>
+#include <titop/graph/linalg/graded.hpp>
+
+/// Undamped and proportionally damped models.
+namespace titop::modes {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kAsymmetry = 1e-9;  ///< of what must be symmetric, over its diagonal
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+void find_clusters(const VectorXd& lambda, double resolution, ModeSet& m) {
+  m.cluster.assign(at(lambda.size()), 0);
+  const double largest = lambda.size() ? lambda.cwiseAbs().maxCoeff() : 0;
+  // A frequency that differs by 2 * resolution differs by 4 * resolution in its square.
+  const double same = std::max(kSameFrequency, 4 * resolution);
+  for (Index i = 1; i < lambda.size(); ++i) {
+    const double noise = 100 * kEps * largest + same * std::abs(lambda(i));
+    m.cluster[at(i)] = m.cluster[at(i - 1)] + (lambda(i) - lambda(i - 1) > noise ? 1 : 0);
+  }
+}
+
+/// Inputs and outputs of a second-order model in its scaled coordinates.
+struct Ports {
+  MatrixXd b, bq;   ///< coordinates x inputs: on the velocities, on the positions
+  MatrixXd cq, cv;  ///< coordinates x outputs
+};
+
+Ports ports(const StateSpace& model, const Symmetric& s) {
+  return {s.D_inverse * model.B(s.qdot, Eigen::all), s.D_inverse * model.B(s.q, Eigen::all),
+          (model.C(Eigen::all, s.q) * s.D).transpose(),
+          (model.C(Eigen::all, s.qdot) * s.D).transpose()};
+}
+
+/// S and Z of yddot = -S y - Z ydot, both symmetric (Z only where it is diagonal in the modes).
+struct Springs {
+  MatrixXd S, Z;
+};
+
+/// By the energy E = L L' of the positions: y = L' q.
+std::optional<Springs> by_energy(const StateSpace& model, const MatrixXd& energy, Symmetric& s) {
+  const Eigen::LLT<MatrixXd> factors(energy(s.q, s.q));
+  if (s.q.empty() || factors.info() != Eigen::Success) return std::nullopt;
+  s.D_inverse = factors.matrixU();
+  s.D = factors.matrixU().solve(MatrixXd::Identity(s.D_inverse.rows(), s.D_inverse.cols()));
+  const MatrixXd S = -s.D_inverse * model.A(s.qdot, s.q) * s.D;
+  const VectorXd size = S.diagonal().cwiseAbs().cwiseSqrt();
+  for (Index i = 0; i < S.rows(); ++i)
+    for (Index j = 0; j < i; ++j)
+      if (!(std::abs(S(i, j) - S(j, i)) <= kAsymmetry * size(i) * size(j))) return std::nullopt;
+  return Springs{(S + S.transpose()) / 2, -s.D_inverse * model.A(s.qdot, s.qdot) * s.D};
+}
+
+std::optional<Springs> springs(const StateSpace& model, const MatrixXd& energy, Symmetric& s) {
+  SecondOrder form = second_order(model.A);
+  s.q = std::move(form.q);
+  s.qdot = std::move(form.qdot);
+  if (!form.found && energy.rows() == model.A.rows()) return by_energy(model, energy, s);
+  if (!form.found) return std::nullopt;
+  s.D = form.d.asDiagonal();
+  s.D_inverse = form.d.cwiseInverse().asDiagonal();
+  return Springs{std::move(form.S), std::move(form.Z)};
+}
+
+void turn_clusters(const Ports& p, const ModeSet& m, MatrixXd& Q) {
+  MatrixXd both(Q.rows(), p.cq.cols() + p.cv.cols());
+  both << p.cq, p.cv;
+  const MatrixXd b = unit_columns(MatrixXd(Q.transpose() * p.b)),
+                 c = unit_columns(MatrixXd(Q.transpose() * both));
+  for (Index first = 0, last; first < Q.cols(); first = last) {
+    last = first + 1;
+    while (last < Q.cols() && m.cluster[at(last)] == m.cluster[at(first)]) ++last;
+    const Index k = last - first;
+    if (k > 1)
+      Q.middleCols(first, k) *=
+          turn(MatrixXd(b.middleRows(first, k)), MatrixXd(c.middleRows(first, k)));
+  }
+}
+
+/// How far modes are apart, and what rounding mixes: graded matrices keep small ones cleaner.
+void find_mixing(const VectorXd& lambda, ModeSet& m) {
+  const Index n = lambda.size();
+  const double largest = n ? m.lambda.maxCoeff() : 0, smallest = n ? m.lambda.minCoeff() : 0;
+  m.distance.resize(n, n);
+  m.mixing.resize(n, n);
+  for (Index j = 0; j < n; ++j)
+    for (Index i = 0; i < n; ++i) {
+      const double gap = std::abs(lambda(i) - lambda(j));
+      m.distance(i, j) = gap;
+      const double backward = largest / gap;
+      const double graded = smallest > 0 ? m.lambda(i) * m.lambda(j) / (smallest * gap) : backward;
+      const double noise = std::sqrt(static_cast<double>(n)) * kEps;
+      m.mixing(i, j) = gap > 0 ? std::min(1.0, noise * std::min(backward, graded)) : 1;
+    }
+}
+
+/// Rigid motions, q'' = b u: all are needed if inputs move and outputs place each of them.
+void find_rigid(const Ports& p, const MatrixXd& Q, ModeSet& m) {
+  const Index n = m.size();
+  std::vector<Index> rigid;
+  for (Index j = 0; j < n; ++j)
+    if (m.lambda(j) <= 1e-13 * m.lambda.maxCoeff()) rigid.push_back(j);
+  m.apart.assign(at(n), "");
+  m.needed.assign(at(n), 0);
+  if (rigid.empty()) return;
+  const auto all_in = [&](const MatrixXd& columns) {
+    if (columns.cols() == 0) return true;
+    const MatrixXd part = Q(Eigen::all, rigid).transpose() * unit_columns(columns);
+    return part.rowwise().norm().minCoeff() > kClearRow && clearly_full_rank(part);
+  };
+  const bool needed = all_in(p.b) && all_in(p.cq);
+  for (const Index j : rigid) m.apart[at(j)] = kAtZero, m.needed[at(j)] = needed;
+}
+
+}  // namespace
+
+std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolution,
+                                         const MatrixXd& energy) {
+  Symmetric s;
+  const std::optional<Springs> form = springs(model, energy, s);
+  if (!form) return std::nullopt;
+  const Ports p = ports(model, s);
+  if (p.bq.size() && p.bq.cwiseAbs().maxCoeff() > 0) return std::nullopt;
+  const SymmetricModes e = eigh_graded(form->S).modes;
+  const MatrixXd Z = e.V.transpose() * form->Z * e.V;
+  const MatrixXd off = Z - MatrixXd(Z.diagonal().asDiagonal());
+  if (off.size() && off.cwiseAbs().maxCoeff() > 1e-12 * std::max(Z.cwiseAbs().maxCoeff(), 1e-300))
+    return std::nullopt;
+  s.Q = e.V;
+  ModeSet& m = s.modes;
+  find_clusters(e.lambda, resolution, m);
+  turn_clusters(p, m, s.Q);
+  m.lambda = e.lambda.cwiseAbs();
+  m.omega = m.lambda.cwiseSqrt();
+  m.states.assign(at(m.size()), 2);
+  m.b = (s.Q.transpose() * p.b).cwiseAbs();
+  const MatrixXd pq = s.Q.transpose() * p.cq, pv = m.omega.asDiagonal() * s.Q.transpose() * p.cv;
+  m.c = (pq.array().square() + pv.array().square()).sqrt();
+  find_mixing(e.lambda, m);
+  find_rigid(p, s.Q, m);
+  return s;
+}
+
+}  // namespace titop::modes

@@ -1,0 +1,174 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <titop/titop.hpp>
+
+#include "support/rng.hpp"
+
+/// The order in exact arithmetic, against what theory says of each scene.
+
+using namespace titop;
+using Eigen::MatrixXd;
+
+namespace {
+
+/// Fig. 7 with an actuator between masses 1 and 2 and the position of mass 3; in units of `unit`.
+Diagram five(double k5, double unit = 1) {
+  Diagram d{"five masses"};
+  auto u = d.input("u");
+  const double m[] = {5, 4, 3, 2, 1}, k[] = {500, 300, 450, 260, k5};
+  std::vector<SpringMass::Handle> z;
+  for (int i = 0; i < 5; ++i)
+    z.push_back(d.add("z" + std::to_string(i + 1),
+                      SpringMass{.mass = m[i] * unit, .stiffness = k[i] * unit}));
+  ground(z[0]);
+  mount(z[1], z[0].child);
+  mount(z[2], z[0].child);
+  mount(z[3], z[1].child);
+  mount(z[4], z[1].child);
+  z[0].child.force += -u;
+  z[1].child.force += u;
+  d.output("x3") = z[2].position;
+  return d;
+}
+
+/// Two equal wings on a free hub of six degrees of freedom, along +x and turned by T: their
+/// opposite motions cancel in the hub where T turns one wing into the other's place.
+Diagram winged(const Rotation& T) {
+  ModalData wing;
+  wing.omega = Eigen::Vector2d(2, 8);
+  wing.xi = Eigen::Vector2d::Zero();
+  wing.L_P = MatrixXd::Zero(2, 6);
+  wing.L_P(0, 1) = 0.5, wing.L_P(0, 5) = 1.25;
+  wing.L_P(1, 2) = 0.25, wing.L_P(1, 4) = -0.75;
+  wing.D_P = MatrixXd::Zero(6, 6);
+  wing.D_P.diagonal() << 4, 4, 4, 8, 16, 16;
+  Diagram d{"winged hub"};
+  auto u = d.input("u", 6);
+  auto hub = d.add("hub", RigidBody{.mass = 8,
+                                    .inertia = Eigen::Vector3d(4, 4, 4).asDiagonal(),
+                                    .children = {{"C1", {0, 0, 0}}, {"C2", {0, 0, 0}}}});
+  auto w1 = d.add("w1", FlexibleBody{wing}), w2 = d.add("w2", FlexibleBody{wing});
+  hub.parent.force = -u;
+  mount(w1, hub.child("C1"));
+  mount(w2, hub.child("C2"), T);
+  d.output("a", 6) = hub.parent.accel;
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("five masses: 8 where k4/m4 = k5/m5, decided exactly; 10 one ulp beside it") {
+  const ExactOrder twins = exact_order(five(130).graph());
+  CHECK(twins.decided);
+  CHECK(twins.order == 8);
+  CHECK(exact_order(five(std::nextafter(130, 200)).graph()).order == 10);
+  CHECK(exact_order(five(std::nextafter(130, 0)).graph()).order == 10);
+  CHECK(exact_order(five(170).graph()).order == 10);
+  CHECK(exact_order(five(130, 0x1p-40).graph()).order == 8);
+  // Without it, what lies below the spacing of doubles at the pole counts as nothing.
+  CHECK(compile(five(std::nextafter(130, 200))).state_space().order() == 8);
+  const System exactly = compile(five(std::nextafter(130, 200)), {.exact_up_to = 10});
+  CHECK(exactly.state_space().order() == 10);
+  CHECK(exactly.log().find("exact: order 10") != std::string::npos);
+  const System even = compile(five(130), {.exact_up_to = 10});
+  CHECK(even.state_space().order() == 8);
+  CHECK(even.log().find("exact: order 8") != std::string::npos);
+}
+
+TEST_CASE("six masses between walls: 10 of 12 are reached, all are seen") {
+  Diagram d{"walls"};
+  auto u = d.input("u");
+  const double m[] = {1.3, 0.7, 1.9, 0.5, 1.1, 0.9}, k[] = {61, 97, 55, 83, 71, 66};
+  std::vector<SpringMass::Handle> z;
+  for (int i = 0; i < 6; ++i) {
+    z.push_back(d.add("z" + std::to_string(i + 1), SpringMass{.mass = m[i], .stiffness = k[i]}));
+    i == 0 ? ground(z[0]) : mount(z.back(), z[static_cast<std::size_t>(i) - 1].child);
+  }
+  z[5].child.accel = 0;
+  z[2].child.force += u;
+  d.output("x") = z[1].stretch;
+  const ExactOrder r = exact_order(d.graph());
+  CHECK(r.decided);
+  CHECK(r.order == 10);
+  CHECK(r.reachable == 10);
+  CHECK(r.observable == 12);
+}
+
+TEST_CASE("six degrees of freedom: turns of 90 degrees and of 3-4-5 triangles are exact") {
+  // Equal wings at one point: only the sum of each pair of modes moves the hub.
+  const ExactOrder same = exact_order(winged(Rotation{}).graph());
+  CHECK(same.decided);
+  CHECK(same.order == 4);
+  // Turned about z, the two wings push the hub in directions that are not parallel.
+  const double c = 0.6, s = 0.8;
+  const Rotation T = Rotation::matrix(Eigen::Matrix3d{{c, -s, 0}, {s, c, 0}, {0, 0, 1}});
+  const ExactOrder turned = exact_order(winged(T).graph());
+  CHECK(turned.decided);
+  CHECK(turned.order == 8);
+  const ExactOrder right =
+      exact_order(winged(Rotation::about({0, 0, 1}, 2 * std::atan(1.0))).graph());
+  CHECK(right.decided);
+  CHECK(right.order == 8);
+}
+
+TEST_CASE("what exact arithmetic does not decide says why") {
+  const ExactOrder turned = exact_order(winged(Rotation::about({0, 0, 1}, 0.7)).graph());
+  CHECK(!turned.decided);
+  CHECK(turned.why_not.find("the rotation in") != std::string::npos);
+  CHECK(turned.why_not.find("w2.parent") != std::string::npos);
+  CHECK(to_string(turned).find("not decided exactly") == 0);
+  CHECK(exact_order(five(130).graph(), {.states = 11}).why_not.find("12 states are more than 11") ==
+        0);
+  CHECK(exact_order(five(130).graph(), {.unknowns = 20}).why_not.find("unknowns") !=
+        std::string::npos);
+  CHECK(exact_order(five(1.0 / 3).graph(), {.bits = 60}).why_not.find("60 bits") !=
+        std::string::npos);
+  Diagram no_input{"no input"};
+  auto z = no_input.add("z", SpringMass{});
+  ground(z);
+  no_input.output("x") = z.position;
+  CHECK(exact_order(no_input.graph()).why_not.find("without inputs") == 0);
+  Diagram twice{"weightless"};  // a force on a point without mass moves it infinitely
+  auto u = twice.input("u");
+  auto s = twice.add("s", SpringMass{.mass = 1, .stiffness = 1});
+  s.parent.force = -u;
+  twice.output("a") = s.parent.accel;
+  CHECK(exact_order(twice.graph()).why_not.find("derivatives") != std::string::npos);
+}
+
+TEST_CASE("matrices as they stand: order of random models, blown up by what does not matter") {
+  titop_test::Rng rng(5);
+  for (int round = 0; round < 40; ++round) {
+    // The core is a chain of integrators with feedback, minimal by its form; then states that
+    // nothing moves and states that nobody sees, coupled at random, and a mixing by integers.
+    const int n = 1 + rng.below(4), p = rng.below(3), q = rng.below(3), all = n + p + q;
+    const auto whole = [&] { return static_cast<double>(rng.below(7) - 3); };
+    StateSpace m;
+    m.A = MatrixXd::Zero(all, all), m.B = MatrixXd::Zero(all, 1), m.C = MatrixXd::Zero(1, all);
+    for (int i = 0; i + 1 < n; ++i) m.A(i, i + 1) = 1;
+    for (int j = 0; j < n; ++j) m.A(n - 1, j) = whole();
+    m.B(n - 1, 0) = 1;
+    m.C(0, 0) = 1;
+    for (int i = 0; i < all; ++i)
+      for (int j = n; j < n + p; ++j)
+        if (i < n || i >= n + p || j <= i) m.A(i, j) = whole();  // not moved, but acting
+    for (int i = n + p; i < all; ++i) {
+      for (int j = 0; j < all; ++j) m.A(i, j) = whole();  // moved, but not acting
+      m.B(i, 0) = whole();
+    }
+    for (int j = n; j < n + p; ++j) m.C(0, j) = whole();
+    MatrixXd T = MatrixXd::Identity(all, all), inverse = T;
+    for (int k = 0; k < 3 * all; ++k) {
+      const int i = rng.below(all), j = rng.below(all);
+      if (i == j) continue;
+      const double f = whole();
+      T.row(i) += f * T.row(j);
+      inverse.col(j) -= f * inverse.col(i);
+    }
+    REQUIRE(T * inverse == MatrixXd(MatrixXd::Identity(all, all)));
+    m.A = (T * m.A * inverse).eval(), m.B = (T * m.B).eval(), m.C = (m.C * inverse).eval();
+    CAPTURE(round);
+    CHECK(exact_order(m).order == n);
+  }
+}

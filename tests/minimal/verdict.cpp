@@ -1,0 +1,124 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <titop/titop.hpp>
+
+/// What `minimize` says of the order, beside the model.
+
+using namespace titop;
+using Eigen::MatrixXd;
+
+namespace {
+
+/// Two masses on a third, which is pushed; the third is watched.
+StateSpace pair(double k1, double k2) {
+  Diagram d{"pair"};
+  auto u = d.input("u");
+  auto hub = d.add("hub", SpringMass{.mass = 4, .stiffness = 64});
+  auto a = d.add("a", SpringMass{.mass = 1, .stiffness = k1});
+  auto b = d.add("b", SpringMass{.mass = 1, .stiffness = k2});
+  ground(hub);
+  mount(a, hub.child);
+  mount(b, hub.child);
+  hub.child.force += u;
+  d.output("x") = hub.stretch;
+  return compile(d, {.minimize_up_to = 0}).state_space();
+}
+
+StateSpace model(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C) {
+  StateSpace m{A, B, C, MatrixXd::Zero(C.rows(), B.cols()), {}, {}, {}};
+  for (Eigen::Index i = 0; i < A.rows(); ++i) m.states.push_back("x" + std::to_string(i));
+  for (Eigen::Index i = 0; i < B.cols(); ++i) m.inputs.push_back("u" + std::to_string(i));
+  for (Eigen::Index i = 0; i < C.rows(); ++i) m.outputs.push_back("y" + std::to_string(i));
+  return m;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "an equal pair: order 4 of 6, decided; what left, what it cost, what the next would cost") {
+  const Minimized r = minimize(pair(25, 25));
+  CHECK(r.model.order() == 4);
+  CHECK(r.order.decided());
+  CHECK(r.order.order == 4);
+  REQUIRE(r.order.removed.size() == 1);
+  CHECK(r.order.removed[0].states == 2);
+  CHECK(std::abs(r.order.removed[0].omega - 5) <=
+        1e-14 * 5);  // sqrt(25 / 1), both against each other
+  CHECK(r.order.to_more <= 1e-17);
+  CHECK(r.order.to_fewer >= 1e-4);
+  const std::string text = to_string(r.order);
+  CHECK(text.find("order 4; 2 states taken out, the mode at 5 rad/s") == 0);
+  CHECK(text.find("the next would cost") != std::string::npos);
+  CHECK(r.notes.front() == text);
+}
+
+TEST_CASE("a pair that differs by 1e-6 keeps its 6 states, and says how little they do") {
+  const Minimized r = minimize(pair(25, 25 * (1 + 1e-6)));
+  CHECK(r.model.order() == 6);
+  CHECK(r.order.decided());
+  CHECK(r.order.removed.empty());
+  // Driven and seen in proportion to the difference: visibility is quadratic in it.
+  const double here = r.order.to_fewer;
+  const double there = minimize(pair(25, 25 * (1 + 1e-5))).order.to_fewer;
+  CHECK(std::abs(there / here - 100) <= 1);
+  CHECK(minimize(pair(25, 25 * (1 + 1e-6)), {.resolution = 2 * here}).model.order() == 4);
+}
+
+TEST_CASE("the exact order decides where visibility does not") {
+  const StateSpace m = pair(25, 25 * (1 + 1e-6));
+  const Minimized told = minimize(m, {.exact_order = 4});
+  CHECK(told.model.order() == 4);
+  CHECK(told.order.exact);
+  CHECK(to_string(told.order).find("exact: order 4") == 0);
+  // Never a mode that can be seen: 2 of 4 would be wrong, and is not done.
+  const Minimized wrong = minimize(pair(25, 100), {.exact_order = 2});
+  CHECK(wrong.model.order() == 6);
+  CHECK(wrong.notes.size() == 2);
+}
+
+TEST_CASE("poles at 0: needed where ranks show it, else undecided") {
+  // Two integrators of one input, added up: one would do.
+  const Minimized twins =
+      minimize(model(MatrixXd::Zero(2, 2), MatrixXd::Ones(2, 1), MatrixXd::Ones(1, 2)));
+  CHECK(!twins.order.decided());
+  CHECK(twins.order.lowest <= 1);
+  CHECK(twins.order.highest == 2);
+  CHECK(to_string(twins.order).find("undecided between 0 and 2") != std::string::npos);
+  CHECK(to_string(twins.order).find("its pole is at 0") != std::string::npos);
+  const StateSpace twin_model =
+      model(MatrixXd::Zero(2, 2), MatrixXd::Ones(2, 1), MatrixXd::Ones(1, 2));
+  CHECK(exact_order(twin_model).order == 1);
+  // A double integrator, and one beside an oscillation.
+  CHECK(minimize(model(MatrixXd{{0, 1}, {0, 0}}, MatrixXd{{0}, {1}}, MatrixXd{{1, 0}}))
+            .order.decided());
+  const Minimized mixed =
+      minimize(model(MatrixXd{{0, 1, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 1}, {0, 0, -4, -0.1}},
+                     MatrixXd{{0}, {1}, {0}, {1}}, MatrixXd{{1, 0, 1, 0}}));
+  CHECK(mixed.order.decided());
+  CHECK(mixed.order.order == 4);
+}
+
+TEST_CASE("equal real poles are turned until what no input moves stands alone") {
+  // Three copies of 1/(s + 2) behind one input, seen together and apart.
+  const MatrixXd A = -2 * MatrixXd::Identity(3, 3);
+  const Minimized r = minimize(model(A, MatrixXd{{1}, {2}, {3}}, MatrixXd{{1, 1, 1}, {1, 0, 0}}));
+  CHECK(r.model.order() == 1);
+  CHECK(r.order.decided());
+  const Minimized two =
+      minimize(model(A, MatrixXd{{1, 0}, {2, 1}, {3, 0}}, MatrixXd{{1, 1, 1}, {1, 0, 0}}));
+  CHECK(two.model.order() == 2);
+  CHECK(two.order.decided());
+}
+
+TEST_CASE("not judged: larger than Options::minimize_up_to") {
+  Diagram d{"one"};
+  auto z = d.add("z", SpringMass{});
+  ground(z);
+  z.child.force += d.input("u");
+  d.output("x") = z.position;
+  const System system = compile(d, {.minimize_up_to = 1});
+  CHECK(!system.order_verdict().judged);
+  CHECK(!system.order_verdict().decided());
+  CHECK(to_string(system.order_verdict()).find("not judged") != std::string::npos);
+}
