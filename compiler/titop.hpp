@@ -22,6 +22,7 @@
 #include <titop/blocks/scene/scene.hpp>
 #include <titop/blocks/slide.hpp>
 #include <titop/blocks/spring_mass.hpp>
+#include <titop/compiler/certify_full.hpp>
 #include <titop/compiler/dot.hpp>
 #include <titop/compiler/economy/reduced_system.hpp>
 #include <titop/compiler/emit/cpp.hpp>

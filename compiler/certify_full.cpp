@@ -1,0 +1,196 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <titop/compiler/certify_full.hpp>
+#include <titop/compiler/compare.hpp>
+#include <titop/compiler/full/passivity.hpp>
+#include <titop/compiler/full/poles.hpp>
+#include <titop/compiler/system.hpp>
+#include <titop/compiler/transfer.hpp>
+
+namespace titop {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::MatrixXcd;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double kHolds = 1e-8;      ///< equations, transfers, dense model
+constexpr double kPoleHolds = 1e-6;  ///< to first order only
+constexpr double kPassive = 1e-9;    ///< below the axis by more than rounding
+
+/// s = (0.05 + j) w, w from a tenth of the lowest to ten times the highest, evenly in log w.
+std::vector<Complex> grid_of(const FullCertificate::Grid& grid) {
+  std::vector<Complex> list;
+  const double ratio = grid.highest / grid.lowest;
+  for (int k = 0; k < grid.points; ++k) {
+    const double part = grid.points > 1 ? static_cast<double>(k) / (grid.points - 1) : 0.5;
+    const double w = grid.lowest * std::pow(ratio, part);
+    list.emplace_back(0.05 * w, w);
+  }
+  return list;
+}
+
+void set_range(const std::vector<double>& omegas, FullCertificate::Grid& grid) {
+  grid.lowest = omegas.empty() ? 0.1 : 0.1 * omegas.front();
+  grid.highest = omegas.empty() ? 10 : 10 * omegas.back();
+}
+
+/// Rows (or columns) of each output (or input), from the graph's order to the declared one.
+template <class List>
+std::vector<int> declared(const List& list) {
+  std::vector<int> size(list.size()), first(list.size()), result;
+  for (const auto& item : list) size[at(item.declared)] = item.size;
+  int total = 0;
+  for (std::size_t i = 0; i < list.size(); ++i) first[i] = total, total += size[i];
+  for (const auto& item : list)
+    for (int k = 0; k < item.size; ++k) result.push_back(first[at(item.declared)] + k);
+  return result;
+}
+
+std::vector<double> values_of(const System& system) {
+  std::vector<double> values;
+  for (const auto& [name, value] : system.parameters()) values.push_back(value);
+  return values;
+}
+
+/// The graph's own equations, solved all at once without any pass.
+std::vector<MatrixXcd> as_written(const Graph& g, const std::vector<double>& values,
+                                  const std::vector<Complex>& points) {
+  const std::vector<int> rows = declared(g.outputs), cols = declared(g.inputs);
+  std::vector<MatrixXcd> list;
+  for (const Complex s : points) {
+    const MatrixXcd G = transfer(g, s, values);
+    list.emplace_back(G.rows(), G.cols());
+    list.back()(rows, cols) = G;
+  }
+  return list;
+}
+
+void check_written(const System& system, const Full& what, const std::vector<Complex>& points,
+                   const std::vector<MatrixXcd>& factored, FullCertificate::Grid& grid) {
+  const Graph& g = *system.stage().source;
+  int signals = 0;
+  for (const Signal& s : g.signals) signals += s.size;
+  if (signals > what.written_up_to) return;
+  try {
+    const auto [worst, k] = detail::difference(as_written(g, values_of(system), points), factored);
+    grid.written = worst;
+    grid.written_s = points[k];
+  } catch (const Error&) {
+    // Not solvable as written, where chains are closed twice: the factors' own residual remains.
+  }
+}
+
+void list_faults(FullCertificate& c) {
+  const auto fault = [&c](double value, double allowed, const char* text) {
+    if (!(value <= allowed)) c.faults.push_back(fmt::format("{} {:.1e}", text, value));
+  };
+  fault(c.basic.residual, kHolds, "equations as written hold only to");
+  fault(c.basic.dense_against_factors, kHolds, "the dense model differs from the factors by");
+  fault(c.grid.dense, kHolds, "the transfer of the dense model differs from the factors' by");
+  fault(c.grid.written, kHolds, "the transfer differs from that of the equations as written by");
+  fault(c.poles.error, kPoleHolds, "poles of the dense model differ from the factors' by");
+  if (c.passivity.structure) {
+    fault(-c.passivity.least, kPassive, "energy comes out of a structure:");
+    if (c.poles.right > 0)
+      c.faults.push_back(
+          fmt::format("{} poles of a structure lie right of the axis, the worst by "
+                      "{:.1e} of its size",
+                      c.poles.right, c.poles.rightmost.real() / std::abs(c.poles.rightmost)));
+  }
+  if (c.exact.decided && c.order.judged &&
+      (c.exact.order < c.order.lowest || c.exact.order > c.order.highest))
+    c.faults.push_back(fmt::format("the minimal order is {}, not between {} and {}", c.exact.order,
+                                   c.order.lowest, c.order.highest));
+}
+
+}  // namespace
+
+FullCertificate certify(const System& system, const Full& what) {
+  FullCertificate c;
+  const bool dense = system.order() <= what.dense_up_to;
+  std::vector<double> omegas;
+  if (dense) {
+    c.order = system.order_verdict();
+    StateSpace model;
+    system.write(model);
+    c.poles = full::check_poles(system, model, omegas);
+  } else {
+    c.poles.why_not = c.grid.why_not = fmt::format("{} states are more than {} (Full::dense_up_to)",
+                                                   system.order(), what.dense_up_to);
+    c.order.order = c.order.highest = system.order();
+  }
+  c.basic = system.certificate();
+  c.exact = exact_order(*system.stage().source, what.exact, values_of(system));
+  set_range(omegas, c.grid);
+  c.grid.points = system.inputs().empty() || system.outputs().empty() ? 0 : what.points;
+  if (c.grid.points > 0) {
+    const std::vector<Complex> points = grid_of(c.grid);
+    std::vector<MatrixXcd> factored, written;
+    for (const Complex s : points) factored.push_back(system.transfer(s));
+    if (dense) {
+      for (const Complex s : points) written.push_back(system.state_space().transfer(s));
+      const auto [worst, k] = detail::difference(written, factored);
+      c.grid.done = true;
+      c.grid.dense = worst;
+      c.grid.dense_s = points[k];
+    }
+    check_written(system, what, points, factored, c.grid);
+    c.passivity =
+        full::check_passivity(*system.stage().source, values_of(system), points, factored);
+  } else {
+    c.grid.why_not = c.passivity.why_not = "without inputs, or without outputs, nothing transfers";
+  }
+  list_faults(c);
+  return c;
+}
+
+namespace {
+
+std::string at_s(Complex s) { return fmt::format("s = {:.3g}{:+.3g}j", s.real(), s.imag()); }
+
+std::string to_string(const FullCertificate::Grid& g) {
+  std::string text =
+      fmt::format("grid of {} points, {:.3g} to {:.3g} rad/s: ", g.points, g.lowest, g.highest);
+  text += g.done
+              ? fmt::format("dense model as the factors to {:.1e} ({})", g.dense, at_s(g.dense_s))
+              : "dense model not compared: " + g.why_not;
+  text += g.written >= 0 ? fmt::format("; equations as written, solved at once, to {:.1e} ({})",
+                                       g.written, at_s(g.written_s))
+                         : "; equations as written not solved at once";
+  return text + "\n";
+}
+
+std::string to_string(const FullCertificate::Poles& p) {
+  if (!p.done) return "poles not checked: " + p.why_not + "\n";
+  std::string text = fmt::format("{} poles, {} of them as the factors say to {:.1e}", p.count,
+                                 p.measured, p.error);
+  if (p.measured < p.count)
+    text += fmt::format(", {} at 0 or ill-conditioned and not measured", p.count - p.measured);
+  return text + (p.right == 0 ? "; none right of the axis\n"
+                              : fmt::format("; {} right of the axis, the worst {}\n", p.right,
+                                            at_s(p.rightmost)));
+}
+
+std::string to_string(const FullCertificate::Passivity& p) {
+  if (!p.done) return "passivity not checked: " + p.why_not + "\n";
+  return fmt::format(
+      "{} pairs of a force and the acceleration where it acts: {} at all points "
+      "(least {:.1e} of 1, {})\n",
+      p.pairs, p.least >= -kPassive ? "passive" : "not passive", p.least, at_s(p.where));
+}
+
+}  // namespace
+
+std::string to_string(const FullCertificate& c) {
+  std::string text = to_string(c.basic) + to_string(c.grid) + to_string(c.poles) +
+                     to_string(c.passivity) + to_string(c.order) + "\n" + to_string(c.exact) + "\n";
+  if (c.holds()) return text + "no fault found in what was checked\n";
+  for (const std::string& fault : c.faults) text += "FAULT: " + fault + "\n";
+  return text;
+}
+
+}  // namespace titop

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <complex>
+#include <string>
+#include <titop/compiler/certificate.hpp>
+#include <titop/compiler/exact_order.hpp>
+#include <titop/compiler/minimize.hpp>
+#include <vector>
+
+namespace titop {
+
+class System;
+
+/// What to check beside the default certificate, and how much of it.
+struct Full {
+  int points = 24;          ///< of the grid in s
+  int dense_up_to = 2000;   ///< states; larger models are not written, and that is said
+  int written_up_to = 300;  ///< scalar signals; larger diagrams are not solved as written
+  /// For the order without rounding.
+  ExactOptions exact = {.states = 16, .unknowns = 400, .bits = 20'000};
+};
+
+/// One item that may not have been checked, with the reason.
+struct Checked {
+  bool done = false;
+  std::string why_not;
+};
+
+/// The certificate on request: each item holds its own oracle against the factored system. Every
+/// number is dimensionless.
+struct FullCertificate {
+  Certificate basic;  ///< as by System::certificate(), with the dense model's part
+
+  /// Over a grid s = (0.05 + j) w, w from a tenth of the lowest to ten times the highest pole:
+  /// largest difference of transfers, each output by each input over its largest value on the grid
+  /// (compiler/compare.hpp).
+  struct Grid : Checked {
+    int points = 0;
+    double lowest = 0, highest = 0;  ///< w [rad/s]
+    double dense = -1;               ///< the minimal dense model against the factors
+    std::complex<double> dense_s;
+    /// `transfer` of the diagram as written against the factors; -1: too large, or closed twice.
+    double written = -1;
+    std::complex<double> written_s;
+  } grid;
+
+  /// Poles of the dense model before `minimize`. The error of a pole s with left and right vectors
+  /// w, v is |w (A_factored v - s v)| / |w v|, over |s|: what the factors say of it, to first
+  /// order.
+  struct Poles : Checked {
+    int count = 0;
+    int measured = 0;  ///< the others (at 0, multiple) rounding of A alone moves by 1e-8 or more
+    double error = 0;
+    std::complex<double> where;
+    int right = 0;  ///< poles right of the axis by more than 1e-9 |s| and ten times their error
+    std::complex<double> rightmost;  ///< largest Re(s) / |s|
+  } poles;
+
+  /// Of the inputs that are forces with an output that is the acceleration where they act: the
+  /// smallest eigenvalue of the Hermitian part of G(s) / s, rows and columns scaled to diagonal 1,
+  /// over the grid. Negative: energy comes out (a controller may do that; a structure may not).
+  struct Passivity : Checked {
+    int pairs = 0;
+    double least = 0;
+    std::complex<double> where;
+    bool structure = false;  ///< no one-way port is driven: a negative value is a fault
+  } passivity;
+
+  OrderVerdict order;  ///< of the minimal dense model
+  ExactOrder exact;    ///< independent of all passes, where the diagram is small
+
+  /// What does not hold, in words; empty if all that was checked does: equations, transfers and
+  /// dense model to 1e-8, poles to 1e-6, a structure passive to 1e-9, the exact order inside the
+  /// verdict's interval.
+  std::vector<std::string> faults;
+  bool holds() const { return faults.empty(); }
+};
+
+/// Writes the dense model, its poles and all that is listed above. O(n^3) in the states, and
+/// points * O(bodies). Does not change the system, but for its dense model, which is kept.
+FullCertificate certify(const System& system, const Full& what = {});
+
+/// One line per item, in plain words; what was not checked says why.
+std::string to_string(const FullCertificate& certificate);
+
+}  // namespace titop

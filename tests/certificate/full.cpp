@@ -1,0 +1,117 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <titop/titop.hpp>
+
+#include "support/random_scene.hpp"
+
+/// certify(system, Full): what it finds right, what it finds wrong, and what it does not claim.
+
+using namespace titop;
+
+namespace {
+
+/// A free mass with another on a spring; pushed and watched at the first.
+Diagram two(double damping) {
+  Diagram d{"two"};
+  auto u = d.input("u");
+  auto a = d.add("a", SpringMass{.mass = 3, .stiffness = 12, .damping = damping, .parent_mass = 1});
+  a.parent.force = -u;
+  d.output("acc") = a.parent.accel;
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("two free masses: one pair of poles, passive, order 2, decided exactly too") {
+  const FullCertificate c = certify(compile(two(0)));
+  CHECK(c.holds());
+  CHECK(c.grid.done);
+  CHECK(c.grid.points == 24);
+  CHECK(c.grid.dense <= 1e-14);
+  CHECK(c.grid.written >= 0);
+  CHECK(c.grid.written <= 1e-14);
+  // m s^2 with m = 3 * 1 / (3 + 1): omega = 4 rad/s
+  CHECK(std::abs(c.grid.lowest - 0.4) <= 1e-14);
+  CHECK(std::abs(c.grid.highest - 40) <= 1e-12);
+  CHECK(c.poles.count == 2);
+  CHECK(c.poles.measured == 2);
+  CHECK(c.poles.error <= 1e-14);
+  CHECK(c.poles.right == 0);
+  CHECK(c.passivity.done);
+  CHECK(c.passivity.structure);
+  CHECK(c.passivity.pairs == 1);
+  CHECK(c.passivity.least >= 0.01);
+  CHECK(c.order.decided());
+  CHECK(c.order.order == 2);
+  CHECK(c.exact.decided);
+  CHECK(c.exact.order == 2);
+  const std::string text = to_string(c);
+  for (const char* item : {"2 poles, 2 of them", "none right of the axis", "passive at all points",
+                           "order 2", "exact: order 2", "no fault found in what was checked"})
+    CHECK(text.find(item) != std::string::npos);
+}
+
+TEST_CASE("a negative damper in a controller: active and unstable, and no fault of the compiler") {
+  // Reads the relative speed and pushes with it.
+  Diagram e{"driven"};
+  auto u = e.input("u");
+  auto a = e.add("a", SpringMass{.mass = 3, .stiffness = 12, .parent_mass = 1});
+  auto rate = e.add("rate", Lti{.A = Eigen::MatrixXd{{-50}},
+                                .B = Eigen::MatrixXd{{1}},
+                                .C = Eigen::MatrixXd{{-2500}},
+                                .D = Eigen::MatrixXd{{50}}});
+  rate.in = a.stretch;
+  a.parent.force = -u;
+  a.child.force += 0.5 * rate.out;
+  e.output("acc") = a.parent.accel;
+  const FullCertificate c = certify(compile(e));
+  CHECK(c.holds());
+  CHECK(!c.passivity.structure);
+  CHECK(c.poles.right == 2);
+  CHECK(to_string(c).find("2 right of the axis") != std::string::npos);
+}
+
+TEST_CASE("what is not checked is said, with the reason") {
+  Diagram d{"unlike"};
+  auto u = d.input("u");
+  auto a = d.add("a", SpringMass{.mass = 1, .stiffness = 4});
+  ground(a);
+  a.child.force += u;
+  d.output("x") = a.stretch;
+  const System system = compile(d);
+  const FullCertificate c = certify(system, {.dense_up_to = 1, .written_up_to = 1});
+  CHECK(!c.poles.done);
+  CHECK(c.poles.why_not.find("2 states are more than 1") == 0);
+  CHECK(!c.passivity.done);
+  CHECK(c.grid.written < 0);
+  CHECK(!c.order.judged);
+  const std::string text = to_string(c);
+  for (const char* item : {"poles not checked: 2 states", "passivity not checked: no output",
+                           "dense model not compared", "equations as written not solved at once"})
+    CHECK(text.find(item) != std::string::npos);
+  Diagram modes{"modes only"};
+  auto z = modes.add("z", SpringMass{});
+  ground(z);
+  const FullCertificate m = certify(compile(modes));
+  CHECK(m.grid.points == 0);
+  CHECK(m.passivity.why_not.find("without inputs") == 0);
+  CHECK(m.holds());
+}
+
+TEST_CASE("100 random graphs: no fault, most orders decided") {
+  int decided = 0, passive = 0, exact = 0;
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    CAPTURE(seed);
+    const auto scene = titop_test::random_scene(titop_test::random_options(seed));
+    const FullCertificate c = certify(compile(scene.build()), {.points = 8});
+    CAPTURE(to_string(c));
+    CHECK(c.holds());
+    decided += c.order.decided();
+    passive += c.passivity.done;
+    exact += c.exact.decided;
+  }
+  CHECK(decided >= 80);
+  CHECK(passive >= 5);
+  CHECK(exact >= 15);
+}
