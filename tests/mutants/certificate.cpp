@@ -1,0 +1,79 @@
+#include <cstdio>
+#include <titop/titop.hpp>
+
+#include "support/planted.hpp"
+#include "support/random_scene.hpp"
+#include "support/small_scenes.hpp"
+
+/// What the certificate by itself says of twenty fixed graphs: 0 if it finds no fault, 1 if it
+/// finds one or the compiler refuses, with the first words about it. No expected numbers:
+/// tests/mutants/run asks how many mistakes planted in compiler/ it finds.
+namespace {
+
+using namespace titop;
+
+/// Masses in two rings that share some, closed by stiff springs: soft ones depend on the others,
+/// with either sign. A position and a rate are asked for, which the states hold already.
+Diagram ring() {
+  Diagram d{"ring"};
+  auto u = d.input("u");
+  std::vector<SpringMass::Handle> z;
+  for (int i = 0; i < 5; ++i) {
+    z.push_back(d.add("z" + std::to_string(i), SpringMass{.mass = 1.0 + i,
+                                                          .stiffness = 40.0 + 7 * i,
+                                                          .damping = i == 2 ? 0.5 : 0.0,
+                                                          .parent_mass = 0.25}));
+    i == 0 ? ground(z[0]) : mount(z.back(), z[static_cast<std::size_t>(i) - 1].child);
+  }
+  auto back = d.add("back", SpringMass{.mass = 2, .stiffness = 300});
+  auto other = d.add("other", SpringMass{.mass = 1.5, .stiffness = 400});
+  mount(back, z[1].child);
+  weld(back.child, z[4].child);
+  mount(other, z[0].child);
+  weld(other.child, z[3].child);
+  z[3].child.force += u;
+  d.output("a") = z[3].child.accel;
+  d.output("x") = z[4].position;
+  d.output("v") = back.child.rate;
+  return d;
+}
+
+int faults(const System& system, const std::string& name) {
+  const FullCertificate c = certify(system, {.points = 12});
+  if (c.holds()) return 0;
+  std::printf("%s: %s\n", name.c_str(), c.faults.front().c_str());
+  return 1;
+}
+
+int check(const Diagram& d, const std::string& name) {
+  const System system = compile(d);
+  if (faults(system, name)) return 1;
+  if (system.parameters().empty()) return 0;
+  ParameterList other = system.parameters();
+  for (auto& [parameter, value] : other) value *= 1.25;
+  return faults(system.update(other), name + ", updated");
+}
+
+int run() {
+  for (const auto& scene : titop_test::scenes())
+    if (check(scene.make(), scene.name)) return 1;
+  if (check(ring(), "ring")) return 1;
+  for (const std::uint64_t seed : {3, 8, 15, 27, 42, 61, 77, 110})
+    if (check(titop_test::random_scene(titop_test::random_options(seed)).build(),
+              "random " + std::to_string(seed)))
+      return 1;
+  for (const std::uint64_t seed : {1, 2, 3, 4})
+    if (check(titop_test::planted(seed).diagram, "planted " + std::to_string(seed))) return 1;
+  return 0;
+}
+
+}  // namespace
+
+int main() {
+  try {
+    return run();
+  } catch (const std::exception& e) {
+    std::printf("refused: %s\n", e.what());
+    return 1;
+  }
+}
