@@ -99,22 +99,6 @@ class BushingBlock : public Block, public Specified<Bushing> {
   Bushing spec_;
 };
 
-/// Adds the force of a massless end to the balance at `point`: that of a child point counts what
-/// hangs there, that of a parent point what the body does.
-void tie(const DualPort<6>& end, const DualPort<6>& point, double on_child, const Rotation& T,
-         const std::source_location& at) {
-  const int signal = point.accel.signal();
-  bool parent = false;
-  if (signal >= 0) {
-    const Graph& g = *point.accel.graph();
-    const Signal& s = g.signals[static_cast<std::size_t>(signal)];
-    const Block& block = *g.nodes[static_cast<std::size_t>(s.node)].block;
-    parent = block.interface().channels[static_cast<std::size_t>(s.spec)].name == "parent";
-  }
-  detail::mount(end.accel, end.force, point.accel, point.force, T, at,
-                parent ? -on_child : on_child);
-}
-
 }  // namespace
 
 Matrix6 SixAxes::at(ParameterValues values) const {
@@ -145,8 +129,10 @@ Bushing::Handle bushing(Diagram& d, std::string name, const DualPort<6>& a, cons
                         const Rotation& T_ba, const Bushing& spec, std::source_location at) {
   const Bushing::Handle result = d.add(name, spec, at);
   const bool named = !T_ba.to().empty() || !T_ba.from().empty();
-  tie(result.child, a, /*on_child=*/-1, {}, at);
-  tie(result.parent, b, /*on_child=*/1, named ? T_ba.named(T_ba.to(), name) : T_ba, at);
+  // Its ends are massless: the force of each is added to the balance of its point.
+  detail::mount(result.child.accel, result.child.force, a.accel, a.force, {}, at, -1);
+  detail::mount(result.parent.accel, result.parent.force, b.accel, b.force,
+                named ? T_ba.named(T_ba.to(), name) : T_ba, at);
   return result;
 }
 

@@ -15,6 +15,18 @@ struct Writer : SignalRef {
   using SignalRef::set;
 };
 
+/// The force of a body's parent point is what the body does to the outside; everywhere else it is
+/// what is done to the point.
+bool is_parent(const SignalRef& s) {
+  if (!s.graph() || s.signal() < 0) return false;
+  const Graph& g = *s.graph();
+  const int channel = g.signals[static_cast<std::size_t>(s.signal())].channel;
+  if (channel < 0) return false;
+  const Channel& c = g.channels[static_cast<std::size_t>(channel)];
+  const auto& specs = g.nodes[static_cast<std::size_t>(c.node)].block->interface().channels;
+  return specs[static_cast<std::size_t>(c.spec)].name == "parent";
+}
+
 }  // namespace
 
 void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, SignalRef site_force,
@@ -25,7 +37,9 @@ void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, S
   const Expr motion = scalar ? site_accel.expr() : T.inverse() * site_accel;
   const Expr wrench = scalar ? child_force.expr() : T * child_force;
   Writer(child_accel).set(Rhs(motion, at), /*accumulate=*/false, 1);
-  Writer(site_force).set(Rhs(wrench, at), /*accumulate=*/true, sign);
+  // `sign` is right between a child point as site and, for a weld, another child point.
+  const bool turned = is_parent(site_force) != (sign < 0 && is_parent(child_force));
+  Writer(site_force).set(Rhs(wrench, at), /*accumulate=*/true, turned ? -sign : sign);
 }
 
 void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location& at) {

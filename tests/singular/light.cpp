@@ -13,8 +13,8 @@
 using namespace titop;
 using namespace titop_test;
 using Eigen::MatrixXcd;
+using solver_test::BigMatrix;
 using solver_test::Complex;
-using solver_test::Matrix50;
 
 namespace {
 
@@ -57,7 +57,7 @@ Diagram scene(const Numbers& n, Form form, bool parent_read) {
 MatrixXcd exact(const Numbers& n, Form form, std::complex<double> at) {
   const Complex s(at), s2 = s * s, g = Complex(n.k) + Complex(n.c) * s;
   // Unknowns x_C'', f_C, x_P'', f_P.
-  Matrix50 E(4, 4), F(4, 2);
+  BigMatrix E(4, 4), F(4, 2);
   E(0, 0) = Complex(n.m) + g / s2, E(0, 1) = Complex(-1), E(0, 2) = Complex(0) - g / s2;
   E(1, 0) = Complex(0) - g / s2, E(1, 2) = g / s2 + Complex(n.m0), E(1, 3) = Complex(1);
   E(2, form.child_accel ? 0 : 1) = Complex(1), F(2, 0) = Complex(1);
