@@ -17,8 +17,8 @@ namespace titop::detail {
 /// Replaces k.joint and d.factors, which are singular, by regular ones; completes
 /// k.stage.dependents and d.states; keeps the equations as written in k.before_reduce. Throws
 /// improper (input, output, number of derivatives and the equation that makes it), or what
-/// solve::blame says where a constraint repeats or contradicts what is known, not_finite. O(bodies) per missing
-/// pivot.
+/// solve::blame says where a constraint repeats or contradicts what is known, not_finite. O(bodies)
+/// per missing pivot.
 void reduce(Skeleton& k, SystemData& d);
 
 }  // namespace titop::detail
