@@ -24,12 +24,8 @@ struct Label {
 /// Every line stands for something: an empty one is a mistake, and a last line without line end may
 /// be a number cut short.
 std::vector<TextLine> data_lines(const TextFile& file, FileMistakes& mistakes) {
-  std::vector<TextLine> lines = lines_of(file);
-  if (!file.ends_in_line)
-    mistakes.add(bad_line(file, lines.back().number,
-                          fmt::format("'{}' without line end", lines.back().text),
-                          "a line end: the file may be truncated (add one if it is complete)"));
-  return lines;
+  require_line_end(file, mistakes);
+  return lines_of(file);
 }
 
 bool parse_label(std::string_view text, Label& label) {

@@ -32,11 +32,13 @@ struct Entry {
 /// What the file says about one name.
 struct Found {
   int form = 0, type = 0;
+  int digits = 0;  ///< of its longest number
   std::map<std::pair<GridDof, GridDof>, Entry> entries;
 };
 
+/// Commas and tabs go on with free fields.
 bool is_continuation(std::string_view text) {
-  return !text.empty() && (text[0] == '*' || text[0] == '+' || text[0] == ' ');
+  return !text.empty() && std::string_view("*+ ,\t").find(text[0]) != std::string_view::npos;
 }
 
 void add_fields(Card& card, const TextLine& line, bool wide) {
@@ -49,21 +51,57 @@ void add_fields(Card& card, const TextLine& line, bool wide) {
   }
 }
 
+/// True for a card called DMIG, in whatever form.
+bool is_dmig(std::string_view text) {
+  text = trim(text);
+  for (const char c : {'D', 'M', 'I', 'G'}) {
+    if (text.empty() || std::toupper(static_cast<unsigned char>(text[0])) != c) return false;
+    text.remove_prefix(1);
+  }
+  return text.empty() || std::string_view(" *,\t").find(text[0]) != std::string_view::npos;
+}
+
+/// Free fields are set off by commas from the name on; tabs would shift the columns.
+bool is_fixed(std::string_view text) {
+  return text.substr(0, 8).find(',') == std::string_view::npos &&
+         text.find('\t') == std::string_view::npos;
+}
+
+/// Digits of a number from its first that is not 0 to its exponent.
+int significant_digits(std::string_view text) {
+  int count = 0;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    if (std::isdigit(static_cast<unsigned char>(text[i])))
+      count += count > 0 || text[i] != '0';
+    else if (i > 0 && text[i] != '.')
+      break;  // the exponent
+  }
+  return count;
+}
+
+/// Decimal digits that the entries carry: as printed, but no more than their precision has.
+int digits_of(const Found& found) { return std::min(found.type == 1 ? 7 : 15, found.digits); }
+
 /// All cards called DMIG, with their continuations.
-std::vector<Card> cards_in(const TextFile& file) {
+std::vector<Card> cards_in(const TextFile& file, FileMistakes& mistakes) {
   std::vector<Card> cards;
   bool open = false;
   for (const TextLine& line : lines_of(file)) {
     if (line.text.empty() || line.text[0] == '$') continue;
-    if (is_continuation(line.text)) {
-      if (open) add_fields(cards.back(), line, line.text[0] == '*');
+    const bool starts = is_dmig(line.text);
+    const std::string_view name = trim(line.text.substr(0, 8));
+    const bool known = !starts || (line.text[0] == 'D' && (name == "DMIG" || name == "DMIG*"));
+    const bool goes_on = open && is_continuation(line.text);
+    if ((starts || goes_on) && !(known && is_fixed(line.text))) {
+      mistakes.add(bad_line(file, line.number, fmt::format("'{}'", line.text),
+                            "DMIG in capitals in column 1 and fields of 8 or 16 columns, set off "
+                            "neither by commas nor by tabs"));
+      open = false;
       continue;
     }
-    const std::string_view name = trim(line.text.substr(0, 8));
-    open = name == "DMIG" || name == "DMIG*";
-    if (!open) continue;
-    cards.push_back({{}, line.number});
-    add_fields(cards.back(), line, name == "DMIG*");
+    if (starts) cards.push_back({{}, line.number});
+    if (starts || goes_on) add_fields(cards.back(), line, name == "DMIG*" || line.text[0] == '*');
+    open = starts || (open && is_continuation(line.text));
   }
   return cards;
 }
@@ -71,12 +109,12 @@ std::vector<Card> cards_in(const TextFile& file) {
 class Reader {
  public:
   explicit Reader(const TextFile& file) : file_(file) {
-    for (const Card& card : cards_in(file)) read(card);
+    require_line_end(file, mistakes_);
+    for (const Card& card : cards_in(file, mistakes_)) read(card);
     mistakes_.finish();
   }
 
   std::map<std::string, Found> matrices;
-  int digits = 0;
 
  private:
   void mistake(const Field& field, const std::string& expected) {
@@ -129,7 +167,7 @@ class Reader {
         mistake(real, "a finite number");
         continue;
       }
-      count_digits(real.text);
+      found.digits = std::max(found.digits, significant_digits(real.text));
       put(found, row, column, {value, real.line});
     }
   }
@@ -145,17 +183,6 @@ class Reader {
                              fmt::format("{} at ({} {}, {} {})", entry.value, row.grid,
                                          row.component, column.grid, column.component),
                              fmt::format("the value {} of line {}", other->value, other->line)));
-  }
-
-  void count_digits(std::string_view text) {
-    int count = 0;
-    for (std::size_t i = 0; i < text.size(); ++i) {
-      if (std::isdigit(static_cast<unsigned char>(text[i])))
-        ++count;
-      else if (i > 0 && text[i] != '.')
-        break;  // the exponent
-    }
-    digits = std::max(digits, count);
   }
 
   const TextFile& file_;
@@ -215,7 +242,7 @@ GridMatrices read_dmig(const std::filesystem::path& path, const std::string& sti
   }
   result.K = filled(K, row);
   result.M = filled(M, row);
-  result.digits = std::min(15, reader.digits);
+  result.digits = std::min(digits_of(K), digits_of(M));
   return result;
 }
 

@@ -102,6 +102,13 @@ void FileMistakes::add(Mistake mistake) {
     ++more_;
 }
 
+void require_line_end(const TextFile& file, FileMistakes& mistakes) {
+  if (file.ends_in_line) return;
+  const TextLine last = lines_of(file).back();
+  mistakes.add(bad_line(file, last.number, fmt::format("'{}' without line end", last.text),
+                        "a line end: the file may be truncated (add one if it is complete)"));
+}
+
 void FileMistakes::finish() const {
   if (mistakes_.empty()) return;
   std::vector<Mistake> all = mistakes_;

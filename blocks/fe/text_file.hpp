@@ -60,4 +60,8 @@ class FileMistakes {
   int more_ = 0;
 };
 
+/// A last line without line end is a mistake: its last number may be cut short. A file that ends at
+/// the end of one of its lines looks whole.
+void require_line_end(const TextFile& file, FileMistakes& mistakes);
+
 }  // namespace titop::fe

@@ -148,6 +148,18 @@ TEST_CASE("fields of 8 and 16 columns, scalar points, numbers without E") {
             .dofs.size() == 3);
 }
 
+TEST_CASE("digits: of the shorter matrix, without leading zeros, at most 7 in single precision") {
+  const std::string two =
+      "DMIG    K       0       6       2       0\nDMIG*   K                              7         "
+      "      1\n*                      7               11.2345678901D+02\n"
+      "DMIG    M       0       6       2       0\nDMIG*   M                              7         "
+      "      1\n*                      7               1   0.0012345678\n";
+  CHECK(read(two).digits == 8);
+  CHECK(read(replaced(two, "0.0012345678", "1.23456789E+2")).digits == 9);
+  CHECK(read(replaced(two, "0.0012345678", "2.3456789012")).digits == 11);
+  CHECK(read(replaced(two, "K       0       6       2", "K       0       6       1")).digits == 7);
+}
+
 TEST_CASE("broken DMIG files are refused with line and field") {
   refused(replaced(kSmall, "-1.5 ", "-1,5 "), "m.pch:4: found '-1,5', expected a finite number");
   refused(replaced(kSmall, "+       9       3", "+       9       7"),
@@ -158,11 +170,44 @@ TEST_CASE("broken DMIG files are refused with line and field") {
   refused(replaced(kSmall, "M       0       1 ", "M       0       2 "), "M has form 2");
   refused(replaced(kSmall, "K       0       6       1", "K       0       6       3"),
           "K has type 3");
-  refused(replaced(kSmall, "M       0", "MM      0"), "m.pch");
+  refused(replaced(kSmall, "M       0", "MM      0"),
+          "m.pch:7: found 'M', expected the matrix's header");
   refused(replaced(replaced(kSmall, "M       0", "MM      0"), "DMIG*   M ", "DMIG*   MM"),
           "m.pch has no DMIG matrix M");
   refused(replaced(kSmall, "9       3       2.0\n",
                    "9       3       2.0\n+       7       1       -1.6\n"),
           "m.pch:6: found -1.6 at (7 1, 9 3), expected the value -1.5 of line 4");
   refused("nothing\n", "it has none at all");
+}
+
+TEST_CASE("DMIG cards in other forms are refused by line, not passed over") {
+  const std::string fixed = "DMIG    K       9       3               9       3       2.0\n";
+  for (const char* other :
+       {"DMIG,K,9,3,,9,3,2.0\n", "dmig    K       9       3               9       3       2.0\n",
+        "DMIG\tK\t9\t3\t\t9\t3\t2.0\n", "DMIG K 9 3 9 3 2.0\n", "Dmig*,K,9,3\n",
+        "  DMIG  K       9       3               9       3       2.0\n"})
+    refused(replaced(kSmall, fixed, other), "m.pch:5: found '");
+  const std::string next = "+       9       3       -1.5            8               2.5-1\n";
+  for (const char* other : {"+,9,3,-1.5\n", ",9,3,-1.5\n", "+\t9\t3\t-1.5\n", "\t9\t3\t-1.5\n"})
+    refused(replaced(kSmall, next, other), "expected DMIG in capitals in column 1 and fields of 8");
+  // Cards with other names are none of it.
+  CHECK(read(kSmall + "DMIGROT,K,9\ngrid,9,,0.,0.,0.\n+,1\n").dofs.size() == 3);
+}
+
+TEST_CASE("the flying wing cut at any byte of its last line is refused") {
+  std::ifstream file(kFolder + "sol103_maewing1_femv5p1.pch");
+  const std::string whole{std::istreambuf_iterator<char>(file), {}};
+  // A stiffness of one entry and the whole mass: each cut is read quickly.
+  const auto mass = whole.find("DMIG    MAAX");
+  const std::string all = whole.substr(0, whole.find("DMIG", whole.find("\n*") + 1)) +
+                          whole.substr(mass, whole.find("DMIG    VAX") - mass);
+  const auto read_cut = [&](std::size_t length) {
+    const titop_test::Folder folder;
+    folder.write("m.pch", all.substr(0, length));
+    return fe::read_dmig(folder.path / "m.pch", "KAAX", "MAAX");
+  };
+  CHECK(read_cut(all.size()).K(0, 0) == 3245226.567);
+  const auto line = all.rfind('\n', all.size() - 2) + 1;
+  for (std::size_t length = line + 1; length < all.size(); ++length)
+    CHECK_THROWS_WITH_AS(read_cut(length), doctest::Contains("without line end"), Error);
 }
