@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
 #include <titop/blocks/fe/modal_csv.hpp>
 #include <titop/blocks/fe/text_file.hpp>
 #include <titop/blocks/scaled.hpp>
@@ -18,6 +19,7 @@ class Reader {
       const std::string_view text = trim(line.text.substr(0, line.text.find('#')));
       if (!text.empty()) read(line.number, comma_fields(text));
     }
+    require_line_end(file, mistakes_);
     if (D_P_rows_ != 6) mistake(0, fmt::format("{} lines D_P", D_P_rows_), "six, row by row");
     mistakes_.finish();
   }
@@ -45,6 +47,13 @@ class Reader {
     mistakes_.add(bad_line(file_, line, found, expected));
   }
 
+  void require_first(int line, std::string_view word) {
+    const auto [at, is_new] = first_.insert({std::string(word), line});
+    if (!is_new)
+      mistake(line, fmt::format("{} again", word),
+              fmt::format("{} once: line {} has it", word, at->second));
+  }
+
   /// So many numbers behind the first `skip` fields; empty where they are not there.
   std::vector<double> numbers(int line, const Fields& fields, std::size_t skip, std::size_t count) {
     if (fields.size() != skip + count) {
@@ -64,6 +73,7 @@ class Reader {
 
   void read(int line, const Fields& fields) {
     const std::string_view word = fields[0];
+    if (word == "units" || word == "digits" || word == "at P") require_first(line, word);
     if (word == "units") return read_units(line, fields);
     if (word == "digits") return read_one(line, fields, data_.digits);
     if (word == "at P") return read_one(line, fields, at_P_);
@@ -101,6 +111,7 @@ class Reader {
     if (fields.size() < 2 || fields[1].empty()) return mistake(line, "no name", "the child's name");
     const auto values = numbers(line, fields, 2, 3);
     if (values.empty()) return;
+    require_first(line, fmt::format("child {}", fields[1]));
     data_.children.push_back(
         {std::string(fields[1]), Vector3d(values[0], values[1], values[2]), {}});
   }
@@ -116,11 +127,13 @@ class Reader {
     if (modes_.empty() || !(values[0] > 0))
       return mistake(line, fmt::format("a modal mass of {}", values[0]),
                      "a positive number behind a mode");
+    require_first(line, fmt::format("modal mass of mode {}", modes_.size()));
     for (std::size_t i = 2; i < modes_.back().size(); ++i) modes_.back()[i] /= std::sqrt(values[0]);
   }
 
   const TextFile& file_;
   FileMistakes mistakes_;
+  std::map<std::string, int> first_;  ///< lines of what may come once
   ModalData data_;
   DataUnits units_;
   double at_P_ = 0;
@@ -135,7 +148,35 @@ ModalData read_modal_csv(const std::filesystem::path& path) {
   return Reader(file).data();
 }
 
+namespace {
+
+void require_sizes(const ModalData& data) {
+  const Eigen::Index n = data.omega.size();
+  const auto check = [n](const std::string& what, Eigen::Index rows, Eigen::Index columns,
+                         Eigen::Index rows_wanted, Eigen::Index columns_wanted) {
+    if (rows != rows_wanted || columns != columns_wanted)
+      throw Error(Code::size, fmt::format("{} of modal data is {} x {}", what, rows, columns),
+                  fmt::format("with {} modes it is {} x {}", n, rows_wanted, columns_wanted));
+  };
+  check("xi", data.xi.size(), 1, n, 1);
+  check("L_P", data.L_P.rows(), data.L_P.cols(), n, 6);
+  for (const ModalChild& c : data.children)
+    check("Phi_C of child " + c.name, c.Phi_C.rows(), c.Phi_C.cols(), 6, n);
+}
+
+/// What ends a field or a line cannot stand in one, and blanks around it are not read.
+void require_writable(const std::string& name) {
+  if (!name.empty() && name.find_first_of(",#\r\n") == std::string::npos && trim(name) == name)
+    return;
+  throw Error(Code::bad_value, fmt::format("'{}' cannot be a child's name in modal data", name),
+              "give one without comma, #, line ends, and blanks at its ends");
+}
+
+}  // namespace
+
 std::string modal_csv(const ModalData& data) {
+  require_sizes(data);
+  for (const ModalChild& c : data.children) require_writable(c.name);
   std::string text = fmt::format("digits, {}\n", data.digits);
   for (int i = 0; i < 6; ++i) {
     text += "D_P";

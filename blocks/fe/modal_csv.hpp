@@ -22,10 +22,15 @@ namespace titop::fe {
 ///
 /// The data come out in SI units and unchecked but for their form: `FlexibleBody` and
 /// `modal_report` judge them. Throws bad_file, all mistakes together, with file, line and what was
-/// expected.
+/// expected; also for what may come once
+/// and comes twice (units, digits, at P, a child's name, a mode's modal mass), and for a last line
+/// without line end, whose number may be cut short. A file cut at the end of a line looks whole:
+/// modes that are missing are not missed.
 ModalData read_modal_csv(const std::filesystem::path& path);
 
-/// The same data as such a text, in SI units; reading it gives them back to the last bit.
+/// The same data as such a text, in SI units; reading it gives them back to the last bit. Throws
+/// size for matrices that do not fit the modes, bad_value for a child's name that cannot stand in a
+/// field: with a comma, # or line end, with blanks at its ends, or empty.
 std::string modal_csv(const ModalData& data);
 
 }  // namespace titop::fe

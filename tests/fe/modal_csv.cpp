@@ -80,8 +80,13 @@ TEST_CASE("cantilever: participation factors are those of its shapes and masses"
     L.row(mode - 1) += row;
   }
   L.rightCols(3) *= 1e-3;  // [m]
-  // 1e-3 of the modes' size is 7 digits of the largest entry in mm.
-  CHECK((data.L_P - L).cwiseAbs().maxCoeff() <= 4e-9 * 222.644);
+  // Shapes are of single precision, 2^-24 of themselves off; columns in [sqrt(kg)] and in
+  // [sqrt(kg) m] each by themselves.
+  for (const Index first : {0, 3}) {
+    const Eigen::MatrixXd expected = L.middleCols(first, 3);
+    CHECK((data.L_P.middleCols(first, 3) - expected).cwiseAbs().maxCoeff() <=
+          std::exp2(-24) * expected.cwiseAbs().maxCoeff());
+  }
   CHECK(relative(data.D_P(0, 0), 5 + 5 * element) <= 1e-7);  // with what sits on the clamped grid
   CHECK(relative(data.D_P(4, 4), 50291.489454230854e-6) <= 1e-14);
 }
@@ -165,6 +170,45 @@ TEST_CASE("a scaled body is the same body: transfer in inch and lbf") {
   CHECK((response(scaled(scaled(SI, back), inch)) - G).cwiseAbs().maxCoeff() <=
         1e-12 * G.cwiseAbs().maxCoeff());
   CHECK_THROWS_AS(scaled(SI, {.length = -1}), Error);
+}
+
+TEST_CASE("the cantilever cut at any byte of its last line is refused") {
+  std::ifstream file(kFolder + "cantilever.csv");
+  const std::string whole{std::istreambuf_iterator<char>(file), {}};
+  REQUIRE(whole.back() == '\n');
+  CHECK(read(whole).omega.size() == 3);
+  const auto line = whole.rfind('\n', whole.size() - 2) + 1;
+  for (std::size_t length = line + 1; length < whole.size(); ++length)
+    CHECK_THROWS_WITH_AS(read(whole.substr(0, length)), doctest::Contains("without line end"),
+                         Error);
+}
+
+TEST_CASE("what may come once is refused the second time") {
+  refused(replaced(kSmall, "D_P, 2", "units, 1, 1, 1\nD_P, 2"),
+          "m.csv:3: found units again, expected units once: line 2 has it");
+  refused(kSmall + "digits, 7\ndigits, 8\n", "m.csv:15: found digits again");
+  refused(kSmall + "at P, 1\nat P, 1\n", "m.csv:15: found at P again");
+  refused(kSmall + "modal mass, 16\n", "m.csv:14: found modal mass of mode 2 again");
+  refused(replaced(kSmall, "mode, 3", "child, C 1, 0, 0, 0\nmode, 3"),
+          "m.csv:11: found child C 1 again");
+}
+
+TEST_CASE("what could not be read again is not written") {
+  const ModalData good = read(kSmall);
+  for (const char* name : {"a,b", "a#b", " a", "a\t", "", "a\nb"}) {
+    ModalData data = good;
+    data.children[0].name = name;
+    CHECK_THROWS_WITH_AS(fe::modal_csv(data), doctest::Contains("cannot be a child's name"), Error);
+  }
+  ModalData data = good;
+  data.xi.resize(1);
+  CHECK_THROWS_WITH_AS(fe::modal_csv(data), doctest::Contains("xi of modal data is 1 x 1"), Error);
+  data = good;
+  data.L_P.resize(2, 5);
+  CHECK_THROWS_WITH_AS(fe::modal_csv(data), doctest::Contains("L_P of modal data is 2 x 5"), Error);
+  data = good;
+  data.children[0].Phi_C.resize(6, 3);
+  CHECK_THROWS_WITH_AS(fe::modal_csv(data), doctest::Contains("Phi_C of child C 1"), Error);
 }
 
 TEST_CASE("broken modal data are refused with line and field") {
