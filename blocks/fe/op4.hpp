@@ -20,9 +20,9 @@ struct Op4Matrix {
 /// in either byte order: that is found out from the file.
 ///
 /// Throws bad_file, naming the file, the matrix and the record (binary: with its byte) or line: a
-/// record that ends early or has another length than it says, a column or row outside the matrix, a
-/// value that is no finite number, a complex matrix, one of more than 25 million entries, a name
-/// twice. Dense: 8 bytes per entry.
+/// record that ends early or has another length than it says, a column or row outside the matrix,
+/// columns that do not ascend, a value that is no finite number, a complex matrix, one of more than
+/// 25 million entries, more than 100 million in the file, a name twice. Dense: 8 bytes per entry.
 std::vector<Op4Matrix> read_op4(const std::filesystem::path& path);
 
 /// The matrix of this name (capitals or not); throws unknown_name with those there are.

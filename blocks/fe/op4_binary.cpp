@@ -97,7 +97,7 @@ Op4Header header_in(Records& records) {
   h.rows = l.integer(&record[l.word]);
   h.form = l.integer(&record[2 * l.word]);
   h.type = l.integer(&record[3 * l.word]);
-  h.name = records.matrix = name_in(record.subspan(4 * l.word));
+  h.name = records.matrix = capitals(name_in(record.subspan(4 * l.word)));
   h.bigmat = h.rows < 0 || h.rows >= 65536;
   if (h.rows < 0 && h.rows > -1'000'000'000) h.rows = -h.rows;
   return h;
@@ -132,14 +132,14 @@ void read_sparse_column(Records& records, const Op4Header& h, long long column,
   }
 }
 
-Op4Matrix read_matrix(Records& records) {
+Op4Matrix read_matrix(Records& records, Op4Taken& taken) {
   const Refuse refuse = [&](const std::string& found, const std::string& expected) {
     records.refuse(found, expected);
   };
   const Op4Header h = header_in(records);
-  Op4Matrix matrix = make_matrix(h, refuse);
+  Op4Matrix matrix = make_matrix(h, taken, refuse);
   if (records.layout.word == 8) matrix.digits = 15;
-  for (;;) {
+  for (long long last = 0;;) {
     const auto record = records.next();
     const Layout& l = records.layout;
     if (record.size() < 3 * l.word)
@@ -147,10 +147,14 @@ Op4Matrix read_matrix(Records& records) {
     const long long column = l.integer(&record[0]), row = l.integer(&record[l.word]);
     const long long words = l.integer(&record[2 * l.word]);
     if (column > h.columns) return matrix;
+    require_ascending(column, last, refuse);
     const auto data = record.subspan(3 * l.word);
-    if (words < 0 || static_cast<std::size_t>(words) != data.size() / l.word)
+    if (words < 0 || data.size() % l.word != 0 ||
+        static_cast<std::size_t>(words) != data.size() / l.word)
       refuse(fmt::format("a column of {} words in {} bytes", words, data.size()),
              "as many as it says");
+    if (row != 0 && l.word == 4 && words % words_per_value(h.type) != 0)
+      refuse(fmt::format("a column of {} words", words), "two for each value of type 2");
     if (row == 0)
       read_sparse_column(records, h, column - 1, data, matrix, refuse);
     else
@@ -163,7 +167,8 @@ Op4Matrix read_matrix(Records& records) {
 std::vector<Op4Matrix> read_op4_binary(const std::string& name, std::span<const char> bytes) {
   Records records(name, bytes);
   std::vector<Op4Matrix> matrices;
-  while (!records.at_end()) matrices.push_back(read_matrix(records));
+  Op4Taken taken;
+  while (!records.at_end()) matrices.push_back(read_matrix(records, taken));
   return matrices;
 }
 

@@ -2,8 +2,10 @@
 
 #include <functional>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
+#include <string_view>
 #include <titop/blocks/fe/op4.hpp>
 
 /// What the readers of the two forms of OP4, text and binary, share.
@@ -12,6 +14,8 @@ namespace titop::fe::detail {
 /// Throws bad_file for this place of the file.
 using Refuse = std::function<void(const std::string& found, const std::string& expected)>;
 
+std::string capitals(std::string_view text);
+
 /// First record of a matrix.
 struct Op4Header {
   std::string name;
@@ -19,13 +23,23 @@ struct Op4Header {
   bool bigmat = false;  ///< rows was negative, or 65536 and more
 };
 
-/// The empty matrix of this header; refuses what cannot be one.
-Op4Matrix make_matrix(const Op4Header& header, const Refuse& refuse);
+/// What a file has taken so far.
+struct Op4Taken {
+  std::set<std::string> names;
+  long long entries = 0;
+};
+
+/// The empty matrix of this header; refuses, before it takes the memory, what cannot be one, a name
+/// that the file had before, and what is too much of all.
+Op4Matrix make_matrix(const Op4Header& header, Op4Taken& taken, const Refuse& refuse);
 
 /// Puts values into a column from a row on (both from 0); refuses rows outside, values that are not
 /// finite.
 void put_values(Op4Matrix& matrix, long long row, long long column, std::span<const double> values,
                 const Refuse& refuse);
+
+/// Columns come in ascending order, each once; `last` is the one before and becomes this one.
+void require_ascending(long long column, long long& last, const Refuse& refuse);
 
 /// Words per value: 1 single, 2 double (of 4 bytes).
 inline int words_per_value(long long type) { return type == 1 ? 1 : 2; }

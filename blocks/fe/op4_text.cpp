@@ -59,7 +59,8 @@ std::vector<long long> integers(const Lines& lines, std::string_view text, std::
 Format format_in(const Lines& lines, std::string_view text) {
   Format f;
   std::string word;
-  for (const char c : trim(text)) word += static_cast<char>(std::toupper(c));
+  for (const char c : trim(text))
+    word += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
   if (word.empty()) return f;
   if (word.rfind("1P,", 0) == 0) word.erase(0, 3);
   const auto letter = word.find_first_of("ED"), point = word.find('.');
@@ -119,10 +120,10 @@ void read_sparse_column(Lines& lines, const Op4Header& h, long long column, long
 Op4Header header_in(Lines& lines, Format& f) {
   const std::string_view text = lines.next();
   const auto head = integers(lines, text, 4);
-  Op4Header h{std::string(trim(text.substr(32, 8))), head[0], head[1], head[2], head[3], false};
-  if (text.size() <= 32 || h.name.empty())
+  const std::string_view name = text.size() > 32 ? trim(text.substr(32, 8)) : std::string_view();
+  if (name.empty())
     lines.refuse(fmt::format("'{}'", text), "the matrix's name in columns 33 to 40");
-  for (char& c : h.name) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  Op4Header h{capitals(name), head[0], head[1], head[2], head[3], false};
   lines.matrix = h.name;
   h.bigmat = h.rows < 0 || h.rows >= 65536;
   h.rows = std::abs(h.rows);
@@ -130,20 +131,21 @@ Op4Header header_in(Lines& lines, Format& f) {
   return h;
 }
 
-Op4Matrix read_matrix(Lines& lines) {
+Op4Matrix read_matrix(Lines& lines, Op4Taken& taken) {
   const Refuse refuse = [&](const std::string& found, const std::string& expected) {
     lines.refuse(found, expected);
   };
   Format f;
   const Op4Header h = header_in(lines, f);
-  Op4Matrix matrix = make_matrix(h, refuse);
+  Op4Matrix matrix = make_matrix(h, taken, refuse);
   matrix.digits = std::min(matrix.digits, 1.0 + f.decimals);
-  for (;;) {
+  for (long long last = 0;;) {
     const auto head = integers(lines, lines.next(), 3);
     if (head[0] > h.columns) {
       values_in(lines, 1, f);  // stands behind the last column and means nothing
       return matrix;
     }
+    require_ascending(head[0], last, refuse);
     if (head[2] < 0) refuse(fmt::format("a column of {} words", head[2]), "0 or more");
     if (head[1] == 0) {
       read_sparse_column(lines, h, head[0] - 1, head[2], f, matrix, refuse);
@@ -160,7 +162,8 @@ std::vector<Op4Matrix> read_op4_text(const std::filesystem::path& path) {
   const TextFile file = read_text(path);
   Lines lines(file);
   std::vector<Op4Matrix> matrices;
-  while (!lines.at_end()) matrices.push_back(read_matrix(lines));
+  Op4Taken taken;
+  while (!lines.at_end()) matrices.push_back(read_matrix(lines, taken));
   return matrices;
 }
 

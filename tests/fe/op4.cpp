@@ -8,6 +8,7 @@
 #include <cstring>
 #include <functional>
 #include <titop/blocks/fe/op4.hpp>
+#include <titop/blocks/fe/op4_build.hpp>
 #include <titop/graph/error.hpp>
 
 #include "support/folder.hpp"
@@ -252,7 +253,52 @@ TEST_CASE("broken binary files are refused with matrix, record and byte") {
   std::memcpy(&bytes[48], &string, 4);
   says(refusal(bytes), "found a string of 99 words, expected 1 to");
   writer.add("SMALL", kSmall);
-  says(refusal(writer.bytes), "matrix SMALL comes twice");
+  says(refusal(writer.bytes), "found matrix SMALL a second time, expected each once");
+}
+
+TEST_CASE("columns twice or out of order, half a value: refused; names in small letters: found") {
+  Writer writer({});
+  writer.add("small", kSmall);
+  const std::string good = writer.bytes;
+  CHECK(fe::find_matrix(read(good), "Small").value == kSmall);
+  CHECK(read(good)[0].name == "SMALL");
+  // Columns of 52 bytes and 12 more: the second starts at byte 84, the third at 136.
+  const auto with = [&](std::size_t at, std::int32_t value) {
+    std::string bytes = good;
+    std::memcpy(&bytes[at], &value, 4);
+    return refusal(bytes);
+  };
+  says(with(88, 1), "matrix SMALL, record 3 (byte 84): found column 1 behind column 1");
+  says(with(36, 3), "found column 3 behind column 3");
+
+  // One word more than the values need, said and there: half a double.
+  std::string half = good.substr(0, 32);
+  const auto put = [&](std::int32_t value) {
+    half.append(reinterpret_cast<const char*>(&value), 4);
+  };
+  for (const std::int32_t value : {24, 1, 1, 3, 0, 0, 0, 24}) put(value);
+  says(refusal(half), "found a column of 3 words, expected two for each value of type 2");
+  half = good.substr(0, 32);
+  for (const std::int32_t value : {22, 1, 1, 2, 0, 0, 0}) put(value);
+  half.resize(half.size() - 2);
+  put(22);
+  says(refusal(half), "found a column of 2 words in 10 bytes");
+
+  const std::string text = text_file("dense_double.op4");
+  says(refusal(replaced(text, "       3       1       5", "       1       1       5")),
+       "found matrix R1: column 1 behind column 1, expected ascending ones");
+}
+
+TEST_CASE("a file takes memory for 100 million entries at most, and looks before it takes it") {
+  const fe::detail::Refuse refuse = [](const std::string& found, const std::string&) {
+    throw Error(Code::bad_file, found, {});
+  };
+  fe::detail::Op4Taken taken{{"A"}, 99'999'990};
+  CHECK(fe::detail::make_matrix({"B", 5, 2, 2, 2, false}, taken, refuse).value.size() == 10);
+  CHECK_THROWS_WITH_AS(fe::detail::make_matrix({"C", 1, 1, 2, 2, false}, taken, refuse),
+                       doctest::Contains("100000001 entries"), Error);
+  CHECK_THROWS_WITH_AS(fe::detail::make_matrix({"A", 1, 1, 2, 2, false}, taken, refuse),
+                       doctest::Contains("a second time"), Error);
 }
 
 TEST_CASE("broken text files are refused with matrix and line") {
@@ -275,5 +321,12 @@ TEST_CASE("broken text files are refused with matrix and line") {
   says(refusal(replaced(sparse, "  196615", "  986615")), "a string of");
   says(refusal(replaced(sparse, "  196615", "  x")), "an integer that starts a string of values");
   says(refusal("nonsense\n"), "m.op4:1: found 'nonsense'");
+  // Headers that end before the name; columns 25 to 32 still hold a type.
+  const std::string header = "       1       1       2       2";
+  for (std::size_t length = 25; length <= 31; ++length)
+    says(refusal(header.substr(0, 24) + "2" + std::string(length - 25, ' ') + "\n"),
+         "m.op4:1: found '");
+  says(refusal(header + "\n"), "the matrix's name in columns 33 to 40");
+  says(refusal(header + "R1      \xff\x80P,3E23.16\n"), "found matrix R1: the format");
   CHECK_THROWS_AS(fe::find_matrix(read(good), "KXX"), Error);
 }
