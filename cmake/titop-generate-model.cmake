@@ -3,6 +3,7 @@
 #   [FUNCTION function]         # its name, in the global namespace; NAME if left out
 #   [SAMPLE_TIME seconds]       # also `step`, exact for inputs held that long
 #   [STATES automatic|model|modes]
+#   [DATA file ...]             # what the sources read while they run: made again when it changes
 #   [LIBRARIES target ...])     # what the sources need besides titop
 #
 # Compiles the diagram while your project is built and writes its model as C++17 (see
@@ -10,7 +11,7 @@
 # "NAME.hpp". Where doctest is found (find_package(doctest) before) and tests are enabled, NAME_test
 # proves the header in ctest.
 function(titop_generate_model name)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FUNCTION;SAMPLE_TIME;STATES" "SCENE;LIBRARIES")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "FUNCTION;SAMPLE_TIME;STATES" "SCENE;DATA;LIBRARIES")
   if(arg_UNPARSED_ARGUMENTS OR NOT arg_SCENE)
     message(FATAL_ERROR "titop_generate_model(${name}): give SCENE file.cpp ...; "
                         "not understood: '${arg_UNPARSED_ARGUMENTS}'")
@@ -21,6 +22,11 @@ function(titop_generate_model name)
   if(NOT arg_SAMPLE_TIME)
     set(arg_SAMPLE_TIME 0)
   endif()
+  # It becomes C++, where 1/100 would be 0.
+  if(NOT arg_SAMPLE_TIME MATCHES "^([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?$")
+    message(FATAL_ERROR "titop_generate_model(${name}): SAMPLE_TIME ${arg_SAMPLE_TIME} is no "
+                        "number: give seconds, such as 0.01")
+  endif()
   if(NOT arg_STATES)
     set(arg_STATES automatic)
   endif()
@@ -28,6 +34,15 @@ function(titop_generate_model name)
     message(FATAL_ERROR "titop_generate_model(${name}): STATES ${arg_STATES} is none of "
                         "automatic, model, modes")
   endif()
+
+  set(data)
+  foreach(file ${arg_DATA})
+    get_filename_component(file ${file} ABSOLUTE)
+    if(NOT EXISTS ${file})
+      message(FATAL_ERROR "titop_generate_model(${name}): DATA ${file} does not exist")
+    endif()
+    list(APPEND data ${file})
+  endforeach()
 
   set(folder ${CMAKE_CURRENT_BINARY_DIR}/${name}_model)
   file(MAKE_DIRECTORY ${folder})
@@ -56,7 +71,7 @@ int main(int, char** arguments) try {
                      BYPRODUCTS ${folder}/${name}.hpp ${folder}/${name}_test.cpp
                      COMMAND ${name}_generate ${folder}
                      COMMAND ${CMAKE_COMMAND} -E touch ${folder}/written
-                     DEPENDS ${name}_generate VERBATIM
+                     DEPENDS ${name}_generate ${data} VERBATIM
                      COMMENT "Generating ${name}.hpp")
   add_custom_target(${name}_written DEPENDS ${folder}/written)
   add_library(${name} INTERFACE)
