@@ -61,6 +61,7 @@ Matrix<T> exponential_less_one(Matrix<T> X) {
 template <class T>
 Matrix<T> increments(const MatrixXd& A, const MatrixXd& B, double h) {
   const Index n = A.rows(), m = B.cols();
+  if (n == 0) return Matrix<T>::Zero(0, m);
   MatrixXd X = MatrixXd::Zero(n + m, n + m);
   X << A, B, MatrixXd::Zero(m, n + m);
   const Eigen::VectorXd d = balance(X, n);
@@ -93,9 +94,9 @@ void check_step(double h) {
 Hold hold(const MatrixXd& A, const MatrixXd& B, double h) {
   check_step(h);
   const Index n = A.rows();
-  MatrixXd all = n <= kMostInLongDouble ? MatrixXd(increments<long double>(A, B, h).cast<double>())
-                                        : increments<double>(A, B, h);
-  if (n == 0) all.resize(0, B.cols());
+  const MatrixXd all = n <= kMostInLongDouble
+                           ? MatrixXd(increments<long double>(A, B, h).cast<double>())
+                           : increments<double>(A, B, h);
   Hold result{all.leftCols(n), all.rightCols(B.cols())};
   result.A.diagonal().array() += 1;
   return result;

@@ -97,6 +97,16 @@ TEST_CASE("hold of any matrix against 50 digits") {
   }
 }
 
+TEST_CASE("hold of nothing: no states, no inputs, neither") {
+  for (const Index n : {0, 2})
+    for (const Index m : {0, 3}) {
+      const Hold x = hold(MatrixXd::Zero(n, n), MatrixXd::Zero(n, m), 0.5);
+      CHECK(x.A == MatrixXd::Identity(n, n));
+      CHECK(x.B == MatrixXd::Zero(n, m));
+      CHECK(x.B.cols() == m);
+    }
+}
+
 TEST_CASE("held response of a mass and what is refused") {
   const StateSpace mass{(MatrixXd(2, 2) << 0, 1, 0, 0).finished(),
                         Eigen::Vector2d(0, 0.5),
