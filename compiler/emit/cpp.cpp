@@ -8,6 +8,7 @@
 #include <titop/compiler/emit/cpp/test.hpp>
 #include <titop/compiler/emit/cpp/text.hpp>
 #include <titop/compiler/emit/hold.hpp>
+#include <titop/compiler/emit/identifier.hpp>
 #include <titop/compiler/emit/write_file.hpp>
 #include <titop/graph/error.hpp>
 
@@ -17,16 +18,16 @@ using emit::Form;
 
 namespace {
 
-constexpr double kFewDigits = 1e-6;  // a model that keeps fewer is not worth flying
-constexpr int kMostForModes = 400;   // states; sharp eigenvectors cost 100 n^3 in long double
+constexpr int kMostForModes = 400;  // states; sharp eigenvectors cost 100 n^3 in long double
 
 void check(const CppOptions& options) {
   std::vector<Mistake> mistakes;
-  if (!emit::is_identifier(options.name))
+  if (!emit::is_namespace(options.name))
     mistakes.push_back({Code::bad_value,
                         fmt::format("\"{}\" cannot be the name of generated code", options.name),
                         {},
-                        "give a C++ identifier that is no keyword, such as satellite_2"});
+                        "give a C++ identifier that is no keyword and no name of the C library, "
+                        "such as satellite_2"});
   if (!(options.sample_time >= 0) || !std::isfinite(options.sample_time))
     mistakes.push_back({Code::bad_value,
                         fmt::format("a sample time of {} s", options.sample_time),
@@ -85,8 +86,16 @@ void measure(Form& form, const emit::Expected& e, double sample_time) {
   if (sample_time > 0) form.step_error = emit::step_error(form, e.inputs, e.outputs, e.points);
 }
 
+void refuse_unmeasured_modes(const emit::Expected& expected, const CppOptions& options) {
+  if (options.states != CppStates::modes || !expected.points.s.empty()) return;
+  throw Error(Code::bad_value,
+              fmt::format("how good modes of {} are cannot be measured without inputs and outputs",
+                          options.name),
+              "take CppStates::automatic, or declare an input and an output");
+}
+
 void refuse_few_digits(const Form& form, const std::string& name) {
-  if (form.error <= kFewDigits) return;
+  if (emit::is_provable(form.error)) return;
   throw Error(Code::bad_value,
               fmt::format("written as A, B, C, D the model {} is off by {:.1e}", name, form.error),
               "System::transfer and apply keep the digits; scale masses that are far apart, or "
@@ -101,6 +110,7 @@ CppModel generate_cpp(const System& system, const CppOptions& options) {
   const emit::Naming names{system.stage().graph.name, options.name, m.states, m.inputs, m.outputs,
                            options.sample_time};
   const emit::Expected expected = expectations(system, options.sample_time);
+  refuse_unmeasured_modes(expected, options);
   Form own = emit::own_form(m), modes = own;
   measure(own, expected, options.sample_time);
   const bool wanted = options.states == CppStates::modes ||

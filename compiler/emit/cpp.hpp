@@ -11,11 +11,13 @@ enum class CppStates {
   automatic,  ///< modes where that takes fewer operations and is as accurate (looked at up to 400
               ///< states), else the model's own
   model,      ///< those of System::state_space(), by name
-  modes,      ///< throws bad_value where modes are not as accurate (free rigid motion)
+  modes,      ///< throws bad_value where modes are not as accurate (free rigid motion), or
+              ///< there is no input or no output to measure it by
 };
 
 struct CppOptions {
   std::string name = "model";  ///< of the namespace and of the files: a C++ identifier
+                               ///< other than the C library's (sin, link, NULL)
   double sample_time = 0;      ///< of `step` [s]; 0: no `step`
   CppStates states = CppStates::automatic;
 };
@@ -45,7 +47,8 @@ struct CppModel {
 /// The test recovers the matrices by calling the header and checks them against what does not come
 /// from them: transfer values and static gain of the factored system, the poles, their number; and
 /// a trajectory in long double against `step`, and `step` against the Taylor series of `derivative`
-/// where that is affordable. Its tolerances follow `error`.
+/// where that is affordable. Its tolerances follow what was measured here, up to 1e-6; a check
+/// that would need more is left out, and a comment in its place says so.
 ///
 /// Throws bad_value: not an identifier, a sample time that is negative or not finite, modes asked
 /// and not accurate, a dense model that keeps fewer than six digits. O(n^3).

@@ -9,7 +9,8 @@
 /// All throw bad_file where a file cannot be written.
 namespace titop {
 
-/// A MATLAB/Octave function: the file's name without .m must be an identifier (bad_value).
+/// A MATLAB/Octave function: the file's name without .m must be an identifier (bad_value)
+/// of MATLAB and Octave.
 ///
 ///     m = satellite ();  G = m.C * ((s * eye (m.n) - m.A) \ m.B) + m.D;
 ///     sys = ss (m.A, m.B, m.C, m.D);     % with the control package
@@ -19,8 +20,8 @@ namespace titop {
 void write_matlab(const StateSpace& model, const std::filesystem::path& file);
 
 /// A Python module and its arrays: FOLDER/NAME.py, NAME_A.npy, NAME_B.npy, NAME_C.npy, NAME_D.npy.
-/// NAME must be an identifier (bad_value). `import NAME` gives A, B, C, D, states, inputs, outputs,
-/// transfer(s) and poles(). O(n^2).
+/// NAME must be an identifier (bad_value), and no module that numpy imports. `import NAME` gives A,
+/// B, C, D, states, inputs, outputs, transfer(s) and poles(). O(n^2).
 void write_numpy(const StateSpace& model, const std::filesystem::path& folder,
                  const std::string& name);
 

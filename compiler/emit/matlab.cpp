@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include <titop/compiler/emit/cpp/text.hpp>
 #include <titop/compiler/emit/files.hpp>
+#include <titop/compiler/emit/identifier.hpp>
 #include <titop/compiler/emit/write_file.hpp>
 #include <titop/graph/error.hpp>
 
@@ -40,9 +40,10 @@ std::string matrix(const char* field, const Eigen::MatrixXd& M) {
 
 void write_matlab(const StateSpace& model, const std::filesystem::path& file) {
   const std::string name = file.stem().string();
-  if (!emit::is_identifier(name) || file.extension() != ".m")
-    throw Error(Code::bad_value, fmt::format("{} cannot be a MATLAB function", file.string()),
-                "give a path whose last part is an identifier and .m, such as satellite.m");
+  if (!emit::is_identifier(name, emit::Language::matlab) || file.extension() != ".m")
+    throw Error(
+        Code::bad_value, fmt::format("{} cannot be a MATLAB function", file.string()),
+        "give a path whose last part is an identifier, no keyword, and .m, such as satellite.m");
   emit::write_file(
       file, fmt::format("function m = {} ()\n"
                         "  % Written by titop: xdot = A x + B u, y = C x + D u, with names.\n"

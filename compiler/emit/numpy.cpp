@@ -4,6 +4,7 @@
 #include <cstring>
 #include <titop/compiler/emit/cpp/text.hpp>
 #include <titop/compiler/emit/files.hpp>
+#include <titop/compiler/emit/identifier.hpp>
 #include <titop/compiler/emit/write_file.hpp>
 #include <titop/graph/error.hpp>
 
@@ -70,9 +71,10 @@ def poles():
 
 void write_numpy(const StateSpace& model, const std::filesystem::path& folder,
                  const std::string& name) {
-  if (!emit::is_identifier(name))
+  if (!emit::is_identifier(name, emit::Language::python))
     throw Error(Code::bad_value, fmt::format("\"{}\" cannot be the name of a Python module", name),
-                "give an identifier, such as satellite_2");
+                "give an identifier that is no keyword and no module that numpy imports, such as "
+                "satellite_2");
   const std::pair<char, const Eigen::MatrixXd*> matrices[] = {
       {'A', &model.A}, {'B', &model.B}, {'C', &model.C}, {'D', &model.D}};
   for (const auto& [letter, matrix] : matrices)

@@ -4,13 +4,18 @@
 
 #include <cstdlib>
 #include <set>
+#include <titop/compiler/emit/cpp/form.hpp>
+#include <titop/compiler/emit/cpp/test.hpp>
 #include <titop/compiler/emit/cpp/text.hpp>
+#include <titop/compiler/emit/identifier.hpp>
 #include <titop/titop.hpp>
 
 #include "support/five_masses.hpp"
 
 using namespace titop;
 using namespace titop_test;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
 
 namespace {
 
@@ -29,9 +34,9 @@ bool refused(const System& system, const CppOptions& options, const std::string&
 }  // namespace
 
 TEST_CASE("every name gets an identifier of its own") {
-  const std::vector<std::string> names = {"U(3)", "U_3",    "z1.stretch", "3", "class",
-                                          "",     "a__b",   "_x",         "κ", "A.C1.accel(2)",
-                                          "U(3)", "a\"b\\", "std"};
+  const std::vector<std::string> names = {
+      "U(3)", "U_3",           "z1.stretch", "3",      "class", "",     "a__b",  "_x",
+      "κ",    "A.C1.accel(2)", "U(3)",       "a\"b\\", "std",   "NULL", "errno", "sin"};
   const std::vector<std::string> words = emit::identifiers(names);
   REQUIRE(words.size() == names.size());
   CHECK(words[0] == "U_3");
@@ -40,16 +45,82 @@ TEST_CASE("every name gets an identifier of its own") {
   CHECK(words[3] == "n3");
   CHECK(words[4] == "class_");
   CHECK(words[9] == "A_C1_accel_2");
+  CHECK(words[13] == "NULL_");
+  CHECK(words[14] == "errno_");
+  CHECK(words[15] == "sin");  // in a namespace of its own, where a function may have the name
   for (const std::string& word : words) CHECK(emit::is_identifier(word));
   CHECK(std::set<std::string>(words.begin(), words.end()).size() == words.size());
+}
+
+TEST_CASE("each language has its own words") {
+  using emit::Language;
+  for (const char* name : {"A", "B", "C", "D", "poles", "link2", "sink", "sinful", "model"})
+    CHECK(emit::is_namespace(name));
+  // Keywords of C++ are names elsewhere, and the other way round.
+  for (const char* name : {"int", "class", "linux", "NULL"}) {
+    CHECK(!emit::is_identifier(name));
+    CHECK(emit::is_identifier(name, Language::matlab));
+  }
+  for (const char* name : {"end", "function", "otherwise", "endif", "until", "zeros"}) {
+    CHECK(!emit::is_identifier(name, Language::matlab));
+    CHECK(emit::is_identifier(name));
+  }
+  for (const char* name : {"lambda", "None", "def", "numpy", "pathlib", "random", "types"}) {
+    CHECK(!emit::is_identifier(name, Language::python));
+    CHECK(emit::is_identifier(name));
+  }
+  CHECK(emit::is_identifier("int", Language::python));
+  CHECK(emit::is_identifier(std::string(63, 'a'), Language::matlab));
+  CHECK(!emit::is_identifier(std::string(64, 'a'), Language::matlab));
+  for (const char* name : {"", "1a", "_a", "a b", "\xce\xba"})
+    for (const Language language : {Language::cpp, Language::matlab, Language::python})
+      CHECK(!emit::is_identifier(name, language));
 }
 
 TEST_CASE("numbers read back to the last bit and are no integers") {
   for (const double x : {1.0, -0.0, 0.1, 1e22, 12345678901234567890.0, 5e-324, 1.0 / 3})
     CHECK(std::strtod(emit::number(x).c_str(), nullptr) == x);
+  for (const double x : {HUGE_VAL, -HUGE_VAL, std::nan("")})
+    CHECK_THROWS_AS(emit::number(x), Error);  // inf.0 would not compile
   CHECK(emit::number(2) == "2.0");
   CHECK(emit::number(-0.0) == "-0.0");
   CHECK(emit::quoted("a\"b\\c\n1") == "\"a\\\"b\\\\c\\0121\"");
+}
+
+TEST_CASE("tolerances of the test end at 1e-6; what needs more is left out, and it says so") {
+  // xdot = -x + u, y = x.
+  emit::Form form;
+  form.A = -MatrixXd::Identity(1, 1), form.B = form.C = -form.A, form.D = MatrixXd::Zero(1, 1);
+  emit::add_hold(form, 0.1);
+  const emit::Naming names{"lag", "lag", {"x"}, {"u"}, {"y"}, 0.1};
+  emit::Expected expected;
+  expected.poles.resize(1);
+  expected.poles[0].s = -1, expected.poles[0].omega = 1;
+  expected.points.s = {1, 3};
+  expected.points.exact = {MatrixXcd::Constant(1, 1, 0.5), MatrixXcd::Constant(1, 1, 0.25)};
+  expected.static_gain = MatrixXd::Identity(1, 1);
+  expected.inputs = expected.outputs = MatrixXd::Zero(1, 2);
+  const auto has = [&](const char* words) {
+    return emit::test_text(names, form, expected).find(words) != std::string::npos;
+  };
+  CHECK(has("TEST_CASE(\"lag: static gain\")"));
+  CHECK(has("std::vector<std::size_t>{0}"));
+  CHECK(has("TEST_CASE(\"lag: step against derivative\")"));
+  CHECK(!has("not checked"));
+  expected.poles[0].omega = 1e12;
+  CHECK(has("// step against derivative: not checked, it would take"));
+  expected.poles[0].omega = 1;
+  form.error = form.static_error = form.step_error = 2e-7;
+  CHECK(has("tolerance = 1.0e-06"));
+  form.static_error = HUGE_VAL, form.step_error = 1e-3;
+  CHECK(has("// static gain: not checked"));
+  CHECK(has("// trajectory, and step against derivative: not checked"));
+  CHECK(!has("TEST_CASE(\"lag: static gain\")"));
+  CHECK(!has("TEST_CASE(\"lag: trajectory\")"));
+  // A pole that A does not have is not looked for with a tolerance that finds it all the same.
+  expected.poles[0].s = -1.001;
+  CHECK(has("// Only counted, as the eigenvalues of A"));
+  CHECK(has("std::vector<std::size_t>{}"));
 }
 
 TEST_CASE("modes where they are cheaper, the model's own states on request") {
@@ -82,13 +153,26 @@ TEST_CASE("free rigid motion has no modes: the model's own states, or a refusal"
   CHECK(refused(system, {.name = "cart", .states = CppStates::modes}, "modes of cart lose digits"));
 }
 
+TEST_CASE("without inputs or outputs nothing was measured, and the header says so") {
+  Diagram d{"just modes"};
+  ground(d.add("z", SpringMass{.mass = 1, .stiffness = 4}));
+  const System system = compile(d);
+  const CppModel model = generate_cpp(system, {.name = "z", .sample_time = 0.1});
+  CHECK(model.header.find("Its accuracy was not measured") != std::string::npos);
+  CHECK(model.header.find("0.0e+00") == std::string::npos);
+  CHECK(refused(system, {.name = "z", .states = CppStates::modes}, "cannot be measured"));
+}
+
 TEST_CASE("what cannot be a name or a time is refused, all together") {
   const System system = five_masses();
-  for (const char* name : {"", "a b", "1a", "int", "_a", "a__b", "a-b"})
+  for (const char* name :
+       {"", "a b", "1a", "int", "_a", "a__b", "a-b", "NULL", "NAN", "EOF", "errno", "sin", "sinf",
+        "sinl", "link", "index", "signal", "size_t", "doctest"})
     CHECK(refused(system, {.name = name}, "cannot be the name of generated code"));
   CHECK(refused(system, {.name = "x", .sample_time = -1}, "a sample time of -1 s"));
   try {
     generate_cpp(system, {.name = "if", .sample_time = HUGE_VAL});
+    FAIL("not refused");
   } catch (const Error& error) {
     CHECK(error.mistakes().size() == 2);
   }

@@ -124,6 +124,30 @@ TEST_CASE("generated models compile without warnings and pass their own test") {
   }
 }
 
+TEST_CASE("names that the test's own or the C library's might meet") {
+  Diagram d{"names"};
+  auto body = d.add("body", SpringMass{.mass = 2, .stiffness = 3});
+  ground(body);
+  for (const char* name : {"NULL", "NAN", "EOF", "errno", "sin", "link", "index", "signal", "A"})
+    body.child.force += d.input(name);
+  d.output("stdout") = body.stretch;
+  const System system = compile(d);
+  for (const std::string& compiler : compilers()) {
+    INFO(compiler);
+    const Workshop shop(compiler);
+    for (const char* name : {"A", "poles"}) {
+      INFO(name);
+      CHECK(shop.proves(generate_cpp(system, {.name = name, .sample_time = 0.1})) == "");
+    }
+    // Behind whatever a program includes.
+    shop.folder.write("behind.cpp",
+                      "#include <cerrno>\n#include <cmath>\n#include <csignal>\n#include <cstdio>\n"
+                      "#include <strings.h>\n#include <unistd.h>\n#include \"poles.hpp\"\n"
+                      "static_assert(poles::in::errno_ == 3 && poles::in::sin == 4);\n");
+    CHECK(shop.folder.run(compiler + " -std=c++17 -c behind.cpp") == 0);
+  }
+}
+
 TEST_CASE("a generated test is a program of its own") {
   const auto available = compilers();
   if (available.empty()) return;

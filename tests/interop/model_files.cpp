@@ -163,8 +163,9 @@ np.array([[float(x) for x in line] for line in lines[1:]]).tofile("response")
 TEST_CASE("names that other programs cannot take are refused") {
   const StateSpace& m = model().state_space();
   const Folder folder;
-  for (const char* name : {"a b.m", "1a.m", "model.txt"})
+  for (const char* name : {"a b.m", "1a.m", "model.txt", "while.m", "end.m"})
     CHECK_THROWS_AS(write_matlab(m, folder.path / name), Error);
-  CHECK_THROWS_AS(write_numpy(m, folder.path, "a-b"), Error);
+  for (const char* name : {"a-b", "lambda", "numpy", "pathlib"})
+    CHECK_THROWS_AS(write_numpy(m, folder.path, name), Error);
   CHECK_THROWS_AS(write_numpy(m, folder.path / "none", "a"), Error);
 }

@@ -19,6 +19,11 @@ struct Form {
   double static_error = 0, step_error = 0;  ///< of its static gain, of its trajectory
 };
 
+/// A model, or a check of it, that is off by more is not worth flying: tolerances are 1e-6 at most,
+/// and another machine may round a little worse.
+constexpr double kProvable = 3e-7;
+inline bool is_provable(double error) { return error <= kProvable; }
+
 /// Where transfers are compared, and what they are by the factored system.
 struct Points {
   std::vector<std::complex<double>> s;

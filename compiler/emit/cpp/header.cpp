@@ -168,8 +168,7 @@ const char* const kHeader = R"(// Written by titop from the diagram @DIAGRAM@; d
 // @SIZES@
 // State: @COORDINATES@
 // Multiplications: @COST@
-// Transfer within @ERROR@ of the diagram's own equations at the points of @NAME@_test.cpp
-// (worst entry over the largest of its row and column).@STEP_ERROR@
+// @ERROR@
 #pragma once
 
 #include <array>
@@ -205,6 +204,19 @@ namespace detail {
 @OUTPUT@@STEP@@MODES@
 }  // namespace @NAME@
 )";
+
+/// What was measured, as the header's comment.
+std::string errors(const Naming& names, const Form& form) {
+  if (names.inputs.empty() || names.outputs.empty())
+    return "Its accuracy was not measured: there are no inputs or no outputs.";
+  std::string text = fmt::format(
+      "Transfer within {:.1e} of the diagram's own equations at the points of {}_test.cpp\n"
+      "// (worst entry over the largest of its row and column).",
+      form.error, names.name);
+  if (names.sample_time > 0)
+    text += fmt::format("\n// Trajectory by step within {:.1e} of long double's.", form.step_error);
+  return text;
+}
 
 std::string step_function(const Naming& names, const Form& form) {
   if (names.sample_time == 0) return {};
@@ -275,11 +287,7 @@ std::string header_text(const Naming& names, const Form& form) {
                                     "model's own."
                                   : "the model's own, by name."},
        {"COST", cost(form)},
-       {"ERROR", fmt::format("{:.1e}", form.error)},
-       {"STEP_ERROR", names.sample_time == 0
-                          ? ""
-                          : fmt::format("\n// Trajectory by step within {:.1e} of long double's.",
-                                        form.step_error)},
+       {"ERROR", errors(names, form)},
        {"NAME", names.name},
        {"N", std::to_string(names.states.size())},
        {"NU", std::to_string(names.inputs.size())},

@@ -6,6 +6,8 @@ namespace titop::emit {
 inline constexpr const char* kHead = R"(// Written by titop from the diagram @DIAGRAM@; do not edit.
 // Proves @NAME@.hpp: its matrices are recovered by calling it, and compared with numbers that do not
 // come from them. A program by itself; with TITOP_TEST_WITHOUT_MAIN part of another.
+#include "@NAME@.hpp"
+
 #ifndef TITOP_TEST_WITHOUT_MAIN
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #endif
@@ -18,7 +20,10 @@ inline constexpr const char* kHead = R"(// Written by titop from the diagram @DI
 #include <utility>
 #include <vector>
 
-#include "@NAME@.hpp"
+// Of its own, so that no name here meets the model's.
+namespace @NAME@_proof {
+
+namespace model = ::@NAME@;
 
 namespace {
 
@@ -39,10 +44,10 @@ Columns columns(Function f) {
   return result;
 }
 
-const Columns A = columns<@NAME@::State>([](auto& x) { return @NAME@::derivative(x, {}); });
-const Columns B = columns<@NAME@::Input>([](auto& u) { return @NAME@::derivative({}, u); });
-const Columns C = columns<@NAME@::State>([](auto& x) { return @NAME@::output(x, {}); });
-const Columns D = columns<@NAME@::Input>([](auto& u) { return @NAME@::output({}, u); });
+const Columns A = columns<model::State>([](auto& x) { return model::derivative(x, {}); });
+const Columns B = columns<model::Input>([](auto& u) { return model::derivative({}, u); });
+const Columns C = columns<model::State>([](auto& x) { return model::output(x, {}); });
+const Columns D = columns<model::Input>([](auto& u) { return model::output({}, u); });
 
 /// s - A, factored with partial pivoting on scaled rows.
 class Resolvent {
@@ -97,7 +102,7 @@ class Resolvent {
 TEST_CASE("@NAME@: size") {
   CHECK(A.size() == @N@);
   CHECK(B.size() == @NU@);
-  CHECK(@NAME@::output({}, {}).size() == @NY@);
+  CHECK(model::output({}, {}).size() == @NY@);
 }
 )";
 
@@ -224,8 +229,8 @@ inline constexpr const char* kTrajectory = R"(
 namespace {
 
 /// Numbers from -1 to 1 without rounding.
-@NAME@::Input input_at(std::size_t k) {
-  @NAME@::Input u{};
+model::Input input_at(std::size_t k) {
+  model::Input u{};
   std::size_t j = 0;
   for (double& entry : u)
     entry = (static_cast<double>((7 * k * k + 37 * k + 101 * j++) % 17) - 8) / 8;
@@ -233,7 +238,7 @@ namespace {
 }
 
 /// Largest |C| |x| + |D| |u| of each output so far.
-void grow(std::vector<double>& size, const @NAME@::State& x, const @NAME@::Input& u) {
+void grow(std::vector<double>& size, const model::State& x, const model::Input& u) {
   for (std::size_t i = 0; i < size.size(); ++i) {
     double terms = 0;
     for (std::size_t k = 0; k < C.size(); ++k) terms += std::abs(C[k][i] * x[k]);
@@ -248,18 +253,18 @@ void grow(std::vector<double>& size, const @NAME@::State& x, const @NAME@::Input
 TEST_CASE("@NAME@: trajectory") {
   static const double expected[][@NY@] = @VALUES@;
   std::vector<double> off(@NY@), size(@NY@);
-  @NAME@::State x{};
+  model::State x{};
   for (std::size_t k = 0; k < @STEPS@; ++k) {
-    const @NAME@::Input u = input_at(k);
-    const @NAME@::Output y = @NAME@::output(x, u);
+    const model::Input u = input_at(k);
+    const model::Output y = model::output(x, u);
     for (std::size_t i = 0; i < off.size(); ++i)
       off[i] = std::max(off[i], std::abs(y[i] - expected[k][i]));
     grow(size, x, u);
-    x = @NAME@::step(x, u);
+    x = model::step(x, u);
   }
   for (std::size_t i = 0; i < off.size(); ++i) {
     if (contains(silent_outputs, i)) continue;
-    INFO(@NAME@::output_names[i]);
+    INFO(model::output_names[i]);
     CHECK(off[i] <= @TOLERANCE@ * size[i]);
   }
 }
@@ -269,32 +274,36 @@ inline constexpr const char* kTaylor = R"(
 // exp(A h) x + integral: @SUBSTEPS@ parts of each step, 24 terms of Taylor's series each.
 TEST_CASE("@NAME@: step against derivative") {
   std::vector<double> off(@NY@), size(@NY@);
-  @NAME@::State x{};
+  model::State x{};
   for (std::size_t k = 0; k < 3; ++k) {
-    const @NAME@::Input u = input_at(k);
-    @NAME@::State series = x;
+    const model::Input u = input_at(k);
+    model::State series = x;
     for (int part = 0; part < @SUBSTEPS@; ++part) {
-      @NAME@::State term = @NAME@::derivative(series, u);
+      model::State term = model::derivative(series, u);
       for (int power = 1; power <= 24; ++power) {
         for (std::size_t i = 0; i < term.size(); ++i) {
-          term[i] *= @NAME@::sample_time / @SUBSTEPS@ / power;
+          term[i] *= model::sample_time / @SUBSTEPS@ / power;
           series[i] += term[i];
         }
-        term = @NAME@::derivative(term, {});
+        term = model::derivative(term, {});
       }
     }
-    x = @NAME@::step(x, u);
-    const @NAME@::Output y = @NAME@::output(x, {}), by_series = @NAME@::output(series, {});
+    x = model::step(x, u);
+    const model::Output y = model::output(x, {}), by_series = model::output(series, {});
     for (std::size_t i = 0; i < off.size(); ++i)
       off[i] = std::max(off[i], std::abs(y[i] - by_series[i]));
     grow(size, x, {});
   }
   for (std::size_t i = 0; i < off.size(); ++i) {
     if (contains(silent_outputs, i)) continue;
-    INFO(@NAME@::output_names[i]);
+    INFO(model::output_names[i]);
     CHECK(off[i] <= 1e-8 * size[i]);
   }
 }
+)";
+
+inline constexpr const char* kEnd = R"(
+}  // namespace @NAME@_proof
 )";
 
 }  // namespace titop::emit

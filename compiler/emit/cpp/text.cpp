@@ -1,54 +1,26 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
+#include <cmath>
 #include <set>
 #include <stdexcept>
 #include <titop/compiler/emit/cpp/text.hpp>
+#include <titop/compiler/emit/identifier.hpp>
+#include <titop/graph/error.hpp>
 
 namespace titop::emit {
 
 namespace {
-
-constexpr std::array kKeywords = {"alignas",       "alignof",     "and",
-                                  "and_eq",        "asm",         "auto",
-                                  "bitand",        "bitor",       "bool",
-                                  "break",         "case",        "catch",
-                                  "char",          "char16_t",    "char32_t",
-                                  "char8_t",       "class",       "co_await",
-                                  "co_return",     "co_yield",    "compl",
-                                  "concept",       "const",       "const_cast",
-                                  "consteval",     "constinit",   "constexpr",
-                                  "continue",      "decltype",    "default",
-                                  "delete",        "do",          "double",
-                                  "dynamic_cast",  "else",        "enum",
-                                  "explicit",      "export",      "extern",
-                                  "false",         "float",       "for",
-                                  "friend",        "goto",        "if",
-                                  "inline",        "int",         "long",
-                                  "mutable",       "namespace",   "new",
-                                  "noexcept",      "not",         "not_eq",
-                                  "nullptr",       "operator",    "or",
-                                  "or_eq",         "private",     "protected",
-                                  "public",        "register",    "reinterpret_cast",
-                                  "requires",      "return",      "short",
-                                  "signed",        "sizeof",      "static",
-                                  "static_assert", "static_cast", "struct",
-                                  "switch",        "template",    "this",
-                                  "thread_local",  "throw",       "true",
-                                  "try",           "typedef",     "typeid",
-                                  "typename",      "union",       "unsigned",
-                                  "using",         "virtual",     "void",
-                                  "volatile",      "wchar_t",     "while",
-                                  "xor",           "xor_eq",      "std",
-                                  "main",          "linux",       "unix"};
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
 }  // namespace
 
 std::string number(double x) {
+  if (!std::isfinite(x))
+    throw Error(Code::not_finite, fmt::format("generated code would contain the number {}", x),
+                "scale what is far apart: a value of the model overflows");
   std::string text = fmt::format("{}", x);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text;
@@ -70,13 +42,6 @@ std::string quoted(std::string_view text) {
     }
   }
   return result + "\"";
-}
-
-bool is_identifier(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), is_word) &&
-         !std::isdigit(static_cast<unsigned char>(text[0])) && text[0] != '_' &&
-         text.find("__") == std::string_view::npos &&
-         std::find(kKeywords.begin(), kKeywords.end(), text) == kKeywords.end();
 }
 
 std::vector<std::string> identifiers(const std::vector<std::string>& names) {
