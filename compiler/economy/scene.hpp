@@ -22,8 +22,11 @@ enum class BoundKind {
 /// since an undamped peak has no finite height; there a mode looks as it would with damping zeta
 /// more.
 struct Scene {
-  std::vector<std::string> inputs = {};    ///< "W", or one of its scalars, "W(3)"; empty: all
-  std::vector<std::string> outputs = {};   ///< likewise
+  /// "W", or one of its scalars, "W(3)"; empty: all. The order is the diagram's, whatever the order
+  /// here. Inputs that are left out are held at 0: an acceleration that is prescribed by one locks
+  /// its point or its joint.
+  std::vector<std::string> inputs = {};
+  std::vector<std::string> outputs = {};   ///< likewise, in the diagram's order
   std::array<double, 2> band_hz = {0, 0};  ///< lower and upper end [Hz]; {0, 0}: static gain only
   double accuracy = 1e-3;                  ///< largest error of any pair, between 1e-12 and 1
   double damping_floor = 0.002;            ///< zeta, between 1e-6 and 0.5
