@@ -74,7 +74,7 @@ class Economy {
   ReducedSystem reach(double accuracy) {
     const double start = now();
     const std::size_t step = first_within(accuracy);
-    ReducedData d{full_, sequence_->model(step), bounds_.at(step), steps_, {}, {}, seconds_};
+    ReducedData d{full_, sequence_->model(step), bounds_.at(step), steps_, {}, seconds_};
     d.steps.push_back({"whole", static_cast<int>(whole_.order()), static_cast<int>(d.small.order()),
                        d.bound.worst,
                        "modes of the band, and static-like vectors of those above it"});

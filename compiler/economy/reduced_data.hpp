@@ -12,7 +12,6 @@ struct ReducedData {
   ErrorBound bound;
   std::vector<EconomyStep> steps;
   std::vector<KeptMode> modes;
-  std::vector<std::string> warnings;
   std::vector<std::pair<std::string, double>> seconds;
 };
 

@@ -11,7 +11,6 @@ const System& ReducedSystem::full() const { return data_->full; }
 const ErrorBound& ReducedSystem::bound() const { return data_->bound; }
 const std::vector<EconomyStep>& ReducedSystem::steps() const { return data_->steps; }
 const std::vector<KeptMode>& ReducedSystem::modes() const { return data_->modes; }
-const std::vector<std::string>& ReducedSystem::warnings() const { return data_->warnings; }
 
 Eigen::MatrixXcd ReducedSystem::transfer(std::complex<double> s) const {
   return data_->small.transfer(s);
@@ -35,7 +34,6 @@ std::string to_string(const ReducedSystem& system) {
       "  bound     {:.1e}{}, {} of {} transfers\n", b.worst,
       b.input.empty() ? "" : fmt::format(" from {} to {} at {:.4g} Hz", b.input, b.output, b.hertz),
       b.kind == BoundKind::theorem ? "a theorem" : "an estimate", b.samples);
-  for (const std::string& w : system.warnings()) text += fmt::format("  warning   {}\n", w);
   for (std::size_t k = 0; k < system.modes().size(); ++k) {
     const KeptMode& m = system.modes()[k];
     std::string blocks;

@@ -82,8 +82,6 @@ class ReducedSystem {
   const ErrorBound& bound() const;
   const std::vector<EconomyStep>& steps() const;
   const std::vector<KeptMode>& modes() const;
-  /// Where data end inside the band or just above it, and other doubts.
-  const std::vector<std::string>& warnings() const;
   /// Seconds per step, as text: not part of to_string, which is the same on every machine.
   std::string timings() const;
 
