@@ -132,7 +132,7 @@ class Plain {
     system_ = System(data);
     whole_ = detail::whole(system_, detail::coordinates(system_, *data),
                            detail::positions_read(d.graph()));
-    const detail::Band band = detail::band_of(scene, whole_);
+    const detail::Band band = detail::band_of(system_, scene, whole_);
     detail::sharpen(whole_, system_, 1.2 * band.high);
     samples_ =
         detail::sample(system_, scene, whole_, detail::sample_points(scene, band, whole_, {}, 2));

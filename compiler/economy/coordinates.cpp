@@ -290,7 +290,7 @@ std::vector<Index> elastic_first(const MatrixXd& A_total, Index& n_elastic) {
 Coordinates coordinates(const System& system, const SystemData& data) {
   Coordinates c;
   const Raw raw = read(system, data);
-  c.is_silent.assign(at(raw.m.C.rows()), 0);
+  c.silent = MatrixXd::Zero(raw.m.C.rows(), 2);
   if (raw.all() == 0) {
     c.B.resize(0, raw.m.B.cols());
     c.C_q.resize(raw.m.C.rows(), 0);

@@ -16,15 +16,17 @@ struct Coordinates {
   std::vector<int> nodes;          ///< of the graph
   std::vector<int> position, rate;  ///< places among the system's states; position -1: none
   Eigen::Index n_elastic = 0;
-  Eigen::MatrixXd G;                ///< n_elastic x n_elastic, symmetric positive definite
-  Eigen::MatrixXd K;                ///< the same size, symmetric positive definite
-  Eigen::MatrixXd D;                ///< the same, semidefinite; 0 x 0: undamped
-  bool diagonal = true;             ///< K is diagonal: no chain is closed
-  Eigen::MatrixXd A_loose;          ///< qdd of the loose ones from q of the elastic ones
-  Eigen::MatrixXd B;                ///< n x inputs
-  Eigen::MatrixXd C_q, C_v;         ///< outputs x n
-  Eigen::MatrixXd direct;           ///< outputs x inputs
-  std::vector<char> is_silent;      ///< per output: 0 by symmetry (join_twins)
+  Eigen::MatrixXd G;         ///< n_elastic x n_elastic, symmetric positive definite
+  Eigen::MatrixXd K;         ///< the same size, symmetric positive definite
+  Eigen::MatrixXd D;         ///< the same, semidefinite; 0 x 0: undamped
+  bool diagonal = true;      ///< K is diagonal: no chain is closed
+  Eigen::MatrixXd A_loose;   ///< qdd of the loose ones from q of the elastic ones
+  Eigen::MatrixXd B;         ///< n x inputs
+  Eigen::MatrixXd C_q, C_v;  ///< outputs x n
+  Eigen::MatrixXd direct;    ///< outputs x inputs
+  /// Outputs x 2: for those whose motions go by symmetry (join_twins) what they read of positions
+  /// and rates before, as root mean square over coordinates of stiffness 1; 0 for the others.
+  Eigen::MatrixXd silent;
   std::vector<std::string> blocks;  ///< that have coordinates
   Eigen::MatrixXd shares;           ///< blocks x n_elastic: whose a coordinate is, of sum 1
   Eigen::Index size() const { return static_cast<Eigen::Index>(names.size()); }

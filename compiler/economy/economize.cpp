@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <titop/compiler/compile_graph.hpp>
 #include <titop/compiler/economy/ray.hpp>
 #include <titop/compiler/economy/reduced_data.hpp>
@@ -60,8 +61,9 @@ class Economy {
                     "raise it (the cost grows with its cube), or give bodies fewer modes and "
                     "residual vectors at the points that carry load (fe::ModeOptions)");
       whole_ = detail::whole(full_, c, detail::positions_read(graph));
-      band_ = detail::band_of(scene, whole_);
+      band_ = detail::band_of(full_, scene, whole_);
       detail::sharpen(whole_, full_, 1.2 * band_.high);
+      if (scene.bound == BoundKind::theorem) detail::couple(whole_);
     });
     timed("samples", [&] {
       samples_ = detail::sample(full_, scene, whole_,
@@ -70,13 +72,25 @@ class Economy {
     sequence_ = std::make_unique<detail::Sequence>(whole_, samples_, band_.high);
   }
 
+  Economy(const Economy&) = delete;  // the sequence refers to what is here
+  Economy& operator=(const Economy&) = delete;
+
   /// The first model of the sequence whose bound is at most this.
   ReducedSystem reach(double accuracy) {
+    std::optional<ReducedSystem> system = try_reach(accuracy);
+    if (!system) refuse(accuracy);
+    return *std::move(system);
+  }
+
+  /// The same; none if rounding ends first.
+  std::optional<ReducedSystem> try_reach(double accuracy) {
     const double start = now();
-    const std::size_t step = first_within(accuracy);
+    const std::optional<std::size_t> found = first_within(accuracy);
+    if (!found) return std::nullopt;
+    const std::size_t step = *found;
     ReducedData d{full_, sequence_->model(step), bounds_.at(step), steps_, {}, seconds_};
-    d.steps.push_back({"whole", static_cast<int>(whole_.order()), static_cast<int>(d.small.order()),
-                       d.bound.worst,
+    d.steps.push_back({"whole", static_cast<int>(whole_.order() + whole_.far),
+                       static_cast<int>(d.small.order()), d.bound.worst,
                        "modes of the band, and static-like vectors of those above it"});
     d.modes = modes(d.small);
     d.seconds.emplace_back("reduce", now() - start);
@@ -109,11 +123,11 @@ class Economy {
   }
 
   /// The bound costs more than the error on the samples, which goes first.
-  std::size_t first_within(double accuracy) {
+  std::optional<std::size_t> first_within(double accuracy) {
     const double target = accuracy * std::cos(kPhase / 2);
     for (std::size_t k = 0; true; ++k) {
       const auto& steps = sequence_->steps();
-      if (k == steps.size() && !sequence_->grow()) refuse(accuracy);
+      if (k == steps.size() && !sequence_->grow()) return std::nullopt;
       if (steps[k].error <= target && bound_of(k).worst <= accuracy) return k;
     }
   }
@@ -131,23 +145,40 @@ class Economy {
                     accuracy, b.worst, sequence_->model(best).order(), b.input, b.output, b.hertz),
         fmt::format("ask for {:.0e}, or use compile(diagram): rounding in the modes of the "
                     "whole ends there",
-                    2 * b.worst));
+                    2 * b.worst),
+        {fmt::format("most of what is missing moves in {}", where_missing(best, b))});
+  }
+
+  /// The block with the largest part of the elastic energy of what the model leaves out there.
+  std::string where_missing(std::size_t step, const ErrorBound& b) const {
+    const Small small = sequence_->model(step);
+    const std::complex<double> s = detail::on_ray(scene_, 2 * pi * b.hertz);
+    const auto& names = full_.inputs();
+    const Index m = std::find(names.begin(), names.end(), b.input) - names.begin();
+    Eigen::VectorXcd left = -(small.V * small.response(s, m));
+    for (Index j = 0; j < whole_.elastic(); ++j)
+      left(j) += whole_.b(j, m) / (s * (s + whole_.damping(j)) + whole_.lambda(j));
+    Index block = 0;
+    const Eigen::MatrixXd parts = detail::participation(whole_, left.real());
+    if (whole_.blocks.empty()) return "no block";
+    const double share = parts.col(0).maxCoeff(&block);
+    return fmt::format("{} ({:.0f} %)", whole_.blocks[at(block)], 100 * share);
   }
 
   ErrorBound bound(const Small& small) const {
     const auto points = detail::sample_points(scene_, band_, whole_, small.poles(), kPhase);
     const detail::Samples check = detail::sample(full_, scene_, whole_, points);
     ErrorBound b;
-    b.kind = !whole_.proportional ? BoundKind::estimate : scene_.bound;
+    b.kind = scene_.bound;
     b.samples = static_cast<int>(points.size() + samples_.s.size());
     b.pairs = Eigen::MatrixXd::Zero(check.peak.rows(), check.peak.cols());
     double worst = -1;
     for (std::size_t k = 0; k < check.s.size(); ++k) {
       const Eigen::MatrixXd e =
-          (check.H[k] - small.transfer(check.s[k])).cwiseAbs().cwiseQuotient(check.peak);
+          detail::difference(check, small, k).cwiseAbs().cwiseQuotient(check.peak);
       b.pairs = b.pairs.cwiseMax(e);
       Index i = 0, j = 0;
-      if (const double here = e.maxCoeff(&i, &j); here > worst) {
+      if (const double here = e.maxCoeff(&i, &j); !(here <= worst)) {
         worst = here;
         b.output = full_.outputs()[at(i)];
         b.input = full_.inputs()[at(j)];
@@ -162,7 +193,7 @@ class Economy {
 
   std::vector<KeptMode> modes(const Small& m) const {
     std::vector<KeptMode> result;
-    const Eigen::MatrixXd shares = whole_.shares * m.V.cwiseAbs2();
+    const Eigen::MatrixXd shares = detail::participation(whole_, m.V);
     for (Index j = 0; j < m.order(); ++j) {
       KeptMode mode;
       const double omega = std::sqrt(m.k(j));
@@ -191,7 +222,7 @@ class Economy {
 };
 
 /// Seconds of one transfer, over enough of them to be told from the clock's own step.
-double seconds_of(const ModalModel& m, double omega) {
+double seconds_of(const ReducedSystem& m, double omega) {
   constexpr int count = 200;
   const double start = now();
   double sum = 0;
@@ -207,18 +238,22 @@ ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options&
 
 std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
                             std::span<const double> accuracies, const Options& options) {
-  Economy economy(diagram, scene, options);
-  std::vector<WhatIf> result;
-  for (const double accuracy : accuracies) {
+  std::vector<Mistake> mistakes;
+  for (Scene one = scene; const double accuracy : accuracies) {
+    one.accuracy = accuracy;
     try {
-      const ReducedSystem system = economy.reach(accuracy);
-      result.push_back({accuracy, system.order(), system.bound().worst,
-                        seconds_of(system.modal(), 2 * pi * std::max(1e-3, scene.band_hz[1])),
-                        system});
+      detail::check(one);
     } catch (const Error& error) {
-      if (!error.has(Code::bad_value)) throw;
+      mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
     }
   }
+  if (!mistakes.empty()) throw Error(std::move(mistakes));
+  Economy economy(diagram, scene, options);
+  std::vector<WhatIf> result;
+  for (const double accuracy : accuracies)
+    if (const auto system = economy.try_reach(accuracy))
+      result.push_back({accuracy, system->order(), system->bound().worst,
+                        seconds_of(*system, 2 * pi * std::max(1e-3, scene.band_hz[1])), *system});
   return result;
 }
 

@@ -56,6 +56,13 @@ struct RealModes {
 
 RealModes real_modes(const MatrixXd& A) {
   const linalg::Eigensystem e = linalg::eigensystem(A);
+  if (!(e.rcond_V > detail::kDefective))
+    throw Error(
+        Code::singular,
+        fmt::format("the reduced system's damped modes are too close to defective for blocks "
+                    "of 2 x 2: eigenvectors of reciprocal condition {:.1e}",
+                    e.rcond_V),
+        "take second_order() or state_space(), which need no eigenvectors");
   RealModes m{MatrixXd(A.rows(), A.cols()), {}};
   std::vector<Index> real;
   Index column = 0;

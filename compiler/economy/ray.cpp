@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -14,8 +16,9 @@ using Eigen::MatrixXd;
 
 constexpr int kFar = 10;  ///< poles in s^2 that stand for all beyond twice the band
 
-/// Poles of the whole; exact where its modes do not couple.
+/// Poles of the whole; where its modes couple and `couple` was not called: without that.
 std::vector<Complex> poles_of(const Whole& w) {
+  if (!w.poles.empty()) return w.poles;
   std::vector<Complex> result;
   for (Index j = 0; j < w.order(); ++j) {
     const double half = w.damping(j) / 2;
@@ -42,22 +45,52 @@ std::vector<Complex> merged(std::vector<Complex> poles, const std::vector<Comple
 MatrixXd alike(const Whole& w, Complex s) {
   MatrixXd out = MatrixXd::Zero(w.ca.rows(), 1), in = MatrixXd::Zero(1, w.b.cols());
   for (Index j = 0; j < w.order(); ++j) {
+    if (w.lambda(j) == 0 && s == 0.0) continue;
     const double weight = 1 / std::abs(s * (s + w.damping(j)) + w.lambda(j));
     for (Index i = 0; i < out.size(); ++i)
       out(i) += weight * std::norm(s * (s * w.ca(i, j) + w.cv(i, j)) + w.cq(i, j));
+    // What symmetry silences: as it was read of the motions that have gone, with its static part.
+    for (Index i = 0; i < out.size(); ++i)
+      out(i) += weight * w.lambda(j) * std::norm(w.silent(i, 0) + s * w.silent(i, 1));
     for (Index m = 0; m < in.size(); ++m) in(m) += weight * w.b(j, m) * w.b(j, m);
   }
   return out.cwiseSqrt() * in.cwiseSqrt();
 }
 
+/// A band from 0 has no place for outputs that grow without end there.
+void refuse_integrals(const System& system, const Whole& w) {
+  for (Index j = w.elastic(); j < w.order(); ++j) {
+    Index m = 0;
+    if (w.b.row(j).cwiseAbs().maxCoeff(&m) == 0) continue;
+    for (Index i = 0; i < w.ca.rows(); ++i)
+      if (w.cq(i, j) != 0 || w.cv(i, j) != 0)
+        throw Error(Code::bad_value,
+                    fmt::format("{} reads the {} of a motion without stiffness that {} drives: it "
+                                "has no gain at 0 Hz, where the scene's band starts",
+                                system.outputs()[static_cast<std::size_t>(i)],
+                                w.cq(i, j) != 0 ? "position" : "rate",
+                                system.inputs()[static_cast<std::size_t>(m)]),
+                    "start Scene::band_hz above 0, read an acceleration instead, or leave this "
+                    "output out");
+  }
+}
+
+/// At 0 also where blocks integrate what the system does not.
+Eigen::MatrixXcd transfer(const System& system, Complex s) {
+  return s == 0.0 ? system.static_gain().cast<Complex>() : system.transfer(s);
+}
+
 }  // namespace
 
-Band band_of(const Scene& scene, const Whole& w) {
-  const double low = 2 * std::numbers::pi * scene.band_hz[0],
-               high = 2 * std::numbers::pi * scene.band_hz[1];
-  if (high > 0) return {std::max(low, 1e-4 * high), high};
-  const double first = w.elastic() > 0 ? std::sqrt(w.lambda(0)) : 1;  // static gain only
-  return {1e-6 * first, 1e-6 * first};
+Band band_of(const System& system, const Scene& scene, const Whole& w) {
+  Band band{2 * std::numbers::pi * scene.band_hz[0], 2 * std::numbers::pi * scene.band_hz[1], 0};
+  if (band.low > 0 || w.loose == 0) return band;
+  refuse_integrals(system, w);
+  double first = band.high > 0 ? band.high : 1;
+  for (const Complex& p : poles_of(w))
+    if (p != 0.0 && std::abs(p) < first) first = std::abs(p);
+  band.start = 1e-6 * first;
+  return band;
 }
 
 Complex on_ray(const Scene& scene, double omega) {
@@ -67,14 +100,16 @@ Complex on_ray(const Scene& scene, double omega) {
 
 std::vector<double> sample_points(const Scene& scene, const Band& band, const Whole& w,
                                   const std::vector<Complex>& small, double step) {
-  if (!(band.high > band.low)) return {band.low};
+  if (!(band.high > band.low)) return {std::max(band.low, band.start)};
   const bool all = scene.bound == BoundKind::theorem;
   // Undamped and without rates everything is rational in s^2: half the poles.
   const bool squared = w.Z.size() == 0 && w.cv.isZero(0);
   const Complex turn = std::conj(on_ray(scene, 1));
-  PhaseBand grid{band.low, band.high, {}, all ? 0 : squared ? kFar : 2 * kFar};
+  const int far = all ? static_cast<int>(w.far) : kFar;
+  PhaseBand grid{band.low, band.high, {}, squared ? far : 2 * far};
   if (squared) grid.low *= grid.low, grid.high *= grid.high;
   for (const Complex& p : merged(poles_of(w), small)) {
+    if (p == 0.0) continue;  // motions without stiffness are in both models: no pole of the error
     if (!all && std::abs(p) > 2 * band.high) continue;
     for (const Complex& s : {p, std::conj(p)}) {
       const Complex x = s * turn;
@@ -83,8 +118,7 @@ std::vector<double> sample_points(const Scene& scene, const Band& band, const Wh
     }
   }
   std::vector<double> points = phase_grid(grid, step);
-  if (squared)
-    for (double& x : points) x = std::sqrt(x);
+  for (double& x : points) x = std::max(squared ? std::sqrt(x) : x, band.start);
   return points;
 }
 
@@ -95,11 +129,9 @@ Samples sample(const System& system, const Scene& scene, const Whole& w,
   result.H.resize(result.omega.size());
   for (const double omega_k : result.omega) result.s.push_back(on_ray(scene, omega_k));
   parallel(result.s.size(), 0,
-           [&] { return [&](std::size_t i) { result.H[i] = system.transfer(result.s[i]); }; });
+           [&] { return [&](std::size_t i) { result.H[i] = transfer(system, result.s[i]); }; });
   result.peak = MatrixXd::Zero(w.ca.rows(), w.b.cols());
   for (std::size_t k = 0; k < result.s.size(); ++k) {
-    for (Index i = 0; i < w.ca.rows(); ++i)
-      if (w.is_silent[static_cast<std::size_t>(i)]) result.H[k].row(i).setZero();
     result.peak = result.peak.cwiseMax(result.H[k].cwiseAbs());
     result.peak = result.peak.cwiseMax(1e-6 * alike(w, result.s[k]));
   }

@@ -6,20 +6,22 @@
 /// Sampling on the ray of a scene. For the compiler's own files only.
 namespace titop::detail {
 
-/// Ends of the band [rad/s]; a band from 0 starts at 1e-4 of its upper end, where everything is as
-/// at 0 and blocks with poles at 0 can be evaluated.
+/// Ends of the band [rad/s], as the scene has them. Beside motions without stiffness nothing can be
+/// evaluated at 0: samples below `start` are taken there, 1e-6 of the lowest frequency that is not
+/// 0, where errors are those at 0 to six digits (these motions are in both models).
 struct Band {
-  double low = 0, high = 0;
+  double low = 0, high = 0, start = 0;
 };
-Band band_of(const Scene& scene, const Whole& whole);
+/// Throws bad_value for a band from 0 where an output reads the position or the rate of a motion
+/// without stiffness that an input drives: there is no gain at 0.
+Band band_of(const System& system, const Scene& scene, const Whole& whole);
 
 /// Points of the band for the difference of two models with these poles [rad/s, of positive
 /// imaginary part for pairs], by the scene's kind of bound: phase steps of at most `step`.
 std::vector<double> sample_points(const Scene& scene, const Band& band, const Whole& whole,
                                   const std::vector<std::complex<double>>& small, double step);
 
-/// The factored system there, on all cores; outputs that symmetry silences are 0. O(points *
-/// bodies).
+/// The factored system there, on all cores. O(points * bodies).
 Samples sample(const System& system, const Scene& scene, const Whole& whole,
                std::vector<double> omega);
 

@@ -77,7 +77,9 @@ class ReducedSystem {
 
   StateSpace state_space() const;         ///< dense; states "mode1", "mode1_rate", ...
   SecondOrderModel second_order() const;  ///< the structure kept
-  ModalModel modal() const;               ///< 2 x 2 blocks. O(order^3) if damping couples modes
+  /// 2 x 2 blocks. O(order^3) if damping couples modes. Throws singular where these are too close
+  /// to defective (two of them critically damped alike, say); second_order() has them all.
+  ModalModel modal() const;
 
   const ErrorBound& bound() const;
   const std::vector<EconomyStep>& steps() const;
@@ -110,13 +112,14 @@ struct WhatIf {
   double accuracy = 0;  ///< asked for
   int order = 0;        ///< states
   double bound = 0;     ///< reached
-  double seconds = 0;   ///< of one transfer of the modal model, measured here
+  double seconds = 0;   ///< of one transfer of the reduced system, measured here
   ReducedSystem system;
 };
 
 /// The same question for several accuracies (Scene::accuracy is not used): one eigenproblem and one
 /// nested sequence for all, so that more accuracy never gives a smaller order. Those that cannot be
-/// met are left out. In the order given.
+/// met are left out. In the order given. Throws what `compile` throws, but for those; bad_value for
+/// accuracies out of range, all together.
 std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
                             std::span<const double> accuracies, const Options& options = {});
 

@@ -26,11 +26,15 @@ struct Scene {
   /// here. Inputs that are left out are held at 0: an acceleration that is prescribed by one locks
   /// its point or its joint.
   std::vector<std::string> inputs = {};
-  std::vector<std::string> outputs = {};   ///< likewise, in the diagram's order
-  std::array<double, 2> band_hz = {0, 0};  ///< lower and upper end [Hz]; {0, 0}: static gain only
-  double accuracy = 1e-3;                  ///< largest error of any pair, between 1e-12 and 1
-  double damping_floor = 0.002;            ///< zeta, between 1e-6 and 0.5
-  BoundKind bound = BoundKind::estimate;   ///< a theorem costs many times the samples
+  std::vector<std::string> outputs = {};  ///< likewise, in the diagram's order
+  /// Lower and upper end [Hz]; {0, 0}: static gain only. From 0 on only what has a gain there:
+  /// positions and rates of motions without stiffness (free bodies, free hinges) are refused.
+  std::array<double, 2> band_hz = {0, 0};
+  double accuracy = 1e-3;        ///< largest error of any pair, between 1e-12 and 1
+  double damping_floor = 0.002;  ///< zeta, between 1e-6 and 0.5
+  /// A theorem costs many times the samples, and where damping couples modes one eigenproblem of
+  /// O(8 n^3) for their poles.
+  BoundKind bound = BoundKind::estimate;
   /// Up to this many coordinates the whole is reduced, by one symmetric eigenproblem of O(n^3);
   /// more are refused.
   int whole_up_to = 2000;

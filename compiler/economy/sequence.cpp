@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <titop/compiler/economy/sequence.hpp>
 
 namespace titop::detail {
@@ -40,10 +43,21 @@ bool collocated(const Whole& w) {
 
 }  // namespace
 
+MatrixXcd difference(const Samples& full, const Small& small, std::size_t k) {
+  MatrixXcd d = full.H[k] - small.transfer(full.s[k]);
+  if (!d.allFinite())
+    throw Error(Code::not_finite,
+                fmt::format("the transfer that the scene asks for is not finite at {:.4g} Hz",
+                            full.omega[k] / (2 * std::numbers::pi)),
+                "numbers overflow there: look for stiffnesses and masses that are far too large or "
+                "too small, or take other units");
+  return d;
+}
+
 MatrixXd errors(const Samples& full, const Small& small) {
   MatrixXd worst = MatrixXd::Zero(full.peak.rows(), full.peak.cols());
   for (std::size_t k = 0; k < full.s.size(); ++k)
-    worst = worst.cwiseMax((full.H[k] - small.transfer(full.s[k])).cwiseAbs());
+    worst = worst.cwiseMax(difference(full, small, k).cwiseAbs());
   return worst.cwiseQuotient(full.peak);
 }
 
@@ -71,11 +85,11 @@ Sequence::Worst Sequence::evaluate() {
   error_.resize(samples_.s.size());
   Worst worst;
   for (std::size_t k = 0; k < samples_.s.size(); ++k) {
-    error_[k] = samples_.H[k] - model_.transfer(samples_.s[k]);
+    error_[k] = difference(samples_, model_, k);
     for (Index j = 0; j < error_[k].cols(); ++j)
       for (Index i = 0; i < error_[k].rows(); ++i)
         if (const double e = std::abs(error_[k](i, j)) / samples_.peak(i, j);
-            e > (1 + kTie) * worst.error)
+            !(e <= (1 + kTie) * worst.error))
           worst = {i, j, k, e};
   }
   return worst;

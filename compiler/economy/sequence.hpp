@@ -13,6 +13,9 @@ struct Samples {
   Eigen::MatrixXd peak;                 ///< outputs x inputs, with the floor of pairs that are 0
 };
 
+/// H - Hr on one sample. Throws not_finite, with the frequency, where either is not.
+Eigen::MatrixXcd difference(const Samples& full, const Small& small, std::size_t k);
+
 /// Largest |H - Hr| / peak over the samples, per pair.
 Eigen::MatrixXd errors(const Samples& full, const Small& small);
 
@@ -49,6 +52,7 @@ class Sequence {
   };
   Worst evaluate();
   bool stalled() const;
+
   bool extend(const Worst& worst);
   bool keep_one(const Worst& worst, double least);
   bool add_columns(const Worst& worst);

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <titop/compiler/economy/sharpen.hpp>
@@ -8,6 +9,8 @@ namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
+
+constexpr double kCluster = 2e-9;  ///< relative gap of lambda that counts as none
 
 /// The pair that sees a mode best, beside what else there is.
 struct Pair {
@@ -61,19 +64,32 @@ Pair best_pair(const Whole& w, Index j) {
   return best;
 }
 
+/// Distance of mode j to the nearest one that is not in its cluster, relative to lambda.
+double distance(const Eigen::VectorXd& lambda, Index elastic, Index j) {
+  double nearest = HUGE_VAL;
+  for (Index i = 0; i < elastic; ++i)
+    if (const double off = std::abs(lambda(i) - lambda(j)) / lambda(j); off > kCluster)
+      nearest = std::min(nearest, off);
+  return nearest;
+}
+
 }  // namespace
 
 void sharpen(Whole& w, const System& system, double high) {
   if (!w.proportional) return;
   Index count = 0;
   while (count < w.elastic() && w.lambda(count) <= high * high) ++count;
+  const Eigen::VectorXd before = w.lambda;
   parallel(static_cast<std::size_t>(count), 0, [&] {
     return [&](std::size_t i) {
       const auto j = static_cast<Index>(i);
-      const double d = w.damping(j), lambda = w.lambda(j);
+      const double d = w.damping(j), lambda = before(j);
       if (d * d >= lambda) return;
       const auto found = find_pole(system, best_pair(w, j), pole(lambda, d));
       if (!found) return;
+      // Farther than a third of the way to a neighbour it may be the neighbour's pole.
+      const double move = std::abs(std::norm(*found) - lambda) / lambda;
+      if (!(move <= distance(before, w.elastic(), j) / 3)) return;
       w.lambda(j) = std::norm(*found);
       if (w.Z.size() > 0) w.Z(j, j) = std::max(0.0, -2 * found->real());
     };

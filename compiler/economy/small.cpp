@@ -1,8 +1,10 @@
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <titop/compiler/economy/small.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
+#include <utility>
 
 namespace titop::detail {
 namespace {
@@ -35,7 +37,7 @@ void find_poles(Small& m) {
   A.bottomLeftCorner(rest, rest) = (-m.k.tail(rest)).asDiagonal();
   A.bottomRightCorner(rest, rest) = -m.Z.bottomRightCorner(rest, rest);
   const linalg::Eigensystem e = linalg::eigensystem(A);
-  if (!(e.rcond_V > 1e-5)) return;
+  if (!(e.rcond_V > kDefective)) return;
   const MatrixXd ca = m.ca.rightCols(rest), b = m.b.bottomRows(rest);
   MatrixXd C(ca.rows(), 2 * rest);
   C.leftCols(rest) = m.cq.rightCols(rest) - ca * m.k.tail(rest).asDiagonal();
@@ -94,7 +96,11 @@ std::vector<Complex> Small::poles() const {
   return result;
 }
 
-Small project(const Whole& w, const std::vector<Index>& kept, const MatrixXd& W) {
+Small project(const Whole& w, const std::vector<Index>& of_band, const MatrixXd& W) {
+  std::vector<Index> kept = of_band;
+  std::sort(kept.begin(), kept.end(), [&](Index i, Index j) {
+    return std::pair(w.lambda(i), i) < std::pair(w.lambda(j), j);
+  });
   Small m;
   const Index n = w.elastic(), own = w.loose + static_cast<Index>(kept.size());
   m.V = MatrixXd::Zero(w.order(), own + W.cols());
@@ -109,7 +115,7 @@ Small project(const Whole& w, const std::vector<Index>& kept, const MatrixXd& W)
     m.V.block(0, own, n, W.cols()) = W * modes.V;
     m.k.tail(W.cols()) = modes.lambda;
   }
-  m.own = w.proportional ? own : 0;
+  m.own = w.proportional ? own : w.loose;
   if (w.Z.size() > 0)
     m.Z = w.proportional ? MatrixXd(m.V.transpose() * w.Z.diagonal().asDiagonal() * m.V)
                          : MatrixXd(m.V.transpose() * w.Z * m.V);

@@ -5,10 +5,13 @@
 /// A small model in second order, as a projection of the whole. For the compiler's own files only.
 namespace titop::detail {
 
-/// q'' + Z q' + k q = b u, y = D0 u + ca q'' + cv q' + cq q. The first `own` coordinates are
-/// decoupled from all others.
+/// Reciprocal condition number of eigenvectors below which modes count as defective.
+constexpr double kDefective = 1e-5;
+
+/// q'' + Z q' + k q = b u, y = D0 u + ca q'' + cv q' + cq q. The first `own` coordinates,
+/// those without stiffness among them, are decoupled from all others.
 struct Small {
-  Eigen::VectorXd k;  ///< r, ascending; 0 for motions without stiffness, which come first
+  Eigen::VectorXd k;  ///< r, ascending; 0 for motions without stiffness
   Eigen::Index own = 0;
   Eigen::MatrixXd Z;           ///< r x r, or 0 x 0
   Eigen::MatrixXd b;           ///< r x inputs

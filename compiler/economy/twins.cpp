@@ -136,39 +136,48 @@ MatrixXd even(const VectorXd& sign, const std::vector<Index>& to, std::vector<In
   return S;
 }
 
-/// Outputs that read only what has gone: 0, not what rounding leaves of it.
-void silence(Coordinates& c, const MatrixXd& C_q, const MatrixXd& C_v) {
-  for (Index i = 0; i < C_q.rows(); ++i) {
-    const double before = C_q.row(i).norm(), rate = C_v.row(i).norm();
-    if (before + rate == 0 || c.C_q.row(i).norm() > kRounding * before ||
-        c.C_v.row(i).norm() > kRounding * rate)
-      continue;
+/// Root mean square of each row over coordinates scaled to stiffness 1.
+VectorXd row_sizes(const MatrixXd& C, const VectorXd& K) {
+  const MatrixXd scaled = C.leftCols(K.size()) * K.cwiseSqrt().cwiseInverse().asDiagonal();
+  return scaled.rowwise().norm() / std::sqrt(static_cast<double>(K.size()));
+}
+
+/// Outputs that read only what has gone: nothing of motions, not what rounding leaves of it. What
+/// they have of the inputs directly stays.
+void silence(Coordinates& c, const Coordinates& before) {
+  const VectorXd q = row_sizes(before.C_q, before.K.diagonal()),
+                 v = row_sizes(before.C_v, before.K.diagonal());
+  const VectorXd q_left = row_sizes(c.C_q, c.K.diagonal()),
+                 v_left = row_sizes(c.C_v, c.K.diagonal());
+  const Index loose = c.size() - c.n_elastic;
+  for (Index i = 0; i < q.size(); ++i) {
+    if (q(i) + v(i) == 0 || q_left(i) > kRounding * q(i) || v_left(i) > kRounding * v(i)) continue;
+    if (!c.C_q.row(i).tail(loose).isZero(0) || !c.C_v.row(i).tail(loose).isZero(0)) continue;
     c.C_q.row(i).setZero();
     c.C_v.row(i).setZero();
-    c.is_silent[at(i)] = 1;
+    c.silent.row(i) << q(i), v(i);
   }
 }
 
 void project(Coordinates& c, const MatrixXd& S, const std::vector<Index>& first) {
+  const Coordinates old = c;
   const Index n = c.n_elastic, loose = c.size() - n;
   const auto widened = [&](const MatrixXd& C) {
     MatrixXd result(C.rows(), S.cols() + loose);
     result << C.leftCols(n) * S, C.rightCols(loose);
     return result;
   };
-  c.G = (S.transpose() * c.G * S).eval();
-  c.K = MatrixXd((S.transpose() * c.K * S).diagonal().asDiagonal());
-  if (c.D.size() > 0) c.D = (S.transpose() * c.D * S).eval();
-  c.A_loose = (c.A_loose * S).eval();
-  c.B = widened(c.B.transpose()).transpose().eval();
-  const MatrixXd C_q = c.C_q, C_v = c.C_v;
-  c.C_q = widened(C_q);
-  c.C_v = widened(C_v);
-  silence(c, C_q, C_v);
-  c.shares = (c.shares * S.cwiseAbs2()).eval();
+  c.G = S.transpose() * old.G * S;
+  c.K = MatrixXd((S.transpose() * old.K * S).diagonal().asDiagonal());
+  if (c.D.size() > 0) c.D = S.transpose() * old.D * S;
+  c.A_loose = old.A_loose * S;
+  c.B = widened(old.B.transpose()).transpose();
+  c.C_q = widened(old.C_q);
+  c.C_v = widened(old.C_v);
+  c.shares = old.shares * S.cwiseAbs2();
+  c.n_elastic = S.cols();
   std::vector<Index> kept = first;
   for (Index i = n; i < n + loose; ++i) kept.push_back(i);
-  Coordinates old = c;
   c.names.clear(), c.nodes.clear(), c.position.clear(), c.rate.clear();
   for (const Index i : kept) {
     c.names.push_back(old.names[at(i)]);
@@ -176,7 +185,7 @@ void project(Coordinates& c, const MatrixXd& S, const std::vector<Index>& first)
     c.position.push_back(old.position[at(i)]);
     c.rate.push_back(old.rate[at(i)]);
   }
-  c.n_elastic = S.cols();
+  silence(c, old);
 }
 
 /// Tries one exchange; true if coordinates went.

@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <titop/compiler/economy/whole.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
@@ -13,13 +16,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kEqual = 1e-9;  ///< relative gap of frequencies that count as one
+constexpr double kSeen = 1e-12;  ///< of what a port sees of all modes: less is rounding
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Modes in coordinates scaled to stiffness 1: P y = mu K y with P = M scaled, largest mu first, so
 /// that the low modes keep their digits (design.md, economy: the inverse problem).
 struct Scaled {
-  VectorXd lambda;  ///< ascending
+  VectorXd lambda;  ///< ascending, without those that rounding hides
   MatrixXd y;       ///< y'Ky = 1, one mode per column
   MatrixXd K;       ///< scaled
   VectorXd d;       ///< sqrt of the diagonal of K
@@ -39,13 +43,23 @@ Scaled modes(const Coordinates& c) {
     s.K = inverse.asDiagonal() * c.K * inverse.asDiagonal();
     m = eigh(P, s.K);
   }
-  s.lambda = m.lambda.reverse().cwiseInverse();
-  s.y = m.V.rowwise().reverse();
+  const double least =
+      static_cast<double>(n) * std::numeric_limits<double>::epsilon() * m.lambda(n - 1);
+  Index count = 0;
+  while (count < n && m.lambda(n - 1 - count) > least) ++count;
+  if (count == 0)
+    throw Error(Code::not_finite, fmt::format("no mode of {} is finite", c.names.front()),
+                "look for stiffnesses and masses that are far too large or too small");
+  s.lambda = m.lambda.tail(count).reverse().cwiseInverse();
+  s.y = m.V.rightCols(count).rowwise().reverse();
   return s;
 }
 
 /// Turns modes of equal frequency among themselves so that each looks different from the ports.
 void turn_clusters(VectorXd& lambda, MatrixXd& phi, const MatrixXd& b, const MatrixXd& c) {
+  // What each port has of all modes; rounding is on that scale.
+  Eigen::RowVectorXd all(b.cols() + c.rows());
+  all << b.colwise().norm(), c.rowwise().norm().transpose();
   for (Index first = 0, last = 0; first < lambda.size(); first = last) {
     last = first + 1;
     while (last < lambda.size() && lambda(last) - lambda(last - 1) <= 2 * kEqual * lambda(last))
@@ -53,27 +67,15 @@ void turn_clusters(VectorXd& lambda, MatrixXd& phi, const MatrixXd& b, const Mat
     if (last - first < 2) continue;
     MatrixXd seen(last - first, b.cols() + c.rows());
     seen << b.middleRows(first, last - first), c.middleCols(first, last - first).transpose();
-    for (Index j = 0; j < seen.cols(); ++j)
-      if (const double size = seen.col(j).norm(); size > 0) seen.col(j) /= size;
+    for (Index j = 0; j < seen.cols(); ++j) {
+      // A port that sees nothing of the cluster but rounding has no say in how it turns.
+      const double size = seen.col(j).norm();
+      seen.col(j) *= size > kSeen * all(j) ? 1 / size : 0;
+    }
     const Eigen::JacobiSVD<MatrixXd> svd(seen, Eigen::ComputeFullU);
     phi.middleCols(first, last - first) *= svd.matrixU();
     lambda.segment(first, last - first).setConstant(lambda.segment(first, last - first).mean());
   }
-}
-
-/// Elastic energy by blocks; loose motions belong to their own block.
-MatrixXd shares(const Coordinates& c, const Scaled& s) {
-  const Index n = c.n_elastic;
-  MatrixXd result = MatrixXd::Zero(static_cast<Index>(c.blocks.size()), c.size());
-  if (n > 0) {
-    const MatrixXd Ky = c.diagonal ? s.y : MatrixXd(s.K * s.y);
-    result.leftCols(n) = c.shares * s.y.cwiseProduct(Ky).cwiseAbs();
-  }
-  for (Index j = 0; j < n; ++j) result.col(j) /= result.col(j).sum();
-  for (Index j = n; j < c.size(); ++j)
-    for (Index i = 0; i < result.rows(); ++i)
-      if (c.names[at(j)].starts_with(c.blocks[at(i)] + ".")) result(i, j) = 1;
-  return result;
 }
 
 /// What the transfer at one real s has beside the modes. Above the poles of a damped structure, and
@@ -102,53 +104,111 @@ bool is_diagonal(const MatrixXd& Z) {
   return true;
 }
 
+/// Block of every coordinate without stiffness, -1 if none has its name.
+std::vector<Index> owners(const Coordinates& c) {
+  std::vector<Index> result(at(c.size() - c.n_elastic), -1);
+  for (Index j = c.n_elastic; j < c.size(); ++j)
+    for (std::size_t i = 0; i < c.blocks.size(); ++i)
+      if (c.names[at(j)].starts_with(c.blocks[i] + "."))
+        result[at(j - c.n_elastic)] = static_cast<Index>(i);
+  return result;
+}
+
+/// What the inputs drive of the loose motions through the elastic ones, that these carry along.
+MatrixXd carried(const Coordinates& c, const Whole& w, const MatrixXd& along) {
+  if (w.far == 0) return along * w.b;
+  // Modes that rounding hides carry too: their static part, K^-1 M b of all.
+  return -c.A_loose * solve_definite(c.K, solve_definite(c.G, c.B.topRows(c.n_elastic)));
+}
+
+/// Outputs from the modes `phi` of all coordinates.
+void read_outputs(Whole& w, const Coordinates& c, const MatrixXd& phi) {
+  const Index m = w.elastic();
+  w.cq = c.C_q * phi;
+  w.cv = c.C_v * phi;
+  w.ca = MatrixXd::Zero(w.cq.rows(), w.cq.cols());
+  w.ca.leftCols(m) = -w.cq.leftCols(m) * w.lambda.head(m).cwiseInverse().asDiagonal();
+  w.cq.leftCols(m).setZero();
+  if (w.Z.size() > 0) w.cv += w.ca * w.Z;
+}
+
+/// Modes of the coordinates with stiffness, mass-normalised, and what the inputs drive of them.
+MatrixXd elastic_modes(Whole& w, const Coordinates& c) {
+  const Index n = c.n_elastic;
+  Scaled s = modes(c);
+  const MatrixXd Kd = c.diagonal ? MatrixXd(s.d.asDiagonal()) : MatrixXd(s.K * s.d.asDiagonal());
+  const MatrixXd forces = Kd * c.B.topRows(n),
+                 read = c.C_q.leftCols(n) * s.d.cwiseInverse().asDiagonal();
+  turn_clusters(s.lambda, s.y, s.y.transpose() * forces, read * s.y);
+  const VectorXd omega = s.lambda.cwiseSqrt();
+  w.far = n - s.lambda.size();
+  w.lambda = s.lambda;
+  w.b = omega.cwiseInverse().asDiagonal() * (s.y.transpose() * forces);
+  w.shapes = s.y * omega.asDiagonal();
+  if (!c.diagonal) w.pulls = s.K * w.shapes;
+  return s.d.cwiseInverse().asDiagonal() * w.shapes;
+}
+
 }  // namespace
 
 Whole whole(const System& system, const Coordinates& c, std::vector<char> is_position) {
   Whole w;
-  const Index n = c.n_elastic;
+  const Index n = c.n_elastic, loose = c.size() - n;
   w.is_position = std::move(is_position);
-  w.is_silent = c.is_silent;
-  w.loose = c.size() - n;
-  w.lambda = VectorXd::Zero(c.size());
-  MatrixXd phi = MatrixXd::Zero(c.size(), c.size());
-  phi.bottomRightCorner(w.loose, w.loose).setIdentity();
-  w.b = c.B;
-  if (n > 0) {
-    Scaled s = modes(c);
-    const MatrixXd Kd = c.diagonal ? MatrixXd(s.d.asDiagonal()) : MatrixXd(s.K * s.d.asDiagonal());
-    const MatrixXd forces = Kd * c.B.topRows(n),
-                   read = c.C_q.leftCols(n) * s.d.cwiseInverse().asDiagonal();
-    turn_clusters(s.lambda, s.y, s.y.transpose() * forces, read * s.y);
-    const VectorXd omega = s.lambda.cwiseSqrt();
-    w.lambda.head(n) = s.lambda;
-    phi.topLeftCorner(n, n) = s.d.cwiseInverse().asDiagonal() * s.y * omega.asDiagonal();
-    phi.bottomLeftCorner(w.loose, n) =
-        -c.A_loose * phi.topLeftCorner(n, n) * s.lambda.cwiseInverse().asDiagonal();
-    w.b.topRows(n) = omega.cwiseInverse().asDiagonal() * (s.y.transpose() * forces);
-    w.b.bottomRows(w.loose) -= phi.bottomLeftCorner(w.loose, n) * w.b.topRows(n);
-    if (c.D.size() > 0) {
-      w.Z = MatrixXd::Zero(c.size(), c.size());
-      w.Z.topLeftCorner(n, n) = phi.topLeftCorner(n, n).transpose() * c.D * phi.topLeftCorner(n, n);
-      w.proportional = is_diagonal(w.Z);
-      if (w.proportional) w.Z = MatrixXd(w.Z.diagonal().asDiagonal());
-    }
-    w.shares = shares(c, s);
-  } else {
-    w.shares = shares(c, {});
-  }
+  w.silent = c.silent;
+  w.loose = loose;
   w.blocks = c.blocks;
-  const MatrixXd cq = c.C_q * phi;
-  w.cv = c.C_v * phi;
-  w.ca = MatrixXd::Zero(cq.rows(), cq.cols());
-  w.ca.leftCols(n) = -cq.leftCols(n) * w.lambda.head(n).cwiseInverse().asDiagonal();
-  w.cq = cq;
-  w.cq.leftCols(n).setZero();
-  if (w.Z.size() > 0) w.cv += w.ca * w.Z;
+  w.shares = c.shares;
+  w.owner = owners(c);
+  w.b.resize(0, c.B.cols());
+  MatrixXd elastic(n, 0);
+  if (n > 0) elastic = elastic_modes(w, c);
+  const Index m = w.lambda.size();
+  MatrixXd phi = MatrixXd::Zero(c.size(), m + loose);
+  phi.topLeftCorner(n, m) = elastic;
+  phi.bottomRightCorner(loose, loose).setIdentity();
+  phi.bottomLeftCorner(loose, m) = -c.A_loose * (elastic * w.lambda.cwiseInverse().asDiagonal());
+  const MatrixXd b_loose = c.B.bottomRows(loose) - carried(c, w, phi.bottomLeftCorner(loose, m));
+  w.lambda.conservativeResize(m + loose);
+  w.lambda.tail(loose).setZero();
+  w.b.conservativeResize(m + loose, Eigen::NoChange);
+  w.b.bottomRows(loose) = b_loose;
+  if (c.D.size() > 0) {
+    w.Z = MatrixXd::Zero(m + loose, m + loose);
+    w.Z.topLeftCorner(m, m) = elastic.transpose() * c.D * elastic;
+    w.proportional = is_diagonal(w.Z);
+    if (w.proportional) w.Z = MatrixXd(w.Z.diagonal().asDiagonal());
+  }
+  read_outputs(w, c, phi);
   w.D0 = rest(system, w);
-  for (Index i = 0; i < w.D0.rows(); ++i)
-    if (w.is_silent[at(i)]) w.D0.row(i).setZero();
   return w;
+}
+
+void couple(Whole& w) {
+  if (w.proportional) return;
+  const Index m = w.elastic();
+  const VectorXd omega = w.lambda.head(m).cwiseSqrt();
+  MatrixXd A = MatrixXd::Zero(2 * m, 2 * m);  // positions times omega: entries of one size
+  A.topRightCorner(m, m) = omega.asDiagonal();
+  A.bottomLeftCorner(m, m) = (-omega).asDiagonal();
+  A.bottomRightCorner(m, m) = -w.Z.topLeftCorner(m, m);
+  for (const std::complex<double>& p : linalg::eigenvalues(A))
+    if (p.imag() >= 0) w.poles.push_back(p);
+}
+
+MatrixXd participation(const Whole& w, const MatrixXd& V) {
+  const MatrixXd elastic = V.topRows(w.elastic()), z = w.shapes * elastic;
+  const MatrixXd pulls = w.pulls.size() ? MatrixXd(w.pulls * elastic) : z;
+  MatrixXd result = w.shares * z.cwiseProduct(pulls).cwiseAbs();
+  for (Index j = 0; j < V.cols(); ++j) {
+    if (const double sum = result.col(j).sum(); sum > 0) {
+      result.col(j) /= sum;
+    } else if (Index own = 0; w.loose > 0 && !w.owner.empty()) {
+      V.col(j).tail(w.loose).cwiseAbs().maxCoeff(&own);
+      if (w.owner[at(own)] >= 0) result(w.owner[at(own)], j) = 1;
+    }
+  }
+  return result;
 }
 
 std::vector<char> positions_read(const Graph& g) {

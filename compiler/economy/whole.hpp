@@ -1,5 +1,6 @@
 #pragma once
 
+#include <complex>
 #include <titop/compiler/economy/coordinates.hpp>
 
 /// The whole structure in its own modes. For the compiler's own files only.
@@ -14,17 +15,23 @@ namespace titop::detail {
 /// then its static gain without the motions that have none, and a mode that is left out keeps its
 /// static part in D0.
 struct Whole {
-  Eigen::VectorXd lambda;  ///< n, ascending [rad^2/s^2]; the last `loose` are 0
+  Eigen::VectorXd lambda;  ///< n, ascending [rad^2/s^2], the last `loose` are 0; n - loose: the
+                           ///< elastic coordinates less those that are `far`
   Eigen::Index loose = 0;  ///< motions without stiffness (free hinges, integrators): always kept
   Eigen::MatrixXd b;       ///< n x inputs
   Eigen::MatrixXd ca, cv, cq;     ///< outputs x n
   Eigen::MatrixXd D0;             ///< outputs x inputs
   Eigen::MatrixXd Z;              ///< n x n, symmetric, semidefinite; 0 x 0 where nothing is damped
   bool proportional = true;       ///< Z is diagonal, to rounding
+  Eigen::Index far = 0;           ///< modes that rounding hides: in D0 only
   std::vector<char> is_position;  ///< per output
-  std::vector<char> is_silent;    ///< per output: 0 by symmetry
-  std::vector<std::string> blocks;  ///< that have coordinates
-  Eigen::MatrixXd shares;           ///< blocks x n: of a mode's elastic energy, of sum 1
+  std::vector<std::complex<double>> poles;  ///< of coupled modes, by `couple`; upper half plane
+  Eigen::MatrixXd silent;                   ///< as Coordinates has it
+  std::vector<std::string> blocks;          ///< that have coordinates
+  std::vector<Eigen::Index> owner;          ///< block of each motion without stiffness, or -1
+  Eigen::MatrixXd shares;                   ///< blocks x elastic coordinates: whose they are
+  Eigen::MatrixXd shapes;                   ///< elastic coordinates, scaled to stiffness 1, x modes
+  Eigen::MatrixXd pulls;                    ///< their forces; 0 x 0: the same (no chain is closed)
 
   Eigen::Index order() const { return lambda.size(); }
   Eigen::Index elastic() const { return lambda.size() - loose; }
@@ -33,9 +40,18 @@ struct Whole {
 };
 
 /// Modes of these coordinates; of the clusters of equal frequency those that inputs and outputs
-/// tell apart. D0 is what the factored system's transfer leaves at one real s beside the modes, so
-/// that it also holds what they miss. Throws what `coordinates` throws. O(n^3).
+/// tell apart. Modes so far above the first one that rounding hides them (mu = 1 / lambda below
+/// n eps times the largest mu) have their static part only. D0 is what the factored system's
+/// transfer leaves at one real s beside the modes, so that it also holds what they miss. Throws
+/// what `coordinates` throws. O(n^3).
 Whole whole(const System& system, const Coordinates& c, std::vector<char> is_position);
+
+/// Finds `poles` where damping couples the modes: one eigenproblem of twice their number, O(8 n^3).
+void couple(Whole& whole);
+
+/// Blocks x columns: each block's part of the elastic energy of the motions V (modes x columns), of
+/// sum 1; motions without stiffness belong to their own block. O(n^2 columns).
+Eigen::MatrixXd participation(const Whole& whole, const Eigen::MatrixXd& V);
 
 /// Which outputs of a graph are positions (all their terms are), scalar by scalar, as declared.
 std::vector<char> positions_read(const Graph& graph);

@@ -7,6 +7,8 @@
 using namespace titop;
 using namespace titop_test;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Complex = std::complex<double>;
 
 namespace {
 
@@ -101,6 +103,41 @@ TEST_CASE("symmetric appendages, common motion only: half their modes go exactly
   CHECK(compile(twins(beam, 1e-3), scene).steps().size() == 2);
 }
 
+TEST_CASE("an output that symmetry keeps still keeps what it has of the inputs directly") {
+  // The hub is shaken by A; both tips follow alike, so that their difference is 0: plus A, it is A.
+  const FlexibleBody beam = slim_beam(6);
+  Diagram d{"shaken"};
+  auto A = d.input("A", 6);
+  auto hub = d.add("hub", RigidBody{.mass = 20,
+                                    .inertia = Vector3d(1, 2, 3).asDiagonal(),
+                                    .children = {{"C1", {0.3, 0, 0}}, {"C2", {-0.3, 0, 0}}}});
+  auto left = d.add("left", beam), right = d.add("right", beam);
+  const Matrix3d turn = Vector3d(-1, -1, 1).asDiagonal();
+  hub.parent.accel = A;
+  mount(left, hub.child("C1"), Rotation{});
+  mount(right, hub.child("C2"), Rotation::matrix(turn));
+  MatrixXd z = MatrixXd::Zero(1, 6);
+  z(0, 2) = 1;
+  d.output("y") = z * left.child("C").accel - z * right.child("C").accel + z * A;
+  d.output("tip") = z * left.child("C").accel;
+  const titop::Scene scene{.inputs = {"A(3)"}, .band_hz = {0, 60}, .accuracy = 1e-5};
+  const ReducedSystem r = compile(d, scene);
+  CHECK(r.steps()[1].name == "symmetry");
+  CHECK(relative(r.bound().peak(0, 0), 1.0) <= 1e-9);
+  for (const double w : {1.0, 40.0, 300.0}) {
+    CHECK(relative(r.transfer({0.002 * w, w})(0, 0), Complex(1)) <= 1e-5);
+    CHECK(relative(r.full().transfer({0.002 * w, w})(0, 0), Complex(1)) <= 1e-9);
+  }
+}
+
+TEST_CASE("kept coordinates are named in ascending order of frequency") {
+  const ReducedSystem r =
+      compile(frame(slim_beam(5)), titop::Scene{.band_hz = {0, 60}, .accuracy = 1e-4});
+  const VectorXd k = r.second_order().K.diagonal();
+  REQUIRE(k.size() >= 5);
+  CHECK(std::is_sorted(k.begin(), k.end()));
+}
+
 TEST_CASE("a high mode of one body that another's lock brings down into the band is kept") {
   // Clamped at P and locked at C by a body of 1e4 masses, the beam's first bending mode is the
   // second one with both ends held; what the body's own modes say of frequencies is far off.
@@ -120,6 +157,49 @@ TEST_CASE("a high mode of one body that another's lock brings down into the band
   const Against fine = on_fine_grid(r, scene);
   CHECK(fine.bound <= 1);
   CHECK(fine.error <= 1e-4);
+}
+
+TEST_CASE("a mode far below the band's upper end is seen: the band is the one asked for") {
+  // A spring of 2 mHz on a clamp: k / (m s^2 + k) has its peak, 1 / (2 zeta), at 2 mHz, and a
+  // static gain of 1 / k. A model without its mode would be good from 6 mHz on.
+  const double w = 2 * std::numbers::pi * 0.002, m = 3;
+  Diagram d{"slow"};
+  auto U = d.input("U");
+  auto z = d.add("z", SpringMass{.mass = m, .stiffness = m * w * w});
+  z.parent.accel = 0;
+  z.child.force = U;
+  d.output("x") = z.stretch;
+  for (const double low : {1e-3, 0.0}) {
+    const titop::Scene scene{.band_hz = {low, 60}, .accuracy = 1e-4};
+    const ReducedSystem r = compile(d, scene);
+    CHECK(r.order() == 2);
+    const double peak = 1 / (m * w * w) / (2 * scene.damping_floor);
+    CHECK(relative(r.bound().peak(0, 0), peak) <= 0.15);  // the grid's own factor is 1.14
+    CHECK(on_fine_grid(r, scene).bound <= 1);
+  }
+}
+
+TEST_CASE("positions and rates of a free body have no gain at 0: refused, output and input named") {
+  Diagram d{"free"};
+  auto U = d.input("U", 6);
+  auto hub = d.add(
+      "hub",
+      RigidBody{.mass = 20, .inertia = Matrix3d::Identity(), .children = {{"C", {0.3, 0, 0}}}});
+  auto beam = d.add("beam", slim_beam(4));
+  hub.parent.force = -U;
+  mount(beam, hub.child("C"), Rotation{});
+  d.output("x", 6) = hub.parent.position;
+  d.output("v", 6) = hub.parent.rate;
+  d.output("a", 6) = hub.parent.accel;
+  const auto refused = [&](const std::string& output, std::array<double, 2> band) {
+    return error_of(
+        [&] { compile(d, titop::Scene{.outputs = {output}, .band_hz = band, .accuracy = 1e-3}); });
+  };
+  CHECK(says(refused("x", {0, 0}), Code::bad_value, {"x(", "position", "U(", "above 0"}));
+  CHECK(says(refused("x", {0, 50}), Code::bad_value, {"x(", "position", "U(", "above 0"}));
+  CHECK(says(refused("v", {0, 50}), Code::bad_value, {"v(", "rate", "U(", "above 0"}));
+  CHECK(refused("x", {0.5, 50}).mistakes().empty());
+  CHECK(refused("a", {0, 50}).mistakes().empty());
 }
 
 TEST_CASE("wrong scenes are refused by name") {

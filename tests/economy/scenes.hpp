@@ -41,10 +41,12 @@ struct Against {
   double error = 0;  ///< largest |error| / peak
 };
 inline Against on_fine_grid(const ReducedSystem& r, const titop::Scene& scene, int steps = 1500) {
-  const double low = 2 * std::numbers::pi * std::max(scene.band_hz[0], 1e-4 * scene.band_hz[1]);
+  const double low = 2 * std::numbers::pi * scene.band_hz[0];
   const double high = 2 * std::numbers::pi * scene.band_hz[1], zeta = scene.damping_floor;
   std::vector<double> omega;
-  for (int i = 0; i <= steps; ++i) omega.push_back(low + (high - low) * i / steps);
+  for (int i = 1; i <= steps; ++i) omega.push_back(low + (high - low) * i / steps);
+  for (int i = 1; i <= 30; ++i)  // from the lower end on by factors, from 0 on over nine decades
+    omega.push_back(low > 0 ? low * std::pow(high / low, i / 31.0) : high * std::pow(10, -0.3 * i));
   for (const titop::Pole& p : r.full().poles())
     for (int i = -20; i <= 20; ++i)
       if (const double w = p.omega * (1 + 0.2 * zeta * i); w > low && w < high) omega.push_back(w);
