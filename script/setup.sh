@@ -54,7 +54,7 @@ build() {
   shift
   (($# == 0)) || targets=(--target "$@")
   logged "build/$preset-configure.log" cmake --preset "$preset" -DTITOP_CI="${TITOP_CI:-OFF}"
-  local ninja=(cmake --build --preset "$preset" -j "${JOBS:-$(nproc)}" "${targets[@]}")
+  local ninja=(cmake --build --preset "$preset" -j "${JOBS:-$(nproc)}" "${targets[@]}" -- -k 0)
   if [[ -t 1 ]]; then
     "${ninja[@]}"
   else

@@ -5,16 +5,13 @@
 namespace titop::fe {
 
 bool parse_fortran(std::string_view text, double& value) {
-  std::string plain(trim(text));
-  bool has_exponent = false;
-  for (char& c : plain)
-    if (c == 'D' || c == 'd' || c == 'E' || c == 'e') {
-      c = 'e';
-      has_exponent = true;
-    }
-  if (!has_exponent)
-    if (const auto sign = plain.find_last_of("+-"); sign != std::string::npos && sign > 0)
-      plain.insert(sign, "e");
+  std::string plain;
+  for (const char c : trim(text)) {
+    const bool letter = c == 'D' || c == 'd' || c == 'E' || c == 'e';
+    const bool sign = c == '+' || c == '-';
+    if (sign && !plain.empty() && plain.back() != 'e') plain += 'e';
+    plain += letter ? 'e' : c;
+  }
   return parse(plain, value);
 }
 

@@ -58,11 +58,11 @@ int run() {
   for (const auto& scene : titop_test::scenes())
     if (check(scene.make(), scene.name)) return 1;
   if (check(ring(), "ring")) return 1;
-  for (const std::uint64_t seed : {3, 8, 15, 27, 42, 61, 77, 110})
+  for (const std::uint64_t seed : {3U, 8U, 15U, 27U, 42U, 61U, 77U, 110U})
     if (check(titop_test::random_scene(titop_test::random_options(seed)).build(),
               "random " + std::to_string(seed)))
       return 1;
-  for (const std::uint64_t seed : {1, 2, 3, 4})
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U})
     if (check(titop_test::planted(seed).diagram, "planted " + std::to_string(seed))) return 1;
   return 0;
 }
