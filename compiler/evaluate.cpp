@@ -1,10 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <limits>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/compiler/steady_random.hpp>
 
 namespace titop::detail {
 namespace {
@@ -190,11 +190,10 @@ double Evaluation<T>::improve() {
 template <class T>
 double Evaluation<T>::rounding() const {
   const solve::RowMatrix<double> sizes = rows_.magnitudes(rows_.rhs(u_, first_), unknowns_);
-  std::uint64_t state = 0x9E3779B97F4A7C15ull;
+  SteadyRandom random;
   solve::RowMatrix<T> off(sizes.rows(), sizes.cols());
   for (Eigen::Index i = 0; i < off.rows(); ++i) {
-    state ^= state << 13, state ^= state >> 7, state ^= state << 17;
-    const double unit = (state >> 63 ? 1 : -1) * solve::Scalar<T>::epsilon();
+    const double unit = (random.next() < 0 ? -1 : 1) * solve::Scalar<T>::epsilon();
     for (Eigen::Index j = 0; j < off.cols(); ++j) off(i, j) = solve::lift<T>(unit * sizes(i, j));
   }
   return relative_to_outputs(factors_->solve(off));

@@ -1,0 +1,286 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <titop/compiler/residual.hpp>
+#include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/drives.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::MatrixXd;
+using Complex = std::complex<double>;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// All signals at one s.
+class Values {
+ public:
+  Values(const SystemData& d, const Evaluation<Complex>& point) : g_(d.graph()) {
+    for (const Signal& s : g_.signals) first_.push_back(first_.back() + s.size);
+    values_ = point.values(first_);
+  }
+  std::span<const Complex> of(int signal) const {
+    return {values_.data() + first_[at(signal)], at(first_[at(signal) + 1] - first_[at(signal)])};
+  }
+  /// Computed: active, or external, or at rest because no input moves it.
+  bool known(int signal) const {
+    const Signal& s = g_.signals[at(signal)];
+    return s.active || s.role == Signal::Role::external;
+  }
+
+ private:
+  const Graph& g_;
+  std::vector<int> first_ = {0};
+  solve::RowMatrix<Complex> values_;
+};
+
+double largest_of(std::span<const Complex> values) {
+  double largest = 0;
+  for (const Complex& v : values) largest = std::max(largest, solve::size_of(v));
+  return largest;
+}
+
+/// One equation after the other: left - right, and the sum of magnitudes, row by row.
+struct Balance {
+  std::vector<Complex> difference = {};
+  std::vector<double> magnitude = {};
+  bool known = true;
+
+  void start(Eigen::Index rows, bool is_known) {
+    difference.assign(static_cast<std::size_t>(rows), 0);
+    magnitude.assign(static_cast<std::size_t>(rows), 0);
+    known = is_known;
+  }
+  Eigen::Index rows() const { return static_cast<Eigen::Index>(difference.size()); }
+
+  /// factor * c * value. A port signal counts by its largest entry: of a pinned point the
+  /// translation is 0 but for rounding, which its rotation has left there. States count one by one.
+  template <class Matrix>
+  void add(const Matrix& c, std::span<const Complex> value, Complex factor, bool by_entry = false) {
+    const double largest = by_entry ? 0 : largest_of(value), scale = solve::size_of(factor);
+    for (Eigen::Index j = 0; j < c.cols(); ++j) {
+      const Complex x = value[static_cast<std::size_t>(j)], v = factor * x;
+      const double size = scale * (by_entry ? solve::size_of(x) : largest);
+      for (Eigen::Index i = 0; i < c.rows(); ++i) {
+        difference[static_cast<std::size_t>(i)] += c(i, j) * v;
+        magnitude[static_cast<std::size_t>(i)] += std::abs(c(i, j)) * size;
+      }
+    }
+  }
+  void add_identity(std::span<const Complex> value, Complex factor, bool by_entry = false) {
+    const double largest = by_entry ? 0 : largest_of(value), scale = solve::size_of(factor);
+    for (std::size_t i = 0; i < value.size(); ++i) {
+      difference[i] += factor * value[i];
+      magnitude[i] += scale * (by_entry ? solve::size_of(value[i]) : largest);
+    }
+  }
+  /// Largest difference; infinite where something is not finite.
+  double largest() const {
+    double result = 0;
+    for (const Complex& v : difference) {
+      const double size = solve::size_of(v);
+      result = std::isfinite(size) ? std::max(result, size) : kInfinity;
+      if (result == kInfinity) break;
+    }
+    return result;
+  }
+  /// 1 where something is not finite.
+  double relative() const {
+    const double off = largest();
+    if (off == kInfinity) return 1;
+    double size = 0;
+    for (const double m : magnitude) size = std::max(size, m);
+    return off > 0 ? off / size : 0;
+  }
+};
+
+/// Size of a signal's neighbours in its front of the elimination, in the signal's own unit (both by
+/// the scaling of the front's columns): what is 1e-16 of it is what rounding leaves of a 0.
+double size_around(const SystemData& d, const Evaluation<Complex>& point, int signal) {
+  const solve::Plan& plan = *d.skeleton->joint.plan;
+  const solve::ColumnScale& scale = *d.factors->scale();
+  double result = 0;
+  for (const solve::Meaning& m : d.skeleton->joint.meaning(signal)) {
+    const int v = d.skeleton->joint.variable_of[at(m.signal)];
+    if (v < 0) continue;
+    const auto front = std::prev(
+        std::upper_bound(plan.fronts.begin(), plan.fronts.end(), plan.first[at(v)],
+                         [](int place, const solve::Front& f) { return place < f.first_unknown; }));
+    double largest = 0;
+    int column = front->first_column, own = 0;
+    for (const auto range : {front->pivots, front->border})
+      for (const int other : plan.list(range)) {
+        if (other == v) own = scale[at(column)];
+        for (int i = 0; i < plan.structure.variable_size[at(other)]; ++i, ++column)
+          largest = std::max(largest,
+                             std::ldexp(solve::size_of(point.unknowns()(plan.first[at(other)] + i)),
+                                        -scale[at(column)]));
+      }
+    result = std::max(result, std::ldexp(largest, own));
+  }
+  return result;
+}
+
+/// The residual of the equations as the user wrote them.
+struct Residual {
+  const SystemData& d;
+  const Evaluation<Complex>& point;
+  const Values& values;
+  Complex s;
+  const Graph& w = *d.skeleton->stage.source;
+  Balance b = {};  ///< of the present equation
+  double worst = 0;
+  std::string where = {};
+
+  /// The equation for this signal (-1: states) is complete. `name()` is only asked for where it is
+  /// needed. A signal that is 0 but for rounding (a gain of 0, a pinned point) does not count.
+  template <class Name>
+  void take(int signal, Name name) {
+    if (!b.known) return;
+    const double r = b.relative();
+    if (r <= worst) return;
+    constexpr double kRounding = 1e-14;  // some units of the last place of what stands around it
+    const double off = b.largest();
+    if (r > kSuspicious && off < kInfinity && signal >= 0 &&
+        off <= kRounding * size_around(d, point, signal))
+      return;
+    worst = r, where = name();
+  }
+  static constexpr double kSuspicious = 1e-9;  ///< from here on the log warns: worth a second look
+
+  /// Subtracts N * (term); N = nullptr: the identity.
+  void subtract(const MatrixXd* N, const Term& t, const std::vector<Drive>& drive) {
+    b.known = b.known && values.known(t.signal);
+    MatrixXd c = coefficient(w, t, d.numbers.parameters);
+    if (N) c = *N * c;
+    b.add(c, values.of(t.signal),
+          t.of == Term::Of::position ? -1.0 / (s * s)
+          : t.of == Term::Of::rate   ? -1.0 / s
+                                     : -1.0);
+    if (t.of != Term::Of::reaction) return;
+    const int channel = w.signals[at(t.signal)].channel;
+    c = -c;
+    for (const int e : drive[at(channel)].added) subtract_force(&c, e, drive);
+  }
+
+  void subtract_force(const MatrixXd* N, int e, const std::vector<Drive>& drive) {
+    const Equation& q = w.equations[at(e)];
+    if (q.part.whole()) {
+      for (const Term& t : q.terms) subtract(N, t, drive);
+      return;
+    }
+    const MatrixXd f = N ? MatrixXd(*N * q.part.rows.transpose()) : q.part.rows.transpose();
+    for (const Term& t : q.terms) subtract(&f, t, drive);
+  }
+
+  void accel(int channel, int e, const std::vector<Drive>& drive) {
+    const Channel& c = w.channels[at(channel)];
+    const Equation& q = w.equations[at(e)];
+    b.start(q.part.whole() ? c.size : q.part.rows.rows(), values.known(c.accel));
+    if (q.part.whole())
+      b.add_identity(values.of(c.accel), 1);
+    else
+      b.add(q.part.rows, values.of(c.accel), 1);
+    for (const Term& t : q.terms) subtract(nullptr, t, drive);
+    take(c.accel, [&] { return print(w, q); });
+  }
+
+  void force(int channel, const std::vector<Drive>& drive) {
+    const Channel& c = w.channels[at(channel)];
+    const Drive& own = drive[at(channel)];
+    if (own.N.rows() == 0) return;
+    const bool whole = own.N.rows() == c.size;  // N is the identity then
+    b.start(own.N.rows(), values.known(c.force));
+    if (whole)
+      b.add_identity(values.of(c.force), 1);
+    else
+      b.add(own.N, values.of(c.force), 1);
+    for (const auto* list : {&own.force, &own.added})
+      for (const int e : *list) subtract_force(whole ? nullptr : &own.N, e, drive);
+    take(c.force, [&] { return "the forces at " + channel_name(w, channel); });
+  }
+
+  void equations() {
+    const auto& cached = d.skeleton->stage.drives;
+    const std::vector<Drive> made = cached ? std::vector<Drive>{} : drives(w);
+    const std::vector<Drive>& drive = cached ? *cached : made;
+    for (int c = 0; c < static_cast<int>(drive.size()); ++c) {
+      for (const int e : drive[at(c)].accel) accel(c, e, drive);
+      force(c, drive);
+    }
+    for (const Equation& q : w.equations) {
+      if (w.signals[at(q.target)].channel >= 0) continue;
+      b.start(w.signals[at(q.target)].size, values.known(q.target));
+      b.add_identity(values.of(q.target), 1);
+      for (const Term& t : q.terms) subtract(nullptr, t, drive);
+      take(q.target, [&] { return print(w, q); });
+    }
+  }
+
+  /// Subtracts matrix * (inputs of the node). What is not known must not matter.
+  void subtract_inputs(const Node& node, int end, const MatrixXd& matrix, Eigen::Index row) {
+    for (int i = node.first_signal; i < end; ++i) {
+      const Signal& u = w.signals[at(i)];
+      if (u.role != Signal::Role::input) continue;
+      const auto c = matrix.block(row, u.first, b.rows(), u.size);
+      b.known = b.known && (values.known(i) || c.isZero(0));
+      b.add(c, values.of(i), -1);
+    }
+  }
+
+  /// s x = A x + B u
+  void states(const Node& node, const Dynamics& m, int end) {
+    b.start(m.A.rows(), true);
+    b.add_identity(values.of(node.state), s, true);
+    b.add(m.A, values.of(node.state), -1, true);
+    subtract_inputs(node, end, m.B, 0);
+    take(-1, [&] { return "the states of " + node.name; });
+  }
+
+  /// y = C x + D u
+  void output(const Node& node, int index, const Dynamics& m, int end, int o) {
+    const Signal& y = w.signals[at(o)];
+    b.start(y.size, true);
+    b.add_identity(values.of(o), 1);
+    if (node.state >= 0) {
+      const auto C = m.C.middleRows(y.first, y.size);
+      b.known = b.known && (values.known(node.state) || C.isZero(0));
+      b.add(C, values.of(node.state), -1, true);
+    }
+    if (m.sparse.empty()) subtract_inputs(node, end, m.D, y.first);
+    for (const Gains& part : m.gains_of_row(y.first)) {
+      const int i = input_signal(w, index, part.column);
+      b.known = b.known && values.known(i);
+      b.add(part.gain, values.of(i), -1);
+    }
+    take(o, [&] { return name_of(w, o); });
+  }
+
+  void blocks() {
+    for (int index = 0; index < static_cast<int>(w.nodes.size()); ++index) {
+      const Node& node = w.nodes[at(index)];
+      const Dynamics& m = *d.numbers.blocks[at(index)];
+      const int end = end_signal(w, index);
+      if (node.state >= 0 && values.known(node.state)) states(node, m, end);
+      for (int o = node.first_signal; o < end; ++o)
+        if (w.signals[at(o)].role == Signal::Role::output && values.known(o))
+          output(node, index, m, end, o);
+    }
+  }
+};
+
+}  // namespace
+
+WrittenResidual written_residual(const SystemData& d, const Evaluation<Complex>& point, Complex s) {
+  const Values values(d, point);
+  Residual r{d, point, values, s};
+  r.equations();
+  r.blocks();
+  return {r.worst, r.where};
+}
+
+}  // namespace titop::detail

@@ -1,0 +1,20 @@
+#pragma once
+
+namespace titop::detail {
+
+/// Numbers in [-1, 1] from a fixed seed [Marsaglia 2003, xorshift]: what is checked with them is
+/// the same on every run and every machine.
+class SteadyRandom {
+ public:
+  double next() {
+    state_ ^= state_ << 13;
+    state_ ^= state_ >> 7;
+    state_ ^= state_ << 17;
+    return static_cast<double>(state_ >> 11) * 0x1p-52 - 1.0;
+  }
+
+ private:
+  unsigned long long state_ = 0x9E3779B97F4A7C15ull;
+};
+
+}  // namespace titop::detail
