@@ -27,11 +27,11 @@
 #include <titop/compiler/economy/reduced_system.hpp>
 #include <titop/compiler/emit/cpp.hpp>
 #include <titop/compiler/emit/files.hpp>
-#include <titop/compiler/emit/hold.hpp>
 #include <titop/compiler/exact_order.hpp>
 #include <titop/compiler/minimize.hpp>
 #include <titop/compiler/modal.hpp>
 #include <titop/compiler/simulate.hpp>
+#include <titop/compiler/simulate/hold.hpp>
 #include <titop/compiler/sweep.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/compiler/transfer.hpp>

@@ -7,9 +7,9 @@
 #include <titop/compiler/emit/cpp/header.hpp>
 #include <titop/compiler/emit/cpp/test.hpp>
 #include <titop/compiler/emit/cpp/text.hpp>
-#include <titop/compiler/emit/hold.hpp>
 #include <titop/compiler/emit/identifier.hpp>
 #include <titop/compiler/emit/write_file.hpp>
+#include <titop/compiler/simulate/hold.hpp>
 #include <titop/graph/error.hpp>
 
 namespace titop {

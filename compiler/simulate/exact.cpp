@@ -1,5 +1,5 @@
+#include <titop/compiler/simulate/hold.hpp>
 #include <titop/compiler/simulate/steppers.hpp>
-#include <unsupported/Eigen/MatrixFunctions>
 
 namespace titop::detail {
 namespace {
@@ -22,39 +22,21 @@ class Exact : public StepRule {
   MatrixXd Phi_, G0_, G1_;
 };
 
-/// Powers of two that give rows and columns of A the same size: positions in metres beside rates of
-/// 1e5 would cost the exponential digits.
-VectorXd balance(MatrixXd A) {
-  VectorXd d = VectorXd::Ones(A.rows());
-  A.diagonal().setZero();
-  for (int sweep = 0; sweep < 10; ++sweep)
-    for (Eigen::Index i = 0; i < A.rows(); ++i) {
-      const double c = A.col(i).cwiseAbs().sum(), r = A.row(i).cwiseAbs().sum();
-      if (!(c > 0) || !(r > 0)) continue;
-      const double f = std::exp2(std::round(std::log2(std::sqrt(r / c))));
-      A.col(i) *= f;
-      A.row(i) /= f;
-      d(i) *= f;
-    }
-  return d;
-}
-
 }  // namespace
 
 std::unique_ptr<StepRule> exact_rule(const System& system, double h) {
   StateSpace m;
   system.write(m);
   const auto n = m.A.rows(), nu = m.B.cols();
-  const VectorXd d = balance(m.A);
-  // d/dt [x; u; u'] with u linear in time: u' is what changes over one step, in units of steps.
-  MatrixXd M = MatrixXd::Zero(n + 2 * nu, n + 2 * nu);
-  M.topLeftCorner(n, n) = h * (d.cwiseInverse().asDiagonal() * m.A * d.asDiagonal());
-  M.block(0, n, n, nu) = h * (d.cwiseInverse().asDiagonal() * m.B);
-  M.block(n, n + nu, nu, nu).setIdentity();
-  const MatrixXd E = M.exp();
-  return std::make_unique<Exact>(
-      d.asDiagonal() * E.topLeftCorner(n, n) * d.cwiseInverse().asDiagonal(),
-      d.asDiagonal() * E.block(0, n, n, nu), d.asDiagonal() * E.block(0, n + nu, n, nu));
+  // Inputs that are linear in time are states of their own, whose slope is held: d/dt u =
+  // (u1-u0)/h.
+  MatrixXd A = MatrixXd::Zero(n + nu, n + nu), slope = MatrixXd::Zero(n + nu, nu);
+  A.topLeftCorner(n, n) = m.A;
+  A.topRightCorner(n, nu) = m.B;
+  slope.bottomRows(nu).diagonal().setConstant(1 / h);
+  const Hold all = hold(A, slope, h);
+  return std::make_unique<Exact>(all.A.topLeftCorner(n, n), all.A.topRightCorner(n, nu),
+                                 all.B.topRows(n));
 }
 
 }  // namespace titop::detail

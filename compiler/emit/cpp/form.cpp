@@ -3,7 +3,7 @@
 #include <cmath>
 #include <optional>
 #include <titop/compiler/emit/cpp/form.hpp>
-#include <titop/compiler/emit/hold.hpp>
+#include <titop/compiler/simulate/hold.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/graded.hpp>
 

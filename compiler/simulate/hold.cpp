@@ -2,7 +2,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <titop/compiler/emit/hold.hpp>
+#include <titop/compiler/simulate/hold.hpp>
 #include <titop/graph/error.hpp>
 
 namespace titop {

@@ -3,7 +3,7 @@
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
-#include <titop/compiler/emit/hold.hpp>
+#include <titop/compiler/simulate/hold.hpp>
 #include <titop/graph/error.hpp>
 
 #include "support/close.hpp"
