@@ -1,5 +1,7 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
@@ -126,6 +128,8 @@ Eigensystem eigensystem(const MatrixXd& A) {
 
 namespace {
 
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
 constexpr int kSmall = 12;
 /// Small loops are many: no memory is asked for.
 using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kSmall, kSmall>;
@@ -151,6 +155,34 @@ double perron_by_squaring(const Small& M) {
     power = power.lazyProduct(power).eval();
   }
   return std::exp(log_scale);
+}
+
+/// Spectral radius of M: the largest of its irreducible diagonal blocks. Loops that a zero
+/// coefficient cuts open have rows that reach each other one way only; on them no power converges.
+double perron_of_parts(const Small& M) {
+  const int n = static_cast<int>(M.rows());
+  std::array<unsigned, kSmall> reach{};
+  const auto has = [&](int i, int j) { return (reach[at(i)] >> j & 1u) != 0; };
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      if (i == j || M(i, j) != 0) reach[at(i)] |= 1u << j;
+  for (int k = 0; k < n; ++k)
+    for (int i = 0; i < n; ++i)
+      if (has(i, k)) reach[at(i)] |= reach[at(k)];
+  double radius = 0;
+  unsigned done = 0;
+  for (int i = 0; i < n; ++i) {
+    if (done >> i & 1u) continue;
+    std::array<int, kSmall> members{};
+    int size = 0;
+    for (int j = i; j < n; ++j)
+      if (has(i, j) && has(j, i)) members[at(size++)] = j, done |= 1u << j;
+    Small part(size, size);
+    for (int r = 0; r < size; ++r)
+      for (int c = 0; c < size; ++c) part(r, c) = M(members[at(r)], members[at(c)]);
+    radius = std::max(radius, size == 1 ? part(0, 0) : perron_by_squaring(part));
+  }
+  return radius;
 }
 
 /// |M^-1| |M|; 0 x 0 if a pivot is 0.
@@ -182,13 +214,13 @@ double perron_by_iteration(const MatrixXd& M) {
 
 double perron(const MatrixXd& M) {
   if (M.rows() == 0) return 0;
-  return M.rows() <= kSmall ? perron_by_squaring(M) : perron_by_iteration(M);
+  return M.rows() <= kSmall ? perron_of_parts(M) : perron_by_iteration(M);
 }
 
 double skeel_radius(const MatrixXd& M) {
   if (M.rows() > kSmall) return perron(skeel_product(M));
   const Small product = skeel_product<Small>(M);
-  return product.size() == 0 ? 0 : perron_by_squaring(product);
+  return product.size() == 0 ? 0 : perron_of_parts(product);
 }
 
 }  // namespace titop::linalg
