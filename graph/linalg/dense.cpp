@@ -217,7 +217,24 @@ double perron(const MatrixXd& M) {
   return M.rows() <= kSmall ? perron_of_parts(M) : perron_by_iteration(M);
 }
 
+namespace {
+
+/// [a, b; c, d]: (1 + sqrt|t|)^2 / |1 - t|, t = bc/ad or its inverse, whichever is below 1.
+double skeel_radius_of_two(const MatrixXd& M) {
+  const bool diagonal = M(0, 0) != 0 && M(1, 1) != 0;
+  double t = diagonal ? (M(0, 1) / M(0, 0)) * (M(1, 0) / M(1, 1)) : 2;
+  if (!(std::abs(t) <= 1)) {
+    if (M(0, 1) == 0 || M(1, 0) == 0) return 0;
+    t = (M(0, 0) / M(0, 1)) * (M(1, 1) / M(1, 0));
+  }
+  const double sum = 1 + std::sqrt(std::abs(t));
+  return t == 1 ? 0 : sum * sum / std::abs(1 - t);
+}
+
+}  // namespace
+
 double skeel_radius(const MatrixXd& M) {
+  if (M.rows() == 2) return skeel_radius_of_two(M);
   if (M.rows() > kSmall) return perron(skeel_product(M));
   const Small product = skeel_product<Small>(M);
   return product.size() == 0 ? 0 : perron_of_parts(product);

@@ -10,7 +10,8 @@ namespace {
 
 constexpr double kLoose = 3e-3;  ///< "from above, to a few 1e-3"
 
-/// [1, -a; -b, 1]: rho(|L^-1| |L|) = (1 + sqrt|ab|)^2 / |1 - ab|, by hand.
+/// [1, -a; -b, 1]: |L^-1| |L| = [1 + |ab|, 2|a|; 2|b|, 1 + |ab|] / |1 - ab|, whose larger
+/// eigenvalue is (1 + sqrt|ab|)^2 / |1 - ab|.
 double of_two(double a, double b) {
   const double g = std::sqrt(std::abs(a * b));
   return (1 + g) * (1 + g) / std::abs(1 - a * b);
@@ -29,6 +30,24 @@ TEST_CASE("Margin of two unknowns that feed each other: as by hand, whatever the
       INFO("a = ", a, ", b = ", b);
       within(skeel_radius(MatrixXd{{1, -a}, {-b, 1}}), of_two(a, b));
       within(skeel_radius(MatrixXd{{1, -a * 1e12}, {-b / 1e12, 1}}), of_two(a, b));
+      within(skeel_radius(MatrixXd{{1e200, -a * 1e-50}, {-b * 1e200, 1e-50}}), of_two(a, b));
+    }
+}
+
+/// I - a P, P the cyclic shift of n: |L^-1| = sum_k |a|^k P^k / |1 - a^n|, k < n, and |L| = I + |a|
+/// P have the vector of ones in common: (1 + |a|) (1 + |a| + ... + |a|^(n-1)) / |1 - a^n|.
+TEST_CASE("Margin of a ring of n equal gains: as by hand, by squaring and by iteration") {
+  for (const int n : {3, 5, 12, 13, 40})
+    for (const double a : {0.25, -0.9, 3.0}) {
+      INFO("n = ", n, ", a = ", a);
+      MatrixXd L = MatrixXd::Identity(n, n);
+      double sum = 0, power = 1;
+      for (int i = 0; i < n; ++i) {
+        L(i, (i + 1) % n) = -a;
+        sum += std::abs(power);
+        power *= a;
+      }
+      within(skeel_radius(L), (1 + std::abs(a)) * sum / std::abs(1 - power));
     }
 }
 
@@ -52,4 +71,6 @@ TEST_CASE("Margin of parts that reach each other one way only is that of the wor
 TEST_CASE("Margin: a loop without a solution has none") {
   CHECK(skeel_radius(MatrixXd{{1, -2}, {-0.5, 1}}) == 0);
   CHECK(skeel_radius(MatrixXd{{0, 0}, {0, 0}}) == 0);
+  CHECK(skeel_radius(MatrixXd{{0, 3}, {0, 5}}) == 0);
+  CHECK(skeel_radius(MatrixXd{{0, 3}, {-2, 0}}) == 1);  // one after the other, turned
 }
