@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <limits>
+#include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/solve/scalar.hpp>
-#include <titop/compiler/steady_random.hpp>
 
 namespace titop::detail {
 namespace {

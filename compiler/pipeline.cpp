@@ -9,7 +9,7 @@
 #include <titop/compiler/compile_graph.hpp>
 #include <titop/compiler/dot.hpp>
 #include <titop/compiler/passes/passes.hpp>
-#include <titop/compiler/reduce.hpp>
+#include <titop/compiler/reduce/reduce.hpp>
 #include <titop/compiler/system_data.hpp>
 
 namespace titop {

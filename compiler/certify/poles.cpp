@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <titop/compiler/full/poles.hpp>
+#include <titop/compiler/certify/poles.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/graph/linalg/dense.hpp>
 

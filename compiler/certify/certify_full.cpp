@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <titop/compiler/certify/passivity.hpp>
+#include <titop/compiler/certify/poles.hpp>
 #include <titop/compiler/certify_full.hpp>
 #include <titop/compiler/compare.hpp>
-#include <titop/compiler/full/passivity.hpp>
-#include <titop/compiler/full/poles.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/compiler/transfer.hpp>
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <titop/compiler/residual.hpp>
-#include <titop/compiler/steady_random.hpp>
+#include <titop/compiler/certify/residual.hpp>
+#include <titop/compiler/certify/steady_random.hpp>
 
 namespace titop::detail {
 namespace {

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <titop/compiler/hidden.hpp>
-#include <titop/compiler/proper.hpp>
-#include <titop/compiler/reduce.hpp>
+#include <titop/compiler/reduce/hidden.hpp>
+#include <titop/compiler/reduce/proper.hpp>
+#include <titop/compiler/reduce/reduce.hpp>
 #include <titop/compiler/solve/blame.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
 

@@ -1,5 +1,5 @@
-#include <titop/compiler/hidden.hpp>
 #include <titop/compiler/passes/close/lines.hpp>
+#include <titop/compiler/reduce/hidden.hpp>
 
 namespace titop::detail {
 namespace {

@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <titop/compiler/full/passivity.hpp>
+#include <titop/compiler/certify/passivity.hpp>
 
 namespace titop::full {
 namespace {

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <titop/compiler/residual.hpp>
+#include <titop/compiler/certify/residual.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/drives.hpp>
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
 #include <titop/compiler/evaluate.hpp>
-#include <titop/compiler/proper.hpp>
+#include <titop/compiler/reduce/proper.hpp>
 #include <titop/compiler/solve/blame.hpp>
 
 namespace titop::detail {

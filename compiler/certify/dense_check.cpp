@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <limits>
+#include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/evaluate.hpp>
-#include <titop/compiler/steady_random.hpp>
 #include <titop/compiler/system_data.hpp>
 
 /// The dense model against the factors that it was written from.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <titop/compiler/hidden.hpp>
+#include <titop/compiler/reduce/hidden.hpp>
 
 namespace titop::detail {
 
