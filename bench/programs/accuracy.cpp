@@ -1,18 +1,23 @@
 #include <fmt/format.h>
 
+#include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <functional>
-#include <string_view>
 
+#include "methods/at_s.hpp"
 #include "methods/dense_lu.hpp"
+#include "methods/hessenberg.hpp"
 #include "methods/oracle.hpp"
 #include "methods/sparse_lu.hpp"
 #include "support/agreement.hpp"
 #include "support/cases.hpp"
+#include "support/quick.hpp"
 
-/// Digits left where neighbouring bodies differ by the square of a ratio: ten bodies scaled by it
-/// and by 1/it in turn, the transfer by each method against 150 digits, at s = (0.05 + j) omega.
+/// Error against time: one transfer by every method in every precision against 150 digits, what
+/// serves all s (compiling, writing, ordering) not counted; and 100 frequencies from the compiled
+/// system on, all counted, against 50 digits.
 namespace titop_bench {
 namespace {
 
@@ -20,75 +25,154 @@ using Eigen::MatrixXcd;
 using titop::Precision;
 using titop::StateSpace;
 using titop::System;
+using Complex = std::complex<double>;
+using Responses = std::vector<MatrixXcd>;
 
-using Transfer = std::function<MatrixXcd(std::complex<double>)>;
+/// Best of some runs, of at least a hundredth of a second in all.
+double seconds_of(const std::function<void()>& f) {
+  using Clock = std::chrono::steady_clock;
+  double best = HUGE_VAL, all = 0;
+  for (int i = 0; i < 100 && all < 0.01; ++i) {
+    const auto start = Clock::now();
+    f();
+    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    best = std::min(best, seconds);
+    all += seconds;
+  }
+  return best;
+}
 
 struct Entry {
-  const char* name;
-  Transfer transfer;
+  const char* method;
+  const char* precision;
+  std::function<MatrixXcd(Complex)> transfer;
 };
 
+/// The library's line, and the same elimination in all precisions.
+void add_library(std::vector<Entry>& list, const System& system) {
+  const auto add = [&](const char* name, Precision p) {
+    list.push_back({"titop", name, [&system, p](Complex s) { return system.transfer(s, p); }});
+  };
+  add("float", Precision::single);
+  add("double", Precision::standard);
+  add("refined", Precision::refined);
+  add("long double", Precision::extended);
+  add("50 digits", Precision::digits50);
+  add("as needed", Precision::as_needed);
+}
+
+void add_at_s(std::vector<Entry>& list, const char* method, const Network& network,
+              MatrixXcd (*transfer)(const Network&, Complex, Digits)) {
+  const auto add = [&](const char* name, Digits digits) {
+    list.push_back({method, name, [&network, transfer, digits](Complex s) {
+                      return transfer(network, s, digits);
+                    }});
+  };
+  add("float", Digits::single);
+  add("double", Digits::standard);
+  add("long double", Digits::extended);
+  add("50 digits", Digits::fifty);
+}
+
 std::vector<Entry> methods(const System& system, const Network& network) {
-  StateSpace written, by_dense;
-  system.write(written);
-  dense_lu(network, by_dense);
-  SparseLu lu(network);
-  lu.factorize();
-  StateSpace by_sparse;
-  lu.write(by_sparse);
-  const auto at = [&](Precision p) {
-    return [&system, p](std::complex<double> s) { return system.transfer(s, p); };
+  std::vector<Entry> list;
+  add_library(list, system);
+  const auto of = [&](const char* method, const StateSpace& m) {
+    list.push_back({method, "double", [m](Complex s) { return m.transfer(s); }});
   };
-  const auto of = [](const StateSpace& m) {
-    return [m](std::complex<double> s) { return m.transfer(s); };
-  };
-  return {{"titop factors", at(Precision::standard)},
-          {"titop as needed", at(Precision::as_needed)},
-          {"titop float", at(Precision::single)},
-          {"titop refined", at(Precision::refined)},
-          {"titop long double", at(Precision::extended)},
-          {"titop dense A", of(written)},
-          {"dense LU", of(by_dense)},
-          {"sparse LU", of(by_sparse)},
-          {"sparse LU at s",
-           [&network](std::complex<double> s) { return SparsePencil(network).transfer(s); }}};
+  StateSpace model;
+  system.write(model);
+  of("titop dense model", model);
+  dense_lu(network, model);
+  of("dense LU model", model);
+  const auto pencil = std::make_shared<SparsePencil>(network);
+  list.push_back({"sparse LU at s", "double", [pencil](Complex s) { return pencil->transfer(s); }});
+  add_at_s(list, "dense LU at s", network, dense_at_s);
+  add_at_s(list, "block by block", network, block_by_block_at_s);
+  if (is_chain(network)) add_at_s(list, "tearing", network, tearing_at_s);
+  return list;
 }
 
-/// What fails (a singular matrix) has no digits left: 1.
-double error(const Entry& method, const std::vector<std::complex<double>>& points,
-             const std::vector<MatrixXcd>& exact) {
-  try {
-    std::vector<MatrixXcd> found;
-    for (const auto& s : points) found.push_back(method.transfer(s));
-    return std::min(1.0, difference(found, exact));
-  } catch (const std::exception&) {
-    return 1;
-  }
+void row(const char* task, Case c, int n, const char* method, const char* precision, double seconds,
+         double error) {
+  fmt::print("{},{},{},{},{},{:.4g},{:.3g}\n", task, name_of(c), n, method, precision, seconds,
+             std::isfinite(error) ? std::min(error, 1e3) : 1e3);
+  std::fflush(stdout);
 }
 
-void compare(Case c, int exponent, bool quick) {
-  const System system =
-      compile(scene(c, 10, {.ratio = std::pow(10.0, exponent)}), {.minimize_up_to = 0});
+void transfers(Case c, int n, bool quick) {
+  const System system = compile(scene(c, n), {.minimize_up_to = 0});
   const Network network = network_of(system);
-  std::vector<std::complex<double>> points;
-  std::vector<MatrixXcd> exact;
-  for (double omega = 0.1; omega < 2e3; omega *= quick ? 100 : 2) {
-    points.push_back(omega * std::complex<double>(0.05, 1));
+  std::vector<Complex> points;
+  Responses exact;
+  for (double omega = 0.3; omega < 1e4; omega *= quick ? 100 : 10) {
+    points.push_back(omega * Complex(0.05, 1));
     exact.push_back(oracle_transfer(system, points.back()));
   }
-  for (const Entry& m : methods(system, network))
-    fmt::print("{},10,{},{},{:.2g}\n", name_of(c), exponent, m.name, error(m, points, exact));
-  std::fflush(stdout);
+  for (const Entry& m : methods(system, network)) try {
+      Responses found;
+      for (const Complex s : points) found.push_back(m.transfer(s));
+      const double seconds = seconds_of([&] { m.transfer(points[1]); });
+      row("transfer", c, n, m.method, m.precision, seconds, difference(found, exact));
+    } catch (const std::exception&) {  // singular: no digits left
+      row("transfer", c, n, m.method, m.precision, 0, 1);
+    }
+}
+
+/// f(omega) -> responses, prepared anew each time.
+void response(Case c, int n, const char* method, const char* precision, const Responses& exact,
+              const std::function<Responses()>& f) {
+  Responses found;
+  const double seconds = seconds_of([&] { found = f(); });
+  Responses some;
+  for (std::size_t k = 0; k < exact.size(); ++k) some.push_back(found[5 * k]);
+  row("response", c, n, method, precision, seconds, difference(some, exact));
+}
+
+void responses(Case c, int n) {
+  const System system = compile(scene(c, n), {.minimize_up_to = 0});
+  std::vector<double> omega;
+  for (int k = 0; k < 100; ++k) omega.push_back(0.11 * std::pow(1e4, k / 99.0));
+  Responses exact;
+  for (std::size_t k = 0; k < omega.size(); k += 5)
+    exact.push_back(system.transfer({0, omega[k]}, Precision::digits50));
+  const auto all = [&](const auto& transfer) {
+    Responses r;
+    for (const double w : omega) r.push_back(transfer(Complex(0, w)));
+    return r;
+  };
+  const auto factored = [&](const char* name, Precision p) {
+    response(c, n, "titop", name, exact,
+             [&, p] { return all([&](Complex s) { return system.transfer(s, p); }); });
+  };
+  factored("float", Precision::single);
+  factored("double", Precision::standard);
+  factored("refined", Precision::refined);
+  factored("as needed", Precision::as_needed);
+  response(c, n, "dense model and LU", "double", exact, [&] {
+    StateSpace m;
+    system.write(m);
+    return all([&](Complex s) { return m.transfer(s); });
+  });
+  response(c, n, "dense model and Hessenberg", "double", exact, [&] {
+    StateSpace m;
+    system.write(m);
+    const Hessenberg reduced(m);
+    return all([&](Complex s) { return reduced.transfer(s); });
+  });
 }
 
 }  // namespace
 }  // namespace titop_bench
 
 int main(int argc, char** argv) {
-  const bool quick = argc > 1 && std::string_view(argv[1]) == "quick";
+  const bool quick = titop_bench::is_quick(argc, argv);
   using titop_bench::Case;
-  fmt::print("scene,n,exponent,method,error\n");
-  for (const Case c : {Case::A, Case::BL, Case::D})
-    for (const int exponent : quick ? std::vector{0, 6} : std::vector{0, 3, 6, 9, 12})
-      titop_bench::compare(c, exponent, quick);
+  fmt::print("task,scene,n,method,precision,seconds,error\n");
+  for (const Case c : {Case::A, Case::BL, Case::C, Case::D, Case::F, Case::K})
+    titop_bench::transfers(c, quick ? 4 : 10, quick);
+  titop_bench::transfers(Case::R, quick ? 3 : 8, quick);
+  titop_bench::transfers(Case::G, quick ? 4 : 9, quick);
+  for (const int n : quick ? std::vector{2} : std::vector{2, 10, 50})
+    titop_bench::responses(Case::D, n);
 }

@@ -6,13 +6,15 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstring>
 #include <functional>
 #include <numbers>
 #include <titop/compiler/compile_graph.hpp>
 #include <titop/compiler/economy/ray.hpp>
 #include <titop/compiler/economy/sharpen.hpp>
 #include <titop/titop.hpp>
+
+#include "support/quick.hpp"
+#include "support/satellite.hpp"
 
 using namespace titop;
 using Eigen::MatrixXd;
@@ -30,17 +32,6 @@ double seconds_of(const std::function<void()>& f) {
     passed = std::chrono::duration<double>(clock::now() - start).count();
   }
   return passed / count;
-}
-
-/// The beam of examples/data/calculix_beam: 342 modes.
-FlexibleBody calculix_beam(bool quick, double xi = 0) {
-  const fe::Mesh mesh =
-      fe::read_calculix(fe::calculix_files(TITOP_DATA_DIR "/calculix_beam/beam_free_mat"),
-                        {{"P", 900001}, {"C", 900003}});
-  fe::ModeOptions options;
-  if (quick) options.kept = 20;
-  if (xi > 0) options.xi = {xi};
-  return fe::modal_data(mesh, "P", {"C"}, options);
 }
 
 Diagram frame(const FlexibleBody& beam) {
@@ -65,29 +56,6 @@ Diagram heavy(const FlexibleBody& beam) {
   mount(tip, b.child("C"), Rotation{});
   b.child("C").force += U;
   d.output("a", 6) = tip.parent.accel;
-  return d;
-}
-
-/// The satellite of examples/demo.cpp.
-Diagram satellite(const FlexibleBody& boom) {
-  Diagram d{"satellite"};
-  auto W = d.input("W", 6);
-  auto tau_m = d.input("tau_m");
-  auto hub =
-      d.add("hub", RigidBody{.mass = 85,
-                             .inertia = Vector3d(9, 11, 13).asDiagonal(),
-                             .PA = {0.02, -0.01, 0.05},
-                             .children = {{"C1", {0.35, 0, 0.1}}, {"C2", {-0.35, 0.05, 0.1}}}});
-  auto boom1 = d.add("boom1", boom), boom2 = d.add("boom2", boom);
-  hub.parent.force = -W;
-  mount(boom1, hub.child("C1"), Rotation::about({0, 0, 1}, std::numbers::pi / 12));
-  auto drive =
-      hinge(d, "drive", boom2, hub.child("C2"), Rotation::about({1, 2, 9}, 2.9), {0, 1, 0});
-  drive.torque = 60 * drive.angle + 0.8 * drive.rate - tau_m;
-  d.output("hub", 6) = hub.parent.accel;
-  d.output("tip1", 6) = boom1.child("C").accel;
-  d.output("tip2", 6) = boom2.child("C").accel;
-  d.output("theta") = drive.angle;
   return d;
 }
 
@@ -194,10 +162,15 @@ void table(const char* name, const Diagram& d, const Scene& scene, bool quick) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool quick = argc > 1 && std::strcmp(argv[1], "quick") == 0;
+  const bool quick = titop_bench::is_quick(argc, argv);
   fmt::print("scene,accuracy,states,full,bound,plain,transfer,full_transfer,step,full_step\n");
-  table("frame", frame(calculix_beam(quick)), {.band_hz = {0, 261}}, quick);
-  table("heavy", heavy(calculix_beam(quick)), {.band_hz = {0, 261}}, quick);
-  table("satellite", satellite(calculix_beam(quick, 0.005)), {.band_hz = {0, 300}}, quick);
+  fe::ModeOptions modes;  // all 342
+  if (quick) modes.kept = 20;
+  const FlexibleBody beam = titop_bench::calculix_beam(modes);
+  table("frame", frame(beam), {.band_hz = {0, 261}}, quick);
+  table("heavy", heavy(beam), {.band_hz = {0, 261}}, quick);
+  modes.xi = {0.005};
+  table("satellite", titop_bench::satellite(titop_bench::calculix_beam(modes), 0.8),
+        {.band_hz = {0, 300}}, quick);
   table("generated", generated(quick ? 60 : 500), {.band_hz = {0, 5}}, quick);
 }

@@ -3,10 +3,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <string_view>
 
 #include "methods/steppers.hpp"
 #include "support/cases.hpp"
+#include "support/quick.hpp"
 
 /// Error against cost of time integration: the free motion of a chain that is let go bent, by the
 /// library's steppers and by others. Steps are given as h * omega of the fastest pole; the error is
@@ -92,7 +92,7 @@ void compare(Case c, int n, bool quick) {
 }  // namespace titop_bench
 
 int main(int argc, char** argv) {
-  const bool quick = argc > 1 && std::string_view(argv[1]) == "quick";
+  const bool quick = titop_bench::is_quick(argc, argv);
   using titop_bench::Case;
   fmt::print("scene,n,method,h_omega,error,seconds\n");
   titop_bench::compare(Case::A, 10, quick);

@@ -157,45 +157,30 @@ Prepared dense_compile(Case c, int n) {
           [=] { return other->from(other->model); }};
 }
 
-Prepared sparse_compile(Case c, int n) {
+enum class Order { anew, kept };  ///< of elimination: found each time, or once
+
+SparseLu& factorized(Other& other, Order order) {
+  if (order == Order::anew || !other.lu) other.lu = std::make_unique<SparseLu>(other.network);
+  other.lu->factorize();
+  return *other.lu;
+}
+
+Prepared sparse_model(Case c, int n, Order order) {
   const auto other = std::make_shared<Other>(c, n);
-  return {[=] {
-            SparseLu lu(other->network);
-            lu.factorize();
-            lu.write(other->model);
-          },
+  return {[=] { factorized(*other, order).write(other->model); },
           [=] { return other->from(other->model); }};
 }
 
-Prepared sparse_recompile(Case c, int n) {
+Prepared sparse_product(Case c, int n, Order order) {
   const auto other = std::make_shared<Other>(c, n);
-  other->lu = std::make_unique<SparseLu>(other->network);
-  return {[=] {
-            other->lu->factorize();
-            other->lu->write(other->model);
-          },
-          [=] { return other->from(other->model); }};
-}
-
-Prepared sparse_factor(Case c, int n) {
-  const auto other = std::make_shared<Other>(c, n);
-  return {[=] {
-            SparseLu lu(other->network);
-            lu.factorize();
-            other->product = lu.apply(other->probe.x, other->probe.u);
-          },
+  return {[=] { other->product = factorized(*other, order).apply(other->probe.x, other->probe.u); },
           [=] { return difference(other->product, other->probe(other->system)); }};
 }
 
-Prepared sparse_refactor(Case c, int n) {
-  const auto other = std::make_shared<Other>(c, n);
-  other->lu = std::make_unique<SparseLu>(other->network);
-  return {[=] {
-            other->lu->factorize();
-            other->product = other->lu->apply(other->probe.x, other->probe.u);
-          },
-          [=] { return difference(other->product, other->probe(other->system)); }};
-}
+Prepared sparse_compile(Case c, int n) { return sparse_model(c, n, Order::anew); }
+Prepared sparse_recompile(Case c, int n) { return sparse_model(c, n, Order::kept); }
+Prepared sparse_factor(Case c, int n) { return sparse_product(c, n, Order::anew); }
+Prepared sparse_refactor(Case c, int n) { return sparse_product(c, n, Order::kept); }
 
 // --- floors -----------------------------------------------------------------------------------
 

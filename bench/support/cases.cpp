@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <random>
 #include <stdexcept>
@@ -18,7 +20,7 @@ using titop::Value;
 
 namespace {
 
-constexpr std::array kNames{"A", "BL", "C", "D", "F", "K", "T"};
+constexpr std::array kNames{"A", "BL", "C", "D", "F", "K", "T", "R", "G"};
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -149,6 +151,55 @@ Diagram fan(int n, const SceneOptions& options) {
   return d;
 }
 
+Diagram ring(int n) {
+  Diagram d{"case R"};
+  const FlexibleBody body = beam(1);
+  std::vector<FlexibleBody::Handle> b;
+  b.reserve(at(n));
+  for (int i = 0; i < n; ++i) b.push_back(d.add(fmt::format("B{}", i + 1), body));
+  const Rotation T = Rotation::about({0, 0, 1}, 2 * std::numbers::pi / n);
+  for (int i = 0; i < n; ++i) mount(b[at((i + 1) % n)], b[at(i)].child, T);
+  b[0].child.force += d.input("U", 6);
+  d.output("a", 6) = b[at(n / 2)].parent.accel;
+  return d;
+}
+
+/// Node i, j stands at the end of the beam from its left, in the first column from below; where it
+/// has both, the beam from below is welded to it.
+Diagram grid(int n) {
+  Diagram d{"case G"};
+  const int m = static_cast<int>(std::lround(std::sqrt(n)));
+  const FlexibleBody body = beam(1);
+  const titop::RigidBody node{
+      .mass = 5, .inertia = 0.1 * Eigen::Matrix3d::Identity(), .children = {{"E"}, {"N"}, {"S"}}};
+  const Rotation up = Rotation::about({0, 0, 1}, std::numbers::pi / 2);
+  std::vector<titop::BodyHandle> nodes;
+  nodes.reserve(at(m * m));
+  for (int j = 0; j < m; ++j)
+    for (int i = 0; i < m; ++i) {
+      const auto name = [&](const char* what) {
+        return fmt::format("{}{}_{}", what, i + 1, j + 1);
+      };
+      nodes.push_back(d.add(name("N"), node));
+      if (i > 0) {
+        auto beam = d.add(name("H"), body);
+        mount(beam, nodes[at(m * j + i - 1)].child("E"));
+        mount(nodes.back(), beam.child);
+      }
+      if (j > 0) {
+        auto beam = d.add(name("V"), body);
+        mount(beam, nodes[at(m * (j - 1) + i)].child("N"), up);
+        if (i == 0)
+          mount(nodes.back(), beam.child, up.inverse());
+        else
+          weld(beam.child, nodes.back().child("S"), up);
+      }
+    }
+  nodes.front().parent.force = -d.input("U", 6);
+  d.output("a", 6) = nodes.back().parent.accel;
+  return d;
+}
+
 }  // namespace
 
 std::string name_of(Case c) { return kNames[static_cast<std::size_t>(c)]; }
@@ -168,6 +219,8 @@ Diagram scene(Case c, int n, const SceneOptions& options) {
     case Case::K:
     case Case::T: return flexible(c, n, options);
     case Case::F: return fan(n, options);
+    case Case::R: return ring(n);
+    case Case::G: return grid(n);
   }
   throw std::invalid_argument("no such case");
 }

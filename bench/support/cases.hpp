@@ -15,6 +15,8 @@ enum class Case {
   F,   ///< [Alazard 2015] Fig. 17: one hub with n flexible appendages
   K,   ///< chain of flexible bodies with a hinge and a controller at every joint, free root
   T,   ///< balanced binary tree of flexible bodies, free root
+  R,   ///< ring of flexible bodies, closed on itself, free (n >= 3)
+  G,   ///< planar grid: n rigid nodes (rounded to a square), beams between neighbours, free
 };
 
 /// "A", "BL", ...
@@ -35,7 +37,8 @@ struct SceneOptions {
 };
 
 /// The diagram of case c with n bodies (F: appendages). From the force at the last mass (A, BL, C)
-/// or the wrench at the root to the acceleration of the last body.
+/// or the wrench at the root (R: at the first joint) to the acceleration of the last body (R: half
+/// way round). R and G have no parameter and no ratio.
 titop::Diagram scene(Case c, int n, const SceneOptions& options = {});
 
 }  // namespace titop_bench

@@ -1,0 +1,109 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <boost/multiprecision/cpp_bin_float.hpp>
+#include <boost/multiprecision/cpp_complex.hpp>
+#include <complex>
+#include <stdexcept>
+#include <titop/compiler/solve/kernels.hpp>
+#include <utility>
+#include <vector>
+
+/// Plain elimination in any complex number: what the oracle and the methods at one s stand on.
+namespace titop_bench {
+
+using Digits50 = boost::multiprecision::cpp_complex_50;
+using Digits150 = boost::multiprecision::number<
+    boost::multiprecision::complex_adaptor<boost::multiprecision::cpp_bin_float<150>>>;
+
+template <class T>
+using RealOf = std::decay_t<decltype(std::declval<const T&>().real())>;
+
+template <class T>
+T number(double re, double im = 0) {
+  return T(static_cast<RealOf<T>>(re), static_cast<RealOf<T>>(im));
+}
+template <class T>
+std::complex<double> rounded(const T& x) {
+  return {static_cast<double>(x.real()), static_cast<double>(x.imag())};
+}
+
+/// |re| + |im|.
+template <class T>
+RealOf<T> magnitude(const T& x) {
+  using std::abs;
+  return abs(x.real()) + abs(x.imag());
+}
+
+/// Rows of numbers: what little is needed of a matrix.
+template <class T>
+class Table {
+ public:
+  using Index = Eigen::Index;
+  Table(Index rows, Index cols)
+      : rows_(rows), cols_(cols), values_(at(rows * cols), number<T>(0)) {}
+  explicit Table(const Eigen::MatrixXd& m) : Table(m.rows(), m.cols()) {
+    for (Index i = 0; i < rows_; ++i)
+      for (Index j = 0; j < cols_; ++j) (*this)(i, j) = number<T>(m(i, j));
+  }
+  T& operator()(Index i, Index j) { return values_[at(i * cols_ + j)]; }
+  const T& operator()(Index i, Index j) const { return values_[at(i * cols_ + j)]; }
+  Index rows() const { return rows_; }
+  Index cols() const { return cols_; }
+
+  /// Row `to` from column `first` on, less a times row `from` of `other`.
+  void subtract(const T& a, const Table& other, Index from, Index to, Index first = 0) {
+    titop::solve::subtract(cols_ - first, a, other.row(from) + first, row(to) + first);
+  }
+  void swap_rows(Index i, Index j) {
+    if (i != j) std::swap_ranges(row(i), row(i) + cols_, row(j));
+  }
+  Eigen::MatrixXcd to_double() const {
+    Eigen::MatrixXcd m(rows_, cols_);
+    for (Index i = 0; i < rows_; ++i)
+      for (Index j = 0; j < cols_; ++j) m(i, j) = rounded((*this)(i, j));
+    return m;
+  }
+
+ private:
+  static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+  T* row(Index i) { return values_.data() + i * cols_; }
+  const T* row(Index i) const { return values_.data() + i * cols_; }
+  Index rows_, cols_;
+  std::vector<T> values_;
+};
+
+template <class T>
+Table<T> product(const Table<T>& A, const Table<T>& B) {
+  Table<T> C(A.rows(), B.cols());
+  for (Eigen::Index i = 0; i < A.rows(); ++i)
+    for (Eigen::Index k = 0; k < A.cols(); ++k)
+      if (A(i, k) != number<T>(0)) C.subtract(-A(i, k), B, k, i);
+  return C;
+}
+
+/// Y = M^-1 Y by Gauss with partial pivoting. Throws runtime_error where a column has no pivot.
+template <class T>
+void solve(Table<T> M, Table<T>& Y) {
+  const Eigen::Index n = M.rows();
+  for (Eigen::Index k = 0; k < n; ++k) {
+    Eigen::Index pivot = k;
+    for (Eigen::Index i = k + 1; i < n; ++i)
+      if (magnitude(M(i, k)) > magnitude(M(pivot, k))) pivot = i;
+    if (M(pivot, k) == number<T>(0)) throw std::runtime_error("no pivot");
+    M.swap_rows(k, pivot), Y.swap_rows(k, pivot);
+    for (Eigen::Index i = k + 1; i < n; ++i) {
+      if (M(i, k) == number<T>(0)) continue;
+      const T factor = M(i, k) / M(k, k);
+      M.subtract(factor, M, k, i, k);
+      Y.subtract(factor, Y, k, i);
+    }
+  }
+  for (Eigen::Index k = n - 1; k >= 0; --k) {
+    for (Eigen::Index j = 0; j < Y.cols(); ++j) Y(k, j) /= M(k, k);
+    for (Eigen::Index i = 0; i < k; ++i)
+      if (M(i, k) != number<T>(0)) Y.subtract(T(M(i, k)), Y, k, i);
+  }
+}
+
+}  // namespace titop_bench
