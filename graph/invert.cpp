@@ -2,7 +2,9 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 #include <titop/graph/invert.hpp>
+#include <utility>
 
 namespace titop {
 namespace {
@@ -33,6 +35,31 @@ Range range_of(const std::string& text, const ChannelSpec& c) {
   return {0, 0};
 }
 
+/// Rows and columns brought to the same size, by powers of two: a body is no more singular in
+/// millimetres than in metres.
+struct Scaled {
+  MatrixXd matrix;
+  Eigen::VectorXd rows, cols;
+
+  explicit Scaled(MatrixXd m)
+      : matrix(std::move(m)),
+        rows(Eigen::VectorXd::Ones(matrix.rows())),
+        cols(Eigen::VectorXd::Ones(matrix.cols())) {
+    for (int sweep = 0; sweep < 5; ++sweep)
+      for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+        const double row = by_two(matrix.row(i).cwiseAbs().maxCoeff());
+        matrix.row(i) *= row, rows(i) *= row;
+        const double col = by_two(matrix.col(i).cwiseAbs().maxCoeff());
+        matrix.col(i) *= col, cols(i) *= col;
+      }
+  }
+
+ private:
+  static double by_two(double size) {
+    return size > 0 ? std::exp2(-std::round(std::log2(size))) : 1;
+  }
+};
+
 }  // namespace
 
 StateSpace model_of(const BlockPtr& block) {
@@ -58,8 +85,8 @@ StateSpace model_of(const BlockPtr& block) {
 StateSpace invert(const StateSpace& model, const std::vector<std::pair<int, int>>& pairs) {
   std::vector<int> in, out;
   for (const auto& [i, o] : pairs) in.push_back(i), out.push_back(o);
-  const MatrixXd D_oi = model.D(out, in);
-  Eigen::FullPivLU<MatrixXd> lu(D_oi);
+  const Scaled D_oi(model.D(out, in));
+  Eigen::FullPivLU<MatrixXd> lu(D_oi.matrix);
   lu.setThreshold(1e-13);
   if (!lu.isInvertible())
     throw Error(Code::improper,
@@ -69,7 +96,7 @@ StateSpace invert(const StateSpace& model, const std::vector<std::pair<int, int>
                             lu.rank(), pairs.size()),
                 "invert fewer degrees of freedom: the inverse would need derivatives");
   // u_i = R (y_o - C_o x - D_or u_r); the rest follows by substitution.
-  const MatrixXd R = lu.inverse();
+  const MatrixXd R = D_oi.cols.asDiagonal() * lu.inverse() * D_oi.rows.asDiagonal();
   MatrixXd K = -R * model.D(out, Eigen::all);  // of all inputs; the swapped columns become R
   K(Eigen::all, in) = R;
   const MatrixXd X = -R * model.C(out, Eigen::all);

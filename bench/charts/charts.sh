@@ -35,12 +35,21 @@ labels_of() {
 # chart NAME TITLE XLABEL YLABEL: draws $work/NAME.dat, blocks of lines under "# name".
 chart() {
   local data=$work/$1.dat
+  [[ -s $data ]] || return 0
   labels_of "$data" >"$work/$1.labels"
   local count
   count=$(grep -c '^#' "$data")
   [[ -s $work/$1.labels ]] || return 0
+  local notes=
+  [[ ! -s $work/$1.notes ]] || notes="notes='$work/$1.notes';"
   gnuplot -e "data='$data'; labels='$work/$1.labels'; count=$count; output='$out/$1.svg';
-    title='$2'; xlabel='$3'; ylabel='$4'; ${5:-}" $here/lines.gp
+    title='$2'; xlabel='$3'; ylabel='$4'; $notes ${5:-}" $here/lines.gp
+}
+
+# keyed NAME ...: the same with a key, where lines end at one another.
+keyed() {
+  [[ -s $work/$1.dat ]] || return 0
+  chart "$@" "names='$(sed -n 's/^# \(.*\)/"\1"/p' "$work/$1.dat" | tr '\n' ' ')'"
 }
 
 # block NAME LABEL: stdin as one more line of chart NAME, unless it is empty.
@@ -87,17 +96,86 @@ draw_growth() {
   chart "$name" "$title" "bodies" "$ylabel"
 }
 
-draw_accuracy() {
-  local scene=$1 method
-  rm -f "$work/accuracy-$scene.dat"
-  awk -F, -v s="$scene" '$1 == s && !seen[$4]++ { print $4 }' "$out/accuracy.csv" |
-    while read -r method; do
-      awk -F, -v s="$scene" -v m="$method" \
-        '$1 == s && $4 == m { print $3 "," ($5 < 1e-17 ? 1e-17 : $5) }' "$out/accuracy.csv" |
-        block "accuracy-$scene" "$method"
+# One transfer: error against time, a line per method from float to 50 digits.
+draw_precision() {
+  local scene=$1 n=$2 method name=precision-$1
+  rm -f "$work/$name.dat"
+  for method in titop "titop dense model" "dense LU model" "sparse LU at s" "dense LU at s" \
+    "block by block" tearing; do
+    awk -F, -v s="$scene" -v m="$method" \
+      '$1 == "transfer" && $2 == s && $4 == m && $6 > 0 && $5 != "as needed" {
+        print $6 "," ($7 < 1e-17 ? 1e-17 : $7) }' "$out/accuracy.csv" | block "$name" "$method"
+  done
+  awk -F, -v OFS=, -v s="$scene" '$1 == "transfer" && $2 == s && $6 > 0 {
+      print $6, ($7 < 1e-17 ? 1e-17 : $7), substr($5, 1, 1) == "5" ? "50" : substr($5, 1, 1) }' \
+    "$out/accuracy.csv" >"$work/$name.notes"
+  keyed "$name" "case $scene ($n bodies): one transfer" \
+    "seconds; f: float, d: double, r: refined, l: long double, a: as needed" "largest relative error"
+}
+
+# 100 frequencies from the compiled system on.
+draw_response() {
+  local method name=response-D n
+  rm -f "$work/$name.dat" "$work/$name.notes"
+  for n in 2 10 50; do
+    for method in titop "dense model and LU" "dense model and Hessenberg"; do
+      awk -F, -v n="$n" -v m="$method" '$1 == "response" && $3 == n && $4 == m && $5 != "as needed" {
+        print $6 "," $7 }' "$out/accuracy.csv" | block "$name" "$method ($n)"
     done
-  chart "accuracy-$scene" "case $scene, ten bodies scaled by 10^k and 10^{-k} in turn" "k" \
-    "largest relative error of the transfer" "linear=1"
+  done
+  awk -F, -v OFS=, '$1 == "response" && $4 == "titop" { print $6, $7, substr($5, 1, 1) }' \
+    "$out/accuracy.csv" >"$work/$name.notes"
+  keyed "$name" "case D (2 and 10 and 50 bodies): 100 frequencies" \
+    "seconds; f: float, d: double, r: refined, a: as needed" "largest relative error"
+}
+
+# Error of every method while one quantity goes to an extreme; rings where the library warns or
+# notes something, crosses where it refuses.
+draw_failures() {
+  local name=failure-$1 method title quantity options
+  title=$(awk -F, -v s="$1" '$1 == s { print $2; exit }' "$out/failures.csv")
+  quantity=$(awk -F, -v s="$1" '$1 == s { print $3; exit }' "$out/failures.csv")
+  rm -f "$work/$name.dat"
+  for method in titop "titop in double" "titop dense model" "dense LU" "sparse LU at s" \
+    "block by block" tearing; do
+    awk -F, -v s="$1" -v m="$method" '
+      $1 == s && $5 == m && ($7 == "" || $7 == "warned" || $7 == "noted") {
+        print $4 "," ($6 < 1e-17 ? 1e-17 : $6) }' "$out/failures.csv" | block "$name" "$method"
+  done
+  awk -F, -v OFS=, -v s="$1" '$1 == s && $7 != "" && $5 != "titop in double" {
+      print $4, ($6 < 1e-17 ? 1e-17 : $6), $7 == "warned" || $7 == "noted" ? "o" : "x" }' \
+    "$out/failures.csv" >"$work/$name.notes"
+  options=$(awk -F, -v s="$1" '$1 == s { if (first == "") first = $4; last = $4 }
+    END { print (first > last ? "reverse=1;" : "") (first < 100 && last < 100 && last > 1 ? "linear=1;" : "") }' \
+    "$out/failures.csv")
+  chart "$name" "$title" "$quantity" "largest relative error (o: said in the log; x: refused)" "$options"
+}
+
+# Energy of an undamped structure, and the gap of a closed chain, over steps.
+draw_drift() {
+  local test=$1 scene=$2 name=$3 title=$4 ylabel=$5 method points order
+  rm -f "$work/$name.dat"
+  awk -F, -v t="$test" -v s="$scene" '$1 == t && $2 == s && !seen[$3]++ { print $3 }' "$out/drift.csv" |
+    while read -r method; do
+      points=$(awk -F, -v t="$test" -v s="$scene" -v m="$method" '
+        $1 == t && $2 == s && $3 == m && $5 < 1e6 { print $4 "," ($5 < 1e-17 ? 1e-17 : $5) }' "$out/drift.csv")
+      order=$(echo "$points" | awk -F, '$2 > 1e-14' | slope)
+      echo "$points" | block "$name" "$method${order:+ (slope $order)}"
+    done
+  chart "$name" "$title" "steps" "$ylabel"
+}
+
+# Growth per step: lines by theory, points as measured.
+draw_growth_factors() {
+  local name=stability method
+  rm -f "$work/$name.dat"
+  awk -F, '$1 == "growth" && !seen[$3]++ { print $3 }' "$out/drift.csv" | while read -r method; do
+    awk -F, -v m="$method" '$1 == "growth" && $3 == m && $6 < 20 { print $4 "," $6 }' "$out/drift.csv" |
+      block "$name" "$method"
+  done
+  awk -F, -v OFS=, '$1 == "growth" && $5 < 20 { print $4, $5, "o" }' "$out/drift.csv" >"$work/$name.notes"
+  chart "$name" "growth per step of an undamped mass: theory (lines) and measured (o)" \
+    "step times frequency" "growth per step"
 }
 
 # Error of time integration against step and against seconds; the slope over what is neither rounding
@@ -121,7 +199,7 @@ draw_integration() {
 }
 
 draw_all() {
-  local scene
+  local scene n
   for scene in D F K A BL C; do
     draw_task "compile-$scene" compile "$scene" "case $scene: from Diagram to dense model"
     draw_task "recompile-$scene" recompile "$scene" "case $scene: new values to dense model"
@@ -134,7 +212,18 @@ draw_all() {
   done
   draw_growth growth-compile 5 "first compile, no dense model" "seconds" ""
   draw_growth growth-memory bytes "memory of Diagram and System" "bytes per body" per
-  for scene in A BL D; do draw_accuracy "$scene"; done
+  while IFS=, read -r scene n; do draw_precision "$scene" "$n"; done < <(
+    awk -F, '$1 == "transfer" && !seen[$2]++ { print $2 "," $3 }' "$out/accuracy.csv")
+  draw_response
+  while read -r scene; do draw_failures "$scene"; done < <(
+    awk -F, 'NR > 1 && !seen[$1]++ { print $1 }' "$out/failures.csv")
+  draw_drift energy "five masses" energy-five-masses "five masses without damping" "change of energy"
+  draw_drift energy satellite energy-satellite "the satellite without damping" "change of energy"
+  draw_drift energy "1000 masses" energy-1000-masses "1000 masses in a row without damping" \
+    "change of energy"
+  draw_drift closure "six masses" closure "six masses between two walls: does the chain stay closed?" \
+    "gap over the largest stretch"
+  draw_growth_factors
   draw_integration A 10
   draw_integration D 5
   [[ $mode == quick ]] || draw_integration D 50

@@ -1,4 +1,5 @@
-# The table in docs/bench/README.md from times.csv, octave.csv, growth.csv and accuracy.csv.
+# docs/bench/measured.md from times.csv, octave.csv, growth.csv, accuracy.csv, failures.csv and
+# drift.csv.
 
 FNR == 1 { file = FILENAME; sub(/.*\//, "", file); next }
 file == "times.csv" || file == "octave.csv" {
@@ -16,10 +17,21 @@ file == "growth.csv" {
   changed[$1, k] = $7; bytes[$1, k] = $9 + $10; peak[$1, k] = $11
 }
 file == "accuracy.csv" {
-  if (!(($1, $4) in met)) { met[$1, $4] = 1; method[++method_count] = $1 SUBSEP $4 }
-  error[$1, $4, $3] = $5
-  if (!($3 in exponent_met)) { exponent_met[$3] = 1; exponent[++exponent_count] = $3 }
+  key = $1 SUBSEP $4 SUBSEP $5
+  if (!(key in met)) { met[key] = 1; method[++method_count] = key }
+  if (!(($1, $2, $3) in case_met)) { case_met[$1, $2, $3] = 1; cases[$1] = cases[$1] " " $2 "/" $3 }
+  error[key, $2, $3] = $7; cost[key, $2, $3] = $6
 }
+file == "failures.csv" {
+  if (!($1 in sweep_met)) { sweep_met[$1] = 1; sweep[++sweep_count] = $1; about[$1] = $2 }
+  if (!($5 in line_met)) { line_met[$5] = 1; line[++line_count] = $5 }
+  if ($7 == "" || $7 == "noted") {
+    if (!(($1, $5) in worst_error) || $6 > worst_error[$1, $5]) {
+      worst_error[$1, $5] = $6; worst_at[$1, $5] = $4
+    }
+  } else told[$1, $5] = told[$1, $5] (told[$1, $5] == "" ? "" : " ") $4 ":" $7
+}
+file == "drift.csv" && $1 == "limit" { limits[++limit_count] = $3 "," $4 "," $5 "," $6 }
 
 # The fastest of the control package's ways (or of Octave's dense matrices), by BLAS, and sparse.
 function note_octave(point, name, s,   kind) {
@@ -103,10 +115,67 @@ function response_row(task, scene, n,   t) {
     ratio(get(task, scene, n, "dense model"), t)
 }
 
+function accuracy_table(task, title,   i, m, k, part, list, n) {
+  print "\n## " title "\n"
+  n = split(cases[task], list, " ")
+  printf "| method | precision |"
+  for (i = 1; i <= n; ++i) { sub("/", " ", list[i]); printf " %s |", list[i] }
+  printf "\n|---|---|"
+  for (i = 1; i <= n; ++i) printf "---|"
+  print ""
+  for (m = 1; m <= method_count; ++m) {
+    split(method[m], part, SUBSEP)
+    if (part[1] != task) continue
+    printf "| %s | %s |", part[2], part[3]
+    for (i = 1; i <= n; ++i) {
+      split(list[i], k, " ")
+      if ((method[m], k[1], k[2]) in error)
+        printf " %s (%s) |", error[method[m], k[1], k[2]], time(cost[method[m], k[1], k[2]])
+      else printf " - |"
+    }
+    print ""
+  }
+}
+
+function range_told(text,   list, n, first, last) {
+  n = split(text, list, " ")
+  if (n == 0) return ""
+  split(list[1], first, ":"); split(list[n], last, ":")
+  return "; " (n == 1 ? first[2] " at " first[1] : first[2] " ... " last[2] " at " first[1] " ... " last[1])
+}
+function failure_table(   i, m) {
+  print "\n## Where methods break\n"
+  print "Largest error over the sweep among the points at which nothing was said (@ where), and where" \
+    " the library warned or refused.\n"
+  printf "| sweep |"
+  for (m = 1; m <= line_count; ++m) printf " %s |", line[m]
+  printf "\n|---|"
+  for (m = 1; m <= line_count; ++m) printf "---|"
+  print ""
+  for (i = 1; i <= sweep_count; ++i) {
+    printf "| %s |", about[sweep[i]]
+    for (m = 1; m <= line_count; ++m)
+      printf " %s%s |", (sweep[i], line[m]) in worst_error \
+        ? worst_error[sweep[i], line[m]] " @ " worst_at[sweep[i], line[m]] : "-", \
+        range_told(told[sweep[i], line[m]])
+    print ""
+  }
+}
+function limit_table(   i, part) {
+  print "\n## Limits of stability\n"
+  print "Largest step times frequency of a mass with this damping ratio: measured by stepping, and by" \
+    " the rule\047s factor.\n"
+  print "| rule | damping ratio | measured | theory |\n|---|---|---|---|"
+  for (i = 1; i <= limit_count; ++i) {
+    split(limits[i], part, ",")
+    printf "| %s | %s | %s | %s |\n", part[1], part[2], part[3], part[4]
+  }
+}
+
 END {
   print "# Measured\n"
-  print "Written by `bench/run`; all in one run on " cpu ", " cores " cores, load " load " before it, " \
-    date ", " commit ", " compiler ", Octave " octave " with OpenBLAS. Each time is the best of some" \
+  print "Written by `bench/run`, read in [README.md](README.md); all in one run on " cpu ", " cores \
+    " cores, " when ", " compiler ", Octave " octave " with OpenBLAS. Each time is the best of some" \
     " repetitions. titop starts from a built Diagram; the others get the scene as matrices, free of" \
     " charge: blocks, u = K y + E w, z = F y + G w, free channels inverted beforehand."
   head("First compile, to the dense model in a warm buffer", "memset of A")
@@ -152,20 +221,10 @@ END {
   print "|---|---|---|---|---|---|---|---|---|---|"
   for (i = 1; i <= scene_count; ++i) growth_row(scenes[i])
 
-  print "\n## Accuracy\n"
-  print "Ten bodies scaled by 10^k and 10^-k in turn: largest relative error of the transfer, per 3 x 3" \
-    " block (or scalar), at s = (0.05 + j) omega, against 150 digits.\n"
-  printf "| case | method |"
-  for (i = 1; i <= exponent_count; ++i) printf " k = %s |", exponent[i]
-  printf "\n|---|---|"
-  for (i = 1; i <= exponent_count; ++i) printf "---|"
-  print ""
-  for (m = 1; m <= method_count; ++m) {
-    split(method[m], part, SUBSEP)
-    printf "| %s | %s |", part[1], part[2]
-    for (i = 1; i <= exponent_count; ++i) printf " %s |", error[part[1], part[2], exponent[i]]
-    print ""
-  }
+  accuracy_table("transfer", "One transfer: error against 150 digits (time)")
+  accuracy_table("response", "100 frequencies from the compiled system on: error against 50 digits (time)")
+  failure_table()
+  limit_table()
 
   print "\n## Agreement\n"
   print "Largest relative difference from titop's result (entries over their row's largest), over all" \

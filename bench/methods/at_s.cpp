@@ -1,10 +1,4 @@
-#include "at_s.hpp"
-
-#include <cstdlib>
-#include <map>
-#include <optional>
-
-#include "elimination.hpp"
+#include "methods/blocks_at_s.hpp"
 
 namespace titop_bench {
 
@@ -14,39 +8,6 @@ using Eigen::MatrixXd;
 using Complex = std::complex<double>;
 
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-/// Where a block's states, inputs and outputs begin.
-struct Places {
-  std::vector<Index> x, u, y;
-  explicit Places(const Network& net) {
-    Index nx = 0, nu = 0, ny = 0;
-    for (const auto& [states, inputs, outputs] : net.blocks) {
-      x.push_back(nx), u.push_back(nu), y.push_back(ny);
-      nx += states, nu += inputs, ny += outputs;
-    }
-    x.push_back(nx), u.push_back(nu), y.push_back(ny);
-  }
-  Index blocks() const { return static_cast<Index>(x.size()) - 1; }
-  Index inputs(Index i) const { return u[at(i) + 1] - u[at(i)]; }
-  Index outputs(Index i) const { return y[at(i) + 1] - y[at(i)]; }
-};
-
-/// H(s) of block i: D + C (s - A)^-1 B.
-template <class T>
-Table<T> response(const Network& net, const Places& p, Index i, const T& s) {
-  const Index x = p.x[at(i)], n = p.x[at(i) + 1] - x, u = p.u[at(i)], y = p.y[at(i)];
-  Table<T> Y(MatrixXd(net.D.block(y, u, p.outputs(i), p.inputs(i))));
-  if (n == 0) return Y;
-  Table<T> M(MatrixXd(-net.A.block(x, x, n, n))), X(MatrixXd(net.B.block(x, u, n, p.inputs(i))));
-  for (Index k = 0; k < n; ++k) M(k, k) += s;
-  solve(std::move(M), X);
-  const Table<T> C(MatrixXd(net.C.block(y, x, p.outputs(i), n)));
-  const Table<T> CX = product(C, X);
-  for (Index r = 0; r < Y.rows(); ++r) Y.subtract(number<T>(-1), CX, r, r);
-  return Y;
-}
 
 /// z = F H u + G w of all u.
 template <class T>
@@ -98,14 +59,6 @@ MatrixXcd dense(const Network& net, Complex s) {
   return outputs(net, p, H, u);
 }
 
-template <class T>
-Table<T> part(const Table<T>& M, Index row, Index col, Index rows, Index cols) {
-  Table<T> m(rows, cols);
-  for (Index i = 0; i < rows; ++i)
-    for (Index j = 0; j < cols; ++j) m(i, j) = M(row + i, col + j);
-  return m;
-}
-
 /// Gauss-Jordan by blocks: rows of block i times the inverse of M_ii, then out of all others.
 template <class T>
 MatrixXcd block_by_block(const Network& net, Complex s) {
@@ -135,157 +88,6 @@ MatrixXcd block_by_block(const Network& net, Complex s) {
   return outputs(net, p, H, u);
 }
 
-/// K by pairs of blocks.
-std::map<std::pair<Index, Index>, MatrixXd> couplings(const Network& net, const Places& p) {
-  std::map<std::pair<Index, Index>, MatrixXd> list;
-  std::vector<Index> of_u(at(net.K.rows())), of_y(at(net.K.cols()));
-  for (Index i = 0; i < p.blocks(); ++i) {
-    for (Index r = 0; r < p.inputs(i); ++r) of_u[at(p.u[at(i)] + r)] = i;
-    for (Index r = 0; r < p.outputs(i); ++r) of_y[at(p.y[at(i)] + r)] = i;
-  }
-  for (int j = 0; j < net.K.outerSize(); ++j)
-    for (Sparse::InnerIterator k(net.K, j); k; ++k) {
-      const Index a = of_u[at(k.row())], b = of_y[at(j)];
-      MatrixXd& m =
-          list.try_emplace({a, b}, MatrixXd::Zero(p.inputs(a), p.outputs(b))).first->second;
-      m(k.row() - p.u[at(a)], j - p.y[at(b)]) = k.value();
-    }
-  return list;
-}
-
-std::vector<Index> nonzero_rows(const MatrixXd& m) {
-  std::vector<Index> rows;
-  for (Index i = 0; i < m.rows(); ++i)
-    if (!m.row(i).isZero(0)) rows.push_back(i);
-  return rows;
-}
-
-/// One march along a chain; columns: external inputs, then what is guessed at the first block.
-template <class T>
-class March {
- public:
-  March(const Network& net, Complex s)
-      : net_(net),
-        p_(net),
-        K_(couplings(net, p_)),
-        E_(MatrixXd(net.E)),
-        F_(MatrixXd(net.F)),
-        s_(s) {
-    guesses_ = static_cast<Index>(from_next(0).size());
-  }
-
-  MatrixXcd transfer() {
-    const Index nw = net_.E.cols();
-    Table<T> z(net_.F.rows(), nw + guesses_), u = known(0, nullptr), wanted(0, 0), misses(0, 0);
-    for (Index i = 0;; ++i) {
-      const Table<T> H = response(net_, p_, i, number<T>(s_.real(), s_.imag()));
-      if (i == 0)
-        for (Index k = 0; k < guesses_; ++k) u(from_next(0)[at(k)], nw + k) += number<T>(1);
-      else
-        misses = fulfil(i, H, wanted, u);
-      const Table<T> y = product(H, u);
-      for (Index r = 0; r < z.rows(); ++r)
-        for (Index k = 0; k < y.rows(); ++k)
-          if (F_(r, p_.y[at(i)] + k) != number<T>(0)) z.subtract(-F_(r, p_.y[at(i)] + k), y, k, r);
-      if (i + 1 == p_.blocks()) break;
-      wanted = wanted_of_next(i, u);
-      u = known(i + 1, &y);
-    }
-    return closed(z, misses);
-  }
-
- private:
-  const MatrixXd* coupling(Index i, Index j) const {
-    const auto k = K_.find({i, j});
-    return k == K_.end() ? nullptr : &k->second;
-  }
-  std::vector<Index> from_next(Index i) const {
-    const MatrixXd* K = coupling(i, i + 1);
-    return K ? nonzero_rows(*K) : std::vector<Index>{};
-  }
-
-  /// Inputs of block i but for what comes from the next.
-  Table<T> known(Index i, const Table<T>* y) const {
-    Table<T> u(p_.inputs(i), net_.E.cols() + guesses_);
-    for (Index r = 0; r < u.rows(); ++r)
-      for (Index c = 0; c < net_.E.cols(); ++c) u(r, c) = E_(p_.u[at(i)] + r, c);
-    if (const MatrixXd* K = y ? coupling(i, i - 1) : nullptr)
-      for (Index r = 0; r < u.rows(); ++r)
-        for (Index k = 0; k < K->cols(); ++k)
-          if ((*K)(r, k) != 0) u.subtract(number<T>(-(*K)(r, k)), *y, k, r);
-    return u;
-  }
-
-  /// What the next block must give: rows from_next(i) of u, less what is external there.
-  Table<T> wanted_of_next(Index i, const Table<T>& u) const {
-    const auto rows = from_next(i);
-    Table<T> w(static_cast<Index>(rows.size()), u.cols());
-    for (Index r = 0; r < w.rows(); ++r)
-      for (Index c = 0; c < w.cols(); ++c)
-        w(r, c) = u(rows[at(r)], c) -
-                  (c < net_.E.cols() ? E_(p_.u[at(i)] + rows[at(r)], c) : number<T>(0));
-    return w;
-  }
-
-  /// Chooses the inputs that come from further on so that `wanted` comes out; what of it cannot be
-  /// met, at the last block, is returned.
-  Table<T> fulfil(Index i, const Table<T>& H, const Table<T>& wanted, Table<T>& u) const {
-    const MatrixXd& K = *coupling(i - 1, i);
-    const auto rows = nonzero_rows(K), free = from_next(i);
-    Table<T> K_rows(wanted.rows(), K.cols());
-    for (Index r = 0; r < K_rows.rows(); ++r)
-      for (Index c = 0; c < K.cols(); ++c) K_rows(r, c) = number<T>(K(rows[at(r)], c));
-    const Table<T> KH = product(K_rows, H);
-    Table<T> missing = product(KH, u);
-    for (Index r = 0; r < missing.rows(); ++r)
-      for (Index c = 0; c < missing.cols(); ++c) missing(r, c) = wanted(r, c) - missing(r, c);
-    if (free.empty()) return missing;
-    Table<T> G(KH.rows(), static_cast<Index>(free.size()));
-    if (G.rows() != G.cols()) throw std::logic_error("tearing: not a chain");
-    for (Index r = 0; r < G.rows(); ++r)
-      for (Index c = 0; c < G.cols(); ++c) G(r, c) = KH(r, free[at(c)]);
-    solve(std::move(G), missing);
-    for (Index k = 0; k < missing.rows(); ++k) u.subtract(number<T>(-1), missing, k, free[at(k)]);
-    return Table<T>(0, 0);
-  }
-
-  /// The guess that leaves nothing amiss, put into z.
-  MatrixXcd closed(const Table<T>& z, const Table<T>& misses) const {
-    const Index nw = net_.E.cols();
-    Table<T> guess = part(misses, 0, 0, guesses_, nw);
-    solve(part(misses, 0, nw, guesses_, guesses_),
-          guess);  // misses = m_w w + m_t t: t = -m_t^-1 m_w w
-    Table<T> result = part(z, 0, 0, z.rows(), nw);
-    for (Index r = 0; r < z.rows(); ++r)
-      for (Index k = 0; k < guesses_; ++k) result.subtract(T(z(r, nw + k)), guess, k, r);
-    const Table<T> G{MatrixXd(net_.G)};
-    for (Index r = 0; r < z.rows(); ++r) result.subtract(number<T>(-1), G, r, r);
-    return result.to_double();
-  }
-
-  const Network& net_;
-  Places p_;
-  std::map<std::pair<Index, Index>, MatrixXd> K_;
-  Table<T> E_, F_;
-  Complex s_;
-  Index guesses_ = 0;
-};
-
-template <class T>
-MatrixXcd tearing(const Network& net, Complex s) {
-  return March<T>(net, s).transfer();
-}
-
-/// f<T> in the number of these digits.
-#define TITOP_BENCH_IN(f, network, s, digits)                               \
-  switch (digits) {                                                         \
-    case Digits::single: return f<std::complex<float>>(network, s);         \
-    case Digits::standard: return f<std::complex<double>>(network, s);      \
-    case Digits::extended: return f<std::complex<long double>>(network, s); \
-    case Digits::fifty: return f<Digits50>(network, s);                     \
-  }                                                                         \
-  return {}
-
 }  // namespace
 
 MatrixXcd dense_at_s(const Network& network, Complex s, Digits digits) {
@@ -294,26 +96,6 @@ MatrixXcd dense_at_s(const Network& network, Complex s, Digits digits) {
 
 MatrixXcd block_by_block_at_s(const Network& network, Complex s, Digits digits) {
   TITOP_BENCH_IN(block_by_block, network, s, digits);
-}
-
-bool is_chain(const Network& network) {
-  const Places p(network);
-  const auto K = couplings(network, p);
-  for (const auto& [pair, m] : K)
-    if (std::abs(pair.first - pair.second) != 1) return false;
-  for (Index i = 1; i < p.blocks(); ++i) {
-    const auto back = K.find({i - 1, i});
-    if (back == K.end() || K.find({i, i - 1}) == K.end()) return false;
-    const auto next = K.find({i, i + 1});
-    if (next != K.end() && nonzero_rows(next->second).size() != nonzero_rows(back->second).size())
-      return false;
-  }
-  return p.blocks() > 1;
-}
-
-MatrixXcd tearing_at_s(const Network& network, Complex s, Digits digits) {
-  if (!is_chain(network)) throw std::logic_error("tearing: not a chain");
-  TITOP_BENCH_IN(tearing, network, s, digits);
 }
 
 }  // namespace titop_bench

@@ -217,4 +217,12 @@ class Export {
 
 Network network_of(const titop::System& system) { return Export(system.stage())(); }
 
+std::optional<Network> network_if_any(const titop::System& system) {
+  try {
+    return network_of(system);
+  } catch (const std::logic_error&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace titop_bench

@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCore>
 #include <array>
+#include <optional>
 #include <titop/compiler/system.hpp>
 #include <vector>
 
@@ -24,5 +25,8 @@ struct Network {
 
 /// Of a compiled scene, at its parameter values. O(scalars log) but for the inversions.
 Network network_of(const titop::System& system);
+
+/// None where a scene says what this form cannot: chains closed twice, ties of parts of a port.
+std::optional<Network> network_if_any(const titop::System& system);
 
 }  // namespace titop_bench

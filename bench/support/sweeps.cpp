@@ -168,18 +168,19 @@ Extreme light_parent(double m0) {
   return e;
 }
 
-/// Two levers on hinges, tied to each other twice, at lever arms whose ratios differ by delta: they
-/// stand still unless it is 0. A spring-mass hangs on one of them.
+/// Two levers on hinges about z, tied to each other at two points: they turn together where the
+/// hinges are coaxial, and stand still where they are delta apart. A spring-mass hangs on one.
 Extreme ties(double delta) {
   Diagram d{"levers"};
   const Eigen::Vector3d y{0, 1, 0}, z{0, 0, 1};
-  const auto lever = [](double near) {
-    return RigidBody{.mass = 2,
-                     .inertia = 0.5 * Eigen::Matrix3d::Identity(),
-                     .children = {{"far", {1, 0, 0}}, {"near", {near, 0, 0}}, {"site", {2, 0, 0}}}};
+  const auto lever = [](double from) {
+    return RigidBody{
+        .mass = 2,
+        .inertia = 0.5 * Eigen::Matrix3d::Identity(),
+        .children = {{"far", {1 - from, 0, 0}}, {"near", {0.5 - from, 0, 0}}, {"site", {2, 0, 0}}}};
   };
-  auto base = d.add("base", RigidBody{.children = {{"J1"}, {"J2"}}});
-  auto one = d.add("one", lever(0.5)), two = d.add("two", lever(0.5 * (1 + delta)));
+  auto base = d.add("base", RigidBody{.children = {{"J1"}, {"J2", {delta, 0, 0}}}});
+  auto one = d.add("one", lever(0)), two = d.add("two", lever(delta));
   ground(base);
   for (const auto& h :
        {hinge(d, "h1", one, base.child("J1"), {}, z), hinge(d, "h2", two, base.child("J2"), {}, z)})
@@ -272,7 +273,8 @@ Extreme digits(double count) {
 }  // namespace
 
 std::vector<Sweep> sweeps() {
-  const auto by_damping = [](double c) { return 10 * 1e-16 * 10 / c; };
+  const auto by_damping = [](double c) { return 2e-14 / c; };  // an ulp over 0.1 c of critical
+  const auto by_digits = [](double count) { return std::pow(10, 5 - count); };  // condition 1e5
   return {
       {"mass-ratio", "ten spring-masses: every second mass times r", "mass ratio r",
        powers(1e-16, 1e16, 100), masses},
@@ -293,8 +295,8 @@ std::vector<Sweep> sweeps() {
        powers(1, 1e-16, 0.1), damping, by_damping},
       {"twins", "five masses with two frequencies apart by delta: minimal model", "delta",
        powers(1, 1e-16, 0.1), twins},
-      {"closures", "two levers tied twice: redundant but for delta", "delta",
-       powers(0.1, 1e-17, 0.1), ties},
+      {"closures", "two levers on hinges delta apart and tied twice: do they turn?", "delta [m]",
+       powers(0.1, 1e-15, 0.1), ties},
       {"digits",
        "three beams from data of few digits",
        "digits",

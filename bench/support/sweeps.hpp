@@ -23,9 +23,9 @@ struct Sweep {
   std::string quantity;  ///< below its axis
   std::vector<double> values;
   std::function<Extreme(double)> at;
-  /// The error that the rounding of A alone must make, at this value: no dense model in double can
-  /// do better. 0 where there is no such limit.
-  std::function<double(double)> dense_limit = [](double) { return 0.0; };
+  /// About what one unit of the last place in the data makes of the answer, at this value: nothing
+  /// that reads the data can do better. 0 where that is nothing to speak of.
+  std::function<double(double)> inherent = [](double) { return 0.0; };
 };
 
 std::vector<Sweep> sweeps();

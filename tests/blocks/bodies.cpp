@@ -180,6 +180,23 @@ TEST_CASE("invert: twice is nothing; whole channels, halves and single degrees o
   }
 }
 
+TEST_CASE("invert: a body is no more singular in micrometres than in metres") {
+  Rng rng(7);
+  const ModalData d = random_modes(rng, 9, {"C"}, true);
+  const std::vector<std::pair<int, int>> back{{6, 6}, {7, 7}, {8, 8}, {9, 9}, {10, 10}, {11, 11}};
+  for (const double length : {1e-9, 1e-6, 1e6, 1e9}) {
+    const FlexibleBody body(titop::scaled(d, {.length = length}));
+    const StateSpace M = model_of(body), N = invert(body, {"parent"});
+    CAPTURE(length);
+    // The mass that P feels: its inverse times itself, each entry in its own unit.
+    MatrixXd one = M.D.bottomRightCorner(6, 6) * N.D.bottomRightCorner(6, 6);
+    one.topRightCorner(3, 3) *= length;
+    one.bottomLeftCorner(3, 3) /= length;
+    CHECK((one - MatrixXd::Identity(6, 6)).cwiseAbs().maxCoeff() <= 1e-9);
+    CHECK(invert(N, back).inputs == M.inputs);
+  }
+}
+
 TEST_CASE("invert: the rank is told where the modes cannot move a point") {
   Rng rng(8);
   const ModalData d = random_modes(rng, 4, {"C"}, false);

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <complex>
 
 #include "simulate/scenes.hpp"
 
@@ -37,6 +38,24 @@ TEST_CASE("orders: midpoint 2, Runge-Kutta 4, from halving the step") {
   };
   CHECK(std::abs(order(Stepper::midpoint, 1.0 / 256) - 2) <= 0.01);
   CHECK(std::abs(order(Stepper::rk4, 1.0 / 64) - 4) <= 0.05);
+}
+
+TEST_CASE("orders: a sine as input is a line in every step, which costs h^2 by any stepper") {
+  const double m = 2, k = 18, c = 1.2, w = 2;
+  const System s = compile(mass_on_spring(m, k, c));
+  const std::complex<double> j(0, 1), G = 1.0 / (k + j * w * c - w * w * m);
+  const Eigen::Vector2d steady(G.imag(), (j * w * G).imag());  // x = Im(G e^jwt), from the start
+  const auto error = [&](Stepper stepper, double h) {
+    const Trajectory t = simulate(s, Excitation::function([&](double time) {
+                                    return Eigen::VectorXd::Constant(1, std::sin(w * time));
+                                  }),
+                                  {.step = h, .until = 4, .stepper = stepper, .x0 = steady});
+    return std::abs(t.y(0, Eigen::last) - (G * std::exp(j * w * 4.0)).imag());
+  };
+  for (const Stepper stepper : {Stepper::exact, Stepper::midpoint, Stepper::rk4}) {
+    CAPTURE(to_string(stepper));
+    CHECK(std::abs(std::log2(error(stepper, 1.0 / 64) / error(stepper, 1.0 / 128)) - 2) <= 0.02);
+  }
 }
 
 TEST_CASE("midpoint: through the factors as from the dense matrices") {
