@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <titop/compiler/economy/sequence.hpp>
+#include <utility>
 
 namespace titop::detail {
 namespace {
@@ -96,7 +97,7 @@ Sequence::Worst Sequence::evaluate() {
 }
 
 bool Sequence::grow() {
-  if (!(worst_.error > 0) || stalled() || !extend(worst_)) return false;
+  if (!(worst_.error > 0) || stalled() || !(add_pending() || extend(worst_))) return false;
   worst_ = evaluate();
   note(worst_);
   return true;
@@ -104,7 +105,8 @@ bool Sequence::grow() {
 
 /// True if column after column has not helped: rounding is reached.
 bool Sequence::stalled() const {
-  const std::size_t patience = 8 + at(whole_.b.cols() + whole_.ca.rows());
+  const std::size_t columns = 8 + at(whole_.b.cols() + whole_.ca.rows());
+  const std::size_t patience = collocated_ ? columns : 2 * columns;  // two steps to a pair
   if (steps_.size() <= patience) return false;
   const Step& before = steps_[steps_.size() - 1 - patience];
   return steps_.back().kept == before.kept && steps_.back().error > 0.95 * before.error;
@@ -152,6 +154,12 @@ bool Sequence::add(VectorXd column) {
   return true;
 }
 
+bool Sequence::add_pending() {
+  if (pending_.size() == 0) return false;
+  const VectorXd column = std::exchange(pending_, VectorXd());
+  return add(column);
+}
+
 bool Sequence::add_columns(const Worst& worst) {
   const Index n = whole_.elastic();
   if (inside_ == n) return false;
@@ -160,9 +168,8 @@ bool Sequence::add_columns(const Worst& worst) {
   weight.tail(n - inside_) =
       (whole_.lambda.segment(inside_, n - inside_).array() - omega * omega).inverse();
   const VectorXd b = whole_.b.col(worst.input).head(n), c = reading(whole_, worst.output);
-  bool added = add(weight.cwiseProduct(b));
-  if (!collocated_) added = add(weight.cwiseProduct(c)) || added;
-  if (added) return true;
+  if (!collocated_) pending_ = weight.cwiseProduct(c);
+  if (add(weight.cwiseProduct(b)) || add_pending()) return true;
   // The span holds it: damping, or the other end of the band. What the model leaves there.
   const Complex s = samples_.s[worst.sample];
   const Eigen::VectorXcd q = model_.V * model_.response(s, worst.input);
@@ -173,8 +180,8 @@ bool Sequence::add_columns(const Worst& worst) {
            second = weight.cwiseProduct(left.imag().head(n));
   if (second.norm() > first.norm()) first.swap(second);
   if (add(first) || add(second)) return true;
-  added = add(weight.cwiseAbs2().cwiseProduct(b));
-  return add(weight.cwiseAbs2().cwiseProduct(c)) || added;
+  pending_ = weight.cwiseAbs2().cwiseProduct(c);
+  return add(weight.cwiseAbs2().cwiseProduct(b)) || add_pending();
 }
 
 }  // namespace titop::detail

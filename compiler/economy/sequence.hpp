@@ -26,8 +26,8 @@ Eigen::MatrixXd errors(const Samples& full, const Small& small);
 /// cancel, and what symmetry separates stays apart). If dropped modes of the band explain half of
 /// it there, the one with the largest term comes in; otherwise the static-like response
 /// (Lambda - omega^2)^-1 b of the modes above the band to that input and, where outputs do not read
-/// what the inputs drive, the same for that output. W is 0 on the band's modes: nothing that comes
-/// in can have a pole in the band that the whole has not.
+/// what the inputs drive, the same for that output as the next step: often the first will do. W is
+/// 0 on the band's modes: nothing that comes in can have a pole in the band that the whole has not.
 class Sequence {
  public:
   /// `high`: upper end of the band [rad/s].
@@ -57,6 +57,7 @@ class Sequence {
   bool keep_one(const Worst& worst, double least);
   bool add_columns(const Worst& worst);
   bool add(Eigen::VectorXd column);
+  bool add_pending();
   void note(const Worst& worst);
 
   const Whole& whole_;
@@ -65,7 +66,8 @@ class Sequence {
   bool collocated_ = false;
   std::vector<Eigen::Index> kept_;
   std::vector<char> is_kept_;
-  Eigen::MatrixXd W_;  ///< elastic modes x columns
+  Eigen::MatrixXd W_;        ///< elastic modes x columns
+  Eigen::VectorXd pending_;  ///< the output's column to the input's that came last; or empty
   Small model_;
   Worst worst_;
   std::vector<Eigen::MatrixXcd> error_;

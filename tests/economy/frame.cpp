@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <set>
+
 #include "economy/scenes.hpp"
 #include "support/close.hpp"
 #include "support/random_scene.hpp"
@@ -54,6 +56,27 @@ TEST_CASE("more accuracy never gives a smaller order, and modes of the band are 
       CHECK(nearest <= 1e-9);
     }
   }
+}
+
+TEST_CASE("vectors of an input and of an output come one by one: the first may do") {
+  // Three equal masses on equal springs, one of three modes in the band; driven at the end, read at
+  // the first: of the two dimensions above the band each accuracy takes as many as it needs.
+  Diagram d{"chain"};
+  auto U = d.input("U");
+  std::vector<SpringMass::Handle> z;
+  for (int i = 1; i <= 3; ++i)
+    z.push_back(d.add("z" + std::to_string(i), SpringMass{.mass = 1.0, .stiffness = 1000.0}));
+  z[0].parent.accel = 0;
+  mount(z[1], z[0].child);
+  mount(z[2], z[1].child);
+  z[2].child.force = U;
+  d.output("a") = z[0].child.accel;
+  std::vector<double> accuracies;
+  for (int k = 4; k <= 36; ++k) accuracies.push_back(std::pow(10, -0.25 * k));
+  std::set<int> orders;
+  for (const WhatIf& w : what_if(d, titop::Scene{.band_hz = {0, 4}}, accuracies))
+    orders.insert(w.order);
+  CHECK(orders == std::set<int>{2, 4, 6});
 }
 
 TEST_CASE("damped in every mode: the error stays below its bound, stable stays stable") {
