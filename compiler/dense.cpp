@@ -41,7 +41,6 @@ struct Target {
   Index row = 0;  ///< first row of [xdot; y]
   Index rows = 0;
   Index padded = 0;  ///< rows, up to a multiple of 4
-  Index place = 0;   ///< among the values of a column
   std::vector<Part> unknown, known;
 };
 
@@ -49,7 +48,7 @@ struct Target {
 /// cost as much as the work.
 struct Room {
   solve::Propagation::Space space;
-  std::vector<double> values;
+  std::vector<double> values;  ///< of the columns of a batch, one after the other
 };
 Room& room_of_thread() {
   static thread_local Room room;
@@ -65,6 +64,8 @@ class Writer {
         g_(d.graph()),
         m_(m),
         states_(d.layout().order()),
+        first_output_((states_ + kPad + 7) / 8 * 8),
+        values_(first_output_ + static_cast<Index>(d.layout().outputs.size()) + kPad),
         threads_(threads) {}
 
   void write() {
@@ -73,8 +74,13 @@ class Writer {
     find_targets();
     const solve::Propagation propagation(*d_.factors);
     const std::vector<std::size_t> begin = batches();
+    Index most = 0;
+    for (std::size_t i = 0; i + 1 < begin.size(); ++i)
+      most = std::max(most, width(begin[i], begin[i + 1]));
     parallel(begin.size() - 1, threads(begin.size() - 1), [&] {
-      return [this, &propagation, &begin, &room = room_of_thread()](std::size_t i) {
+      Room& room = room_of_thread();
+      room.values.assign(at(values_ * most), 0);
+      return [this, &propagation, &begin, &room](std::size_t i) {
         columns(propagation, begin[i], begin[i + 1], room);
       };
     });
@@ -85,6 +91,7 @@ class Writer {
 
  private:
   static constexpr Index kBatch = 48;  ///< columns at a time
+  static constexpr Index kPad = 3;     ///< what Target::padded may add
 
   /// A thread costs more to start than a small model to write.
   int threads(std::size_t batches) const {
@@ -166,7 +173,6 @@ class Writer {
       Target t;
       t.row = d_.layout().state_first[at(i)] + still;
       t.rows = b.A.rows() - still;
-      if (still) state_runs_.push_back({-1, t.row - still, still});
       for (int s = node.first_signal; s < node.state; ++s)
         if (const Signal& in = g_.signals[at(s)]; in.role == Signal::Role::input && in.active)
           read(t, s, b.B.block(still, in.first, t.rows, in.size));
@@ -181,17 +187,13 @@ class Writer {
         read(t, terms[n].signal, coefficient(k_.joint.output_coefficient[o] + static_cast<int>(n)));
       add(std::move(t));
     }
+    std::sort(targets_.begin(), targets_.end(),
+              [](const Target& a, const Target& b) { return a.row < b.row; });
   }
 
   void add(Target t) {
     join_neighbours(t);
-    t.padded = (t.rows + 3) / 4 * 4;
-    t.place = values_;
-    values_ += t.padded;
-    if (t.row < states_)
-      state_runs_.push_back({t.place, t.row, t.rows});
-    else
-      output_runs_.push_back({t.place, t.row - states_, t.rows});
+    t.padded = (t.rows + kPad) / 4 * 4;
     for (Target::Part& p : t.unknown) {
       p.Et = RowMatrix<double>::Zero(p.E.cols(), t.padded);
       p.Et.leftCols(t.rows) = p.E.transpose();
@@ -248,13 +250,23 @@ class Writer {
     return begin;
   }
 
-  /// Solves for these sources and writes their columns.
+  /// Columns of these sources, up to a multiple of 8: no sum depends on their number.
+  Index width(std::size_t begin, std::size_t end) const {
+    Index m = 0;
+    for (std::size_t i = begin; i < end; ++i) m += sources_[i].columns;
+    return (m + 7) / 8 * 8;
+  }
+
+  /// Place of a row of [xdot; y] among the values of a column.
+  Index place(Index row) const { return row < states_ ? row : first_output_ + row - states_; }
+
+  /// Solves for these sources and writes their columns. Values stand as in the model; what no
+  /// target has is 0 and stays so. A target's padding is 0, too, where it does not end in the rows
+  /// of the next, which writes them later.
   void columns(const solve::Propagation& propagation, std::size_t begin, std::size_t end,
                Room& room) {
     auto& [space, values] = room;
-    Index m = 0;
-    for (std::size_t i = begin; i < end; ++i) m += sources_[i].columns;
-    m = (m + 7) / 8 * 8;  // no sum depends on the number of columns
+    const Index m = width(begin, end);
     std::vector<int> rows;
     std::vector<double> rhs;
     Index first = 0;
@@ -270,24 +282,20 @@ class Writer {
       first += s.columns;
     }
     propagation.solve(rows, rhs, m, space);
-    values.resize(at(values_ * m));
-    for (const Target& t : targets_) {
-      if (t.unknown.empty())
-        for (Index j = 0; j < m; ++j)
-          std::fill_n(values.data() + j * values_ + t.place, t.padded, 0.0);
+    for (const Target& t : targets_)
       for (const Target::Part& p : t.unknown)
         solve::multiply_transposed(t.padded, p.E.cols(), m, p.Et.data(),
-                                   space.z.data() + p.first * m, values.data() + t.place, values_,
-                                   &p != t.unknown.data());
-    }
+                                   space.z.data() + p.first * m, values.data() + place(t.row),
+                                   values_, &p != t.unknown.data());
     write_columns(begin, end, values.data());
   }
 
   /// The columns of these sources from the values of their solutions.
   void write_columns(std::size_t begin, std::size_t end, const double* values) {
     const auto write = [&](MatrixXd& state, MatrixXd& output, Index column, double factor) {
-      solve::write_runs(state_runs_, factor, values, state.data() + column * state.rows());
-      solve::write_runs(output_runs_, factor, values, output.data() + column * output.rows());
+      solve::scale(state.rows(), factor, values, state.data() + column * state.rows());
+      solve::scale(output.rows(), factor, values + first_output_,
+                   output.data() + column * output.rows());
     };
     for (std::size_t i = begin; i < end; ++i) {
       const Source& s = sources_[i];
@@ -336,10 +344,10 @@ class Writer {
   const Graph& g_;
   StateSpace& m_;
   Index states_;
+  Index first_output_;  ///< of a column's values
+  Index values_;        ///< per column: [xdot; y], each with room for padding
   std::vector<Source> sources_;
-  std::vector<Target> targets_;
-  Index values_ = 0;                                  ///< of all targets, per column
-  std::vector<solve::Run> state_runs_, output_runs_;  ///< where they go
+  std::vector<Target> targets_;  ///< rows ascend
   int threads_;
 };
 

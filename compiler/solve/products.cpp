@@ -1,15 +1,14 @@
 #include <cstring>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/products.hpp>
+#include <vector>
 
 namespace titop::solve {
 namespace {
 
-/// Four entries in one register.
-using Lane = double __attribute__((vector_size(32)));
-
-/// Eight entries: one, two or four registers.
-using Lanes = double __attribute__((vector_size(64)));
+/// N entries in one register.
+template <int N>
+using Lanes __attribute__((vector_size(8 * N))) = double;
 
 /// Wherever it stands. (By reference: a vector returned by value has another ABI without AVX.)
 template <class L>
@@ -31,30 +30,35 @@ struct Product {
   bool add;
 };
 
-/// R rows from row i on, eight columns at a time: their sums stay in registers, and every entry of
-/// x that is loaded serves all rows.
-template <int R>
+/// R rows from row i on, C registers of columns at a time: their sums stay in registers, and every
+/// entry of x that is loaded serves all rows.
+template <class L, int C, int R>
 [[gnu::always_inline]] inline void rows_of_product(const Product& p, std::ptrdiff_t i) {
-  for (std::ptrdiff_t j = 0; j < p.m; j += 8) {
+  constexpr std::ptrdiff_t n = sizeof(L) / sizeof(double);
+  for (std::ptrdiff_t j = 0; j < p.m; j += C * n) {
     double* const y = p.y + i * p.y_stride + j;
-    Lanes sum[R];
-    for (int r = 0; r < R; ++r) {
-      sum[r] = Lanes{};
-      if (p.add) load(sum[r], y + r * p.y_stride);
-    }
+    L sum[R][C];
+    for (int r = 0; r < R; ++r)
+      for (int c = 0; c < C; ++c) {
+        sum[r][c] = L{};
+        if (p.add) load(sum[r][c], y + r * p.y_stride + c * n);
+      }
     for (std::ptrdiff_t k = 0; k < p.inner; ++k) {
-      Lanes x;
-      load(x, p.x + k * p.m + j);
-      for (int r = 0; r < R; ++r) sum[r] += p.a[(i + r) * p.stride + k] * x;
+      L x[C];
+      for (int c = 0; c < C; ++c) load(x[c], p.x + k * p.m + j + c * n);
+      for (int r = 0; r < R; ++r)
+        for (int c = 0; c < C; ++c) sum[r][c] += p.a[(i + r) * p.stride + k] * x[c];
     }
-    for (int r = 0; r < R; ++r) store(y + r * p.y_stride, sum[r]);
+    for (int r = 0; r < R; ++r)
+      for (int c = 0; c < C; ++c) store(y + r * p.y_stride + c * n, sum[r][c]);
   }
 }
 
-/// As many rows as L has entries, from row i on; C columns from j on.
-template <class L, int C>
+/// As many rows as L has entries, from row i on; eight columns from j on.
+template <class L>
 [[gnu::always_inline]] inline void transposed_tile(const Product& p, std::ptrdiff_t i,
                                                    std::ptrdiff_t j) {
+  constexpr int C = 8;
   double* const y = p.y + j * p.y_stride + i;
   L sum[C];
   for (int c = 0; c < C; ++c) {
@@ -69,40 +73,84 @@ template <class L, int C>
   for (int c = 0; c < C; ++c) store(y + c * p.y_stride, sum[c]);
 }
 
+template <class L, int C>
+[[gnu::always_inline]] inline void product(const Product& p, std::ptrdiff_t rows) {
+  std::ptrdiff_t i = 0;
+  for (; i + 6 <= rows; i += 6) rows_of_product<L, C, 6>(p, i);
+  for (; i + 2 <= rows; i += 2) rows_of_product<L, C, 2>(p, i);
+  for (; i < rows; ++i) rows_of_product<L, C, 1>(p, i);
+}
+
+/// `Rest`: for the last four rows, where L is longer.
+template <class L, class Rest>
+[[gnu::always_inline]] inline void transposed(const Product& p, std::ptrdiff_t rows) {
+  constexpr std::ptrdiff_t n = sizeof(L) / sizeof(double), rest = sizeof(Rest) / sizeof(double);
+  for (std::ptrdiff_t j = 0; j < p.m; j += 8) {
+    std::ptrdiff_t i = 0;
+    for (; i + n <= rows; i += n) transposed_tile<L>(p, i, j);
+    for (; i < rows; i += rest) transposed_tile<Rest>(p, i, j);
+  }
+}
+
+// A register's width must be the processor's own: a compiler keeps sums of another width in memory.
+void product_2(const Product& p, std::ptrdiff_t rows) { product<Lanes<2>, 2>(p, rows); }
+void transposed_2(const Product& p, std::ptrdiff_t rows) {
+  transposed<Lanes<2>, Lanes<2>>(p, rows);
+}
+#if defined(__x86_64__)
+[[gnu::target("avx2")]] void product_4(const Product& p, std::ptrdiff_t rows) {
+  product<Lanes<4>, 2>(p, rows);
+}
+[[gnu::target("avx2")]] void transposed_4(const Product& p, std::ptrdiff_t rows) {
+  transposed<Lanes<4>, Lanes<4>>(p, rows);
+}
+[[gnu::target("avx512f")]] void product_8(const Product& p, std::ptrdiff_t rows) {
+  product<Lanes<8>, 1>(p, rows);
+}
+[[gnu::target("avx512f")]] void transposed_8(const Product& p, std::ptrdiff_t rows) {
+  transposed<Lanes<8>, Lanes<4>>(p, rows);
+}
+#endif
+
+struct Kernels {
+  int lanes;
+  void (*product)(const Product&, std::ptrdiff_t rows);
+  void (*transposed)(const Product&, std::ptrdiff_t rows);
+};
+
+/// Those that this processor has, the widest first.
+std::vector<Kernels> kernels_here() {
+  std::vector<Kernels> list;
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512f")) list.push_back({8, product_8, transposed_8});
+  if (__builtin_cpu_supports("avx2")) list.push_back({4, product_4, transposed_4});
+#endif
+  list.push_back({2, product_2, transposed_2});
+  return list;
+}
+
+const Kernels& kernels(int at_most = 8) {
+  static const std::vector<Kernels> here = kernels_here();
+  for (const Kernels& k : here)
+    if (k.lanes <= at_most) return k;
+  return here.back();
+}
+
 }  // namespace
 
-TITOP_WIDE void multiply(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m,
-                         const double* a, std::ptrdiff_t stride, const double* x, double* y,
-                         bool add) {
-  const Product p{inner, m, a, stride, x, y, m, add};
-  std::ptrdiff_t i = 0;
-  for (; i + 6 <= rows; i += 6) rows_of_product<6>(p, i);
-  for (; i + 2 <= rows; i += 2) rows_of_product<2>(p, i);
-  for (; i < rows; ++i) rows_of_product<1>(p, i);
+void multiply(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m, const double* a,
+              std::ptrdiff_t stride, const double* x, double* y, bool add, int lanes) {
+  kernels(lanes).product({inner, m, a, stride, x, y, m, add}, rows);
 }
 
-TITOP_WIDE void multiply_transposed(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m,
-                                    const double* at, const double* x, double* y,
-                                    std::ptrdiff_t y_stride, bool add) {
-  const Product p{inner, m, at, rows, x, y, y_stride, add};
-  for (std::ptrdiff_t j = 0; j < m; j += 8) {
-    std::ptrdiff_t i = 0;
-    for (; i + 8 <= rows; i += 8) transposed_tile<Lanes, 8>(p, i, j);
-    for (; i < rows; i += 4) transposed_tile<Lane, 8>(p, i, j);
-  }
+void multiply_transposed(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m,
+                         const double* at, const double* x, double* y, std::ptrdiff_t y_stride,
+                         bool add, int lanes) {
+  kernels(lanes).transposed({inner, m, at, rows, x, y, y_stride, add}, rows);
 }
 
-TITOP_WIDE void write_runs(std::span<const Run> runs, double factor, const double* values,
-                           double* column) {
-  for (const Run& run : runs) {
-    double* const to = column + run.to;
-    if (run.from < 0) {
-      for (std::ptrdiff_t i = 0; i < run.count; ++i) to[i] = 0;
-      continue;
-    }
-    const double* const from = values + run.from;
-    for (std::ptrdiff_t i = 0; i < run.count; ++i) to[i] = factor * from[i] + 0.0;
-  }
+TITOP_WIDE void scale(std::ptrdiff_t n, double factor, const double* x, double* y) {
+  for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = factor * x[i] + 0.0;
 }
 
 }  // namespace titop::solve
