@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <complex>
@@ -8,7 +7,7 @@
 #include <functional>
 
 #include "methods/steppers.hpp"
-#include "support/cases.hpp"
+#include "support/energy.hpp"
 #include "support/quick.hpp"
 #include "support/satellite.hpp"
 
@@ -59,36 +58,6 @@ March by_hand(const Step& step) {
 }
 
 // --- energy -------------------------------------------------------------------------------------
-
-/// Twice the energy of qdd = -M^-1 K q with a diagonal K, from A alone: with q = d y, ydd = -S y,
-/// it is y' y + yd' S^-1 yd, up to a unit.
-class Energy {
- public:
-  explicit Energy(const StateSpace& m) : form_(titop::second_order(m.A)), inverse_(form_.S) {}
-  double operator()(const VectorXd& x) const {
-    VectorXd y(form_.d.size()), rate(form_.d.size());
-    for (Index i = 0; i < y.size(); ++i) {
-      y(i) = x(form_.q[static_cast<std::size_t>(i)]) / form_.d(i);
-      rate(i) = x(form_.qdot[static_cast<std::size_t>(i)]) / form_.d(i);
-    }
-    return y.dot(y) + rate.dot(inverse_.solve(rate));
-  }
-  /// All coordinates with the same energy.
-  VectorXd bent(Index states) const {
-    VectorXd x = VectorXd::Zero(states);
-    for (Index i = 0; i < form_.d.size(); ++i) x(form_.q[static_cast<std::size_t>(i)]) = form_.d(i);
-    return x;
-  }
-  double fastest() const {
-    return std::sqrt(Eigen::SelfAdjointEigenSolver<MatrixXd>(form_.S, Eigen::EigenvaluesOnly)
-                         .eigenvalues()
-                         .maxCoeff());
-  }
-
- private:
-  titop::SecondOrder form_;
-  Eigen::LDLT<MatrixXd> inverse_;
-};
 
 /// |E/E0 - 1| after 1, 10, ... steps.
 void energy_of(const char* scene, const char* method, const Energy& energy, Index states,

@@ -81,6 +81,13 @@ std::string said(const System& system) {
   return mark;
 }
 
+/// For the log of a run.
+void tell(const Sweep& sweep, double value, const System& system) {
+  for (const Note& note : system.notes())
+    if (note.kind == Note::Kind::warning)
+      fmt::print(stderr, "{} {:.3g}: {}\n", sweep.name, value, note.text);
+}
+
 /// Notes of state_space() are in the log alone.
 std::string said_of_dense(const System& system) {
   return system.log().find(" warning ") != std::string::npos ? "warned" : said(system);
@@ -128,6 +135,7 @@ bool run(const Sweep& sweep, bool quick) {
       const System system = compile(e.diagram, {.minimize_up_to = e.minimize_up_to});
       if (e.exact.empty())
         for (const Complex s : e.s) e.exact.push_back(oracle_transfer(system, s));
+      tell(sweep, value, system);
       const double inherent = sweep.inherent(value);
       if (inherent > 0) rows.print(value, "last place of the data", inherent, "");
       if (!library(rows, value, e, system, inherent)) {

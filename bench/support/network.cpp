@@ -1,6 +1,7 @@
 #include "network.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <numeric>
 #include <stdexcept>
 #include <titop/graph/invert.hpp>
@@ -220,7 +221,7 @@ Network network_of(const titop::System& system) { return Export(system.stage())(
 std::optional<Network> network_if_any(const titop::System& system) {
   try {
     return network_of(system);
-  } catch (const std::logic_error&) {
+  } catch (const std::exception&) {
     return std::nullopt;
   }
 }

@@ -26,7 +26,8 @@ struct Network {
 /// Of a compiled scene, at its parameter values. O(scalars log) but for the inversions.
 Network network_of(const titop::System& system);
 
-/// None where a scene says what this form cannot: chains closed twice, ties of parts of a port.
+/// None where a scene says what this form cannot: ties of parts of a port, channels of points that
+/// modes do not move in all directions.
 std::optional<Network> network_if_any(const titop::System& system);
 
 }  // namespace titop_bench

@@ -137,14 +137,17 @@ struct Residual {
   std::string where = {};
 
   /// The equation for this signal (-1: states) is complete. `name()` is only asked for where it is
-  /// needed. A signal that is 0 but for rounding (a gain of 0, a pinned point) does not count.
+  /// needed. A signal that is 0 but for rounding (a gain of 0, a pinned point) or underflow (far
+  /// down a long chain) does not count.
   template <class Name>
   void take(int signal, Name name) {
     if (!b.known) return;
     const double r = b.relative();
     if (r <= worst) return;
-    constexpr double kRounding = 1e-14;  // some units of the last place of what stands around it
+    constexpr double kRounding = 1e-14;    // some units of the last place of what stands around it
+    constexpr double kUnderflow = 1e-290;  // there doubles have no digits to keep
     const double off = b.largest();
+    if (off < kUnderflow) return;
     if (r > kSuspicious && off < kInfinity && signal >= 0 &&
         off <= kRounding * size_around(d, point, signal))
       return;
