@@ -81,7 +81,7 @@ draw_task() {
 # Exponent of growth over all points of one column: least squares of logarithms.
 slope() {
   awk -F, '{ x = log($1); y = log($2); n++; a += x; b += y; c += x * x; d += x * y }
-    END { if (n > 1) printf "%.2f", (n * d - a * b) / (n * c - a * a) }'
+    END { if (n > 2) printf "%.2f", (n * d - a * b) / (n * c - a * a) }'
 }
 
 draw_growth() {
@@ -132,15 +132,18 @@ draw_response() {
 # Error of every method while one quantity goes to an extreme; rings where the library warns or
 # notes something, crosses where it refuses.
 draw_failures() {
-  local name=failure-$1 method title quantity options
+  local name=failure-$1 method title quantity options points order
   title=$(awk -F, -v s="$1" '$1 == s { print $2; exit }' "$out/failures.csv")
   quantity=$(awk -F, -v s="$1" '$1 == s { print $3; exit }' "$out/failures.csv")
   rm -f "$work/$name.dat"
   for method in titop "titop in double" "titop dense model" "dense LU" "sparse LU at s" \
-    "block by block" tearing; do
-    awk -F, -v s="$1" -v m="$method" '
+    "block by block" tearing "last place of the data"; do
+    points=$(awk -F, -v s="$1" -v m="$method" '
       $1 == s && $5 == m && ($7 == "" || $7 == "warned" || $7 == "noted") {
-        print $4 "," ($6 < 1e-17 ? 1e-17 : $6) }' "$out/failures.csv" | block "$name" "$method"
+        print $4 "," ($6 < 1e-17 ? 1e-17 : $6) }' "$out/failures.csv")
+    order=$(echo "$points" | awk -F, '$2 > 3e-14 && $2 < 0.1' | slope)
+    [[ $1 != digits ]] || order=
+    [[ -z $points ]] || echo "$points" | block "$name" "$method${order:+ (slope $order)}"
   done
   awk -F, -v OFS=, -v s="$1" '$1 == s && $7 != "" && $5 != "titop in double" {
       print $4, ($6 < 1e-17 ? 1e-17 : $6), $7 == "warned" || $7 == "noted" ? "o" : "x" }' \
@@ -162,6 +165,8 @@ draw_drift() {
       order=$(echo "$points" | awk -F, '$2 > 1e-14' | slope)
       echo "$points" | block "$name" "$method${order:+ (slope $order)}"
     done
+  [[ $test != energy ]] || awk -F, -v s="$scene" '$1 == "energy" && $2 == s && $3 == "midpoint" {
+    print $4 "," $6 }' "$out/drift.csv" | block "$name" "bound: steps states 2^-53"
   chart "$name" "$title" "steps" "$ylabel"
 }
 

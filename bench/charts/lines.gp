@@ -9,9 +9,12 @@ set datafile separator ","
 set title title
 set xlabel xlabel
 set ylabel ylabel
+if (exists("reverse")) {
+  stats data using 1 nooutput
+  if (exists("linear")) { set xrange [STATS_max + 0.5:STATS_min - 0.5] } else { set xrange [3 * STATS_max:STATS_min / 3] }
+}
 set logscale y
 if (!exists("linear")) { set logscale x; set format x "10^{%T}" }
-if (exists("reverse")) set xrange [] reverse
 set format y "10^{%T}"
 set grid back linetype 1 linecolor rgb "#cccccc" dashtype solid linewidth 0.5
 set border 3

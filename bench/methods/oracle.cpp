@@ -34,7 +34,7 @@ Rows modal_response(const titop::Modal& m, const Number& s) {
 
 Rows response(const Dynamics& d, const Number& s) {
   if (d.modal) return modal_response(*d.modal, s);
-  Rows Y(d.D), X(d.B), M(MatrixXd(-d.A));
+  Rows Y(d.dense_direct()), X(d.B), M(MatrixXd(-d.A));
   for (Eigen::Index i = 0; i < M.rows(); ++i) M(i, i) += s;
   solve(std::move(M), X);
   for (Eigen::Index i = 0; i < Y.rows(); ++i)

@@ -69,8 +69,8 @@ void energy_of(const char* scene, const char* method, const Energy& energy, Inde
     x = march(x, steps - done);
     done = steps;
     const double off = std::abs(energy(x) / before - 1);
-    // Rounding: every step changes the energy by a few units of the last place, in any direction.
-    row("energy", scene, method, steps, off, 1e-16 * std::sqrt(steps));
+    // Rounding: a step changes it by no more than a unit of the last place per state.
+    row("energy", scene, method, steps, off, steps * (static_cast<double>(states) * 0x1p-53));
   }
 }
 

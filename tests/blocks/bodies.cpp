@@ -6,6 +6,7 @@
 #include <titop/blocks/modal_checks.hpp>
 #include <titop/blocks/port_hamiltonian.hpp>
 #include <titop/blocks/rigid_body.hpp>
+#include <titop/blocks/scaled.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/invert.hpp>
 #include <titop/graph/nodes/lti.hpp>
