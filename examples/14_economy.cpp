@@ -1,23 +1,17 @@
-// No more than the scene needs: two beams of 60 modes each on a rigid hub, one of them on a spring
-// hinge. Asked is what a wheel on the hub and the hinge motor do to the hub and to one tip, up to
-// 100 Hz, to one part in a thousand. Out comes a small model with a bound on its error.
-#include <Eigen/Geometry>
+// No more than the scene needs: the satellite of scenes/satellite.cpp, its booms two beams of 60
+// modes each, on a rigid hub, one of them on a spring hinge. Asked is what a wheel on the hub and
+// the motor of the hinge do to the hub and to one tip, up to 100 Hz, to one part in a thousand. Out
+// comes a small model with a bound on its error.
 #include <cstdio>
 #include <titop/titop.hpp>
 
 #include "by_hand/by_hand.hpp"
+#include "scenes/satellite.hpp"
+#include "scenes/satellite_by_hand.hpp"
 
 using namespace titop;
 
 namespace {
-
-const RigidBody hub_spec{.mass = 85,  // [kg]
-                         .inertia = Vector3d(9, 11, 13).asDiagonal(),
-                         .PA = {0.02, -0.01, 0.05},
-                         .children = {{"C1", {0.35, 0, 0.1}}, {"C2", {-0.35, 0.05, 0.1}}}};
-constexpr double kappa = 60, c = 0.8;  // hinge spring [N m/rad] and damper [N m s/rad]
-const Vector3d hinge_axis(0, 1, 0), turn1(0, 0, 1), turn2(1, 2, 9);
-constexpr double angle1 = 0.26, angle2 = 2.9;
 
 FlexibleBody boom() {
   return Beam{.length = 2,
@@ -25,57 +19,6 @@ FlexibleBody boom() {
               .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
               .elements = 10,
               .modes = {.xi = {0.005}}};
-}
-
-Diagram satellite(const FlexibleBody& beam) {
-  Diagram d{"satellite"};
-  auto W = d.input("W", 6);       // wrench on the hub at P [N; N m]
-  auto tau_m = d.input("tau_m");  // torque of the motor on boom 2 [N m]
-  auto hub = d.add("hub", hub_spec);
-  auto boom1 = d.add("boom1", beam), boom2 = d.add("boom2", beam);
-  hub.parent.force = -W;
-  mount(boom1, hub.child("C1"), Rotation::about(turn1, angle1));
-  auto drive =
-      hinge(d, "drive", boom2, hub.child("C2"), Rotation::about(turn2, angle2), hinge_axis);
-  drive.torque = kappa * drive.angle + c * drive.rate - tau_m;
-  d.output("hub", 6) = hub.parent.accel;  // [m/s^2; rad/s^2]
-  d.output("tip2", 6) = boom2.child("C").accel;
-  d.output("theta") = drive.angle;  // [rad]
-  return d;
-}
-
-/// The same by hand in the coordinates [P; theta; eta1; eta2]; accelerations are read as positions.
-by_hand::Structure by_hand_satellite(const ModalData& boom) {
-  const Eigen::Index N = boom.omega.size(), n = 7 + 2 * N;
-  by_hand::Structure a = by_hand::empty(n, 7, 13);
-  const by_hand::Matrix6 tau_AP = by_hand::tau(-hub_spec.PA);
-  by_hand::Matrix6 hub = by_hand::Matrix6::Zero();
-  hub.topLeftCorner<3, 3>().diagonal().setConstant(85);
-  hub.bottomRightCorner<3, 3>() = hub_spec.inertia;
-  a.M.topLeftCorner<6, 6>() = tau_AP.transpose() * hub * tau_AP;
-  by_hand::MatrixXd own(6 + N, 6 + N);
-  own << boom.D_P, boom.L_P.transpose(), boom.L_P, by_hand::MatrixXd::Identity(N, N);
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    const Eigen::Matrix3d T_ba = i == 0 ? Eigen::AngleAxisd(angle1, turn1.normalized()).matrix()
-                                        : Eigen::AngleAxisd(angle2, turn2.normalized()).matrix();
-    by_hand::MatrixXd Y = by_hand::MatrixXd::Zero(6 + N, n);
-    Y.topLeftCorner<6, 6>() = by_hand::dual(T_ba.transpose()) *
-                              by_hand::tau(-hub_spec.children[static_cast<std::size_t>(i)].PC);
-    if (i == 1) Y.block<3, 1>(3, 6) = hinge_axis;
-    Y.block(6, 7 + i * N, N, N).setIdentity();
-    a.M += Y.transpose() * own * Y;
-    a.K.diagonal().segment(7 + i * N, N) = boom.omega.cwiseAbs2();
-    a.D.diagonal().segment(7 + i * N, N) = 2 * boom.xi.cwiseProduct(boom.omega);
-    by_hand::MatrixXd tip(6, 6 + N);
-    tip << by_hand::tau(-boom.children[0].PC), boom.children[0].Phi_C;
-    if (i == 1) a.C.middleRows<6>(6) = tip * Y;
-  }
-  a.K(6, 6) = kappa;
-  a.D(6, 6) = c;
-  a.C.topLeftCorner<6, 6>().setIdentity();
-  a.C(12, 6) = 1;
-  a.B.topLeftCorner<7, 7>().setIdentity();
-  return a;
 }
 
 /// Largest error of any pair, each over its own peak, beside the scene assembled by hand.
@@ -87,7 +30,7 @@ double error_by_hand(const ReducedSystem& r, const by_hand::Structure& a, const 
     const double w = high * k / 400;
     const by_hand::Complex s{zeta * w, std::sqrt(1 - zeta * zeta) * w};
     by_hand::MatrixXcd G = by_hand::position_transfer(a, s);
-    G.topRows(12) *= s * s;
+    G.topRows(18) *= s * s;
     by_hand::MatrixXcd asked(rows, 2);
     asked << G.middleRows(3, 3).col(5), G.middleRows(3, 3).col(6), G.bottomRows(7).col(5),
         G.bottomRows(7).col(6);
@@ -101,7 +44,7 @@ double error_by_hand(const ReducedSystem& r, const by_hand::Structure& a, const 
 
 int main() {
   const FlexibleBody beam = boom();
-  const Diagram d = satellite(beam);
+  const Diagram d = scenes::satellite(beam);
   const Scene scene{.inputs = {"W(6)", "tau_m"},
                     .outputs = {"hub(4)", "hub(5)", "hub(6)", "tip2", "theta"},
                     .band_hz = {0, 100},
@@ -115,7 +58,7 @@ int main() {
   bool ok = r.bound().worst <= scene.accuracy;
   std::printf("bound below 1e-3: %s\n", ok ? "yes" : "NO");
   ok &= by_hand::agrees("against M, D and K by hand",
-                        error_by_hand(r, by_hand_satellite(beam.data()), scene), 1e-3);
+                        error_by_hand(r, scenes::satellite_by_hand(beam.data()), scene), 1e-3);
 
   std::printf("\nkept modes below 120 Hz\n");
   for (const KeptMode& m : r.modes()) {

@@ -2,7 +2,6 @@
 // one of them on a hinge with a motor. Described in thirty lines (scenes/satellite.cpp), compiled
 // to one state-space model, compared with M and K assembled by hand, and drawn. Then the hub's
 // attitude is controlled.
-#include <Eigen/Geometry>
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -11,6 +10,7 @@
 
 #include "by_hand/by_hand.hpp"
 #include "scenes/satellite.hpp"
+#include "scenes/satellite_by_hand.hpp"
 
 using namespace titop;
 using namespace scenes;
@@ -19,41 +19,6 @@ using std::numbers::pi;
 namespace {
 
 // --- the same by hand ----------------------------------------------------------------------------
-
-/// Kinetic energy of hub and booms in the coordinates [P; theta; eta1; eta2]; a boom's own
-/// coordinates are the motion of its root and its modes.
-by_hand::Structure by_hand_satellite(const ModalData& boom) {
-  const Eigen::Index N = boom.omega.size(), n = 7 + 2 * N;
-  by_hand::Structure a = by_hand::empty(n, 7, 19);
-  const by_hand::Matrix6 tau_AP = by_hand::tau(-hub_spec.PA);
-  by_hand::Matrix6 hub = by_hand::Matrix6::Zero();
-  hub.topLeftCorner<3, 3>().diagonal().setConstant(85);
-  hub.bottomRightCorner<3, 3>() = hub_spec.inertia;
-  a.M.topLeftCorner<6, 6>() = tau_AP.transpose() * hub * tau_AP;
-  by_hand::MatrixXd own(6 + N, 6 + N);
-  own << boom.D_P, boom.L_P.transpose(), boom.L_P, by_hand::MatrixXd::Identity(N, N);
-  for (Eigen::Index i = 0; i < 2; ++i) {
-    const Eigen::Matrix3d T_ba = i == 0 ? Eigen::AngleAxisd(angle1, turn1.normalized()).matrix()
-                                        : Eigen::AngleAxisd(angle2, turn2.normalized()).matrix();
-    by_hand::MatrixXd Y = by_hand::MatrixXd::Zero(6 + N, n);
-    Y.topLeftCorner<6, 6>() = by_hand::dual(T_ba.transpose()) *
-                              by_hand::tau(-hub_spec.children[static_cast<std::size_t>(i)].PC);
-    if (i == 1) Y.block<3, 1>(3, 6) = hinge_axis;
-    Y.block(6, 7 + i * N, N, N).setIdentity();
-    a.M += Y.transpose() * own * Y;
-    a.K.diagonal().segment(7 + i * N, N) = boom.omega.cwiseAbs2();
-    a.D.diagonal().segment(7 + i * N, N) = 2 * boom.xi.cwiseProduct(boom.omega);
-    by_hand::MatrixXd tip(6, 6 + N);
-    tip << by_hand::tau(-boom.children[0].PC), boom.children[0].Phi_C;
-    a.C.middleRows<6>(6 + 6 * i) = tip * Y;
-  }
-  a.K(6, 6) = kappa;
-  a.D(6, 6) = c;
-  a.C.topLeftCorner<6, 6>().setIdentity();
-  a.C(18, 6) = 1;
-  a.B.topLeftCorner<7, 7>().setIdentity();
-  return a;
-}
 
 bool cross_check(const System& system, const by_hand::Structure& a) {
   std::printf("\nagainst M and K assembled by hand (%ld coordinates)\n",
@@ -107,7 +72,7 @@ bool control_attitude(const FlexibleBody& boom) {
       "\nattitude held by %g N m/rad and %g N m s/rad on the hub: order %d, slowest poles\n%s",
       law.kp, law.kd, system.state_space().order(),
       to_string(std::vector<Pole>(poles.begin(), poles.begin() + 5)).c_str());
-  by_hand::Structure a = by_hand_satellite(boom.data());
+  by_hand::Structure a = satellite_by_hand(boom.data());
   a.K.diagonal().segment<3>(3).array() += law.kp;
   a.D.diagonal().segment<3>(3).array() += law.kd;
   bool ok = by_hand::agrees(
@@ -238,7 +203,7 @@ int main() {
   std::printf("\ncertificate (numbers in certificate.txt)\n");
   bool ok = by_hand::agrees("  every equation as written", cert.residual, 1e-11);
   ok &= by_hand::agrees("  dense model against the factors", cert.dense_against_factors, 1e-12);
-  ok &= cross_check(system, by_hand_satellite(boom.data()));
+  ok &= cross_check(system, satellite_by_hand(boom.data()));
   ok &= control_attitude(boom);
 
   std::ofstream("certificate.txt") << to_string(cert);
