@@ -4,6 +4,7 @@
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/modal_checks.hpp>
 #include <titop/blocks/specified.hpp>
+#include <titop/graph/modal_form.hpp>
 
 namespace titop {
 
@@ -71,9 +72,9 @@ class FlexibleBodyBlock : public Block, public Specified<ModalData> {
       PC_.push_back(c.PC);
     }
     face_ = body_interface(names, static_cast<int>(data_->omega.size()));
-    W_ = modal_input(*data_);
-    rigid_ = rigid_part(PC_, data_->D_P);
-    matrices_ = make_matrices();
+    modal_ = {modal_input(*data_), rigid_part(PC_, data_->D_P), data_->omega.cwiseAbs2(),
+              2 * data_->xi.cwiseProduct(data_->omega)};
+    matrices_ = modal_dynamics(modal_);
   }
   const ModalData& spec() const override { return *data_; }
   std::string_view type() const override { return "FlexibleBody"; }
@@ -85,25 +86,7 @@ class FlexibleBodyBlock : public Block, public Specified<ModalData> {
     return body_kinematics(PC_, Phi);
   }
   Response response(std::complex<double> s, ParameterValues) const override {
-    const auto n = data_->omega.size();
-    Response r{Eigen::MatrixXcd(2 * n, W_.cols()), rigid_};
-    if (n == 0) return r;
-    Eigen::VectorXcd stiff(n), inert(n);
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double w = data_->omega(i);
-      const std::complex<double> den = s * s + 2 * data_->xi(i) * w * s + w * w;
-      if (den == 0.0)
-        throw Error(Code::singular,
-                    fmt::format("mode {} of a FlexibleBody has a pole at s = {}{:+}j", i + 1,
-                                s.real(), s.imag()),
-                    "evaluate beside the pole");
-      stiff(i) = 1.0 / den;
-      inert(i) = s * s / den;
-    }
-    r.X.topRows(n) = stiff.asDiagonal() * W_;
-    r.X.bottomRows(n) = s * r.X.topRows(n);
-    r.Y += W_.transpose() * (inert.asDiagonal() * W_);
-    return r;
+    return modal_response(modal_, s, type());
   }
   std::optional<Cause> why_singular(int channel, ParameterValues) const override {
     if (channel == static_cast<int>(data_->children.size())) {
@@ -125,31 +108,10 @@ class FlexibleBodyBlock : public Block, public Specified<ModalData> {
   }
 
  private:
-  std::shared_ptr<const Dynamics> make_matrices() const {
-    const auto n = data_->omega.size();
-    auto d = std::make_shared<Dynamics>();
-    const VectorXd w2 = data_->omega.cwiseAbs2();
-    const VectorXd c = 2 * data_->xi.cwiseProduct(data_->omega);
-    d->A = MatrixXd::Zero(2 * n, 2 * n);
-    d->A.topRightCorner(n, n).setIdentity();
-    d->A.bottomLeftCorner(n, n) = (-w2).asDiagonal();
-    d->A.bottomRightCorner(n, n) = (-c).asDiagonal();
-    d->B = MatrixXd::Zero(2 * n, W_.cols());
-    d->B.bottomRows(n) = W_;
-    d->C.resize(W_.cols(), 2 * n);
-    d->C.leftCols(n) = W_.transpose() * (-w2).asDiagonal();
-    d->C.rightCols(n) = W_.transpose() * (-c).asDiagonal();
-    d->D = rigid_;
-    if (n > 0) d->D += W_.transpose() * W_;
-    if (n > 0) d->modal = std::make_shared<const Modal>(Modal{W_, rigid_, w2, c});
-    return d;
-  }
-
   std::shared_ptr<const ModalData> data_;
   std::vector<Vector3d> PC_;
   Interface face_;
-  MatrixXd W_;      ///< N x inputs
-  MatrixXd rigid_;  ///< outputs x inputs
+  Modal modal_;
   std::shared_ptr<const Dynamics> matrices_;
 };
 

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 #include <titop/compiler/compile_graph.hpp>
+#include <titop/compiler/economy/bodies.hpp>
 #include <titop/compiler/economy/ray.hpp>
 #include <titop/compiler/economy/reduced_data.hpp>
 #include <titop/compiler/economy/sharpen.hpp>
@@ -22,6 +23,9 @@ using Eigen::Index;
 using std::numbers::pi;
 
 constexpr double kPhase = 1;  ///< step of the phase grid: a bound of 1 / cos(1 / 2) = 1.14 samples
+constexpr double kShare = 0.1;         ///< of the accuracy: sum of effects of what bodies lose
+constexpr double kMostOfBodies = 0.3;  ///< of the accuracy: what that may cost
+constexpr int kTries = 4;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -32,8 +36,9 @@ double now() {
 /// All that one scene needs, for any accuracy.
 class Economy {
  public:
-  Economy(const Diagram& diagram, const Scene& scene, const Options& options)
-      : scene_(scene), full_(nullptr) {
+  /// `finest`: of the accuracies that will be asked for.
+  Economy(const Diagram& diagram, const Scene& scene, const Options& options, double finest)
+      : scene_(scene), options_(options), full_(nullptr), model_(nullptr) {
     detail::check(scene);
     const Graph graph = detail::restricted(diagram.graph(), scene);
     if (graph.inputs.empty() || graph.outputs.empty())
@@ -43,32 +48,13 @@ class Economy {
           "a scene asks from inputs to outputs: give the diagram both");
     timed("compile", [&] {
       data_ = detail::compile_graph(graph, options);
-      full_ = System(data_);
+      full_ = model_ = System(data_);
     });
-    timed("modes", [&] {
-      detail::Coordinates c = detail::coordinates(full_, *data_);
-      note("structure", coordinates_of(diagram), c.size(),
-           "what the scene's inputs reach and its outputs see, without tied coordinates");
-      const Index before = c.size();
-      const detail::Twins twins = detail::join_twins(c, data_->graph());
-      if (twins.removed > 0)
-        note("symmetry", before, c.size(),
-             fmt::format("{} move alike", fmt::join(twins.pairs, "; ")));
-      if (c.size() > scene.whole_up_to)
-        throw Error(Code::bad_value,
-                    fmt::format("{} has {} coordinates, more than Scene::whole_up_to = {}",
-                                graph.name, c.size(), scene.whole_up_to),
-                    "raise it (the cost grows with its cube), or give bodies fewer modes and "
-                    "residual vectors at the points that carry load (fe::ModeOptions)");
-      whole_ = detail::whole(full_, c, detail::positions_read(graph));
-      band_ = detail::band_of(full_, scene, whole_);
-      detail::sharpen(whole_, full_, 1.2 * band_.high);
-      if (scene.bound == BoundKind::theorem) detail::couple(whole_);
-    });
-    timed("samples", [&] {
-      samples_ = detail::sample(full_, scene, whole_,
-                                detail::sample_points(scene, band_, whole_, {}, kPhase));
-    });
+    before_ = coordinates_of(diagram);
+    if (const int count = (full_.order() + 1) / 2; count <= scene.whole_up_to)
+      read_modes(graph);
+    else
+      reduce_bodies(graph, count, finest);
     sequence_ = std::make_unique<detail::Sequence>(whole_, samples_, band_.high);
   }
 
@@ -103,6 +89,82 @@ class Economy {
     const double start = now();
     f();
     seconds_.emplace_back(name, now() - start);
+  }
+
+  /// Modes of the whole of model_, and the full system's transfers where both can have peaks.
+  void read_modes(const Graph& graph) {
+    timed("modes", [&] {
+      detail::Coordinates c = detail::coordinates(model_, *data_);
+      if (steps_.empty()) note_structure(c.size());
+      const Index before = c.size();
+      const detail::Twins twins = detail::join_twins(c, data_->graph());
+      if (twins.removed > 0)
+        note("symmetry", before, c.size(),
+             fmt::format("{} move alike", fmt::join(twins.pairs, "; ")));
+      if (c.size() > scene_.whole_up_to) refuse_size(c.size());
+      whole_ = detail::whole(model_, c, detail::positions_read(graph));
+      band_ = detail::band_of(model_, scene_, whole_);
+      detail::sharpen(whole_, model_, 1.2 * band_.high);
+      if (scene_.bound == BoundKind::theorem) detail::couple(whole_);
+    });
+    timed("samples", [&] {
+      samples_ = detail::sample(full_, scene_, whole_,
+                                detail::sample_points(scene_, band_, whole_, {}, kPhase));
+    });
+  }
+
+  /// Too large for one eigenproblem: bodies first. What that costs is measured on the samples, and
+  /// where it is too much less goes.
+  void reduce_bodies(const Graph& graph, int count, double finest) {
+    if (scene_.bound == BoundKind::theorem)
+      throw Error(Code::bad_value,
+                  fmt::format("{} has {} coordinates, and a theorem counts every pole of theirs",
+                              graph.name, count),
+                  "raise Scene::whole_up_to (the cost grows with its cube), or take an estimate");
+    std::vector<detail::ModeEffects> effects;
+    timed("bodies", [&] { effects = detail::mode_effects(graph, scene_, options_); });
+    for (double share = kShare * finest, tries = 1; true; share /= 10, ++tries) {
+      const detail::SmallerBodies smaller = detail::smaller_bodies(graph, effects, share);
+      bodies_ = fmt::format("{}", fmt::join(smaller.text, "; "));
+      steps_.clear();
+      note_structure(count);
+      const int after = count - smaller.before + smaller.after;
+      if (after > scene_.whole_up_to) refuse_size(after);
+      timed("compile", [&] {
+        data_ = detail::compile_graph(smaller.graph, options_);
+        model_ = System(data_);
+      });
+      note("bodies", count, after, bodies_);
+      const std::size_t step = steps_.size() - 1;
+      read_modes(smaller.graph);
+      steps_[step].error = bodies_error();
+      if (steps_[step].error <= kMostOfBodies * finest || tries == kTries) return;
+    }
+  }
+
+  /// What smaller bodies cost, on the samples.
+  double bodies_error() const {
+    Eigen::MatrixXd worst = Eigen::MatrixXd::Zero(samples_.peak.rows(), samples_.peak.cols());
+    const std::vector<Eigen::MatrixXcd> H =
+        detail::sample(model_, scene_, whole_, samples_.omega).H;
+    for (std::size_t k = 0; k < H.size(); ++k)
+      worst = worst.cwiseMax((H[k] - samples_.H[k]).cwiseAbs());
+    return worst.cwiseQuotient(samples_.peak).maxCoeff();
+  }
+
+  [[noreturn]] void refuse_size(Index size) const {
+    throw Error(Code::bad_value,
+                fmt::format("{} has {} coordinates{}, more than Scene::whole_up_to = {}",
+                            full_.stage().graph.name, size,
+                            bodies_.empty() ? "" : " where its bodies have the fewest that do",
+                            scene_.whole_up_to),
+                "raise it (the cost grows with its cube), ask for less accuracy or a smaller band",
+                bodies_.empty() ? std::vector<std::string>{} : std::vector{bodies_});
+  }
+
+  void note_structure(Index after) {
+    note("structure", before_, after,
+         "what the scene's inputs reach and its outputs see, without tied coordinates");
   }
 
   void note(const char* name, Index before, Index after, std::string text) {
@@ -143,10 +205,11 @@ class Economy {
         fmt::format("an accuracy of {:.1e} cannot be met: {:.1e} is reached with {} "
                     "coordinates, from {} to {} at {:.4g} Hz",
                     accuracy, b.worst, sequence_->model(best).order(), b.input, b.output, b.hertz),
-        fmt::format("ask for {:.0e}, or use compile(diagram): rounding in the modes of the "
-                    "whole ends there",
-                    2 * b.worst),
-        {fmt::format("most of what is missing moves in {}", where_missing(best, b))});
+        fmt::format("ask for {:.0e}, or {} ends there", 2 * b.worst,
+                    bodies_.empty() ? "use compile(diagram): rounding in the modes of the whole"
+                                    : "raise Scene::whole_up_to: what smaller bodies can do"),
+        {fmt::format("most of what is missing moves in {}{}", where_missing(best, b),
+                     bodies_.empty() ? "" : "; " + bodies_)});
   }
 
   /// The block with the largest part of the elastic energy of what the model leaves out there.
@@ -210,8 +273,11 @@ class Economy {
   }
 
   Scene scene_;
-  std::shared_ptr<const detail::SystemData> data_;
-  System full_;
+  Options options_;
+  int before_ = 0;       ///< coordinates of all blocks
+  std::string bodies_;   ///< what became of them; empty: they are as they were
+  System full_, model_;  ///< as asked, and with smaller bodies; the same where these are not needed
+  std::shared_ptr<const detail::SystemData> data_;  ///< of model_
   detail::Whole whole_;
   detail::Band band_;
   detail::Samples samples_;
@@ -233,7 +299,7 @@ double seconds_of(const ReducedSystem& m, double omega) {
 }  // namespace
 
 ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options& options) {
-  return Economy(diagram, scene, options).reach(scene.accuracy);
+  return Economy(diagram, scene, options, scene.accuracy).reach(scene.accuracy);
 }
 
 std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
@@ -248,8 +314,9 @@ std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
     }
   }
   if (!mistakes.empty()) throw Error(std::move(mistakes));
-  Economy economy(diagram, scene, options);
   std::vector<WhatIf> result;
+  if (accuracies.empty()) return result;
+  Economy economy(diagram, scene, options, *std::min_element(accuracies.begin(), accuracies.end()));
   for (const double accuracy : accuracies)
     if (const auto system = economy.try_reach(accuracy))
       result.push_back({accuracy, system->order(), system->bound().worst,

@@ -14,7 +14,8 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr int kFar = 10;  ///< poles in s^2 that stand for all beyond twice the band
+constexpr double kNothing = 1e-10;  ///< of what its row and column have: a pair of rounding only
+constexpr int kFar = 10;            ///< poles in s^2 that stand for all beyond twice the band
 
 /// Poles of the whole; where its modes couple and `couple` was not called: without that.
 std::vector<Complex> poles_of(const Whole& w) {
@@ -135,6 +136,10 @@ Samples sample(const System& system, const Scene& scene, const Whole& w,
     result.peak = result.peak.cwiseMax(result.H[k].cwiseAbs());
     result.peak = result.peak.cwiseMax(1e-6 * alike(w, result.s[k]));
   }
+  // Where no mode is left to say what a pair might be (rigid bodies only): its row and column.
+  const Eigen::VectorXd row = result.peak.rowwise().maxCoeff().cwiseSqrt();
+  const Eigen::RowVectorXd column = result.peak.colwise().maxCoeff().cwiseSqrt();
+  result.peak = result.peak.cwiseMax(kNothing * row * column);
   result.peak = (result.peak.array() > 0).select(result.peak, 1);  // nothing gets there
   return result;
 }

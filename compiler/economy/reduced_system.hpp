@@ -21,7 +21,7 @@ struct ErrorBound {
 
 /// What one step left out.
 struct EconomyStep {
-  std::string name;           ///< "structure", "symmetry", "whole"
+  std::string name;           ///< "structure", "bodies", "symmetry", "whole"
   int before = 0, after = 0;  ///< second-order coordinates
   double error = 0;           ///< what it cost, relative as Scene says; 0: exact
   std::string text;           ///< in plain words
@@ -103,8 +103,9 @@ std::string to_string(const ReducedSystem& system);
 /// Throws what `compile(diagram)` throws; bad_value for a scene out of range or too large, for
 /// parts that are no passive structure (controllers, filters: their states are named), and where
 /// the accuracy cannot be met, with what was reached and where; unknown_name for inputs and outputs
-/// that are not there. Cost: one symmetric eigenproblem, O(n^3) of the coordinates, and some
-/// hundred transfers of the full system.
+/// that are not there. Cost: one symmetric eigenproblem, O(n^3) of the coordinates (those that are
+/// left, where bodies lose modes first: Scene::whole_up_to), and some hundred transfers of the full
+/// system.
 ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options& options = {});
 
 /// One line of `what_if`.
@@ -117,9 +118,9 @@ struct WhatIf {
 };
 
 /// The same question for several accuracies (Scene::accuracy is not used): one eigenproblem and one
-/// nested sequence for all, so that more accuracy never gives a smaller order. Those that cannot be
-/// met are left out. In the order given. Throws what `compile` throws, but for those; bad_value for
-/// accuracies out of range, all together.
+/// nested sequence for all, so that more accuracy never gives a smaller order. Bodies lose no more
+/// than the finest of them allows. Those that cannot be met are left out. In the order given.
+/// Throws what `compile` throws, but for those; bad_value for accuracies out of range, all together.
 std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
                             std::span<const double> accuracies, const Options& options = {});
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <titop/compiler/economy/remove_signals.hpp>
 #include <titop/compiler/economy/scene.hpp>
 
 namespace titop::detail {
@@ -68,32 +69,6 @@ Matrix unit(int size, int component, bool row) {
   e(component, 0) = 1;
   if (row) e.transposeInPlace();
   return {std::make_shared<const Eigen::MatrixXd>(std::move(e))};
-}
-
-/// Signals of inputs go from the list; indices everywhere else follow.
-void remove_input_signals(Graph& g) {
-  std::vector<int> place(g.signals.size(), -1);
-  std::vector<Signal> kept;
-  for (std::size_t s = 0; s < g.signals.size(); ++s) {
-    if (g.signals[s].role == Signal::Role::external) continue;
-    place[s] = static_cast<int>(kept.size());
-    kept.push_back(g.signals[s]);
-  }
-  g.signals = std::move(kept);
-  for (Node& n : g.nodes) {
-    const int count = n.end_signal - n.first_signal;
-    n.first_signal = place[at(n.first_signal)];
-    n.end_signal = n.first_signal + count;
-    if (n.state >= 0) n.state = place[at(n.state)];
-  }
-  for (Channel& c : g.channels) c.accel = place[at(c.accel)], c.force = place[at(c.force)];
-  const auto follow = [&](int& signal) { signal = signal < 0 ? signal : place[at(signal)]; };
-  for (Equation& e : g.equations) {
-    follow(e.target);
-    for (Term& t : e.terms) follow(t.signal);
-  }
-  for (Output& o : g.outputs)
-    for (Term& t : o.terms) follow(t.signal);
 }
 
 /// Terms of the inputs by what takes their place: nothing, the input itself, or its scalars.
@@ -165,7 +140,9 @@ Graph restricted(const Graph& graph, const Scene& scene) {
   const auto outputs = choose(graph.outputs, scene.outputs, "output", mistakes);
   if (!mistakes.empty()) throw Error(std::move(mistakes));
   Graph g = graph;
-  remove_input_signals(g);
+  std::vector<char> external;
+  for (const Signal& s : g.signals) external.push_back(s.role == Signal::Role::external);
+  remove_signals(g, external);
   g.inputs.clear();
   const Rewriter rewrite(graph, g, inputs);
   for (std::size_t e = 0; e < g.equations.size(); ++e)

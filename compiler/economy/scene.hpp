@@ -35,8 +35,10 @@ struct Scene {
   /// A theorem costs many times the samples, and where damping couples modes one eigenproblem of
   /// O(8 n^3) for their poles.
   BoundKind bound = BoundKind::estimate;
-  /// Up to this many coordinates the whole is reduced, by one symmetric eigenproblem of O(n^3);
-  /// more are refused.
+  /// Up to this many coordinates the whole is reduced, by one symmetric eigenproblem of O(n^3). Of
+  /// more, bodies lose modes first, those that do least to the assembled transfer; static vectors
+  /// of their loaded ports take their place. What that costs is measured, and the bound is an
+  /// estimate, checked against the full system as always. Refused where too many are left.
   int whole_up_to = 2000;
 };
 

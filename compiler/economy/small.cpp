@@ -3,7 +3,6 @@
 #include <cmath>
 #include <titop/compiler/economy/small.hpp>
 #include <titop/graph/linalg/dense.hpp>
-#include <titop/graph/linalg/symmetric.hpp>
 #include <utility>
 
 namespace titop::detail {
@@ -48,14 +47,6 @@ void find_poles(Small& m) {
   m.instant = ca * b;
 }
 
-/// Eigenvectors of W' Lambda W, by the inverse problem: stiff directions do not spoil soft ones.
-SymmetricModes ritz(const VectorXd& lambda, const MatrixXd& W) {
-  const Index r = W.cols();
-  const MatrixXd K = W.transpose() * lambda.asDiagonal() * W;
-  SymmetricModes inverse = eigh(solve_definite(K, MatrixXd(MatrixXd::Identity(r, r))));
-  return {inverse.lambda.reverse().cwiseInverse(), inverse.V.rowwise().reverse()};
-}
-
 }  // namespace
 
 MatrixXcd Small::transfer(Complex s) const {
@@ -94,6 +85,13 @@ std::vector<Complex> Small::poles() const {
   for (const Complex& p : linalg::eigenvalues(A))
     if (p.imag() >= 0) result.push_back(p);
   return result;
+}
+
+SymmetricModes ritz(const VectorXd& lambda, const MatrixXd& W) {
+  const Index r = W.cols();
+  const MatrixXd K = W.transpose() * lambda.asDiagonal() * W;
+  SymmetricModes inverse = eigh(solve_definite(K, MatrixXd(MatrixXd::Identity(r, r))));
+  return {inverse.lambda.reverse().cwiseInverse(), inverse.V.rowwise().reverse()};
 }
 
 Small project(const Whole& w, const std::vector<Index>& of_band, const MatrixXd& W) {

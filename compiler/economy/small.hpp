@@ -1,6 +1,7 @@
 #pragma once
 
 #include <titop/compiler/economy/whole.hpp>
+#include <titop/graph/linalg/symmetric.hpp>
 
 /// A small model in second order, as a projection of the whole. For the compiler's own files only.
 namespace titop::detail {
@@ -33,6 +34,9 @@ struct Small {
   /// Its poles, those of positive imaginary part for pairs. O(r^3).
   std::vector<std::complex<double>> poles() const;
 };
+
+/// Eigenvectors of W' Lambda W, by the inverse problem: stiff directions do not spoil soft ones.
+SymmetricModes ritz(const Eigen::VectorXd& lambda, const Eigen::MatrixXd& W);
 
 /// The whole in the span of all motions without stiffness, the modes `kept` and the columns W
 /// (elastic modes x columns, orthonormal, 0 in the rows of `kept`): Galerkin, so that M = I, k >= 0

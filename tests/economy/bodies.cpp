@@ -1,0 +1,137 @@
+#include <doctest/doctest.h>
+
+#include "economy/against.hpp"
+#include "economy/scenes.hpp"
+#include "support/mistakes.hpp"
+
+/// Where the whole is too large for one eigenproblem, bodies lose modes first. Here the limit is
+/// small instead.
+using namespace titop;
+using namespace titop_test;
+using Eigen::MatrixXd;
+
+namespace {
+
+titop::Scene limited(titop::Scene scene, int whole_up_to) {
+  scene.whole_up_to = whole_up_to;
+  return scene;
+}
+
+const EconomyStep& step(const ReducedSystem& r, const std::string& name) {
+  for (const EconomyStep& s : r.steps())
+    if (s.name == name) return s;
+  FAIL("no step " << name);
+  return r.steps().front();
+}
+
+}  // namespace
+
+TEST_CASE("smaller bodies: the bound holds against the full system, the order hardly grows") {
+  for (const double xi : {0.0, 0.005})
+    for (const double accuracy : {1e-2, 1e-5}) {
+      CAPTURE(xi);
+      CAPTURE(accuracy);
+      const Diagram d = frame(slim_beam(8, xi));
+      const titop::Scene scene{.band_hz = {0, 60}, .accuracy = accuracy};
+      const ReducedSystem whole = compile(d, scene), r = compile(d, limited(scene, 120));
+      CHECK(r.full().order() == 2 * 3 * 48);
+      CHECK(step(r, "bodies").before == 144);
+      CHECK(step(r, "bodies").after <= 120);
+      CHECK(step(r, "bodies").error <= 0.3 * accuracy);
+      CHECK(step(r, "bodies").error > 0);
+      CHECK(r.bound().worst <= accuracy);
+      CHECK(on_fine_grid(r, scene, 300).bound <= 1);
+      CHECK(r.order() <= 1.3 * whole.order());
+      for (const Pole& p : poles(r.state_space()))
+        CHECK((xi == 0 ? p.s.real() == 0 : p.s.real() < 0));
+      CHECK(r.inputs() == whole.inputs());
+      CHECK(r.outputs() == whole.outputs());
+    }
+}
+
+TEST_CASE("smaller bodies: a body that carries 50 times its mass keeps its static answer") {
+  const FlexibleBody beam = slim_beam(8);
+  const double m = 50 * beam.data().D_P(0, 0);
+  Diagram d{"heavy"};
+  auto U = d.input("U", 6);
+  auto b = d.add("beam", beam);
+  auto tip = d.add("tip", RigidBody{.mass = m, .inertia = Matrix3d::Identity() * 0.03 * m});
+  b.parent.accel = 0;
+  mount(tip, b.child("C"), Rotation{});
+  b.child("C").force += U;
+  d.output("a", 6) = tip.parent.accel;
+  const titop::Scene scene{.band_hz = {0, 60}, .accuracy = 1e-4, .whole_up_to = 40};
+  const ReducedSystem r = compile(d, scene);
+  CHECK(step(r, "bodies").after <= 40);
+  CHECK(r.bound().worst <= 1e-4);
+  CHECK(on_fine_grid(r, scene, 300).bound <= 1);
+}
+
+TEST_CASE("far below its first mode a free body is rigid: it has no coordinates") {
+  Diagram d{"free"};
+  auto U = d.input("U", 6);
+  auto b1 = d.add("b1", slim_beam(6)), b2 = d.add("b2", slim_beam(6));
+  b1.parent.force = -U;
+  mount(b2, b1.child("C"), Rotation::about({0, 1, 1}, 0.8));
+  d.output("a", 6) = b1.parent.accel;
+  const titop::Scene scene{.band_hz = {0, 1e-6}, .accuracy = 1e-3, .whole_up_to = 10};
+  const ReducedSystem r = compile(d, scene);
+  CHECK(step(r, "bodies").before == 72);
+  CHECK(step(r, "bodies").after == 0);
+  CHECK(step(r, "bodies").text.find("rigid") != std::string::npos);
+  CHECK(r.order() == 0);
+  CHECK(on_fine_grid(r, scene, 100).bound <= 1);
+}
+
+TEST_CASE("smaller bodies: positions, rates and static gain are kept") {
+  Diagram d{"boom"};
+  auto U = d.input("U", 6);
+  auto b1 = d.add("b1", slim_beam(6)), b2 = d.add("b2", slim_beam(6));
+  b1.parent.accel = 0;
+  mount(b2, b1.child("C"), Rotation::about({1, 2, 3}, 0.7));
+  b2.child("C").force = U;
+  d.output("x", 6) = b2.child("C").position;
+  d.output("v", 6) = b1.child("C").rate;
+  const titop::Scene scene{.band_hz = {0, 40}, .accuracy = 1e-4, .whole_up_to = 60};
+  const ReducedSystem r = compile(d, scene);
+  CHECK(step(r, "bodies").after <= 60);
+  CHECK(on_fine_grid(r, scene, 300).bound <= 1);
+  const titop::Scene still{.outputs = {"x"}, .accuracy = 1e-6, .whole_up_to = 30};
+  const ReducedSystem gain = compile(d, still);
+  CHECK(gain.order() == 0);
+  const MatrixXd exact = compile(d).static_gain().topRows(6);
+  CHECK((gain.state_space().D - exact).norm() <= 1e-6 * exact.norm());
+}
+
+TEST_CASE("smaller bodies that are twins stay twins") {
+  const FlexibleBody beam = slim_beam(6);
+  Diagram d{"twins"};
+  auto U = d.input("U", 6);
+  auto hub = d.add("hub", RigidBody{.mass = 20,
+                                    .inertia = Vector3d(1, 2, 3).asDiagonal(),
+                                    .children = {{"C1", {0.3, 0, 0}}, {"C2", {-0.3, 0, 0}}}});
+  auto left = d.add("left", beam), right = d.add("right", beam);
+  hub.parent.force = -U;
+  const Matrix3d turn = Vector3d(-1, -1, 1).asDiagonal();
+  mount(left, hub.child("C1"), Rotation{});
+  mount(right, hub.child("C2"), Rotation::matrix(turn));
+  d.output("a", 6) = hub.parent.accel;
+  const titop::Scene scene{.inputs = {"U(3)"},
+                           .outputs = {"a(3)"},
+                           .band_hz = {0, 60},
+                           .accuracy = 1e-4,
+                           .whole_up_to = 60};
+  const ReducedSystem r = compile(d, scene);
+  CHECK(step(r, "bodies").after < 60);
+  CHECK(2 * step(r, "symmetry").after == step(r, "symmetry").before);
+  CHECK(on_fine_grid(r, scene, 300).bound <= 1);
+}
+
+TEST_CASE("what bodies cannot lose is refused with what each of them needs, a theorem as well") {
+  const Diagram d = frame(slim_beam(6));
+  titop::Scene scene{.band_hz = {0, 60}, .accuracy = 1e-2, .whole_up_to = 20};
+  const Error error = error_of([&] { compile(d, scene); });
+  CHECK(says(error, Code::bad_value, {"whole_up_to = 20", "b1 and 2 more", "vectors of 36"}));
+  scene.bound = BoundKind::theorem;
+  CHECK(says(error_of([&] { compile(d, scene); }), Code::bad_value, {"theorem", "whole_up_to"}));
+}
