@@ -17,6 +17,7 @@ using Eigen::VectorXd;
 
 constexpr double kEqual = 1e-9;  ///< relative gap of frequencies that count as one
 constexpr double kSeen = 1e-12;  ///< of what a port sees of all modes: less is rounding
+constexpr double kLeak = 3e-9;   ///< the same where chains close, and coordinates depend on others
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -132,6 +133,19 @@ void read_outputs(Whole& w, const Coordinates& c, const MatrixXd& phi) {
   if (w.Z.size() > 0) w.cv += w.ca * w.Z;
 }
 
+void drop(Eigen::Ref<MatrixXd> m) {
+  const double least = m.size() ? kLeak * m.cwiseAbs().maxCoeff() : 0;
+  m = (m.array().abs() > least).select(m, 0);
+}
+
+/// What ports see of modes by rounding alone: pairs that are zero by symmetry stay so.
+void drop_leaks(Whole& w) {
+  const Index n = w.elastic();
+  for (Index j = 0; j < w.b.cols(); ++j) drop(w.b.block(0, j, n, 1));
+  for (MatrixXd* c : {&w.ca, &w.cv})
+    for (Index i = 0; i < c->rows(); ++i) drop(c->block(i, 0, 1, n));
+}
+
 /// Modes of the coordinates with stiffness, mass-normalised, and what the inputs drive of them.
 MatrixXd elastic_modes(Whole& w, const Coordinates& c) {
   const Index n = c.n_elastic;
@@ -180,6 +194,7 @@ Whole whole(const System& system, const Coordinates& c, std::vector<char> is_pos
     if (w.proportional) w.Z = MatrixXd(w.Z.diagonal().asDiagonal());
   }
   read_outputs(w, c, phi);
+  if (!c.diagonal) drop_leaks(w);
   w.D0 = rest(system, w);
   return w;
 }
