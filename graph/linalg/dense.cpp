@@ -185,26 +185,9 @@ double perron_of_parts(const Small& M) {
   return radius;
 }
 
-/// Times powers of two until every row and column has its largest entry near 1.
-template <class Row>
-void scale_to_one(Row row) {
-  const double size = row.cwiseAbs().maxCoeff();
-  if (size > 0 && std::isfinite(size)) row *= std::ldexp(1.0, -std::ilogb(size));
-}
+/// |M^-1| |M|; 0 x 0 if a pivot is 0.
 template <class M>
-M equilibrated(M m) {
-  for (int sweep = 0; sweep < 3; ++sweep) {
-    for (Eigen::Index i = 0; i < m.rows(); ++i) scale_to_one(m.row(i));
-    for (Eigen::Index i = 0; i < m.cols(); ++i) scale_to_one(m.col(i));
-  }
-  return m;
-}
-
-/// |M^-1| |M| but for a diagonal similarity, which leaves the radius: the scaling is for the LU,
-/// whose pivots and whose rounding feel the units. 0 x 0 if a pivot is 0.
-template <class M>
-M skeel_product(const M& unscaled) {
-  const M m = equilibrated(unscaled);
+M skeel_product(const M& m) {
   const Eigen::PartialPivLU<M> lu(m);
   if ((lu.matrixLU().diagonal().array() == 0.0).any()) return M(0, 0);
   return M(lu.inverse()).cwiseAbs() * m.cwiseAbs();
