@@ -6,8 +6,8 @@
 
 namespace titop {
 
-std::string to_dot(const Stage& stage) {
-  const dot::Picture p = dot::picture(stage);
+std::string to_dot(const Stage& stage, const DotOptions& options) {
+  const dot::Picture p = dot::picture(stage, options.fold);
   return fmt::format(
       "digraph {0} {{\n"
       "  graph [rankdir=TB nodesep=0.35 ranksep=0.4 fontname=\"Helvetica\" fontsize=14 "
@@ -17,14 +17,14 @@ std::string to_dot(const Stage& stage) {
       "  edge [fontname=\"Helvetica\" fontsize=9 fontcolor=\"{3}\" color=\"{2}\" arrowsize=0.7];\n"
       "{5}{6}}}\n",
       dot::quoted(stage.graph.name), dot::colour::ink, dot::colour::line, dot::colour::soft,
-      dot::draw_legend(p), dot::draw_nodes(p), dot::draw_wires(p));
+      dot::draw_legend(p), dot::draw_nodes(p), dot::draw_wires(p) + dot::draw_folded_wires(p));
 }
 
-std::string to_dot(const Diagram& diagram) {
+std::string to_dot(const Diagram& diagram, const DotOptions& options) {
   Stage stage;
   stage.graph = diagram.graph();
   stage.values = nominal_values(stage.graph);
-  return to_dot(stage);
+  return to_dot(stage, options);
 }
 
 }  // namespace titop

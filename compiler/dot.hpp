@@ -6,10 +6,18 @@
 
 namespace titop {
 
+struct DotOptions {
+  /// At most about so many blocks; whole subtrees beyond become one box each, with their number of
+  /// blocks and states and their types. A block hangs on the one that moves it (a controller on
+  /// what it reads first). The largest subtrees are opened first; of one block's children
+  /// the largest are shown, eight at most, and the rest share a box. 0: every block.
+  int fold = 0;
+};
+
 /// Graphviz text of a diagram at any stage of the compiler: one box per node with its ports,
 /// edges with size and frame, algebraic loops in colour, inverted channels marked. Node names in
 /// the text are the user's own, so two runs give the same text. O(terms).
-std::string to_dot(const Stage& stage);
-std::string to_dot(const Diagram& diagram);
+std::string to_dot(const Stage& stage, const DotOptions& options = {});
+std::string to_dot(const Diagram& diagram, const DotOptions& options = {});
 
 }  // namespace titop

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <set>
 #include <titop/compiler/dot/picture.hpp>
 #include <titop/compiler/dot/text.hpp>
 
@@ -155,18 +156,33 @@ std::string with_size(const std::string& name, int size) {
   return size == 1 ? html(name) : html(name) + " " + font(fmt::format("{}", size), 9, colour::soft);
 }
 
+/// External inputs or outputs; those that share an ellipse by first and last name.
+template <class List>
+std::string draw_ends(const List& list, const std::vector<int>& order,
+                      const std::vector<std::string>& id, const char* look) {
+  std::string text;
+  std::set<std::string> drawn;
+  for (const int i : order) {
+    if (!drawn.insert(id[at(i)]).second) continue;
+    std::string label = with_size(list[at(i)].name, list[at(i)].size);
+    int last = i, number = 0;
+    for (const int k : order)
+      if (id[at(k)] == id[at(i)]) last = k, ++number;
+    if (number > 1)
+      label = fmt::format("{} … {} {}", html(list[at(i)].name), html(list[at(last)].name),
+                          font(fmt::format("({})", number), 9, colour::soft));
+    text += fmt::format("  {} [shape=ellipse {} label=<{}>];\n", id[at(i)], look, label);
+  }
+  return text;
+}
+
 }  // namespace
 
 std::string draw_nodes(const Picture& p) {
-  std::string text;
-  for (const int i : p.inputs)
-    text += fmt::format("  {} [shape=ellipse penwidth=1.6 label=<{}>];\n", p.input_id[at(i)],
-                        with_size(p.graph.inputs[at(i)].name, p.graph.inputs[at(i)].size));
-  for (const int i : p.nodes) text += draw_block(p, i);
-  for (const int i : p.outputs)
-    text += fmt::format("  {} [shape=ellipse peripheries=2 label=<{}>];\n", p.output_id[at(i)],
-                        with_size(p.graph.outputs[at(i)].name, p.graph.outputs[at(i)].size));
-  return text;
+  std::string text = draw_ends(p.graph.inputs, p.inputs, p.input_id, "penwidth=1.6");
+  for (const int i : p.nodes)
+    if (p.fold.box_of[at(i)] < 0) text += draw_block(p, i);
+  return text + draw_boxes(p) + draw_ends(p.graph.outputs, p.outputs, p.output_id, "peripheries=2");
 }
 
 }  // namespace titop::dot

@@ -25,7 +25,8 @@ std::vector<int> by_name(const List& list) {
 /// Blocks go by their names; everything else has a prefix, and so have blocks whose own name
 /// starts like one.
 std::string block_prefix(const std::string& name) {
-  for (const char* taken : {"block ", "input ", "output ", "sum ", "gain ", "ground "})
+  for (const char* taken : {"block ", "input ", "output ", "sum ", "gain ", "ground ", "fold ",
+                            "inputs of ", "outputs of "})
     if (name.starts_with(taken)) return "block ";
   return "";
 }
@@ -111,12 +112,38 @@ std::vector<std::string> find_zeros(const Graph& g, const std::vector<Assignment
   return zero;
 }
 
+/// Inputs that drive one box alone, and outputs that read one alone, share an ellipse.
+void share_ends(Picture& p) {
+  constexpr int kNone = -1, kMany = -2;
+  std::vector<int> input(p.graph.inputs.size(), kNone), output(p.graph.outputs.size(), kNone);
+  const auto meet = [](int& place, int box) {
+    place = box < 0 || (place != kNone && place != box) ? kMany : box;
+  };
+  for (const Assignment& a : p.assignments)
+    for (const Term& t : a.terms) {
+      if (a.output >= 0) meet(output[at(a.output)], box_of(p, t.signal));
+      if (p.graph.signals[at(t.signal)].role == Signal::Role::external)
+        meet(input[at(p.graph.signals[at(t.signal)].spec)], box_of(p, a.target));
+    }
+  const auto share = [&](const std::vector<int>& box, std::vector<std::string>& id,
+                         const char* what) {
+    for (std::size_t b = 0; b < p.box_id.size(); ++b)
+      if (std::count(box.begin(), box.end(), static_cast<int>(b)) > 1)
+        for (std::size_t i = 0; i < box.size(); ++i)
+          if (box[i] == static_cast<int>(b))
+            id[i] = quoted(fmt::format(
+                "{} of {}", what, clean(p.graph.nodes[at(p.fold.boxes[b].nodes.front())].name)));
+  };
+  share(input, p.input_id, "inputs");
+  share(output, p.output_id, "outputs");
+}
+
 }  // namespace
 
-Picture picture(const Stage& stage) {
+Picture picture(const Stage& stage, int most) {
   const Graph& g = stage.graph;
-  Picture p{stage, g,  {}, {}, {}, by_name(g.nodes), by_name(g.inputs), by_name(g.outputs),
-            {},    {}, {}, {}};
+  Picture p{stage, g,  {}, {}, {}, by_name(g.nodes), by_name(g.inputs), by_name(g.outputs), {},
+            {},    {}, {}, {}, {}};
   p.node_id = ids(g.nodes, p.nodes, block_prefix);
   p.input_id = ids(g.inputs, p.inputs, [](const std::string&) { return std::string("input "); });
   p.output_id =
@@ -127,7 +154,28 @@ Picture picture(const Stage& stage) {
     if (i.channel >= 0) p.inverted[at(i.channel)] = 1;
   p.assignments = collect(g, p.outputs);
   p.zero = find_zeros(g, p.assignments);
+  p.fold = fold(g, most);
+  for (const Fold::Box& box : p.fold.boxes)
+    p.box_id.push_back(quoted("fold " + clean(g.nodes[at(box.nodes.front())].name)));
+  share_ends(p);
   return p;
+}
+
+int box_of(const Picture& p, int signal) {
+  const int node = signal < 0 ? -1 : p.graph.signals[at(signal)].node;
+  return node < 0 ? -1 : p.fold.box_of[at(node)];
+}
+
+bool is_folded(const Picture& p, const Assignment& a) {
+  return box_of(p, a.target) >= 0 ||
+         std::any_of(a.terms.begin(), a.terms.end(),
+                     [&](const Term& t) { return box_of(p, t.signal) >= 0; });
+}
+
+Side output_side(const Graph& g, const Assignment& a) {
+  for (const Term& t : a.terms)
+    if (side_of(g, t.signal) != Side::top) return Side::top;
+  return a.terms.empty() ? Side::top : Side::bottom;
 }
 
 bool is_active(const Graph& g, int node) {
@@ -159,6 +207,7 @@ Anchor anchor(const Picture& p, int signal) {
   const Signal& s = p.graph.signals[at(signal)];
   const Side side = side_of(p.graph, signal);
   if (s.role == Signal::Role::external) return {p.input_id[at(s.spec)], side};
+  if (const int box = p.fold.box_of[at(s.node)]; box >= 0) return {p.box_id[at(box)], side};
   const char compass = s.role == Signal::Role::state ? 'e' : side == Side::top ? 'n' : 's';
   return {fmt::format("{}:{}:{}", p.node_id[at(s.node)], cell_name(p.graph, signal), compass),
           side};

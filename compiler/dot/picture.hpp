@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <titop/compiler/dot/fold.hpp>
 #include <titop/compiler/stage.hpp>
 #include <vector>
 
@@ -32,15 +33,24 @@ struct Assignment {
 struct Picture {
   const Stage& stage;
   const Graph& graph;
-  std::vector<std::string> node_id, input_id, output_id;  ///< quoted, each once
-  std::vector<int> nodes, inputs, outputs;                ///< indices in natural order
-  std::vector<int> loop;                                  ///< per signal: 1, 2, ..., 0 for none
-  std::vector<char> inverted;                             ///< per channel
-  std::vector<std::string> zero;                          ///< per signal: "= 0", or empty
+  /// Quoted, each once; inputs (outputs) of one box alone share one.
+  std::vector<std::string> node_id, input_id, output_id;
+  std::vector<int> nodes, inputs, outputs;  ///< indices in natural order
+  std::vector<int> loop;                    ///< per signal: 1, 2, ..., 0 for none
+  std::vector<char> inverted;               ///< per channel
+  std::vector<std::string> zero;            ///< per signal: "= 0", or empty
   std::vector<Assignment> assignments;
+  Fold fold;
+  std::vector<std::string> box_id;  ///< quoted
 };
 
-Picture picture(const Stage& stage);
+/// `most`: as in `fold`.
+Picture picture(const Stage& stage, int most);
+
+/// The box of a signal's block, -1 for none.
+int box_of(const Picture& p, int signal);
+/// True if a box has a part in it: then only its wires are drawn, no sums or gains.
+bool is_folded(const Picture& p, const Assignment& a);
 
 /// How one term looks on its way.
 struct Look {
@@ -55,11 +65,29 @@ Look look(const Picture& p, const Assignment& a, const Term& term);
 
 /// False once every signal of the node has been set aside.
 bool is_active(const Graph& g, int node);
+/// Outputs of what stands on top go above their block, all others below.
+Side output_side(const Graph& g, const Assignment& a);
 /// Which side of its block a signal stands on.
 Side side_of(const Graph& g, int signal);
 /// Name of a signal's cell in its block's table.
 std::string cell_name(const Graph& g, int signal);
 Anchor anchor(const Picture& p, int signal);
+
+/// One piece of wire. Graphviz puts tails above heads, so what flows up is written from head to
+/// tail with its arrow at the back.
+struct Wire {
+  std::string from = {}, to = {};
+  bool up = false, arrow = true, minus = false;
+  bool active = true;
+  int rows = 1, loop = 0;
+  Quantity quantity = Quantity::plain;
+  std::string label = {};
+};
+std::string draw(const Wire& wire);
+
+/// The text of all boxes; of the wires to and from them, those of one kind between two as one.
+std::string draw_boxes(const Picture& p);
+std::string draw_folded_wires(const Picture& p);
 
 /// The text of all blocks, external inputs and outputs; of all wires with the small nodes on
 /// them; of the legend (as an HTML-like label).

@@ -8,23 +8,14 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// One piece of wire. Graphviz puts tails above heads, so what flows up is written from head to
-/// tail with its arrow at the back.
-struct Wire {
-  std::string from = {}, to = {};
-  bool up = false, arrow = true, minus = false;
-  bool active = true;
-  int rows = 1, loop = 0;
-  Quantity quantity = Quantity::plain;
-  std::string label = {};
-};
-
 std::string head_shape(const Wire& w) {
   if (!w.arrow) return "none";
   return w.quantity == Quantity::acceleration ? "normal"
          : w.quantity == Quantity::force      ? "onormal"
                                               : "vee";
 }
+
+}  // namespace
 
 std::string draw(const Wire& w) {
   std::string text = fmt::format("  {} -> {} [", w.up ? w.to : w.from, w.up ? w.from : w.to);
@@ -45,6 +36,8 @@ std::string draw(const Wire& w) {
   return text + "];\n";
 }
 
+namespace {
+
 /// Draws what drives one port or output: a sum where there are several terms, and on each term's
 /// way a small node for its gain or rotation.
 class Drawing {
@@ -53,7 +46,8 @@ class Drawing {
     const Graph& g = p.graph;
     name_ = a.output >= 0 ? g.outputs[at(a.output)].name : name_of(g, a.target);
     name_ = (a.output >= 0 ? "output " : "") + clean(name_) + a.part;
-    end_ = a.output >= 0 ? Anchor{p.output_id[at(a.output)], output_side()} : anchor(p, a.target);
+    end_ =
+        a.output >= 0 ? Anchor{p.output_id[at(a.output)], output_side(g, a)} : anchor(p, a.target);
     hub_ = a.terms.size() > 1 ? quoted("sum " + name_) : end_.port;
   }
 
@@ -65,13 +59,6 @@ class Drawing {
   }
 
  private:
-  /// Outputs of what stands on top go above their block, all others below.
-  Side output_side() const {
-    for (const Term& t : a_.terms)
-      if (side_of(p_.graph, t.signal) != Side::top) return Side::top;
-    return a_.terms.empty() ? Side::top : Side::bottom;
-  }
-
   bool up_into_end() const { return end_.side == Side::bottom; }
 
   /// Of a term as it leaves its block, and of what arrives.
@@ -196,6 +183,7 @@ std::string draw_wires(const Picture& p) {
           p.graph.signals[at(a.target)].role == Signal::Role::output)
         continue;
     }
+    if (is_folded(p, a)) continue;
     text += Drawing(p, a).text();
   }
   return text;
