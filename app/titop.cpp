@@ -2,6 +2,7 @@
 // stderr), 2 not understood.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -9,6 +10,7 @@
 #include <fstream>
 #include <string>
 #include <titop/blocks/scene/scene.hpp>
+#include <titop/compiler/emit/report.hpp>
 #include <titop/titop.hpp>
 #include <vector>
 
@@ -22,6 +24,7 @@ constexpr const char* kUsage = R"(usage:
   titop compile SCENE.json               log, poles and certificate
   titop draw SCENE.json FILE.dot         the diagram for Graphviz (dot -Tsvg FILE.dot)
   titop draw --compiled SCENE.json FILE.dot    the same after all passes
+  titop report SCENE.json                one HTML page for reading and printing: SCENE.html, or -o
   titop export SCENE.json FILE           the model; what is written follows from FILE:
       NAME.hpp     C++17 header, and beside it NAME_test.cpp that proves it
       NAME.m       MATLAB or Octave function
@@ -29,6 +32,12 @@ constexpr const char* kUsage = R"(usage:
       FILE.json    all there is, with poles, certificate and notes
       FILE.csv     frequency response; needs --omega
 options:
+  --fold COUNT                           draw, report: at most so many boxes, each whole subtrees;
+                                         draw: all if left out; report: 40, 0 for all
+  -o FILE                                report: where to
+  --band LOW HIGH                        report: of the frequency responses, Hz
+  --until SECONDS                        report: of the step responses
+  --no-diagrams                          report: without drawings, which need Graphviz
   --sample-time SECONDS                  for .hpp: also `step`
   --omega LOW HIGH COUNT                 for .csv: rad/s, logarithmic
   --minimize-up-to STATES                100 if left out; 0: never
@@ -38,7 +47,11 @@ exit code: 0 done, 1 refused (errors on stderr), 2 not understood
 /// What was typed.
 struct Arguments {
   std::vector<std::string> words;  ///< without options
-  bool compiled = false;
+  bool compiled = false, diagrams = true;
+  int fold = -1;  ///< not given
+  std::string to;
+  std::vector<double> band;  ///< LOW HIGH
+  double until = 0;
   double sample_time = 0;
   std::vector<double> omega;  ///< LOW HIGH COUNT
   int minimize_up_to = Options{}.minimize_up_to;
@@ -57,15 +70,32 @@ double number(const std::string& text) {
   return value;
 }
 
+int fold(double count) {
+  if (!(count >= 0) || count > 1e6) throw Misuse{"--fold needs a COUNT from 0 to 1000000"};
+  return static_cast<int>(count);
+}
+
 Arguments parse(const std::vector<std::string>& all) {
   Arguments a;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const auto next = [&] {
+    const auto word = [&]() -> const std::string& {
       if (++i == all.size()) throw Misuse{fmt::format("{} needs more", all[i - 1])};
-      return number(all[i]);
+      return all[i];
     };
+    const auto next = [&] { return number(word()); };
     if (all[i] == "--compiled") {
       a.compiled = true;
+    } else if (all[i] == "--no-diagrams") {
+      a.diagrams = false;
+    } else if (all[i] == "--fold") {
+      a.fold = fold(next());
+    } else if (all[i] == "-o") {
+      a.to = word();
+    } else if (all[i] == "--band") {
+      if (!a.band.empty()) throw Misuse{"--band is there twice"};
+      for (int k = 0; k < 2; ++k) a.band.push_back(next());
+    } else if (all[i] == "--until") {
+      a.until = next();
     } else if (all[i] == "--sample-time") {
       a.sample_time = next();
     } else if (all[i] == "--minimize-up-to") {
@@ -100,14 +130,23 @@ void show(const Arguments& a) {
 }
 
 void draw(const Arguments& a) {
+  const DotOptions options{.fold = std::max(a.fold, 0)};
   const std::string text =
-      a.compiled ? to_dot(compiled(a).stage()) : to_dot(read_scene(a.words[1]));
+      a.compiled ? to_dot(compiled(a).stage(), options) : to_dot(read_scene(a.words[1]), options);
   std::ofstream file(a.words[2], std::ios::binary);
   file << text;
   file.flush();
   if (!file)
     throw Error(Code::bad_file, fmt::format("{}: cannot be written", a.words[2]),
                 "check that the folder exists and may be written to");
+}
+
+void report(const Arguments& a) {
+  ReportOptions options{.diagrams = a.diagrams, .until = a.until};
+  if (a.fold >= 0) options.fold = a.fold;
+  if (!a.band.empty()) options.band_hz = {a.band[0], a.band[1]};
+  const fs::path file = a.to.empty() ? fs::path(a.words[1]).stem() += ".html" : fs::path(a.to);
+  write_report(compiled(a), file, options);
 }
 
 std::vector<double> omega(const Arguments& a) {
@@ -138,8 +177,11 @@ struct Command {
   std::size_t words;  ///< with its own
   void (*run)(const Arguments&);
 };
-constexpr Command kCommands[] = {
-    {"check", 2, check}, {"compile", 2, show}, {"draw", 3, draw}, {"export", 3, export_model}};
+constexpr Command kCommands[] = {{"check", 2, check},
+                                 {"compile", 2, show},
+                                 {"draw", 3, draw},
+                                 {"report", 2, report},
+                                 {"export", 3, export_model}};
 
 void run(const std::vector<std::string>& all) {
   const Arguments a = parse(all);

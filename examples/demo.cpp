@@ -1,11 +1,12 @@
 // A satellite from real finite-element data: a rigid hub, two booms read from CalculiX matrices,
 // one of them on a hinge with a motor. Described in thirty lines (scenes/satellite.cpp), compiled
-// to one state-space model, compared with M and K assembled by hand, and drawn. Then the hub's
-// attitude is controlled.
+// to one state-space model, compared with M and K assembled by hand, drawn and reported. Then the
+// hub's attitude is controlled.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <numbers>
+#include <titop/compiler/emit/report.hpp>
 #include <titop/titop.hpp>
 
 #include "by_hand/by_hand.hpp"
@@ -177,6 +178,22 @@ unset xlabel
   gp << "unset multiplot\n";
 }
 
+/// All there is to know about the model, to be read or printed; without Graphviz it has no
+/// diagrams.
+void report(const System& system) {
+  ReportOptions options{.title = "Satellite with two booms",
+                        .remark =
+                            "Rigid hub, two booms from finite-element data, one of them on a "
+                            "hinge with a motor. Written by titop's demo."};
+  try {
+    write_report(system, "report.html", options);
+  } catch (const Error& error) {
+    std::fputs(error.what(), stderr);
+    options.diagrams = false;
+    write_report(system, "report.html", options);
+  }
+}
+
 /// Runs a drawing program; without it the text files are still there.
 void draw(const char* program, const char* command) {
   if (std::system(command) != 0)
@@ -212,8 +229,10 @@ int main() {
   write_bode_script();
   draw("dot", "dot -Tsvg satellite.dot -o satellite.svg 2>dot.log");
   draw("gnuplot", "gnuplot bode.gp 2>gnuplot.log");
+  report(system);
   std::printf(
-      "\nsatellite.dot, satellite.svg: the diagram, by dot\n"
+      "\nreport.html: all of this and more, for reading and printing: open it in a browser\n"
+      "satellite.dot, satellite.svg: the diagram, by dot\n"
       "bode.csv, bode.gp, bode.svg: the frequency response, by gnuplot\n");
   return ok ? 0 : 1;
 }

@@ -57,6 +57,40 @@ TEST_CASE("draw writes what to_dot says") {
   CHECK(shell.folder.read("b.dot") == to_dot(compile(Shell::diagram()).stage()));
 }
 
+TEST_CASE("draw folds large diagrams on request") {
+  const Shell shell;
+  CHECK(shell.titop("draw --fold 3 masses.json a.dot").code == 0);
+  CHECK(shell.folder.read("a.dot") == to_dot(Shell::diagram(), {.fold = 3}));
+  CHECK(has(shell.folder.read("a.dot"), "▤"));
+  CHECK(shell.titop("draw --compiled masses.json b.dot --fold 3").code == 0);
+  CHECK(shell.folder.read("b.dot") == to_dot(compile(Shell::diagram()).stage(), {.fold = 3}));
+}
+
+TEST_CASE("report writes a page beside, or where it is told to") {
+  const Shell shell;
+  CHECK(shell.titop("report masses.json --no-diagrams").code == 0);
+  CHECK(has(shell.folder.read("masses.html"), "<title>five masses</title>"));
+  CHECK(has(shell.folder.read("masses.html"), "<section id=\"poles\">"));
+  Run r = shell.titop("report masses.json -o 'my report.html' --no-diagrams --band 1 10 --until 4");
+  CHECK(r.code == 0);
+  CHECK(r.out.empty());
+  CHECK(has(shell.folder.read("my report.html"), "</html>"));
+  r = shell.titop("report masses.json --no-diagrams --band 10 1");
+  CHECK(r.code == 1);
+  CHECK(has(r.err, "error[bad-value]"));
+  if (std::system("dot -V >/dev/null 2>&1") != 0) return;
+  CHECK(shell.titop("report masses.json --fold 3").code == 0);
+  CHECK(has(shell.folder.read("masses.html"), "▤"));
+}
+
+TEST_CASE("report without dot: exit code 1, and the way out") {
+  const Shell shell;
+  const std::string command = "PATH=/nowhere '" TITOP_PROGRAM "' report masses.json 2>err";
+  CHECK(shell.folder.run(command) == 1);
+  CHECK(has(shell.folder.read("err"), "error[bad-file]: the diagram cannot be drawn"));
+  CHECK(has(shell.folder.read("err"), "--no-diagrams"));
+}
+
 TEST_CASE("export writes by the file's ending") {
   const Shell shell;
   const System system = compile(Shell::diagram());
@@ -99,7 +133,9 @@ TEST_CASE("what is not understood: exit code 2 and the usage on stderr") {
        {"", "fly masses.json", "check", "check masses.json more", "check --fast masses.json",
         "export masses.json m.txt", "export masses.json g.csv",
         "export masses.json g.csv --omega 1 x 3", "export masses.json g.csv --omega 3 1 3",
-        "export masses.json m.hpp --sample-time"}) {
+        "export masses.json m.hpp --sample-time", "report", "report masses.json -o",
+        "report masses.json --band 1", "report masses.json --band 1 2 --band 1 2",
+        "draw --fold -1 masses.json a.dot"}) {
     INFO(words);
     const Run r = shell.titop(words);
     CHECK(r.code == 2);

@@ -1,0 +1,276 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <titop/compiler/emit/report/html.hpp>
+#include <titop/compiler/emit/report/subject.hpp>
+#include <titop/compiler/emit/report/times.hpp>
+
+namespace titop::report {
+namespace {
+
+constexpr double kHolds = 1e-8;  ///< as FullCertificate::faults judges
+
+enum class Mark { good, bad, none };
+
+struct Item {
+  std::string what, value, meaning;
+  Mark mark = Mark::none;
+};
+
+std::string place(std::complex<double> s) {
+  return fmt::format("s = {:.3g} {} {:.3g} j rad/s", s.real(), s.imag() < 0 ? "−" : "+",
+                     std::abs(s.imag()));
+}
+
+Mark judged(double value, double limit) { return value <= limit ? Mark::good : Mark::bad; }
+
+void add_basic(std::vector<Item>& items, const Certificate& c) {
+  items.push_back(
+      {"every equation, as it was written", number(c.residual, 2),
+       fmt::format(
+           "With a random input at {}, all signals as the compiled system gives them: the "
+           "largest difference of the two sides of an equation or of a block's rows, over "
+           "the sum of the magnitudes of their terms. Rounding alone leaves about 10⁻¹⁶ per "
+           "term.{}",
+           place(c.s), c.residual_where.empty() ? "" : " Worst: " + c.residual_where + "."),
+       judged(c.residual, kHolds)});
+  if (c.dense_against_factors >= 0)
+    items.push_back(
+        {"A, B, C, D against the factored system", number(c.dense_against_factors, 2),
+         "The largest relative difference of the rates and outputs for one random state "
+         "and input.",
+         judged(c.dense_against_factors, kHolds)});
+  if (c.dense_error >= 0)
+    items.push_back({"what rounding A, B, C, D costs", number(c.dense_error, 2),
+                     fmt::format("The largest relative change of an output that writing the model "
+                                 "in 16 digits makes, found at {}.",
+                                 place(c.dense_error_s)),
+                     judged(c.dense_error, kHolds)});
+  items.push_back({"weakest pivot", number(c.weakest_pivot, 2),
+                   fmt::format("What is left of the terms that formed it{}: 1 is no cancellation, "
+                               "10⁻¹⁶ is nothing left. The same in all units.",
+                               c.weakest_where.empty() ? "" : ", at " + c.weakest_where)});
+  items.push_back({"growth of the entries", number(c.pivot_growth, 3),
+                   "The largest number met in the elimination over the largest at its start."});
+  items.push_back(
+      {"margin of the algebraic loops", number(c.margin, 3),
+       fmt::format(
+           "1 without a loop, about 4/δ at a relative distance δ from a loop without a "
+           "solution{}.{}",
+           c.margin_where.empty() ? "" : "; here at " + c.margin_where,
+           c.margin_is_exact ? "" : " Loops too large for it are judged by their pivots.")});
+}
+
+void add_not_done(std::vector<Item>& items, const char* what, const std::string& why_not) {
+  items.push_back({what, "not checked", why_not});
+}
+
+void add_full(std::vector<Item>& items, const FullCertificate& f) {
+  if (f.grid.done) {
+    const std::string over = fmt::format(
+        "Largest difference of transfers at {} points between "
+        "{:.3g} and {:.3g} rad/s, over the largest of that output "
+        "and input.",
+        f.grid.points, f.grid.lowest, f.grid.highest);
+    if (f.grid.dense >= 0)
+      items.push_back({"minimal A, B, C, D against the factored system over a grid",
+                       number(f.grid.dense, 2), over, judged(f.grid.dense, kHolds)});
+    if (f.grid.written >= 0)
+      items.push_back({"the equations as written, solved all at once, against the factored system",
+                       number(f.grid.written, 2), over, judged(f.grid.written, kHolds)});
+  } else {
+    add_not_done(items, "transfers over a grid", f.grid.why_not);
+  }
+  if (f.poles.done && f.poles.measured > 0)
+    items.push_back(
+        {"error of the poles", number(f.poles.error, 2),
+         fmt::format("To first order, by what the factors say of each pole and its vectors{}.",
+                     f.poles.measured == f.poles.count
+                         ? ""
+                         : fmt::format("; {} of {}, the others rounding of A alone moves too far",
+                                       f.poles.measured, f.poles.count)),
+         judged(f.poles.error, 1e-6)});
+  if (f.poles.done)
+    items.push_back({"poles right of the imaginary axis", fmt::format("{}", f.poles.right),
+                     f.poles.right == 0 ? "None grows: at 0, on the axis, or left of it."
+                                        : fmt::format("The model is unstable; rightmost at {}.",
+                                                      place(f.poles.rightmost))});
+  else
+    add_not_done(items, "poles", f.poles.why_not);
+  if (f.passivity.done)
+    items.push_back({"passivity", number(f.passivity.least, 3),
+                     fmt::format("Smallest eigenvalue of the Hermitian part of G(s)/s over {} "
+                                 "of force and acceleration at one point, scaled: not negative for "
+                                 "what gives no energy{}.",
+                                 f.passivity.pairs,
+                                 f.passivity.structure ? "" : "; a controller may give some"),
+                     f.passivity.structure ? judged(-f.passivity.least, 1e-9) : Mark::none});
+  else
+    add_not_done(items, "passivity", f.passivity.why_not);
+}
+
+std::string marked(Mark mark) {
+  return mark == Mark::good  ? "<span class=\"good\">✓ holds</span>"
+         : mark == Mark::bad ? "<span class=\"bad\">✗ does not hold</span>"
+                             : "";
+}
+
+std::string as_range(const OrderVerdict& v) {
+  if (!v.judged)
+    return fmt::format(
+        "Order {}: only the structure was looked at; modes without effect may still "
+        "be in it.",
+        v.order);
+  if (!v.decided())
+    return fmt::format(
+        "Order {} is undecided: at this precision the minimal order lies between {} "
+        "and {}; what was in doubt is kept.",
+        v.order, v.lowest, v.highest);
+  return fmt::format("Order {} is minimal{}.", v.order,
+                     v.exact ? ", decided in exact arithmetic" : ", decided beyond rounding");
+}
+
+std::string verdict(const char* cls, const std::string& html) {
+  return fmt::format("<li class=\"{}\">{}</li>\n", cls, html);
+}
+
+std::string tile(const std::string& value, const std::string& what) {
+  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>\n", value, what);
+}
+
+std::string tiles(const Subject& s) {
+  const OrderVerdict& v = s.system.order_verdict();
+  std::string frequencies = "–";
+  for (const Pole& p : s.poles)
+    if (p.pair && p.omega > 0) {
+      frequencies = number(p.hertz, 4) + " Hz";
+      break;
+    }
+  double least = HUGE_VAL;
+  for (const Pole& p : s.poles)
+    if (p.pair) least = std::min(least, p.damping);
+  return "<div class=\"tiles\">\n" +
+         tile(fmt::format("{}", v.order), v.order == 1 ? "state" : "states") +
+         tile(fmt::format("{}", s.inputs.size()), s.inputs.size() == 1 ? "input" : "inputs") +
+         tile(fmt::format("{}", s.outputs.size()), s.outputs.size() == 1 ? "output" : "outputs") +
+         tile(frequencies, "lowest mode") +
+         tile(std::isfinite(least) ? number(100 * least, 3) + " %" : "–", "least damping") +
+         "</div>\n";
+}
+
+/// At 0, on the axis, right of it.
+std::string stability(const Subject& s) {
+  int zero = 0, axis = 0, right = 0;
+  for (const Pole& p : s.poles) {
+    const int n = p.pair ? 2 : 1;
+    if (p.omega == 0)
+      zero += n;
+    else if (p.s.real() > 1e-9 * p.omega)
+      right += n;
+    else if (p.s.real() >= -1e-12 * p.omega)
+      axis += n;
+  }
+  if (right > 0)
+    return verdict("bad", fmt::format("<b>Unstable</b>: {} right of the imaginary axis.",
+                                      count(static_cast<std::size_t>(right), "pole")));
+  std::string text = zero + axis == 0 ? "<b>Stable</b>: all poles lie left of the imaginary axis."
+                                      : "<b>No pole</b> lies right of the imaginary axis";
+  if (zero > 0) text += fmt::format("; {} at 0 (free motion, integrators)", zero);
+  if (axis > 0) text += fmt::format("; {} on the axis (undamped)", axis);
+  return verdict("good", zero + axis == 0 ? text : text + ".");
+}
+
+bool basic_holds(const Certificate& c) {
+  return c.residual <= kHolds && c.dense_against_factors <= kHolds && c.dense_error <= kHolds;
+}
+
+}  // namespace
+
+std::string certificate_section(const Subject& s, const FullCertificate* full) {
+  std::vector<Item> items;
+  add_basic(items, s.system.certificate());
+  if (full) add_full(items, *full);
+  const std::vector<std::string> classes = {"", "n", "fit", "wide"};
+  std::string text =
+      "<p>What was checked of this model, each by another way than the one that made it. All "
+      "numbers "
+      "are without units; what is not listed was not checked.</p>\n<div class=\"table\"><table "
+      "class=\"certificate\">\n<thead>" +
+      row({"what", "number", "", "in words"}, {"", "n", "", ""}, "th") + "</thead>\n<tbody>\n";
+  for (const Item& i : items)
+    text += row({escaped(i.what), i.value, marked(i.mark), escaped(i.meaning)}, classes);
+  text += "</tbody></table></div>\n";
+  if (!full)
+    text += fmt::format(
+        "<p class=\"note\">Poles, passivity and transfers over a grid were not "
+        "checked: {} states are more than {} (ReportOptions::full_up_to).</p>\n",
+        s.system.order(), s.options.full_up_to);
+  return text;
+}
+
+std::string order_section(const Subject& s) {
+  const OrderVerdict& v = s.system.order_verdict();
+  std::string text = "<p>" + as_range(v) + "</p>\n";
+  if (v.judged && v.order > 0)
+    text += fmt::format(
+        "<p>A mode's visibility is the relative half-bandwidth in which it stands out of the rest "
+        "of "
+        "the transfer: a pure number, the same in all units. The least visible mode that stays has "
+        "{}{}{}.</p>\n",
+        number(v.to_fewer, 2),
+        v.removed.empty()
+            ? ""
+            : fmt::format("; the most visible one that left, {}", number(v.to_more, 2)),
+        v.change < 0 ? ""
+                     : fmt::format("; beside what left the transfer changed by {}, measured",
+                                   number(v.change, 2)));
+  const auto table = [&](const std::vector<JudgedMode>& modes, const char* title) {
+    if (modes.empty()) return;
+    text +=
+        fmt::format("<h3>{}</h3>\n<div class=\"table\"><table class=\"modes\">\n<thead>", title) +
+        row({"mode [rad/s]", "states", "visibility", "rounding alone may make", "why"},
+            {"n", "n", "n", "n", ""}, "th") +
+        "</thead>\n<tbody>\n";
+    for (const JudgedMode& m : modes)
+      text += row({number(m.omega, 6), fmt::format("{}", m.states), number(m.visibility, 2),
+                   number(m.bound, 2), escaped(m.why)},
+                  {"n", "n", "n", "n", ""});
+    text += "</tbody></table></div>\n";
+  };
+  table(v.removed, "Taken out: modes without effect on the transfer");
+  table(v.undecided, "In doubt, and kept");
+  std::string list;
+  for (const Note& n : s.system.notes())
+    if (n.kind == Note::Kind::removed) list += fmt::format("<li>{}</li>\n", escaped(n.text));
+  text += list.empty() ? "<p>The structure alone left nothing out.</p>\n"
+                       : "<h3>Left out by the structure, exactly</h3>\n<ul>\n" + list + "</ul>\n";
+  return text;
+}
+
+std::string summary(const Subject& s, const FullCertificate* full) {
+  const Certificate c = s.system.certificate();
+  const OrderVerdict& v = s.system.order_verdict();
+  std::string text = tiles(s) + "<ul class=\"verdicts\">\n" + stability(s);
+  if (full && !full->holds()) {
+    for (const std::string& fault : full->faults) text += verdict("bad", escaped(fault));
+  } else if (!basic_holds(c)) {
+    text += verdict("bad", "A check does not hold: see the certificate.");
+  } else {
+    text +=
+        verdict("good", fmt::format("<b>All checks hold</b>: every equation of the diagram, as it "
+                                    "was written, to {}{}.",
+                                    number(c.residual, 2),
+                                    full ? "; poles, dense model and transfers over a grid" : ""));
+  }
+  text += verdict(v.decided() ? "good" : "open", as_range(v));
+  for (const auto& notes : {s.system.notes(), dense_notes(s.system)})
+    for (const Note& n : notes)
+      if (n.kind == Note::Kind::warning || n.kind == Note::Kind::unchecked)
+        text += verdict("open", fmt::format("<b>{}</b> ({}): {}",
+                                            n.kind == Note::Kind::warning ? "Warning" : "Unchecked",
+                                            escaped(n.pass), escaped(n.text)));
+  return text + "</ul>\n";
+}
+
+}  // namespace titop::report

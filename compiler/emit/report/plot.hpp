@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// Line plots as SVG for a page that styles them (page.cpp): colours by class, so that they follow
+/// the page's light and dark, dashes and widths besides, so that they can be told apart in black
+/// and white.
+namespace titop::report {
+
+struct Axis {
+  std::string label;  ///< quantity alone: "frequency"
+  std::string unit;   ///< "Hz"; a power of ten is put before it where numbers are small or large
+  bool log = false;
+  bool degrees = false;      ///< ticks at multiples of 45, 90, 180
+  double low = 0, high = 0;  ///< equal: from the data
+};
+
+/// Curves in one frame.
+struct Frame {
+  Axis y;
+  std::vector<std::vector<double>> curves;  ///< y of each, over its x
+  int height = 190;
+};
+
+/// Frames below each other over one x axis.
+struct Plot {
+  std::string title;    ///< above
+  std::string caption;  ///< below
+  Axis x;
+  std::vector<std::string> labels;          ///< of the curves, for the legend
+  std::vector<std::vector<double>> x_data;  ///< of the curves
+  std::vector<Frame> frames;
+};
+
+/// A <figure>: title, legend, one <svg>, caption. Every curve keeps its peaks: what falls into one
+/// column of pixels is drawn from its smallest to its largest value.
+std::string figure(const Plot& plot);
+
+constexpr std::size_t kStyles = 6;  ///< curves that differ; more look alike again
+
+/// Round numbers in [low, high], 3 to 7 of them.
+struct Ticks {
+  double step = 1;
+  std::vector<double> at;
+};
+Ticks linear_ticks(double low, double high, bool degrees = false);
+
+}  // namespace titop::report

@@ -1,0 +1,19 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace titop::report {
+
+/// What a program did.
+struct Finished {
+  bool found = false;  ///< there is such a program
+  int code = 0;        ///< its exit code; 128 + n where signal n ended it
+  std::string out, err;
+};
+
+/// Runs a program of the PATH with these words and this standard input, and waits for it. No shell
+/// is in between, and no file has a name: nothing in the words or in the text is ever interpreted.
+Finished run(const std::vector<std::string>& words, const std::string& in);
+
+}  // namespace titop::report

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <string>
+#include <titop/compiler/certify_full.hpp>
+#include <titop/compiler/emit/report.hpp>
+#include <titop/compiler/emit/report/units.hpp>
+
+namespace titop::report {
+
+/// What a report is about: found once, read by all sections.
+struct Subject {
+  const System& system;
+  const ReportOptions& options;
+  std::vector<Scalar> inputs, outputs;
+  std::vector<Pole> poles;
+  double dense_seconds = 0;  ///< that writing and minimizing the dense model took, here
+};
+
+/// Throws unknown_name, bad_value for options that make no sense.
+Subject subject(const System& system, const ReportOptions& options);
+
+/// Neighbouring scalars of one signal with one unit: three translations, three rotations, a scalar.
+struct Group {
+  std::string signal, unit;
+  std::vector<int> at;  ///< rows or columns
+};
+std::vector<Group> groups(const std::vector<Scalar>& scalars);
+
+/// An output and an input whose response is shown, with the groups that it stands for.
+struct Pair {
+  int output = 0, input = 0;
+  int output_group = 0, input_group = 0;
+};
+
+/// "m/s² / N"; what is not known is the user's.
+std::string ratio(const std::string& output_unit, const std::string& input_unit);
+std::string or_users(const std::string& unit);
+
+/// Singular values and Bode plots; step responses. `pairs`: those of ReportOptions::pairs, or as it
+/// says. Each gives the section's HTML.
+struct Responses {
+  std::vector<Pair> pairs;
+  std::string frequency, time;
+};
+Responses responses(const Subject& subject);
+
+/// The other sections: HTML.
+std::string scene_section(const Subject& subject);
+std::string poles_section(const Subject& subject);
+std::string certificate_section(const Subject& subject, const FullCertificate* full);
+std::string order_section(const Subject& subject);
+std::string passes_section(const Subject& subject, const FullCertificate* full);
+
+/// What must be known before anything else: stability, order, whether all checks hold; warnings.
+std::string summary(const Subject& subject, const FullCertificate* full);
+
+}  // namespace titop::report

@@ -1,0 +1,56 @@
+// A browser and a parser read the report: no word on the console, a picture, a print-out.
+#include <doctest/doctest.h>
+
+#include <titop/compiler/emit/report.hpp>
+#include <titop/titop.hpp>
+
+#include "support/five_masses.hpp"
+#include "support/folder.hpp"
+#include "support/skip.hpp"
+
+using namespace titop;
+using namespace titop_test;
+
+namespace {
+
+bool runs(const std::string& command) {
+  return std::system((command + " >/dev/null 2>&1").c_str()) == 0;
+}
+
+}  // namespace
+
+TEST_CASE("Chromium shows the report without an error, and prints it") {
+  if (!runs("command -v chromium")) return titop::test::skip("Chromium is not installed");
+  const Folder folder;
+  write_report(compile(five_masses_scene(kMasses, kStiffnesses)), folder.path / "report.html");
+  const std::string chromium =
+      "chromium --headless --no-sandbox --disable-gpu --disable-dev-shm-usage --hide-scrollbars "
+      "--user-data-dir=profile --enable-logging=stderr ";
+  CHECK(folder.run(chromium + "--window-size=1280,4000 --screenshot=report.png report.html",
+                   "screen.txt") == 0);
+  const std::string words = folder.read("screen.txt"), png = folder.read("report.png");
+  INFO(words);
+  CHECK(words.find("CONSOLE") == std::string::npos);
+  CHECK(png.substr(1, 3) == "PNG");
+  CHECK(png.size() > 100'000);  // a blank page of this size has 23,000
+  CHECK(folder.run(chromium + "--no-pdf-header-footer --print-to-pdf=report.pdf report.html",
+                   "paper.txt") == 0);
+  CHECK(folder.read("report.pdf").substr(0, 5) == "%PDF-");
+}
+
+TEST_CASE("Python's XML parser reads the report") {
+  if (!runs("python3 --version")) return titop::test::skip("Python is not installed");
+  const Folder folder;
+  write_report(compile(five_masses_scene(kMasses, kStiffnesses)), folder.path / "report.html");
+  folder.write("check.py", R"py(
+import xml.etree.ElementTree as tree
+page = tree.parse("report.html").getroot()
+assert page.tag == "html"
+assert len(page.findall(".//section")) == 8
+assert len(page.findall(".//figure[@class='diagram']//svg")) == 2
+assert len(page.findall(".//figure[@class='plot']")) == 7
+)py");
+  const int failed = folder.run("python3 check.py");
+  INFO(folder.read("log.txt"));
+  CHECK(failed == 0);
+}
