@@ -163,6 +163,24 @@ TEST_CASE("without inputs or outputs nothing was measured, and the header says s
   CHECK(refused(system, {.name = "z", .states = CppStates::modes}, "cannot be measured"));
 }
 
+TEST_CASE("an output is silent where all points say so, not one") {
+  // The relative acceleration over a spring of 1e10 rad/s is (omega / 1e10)^2 of the motion: lost
+  // in rounding at the slow points, all there is at the fast ones.
+  Diagram d{"stiff"};
+  auto u = d.input("u");
+  auto z1 = d.add("z1", SpringMass{.mass = 1, .stiffness = 1});
+  auto z2 = d.add("z2", SpringMass{.mass = 1, .stiffness = 1e20});
+  ground(z1);
+  mount(z2, z1.child);
+  z2.child.force = u;
+  d.output("relative") = z2.child.accel - z1.child.accel;
+  d.output("nothing") = z1.child.accel - 3.0 * z1.child.accel + 2.0 * z1.child.accel;
+  const System system = compile(d);
+  const emit::Points points = emit::response_points(system, system.poles());
+  CHECK(points.silent_outputs == std::vector<Eigen::Index>{1});
+  CHECK(points.silent_inputs.empty());
+}
+
 TEST_CASE("what cannot be a name or a time is refused, all together") {
   const System system = five_masses();
   for (const char* name :

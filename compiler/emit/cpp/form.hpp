@@ -28,13 +28,13 @@ inline bool is_provable(double error) { return error <= kProvable; }
 struct Points {
   std::vector<std::complex<double>> s;
   std::vector<Eigen::MatrixXcd> exact;
-  /// Outputs and inputs whose transfer is nothing but rounding (50 digits say so): 0 by nature,
-  /// with nothing to compare to.
+  /// Outputs and inputs whose transfer is nothing but rounding at all points together (50 digits
+  /// say so): 0 by nature, with nothing to compare to.
   std::vector<Eigen::Index> silent_outputs, silent_inputs;
 };
 
 /// Eight points beside the poles (damping 0.1), from below the slowest to above the fastest. One of
-/// them is also evaluated in 50 digits.
+/// them is also evaluated in 50 digits; all, where a row or a column is lost in rounding there.
 Points response_points(const System& system, const std::vector<Pole>& poles);
 
 /// Largest difference of C (s - A)^-1 B + D to the exact transfers, over all points but the silent:
