@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "dynamics.hpp"
+#include "support/refused.hpp"
 
 /// Beam: frequencies against the roots of the textbook's equations, convergence, mass, sections.
 
@@ -22,6 +23,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using fe_test::relative;
 using std::numbers::pi;
+using titop_test::message_of;
 
 namespace {
 
@@ -89,15 +91,6 @@ double cubic_error(double beta_L, int elements) { return std::pow(beta_L / eleme
 
 double slope(double error_coarse, double error_fine) {
   return std::log2(error_coarse / error_fine);
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 }  // namespace

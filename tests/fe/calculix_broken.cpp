@@ -7,9 +7,12 @@
 #include <titop/blocks/fe/calculix.hpp>
 #include <titop/graph/error.hpp>
 
+#include "support/refused.hpp"
+
 /// Broken files: each is refused, with file, line, what was found and what was expected.
 
 using namespace titop;
+using titop_test::replaced;
 
 namespace {
 
@@ -63,12 +66,6 @@ class Folder {
   }
   std::filesystem::path path_;
 };
-
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const auto at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), with);
-}
 
 /// The text of the error that reading gives.
 std::string message(const Files& f) {

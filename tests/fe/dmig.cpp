@@ -11,12 +11,14 @@
 
 #include "dynamics.hpp"
 #include "support/folder.hpp"
+#include "support/refused.hpp"
 
 using namespace titop;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using fe_test::relative;
+using titop_test::replaced;
 
 namespace {
 
@@ -68,21 +70,8 @@ const std::string kSmall =
     "*                      7               1         1.5D+00\n"
     "GRID    7               0.      0.      0.\n";
 
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const auto at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), with);
-}
-
 void refused(const std::string& text, const std::string& words) {
-  try {
-    read(text);
-    FAIL("not refused: " << words);
-  } catch (const Error& error) {
-    const std::string said = error.what();
-    INFO(said);
-    CHECK(said.find(words) != std::string::npos);
-  }
+  titop_test::check_refused([&] { read(text); }, words);
 }
 
 }  // namespace

@@ -2,13 +2,14 @@
 
 #include <Eigen/Dense>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <string>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
+
+#include "support/refused.hpp"
 
 /// The symmetric eigenproblems: residuals, orthogonality, what a slender structure loses by each
 /// road, refusals.
@@ -17,6 +18,7 @@ using namespace titop;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using titop_test::message_of;
 
 namespace {
 
@@ -74,15 +76,6 @@ double first_clamped_free_root() {
     if ((low + high) / 2 == low || (low + high) / 2 == high) break;
   }
   return low;
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 }  // namespace

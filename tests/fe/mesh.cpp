@@ -1,7 +1,6 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
-#include <functional>
 #include <limits>
 #include <string>
 #include <titop/blocks/beam.hpp>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "dynamics.hpp"
+#include "support/refused.hpp"
 
 /// Meshes that are wrong, that move without stiffness, and that have massless degrees of freedom.
 
@@ -18,6 +18,7 @@ using namespace titop;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using titop_test::message_of;
 
 namespace {
 
@@ -35,15 +36,6 @@ fe::Mesh lumped() {
   for (Index i = 0; i < mesh.M.rows(); ++i)
     if (i % 6 < 3) mesh.M(i, i) = 3.0 + 0.1 * double(i / 6);
   return mesh;
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
 }
 
 bool contains(const std::string& text, const std::string& part) {

@@ -9,10 +9,12 @@
 
 #include "dynamics.hpp"
 #include "support/folder.hpp"
+#include "support/refused.hpp"
 
 using namespace titop;
 using Eigen::Index;
 using fe_test::relative;
+using titop_test::replaced;
 
 namespace {
 
@@ -34,21 +36,8 @@ const std::string kSmall =
     "mode, 6, 0.01, 0, 2, 0, 0, 0, 8,  0, 3, 0, 0, 0, 4   # at MAX\n"
     "modal mass, 16\n";
 
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const auto at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), with);
-}
-
 void refused(const std::string& text, const std::string& words) {
-  try {
-    read(text);
-    FAIL("not refused: " << words);
-  } catch (const Error& error) {
-    const std::string said = error.what();
-    INFO(said);
-    CHECK(said.find(words) != std::string::npos);
-  }
+  titop_test::check_refused([&] { read(text); }, words);
 }
 
 }  // namespace

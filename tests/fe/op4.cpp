@@ -12,9 +12,11 @@
 #include <titop/graph/error.hpp>
 
 #include "support/folder.hpp"
+#include "support/refused.hpp"
 
 using namespace titop;
 using titop_test::Folder;
+using titop_test::replaced;
 
 namespace {
 
@@ -117,12 +119,6 @@ bool says(const std::string& text, const std::string& words) {
 std::string text_file(const char* name) {
   std::ifstream file(kText + name);
   return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const auto at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), with);
 }
 
 const Eigen::MatrixXd kSmall =
