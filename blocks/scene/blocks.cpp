@@ -155,7 +155,7 @@ void write_gain(const Block& b, const WriteValue& value, const NameBody&, Json& 
 
 BlockPtr read_gain(const Place& p, const ReadValue& value, const FindBody&) {
   p.only({"name", "type", "gain", "size"});
-  return as_block(Gain{.gain = value(p.at("gain")), .size = p.at("size").integer()});
+  return as_block(Gain{.gain = value(p.at("gain")), .size = p.at("size").signal_size()});
 }
 
 void write_matrix_gain(const Block& b, const WriteValue&, const NameBody&, Json& j) {
@@ -178,7 +178,7 @@ void write_sum(const Block& b, const WriteValue&, const NameBody&, Json& j) {
 
 BlockPtr read_sum(const Place& p, const ReadValue&, const FindBody&) {
   p.only({"name", "type", "signs", "size"});
-  return as_block(Sum{.signs = p.at("signs").text(), .size = p.at("size").integer()});
+  return as_block(Sum{.signs = p.at("signs").text(), .size = p.at("size").signal_size()});
 }
 
 void write_lti(const Block& b, const WriteValue&, const NameBody&, Json& j) {
@@ -205,7 +205,7 @@ void write_integrator(const Block& b, const WriteValue&, const NameBody&, Json& 
 
 BlockPtr read_integrator(const Place& p, const ReadValue&, const FindBody&) {
   p.only({"name", "type", "size"});
-  return as_block(Integrator{p.at("size").integer()});
+  return as_block(Integrator{p.at("size").signal_size()});
 }
 
 constexpr Type kTypes[] = {{"SpringMass", write_spring_mass, read_spring_mass},

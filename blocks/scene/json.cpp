@@ -20,12 +20,34 @@ Json list(const Eigen::VectorXd& v) {
   return result;
 }
 
+namespace {
+
+/// Lists in lists in lists: dump() would go down as deep on the stack.
+bool is_deep(const Json& json, int levels) {
+  if (!json.is_structured()) return false;
+  return levels == 0 || std::any_of(json.begin(), json.end(),
+                                    [&](const Json& item) { return is_deep(item, levels - 1); });
+}
+
+}  // namespace
+
+std::string Place::where() const {
+  return fmt::format("{}: {}", file_, path_.empty() ? "the whole" : path_);
+}
+
+void Place::rethrow(const Error& error, const std::string& name) const {
+  std::vector<Mistake> mistakes = error.mistakes();
+  for (Mistake& m : mistakes)
+    if (m.code != Code::bad_file) m.message = fmt::format("{}, {}: {}", where(), name, m.message);
+  throw Error(std::move(mistakes));
+}
+
 void Place::refuse(const std::string& expected) const {
-  std::string found = json_->dump(-1, ' ', false, Json::error_handler_t::replace);
+  std::string found = is_deep(*json_, 20)
+                          ? "lists too deep to print"
+                          : json_->dump(-1, ' ', false, Json::error_handler_t::replace);
   if (found.size() > 60) found = found.substr(0, 57) + "...";
-  throw Error(Code::bad_file,
-              fmt::format("{}: {}: found {}, expected {}", file_,
-                          path_.empty() ? "the whole" : path_, found, expected),
+  throw Error(Code::bad_file, fmt::format("{}: found {}, expected {}", where(), found, expected),
               {});
 }
 
@@ -69,6 +91,12 @@ int Place::integer() const {
       json_->get<std::int64_t>() > 1'000'000'000)
     refuse("an integer");
   return json_->get<int>();
+}
+
+int Place::signal_size() const {
+  const int size = integer();
+  if (size > kMostScalars) refuse(fmt::format("a size up to {}", kMostScalars));
+  return size;
 }
 
 bool Place::yes() const {

@@ -4,12 +4,16 @@
 #include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <titop/graph/error.hpp>
 #include <vector>
 
 /// What the writer and the reader of scenes share.
 namespace titop::scene {
 
 using Json = nlohmann::ordered_json;
+
+/// More scalars than a signal in a file may have: a gain of n has n x n numbers.
+inline constexpr int kMostScalars = 4096;
 
 /// A matrix as a list of its rows, a vector as a list.
 Json rows(const Eigen::MatrixXd& M);
@@ -31,6 +35,7 @@ class Place {
 
   double number() const;
   int integer() const;
+  int signal_size() const;  ///< an integer up to kMostScalars
   bool yes() const;
   std::string text() const;
   Eigen::VectorXd vector(Eigen::Index size = -1) const;                   ///< -1: any size
@@ -38,7 +43,10 @@ class Place {
 
   bool is_number() const { return json_->is_number(); }
   std::vector<std::string> keys() const;  ///< of an object, in the file's order
+  std::string where() const;              ///< "cart.json: blocks[3]"
   [[noreturn]] void refuse(const std::string& expected) const;
+  /// What is wrong with the numbers of `name`, which stand here.
+  [[noreturn]] void rethrow(const Error& error, const std::string& name) const;
 
  private:
   Place(const Json& json, std::string file, std::string path)

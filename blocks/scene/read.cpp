@@ -5,6 +5,7 @@
 #include <titop/blocks/scene/blocks.hpp>
 #include <titop/blocks/scene/json.hpp>
 #include <titop/blocks/scene/scene.hpp>
+#include <type_traits>
 
 namespace titop {
 
@@ -31,8 +32,10 @@ class Reader {
         {"format", "name", "parameters", "bodies", "blocks", "inputs", "equations", "outputs"});
     if (all.at("format").text() != "titop scene 1") all.at("format").refuse("\"titop scene 1\"");
     each(all.at("parameters"), [&](const Place& p) { read_parameter(p); });
-    for (const std::string& name : all.at("bodies").keys())
-      bodies_[name] = scene::read_body(all.at("bodies").at(name.c_str()));
+    for (const std::string& name : all.at("bodies").keys()) {
+      const Place body = all.at("bodies").at(name.c_str());
+      bodies_[name] = named(body, name, [&] { return scene::read_body(body); });
+    }
     each(all.at("blocks"), [&](const Place& p) { read_block(p); });
     each(all.at("inputs"), [&](const Place& p) { read_input(p); });
     each(all.at("equations"), [&](const Place& p) { read_equation(p); });
@@ -45,6 +48,16 @@ class Reader {
   template <class Read>
   static void each(const Place& list, Read read) {
     for (std::size_t i = 0; i < list.size(); ++i) read(list.item(i));
+  }
+
+  /// What make() makes; what is wrong with its numbers is told with its place and name.
+  template <class Make>
+  static std::invoke_result_t<Make> named(const Place& place, const std::string& name, Make make) {
+    try {
+      return make();
+    } catch (const Error& error) {
+      place.rethrow(error, name);
+    }
   }
 
   void read_parameter(const Place& p) {
@@ -72,7 +85,8 @@ class Reader {
       return at->second;
     };
     const auto value = [&](const Place& place) { return read_value(place); };
-    const Ready::Handle handle = diagram.add(name, Ready{scene::read_block(p, value, body)});
+    const Ready::Handle handle =
+        diagram.add(name, Ready{named(p, name, [&] { return scene::read_block(p, value, body); })});
     graph_ = handle.graph;
     nodes_[name] = handle.node;
   }
@@ -81,7 +95,7 @@ class Reader {
     p.only({"name", "size"});
     const std::string name = p.at("name").text();
     if (inputs_.contains(name)) p.at("name").refuse("a name that no input before has");
-    const InputRef input = diagram.input(name, p.at("size").integer());
+    const InputRef input = diagram.input(name, p.at("size").signal_size());
     graph_ = input.graph();
     inputs_[name] = input.signal();
   }
@@ -131,7 +145,8 @@ class Reader {
       step.only({"about", "angle"});
       steps.emplace_back(Rotation::Turn{step.at("about").vector(3), read_value(step.at("angle"))});
     });
-    return Rotation::of_steps(std::move(steps)).named(p.at("to").text(), p.at("from").text());
+    return named(p, "rotation", [&] { return Rotation::of_steps(std::move(steps)); })
+        .named(p.at("to").text(), p.at("from").text());
   }
 
   Factor read_factor(const Place& p) const {
@@ -185,7 +200,7 @@ class Reader {
 
   void read_output(const Place& p) {
     p.only({"name", "size", "terms"});
-    const OutputRef output = diagram.output(p.at("name").text(), p.at("size").integer());
+    const OutputRef output = diagram.output(p.at("name").text(), p.at("size").signal_size());
     if (!p.has("terms")) return;
     output = 0;
     if (p.at("terms").size() == 0) return;
@@ -208,6 +223,9 @@ Diagram parse_scene(std::string_view json, const std::string& file) {
   } catch (const Json::parse_error& error) {
     throw Error(Code::bad_file, fmt::format("{}: no JSON text at byte {}", file, error.byte),
                 "look at it with a JSON program such as jq, which shows the place");
+  } catch (const Json::out_of_range&) {
+    throw Error(Code::bad_file, fmt::format("{}: a number is too large for a double", file),
+                "look for an exponent above 308");
   }
   return std::move(Reader(Place(all, file)).diagram);
 }

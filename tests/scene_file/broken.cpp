@@ -5,7 +5,10 @@
 #include <titop/blocks/scene/scene.hpp>
 #include <titop/titop.hpp>
 
+#include "support/refused.hpp"
+
 using namespace titop;
+using titop_test::replaced;
 
 namespace {
 
@@ -21,21 +24,8 @@ const std::string kGood = R"({"format": "titop scene 1", "name": "cart",
               {"of": ["K", "in"], "terms": [{"signal": ["z", "stretch"]}]}],
 "outputs": [{"name": "a", "size": 1, "terms": [{"signal": ["z", "parent", "accel"]}]}]})";
 
-std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const auto at = text.find(what);
-  REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), with);
-}
-
 void refused(const std::string& what, const std::string& with, const std::string& words) {
-  try {
-    parse_scene(replaced(kGood, what, with), "cart.json");
-    FAIL("not refused: " << with);
-  } catch (const Error& error) {
-    const std::string said = error.what();
-    INFO(said);
-    CHECK(said.find(words) != std::string::npos);
-  }
+  titop_test::check_refused([&] { parse_scene(replaced(kGood, what, with), "cart.json"); }, words);
 }
 
 }  // namespace
@@ -82,7 +72,22 @@ TEST_CASE("broken scenes are refused with their place") {
   refused("[0.25]", "[[1]]", "equations[1].terms[0].factors[0]: found [1], expected a number or");
 }
 
+TEST_CASE("what a program may have written by mistake") {
+  refused("\"damping\": 0", "\"damping\": 1e999", "cart.json: a number is too large for a double");
+  refused("{\"name\": \"u\", \"size\": 1}", "{\"name\": \"u\", \"size\": 5000}",
+          "inputs[0].size: found 5000, expected a size up to 4096");
+  const std::string deep = std::string(5000, '[') + std::string(5000, ']');
+  refused("\"damping\": 0", "\"damping\": " + deep,
+          "blocks[0].damping: found lists too deep to print, expected a number or");
+}
+
 TEST_CASE("numbers that make no block are refused with the block's name") {
+  refused("\"mass\": 1", "\"mass\": -1", "cart.json: blocks[0], z: SpringMass has mass -1");
+  const std::string body =
+      R"("bodies": {"wing": {"omega": [2], "xi": [0], "L_P": [[9, 0, 0, 0, 0, 0]], "digits": 15,
+      "D_P": [[1, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0],
+              [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]], "children": []}})";
+  refused("\"bodies\": {}", body, "cart.json: bodies.wing, wing: the modes carry more mass");
   try {
     parse_scene(replaced(kGood, "\"mass\": 1", "\"mass\": -1"));
     FAIL("not refused");
