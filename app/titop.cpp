@@ -8,11 +8,14 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <stdexcept>
 #include <string>
 #include <titop/blocks/scene/scene.hpp>
 #include <titop/compiler/emit/report.hpp>
 #include <titop/titop.hpp>
 #include <vector>
+
+#include "generate/command.hpp"
 
 namespace {
 
@@ -172,6 +175,12 @@ void export_model(const Arguments& a) {
   write(generate_cpp(compiled(a), {.name = name, .sample_time = a.sample_time}), folder);
 }
 
+void generate_scene(const std::vector<std::string>& words) try {
+  generate::command(words);
+} catch (const std::invalid_argument& misuse) {
+  throw Misuse{misuse.what()};
+}
+
 struct Command {
   const char* name;
   std::size_t words;  ///< with its own
@@ -184,6 +193,7 @@ constexpr Command kCommands[] = {{"check", 2, check},
                                  {"export", 3, export_model}};
 
 void run(const std::vector<std::string>& all) {
+  if (!all.empty() && all[0] == "generate") return generate_scene({all.begin() + 1, all.end()});
   const Arguments a = parse(all);
   if (a.words.empty()) throw Misuse{"what is to be done?"};
   for (const Command& command : kCommands) {
@@ -201,7 +211,7 @@ int main(int argc, char** argv) try {
   run({argv + 1, argv + argc});
   return 0;
 } catch (const Misuse& misuse) {
-  std::fputs(fmt::format("titop: {}\n{}", misuse.what, kUsage).c_str(), stderr);
+  std::fputs(fmt::format("titop: {}\n{}{}", misuse.what, kUsage, generate::kUsage).c_str(), stderr);
   return 2;
 } catch (const std::exception& error) {
   std::fputs(fmt::format("{}\n", error.what()).c_str(), stderr);

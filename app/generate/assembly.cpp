@@ -1,0 +1,478 @@
+#include "generate/assembly.hpp"
+
+#include <map>
+
+namespace titop::generate {
+namespace {
+
+template <class S>
+Table<S> table(const Rows& rows, std::size_t cols) {
+  Table<S> t(rows.size(), cols);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t j = 0; j < cols; ++j) t(i, j) = exactly<S>(rows[i][j]);
+  return t;
+}
+
+template <class S>
+Table<S> table(const Mat3& M) {
+  Table<S> t(3, 3);
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) t(i, j) = exactly<S>(M[i][j]);
+  return t;
+}
+
+template <class S>
+Table<S> row(const Vec3& v) {
+  Table<S> t(1, 3);
+  for (std::size_t j = 0; j < 3; ++j) t(0, j) = exactly<S>(v[j]);
+  return t;
+}
+
+/// diag(T, T).
+template <class S>
+Table<S> dual(const Mat3& T) {
+  Table<S> t(6, 6);
+  t.add(table<S>(T));
+  t.add(table<S>(T), 3, 3);
+  return t;
+}
+
+/// tau_CP: what a rigid body does at C when P moves; PC from P to C.
+template <class S>
+Table<S> tau(const Vec3& PC) {
+  Table<S> t = identity<S>(6);
+  t.add(table<S>(cross(-PC)), 0, 3);
+  return t;
+}
+
+/// The rows of a part, part x size of the point.
+template <class S>
+Table<S> part_rows(const Part& part, std::size_t size) {
+  if (size == 1 || part.kind == Part::Kind::all) return identity<S>(size);
+  Table<S> t(part.kind == Part::Kind::linear ? 3 : 1, 6);
+  t.add(part.kind == Part::Kind::linear ? identity<S>(3) : row<S>(part.direction));
+  return t;
+}
+
+/// Which columns belong to what: coordinates that are free, those of an imposed base, those held.
+struct Columns {
+  std::vector<std::size_t> free, imposed, held;
+  std::size_t count = 0;
+};
+
+template <class S>
+class Assembly {
+ public:
+  explicit Assembly(const Plan& plan) : plan_(plan) {
+    for (const Block& b : plan.blocks) count(b);
+    for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
+      first_input_[plan.inputs[i].name] = inputs_;
+      inputs_ += static_cast<std::size_t>(plan.inputs[i].size);
+    }
+    M_ = D_ = K_ = Table<S>(columns.count, columns.count);
+    F_ = Table<S>(columns.count, inputs_ + plan.controls.size());
+    for (std::size_t i = 0; i < plan.blocks.size(); ++i) add(static_cast<int>(i));
+    for (const Load& load : plan.loads) add(load);
+    for (std::size_t k = 0; k < plan.controls.size(); ++k) add(plan.controls[k], inputs_ + k);
+    close();
+  }
+
+  Columns columns;
+  bool independent() const { return rank(G_.cols(columns.free)) == G_.rows(); }
+
+  FirstOrder<S> model() {
+    solve_motion();
+    FirstOrder<S> open;
+    open.A = Table<S>(states_, states_), open.B = Table<S>(states_, F_.cols());
+    state_rows(open.A, open.B);
+    Table<S> y(0, states_ + F_.cols()), e = y;
+    for (const Reading& r : plan_.readings) y.append(reading(r));
+    for (const Control& c : plan_.controls) e.append(measured(c));
+    return with_controls(open, y, e);
+  }
+
+ private:
+  /// Coordinates: six (or one) of a base that hangs on nothing, the stretch, the angle, the modes.
+  void count(const Block& b) {
+    first_.push_back(columns.count);
+    const auto take = [&](std::vector<std::size_t>& kind) { kind.push_back(columns.count++); };
+    const bool scalar = b.spring.has_value();
+    if (b.base.kind != Base::Kind::mounted)
+      for (int i = 0; i < (scalar ? 1 : 6); ++i) {
+        const bool held = b.base.kind == Base::Kind::ground ||
+                          (b.base.kind == Base::Kind::pinned && (scalar || i < 3));
+        take(held                                 ? columns.held
+             : b.base.kind == Base::Kind::imposed ? columns.imposed
+                                                  : columns.free);
+      }
+    own_.push_back(columns.count);
+    const std::size_t own = b.body ? b.body->omega.size() : 1;
+    for (std::size_t i = 0; i < own; ++i) take(columns.free);
+  }
+
+  std::size_t input(const std::string& name) const { return first_input_.at(name); }
+  const Table<S>& motion(const Point& p) const { return motions_.at({p.block, p.channel}); }
+
+  Table<S> base_motion(std::size_t i) {
+    const Block& b = plan_.blocks[i];
+    const auto size = static_cast<std::size_t>(b.size());
+    if (b.base.kind == Base::Kind::mounted) {
+      const Table<S>& site = motion(b.base.on);
+      if (b.base.along) return row<S>(*b.base.along) * site.rows({0, 1, 2});
+      return b.spring ? site : dual<S>(transposed(b.base.T)) * site;
+    }
+    Table<S> P(size, columns.count);
+    P.add(identity<S>(size), 0, first_[i]);
+    return P;
+  }
+
+  void add(int block) {
+    const auto i = static_cast<std::size_t>(block);
+    const Block& b = plan_.blocks[i];
+    const Table<S> P = base_motion(i);
+    motions_[{block, "parent"}] = P;
+    if (!b.base.input.empty() && b.base.kind != Base::Kind::imposed)
+      load(P.rows(free_rows(b)), input(b.base.input));
+    if (b.spring) add_spring(block, *b.spring, P);
+    if (b.joint) add_joint(block, *b.joint, P);
+    if (b.body) add_body(block, *b.body, P);
+  }
+
+  /// The directions of a base in which its input acts.
+  static std::vector<std::size_t> free_rows(const Block& b) {
+    if (b.spring) return {0};
+    if (b.base.kind == Base::Kind::pinned) return {3, 4, 5};
+    return {0, 1, 2, 3, 4, 5};
+  }
+
+  void load(const Table<S>& motion, std::size_t column) { F_.add(motion.transposed(), 0, column); }
+
+  void add_spring(int block, const Spring& z, const Table<S>& P) {
+    const std::size_t d = own_[static_cast<std::size_t>(block)];
+    Table<S> C = P;
+    C(0, d) += S(1);
+    add_mass(C, exactly<S>(z.mass));
+    add_mass(P, exactly<S>(z.parent_mass));
+    K_(d, d) += exactly<S>(z.stiffness);
+    D_(d, d) += exactly<S>(z.damping);
+    motions_[{block, "child"}] = C;
+  }
+
+  void add_mass(const Table<S>& X, const S& m) {
+    Table<S> weighted = X;
+    for (std::size_t i = 0; i < X.rows(); ++i)
+      for (std::size_t j = 0; j < X.cols(); ++j) weighted(i, j) = m * X(i, j);
+    M_.add(X.transposed() * weighted);
+  }
+
+  void add_joint(int block, const Joint& h, const Table<S>& P) {
+    const std::size_t q = own_[static_cast<std::size_t>(block)];
+    Table<S> C = P;
+    C.add(row<S>(h.axis).transposed(), h.turns ? 3 : 0, q);
+    K_(q, q) += exactly<S>(h.stiffness);
+    D_(q, q) += exactly<S>(h.damping);
+    if (!h.input.empty()) F_(q, input(h.input)) += S(1);
+    motions_[{block, "child"}] = C;
+  }
+
+  /// [Alazard 2015] eq. (9): kinetic energy of [xd_P; etad] with the mass [D_P, L'; L, 1].
+  void add_body(int block, const Body& b, const Table<S>& P) {
+    const std::size_t q = own_[static_cast<std::size_t>(block)], n = b.omega.size();
+    Table<S> eta(n, columns.count);
+    eta.add(identity<S>(n), 0, q);
+    const Table<S> L = table<S>(b.L, 6), at_mass = tau<S>(b.PA) * P;
+    for (std::size_t i = 0; i < 3; ++i) add_mass(at_mass.rows({i}), exactly<S>(b.mass));
+    for (std::size_t i = 0; i < 3; ++i) add_mass(at_mass.rows({3 + i}), exactly<S>(b.inertia[i]));
+    add_mass(eta, S(1));
+    const Table<S> coupling = P.transposed() * L.transposed() * eta;
+    M_.add(coupling);
+    M_.add(coupling.transposed());
+    for (std::size_t i = 0; i < n; ++i) {
+      const S omega = exactly<S>(b.omega[i]);
+      K_(q + i, q + i) += omega * omega;
+      D_(q + i, q + i) += S(2) * exactly<S>(b.xi[i]) * omega;
+    }
+    for (const BodyPoint& c : b.points)
+      motions_[{block, c.name}] = tau<S>(c.PC) * P + table<S>(c.Phi, n) * eta;
+  }
+
+  void add(const Load& l) {
+    const Table<S>& X = motion(l.point);
+    Table<S> pushed = part_rows<S>(l.part, X.rows()) * X;
+    for (std::size_t i = 0; i < pushed.rows(); ++i)
+      for (std::size_t j = 0; j < pushed.cols(); ++j)
+        pushed(i, j) = exactly<S>(l.gain) * pushed(i, j);
+    load(pushed, input(l.input));
+  }
+
+  /// What the controller pushes against.
+  void add(const Control& c, std::size_t column) {
+    const bool joint = c.law == Control::Law::position &&
+                       plan_.blocks[static_cast<std::size_t>(c.block)].joint.has_value();
+    if (joint)
+      F_(own_[static_cast<std::size_t>(c.block)], column) += S(-1);
+    else
+      load(-(rows_along(c) * motion(c.at)), column);
+  }
+
+  Table<S> rows_along(const Control& c) const {
+    if (!c.along) return identity<S>(1);
+    return part_rows<S>({Part::Kind::along, *c.along}, 6);
+  }
+
+  void close() {
+    G_ = Table<S>(0, columns.count);
+    for (const Closure& c : plan_.closures) {
+      Table<S> gap = motion(c.point);
+      if (c.with) {
+        const Table<S>& other = motion(*c.with);
+        gap.add(-(gap.rows() == 1 ? other : dual<S>(transposed(c.T)) * other));
+      }
+      G_.append(gap);
+    }
+  }
+
+  /// Coordinates as rows over [states | inputs | controls]: q, qd, qdd. States: the independent
+  /// free coordinates z and their rates, the imposed ones and theirs.
+  void solve_motion() {
+    const auto& f = columns.free;
+    const auto& p = columns.imposed;
+    const Table<S> N = null_space(G_.cols(f));
+    nz_ = N.cols();
+    states_ = 2 * nz_ + 2 * p.size();
+    const std::size_t width = states_ + F_.cols(), r = 2 * nz_;
+    q_ = qd_ = qdd_ = Table<S>(columns.count, width);
+    put(q_, f, N, 0), put(qd_, f, N, nz_);
+    put(q_, p, identity<S>(p.size()), r), put(qd_, p, identity<S>(p.size()), r + p.size());
+    put(qdd_, p, imposed_inputs(), states_);
+    // M qdd = F u - D qd - K q, projected.
+    const Table<S> rest = forces(q_, qd_, qdd_);
+    const Table<S> M = N.transposed() * M_.rows(f).cols(f) * N;
+    put(qdd_, f, N * solve(M, N.transposed() * rest.rows(f)), 0);
+  }
+
+  /// F u - D qd - K q - M qdd, generalized, over [states | inputs | controls].
+  Table<S> forces(const Table<S>& q, const Table<S>& qd, const Table<S>& qdd) const {
+    Table<S> rest(columns.count, q.cols());
+    rest.add(F_, 0, states_);
+    rest.add(-(D_ * qd + K_ * q + M_ * qdd));
+    return rest;
+  }
+
+  static void put(Table<S>& all, const std::vector<std::size_t>& rows, const Table<S>& values,
+                  std::size_t col) {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      for (std::size_t j = 0; j < values.cols(); ++j) all(rows[i], col + j) += values(i, j);
+  }
+
+  /// Which input imposes which coordinate.
+  Table<S> imposed_inputs() const {
+    Table<S> a(columns.imposed.size(), F_.cols());
+    std::size_t k = 0;
+    for (const Block& b : plan_.blocks)
+      if (b.base.kind == Base::Kind::imposed)
+        for (int i = 0; i < b.size(); ++i)
+          a(k++, input(b.base.input) + static_cast<std::size_t>(i)) = S(1);
+    return a;
+  }
+
+  void state_rows(Table<S>& A, Table<S>& B) const {
+    const std::size_t np = columns.imposed.size();
+    for (std::size_t i = 0; i < nz_; ++i) A(i, nz_ + i) = S(1);
+    for (std::size_t i = 0; i < np; ++i) A(2 * nz_ + i, 2 * nz_ + np + i) = S(1);
+    const Table<S> N = null_space(G_.cols(columns.free));
+    // zdd from qdd = N zdd: by the rows in which N is the unit matrix.
+    for (std::size_t k = 0; k < nz_; ++k) split(qdd_, columns.free[unit_row(N, k)], nz_ + k, A, B);
+    for (std::size_t i = 0; i < np; ++i) split(qdd_, columns.imposed[i], 2 * nz_ + np + i, A, B);
+  }
+
+  static std::size_t unit_row(const Table<S>& N, std::size_t k) {
+    for (std::size_t i = 0; i < N.rows(); ++i) {
+      bool unit = magnitude(N(i, k) - S(1)) == 0;
+      for (std::size_t j = 0; j < N.cols(); ++j) unit = unit && (j == k || magnitude(N(i, j)) == 0);
+      if (unit) return i;
+    }
+    throw std::logic_error("no unit row");
+  }
+
+  void split(const Table<S>& from, std::size_t source, std::size_t target, Table<S>& A,
+             Table<S>& B) const {
+    for (std::size_t j = 0; j < states_; ++j) A(target, j) += from(source, j);
+    for (std::size_t j = 0; j < B.cols(); ++j) B(target, j) += from(source, states_ + j);
+  }
+
+  Table<S> reading(const Reading& r) const {
+    const auto block = static_cast<std::size_t>(r.point.block);
+    if (r.of == Reading::Of::relative) return q_.rows({own_[block]});
+    if (r.of == Reading::Of::reaction) return holding(r.point);
+    if (r.of == Reading::Of::support) {
+      // What must act on the base beside all else; the port is what the body does there.
+      std::vector<std::size_t> base;
+      for (int i = 0; i < plan_.blocks[block].size(); ++i)
+        base.push_back(first_[block] + static_cast<std::size_t>(i));
+      Table<S> all = forces(q_, qd_, qdd_);
+      if (G_.rows() > 0) all.add(G_.transposed() * multipliers());
+      return all.rows(base);
+    }
+    const Table<S>& X = motion(r.point);
+    return part_rows<S>(r.part, X.rows()) * X * (r.of == Reading::Of::position ? q_ : qdd_);
+  }
+
+  /// G' lambda = M qdd - F u + D qd + K q on the free coordinates.
+  Table<S> multipliers() const {
+    const Table<S> G = G_.cols(columns.free), Gt = G.transposed();
+    return solve(G * Gt, G * -forces(q_, qd_, qdd_).rows(columns.free));
+  }
+
+  Table<S> holding(const Point& point) const {
+    std::size_t row = 0;
+    for (const Closure& c : plan_.closures) {
+      const std::size_t size = motion(c.point).rows();
+      std::vector<std::size_t> list;
+      for (std::size_t i = 0; i < size; ++i) list.push_back(row + i);
+      if (c.point.block == point.block && c.point.channel == point.channel)
+        return multipliers().rows(list);
+      row += size;
+    }
+    throw std::logic_error("nothing holds it");
+  }
+
+  Table<S> measured(const Control& c) const {
+    if (c.law == Control::Law::position) return q_.rows({own_[static_cast<std::size_t>(c.block)]});
+    return rows_along(c) * motion(c.at) * qdd_;
+  }
+
+  /// v = Cc xc + Dc e, e = Ex x + Eu u + Ev v: e solved, then put in everywhere.
+  FirstOrder<S> with_controls(const FirstOrder<S>& open, const Table<S>& y, const Table<S>& e) {
+    const std::size_t nc = plan_.controls.size(), n = states_;
+    std::size_t total = n;
+    for (const Control& c : plan_.controls) total += c.A.size();
+    // Everything over [x, xc, u] for v and e.
+    const std::size_t width = total + inputs_;
+    Table<S> Cc(nc, width), loop = identity<S>(nc), right(nc, width);
+    std::size_t at = n;
+    std::vector<std::size_t> first;
+    for (std::size_t k = 0; k < nc; ++k) {
+      const Control& c = plan_.controls[k];
+      first.push_back(at);
+      for (std::size_t j = 0; j < c.A.size(); ++j) Cc(k, at + j) = exactly<S>(c.C[0][j]);
+      at += c.A.size();
+      for (std::size_t j = 0; j < nc; ++j) loop(k, j) -= exactly<S>(c.D) * e(k, n + inputs_ + j);
+      for (std::size_t j = 0; j < n; ++j) right(k, j) = exactly<S>(c.D) * e(k, j);
+      for (std::size_t j = 0; j < inputs_; ++j) right(k, total + j) = exactly<S>(c.D) * e(k, n + j);
+    }
+    const Table<S> v = solve(loop, right + Cc);
+    const auto closed = [&](const Table<S>& rows) {
+      Table<S> out(rows.rows(), width), by_v(rows.rows(), nc);
+      for (std::size_t i = 0; i < rows.rows(); ++i) {
+        for (std::size_t j = 0; j < n; ++j) out(i, j) = rows(i, j);
+        for (std::size_t j = 0; j < inputs_; ++j) out(i, total + j) = rows(i, n + j);
+        for (std::size_t j = 0; j < nc; ++j) by_v(i, j) = rows(i, n + inputs_ + j);
+      }
+      return out + by_v * v;
+    };
+    Table<S> xdot(n, n + F_.cols());
+    xdot.add(open.A), xdot.add(open.B, 0, n);
+    Table<S> all = closed(xdot);
+    const Table<S> es = closed(e);
+    for (std::size_t k = 0; k < nc; ++k) {
+      const Control& c = plan_.controls[k];
+      Table<S> own = table<S>(c.B, 1) * es.rows({k});
+      own.add(table<S>(c.A, c.A.size()), 0, first[k]);
+      all.append(own);
+    }
+    return split_model(all, closed(y), total);
+  }
+
+  FirstOrder<S> split_model(const Table<S>& x, const Table<S>& y, std::size_t n) const {
+    std::vector<std::size_t> left, right;
+    for (std::size_t j = 0; j < n; ++j) left.push_back(j);
+    for (std::size_t j = 0; j < inputs_; ++j) right.push_back(n + j);
+    return {x.cols(left), x.cols(right), y.cols(left), y.cols(right)};
+  }
+
+  const Plan& plan_;
+  std::vector<std::size_t> first_, own_;  ///< columns of each block: its base, its own
+  std::map<std::string, std::size_t> first_input_;
+  std::size_t inputs_ = 0, nz_ = 0, states_ = 0;
+  std::map<std::pair<int, std::string>, Table<S>> motions_;
+  Table<S> M_, D_, K_, F_, G_;
+  Table<S> q_, qd_, qdd_;
+};
+
+/// Columns that span B, A B, A^2 B ..., each made of A times one before it, pivots set apart.
+template <class S>
+struct Krylov {
+  std::vector<std::vector<S>> vectors;
+  std::vector<std::size_t> pivots;
+
+  Krylov(const Table<S>& A, const Table<S>& B) {
+    for (std::size_t j = 0; j < B.cols(); ++j) take(column(B, j));
+    for (std::size_t k = 0; k < vectors.size(); ++k) {
+      std::vector<S> next(A.rows(), S(0));
+      for (std::size_t i = 0; i < A.rows(); ++i)
+        for (std::size_t j = 0; j < A.cols(); ++j) next[i] += A(i, j) * vectors[k][j];
+      take(std::move(next));
+    }
+  }
+  static std::vector<S> column(const Table<S>& B, std::size_t j) {
+    std::vector<S> v;
+    for (std::size_t i = 0; i < B.rows(); ++i) v.push_back(B(i, j));
+    return v;
+  }
+  void take(std::vector<S> v) {
+    double size = 0;
+    for (const S& x : v) size = std::max(size, magnitude(x));
+    for (std::size_t k = 0; k < vectors.size(); ++k) {
+      const S f = v[pivots[k]];
+      for (std::size_t i = 0; i < v.size(); ++i) v[i] -= f * vectors[k][i];
+    }
+    std::size_t pivot = 0;
+    double best = 0;
+    for (std::size_t i = 0; i < v.size(); ++i)
+      if (magnitude(v[i]) > best) best = magnitude(v[i]), pivot = i;
+    if (best <= 1e-40 * size) return;
+    const S inverse = S(1) / v[pivot];
+    for (S& x : v) x = x * inverse;
+    vectors.push_back(std::move(v));
+    pivots.push_back(pivot);
+  }
+};
+
+/// The model on what its inputs move.
+template <class S>
+FirstOrder<S> moved(const FirstOrder<S>& m) {
+  const Krylov<S> space(m.A, m.B);
+  Table<S> V(m.A.rows(), space.vectors.size());
+  for (std::size_t j = 0; j < V.cols(); ++j)
+    for (std::size_t i = 0; i < V.rows(); ++i) V(i, j) = space.vectors[j][i];
+  const Table<S> square = V.rows(space.pivots);
+  return {solve(square, (m.A * V).rows(space.pivots)), solve(square, m.B.rows(space.pivots)),
+          m.C * V, m.D};
+}
+
+template <class S>
+FirstOrder<S> dual(const FirstOrder<S>& m) {
+  return {m.A.transposed(), m.C.transposed(), m.B.transposed(), m.D.transposed()};
+}
+
+}  // namespace
+
+template <class S>
+FirstOrder<S> assemble(const Plan& plan) {
+  return Assembly<S>(plan).model();
+}
+
+template <class S>
+FirstOrder<S> minimal(const FirstOrder<S>& model) {
+  return dual(moved(dual(moved(model))));
+}
+
+bool closures_independent(const Plan& plan) { return Assembly<Mod>(plan).independent(); }
+
+template FirstOrder<Mod> assemble(const Plan&);
+template FirstOrder<Digits> assemble(const Plan&);
+template FirstOrder<Mod> minimal(const FirstOrder<Mod>&);
+template FirstOrder<Digits> minimal(const FirstOrder<Digits>&);
+
+}  // namespace titop::generate

@@ -1,0 +1,29 @@
+#pragma once
+
+#include "generate/plan.hpp"
+#include "generate/table.hpp"
+
+/// The equations of motion of a plan, assembled by hand: coordinates of the tree, Lagrange's
+/// equations, null space of the closures, controllers around it. This is the oracle of the random
+/// scenes; neither the library nor the scene file has a part in it.
+namespace titop::generate {
+
+/// xdot = A x + B u, y = C x + D u; not minimal.
+template <class S>
+struct FirstOrder {
+  Table<S> A, B, C, D;
+};
+
+/// Throws std::domain_error where the mass matrix or an algebraic loop is singular, and where a
+/// reaction is asked for that the motion does not determine.
+template <class S>
+FirstOrder<S> assemble(const Plan& plan);
+
+/// The part of it that inputs move and outputs see, by its Krylov subspaces.
+template <class S>
+FirstOrder<S> minimal(const FirstOrder<S>& model);
+
+/// True if the closures are independent, so that their reactions are determined.
+bool closures_independent(const Plan& plan);
+
+}  // namespace titop::generate

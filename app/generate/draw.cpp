@@ -1,0 +1,397 @@
+#include <Eigen/Cholesky>
+#include <random>
+#include <tuple>
+
+#include "generate/assembly.hpp"
+#include "generate/generate.hpp"
+
+namespace titop::generate {
+namespace {
+
+/// Whole numbers from a generator that the standard defines to the bit.
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : engine_(seed) {}
+  int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
+  int between(int low, int high) { return low + below(high - low + 1); }
+  bool chance(int percent) { return below(100) < percent; }
+  /// From 2^low to 2^high, five bits.
+  Ratio octaves(int low, int high) {
+    const std::int64_t mantissa = 16 + below(16);
+    const int e = low + below(high - low) - 4;
+    return e >= 0 ? Ratio(mantissa << e) : Ratio(mantissa, std::int64_t(1) << -e);
+  }
+  /// From -1 to 1 in steps of 1/64.
+  Ratio fraction() { return {between(-64, 64), 64}; }
+  Vec3 vector() { return {fraction(), fraction(), fraction()}; }
+  /// Rational rotations from whole quaternions: quarter turns and 3-4-5.
+  Mat3 rotation() {
+    static constexpr int kQuaternions[][4] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {1, 0, 1, 0},
+                                              {1, 0, 0, 1}, {1, 1, 1, 1}, {0, 1, 0, 0},
+                                              {2, 1, 0, 0}, {2, 0, 1, 0}, {2, 0, 0, -1}};
+    const auto& k = kQuaternions[below(9)];
+    const std::int64_t w = k[0], x = k[1], y = k[2], z = k[3], n = w * w + x * x + y * y + z * z;
+    const auto row = [n](std::int64_t a, std::int64_t b, std::int64_t c) {
+      return Vec3{Ratio(a, n), Ratio(b, n), Ratio(c, n)};
+    };
+    return {row(w * w + x * x - y * y - z * z, 2 * (x * y - w * z), 2 * (x * z + w * y)),
+            row(2 * (x * y + w * z), w * w - x * x + y * y - z * z, 2 * (y * z - w * x)),
+            row(2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z)};
+  }
+  Vec3 direction() {
+    static const Vec3 kDirections[] = {{1, 0, 0},
+                                       {0, 1, 0},
+                                       {0, 0, 1},
+                                       {Ratio(3, 5), 0, Ratio(4, 5)},
+                                       {0, Ratio(-4, 5), Ratio(3, 5)},
+                                       {Ratio(1, 3), Ratio(2, 3), Ratio(2, 3)},
+                                       {Ratio(2, 7), Ratio(-3, 7), Ratio(6, 7)}};
+    return kDirections[below(7)];
+  }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+class Artist {
+ public:
+  explicit Artist(const Options& o) : o_(o), dice_(o.seed) {
+    plan_.name = "seed " + std::to_string(o.seed);
+  }
+
+  Plan plan() {
+    if (o_.family == Family::scalar)
+      scalar();
+    else
+      spatial();
+    return std::move(plan_);
+  }
+
+ private:
+  // --- names and signals ---
+
+  std::string fresh(const char* kind) { return kind + std::to_string(++names_); }
+  std::string input(int size) {
+    plan_.inputs.push_back({fresh("u"), size});
+    return plan_.inputs.back().name;
+  }
+  void read(Reading r, int size) {
+    plan_.outputs.push_back({fresh("y"), size});
+    r.output = plan_.outputs.back().name;
+    plan_.readings.push_back(std::move(r));
+  }
+  bool damped() {
+    return o_.damping == Damping::all || (o_.damping == Damping::some && dice_.chance(50));
+  }
+  int parent_of(int i) {
+    return o_.shape == Shape::chain ? i - 1 : o_.shape == Shape::star ? 0 : dice_.below(i);
+  }
+  Base::Kind base_kind() {
+    static constexpr Base::Kind kKinds[] = {Base::Kind::ground, Base::Kind::free,
+                                            Base::Kind::imposed, Base::Kind::pinned};
+    const int kinds = o_.family == Family::scalar ? 3 : 4;
+    const Base::Kind kind = kKinds[dice_.below(kinds)];
+    return o_.loops > 0 && kind == Base::Kind::imposed ? Base::Kind::free : kind;
+  }
+  /// Stiffness and damping of a spring.
+  std::pair<Ratio, Ratio> spring() {
+    const Ratio k = dice_.octaves(o_.stiffness_low, o_.stiffness_high);
+    return {k, damped() ? dice_.octaves(-3, 2) : Ratio(0)};
+  }
+
+  // --- one degree of freedom per junction ---
+
+  void scalar() {
+    for (int i = 0; i < o_.bodies; ++i) {
+      if (o_.twins && i > 1 && i % 2 == 0 && plan_.blocks.back().base.kind == Base::Kind::mounted) {
+        Block twin = plan_.blocks.back();
+        twin.name = fresh("z");
+        twin.stiffness_parameter.clear();
+        plan_.blocks.push_back(twin);
+      } else {
+        plan_.blocks.push_back(spring_mass(i));
+      }
+    }
+    for (int i = 0; i < o_.loops; ++i) close_scalar(i);
+    for (int i = 0; i < o_.bodies; ++i) use_scalar(i);
+    const int last = o_.twins ? 0 : dice_.below(o_.bodies);
+    plan_.loads.push_back(
+        {input(1), {last, "child"}, {}, dice_.chance(50) ? Ratio(1) : Ratio(-5, 2)});
+    read({.of = Reading::Of::acceleration,
+          .point = {o_.twins ? 0 : dice_.below(o_.bodies), "child"}},
+         1);
+    const bool grounded = plan_.blocks[0].base.kind == Base::Kind::ground;
+    if (grounded && closures_independent(plan_))
+      read({.of = Reading::Of::support, .point = {0, "parent"}}, 1);
+    if (grounded) read({.of = Reading::Of::position, .point = {0, "child"}}, 1);
+  }
+
+  Block spring_mass(int i) {
+    Block b{.name = fresh("z")};
+    const auto [k, c] = spring();
+    b.spring = Spring{dice_.octaves(-1, 3), k, c, {}};
+    if (dice_.chance(15)) b.stiffness_parameter = "k_" + b.name;
+    if (i > 0) {
+      b.base.kind = Base::Kind::mounted;
+      b.base.on = {parent_of(i), "child"};
+    } else {
+      b.base.kind = base_kind();
+      if (b.base.kind == Base::Kind::imposed ||
+          (b.base.kind == Base::Kind::free && dice_.chance(50)))
+        b.base.input = input(1);
+    }
+    if (b.base.kind == Base::Kind::free || dice_.chance(30))
+      b.spring->parent_mass = dice_.octaves(-1, 3);
+    return b;
+  }
+
+  /// The child of one of the last spring-masses is held, or moves with another.
+  void close_scalar(int i) {
+    const int block = o_.bodies - 1 - i;
+    if (block < 1) return;
+    Closure c{{block, "child"}};
+    if (block > 1 && dice_.chance(50)) c.with = Point{dice_.below(block - 1), "child"};
+    plan_.closures.push_back(c);
+    if (closures_independent(plan_) && dice_.chance(50))
+      read({.of = Reading::Of::reaction, .point = c.point}, 1);
+  }
+
+  void use_scalar(int i) {
+    if (o_.twins && i > 0) return;
+    if (dice_.chance(25)) plan_.loads.push_back({input(1), {i, "child"}});
+    if (o_.controllers && dice_.chance(25)) {
+      const bool acceleration = dice_.chance(50);
+      plan_.controls.push_back(control(acceleration, i));
+      plan_.controls.back().at = {i, "child"};
+    }
+    if (!dice_.chance(35)) return;
+    if (dice_.chance(50))
+      read({.of = Reading::Of::relative, .point = {i, ""}}, 1);
+    else
+      read({.of = Reading::Of::acceleration, .point = {i, "child"}}, 1);
+  }
+
+  /// Of order 1 or 2. What it adds to the mass is positive, so that the loop is never singular.
+  Control control(bool acceleration, int block) {
+    Control c{.name = fresh("K"), .block = block};
+    c.law = acceleration ? Control::Law::acceleration : Control::Law::position;
+    const int n = dice_.between(1, 2);
+    const Ratio decay = dice_.octaves(-1, 4);
+    c.A.assign(static_cast<std::size_t>(n), std::vector<Ratio>(static_cast<std::size_t>(n)));
+    c.B.assign(static_cast<std::size_t>(n), {Ratio(1)});
+    c.C.assign(1, {});
+    for (int i = 0; i < n; ++i) {
+      const auto k = static_cast<std::size_t>(i);
+      c.A[k][k] = -decay;
+      c.B[k][0] = dice_.fraction();
+      c.C[0].push_back(dice_.fraction() * Ratio(acceleration ? 1 : 64, acceleration ? 8 : 8));
+    }
+    if (n == 2) c.A[0][1] = dice_.fraction(), c.A[1][0] = -c.A[0][1];
+    c.D = acceleration ? dice_.octaves(-3, 1) : dice_.octaves(0, 4);
+    return c;
+  }
+
+  // --- six degrees of freedom per junction ---
+
+  void spatial() {
+    for (int i = 0; i < o_.bodies; ++i) {
+      const bool twin = o_.twins && i > 1 && i % 2 == 0;
+      if (twin)
+        twin_body(i);
+      else
+        body(i);
+    }
+    for (int i = 0; i < o_.loops; ++i) close_spatial(i);
+    if (o_.twins) return outside_only();
+    for (const int i : bodies_) use_body(i);
+    read({.of = Reading::Of::acceleration, .point = {any_body(), "T"}}, 6);
+    plan_.loads.push_back({input(3), {any_body(), "T"}, {Part::Kind::linear, {}}});
+    const Base::Kind root = plan_.blocks[0].base.kind;
+    if (root == Base::Kind::ground && closures_independent(plan_) && dice_.chance(60))
+      read({.of = Reading::Of::support, .point = {0, "parent"}}, 6);
+    if (root == Base::Kind::ground && dice_.chance(60))
+      read({.of = Reading::Of::position,
+            .point = {any_body(), "T"},
+            .part = {Part::Kind::linear, {}}},
+           3);
+  }
+
+  /// Everything acts and is read at the first body, so that what hangs there twice moves alike.
+  void outside_only() {
+    plan_.loads.push_back({input(6), {bodies_[0], "T"}});
+    read({.of = Reading::Of::acceleration, .point = {bodies_[0], "T"}}, 6);
+  }
+
+  int any_body() { return bodies_[static_cast<std::size_t>(dice_.below(int(bodies_.size())))]; }
+
+  /// A body with points "R" and "T" and one for each body that may hang on it.
+  Body random_body() {
+    Body b;
+    b.mass = dice_.octaves(-1, 3);
+    Ratio part[3];
+    for (Ratio& p : part) p = b.mass * Ratio(dice_.between(8, 40), 64);
+    b.inertia = {part[0] + part[1], part[1] + part[2], part[2] + part[0]};
+    b.PA = dice_.vector();
+    const int modes = dice_.chance(40) ? 0 : dice_.between(1, 4);
+    for (int i = 0; i < modes; ++i) {
+      b.omega.push_back(dice_.octaves(0, 6));
+      b.xi.push_back(damped() ? Ratio(dice_.between(4, 20), 1024) : Ratio(0));
+      b.L.emplace_back();
+      for (int j = 0; j < 6; ++j) b.L.back().push_back(dice_.fraction());
+    }
+    while (!carries(b))
+      for (auto& row : b.L)
+        for (Ratio& x : row) x = x * Ratio(1, 2);
+    for (const char* name : {"C1", "C2", "C3", "T"}) b.points.push_back(point(name, modes));
+    return b;
+  }
+
+  BodyPoint point(const char* name, int modes) {
+    BodyPoint p{name, dice_.vector(), Rows(6)};
+    for (auto& row : p.Phi)
+      for (int j = 0; j < modes; ++j) row.push_back(dice_.fraction());
+    return p;
+  }
+
+  /// The modes have less than the body's mass: D_P - L'L is positive, with a margin.
+  static bool carries(const Body& b) {
+    Eigen::Matrix3d rho = Eigen::Matrix3d::Zero();
+    const Mat3 x = cross(b.PA);
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        rho(static_cast<int>(i), static_cast<int>(j)) = -x[i][j].value();
+    Eigen::Matrix<double, 6, 6> D = Eigen::Matrix<double, 6, 6>::Zero();
+    const double m = b.mass.value();
+    D.topLeftCorner<3, 3>() = m * Eigen::Matrix3d::Identity();
+    D.topRightCorner<3, 3>() = m * rho;
+    D.bottomLeftCorner<3, 3>() = m * rho.transpose();
+    D.bottomRightCorner<3, 3>() = m * rho.transpose() * rho;
+    for (int i = 0; i < 3; ++i) D(3 + i, 3 + i) += b.inertia[static_cast<std::size_t>(i)].value();
+    D *= 0.7;
+    for (const auto& row : b.L) {
+      Eigen::Matrix<double, 6, 1> l;
+      for (int j = 0; j < 6; ++j) l(j) = row[static_cast<std::size_t>(j)].value();
+      D -= l * l.transpose();
+    }
+    return Eigen::LLT<Eigen::Matrix<double, 6, 6>>(D).info() == Eigen::Success;
+  }
+
+  void body(int i) {
+    Block b{.name = fresh("b"), .body = random_body()};
+    if (i == 0) {
+      b.base.kind = base_kind();
+      if (b.base.kind == Base::Kind::imposed ||
+          (b.base.kind != Base::Kind::ground && dice_.chance(50)))
+        b.base.input = input(b.base.kind == Base::Kind::pinned ? 3 : 6);
+      return add_body(b);
+    }
+    b.base.kind = Base::Kind::mounted;
+    const int on = bodies_[static_cast<std::size_t>(parent_of(i))];
+    b.base.on = {on, "C" + std::to_string(dice_.between(1, 3))};
+    b.base.turned = dice_.chance(75);
+    b.base.T = b.base.turned ? dice_.rotation() : unit3();
+    if (dice_.chance(45)) add_joint(b);
+    add_body(b);
+  }
+
+  void add_body(const Block& b) {
+    bodies_.push_back(static_cast<int>(plan_.blocks.size()));
+    plan_.blocks.push_back(b);
+  }
+
+  /// A hinge or a slide between the body and its site: it takes the body's place there.
+  void add_joint(Block& b) {
+    Block h{.name = fresh("h"), .base = b.base};
+    h.joint = Joint{.turns = dice_.chance(65), .axis = dice_.direction()};
+    const int index = static_cast<int>(plan_.blocks.size());
+    const int kind = dice_.below(o_.controllers ? 4 : 3);
+    if (kind == 3) {
+      plan_.controls.push_back(control(false, index));
+    } else if (kind > 0) {
+      std::tie(h.joint->stiffness, h.joint->damping) = spring();
+      if (kind == 2) h.joint->input = input(1);
+    }
+    if (kind > 0 && dice_.chance(50)) read({.of = Reading::Of::relative, .point = {index, ""}}, 1);
+    plan_.blocks.push_back(h);
+    b.base = {.kind = Base::Kind::mounted, .on = {index, "child"}, .T = unit3()};
+  }
+
+  /// The same body at the same place as the one before.
+  void twin_body(int i) {
+    const Block last = plan_.blocks.back();
+    if (plan_.blocks[static_cast<std::size_t>(last.base.on.block)].joint) return body(i);
+    Block twin = last;
+    twin.name = fresh("b");
+    add_body(twin);
+  }
+
+  /// "T" of one of the last bodies is held, or welded to a point "R" of the first, which is put
+  /// where it is.
+  void close_spatial(int i) {
+    const std::size_t k = bodies_.size() - 1 - static_cast<std::size_t>(i);
+    if (k < 1 || k >= bodies_.size()) return;
+    Closure c{.point = {bodies_[k], "T"}, .T = unit3()};
+    if (dice_.chance(60)) {
+      auto [T, place] = seen_from_first(c.point);
+      const std::string name = "R" + std::to_string(i + 1);
+      Body& first = *plan_.blocks[0].body;
+      const int modes = static_cast<int>(first.omega.size());
+      first.points.push_back(point(name.c_str(), modes));
+      first.points.back().PC = place;
+      c.with = Point{0, name};
+      c.T = T;
+    }
+    plan_.closures.push_back(c);
+    if (closures_independent(plan_) && dice_.chance(40))
+      read({.of = Reading::Of::reaction, .point = c.point}, 6);
+  }
+
+  /// Rotation (its frame to the first body's) and place of a point, from the first body's parent.
+  std::pair<Mat3, Vec3> seen_from_first(const Point& p) const {
+    const Block& b = plan_.blocks[static_cast<std::size_t>(p.block)];
+    Vec3 own{};
+    if (b.body)
+      for (const BodyPoint& c : b.body->points)
+        if (c.name == p.channel) own = c.PC;
+    if (p.block == 0) return {unit3(), own};
+    const auto [T, origin] = seen_from_first(b.base.on);
+    const Mat3 turned = T * b.base.T;
+    return {turned, origin + turned * own};
+  }
+
+  void use_body(int i) {
+    const Part along{Part::Kind::along, dice_.direction()};
+    if (dice_.chance(30)) plan_.loads.push_back({input(1), {i, "T"}, along});
+    if (o_.controllers && dice_.chance(20)) {
+      plan_.controls.push_back(control(true, i));
+      plan_.controls.back().at = {i, "T"};
+      plan_.controls.back().along = dice_.direction();
+    }
+    if (dice_.chance(30)) slosh(i);
+    if (dice_.chance(30))
+      read({.of = Reading::Of::acceleration, .point = {i, "T"}, .part = along}, 1);
+  }
+
+  /// A spring-mass along one direction of the body.
+  void slosh(int on) {
+    Block z{.name = fresh("z")};
+    const auto [k, c] = spring();
+    z.spring = Spring{dice_.octaves(-2, 1), k, c, {}};
+    z.base = {.kind = Base::Kind::mounted, .on = {on, "T"}, .along = dice_.direction()};
+    if (dice_.chance(50))
+      read({.of = Reading::Of::relative, .point = {int(plan_.blocks.size()), ""}}, 1);
+    plan_.blocks.push_back(z);
+  }
+
+  Options o_;
+  Dice dice_;
+  Plan plan_;
+  int names_ = 0;
+  std::vector<int> bodies_;
+};
+
+}  // namespace
+
+Plan draw(const Options& options) { return Artist(options).plan(); }
+
+}  // namespace titop::generate

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "generate/plan.hpp"
+
+/// Random scenes with their answers, for testing titop and other programs with. A scene is drawn as
+/// plain data, written as a scene file, and answered from equations of motion that are assembled by
+/// hand (assembly.hpp): the library has no part in it.
+namespace titop::generate {
+
+enum class Family { scalar, spatial };  ///< spring-masses; bodies, hinges and slides in space
+enum class Shape { chain, tree, star };
+enum class Damping { none, some, all };
+
+struct Options {
+  std::uint64_t seed = 1;
+  Family family = Family::scalar;
+  Shape shape = Shape::tree;
+  int bodies = 6;
+  int loops = 0;  ///< chains that close, through the ground or among themselves
+  Damping damping = Damping::some;
+  int stiffness_low = 3, stiffness_high = 9;  ///< powers of two [N/m, N m/rad]
+  bool controllers = true;
+  bool twins = false;        ///< every second part a copy of its neighbour: states that do nothing
+  std::string mistake = {};  ///< code of a mistake to plant; "": none
+};
+
+using Json = nlohmann::ordered_json;
+
+/// The same seed gives the same scene on every machine.
+Plan draw(const Options& options);
+
+/// The scene file. Rows of lists stand on one line each.
+Json scene(const Plan& plan);
+
+/// What is known of it: {"order", "poles", "transfer"}. Order: of the minimal model, counted modulo
+/// a prime and again in 100 digits. Poles: with Im s >= 0, zeros as [0, 0]. Throws
+/// std::domain_error where the equations have no solution, std::logic_error where the two orders
+/// differ.
+Json answer(const Plan& plan, std::uint64_t seed);
+
+/// Plants a mistake of this code into the scene; the answer is {"refused": {"code", "names"}}: what
+/// the message must name. Throws std::invalid_argument for a code that cannot be planted,
+/// std::domain_error for a scene that has no place for it.
+struct Spoilt {
+  Json scene, answer;
+};
+Spoilt spoil(Json scene, const std::string& code);
+
+/// The scene, its answer, and the source of a doctest program (needs titop) that compares them.
+struct Generated {
+  Json scene, answer;
+};
+/// Draws with this seed, and with others after it where the scene has no answer, or no place for
+/// the mistake. Throws std::invalid_argument where a hundred have none.
+Generated generate(const Options& options);
+std::string test_source(const Generated& generated, const std::string& scene_file);
+
+/// JSON with one line per item of the outermost lists.
+std::string text(const Json& json);
+
+}  // namespace titop::generate

@@ -1,0 +1,174 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "generate/ratio.hpp"
+
+/// A random scene as plain data, before it is written as a scene file (scene.hpp) and as equations
+/// of motion (assembly.hpp). Nothing of the library is used in either.
+namespace titop::generate {
+
+using Vec3 = std::array<Ratio, 3>;
+using Mat3 = std::array<Vec3, 3>;              ///< rows
+using Rows = std::vector<std::vector<Ratio>>;  ///< a matrix
+
+/// Something with a motion: a spring-mass's ends, a body's points, a joint's ends, by name.
+struct Point {
+  int block = -1;
+  std::string channel = {};  ///< "parent", "child", "C1", ...
+};
+
+/// Where the parent point of a block is.
+struct Base {
+  enum class Kind {
+    mounted,  ///< on `on`, turned by T (body to site), or along one direction of it
+    ground,   ///< held
+    free,     ///< an input wrench acts, or nothing
+    imposed,  ///< its acceleration is an input
+    pinned    ///< held in translation
+  };
+  Kind kind = Kind::ground;
+  Point on = {};
+  Mat3 T = {};
+  bool turned = false;             ///< T is not just left out
+  std::optional<Vec3> along = {};  ///< a spring-mass on a body: unit vector
+  std::string input = {};          ///< free: wrench; imposed: acceleration; "": none
+};
+
+struct Spring {
+  Ratio mass, stiffness, damping, parent_mass;
+};
+
+struct BodyPoint {
+  std::string name;
+  Vec3 PC = {};
+  Rows Phi = {};  ///< 6 x N
+};
+struct Body {
+  Ratio mass;
+  Vec3 inertia = {};  ///< principal, about the centre of mass
+  Vec3 PA = {};
+  std::vector<Ratio> omega = {}, xi = {};
+  Rows L = {};  ///< N x 6
+  std::vector<BodyPoint> points = {};
+};
+
+/// Hinge or slide; sprung, driven by an input force, or with a controller (then k = c = 0).
+struct Joint {
+  bool turns = true;
+  Vec3 axis = {};  ///< unit vector
+  Ratio stiffness = {}, damping = {};
+  std::string input = {};
+};
+
+struct Block {
+  std::string name;
+  Base base = {};
+  std::optional<Spring> spring = {};
+  std::optional<Body> body = {};
+  std::optional<Joint> joint = {};
+  std::string stiffness_parameter = {};  ///< of a spring-mass: the number has a name
+
+  int size() const { return spring ? 1 : 6; }
+};
+
+/// Controller of one input and one output: xdot = A x + B e, v = C x + D e.
+struct Control {
+  enum class Law {
+    position,     ///< e: stretch or angle of `block`; v pulls it back
+    acceleration  ///< e: acceleration at `at` (along `along`); v pushes against it there
+  };
+  std::string name;
+  Law law = Law::position;
+  int block = -1;  ///< position
+  Point at = {};   ///< acceleration, and a spring-mass's child for position
+  std::optional<Vec3> along = {};
+  Rows A = {}, B = {}, C = {};
+  Ratio D = {};
+};
+
+/// One motion more than the tree has: `point` moves as `with` does (turned by T), or not at all.
+struct Closure {
+  Point point;
+  std::optional<Point> with = {};
+  Mat3 T = {};
+};
+
+/// Which rows of a point's six: all, the linear ones, or one direction.
+struct Part {
+  enum class Kind { all, linear, along };
+  Kind kind = Kind::all;
+  Vec3 direction = {};
+};
+
+/// A force on a point, beside those of bases and joints.
+struct Load {
+  std::string input;
+  Point point;
+  Part part = {};
+  Ratio gain = 1;
+};
+
+struct Reading {
+  enum class Of { acceleration, position, relative, support, reaction };
+  std::string output = {};
+  Of of = Of::acceleration;
+  Point point = {};  ///< `relative`: block; `support`: its parent; `reaction`: what holds it
+  Part part = {};
+};
+
+struct Named {
+  std::string name;
+  int size = 1;
+};
+
+struct Plan {
+  std::string name;
+  std::vector<Block> blocks;  ///< what a block hangs on comes before it
+  std::vector<Control> controls;
+  std::vector<Closure> closures;
+  std::vector<Load> loads;
+  std::vector<Reading> readings;
+  std::vector<Named> inputs, outputs;
+};
+
+// --- three dimensions ----------------------------------------------------------------------------
+
+inline Mat3 unit3() {
+  Mat3 T{};
+  for (std::size_t i = 0; i < 3; ++i) T[i][i] = 1;
+  return T;
+}
+inline Mat3 transposed(const Mat3& T) {
+  Mat3 U{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) U[j][i] = T[i][j];
+  return U;
+}
+inline Vec3 operator*(const Mat3& T, const Vec3& v) {
+  Vec3 w{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j) w[i] = w[i] + T[i][j] * v[j];
+  return w;
+}
+inline Mat3 operator*(const Mat3& A, const Mat3& B) {
+  Mat3 C{};
+  for (std::size_t i = 0; i < 3; ++i)
+    for (std::size_t j = 0; j < 3; ++j)
+      for (std::size_t k = 0; k < 3; ++k) C[i][j] = C[i][j] + A[i][k] * B[k][j];
+  return C;
+}
+inline Vec3 operator+(const Vec3& a, const Vec3& b) {
+  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+}
+inline Vec3 operator-(const Vec3& a) { return {-a[0], -a[1], -a[2]}; }
+
+/// Rows of the cross product with v: (*v) w = v x w.
+inline Mat3 cross(const Vec3& v) {
+  return {{{0, -v[2], v[1]}, {v[2], 0, -v[0]}, {-v[1], v[0], 0}}};
+}
+
+}  // namespace titop::generate
