@@ -1,0 +1,9 @@
+// DMIG punch.
+#include <titop/blocks/fe/dmig.hpp>
+
+#include "input_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const fuzz::InputFile file(fuzz::text(data, size));
+  return fuzz::refuses_or_reads([&] { titop::fe::read_dmig(file.path(), "KAAX", "MAAX"); });
+}

@@ -1,0 +1,11 @@
+// Scene files; what is read is also written, and then read again as the same text.
+#include <titop/blocks/scene/scene.hpp>
+
+#include "input_file.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  return fuzz::refuses_or_reads([&] {
+    const std::string written = titop::scene_json(titop::parse_scene(fuzz::text(data, size)));
+    if (titop::scene_json(titop::parse_scene(written)) != written) std::abort();
+  });
+}
