@@ -120,7 +120,8 @@ struct WhatIf {
 /// The same question for several accuracies (Scene::accuracy is not used): one eigenproblem and one
 /// nested sequence for all, so that more accuracy never gives a smaller order. Bodies lose no more
 /// than the finest of them allows. Those that cannot be met are left out. In the order given.
-/// Throws what `compile` throws, but for those; bad_value for accuracies out of range, all together.
+/// Throws what `compile` throws, but for those; bad_value for accuracies out of range, all
+/// together.
 std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
                             std::span<const double> accuracies, const Options& options = {});
 
