@@ -197,7 +197,7 @@ draw_integration() {
   done
   chart "integration-$scene$n" "case $scene, $n bodies: error of time integration" \
     "step times fastest frequency" "largest error of a state"
-  chart "work-precision-$scene$n" "case $scene, $n bodies: error against cost" "seconds of all steps" \
+  keyed "work-precision-$scene$n" "case $scene, $n bodies: error against cost" "seconds of all steps" \
     "largest error of a state"
 }
 
