@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <titop/compiler/solve/scaling.hpp>
 #include <titop/compiler/system_data.hpp>
 #include <titop/graph/linalg/dense.hpp>
 
@@ -60,29 +57,10 @@ bool take_loop_matrix(const SystemData& d, const Loop& loop, MatrixXd& L) {
   return row == loop.unknowns;
 }
 
-/// Columns to one size whatever the units, rows to a largest entry near 1: the margin stays what it
-/// is, but the LU behind it feels the units.
-void scale(MatrixXd& L) {
-  const solve::RowMatrix<double> sizes = L.cwiseAbs();
-  std::vector<std::int16_t> exponents(static_cast<std::size_t>(L.cols()));
-  solve::column_scale(sizes.data(), static_cast<int>(L.rows()), static_cast<int>(L.cols()),
-                      exponents.data());
-  for (Eigen::Index j = 0; j < L.cols(); ++j)
-    L.col(j) *= std::ldexp(1.0, exponents[static_cast<std::size_t>(j)]);
-  for (Eigen::Index i = 0; i < L.rows(); ++i)
-    if (const double size = L.row(i).cwiseAbs().maxCoeff(); size > 0 && std::isfinite(size))
-      L.row(i) *= std::ldexp(1.0, -std::ilogb(size));
-}
-
-constexpr double kPlain = 10;  ///< a margin below it is no effect of units
-
 /// rho(|L^-1| |L|); 1 for a single unknown, 0 where it is not found. `L` is room for the matrix.
 double margin(const SystemData& d, const Loop& loop, MatrixXd& L) {
   if (loop.unknowns == 1) return 1;
   if (loop.unknowns > kExactUpTo || !take_loop_matrix(d, loop, L)) return 0;
-  const double plain = linalg::skeel_radius(L);
-  if (plain > 0 && plain <= kPlain) return plain;
-  scale(L);
   return linalg::skeel_radius(L);
 }
 
