@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# economy.sh FOLDER: economy.csv there becomes order.svg, time.svg and table.md.
+# economy.sh FOLDER: economy.csv there becomes order.svg, time.svg and table.md, large.csv,
+# where it is there, large.md.
 set -euo pipefail
 cd "$1"
 awk -F, 'NR > 1 {
@@ -38,3 +39,10 @@ awk -F, 'NR == 1 {
 { printf "| %s | %s | %d | %d | %s | %s | %s s | %.2g | %s s | %.2g |\n", $1, $2, $3, $4, $5,
          ($6 > 0 ? $6 : "all"), $7, $7 / $8, $9, $9 / $10 }' economy.csv >table.md
 rm economy.dat
+[[ -e large.csv ]] || exit 0
+awk -F, 'NR == 1 {
+  print "| bodies | coordinates | asked | after bodies | what that cost | states | bound | all of it |"
+  print "|---|---|---|---|---|---|---|---|"
+  next
+}
+{ printf "| %s | %s | %s | %s | %s | %s | %s | %s s |\n", $1, $2, $3, $4, $5, $6, $7, $8 }' large.csv >large.md

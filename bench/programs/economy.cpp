@@ -1,13 +1,16 @@
 /// bench_economy [quick]: what accuracy costs. Rows of CSV: for every scene and accuracy the states
 /// that `what_if` keeps, its bound, seconds of one transfer and of one step of simulation beside
 /// the full system's; and what plain truncation by frequency needs for the same error (0: all there
-/// is).
+/// is). bench_economy large: scenes of thousands of coordinates instead, step by step.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <numbers>
+#include <string_view>
 #include <titop/compiler/compile_graph.hpp>
 #include <titop/compiler/economy/ray.hpp>
 #include <titop/compiler/economy/sharpen.hpp>
@@ -44,6 +47,41 @@ Diagram frame(const FlexibleBody& beam) {
   b3.child("C").force = U;
   d.output("a", 6) = b3.child("C").accel;
   return d;
+}
+
+/// The same beams in a zigzag, so many that bodies lose modes before the whole does.
+Diagram zigzag(const FlexibleBody& beam, int count) {
+  Diagram d{"zigzag"};
+  auto U = d.input("U", 6);
+  std::vector<BodyHandle> b;
+  for (int i = 0; i < count; ++i) {
+    b.push_back(d.add(fmt::format("b{}", i + 1), beam));
+    const Rotation turn = Rotation::about({1, 2, 3}, i % 2 ? 0.7 : -0.9);
+    if (i > 0) mount(b.back(), b[b.size() - 2].child("C"), turn);
+  }
+  b.front().parent.accel = 0;
+  b.back().child("C").force = U;
+  d.output("a", 6) = b.back().child("C").accel;
+  return d;
+}
+
+/// Thousands of coordinates: what each step leaves, what that costs, and seconds of all of it.
+void large() {
+  fmt::print("bodies,coordinates,accuracy,after_bodies,bodies_error,states,bound,seconds\n");
+  const FlexibleBody beam = titop_bench::calculix_beam({});
+  for (const int count : {8, 16})
+    for (const double accuracy : {1e-2, 1e-4, 1e-6}) {
+      const auto start = std::chrono::steady_clock::now();
+      const ReducedSystem r =
+          compile(zigzag(beam, count), {.band_hz = {0, 60}, .accuracy = accuracy});
+      const double seconds =
+          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const auto bodies = std::find_if(r.steps().begin(), r.steps().end(),
+                                       [](const EconomyStep& s) { return s.name == "bodies"; });
+      fmt::print("{},{},{:.0e},{},{:.1e},{},{:.2e},{:.1f}\n", count, bodies->before, accuracy,
+                 bodies->after, bodies->error, r.order(), r.bound().worst, seconds);
+      std::fflush(stdout);
+    }
 }
 
 Diagram heavy(const FlexibleBody& beam) {
@@ -105,23 +143,33 @@ class Plain {
     samples_ =
         detail::sample(system_, scene, whole_, detail::sample_points(scene, band, whole_, {}, 2));
   }
-  long needed(double accuracy) const {
-    const long n = static_cast<long>(whole_.order());
-    for (long k = 0; k < n; k += std::max(1L, k / 20))
-      if (error(k) <= accuracy) return k;
-    return 0;
+  /// By doubling and bisection to 5 %.
+  long needed(double accuracy) {
+    const long n = static_cast<long>(whole_.elastic());
+    long few = 0, many = 1;
+    while (many < n && error(many) > accuracy) few = many, many = 2 * many;
+    if (many >= n) many = n;
+    while (many - few > std::max(1L, many / 20)) {
+      const long k = (few + many) / 2;
+      (error(k) <= accuracy ? many : few) = k;
+    }
+    return many < n ? many : 0;
   }
 
  private:
-  double error(long count) const {
+  double error(long count) {
+    const auto [found, fresh] = errors_.emplace(count, 0);
+    if (!fresh) return found->second;
     std::vector<Eigen::Index> kept;
     for (long k = 0; k < count; ++k) kept.push_back(k);
-    return detail::errors(samples_, detail::project(whole_, kept, MatrixXd(whole_.elastic(), 0)))
-        .maxCoeff();
+    return found->second = detail::errors(samples_, detail::project(whole_, kept,
+                                                                    MatrixXd(whole_.elastic(), 0)))
+                               .maxCoeff();
   }
   System system_;
   detail::Whole whole_;
   detail::Samples samples_;
+  std::map<long, double> errors_;
 };
 
 /// One step of x = A x + B u with the full matrix, and with 2 x 2 blocks.
@@ -150,7 +198,7 @@ void table(const char* name, const Diagram& d, const Scene& scene, bool quick) {
   StateSpace dense;
   full.write(dense);
   const double step = full_step(dense);
-  const Plain plain(d, scene);
+  Plain plain(d, scene);
   for (const WhatIf& r : rows) {
     fmt::print("{},{:.0e},{},{},{:.2e},{},{:.2e},{:.2e},{:.2e},{:.2e}\n", name, r.accuracy, r.order,
                full.order(), r.bound, 2 * plain.needed(r.bound), r.seconds, full_transfer,
@@ -163,6 +211,10 @@ void table(const char* name, const Diagram& d, const Scene& scene, bool quick) {
 
 int main(int argc, char** argv) {
   const bool quick = titop_bench::is_quick(argc, argv);
+  if (argc > 1 && std::string_view(argv[1]) == "large") {
+    large();
+    return 0;
+  }
   fmt::print("scene,accuracy,states,full,bound,plain,transfer,full_transfer,step,full_step\n");
   fe::ModeOptions modes;  // all 342
   if (quick) modes.kept = 20;
