@@ -5,7 +5,6 @@
 
 #include <Eigen/Eigenvalues>
 #include <numbers>
-#include <titop/compiler/emit/report.hpp>
 #include <titop/titop.hpp>
 
 #include "markup.hpp"
@@ -193,6 +192,8 @@ TEST_CASE("scenes without inputs, outputs or states have a report") {
   CHECK(has(section(page, "poles"), "The model has no states"));
   // Force to acceleration and moment to rotation; the other pairs are 0.
   CHECK(count(section(page, "time"), "<figure") == 2);
+  CHECK(count(section(page, "frequency"), "<figure") == 2 + 2);  // singular values, Bode
+  CHECK(count(section(page, "frequency"), " d=\"\"") == 0);
   Diagram deaf{"deaf"};
   auto v = deaf.input("v");
   auto a = deaf.add("a", SpringMass{}), b = deaf.add("b", SpringMass{});

@@ -103,7 +103,7 @@ void add_full(std::vector<Item>& items, const FullCertificate& f) {
                      fmt::format("Smallest eigenvalue of the Hermitian part of G(s)/s over {} "
                                  "of force and acceleration at one point, scaled: not negative for "
                                  "what gives no energy{}.",
-                                 f.passivity.pairs,
+                                 count(static_cast<std::size_t>(f.passivity.pairs), "pair"),
                                  f.passivity.structure ? "" : "; a controller may give some"),
                      f.passivity.structure ? judged(-f.passivity.least, 1e-9) : Mark::none});
   else
@@ -125,8 +125,10 @@ std::string as_range(const OrderVerdict& v) {
   if (!v.decided())
     return fmt::format(
         "Order {} is undecided: at this precision the minimal order lies between {} "
-        "and {}; what was in doubt is kept.",
-        v.order, v.lowest, v.highest);
+        "and {}{}{}.",
+        v.order, v.lowest, v.highest,
+        v.highest > v.order ? "; what left is zero as far as rounding can tell" : "",
+        v.lowest < v.order ? "; what is in doubt is kept" : "");
   return fmt::format("Order {} is minimal{}.", v.order,
                      v.exact ? ", decided in exact arithmetic" : ", decided beyond rounding");
 }

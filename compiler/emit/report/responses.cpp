@@ -271,6 +271,19 @@ VectorXd singular_values_of(const MatrixXcd& G) {
   return sigma;
 }
 
+/// Takes out the last curves that are zero as far as rounding can tell.
+void drop_zero(std::vector<std::vector<double>>& curves) {
+  const auto peak = [](const std::vector<double>& curve) {
+    double largest = 0;
+    for (const double v : curve)
+      if (std::isfinite(v)) largest = std::max(largest, v);
+    return largest;
+  };
+  const double largest = peak(curves.front());
+  while (!curves.empty() && peak(curves.back()) <= 1e-11 * largest) curves.pop_back();
+}
+
+/// Empty where all are zero.
 std::string singular_values(const Sweep& w, const Alike& outputs, const Alike& inputs) {
   const std::size_t count = std::min({outputs.at.size(), inputs.at.size(), kStyles});
   std::vector<std::vector<double>> curves(count);
@@ -279,38 +292,44 @@ std::string singular_values(const Sweep& w, const Alike& outputs, const Alike& i
     if (G.size()) sigma = singular_values_of(G(outputs.at, inputs.at));
     for (std::size_t k = 0; k < count; ++k) curves[k].push_back(sigma(static_cast<Index>(k)));
   }
+  drop_zero(curves);
+  if (curves.empty()) return {};
+  const std::string caption = curves.size() == count ? "" : "All others are zero to rounding.";
   Plot plot{
       .title = fmt::format("{} [{}] from {} [{}]", shortened(outputs.names), or_users(outputs.unit),
                            shortened(inputs.names), or_users(inputs.unit)),
-      .caption = {},
+      .caption = caption,
       .x = {.label = "frequency", .unit = "Hz", .log = true},
       .labels = {},
-      .x_data = {count, w.hertz},
+      .x_data = {curves.size(), w.hertz},
       .frames = {
           {.y = {.label = "singular values", .unit = ratio(outputs.unit, inputs.unit), .log = true},
            .curves = {},
            .height = 200}}};
   plot.x.low = w.hertz.front(), plot.x.high = w.hertz.back();
-  for (std::size_t k = 0; k < count; ++k) plot.labels.push_back(fmt::format("σ{}", k + 1));
-  plot.labels.front() += count > 1 ? " (largest)" : " (largest gain)";
+  for (std::size_t k = 0; k < curves.size(); ++k) plot.labels.push_back(fmt::format("σ{}", k + 1));
+  plot.labels.front() += curves.size() > 1 ? " (largest)" : " (largest gain)";
   plot.frames.front().curves = std::move(curves);
   return figure(plot);
 }
 
 std::string all_singular_values(const Sweep& w, const std::vector<Group>& outputs,
                                 const std::vector<Group>& inputs) {
-  std::vector<std::string> figures;
+  std::string figures;
+  std::size_t number = 0;
   for (const Alike& in : alike(inputs))
-    for (const Alike& out : alike(outputs))
-      if (in.at.size() * out.at.size() > 1)
-        figures.push_back(figures.size() < kFigures ? singular_values(w, out, in) : "");
+    for (const Alike& out : alike(outputs)) {
+      if (in.at.size() * out.at.size() == 1) continue;
+      const std::string one = number < kFigures ? singular_values(w, out, in) : "";
+      if (!one.empty() || number >= kFigures) ++number;
+      figures += one;
+    }
   if (figures.empty()) return {};
-  std::string text =
+  const std::string text =
       "<h3>Singular values</h3>\n<p>The gain from a vector of inputs to a vector of outputs lies "
       "between the largest and the smallest; inputs and outputs of one unit are taken "
       "together.</p>\n<div class=\"figures\">\n";
-  for (const std::string& f : figures) text += f;
-  return text + "</div>\n" + left_out(figures.size(), "compile for fewer inputs or outputs");
+  return text + figures + "</div>\n" + left_out(number, "compile for fewer inputs or outputs");
 }
 
 std::string frequency(const Subject& s, const Sweep& w, const std::vector<Pair>& pairs,
