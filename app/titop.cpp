@@ -11,7 +11,6 @@
 #include <stdexcept>
 #include <string>
 #include <titop/blocks/scene/scene.hpp>
-#include <titop/compiler/emit/report.hpp>
 #include <titop/titop.hpp>
 #include <vector>
 

@@ -27,6 +27,7 @@
 #include <titop/compiler/economy/reduced_system.hpp>
 #include <titop/compiler/emit/cpp.hpp>
 #include <titop/compiler/emit/files.hpp>
+#include <titop/compiler/emit/report.hpp>
 #include <titop/compiler/exact_order.hpp>
 #include <titop/compiler/minimize.hpp>
 #include <titop/compiler/modal.hpp>

@@ -2,7 +2,6 @@
 // needs nothing but itself, and Graphviz's dot while it is written.
 #include <cstdio>
 #include <fstream>
-#include <titop/compiler/emit/report.hpp>
 #include <titop/titop.hpp>
 
 using namespace titop;

@@ -6,7 +6,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <numbers>
-#include <titop/compiler/emit/report.hpp>
 #include <titop/titop.hpp>
 
 #include "by_hand/by_hand.hpp"

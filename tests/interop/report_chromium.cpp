@@ -1,7 +1,6 @@
 // A browser and a parser read the report: no word on the console, a picture, a print-out.
 #include <doctest/doctest.h>
 
-#include <titop/compiler/emit/report.hpp>
 #include <titop/titop.hpp>
 
 #include "support/five_masses.hpp"
