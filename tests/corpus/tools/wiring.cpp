@@ -113,6 +113,8 @@ class Wiring {
     const Signal& s = g_.signals[at(e.target)];
     const MatrixXd right = sum(e.terms, e.part.whole() ? s.size : int(e.part.rows.rows()));
     if (s.role == Signal::Role::input) {
+      // A force on a point whose acceleration is imposed drives nothing: what holds it takes it.
+      if (is_swapped(s.node, s.first)) return;
       const MatrixXd P =
           e.part.whole() ? MatrixXd::Identity(s.size, s.size) : MatrixXd(e.part.rows.transpose());
       wires_.middleRows(first_in_[at(s.node)] + s.first, s.size) += P * right;
