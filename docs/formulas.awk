@@ -1,7 +1,10 @@
-# For Doxygen, which knows no $$ on a line of its own.
+# For Doxygen, which knows no $$ on a line of its own, and one README.md only.
 /^\$\$$/ {
   inside = !inside
   print inside ? "\\f[" : "\\f]"
   next
 }
-{ print }
+{
+  gsub(/\]\([^)]*\/README\.md\)/, "]")
+  print
+}
