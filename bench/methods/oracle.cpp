@@ -33,7 +33,7 @@ Rows modal_response(const titop::Modal& m, const Number& s) {
 }
 
 Rows response(const Dynamics& d, const Number& s) {
-  if (d.modal) return modal_response(*d.modal, s);
+  if (d.modal && d.sparse.empty()) return modal_response(*d.modal, s);
   Rows Y(d.dense_direct()), X(d.B), M(MatrixXd(-d.A));
   for (Eigen::Index i = 0; i < M.rows(); ++i) M(i, i) += s;
   solve(std::move(M), X);
@@ -93,7 +93,7 @@ void add_rows(Equations& e, Rows& M, Rows& R) {
   const titop::Graph& g = e.stage.graph;
   std::vector<char> driven(g.signals.size(), 0);
   for (const titop::Equation& equation : g.equations) {
-    if (!equation.active) continue;
+    if (!equation.active || equation.of_block) continue;  // the response says it
     const int size = g.signals[at(equation.target)].size;
     driven[at(equation.target)] = 1;
     e.add(MatrixXd::Identity(size, size), equation.target, M, e.row, R);
