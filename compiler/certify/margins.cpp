@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <titop/compiler/system_data.hpp>
 #include <titop/graph/linalg/dense.hpp>
 
@@ -8,14 +9,65 @@
 namespace titop::detail {
 namespace {
 
+using Eigen::Index;
 using Eigen::MatrixXd;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr int kExactUpTo = 120;  ///< unknowns; above it a dense inverse per loop costs too much
 
-/// Loop matrix of one strong component: its rows and unknowns of the equations, dense. False where
-/// rows and unknowns do not match.
+/// Powers of length and of force in a number's unit. Scalars may mean anything: only their force
+/// counts.
+struct Unit {
+  int length = 0, force = 0;
+  bool scalar = false;
+};
+
+Unit unit_of(const Signal& s, int i) {
+  const bool force = s.quantity == Quantity::force;
+  if (s.size != 6 || s.quantity == Quantity::plain) return {0, force, true};
+  return force ? Unit{i >= 3, 1} : Unit{i < 3, 0};
+}
+
+/// An equation's row has the unit of what its target has there.
+Unit unit_of(const Signal& s, const Part& part, int row) {
+  if (part.whole()) return unit_of(s, row);
+  Eigen::Index largest = 0;
+  part.rows.row(row).cwiseAbs().maxCoeff(&largest);
+  return unit_of(s, static_cast<int>(largest));
+}
+
+/// The loop's own units, as powers of two: the force that gives its lightest point unit
+/// acceleration, and the length whose square is inertia over mass. The margin is the same in all
+/// units, but in the LU behind it what cancels must be of the size of what it cancels with.
+void to_own_units(const std::vector<Unit>& rows, const std::vector<Unit>& columns, MatrixXd& L) {
+  double per_force = 0, per_moment = 0;  // accelerations, linear and angular
+  for (std::size_t j = 0; j < columns.size(); ++j)
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Unit r = rows[i], c = columns[j];
+      if (r.force != 0 || c.force != 1 || r.scalar != c.scalar) continue;
+      const double size = std::abs(L(static_cast<Index>(i), static_cast<Index>(j)));
+      if (r.scalar || (r.length == 1 && c.length == 0))
+        per_force = std::max(per_force, size);
+      else if (r.length == 0 && c.length == 1)
+        per_moment = std::max(per_moment, size);
+    }
+  const auto exponent = [](double x) {
+    return x > 0 && std::isfinite(x) ? static_cast<int>(std::lround(std::log2(x))) : 0;
+  };
+  const int length =
+      per_force > 0 && per_moment > 0 ? exponent(std::sqrt(per_force) / std::sqrt(per_moment)) : 0;
+  const int force = length - exponent(per_force);
+  for (std::size_t j = 0; j < columns.size(); ++j)
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Unit r = rows[i], c = columns[j];
+      double& x = L(static_cast<Index>(i), static_cast<Index>(j));
+      x = std::ldexp(x, (c.length - r.length) * length + (c.force - r.force) * force);
+    }
+}
+
+/// Loop matrix of one strong component: its rows and unknowns of the equations, dense, in the
+/// loop's own units. False where rows and unknowns do not match.
 bool take_loop_matrix(const SystemData& d, const Loop& loop, MatrixXd& L) {
   const Graph& g = d.graph();
   L.setZero(loop.unknowns, loop.unknowns);
@@ -27,6 +79,10 @@ bool take_loop_matrix(const SystemData& d, const Loop& loop, MatrixXd& L) {
     }
     return Eigen::Index{-1};
   };
+  std::vector<Unit> rows, columns;
+  for (const int signal : loop.signals)
+    for (int i = 0; i < g.signals[at(signal)].size; ++i)
+      columns.push_back(unit_of(g.signals[at(signal)], i));
   Eigen::Index row = 0;
   const auto put = [&](const auto& c, double sign, int signal) {
     if (const Eigen::Index column = column_of(signal); column >= 0)
@@ -41,12 +97,14 @@ bool take_loop_matrix(const SystemData& d, const Loop& loop, MatrixXd& L) {
     if (row + q.size > loop.unknowns) return false;
     if (q.equation >= 0) {
       const Equation& e = g.equations[at(q.equation)];
+      for (int i = 0; i < q.size; ++i) rows.push_back(unit_of(g.signals[at(e.target)], e.part, i));
       e.part.whole() ? put_identity(e.target) : put(e.part.rows, 1, e.target);
       const int first = d.skeleton->joint.equation_coefficient[at(q.equation)];
       for (std::size_t k = 0; k < e.terms.size(); ++k)
         put(*d.numbers.coefficients[at(first) + k], -1, e.terms[k].signal);
     } else {
       const Signal& y = g.signals[at(q.output)];
+      for (int i = 0; i < q.size; ++i) rows.push_back(unit_of(y, i));
       put_identity(q.output);
       for (int i = g.nodes[at(q.node)].first_signal; i < end_signal(g, q.node); ++i)
         if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input)
@@ -54,7 +112,9 @@ bool take_loop_matrix(const SystemData& d, const Loop& loop, MatrixXd& L) {
     }
     row += q.size;
   }
-  return row == loop.unknowns;
+  if (row != loop.unknowns) return false;
+  if (loop.unknowns > 2) to_own_units(rows, columns, L);
+  return true;
 }
 
 /// rho(|L^-1| |L|); 1 for a single unknown, 0 where it is not found. `L` is room for the matrix.
