@@ -15,7 +15,7 @@ namespace {
 template <class T>
 using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
-constexpr Index kMostInLongDouble = 256;  // states; beyond, a step of it would cost minutes
+constexpr Index kMostInLongDouble = 128;  // states: some tenths of a second
 
 double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x))); }
 
