@@ -2,6 +2,7 @@
 #include <numbers>
 #include <titop/titop.hpp>
 
+#include "support/five_masses.hpp"
 #include "support/planted.hpp"
 #include "support/random_scene.hpp"
 #include "support/small_scenes.hpp"
@@ -47,10 +48,18 @@ Diagram near_singular() {
   auto b = d.add("b", SpringMass{.mass = 2, .stiffness = 50});
   ground(a);
   ground(b);
-  a.child.force = 1.998 * b.child.accel + u;
+  a.child.force = 1.5 * b.child.accel + u + 0.498 * b.child.accel;  // one signal twice
   b.child.force = 2.0 * a.child.accel;
   d.output("a") = a.child.accel;
   return d;
+}
+
+/// The five masses with springs 4 and 5 in tune, so that one mode of the two cannot be seen; `off`
+/// by a little it can, hardly.
+Diagram in_tune(double off) {
+  auto stiffness = titop_test::kStiffnesses;
+  stiffness[4] = stiffness[3] * titop_test::kMasses[4] / titop_test::kMasses[3] * (1 + off);
+  return titop_test::five_masses_scene(titop_test::kMasses, stiffness);
 }
 
 /// Three beams welded to a triangle, free in space, one of them stiffer.
@@ -94,7 +103,9 @@ int run() {
   if (check(ring(), "ring")) return 1;
   if (check(near_singular(), "near singular")) return 1;
   if (check(triangle(), "triangle")) return 1;
-  for (const std::uint64_t seed : {3U, 8U, 15U, 27U, 42U, 61U})
+  for (const double off : {0.0, 1e-3})
+    if (check(in_tune(off), "in tune but for " + std::to_string(off))) return 1;
+  for (const std::uint64_t seed : {3U, 15U, 27U, 42U})
     if (check(titop_test::random_scene(titop_test::random_options(seed)).build(),
               "random " + std::to_string(seed)))
       return 1;
