@@ -254,7 +254,8 @@ double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) c
       // A block that is 0 by symmetry is nothing but rounding: it counts beside its neighbours.
       const double beside = std::sqrt(size.row(i).maxCoeff()) * std::sqrt(size.col(j).maxCoeff());
       const bool noise = size(i, j) <= 1e3 * off(i, j);
-      if (off(i, j) > 0) worst = std::max(worst, off(i, j) / (noise ? beside : size(i, j)));
+      if (off(i, j) > kUnderflow)
+        worst = std::max(worst, off(i, j) / (noise ? beside : size(i, j)));
     }
   return worst;
 }

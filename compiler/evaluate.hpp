@@ -6,6 +6,9 @@
 
 namespace titop::detail {
 
+/// Smaller numbers have no digits to keep: what has died away along a chain of thousands.
+inline constexpr double kUnderflow = 1e-290;
+
 /// A compiled diagram at one s, driven by its external inputs: every signal on demand. T is a
 /// complex scalar of any precision; blocks that are the same object are evaluated once.
 template <class T>

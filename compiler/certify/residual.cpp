@@ -144,8 +144,7 @@ struct Residual {
     if (!b.known) return;
     const double r = b.relative();
     if (r <= worst) return;
-    constexpr double kRounding = 1e-14;    // some units of the last place of what stands around it
-    constexpr double kUnderflow = 1e-290;  // there doubles have no digits to keep
+    constexpr double kRounding = 1e-14;  // some units of the last place of what stands around it
     const double off = b.largest();
     if (off < kUnderflow) return;
     if (r > kSuspicious && off < kInfinity && signal >= 0 &&
