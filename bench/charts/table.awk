@@ -233,7 +233,4 @@ END {
   fflush()
   for (name in worst) print "| " name " | " worst[name] " |" | "sort"
   close("sort")
-  print "\n## Charts\n"
-  command = "cd '" out "' && ls *.svg"
-  while ((command | getline chart) > 0) print "![" chart "](" chart ")"
 }
