@@ -32,7 +32,7 @@ class Writer {
     for (const Control& c : plan_.controls) add(c);
     for (const Closure& c : plan_.closures) add(c);
     for (const Load& l : plan_.loads)
-      equation(signal(l.point, "force"), {term({l.input}, l.gain)}, l.part, true);
+      equation(signal(l.point, "force"), Json::array({term({l.input}, l.gain)}), l.part, true);
     for (const Named& n : plan_.inputs) inputs_.push_back({{"name", n.name}, {"size", n.size}});
     for (std::size_t i = 0; i < plan_.readings.size(); ++i)
       add(plan_.readings[i], plan_.outputs[i]);
@@ -56,7 +56,7 @@ class Writer {
     if (gain == Ratio(-1))
       t["sign"] = -1;
     else if (!(gain == Ratio(1)))
-      t["factors"] = {number(gain)};
+      t["factors"] = Json::array({number(gain)});
     return t;
   }
   Json rotated(Json of, const Mat3& T, int to, int from) const {
@@ -157,7 +157,7 @@ class Writer {
     const Json accel = signal(parent, "accel"), force = signal(parent, "force");
     switch (b.base.kind) {
       case Base::Kind::ground: return equation(accel, Json::array());
-      case Base::Kind::imposed: return equation(accel, {term({b.base.input})});
+      case Base::Kind::imposed: return equation(accel, Json::array({term({b.base.input})}));
       case Base::Kind::pinned:
         equation(accel, Json::array(), {Part::Kind::linear, {}});
         equations_.push_back({{"of", force}, {"part", angular()}, {"terms", acting(b)}});
@@ -177,15 +177,16 @@ class Writer {
     const Json accel = signal(base.on, "accel"), force = signal(parent, "force");
     if (base.along) {
       const Part direction{Part::Kind::along, *base.along};
-      equation(signal(parent, "accel"), {{{"signal", accel}, {"factors", {part(direction)}}}});
-      equation(signal(base.on, "force"), {term(force)}, direction, true);
+      equation(signal(parent, "accel"),
+               Json::array({Json{{"signal", accel}, {"factors", Json::array({part(direction)})}}}));
+      equation(signal(base.on, "force"), Json::array({term(force)}), direction, true);
     } else if (block(i).spring) {
-      equation(signal(parent, "accel"), {term(accel)});
-      equation(signal(base.on, "force"), {term(force)}, {}, true);
+      equation(signal(parent, "accel"), Json::array({term(accel)}));
+      equation(signal(base.on, "force"), Json::array({term(force)}), {}, true);
     } else {
       const int on = base.on.block;
-      equation(signal(parent, "accel"), {rotated(accel, transposed(base.T), i, on)});
-      equation(signal(base.on, "force"), {rotated(force, base.T, on, i)}, {}, true);
+      equation(signal(parent, "accel"), Json::array({rotated(accel, transposed(base.T), i, on)}));
+      equation(signal(base.on, "force"), Json::array({rotated(force, base.T, on, i)}), {}, true);
     }
   }
 
@@ -212,16 +213,16 @@ class Writer {
     if (c.along) direction = {Part::Kind::along, *c.along};
     if (c.law == Control::Law::acceleration) {
       Json e = term(signal(c.at, "accel"));
-      if (c.along) e["factors"] = {part(direction)};
-      equation({c.name, "in"}, {e});
-      return equation(signal(c.at, "force"), {term(out, -1)}, direction, true);
+      if (c.along) e["factors"] = Json::array({part(direction)});
+      equation({c.name, "in"}, Json::array({e}));
+      return equation(signal(c.at, "force"), Json::array({term(out, -1)}), direction, true);
     }
     const Block& b = block(c.block);
-    equation({c.name, "in"}, {term(position(c.block))});
+    equation({c.name, "in"}, Json::array({term(position(c.block))}));
     if (b.joint)
-      equation({b.name, "", "force"}, {term(out)});
+      equation({b.name, "", "force"}, Json::array({term(out)}));
     else
-      equation(signal(c.at, "force"), {term(out, -1)}, {}, true);
+      equation(signal(c.at, "force"), Json::array({term(out, -1)}), {}, true);
   }
 
   /// What holds `point`: its acceleration is given, and the other side feels the reaction.
@@ -234,8 +235,8 @@ class Writer {
     Json back = scalar ? term(force) : rotated(force, c.T, b, a);
     back["read"] = "reaction";
     back["sign"] = -1;
-    equation(accel, {scalar ? term(site) : rotated(site, transposed(c.T), a, b)});
-    equation(signal(*c.with, "force"), {back}, {}, true);
+    equation(accel, Json::array({scalar ? term(site) : rotated(site, transposed(c.T), a, b)}));
+    equation(signal(*c.with, "force"), Json::array({back}), {}, true);
   }
 
   void add(const Reading& r, const Named& name) {
@@ -254,8 +255,8 @@ class Writer {
         t["read"] = "reaction";
         break;
     }
-    if (r.part.kind != Part::Kind::all) t["factors"] = {part(r.part)};
-    outputs_.push_back({{"name", name.name}, {"size", name.size}, {"terms", {t}}});
+    if (r.part.kind != Part::Kind::all) t["factors"] = Json::array({part(r.part)});
+    outputs_.push_back({{"name", name.name}, {"size", name.size}, {"terms", Json::array({t})}});
   }
 
   const Plan& plan_;

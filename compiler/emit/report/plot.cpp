@@ -51,6 +51,7 @@ class Scale {
 
  private:
   void linear_range() {
+    if (!std::isfinite(low_) || !std::isfinite(high_)) low_ = 0, high_ = 1;  // nothing to show
     if (!(high_ > low_)) {
       const double pad = low_ == 0 ? 1 : 0.5 * std::abs(low_);
       low_ -= pad, high_ += pad;
@@ -68,6 +69,7 @@ class Scale {
 
   void log_range() {
     low_ = std::log10(low_), high_ = std::log10(high_);
+    if (!std::isfinite(low_) || !std::isfinite(high_)) low_ = 0, high_ = 1;  // nothing to show
     if (high_ - low_ < 0.5) {
       const double middle = (low_ + high_) / 2;
       low_ = middle - 0.25, high_ = middle + 0.25;
