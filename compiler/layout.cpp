@@ -2,21 +2,13 @@
 
 #include <algorithm>
 #include <numeric>
+#include <titop/compiler/declared.hpp>
 #include <titop/compiler/system_data.hpp>
 
 namespace titop::detail {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-template <class List>
-std::vector<int> as_declared(const List& list) {
-  std::vector<int> order(list.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return list[at(a)].declared < list[at(b)].declared; });
-  return order;
-}
 
 /// "u", or "U(1)" ... "U(6)".
 void add_names(std::vector<std::string>& names, const std::string& name, int size) {

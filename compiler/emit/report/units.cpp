@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
+#include <titop/compiler/declared.hpp>
 #include <titop/compiler/emit/report/units.hpp>
 
 namespace titop::report {
@@ -188,15 +189,6 @@ std::string output_unit(const Graph& g, const Natures& natures, const Output& ou
   return agreed.get();
 }
 
-template <class List>
-std::vector<int> as_declared(const List& list) {
-  std::vector<int> order(list.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return list[at(a)].declared < list[at(b)].declared; });
-  return order;
-}
-
 void add(std::vector<Scalar>& list, const std::string& name, int size, int row, std::string unit) {
   list.push_back({size == 1 ? name : fmt::format("{}({})", name, row + 1), name, std::move(unit),
                   static_cast<int>(list.size())});
@@ -219,7 +211,7 @@ std::vector<Scalar> scalar_inputs(const Stage& stage) {
   const Graph& g = written(stage);
   const Natures natures(g);
   std::vector<Scalar> list;
-  for (const int i : as_declared(g.inputs)) {
+  for (const int i : detail::as_declared(g.inputs)) {
     const Input& input = g.inputs[at(i)];
     for (int row = 0; row < input.size; ++row)
       add(list, input.name, input.size, row, input_unit(g, natures, input.signal, row));
@@ -231,7 +223,7 @@ std::vector<Scalar> scalar_outputs(const Stage& stage) {
   const Graph& g = written(stage);
   const Natures natures(g);
   std::vector<Scalar> list;
-  for (const int i : as_declared(g.outputs)) {
+  for (const int i : detail::as_declared(g.outputs)) {
     const Output& output = g.outputs[at(i)];
     for (int row = 0; row < output.size; ++row)
       add(list, output.name, output.size, row, output_unit(g, natures, output, row));
