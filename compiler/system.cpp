@@ -270,15 +270,17 @@ std::string System::log() const {
       text += fmt::format("  {:<9} {:<10} {}\n", n.pass, to_string(n.kind), n.text);
   };
   add(notes());
-  if (data_->dense_ready.load(std::memory_order_acquire)) add(data_->dense_notes);
+  add(dense_notes());
   return text;
 }
 
-std::string System::timings() const {
-  std::string text;
-  for (const auto& [pass, seconds] : data_->seconds)
-    text += fmt::format("  {:<9} {:>10.1f} us\n", pass, 1e6 * seconds);
-  return text;
+std::vector<Note> System::dense_notes() const {
+  if (!data_->dense_ready.load(std::memory_order_acquire)) return {};
+  return data_->dense_notes;
+}
+
+const std::vector<std::pair<std::string, double>>& System::seconds() const {
+  return data_->seconds;
 }
 
 }  // namespace titop

@@ -134,8 +134,10 @@ class System {
   const std::vector<Note>& notes() const;
   /// The notes as text, one per line; after state_space() also what `minimize` did.
   std::string log() const;
-  /// Seconds per pass, as text. Not part of log(), which is the same on every machine.
-  std::string timings() const;
+  /// What writing and minimizing the dense model did; empty before state_space() was asked for.
+  std::vector<Note> dense_notes() const;
+  /// Seconds per pass, in their order. Not part of log(), which is the same on every machine.
+  const std::vector<std::pair<std::string, double>>& seconds() const;
   /// The graph after the passes (for diagrams: `to_dot(system.graph())`).
   const Stage& stage() const;
 

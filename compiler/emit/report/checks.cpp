@@ -4,7 +4,6 @@
 #include <cmath>
 #include <titop/compiler/emit/report/html.hpp>
 #include <titop/compiler/emit/report/subject.hpp>
-#include <titop/compiler/emit/report/times.hpp>
 
 namespace titop::report {
 namespace {
@@ -266,7 +265,7 @@ std::string summary(const Subject& s, const FullCertificate* full) {
                                     full ? "; poles, dense model and transfers over a grid" : ""));
   }
   text += verdict(v.decided() ? "good" : "open", as_range(v));
-  for (const auto& notes : {s.system.notes(), dense_notes(s.system)})
+  for (const auto& notes : {s.system.notes(), s.system.dense_notes()})
     for (const Note& n : notes)
       if (n.kind == Note::Kind::warning || n.kind == Note::Kind::unchecked)
         text += verdict("open", fmt::format("<b>{}</b> ({}): {}",

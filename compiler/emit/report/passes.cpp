@@ -4,7 +4,6 @@
 #include <string_view>
 #include <titop/compiler/emit/report/html.hpp>
 #include <titop/compiler/emit/report/subject.hpp>
-#include <titop/compiler/emit/report/times.hpp>
 
 namespace titop::report {
 namespace {
@@ -44,7 +43,7 @@ std::string duration(double seconds) {
 std::string notes(const Subject& s, const std::string& pass) {
   constexpr std::size_t kShown = 12;
   std::vector<std::string> lines;
-  for (const auto& list : {s.system.notes(), dense_notes(s.system)})
+  for (const auto& list : {s.system.notes(), s.system.dense_notes()})
     for (const Note& n : list)
       if (n.pass == pass || (n.pass == "dense" && pass == "minimize"))
         lines.push_back(n.kind == Note::Kind::info
@@ -61,7 +60,7 @@ std::string notes(const Subject& s, const std::string& pass) {
 }  // namespace
 
 std::string passes_section(const Subject& s, const FullCertificate* full) {
-  auto times = seconds(s.system);
+  auto times = s.system.seconds();
   times.emplace_back("minimize", s.dense_seconds);
   double all = 0, longest = 0;
   for (const auto& [pass, t] : times) all += t, longest = std::max(longest, t);

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+#include <titop/compiler/emit/report/pairs.hpp>
+#include <titop/compiler/emit/report/sweep.hpp>
+#include <vector>
+
+/// The figures of the section on responses: HTML.
+namespace titop::report {
+
+/// Gains from vectors of inputs to vectors of outputs; empty where all are scalars or zero.
+std::string singular_value_plots(const Sweep& sweep, const std::vector<Group>& outputs,
+                                 const std::vector<Group>& inputs);
+
+std::string bode_plots(const Subject& subject, const Sweep& sweep, const std::vector<Pair>& pairs);
+
+/// Responses to unit steps, by `simulate`.
+std::string step_plots(const Subject& subject, const std::vector<Pair>& pairs);
+
+}  // namespace titop::report

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <titop/compiler/emit/report/subject.hpp>
+#include <vector>
+
+namespace titop::report {
+
+/// Poles beside 0, from slow to fast [rad/s].
+std::vector<Pole> moving(const std::vector<Pole>& poles);
+
+/// The transfers; empty matrices where a frequency is a pole.
+struct Sweep {
+  std::vector<double> omega, hertz;
+  std::vector<Eigen::MatrixXcd> G;
+};
+
+/// Over ReportOptions::band_hz, or from a tenth of the slowest pole to four times the fastest;
+/// closer at lightly damped poles, and beside those on the axis.
+Sweep sweep(const Subject& subject);
+
+}  // namespace titop::report
