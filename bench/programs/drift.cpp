@@ -7,9 +7,9 @@
 #include <functional>
 
 #include "methods/steppers.hpp"
+#include "scenes/satellite.hpp"
 #include "support/energy.hpp"
 #include "support/quick.hpp"
-#include "support/satellite.hpp"
 
 /// What time steps keep and what they lose, beside theory: energy of undamped structures over a
 /// million steps, a closed chain that must stay closed, growth per step, limits of stability.
@@ -285,7 +285,7 @@ bool all(bool quick) {
   const int most = quick ? 1000 : 1000000;
   energies("five masses", five_masses(), most, true);
   const titop::fe::ModeOptions modes{.kept = 6, .residual = {"P"}};
-  energies("satellite", satellite(calculix_beam(modes), 0), most, true);
+  energies("satellite", scenes::satellite(scenes::read_boom(modes), nullptr, 0), most, true);
   energies("1000 masses", masses(quick ? 100 : 1000, false), quick ? 100 : 10000, false);
   closures(quick);
   const bool grow = growths(), limit = limits();

@@ -16,8 +16,8 @@
 #include <titop/compiler/economy/sharpen.hpp>
 #include <titop/titop.hpp>
 
+#include "scenes/satellite.hpp"
 #include "support/quick.hpp"
-#include "support/satellite.hpp"
 
 using namespace titop;
 using Eigen::MatrixXd;
@@ -68,7 +68,7 @@ Diagram zigzag(const FlexibleBody& beam, int count) {
 /// Thousands of coordinates: what each step leaves, what that costs, and seconds of all of it.
 void large() {
   fmt::print("bodies,coordinates,accuracy,after_bodies,bodies_error,states,bound,seconds\n");
-  const FlexibleBody beam = titop_bench::calculix_beam({});
+  const FlexibleBody beam = scenes::read_boom({});
   for (const int count : {8, 16})
     for (const double accuracy : {1e-2, 1e-4, 1e-6}) {
       const auto start = std::chrono::steady_clock::now();
@@ -218,11 +218,10 @@ int main(int argc, char** argv) {
   fmt::print("scene,accuracy,states,full,bound,plain,transfer,full_transfer,step,full_step\n");
   fe::ModeOptions modes;  // all 342
   if (quick) modes.kept = 20;
-  const FlexibleBody beam = titop_bench::calculix_beam(modes);
+  const FlexibleBody beam = scenes::read_boom(modes);
   table("frame", frame(beam), {.band_hz = {0, 261}}, quick);
   table("heavy", heavy(beam), {.band_hz = {0, 261}}, quick);
   modes.xi = {0.005};
-  table("satellite", titop_bench::satellite(titop_bench::calculix_beam(modes), 0.8),
-        {.band_hz = {0, 300}}, quick);
+  table("satellite", scenes::satellite(scenes::read_boom(modes)), {.band_hz = {0, 300}}, quick);
   table("generated", generated(quick ? 60 : 500), {.band_hz = {0, 5}}, quick);
 }

@@ -4,14 +4,14 @@ using namespace titop;
 
 namespace scenes {
 
-FlexibleBody read_boom() {
+FlexibleBody read_boom(const fe::ModeOptions& modes) {
   const fe::Mesh mesh =
       fe::read_calculix(fe::calculix_files(TITOP_DATA_DIR "/calculix_beam/beam_free_mat"),
                         {{"P", 900001}, {"C", 900003}});
-  return fe::modal_data(mesh, "P", {"C"}, {.kept = 6, .residual = {"P"}, .xi = {0.005}});
+  return fe::modal_data(mesh, "P", {"C"}, modes);
 }
 
-Diagram satellite(const FlexibleBody& boom, const AttitudeLaw* law) {
+Diagram satellite(const FlexibleBody& boom, const AttitudeLaw* law, double damper) {
   Diagram d{"satellite"};
   auto W = d.input("W", 6);       // wrench on the hub at P [N; N m]
   auto tau_m = d.input("tau_m");  // torque of the motor on boom 2 [N m]
@@ -22,7 +22,7 @@ Diagram satellite(const FlexibleBody& boom, const AttitudeLaw* law) {
   mount(boom1, hub.child("C1"), Rotation::about(turn1, angle1));
   auto drive =
       hinge(d, "drive", boom2, hub.child("C2"), Rotation::about(turn2, angle2), hinge_axis);
-  drive.torque = kappa * drive.angle + c * drive.rate - tau_m;
+  drive.torque = kappa * drive.angle + damper * drive.rate - tau_m;
   if (law)
     hub.parent.force.angular +=
         law->kp * hub.parent.position.angular() + law->kd * hub.parent.rate.angular();

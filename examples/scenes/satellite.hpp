@@ -21,14 +21,16 @@ inline constexpr double angle1 = std::numbers::pi / 12, angle2 = 2.9;
 
 /// The beam of examples/data/calculix_beam, 342 modes: six are kept, and the static response to a
 /// motion of its root. Damping 0.5 %.
-titop::FlexibleBody read_boom();
+inline const titop::fe::ModeOptions boom_modes{.kept = 6, .residual = {"P"}, .xi = {0.005}};
+titop::FlexibleBody read_boom(const titop::fe::ModeOptions& modes = boom_modes);
 
 /// Torque on the hub by its own attitude and rate: -(kp angle + kd rate).
 struct AttitudeLaw {
   double kp = 0, kd = 0;  // [N m/rad], [N m s/rad]
 };
 
-titop::Diagram satellite(const titop::FlexibleBody& boom, const AttitudeLaw* law = nullptr);
+titop::Diagram satellite(const titop::FlexibleBody& boom, const AttitudeLaw* law = nullptr,
+                         double damper = c);
 
 }  // namespace scenes
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "../../examples/scenes/satellite.hpp"
 #include "simulate/scenes.hpp"
 #include "support/five_masses.hpp"
 
@@ -47,26 +48,8 @@ double energy_of_five(const Eigen::VectorXd& x) {
 
 /// The satellite of the demo, without dampers.
 System satellite() {
-  const fe::Mesh mesh =
-      fe::read_calculix(fe::calculix_files(TITOP_DATA_DIR "/calculix_beam/beam_free_mat"),
-                        {{"P", 900001}, {"C", 900003}});
-  const FlexibleBody boom = fe::modal_data(mesh, "P", {"C"}, {.kept = 6, .residual = {"P"}});
-  Diagram d{"satellite"};
-  auto W = d.input("W", 6);
-  auto hub =
-      d.add("hub", RigidBody{.mass = 85,
-                             .inertia = Vector3d(9, 11, 13).asDiagonal(),
-                             .PA = {0.02, -0.01, 0.05},
-                             .children = {{"C1", {0.35, 0, 0.1}}, {"C2", {-0.35, 0.05, 0.1}}}});
-  auto boom1 = d.add("boom1", boom), boom2 = d.add("boom2", boom);
-  hub.parent.force = -W;
-  mount(boom1, hub.child("C1"), Rotation::about({0, 0, 1}, 0.26));
-  auto drive =
-      hinge(d, "drive", boom2, hub.child("C2"), Rotation::about({1, 2, 9}, 2.9), {0, 1, 0});
-  drive.torque = 60 * drive.angle;
-  d.output("theta") = drive.angle;
-  d.output("hub", 6) = hub.parent.accel;
-  return compile(d, {.minimize_up_to = 0});
+  const FlexibleBody boom = scenes::read_boom({.kept = 6, .residual = {"P"}});
+  return compile(scenes::satellite(boom, nullptr, 0), {.minimize_up_to = 0});
 }
 
 /// qdd = -M^-1 K q with the springs' and modes' diagonal K: with q = d y it is ydd = -S y, and
