@@ -3,6 +3,7 @@
 #include <cmath>
 #include <titop/titop.hpp>
 
+#include "support/five_masses.hpp"
 #include "support/rng.hpp"
 
 /// The order in exact arithmetic, against what theory says of each scene.
@@ -14,22 +15,10 @@ namespace {
 
 /// Fig. 7 with an actuator between masses 1 and 2 and the position of mass 3; in units of `unit`.
 Diagram five(double k5, double unit = 1) {
-  Diagram d{"five masses"};
-  auto u = d.input("u");
-  const double m[] = {5, 4, 3, 2, 1}, k[] = {500, 300, 450, 260, k5};
-  std::vector<SpringMass::Handle> z;
-  for (int i = 0; i < 5; ++i)
-    z.push_back(d.add("z" + std::to_string(i + 1),
-                      SpringMass{.mass = m[i] * unit, .stiffness = k[i] * unit}));
-  ground(z[0]);
-  mount(z[1], z[0].child);
-  mount(z[2], z[0].child);
-  mount(z[3], z[1].child);
-  mount(z[4], z[1].child);
-  z[0].child.force += -u;
-  z[1].child.force += u;
-  d.output("x3") = z[2].position;
-  return d;
+  titop_test::Five m = titop_test::kMasses, k = titop_test::kStiffnesses;
+  k[4] = k5;
+  for (std::size_t i = 0; i < 5; ++i) m[i] *= unit, k[i] *= unit;
+  return titop_test::third_of_five(m, k);
 }
 
 /// Two equal wings on a free hub of six degrees of freedom, along +x and turned by T: their

@@ -37,4 +37,21 @@ Diagram five_masses_scene(const Five& m, const Five& k) {
   return d;
 }
 
+Diagram third_of_five(const Five& m, const Five& k) {
+  Diagram d{"five masses"};
+  auto u = d.input("u");
+  std::vector<SpringMass::Handle> z;
+  for (std::size_t i = 0; i < 5; ++i)
+    z.push_back(d.add("z" + std::to_string(i + 1), SpringMass{.mass = m[i], .stiffness = k[i]}));
+  ground(z[0]);
+  mount(z[1], z[0].child);
+  mount(z[2], z[0].child);
+  mount(z[3], z[1].child);
+  mount(z[4], z[1].child);
+  z[0].child.force += -u;
+  z[1].child.force += u;
+  d.output("x3") = z[2].position;
+  return d;
+}
+
 }  // namespace titop_test

@@ -36,4 +36,7 @@ Eigen::Matrix<std::complex<double>, 5, 1> positions(const Five& m, const Five& k
 /// The scene with these numbers; outputs x1 ... x5 (positions) and a3 (acceleration of mass 3).
 titop::Diagram five_masses_scene(const Five& m, const Five& k);
 
+/// The scene by `mount`; output x3 alone.
+titop::Diagram third_of_five(const Five& m, const Five& k);
+
 }  // namespace titop_test
