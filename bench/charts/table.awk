@@ -177,7 +177,8 @@ END {
   print "Written by `bench/run`, read in [README.md](README.md); all in one run on " cpu ", " cores \
     " cores, " when ", " compiler ", Octave " octave " with OpenBLAS. Each time is the best of some" \
     " repetitions. titop starts from a built Diagram; the others get the scene as matrices, free of" \
-    " charge: blocks, u = K y + E w, z = F y + G w, free channels inverted beforehand."
+    " charge: blocks, u = K y + E w, z = F y + G w, free channels inverted beforehand; of R and G," \
+    " where chains close, mass, damping, stiffness and constraints of all bodies and joints."
   head("First compile, to the dense model in a warm buffer", "memset of A")
   row("compile", "D", 1, ""); row("compile", "D", 10, "Octave 20"); row("compile", "D", 50, "Octave 80")
   row("compile", "D", 100, ""); row("compile", "D", 200, "Octave 200"); row("compile", "D", 500, "")

@@ -59,32 +59,12 @@ MatrixXcd dense(const Network& net, Complex s) {
   return outputs(net, p, H, u);
 }
 
-/// Gauss-Jordan by blocks: rows of block i times the inverse of M_ii, then out of all others.
 template <class T>
 MatrixXcd block_by_block(const Network& net, Complex s) {
   const Places p(net);
   const auto H = responses<T>(net, p, s);
-  Table<T> M = loop(net, p, H), u{MatrixXd(net.E)};
-  for (Index i = 0; i < p.blocks(); ++i) {
-    const Index first = p.u[at(i)], n = p.inputs(i);
-    if (n == 0) continue;
-    Table<T> inverse{MatrixXd(MatrixXd::Identity(n, n))};
-    solve(part(M, first, first, n, n), inverse);
-    for (Table<T>* rows : {&M, &u}) {
-      const Table<T> scaled = product(inverse, part(*rows, first, 0, n, rows->cols()));
-      for (Index r = 0; r < n; ++r)
-        for (Index c = 0; c < scaled.cols(); ++c) (*rows)(first + r, c) = scaled(r, c);
-    }
-    for (Index r = 0; r < M.rows(); ++r) {
-      if (r >= first && r < first + n) continue;
-      for (Index k = 0; k < n; ++k) {
-        const T factor = M(r, first + k);
-        if (factor == number<T>(0)) continue;
-        M.subtract(factor, M, first + k, r, first);
-        u.subtract(factor, u, first + k, r);
-      }
-    }
-  }
+  Table<T> u{MatrixXd(net.E)};
+  solve_by_blocks(loop(net, p, H), u, p.u);
   return outputs(net, p, H, u);
 }
 

@@ -42,15 +42,6 @@ Table<T> response(const Network& net, const Places& p, Eigen::Index i, const T& 
   return Y;
 }
 
-template <class T>
-Table<T> part(const Table<T>& M, Eigen::Index row, Eigen::Index col, Eigen::Index rows,
-              Eigen::Index cols) {
-  Table<T> m(rows, cols);
-  for (Eigen::Index i = 0; i < rows; ++i)
-    for (Eigen::Index j = 0; j < cols; ++j) m(i, j) = M(row + i, col + j);
-  return m;
-}
-
 /// f<T> in the number of these digits.
 #define TITOP_BENCH_IN(f, network, s, digits)                               \
   switch (digits) {                                                         \

@@ -106,4 +106,39 @@ void solve(Table<T> M, Table<T>& Y) {
   }
 }
 
+template <class T>
+Table<T> part(const Table<T>& M, Eigen::Index row, Eigen::Index col, Eigen::Index rows,
+              Eigen::Index cols) {
+  Table<T> m(rows, cols);
+  for (Eigen::Index i = 0; i < rows; ++i)
+    for (Eigen::Index j = 0; j < cols; ++j) m(i, j) = M(row + i, col + j);
+  return m;
+}
+
+/// Y = M^-1 Y, Gauss-Jordan by blocks: the rows of each block times the inverse of its own diagonal
+/// block, then out of all others. `first`: where each block begins; the last: how many rows.
+template <class T>
+void solve_by_blocks(Table<T> M, Table<T>& Y, const std::vector<Eigen::Index>& first) {
+  for (std::size_t i = 0; i + 1 < first.size(); ++i) {
+    const Eigen::Index begin = first[i], n = first[i + 1] - begin;
+    if (n == 0) continue;
+    Table<T> inverse{Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n))};
+    solve(part(M, begin, begin, n, n), inverse);
+    for (Table<T>* rows : {&M, &Y}) {
+      const Table<T> scaled = product(inverse, part(*rows, begin, 0, n, rows->cols()));
+      for (Eigen::Index r = 0; r < n; ++r)
+        for (Eigen::Index c = 0; c < scaled.cols(); ++c) (*rows)(begin + r, c) = scaled(r, c);
+    }
+    for (Eigen::Index r = 0; r < M.rows(); ++r) {
+      if (r >= begin && r < begin + n) continue;
+      for (Eigen::Index k = 0; k < n; ++k) {
+        const T factor = M(r, begin + k);
+        if (factor == number<T>(0)) continue;
+        M.subtract(factor, M, begin + k, r, begin);
+        Y.subtract(factor, Y, begin + k, r);
+      }
+    }
+  }
+}
+
 }  // namespace titop_bench

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/SparseLU>
+#include <complex>
+#include <titop/graph/state_space.hpp>
+
+#include "methods/at_s.hpp"
+#include "support/assembly.hpp"
+
+/// The methods of at_s.hpp, dense_lu.hpp and sparse_lu.hpp on a structure with constraints, whose
+/// forces are unknowns: what one writes by hand where chains close.
+namespace titop_bench {
+
+/// All of it as one dense matrix at s, partial pivoting. O((coordinates + constraints)^3).
+Eigen::MatrixXcd dense_at_s(const Assembly& assembly, std::complex<double> s,
+                            Digits digits = Digits::standard);
+
+/// The same eliminated body by body, each by the inverse of its own dynamic mass, then joint
+/// by joint in what that leaves (flexibilities; substructuring by Lagrange multipliers).
+Eigen::MatrixXcd block_by_block_at_s(const Assembly& assembly, std::complex<double> s,
+                                     Digits digits = Digits::standard);
+
+/// Tearing: a ring is cut at its last joint, whose motion and force (12 numbers) are guessed,
+/// everything else follows body after body, and the guess is what closes the ring. Throws
+/// logic_error where joint i does not join bodies i and i + 1. O(bodies).
+Eigen::MatrixXcd tearing_at_s(const Assembly& assembly, std::complex<double> s,
+                              Digits digits = Digits::standard);
+
+/// Whether tearing_at_s takes it.
+bool is_ring(const Assembly& assembly);
+
+/// The dense model of positions and velocities of all coordinates, free or not: constraints on
+/// accelerations, [M, G'; G, 0] by Eigen's PartialPivLU.
+void dense_lu(const Assembly& assembly, titop::StateSpace& model);
+
+/// Factored anew at each s by Eigen's SparseLU, on an order of elimination that is found once.
+class SparseAssembly {
+ public:
+  explicit SparseAssembly(const Assembly& assembly);
+  Eigen::MatrixXcd transfer(std::complex<double> s);
+
+ private:
+  using Matrix = Eigen::SparseMatrix<std::complex<double>>;
+  Matrix constant_, damping_, stiffness_;  ///< what is times 1, 1/s and 1/s^2, of one pattern
+  Eigen::MatrixXcd load_;
+  Matrix read_;
+  Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu_;
+};
+
+}  // namespace titop_bench
