@@ -23,7 +23,7 @@ void write_csv(const System& system, std::span<const double> omega,
   for (const std::string& out : system.outputs())
     for (const std::string& in : system.inputs())
       for (const char* part : {"re", "im"})
-        text += "," + field(fmt::format("{}({}/{})", part, out, in));
+        text += fmt::format(",{}", field(fmt::format("{}({}/{})", part, out, in)));
   text += "\n";
   const std::vector<Eigen::MatrixXcd> response = system.frequency_response(omega);
   for (std::size_t k = 0; k < omega.size(); ++k) {
