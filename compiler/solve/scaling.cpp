@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <bit>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scaling.hpp>
-#include <vector>
 
 namespace titop::solve {
 namespace {
@@ -23,79 +23,88 @@ int exponent(double x) {
   return static_cast<int>(bits >> 48) - 1023 * kOne;
 }
 
+constexpr int kLanes = 8;  ///< columns are padded to a multiple of it: whole vectors only
+
 /// All in one buffer: fronts are small and many.
 struct Exponents {
-  int rows, columns;
-  std::vector<int> buffer;
+  int rows, columns;  ///< columns with their padding, which holds exponents of 0
+  boost::container::small_vector<int, 1024> buffer;
   int* e = buffer.data();       ///< of the entries as they are
-  int* r = e + rows * columns;  ///< added to them: of the rows,
-  int* c = r + rows;            ///< of the columns
+  int* c = e + rows * columns;  ///< added to them: of the columns,
   int* sum = c + columns;       ///< per column: largest entry, or sum
   int* count = sum + columns;
+  int* r = count + columns;  ///< of the rows
 
-  Exponents(const double* a, int m, int n) : rows(m), columns(n), buffer(at(m * n + m + 3 * n)) {
-    for (int i = 0; i < m * n; ++i) e[i] = exponent(a[i]);
-  }
-
-  /// Half way towards a largest entry of 1 in every row and column.
-  void towards_one() {
-    std::fill_n(sum, columns, kNone);
-    for (int i = 0; i < rows; ++i) {
-      const int *row = e + i * columns, own = r[i];
-      int top = kNone;
-      for (int j = 0; j < columns; ++j) {
-        const int entry = row[j] + c[j];
-        top = std::max(top, entry);
-        sum[j] = std::max(sum[j], entry + own);
-      }
-      if (top > kNone / 2) r[i] -= (top + own) / 2;
+  Exponents(const double* a, int m, int n)
+      : rows(m),
+        columns((n + kLanes - 1) / kLanes * kLanes),
+        buffer(at(m * columns + 3 * columns + m), boost::container::default_init) {
+    for (int i = 0; i < m; ++i) {
+      for (int j = 0; j < n; ++j) e[i * columns + j] = exponent(a[i * n + j]);
+      std::fill(e + i * columns + n, e + (i + 1) * columns, kNone);
     }
-    for (int j = 0; j < columns; ++j)
-      if (sum[j] > kNone / 2) c[j] -= sum[j] / 2;
-  }
-
-  /// Forgets entries that are rounding beside the others.
-  void drop_rounding() {
-    for (int i = 0; i < rows; ++i)
-      for (int j = 0; j < columns; ++j) {
-        int& x = e[i * columns + j];
-        x = x + r[i] + c[j] < kRounding ? kNone : x;
-      }
-  }
-
-  /// Rows, then columns, to a mean of 0.
-  void centre() {
-    std::fill_n(sum, columns, 0);
-    std::fill_n(count, columns, 0);
-    for (int i = 0; i < rows; ++i) {
-      const int* row = e + i * columns;
-      int total = 0, number = 0;
-      for (int j = 0; j < columns; ++j) {
-        total += row[j] > kNone / 2 ? row[j] + c[j] : 0;
-        number += row[j] > kNone / 2;
-      }
-      if (number > 0) r[i] = -total / number;
-      const int own = r[i];
-      for (int j = 0; j < columns; ++j) {
-        sum[j] += row[j] > kNone / 2 ? row[j] + own : 0;
-        count[j] += row[j] > kNone / 2;
-      }
-    }
-    for (int j = 0; j < columns; ++j)
-      if (count[j] > 0) c[j] = -sum[j] / count[j];
+    std::fill_n(c, columns, 0);
+    std::fill_n(r, rows, 0);
   }
 };
 
-TITOP_WIDE void balance(Exponents& x) {
-  for (int round = 0; round < 4; ++round) x.towards_one();
-  x.drop_rounding();
-  for (int round = 0; round < 3; ++round) x.centre();
+/// Half way towards a largest entry of 1 in every row and column.
+inline void towards_one(const Exponents& x, int* __restrict c, int* __restrict sum) {
+  std::fill_n(sum, x.columns, kNone);
+  for (int i = 0; i < x.rows; ++i) {
+    const int* __restrict row = x.e + i * x.columns, own = x.r[i];
+    int top = kNone;
+    for (int j = 0; j < x.columns; ++j) {
+      const int entry = row[j] + c[j];
+      top = std::max(top, entry);
+      sum[j] = std::max(sum[j], entry + own);
+    }
+    if (top > kNone / 2) x.r[i] -= (top + own) / 2;
+  }
+  for (int j = 0; j < x.columns; ++j) c[j] -= sum[j] > kNone / 2 ? sum[j] / 2 : 0;
+}
+
+/// Forgets entries that are rounding beside the others.
+inline void drop_rounding(const Exponents& x, const int* __restrict c) {
+  for (int i = 0; i < x.rows; ++i) {
+    int* __restrict row = x.e + i * x.columns, own = x.r[i];
+    for (int j = 0; j < x.columns; ++j) row[j] = row[j] + own + c[j] < kRounding ? kNone : row[j];
+  }
+}
+
+/// Rows, then columns, to a mean of 0.
+inline void centre(const Exponents& x, int* __restrict c, int* __restrict sum,
+                   int* __restrict count) {
+  std::fill_n(sum, x.columns, 0);
+  std::fill_n(count, x.columns, 0);
+  for (int i = 0; i < x.rows; ++i) {
+    const int* __restrict row = x.e + i * x.columns;
+    int total = 0, number = 0;
+    for (int j = 0; j < x.columns; ++j) {
+      total += row[j] > kNone / 2 ? row[j] + c[j] : 0;
+      number += row[j] > kNone / 2;
+    }
+    if (number > 0) x.r[i] = -total / number;
+    const int own = x.r[i];
+    for (int j = 0; j < x.columns; ++j) {
+      sum[j] += row[j] > kNone / 2 ? row[j] + own : 0;
+      count[j] += row[j] > kNone / 2;
+    }
+  }
+  for (int j = 0; j < x.columns; ++j)
+    if (count[j] > 0) c[j] = -sum[j] / count[j];
+}
+
+TITOP_WIDE void balance(const Exponents& x) {
+  for (int round = 0; round < 4; ++round) towards_one(x, x.c, x.sum);
+  drop_rounding(x, x.c);
+  for (int round = 0; round < 3; ++round) centre(x, x.c, x.sum, x.count);
 }
 
 }  // namespace
 
 void column_scale(const double* magnitudes, int rows, int columns, std::int16_t* exponents) {
-  Exponents x(magnitudes, rows, columns);
+  const Exponents x(magnitudes, rows, columns);
   balance(x);
   for (int j = 0; j < columns; ++j) {
     const int rounded = (x.c[j] + (x.c[j] < 0 ? -kOne : kOne) / 2) / kOne;
