@@ -38,6 +38,11 @@ TITOP_WIDE void eliminate_wide(std::ptrdiff_t k, std::ptrdiff_t rows, std::ptrdi
   eliminate_below(k, rows, n, a, bounds, [](double x) { return std::abs(x); });
 }
 
+TITOP_WIDE void eliminate_wide(std::ptrdiff_t k, std::ptrdiff_t rows, std::ptrdiff_t n,
+                               std::complex<double>* a, double* bounds) {
+  eliminate_below(k, rows, n, a, bounds, size_of<std::complex<double>>);
+}
+
 /// 2^e for the exponents of ColumnScale, from the bits: std::ldexp costs more than the rest.
 double power_of_two(std::int16_t e) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52);
@@ -167,7 +172,7 @@ struct Factors<T>::Work {
   }
 
   void eliminate(int k) {
-    if constexpr (std::is_same_v<T, double>)
+    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::complex<double>>)
       eliminate_wide(k, rows, n, m->lu.data(), bound.data());
     else
       eliminate_below(k, rows, n, m->lu.data(), bound.data(), size_of<T>);

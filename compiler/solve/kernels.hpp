@@ -53,6 +53,23 @@ inline std::complex<T> times(const std::complex<T>& a, double b) {
   return {a.real() * static_cast<T>(b), a.imag() * static_cast<T>(b)};
 }
 
+/// y += a x for numbers x that are real in any case, n entries.
+template <class T>
+inline void add_times(std::ptrdiff_t n, const T& a, const double* x, T* y) {
+  for (std::ptrdiff_t j = 0; j < n; ++j) y[j] += times(a, x[j]);
+}
+template <class T>
+inline void add_times(std::ptrdiff_t n, const std::complex<T>& a, const double* x,
+                      std::complex<T>* y) {
+  const T re = a.real(), im = a.imag();
+  T* v = reinterpret_cast<T*>(y);
+  for (std::ptrdiff_t j = 0; j < n; ++j) {
+    const T by = static_cast<T>(x[j]);
+    v[2 * j] += re * by;
+    v[2 * j + 1] += im * by;
+  }
+}
+
 /// One step of elimination in a rows x n array: below row k, everything right of column k. `bounds`
 /// gets the sums of magnitudes.
 template <class T, class Size>

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/numbers.hpp>
 #include <titop/compiler/solve/scalar.hpp>
@@ -33,17 +34,28 @@ void add_matrix(double sign, const View<L>& l, T* to, std::ptrdiff_t stride) {
     for (std::ptrdiff_t j = 0; j < l.cols; ++j) to[i * stride + j] += times(lift<T>(l(i, j)), sign);
 }
 
-/// to += sign * L * R, R row-major
+/// to += sign * L * R, R row-major with N columns: a row's sums stay in registers.
+template <int N, class T, class L>
+void add_product_of(double sign, const View<L>& l, const double* r, T* to, std::ptrdiff_t stride) {
+  for (std::ptrdiff_t i = 0; i < l.rows; ++i, to += stride) {
+    std::array<T, std::size_t{N}> sum;
+    std::copy_n(to, N, sum.begin());
+    for (std::ptrdiff_t k = 0; k < l.cols; ++k)
+      if (const T a = times(lift<T>(l(i, k)), sign); a != T(0))
+        add_times(N, a, r + k * N, sum.data());
+    std::copy_n(sum.begin(), N, to);
+  }
+}
+
 template <class T, class L>
 void add_product(double sign, const View<L>& l, const RowMatrix<double>& r, T* to,
                  std::ptrdiff_t stride) {
+  if (r.cols() == 6) return add_product_of<6>(sign, l, r.data(), to, stride);
+  if (r.cols() == 1) return add_product_of<1>(sign, l, r.data(), to, stride);
   for (std::ptrdiff_t i = 0; i < l.rows; ++i)
-    for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
-      const T a = times(lift<T>(l(i, k)), sign);
-      if (a == T(0)) continue;
-      const double* row = r.data() + k * r.cols();
-      for (std::ptrdiff_t j = 0; j < r.cols(); ++j) to[i * stride + j] += times(a, row[j]);
-    }
+    for (std::ptrdiff_t k = 0; k < l.cols; ++k)
+      if (const T a = times(lift<T>(l(i, k)), sign); a != T(0))
+        add_times(r.cols(), a, r.data() + k * r.cols(), to + i * stride);
 }
 
 /// to -= sign * L * x, x with m columns
