@@ -17,8 +17,11 @@ using solve::lifted;
 /// In double and below the block itself knows best: its own formula cancels least.
 template <class T>
 solve::Response<T> response_in_double(const Block& block, const T& s, ParameterValues parameters) {
-  const Block::Response r = block.response(solve::Scalar<T>::round(s), parameters);
-  return {lifted<T>(r.X), lifted<T>(r.Y)};
+  Block::Response r = block.response(solve::Scalar<T>::round(s), parameters);
+  if constexpr (std::is_same_v<T, std::complex<double>>)
+    return {std::move(r.X), std::move(r.Y)};
+  else
+    return {lifted<T>(r.X), lifted<T>(r.Y)};
 }
 
 /// Y = rigid + W' diag(s^2 / d) W, d = s^2 + damping s + stiffness.
@@ -136,6 +139,7 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
   const int states = static_cast<int>(data.layout().states.size());
   for (const Input& i : data.graph().inputs)
     first_[at(i.signal)] = data.layout().known_first[at(i.signal)] - states;
+  rhs_ = rows_.rhs(u_, first_);
   if (coarse) {
     refine(*coarse);
     return;
@@ -155,7 +159,7 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
                     data.graph().name, z.real(), z.imag()),
         "evaluate beside it, or with Precision::digits50");
   }
-  unknowns_ = factors_->solve(rows_.rhs(u_, first_));
+  unknowns_ = factors_->solve(rhs_);
 }
 
 template <class T>
@@ -164,10 +168,9 @@ void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
   const auto up = [](const solve::RowMatrix<D>& m) {
     return solve::RowMatrix<T>(m.unaryExpr([](const D& x) { return solve::Scalar<T>::from(x); }));
   };
-  const solve::RowMatrix<T> rhs = rows_.rhs(u_, first_);
   unknowns_ = up(coarse.unknowns());
   for (int step = 0; step < 3; ++step) {
-    const solve::RowMatrix<T> left = rows_.residual(rhs, unknowns_);
+    const solve::RowMatrix<T> left = rows_.residual(rhs_, unknowns_);
     correction_ = up(
         coarse.solve(left.unaryExpr([](const T& x) -> D { return solve::Scalar<T>::round(x); })));
     unknowns_ += correction_;
@@ -181,22 +184,26 @@ double Evaluation<T>::last_change() const {
 
 template <class T>
 double Evaluation<T>::improve() {
-  const solve::RowMatrix<T> correction =
-      factors_->solve(rows_.residual(rows_.rhs(u_, first_), unknowns_));
+  const solve::RowMatrix<T> correction = factors_->solve(rows_.residual(rhs_, unknowns_));
   unknowns_ += correction;
   return relative_to_outputs(correction);
 }
 
+/// One pass over the rows and one solution of twice the columns serve both.
 template <class T>
-double Evaluation<T>::rounding() const {
-  const solve::RowMatrix<double> sizes = rows_.magnitudes(rows_.rhs(u_, first_), unknowns_);
+typename Evaluation<T>::Losses Evaluation<T>::losses() {
+  const auto [residual, magnitudes] = rows_.balance(rhs_, unknowns_);
+  const auto m = residual.cols();
   SteadyRandom random;
-  solve::RowMatrix<T> off(sizes.rows(), sizes.cols());
-  for (Eigen::Index i = 0; i < off.rows(); ++i) {
+  solve::RowMatrix<T> both(residual.rows(), 2 * m);
+  both.leftCols(m) = residual;
+  for (Eigen::Index i = 0; i < both.rows(); ++i) {
     const double unit = (random.next() < 0 ? -1 : 1) * solve::Scalar<T>::epsilon();
-    for (Eigen::Index j = 0; j < off.cols(); ++j) off(i, j) = solve::lift<T>(unit * sizes(i, j));
+    for (Eigen::Index j = 0; j < m; ++j) both(i, m + j) = solve::lift<T>(unit * magnitudes(i, j));
   }
-  return relative_to_outputs(factors_->solve(off));
+  const solve::RowMatrix<T> changes = factors_->solve(both);
+  unknowns_ += changes.leftCols(m);
+  return {relative_to_outputs(changes.leftCols(m)), relative_to_outputs(changes.rightCols(m))};
 }
 
 namespace {

@@ -48,10 +48,15 @@ class Evaluation {
   /// that no single pivot shows) is mended by it. Returns the change of the outputs, measured as
   /// above.
   double improve();
-  /// What rounding costs: the change of the outputs, measured as above, if every equation is off by
-  /// one unit of the last place of its terms, up or down in a fixed random order. An estimate of
-  /// the error, not a bound. One solution per column.
-  double rounding() const;
+  /// What double (or another T) may cost.
+  struct Losses {
+    double change = 0;    ///< improve()
+    double rounding = 0;  ///< the change of the outputs, measured as above, if every equation is
+                          ///< off by one unit of the last place of its terms, up or down in a fixed
+                          ///< random order: an estimate of the error, not a bound
+  };
+  /// improve(), and what rounding costs. One solution of two columns per column.
+  Losses losses();
   /// Of the elimination: see Certificate::weakest_pivot.
   double weakest_pivot() const { return factors_->health().weakest; }
 
@@ -79,7 +84,7 @@ class Evaluation {
   std::vector<const solve::Response<T>*> of_node_;
   solve::JointRows<T> rows_;
   std::unique_ptr<const solve::Factors<T>> factors_;
-  solve::RowMatrix<T> unknowns_;
+  solve::RowMatrix<T> rhs_, unknowns_;
   solve::RowMatrix<T> correction_;  ///< of the last step of refinement
 };
 

@@ -126,8 +126,8 @@ constexpr double kEnough = 1e-12;
 /// What is lost in double, once a step of refinement has mended what the elimination loses: by the
 /// weakest pivot, by what rounding does to the outputs, by what that step leaves.
 double lost_by(detail::Evaluation<Double>& e) {
-  const double change = e.improve();
-  return std::max({2e-16 / e.weakest_pivot(), e.rounding(), change * change});
+  const auto [change, rounding] = e.losses();
+  return std::max({2e-16 / e.weakest_pivot(), rounding, change * change});
 }
 
 /// Finer than double, where double costs `lost`: refined or long double if their own rounding

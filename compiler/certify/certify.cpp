@@ -42,7 +42,8 @@ void self_check(const SystemData& d, Check& check) try {
   const WrittenResidual written = written_residual(d, point, certificate.s);
   certificate.residual = written.worst;
   certificate.residual_where = written.where;
-  if (const double lost = std::max(point.improve(), point.rounding()); lost > kWarn)
+  const auto losses = point.losses();
+  if (const double lost = std::max(losses.change, losses.rounding); lost > kWarn)
     check.notes.push_back(
         {Note::Kind::warning, "certify",
          fmt::format(

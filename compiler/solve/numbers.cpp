@@ -274,14 +274,15 @@ RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>&
 }
 
 template <class T>
-RowMatrix<double> JointRows<T>::magnitudes(const RowMatrix<T>& rhs,
-                                           const RowMatrix<T>& unknowns) const {
+Balance<T> JointRows<T>::balance(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const {
   const std::ptrdiff_t m = rhs.cols();
-  RowMatrix<double> result = rhs.unaryExpr([](const T& x) { return size_of(x); });
+  Balance<T> result{rhs, rhs.unaryExpr([](const T& x) { return size_of(x); })};
   visit_entries([&](int row, const T& c, int unknown) {
+    const T* z = unknowns.data() + unknown * m;
+    subtract(m, c, z, result.residual.data() + row * m);
     const double size = size_of(c);
-    for (std::ptrdiff_t j = 0; j < m; ++j)
-      result.data()[row * m + j] += size * size_of(unknowns.data()[unknown * m + j]);
+    double* magnitude = result.magnitudes.data() + row * m;
+    for (std::ptrdiff_t j = 0; j < m; ++j) magnitude[j] += size * size_of(z[j]);
   });
   return result;
 }

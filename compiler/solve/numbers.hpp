@@ -24,6 +24,13 @@ struct Matrices {
   std::vector<const Dense<T>*> states;  ///< X(s); empty for the state space
 };
 
+/// How well some unknowns fulfil the rows.
+template <class T>
+struct Balance {
+  RowMatrix<T> residual;         ///< rhs - rows * unknowns
+  RowMatrix<double> magnitudes;  ///< |rhs| + |rows| |unknowns|
+};
+
 /// The rows of the joint system with numbers.
 template <class T>
 class JointRows : public Rows<T> {
@@ -46,8 +53,8 @@ class JointRows : public Rows<T> {
   /// rhs - (these rows) * unknowns: what is left of every row. O(rows) per column.
   RowMatrix<T> residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
 
-  /// Sums of magnitudes that form each row: |rhs| + |these rows| |unknowns|. O(rows) per column.
-  RowMatrix<double> magnitudes(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
+  /// The same, and what it is made of. O(rows) per column.
+  Balance<T> balance(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
 
   /// signal += its meaning in unknowns and known signals; `to`: signal size x columns, row-major.
   void add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
