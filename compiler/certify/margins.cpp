@@ -62,14 +62,24 @@ void to_own_units(const std::vector<Unit>& rows, const std::vector<Unit>& column
     for (std::size_t i = 0; i < rows.size(); ++i) {
       const Unit r = rows[i], c = columns[j];
       double& x = L(static_cast<Index>(i), static_cast<Index>(j));
+      if (x == 0) continue;  // most are
       x = std::ldexp(x, (c.length - r.length) * length + (c.force - r.force) * force);
     }
 }
 
+/// Room for the matrices of all loops, one after the other.
+struct Room {
+  MatrixXd L = {};
+  std::vector<Unit> rows = {}, columns = {};
+};
+
 /// Loop matrix of one strong component: its rows and unknowns of the equations, dense, in the
 /// loop's own units. False where rows and unknowns do not match.
-bool take_loop_matrix(const SystemData& d, const Loop& loop, MatrixXd& L) {
+bool take_loop_matrix(const SystemData& d, const Loop& loop, Room& room) {
   const Graph& g = d.graph();
+  auto& [L, rows, columns] = room;
+  rows.clear();
+  columns.clear();
   L.setZero(loop.unknowns, loop.unknowns);
   const auto column_of = [&](int signal) {  // -1: not of this loop, whose signals ascend
     Eigen::Index column = 0;
@@ -79,7 +89,6 @@ bool take_loop_matrix(const SystemData& d, const Loop& loop, MatrixXd& L) {
     }
     return Eigen::Index{-1};
   };
-  std::vector<Unit> rows, columns;
   for (const int signal : loop.signals)
     for (int i = 0; i < g.signals[at(signal)].size; ++i)
       columns.push_back(unit_of(g.signals[at(signal)], i));
@@ -117,11 +126,11 @@ bool take_loop_matrix(const SystemData& d, const Loop& loop, MatrixXd& L) {
   return true;
 }
 
-/// rho(|L^-1| |L|); 1 for a single unknown, 0 where it is not found. `L` is room for the matrix.
-double margin(const SystemData& d, const Loop& loop, MatrixXd& L) {
+/// rho(|L^-1| |L|); 1 for a single unknown, 0 where it is not found.
+double margin(const SystemData& d, const Loop& loop, Room& room) {
   if (loop.unknowns == 1) return 1;
-  if (loop.unknowns > kExactUpTo || !take_loop_matrix(d, loop, L)) return 0;
-  return linalg::skeel_radius(L);
+  if (loop.unknowns > kExactUpTo || !take_loop_matrix(d, loop, room)) return 0;
+  return linalg::skeel_radius(room.L);
 }
 
 }  // namespace
@@ -129,8 +138,8 @@ double margin(const SystemData& d, const Loop& loop, MatrixXd& L) {
 void find_margins(const SystemData& d, std::span<const int> loops, std::vector<double>& margins) {
   const std::vector<Loop>& all = d.skeleton->stage.loops;
   margins.resize(all.size(), 0);
-  MatrixXd L;
-  for (const int i : loops) margins[at(i)] = margin(d, all[at(i)], L);
+  Room room;
+  for (const int i : loops) margins[at(i)] = margin(d, all[at(i)], room);
 }
 
 void worst_margin(const SystemData& d, std::span<const double> margins, Check& check) {

@@ -2,19 +2,11 @@
 
 #include <complex>
 #include <cstddef>
+#include <titop/graph/linalg/wide.hpp>
 
 /// The inner loops: y -= a x and its like over contiguous entries. Plain loops that a compiler
 /// turns into vector instructions; sums are never regrouped, so that every machine gets the same
 /// bits.
-///
-/// On x86-64 Linux each loop over doubles is compiled twice, and the wider vectors are taken where
-/// the processor has them: that changes no result either.
-#if defined(__x86_64__) && defined(__linux__) && defined(__GNUC__) && !defined(__clang__) && \
-    !defined(__SANITIZE_ADDRESS__)
-#define TITOP_WIDE __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define TITOP_WIDE
-#endif
 
 namespace titop::solve {
 

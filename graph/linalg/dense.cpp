@@ -1,10 +1,12 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/wide.hpp>
 
 namespace titop::linalg {
 
@@ -132,7 +134,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr int kSmall = 12;
 /// Small loops are many: no memory is asked for.
-using Small = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kSmall, kSmall>;
+using Small =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kSmall, kSmall>;
 
 /// From M^k, k = 1, 2, 4 ... 1024: the row sums v of M^k give max (M v)_i / v_i, never below the
 /// radius [Collatz 1942]; where that stays loose, |M^1024|^(1/1024), the norm's own factor n having
@@ -185,39 +188,77 @@ double perron_of_parts(const Small& M) {
   return radius;
 }
 
-/// |M^-1| |M|; 0 x 0 if a pivot is 0.
-template <class M>
-M skeel_product(const M& m) {
-  const Eigen::PartialPivLU<M> lu(m);
-  if ((lu.matrixLU().diagonal().array() == 0.0).any()) return M(0, 0);
-  return M(lu.inverse()).cwiseAbs() * m.cwiseAbs();
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// y -= a x, n entries.
+TITOP_WIDE void subtract(Eigen::Index n, double a, const double* x, double* y) {
+  for (Eigen::Index i = 0; i < n; ++i) y[i] -= a * x[i];
 }
 
-double perron_by_iteration(const MatrixXd& M) {
-  const auto n = M.rows();
-  VectorXd v = VectorXd::Ones(n), w(n);
-  const double shift = 1e-3 * M.maxCoeff();
-  double high = 0;
-  for (int step = 0; step < 200; ++step) {
-    // The shift keeps the iteration from oscillating on cyclic matrices.
-    w.noalias() = M * v;
-    w += shift * v;
-    high = w.cwiseQuotient(v).maxCoeff();
-    const double low = w.cwiseQuotient(v).minCoeff();
-    v = (w / w.maxCoeff()).cwiseMax(1e-300);
-    if (high - low <= 1e-3 * high) break;
+TITOP_WIDE Eigen::Index nonzeros(Eigen::Index n, const double* x) {
+  Eigen::Index count = 0;
+  for (Eigen::Index i = 0; i < n; ++i) count += x[i] != 0;
+  return count;
+}
+
+/// Row of the pivot of column k: one with few entries among those that are large enough there. k -
+/// 1 if all are 0.
+template <class Rows>
+Eigen::Index sparse_pivot(const Rows& M, Eigen::Index k) {
+  double largest = 0;
+  for (Eigen::Index i = k; i < M.rows(); ++i) largest = std::max(largest, std::abs(M(i, k)));
+  Eigen::Index best = k - 1, fewest = M.rows() + 1;
+  for (Eigen::Index i = k; i < M.rows(); ++i) {
+    if (M(i, k) == 0 || std::abs(M(i, k)) < 0.1 * largest) continue;
+    const Eigen::Index entries = nonzeros(M.cols() - k, &M(i, k));
+    if (entries < fewest) fewest = entries, best = i;
   }
-  return high - shift;
+  return best;
 }
 
-}  // namespace
-
-double perron(const MatrixXd& M) {
-  if (M.rows() == 0) return 0;
-  return M.rows() <= kSmall ? perron_of_parts(M) : perron_by_iteration(M);
+/// M^-1 by elimination row by row: most entries of a loop are 0, and what is 0 costs nothing. 0 x 0
+/// if a pivot is 0.
+template <class Rows>
+Rows inverse_by_rows(Rows M) {
+  const auto n = M.rows();
+  Rows X = Rows::Identity(n, n);
+  for (Eigen::Index k = 0; k < n; ++k) {
+    const Eigen::Index best = sparse_pivot(M, k);
+    if (best < k) return Rows(0, 0);
+    if (best != k) {
+      M.row(k).swap(M.row(best));
+      X.row(k).swap(X.row(best));
+    }
+    for (Eigen::Index i = k + 1; i < n; ++i) {
+      if (M(i, k) == 0) continue;
+      const double factor = M(i, k) / M(k, k);
+      subtract(n - k - 1, factor, &M(k, k) + 1, &M(i, k) + 1);
+      subtract(n, factor, &X(k, 0), &X(i, 0));
+    }
+  }
+  for (Eigen::Index i = n; i-- > 0;) {
+    for (Eigen::Index k = i + 1; k < n; ++k)
+      if (M(i, k) != 0) subtract(n, M(i, k), &X(k, 0), &X(i, 0));
+    X.row(i) /= M(i, i);
+  }
+  return X;
 }
 
-namespace {
+/// By power iteration [Collatz 1942]. |M^-1| |M| has a diagonal of 1 and more: nothing oscillates.
+double skeel_radius_of_many(const MatrixXd& M) {
+  const RowMatrix inverse = inverse_by_rows<RowMatrix>(M).cwiseAbs();
+  if (inverse.size() == 0) return 0;
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> sizes = M.cwiseAbs().sparseView();
+  VectorXd v = VectorXd::Ones(M.rows()), w, grown;
+  for (int step = 0; step < 200; ++step) {
+    w = sizes * v;
+    w = inverse * w;
+    grown = w.cwiseQuotient(v);
+    if (grown.maxCoeff() - grown.minCoeff() <= 1e-3 * grown.maxCoeff()) break;
+    v = (w / w.maxCoeff()).cwiseMax(1e-300);
+  }
+  return grown.maxCoeff();
+}
 
 /// [a, b; c, d]: (1 + sqrt|t|)^2 / |1 - t|, t = bc/ad or its inverse, whichever is below 1.
 double skeel_radius_of_two(const MatrixXd& M) {
@@ -235,9 +276,10 @@ double skeel_radius_of_two(const MatrixXd& M) {
 
 double skeel_radius(const MatrixXd& M) {
   if (M.rows() == 2) return skeel_radius_of_two(M);
-  if (M.rows() > kSmall) return perron(skeel_product(M));
-  const Small product = skeel_product<Small>(M);
-  return product.size() == 0 ? 0 : perron_of_parts(product);
+  if (M.rows() > kSmall) return skeel_radius_of_many(M);
+  const Small inverse = inverse_by_rows<Small>(M);
+  if (inverse.size() == 0) return 0;
+  return perron_of_parts(inverse.cwiseAbs().lazyProduct(M.cwiseAbs()));
 }
 
 }  // namespace titop::linalg
