@@ -150,30 +150,32 @@ Incidence incidence(const Graph& g, bool by_scalar, Sight sight) {
     }
   }
   const std::vector<Declared> declared = all_declared(g, sight);
+  std::vector<std::vector<int>> lists;  // of the vertices of one row
   for (int r = 0; r < static_cast<int>(inc.rows.size()); ++r) {
     const Row& row = inc.rows[at(r)];
-    const int first = static_cast<int>(inc.cols.size());
     const int count = by_scalar ? row.size : 1;
-    inc.first_row.push_back(first);
-    inc.cols.resize(at(first + count));
-    inc.row_of_vertex.resize(at(first + count), r);
-    inc.row_size.resize(at(first + count), by_scalar ? 1 : row.size);
+    if (lists.size() < at(count)) lists.resize(at(count));
     visit_entries(g, row, declared, [&](int signal, auto pattern) {
       const int col = inc.first_col[at(signal)];
       if (!by_scalar) {
-        inc.cols[at(first)].push_back(col);
+        lists.front().push_back(col);
         return;
       }
       const Pattern p = pattern();
       for (Eigen::Index i = 0; i < p.rows(); ++i)
         for (Eigen::Index j = 0; j < p.cols(); ++j)
-          if (p(i, j))
-            inc.cols[at(first) + static_cast<std::size_t>(i)].push_back(col + static_cast<int>(j));
+          if (p(i, j)) lists[static_cast<std::size_t>(i)].push_back(col + static_cast<int>(j));
     });
-    for (int k = first; k < first + count; ++k) {
-      auto& list = inc.cols[at(k)];
+    inc.first_row.push_back(inc.row_vertices());
+    for (int k = 0; k < count; ++k) {
+      auto& list = lists[at(k)];
       std::sort(list.begin(), list.end());
       list.erase(std::unique(list.begin(), list.end()), list.end());
+      inc.mentioned.insert(inc.mentioned.end(), list.begin(), list.end());
+      inc.begin.push_back(static_cast<int>(inc.mentioned.size()));
+      inc.row_of_vertex.push_back(r);
+      inc.row_size.push_back(by_scalar ? 1 : row.size);
+      list.clear();
     }
   }
   return inc;

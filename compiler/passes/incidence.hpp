@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <titop/compiler/stage.hpp>
 #include <vector>
 
@@ -7,12 +8,19 @@ namespace titop::passes {
 
 /// Which unknowns each row mentions, at one of two resolutions: whole signals, or scalars.
 struct Incidence {
-  std::vector<Row> rows;                  ///< row groups, canonical order
-  std::vector<int> first_row, first_col;  ///< first vertex of each row group / of each signal
-  std::vector<std::vector<int>> cols;     ///< row vertex -> column vertices, ascending
-  std::vector<int> signal_of;             ///< column vertex -> signal
-  std::vector<int> row_of_vertex;         ///< row vertex -> row group
-  std::vector<int> row_size, col_size;    ///< scalars per vertex (1 at scalar resolution)
+  std::vector<Row> rows;                    ///< row groups, canonical order
+  std::vector<int> first_row, first_col;    ///< first vertex of each row group / of each signal
+  std::vector<int> begin = {0}, mentioned;  ///< row vertex -> column vertices, see cols()
+  std::vector<int> signal_of;               ///< column vertex -> signal
+  std::vector<int> row_of_vertex;           ///< row vertex -> row group
+  std::vector<int> row_size, col_size;      ///< scalars per vertex (1 at scalar resolution)
+
+  int row_vertices() const { return static_cast<int>(row_size.size()); }
+  /// Column vertices that a row vertex mentions, ascending.
+  std::span<const int> cols(int row) const {
+    const auto r = static_cast<std::size_t>(row);
+    return {mentioned.data() + begin[r], static_cast<std::size_t>(begin[r + 1] - begin[r])};
+  }
 };
 
 /// All active rows of the graph.

@@ -16,10 +16,10 @@ void take_defaults(const Graph& g, const Incidence& inc, Matching& m) {
   for (int r = 0; r < static_cast<int>(inc.rows.size()); ++r) {
     const Row& row = inc.rows[at(r)];
     const int signal = row.equation >= 0 ? g.equations[at(row.equation)].target : row.output;
-    const int end = r + 1 < static_cast<int>(inc.rows.size()) ? inc.first_row[at(r + 1)]
-                                                              : static_cast<int>(inc.cols.size());
+    const int end =
+        r + 1 < static_cast<int>(inc.rows.size()) ? inc.first_row[at(r + 1)] : inc.row_vertices();
     for (int v = inc.first_row[at(r)]; v < end; ++v)
-      for (const int c : inc.cols[at(v)]) {
+      for (const int c : inc.cols(v)) {
         if (inc.signal_of[at(c)] != signal || m.col_to_row[at(c)] >= 0 || !fits(inc, v, c))
           continue;
         // Scalars of a whole signal stand in the same order on both sides.
@@ -39,7 +39,7 @@ bool augment(const Incidence& inc, Matching& m, int start) {
   while (!queue.empty()) {
     const int row = queue.front();
     queue.pop_front();
-    for (const int col : inc.cols[at(row)]) {
+    for (const int col : inc.cols(row)) {
       if (from[at(col)] >= 0 || !fits(inc, row, col)) continue;
       from[at(col)] = row;
       if (m.col_to_row[at(col)] >= 0) {
@@ -67,9 +67,10 @@ int Matching::missing() const {
 }
 
 Matching maximum_matching(const Graph& g, const Incidence& inc) {
-  Matching m{std::vector<int>(inc.cols.size(), -1), std::vector<int>(inc.signal_of.size(), -1)};
+  Matching m{std::vector<int>(at(inc.row_vertices()), -1),
+             std::vector<int>(inc.signal_of.size(), -1)};
   take_defaults(g, inc, m);
-  for (int r = 0; r < static_cast<int>(inc.cols.size()); ++r)
+  for (int r = 0; r < inc.row_vertices(); ++r)
     if (m.row_to_col[at(r)] < 0) augment(inc, m, r);
   return m;
 }

@@ -154,6 +154,13 @@ void find_loops(Stage& stage, const Arrows& needs) {
   const Graph& g = stage.graph;
   const auto [component, count] = components(g, needs);
   std::vector<Loop> loops(at(count));
+  std::vector<std::size_t> size(at(count), 0);
+  for (int s = 0; s < static_cast<int>(g.signals.size()); ++s)
+    if (is_unknown(g.signals[at(s)])) ++size[at(component[at(s)])];
+  for (std::size_t l = 0; l < loops.size(); ++l) {
+    loops[l].signals.reserve(size[l]);
+    loops[l].rows.reserve(size[l]);
+  }
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
     if (!is_unknown(g.signals[at(s)])) continue;
     Loop& loop = loops[at(component[at(s)])];

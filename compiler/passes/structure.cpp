@@ -14,12 +14,12 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Rows that alternating paths reach from the free rows: more equations than unknowns.
 std::vector<char> too_many(const Incidence& inc, const Matching& m) {
-  std::vector<char> seen(inc.cols.size(), 0);
+  std::vector<char> seen(at(inc.row_vertices()), 0);
   std::vector<int> rows;
-  for (int r = 0; r < static_cast<int>(inc.cols.size()); ++r)
+  for (int r = 0; r < inc.row_vertices(); ++r)
     if (m.row_to_col[at(r)] < 0) seen[at(r)] = 1, rows.push_back(r);
   for (std::size_t i = 0; i < rows.size(); ++i)
-    for (const int c : inc.cols[at(rows[i])])
+    for (const int c : inc.cols(rows[i]))
       if (const int r = m.col_to_row[at(c)]; r >= 0 && !seen[at(r)])
         seen[at(r)] = 1, rows.push_back(r);
   return seen;
@@ -28,8 +28,8 @@ std::vector<char> too_many(const Incidence& inc, const Matching& m) {
 /// Columns that alternating paths reach from the free columns: more unknowns than equations.
 std::vector<char> too_few(const Incidence& inc, const Matching& m) {
   std::vector<std::vector<int>> rows_of_col(inc.signal_of.size());
-  for (int r = 0; r < static_cast<int>(inc.cols.size()); ++r)
-    for (const int c : inc.cols[at(r)]) rows_of_col[at(c)].push_back(r);
+  for (int r = 0; r < inc.row_vertices(); ++r)
+    for (const int c : inc.cols(r)) rows_of_col[at(c)].push_back(r);
   std::vector<char> seen(inc.signal_of.size(), 0);
   std::vector<int> cols;
   for (int c = 0; c < static_cast<int>(inc.signal_of.size()); ++c)
@@ -59,7 +59,7 @@ struct Singular {
   const Incidence& inc;
   const Matching& m;
   std::vector<char> over = too_many(inc, m), under = too_few(inc, m);
-  int rows = static_cast<int>(inc.cols.size());
+  int rows = inc.row_vertices();
   UnionFind parts = UnionFind(rows + static_cast<int>(inc.signal_of.size()));
 
   int other_side(int equation) const {
@@ -81,7 +81,7 @@ struct Singular {
   /// What hangs together, and what one channel may bring together.
   std::vector<int> connect() {
     for (int r = 0; r < rows; ++r)
-      for (const int c : inc.cols[at(r)])
+      for (const int c : inc.cols(r))
         if (over[at(r)] || under[at(c)]) parts.unite(r, rows + c);
     std::set<int> equations;
     for (int r = 0; r < rows; ++r)
