@@ -38,12 +38,13 @@ MatrixXd times_map(const MatrixXd& M, const StateMap& map) {
 
 }  // namespace
 
-StateMap::StateMap(const std::vector<Dependent>& dependents, const Layout& l) : names_(l.states) {
+StateMap::StateMap(const std::vector<Dependent>& dependents, const Layout& l) {
   const auto n = l.states.size();
   std::vector<char> leaves(n, 0);
   for (const Dependent& d : dependents) leaves[at(l.state_first[at(d.node)] + d.state)] = 1;
   std::vector<int> place(n, -1);
-  names_.clear();
+  names_.reserve(n - dependents.size());
+  kept_.reserve(n - dependents.size());
   for (std::size_t i = 0; i < n; ++i) {
     if (leaves[i]) continue;
     place[i] = static_cast<int>(kept_.size());

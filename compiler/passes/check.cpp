@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <map>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/graph/drives.hpp>
+#include <unordered_map>
 
 namespace titop::passes {
 namespace {
@@ -23,11 +23,18 @@ struct Checker {
   const Graph& graph;
   std::vector<Mistake> mistakes;
   std::vector<Note> notes;
-  std::map<std::string, int, std::less<>> node_index;
+  std::unordered_map<std::string_view, int> node_index = {};
 
-  explicit Checker(const Graph& g) : graph(g), mistakes(g.mistakes) {
-    for (std::size_t i = 0; i < g.nodes.size(); ++i)
-      node_index.emplace(g.nodes[i].name, static_cast<int>(i));
+  explicit Checker(const Graph& g) : graph(g), mistakes(g.mistakes) {}
+
+  /// -1 where no node has this name. The index is made where a rotation names its frames.
+  int find_node(const std::string& name) {
+    if (name.empty()) return -1;
+    if (node_index.empty())
+      for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+        node_index.emplace(graph.nodes[i].name, static_cast<int>(i));
+    const auto found = node_index.find(name);
+    return found == node_index.end() ? -1 : found->second;
   }
 
   void add(Code code, std::string message, std::vector<std::string> details, std::string hint) {
@@ -75,14 +82,14 @@ bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term,
             {place()}, "rotations act on vectors of 3 and dual vectors of 6");
       return false;
     }
-    const auto from = c.node_index.find(T.from()), to = c.node_index.find(T.to());
-    if (kind.frame >= 0 && from != c.node_index.end() && from->second != kind.frame) {
+    const int from = c.find_node(T.from()), to = c.find_node(T.to());
+    if (kind.frame >= 0 && from >= 0 && from != kind.frame) {
       c.add(Code::frame,
             fmt::format("the rotation {}<-{} meets a signal in {}", T.to(), T.from(),
                         frame_name(c.graph, kind.frame)),
             {place()}, "use its inverse(), or name the frames that it really has");
     }
-    kind.frame = to != c.node_index.end() ? to->second : kUnknownFrame;
+    kind.frame = to >= 0 ? to : kUnknownFrame;
   }
   return true;
 }
@@ -285,17 +292,18 @@ void check_outputs(Checker& c) {
 
 template <class List>
 void check_names(Checker& c, const List& list, std::string_view what) {
-  std::map<std::string, std::source_location> seen;
+  std::unordered_map<std::string_view, const std::source_location*> seen;
+  seen.reserve(list.size());
   for (const auto& item : list) {
     if (item.name.empty()) {
       c.add(Code::duplicate_name, fmt::format("a {} has no name", what),
             {"written at " + to_string(item.where)}, "give it a name of its own");
       continue;
     }
-    const auto [first, is_new] = seen.emplace(item.name, item.where);
+    const auto [first, is_new] = seen.emplace(item.name, &item.where);
     if (!is_new)
       c.add(Code::duplicate_name, fmt::format("two {}s are called {}", what, item.name),
-            {"the first is at " + to_string(first->second),
+            {"the first is at " + to_string(*first->second),
              "the second is at " + to_string(item.where)},
             "names come out with the model: give each its own");
   }

@@ -86,7 +86,7 @@ Graph without_equations(const Graph& g) {
 }  // namespace
 
 Stage lower(Stage stage) {
-  Graph source = by_name(stage.graph);
+  Graph source = by_name(std::move(stage.graph));
   add_rigid_motions(stage, source);
   stage.source = std::make_shared<const Graph>(std::move(source));
   Graph g = without_equations(*stage.source);
@@ -94,6 +94,8 @@ Stage lower(Stage stage) {
   Lowering l(*stage.source, stage.values, all_drives, stage.motions);
   if (!g.parameters.empty()) stage.drives = std::move(all_drives);
   Lowered out{l};
+  out.equations.reserve(stage.source->equations.size() + g.channels.size());
+  out.origins.reserve(stage.source->equations.size() + g.channels.size() + g.outputs.size());
   for (int c = 0; c < static_cast<int>(g.channels.size()); ++c) out.channel(c);
   out.one_way();
   int algebraic = 0;

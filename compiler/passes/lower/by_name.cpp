@@ -11,43 +11,48 @@ template <class List>
 std::vector<int> sorted_by_name(const List& list) {
   std::vector<int> order(list.size());
   std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(),
-            [&](int a, int b) { return natural_compare(list[at(a)].name, list[at(b)].name) < 0; });
+  const auto before = [&](int a, int b) {
+    return natural_compare(list[at(a)].name, list[at(b)].name) < 0;
+  };
+  if (!std::is_sorted(order.begin(), order.end(), before))
+    std::sort(order.begin(), order.end(), before);
   return order;
 }
 
 }  // namespace
 
-Graph by_name(const Graph& g) {
+Graph by_name(Graph g) {
   Graph out;
-  out.name = g.name;
-  out.parameters = g.parameters;
+  out.name = std::move(g.name);
+  out.parameters = std::move(g.parameters);
+  out.nodes.reserve(g.nodes.size());
+  out.channels.reserve(g.channels.size());
+  out.signals.reserve(g.signals.size());
   std::vector<int> signal(g.signals.size(), -1);
   for (const int i : sorted_by_name(g.nodes)) {
-    const Node& node = g.nodes[at(i)];
-    const int added = add_node(out, node.name, node.block, node.where);
+    Node& node = g.nodes[at(i)];
+    const int added = add_node(out, std::move(node.name), std::move(node.block), node.where);
     out.nodes[at(added)].declared = node.declared;
-    const int count = end_signal(g, i) - node.first_signal;
+    const int count = node.end_signal - node.first_signal;
     for (int k = 0; k < count; ++k)
       signal[at(node.first_signal + k)] = out.nodes[at(added)].first_signal + k;
   }
   for (const int i : sorted_by_name(g.inputs)) {
-    const Input& input = g.inputs[at(i)];
-    signal[at(input.signal)] = add_input(out, input.name, input.size, input.where);
+    Input& input = g.inputs[at(i)];
+    signal[at(input.signal)] = add_input(out, std::move(input.name), input.size, input.where);
     out.inputs.back().declared = input.declared;
   }
-  const auto renamed = [&](std::vector<Term> terms) {
+  const auto rename = [&](std::vector<Term>& terms) {
     for (Term& t : terms) t.signal = signal[at(t.signal)];
-    return terms;
   };
-  for (const Equation& e : g.equations) {
-    out.equations.push_back(e);
-    out.equations.back().target = signal[at(e.target)];
-    out.equations.back().terms = renamed(e.terms);
+  out.equations = std::move(g.equations);
+  for (Equation& e : out.equations) {
+    e.target = signal[at(e.target)];
+    rename(e.terms);
   }
   for (const int i : sorted_by_name(g.outputs)) {
-    out.outputs.push_back(g.outputs[at(i)]);
-    out.outputs.back().terms = renamed(g.outputs[at(i)].terms);
+    out.outputs.push_back(std::move(g.outputs[at(i)]));
+    rename(out.outputs.back().terms);
   }
   return out;
 }

@@ -6,6 +6,6 @@ namespace titop::passes {
 
 /// The same graph with nodes, inputs and outputs in natural order of their names, so that nothing
 /// after this depends on the order in which the user wrote them.
-Graph by_name(const Graph& graph);
+Graph by_name(Graph graph);
 
 }  // namespace titop::passes

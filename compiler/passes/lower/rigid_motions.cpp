@@ -95,7 +95,7 @@ void add_rigid_motions(Stage& stage, Graph& g) {
   std::vector<std::pair<std::string, std::string>> names;
   for (const RigidMotion& m : stage.motions)
     names.emplace_back(titop::name_of(g, m.signal), g.nodes[at(m.node)].name);
-  g = by_name(g);
+  g = by_name(std::move(g));
   for (std::size_t i = 0; i < names.size(); ++i) {
     RigidMotion& m = stage.motions[i];
     for (int n = 0; n < static_cast<int>(g.nodes.size()); ++n)
