@@ -1,9 +1,9 @@
 #include <algorithm>
+#include <cstdint>
 #include <functional>
 #include <queue>
 #include <titop/compiler/solve/dissection.hpp>
 #include <titop/compiler/solve/plan.hpp>
-#include <tuple>
 
 namespace titop::solve {
 namespace {
@@ -142,17 +142,26 @@ constexpr int kMany = 64;
 /// `when`: variables with a smaller number go first; empty: no matter.
 void eliminate_all(Plan& p, const std::vector<int>& when) {
   Merging m(p);
-  using Entry = std::tuple<int, std::pair<int, int>, int>;  // when, cost, variable
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+  // When and columns, then rows and variable: none is negative, so two numbers order all four.
+  using Entry = std::pair<std::uint64_t, std::uint64_t>;
+  const auto both = [](int high, int low) {
+    return static_cast<std::uint64_t>(high) << 32 | static_cast<std::uint64_t>(low);
+  };
+  std::vector<Entry> room;
+  room.reserve(3 * p.structure.variable_size.size());
+  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue({}, std::move(room));
   std::vector<std::pair<int, int>> cost(p.structure.variable_size.size());
   const auto push = [&](int v, bool exact) {
     cost[at(v)] = exact || m.live(v) <= kMany ? m.cost(v) : std::pair(m.live(v), 0);
-    queue.push({when.empty() ? 0 : when[at(v)], cost[at(v)], v});
+    queue.push(
+        {both(when.empty() ? 0 : when[at(v)], cost[at(v)].first), both(cost[at(v)].second, v)});
   };
   for (int v = 0; v < static_cast<int>(cost.size()); ++v) push(v, false);
   while (!queue.empty()) {
-    const auto [turn, c, v] = queue.top();
+    const auto [first, second] = queue.top();
     queue.pop();
+    const int v = static_cast<int>(second & 0xffffffff);
+    const std::pair c(static_cast<int>(first & 0xffffffff), static_cast<int>(second >> 32));
     if (m.gone(v) || c != cost[at(v)]) continue;
     if (c.second == 0 && m.live(v) > 0) {  // not counted yet
       push(v, true);
