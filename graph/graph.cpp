@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 #include <titop/graph/graph.hpp>
 
 namespace titop {
@@ -78,20 +79,23 @@ int rows_of(const Graph& graph, const Term& term) {
 
 MatrixXd coefficient(const Graph& graph, const Term& term, ParameterValues values) {
   const int size = graph.signals[static_cast<std::size_t>(term.signal)].size;
-  MatrixXd result = MatrixXd::Identity(size, size);
+  std::optional<MatrixXd> result;  // none: the identity
+  const auto apply = [&](const MatrixXd& m) { result = result ? MatrixXd(m * *result) : m; };
   double scale = term.sign;
   for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f) {
-    if (const auto* k = std::get_if<Value>(&*f))
+    if (const auto* k = std::get_if<Value>(&*f)) {
       scale *= k->at(values);
-    else if (const auto* m = std::get_if<Matrix>(&*f))
-      result = *m->value * result;
-    else if (const auto* p = std::get_if<Part>(&*f))
-      result = p->whole() ? result : MatrixXd(p->rows * result);
-    else if (const auto& T = std::get<Rotation>(*f); !T.is_identity())
-      result = on_vector(T.at(values), static_cast<int>(result.rows())) * result;
+    } else if (const auto* m = std::get_if<Matrix>(&*f)) {
+      apply(*m->value);
+    } else if (const auto* p = std::get_if<Part>(&*f)) {
+      if (!p->whole()) apply(p->rows);
+    } else if (const auto& T = std::get<Rotation>(*f); !T.is_identity()) {
+      apply(on_vector(T.at(values), result ? static_cast<int>(result->rows()) : size));
+    }
   }
-  if (scale != 1) result *= scale;
-  return result;
+  if (!result) return scale * MatrixXd::Identity(size, size);
+  if (scale != 1) *result *= scale;
+  return std::move(*result);
 }
 
 Pattern structure(const Graph& graph, const Term& term) {
@@ -99,17 +103,19 @@ Pattern structure(const Graph& graph, const Term& term) {
   const auto product = [](const Pattern& a, const Pattern& b) {
     return Pattern((a.cast<int>() * b.cast<int>()).array() > 0);
   };
-  Pattern result = Pattern::Identity(size, size);
+  std::optional<Pattern> result;  // none: the identity
+  const auto apply = [&](const Pattern& p) { result = result ? product(p, *result) : p; };
   for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f) {
-    if (const auto* m = std::get_if<Matrix>(&*f))
-      result = product(m->pattern ? *m->pattern : Pattern(m->value->array() != 0), result);
-    else if (const auto* p = std::get_if<Part>(&*f))
-      result = p->whole() ? result : product(p->rows.array() != 0, result);
-    else if (const auto* T = std::get_if<Rotation>(&*f); T && !T->is_identity())
-      result = product(on_vector(Matrix3d::Ones(), static_cast<int>(result.rows())).array() != 0,
-                       result);
+    if (const auto* m = std::get_if<Matrix>(&*f)) {
+      apply(m->pattern ? *m->pattern : Pattern(m->value->array() != 0));
+    } else if (const auto* p = std::get_if<Part>(&*f)) {
+      if (!p->whole()) apply(p->rows.array() != 0);
+    } else if (const auto* T = std::get_if<Rotation>(&*f); T && !T->is_identity()) {
+      const int rows = result ? static_cast<int>(result->rows()) : size;
+      apply(on_vector(Matrix3d::Ones(), rows).array() != 0);
+    }
   }
-  return result;
+  return result ? std::move(*result) : Pattern(Pattern::Identity(size, size));
 }
 
 namespace {

@@ -62,12 +62,16 @@ struct Balance {
   template <class Matrix>
   void add(const Matrix& c, std::span<const Complex> value, Complex factor, bool by_entry = false) {
     const double largest = by_entry ? 0 : largest_of(value), scale = solve::size_of(factor);
+    Complex* const off = difference.data();
+    double* const sum = magnitude.data();
     for (Eigen::Index j = 0; j < c.cols(); ++j) {
       const Complex x = value[static_cast<std::size_t>(j)], v = factor * x;
       const double size = scale * (by_entry ? solve::size_of(x) : largest);
       for (Eigen::Index i = 0; i < c.rows(); ++i) {
-        difference[static_cast<std::size_t>(i)] += c(i, j) * v;
-        magnitude[static_cast<std::size_t>(i)] += std::abs(c(i, j)) * size;
+        const double entry = c(i, j);
+        if (entry == 0) continue;  // of blocks and rotations, most are
+        off[i] += entry * v;
+        sum[i] += std::abs(entry) * size;
       }
     }
   }
@@ -157,12 +161,14 @@ struct Residual {
   /// Subtracts N * (term); N = nullptr: the identity.
   void subtract(const MatrixXd* N, const Term& t, const std::vector<Drive>& drive) {
     b.known = b.known && values.known(t.signal);
+    const Complex factor = t.of == Term::Of::position ? -1.0 / (s * s)
+                           : t.of == Term::Of::rate   ? -1.0 / s
+                                                      : -1.0;
+    if (!N && t.factors.empty() && t.of != Term::Of::reaction)
+      return b.add_identity(values.of(t.signal), t.sign * factor);
     MatrixXd c = coefficient(w, t, d.numbers.parameters);
     if (N) c = *N * c;
-    b.add(c, values.of(t.signal),
-          t.of == Term::Of::position ? -1.0 / (s * s)
-          : t.of == Term::Of::rate   ? -1.0 / s
-                                     : -1.0);
+    b.add(c, values.of(t.signal), factor);
     if (t.of != Term::Of::reaction) return;
     const int channel = w.signals[at(t.signal)].channel;
     c = -c;
