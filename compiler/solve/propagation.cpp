@@ -19,6 +19,11 @@ void solve_upper(const double* lu, std::ptrdiff_t stride, std::ptrdiff_t pivots,
   }
 }
 
+/// Room that is there is not cleared again.
+void grow(std::vector<double>& room, std::size_t size) {
+  if (room.size() < size) room.resize(size);
+}
+
 }  // namespace
 
 Propagation::Propagation(const Factors<double>& factors)
@@ -153,13 +158,13 @@ void Propagation::activate(std::span<const int> row_groups, std::span<const doub
 
 void Propagation::solve(std::span<const int> row_groups, std::span<const double> rhs,
                         std::ptrdiff_t m, Space& space) const {
-  space.z.resize(at(plan_.unknowns) * at(m));
-  space.rows.resize(at(plan_.unknowns) * at(m));
-  space.carried.resize(at(plan_.carried) * at(m));
+  grow(space.z, at(plan_.unknowns) * at(m));
+  grow(space.rows, at(plan_.unknowns) * at(m));
+  grow(space.carried, at(plan_.carried) * at(m));
   activate(row_groups, rhs, m, space);
   std::size_t most = 0;
   for (const int f : space.active) most = std::max(most, at(plan_.fronts[at(f)].pivot_count));
-  space.pivot_rows.resize(most * at(m));
+  grow(space.pivot_rows, most * at(m));
   for (const int f : space.active) forward(f, m, space);
   for (int i = static_cast<int>(plan_.fronts.size()) - 1; i >= 0; --i)
     add_border(i, m, space.is_active[at(i)], space.z);
