@@ -287,13 +287,17 @@ class Economy {
   std::vector<std::pair<std::string, double>> seconds_;
 };
 
-/// Seconds of one transfer, over enough of them to be told from the clock's own step.
+/// Seconds of one transfer: the least of several runs, for what else the machine does only adds;
+/// each over enough of them to be told from the clock's own step.
 double seconds_of(const ReducedSystem& m, double omega) {
-  constexpr int count = 200;
-  const double start = now();
-  double sum = 0;
-  for (int k = 0; k < count; ++k) sum += std::abs(m.transfer({0.01 * omega, omega + k})(0, 0));
-  return std::isfinite(sum) ? (now() - start) / count : 0;
+  constexpr int runs = 9, count = 50;
+  double least = HUGE_VAL, sum = 0;
+  for (int run = 0; run < runs; ++run) {
+    const double start = now();
+    for (int k = 0; k < count; ++k) sum += std::abs(m.transfer({0.01 * omega, omega + k})(0, 0));
+    least = std::min(least, (now() - start) / count);
+  }
+  return std::isfinite(sum) ? least : 0;
 }
 
 }  // namespace

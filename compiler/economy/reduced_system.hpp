@@ -113,7 +113,9 @@ struct WhatIf {
   double accuracy = 0;  ///< asked for
   int order = 0;        ///< states
   double bound = 0;     ///< reached
-  double seconds = 0;   ///< of one transfer of the reduced system, measured here
+  /// Of one transfer of the reduced system, measured here: the least of nine runs of fifty each,
+  /// since other load on the machine only adds. Figures of other builds and machines differ.
+  double seconds = 0;
   ReducedSystem system;
 };
 
