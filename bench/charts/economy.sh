@@ -37,7 +37,7 @@ awk -F, 'NR == 1 {
   next
 }
 { printf "| %s | %s | %d | %d | %s | %s | %s s | %.2g | %s s | %.2g |\n", $1, $2, $3, $4, $5,
-         ($6 > 0 ? $6 : "all"), $7, $7 / $8, $9, $9 / $10 }' economy.csv >table.md
+         ($6 > 0 ? $6 : $6 < 0 ? "-" : "all"), $7, $7 / $8, $9, $9 / $10 }' economy.csv >table.md
 rm economy.dat
 [[ -e large.csv ]] || exit 0
 awk -F, 'NR == 1 {

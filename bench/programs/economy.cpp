@@ -1,7 +1,8 @@
 /// bench_economy [quick]: what accuracy costs. Rows of CSV: for every scene and accuracy the states
 /// that `what_if` keeps, its bound, seconds of one transfer and of one step of simulation beside
 /// the full system's; and what plain truncation by frequency needs for the same error (0: all there
-/// is). bench_economy large: scenes of thousands of coordinates instead, step by step.
+/// is; -1: there are no modes to truncate). bench_economy large: scenes of thousands of coordinates
+/// instead, step by step.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <titop/compiler/compile_graph.hpp>
 #include <titop/compiler/economy/ray.hpp>
@@ -94,6 +96,30 @@ Diagram heavy(const FlexibleBody& beam) {
   mount(tip, b.child("C"), Rotation{});
   b.child("C").force += U;
   d.output("a", 6) = tip.parent.accel;
+  return d;
+}
+
+/// The hub of the satellite and two booms, its attitude held by a law with an actuator and a delay:
+/// no structure, so states are balanced.
+Diagram loop(const FlexibleBody& beam) {
+  const MatrixXd I = MatrixXd::Identity(3, 3);
+  Diagram d{"loop"};
+  auto T = d.input("T", 3);
+  auto hub = d.add("hub", RigidBody{.mass = 85,
+                                    .inertia = Vector3d(9, 11, 13).asDiagonal(),
+                                    .children = {{"C1", {0.35, 0, 0.1}}, {"C2", {-0.35, 0, 0.1}}}});
+  auto boom1 = d.add("boom1", beam), boom2 = d.add("boom2", beam);
+  auto law =
+      d.add("law", Lti{.A = -40 * I, .B = I, .C = (30 - 45 * 40) * 40 * I, .D = 45 * 40 * I});
+  auto late = d.add("late", Lti{.A = -100 * I, .B = I, .C = 200 * I, .D = -I});
+  mount(boom1, hub.child("C1"), Rotation::about({0, 0, 1}, 0.26));
+  mount(boom2, hub.child("C2"), Rotation::about({1, 2, 9}, 2.9));
+  law.in = hub.parent.position.angular();
+  late.in = law.out;
+  hub.parent.force.linear = 0;
+  hub.parent.force.angular = late.out - T;
+  d.output("attitude", 3) = hub.parent.position.angular();
+  d.output("tip", 3) = boom2.child("C").accel.linear;
   return d;
 }
 
@@ -186,7 +212,8 @@ double modal_step(const ModalModel& m) {
   });
 }
 
-void table(const char* name, const Diagram& d, const Scene& scene, bool quick) {
+void table(const char* name, const Diagram& d, const Scene& scene, bool quick,
+           bool structure = true) {
   const std::vector<double> accuracies =
       quick ? std::vector<double>{1e-1, 1e-3}
             : std::vector<double>{1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 3e-8, 1e-8};
@@ -198,11 +225,12 @@ void table(const char* name, const Diagram& d, const Scene& scene, bool quick) {
   StateSpace dense;
   full.write(dense);
   const double step = full_step(dense);
-  Plain plain(d, scene);
+  std::optional<Plain> plain;  // no modes to truncate where there is no structure: -1
+  if (structure) plain.emplace(d, scene);
   for (const WhatIf& r : rows) {
     fmt::print("{},{:.0e},{},{},{:.2e},{},{:.2e},{:.2e},{:.2e},{:.2e}\n", name, r.accuracy, r.order,
-               full.order(), r.bound, 2 * plain.needed(r.bound), r.seconds, full_transfer,
-               modal_step(r.system.modal()), step);
+               full.order(), r.bound, structure ? 2 * plain->needed(r.bound) : -1, r.seconds,
+               full_transfer, modal_step(r.system.modal()), step);
     std::fflush(stdout);
   }
 }
@@ -223,5 +251,6 @@ int main(int argc, char** argv) {
   table("heavy", heavy(beam), {.band_hz = {0, 261}}, quick);
   modes.xi = {0.005};
   table("satellite", scenes::satellite(scenes::read_boom(modes)), {.band_hz = {0, 300}}, quick);
+  table("loop", loop(scenes::read_boom(modes)), {.band_hz = {0, 100}}, quick, false);
   table("generated", generated(quick ? 60 : 500), {.band_hz = {0, 5}}, quick);
 }

@@ -15,14 +15,13 @@ using Eigen::VectorXd;
 
 constexpr double kSymmetric = 1e-7;  ///< of G, relative to its diagonal: rounding of an elimination
 constexpr const char* kWayOut =
-    "only passive structures are reduced as a whole: take controllers and filters out of the scene "
-    "(their signals become inputs and outputs), give a spring its own joint, or use "
-    "compile(diagram)";
+    "take controllers and filters out of the scene (their signals become inputs and outputs), or "
+    "give a spring its own joint";
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 [[noreturn]] void refuse(const std::string& message, std::vector<std::string> details = {}) {
-  throw Error(Code::bad_value, message, kWayOut, std::move(details));
+  throw NoStructure(Code::bad_value, message, kWayOut, std::move(details));
 }
 
 /// The model of all blocks' states, before those leave that follow from others.

@@ -32,10 +32,16 @@ struct Coordinates {
   Eigen::Index size() const { return static_cast<Eigen::Index>(names.size()); }
 };
 
+/// No passive structure: the message says which states, and why.
+class NoStructure : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Reads it off the model. Stiffnesses are those of the bodies' modes; of joints and springs what
-/// makes G symmetric. Throws bad_value, naming states, where no such form is there: controllers and
-/// filters in the loop, springs that couple different coordinates, dampers on motions without
-/// stiffness. O(n^2), n^3 where chains close.
+/// makes G symmetric. Throws NoStructure (bad_value), naming states, where no such form is there:
+/// controllers and filters in the loop, springs that couple different coordinates, dampers on
+/// motions without stiffness. O(n^2), n^3 where chains close.
 Coordinates coordinates(const System& system, const SystemData& data);
 
 }  // namespace titop::detail

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <optional>
 #include <titop/compiler/compile_graph.hpp>
+#include <titop/compiler/economy/balanced.hpp>
 #include <titop/compiler/economy/bodies.hpp>
 #include <titop/compiler/economy/ray.hpp>
 #include <titop/compiler/economy/reduced_data.hpp>
@@ -38,7 +39,7 @@ class Economy {
  public:
   /// `finest`: of the accuracies that will be asked for.
   Economy(const Diagram& diagram, const Scene& scene, const Options& options, double finest)
-      : scene_(scene), options_(options), full_(nullptr), model_(nullptr) {
+      : scene_(scene), options_(options), finest_(finest), full_(nullptr), model_(nullptr) {
     detail::check(scene);
     const Graph graph = detail::restricted(diagram.graph(), scene);
     if (graph.inputs.empty() || graph.outputs.empty())
@@ -50,12 +51,12 @@ class Economy {
       data_ = detail::compile_graph(graph, options);
       full_ = model_ = System(data_);
     });
-    before_ = coordinates_of(diagram);
+    before_ = states_of(diagram);
     if (const int count = (full_.order() + 1) / 2; count <= scene.whole_up_to)
-      read_modes(graph);
+      read(graph);
     else
-      reduce_bodies(graph, count, finest);
-    sequence_ = std::make_unique<detail::Sequence>(whole_, samples_, band_.high);
+      reduce_bodies(graph, count);
+    if (!balanced_) sequence_ = std::make_unique<detail::Sequence>(whole_, samples_, band_.high);
   }
 
   Economy(const Economy&) = delete;  // the sequence refers to what is here
@@ -71,6 +72,7 @@ class Economy {
   /// The same; none if rounding ends first.
   std::optional<ReducedSystem> try_reach(double accuracy) {
     const double start = now();
+    if (balanced_) return try_balanced(accuracy);
     const std::optional<std::size_t> found = first_within(accuracy);
     if (!found) return std::nullopt;
     const std::size_t step = *found;
@@ -91,7 +93,50 @@ class Economy {
     seconds_.emplace_back(name, now() - start);
   }
 
-  /// Modes of the whole of model_, and the full system's transfers where both can have peaks.
+  /// What model_ is made of: modes, or states where it is no structure.
+  void read(const Graph& graph) {
+    try {
+      if (!scene_.keep_structure)
+        throw detail::NoStructure(Code::bad_value, "the scene asks for balanced states", "");
+      read_modes(graph);
+    } catch (const detail::NoStructure& error) {
+      why_ = error.mistakes().front().message;
+      read_states(graph);
+    }
+  }
+
+  /// Its dense model, told apart, and the full system's transfers as below.
+  void read_states(const Graph& graph) {
+    if (model_.order() > scene_.balance_up_to) {
+      if (smaller_) refuse_states();
+      return reduce_bodies(graph, (full_.order() + 1) / 2);
+    }
+    timed("split", [&] {
+      before_ = std::max(before_, model_.order());  // what integrates positions is no block's
+      if (steps_.empty()) note_structure((model_.order() + 1) / 2);
+      model_.write(dense_);
+      split_ = detail::split(dense_);
+      band_ = detail::band_of(full_, scene_, split_.poles, split_.integrals);
+    });
+    take_samples();
+    timed("balance", [&] {
+      balanced_ = std::make_unique<detail::Balanced>(dense_, split_, samples_, band_.high);
+    });
+  }
+
+  detail::Spectrum spectrum() const {
+    return why_.empty() ? detail::Spectrum(whole_) : detail::Spectrum(dense_, split_);
+  }
+
+  /// The full system's transfers where it and what takes its place can have peaks.
+  void take_samples() {
+    timed("samples", [&] {
+      samples_ = detail::sample(full_, scene_, spectrum(),
+                                detail::sample_points(scene_, band_, spectrum(), {}, kPhase));
+    });
+  }
+
+  /// Modes of the whole of model_.
   void read_modes(const Graph& graph) {
     timed("modes", [&] {
       detail::Coordinates c = detail::coordinates(model_, *data_);
@@ -107,38 +152,37 @@ class Economy {
       detail::sharpen(whole_, model_, 1.2 * band_.high);
       if (scene_.bound == BoundKind::theorem) detail::couple(whole_);
     });
-    timed("samples", [&] {
-      samples_ = detail::sample(full_, scene_, whole_,
-                                detail::sample_points(scene_, band_, whole_, {}, kPhase));
-    });
+    take_samples();
   }
 
   /// Too large for one eigenproblem: bodies first. What that costs is measured on the samples, and
   /// where it is too much less goes.
-  void reduce_bodies(const Graph& graph, int count, double finest) {
+  void reduce_bodies(const Graph& graph, int count) {
     if (scene_.bound == BoundKind::theorem)
       throw Error(Code::bad_value,
                   fmt::format("{} has {} coordinates, and a theorem counts every pole of theirs",
                               graph.name, count),
-                  "raise Scene::whole_up_to (the cost grows with its cube), or take an estimate");
+                  fmt::format("raise Scene::{} (the cost grows with its cube), or take an estimate",
+                              why_.empty() ? "whole_up_to" : "balance_up_to"));
+    smaller_ = true;
     std::vector<detail::ModeEffects> effects;
     timed("bodies", [&] { effects = detail::mode_effects(graph, scene_, options_); });
-    for (double share = kShare * finest, tries = 1; true; share /= 10, ++tries) {
+    for (double share = kShare * finest_, tries = 1; true; share /= 10, ++tries) {
       const detail::SmallerBodies smaller = detail::smaller_bodies(graph, effects, share);
       bodies_ = fmt::format("{}", fmt::join(smaller.text, "; "));
       steps_.clear();
       note_structure(count);
       const int after = count - smaller.before + smaller.after;
-      if (after > scene_.whole_up_to) refuse_size(after);
+      if (why_.empty() && after > scene_.whole_up_to) refuse_size(after);
       timed("compile", [&] {
         data_ = detail::compile_graph(smaller.graph, options_);
         model_ = System(data_);
       });
       note("bodies", count, after, bodies_);
       const std::size_t step = steps_.size() - 1;
-      read_modes(smaller.graph);
+      read(smaller.graph);
       steps_[step].error = bodies_error();
-      if (steps_[step].error <= kMostOfBodies * finest || tries == kTries) return;
+      if (steps_[step].error <= kMostOfBodies * finest_ || tries == kTries) return;
     }
   }
 
@@ -146,10 +190,83 @@ class Economy {
   double bodies_error() const {
     Eigen::MatrixXd worst = Eigen::MatrixXd::Zero(samples_.peak.rows(), samples_.peak.cols());
     const std::vector<Eigen::MatrixXcd> H =
-        detail::sample(model_, scene_, whole_, samples_.omega).H;
+        detail::sample(model_, scene_, spectrum(), samples_.omega).H;
     for (std::size_t k = 0; k < H.size(); ++k)
       worst = worst.cwiseMax((H[k] - samples_.H[k]).cwiseAbs());
     return worst.cwiseQuotient(samples_.peak).maxCoeff();
+  }
+
+  /// The first balanced model whose bound is at most this.
+  std::optional<ReducedSystem> try_balanced(double accuracy) {
+    const double start = now();
+    for (Index from = 0;;) {
+      const auto choice = balanced_->find(from, accuracy * std::cos(kPhase / 2));
+      if (!choice) return std::nullopt;
+      detail::States model = balanced_->model(*choice);
+      ErrorBound b = bound(*choice, model);
+      from = choice->order + 1;
+      if (!(b.worst <= accuracy)) continue;
+      ReducedData d{full_, {}, std::move(b), steps_, {}, seconds_};
+      note_balanced(d, *choice);
+      d.modes = model.modes(dense_.states);
+      d.seconds.emplace_back("reduce", now() - start);
+      model.why = why_;
+      d.states = std::move(model);
+      return ReducedSystem(std::make_shared<const ReducedData>(std::move(d)));
+    }
+  }
+
+  ErrorBound bound(const detail::Balanced::Choice& choice, const detail::States& model) const {
+    ErrorBound b = bound(model.poles(), [&](std::complex<double> s) { return model.transfer(s); });
+    if (const Eigen::MatrixXd any = balanced_->anywhere(choice); any.size() > 0 && !smaller_)
+      b.anywhere = any.cwiseQuotient(b.peak).maxCoeff();
+    return b;
+  }
+
+  /// What was kept, and how the rest was cut.
+  void note_balanced(ReducedData& d, const detail::Balanced::Choice& choice) const {
+    const Index integrals = balanced_->integrals(), kept = balanced_->kept();
+    const auto count = [](Index n) { return static_cast<int>(n); };
+    d.steps.push_back(
+        {"kept", dense_.order(), count(integrals + kept + balanced_->stable()), 0,
+         fmt::format(
+             "no M, D, K, for {}; whole are {} integrals and {} states of poles on the axis "
+             "or right of it ({} unstable), {} more neither move nor are seen",
+             why_, integrals, kept, balanced_->unstable(), balanced_->silent())});
+    d.steps.push_back(
+        {"balanced", count(balanced_->stable()), count(choice.order), d.bound.worst,
+         fmt::format("{}, {}: the least error at the least order that does",
+                     choice.weighted ? "balanced behind low-passes at the band's end (no bound "
+                                       "beforehand)"
+                                     : "balanced over the whole axis",
+                     choice.truncated ? "truncated (exact at infinite frequency)"
+                                      : "the others at rest (exact at 0 Hz)")});
+  }
+
+  [[noreturn]] void refuse_balanced(double accuracy) const {
+    const auto best = balanced_->best();
+    const detail::States model = balanced_->model(best);
+    const ErrorBound b = bound(best, model);
+    throw Error(
+        Code::bad_value,
+        fmt::format(
+            "an accuracy of {:.1e} cannot be met: {:.1e} is reached with {} states, from {} "
+            "to {} at {:.4g} Hz",
+            accuracy, b.worst, model.order(), b.input, b.output, b.hertz),
+        fmt::format("ask for {:.0e}, or {} ends there", 2 * b.worst,
+                    smaller_ ? "raise Scene::balance_up_to: what smaller bodies can do"
+                             : "use compile(diagram): rounding in the balanced states"),
+        {fmt::format("states are balanced because {}", why_)});
+  }
+
+  [[noreturn]] void refuse_states() const {
+    throw Error(Code::bad_value,
+                fmt::format("{} has {} states where its bodies have the fewest that do, more than "
+                            "Scene::balance_up_to = {}",
+                            full_.stage().graph.name, model_.order(), scene_.balance_up_to),
+                "raise it (the cost grows with its cube), ask for less accuracy or a smaller band, "
+                "or take what is no structure out of the scene",
+                {fmt::format("states are balanced because {}", why_), bodies_});
   }
 
   [[noreturn]] void refuse_size(Index size) const {
@@ -163,7 +280,7 @@ class Economy {
   }
 
   void note_structure(Index after) {
-    note("structure", before_, after,
+    note("structure", (before_ + 1) / 2, after,
          "what the scene's inputs reach and its outputs see, without tied coordinates");
   }
 
@@ -171,17 +288,21 @@ class Economy {
     steps_.push_back({name, static_cast<int>(before), static_cast<int>(after), 0, std::move(text)});
   }
 
-  static int coordinates_of(const Diagram& diagram) {
+  static int states_of(const Diagram& diagram) {
     int states = 0;
     for (const Node& n : diagram.graph().nodes)
       states += static_cast<int>(n.block->interface().states.size());
-    return (states + 1) / 2;
+    return states;
   }
 
   const ErrorBound& bound_of(std::size_t step) {
     const auto found = bounds_.find(step);
     if (found != bounds_.end()) return found->second;
-    return bounds_.emplace(step, bound(sequence_->model(step))).first->second;
+    const Small small = sequence_->model(step);
+    return bounds_
+        .emplace(step,
+                 bound(small.poles(), [&](std::complex<double> s) { return small.transfer(s); }))
+        .first->second;
   }
 
   /// The bound costs more than the error on the samples, which goes first.
@@ -195,6 +316,7 @@ class Economy {
   }
 
   [[noreturn]] void refuse(double accuracy) {
+    if (balanced_) refuse_balanced(accuracy);
     const auto& steps = sequence_->steps();
     std::size_t best = 0;
     for (std::size_t k = 1; k < steps.size(); ++k)
@@ -228,9 +350,11 @@ class Economy {
     return fmt::format("{} ({:.0f} %)", whole_.blocks[at(block)], 100 * share);
   }
 
-  ErrorBound bound(const Small& small) const {
-    const auto points = detail::sample_points(scene_, band_, whole_, small.poles(), kPhase);
-    const detail::Samples check = detail::sample(full_, scene_, whole_, points);
+  /// Of a model with these poles and this transfer.
+  template <class F>
+  ErrorBound bound(const std::vector<std::complex<double>>& poles, const F& transfer) const {
+    const auto points = detail::sample_points(scene_, band_, spectrum(), poles, kPhase);
+    const detail::Samples check = detail::sample(full_, scene_, spectrum(), points);
     ErrorBound b;
     b.kind = scene_.bound;
     b.samples = static_cast<int>(points.size() + samples_.s.size());
@@ -238,7 +362,7 @@ class Economy {
     double worst = -1;
     for (std::size_t k = 0; k < check.s.size(); ++k) {
       const Eigen::MatrixXd e =
-          detail::difference(check, small, k).cwiseAbs().cwiseQuotient(check.peak);
+          detail::difference(check, transfer(check.s[k]), k).cwiseAbs().cwiseQuotient(check.peak);
       b.pairs = b.pairs.cwiseMax(e);
       Index i = 0, j = 0;
       if (const double here = e.maxCoeff(&i, &j); !(here <= worst)) {
@@ -249,7 +373,7 @@ class Economy {
       }
     }
     b.peak = check.peak;
-    b.pairs = b.pairs / std::cos(kPhase / 2) + detail::rounding(whole_, check);
+    b.pairs = b.pairs / std::cos(kPhase / 2) + detail::rounding(check);
     b.worst = b.pairs.maxCoeff();
     return b;
   }
@@ -274,7 +398,13 @@ class Economy {
 
   Scene scene_;
   Options options_;
-  int before_ = 0;       ///< coordinates of all blocks
+  double finest_ = 0;
+  int before_ = 0;        ///< states of all blocks
+  bool smaller_ = false;  ///< bodies lose modes first
+  std::string why_;       ///< model_ is no structure; empty: it is
+  StateSpace dense_;      ///< model_, where it is no structure
+  detail::Split split_;   ///< of model_, where it is no structure
+  std::unique_ptr<detail::Balanced> balanced_;
   std::string bodies_;   ///< what became of them; empty: they are as they were
   System full_, model_;  ///< as asked, and with smaller bodies; the same where these are not needed
   std::shared_ptr<const detail::SystemData> data_;  ///< of model_

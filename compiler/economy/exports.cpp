@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/LU>
+#include <titop/compiler/economy/real_modes.hpp>
 #include <titop/compiler/economy/reduced_data.hpp>
 #include <titop/graph/linalg/dense.hpp>
 
@@ -48,45 +49,10 @@ StateSpace select(const StateSpace& m, const std::vector<Index>& states) {
   return s;
 }
 
-/// Real columns that span the eigenvectors of two states each: of a pair, or of two real ones.
-struct RealModes {
-  MatrixXd T;
-  std::vector<Eigen::Matrix2d> A;
-};
-
-RealModes real_modes(const MatrixXd& A) {
-  const linalg::Eigensystem e = linalg::eigensystem(A);
-  if (!(e.rcond_V > detail::kDefective))
-    throw Error(
-        Code::singular,
-        fmt::format("the reduced system's damped modes are too close to defective for blocks "
-                    "of 2 x 2: eigenvectors of reciprocal condition {:.1e}",
-                    e.rcond_V),
-        "take second_order() or state_space(), which need no eigenvectors");
-  RealModes m{MatrixXd(A.rows(), A.cols()), {}};
-  std::vector<Index> real;
-  Index column = 0;
-  for (Index k = 0; k < e.values.size(); ++k) {
-    const Complex p = e.values(k);
-    if (p.imag() == 0) real.push_back(k);
-    if (p.imag() <= 0) continue;
-    m.T.col(column++) = e.V.col(k).real();
-    m.T.col(column++) = e.V.col(k).imag();
-    m.A.push_back((Eigen::Matrix2d() << p.real(), p.imag(), -p.imag(), p.real()).finished());
-  }
-  for (std::size_t k = 0; k + 1 < real.size(); k += 2) {
-    m.T.col(column++) = e.V.col(real[k]).real();
-    m.T.col(column++) = e.V.col(real[k + 1]).real();
-    m.A.push_back(
-        Eigen::Vector2d(e.values(real[k]).real(), e.values(real[k + 1]).real()).asDiagonal());
-  }
-  return m;
-}
-
 /// The coordinates that damping couples, as 2 x 2 blocks.
 void add_coupled(ModalModel& result, const StateSpace& m, const std::vector<Index>& states) {
   const MatrixXd A = m.A(states, states);
-  const RealModes modes = real_modes(A);
+  const detail::RealModes modes = detail::real_modes(A, "second_order() or state_space()");
   const Index first = 2 * static_cast<Index>(result.A.size()), n = A.rows();
   result.A.insert(result.A.end(), modes.A.begin(), modes.A.end());
   result.B.middleRows(first, n) = modes.T.partialPivLu().solve(MatrixXd(m.B(states, Eigen::all)));
@@ -96,6 +62,12 @@ void add_coupled(ModalModel& result, const StateSpace& m, const std::vector<Inde
 }  // namespace
 
 StateSpace ReducedSystem::state_space() const {
+  if (data_->states) {
+    StateSpace s = data_->states->state_space();
+    s.inputs = inputs();
+    s.outputs = outputs();
+    return s;
+  }
   const detail::Small& m = data_->small;
   std::vector<Index> kept;
   std::vector<std::string> names;
@@ -116,6 +88,11 @@ StateSpace ReducedSystem::state_space() const {
 }
 
 SecondOrderModel ReducedSystem::second_order() const {
+  if (data_->states)
+    throw Error(Code::bad_value,
+                fmt::format("the reduced {} is no second-order model: {}",
+                            full().stage().graph.name, data_->states->why),
+                "take state_space() or modal()");
   const detail::Small& m = data_->small;
   SecondOrderModel s{.M = MatrixXd::Identity(m.order(), m.order()),
                      .D = damping(m),
@@ -141,6 +118,12 @@ MatrixXcd SecondOrderModel::transfer(Complex s) const {
 }
 
 ModalModel ReducedSystem::modal() const {
+  if (data_->states) {
+    ModalModel result = data_->states->modal();
+    result.inputs = inputs();
+    result.outputs = outputs();
+    return result;
+  }
   const detail::Small& m = data_->small;
   const StateSpace halves = by_halves(m);
   const Index r = m.order(), own = m.Z.size() ? m.own : r;

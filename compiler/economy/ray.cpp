@@ -58,6 +58,17 @@ MatrixXd alike(const Whole& w, Complex s) {
   return out.cwiseSqrt() * in.cwiseSqrt();
 }
 
+[[noreturn]] void refuse_integral(const System& system, const char* what, Index output,
+                                  Index input) {
+  throw Error(
+      Code::bad_value,
+      fmt::format("{} reads {} that {} drives: it has no gain at 0 Hz, where the scene's "
+                  "band starts",
+                  system.outputs()[static_cast<std::size_t>(output)], what,
+                  system.inputs()[static_cast<std::size_t>(input)]),
+      "start Scene::band_hz above 0, read an acceleration instead, or leave this output out");
+}
+
 /// A band from 0 has no place for outputs that grow without end there.
 void refuse_integrals(const System& system, const Whole& w) {
   for (Index j = w.elastic(); j < w.order(); ++j) {
@@ -65,15 +76,18 @@ void refuse_integrals(const System& system, const Whole& w) {
     if (w.b.row(j).cwiseAbs().maxCoeff(&m) == 0) continue;
     for (Index i = 0; i < w.ca.rows(); ++i)
       if (w.cq(i, j) != 0 || w.cv(i, j) != 0)
-        throw Error(Code::bad_value,
-                    fmt::format("{} reads the {} of a motion without stiffness that {} drives: it "
-                                "has no gain at 0 Hz, where the scene's band starts",
-                                system.outputs()[static_cast<std::size_t>(i)],
-                                w.cq(i, j) != 0 ? "position" : "rate",
-                                system.inputs()[static_cast<std::size_t>(m)]),
-                    "start Scene::band_hz above 0, read an acceleration instead, or leave this "
-                    "output out");
+        refuse_integral(system,
+                        w.cq(i, j) != 0 ? "the position of a motion without stiffness"
+                                        : "the rate of a motion without stiffness",
+                        i, m);
   }
+}
+
+double lowest(const std::vector<Complex>& poles, double high) {
+  double first = high > 0 ? high : 1;
+  for (const Complex& p : poles)
+    if (p != 0.0 && std::abs(p) < first) first = std::abs(p);
+  return first;
 }
 
 /// At 0 also where blocks integrate what the system does not.
@@ -87,10 +101,22 @@ Band band_of(const System& system, const Scene& scene, const Whole& w) {
   Band band{2 * std::numbers::pi * scene.band_hz[0], 2 * std::numbers::pi * scene.band_hz[1], 0};
   if (band.low > 0 || w.loose == 0) return band;
   refuse_integrals(system, w);
-  double first = band.high > 0 ? band.high : 1;
-  for (const Complex& p : poles_of(w))
-    if (p != 0.0 && std::abs(p) < first) first = std::abs(p);
-  band.start = 1e-6 * first;
+  band.start = 1e-6 * lowest(poles_of(w), band.high);
+  return band;
+}
+
+Band band_of(const System& system, const Scene& scene, const std::vector<Complex>& poles,
+             const Part& integrals) {
+  Band band{2 * std::numbers::pi * scene.band_hz[0], 2 * std::numbers::pi * scene.band_hz[1], 0};
+  if (band.low > 0 || std::find(poles.begin(), poles.end(), 0.0) == poles.end()) return band;
+  const MatrixXd one = integrals.C * integrals.B,
+                 size = integrals.C.cwiseAbs() * integrals.B.cwiseAbs(),
+                 two = integrals.C * integrals.A * integrals.B;
+  for (Index i = 0; i < one.rows(); ++i)
+    for (Index m = 0; m < one.cols(); ++m)
+      if (std::abs(one(i, m)) > 1e-12 * size(i, m) || two(i, m) != 0)
+        refuse_integral(system, "an integral", i, m);
+  band.start = 1e-6 * lowest(poles, band.high);
   return band;
 }
 
@@ -99,31 +125,57 @@ Complex on_ray(const Scene& scene, double omega) {
   return {zeta * omega, std::sqrt(1 - zeta * zeta) * omega};
 }
 
-std::vector<double> sample_points(const Scene& scene, const Band& band, const Whole& w,
+Spectrum::Spectrum(const Whole& w)
+    : poles(poles_of(w)),
+      far(static_cast<int>(w.far)),
+      squared(w.Z.size() == 0 && w.cv.isZero(0)),
+      alike([&w](Complex s) { return detail::alike(w, s); }) {}
+
+Spectrum::Spectrum(const StateSpace& model, const Split& split)
+    : poles(split.poles),
+      by_peaks(true),
+      alike([&](Complex s) { return terms(model, split, s); }) {}
+
+std::vector<double> sample_points(const Scene& scene, const Band& band, const Spectrum& w,
                                   const std::vector<Complex>& small, double step) {
   if (!(band.high > band.low)) return {std::max(band.low, band.start)};
   const bool all = scene.bound == BoundKind::theorem;
-  // Undamped and without rates everything is rational in s^2: half the poles.
-  const bool squared = w.Z.size() == 0 && w.cv.isZero(0);
   const Complex turn = std::conj(on_ray(scene, 1));
-  const int far = all ? static_cast<int>(w.far) : kFar;
-  PhaseBand grid{band.low, band.high, {}, squared ? far : 2 * far};
-  if (squared) grid.low *= grid.low, grid.high *= grid.high;
-  for (const Complex& p : merged(poles_of(w), small)) {
+  const int far = all ? w.far : kFar;
+  // Undamped and without rates everything is rational in s^2: half the poles.
+  PhaseBand grid{band.low, band.high, {}, w.squared ? far : 2 * far};
+  if (w.squared) grid.low *= grid.low, grid.high *= grid.high;
+  for (const Complex& p : merged(w.poles, small)) {
     if (p == 0.0) continue;  // motions without stiffness are in both models: no pole of the error
     if (!all && std::abs(p) > 2 * band.high) continue;
     for (const Complex& s : {p, std::conj(p)}) {
       const Complex x = s * turn;
-      grid.poles.push_back(squared ? x * x : x);
-      if (squared || s.imag() == 0) break;
+      grid.poles.push_back(w.squared ? x * x : x);
+      if (w.squared || s.imag() == 0) break;
     }
   }
   std::vector<double> points = phase_grid(grid, step);
-  for (double& x : points) x = std::max(squared ? std::sqrt(x) : x, band.start);
+  for (double& x : points) x = std::max(w.squared ? std::sqrt(x) : x, band.start);
   return points;
 }
 
-Samples sample(const System& system, const Scene& scene, const Whole& w,
+std::pair<Eigen::VectorXd, Eigen::RowVectorXd> port_sizes(const MatrixXd& peak) {
+  Eigen::VectorXd out = Eigen::VectorXd::Ones(peak.rows());
+  Eigen::RowVectorXd in = Eigen::RowVectorXd::Ones(peak.cols());
+  const auto root = [](const auto& largest) {
+    return (largest.array() > 0).select(largest.array().sqrt(), 1).matrix().eval();
+  };
+  for (int sweep = 0; sweep < 60; ++sweep) {
+    const MatrixXd left = out.cwiseInverse().asDiagonal() * peak * in.cwiseInverse().asDiagonal();
+    const Eigen::VectorXd rows = left.rowwise().maxCoeff();
+    const Eigen::RowVectorXd columns = left.colwise().maxCoeff();
+    out = out.cwiseProduct(root(rows));
+    in = in.cwiseProduct(root(columns));
+  }
+  return {out, in};
+}
+
+Samples sample(const System& system, const Scene& scene, const Spectrum& w,
                std::vector<double> omega) {
   Samples result;
   result.omega = std::move(omega);
@@ -131,11 +183,17 @@ Samples sample(const System& system, const Scene& scene, const Whole& w,
   for (const double omega_k : result.omega) result.s.push_back(on_ray(scene, omega_k));
   parallel(result.s.size(), 0,
            [&] { return [&](std::size_t i) { result.H[i] = transfer(system, result.s[i]); }; });
-  result.peak = MatrixXd::Zero(w.ca.rows(), w.b.cols());
+  result.peak = result.alike = MatrixXd::Zero(static_cast<Index>(system.outputs().size()),
+                                              static_cast<Index>(system.inputs().size()));
   for (std::size_t k = 0; k < result.s.size(); ++k) {
     result.peak = result.peak.cwiseMax(result.H[k].cwiseAbs());
-    result.peak = result.peak.cwiseMax(1e-6 * alike(w, result.s[k]));
+    result.alike = result.alike.cwiseMax(w.alike(result.s[k]));
   }
+  if (w.by_peaks) {
+    const auto [out, in] = port_sizes(result.peak.cwiseMax(1e-6 * result.alike));
+    result.alike = result.alike.cwiseMax(out * in);
+  }
+  result.peak = result.peak.cwiseMax(1e-6 * result.alike);
   // Where no mode is left to say what a pair might be (rigid bodies only): its row and column.
   const Eigen::VectorXd row = result.peak.rowwise().maxCoeff().cwiseSqrt();
   const Eigen::RowVectorXd column = result.peak.colwise().maxCoeff().cwiseSqrt();
@@ -144,10 +202,8 @@ Samples sample(const System& system, const Scene& scene, const Whole& w,
   return result;
 }
 
-MatrixXd rounding(const Whole& w, const Samples& samples) {
-  MatrixXd size = MatrixXd::Zero(w.ca.rows(), w.b.cols());
-  for (const Complex& s : samples.s) size = size.cwiseMax(alike(w, s));
-  return (5e-14 * size.cwiseQuotient(samples.peak)).array() + 1e-12;
+MatrixXd rounding(const Samples& samples) {
+  return (5e-14 * samples.alike.cwiseQuotient(samples.peak)).array() + 1e-12;
 }
 
 }  // namespace titop::detail

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
 #include <titop/compiler/economy/scene.hpp>
 #include <titop/compiler/economy/sequence.hpp>
+#include <titop/compiler/economy/split.hpp>
+#include <utility>
 
 /// Sampling on the ray of a scene. For the compiler's own files only.
 namespace titop::detail {
@@ -16,18 +19,40 @@ struct Band {
 /// without stiffness that an input drives: there is no gain at 0.
 Band band_of(const System& system, const Scene& scene, const Whole& whole);
 
+/// The same of a model by states, with these poles and `integrals`, the part of those at 0.
+Band band_of(const System& system, const Scene& scene,
+             const std::vector<std::complex<double>>& poles, const Part& integrals);
+
+/// What sampling has to know of a model.
+struct Spectrum {
+  std::vector<std::complex<double>> poles;  ///< [rad/s], those of pairs with Im >= 0
+  int far = 0;                              ///< more poles in s^2, far above
+  bool squared = false;                     ///< the transfer is rational in s^2
+  bool by_peaks = false;                    ///< pairs that are 0 are compared with others, too
+  /// Outputs x inputs at s: what every pair would be if output and input saw all modes alike.
+  std::function<Eigen::MatrixXd(std::complex<double>)> alike;
+
+  Spectrum(const Whole& whole);  // NOLINT: a whole is one; it must live as long
+  Spectrum(const StateSpace& model, const Split& split);  ///< likewise
+};
+
 /// Points of the band for the difference of two models with these poles [rad/s, of positive
 /// imaginary part for pairs], by the scene's kind of bound: phase steps of at most `step`.
-std::vector<double> sample_points(const Scene& scene, const Band& band, const Whole& whole,
+std::vector<double> sample_points(const Scene& scene, const Band& band, const Spectrum& whole,
                                   const std::vector<std::complex<double>>& small, double step);
 
 /// The factored system there, on all cores. O(points * bodies).
-Samples sample(const System& system, const Scene& scene, const Whole& whole,
+Samples sample(const System& system, const Scene& scene, const Spectrum& whole,
                std::vector<double> omega);
 
 /// What rounding may do to the error of each pair there, relative to its peak: 1e-12 of the
 /// transfer itself (System::transfer), and some units of what would be there without cancellation.
-Eigen::MatrixXd rounding(const Whole& whole, const Samples& samples);
+Eigen::MatrixXd rounding(const Samples& samples);
+
+/// Sizes of outputs and of inputs with |H(i, j)| <= out(i) in(j), near to that for some pair of
+/// every row and every column: found by scaling rows and columns by the roots of their largest
+/// entries in turn, so that units cancel. Rows and columns of 0 have size 1.
+std::pair<Eigen::VectorXd, Eigen::RowVectorXd> port_sizes(const Eigen::MatrixXd& peak);
 
 /// (zeta + j sqrt(1 - zeta^2)) omega.
 std::complex<double> on_ray(const Scene& scene, double omega);

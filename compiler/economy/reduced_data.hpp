@@ -1,7 +1,9 @@
 #pragma once
 
+#include <optional>
 #include <titop/compiler/economy/reduced_system.hpp>
 #include <titop/compiler/economy/small.hpp>
+#include <titop/compiler/economy/states.hpp>
 
 /// What stands behind a ReducedSystem. For the compiler's own files only.
 namespace titop::detail {
@@ -13,6 +15,7 @@ struct ReducedData {
   std::vector<EconomyStep> steps;
   std::vector<KeptMode> modes;
   std::vector<std::pair<std::string, double>> seconds;
+  std::optional<States> states = {};  ///< instead of `small`, where there is no second-order form
 };
 
 }  // namespace titop::detail

@@ -4,7 +4,9 @@
 
 namespace titop {
 
-int ReducedSystem::order() const { return state_space().order(); }
+int ReducedSystem::order() const {
+  return data_->states ? static_cast<int>(data_->states->order()) : state_space().order();
+}
 const std::vector<std::string>& ReducedSystem::inputs() const { return data_->full.inputs(); }
 const std::vector<std::string>& ReducedSystem::outputs() const { return data_->full.outputs(); }
 const System& ReducedSystem::full() const { return data_->full; }
@@ -13,7 +15,7 @@ const std::vector<EconomyStep>& ReducedSystem::steps() const { return data_->ste
 const std::vector<KeptMode>& ReducedSystem::modes() const { return data_->modes; }
 
 Eigen::MatrixXcd ReducedSystem::transfer(std::complex<double> s) const {
-  return data_->small.transfer(s);
+  return data_->states ? data_->states->transfer(s) : data_->small.transfer(s);
 }
 
 std::string ReducedSystem::timings() const {
@@ -27,20 +29,27 @@ std::string to_string(const ReducedSystem& system) {
   std::string text = fmt::format("{}: {} states of {}\n", system.full().stage().graph.name,
                                  system.order(), system.full().order());
   for (const EconomyStep& s : system.steps())
-    text += fmt::format("  {:<9} {:>5} -> {:>4} coordinates, {}: {}\n", s.name, s.before, s.after,
+    text += fmt::format("  {:<9} {:>5} -> {:>4} {}, {}: {}\n", s.name, s.before, s.after,
+                        s.name == "kept" || s.name == "balanced" ? "states" : "coordinates",
                         s.error == 0 ? "exact" : fmt::format("error {:.1e}", s.error), s.text);
   const ErrorBound& b = system.bound();
   text += fmt::format(
       "  bound     {:.1e}{}, {} of {} transfers\n", b.worst,
       b.input.empty() ? "" : fmt::format(" from {} to {} at {:.4g} Hz", b.input, b.output, b.hertz),
       b.kind == BoundKind::theorem ? "a theorem" : "an estimate", b.samples);
+  if (b.anywhere >= 0)
+    text += fmt::format("            {:.1e} everywhere right of the axis, a theorem\n", b.anywhere);
   for (std::size_t k = 0; k < system.modes().size(); ++k) {
     const KeptMode& m = system.modes()[k];
     std::string blocks;
     for (const auto& [name, share] : m.blocks)
       blocks += fmt::format("{}{} {:.0f} %", blocks.empty() ? "" : ", ", name, 100 * share);
-    text += fmt::format("  mode{:<5} {:>12.6g} Hz, damping {:.3g}, {}: {}\n", k + 1, m.hertz,
-                        m.damping, m.exact ? "mode" : "vector", blocks);
+    text +=
+        fmt::format("  mode{:<5} {:>12.6g} Hz, damping {:.3g}, {}: {}\n", k + 1, m.hertz, m.damping,
+                    m.exact      ? "mode"
+                    : m.balanced ? "balanced"
+                                 : "vector",
+                    blocks);
   }
   return text;
 }

@@ -17,22 +17,28 @@ struct ErrorBound {
   double hertz = 0;           ///< where it was found [Hz]
   BoundKind kind = BoundKind::estimate;
   int samples = 0;  ///< transfers of the full factored system that it took
+  /// Of balanced models: 2 x the sum of the Hankel singular values that were dropped, for the worst
+  /// pair, relative as `pairs`. A theorem, not only for the band but everywhere right of the
+  /// imaginary axis (up to rounding in the Gramians); negative where there is none.
+  double anywhere = -1;
 };
 
 /// What one step left out.
 struct EconomyStep {
-  std::string name;           ///< "structure", "bodies", "symmetry", "whole"
-  int before = 0, after = 0;  ///< second-order coordinates
+  std::string name;           ///< "structure", "bodies", "symmetry", "whole"; "kept", "balanced"
+  int before = 0, after = 0;  ///< second-order coordinates; of "kept" and "balanced": states
   double error = 0;           ///< what it cost, relative as Scene says; 0: exact
   std::string text;           ///< in plain words
 };
 
 /// A coordinate of the reduced system.
 struct KeptMode {
-  double hertz = 0;    ///< of its mode [Hz]
-  double damping = 0;  ///< ratio; 0 for motions without stiffness
-  bool exact = false;  ///< a mode of the full system; else a static-like vector above the band
-  /// Blocks that take part, with their share of its elastic energy, largest first, down to 5 %.
+  double hertz = 0;       ///< of its mode [Hz]
+  double damping = 0;     ///< ratio; 0 for motions without stiffness
+  bool exact = false;     ///< a mode of the full system; else a static-like vector above the band
+  bool balanced = false;  ///< neither: a pole of the balanced part
+  /// Blocks that take part, with their share of its elastic energy (of balanced models, of its
+  /// participation factors, as Pole::blocks), largest first, down to 5 %.
   std::vector<std::pair<std::string, double>> blocks;
 };
 
@@ -48,7 +54,9 @@ struct SecondOrderModel {
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
 };
 
-/// xdot = A x + B u, y = C x + D u with A of 2 x 2 blocks on the diagonal: one per mode.
+/// xdot = A x + B u, y = C x + D u with A of 2 x 2 blocks on the diagonal: one per mode. An odd
+/// real pole of a balanced model has a block with a second state that nothing moves and nobody
+/// reads.
 struct ModalModel {
   std::vector<Eigen::Matrix2d> A;
   Eigen::MatrixXd B, C, D;  ///< 2r x inputs, outputs x 2r, outputs x inputs
@@ -75,8 +83,10 @@ class ReducedSystem {
   /// there is one, is the full system's.
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
 
-  StateSpace state_space() const;         ///< dense; states "mode1", "mode1_rate", ...
-  SecondOrderModel second_order() const;  ///< the structure kept
+  /// Dense; states "mode1", "mode1_rate", ...; of balanced models "kept1", ..., "balanced1", ...
+  StateSpace state_space() const;
+  /// The structure kept. Throws bad_value for balanced models, with what is no structure in them.
+  SecondOrderModel second_order() const;
   /// 2 x 2 blocks. O(order^3) if damping couples modes. Throws singular where these are too close
   /// to defective (two of them critically damped alike, say); second_order() has them all.
   ModalModel modal() const;
@@ -100,12 +110,21 @@ std::string to_string(const ReducedSystem& system);
 /// with the second-order structure kept. The result is checked against the full factored system,
 /// and grows until the bound is below the accuracy.
 ///
-/// Throws what `compile(diagram)` throws; bad_value for a scene out of range or too large, for
-/// parts that are no passive structure (controllers, filters: their states are named), and where
-/// the accuracy cannot be met, with what was reached and where; unknown_name for inputs and outputs
-/// that are not there. Cost: one symmetric eigenproblem, O(n^3) of the coordinates (those that are
-/// left, where bodies lose modes first: Scene::whole_up_to), and some hundred transfers of the full
-/// system.
+/// Where the scene is no passive structure (controllers and filters in the loop, dashpots without
+/// springs; a note says which state), states take the place of M, D, K. Integrals, poles on the
+/// axis (undamped modes have no Gramian) and poles right of it are kept whole; the well-damped rest
+/// is balanced and cut, by truncation or with the states that go at rest (singular perturbation),
+/// over the whole axis or behind low-passes at the band's end, whichever needs fewest states; a
+/// step says which and why. The rest stays stable, which is checked; the error is checked as above,
+/// and over the whole axis 2 x the sum of the dropped Hankel singular values bounds it everywhere
+/// right of the axis (ErrorBound::anywhere) [Moore 1981; Enns 1984; Glover 1984].
+///
+/// Throws what `compile(diagram)` throws; bad_value for a scene out of range or too large, and
+/// where the accuracy cannot be met, with what was reached and where; unknown_name for inputs and
+/// outputs that are not there. Cost: one symmetric eigenproblem, O(n^3) of the coordinates (those
+/// that are left, where bodies lose modes first: Scene::whole_up_to), and some hundred transfers of
+/// the full system; of balanced models a Schur form and the Gramians, O(100 n^3) of the states
+/// (Scene::balance_up_to).
 ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options& options = {});
 
 /// One line of `what_if`.

@@ -131,6 +131,9 @@ void check(const Scene& scene) {
   if (scene.whole_up_to < 1)
     refuse(fmt::format("the scene reduces the whole up to {} coordinates", scene.whole_up_to),
            "give Scene::whole_up_to at least 1");
+  if (scene.balance_up_to < 1)
+    refuse(fmt::format("the scene balances up to {} states", scene.balance_up_to),
+           "give Scene::balance_up_to at least 1");
   if (!mistakes.empty()) throw Error(std::move(mistakes));
 }
 

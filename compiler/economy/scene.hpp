@@ -40,6 +40,11 @@ struct Scene {
   /// of their loaded ports take their place. What that costs is measured, and the bound is an
   /// estimate, checked against the full system as always. Refused where too many are left.
   int whole_up_to = 2000;
+  /// Passive structures stay M, D, K. False: their states are balanced as where there is no such
+  /// form; where damping is heavy fewer may do.
+  bool keep_structure = true;
+  /// Up to this many states are balanced, at O(100 n^3); of more, bodies lose modes first.
+  int balance_up_to = 800;
 };
 
 namespace detail {

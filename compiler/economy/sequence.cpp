@@ -44,8 +44,8 @@ bool collocated(const Whole& w) {
 
 }  // namespace
 
-MatrixXcd difference(const Samples& full, const Small& small, std::size_t k) {
-  MatrixXcd d = full.H[k] - small.transfer(full.s[k]);
+MatrixXcd difference(const Samples& full, const MatrixXcd& Hr, std::size_t k) {
+  MatrixXcd d = full.H[k] - Hr;
   if (!d.allFinite())
     throw Error(Code::not_finite,
                 fmt::format("the transfer that the scene asks for is not finite at {:.4g} Hz",

@@ -11,10 +11,14 @@ struct Samples {
   std::vector<std::complex<double>> s;  ///< on the ray
   std::vector<Eigen::MatrixXcd> H;      ///< outputs x inputs
   Eigen::MatrixXd peak;                 ///< outputs x inputs, with the floor of pairs that are 0
+  Eigen::MatrixXd alike;  ///< what would be there if ports saw all modes alike: rounding is of that
 };
 
 /// H - Hr on one sample. Throws not_finite, with the frequency, where either is not.
-Eigen::MatrixXcd difference(const Samples& full, const Small& small, std::size_t k);
+Eigen::MatrixXcd difference(const Samples& full, const Eigen::MatrixXcd& Hr, std::size_t k);
+inline Eigen::MatrixXcd difference(const Samples& full, const Small& small, std::size_t k) {
+  return difference(full, small.transfer(full.s[k]), k);
+}
 
 /// Largest |H - Hr| / peak over the samples, per pair.
 Eigen::MatrixXd errors(const Samples& full, const Small& small);

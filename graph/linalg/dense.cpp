@@ -6,6 +6,7 @@
 #include <cmath>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/schur.hpp>
 #include <titop/graph/linalg/wide.hpp>
 
 namespace titop::linalg {
@@ -60,9 +61,6 @@ Inverse inverse(const MatrixXd& M) {
   return {lu.inverse(), lu.rcond()};
 }
 
-namespace {
-
-/// Diagonal similarity by powers of two that makes rows and columns alike [Parlett, Reinsch 1969].
 VectorXd balance(MatrixXd& A) {
   const auto n = A.rows();
   VectorXd d = VectorXd::Ones(n);
@@ -83,6 +81,8 @@ VectorXd balance(MatrixXd& A) {
   }
   return d;
 }
+
+namespace {
 
 void check(const MatrixXd& A, Eigen::ComputationInfo info) {
   if (!A.allFinite())

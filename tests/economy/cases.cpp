@@ -218,18 +218,3 @@ TEST_CASE("wrong scenes are refused by name") {
   });
   CHECK(says(error, Code::bad_value, {"cannot be met", "coordinates, from U("}));
 }
-
-TEST_CASE("a controller in the loop is refused, its state named") {
-  Diagram d{"loop"};
-  auto U = d.input("U");
-  auto z = d.add("z", SpringMass{.mass = 2.0, .stiffness = 30.0});
-  auto K = d.add("K", Lti{.A = MatrixXd::Constant(1, 1, -3.0),
-                          .B = MatrixXd::Constant(1, 1, 2.0),
-                          .C = MatrixXd::Constant(1, 1, 1.0)});
-  z.parent.accel = 0;
-  K.in = z.stretch;
-  z.child.force = U - K.out;
-  d.output("x") = z.stretch;
-  const Error error = error_of([&] { compile(d, titop::Scene{.band_hz = {0, 9}}); });
-  CHECK(says(error, Code::bad_value, {"K.", "passive", "compile(diagram)"}));
-}

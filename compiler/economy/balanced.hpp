@@ -1,0 +1,60 @@
+#pragma once
+
+#include <optional>
+#include <titop/compiler/economy/gramians.hpp>
+#include <titop/compiler/economy/ray.hpp>
+#include <titop/compiler/economy/states.hpp>
+
+/// Which balanced model answers a scene. For the compiler's own files only.
+namespace titop::detail {
+
+/// Models of every order of what is no structure: integrals and poles on the axis or right of it
+/// whole, the rest balanced and cut.
+///
+/// Inputs and outputs are scaled by the sizes that the pairs' peaks have (port_sizes), so that the
+/// Hankel singular values speak of errors relative to these. Of each order there are up to four
+/// models: balanced over the whole axis, or behind low-passes at the band's upper end, which leaves
+/// out what the band does not show, but has no bound beforehand; and cut by truncation or with the
+/// others at rest. The cut of less error on the samples counts, low-passes where nothing else does.
+/// An order does as soon as one model does, so that more accuracy never gives a smaller order.
+class Balanced {
+ public:
+  /// `split` and `samples` must live as long. O(60 n^3).
+  Balanced(const StateSpace& model, const Split& split, const Samples& samples, double high);
+
+  struct Choice {
+    Eigen::Index order = 0;  ///< of the balanced part
+    bool weighted = false, truncated = true;
+    double error = 0;  ///< on the samples, relative to the pairs' peaks
+  };
+  /// The least order from this one on with an error of at most so much; none: no order will do.
+  std::optional<Choice> find(Eigen::Index from, double target) const;
+  /// The model of least error of the largest orders there are.
+  Choice best() const;
+
+  States model(const Choice& choice) const;
+  /// Outputs x inputs: what the dropped singular values bound each pair by, everywhere right of the
+  /// axis, in the pair's own units; 0 x 0: nothing.
+  Eigen::MatrixXd anywhere(const Choice& choice) const;
+
+  Eigen::Index integrals() const { return split_.integrals.order(); }
+  Eigen::Index kept() const { return kept_.part.order(); }
+  Eigen::Index silent() const { return split_.kept.order() - kept(); }
+  Eigen::Index stable() const { return split_.stable.order(); }
+  int unstable() const;  ///< poles right of the axis
+
+ private:
+  const Balancing& balancing(const Choice& c) const { return *balancings_[c.weighted ? 1 : 0]; }
+  double error(const Choice& choice, double limit) const;
+
+  const Split& split_;
+  States::Piece kept_;
+  Eigen::MatrixXd D_;
+  const Samples& samples_;
+  std::vector<Eigen::MatrixXcd> rest_;  ///< of the samples, without what is kept
+  PortSizes sizes_;
+  std::optional<Balancing> balancings_[2];
+  mutable std::size_t worst_ = 0;  ///< sample where the last model failed: looked at first
+};
+
+}  // namespace titop::detail

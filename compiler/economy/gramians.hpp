@@ -1,0 +1,44 @@
+#pragma once
+
+#include <titop/compiler/economy/split.hpp>
+
+/// Balanced coordinates of a stable part. For the compiler's own files only.
+namespace titop::detail {
+
+/// A stable model in coordinates that inputs reach as well as outputs see them: both Gramians are
+/// diag(sigma). The first r coordinates are a model of their own, as are the first r with the
+/// others at rest (below).
+struct Balancing {
+  Eigen::MatrixXd A, B, C;
+  Eigen::VectorXd sigma;        ///< Hankel singular values, descending, down to rounding
+  Eigen::MatrixXd left, right;  ///< z = left x, x = right z, of the split model's states
+  bool weighted = false;        ///< behind low-passes: sigma then bounds nothing
+};
+
+/// What counts as 1 for inputs and outputs.
+struct PortSizes {
+  Eigen::VectorXd input, output;
+};
+
+/// Balances split.stable, inputs and outputs over their sizes, by square roots: Gramians P = L L',
+/// Q = R R' as factors from Hammarling's method, sigma and the projection from the singular values
+/// of R' L [Laub et al. 1987; Tombs, Postlethwaite 1987]. With `corner` > 0 [rad/s] each input and
+/// output passes a low-pass corner^2 / (s^2 + sqrt(2) corner s + corner^2) first: what happens far
+/// above the corner counts little [Enns 1984]. O(10 n^3).
+Balancing balance(const Split& split, const PortSizes& sizes, double corner = 0);
+
+/// The model of the first r coordinates. Truncated: the others are 0, exact at infinite frequency;
+/// otherwise the others are at rest, A_22 z_2 + A_21 z_1 + B_2 u = 0 (singular perturbation), exact
+/// at 0. Both are stable where sigma(r - 1) > sigma(r), and wrong by 2 (sigma(r) + sigma(r + 1) +
+/// ...) at most, on the axis and everywhere right of it, for both are analytic there and the error
+/// is largest on the axis [Enns, Glover 1984; Liu, Anderson 1989]; not so if `weighted`.
+struct Cut {
+  Part part;
+  Eigen::MatrixXd D;  ///< what the others leave for the direct term
+};
+Cut cut(const Balancing& balancing, Eigen::Index r, bool truncated);
+
+/// 2 (sigma(r) + sigma(r + 1) + ...), from the smallest up.
+double cut_bound(const Balancing& balancing, Eigen::Index r);
+
+}  // namespace titop::detail

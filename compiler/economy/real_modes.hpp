@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+/// Blocks of 2 x 2 from the eigenvectors of a matrix. For the compiler's own files only.
+namespace titop::detail {
+
+/// Real columns that span the eigenvectors of two states each: of a pair, or of two real ones; the
+/// last column is that of a real one that is left alone, if there is one.
+struct RealModes {
+  Eigen::MatrixXd T;
+  std::vector<Eigen::Matrix2d> A;
+  std::vector<double> single;  ///< pole of the one left alone: none or one
+};
+
+/// Throws singular where eigenvectors are too close to each other, with what to take instead.
+/// O(n^3).
+RealModes real_modes(const Eigen::MatrixXd& A, const char* instead);
+
+}  // namespace titop::detail

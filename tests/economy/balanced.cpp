@@ -1,0 +1,385 @@
+#include <doctest/doctest.h>
+
+#include "economy/against.hpp"
+#include "economy/scenes.hpp"
+#include "economy/tree.hpp"
+#include "support/close.hpp"
+#include "support/mistakes.hpp"
+
+/// Scenes that are no passive structure: controllers in the loop, dashpots without springs. Their
+/// states are balanced; the truth is written out by hand.
+using namespace titop;
+using namespace titop_test;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Complex = std::complex<double>;
+
+namespace {
+
+MatrixXd one(double x) { return MatrixXd::Constant(1, 1, x); }
+
+/// gain / (s / corner + 1)
+Lti lag(double gain, double corner) {
+  return {.A = one(-corner), .B = one(1), .C = one(gain * corner)};
+}
+
+/// A free cart that carries a chain of equal masses on springs, and holds its place by a law with a
+/// slow actuator and a delay: (kp + kd s) / (s / wa + 1) (1 - sT/2) / (1 + sT/2).
+struct Held {
+  int masses = 12;
+  double cart = 10, m = 0.5, k = 2000, c = 1.5;
+  double kp = 15, kd = 20, wa = 30, T = 0.03;
+
+  Diagram diagram() const {
+    Diagram d{"held"};
+    auto U = d.input("U");
+    auto R = d.input("R");  // where it should be
+    std::vector<SpringMass::Handle> z;
+    for (int i = 0; i < masses; ++i) {
+      SpringMass spec{.mass = m, .stiffness = k, .damping = c};
+      if (i == 0) spec.parent_mass = cart;
+      z.push_back(d.add("z" + std::to_string(i + 1), spec));
+      if (i > 0) mount(z[at(i)], z[at(i - 1)].child);
+    }
+    auto law = d.add(
+        "law", Lti{.A = one(-wa), .B = one(1), .C = one((kp - kd * wa) * wa), .D = one(kd * wa)});
+    auto delay = d.add("delay", Lti{.A = one(-2 / T), .B = one(1), .C = one(4 / T), .D = one(-1)});
+    law.in = R - z[0].parent.position;
+    delay.in = law.out;
+    z[0].parent.force = -(U + delay.out);
+    d.output("x") = z[0].parent.position;
+    d.output("a") = z.back().child.accel;
+    d.output("F") = delay.out;
+    return d;
+  }
+  /// [x; a; F] from [U; R], by the dynamic stiffness of the chain seen from the cart.
+  MatrixXcd transfer(Complex s) const {
+    Complex seen = 0, ratio = 1;  // force per position of the last mass so far; tip per cart
+    for (int i = 0; i < masses; ++i) {
+      const Complex mass = seen + s * s * m, spring = k + s * c;
+      ratio *= spring / (mass + spring);
+      seen = mass * spring / (mass + spring);
+    }
+    const Complex C = (kp + kd * s) / (s / wa + 1.0) * (1.0 - s * T / 2.0) / (1.0 + s * T / 2.0);
+    const Complex own = seen + s * s * cart, closed = own + C;
+    MatrixXcd H(3, 2);
+    H << 1.0 / closed, C / closed, s * s * ratio / closed, s * s * ratio * C / closed, -C / closed,
+        C * own / closed;
+    return H;
+  }
+  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
+};
+
+/// The truth's poles are not needed: its peaks are wide against this grid.
+Beside beside_by_hand(const ReducedSystem& r, const titop::Scene& scene, const Held& held) {
+  return beside(r, scene, {[&](Complex s) { return held.transfer(s); }, {}}, 4000);
+}
+
+const EconomyStep& step(const ReducedSystem& r, const std::string& name) {
+  for (const EconomyStep& s : r.steps())
+    if (s.name == name) return s;
+  FAIL("no step " << name);
+  return r.steps().front();
+}
+
+double rightmost(const StateSpace& m) {
+  return m.A.size() ? m.A.eigenvalues().real().maxCoeff() : -HUGE_VAL;
+}
+
+}  // namespace
+
+TEST_CASE("a structure held by a law with an actuator and a delay: small, and how far off") {
+  const Held held;
+  const titop::Scene scene{.band_hz = {0, 8}};
+  const std::vector<double> accuracies{1e-1, 1e-2, 1e-3, 1e-4, 1e-6};
+  const std::vector<WhatIf> table = what_if(held.diagram(), scene, accuracies);
+  REQUIRE(table.size() == accuracies.size());
+  int before = 0;
+  for (const WhatIf& w : table) {
+    CAPTURE(w.accuracy);
+    CHECK(w.system.full().order() == 2 * 13 + 2);
+    CHECK(w.order >= before);
+    before = w.order;
+    CHECK(w.bound <= w.accuracy);
+    const Beside fine = beside_by_hand(w.system, scene, held);
+    CHECK(fine.bound <= 1);
+    CHECK(fine.error <= 1.15 * w.accuracy);
+    CHECK(fine.peak_low >= 0.87);
+    CHECK(fine.peak_high <= 1.001);
+    CHECK(rightmost(w.system.state_space()) < 0);
+    CHECK(step(w.system, "kept").after == 28);
+    CHECK(step(w.system, "balanced").after == w.order);
+    CHECK(step(w.system, "kept").text.find("z1.parent.position") != std::string::npos);
+  }
+  CHECK(table.front().order <= 12);
+  CHECK(before < 28);
+}
+
+TEST_CASE("all poles counted, the bound is a theorem") {
+  const Held held;
+  titop::Scene scene{.band_hz = {0.01, 8}, .accuracy = 1e-3, .bound = BoundKind::theorem};
+  const ReducedSystem r = compile(held.diagram(), scene);
+  CHECK(r.bound().kind == BoundKind::theorem);
+  CHECK(beside_by_hand(r, scene, held).bound <= 1);
+}
+
+TEST_CASE("the dropped singular values bound the error far beyond the band as well") {
+  // One lag after the other: no band to speak of, so the whole axis is what is balanced for.
+  Diagram d{"lags"};
+  auto U = d.input("U");
+  Complex before = 1;
+  std::vector<Lti::Handle> f;
+  for (int i = 0; i < 5; ++i) {
+    f.push_back(d.add("f" + std::to_string(i + 1), lag(1, 1 + i)));
+    if (i == 0)
+      f[0].in = U;
+    else
+      f.back().in = f[static_cast<std::size_t>(i) - 1].out;
+  }
+  d.output("y") = f.back().out;
+  int bounded = 0;
+  for (const double accuracy : {3e-1, 3e-2, 1e-3}) {
+    const ReducedSystem r =
+        compile(d, titop::Scene{.band_hz = {0, 50}, .accuracy = accuracy, .damping_floor = 0.5});
+    CHECK(r.order() < 5);
+    CHECK(rightmost(r.state_space()) < 0);
+    if (r.bound().anywhere < 0) continue;
+    ++bounded;
+    for (const double w : {0.0, 0.1, 0.5, 1.0, 2.0, 4.0, 10.0, 1e4})
+      for (const Complex s : {Complex(0, w), Complex(w, w), Complex(w, 0)}) {
+        Complex H = before;
+        for (int i = 0; i < 5; ++i) H /= s / (1.0 + i) + 1.0;
+        CHECK(std::abs(r.transfer(s)(0, 0) - H) <=
+              r.bound().anywhere * r.bound().peak(0, 0) * (1 + 1e-9));
+      }
+  }
+  CHECK(bounded >= 1);
+}
+
+TEST_CASE("undamped modes have no Gramian: they are kept to the last digit, whatever the filter") {
+  // A force through a chain of lags on an undamped oscillator.
+  const double m = 2, k = 50;
+  Diagram d{"driven"};
+  auto U = d.input("U");
+  auto z = d.add("z", SpringMass{.mass = m, .stiffness = k});
+  auto slow = d.add("slow", lag(1, 3)), fast = d.add("fast", lag(1, 400));
+  slow.in = U;
+  fast.in = slow.out;
+  z.parent.accel = 0;
+  z.child.force = fast.out;
+  d.output("x") = z.stretch;
+  const titop::Scene scene{.band_hz = {0, 2}, .accuracy = 1e-4};
+  const ReducedSystem r = compile(d, scene);
+  CHECK(step(r, "kept").text.find("2 states of poles on the axis") != std::string::npos);
+  CHECK(r.order() == 3);  // the fast lag has gone
+  double nearest = 1;
+  for (const Pole& p : poles(r.state_space()))
+    nearest = std::min(nearest, relative(p.s, Complex(0, std::sqrt(k / m))));
+  CHECK(nearest <= 1e-12);
+  REQUIRE(r.modes().size() == 2);
+  CHECK(r.modes()[0].exact);
+  CHECK(r.modes()[0].blocks.front().first == "z");
+  CHECK(r.modes()[1].balanced);
+  for (const double w : {0.0, 1.0, 4.9, 10.0}) {
+    const Complex s{scene.damping_floor * w, w};
+    const Complex H = 1.0 / (m * s * s + k) / (s / 3.0 + 1.0) / (s / 400.0 + 1.0);
+    CHECK(std::abs(r.transfer(s)(0, 0) - H) <= 1.01e-4 * r.bound().peak(0, 0));
+  }
+}
+
+TEST_CASE("free motions are kept as integrals, and refused where the band starts at 0") {
+  Diagram d{"pushed"};
+  auto U = d.input("U");
+  auto cart = d.add("cart", SpringMass{.mass = 1, .stiffness = 90, .damping = 4, .parent_mass = 3});
+  auto slow = d.add("slow", lag(1, 8)), fast = d.add("fast", lag(1, 900));
+  slow.in = U;
+  fast.in = slow.out;
+  cart.parent.force = -fast.out;
+  d.output("x") = cart.parent.position;
+  titop::Scene scene{.band_hz = {0.05, 3}, .accuracy = 1e-2};
+  const ReducedSystem r = compile(d, scene);
+  CHECK(step(r, "kept").text.find("2 integrals") != std::string::npos);
+  const auto truth = [](Complex s) {
+    const Complex spring = 90.0 + 4.0 * s, seen = s * s * spring / (s * s + spring);
+    return MatrixXcd::Constant(1, 1,
+                               1.0 / (3.0 * s * s + seen) / (s / 8.0 + 1.0) / (s / 900.0 + 1.0));
+  };
+  CHECK(beside(r, scene, {truth, {}}, 4000).bound <= 1);
+  CHECK(r.order() < r.full().order());
+  // A pair of integrals is one block, [0 1; 0 0].
+  const ModalModel modal = r.modal();
+  for (const double w : {0.3, 5.0, 18.0}) {
+    const Complex s{0.002 * w, w};
+    CHECK(matrix_error(modal.transfer(s), r.transfer(s)) <= 1e-9);
+    CHECK(matrix_error(r.state_space().transfer(s), r.transfer(s)) <= 1e-9);
+  }
+  scene.band_hz[0] = 0;
+  CHECK(says(error_of([&] { compile(d, scene); }), Code::bad_value, {"x reads", "U", "above 0"}));
+}
+
+TEST_CASE("an unstable loop stays what it is: the pole right of the axis is kept") {
+  Diagram d{"unstable"};
+  auto U = d.input("U");
+  auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 4, .damping = 0.5});
+  auto K = d.add("K", lag(30, 20));  // a positive loop: more than the spring
+  K.in = z.stretch;
+  z.parent.accel = 0;
+  z.child.force = U + K.out;
+  d.output("x") = z.stretch;
+  const titop::Scene scene{.band_hz = {0, 5}, .accuracy = 1e-1};
+  const ReducedSystem r = compile(d, scene);
+  CHECK(step(r, "kept").text.find("1 unstable") != std::string::npos);
+  const auto loop = [](double s) { return (s * s + 0.5 * s + 4) * (s / 20 + 1) - 30; };
+  double low = 0, high = 30;
+  for (int i = 0; i < 100; ++i) (loop((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
+  CHECK(relative(rightmost(r.state_space()), low) <= 1e-12);
+  const auto truth = [](Complex s) {
+    return MatrixXcd::Constant(1, 1, 1.0 / (s * s + 0.5 * s + 4.0 - 30.0 / (s / 20.0 + 1.0)));
+  };
+  CHECK(beside(r, scene, {truth, {}}, 2000).bound <= 1);
+}
+
+TEST_CASE("dashpots without springs, and heavy damping that is asked to be balanced") {
+  // Masses in honey: a dashpot to the ground each by way of a spring-less block, springs between.
+  const double m = 2, k = 300, c = 500;
+  const int n = 8;
+  for (const bool springs : {false, true}) {
+    Diagram d{"honey"};
+    auto U = d.input("U");
+    std::vector<SpringMass::Handle> z;
+    for (int i = 0; i < n; ++i) {
+      // The first one has a dashpot only; or all of them both.
+      z.push_back(
+          d.add("z" + std::to_string(i + 1),
+                SpringMass{.mass = m, .stiffness = i == 0 && !springs ? 0 : k, .damping = c}));
+      if (i == 0)
+        z[0].parent.accel = 0;
+      else
+        mount(z.back(), z[static_cast<std::size_t>(i) - 1].child);
+    }
+    z.back().child.force = U;
+    d.output("v") = z.back().child.rate;
+    const titop::Scene scene{.band_hz = {0.02, 20}, .accuracy = 1e-3, .keep_structure = !springs};
+    const ReducedSystem r = compile(d, scene);
+    const auto truth = [&](Complex s) {
+      Complex below = (springs ? k : 0) + s * c;
+      for (int i = 0; i + 1 < n; ++i) {
+        const Complex mass = below + s * s * m, link = k + s * c;
+        below = mass * link / (mass + link);
+      }
+      return MatrixXcd::Constant(1, 1, s / (below + s * s * m));
+    };
+    const Beside fine = beside(r, scene, {truth, {}}, 4000);
+    CHECK(fine.bound <= 1);
+    CHECK(fine.error <= 1.15e-3);
+    CHECK(r.order() <= 8);
+    CHECK(rightmost(r.state_space()) < 0);
+    if (!springs) {
+      CHECK(step(r, "kept").text.find("z1") != std::string::npos);
+      continue;
+    }
+    titop::Scene structure = scene;
+    structure.keep_structure = true;
+    CHECK(r.order() <= compile(d, structure).order());
+  }
+}
+
+TEST_CASE("static gain only: no states but those on the axis") {
+  const Held held;
+  const ReducedSystem r = compile(held.diagram(), titop::Scene{.inputs = {"R"}, .accuracy = 1e-6});
+  CHECK(r.order() == 0);
+  CHECK(std::abs(r.state_space().D(0, 0) - 1) <= 1e-6);  // it goes where it should
+}
+
+TEST_CASE("a balanced model is dense and modal, and says why it is no second-order model") {
+  const Held held;
+  const ReducedSystem r =
+      compile(held.diagram(), titop::Scene{.band_hz = {0, 8}, .accuracy = 1e-3});
+  CHECK(r.inputs() == r.full().inputs());
+  CHECK(r.outputs() == r.full().outputs());
+  const StateSpace dense = r.state_space();
+  const ModalModel modal = r.modal();
+  CHECK(dense.order() == r.order());
+  CHECK(modal.order() - r.order() <= 1);
+  CHECK(dense.states.front() == "balanced1");
+  for (const double w : {0.1, 3.0, 40.0, 1000.0}) {
+    CHECK(matrix_error(dense.transfer({0, w}), r.transfer({0, w})) <= 1e-9);
+    CHECK(matrix_error(modal.transfer({0, w}), r.transfer({0, w})) <= 1e-9);
+  }
+  CHECK(says(error_of([&] { r.second_order(); }), Code::bad_value,
+             {"held", "z1.parent.position", "state_space()"}));
+  double share = 0;
+  for (const KeptMode& m : r.modes())
+    for (const auto& [name, part] : m.blocks)
+      if (name == "law" || name == "delay") share = std::max(share, part);
+  CHECK(share > 0.2);
+}
+
+TEST_CASE("flexible bodies in a loop: they lose modes first where the states are too many") {
+  // A hub with two beams, turned by a law that reads its attitude; the same, balanced whole.
+  const FlexibleBody beam = slim_beam(6, 0.005);
+  Diagram d{"turned"};
+  auto W = d.input("W");
+  auto hub = d.add("hub", RigidBody{.mass = 40,
+                                    .inertia = Vector3d(9, 11, 13).asDiagonal(),
+                                    .children = {{"C1", {0.3, 0, 0}}, {"C2", {-0.3, 0.05, 0}}}});
+  auto left = d.add("left", beam), right = d.add("right", beam);
+  auto law = d.add(
+      "law", Lti{.A = one(-60), .B = one(1), .C = one((40 - 30 * 60.0) * 60), .D = one(30 * 60)});
+  MatrixXd about = MatrixXd::Zero(6, 1);
+  about(5) = 1;
+  law.in = about.transpose() * hub.parent.position;
+  hub.parent.force = about * law.out - about * W;
+  mount(left, hub.child("C1"), Rotation{});
+  mount(right, hub.child("C2"), Rotation::about({0, 0, 1}, 2.9));
+  d.output("angle") = about.transpose() * hub.parent.position;
+  d.output("tip", 3) = left.child("C").accel.linear;
+  // The free structure by hand, and the loop closed around it.
+  Tree tree(true);
+  const int root = tree.add(RigidBody{.mass = 40,
+                                      .inertia = Vector3d(9, 11, 13).asDiagonal(),
+                                      .children = {{"C1", {0.3, 0, 0}}, {"C2", {-0.3, 0.05, 0}}}});
+  const int boom = tree.add(beam.data(), root, 0);
+  tree.add(beam.data(), root, 1, Rotation::about({0, 0, 1}, 2.9).nominal());
+  MatrixXd read(4, tree.motion(root).cols());
+  read << tree.motion(root).row(5), tree.motion(boom, 0).topRows(3);
+  const Truth open = truth_of(tree.structure(tree.motion(root).row(5), read), true, {0, 2, 2, 2});
+  const auto closed = [&](Complex s) {
+    const MatrixXcd H = open.transfer(s);
+    return MatrixXcd(H / (1.0 + (40.0 + 30.0 * s) * 60.0 / (s + 60.0) * H(0, 0)));
+  };
+  titop::Scene scene{.band_hz = {0, 40}, .accuracy = 1e-2};
+  const ReducedSystem whole = compile(d, scene);
+  scene.balance_up_to = 100;
+  const ReducedSystem r = compile(d, scene);
+  CHECK(whole.full().order() > 140);
+  CHECK(step(r, "bodies").error <= 3e-3);
+  CHECK(step(r, "kept").before <= 100);
+  CHECK(r.bound().worst <= 1e-2);
+  CHECK(r.order() <= 1.3 * whole.order());
+  for (const ReducedSystem* system : {&whole, &r}) {
+    CHECK(beside(*system, scene, {closed, open.omegas}, 20).bound <= 1);
+    CHECK(rightmost(system->state_space()) < 0);
+  }
+  scene.balance_up_to = 4;
+  CHECK(says(error_of([&] { compile(d, scene); }), Code::bad_value,
+             {"balance_up_to = 4", "law.x1", "left"}));
+}
+
+TEST_CASE("what balanced states cannot do is refused with what they reach, a large scene as well") {
+  const Held held;
+  CHECK(says(error_of([&] {
+               compile(held.diagram(), titop::Scene{.band_hz = {0, 8}, .accuracy = 1e-12});
+             }),
+             Code::bad_value, {"cannot be met", "states, from", "z1.parent.position"}));
+  CHECK(says(error_of([&] {
+               compile(held.diagram(), titop::Scene{.band_hz = {0, 8}, .balance_up_to = 0});
+             }),
+             Code::bad_value, {"balances up to 0 states"}));
+  CHECK(says(error_of([&] {
+               compile(held.diagram(),
+                       titop::Scene{
+                           .band_hz = {0, 8}, .bound = BoundKind::theorem, .balance_up_to = 10});
+             }),
+             Code::bad_value, {"theorem", "balance_up_to"}));
+}
