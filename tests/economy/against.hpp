@@ -42,7 +42,7 @@ inline Beside beside(const titop::ReducedSystem& r, const titop::Scene& scene, c
   const double low = 2 * std::numbers::pi * scene.band_hz[0];
   const double high = 2 * std::numbers::pi * scene.band_hz[1], zeta = scene.damping_floor;
   std::vector<double> omega;
-  for (int i = 1; i <= steps; ++i) omega.push_back(low + (high - low) * i / steps);
+  for (int i = low > 0 ? 0 : 1; i <= steps; ++i) omega.push_back(low + (high - low) * i / steps);
   for (const double pole : truth.omegas)
     for (int i = -6; i <= 6; ++i)
       if (const double w = pole * (1 + 0.4 * zeta * i); w > low && w < high) omega.push_back(w);

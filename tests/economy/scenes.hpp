@@ -1,9 +1,10 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
+#include <doctest/doctest.h>
+
 #include <titop/titop.hpp>
+
+#include "economy/tree.hpp"
 
 /// Scenes of the tests of economy, and what is measured on them.
 namespace titop_test {
@@ -34,32 +35,25 @@ inline Diagram frame(const titop::FlexibleBody& beam) {
   return d;
 }
 
-/// The largest error of any pair over what its bound allows, on a grid of the band that knows
-/// nothing of the bound's: equal steps, and 41 points across every pole of the full system.
-struct Against {
-  double bound = 0;  ///< largest |error| / (bound of the pair * its peak): 1 or less
-  double error = 0;  ///< largest |error| / peak
-};
-inline Against on_fine_grid(const ReducedSystem& r, const titop::Scene& scene, int steps = 1500) {
-  const double low = 2 * std::numbers::pi * scene.band_hz[0];
-  const double high = 2 * std::numbers::pi * scene.band_hz[1], zeta = scene.damping_floor;
-  std::vector<double> omega;
-  for (int i = 1; i <= steps; ++i) omega.push_back(low + (high - low) * i / steps);
-  for (int i = 1; i <= 30; ++i)  // from the lower end on by factors, from 0 on over nine decades
-    omega.push_back(low > 0 ? low * std::pow(high / low, i / 31.0) : high * std::pow(10, -0.3 * i));
-  for (const titop::Pole& p : r.full().poles())
-    for (int i = -20; i <= 20; ++i)
-      if (const double w = p.omega * (1 + 0.2 * zeta * i); w > low && w < high) omega.push_back(w);
-  Against worst;
-  for (const double w : omega) {
-    const std::complex<double> s{zeta * w, std::sqrt(1 - zeta * zeta) * w};
-    const Eigen::MatrixXd error = (r.full().transfer(s) - r.transfer(s)).cwiseAbs();
-    const titop::ErrorBound& b = r.bound();
-    const Eigen::MatrixXd relative = error.cwiseQuotient(b.peak);
-    worst.error = std::max(worst.error, relative.maxCoeff());
-    worst.bound = std::max(worst.bound, relative.cwiseQuotient(b.pairs).maxCoeff());
-  }
-  return worst;
+/// The same by hand.
+inline Truth frame_by_hand(const titop::FlexibleBody& beam) {
+  Tree tree(false);
+  const int b1 = tree.add(beam.data());
+  const int b2 = tree.add(beam.data(), b1, 0, titop::Rotation::about({1, 2, 3}, 0.7).nominal());
+  const int b3 = tree.add(beam.data(), b2, 0, titop::Rotation::about({3, -1, 1}, -1.1).nominal());
+  const Eigen::MatrixXd tip = tree.motion(b3, 0);
+  return truth_of(tree.structure(tip, tip));
+}
+
+/// What must hold of a reduced system beside the truth: peaks and errors are the truth's.
+inline void check_beside(const ReducedSystem& r, const titop::Scene& scene, const Truth& truth,
+                         int steps = 100) {
+  const Beside by_hand = beside(r, scene, truth, steps);
+  CHECK(r.bound().worst <= scene.accuracy);
+  CHECK(by_hand.bound <= 1);
+  CHECK(by_hand.error <= 1.15 * scene.accuracy);  // the phase grid's peaks are 1 / 1.14 at least
+  CHECK(by_hand.peak_low >= 0.87);
+  CHECK(by_hand.peak_high <= 1.01);
 }
 
 }  // namespace titop_test
