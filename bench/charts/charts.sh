@@ -59,29 +59,45 @@ block() {
   [[ -z $points ]] || printf '# %s\n%s\n\n\n' "$2" "$points" >>"$work/$1.dat"
 }
 
+# timed NAME LABEL: a block with its slope over the last four points, past what small scenes cost.
+timed() {
+  local points order
+  points=$(cat)
+  order=$(echo "$points" | tail -n 4 | slope)
+  [[ -z $points ]] || echo "$points" | block "$1" "$2${order:+ (slope $order)}"
+}
+
 # The time of a task on a scene by all methods.
 draw_task() {
   local name=$1 task=$2 scene=$3 title=$4 method
   rm -f "$work/$name.dat"
   for method in titop "titop all cores" "titop on one core" "titop descriptor" "sparse LU" "dense LU" "dense model" \
     "factorization alone" "memset of A"; do
-    series "$out/times.csv" "$task" "$scene" "$method" | block "$name" "$method"
+    series "$out/times.csv" "$task" "$scene" "$method" | timed "$name" "$method"
   done
   case $task in
     *compile | *factor)
       best_octave "$out/octave.csv" "$scene" '(names|append|mconnect|lft|dense matrices)$' |
-        block "$name" "best of Octave with control"
+        timed "$name" "best of Octave with control"
       best_octave "$out/octave.csv" "$scene" 'sparse matrices$' |
-        block "$name" "Octave sparse matrices"
+        timed "$name" "Octave sparse matrices"
       ;;
   esac
-  chart "$name" "$title" "bodies" "seconds"
+  keyed "$name" "$title" "bodies" "seconds; slopes over the last four points"
 }
 
 # Exponent of growth over all points of one column: least squares of logarithms.
 slope() {
   awk -F, '{ x = log($1); y = log($2); n++; a += x; b += y; c += x * x; d += x * y }
     END { if (n > 2) printf "%.2f", (n * d - a * b) / (n * c - a * a) }'
+}
+
+# The steeper of the slopes up to 1 and from 1 on: ratios and units go to both extremes.
+steepest() {
+  local points
+  points=$(cat)
+  { echo "$points" | awk -F, '$1 <= 1' | slope; echo; echo "$points" | awk -F, '$1 >= 1' | slope; } |
+    awk 'NF { s = $1 < 0 ? -$1 : $1; if (best == "" || s > best) { best = s; found = $1 } } END { print found }'
 }
 
 draw_growth() {
@@ -93,7 +109,7 @@ draw_growth() {
       "$out/growth.csv")
     [[ -z $points ]] || echo "$points" | block "$name" "$scene (slope $(echo "$points" | slope))"
   done
-  chart "$name" "$title" "bodies" "$ylabel"
+  keyed "$name" "$title" "bodies" "$ylabel"
 }
 
 # One transfer: error against time, a line per method from float to 50 digits.
@@ -129,7 +145,7 @@ draw_response() {
     "seconds; f: float, d: double, r: refined, a: as needed" "largest relative error"
 }
 
-# Error of every method while one quantity goes to an extreme; rings where the library warns or
+# Error of every method while one quantity goes to an extreme, with the steepest slope; rings where the library warns or
 # notes something, crosses where it refuses.
 draw_failures() {
   local name=failure-$1 method title quantity options points order
@@ -141,7 +157,7 @@ draw_failures() {
     points=$(awk -F, -v s="$1" -v m="$method" '
       $1 == s && $5 == m && ($7 == "" || $7 == "warned" || $7 == "noted") {
         print $4 "," ($6 < 1e-17 ? 1e-17 : $6) }' "$out/failures.csv")
-    order=$(echo "$points" | awk -F, '$2 > 3e-14 && $2 < 0.1' | slope)
+    order=$(echo "$points" | awk -F, '$2 > 3e-14 && $2 < 0.1' | steepest)
     [[ $1 != digits ]] || order=
     [[ -z $points ]] || echo "$points" | block "$name" "$method${order:+ (slope $order)}"
   done

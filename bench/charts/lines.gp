@@ -2,7 +2,7 @@
 # notes='F': letters beside points; linear=1: along x; reverse=1: x falls to the
 # right; names='"A" "B"': a key instead of names at the ends.
 # Log-log lines in black and white: each has its own points and dashes and its name at its end.
-set terminal svg size 860,600 font "sans,15" background "white" enhanced
+set terminal svg size (exists("names") ? 1060 : 860),600 font "sans,15" background "white" enhanced
 set output output
 set monochrome
 set datafile separator ","
