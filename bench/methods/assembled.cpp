@@ -157,6 +157,12 @@ MatrixXcd dense_at_s(const Assembly& assembly, Complex s, Digits digits) {
   TITOP_BENCH_IN(dense, assembly, s, digits);
 }
 
+MatrixXcd refined_at_s(const Assembly& a, Complex s) {
+  Table<Complex> u = load<Complex>(a);
+  solve_refined(equations(a, s), u);
+  return outputs(a, u);
+}
+
 MatrixXcd block_by_block_at_s(const Assembly& assembly, Complex s, Digits digits) {
   TITOP_BENCH_IN(block_by_block, assembly, s, digits);
 }
@@ -200,15 +206,17 @@ void dense_lu(const Assembly& a, titop::StateSpace& model) {
   model.C = z.leftCols(2 * n), model.D = z.rightCols(nw);
 }
 
-SparseAssembly::SparseAssembly(const Assembly& a)
-    : load_(MatrixXcd::Zero(a.M.rows() + a.G.rows(), a.B.cols())), read_(a.C.cast<Complex>()) {
+template <class Real>
+SparseAssembly<Real>::SparseAssembly(const Assembly& a)
+    : load_(Dense::Zero(a.M.rows() + a.G.rows(), a.B.cols())), read_(a.C.cast<Number>()) {
   const Index n = a.M.rows(), size = n + a.G.rows();
-  load_.topRows(n) = MatrixXd(a.B).cast<Complex>();
-  std::vector<Eigen::Triplet<Complex>> constant, damping, stiffness;
+  load_.topRows(n) = MatrixXd(a.B).cast<Number>();
+  std::vector<Eigen::Triplet<Number>> constant, damping, stiffness;
   const auto add = [&](double c, double d, double k, Index i, Index j) {
     const auto row = static_cast<int>(i), col = static_cast<int>(j);
-    constant.emplace_back(row, col, c), damping.emplace_back(row, col, d);
-    stiffness.emplace_back(row, col, k);
+    const auto value = [](double v) { return Number(static_cast<Real>(v)); };
+    constant.emplace_back(row, col, value(c)), damping.emplace_back(row, col, value(d));
+    stiffness.emplace_back(row, col, value(k));
   };
   each(a.M, [&](Index i, Index j, double v) { add(v, 0, 0, i, j); });
   each(a.D, [&](Index i, Index j, double v) { add(0, v, 0, i, j); });
@@ -221,14 +229,21 @@ SparseAssembly::SparseAssembly(const Assembly& a)
   lu_.analyzePattern(constant_);
 }
 
-MatrixXcd SparseAssembly::transfer(Complex s) {
+template <class Real>
+MatrixXcd SparseAssembly<Real>::transfer(Complex at, bool refine) {
+  const Number s(at);
   Matrix at_s = constant_;
   at_s.coeffs() += (damping_.coeffs() + stiffness_.coeffs() / s) / s;
   lu_.factorize(at_s);
   if (lu_.info() != Eigen::Success)
     throw std::runtime_error("sparse LU: " + lu_.lastErrorMessage());
-  const MatrixXcd v = lu_.solve(load_);
-  return read_ * v.topRows(read_.cols());
+  Dense v = lu_.solve(load_);
+  if (refine) v += lu_.solve(Dense(load_ - at_s * v));
+  return Dense(read_ * v.topRows(read_.cols())).template cast<Complex>();
 }
+
+template class SparseAssembly<float>;
+template class SparseAssembly<double>;
+template class SparseAssembly<long double>;
 
 }  // namespace titop_bench

@@ -15,6 +15,9 @@ namespace titop_bench {
 Eigen::MatrixXcd dense_at_s(const Assembly& assembly, std::complex<double> s,
                             Digits digits = Digits::standard);
 
+/// In double with one step of iterative refinement, its residual in double.
+Eigen::MatrixXcd refined_at_s(const Assembly& assembly, std::complex<double> s);
+
 /// The same eliminated body by body, each by the inverse of its own dynamic mass, then joint
 /// by joint in what that leaves (flexibilities; substructuring by Lagrange multipliers).
 Eigen::MatrixXcd block_by_block_at_s(const Assembly& assembly, std::complex<double> s,
@@ -33,16 +36,20 @@ bool is_ring(const Assembly& assembly);
 /// accelerations, [M, G'; G, 0] by Eigen's PartialPivLU.
 void dense_lu(const Assembly& assembly, titop::StateSpace& model);
 
-/// Factored anew at each s by Eigen's SparseLU, on an order of elimination that is found once.
+/// Factored anew at each s by Eigen's SparseLU, on an order of elimination that is found once; in
+/// float, double or long double, and with one step of refinement, its residual in Real, if asked.
+template <class Real = double>
 class SparseAssembly {
  public:
   explicit SparseAssembly(const Assembly& assembly);
-  Eigen::MatrixXcd transfer(std::complex<double> s);
+  Eigen::MatrixXcd transfer(std::complex<double> s, bool refine = false);
 
  private:
-  using Matrix = Eigen::SparseMatrix<std::complex<double>>;
+  using Number = std::complex<Real>;
+  using Matrix = Eigen::SparseMatrix<Number>;
+  using Dense = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
   Matrix constant_, damping_, stiffness_;  ///< what is times 1, 1/s and 1/s^2, of one pattern
-  Eigen::MatrixXcd load_;
+  Dense load_;
   Matrix read_;
   Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu_;
 };

@@ -74,6 +74,14 @@ MatrixXcd dense_at_s(const Network& network, Complex s, Digits digits) {
   TITOP_BENCH_IN(dense, network, s, digits);
 }
 
+MatrixXcd refined_at_s(const Network& net, Complex s) {
+  const Places p(net);
+  const auto H = responses<Complex>(net, p, s);
+  Table<Complex> u{MatrixXd(net.E)};
+  solve_refined(loop(net, p, H), u);
+  return outputs(net, p, H, u);
+}
+
 MatrixXcd block_by_block_at_s(const Network& network, Complex s, Digits digits) {
   TITOP_BENCH_IN(block_by_block, network, s, digits);
 }

@@ -16,6 +16,9 @@ enum class Digits { single, standard, extended, fifty };  ///< float, double, lo
 Eigen::MatrixXcd dense_at_s(const Network& network, std::complex<double> s,
                             Digits digits = Digits::standard);
 
+/// In double with one step of iterative refinement, its residual in double.
+Eigen::MatrixXcd refined_at_s(const Network& network, std::complex<double> s);
+
 /// A bad example: the same eliminated block by block in order of declaration, each by its own
 /// inverse; no pivot is ever sought in another block.
 Eigen::MatrixXcd block_by_block_at_s(const Network& network, std::complex<double> s,

@@ -82,28 +82,64 @@ Table<T> product(const Table<T>& A, const Table<T>& B) {
   return C;
 }
 
-/// Y = M^-1 Y by Gauss with partial pivoting. Throws runtime_error where a column has no pivot.
+/// Gauss with partial pivoting.
 template <class T>
-void solve(Table<T> M, Table<T>& Y) {
-  const Eigen::Index n = M.rows();
-  for (Eigen::Index k = 0; k < n; ++k) {
-    Eigen::Index pivot = k;
-    for (Eigen::Index i = k + 1; i < n; ++i)
-      if (magnitude(M(i, k)) > magnitude(M(pivot, k))) pivot = i;
-    if (M(pivot, k) == number<T>(0)) throw std::runtime_error("no pivot");
-    M.swap_rows(k, pivot), Y.swap_rows(k, pivot);
-    for (Eigen::Index i = k + 1; i < n; ++i) {
-      if (M(i, k) == number<T>(0)) continue;
-      const T factor = M(i, k) / M(k, k);
-      M.subtract(factor, M, k, i, k);
-      Y.subtract(factor, Y, k, i);
+class Lu {
+ public:
+  /// Throws runtime_error where a column has no pivot.
+  explicit Lu(Table<T> M) : M_(std::move(M)) {
+    const Eigen::Index n = M_.rows();
+    for (Eigen::Index k = 0; k < n; ++k) {
+      Eigen::Index pivot = k;
+      for (Eigen::Index i = k + 1; i < n; ++i)
+        if (magnitude(M_(i, k)) > magnitude(M_(pivot, k))) pivot = i;
+      if (M_(pivot, k) == number<T>(0)) throw std::runtime_error("no pivot");
+      M_.swap_rows(k, pivot);
+      pivots_.push_back(pivot);
+      for (Eigen::Index i = k + 1; i < n; ++i) {
+        if (M_(i, k) == number<T>(0)) continue;
+        M_(i, k) /= M_(k, k);
+        M_.subtract(T(M_(i, k)), M_, k, i, k + 1);
+      }
     }
   }
-  for (Eigen::Index k = n - 1; k >= 0; --k) {
-    for (Eigen::Index j = 0; j < Y.cols(); ++j) Y(k, j) /= M(k, k);
-    for (Eigen::Index i = 0; i < k; ++i)
-      if (M(i, k) != number<T>(0)) Y.subtract(T(M(i, k)), Y, k, i);
+
+  /// Y = M^-1 Y.
+  void solve(Table<T>& Y) const {
+    const Eigen::Index n = M_.rows();
+    for (Eigen::Index k = 0; k < n; ++k) Y.swap_rows(k, pivots_[static_cast<std::size_t>(k)]);
+    for (Eigen::Index k = 0; k < n; ++k)
+      for (Eigen::Index i = k + 1; i < n; ++i)
+        if (M_(i, k) != number<T>(0)) Y.subtract(M_(i, k), Y, k, i);
+    for (Eigen::Index k = n - 1; k >= 0; --k) {
+      for (Eigen::Index j = 0; j < Y.cols(); ++j) Y(k, j) /= M_(k, k);
+      for (Eigen::Index i = 0; i < k; ++i)
+        if (M_(i, k) != number<T>(0)) Y.subtract(M_(i, k), Y, k, i);
+    }
   }
+
+ private:
+  Table<T> M_;
+  std::vector<Eigen::Index> pivots_;
+};
+
+/// Y = M^-1 Y. Throws as Lu does.
+template <class T>
+void solve(Table<T> M, Table<T>& Y) {
+  Lu<T>(std::move(M)).solve(Y);
+}
+
+/// The same with one step of iterative refinement, its residual in T as well.
+template <class T>
+void solve_refined(const Table<T>& M, Table<T>& Y) {
+  const Lu<T> lu(M);
+  Table<T> X = Y;
+  lu.solve(X);
+  for (Eigen::Index i = 0; i < M.rows(); ++i)
+    for (Eigen::Index k = 0; k < M.cols(); ++k)
+      if (M(i, k) != number<T>(0)) Y.subtract(M(i, k), X, k, i);
+  lu.solve(Y);
+  for (Eigen::Index i = 0; i < Y.rows(); ++i) Y.subtract(number<T>(-1), X, i, i);
 }
 
 template <class T>

@@ -13,6 +13,8 @@ using Eigen::VectorXd;
 namespace {
 
 template <class T>
+using RealOf = typename Eigen::NumTraits<T>::Real;
+template <class T>
 using Triplets = std::vector<Eigen::Triplet<T>>;
 
 template <class T>
@@ -20,7 +22,7 @@ void add(Triplets<T>& list, const Sparse& m, double sign, Index row, Index col) 
   for (int j = 0; j < m.outerSize(); ++j)
     for (Sparse::InnerIterator it(m, j); it; ++it)
       list.emplace_back(static_cast<int>(row + it.row()), static_cast<int>(col + j),
-                        sign * it.value());
+                        T(static_cast<RealOf<T>>(sign * it.value())));
 }
 
 template <class T>
@@ -88,11 +90,12 @@ VectorXd SparseLu::apply(const VectorXd& x, const VectorXd& w) {
   return result;
 }
 
-SparsePencil::SparsePencil(const Network& network) : net_(network) {
+template <class Real>
+SparsePencil<Real>::SparsePencil(const Network& network) : net_(network) {
   const Index n = net_.A.rows(), ny = net_.C.rows(), nu = net_.B.cols();
-  Triplets<std::complex<double>> list;
-  add_identity(list, n, {}, 0);  // the place of s
-  add_identity(list, ny + nu, {1.0, 0.0}, n);
+  Triplets<Number> list;
+  add_identity(list, n, Number(0), 0);  // the place of s
+  add_identity(list, ny + nu, Number(1), n);
   add(list, net_.A, -1, 0, 0);
   add(list, net_.B, -1, 0, n + ny);
   add(list, net_.C, -1, n, 0);
@@ -103,17 +106,24 @@ SparsePencil::SparsePencil(const Network& network) : net_(network) {
   lu_.analyzePattern(pencil_);
 }
 
-MatrixXcd SparsePencil::transfer(std::complex<double> s) {
+template <class Real>
+MatrixXcd SparsePencil<Real>::transfer(std::complex<double> s, bool refine) {
   const Index n = net_.A.rows(), ny = net_.C.rows(), nu = net_.B.cols();
   Matrix at_s = pencil_;
-  for (Index i = 0; i < n; ++i) at_s.coeffRef(i, i) += s;
+  for (Index i = 0; i < n; ++i) at_s.coeffRef(i, i) += Number(s);
   lu_.factorize(at_s);
   check(lu_);
-  MatrixXcd rhs = MatrixXcd::Zero(n + ny + nu, net_.E.cols());
-  rhs.bottomRows(nu) = MatrixXd(net_.E).cast<std::complex<double>>();
-  const MatrixXcd v = lu_.solve(rhs);
-  const Matrix F = net_.F.cast<std::complex<double>>();
-  return F * v.middleRows(n, ny) + MatrixXd(net_.G).cast<std::complex<double>>();
+  Dense rhs = Dense::Zero(n + ny + nu, net_.E.cols());
+  rhs.bottomRows(nu) = MatrixXd(net_.E).cast<Number>();
+  Dense v = lu_.solve(rhs);
+  if (refine) v += lu_.solve(Dense(rhs - at_s * v));
+  const Matrix F = net_.F.cast<Number>();
+  const Dense z = F * v.middleRows(n, ny) + MatrixXd(net_.G).cast<Number>();
+  return z.template cast<std::complex<double>>();
 }
+
+template class SparsePencil<float>;
+template class SparsePencil<double>;
+template class SparsePencil<long double>;
 
 }  // namespace titop_bench

@@ -31,14 +31,18 @@ class SparseLu {
 };
 
 /// [s - A, 0, -B; -C, I, -D; 0, -K, I] [x; y; u] = [0; 0; E w], factored anew at each s on an
-/// order of elimination that is found once.
+/// order of elimination that is found once; in float, double or long double, and with one step of
+/// refinement, its residual in Real, if asked.
+template <class Real = double>
 class SparsePencil {
  public:
   explicit SparsePencil(const Network& network);
-  Eigen::MatrixXcd transfer(std::complex<double> s);
+  Eigen::MatrixXcd transfer(std::complex<double> s, bool refine = false);
 
  private:
-  using Matrix = Eigen::SparseMatrix<std::complex<double>>;
+  using Number = std::complex<Real>;
+  using Matrix = Eigen::SparseMatrix<Number>;
+  using Dense = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
   const Network& net_;
   Matrix pencil_;
   Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu_;

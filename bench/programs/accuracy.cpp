@@ -86,15 +86,28 @@ void add_at_s(std::vector<Entry>& list, const char* method, const Scene& scene,
   add("50 digits", Digits::fifty);
 }
 
-/// The other methods, on a network of blocks or on a structure with constraints.
+/// refined: one step of iterative refinement with the same factors.
 template <class SparseLuAtS, class Scene>
+void add_sparse(std::vector<Entry>& list, const char* precision, const Scene& scene,
+                bool refine = false) {
+  const auto lu = std::make_shared<SparseLuAtS>(scene);
+  list.push_back(
+      {"sparse LU at s", precision, [lu, refine](Complex s) { return lu->transfer(s, refine); }});
+}
+
+/// The other methods, on a network of blocks or on a structure with constraints.
+template <template <class> class SparseLuAtS, class Scene>
 void add_others(std::vector<Entry>& list, const Scene& scene, bool can_be_torn) {
   StateSpace model;
   dense_lu(scene, model);
   add_model(list, "dense LU model", model);
-  const auto lu = std::make_shared<SparseLuAtS>(scene);
-  list.push_back({"sparse LU at s", "double", [lu](Complex s) { return lu->transfer(s); }});
+  add_sparse<SparseLuAtS<float>>(list, "float", scene);
+  add_sparse<SparseLuAtS<double>>(list, "double", scene);
+  add_sparse<SparseLuAtS<double>>(list, "refined", scene, true);
+  add_sparse<SparseLuAtS<long double>>(list, "long double", scene);
   add_at_s<Scene>(list, "dense LU at s", scene, dense_at_s);
+  list.insert(list.end() - 2,  // after double
+              {"dense LU at s", "refined", [&scene](Complex s) { return refined_at_s(scene, s); }});
   add_at_s<Scene>(list, "block by block", scene, block_by_block_at_s);
   if (can_be_torn) add_at_s<Scene>(list, "tearing", scene, tearing_at_s);
 }

@@ -112,7 +112,7 @@ bool library(const Rows& rows, double value, const Extreme& e, const System& sys
 }
 
 void others(const Rows& rows, double value, const Extreme& e, const Network& network) {
-  SparsePencil pencil(network);
+  SparsePencil<> pencil(network);
   rows.add(value, "sparse LU at s", e, [&](Complex s) { return pencil.transfer(s); });
   if (is_chain(network))
     rows.add(value, "tearing", e, [&](Complex s) { return tearing_at_s(network, s); });

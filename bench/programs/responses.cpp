@@ -59,7 +59,7 @@ Prepared titop_sweep(Case c, int n, int frequencies, int threads) {
 
 Prepared sparse_sweep(Case c, int n, int frequencies) {
   const auto scene = std::make_shared<Setup>(c, n, frequencies);
-  const auto pencil = std::make_shared<SparsePencil>(scene->network);
+  const auto pencil = std::make_shared<SparsePencil<>>(scene->network);
   return sweep(scene, [=](std::complex<double> s) { return pencil->transfer(s); });
 }
 
