@@ -76,7 +76,11 @@ std::string to_string(const OrderVerdict& v) {
         fmt::format("; {} state{} taken out, {}", left, left == 1 ? "" : "s", describe(v.removed));
   }
   if (v.to_fewer < 1) text += fmt::format("; the next would cost {:.1e}", v.to_fewer);
-  if (v.change >= 0) text += fmt::format("; transfer changed by {:.1e}", v.change);
+  if (v.change >= 0)
+    text += fmt::format(
+        "; {} {:.1e}",
+        v.removed.empty() ? "put back what changed the transfer by" : "transfer changed by",
+        v.change);
   return text;
 }
 

@@ -3,17 +3,19 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
-#include <limits>
+#include <titop/compiler/minimize/clusters.hpp>
 #include <titop/compiler/minimize/take_out.hpp>
 
 namespace titop::modes {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kSmallShare = 1e-4;  ///< of a mode that rounding puts into another, at most
+constexpr double kNoise = 1e-14;  ///< of the fastest mode: what rounding may do to a model's matrix
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -105,6 +107,63 @@ void remove(StateSpace& m, Leaving l, const std::vector<int>& dependent,
   }
 }
 
+/// All modes as seen from one side: what moves them, or what they show.
+template <class Matrix>
+struct Modes {
+  Matrix vectors;  ///< modes x states
+  VectorXd sizes;  ///< of the vectors, the states in units of their own
+  Matrix ports;    ///< modes x ports
+};
+
+/// The vectors of the modes that leave. Rounding has put a little of those that stay into them, the
+/// more the closer their frequencies: as much is taken back as makes what leaves entirely unmoved
+/// (or unseen), unless that is more than errors of size `noise` in the matrix can have done, as
+/// where the caller's resolution drops what is there.
+template <class Matrix>
+Matrix leaving(const Modes<Matrix>& all, const std::vector<Index>& leave,
+               const std::vector<Index>& stay, const ModeSet& m, double noise) {
+  const VectorXd unit = all.sizes.cwiseInverse();
+  const Matrix vectors = unit.asDiagonal() * all.vectors;
+  Matrix result = vectors(leave, Eigen::all), ports = unit.asDiagonal() * all.ports;
+  if (stay.empty() || ports.cols() == 0) return result;
+  for (Index l = 0; l < ports.cols(); ++l)
+    if (const double size = ports(stay, l).norm(); size > 0) ports.col(l) /= size;
+  for (std::size_t k = 0; k < leave.size(); ++k) {
+    const Index j = leave[k];
+    // What a share of mode i does to the equation of mode j: the least of all that will do. Modes
+    // of one cluster have been turned already.
+    VectorXd inverse = m.distance(stay, j).cwiseMax(kEps * noise).cwiseInverse();
+    for (std::size_t i = 0; i < stay.size(); ++i)
+      if (m.cluster[at(stay[i])] == m.cluster[at(j)]) inverse(static_cast<Index>(i)) = 0;
+    // A port that is all rounding says nothing.
+    std::vector<Index> clear;
+    for (Index l = 0; l < ports.cols(); ++l)
+      if (std::abs(ports(j, l)) <= kSmallShare) clear.push_back(l);
+    if (clear.empty() || ports(j, clear).norm() <= kEps) continue;
+    const Matrix moved = (inverse.asDiagonal() * ports(stay, clear)).transpose();
+    const Matrix error =
+        moved.completeOrthogonalDecomposition().solve(-ports(j, clear).transpose());
+    const Matrix share = inverse.asDiagonal() * error;
+    if (error.norm() <= noise && share.norm() <= kSmallShare)
+      result.row(static_cast<Index>(k)) += share.transpose() * vectors(stay, Eigen::all);
+  }
+  return result;
+}
+
+/// Modes that may have a share in those that leave: not their conjugate partners, and none at 0,
+/// which are far away.
+std::vector<Index> staying(const ModeSet& m, const std::vector<Index>& leave) {
+  std::vector<Index> result;
+  const auto leaves = [&](Index i) {
+    return std::find(leave.begin(), leave.end(), i) != leave.end();
+  };
+  for (Index i = 0; i < m.size(); ++i) {
+    const bool partner = m.states[at(i)] == 0 && leaves(i - 1);
+    if (!leaves(i) && !partner && m.apart[at(i)].empty()) result.push_back(i);
+  }
+  return result;
+}
+
 /// Position and velocity level of the same relations (rows).
 MatrixXd on_both(const MatrixXd& half, const Symmetric& s, Index states) {
   const Index k = half.rows();
@@ -134,8 +193,15 @@ void take_out(const Symmetric& s, const std::vector<Verdict>& verdicts, StateSpa
   for (Index j = 0; j < s.Q.cols(); ++j)
     if (verdicts[at(j)].drop) (verdicts[at(j)].unreachable ? unreachable : unseen).push_back(j);
   const Index states = model.A.rows();
-  const MatrixXd left = s.Q(Eigen::all, unreachable).transpose() * s.D_inverse;
-  const MatrixXd right = s.D * s.Q(Eigen::all, unseen);
+  MatrixXd shown(2 * model.C.rows(), s.Q.rows());
+  shown << model.C(Eigen::all, s.q) * s.D, model.C(Eigen::all, s.qdot) * s.D;
+  const auto modes = [&](const MatrixXd& ports, const std::vector<Index>& leave) {
+    const Modes<MatrixXd> all{s.Q.transpose(), VectorXd::Ones(s.Q.cols()), s.Q.transpose() * ports};
+    return leaving(all, leave, staying(s.modes, leave), s.modes,
+                   kNoise * s.modes.lambda.maxCoeff());
+  };
+  const MatrixXd left = modes(s.D_inverse * model.B(s.qdot, Eigen::all), unreachable) * s.D_inverse;
+  const MatrixXd right = s.D * modes(shown.transpose(), unseen).transpose();
   // Energy weight: soft coordinates are chosen to depend on the others.
   const VectorXd weight = s.D_inverse.colwise().norm().cwiseInverse();
   Leaving l{on_both(left, s, states), on_both(right.transpose(), s, states).transpose(),
@@ -150,16 +216,30 @@ void take_out(const Symmetric& s, const std::vector<Verdict>& verdicts, StateSpa
 void take_out(const General& g, const std::vector<Verdict>& verdicts, StateSpace& model,
               std::vector<std::string>& notes) {
   const Index n = g.e.values.size();
-  std::vector<Eigen::RowVectorXd> left, right;
-  for (Index j = 0; j < n; ++j) {
-    const Verdict& v = verdicts[at(j)];
-    if (!v.drop || g.modes.states[at(j)] == 0) continue;
-    const Eigen::RowVectorXcd row =
-        v.unreachable ? Eigen::RowVectorXcd(g.e.W.row(j)) : g.e.V.col(j).transpose();
-    auto& list = v.unreachable ? left : right;
-    list.push_back(row.real());
-    if (g.modes.states[at(j)] == 2) list.push_back(row.imag());
-  }
+  std::vector<Index> unreachable, unseen;
+  for (Index j = 0; j < n; ++j)
+    if (verdicts[at(j)].drop && g.modes.states[at(j)] > 0)
+      (verdicts[at(j)].unreachable ? unreachable : unseen).push_back(j);
+  const auto relations = [&](const MatrixXcd& vectors, const VectorXd& sizes,
+                             const MatrixXcd& ports, const std::vector<Index>& leave) {
+    const MatrixXcd rows =
+        leaving(Modes<MatrixXcd>{vectors, sizes, ports}, leave, staying(g.modes, leave), g.modes,
+                kNoise * g.modes.lambda.maxCoeff());
+    std::vector<Eigen::RowVectorXd> list;
+    for (std::size_t k = 0; k < leave.size(); ++k) {
+      const Eigen::RowVectorXcd row = rows.row(static_cast<Index>(k));
+      list.push_back(row.real());
+      if (g.modes.states[at(leave[k])] == 2) list.push_back(row.imag());
+    }
+    return list;
+  };
+  const VectorXd& scale = g.e.scale;
+  const std::vector<Eigen::RowVectorXd>
+      left = relations(g.e.W, (g.e.W * scale.asDiagonal()).rowwise().norm(), g.e.W * model.B,
+                       unreachable),
+      right =
+          relations(g.e.V.transpose(), (scale.cwiseInverse().asDiagonal() * g.e.V).colwise().norm(),
+                    (model.C * g.e.V).transpose(), unseen);
   const auto stack = [n](const std::vector<Eigen::RowVectorXd>& rows) {
     MatrixXd m(static_cast<Index>(rows.size()), n);
     for (std::size_t i = 0; i < rows.size(); ++i) m.row(static_cast<Index>(i)) = rows[i];
