@@ -114,6 +114,30 @@ TEST_CASE("RigidBody: wrenches and accelerations of a rigid body, by Newton and 
   CHECK(off(model_of(FlexibleBody(spec)), model) <= 1e-15);
 }
 
+TEST_CASE("RigidBody: of very many points, each with its own lever arm") {
+  Rng rng(5);
+  constexpr int points = 40;
+  const double m = 3;
+  RigidBody spec{.mass = m, .inertia = Vector3d(2, 3, 4).asDiagonal()};
+  for (int i = 0; i < points; ++i)
+    spec.children.push_back({"C" + std::to_string(i), rng.matrix(3, 1)});
+  const auto model = as_block(spec)->dynamics({});
+  CHECK(!model->sparse.empty());
+  const VectorXd u = rng.matrix(6 * points + 6, 1);
+  const Vector3d a = u.segment<3>(6 * points), w = u.tail<3>();
+  VectorXd y(u.size());
+  Vector3d F = -m * a, torque = -spec.inertia * w;
+  for (int i = 0; i < points; ++i) {
+    const Vector3d& PC = spec.children[static_cast<std::size_t>(i)].PC;
+    const Vector3d f = u.segment<3>(6 * i);
+    y.segment<6>(6 * i) << a + w.cross(PC), w;
+    F += f;
+    torque += Vector3d(u.segment<3>(6 * i + 3)) + PC.cross(f);
+  }
+  y.tail<6>() << F, torque;
+  CHECK(off(VectorXd(model->dense_direct() * u), y) <= 1e-14);
+}
+
 TEST_CASE("Hinge: (18) around a body, G = E M E'") {
   Rng rng(4);
   const Vector3d r = Vector3d(1, -2, 0.5).normalized();

@@ -260,6 +260,20 @@ TEST_CASE("joint: states, ports and errors have the axes' names") {
              {"gimbal.roll is driven on both sides", line}));
 }
 
+TEST_CASE("planar: two ways across the normal, right-handed with it, and the turn about it") {
+  for (const Vector3d& normal : {Vector3d(0, 0, 2), Vector3d(0, -3, 0), Vector3d(1, -2, 0.5)}) {
+    const std::vector<Axis> axes = planar(normal);
+    REQUIRE(axes.size() == 3);
+    const Vector3d n = normal.normalized(), a = twist(axes[0]).head<3>(),
+                   b = twist(axes[1]).head<3>();
+    CHECK(axes[0].kind == Axis::Kind::prismatic);
+    CHECK(axes[1].kind == Axis::Kind::prismatic);
+    CHECK(std::abs(a.dot(n)) <= 1e-15);
+    CHECK((a.cross(b) - n).norm() <= 1e-15);
+    CHECK((twist(axes[2]) - angular(n)).norm() <= 1e-15);
+  }
+}
+
 TEST_CASE("joints refuse axes that are none, and a joint by itself must be driven") {
   const auto refused = [](const auto& spec) {
     return error_of([&] {
