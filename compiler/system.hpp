@@ -130,7 +130,7 @@ class System {
   ParameterList parameters() const;
 
   Certificate certificate() const;
-  /// What the passes did: counts, inversions, what was removed, what was not checked, timings.
+  /// What the passes did: counts, inversions, what was removed, what was not checked.
   const std::vector<Note>& notes() const;
   /// The notes as text, one per line; after state_space() also what `minimize` did.
   std::string log() const;

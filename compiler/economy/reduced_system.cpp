@@ -18,11 +18,8 @@ Eigen::MatrixXcd ReducedSystem::transfer(std::complex<double> s) const {
   return data_->states ? data_->states->transfer(s) : data_->small.transfer(s);
 }
 
-std::string ReducedSystem::timings() const {
-  std::string text;
-  for (const auto& [step, seconds] : data_->seconds)
-    text += fmt::format("  {:<9} {:>10.1f} ms\n", step, 1e3 * seconds);
-  return text;
+const std::vector<std::pair<std::string, double>>& ReducedSystem::seconds() const {
+  return data_->seconds;
 }
 
 std::string to_string(const ReducedSystem& system) {

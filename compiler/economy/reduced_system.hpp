@@ -94,8 +94,8 @@ class ReducedSystem {
   const ErrorBound& bound() const;
   const std::vector<EconomyStep>& steps() const;
   const std::vector<KeptMode>& modes() const;
-  /// Seconds per step, as text: not part of to_string, which is the same on every machine.
-  std::string timings() const;
+  /// Seconds per step, in their order: not part of to_string, which is the same on every machine.
+  const std::vector<std::pair<std::string, double>>& seconds() const;
 
  private:
   std::shared_ptr<const detail::ReducedData> data_;
