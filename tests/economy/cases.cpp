@@ -116,6 +116,10 @@ TEST_CASE("symmetric appendages, common motion only: half their modes go exactly
   const ReducedSystem r = compile(twins(beam), scene);
   REQUIRE(r.steps().size() == 3);
   CHECK(r.steps()[1].name == "symmetry");
+  double all = 0;  // what the steps took is told
+  for (const auto& [step, seconds] : r.seconds()) all += seconds;
+  CHECK(r.seconds().front().first == "compile");
+  CHECK(all > 0);
   CHECK(r.steps()[1].before == 72);
   CHECK(r.steps()[1].after == 36);
   CHECK(r.steps()[1].error == 0);
