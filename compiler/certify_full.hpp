@@ -32,8 +32,9 @@ struct FullCertificate {
   Certificate basic;  ///< as by System::certificate(), with the dense model's part
 
   /// Over a grid s = (0.05 + j) w, w from a tenth of the lowest to ten times the highest pole:
-  /// largest difference of transfers, each output by each input over its largest value on the grid
-  /// (compiler/compare.hpp).
+  /// largest difference of transfers, per block of output and input (three translations or
+  /// rotations of a port together) over its largest value on the grid, or over 1e-5 of the terms
+  /// that cancel in it, as by symmetry (compiler/compare.hpp).
   struct Grid : Checked {
     int points = 0;
     double lowest = 0, highest = 0;  ///< w [rad/s]
@@ -71,7 +72,7 @@ struct FullCertificate {
 
   /// What does not hold, in words; empty if all that was checked does: equations, transfers and
   /// dense model to 1e-8, poles to 1e-6, a structure passive to 1e-9, the exact order inside the
-  /// verdict's interval.
+  /// verdict's interval, and nothing that the order step had to put back.
   std::vector<std::string> faults;
   bool holds() const { return faults.empty(); }
 };

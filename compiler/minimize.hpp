@@ -33,7 +33,9 @@ struct OrderVerdict {
   bool exact = false;   ///< decided by exact arithmetic (compiler/exact_order.hpp)
   double to_fewer = 1;  ///< least visibility among the modes that stay: what the next would cost
   double to_more = 0;   ///< largest visibility among those that left: what taking them out cost
-  double change = -1;   ///< of the transfer beside what left, relative, measured; negative: not
+  /// Of the transfer beside what left, relative, measured; negative: not. With nothing removed:
+  /// what left changed so much more than its modes were judged to that it was put back.
+  double change = -1;
   std::vector<JudgedMode> removed, undecided;
 
   bool decided() const { return judged && lowest == highest; }
