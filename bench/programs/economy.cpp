@@ -251,6 +251,6 @@ int main(int argc, char** argv) {
   table("heavy", heavy(beam), {.band_hz = {0, 261}}, quick);
   modes.xi = {0.005};
   table("satellite", scenes::satellite(scenes::read_boom(modes)), {.band_hz = {0, 300}}, quick);
-  table("loop", loop(scenes::read_boom(modes)), {.band_hz = {0, 100}}, quick, false);
   table("generated", generated(quick ? 60 : 500), {.band_hz = {0, 5}}, quick);
+  table("loop", loop(scenes::read_boom(modes)), {.band_hz = {0, 100}}, quick, false);
 }
