@@ -341,7 +341,7 @@ TEST_CASE("flexible bodies in a loop: they lose modes first where the states are
                                       .children = {{"C1", {0.3, 0, 0}}, {"C2", {-0.3, 0.05, 0}}}});
   const int boom = tree.add(beam.data(), root, 0);
   tree.add(beam.data(), root, 1, Rotation::about({0, 0, 1}, 2.9).nominal());
-  MatrixXd read(4, tree.motion(root).cols());
+  MatrixXl read(4, tree.motion(root).cols());
   read << tree.motion(root).row(5), tree.motion(boom, 0).topRows(3);
   const Truth open = truth_of(tree.structure(tree.motion(root).row(5), read), true, {0, 2, 2, 2});
   const auto closed = [&](Complex s) {

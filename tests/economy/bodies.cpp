@@ -65,7 +65,7 @@ TEST_CASE("smaller bodies: a body that carries 50 times its mass keeps its stati
   Tree tree(false);
   const int by_hand = tree.add(beam.data());
   tree.add(RigidBody{.mass = m, .inertia = Matrix3d::Identity() * 0.03 * m}, by_hand);
-  const MatrixXd end = tree.motion(by_hand, 0);
+  const MatrixXl end = tree.motion(by_hand, 0);
   check_beside(r, scene, truth_of(tree.structure(end, end)), 300);
 }
 
@@ -104,7 +104,7 @@ TEST_CASE("smaller bodies: positions, rates and static gain are kept") {
   const int root = tree.add(slim_beam(6).data());
   const int second =
       tree.add(slim_beam(6).data(), root, 0, Rotation::about({1, 2, 3}, 0.7).nominal());
-  MatrixXd read(12, tree.motion(root).cols());
+  MatrixXl read(12, tree.motion(root).cols());
   read << tree.motion(second, 0), tree.motion(root, 0);
   check_beside(r, scene,
                truth_of(tree.structure(tree.motion(second, 0), read), false,
@@ -144,7 +144,7 @@ TEST_CASE("smaller bodies that are twins stay twins") {
                                       .children = {{"C1", {0.3, 0, 0}}, {"C2", {-0.3, 0, 0}}}});
   tree.add(beam.data(), root, 0);
   tree.add(beam.data(), root, 1, turn);
-  const MatrixXd up = tree.motion(root).row(2);
+  const MatrixXl up = tree.motion(root).row(2);
   check_beside(r, scene, truth_of(tree.structure(up, up), true), 300);
 }
 

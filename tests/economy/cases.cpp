@@ -65,7 +65,7 @@ Truth twins_by_hand(const FlexibleBody& beam) {
                                      .children = {{"C1", {0.3, 0, 0}}, {"C2", {-0.3, 0, 0}}}});
   tree.add(beam.data(), hub, 0);
   tree.add(beam.data(), hub, 1, Vector3d(-1, -1, 1).asDiagonal());
-  const MatrixXd z = tree.motion(hub).row(2);
+  const MatrixXl z = tree.motion(hub).row(2);
   return truth_of(tree.structure(z, z), true);
 }
 
@@ -100,7 +100,7 @@ TEST_CASE("a free-free structure: rigid motion is in the static part, positions 
     Tree tree(true);
     const int first = tree.add(beam.data());
     const int second = tree.add(beam.data(), first, 0, Rotation::about({0, 1, 1}, 0.8).nominal());
-    const MatrixXd driven = tree.motion(first),
+    const MatrixXl driven = tree.motion(first),
                    read = positions ? tree.motion(first) : tree.motion(second, 0);
     check_beside(r, scene, truth_of(tree.structure(driven, read), true, positions ? 0 : 2), 400);
     CHECK(r.order() <= r.full().order() / 2);
@@ -190,7 +190,7 @@ TEST_CASE("a high mode of one body that another's lock brings down into the band
   const int fixed = tree.add(beam.data());
   tree.add(RigidBody{.mass = m, .inertia = Matrix3d::Identity() * m}, fixed);
   const int held = tree.add(beam.data(), fixed, 0, Rotation::about({0, 0, 1}, 0.5).nominal());
-  const MatrixXd tip = tree.motion(held, 0);
+  const MatrixXl tip = tree.motion(held, 0);
   check_beside(r, scene, truth_of(tree.structure(tip, tip)), 400);
 }
 

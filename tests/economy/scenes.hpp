@@ -41,7 +41,7 @@ inline Truth frame_by_hand(const titop::FlexibleBody& beam) {
   const int b1 = tree.add(beam.data());
   const int b2 = tree.add(beam.data(), b1, 0, titop::Rotation::about({1, 2, 3}, 0.7).nominal());
   const int b3 = tree.add(beam.data(), b2, 0, titop::Rotation::about({3, -1, 1}, -1.1).nominal());
-  const Eigen::MatrixXd tip = tree.motion(b3, 0);
+  const MatrixXl tip = tree.motion(b3, 0);
   return truth_of(tree.structure(tip, tip));
 }
 

@@ -16,6 +16,7 @@ struct Random {
   Diagram diagram{"random"};
   titop::Scene scene;
   bool undamped = true, collocated = true;
+  Truth truth;  ///< by hand
 };
 
 FlexibleBody random_beam(Rng& rng, bool undamped) {
@@ -38,27 +39,32 @@ Random random_structure(std::uint64_t seed) {
   const bool clamped = rng.chance(0.6);
   auto U = r.diagram.input("U", 6);
   std::vector<BodyHandle> bodies;
+  Tree tree(!clamped);
   for (int i = 0; i < count; ++i) {
     const std::string name = "b" + std::to_string(i);
-    bodies.push_back(r.diagram.add(name, random_beam(rng, r.undamped)));
+    const FlexibleBody beam = random_beam(rng, r.undamped);
+    bodies.push_back(r.diagram.add(name, beam));
     const Rotation turn = Rotation::about(
         {rng.between(-1, 1), rng.between(-1, 1), rng.between(0.1, 1)}, rng.between(-3, 3));
     if (i == 0 && clamped) bodies[0].parent.accel = 0;
     if (i == 0 && !clamped) bodies[0].parent.force = 0;
-    if (i > 0) {
-      BodyHandle& parent = bodies[static_cast<std::size_t>(rng.below(i))];
-      mount(bodies.back(), parent.child("C"), turn);
-    }
+    const int on = i > 0 ? rng.below(i) : -1;
+    if (i > 0) mount(bodies.back(), bodies[static_cast<std::size_t>(on)].child("C"), turn);
+    tree.add(beam.data(), on, 0, i > 0 ? turn.nominal() : Matrix3d(Matrix3d::Identity()));
   }
   if (rng.chance(0.4)) {
     const double m = std::pow(10, rng.between(-1, 3));
-    auto tip =
-        r.diagram.add("tip", RigidBody{.mass = m, .inertia = Matrix3d::Identity() * m * 0.01});
+    const RigidBody spec{.mass = m, .inertia = Matrix3d::Identity() * m * 0.01};
+    auto tip = r.diagram.add("tip", spec);
+    tree.add(spec, count - 1);
     mount(tip, bodies.back().child("C"), Rotation{});
   }
   bodies.back().child("C").force += U;
   auto& read = rng.chance(0.6) ? bodies.back() : bodies.front();
   r.collocated = &read == &bodies.back();
+  r.truth = truth_of(
+      tree.structure(tree.motion(count - 1, 0), tree.motion(r.collocated ? count - 1 : 0, 0)),
+      !clamped);
   r.diagram.output("a", 6) = read.child("C").accel;
   r.scene.band_hz = {0, std::pow(10, rng.between(0.5, 2.5))};
   r.scene.accuracy = std::pow(10, -rng.between(1, 6));
@@ -80,34 +86,6 @@ bool is_passive(const ReducedSystem& r, double high) {
   return true;
 }
 
-/// The largest error of any pair over what its bound allows, on a grid of the band that knows
-/// nothing of the bound's: equal steps, and 41 points across every pole of the full system.
-struct Against {
-  double bound = 0;  ///< largest |error| / (bound of the pair * its peak): 1 or less
-  double error = 0;  ///< largest |error| / peak
-};
-Against on_fine_grid(const ReducedSystem& r, const titop::Scene& scene, int steps = 1500) {
-  const double low = 2 * std::numbers::pi * scene.band_hz[0];
-  const double high = 2 * std::numbers::pi * scene.band_hz[1], zeta = scene.damping_floor;
-  std::vector<double> omega;
-  for (int i = 1; i <= steps; ++i) omega.push_back(low + (high - low) * i / steps);
-  for (int i = 1; i <= 30; ++i)  // from the lower end on by factors, from 0 on over nine decades
-    omega.push_back(low > 0 ? low * std::pow(high / low, i / 31.0) : high * std::pow(10, -0.3 * i));
-  for (const titop::Pole& p : r.full().poles())
-    for (int i = -20; i <= 20; ++i)
-      if (const double w = p.omega * (1 + 0.2 * zeta * i); w > low && w < high) omega.push_back(w);
-  Against worst;
-  for (const double w : omega) {
-    const std::complex<double> s{zeta * w, std::sqrt(1 - zeta * zeta) * w};
-    const Eigen::MatrixXd error = (r.full().transfer(s) - r.transfer(s)).cwiseAbs();
-    const titop::ErrorBound& b = r.bound();
-    const Eigen::MatrixXd relative = error.cwiseQuotient(b.peak);
-    worst.error = std::max(worst.error, relative.maxCoeff());
-    worst.bound = std::max(worst.bound, relative.cwiseQuotient(b.pairs).maxCoeff());
-  }
-  return worst;
-}
-
 }  // namespace
 
 TEST_CASE("500 random scenes: error below the bound, undamped poles on the axis, passive") {
@@ -119,7 +97,7 @@ TEST_CASE("500 random scenes: error below the bound, undamped poles on the axis,
       const ReducedSystem reduced = compile(r.diagram, r.scene);
       ++met;
       CHECK(reduced.bound().worst <= r.scene.accuracy);
-      CHECK(on_fine_grid(reduced, r.scene, 600).bound <= 1);
+      CHECK(beside(reduced, r.scene, r.truth, r.undamped ? 600 : 50).bound <= 1);
       CHECK(reduced.order() <= reduced.full().order());
       for (const Pole& p : poles(reduced.state_space()))
         CHECK((r.undamped ? p.s.real() == 0 : p.s.real() < 0));
