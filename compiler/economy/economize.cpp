@@ -9,6 +9,7 @@
 #include <titop/compiler/compile_graph.hpp>
 #include <titop/compiler/economy/balanced.hpp>
 #include <titop/compiler/economy/bodies.hpp>
+#include <titop/compiler/economy/bound.hpp>
 #include <titop/compiler/economy/ray.hpp>
 #include <titop/compiler/economy/reduced_data.hpp>
 #include <titop/compiler/economy/sharpen.hpp>
@@ -18,12 +19,12 @@
 namespace titop {
 namespace {
 
+using detail::kPhase;
 using detail::ReducedData;
 using detail::Small;
 using Eigen::Index;
 using std::numbers::pi;
 
-constexpr double kPhase = 1;  ///< step of the phase grid: a bound of 1 / cos(1 / 2) = 1.14 samples
 constexpr double kShare = 0.1;         ///< of the accuracy: sum of effects of what bodies lose
 constexpr double kMostOfBodies = 0.3;  ///< of the accuracy: what that may cost
 constexpr int kTries = 4;
@@ -80,7 +81,7 @@ class Economy {
     d.steps.push_back({"whole", static_cast<int>(whole_.order() + whole_.far),
                        static_cast<int>(d.small.order()), d.bound.worst,
                        "modes of the band, and static-like vectors of those above it"});
-    d.modes = modes(d.small);
+    d.modes = detail::kept_modes(whole_, d.small);
     d.seconds.emplace_back("reduce", now() - start);
     return ReducedSystem(std::make_shared<const ReducedData>(std::move(d)));
   }
@@ -351,49 +352,11 @@ class Economy {
   }
 
   /// Of a model with these poles and this transfer.
-  template <class F>
-  ErrorBound bound(const std::vector<std::complex<double>>& poles, const F& transfer) const {
-    const auto points = detail::sample_points(scene_, band_, spectrum(), poles, kPhase);
-    const detail::Samples check = detail::sample(full_, scene_, spectrum(), points);
-    ErrorBound b;
-    b.kind = scene_.bound;
-    b.samples = static_cast<int>(points.size() + samples_.s.size());
-    b.pairs = Eigen::MatrixXd::Zero(check.peak.rows(), check.peak.cols());
-    double worst = -1;
-    for (std::size_t k = 0; k < check.s.size(); ++k) {
-      const Eigen::MatrixXd e =
-          detail::difference(check, transfer(check.s[k]), k).cwiseAbs().cwiseQuotient(check.peak);
-      b.pairs = b.pairs.cwiseMax(e);
-      Index i = 0, j = 0;
-      if (const double here = e.maxCoeff(&i, &j); !(here <= worst)) {
-        worst = here;
-        b.output = full_.outputs()[at(i)];
-        b.input = full_.inputs()[at(j)];
-        b.hertz = check.omega[k] / (2 * pi);
-      }
-    }
-    b.peak = check.peak;
-    b.pairs = b.pairs / std::cos(kPhase / 2) + detail::rounding(check);
-    b.worst = b.pairs.maxCoeff();
+  ErrorBound bound(const std::vector<std::complex<double>>& poles,
+                   const detail::TransferOf& transfer) const {
+    ErrorBound b = detail::error_bound(full_, scene_, band_, spectrum(), poles, transfer);
+    b.samples += static_cast<int>(samples_.s.size());
     return b;
-  }
-
-  std::vector<KeptMode> modes(const Small& m) const {
-    std::vector<KeptMode> result;
-    const Eigen::MatrixXd shares = detail::participation(whole_, m.V);
-    for (Index j = 0; j < m.order(); ++j) {
-      KeptMode mode;
-      const double omega = std::sqrt(m.k(j));
-      mode.hertz = omega / (2 * pi);
-      if (m.Z.size() > 0 && omega > 0) mode.damping = m.Z(j, j) / (2 * omega);
-      mode.exact = m.V.col(j).cwiseAbs().maxCoeff() == 1;
-      for (Index i = 0; i < shares.rows(); ++i)
-        if (shares(i, j) >= 0.05) mode.blocks.emplace_back(whole_.blocks[at(i)], shares(i, j));
-      std::stable_sort(mode.blocks.begin(), mode.blocks.end(),
-                       [](const auto& a, const auto& b) { return a.second > b.second; });
-      result.push_back(std::move(mode));
-    }
-    return result;
   }
 
   Scene scene_;

@@ -18,4 +18,7 @@ struct ReducedData {
   std::optional<States> states = {};  ///< instead of `small`, where there is no second-order form
 };
 
+/// The coordinates of a small model, with the blocks that move in each.
+std::vector<KeptMode> kept_modes(const Whole& whole, const Small& small);
+
 }  // namespace titop::detail

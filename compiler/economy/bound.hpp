@@ -1,0 +1,22 @@
+#pragma once
+
+#include <functional>
+#include <titop/compiler/economy/ray.hpp>
+#include <titop/compiler/economy/reduced_system.hpp>
+
+/// The error of a reduced model over a scene's band. For the compiler's own files only.
+namespace titop::detail {
+
+/// Step of the phase grid: a bound of 1 / cos(1 / 2) = 1.14 times the samples.
+constexpr double kPhase = 1;
+
+using TransferOf = std::function<Eigen::MatrixXcd(std::complex<double>)>;
+
+/// Beside the factored system, per pair relative to its own peak, where the two can differ most:
+/// on the phase grid of the poles of both; and what rounding adds. Cost: the full system's
+/// transfers at these points, which `samples` counts.
+ErrorBound error_bound(const System& full, const Scene& scene, const Band& band,
+                       const Spectrum& spectrum, const std::vector<std::complex<double>>& poles,
+                       const TransferOf& transfer);
+
+}  // namespace titop::detail
