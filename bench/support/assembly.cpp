@@ -2,26 +2,15 @@
 
 #include <stdexcept>
 
+#include "support/triplets.hpp"
+
 namespace titop_bench {
 namespace {
 
 using Eigen::MatrixXd;
 using titop::Signal;
-using Triplets = std::vector<Eigen::Triplet<double>>;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-void add(Triplets& list, const MatrixXd& m, int row, int col) {
-  for (int j = 0; j < m.cols(); ++j)
-    for (int i = 0; i < m.rows(); ++i)
-      if (m(i, j) != 0) list.emplace_back(row + i, col + j, m(i, j));
-}
-
-Sparse sparse(const Triplets& list, int rows, int cols) {
-  Sparse m(rows, cols);
-  m.setFromTriplets(list.begin(), list.end());
-  return m;
-}
 
 titop::Modal modal_of(const titop::Node& node, const std::vector<double>& values) {
   const auto d = node.block->dynamics(values);

@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <titop/graph/invert.hpp>
 
+#include "support/triplets.hpp"
+
 namespace titop_bench {
 
 using Eigen::MatrixXd;
@@ -14,22 +16,9 @@ using titop::StateSpace;
 
 namespace {
 
-using Triplets = std::vector<Eigen::Triplet<double>>;
 using Pairs = std::vector<std::pair<int, int>>;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-void add(Triplets& list, const MatrixXd& m, int row, int col) {
-  for (int j = 0; j < m.cols(); ++j)
-    for (int i = 0; i < m.rows(); ++i)
-      if (m(i, j) != 0) list.emplace_back(row + i, col + j, m(i, j));
-}
-
-Sparse sparse(const Triplets& list, int rows, int cols) {
-  Sparse m(rows, cols);
-  m.setFromTriplets(list.begin(), list.end());
-  return m;
-}
 
 class Export {
  public:
