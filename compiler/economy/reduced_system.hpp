@@ -121,7 +121,8 @@ std::string to_string(const ReducedSystem& system);
 ///
 /// Throws what `compile(diagram)` throws; bad_value for a scene out of range or too large, and
 /// where the accuracy cannot be met, with what was reached and where; unknown_name for inputs and
-/// outputs that are not there. Cost: one symmetric eigenproblem, O(n^3) of the coordinates (those
+/// outputs that are not there; singular where poles on the axis cannot be told from damped ones.
+/// Cost: one symmetric eigenproblem, O(n^3) of the coordinates (those
 /// that are left, where bodies lose modes first: Scene::whole_up_to), and some hundred transfers of
 /// the full system; of balanced models a Schur form and the Gramians, O(100 n^3) of the states
 /// (Scene::balance_up_to).
