@@ -2,57 +2,11 @@
 
 #include <map>
 
+#include "generate/controls.hpp"
+#include "generate/tables.hpp"
+
 namespace titop::generate {
 namespace {
-
-template <class S>
-Table<S> table(const Rows& rows, std::size_t cols) {
-  Table<S> t(rows.size(), cols);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    for (std::size_t j = 0; j < cols; ++j) t(i, j) = exactly<S>(rows[i][j]);
-  return t;
-}
-
-template <class S>
-Table<S> table(const Mat3& M) {
-  Table<S> t(3, 3);
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) t(i, j) = exactly<S>(M[i][j]);
-  return t;
-}
-
-template <class S>
-Table<S> row(const Vec3& v) {
-  Table<S> t(1, 3);
-  for (std::size_t j = 0; j < 3; ++j) t(0, j) = exactly<S>(v[j]);
-  return t;
-}
-
-/// diag(T, T).
-template <class S>
-Table<S> dual(const Mat3& T) {
-  Table<S> t(6, 6);
-  t.add(table<S>(T));
-  t.add(table<S>(T), 3, 3);
-  return t;
-}
-
-/// tau_CP: what a rigid body does at C when P moves; PC from P to C.
-template <class S>
-Table<S> tau(const Vec3& PC) {
-  Table<S> t = identity<S>(6);
-  t.add(table<S>(cross(-PC)), 0, 3);
-  return t;
-}
-
-/// The rows of a part, part x size of the point.
-template <class S>
-Table<S> part_rows(const Part& part, std::size_t size) {
-  if (size == 1 || part.kind == Part::Kind::all) return identity<S>(size);
-  Table<S> t(part.kind == Part::Kind::linear ? 3 : 1, 6);
-  t.add(part.kind == Part::Kind::linear ? identity<S>(3) : row<S>(part.direction));
-  return t;
-}
 
 /// Which columns belong to what: coordinates that are free, those of an imposed base, those held.
 struct Columns {
@@ -82,13 +36,10 @@ class Assembly {
 
   FirstOrder<S> model() {
     solve_motion();
-    FirstOrder<S> open;
-    open.A = Table<S>(states_, states_), open.B = Table<S>(states_, F_.cols());
-    state_rows(open.A, open.B);
     Table<S> y(0, states_ + F_.cols()), e = y;
     for (const Reading& r : plan_.readings) y.append(reading(r));
     for (const Control& c : plan_.controls) e.append(measured(c));
-    return with_controls(open, y, e);
+    return Controls<S>(plan_.controls, states_, inputs_).around(state_rows(), y, e);
   }
 
  private:
@@ -276,14 +227,18 @@ class Assembly {
     return a;
   }
 
-  void state_rows(Table<S>& A, Table<S>& B) const {
+  Table<S> state_rows() const {
     const std::size_t np = columns.imposed.size();
-    for (std::size_t i = 0; i < nz_; ++i) A(i, nz_ + i) = S(1);
-    for (std::size_t i = 0; i < np; ++i) A(2 * nz_ + i, 2 * nz_ + np + i) = S(1);
+    Table<S> xdot(states_, states_ + F_.cols());
+    for (std::size_t i = 0; i < nz_; ++i) xdot(i, nz_ + i) = S(1);
+    for (std::size_t i = 0; i < np; ++i) xdot(2 * nz_ + i, 2 * nz_ + np + i) = S(1);
     const Table<S> N = null_space(G_.cols(columns.free));
     // zdd from qdd = N zdd: by the rows in which N is the unit matrix.
-    for (std::size_t k = 0; k < nz_; ++k) split(qdd_, columns.free[unit_row(N, k)], nz_ + k, A, B);
-    for (std::size_t i = 0; i < np; ++i) split(qdd_, columns.imposed[i], 2 * nz_ + np + i, A, B);
+    for (std::size_t k = 0; k < nz_; ++k)
+      xdot.add(qdd_.rows({columns.free[unit_row(N, k)]}), nz_ + k);
+    for (std::size_t i = 0; i < np; ++i)
+      xdot.add(qdd_.rows({columns.imposed[i]}), 2 * nz_ + np + i);
+    return xdot;
   }
 
   static std::size_t unit_row(const Table<S>& N, std::size_t k) {
@@ -293,12 +248,6 @@ class Assembly {
       if (unit) return i;
     }
     throw std::logic_error("no unit row");
-  }
-
-  void split(const Table<S>& from, std::size_t source, std::size_t target, Table<S>& A,
-             Table<S>& B) const {
-    for (std::size_t j = 0; j < states_; ++j) A(target, j) += from(source, j);
-    for (std::size_t j = 0; j < B.cols(); ++j) B(target, j) += from(source, states_ + j);
   }
 
   Table<S> reading(const Reading& r) const {
@@ -340,55 +289,6 @@ class Assembly {
   Table<S> measured(const Control& c) const {
     if (c.law == Control::Law::position) return q_.rows({own_[static_cast<std::size_t>(c.block)]});
     return rows_along(c) * motion(c.at) * qdd_;
-  }
-
-  /// v = Cc xc + Dc e, e = Ex x + Eu u + Ev v: e solved, then put in everywhere.
-  FirstOrder<S> with_controls(const FirstOrder<S>& open, const Table<S>& y, const Table<S>& e) {
-    const std::size_t nc = plan_.controls.size(), n = states_;
-    std::size_t total = n;
-    for (const Control& c : plan_.controls) total += c.A.size();
-    // Everything over [x, xc, u] for v and e.
-    const std::size_t width = total + inputs_;
-    Table<S> Cc(nc, width), loop = identity<S>(nc), right(nc, width);
-    std::size_t at = n;
-    std::vector<std::size_t> first;
-    for (std::size_t k = 0; k < nc; ++k) {
-      const Control& c = plan_.controls[k];
-      first.push_back(at);
-      for (std::size_t j = 0; j < c.A.size(); ++j) Cc(k, at + j) = exactly<S>(c.C[0][j]);
-      at += c.A.size();
-      for (std::size_t j = 0; j < nc; ++j) loop(k, j) -= exactly<S>(c.D) * e(k, n + inputs_ + j);
-      for (std::size_t j = 0; j < n; ++j) right(k, j) = exactly<S>(c.D) * e(k, j);
-      for (std::size_t j = 0; j < inputs_; ++j) right(k, total + j) = exactly<S>(c.D) * e(k, n + j);
-    }
-    const Table<S> v = solve(loop, right + Cc);
-    const auto closed = [&](const Table<S>& rows) {
-      Table<S> out(rows.rows(), width), by_v(rows.rows(), nc);
-      for (std::size_t i = 0; i < rows.rows(); ++i) {
-        for (std::size_t j = 0; j < n; ++j) out(i, j) = rows(i, j);
-        for (std::size_t j = 0; j < inputs_; ++j) out(i, total + j) = rows(i, n + j);
-        for (std::size_t j = 0; j < nc; ++j) by_v(i, j) = rows(i, n + inputs_ + j);
-      }
-      return out + by_v * v;
-    };
-    Table<S> xdot(n, n + F_.cols());
-    xdot.add(open.A), xdot.add(open.B, 0, n);
-    Table<S> all = closed(xdot);
-    const Table<S> es = closed(e);
-    for (std::size_t k = 0; k < nc; ++k) {
-      const Control& c = plan_.controls[k];
-      Table<S> own = table<S>(c.B, 1) * es.rows({k});
-      own.add(table<S>(c.A, c.A.size()), 0, first[k]);
-      all.append(own);
-    }
-    return split_model(all, closed(y), total);
-  }
-
-  FirstOrder<S> split_model(const Table<S>& x, const Table<S>& y, std::size_t n) const {
-    std::vector<std::size_t> left, right;
-    for (std::size_t j = 0; j < n; ++j) left.push_back(j);
-    for (std::size_t j = 0; j < inputs_; ++j) right.push_back(n + j);
-    return {x.cols(left), x.cols(right), y.cols(left), y.cols(right)};
   }
 
   const Plan& plan_;
