@@ -21,23 +21,22 @@ FlexibleBody boom() {
               .modes = {.xi = {0.005}}};
 }
 
+/// [hub's rotations; tip2; theta] from [the wheel about z; the motor], by hand.
+by_hand::MatrixXcd asked(const by_hand::Structure& a, by_hand::Complex s) {
+  by_hand::MatrixXcd G = by_hand::position_transfer(a, s);
+  G.topRows(18) *= s * s;  // accelerations; theta is an angle
+  by_hand::MatrixXcd H(10, 2);
+  H << G.middleRows(3, 3).col(5), G.middleRows(3, 3).col(6), G.bottomRows(7).col(5),
+      G.bottomRows(7).col(6);
+  return H;
+}
+
 /// Largest error of any pair, each over its own peak, beside the scene assembled by hand.
 double error_by_hand(const ReducedSystem& r, const by_hand::Structure& a, const Scene& scene) {
-  const Eigen::Index rows = static_cast<Eigen::Index>(r.outputs().size());
-  by_hand::MatrixXd worst = by_hand::MatrixXd::Zero(rows, 2), peak = worst;
-  const double zeta = scene.damping_floor, high = 2 * 3.141592653589793 * scene.band_hz[1];
-  for (int k = 1; k <= 400; ++k) {
-    const double w = high * k / 400;
-    const by_hand::Complex s{zeta * w, std::sqrt(1 - zeta * zeta) * w};
-    by_hand::MatrixXcd G = by_hand::position_transfer(a, s);
-    G.topRows(18) *= s * s;
-    by_hand::MatrixXcd asked(rows, 2);
-    asked << G.middleRows(3, 3).col(5), G.middleRows(3, 3).col(6), G.bottomRows(7).col(5),
-        G.bottomRows(7).col(6);
-    worst = worst.cwiseMax((asked - r.transfer(s)).cwiseAbs());
-    peak = peak.cwiseMax(asked.cwiseAbs());
-  }
-  return worst.cwiseQuotient(peak).maxCoeff();
+  std::vector<by_hand::MatrixXcd> small, exact;
+  for (const by_hand::Complex s : by_hand::ray(scene.damping_floor, scene.band_hz[1], 400))
+    small.push_back(r.transfer(s)), exact.push_back(asked(a, s));
+  return by_hand::transfer_error(small, exact);
 }
 
 }  // namespace

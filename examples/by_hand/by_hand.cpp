@@ -172,6 +172,14 @@ double transfer_error(const std::vector<MatrixXcd>& a, const std::vector<MatrixX
   return worst;
 }
 
+std::vector<Complex> ray(double zeta, double hertz, int points) {
+  std::vector<Complex> s;
+  for (int k = 1; k <= points; ++k)
+    s.push_back(Complex{zeta, std::sqrt(1 - zeta * zeta)} *
+                (2 * 3.141592653589793 * hertz * k / points));
+  return s;
+}
+
 double pole_error(std::vector<Complex> a, const std::vector<Complex>& exact) {
   if (a.size() != exact.size()) return 1;
   double worst = 0;

@@ -76,6 +76,10 @@ MatrixXd rigid_motion(const Beam& beam);
 double transfer_error(const std::vector<MatrixXcd>& a, const std::vector<MatrixXcd>& exact,
                       Index rows = 1, Index cols = 1);
 
+/// (zeta + j sqrt(1 - zeta^2)) omega up to this frequency, in so many equal steps: where a scene of
+/// that damping floor is compared.
+std::vector<Complex> ray(double zeta, double hertz, int points);
+
 /// Largest distance of a pole to its partner in the other list, each relative to its own modulus;
 /// 1 where the lists differ in length. Lists of poles with Im s >= 0.
 double pole_error(std::vector<Complex> a, const std::vector<Complex>& exact);
