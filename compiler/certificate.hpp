@@ -9,11 +9,11 @@ namespace titop {
 /// what is not listed was not checked.
 struct Certificate {
   /// Largest |left - right| over (sum of magnitudes of the terms) among all equations of the
-  /// diagram AS WRITTEN, at one complex s, for one random input, all signals computed by the
+  /// diagram AS WRITTEN, at one real s > 0, for one random input, all signals computed by the
   /// compiled system. Rounding is about 1e-16 times the length of a row.
   double residual = 0;
   std::string residual_where;  ///< the equation or block that has it
-  std::complex<double> s;      ///< where it was evaluated
+  double s = 0;                ///< where it was evaluated [rad/s]
   /// Largest relative difference between xdot, y of the dense model and of the factors, for one
   /// random x, u; negative where no dense model has been written.
   double dense_against_factors = -1;

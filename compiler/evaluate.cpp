@@ -386,6 +386,7 @@ solve::RowMatrix<T> Evaluation<T>::forced_states(const solve::RowMatrix<T>& r) c
   return x;
 }
 
+template class Evaluation<double>;
 #define TITOP_INSTANTIATE(T) template class Evaluation<T>;
 TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
 #undef TITOP_INSTANTIATE

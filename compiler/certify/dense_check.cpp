@@ -64,7 +64,7 @@ DenseError dense_error(const SystemData& d, const StateSpace& m) {
   DenseError worst;
   if (u.size() == 0 || m.C.rows() == 0 || m.A.size() == 0) return worst;
   for (const double factor : {1e-4, 1e-2, 1.0, 1e2}) {
-    const T s = factor * d.checked().certificate.s;
+    const T s = factor * pick_s(d);
     const Evaluation<T> point(d, s, u);
     const solve::RowMatrix<T> x = d.states.model_states(point.states(), u, s);
     VectorXcd left = -s * x;

@@ -3,14 +3,12 @@
 #include <limits>
 #include <span>
 #include <titop/compiler/certify/residual.hpp>
-#include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/drives.hpp>
 
 namespace titop::detail {
 namespace {
 
 using Eigen::MatrixXd;
-using Complex = std::complex<double>;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -19,11 +17,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// All signals at one s.
 class Values {
  public:
-  Values(const SystemData& d, const Evaluation<Complex>& point) : g_(d.graph()) {
+  Values(const SystemData& d, const Evaluation<double>& point) : g_(d.graph()) {
     for (const Signal& s : g_.signals) first_.push_back(first_.back() + s.size);
     values_ = point.values(first_);
   }
-  std::span<const Complex> of(int signal) const {
+  std::span<const double> of(int signal) const {
     return {values_.data() + first_[at(signal)], at(first_[at(signal) + 1] - first_[at(signal)])};
   }
   /// Computed: active, or external, or at rest because no input moves it.
@@ -35,76 +33,65 @@ class Values {
  private:
   const Graph& g_;
   std::vector<int> first_ = {0};
-  solve::RowMatrix<Complex> values_;
+  solve::RowMatrix<double> values_;
 };
 
-double largest_of(std::span<const Complex> values) {
+double largest_of(std::span<const double> values) {
   double largest = 0;
-  for (const Complex& v : values) largest = std::max(largest, solve::size_of(v));
+  for (const double v : values) largest = std::max(largest, std::abs(v));
   return largest;
 }
 
 /// One equation after the other: left - right, and the sum of magnitudes, row by row.
 struct Balance {
-  std::vector<Complex> difference = {};
-  std::vector<double> magnitude = {};
+  Eigen::VectorXd difference = {}, magnitude = {};
   bool known = true;
 
   void start(Eigen::Index rows, bool is_known) {
-    difference.assign(static_cast<std::size_t>(rows), 0);
-    magnitude.assign(static_cast<std::size_t>(rows), 0);
+    difference.setZero(rows);
+    magnitude.setZero(rows);
     known = is_known;
   }
-  Eigen::Index rows() const { return static_cast<Eigen::Index>(difference.size()); }
+  Eigen::Index rows() const { return difference.size(); }
 
   /// factor * c * value. A port signal counts by its largest entry: of a pinned point the
   /// translation is 0 but for rounding, which its rotation has left there. States count one by one.
   template <class Matrix>
-  void add(const Matrix& c, std::span<const Complex> value, Complex factor, bool by_entry = false) {
-    const double largest = by_entry ? 0 : largest_of(value), scale = solve::size_of(factor);
-    Complex* const off = difference.data();
-    double* const sum = magnitude.data();
+  void add(const Matrix& c, std::span<const double> value, double factor, bool by_entry = false) {
+    const double largest = by_entry ? 0 : largest_of(value);
     for (Eigen::Index j = 0; j < c.cols(); ++j) {
-      const Complex x = value[static_cast<std::size_t>(j)], v = factor * x;
-      const double size = scale * (by_entry ? solve::size_of(x) : largest);
-      for (Eigen::Index i = 0; i < c.rows(); ++i) {
-        const double entry = c(i, j);
-        if (entry == 0) continue;  // of blocks and rotations, most are
-        off[i] += entry * v;
-        sum[i] += std::abs(entry) * size;
-      }
+      const double x = value[static_cast<std::size_t>(j)];
+      const double size = by_entry ? std::abs(x) : largest;
+      if (size == 0) continue;
+      difference += c.col(j) * (factor * x);
+      magnitude += c.col(j).cwiseAbs() * (std::abs(factor) * size);
     }
   }
-  void add_identity(std::span<const Complex> value, Complex factor, bool by_entry = false) {
-    const double largest = by_entry ? 0 : largest_of(value), scale = solve::size_of(factor);
-    for (std::size_t i = 0; i < value.size(); ++i) {
-      difference[i] += factor * value[i];
-      magnitude[i] += scale * (by_entry ? solve::size_of(value[i]) : largest);
-    }
+  void add_identity(std::span<const double> value, double factor, bool by_entry = false) {
+    const Eigen::Map<const Eigen::VectorXd> x(value.data(), rows());
+    difference += factor * x;
+    if (by_entry)
+      magnitude += std::abs(factor) * x.cwiseAbs();
+    else
+      magnitude.array() += std::abs(factor) * largest_of(value);
   }
   /// Largest difference; infinite where something is not finite.
   double largest() const {
-    double result = 0;
-    for (const Complex& v : difference) {
-      const double size = solve::size_of(v);
-      result = std::isfinite(size) ? std::max(result, size) : kInfinity;
-      if (result == kInfinity) break;
-    }
-    return result;
+    const double size =
+        difference.size() ? difference.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() : 0;
+    return std::isfinite(size) ? size : kInfinity;
   }
   /// 1 where something is not finite.
   double relative() const {
     const double off = largest();
     if (off == kInfinity) return 1;
-    double size = 0;
-    for (const double m : magnitude) size = std::max(size, m);
-    return off > 0 ? off / size : 0;
+    return off > 0 ? off / magnitude.maxCoeff() : 0;
   }
 };
 
 /// Size of a signal's neighbours in its front of the elimination, in the signal's own unit (both by
 /// the scaling of the front's columns): what is 1e-16 of it is what rounding leaves of a 0.
-double size_around(const SystemData& d, const Evaluation<Complex>& point, int signal) {
+double size_around(const SystemData& d, const Evaluation<double>& point, int signal) {
   const solve::Plan& plan = *d.skeleton->joint.plan;
   const solve::ColumnScale& scale = *d.factors->scale();
   double result = 0;
@@ -120,9 +107,9 @@ double size_around(const SystemData& d, const Evaluation<Complex>& point, int si
       for (const int other : plan.list(range)) {
         if (other == v) own = scale[at(column)];
         for (int i = 0; i < plan.structure.variable_size[at(other)]; ++i, ++column)
-          largest = std::max(largest,
-                             std::ldexp(solve::size_of(point.unknowns()(plan.first[at(other)] + i)),
-                                        -scale[at(column)]));
+          largest =
+              std::max(largest, std::ldexp(std::abs(point.unknowns()(plan.first[at(other)] + i)),
+                                           -scale[at(column)]));
       }
     result = std::max(result, std::ldexp(largest, own));
   }
@@ -132,9 +119,9 @@ double size_around(const SystemData& d, const Evaluation<Complex>& point, int si
 /// The residual of the equations as the user wrote them.
 struct Residual {
   const SystemData& d;
-  const Evaluation<Complex>& point;
+  const Evaluation<double>& point;
   const Values& values;
-  Complex s;
+  double s;
   const Graph& w = *d.skeleton->stage.source;
   Balance b = {};  ///< of the present equation
   double worst = 0;
@@ -161,9 +148,9 @@ struct Residual {
   /// Subtracts N * (term); N = nullptr: the identity.
   void subtract(const MatrixXd* N, const Term& t, const std::vector<Drive>& drive) {
     b.known = b.known && values.known(t.signal);
-    const Complex factor = t.of == Term::Of::position ? -1.0 / (s * s)
-                           : t.of == Term::Of::rate   ? -1.0 / s
-                                                      : -1.0;
+    const double factor = t.of == Term::Of::position ? -1.0 / (s * s)
+                          : t.of == Term::Of::rate   ? -1.0 / s
+                                                     : -1.0;
     if (!N && t.factors.empty() && t.of != Term::Of::reaction)
       return b.add_identity(values.of(t.signal), t.sign * factor);
     MatrixXd c = coefficient(w, t, d.numbers.parameters);
@@ -283,7 +270,7 @@ struct Residual {
 
 }  // namespace
 
-WrittenResidual written_residual(const SystemData& d, const Evaluation<Complex>& point, Complex s) {
+WrittenResidual written_residual(const SystemData& d, const Evaluation<double>& point, double s) {
   const Values values(d, point);
   Residual r{d, point, values, s};
   r.equations();

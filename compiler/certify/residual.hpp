@@ -12,10 +12,9 @@ struct WrittenResidual {
 };
 
 /// Largest |left - right| over (sum of magnitudes of the terms) of all equations of Stage::source
-/// and all rows of all blocks, with the signals of `point`, which was evaluated at s with one
-/// column of inputs. What is 0 but for rounding does not count; what is not finite counts as 1.
-/// O(terms).
-WrittenResidual written_residual(const SystemData& d, const Evaluation<std::complex<double>>& point,
-                                 std::complex<double> s);
+/// and all rows of all blocks, with the signals of `point`, which was evaluated at s (real: half
+/// the arithmetic) with one column of inputs. What is 0 but for rounding does not count; what is
+/// not finite counts as 1. O(terms).
+WrittenResidual written_residual(const SystemData& d, const Evaluation<double>& point, double s);
 
 }  // namespace titop::detail

@@ -42,7 +42,7 @@ Json poles(const std::vector<Pole>& list) {
 Json certificate(const Certificate& c) {
   return {{"residual", c.residual},
           {"residual_where", c.residual_where},
-          {"s", complex(c.s)},
+          {"s", c.s},
           {"dense_against_factors", found(c.dense_against_factors)},
           {"dense_error", found(c.dense_error)},
           {"dense_error_s", complex(c.dense_error_s)},

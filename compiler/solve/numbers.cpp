@@ -238,7 +238,8 @@ RowMatrix<T> JointRows<T>::rhs_of_states(const RowMatrix<T>& states, std::span<c
   return result;
 }
 
-/// Calls visit(scalar row, coefficient, scalar unknown) for all entries of the rows.
+/// Calls visit(scalar row, coefficients, scalar unknown, count) for every row and every variable in
+/// it: coefficients of so many unknowns from this one on.
 template <class T>
 template <class Visit>
 void JointRows<T>::visit_entries(Visit visit) const {
@@ -257,9 +258,11 @@ void JointRows<T>::visit_entries(Visit visit) const {
     add(r, row.data(), width, column.data());
     const T* c = row.data();
     for (int i = 0; i < size; ++i)
-      for (const int v : plan.structure.row(r))
-        for (int k = 0; k < plan.structure.variable_size[at(v)]; ++k, ++c)
-          visit(plan.row_first[at(r)] + i, *c, plan.first[at(v)] + k);
+      for (const int v : plan.structure.row(r)) {
+        const int count = plan.structure.variable_size[at(v)];
+        visit(plan.row_first[at(r)] + i, c, plan.first[at(v)], count);
+        c += count;
+      }
   }
 }
 
@@ -267,8 +270,9 @@ template <class T>
 RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const {
   const std::ptrdiff_t m = rhs.cols();
   RowMatrix<T> result = rhs;
-  visit_entries([&](int row, const T& c, int unknown) {
-    subtract(m, c, unknowns.data() + unknown * m, result.data() + row * m);
+  visit_entries([&](int row, const T* c, int unknown, int count) {
+    for (int k = 0; k < count; ++k)
+      subtract(m, c[k], unknowns.data() + (unknown + k) * m, result.data() + row * m);
   });
   return result;
 }
@@ -276,13 +280,20 @@ RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>&
 template <class T>
 Balance<T> JointRows<T>::balance(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const {
   const std::ptrdiff_t m = rhs.cols();
-  Balance<T> result{rhs, rhs.unaryExpr([](const T& x) { return size_of(x); })};
-  visit_entries([&](int row, const T& c, int unknown) {
+  const auto sizes = [](const RowMatrix<T>& x) -> RowMatrix<double> {
+    return x.unaryExpr([](const T& entry) { return size_of(entry); });
+  };
+  Balance<T> result{rhs, sizes(rhs)};
+  const RowMatrix<double> size_of_unknowns = sizes(unknowns);
+  visit_entries([&](int row, const T* c, int unknown, int count) {
     const T* z = unknowns.data() + unknown * m;
-    subtract(m, c, z, result.residual.data() + row * m);
-    const double size = size_of(c);
-    double* magnitude = result.magnitudes.data() + row * m;
-    for (std::ptrdiff_t j = 0; j < m; ++j) magnitude[j] += size * size_of(z[j]);
+    const double* size = size_of_unknowns.data() + unknown * m;
+    double* const magnitude = result.magnitudes.data() + row * m;
+    for (int k = 0; k < count; ++k, z += m, size += m) {
+      subtract(m, c[k], z, result.residual.data() + row * m);
+      const double own = size_of(c[k]);
+      for (std::ptrdiff_t j = 0; j < m; ++j) magnitude[j] += own * size[j];
+    }
   });
   return result;
 }

@@ -22,6 +22,10 @@ template <class T>
 struct Scalar {
   static double epsilon() { return static_cast<double>(std::numeric_limits<T>::epsilon()); }
   static double size(const T& x) { return static_cast<double>(std::abs(x)); }
+  static T from(double x) { return static_cast<T>(x); }
+  /// At a real s: what a block answers there is real, too.
+  static T from(std::complex<double> x) { return static_cast<T>(x.real()); }
+  static double round(const T& x) { return static_cast<double>(x); }
 };
 
 /// Complex numbers are measured by |re| + |im|: within a factor sqrt(2) of the modulus, without

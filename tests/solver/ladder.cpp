@@ -147,9 +147,17 @@ Diagram far_end(const FlexibleBody& spec, int n) {
 TEST_CASE("precision: what dies away along a chain, to the smallest numbers, is no loss") {
   Rng rng(11);
   const FlexibleBody spec(titop_test::random_modes(rng, 6, {"C"}, true));
-  // Each body leaves about 0.77 of it: 2868 of them 1e-318, a number of five digits.
-  const System system = compile(far_end(spec, 2868));
-  const std::complex<double> s = system.certificate().s;
+  const double s =
+      compile(far_end(spec, 2)).certificate().s;  // where any number of them is checked
+  const auto left = [&](int n) {
+    return compile(far_end(spec, n)).transfer(s).cwiseAbs().maxCoeff();
+  };
+  const double after = left(60), by_each = std::pow(after / left(40), 1.0 / 20);
+  REQUIRE(by_each < 0.95);
+  // So many that 1e-316 arrives, a number of a few digits.
+  const int n = 60 + static_cast<int>(std::log(1e-316 / after) / std::log(by_each));
+  const System system = compile(far_end(spec, n));
+  REQUIRE(system.certificate().s == doctest::Approx(s));
   const Eigen::MatrixXcd y = system.transfer(s);
   CHECK(y.cwiseAbs().maxCoeff() < 1e-300);
   CHECK(y.cwiseAbs().maxCoeff() > 0);
