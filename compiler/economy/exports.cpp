@@ -114,7 +114,12 @@ MatrixXcd SecondOrderModel::transfer(Complex s) const {
       s * s * C_accel.cast<Complex>() + s * C_rate.cast<Complex>() + C.cast<Complex>();
   const MatrixXcd S = s * s * M.cast<Complex>() + s * D.cast<Complex>() + K.cast<Complex>();
   if (S.rows() == 0) return direct.cast<Complex>();
-  return direct.cast<Complex>() + c * linalg::solve(S, B.cast<Complex>()).z;
+  const auto solved = linalg::solve(S, B.cast<Complex>());
+  if (!(solved.rcond > 0) || !solved.z.allFinite())
+    throw Error(Code::singular,
+                fmt::format("the reduced structure has a pole at s = {}{:+}j", s.real(), s.imag()),
+                "evaluate beside the pole");
+  return direct.cast<Complex>() + c * solved.z;
 }
 
 ModalModel ReducedSystem::modal() const {

@@ -9,9 +9,11 @@
 namespace titop::detail {
 
 struct ReducedData {
+  Scene scene;
   System full;
   Small small;
   ErrorBound bound;
+  std::vector<Note> notes;
   std::vector<EconomyStep> steps;
   std::vector<KeptMode> modes;
   std::vector<std::pair<std::string, double>> seconds;

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <titop/compiler/economy/reduced_data.hpp>
 
 namespace titop {
@@ -10,12 +11,21 @@ int ReducedSystem::order() const {
 const std::vector<std::string>& ReducedSystem::inputs() const { return data_->full.inputs(); }
 const std::vector<std::string>& ReducedSystem::outputs() const { return data_->full.outputs(); }
 const System& ReducedSystem::full() const { return data_->full; }
+const Scene& ReducedSystem::scene() const { return data_->scene; }
+const std::vector<Note>& ReducedSystem::notes() const { return data_->notes; }
 const ErrorBound& ReducedSystem::bound() const { return data_->bound; }
 const std::vector<EconomyStep>& ReducedSystem::steps() const { return data_->steps; }
 const std::vector<KeptMode>& ReducedSystem::modes() const { return data_->modes; }
 
 Eigen::MatrixXcd ReducedSystem::transfer(std::complex<double> s) const {
-  return data_->states ? data_->states->transfer(s) : data_->small.transfer(s);
+  if (data_->states) return data_->states->transfer(s);
+  Eigen::MatrixXcd H = data_->small.transfer(s);
+  if (!H.allFinite())
+    throw Error(Code::singular,
+                fmt::format("{}, reduced, has a pole at s = {}{:+}j", full().stage().graph.name,
+                            s.real(), s.imag()),
+                "evaluate beside the pole");
+  return H;
 }
 
 const std::vector<std::pair<std::string, double>>& ReducedSystem::seconds() const {
@@ -25,6 +35,12 @@ const std::vector<std::pair<std::string, double>>& ReducedSystem::seconds() cons
 std::string to_string(const ReducedSystem& system) {
   std::string text = fmt::format("{}: {} states of {}\n", system.full().stage().graph.name,
                                  system.order(), system.full().order());
+  const Scene& q = system.scene();
+  text += fmt::format(
+      "  asked     {:.1e} of each pair's own peak, {:g} to {:g} Hz, on s = ({:g} + {:.6g} j) "
+      "omega\n",
+      q.accuracy, q.band_hz[0], q.band_hz[1], q.damping_floor,
+      std::sqrt(1 - q.damping_floor * q.damping_floor));
   for (const EconomyStep& s : system.steps())
     text += fmt::format("  {:<9} {:>5} -> {:>4} {}, {}: {}\n", s.name, s.before, s.after,
                         s.name == "kept" || s.name == "balanced" ? "states" : "coordinates",
@@ -48,6 +64,7 @@ std::string to_string(const ReducedSystem& system) {
                                  : "vector",
                     blocks);
   }
+  for (const Note& note : system.notes()) text += "  " + note.text + "\n";
   return text;
 }
 

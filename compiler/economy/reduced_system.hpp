@@ -11,7 +11,8 @@ struct ReducedData;
 /// How far a reduced system is from the full one, over the scene's band.
 struct ErrorBound {
   Eigen::MatrixXd pairs;      ///< outputs x inputs, relative as Scene says
-  Eigen::MatrixXd peak;       ///< what counts as 1 for each pair: |error| <= pairs * peak
+  Eigen::MatrixXd peak;       ///< what counts as 1 for each pair, in the pair's own unit (output
+                              ///< over input): |error| <= pairs * peak
   double worst = 0;           ///< the largest of `pairs`
   std::string input, output;  ///< of that pair
   double hertz = 0;           ///< where it was found [Hz]
@@ -35,22 +36,24 @@ struct EconomyStep {
 struct KeptMode {
   double hertz = 0;       ///< of its mode [Hz]
   double damping = 0;     ///< ratio; 0 for motions without stiffness
-  bool exact = false;     ///< a mode of the full system; else a static-like vector above the band
+  bool exact = false;     ///< a mode of the assembled bodies, undamped (of smaller bodies, where
+                          ///< these lose modes first); else a static-like vector above the band
   bool balanced = false;  ///< neither: a pole of the balanced part
   /// Blocks that take part, with their share of its elastic energy (of balanced models, of its
   /// participation factors, as Pole::blocks), largest first, down to 5 %.
   std::vector<std::pair<std::string, double>> blocks;
 };
 
-/// M qdd + D qd + K q = B u, y = C q + C_rate qd + C_accel qdd + direct u, with M = I, D symmetric
-/// semidefinite (0 if undamped), K diagonal >= 0: stable as the structure is.
+/// Coordinates are mass-normalised, q [kg^1/2 m] or [kg^1/2 m rad]: M is I, K [rad^2/s^2], D
+/// [rad/s]. M qdd + D qd + K q = B u, y = C q + C_rate qd + C_accel qdd + direct u, with M = I, D
+/// symmetric semidefinite (0 if undamped), K diagonal >= 0: stable as the structure is.
 struct SecondOrderModel {
   Eigen::MatrixXd M, D, K;             ///< r x r
   Eigen::MatrixXd B;                   ///< r x inputs
   Eigen::MatrixXd C, C_rate, C_accel;  ///< outputs x r
   Eigen::MatrixXd direct;              ///< outputs x inputs
   std::vector<std::string> coordinates, inputs, outputs;
-  /// Outputs x inputs. O(r^3).
+  /// Outputs x inputs. O(r^3). Throws singular if s is a pole.
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
 };
 
@@ -62,7 +65,7 @@ struct ModalModel {
   Eigen::MatrixXd B, C, D;  ///< 2r x inputs, outputs x 2r, outputs x inputs
   std::vector<std::string> inputs, outputs;
   int order() const { return 2 * static_cast<int>(A.size()); }
-  /// Outputs x inputs. O(r).
+  /// Outputs x inputs. O(r). Throws singular if s is a pole.
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
 };
 
@@ -80,7 +83,7 @@ class ReducedSystem {
   const System& full() const;
 
   /// Outputs x inputs, O(order), O(order^3) where modes are coupled by damping. transfer(0), where
-  /// there is one, is the full system's.
+  /// there is one, is the full system's. Throws singular if s is a pole.
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
 
   /// Dense; states "mode1", "mode1_rate", ...; of balanced models "kept1", ..., "balanced1", ...
@@ -91,7 +94,12 @@ class ReducedSystem {
   /// to defective (two of them critically damped alike, say); second_order() has them all.
   ModalModel modal() const;
 
+  /// The question, with the accuracy that was asked for.
+  const Scene& scene() const;
   const ErrorBound& bound() const;
+  /// Warnings: bodies whose own data (their highest mode) end below 1.5 times the band. No bound on
+  /// the reduction sees what is not in them.
+  const std::vector<Note>& notes() const;
   const std::vector<EconomyStep>& steps() const;
   const std::vector<KeptMode>& modes() const;
   /// Seconds per step, in their order: not part of to_string, which is the same on every machine.
@@ -108,7 +116,8 @@ std::string to_string(const ReducedSystem& system);
 /// diagram is compiled for the scene's inputs and outputs alone; what symmetric bodies cannot show
 /// goes exactly; the rest becomes modes of the band and static-like vectors of the modes above it,
 /// with the second-order structure kept. The result is checked against the full factored system,
-/// and grows until the bound is below the accuracy.
+/// and grows until the bound is below the accuracy. Symmetric are bodies added from one and the
+/// same body object (two that are merely equal are not compared), and not those in closed chains.
 ///
 /// Where the scene is no passive structure (controllers and filters in the loop, dashpots without
 /// springs; a note says which state), states take the place of M, D, K. Integrals, poles on the

@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <algorithm>
@@ -61,6 +63,11 @@ MatrixXd real_basis(const MatrixXcd& Q) {
 class Core {
  public:
   Core(const StateSpace& m, const Peeled& p) : A_(m.A(p.core, p.core)) {
+    for (const Index i : p.core)
+      if (const auto k = static_cast<std::size_t>(i); k < m.states.size())
+        names_.push_back(m.states[k]);
+      else
+        names_.push_back(fmt::format("state {}", i + 1));
     scale_ = linalg::balance(A_);
     schur_ = linalg::schur(A_);
   }
@@ -75,10 +82,11 @@ class Core {
   }
   /// Tells kept and stable apart.
   void divide() {
-    for (double near = kNear; near < 1; near *= 10)
+    if (try_divide(kNear)) return;
+    const Error error = inseparable();
+    for (double near = 10 * kNear; near < 1; near *= 10)
       if (try_divide(near)) return;
-    throw Error(Code::singular, "poles on the axis cannot be told from damped ones",
-                "they depend on each other too closely: use compile(diagram)");
+    throw error;
   }
   Index kept = 0;
   MatrixXd V_kept, V_stable;  ///< order x kept, order x the rest; orthonormal
@@ -107,9 +115,31 @@ class Core {
     return over.size() == 0 || over.norm() <= kTogether;
   }
 
+  /// Names the pole nearest the axis of those that are not kept, and the state that moves most in
+  /// it: the first column of a Schur form that begins with a pole is its eigenvector.
+  Error inseparable() const {
+    Index nearest = kept, state = 0;
+    for (Index i = kept; i < order(); ++i)
+      if (pole(i).real() > pole(nearest).real()) nearest = i;
+    std::vector<char> first(static_cast<std::size_t>(order()), 0);
+    first[static_cast<std::size_t>(nearest)] = 1;
+    linalg::Schur s = schur_;
+    linalg::reorder(s, first);
+    s.Q.col(0).cwiseAbs().maxCoeff(&state);
+    return Error(
+        Code::singular,
+        fmt::format("{} moves in a pole at {:.3g}{:+.3g}j, which cannot be told from those "
+                    "on the axis",
+                    names_[static_cast<std::size_t>(state)], pole(nearest).real(),
+                    pole(nearest).imag()),
+        "they depend on each other too closely to be reduced apart: leave out the outputs "
+        "that read it, or use compile(diagram)");
+  }
+
   MatrixXd A_;
   VectorXd scale_;
   linalg::Schur schur_;
+  std::vector<std::string> names_;
 };
 
 /// Both ends in the core's coordinates, without what the core does to them or they to it.

@@ -383,3 +383,24 @@ TEST_CASE("what balanced states cannot do is refused with what they reach, a lar
              }),
              Code::bad_value, {"theorem", "balance_up_to"}));
 }
+
+TEST_CASE(
+    "a pole that cannot be told from one on the axis is refused by the state that moves in it") {
+  // Eigenvalues 1e-8 and -5e-7 with eigenvectors as near to each other, turned by 45 degrees so
+  // that no pattern shows it: what goes from one to the other is 1 / 5e-7.
+  const double e = 5e-7, up = 1e-8;
+  MatrixXd A(2, 2);
+  A << (up - 1 - e) / 2, (up + 1 + e) / 2, (up - 1 + e) / 2, (up + 1 - e) / 2;
+  MatrixXd B(2, 1), C(1, 2);
+  B << 1, 2;
+  C << 3, 1;
+  Diagram d{"creeping"};
+  auto u = d.input("u");
+  auto law = d.add("law", Lti{.A = A, .B = B, .C = C});
+  law.in = u;
+  d.output("y") = law.out;
+  CHECK(says(error_of([&] {
+               compile(d, titop::Scene{.band_hz = {0.1, 1}});
+             }),
+             Code::singular, {"law.x", "on the axis", "compile(diagram)"}));
+}

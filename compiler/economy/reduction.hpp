@@ -1,0 +1,84 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+#include <titop/compiler/economy/bound.hpp>
+#include <titop/compiler/economy/reduced_data.hpp>
+
+/// The two ways to a smaller model. For the compiler's own files only.
+namespace titop::detail {
+
+/// Seconds on a clock that only goes on.
+inline double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+/// What is known of a scene whichever way it becomes smaller: what was asked, what was compiled,
+/// and what has been done so far.
+struct Setting {
+  Setting(const Scene& asked, const Options& how, double least_accuracy, int of_blocks)
+      : scene(asked), options(how), finest(least_accuracy), states(of_blocks) {}
+
+  Scene scene;
+  Options options;
+  double finest;          ///< of the accuracies that will be asked for
+  int states;             ///< of all blocks
+  System full{nullptr};   ///< as asked
+  System model{nullptr};  ///< with smaller bodies; the same where these are not needed
+  std::shared_ptr<const SystemData> data;  ///< of `model`
+  bool smaller = false;                    ///< bodies have lost modes first, if they had any
+  std::string bodies;                      ///< which ones; empty: none
+  std::string why;                         ///< `model` is no structure; empty: it is
+  Band band;
+  Samples samples;  ///< the full system's transfers where it or `model` can have peaks
+  std::vector<Note> notes;
+  std::vector<EconomyStep> steps;
+  std::vector<std::pair<std::string, double>> seconds;
+
+  template <class F>
+  void timed(const char* name, F f) {
+    const double start = now();
+    f();
+    seconds.emplace_back(name, now() - start);
+  }
+  /// Returns its place in `steps`.
+  std::size_t note(const char* name, Eigen::Index before, Eigen::Index after, std::string text);
+  /// The first of all steps, down to so many coordinates; once.
+  void note_structure(Eigen::Index after);
+  /// Fills `samples` for a model with this spectrum.
+  void take_samples(const Spectrum& spectrum);
+  /// Of a reduced model with these poles and this transfer, of a whole with this spectrum.
+  ErrorBound bound(const Spectrum& spectrum, const std::vector<std::complex<double>>& poles,
+                   const TransferOf& transfer) const;
+  /// What is known by now, with this model; `modes` are still to come.
+  ReducedData result(Small small, ErrorBound bound) const;
+  /// "ask for ...": what helps where an accuracy is out of reach.
+  std::string way_out(double reached, const char* limit, const char* rounding_in) const;
+};
+
+/// `Setting::model`, ready to be reduced to any accuracy: a better model has no smaller order.
+class Reduction {
+ public:
+  virtual ~Reduction() = default;
+  virtual Spectrum spectrum() const = 0;
+  /// The smallest model whose bound is at most this; none if rounding ends first.
+  virtual std::optional<ReducedData> reach(double accuracy) = 0;
+  /// Throws bad_value: what can be reached instead, and what is in the way.
+  [[noreturn]] virtual void refuse(double accuracy) = 0;
+};
+
+/// Modes of the whole and static-like vectors, in second order, of the setting's model, which was
+/// compiled from this graph. Fills `band` and `samples`, adds to `steps` and `seconds`. Throws
+/// NoStructure where there is no M, D, K; bad_value where there are more coordinates than
+/// Scene::whole_up_to, and what band_of throws.
+std::unique_ptr<Reduction> by_modes(Setting& setting, const Graph& graph);
+
+/// Balanced states, where there is no structure. Fills `band` and `samples`, adds to `steps` and
+/// `seconds`, and to `states` what integrates positions. Throws what `split` and band_of throw.
+std::unique_ptr<Reduction> by_states(Setting& setting);
+
+/// Throws bad_value: `size` coordinates are more than Scene::whole_up_to.
+[[noreturn]] void refuse_size(const Setting& setting, Eigen::Index size);
+
+}  // namespace titop::detail
