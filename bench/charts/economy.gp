@@ -1,6 +1,6 @@
 # gnuplot -e "scenes=N" economy.gp: economy.dat of economy.sh to order.svg, time.svg, simulation.svg.
 # In black and white: a scene is a kind of mark, filled and solid for the small model, open and
-# dashed for what stands beside it.
+# dashed for plain truncation.
 set terminal svg size 900,560 font "sans,15" background "white"
 set monochrome
 set logscale xy
@@ -9,9 +9,10 @@ set grid back linetype 1 linecolor rgb "#cccccc" dashtype solid linewidth 0.5
 set border 3
 set tics nomirror
 set key outside right noenhanced
-set offsets graph 0.02, graph 0.02, graph 0.02, graph 0.02
+set offsets 0, 0, graph 0.05, graph 0.05
 set xlabel "largest error over the band"
-set xrange [] reverse
+set xrange [0.3:1e-9]
+set autoscale yfix
 array filled[6] = [7, 5, 9, 11, 13, 15]
 array open[6] = [6, 4, 8, 10, 12, 14]
 
@@ -35,6 +36,8 @@ plot for [i=1:scenes] "economy.dat" index i-1 using 1:3 with linespoints linecol
 
 set output "simulation.svg"
 set xlabel "largest error of an output in time, over its largest value"
+set autoscale x
+set xrange [] reverse
 set ylabel "seconds of a simulation, over the full system's"
 plot for [i=1:scenes] "economy.dat" index i-1 using 5:4 with linespoints linecolor rgb "black" \
        linewidth 1.5 dashtype solid pointtype filled[i] pointsize 0.8 title columnheader(1)

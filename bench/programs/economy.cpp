@@ -1,9 +1,9 @@
 /// bench_economy [quick]: what accuracy costs, in CSV, a row per scene and accuracy: the states
-/// that `what_if` keeps, its bound and the error, seconds of one transfer and of a simulation
-/// beside the full system's, and what plain truncation by frequency needs for the same accuracy.
-/// After each scene two rows for what a rule gives that keeps all modes up to twice the band. 1 if
-/// an error is above its bound. bench_economy large: scenes of thousands of coordinates instead,
-/// step by step. docs/economy/README.md explains the columns.
+/// that `what_if` keeps, its bound and the error, processor seconds of one transfer and of a
+/// simulation beside the full system's, and what plain truncation by frequency needs for the same
+/// accuracy. After each scene two rows for what a rule gives that keeps all modes up to twice the
+/// band. 1 if an error is above its bound. bench_economy large: scenes of thousands of coordinates
+/// instead, step by step. docs/economy/README.md explains the columns.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,6 +18,7 @@
 #include "scenes/satellite.hpp"
 #include "support/fine_grid.hpp"
 #include "support/in_time.hpp"
+#include "support/processor_seconds.hpp"
 #include "support/questions.hpp"
 #include "support/quick.hpp"
 #include "support/truncation.hpp"
@@ -27,18 +28,13 @@ using namespace titop_bench;
 
 namespace {
 
-double now() {
-  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
-/// Of one transfer near the band's end, as `what_if` measures its own: the least of nine runs of
-/// fifty.
+/// Of one transfer near the band's end: the least of nine runs of fifty.
 double seconds_of(const TransferOf& transfer, double omega) {
   double least = HUGE_VAL, sum = 0;
   for (int run = 0; run < 9; ++run) {
-    const double start = now();
+    const double start = processor_seconds();
     for (int k = 0; k < 50; ++k) sum += std::abs(transfer({0.01 * omega, omega + k})(0, 0));
-    least = std::min(least, (now() - start) / 50);
+    least = std::min(least, (processor_seconds() - start) / 50);
   }
   return std::isfinite(sum) ? least : 0;
 }
@@ -91,7 +87,8 @@ class Measured {
   bool print(const WhatIf& r) {
     const double error = grid_->error([&](auto s) { return r.system.transfer(s); });
     fmt::print("{},{:.0e},{},{},{:.2e},{:.2e},{:.2e},{:.2e}", q_.name, r.accuracy, r.order,
-               full_.order(), r.bound, error, r.seconds, full_seconds_);
+               full_.order(), r.bound, error,
+               seconds_of([&](auto s) { return r.system.transfer(s); }, omega_), full_seconds_);
     if (modes_) {
       const long count = modes_->needed(r.accuracy, *grid_);
       const detail::Small& plain = modes_->model(count);
@@ -158,14 +155,14 @@ void large() {
   const FlexibleBody beam = scenes::read_boom({});
   for (const int count : {8, 16})
     for (const double accuracy : {1e-2, 1e-4, 1e-6}) {
-      const double start = now();
+      const auto start = std::chrono::steady_clock::now();
       const ReducedSystem r =
           compile(zigzag(beam, count), {.band_hz = {0, 60}, .accuracy = accuracy});
-      const double seconds = now() - start;
+      const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
       const auto bodies = std::find_if(r.steps().begin(), r.steps().end(),
                                        [](const EconomyStep& s) { return s.name == "bodies"; });
       fmt::print("{},{},{:.0e},{},{:.1e},{},{:.2e},{:.1f}\n", count, bodies->before, accuracy,
-                 bodies->after, bodies->error, r.order(), r.bound().worst, seconds);
+                 bodies->after, bodies->error, r.order(), r.bound().worst, seconds.count());
       std::fflush(stdout);
     }
 }

@@ -2,9 +2,10 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
+
+#include "support/processor_seconds.hpp"
 
 namespace titop_bench {
 
@@ -65,11 +66,10 @@ Run run(const System& system, double band_hz, bool quick) {
   const Excitation excitation = record.on(static_cast<Index>(system.inputs().size()));
   Run best{HUGE_VAL, HUGE_VAL, {}};
   const auto least = [&](double& seconds, int steps) {
-    const auto start = std::chrono::steady_clock::now();
+    const double start = processor_seconds();
     best.trajectory =
         simulate(system, excitation, {.step = record.step, .until = steps * record.step});
-    const std::chrono::duration<double> all = std::chrono::steady_clock::now() - start;
-    seconds = std::min(seconds, all.count());
+    seconds = std::min(seconds, processor_seconds() - start);
   };
   for (int k = 0; k < (quick ? 1 : 3); ++k) {
     least(best.start, 0);

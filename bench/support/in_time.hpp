@@ -10,15 +10,15 @@ namespace titop_bench {
 titop::System in_its_place(const titop::ReducedSystem& small, const titop::Diagram& asked);
 
 struct Run {
-  double seconds = 0;  ///< of all steps, with what it takes to start
+  double seconds = 0;  ///< of the processor, all steps, with what it takes to start
   double start = 0;    ///< of that alone
   titop::Trajectory trajectory;
 };
 
 /// 4000 steps (quick: 400), 200 to the period of the band's upper end, by what `simulate` chooses.
 /// All inputs get the same pulse at once: a bell curve that has 1e-12 of its spectrum beyond the
-/// band, as a record at the steps, so that every rule is given the same. Seconds are the least of
-/// three runs (quick: of one).
+/// band, as a record at the steps, so that every rule is given the same. Seconds are the least
+/// of three runs (quick: of one).
 Run run(const titop::System& system, double band_hz, bool quick);
 
 /// The same steps by the midpoint rule on a dense model, outputs x times: beside a large system,
