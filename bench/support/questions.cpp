@@ -120,10 +120,10 @@ Diagram satellite(const FlexibleBody& boom) { return scenes::satellite(boom); }
 
 std::vector<Question> questions(bool quick) {
   fe::ModeOptions modes;  // all 342
-  if (quick) modes.kept = 20;
+  if (quick) modes.kept = 12;
   const FlexibleBody undamped = scenes::read_boom(modes);
   modes.xi = {0.005};
-  const FlexibleBody damped = scenes::read_boom(modes), many = clusters(quick ? 60 : 500);
+  const FlexibleBody damped = scenes::read_boom(modes), many = clusters(quick ? 40 : 500);
   std::vector<Question> all;
   const auto ask = [&](Diagram (*build)(const FlexibleBody&), const FlexibleBody& body,
                        double band_hz, bool structure = true) {
