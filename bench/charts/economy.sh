@@ -1,44 +1,50 @@
 #!/usr/bin/env bash
-# economy.sh FOLDER: economy.csv there becomes order.svg, time.svg and table.md, large.csv,
-# where it is there, large.md.
+# economy.sh FOLDER: economy.csv there becomes order.svg, time.svg, simulation.svg and table.md,
+# simulation.md, rules.md; large.csv, where it is there, large.md.
 set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 cd "$1"
-awk -F, 'NR > 1 {
-  if ($1 != scene) { if (NR > 2) print "\n"; print "\"" $1 "\""; scene = $1 }
-  print $5, $3, $6, $7 / $8, $9 / $10
+
+# A block per scene, a line per accuracy; rows of rules are none.
+awk -F, 'NR > 1 && $2 + 0 > 0 {
+  if ($1 != scene) { if (scene != "") print "\n"; print "\"" $1 "\""; scene = $1 }
+  print $6, $3, $7 / $8, $12 / $14, $17,
+        ($9 == "" ? "NaN NaN NaN" : $10 " " $9 " " $11 / $8)
 }' economy.csv >economy.dat
-scenes=$(awk -F, 'NR > 1 && !seen[$1]++' economy.csv | wc -l)
-gnuplot <<PLOT
-set terminal svg size 860,560 font "sans,15" background "white"
-set monochrome
-set logscale xy
-set format x "10^{%T}"
-set grid back linetype 1 linecolor rgb "#cccccc" dashtype solid linewidth 0.5
-set border 3
-set tics nomirror
-set key outside right
-set xlabel "bound of the error over the band"
-set xrange [] reverse
-set output "order.svg"
-set ylabel "states"
-plot for [i=0:$scenes-1] "economy.dat" index i using 1:2 with linespoints title columnheader(1), \
-     for [i=0:$scenes-1] "economy.dat" index i using 1:(\$3 > 0 ? \$3 : NaN) with points \
-       pointtype i+1 pointsize 0.5 notitle
-set output "time.svg"
-set ylabel "seconds, over the full system's"
-plot for [i=0:$scenes-1] "economy.dat" index i using 1:4 with linespoints \
-       title sprintf("transfer %d", i + 1), \
-     for [i=0:$scenes-1] "economy.dat" index i using 1:5 with lines dashtype 2 \
-       title sprintf("step %d", i + 1)
-PLOT
+trap 'rm -f economy.dat' EXIT
+gnuplot -e "scenes=$(grep -c '^"' economy.dat)" "$here/economy.gp"
+
 awk -F, 'NR == 1 {
-  print "| scene | asked | states | of | bound | plain truncation, states | transfer | of the full one | step | of the full one |"
+  print "| scene | asked | states | of | bound | error | bound / error | transfer | of the full one | plain truncation, states | over ours | its transfer | over ours |"
+  print "|---|---|---|---|---|---|---|---|---|---|---|---|---|"
+  next
+}
+$2 + 0 > 0 {
+  printf "| %s | %s | %d | %d | %s | %s | %.2f | %s s | %.2g |", $1, $2, $3, $4, $5, $6, $5 / $6, $7, $7 / $8
+  if ($9 == "") print " - | - | - | - |"
+  else printf " %s | %.1f | %s s | %.1f |\n", ($9 == $4 ? "all, " $9 : $9), $9 / $3, $11, $11 / $7
+}' economy.csv >table.md
+
+awk -F, 'NR == 1 {
+  print "| scene | asked | states | simulation | to start | full one | to start | ours over full | difference | error, same rule |"
   print "|---|---|---|---|---|---|---|---|---|---|"
   next
 }
-{ printf "| %s | %s | %d | %d | %s | %s | %s s | %.2g | %s s | %.2g |\n", $1, $2, $3, $4, $5,
-         ($6 > 0 ? $6 : $6 < 0 ? "-" : "all"), $7, $7 / $8, $9, $9 / $10 }' economy.csv >table.md
-rm economy.dat
+$2 + 0 > 0 {
+  printf "| %s | %s | %d | %s s | %s s | %s s | %s s | %.2g | %s | %s |\n",
+         $1, $2, $3, $12, $13, $14, $15, $12 / $14, $16, $17
+}' economy.csv >simulation.md
+
+awk -F, 'NR == 1 {
+  print "| scene | modes kept | states | of | error | transfer | of the full one |"
+  print "|---|---|---|---|---|---|---|"
+  next
+}
+$2 + 0 == 0 {
+  printf "| %s | %s | %d | %d | %s | %s s | %.2g |\n",
+         $1, ($2 == "bodies" ? "of each body" : "of the whole"), $3, $4, $6, $7, $7 / $8
+}' economy.csv >rules.md
+
 [[ -e large.csv ]] || exit 0
 awk -F, 'NR == 1 {
   print "| bodies | coordinates | asked | after bodies | what that cost | states | bound | all of it |"

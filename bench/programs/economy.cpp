@@ -1,71 +1,153 @@
-/// bench_economy [quick]: what accuracy costs. Rows of CSV: for every scene and accuracy the states
-/// that `what_if` keeps, its bound, seconds of one transfer and of one step of simulation beside
-/// the full system's; and what plain truncation by frequency needs for the same error (0: all there
-/// is; -1: there are no modes to truncate). bench_economy large: scenes of thousands of coordinates
-/// instead, step by step.
+/// bench_economy [quick]: what accuracy costs, in CSV, a row per scene and accuracy: the states
+/// that `what_if` keeps, its bound and the error, processor seconds of one transfer and of a
+/// simulation beside the full system's, and what plain truncation by frequency needs for the same
+/// accuracy. After each scene two rows for what a rule gives that keeps all modes up to twice the
+/// band. 1 if an error is above its bound. bench_economy large: scenes of thousands of coordinates
+/// instead, step by step. docs/economy/README.md explains the columns.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <functional>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <string_view>
-#include <titop/compiler/compile_graph.hpp>
-#include <titop/compiler/economy/ray.hpp>
-#include <titop/compiler/economy/sharpen.hpp>
+#include <titop/graph/linalg/dense.hpp>
 #include <titop/titop.hpp>
 
 #include "scenes/satellite.hpp"
+#include "support/fine_grid.hpp"
+#include "support/in_time.hpp"
+#include "support/processor_seconds.hpp"
+#include "support/questions.hpp"
 #include "support/quick.hpp"
+#include "support/truncation.hpp"
 
 using namespace titop;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using namespace titop_bench;
 
 namespace {
 
-double seconds_of(const std::function<void()>& f) {
-  using clock = std::chrono::steady_clock;
-  const auto start = clock::now();
-  int count = 0;
-  double passed = 0;
-  for (; passed < 0.05; ++count) {
-    f();
-    passed = std::chrono::duration<double>(clock::now() - start).count();
+/// Of one transfer near the band's end: the least of nine runs of fifty.
+double seconds_of(const TransferOf& transfer, double omega) {
+  double least = HUGE_VAL, sum = 0;
+  for (int run = 0; run < 9; ++run) {
+    const double start = processor_seconds();
+    for (int k = 0; k < 50; ++k) sum += std::abs(transfer({0.01 * omega, omega + k})(0, 0));
+    least = std::min(least, (processor_seconds() - start) / 50);
   }
-  return passed / count;
+  return std::isfinite(sum) ? least : 0;
 }
 
-Diagram frame(const FlexibleBody& beam) {
-  Diagram d{"frame"};
-  auto U = d.input("U", 6);
-  auto b1 = d.add("b1", beam), b2 = d.add("b2", beam), b3 = d.add("b3", beam);
-  b1.parent.accel = 0;
-  mount(b2, b1.child("C"), Rotation::about({1, 2, 3}, 0.7));
-  mount(b3, b2.child("C"), Rotation::about({3, -1, 1}, -1.1));
-  b3.child("C").force = U;
-  d.output("a", 6) = b3.child("C").accel;
-  return d;
+/// Where the full system can have peaks: its modes, or the poles of the dense model [rad/s].
+Eigen::VectorXd frequencies(const System& full, const std::optional<Truncation>& modes) {
+  if (modes) return modes->omega();
+  StateSpace dense;
+  full.write(dense);
+  return linalg::eigenvalues(dense.A).cwiseAbs();
 }
 
-/// The same beams in a zigzag, so many that bodies lose modes before the whole does.
-Diagram zigzag(const FlexibleBody& beam, int count) {
-  Diagram d{"zigzag"};
-  auto U = d.input("U", 6);
-  std::vector<BodyHandle> b;
-  for (int i = 0; i < count; ++i) {
-    b.push_back(d.add(fmt::format("b{}", i + 1), beam));
-    const Rotation turn = Rotation::about({1, 2, 3}, i % 2 ? 0.7 : -0.9);
-    if (i > 0) mount(b.back(), b[b.size() - 2].child("C"), turn);
+/// All that is measured on one scene.
+class Measured {
+ public:
+  Measured(const Question& q, const std::vector<double>& accuracies, bool quick)
+      : q_(q),
+        quick_(quick),
+        diagram_(q.diagram()),
+        omega_(2 * std::numbers::pi * q.scene.band_hz[1]),
+        rows_(what_if(diagram_, q.scene, accuracies)),
+        full_(rows_.back().system.full()) {
+    if (q.structure) modes_.emplace(diagram_, q.scene);
+    int samples = 0;
+    for (const WhatIf& r : rows_) samples = std::max(samples, r.system.bound().samples);
+    grid_.emplace(full_, q.scene, 10 * samples, frequencies(full_, modes_),
+                  rows_.back().system.bound().peak);
+    full_seconds_ = seconds_of([&](auto s) { return full_.transfer(s); }, omega_);
+    full_run_ = run(full_, q.scene.band_hz[1], quick);
+    if (full_run_.trajectory.stepper == Stepper::midpoint) {
+      full_midpoint_ = full_run_.trajectory.y;
+    } else {
+      StateSpace dense;
+      full_.write(dense);
+      full_midpoint_ = by_midpoint(dense, q.scene.band_hz[1], quick);
+    }
   }
-  b.front().parent.accel = 0;
-  b.back().child("C").force = U;
-  d.output("a", 6) = b.back().child("C").accel;
-  return d;
-}
+
+  /// True if every error is below its bound.
+  bool print(double finest) {
+    bool below = true;
+    for (const WhatIf& r : rows_) below &= print(r);
+    if (rows_.back().accuracy > finest) say_why(finest);
+    rule_of_bodies();
+    if (modes_) rule_of_the_whole();
+    return below;
+  }
+
+ private:
+  bool print(const WhatIf& r) {
+    const double error = grid_->error([&](auto s) { return r.system.transfer(s); });
+    fmt::print("{},{:.0e},{},{},{:.2e},{:.2e},{:.2e},{:.2e}", q_.name, r.accuracy, r.order,
+               full_.order(), r.bound, error,
+               seconds_of([&](auto s) { return r.system.transfer(s); }, omega_), full_seconds_);
+    if (modes_) {
+      const long count = modes_->needed(r.accuracy, *grid_);
+      const detail::Small& plain = modes_->model(count);
+      fmt::print(",{},{:.2e},{:.2e}", 2 * plain.order(), modes_->error(count, *grid_),
+                 seconds_of([&](auto s) { return plain.transfer(s); }, omega_));
+    } else {
+      fmt::print(",,,");
+    }
+    const Run small = run(in_its_place(r.system, diagram_), q_.scene.band_hz[1], quick_);
+    const Eigen::MatrixXd midpoint =
+        by_midpoint(r.system.state_space(), q_.scene.band_hz[1], quick_);
+    fmt::print(",{:.2e},{:.2e},{:.2e},{:.2e},{:.2e},{:.2e}\n", small.seconds, small.start,
+               full_run_.seconds, full_run_.start,
+               difference(small.trajectory.y, full_run_.trajectory.y),
+               difference(midpoint, full_midpoint_));
+    std::fflush(stdout);
+    return error <= r.bound;
+  }
+
+  /// What ends the accuracies that can be met, for the log.
+  void say_why(double finest) const {
+    Scene scene = q_.scene;
+    scene.accuracy = finest;
+    try {
+      (void)compile(diagram_, scene);
+    } catch (const Error& error) {
+      fmt::print(stderr, "{}: {}\n", q_.name, error.what());
+    }
+  }
+
+  void print_rule(const char* name, long states, const TransferOf& transfer) {
+    fmt::print("{},{},{},{},,{:.2e},{:.2e},{:.2e},,,,,,,,,\n", q_.name, name, states, full_.order(),
+               grid_->error(transfer), seconds_of(transfer, omega_), full_seconds_);
+    std::fflush(stdout);
+  }
+
+  void rule_of_bodies() {
+    const System system = compile(q_.with_modes_up_to(2 * q_.scene.band_hz[1]));
+    print_rule("bodies", system.order(), [&](auto s) { return system.transfer(s); });
+  }
+
+  void rule_of_the_whole() {
+    const Eigen::VectorXd omega = modes_->omega();
+    const detail::Small& m = modes_->model((omega.array() <= 2 * omega_).count());
+    print_rule("whole", 2 * m.order(), [&](auto s) { return m.transfer(s); });
+  }
+
+  const Question& q_;
+  bool quick_;
+  Diagram diagram_;
+  double omega_;  ///< upper end of the band [rad/s]
+  std::vector<WhatIf> rows_;
+  System full_;
+  std::optional<Truncation> modes_;  ///< none where there is no structure
+  std::optional<FineGrid> grid_;
+  double full_seconds_ = 0;
+  Run full_run_;
+  Eigen::MatrixXd full_midpoint_;
+};
 
 /// Thousands of coordinates: what each step leaves, what that costs, and seconds of all of it.
 void large() {
@@ -76,181 +158,32 @@ void large() {
       const auto start = std::chrono::steady_clock::now();
       const ReducedSystem r =
           compile(zigzag(beam, count), {.band_hz = {0, 60}, .accuracy = accuracy});
-      const double seconds =
-          std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+      const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
       const auto bodies = std::find_if(r.steps().begin(), r.steps().end(),
                                        [](const EconomyStep& s) { return s.name == "bodies"; });
       fmt::print("{},{},{:.0e},{},{:.1e},{},{:.2e},{:.1f}\n", count, bodies->before, accuracy,
-                 bodies->after, bodies->error, r.order(), r.bound().worst, seconds);
+                 bodies->after, bodies->error, r.order(), r.bound().worst, seconds.count());
       std::fflush(stdout);
     }
-}
-
-Diagram heavy(const FlexibleBody& beam) {
-  Diagram d{"heavy"};
-  const double m = 50 * beam.data().D_P(0, 0);
-  auto U = d.input("U", 6);
-  auto b = d.add("beam", beam);
-  auto tip = d.add("tip", RigidBody{.mass = m, .inertia = Matrix3d::Identity() * 0.01 * m});
-  b.parent.accel = 0;
-  mount(tip, b.child("C"), Rotation{});
-  b.child("C").force += U;
-  d.output("a", 6) = tip.parent.accel;
-  return d;
-}
-
-/// The hub of the satellite and two booms, its attitude held by a law with an actuator and a delay:
-/// no structure, so states are balanced.
-Diagram loop(const FlexibleBody& beam) {
-  const MatrixXd I = MatrixXd::Identity(3, 3);
-  Diagram d{"loop"};
-  auto T = d.input("T", 3);
-  auto hub = d.add("hub", RigidBody{.mass = 85,
-                                    .inertia = Vector3d(9, 11, 13).asDiagonal(),
-                                    .children = {{"C1", {0.35, 0, 0.1}}, {"C2", {-0.35, 0, 0.1}}}});
-  auto boom1 = d.add("boom1", beam), boom2 = d.add("boom2", beam);
-  auto law =
-      d.add("law", Lti{.A = -40 * I, .B = I, .C = (30 - 45 * 40) * 40 * I, .D = 45 * 40 * I});
-  auto late = d.add("late", Lti{.A = -100 * I, .B = I, .C = 200 * I, .D = -I});
-  mount(boom1, hub.child("C1"), Rotation::about({0, 0, 1}, 0.26));
-  mount(boom2, hub.child("C2"), Rotation::about({1, 2, 9}, 2.9));
-  law.in = hub.parent.position.angular();
-  late.in = law.out;
-  hub.parent.force.linear = 0;
-  hub.parent.force.angular = late.out - T;
-  d.output("attitude", 3) = hub.parent.position.angular();
-  d.output("tip", 3) = boom2.child("C").accel.linear;
-  return d;
-}
-
-/// A generated structure: `modes` clamped modes in clusters of ten, damping 0.5 %, three points.
-Diagram generated(int modes) {
-  std::uint64_t state = 6;
-  const auto random = [&] {  // splitmix64, in [-1, 1)
-    std::uint64_t z = (state += 0x9E3779B97F4A7C15ull);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
-  };
-  ModalData data;
-  data.omega.resize(modes);
-  data.xi = VectorXd::Constant(modes, 0.005);
-  data.L_P = MatrixXd(modes, 6);
-  data.D_P = Matrix6::Identity() * 1000;
-  for (const char* name : {"C1", "C2", "C3"})
-    data.children.push_back({name, Vector3d(1, 2, 3), MatrixXd(6, modes)});
-  for (int j = 0; j < modes; ++j) {
-    const int cluster = j / 10;
-    data.omega(j) = 2 * std::numbers::pi * (1 + 0.8 * cluster) * (1 + 0.02 * random());
-    for (int k = 0; k < 6; ++k) data.L_P(j, k) = random();
-    for (auto& child : data.children)
-      for (int k = 0; k < 6; ++k) child.Phi_C(k, j) = 0.1 * random();
-  }
-  Diagram d{"generated"};
-  auto U = d.input("U", 3);
-  auto body = d.add("body", FlexibleBody(data));
-  body.parent.accel = 0;
-  body.child("C1").force.linear = U;
-  d.output("a1", 3) = body.child("C1").accel.linear;
-  d.output("v2", 3) = body.child("C2").rate.linear();
-  return d;
-}
-
-/// Modes that plain truncation by frequency needs for this error on the ray; 0 where none do.
-class Plain {
- public:
-  Plain(const Diagram& d, const Scene& scene) : system_(detail::compile_graph(d.graph(), {})) {
-    const auto data = detail::compile_graph(detail::restricted(d.graph(), scene), {});
-    system_ = System(data);
-    whole_ = detail::whole(system_, detail::coordinates(system_, *data),
-                           detail::positions_read(d.graph()));
-    const detail::Band band = detail::band_of(system_, scene, whole_);
-    detail::sharpen(whole_, system_, 1.2 * band.high);
-    samples_ =
-        detail::sample(system_, scene, whole_, detail::sample_points(scene, band, whole_, {}, 2));
-  }
-  /// By doubling and bisection to 5 %.
-  long needed(double accuracy) {
-    const long n = static_cast<long>(whole_.elastic());
-    long few = 0, many = 1;
-    while (many < n && error(many) > accuracy) few = many, many = 2 * many;
-    if (many >= n) many = n;
-    while (many - few > std::max(1L, many / 20)) {
-      const long k = (few + many) / 2;
-      (error(k) <= accuracy ? many : few) = k;
-    }
-    return many < n ? many : 0;
-  }
-
- private:
-  double error(long count) {
-    const auto [found, fresh] = errors_.emplace(count, 0);
-    if (!fresh) return found->second;
-    std::vector<Eigen::Index> kept;
-    for (long k = 0; k < count; ++k) kept.push_back(k);
-    return found->second = detail::errors(samples_, detail::project(whole_, kept,
-                                                                    MatrixXd(whole_.elastic(), 0)))
-                               .maxCoeff();
-  }
-  System system_;
-  detail::Whole whole_;
-  detail::Samples samples_;
-  std::map<long, double> errors_;
-};
-
-/// One step of x = A x + B u with the full matrix, and with 2 x 2 blocks.
-double full_step(const StateSpace& m) {
-  VectorXd x = VectorXd::Ones(m.order()), y = x;
-  return seconds_of([&] { y.noalias() = m.A * x; });
-}
-double modal_step(const ModalModel& m) {
-  VectorXd x = VectorXd::Ones(m.order()), y = x;
-  return seconds_of([&] {
-    for (std::size_t k = 0; k < m.A.size(); ++k)
-      y.segment<2>(2 * static_cast<Eigen::Index>(k)).noalias() =
-          m.A[k] * x.segment<2>(2 * static_cast<Eigen::Index>(k));
-  });
-}
-
-void table(const char* name, const Diagram& d, const Scene& scene, bool quick,
-           bool structure = true) {
-  const std::vector<double> accuracies =
-      quick ? std::vector<double>{1e-1, 1e-3}
-            : std::vector<double>{1e-1, 3e-2, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 3e-8, 1e-8};
-  const std::vector<WhatIf> rows = what_if(d, scene, accuracies);
-  if (rows.empty()) return;
-  const System& full = rows.front().system.full();
-  const double w = 2 * std::numbers::pi * scene.band_hz[1];
-  const double full_transfer = seconds_of([&] { (void)full.transfer({0.01 * w, w}); });
-  StateSpace dense;
-  full.write(dense);
-  const double step = full_step(dense);
-  std::optional<Plain> plain;  // no modes to truncate where there is no structure: -1
-  if (structure) plain.emplace(d, scene);
-  for (const WhatIf& r : rows) {
-    fmt::print("{},{:.0e},{},{},{:.2e},{},{:.2e},{:.2e},{:.2e},{:.2e}\n", name, r.accuracy, r.order,
-               full.order(), r.bound, structure ? 2 * plain->needed(r.bound) : -1, r.seconds,
-               full_transfer, modal_step(r.system.modal()), step);
-    std::fflush(stdout);
-  }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const bool quick = titop_bench::is_quick(argc, argv);
   if (argc > 1 && std::string_view(argv[1]) == "large") {
     large();
     return 0;
   }
-  fmt::print("scene,accuracy,states,full,bound,plain,transfer,full_transfer,step,full_step\n");
-  fe::ModeOptions modes;  // all 342
-  if (quick) modes.kept = 20;
-  const FlexibleBody beam = scenes::read_boom(modes);
-  table("frame", frame(beam), {.band_hz = {0, 261}}, quick);
-  table("heavy", heavy(beam), {.band_hz = {0, 261}}, quick);
-  modes.xi = {0.005};
-  table("satellite", scenes::satellite(scenes::read_boom(modes)), {.band_hz = {0, 300}}, quick);
-  table("generated", generated(quick ? 60 : 500), {.band_hz = {0, 5}}, quick);
-  table("loop", loop(scenes::read_boom(modes)), {.band_hz = {0, 100}}, quick, false);
+  const bool quick = is_quick(argc, argv);
+  std::vector<double> accuracies{1e-1, 1e-3};
+  if (!quick)
+    accuracies = {1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5,
+                  1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 3e-8, 1e-8};
+  fmt::print(
+      "scene,asked,states,full,bound,error,transfer,full_transfer,plain,plain_error,plain_transfer,"
+      "simulate,simulate_start,full_simulate,full_start,difference,same_rule\n");
+  bool below = true;
+  for (const Question& q : questions(quick))
+    below &= Measured(q, accuracies, quick).print(accuracies.back());
+  return below ? 0 : 1;
 }

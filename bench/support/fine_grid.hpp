@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <functional>
+#include <titop/titop.hpp>
+#include <vector>
+
+/// Errors of small models over a band, on a grid that knows nothing of their bounds.
+namespace titop_bench {
+
+using TransferOf = std::function<Eigen::MatrixXcd(std::complex<double>)>;
+
+/// The full system's transfers on the scene's ray: at equal steps of the band, and at thirteen
+/// points across each pole, as far apart as its peak is wide there. One serves all models.
+class FineGrid {
+ public:
+  /// `poles` [rad/s]; `least`, outputs x inputs: what counts as 1 where a pair's own peak is below
+  /// (ErrorBound::peak: pairs that symmetry makes 0).
+  FineGrid(const titop::System& full, const titop::Scene& scene, int steps,
+           const Eigen::VectorXd& poles, const Eigen::MatrixXd& least);
+
+  /// Largest difference over the peak of its pair.
+  double error(const TransferOf& transfer) const;
+
+  std::size_t size() const { return s_.size(); }
+
+ private:
+  std::vector<std::complex<double>> s_;
+  std::vector<Eigen::MatrixXcd> H_;
+  Eigen::MatrixXd peak_;
+};
+
+}  // namespace titop_bench

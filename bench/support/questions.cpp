@@ -1,0 +1,157 @@
+#include "support/questions.hpp"
+
+#include <fmt/format.h>
+
+#include <numbers>
+
+#include "scenes/satellite.hpp"
+
+namespace titop_bench {
+namespace {
+
+using namespace titop;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using std::numbers::pi;
+
+/// The same body with these modes alone; its mass stays.
+FlexibleBody with_modes_up_to(const FlexibleBody& body, double hertz) {
+  ModalData data = body.data();
+  std::vector<Eigen::Index> kept;
+  for (Eigen::Index j = 0; j < data.omega.size(); ++j)
+    if (data.omega(j) <= 2 * pi * hertz) kept.push_back(j);
+  data.omega = data.omega(kept).eval();
+  data.xi = data.xi(kept).eval();
+  data.L_P = data.L_P(kept, Eigen::all).eval();
+  for (ModalChild& child : data.children) child.Phi_C = child.Phi_C(Eigen::all, kept).eval();
+  return FlexibleBody(data);
+}
+
+Diagram frame(const FlexibleBody& beam) {
+  Diagram d{"frame"};
+  auto U = d.input("U", 6);
+  auto b1 = d.add("b1", beam), b2 = d.add("b2", beam), b3 = d.add("b3", beam);
+  b1.parent.accel = 0;
+  mount(b2, b1.child("C"), Rotation::about({1, 2, 3}, 0.7));
+  mount(b3, b2.child("C"), Rotation::about({3, -1, 1}, -1.1));
+  b3.child("C").force = U;
+  d.output("a", 6) = b3.child("C").accel;
+  return d;
+}
+
+/// Its tip carries 50 times its mass.
+Diagram heavy(const FlexibleBody& beam) {
+  Diagram d{"heavy"};
+  const double m = 50 * beam.data().D_P(0, 0);
+  auto U = d.input("U", 6);
+  auto b = d.add("beam", beam);
+  auto tip = d.add("tip", RigidBody{.mass = m, .inertia = Matrix3d::Identity() * 0.01 * m});
+  b.parent.accel = 0;
+  mount(tip, b.child("C"), Rotation{});
+  b.child("C").force += U;
+  d.output("a", 6) = tip.parent.accel;
+  return d;
+}
+
+/// The hub of the satellite and two booms, its attitude held by a law with an actuator and a delay:
+/// no structure, so states are balanced.
+Diagram loop(const FlexibleBody& beam) {
+  const MatrixXd I = MatrixXd::Identity(3, 3);
+  Diagram d{"loop"};
+  auto T = d.input("T", 3);
+  auto hub = d.add("hub", RigidBody{.mass = 85,
+                                    .inertia = Vector3d(9, 11, 13).asDiagonal(),
+                                    .children = {{"C1", {0.35, 0, 0.1}}, {"C2", {-0.35, 0, 0.1}}}});
+  auto boom1 = d.add("boom1", beam), boom2 = d.add("boom2", beam);
+  auto law =
+      d.add("law", Lti{.A = -40 * I, .B = I, .C = (30 - 45 * 40) * 40 * I, .D = 45 * 40 * I});
+  auto late = d.add("late", Lti{.A = -100 * I, .B = I, .C = 200 * I, .D = -I});
+  mount(boom1, hub.child("C1"), Rotation::about({0, 0, 1}, 0.26));
+  mount(boom2, hub.child("C2"), Rotation::about({1, 2, 9}, 2.9));
+  law.in = hub.parent.position.angular();
+  late.in = law.out;
+  hub.parent.force.linear = 0;
+  hub.parent.force.angular = late.out - T;
+  d.output("attitude", 3) = hub.parent.position.angular();
+  d.output("tip", 3) = boom2.child("C").accel.linear;
+  return d;
+}
+
+/// So many clamped modes in clusters of ten, damping 0.5 %, three points.
+FlexibleBody clusters(int modes) {
+  std::uint64_t state = 6;
+  const auto random = [&] {  // splitmix64, in [-1, 1)
+    std::uint64_t z = (state += 0x9E3779B97F4A7C15ull);
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
+  };
+  ModalData data;
+  data.omega.resize(modes);
+  data.xi = VectorXd::Constant(modes, 0.005);
+  data.L_P = MatrixXd(modes, 6);
+  data.D_P = Matrix6::Identity() * 1000;
+  for (const char* name : {"C1", "C2", "C3"})
+    data.children.push_back({name, Vector3d(1, 2, 3), MatrixXd(6, modes)});
+  for (int j = 0; j < modes; ++j) {
+    const int cluster = j / 10;
+    data.omega(j) = 2 * pi * (1 + 0.8 * cluster) * (1 + 0.02 * random());
+    for (int k = 0; k < 6; ++k) data.L_P(j, k) = random();
+    for (auto& child : data.children)
+      for (int k = 0; k < 6; ++k) child.Phi_C(k, j) = 0.1 * random();
+  }
+  return FlexibleBody(data);
+}
+
+Diagram generated(const FlexibleBody& structure) {
+  Diagram d{"generated"};
+  auto U = d.input("U", 3);
+  auto body = d.add("body", structure);
+  body.parent.accel = 0;
+  body.child("C1").force.linear = U;
+  d.output("a1", 3) = body.child("C1").accel.linear;
+  d.output("v2", 3) = body.child("C2").rate.linear();
+  return d;
+}
+
+Diagram satellite(const FlexibleBody& boom) { return scenes::satellite(boom); }
+
+}  // namespace
+
+std::vector<Question> questions(bool quick) {
+  fe::ModeOptions modes;  // all 342
+  if (quick) modes.kept = 12;
+  const FlexibleBody undamped = scenes::read_boom(modes);
+  modes.xi = {0.005};
+  const FlexibleBody damped = scenes::read_boom(modes), many = clusters(quick ? 40 : 500);
+  std::vector<Question> all;
+  const auto ask = [&](Diagram (*build)(const FlexibleBody&), const FlexibleBody& body,
+                       double band_hz, bool structure = true) {
+    all.push_back({build(body).name(), {.band_hz = {0, band_hz}}, structure, [=](double hertz) {
+                     return build(with_modes_up_to(body, hertz));
+                   }});
+  };
+  ask(frame, undamped, 261);
+  ask(heavy, undamped, 261);
+  ask(satellite, damped, 300);
+  ask(generated, many, 5);
+  ask(loop, damped, 100, false);
+  return all;
+}
+
+Diagram zigzag(const FlexibleBody& beam, int count) {
+  Diagram d{"zigzag"};
+  auto U = d.input("U", 6);
+  std::vector<BodyHandle> b;
+  for (int i = 0; i < count; ++i) {
+    b.push_back(d.add(fmt::format("b{}", i + 1), beam));
+    const Rotation turn = Rotation::about({1, 2, 3}, i % 2 ? 0.7 : -0.9);
+    if (i > 0) mount(b.back(), b[b.size() - 2].child("C"), turn);
+  }
+  b.front().parent.accel = 0;
+  b.back().child("C").force = U;
+  d.output("a", 6) = b.back().child("C").accel;
+  return d;
+}
+
+}  // namespace titop_bench

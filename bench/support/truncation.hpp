@@ -1,0 +1,33 @@
+#pragma once
+
+#include <map>
+#include <titop/compiler/economy/small.hpp>
+#include <titop/titop.hpp>
+
+#include "support/fine_grid.hpp"
+
+/// What one has without choosing: modes by frequency.
+namespace titop_bench {
+
+/// The lowest modes of the whole, by frequency, without static-like vectors.
+class Truncation {
+ public:
+  Truncation(const titop::Diagram& diagram, const titop::Scene& scene);
+
+  /// Of all elastic modes [rad/s], ascending.
+  Eigen::VectorXd omega() const;
+
+  /// Number of modes that these errors need: doubled, then bisected to 5 %. All, if fewer do not.
+  long needed(double accuracy, const FineGrid& grid);
+
+  /// The lowest `count` modes. What it took to make one is kept.
+  const titop::detail::Small& model(long count);
+  double error(long count, const FineGrid& grid);
+
+ private:
+  titop::detail::Whole whole_;
+  std::map<long, titop::detail::Small> models_;
+  std::map<long, double> errors_;
+};
+
+}  // namespace titop_bench
