@@ -1,6 +1,8 @@
 // Points without mass: springs in series through a ring, a force on the ring. Whatever is asked and
 // does not need derivatives of an input has a model, as small as it can be; the rest is refused by
-// name. Then a plate that is moved at two points at once.
+// name. Then a plate that is moved at two points at once, and a rod without mass between ball
+// joints, which may turn about itself as it likes.
+#include <Eigen/LU>
 #include <cmath>
 #include <cstdio>
 #include <titop/titop.hpp>
@@ -12,6 +14,7 @@ using namespace titop;
 namespace {
 
 constexpr double k1 = 30, k2 = 50, k3 = 20, m2 = 2, m3 = 1.5;  // [N/m], [kg]
+constexpr double m_ship = 900, m_load = 300;                   // [kg]
 
 /// Three springs meet in a ring without mass: one from the wall, one to each of two masses. The
 /// wall holds the free end of the first (its own mass does not count there).
@@ -47,6 +50,36 @@ Diagram shaker(bool one_command) {
   d.output("xdd") = z.child.accel;
   d.output("unused", 6) = v;
   return d;
+}
+
+/// A ship tows a load by a rod without mass, a ball joint at both ends.
+Diagram tow(bool ask_how_the_rod_turns) {
+  Diagram d{"tow"};
+  auto U = d.input("U", 6);  // on the ship [N, N m]
+  auto ship = d.add("ship", RigidBody{.mass = m_ship, .children = {{"stern", {-2, 0, 0.5}}}});
+  auto rod =
+      d.add("rod",
+            RigidBody{.mass = 0, .inertia = Matrix3d::Zero(), .children = {{"end", {-1.5, 0, 0}}}});
+  auto load = d.add("load", RigidBody{.mass = m_load, .PA = {-0.4, 0.1, 0}});
+  ship.parent.force = -U;
+  joint(d, "hook", rod, ship.child, {}, ball());
+  joint(d, "eye", load, rod.child, {}, ball());
+  d.output("xdd", 6) = load.parent.accel;
+  if (ask_how_the_rod_turns) d.output("turn", 6) = rod.child.accel;
+  return d;
+}
+
+/// The same by hand: one constraint, the rod keeps its length, and one unknown, the force in it.
+by_hand::MatrixXd towed() {
+  by_hand::MatrixXd M = by_hand::MatrixXd::Zero(12, 12), J(1, 12);
+  const by_hand::Matrix6 at_A = by_hand::tau({0.4, -0.1, 0});
+  by_hand::Matrix6 ship = by_hand::Matrix6::Identity(), load = ship;
+  ship.diagonal().head<3>().setConstant(m_ship), load.diagonal().head<3>().setConstant(m_load);
+  M.topLeftCorner(6, 6) = ship;
+  M.bottomRightCorner(6, 6) = at_A.transpose() * load * at_A;
+  J << by_hand::tau({2, 0, -0.5}).row(0), -by_hand::Matrix6::Identity().row(0);
+  const by_hand::MatrixXd by_force = M.inverse().leftCols(6), by_rod = M.inverse() * J.transpose();
+  return (by_force - by_rod * (J * by_rod).inverse() * (J * by_force)).bottomRows(6);
 }
 
 void print_refusal(const Diagram& d) {
@@ -94,5 +127,15 @@ int main() {
                         (shaken.transfer(s).topRows(1) - exact).cwiseAbs().maxCoeff(), 1e-14);
   std::printf("\ntwo commands at two points of a rigid plate:\n");
   print_refusal(shaker(false));
+
+  const System towing = compile(tow(false));
+  std::printf("\na rod without mass between ball joints:\n");
+  for (const Note& note : towing.notes())
+    if (note.pass == "reduce") std::printf("%s\n", note.text.c_str());
+  ok &= by_hand::agrees(
+      "transfer against one constraint",
+      by_hand::transfer_error({towing.transfer(s)}, {by_hand::MatrixXcd(towed())}, 3, 3), 1e-13);
+  std::printf("\nhow it turns:\n");
+  print_refusal(tow(true));
   return ok && system.order() == 4 && shaken.order() == 2 ? 0 : 1;
 }

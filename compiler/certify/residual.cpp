@@ -92,11 +92,12 @@ struct Balance {
 /// Size of a signal's neighbours in its front of the elimination, in the signal's own unit (both by
 /// the scaling of the front's columns): what is 1e-16 of it is what rounding leaves of a 0.
 double size_around(const SystemData& d, const Evaluation<double>& point, int signal) {
-  const solve::Plan& plan = *d.skeleton->joint.plan;
-  const solve::ColumnScale& scale = *d.factors->scale();
+  const solve::Joint& joint = d.skeleton->as_written();  // whose unknowns these are
+  const solve::Plan& plan = *joint.plan;
+  const solve::ColumnScale& scale = *d.scale();
   double result = 0;
-  for (const solve::Meaning& m : d.skeleton->joint.meaning(signal)) {
-    const int v = d.skeleton->joint.variable_of[at(m.signal)];
+  for (const solve::Meaning& m : joint.meaning(signal)) {
+    const int v = joint.variable_of[at(m.signal)];
     if (v < 0) continue;
     const auto front = std::prev(
         std::upper_bound(plan.fronts.begin(), plan.fronts.end(), plan.first[at(v)],

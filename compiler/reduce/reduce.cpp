@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <titop/compiler/reduce/hidden.hpp>
+#include <titop/compiler/reduce/new_rows.hpp>
 #include <titop/compiler/reduce/proper.hpp>
 #include <titop/compiler/reduce/reduce.hpp>
 #include <titop/compiler/solve/blame.hpp>
@@ -21,140 +21,38 @@ using solve::RowMatrix;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Row group and place in it of every scalar row.
-std::pair<int, int> group_of(const Joint& joint, int scalar_row) {
-  const auto& first = joint.plan->row_first;
-  int r = 0;
-  for (int i = 0; i < static_cast<int>(first.size()); ++i)
-    if (first[at(i)] <= scalar_row && first[at(i)] >= first[at(r)]) r = i;
-  return {r, scalar_row - first[at(r)]};
-}
-
-/// Derivatives of constraints in place of some rows of a joint system.
-class Substitution {
- public:
-  Substitution(const Skeleton& k, SystemData& d) : k_(k), d_(d), old_(k.joint) {}
-
-  /// g x' = -h u' - ..., x' = A x + B u block by block, in place of this scalar row.
-  void replace(const Hidden& c) { by_group_[group_of(old_, c.row).first].push_back(&c); }
-
-  Joint joint() {
-    Joint j = old_;
-    j.pieces.clear();
-    j.piece_begin = {0};
-    solve::Structure structure;
-    structure.variable_size = old_.plan->structure.variable_size;
-    for (int r = 0; r < static_cast<int>(old_.rows.size()); ++r) {
-      std::vector<Piece> pieces(old_.row(r).begin(), old_.row(r).end());
-      const auto before = old_.plan->structure.row(r);
-      std::vector<int> over(before.begin(), before.end());
-      for (Piece& p : pieces)
-        if (p.entry >= 0) p.entry = over[at(p.entry)];
-      if (const auto found = by_group_.find(r); found != by_group_.end())
-        rewrite(r, found->second, pieces, over);
-      std::sort(over.begin(), over.end());
-      over.erase(std::unique(over.begin(), over.end()), over.end());
-      for (Piece& p : pieces)
-        if (p.entry >= 0)
-          p.entry =
-              static_cast<int>(std::lower_bound(over.begin(), over.end(), p.entry) - over.begin());
-      structure.add_row(old_.plan->structure.row_size[at(r)], over);
-      j.pieces.insert(j.pieces.end(), pieces.begin(), pieces.end());
-      j.piece_begin.push_back(static_cast<int>(j.pieces.size()));
-    }
-    j.plan = std::make_shared<const solve::Plan>(solve::plan(std::move(structure)));
-    return j;
-  }
-
- private:
-  void rewrite(int r, const std::vector<const Hidden*>& constraints, std::vector<Piece>& pieces,
-               std::vector<int>& over) {
-    const int size = old_.plan->structure.row_size[at(r)];
-    MatrixXd mask = MatrixXd::Identity(size, size);
-    for (const Hidden* c : constraints) mask.row(group_of(old_, c->row).second).setZero();
-    std::vector<Piece> result;
-    for (const Piece& p : pieces)
-      put(result, p, mask * solve::matrix_of(p, k_.stage.graph, d_.numbers));
-    for (const Hidden* c : constraints)
-      differentiate(*c, VectorXd::Unit(size, group_of(old_, c->row).second), result, over);
-    pieces = std::move(result);
-  }
-
-  using VectorXd = Eigen::VectorXd;
-
-  /// The piece with this matrix, unless that is 0.
-  void put(std::vector<Piece>& to, Piece p, const MatrixXd& matrix) {
-    if (matrix.isZero(0)) return;
-    p.of = Piece::Left::coefficient;
-    p.left = static_cast<int>(d_.numbers.coefficients.size());
-    p.right = -1;
-    p.sign = 1;
-    d_.numbers.coefficients.push_back(std::make_shared<const RowMatrix<double>>(matrix));
-    to.push_back(p);
-  }
-
-  void differentiate(const Hidden& c, const VectorXd& place, std::vector<Piece>& to,
-                     std::vector<int>& over) {
-    const Graph& g = k_.stage.graph;
-    for (const int i : d_.layout().state_nodes) {
-      const Dynamics& m = *d_.numbers.blocks[at(i)];
-      const RowVectorXd own = c.g.segment(d_.layout().state_first[at(i)], m.A.rows());
-      if (own.isZero(0)) continue;
-      const Node& node = g.nodes[at(i)];
-      put(to, {.rows = static_cast<int>(place.size()), .signal = node.state},
-          place * product(own, m.A));
-      for (int s = node.first_signal; s < node.state; ++s)
-        if (const Signal& u = g.signals[at(s)]; u.role == Signal::Role::input && u.active)
-          add(to, over, place * product(own, m.B.middleCols(u.first, u.size)), s);
-    }
-  }
-
-  static RowVectorXd product(const RowVectorXd& a, const MatrixXd& M) {
-    RowVectorXd result = a * M;
-    const RowVectorXd size = a.cwiseAbs() * M.cwiseAbs();
-    return (result.array().abs() <= solve::kCancelled * size.array()).select(0, result);
-  }
-
-  /// matrix * signal, in what the signal stands for.
-  void add(std::vector<Piece>& to, std::vector<int>& over, const MatrixXd& matrix, int signal) {
-    for (const solve::Meaning& m : old_.meaning(signal)) {
-      const int v = old_.variable_of[at(m.signal)];
-      if (v >= 0) over.push_back(v);
-      put(to, {.rows = static_cast<int>(matrix.rows()), .entry = v, .signal = m.signal},
-          m.coefficient < 0 ? matrix
-                            : MatrixXd(matrix * *d_.numbers.coefficients[at(m.coefficient)]));
-    }
-  }
-
-  const Skeleton& k_;
-  SystemData& d_;
-  const Joint& old_;
-  std::map<int, std::vector<const Hidden*>> by_group_;
-};
-
 class Reducer {
  public:
-  Reducer(Skeleton& k, SystemData& d) : k_(k), d_(d), followers_(k, d) {}
+  /// `held`: row groups and rows in them where motions are held already.
+  Reducer(Skeleton& k, SystemData& d, std::set<std::pair<int, int>>& held)
+      : k_(k), d_(d), followers_(k, d), held_(held) {}
 
-  void run() {
+  /// False where undetermined motions have been taken out of the system as written: begin again.
+  bool run() {
     k_.before_reduce = k_.joint;
     factor();
     d_.scale_as_written = d_.factors->scale();
-    while (!d_.factors->patches().empty()) step();
-    finish();
+    while (!d_.factors->patches().empty())
+      if (!step()) return false;
+    if (!constraints_.empty()) finish();
+    return true;
   }
 
  private:
-  void step() {
+  bool step() {
     const std::vector<Hidden> found = constraints();
-    if (const std::vector<Hidden> rest = followers_.add(found); !rest.empty()) refuse(rest);
+    if (const std::vector<Hidden> rest = followers_.add(found); !rest.empty()) {
+      hold_or_refuse(rest);
+      return false;
+    }
     constraints_.insert(constraints_.end(), found.begin(), found.end());
-    Substitution substitution(k_, d_);
-    for (const Hidden& c : found) substitution.replace(c);
-    Joint joint = substitution.joint();
+    NewRows rows(k_, d_);
+    for (const Hidden& c : found) rows.derivative(c);
+    Joint joint = rows.joint();
     move_forcing(joint, found);
     k_.joint = std::move(joint);
     factor();
+    return true;
   }
 
   void factor() {
@@ -164,8 +62,66 @@ class Reducer {
       throw Error(solve::overflow(k_.stage, k_.joint, h));
   }
 
-  /// Constraints that determine no state: one mistake for each set of rows.
-  void refuse(const std::vector<Hidden>& rest) const {
+  /// Constraints that determine no state. Those that say nothing leave a motion undetermined: it is
+  /// taken as 0 in the system as written where nothing depends on it.
+  void hold_or_refuse(const std::vector<Hidden>& rest) {
+    std::vector<int> rows;
+    for (const Hidden& c : rest)
+      if (says_nothing(c)) rows.push_back(c.row);
+    if (rows.size() < rest.size()) refuse(rest, {});
+    if (!constraints_.empty())
+      refuse(rest, {"that one is said twice shows only after a derivative: motions that nothing "
+                    "determines there are not looked for"});
+    const Undetermined motions = undetermined(k_, d_, rows);
+    if (motions.held.empty()) refuse(rest, motions.lines);
+    for (const int row : rows)  // held, and undetermined all the same: no digit is left
+      if (!held_.insert(group_of(k_.joint, row)).second) refuse(rest, motions.lines);
+    for (const std::string& line : motions.lines)
+      k_.stage.notes.push_back(
+          {Note::Kind::info, "reduce", line + ", and nothing asked for depends on it: taken as 0"});
+    leave_out(motions.states);
+    NewRows held(k_, d_);
+    for (const Held& h : motions.held) held.hold(h);
+    k_.joint = held.joint();
+  }
+
+  /// States that nothing reads follow from nothing: 0.
+  void leave_out(const StateMarks& states) {
+    const auto is_before = [](const Dependent& a, const Dependent& b) {
+      return std::pair(a.node, a.state) < std::pair(b.node, b.state);
+    };
+    std::vector<Dependent>& all = k_.stage.dependents;
+    std::string names;
+    for (const int node : d_.layout().state_nodes)
+      for (int i = 0; i < d_.numbers.blocks[at(node)]->A.rows(); ++i) {
+        const int state = d_.layout().state_first[at(node)] + i;
+        const Dependent leaves{node, i, {}};
+        const auto place = std::lower_bound(all.begin(), all.end(), leaves, is_before);
+        if (!states[at(state)] || (place != all.end() && !is_before(leaves, *place))) continue;
+        names += (names.empty() ? "" : ", ") + d_.layout().states[at(state)];
+        all.insert(place, leaves);
+      }
+    if (names.empty()) return;
+    for (Dependent& other : all)  // read by nothing as well
+      std::erase_if(other.of, [&](const Dependent::Share& s) {
+        return states[at(d_.layout().state_first[at(s.node)] + s.state)] != 0;
+      });
+    d_.states = StateMap(all, d_.layout());
+    k_.stage.notes.push_back(
+        {Note::Kind::info, "reduce",
+         fmt::format("states that only say how far that has gone leave the model: {}", names)});
+  }
+
+  static bool says_nothing(const Hidden& c) {
+    for (const RowVectorXd& h : c.h)
+      if (!h.isZero(0)) return false;
+    return true;
+  }
+
+  /// One mistake for each set of rows; `free`: the motions that those leave undetermined which say
+  /// nothing.
+  [[noreturn]] void refuse(const std::vector<Hidden>& rest,
+                           const std::vector<std::string>& free) const {
     std::map<std::vector<int>, std::set<int>> inputs_of;
     for (const Hidden& c : rest) {
       std::set<int>& inputs = inputs_of[c.rows];
@@ -176,9 +132,13 @@ class Reducer {
             inputs.insert(i);
     }
     std::vector<Mistake> mistakes;
-    for (const auto& [rows, inputs] : inputs_of)
+    for (const auto& [rows, inputs] : inputs_of) {
       mistakes.push_back(
           solve::blame(k_.stage, d_.numbers.blocks, rows, {inputs.begin(), inputs.end()}));
+      Mistake& m = mistakes.back();
+      m.details.insert(m.details.end(), free.begin(), free.end());
+      if (!free.empty()) m.hint += "; or hold that motion, or ask for nothing that depends on it";
+    }
     throw Error(std::move(mistakes));
   }
 
@@ -262,12 +222,17 @@ class Reducer {
   Skeleton& k_;
   SystemData& d_;
   Followers followers_;
+  std::set<std::pair<int, int>>& held_;
   std::vector<RowMatrix<double>> forcing_;  ///< [j]: rows x inputs, of u^(j + 1)
   std::vector<Hidden> constraints_;
 };
 
 }  // namespace
 
-void reduce(Skeleton& k, SystemData& d) { Reducer(k, d).run(); }
+void reduce(Skeleton& k, SystemData& d) {
+  std::set<std::pair<int, int>> held;
+  while (!Reducer(k, d, held).run()) {
+  }
+}
 
 }  // namespace titop::detail

@@ -12,13 +12,17 @@
 /// repeated until L is regular: the order is then the number of poles of the equations as written.
 /// Derivatives of inputs that come in this way must not reach an output; states may be shifted by
 /// multiples of inputs so that they do not.
+///
+/// A constraint that says nothing (0 = 0) leaves something undetermined. Where that is a motion on
+/// which nothing asked for depends (undetermined.hpp), it is taken as 0 in its place, and noted.
 namespace titop::detail {
 
 /// Replaces k.joint and d.factors, which are singular, by regular ones; completes
-/// k.stage.dependents and d.states; keeps the equations as written in k.before_reduce. Throws
-/// improper (input, output, number of derivatives and the equation that makes it), or what
-/// solve::blame says where a constraint repeats or contradicts what is known, not_finite. O(bodies)
-/// per missing pivot.
+/// k.stage.dependents and d.states; keeps the equations as written, undetermined motions at 0, in
+/// k.before_reduce. Throws improper (input, output, number of derivatives and the equation that
+/// makes it), or what solve::blame says where a constraint repeats or contradicts what is known
+/// (with what depends on the motion that is left undetermined), not_finite. O(bodies) per missing
+/// pivot.
 void reduce(Skeleton& k, SystemData& d);
 
 }  // namespace titop::detail

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <titop/compiler/solve/null_rows.hpp>
 
 namespace titop::solve {
@@ -9,13 +8,6 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-/// A number for further sums: what has not lost much counts by itself, so that ordinary losses do
-/// not add up along a long chain.
-Kept settled(const Kept& k) {
-  const double value = k.cleaned();
-  return {value, std::abs(value) > 1e-4 * k.size ? std::abs(value) : k.size};
-}
 
 /// x L = c, front by front: first U transposed from the leaves to the root, then L transposed back.
 class Transposed {
@@ -86,14 +78,14 @@ class Transposed {
   RowVectorXd x_;
 };
 
-/// p M = 0 by elimination with the pivot that has lost least: a basis whose every row has 1 in a
-/// place of its own, where the other ones have 0.
+/// p M = 0 by row operations.
 struct LeftNull {
   MatrixXd M, size;
-  std::vector<int> rows, columns;  ///< not pivots yet
+  std::vector<int> rows = {}, columns = {};  ///< not pivots yet
 
-  explicit LeftNull(const MatrixXd& m) : M(m), size(m.cwiseAbs()) {
-    for (int i = 0; i < M.rows(); ++i) rows.push_back(i), columns.push_back(i);
+  explicit LeftNull(KeptMatrix m) : M(std::move(m.value)), size(std::move(m.size)) {
+    for (int i = 0; i < M.rows(); ++i) rows.push_back(i);
+    for (int j = 0; j < M.cols(); ++j) columns.push_back(j);
   }
 
   NullRows solve() {
@@ -139,6 +131,14 @@ struct LeftNull {
 
 }  // namespace
 
+KeptMatrix KeptMatrix::transposed() const {
+  KeptMatrix t;
+  t.value = value.transpose(), t.size = size.transpose();
+  return t;
+}
+
+NullRows left_null(KeptMatrix M) { return LeftNull(std::move(M)).solve(); }
+
 RowVectorXd solve_transposed(const Factors<double>& factors, const RowVectorXd& c) {
   return Transposed(factors).solve(c);
 }
@@ -149,7 +149,8 @@ NullRows null_rows(const Factors<double>& patched) {
   const std::vector<Patch> patches = patched.patches();
   const auto m = static_cast<Index>(patches.size());
   const Index n = patched.plan().unknowns;
-  MatrixXd Y(m, n), M(m, m);
+  MatrixXd Y(m, n);
+  KeptMatrix M(m, m);
   Transposed transposed(patched);
   for (Index i = 0; i < m; ++i) {
     const Patch& p = patches[at(i)];
@@ -160,9 +161,9 @@ NullRows null_rows(const Factors<double>& patched) {
       Kept k;
       k.add(-Y(i, patches[at(j)].row), std::abs(Y(i, patches[at(j)].row)));
       if (i == j) k.add(1, 1);
-      M(i, j) = k.cleaned();
+      M.set(i, j, {k.cleaned(), std::abs(k.cleaned())});
     }
-  NullRows small = LeftNull(M).solve();
+  NullRows small = left_null(std::move(M));
   NullRows result{MatrixXd::Zero(small.y.rows(), n), {}};
   for (Index k = 0; k < small.y.rows(); ++k) {
     for (Index r = 0; r < n; ++r) {

@@ -118,7 +118,7 @@ TEST_CASE("improper: a massless body set free; a point that the modes cannot mov
 }
 
 TEST_CASE("improper: at a hinge, the body without inertia is told from the one that has it") {
-  const auto scene = [](double hub_mass, double arm_mass) {
+  const auto scene = [](double hub_mass, double arm_mass, bool read) {
     Diagram d{"hinged"};
     auto U = d.input("U", 6);
     auto B = d.add("B", brick(hub_mass)), A = d.add("A", brick(arm_mass));
@@ -126,12 +126,16 @@ TEST_CASE("improper: at a hinge, the body without inertia is told from the one t
     auto h = hinge(d, "h", A, B.child, Rotation{}, {0, 0, 1});
     h.torque = 0;
     d.output("a", 6) = B.parent.accel;
+    if (read) d.output("tip", 6) = A.child.accel;
     return d;
   };
-  CHECK(compile_error(scene(4, 2)).mistakes().empty());
-  CHECK(says(compile_error(scene(4, 0)), Code::improper,
-             {"h.torque is imposed", "h is a massless joint", "inertia about its axis"}));
-  CHECK(says(compile_error(scene(0, 0)), Code::improper,
+  CHECK(compile_error(scene(4, 2, true)).mistakes().empty());
+  CHECK(compile_error(scene(4, 0, false)).mistakes().empty());  // nobody asks how the arm turns
+  CHECK(says(compile_error(scene(4, 0, true)), Code::improper,
+             {"h.torque is imposed", "h is a massless joint", "inertia about its axis",
+              "nothing determines the rotation of A.parent about z, and outputs tip(2), tip(6) "
+              "depend on it"}));
+  CHECK(says(compile_error(scene(0, 0, false)), Code::improper,
              {"B.parent.force is imposed", "B has mass 0"}));
 }
 

@@ -1,0 +1,118 @@
+#include <algorithm>
+#include <titop/compiler/reduce/new_rows.hpp>
+#include <titop/compiler/solve/piece_matrix.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+using solve::Joint;
+using solve::Piece;
+using solve::RowMatrix;
+
+std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
+
+/// a M; what cancels to rounding is 0.
+RowVectorXd product(const RowVectorXd& a, const MatrixXd& M) {
+  RowVectorXd result = a * M;
+  const RowVectorXd size = a.cwiseAbs() * M.cwiseAbs();
+  return (result.array().abs() <= solve::kCancelled * size.array()).select(0, result);
+}
+
+}  // namespace
+
+std::pair<int, int> group_of(const Joint& joint, int scalar_row) {
+  const auto& first = joint.plan->row_first;
+  int r = 0;
+  for (int i = 0; i < static_cast<int>(first.size()); ++i)
+    if (first[at(i)] <= scalar_row && first[at(i)] >= first[at(r)]) r = i;
+  return {r, scalar_row - first[at(r)]};
+}
+
+Joint NewRows::joint() {
+  Joint j = old_;
+  j.pieces.clear();
+  j.piece_begin = {0};
+  solve::Structure structure;
+  structure.variable_size = old_.plan->structure.variable_size;
+  for (int r = 0; r < static_cast<int>(old_.rows.size()); ++r) {
+    std::vector<Piece> pieces(old_.row(r).begin(), old_.row(r).end());
+    const auto before = old_.plan->structure.row(r);
+    std::vector<int> over(before.begin(), before.end());
+    for (Piece& p : pieces)
+      if (p.entry >= 0) p.entry = over[at(p.entry)];
+    if (const auto found = by_group_.find(r); found != by_group_.end())
+      rewrite(r, found->second, pieces, over);
+    std::sort(over.begin(), over.end());
+    over.erase(std::unique(over.begin(), over.end()), over.end());
+    for (Piece& p : pieces)
+      if (p.entry >= 0)
+        p.entry =
+            static_cast<int>(std::lower_bound(over.begin(), over.end(), p.entry) - over.begin());
+    structure.add_row(old_.plan->structure.row_size[at(r)], over);
+    j.pieces.insert(j.pieces.end(), pieces.begin(), pieces.end());
+    j.piece_begin.push_back(static_cast<int>(j.pieces.size()));
+  }
+  j.plan = std::make_shared<const solve::Plan>(solve::plan(std::move(structure)));
+  return j;
+}
+
+void NewRows::rewrite(int r, const Group& group, std::vector<Piece>& pieces,
+                      std::vector<int>& over) {
+  const int size = old_.plan->structure.row_size[at(r)];
+  const auto place = [&](int row) {
+    return VectorXd(VectorXd::Unit(size, group_of(old_, row).second));
+  };
+  MatrixXd mask = MatrixXd::Identity(size, size);
+  for (const Hidden* c : group.derivatives) mask.row(group_of(old_, c->row).second).setZero();
+  for (const Held* h : group.held) mask.row(group_of(old_, h->row).second).setZero();
+  std::vector<Piece> result;
+  for (const Piece& p : pieces)
+    put(result, p, mask * solve::matrix_of(p, k_.stage.graph, d_.numbers));
+  for (const Hidden* c : group.derivatives) differentiate(*c, place(c->row), result, over);
+  for (const Held* h : group.held) add(result, over, place(h->row) * h->direction, h->signal);
+  pieces = std::move(result);
+}
+
+/// The piece with this matrix, unless that is 0.
+void NewRows::put(std::vector<Piece>& to, Piece p, const MatrixXd& matrix) {
+  if (matrix.isZero(0)) return;
+  p.of = Piece::Left::coefficient;
+  p.left = static_cast<int>(d_.numbers.coefficients.size());
+  p.right = -1;
+  p.sign = 1;
+  d_.numbers.coefficients.push_back(std::make_shared<const RowMatrix<double>>(matrix));
+  to.push_back(p);
+}
+
+void NewRows::differentiate(const Hidden& c, const VectorXd& place, std::vector<Piece>& to,
+                            std::vector<int>& over) {
+  const Graph& g = k_.stage.graph;
+  for (const int i : d_.layout().state_nodes) {
+    const Dynamics& m = *d_.numbers.blocks[at(i)];
+    const RowVectorXd own = c.g.segment(d_.layout().state_first[at(i)], m.A.rows());
+    if (own.isZero(0)) continue;
+    const Node& node = g.nodes[at(i)];
+    put(to, {.rows = static_cast<int>(place.size()), .signal = node.state},
+        place * product(own, m.A));
+    for (int s = node.first_signal; s < node.state; ++s)
+      if (const Signal& u = g.signals[at(s)]; u.role == Signal::Role::input && u.active)
+        add(to, over, place * product(own, m.B.middleCols(u.first, u.size)), s);
+  }
+}
+
+/// matrix * signal, in what the signal stands for.
+void NewRows::add(std::vector<Piece>& to, std::vector<int>& over, const MatrixXd& matrix,
+                  int signal) {
+  for (const solve::Meaning& m : old_.meaning(signal)) {
+    const int v = old_.variable_of[at(m.signal)];
+    if (v >= 0) over.push_back(v);
+    put(to, {.rows = static_cast<int>(matrix.rows()), .entry = v, .signal = m.signal},
+        m.coefficient < 0 ? matrix
+                          : MatrixXd(matrix * *d_.numbers.coefficients[at(m.coefficient)]));
+  }
+}
+
+}  // namespace titop::detail

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <titop/compiler/reduce/watched.hpp>
+#include <vector>
+
+/// Motions that no equation determines: a massless strut between two pin joints turns about its own
+/// axis as it likes, and the balance of torques about that axis says 0 = 0. Where nothing that is
+/// asked for depends on such a motion it may be taken as 0, in place of the equation that says
+/// nothing.
+namespace titop::detail {
+
+/// direction * signal = 0 in place of a row.
+struct Held {
+  int row = -1;                  ///< scalar row of the joint system
+  int signal = -1;               ///< an acceleration
+  Eigen::RowVectorXd direction;  ///< of length 1, over translation or rotation alone
+};
+
+/// What becomes of rows that say nothing.
+struct Undetermined {
+  std::vector<Held> held;  ///< one per row; none where a motion matters or there is none
+  /// A line per motion, as "nothing determines the rotation of A.parent about x". In `held`: what
+  /// is taken as 0; else: followed by the outputs or states that depend on it.
+  std::vector<std::string> lines;
+  StateMarks
+      states;  ///< with `held`: what such motions move, undetermined itself and read by nothing
+};
+
+/// The motions of the singular joint system k.joint, from its factors d.factors with patches:
+/// columns z with L z = 0 that move no state of any block and reach no output, to rounding (sums
+/// are 0 below solve::kCancelled of their terms). `rows`: scalar rows, independent of one another,
+/// that follow from the others, with their known sides. O(bodies) per patch.
+Undetermined undetermined(const Skeleton& k, const SystemData& d, const std::vector<int>& rows);
+
+}  // namespace titop::detail

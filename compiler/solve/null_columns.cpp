@@ -1,0 +1,123 @@
+#include <titop/compiler/solve/null_columns.hpp>
+
+namespace titop::solve {
+namespace {
+
+using Eigen::Index;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// F z = value e_row, front by front: L from the leaves to the root, then U back (substitution.cpp
+/// with the size of what every number was made of).
+class Column {
+ public:
+  explicit Column(const Factors<double>& factors) : f_(factors), plan_(factors.plan()) {}
+
+  const std::vector<Kept>& solve(int row, double value) {
+    row_ = row, value_ = value;
+    z_.assign(at(plan_.unknowns), {});
+    carried_.assign(at(plan_.carried), {});
+    for (std::size_t f = 0; f < plan_.fronts.size(); ++f) upward(f);
+    for (std::size_t f = plan_.fronts.size(); f-- > 0;) downward(f);
+    return z_;
+  }
+
+ private:
+  std::vector<Kept> assembled(const Front& f) const {
+    std::vector<Kept> rows;
+    rows.reserve(at(f.row_count));
+    for (const int r : plan_.list(f.rows))
+      for (int i = 0; i < plan_.structure.row_size[at(r)]; ++i)
+        rows.push_back(plan_.row_first[at(r)] + i == row_ ? Kept{value_, std::abs(value_)}
+                                                          : Kept{});
+    for (const int c : plan_.list(f.children)) {
+      const Front& child = plan_.fronts[at(c)];
+      for (int i = 0; i < child.left_over(); ++i)
+        rows.push_back(carried_[at(child.first_carried + i)]);
+    }
+    return rows;
+  }
+
+  void upward(std::size_t index) {
+    const Front& f = plan_.fronts[index];
+    const Factors<double>::Made& made = f_.made(index);
+    const std::vector<Kept> rows = assembled(f);
+    std::vector<Kept> b(rows.size());
+    for (std::size_t i = 0; i < b.size(); ++i) b[i] = rows[at(made.order[i])];
+    const int n = f.columns();
+    for (int i = 0; i < f.row_count; ++i) {
+      for (int k = 0; k < std::min(i, f.pivot_count); ++k)
+        pass(b[at(k)], made.lu[at(i * n + k)], b[at(i)]);
+      b[at(i)] = settled(b[at(i)]);
+    }
+    for (int i = 0; i < f.pivot_count; ++i) z_[at(f.first_unknown + i)] = b[at(i)];
+    for (int i = f.pivot_count; i < f.row_count; ++i)
+      carried_[at(f.first_carried + i - f.pivot_count)] = b[at(i)];
+  }
+
+  void downward(std::size_t index) {
+    const Front& f = plan_.fronts[index];
+    const double* lu = f_.made(index).lu.data();
+    const int n = f.columns();
+    for (int i = f.pivot_count - 1; i >= 0; --i) {
+      Kept& own = z_[at(f.first_unknown + i)];
+      int column = f.pivot_count;
+      for (const int v : plan_.list(f.border))
+        for (int k = 0; k < plan_.structure.variable_size[at(v)]; ++k, ++column)
+          pass(z_[at(plan_.first[at(v)] + k)], lu[i * n + column], own);
+      for (int k = i + 1; k < f.pivot_count; ++k)
+        pass(z_[at(f.first_unknown + k)], lu[i * n + k], own);
+      const double pivot = lu[i * n + i];
+      own = settled({own.value / pivot, own.size / std::abs(pivot)});
+    }
+  }
+
+  static void pass(const Kept& from, double factor, Kept& to) {
+    to.add(-factor * from.value, std::abs(factor) * from.size);
+  }
+
+  const Factors<double>& f_;
+  const Plan& plan_;
+  int row_ = 0;
+  double value_ = 0;
+  std::vector<Kept> z_, carried_;
+};
+
+}  // namespace
+
+// L = F - sum of value_i e_row_i e_unknown_i'. L z = 0 is F z = sum of value_i e_row_i q_i with q_i
+// z at unknown i: z = Z q, Z the solutions for one patch each, and (I - Z at these unknowns) q = 0.
+KeptMatrix null_columns(const Factors<double>& patched) {
+  const std::vector<Patch> patches = patched.patches();
+  const auto m = static_cast<Index>(patches.size());
+  const Index n = patched.plan().unknowns;
+  KeptMatrix Z(n, m), M(m, m);
+  Column column(patched);
+  for (Index i = 0; i < m; ++i) {
+    const std::vector<Kept>& z = column.solve(patches[at(i)].row, patches[at(i)].value);
+    for (Index r = 0; r < n; ++r) Z.set(r, i, z[at(r)]);
+  }
+  for (Index i = 0; i < m; ++i)
+    for (Index j = 0; j < m; ++j) {
+      const Kept z = Z.at(patches[at(i)].unknown, j);
+      Kept k{-z.value, z.size};
+      if (i == j) k.add(1, 1);
+      M.set(j, i, {k.cleaned(), std::abs(k.cleaned())});  // transposed
+    }
+  const NullRows small = left_null(std::move(M));
+  KeptMatrix result(n, small.y.rows());
+  for (Index k = 0; k < small.y.rows(); ++k) {
+    for (Index r = 0; r < n; ++r) {
+      Kept sum;
+      for (Index i = 0; i < m; ++i)
+        sum.add(small.y(k, i) * Z.value(r, i), std::abs(small.y(k, i)) * Z.size(r, i));
+      result.set(r, k, settled(sum));
+    }
+    // At the patched unknowns z is q itself.
+    for (Index i = 0; i < m; ++i)
+      result.set(patches[at(i)].unknown, k, {small.y(k, i), std::abs(small.y(k, i))});
+  }
+  return result;
+}
+
+}  // namespace titop::solve
