@@ -38,6 +38,7 @@ set output "simulation.svg"
 set xlabel "largest error of an output in time, over its largest value"
 set autoscale x
 set xrange [] reverse
+set yrange [1e-3:1]
 set ylabel "seconds of a simulation, over the full system's"
 plot for [i=1:scenes] "economy.dat" index i-1 using 5:4 with linespoints linecolor rgb "black" \
        linewidth 1.5 dashtype solid pointtype filled[i] pointsize 0.8 title columnheader(1)
