@@ -2,6 +2,7 @@
 #include <cmath>
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/declared.hpp>
+#include <titop/compiler/system.hpp>
 #include <titop/graph/linalg/dense.hpp>
 
 namespace titop::detail {
@@ -11,8 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-constexpr double kCancelled = 1e-5;  ///< of the terms
-constexpr double kSmall = 1e-3;      ///< of row and column
+constexpr double kCancelled = 1e-3;  ///< of the terms
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -28,19 +28,8 @@ MatrixXd by_block(const MatrixXd& m, const Measure& by) {
 MatrixXd block_sizes(const std::vector<MatrixXcd>& exact, const Measure& by) {
   MatrixXd largest = MatrixXd::Zero(exact.front().rows(), exact.front().cols());
   for (const MatrixXcd& G : exact) largest = largest.cwiseMax(G.cwiseAbs());
-  MatrixXd size = by_block(largest, by);
-  const MatrixXd terms = by.terms.size() > 0 ? by_block(by.terms, by) : MatrixXd(0 * size);
-  // A row or a column that is 0 by nature holds nothing but rounding.
-  const double all = size.maxCoeff() > 0 ? size.maxCoeff() : 1;
-  const auto or_all = [all](double most) { return most > 1e-12 * all ? most : all; };
-  const Eigen::VectorXd rows = size.rowwise().maxCoeff().unaryExpr(or_all),
-                        cols = size.colwise().maxCoeff().unaryExpr(or_all);
-  for (Index i = 0; i < size.rows(); ++i)
-    for (Index j = 0; j < size.cols(); ++j) {
-      const double mean = std::sqrt(rows(i)) * std::sqrt(cols(j));
-      size(i, j) = std::max({size(i, j), kCancelled * terms(i, j), kSmall * mean});
-    }
-  return size;
+  const MatrixXd size = by_block(largest, by);
+  return by.terms.size() > 0 ? size.cwiseMax(kCancelled * by_block(by.terms, by)) : size;
 }
 
 template <class List>
@@ -73,6 +62,37 @@ MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& poi
   return result;
 }
 
+MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points) {
+  MatrixXd result = MatrixXd::Zero(static_cast<Index>(system.outputs().size()),
+                                   static_cast<Index>(system.inputs().size()));
+  for (const std::complex<double> s : points) try {
+      const MatrixXcd off =
+          system.transfer(s, Precision::standard) - system.transfer(s, Precision::extended);
+      result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());
+    } catch (const Error&) {
+      // No digit is left there in one of the two: other points must do.
+    }
+  return result;
+}
+
+std::vector<std::complex<double>> some_of(const std::vector<std::complex<double>>& points) {
+  std::vector<std::complex<double>> result;
+  const std::size_t step = 1 + points.size() / 8;  // the last ones, where accelerations are largest
+  for (std::size_t k = 0; k < points.size(); k += step)
+    result.push_back(points[points.size() - 1 - k]);
+  return result;
+}
+
+Difference difference(const std::vector<MatrixXcd>& a, const std::vector<MatrixXcd>& exact,
+                      Measure& measure, const System& system,
+                      const std::vector<std::complex<double>>& points) {
+  const Difference first = difference(a, exact, measure);
+  if (first.relative <= kClose) return first;
+  MatrixXd more = terms(system, some_of(points));
+  measure.terms = measure.terms.size() > 0 ? measure.terms.cwiseMax(more).eval() : std::move(more);
+  return difference(a, exact, measure);
+}
+
 Difference difference(const std::vector<MatrixXcd>& a, const std::vector<MatrixXcd>& exact,
                       const Measure& measure) {
   Difference worst;
@@ -83,7 +103,8 @@ Difference difference(const std::vector<MatrixXcd>& a, const std::vector<MatrixX
     const MatrixXd off = by_block((a[k] - exact[k]).cwiseAbs(), measure);
     for (Index i = 0; i < off.rows(); ++i)
       for (Index j = 0; j < off.cols(); ++j)
-        if (off(i, j) > worst.relative * size(i, j)) worst = {off(i, j) / size(i, j), k};
+        if (off(i, j) > worst.relative * size(i, j))
+          worst = {size(i, j) > 0 ? off(i, j) / size(i, j) : HUGE_VAL, k};
   }
   return worst;
 }

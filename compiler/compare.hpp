@@ -2,9 +2,14 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <limits>
 #include <titop/graph/graph.hpp>
 #include <titop/graph/state_space.hpp>
 #include <vector>
+
+namespace titop {
+class System;
+}
 
 namespace titop::detail {
 
@@ -24,19 +29,43 @@ Measure measure(const Graph& graph, Eigen::MatrixXd terms);
 /// O(points n^3).
 Eigen::MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& points);
 
+/// What one rounding stands for: it is one sample, after a step of refinement, of what many may do.
+inline constexpr double kTermsPerRounding = 100 / std::numeric_limits<double>::epsilon();
+
+/// The same of what cancels inside the elimination, seen by its rounding: kTermsPerRounding times
+/// double against long double at these points. Slow.
+Eigen::MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points);
+
+/// The same of `transfer(graph, s, values)` (compiler/transfer.hpp): all equations against all in
+/// reverse order, likewise. Outputs and inputs in the graph's order. O(points signals^3).
+Eigen::MatrixXd terms(const Graph& graph, const std::vector<std::complex<double>>& points,
+                      ParameterValues values);
+
+/// Up to 8 of these points.
+std::vector<std::complex<double>> some_of(const std::vector<std::complex<double>>& points);
+
 /// Where two transfers differ most.
 struct Difference {
   double relative = 0;
   std::size_t point = 0;  ///< index
 };
 
+/// Above it a difference may be rounding of terms that a dense model does not show.
+inline constexpr double kClose = 1e-9;
+
 /// Two transfers at the same points: each entry's difference over the size of its block. That is
-/// the largest of: the largest value that the block takes in `exact`; 1e-5 of its terms, which may
-/// cancel to nothing, as by symmetry (in double nothing is right to better than 1e-15 of its
-/// terms); and 1e-3 of what its row and column come to, where the terms themselves are but rounding
-/// (rows and columns below 1e-12 of all count as large as the largest). Not finite is infinitely
-/// far.
+/// the largest value that the block takes in `exact`, or 1e-3 of its terms where these are larger
+/// and cancel, as by symmetry (in double nothing is right to better than 1e-15 of its terms, and
+/// the entries of a dense model have lost some digits where they were made). No block is measured
+/// by its neighbours: the result is the same in all units of single inputs and outputs. Not finite,
+/// or a difference where `exact` and the terms are 0, is infinitely far.
 Difference difference(const std::vector<Eigen::MatrixXcd>& a,
                       const std::vector<Eigen::MatrixXcd>& exact, const Measure& measure);
+
+/// The same for an `exact` that is the system's own at these points. Where that is above kClose,
+/// the terms of the elimination, at up to 8 of the points, join the measure first.
+Difference difference(const std::vector<Eigen::MatrixXcd>& a,
+                      const std::vector<Eigen::MatrixXcd>& exact, Measure& measure,
+                      const System& system, const std::vector<std::complex<double>>& points);
 
 }  // namespace titop::detail

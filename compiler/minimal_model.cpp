@@ -65,9 +65,9 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
       before.push_back(system.transfer(s));
       after.push_back(m.model.transfer(s));
     }
-    const Measure by =
+    Measure by =
         measure(*d.skeleton->stage.source, terms(dense, points).cwiseMax(terms(m.model, points)));
-    m.order.change = difference(after, before, by).relative;
+    m.order.change = difference(after, before, by, system, points).relative;
     m.notes.front() = to_string(m.order);
   }
   if (m.order.change > std::max(1e-8, 10 * resolution)) {

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <titop/compiler/compare.hpp>
 #include <titop/compiler/transfer.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
@@ -118,12 +119,8 @@ void add_definition(Assembly& a, int column, int size, const std::vector<Term>& 
   a.row += size;
 }
 
-}  // namespace
-
-MatrixXcd transfer(const Graph& graph, std::complex<double> s, ParameterValues values) {
-  if (!graph.mistakes.empty()) throw Error(graph.mistakes);
-  const std::vector<double> nominal = nominal_values(graph);
-  Assembly a(graph, values.empty() ? ParameterValues(nominal) : values, s);
+Assembly assembled(const Graph& graph, std::complex<double> s, ParameterValues values) {
+  Assembly a(graph, values, s);
   for (int i = 0; i < static_cast<int>(graph.nodes.size()); ++i)
     if (!graph.nodes[at(i)].lowered) add_block(a, graph.nodes[at(i)], i, s);
   for (std::size_t c = 0; c < a.drive.size(); ++c) add_channel(a, graph.channels[c], a.drive[c]);
@@ -136,6 +133,15 @@ MatrixXcd transfer(const Graph& graph, std::complex<double> s, ParameterValues v
     add_definition(a, column, o.size, o.terms);
     column += o.size;
   }
+  return a;
+}
+
+}  // namespace
+
+MatrixXcd transfer(const Graph& graph, std::complex<double> s, ParameterValues values) {
+  if (!graph.mistakes.empty()) throw Error(graph.mistakes);
+  const std::vector<double> nominal = nominal_values(graph);
+  const Assembly a = assembled(graph, s, values.empty() ? ParameterValues(nominal) : values);
   if (a.row != a.unknowns + a.outputs)
     throw Error(
         Code::no_equation,
@@ -150,5 +156,23 @@ MatrixXcd transfer(const Graph& graph, std::complex<double> s, ParameterValues v
         "s may be a pole; try another s, or compile it to see what is wrong");
   return solution.z.bottomRows(a.outputs);
 }
+
+namespace detail {
+
+MatrixXd terms(const Graph& graph, const std::vector<std::complex<double>>& points,
+               ParameterValues values) {
+  MatrixXd result;
+  for (const std::complex<double> s : points) {
+    const Assembly a = assembled(graph, s, values);
+    const MatrixXcd z = linalg::solve(a.E, a.F).z,
+                    back = linalg::solve(a.E.reverse(), a.F.colwise().reverse()).z;
+    const MatrixXcd off = z.bottomRows(a.outputs) - back.colwise().reverse().bottomRows(a.outputs);
+    if (result.size() == 0) result = MatrixXd::Zero(off.rows(), off.cols());
+    if (off.allFinite()) result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());
+  }
+  return result;
+}
+
+}  // namespace detail
 
 }  // namespace titop

@@ -2,10 +2,13 @@
 
 #include <Eigen/QR>
 #include <algorithm>
+#include <iterator>
+#include <set>
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/drives.hpp>
+#include <utility>
 
 namespace titop::passes {
 namespace {
@@ -195,7 +198,25 @@ std::string direction_names(const MatrixXd& directions) {
   return " (" + text + ")";
 }
 
-void release_redundant(Stage& stage, const std::vector<Closing>& closings) {
+/// Scalars that are 0 in every motion that the closed chains leave; what the equations prescribe is
+/// none.
+using Held = std::set<Scalar>;
+
+/// `known`: orthonormal columns, spanning all relations between these scalars.
+void add_held(const std::vector<Scalar>& scalars, const MatrixXd& known, Held& held) {
+  const double noise = 64 * 2.2e-16 * static_cast<double>(std::max<Index>(known.cols(), 6));
+  for (Index j = 0; j < known.rows(); ++j) {
+    const Scalar& s = scalars[static_cast<std::size_t>(j)];
+    if (s.column.kind == Column::Kind::prescribed || known.row(j).squaredNorm() < 0.5) continue;
+    Eigen::VectorXd left = -(known * known.row(j).transpose());
+    left(j) += 1;
+    if (left.norm() <= noise) held.insert(s);
+  }
+}
+
+/// Returns what the chains hold altogether.
+Held release_redundant(Stage& stage, const std::vector<Closing>& closings) {
+  Held held;
   std::vector<Line> lines;
   for (const Closing& c : closings) lines.push_back(line_of(c));
   const Coordinates coordinates(stage.graph, stage.values);
@@ -231,7 +252,76 @@ void release_redundant(Stage& stage, const std::vector<Closing>& closings) {
                        name, directions.rows(), rows, direction_names(directions))});
       release(stage, line.equation, directions);
     }
+    add_held(c.scalars, known, held);
   }
+  return held;
+}
+
+// --- what cannot move at all ---------------------------------------------------------------------
+
+/// Scalar points that hang on others, and that nothing else ties, close no chain, though their
+/// equations are no edges of the tree either.
+std::vector<Closing> without_hanging(const std::vector<Closing>& closings) {
+  std::map<Column, int> uses;
+  for (const Closing& c : closings)
+    for (const auto& [column, matrix] : c.form) ++uses[column];
+  std::vector<Closing> result;
+  std::copy_if(closings.begin(), closings.end(), std::back_inserter(result), [&](const Closing& c) {
+    return c.tie->S.rows() != 1 || std::none_of(c.form.begin(), c.form.end(), [&](const auto& f) {
+             return f.first.kind == Column::Kind::root && uses[f.first] == 1 && !f.second.isZero(0);
+           });
+  });
+  return result;
+}
+
+/// The chains' own equations, with the gains and sums that they read.
+std::vector<char> equations_of_chains(const Graph& g, const std::vector<Closing>& closings) {
+  std::vector<int> equation_of(g.signals.size(), -1);  // of what is no side of a channel
+  for (int e = 0; e < static_cast<int>(g.equations.size()); ++e)
+    if (const int target = g.equations[at(e)].target; g.signals[at(target)].channel < 0)
+      equation_of[at(target)] = e;
+  std::vector<int> open;
+  for (const Closing& c : closings) open.insert(open.end(), c.equations.begin(), c.equations.end());
+  std::vector<char> result(g.equations.size(), 0);
+  while (!open.empty()) {
+    const int e = open.back();
+    open.pop_back();
+    if (std::exchange(result[at(e)], 1)) continue;
+    for (const Term& t : g.equations[at(e)].terms)
+      if (equation_of[at(t.signal)] >= 0) open.push_back(equation_of[at(t.signal)]);
+  }
+  return result;
+}
+
+/// Points that closed chains hold by their numbers: the elimination would find rounding in place of
+/// their accelerations. The chains' own equations need them, for the forces; whatever else reads
+/// one reads nothing, so that outputs are 0 and what hangs there stands on the ground.
+void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& closings,
+                const Held& held) {
+  if (held.empty()) return;
+  Graph& g = stage.graph;
+  const auto holds = [&](const Column& c, int index) { return held.contains({c, index}); };
+  const std::vector<char> still = motion.at_rest(holds),
+                          grounded = motion.at_rest([](const Column&, int) { return false; });
+  const std::vector<char> in_chain = equations_of_chains(g, without_hanging(closings));
+  std::set<int> points;
+  const auto clear = [&](std::vector<Term>& terms) {
+    std::erase_if(terms, [&](const Term& t) {
+      const Signal& s = g.signals[at(t.signal)];
+      if (s.channel < 0 || s.quantity != Quantity::acceleration) return false;
+      if (!still[at(s.channel)] || grounded[at(s.channel)]) return false;
+      points.insert(s.channel);
+      return true;
+    });
+  };
+  for (std::size_t e = 0; e < g.equations.size(); ++e)
+    if (!in_chain[e]) clear(g.equations[e].terms);
+  for (Output& o : g.outputs) clear(o.terms);
+  if (points.empty()) return;
+  std::string names;
+  for (const int p : points) names += (names.empty() ? "" : ", ") + motion.name(p);
+  stage.notes.push_back(
+      {Note::Kind::info, "chains", "closed chains leave these points no motion: " + names});
 }
 
 }  // namespace
@@ -252,7 +342,7 @@ Stage chains(Stage stage) {
   if (!checker.mistakes.empty()) throw Error(std::move(checker.mistakes));
   stage.notes.insert(stage.notes.end(), checker.notes.begin(), checker.notes.end());
   stage.chained = !closings.empty();
-  if (stage.chained) release_redundant(stage, closings);
+  if (stage.chained) hold_still(stage, motion, closings, release_redundant(stage, closings));
   return stage;
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <deque>
+#include <numeric>
 #include <titop/compiler/passes/close/motion.hpp>
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/drives.hpp>
@@ -99,7 +100,7 @@ void Motion::add_ties(const Twins& twins) {
 /// The tie as an edge of the tree, if its coefficient can be turned round: whole, or orthonormal.
 std::optional<Motion::Edge> Motion::edge_of(const Tie& tie) const {
   if (tie.points.size() > 1) return std::nullopt;
-  Edge e{.to = tie.target, .from = ground_};
+  Edge e{.to = tie.target, .from = ground_, .equation = tie.equation};
   const auto free = complement(tie.S, static_cast<int>(tie.S.cols()));
   for (const auto& [column, matrix] : tie.own) e.own[column] = tie.S.transpose() * matrix;
   if (free.rows() > 0) e.own[{Column::Kind::angle, tie.equation}] = free.transpose();
@@ -213,8 +214,31 @@ Form Motion::position(int channel) const {
   return form;
 }
 
+std::vector<char> Motion::at_rest(const std::function<bool(const Column&, int)>& held) const {
+  std::vector<char> result(at(ground_) + 1, 0);
+  std::vector<int> points(result.size());
+  std::iota(points.begin(), points.end(), 0);
+  std::stable_sort(points.begin(), points.end(),
+                   [&](int a, int b) { return depth_[at(a)] < depth_[at(b)]; });
+  for (const int p : points) {
+    if (p == ground_) result[at(p)] = 1;
+    if (depth_[at(p)] <= 0) continue;
+    result[at(p)] = result[at(up_[at(p)].from)];
+    for (const auto& [column, matrix] : up_[at(p)].own)
+      for (Index j = 0; j < matrix.cols(); ++j)
+        if (!matrix.col(j).isZero(0) && !held(column, static_cast<int>(j))) result[at(p)] = 0;
+  }
+  result.pop_back();
+  return result;
+}
+
+void Motion::list_ties(int point, int above, std::vector<int>& equations) const {
+  for (; point != above && depth_[at(point)] > 0; point = up_[at(point)].from)
+    if (up_[at(point)].equation >= 0) equations.push_back(up_[at(point)].equation);
+}
+
 Closing Motion::closing(const Tie& tie) const {
-  Closing result{.tie = &tie};
+  Closing result{.tie = &tie, .equations = {tie.equation}};
   add(result.form, -MatrixXd::Identity(tie.S.rows(), tie.S.rows()), tie.own);
   const int other = tie.points.empty() ? ground_ : tie.points.begin()->first;
   int top = tie.points.size() > 1 ? -1 : meeting(tie.target, other);
@@ -229,6 +253,8 @@ Closing Motion::closing(const Tie& tie) const {
                      rigid_between(other, top) &&
                      (tie.points.empty() || has_orthonormal_rows(tie.points.begin()->second));
   if (top != ground_ && !rigid) top = -1;
+  list_ties(tie.target, top, result.equations);
+  for (const auto& [point, c] : tie.points) list_ties(point, top, result.equations);
   MatrixXd sizes = tie.S.cwiseAbs();  // how far the way round leads
   MatrixXd here = walk(result.form, tie.S, tie.target, top, &sizes);
   if (top < 0) add_root(result.form, here, root_[at(tie.target)]);

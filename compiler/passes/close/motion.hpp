@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <titop/compiler/passes/close/twin.hpp>
@@ -21,8 +22,9 @@ struct Tie {
 struct Closing {
   const Tie* tie = nullptr;
   Form form = {};
-  double gap = 0;               ///< relative; 0 where the meeting point is the ground
-  std::vector<int> chain = {};  ///< points on the way round, for messages
+  double gap = 0;                   ///< relative; 0 where the meeting point is the ground
+  std::vector<int> chain = {};      ///< points on the way round, for messages
+  std::vector<int> equations = {};  ///< ties on the way round, this one too
 };
 
 /// Points (channels) and the ground, joined by bodies and by equations: a spanning forest, body
@@ -37,6 +39,9 @@ class Motion {
   Closing closing(const Tie& tie) const;
   /// Position of a point from the root of its assembly.
   Form position(int channel) const;
+  /// Per channel: the ground holds its point, if it holds these scalar columns. O(points log
+  /// points).
+  std::vector<char> at_rest(const std::function<bool(const Column&, int)>& held) const;
   /// The point as the user knows it.
   std::string name(int point) const;
   /// A body on this chain that does not say where its ports are: its node, else -1.
@@ -50,6 +55,7 @@ class Motion {
     bool rigid = true;     ///< keeps what is rigid rigid: no gear
     int silent = -1;       ///< node whose ports are anywhere
     bool one_way = false;  ///< R has no inverse
+    int equation = -1;     ///< of a tie
   };
 
   void add_bodies(ParameterValues values);
@@ -60,6 +66,8 @@ class Motion {
   void plant();
   int meeting(int a, int b) const;
   bool rigid_between(int point, int above) const;
+  /// The ties between a point and one above it (-1: the root).
+  void list_ties(int point, int above, std::vector<int>& equations) const;
   /// form += factor * x_point, down to `above` (-1: the root); what multiplies x_above. `sizes`
   /// grows to the largest entries met on the way.
   Eigen::MatrixXd walk(Form& form, Eigen::MatrixXd factor, int point, int above,

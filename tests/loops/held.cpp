@@ -1,0 +1,93 @@
+#include <doctest/doctest.h>
+
+#include "assembly.hpp"
+
+/// Chains whose geometry leaves some points no motion at all: outputs there are 0, not rounding,
+/// what hangs there stands on the ground, and loads still reach the ground.
+
+using namespace loop_test;
+using namespace titop;
+
+namespace {
+
+constexpr double kMass = 2, kStiffness = 50, kDamping = 0.6;
+
+/// A triangle of bars 3 and 4 long on pins 5 apart: a right angle at its apex. A spring-mass hangs
+/// at the apex, across all three axes, beside a body that is welded on.
+struct Truss {
+  Diagram d{"truss"};
+  double angle_A = std::atan2(4, 3), angle_B = std::atan2(-3, 4);
+
+  static RigidBody bar(double length) {
+    return {.mass = length,
+            .inertia = length * Vector3d(0.01, 0.5, 0.5).asDiagonal(),
+            .PA = {length / 2, 0, 0},
+            .children = {{"tip", {length, 0, 0}}}};
+  }
+  static Rotation turn(double angle) { return Rotation::about({0, 0, 1}, angle); }
+
+  explicit Truss(bool closed) {
+    auto base = d.add("base", RigidBody{.mass = 1, .children = {{"J1"}, {"J2", {5, 0, 0}}}});
+    auto A = d.add("A", bar(3)), B = d.add("B", bar(4)), box = d.add("box", bar(0.5));
+    ground(base);
+    const Vector3d z{0, 0, 1};
+    hinge(d, "p1", A, base.child("J1"), turn(angle_A), z).torque = 0;
+    hinge(d, "p2", B, A.child, turn(angle_B - angle_A), z).torque = 0;
+    if (closed) {
+      auto p3 = d.add("p3", Hinge{z});
+      p3.torque = 0;
+      mount(p3, base.child("J2"), turn(angle_B));
+      weld(B.child, p3.child);
+    }
+    mount(box, A.child);
+    auto hung =
+        d.add("hung", SpringMass{.mass = kMass, .stiffness = kStiffness, .damping = kDamping});
+    mount(hung, box.child.along({1, 2, 2}));
+    auto u = d.input("u");
+    hung.child.force += u;
+    A.child.force += d.input("F", 6);
+    const auto gain = d.param("gain", 3.0);
+    d.output("stretch") = hung.stretch;
+    d.output("mass") = hung.child.accel;
+    d.output("apex", 6) = A.child.accel;
+    d.output("beyond") = gain * box.child.accel.along({0, 1, 0});
+    d.output("borne", 3) = base.parent.force.linear;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a truss: nothing moves but what hangs on it, and that as if on the ground") {
+  const Truss truss(true);
+  const System system = compile(truss.d);
+  CHECK(system.log().find("leave these points no motion: A.child(\"tip\"), box.child(\"tip\")") !=
+        std::string::npos);
+  for (const System& s : {system, system.update({{"gain", 7}})}) {
+    const StateSpace& m = s.state_space();
+    CHECK(m.order() == 2);
+    CHECK(s.order_verdict().decided());
+    REQUIRE(s.poles().size() == 1);
+    CHECK(std::abs(s.poles()[0].omega / std::sqrt(kStiffness / kMass) - 1) <= 1e-14);
+    for (const Complex z : points({0.3, 5, 70})) {
+      const Complex x = 1.0 / (kMass * z * z + kDamping * z + kStiffness);
+      for (const MatrixXcd& G : {s.transfer(z), m.transfer(z)}) {
+        CHECK(std::abs(G(0, 0) / x - 1.0) <= 1e-13);
+        CHECK(std::abs(G(1, 0) / (z * z * x) - 1.0) <= 1e-13);
+        CHECK(G.block(2, 0, 7, 7).isZero(0));  // apex, beyond
+        CHECK(G.block(0, 1, 2, 6).isZero(0));
+        // The force on the apex is in the frame of bar A.
+        const MatrixXd turned = Truss::turn(truss.angle_A).nominal();
+        CHECK((G.block(9, 1, 3, 3) - turned).cwiseAbs().maxCoeff() <= 1e-13);
+        CHECK(G.block(9, 4, 3, 3).cwiseAbs().maxCoeff() <= 1e-13);
+      }
+    }
+    CHECK(certify(s).holds());
+  }
+}
+
+TEST_CASE("the same bars left open move") {
+  const System system = compile(Truss(false).d);
+  CHECK(system.log().find("no motion") == std::string::npos);
+  const MatrixXcd G = system.transfer({0.1, 1});
+  CHECK(G.block(2, 1, 3, 3).cwiseAbs().maxCoeff() >= 1e-3);
+}
