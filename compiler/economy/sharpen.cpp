@@ -73,6 +73,15 @@ double distance(const Eigen::VectorXd& lambda, Index elastic, Index j) {
   return nearest;
 }
 
+/// Modes that had one frequency have one again: in pairs that symmetry makes 0 their terms cancel,
+/// and beside a resonance the last digits between them would not.
+void unite(Whole& w, const Eigen::VectorXd& before, Index count) {
+  for (Index first = 0, last = 0; first < count; first = last) {
+    while (last < count && before(last) == before(first)) ++last;
+    w.lambda.segment(first, last - first).setConstant(w.lambda.segment(first, last - first).mean());
+  }
+}
+
 }  // namespace
 
 void sharpen(Whole& w, const System& system, double high) {
@@ -94,6 +103,7 @@ void sharpen(Whole& w, const System& system, double high) {
       if (w.Z.size() > 0) w.Z(j, j) = std::max(0.0, -2 * found->real());
     };
   });
+  unite(w, before, count);
 }
 
 }  // namespace titop::detail

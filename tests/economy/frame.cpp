@@ -28,8 +28,7 @@ TEST_CASE("a frame of three beams: the error stays below its bound, the bound ne
     const titop::Scene scene = with_accuracy(question, accuracy);
     const ReducedSystem r = compile(d, scene);
     CAPTURE(accuracy);
-    check_beside(r, scene, truth, 400);
-    CHECK(r.bound().worst <= 1.2 * beside(r, scene, truth, 400).error);
+    CHECK(r.bound().worst <= 1.2 * check_beside(r, scene, truth).error);
     CHECK(r.order() <= r.full().order() / 4);
     CHECK(r.inputs() == compile(d).inputs());
     CHECK(r.outputs() == compile(d).outputs());
@@ -82,7 +81,7 @@ TEST_CASE("damped in every mode: the error stays below its bound, stable stays s
   const Diagram d = frame(slim_beam(6, 0.005));
   const titop::Scene scene = with_accuracy(question, 1e-4);
   const ReducedSystem r = compile(d, scene);
-  check_beside(r, scene, frame_by_hand(slim_beam(6, 0.005)), 30);
+  check_beside(r, scene, frame_by_hand(slim_beam(6, 0.005)));
   CHECK(r.order() < r.full().order() / 2);
   for (const Pole& p : poles(r.state_space())) CHECK(p.s.real() < 0);
 }
@@ -95,7 +94,7 @@ TEST_CASE("a theorem counts every pole: more samples, no smaller a bound") {
   const ReducedSystem theorem = compile(d, scene);
   CHECK(theorem.bound().kind == BoundKind::theorem);
   CHECK(theorem.bound().samples > 1.2 * estimate.bound().samples);
-  check_beside(theorem, scene, frame_by_hand(slim_beam(5)), 400);
+  check_beside(theorem, scene, frame_by_hand(slim_beam(5)));
 }
 
 TEST_CASE("the result does not depend on units") {

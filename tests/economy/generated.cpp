@@ -80,7 +80,7 @@ TEST_CASE("120 clustered modes of damping 0.5 %: one nested sequence, errors bel
     CHECK(w.order >= before);
     before = w.order;
     CHECK(w.bound <= w.accuracy);
-    const Beside by_hand = beside(w.system, scene, truth, 400);
+    const Beside by_hand = beside(w.system, scene, truth);
     CHECK(by_hand.bound <= 1);
     CHECK(w.bound <= 1.2 * by_hand.error);
     CHECK(by_hand.peak_low >= 0.87);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <titop/compiler/economy/phase_grid.hpp>
 
+#include "economy/against.hpp"
 #include "support/rng.hpp"
 
 using titop::detail::phase_grid;
@@ -74,4 +75,48 @@ TEST_CASE("a uniform grid of as many points misses the peak of a lightly damped 
   }
   CHECK(phase * 1.14 >= 1e4);
   CHECK(uniform * 20 <= 1e4);
+}
+
+TEST_CASE("what scenes are held against is ten times finer than the bound's grid, everywhere") {
+  // Modes in the band, in clusters and just above its end; and of the reduced model vectors above
+  // the band, of which the finer grid is not told.
+  titop_test::Rng rng(8);
+  for (int scene = 0; scene < 40; ++scene) {
+    CAPTURE(scene);
+    const double high = rng.between(1, 100), low = rng.chance(0.5) ? 0 : rng.between(0, high / 2);
+    const double zeta = std::pow(10, -rng.between(1.5, 3.5));
+    std::vector<double> whole, small;
+    double next = 2 * high;
+    for (int k = rng.below(40); k >= 0; --k) {
+      const bool close = !whole.empty() && rng.chance(0.3);
+      whole.push_back(close ? whole.back() * (1 + zeta * rng.between(-1, 1))
+                            : high * rng.between(0.01, 2));
+      if (whole.back() > high) next = std::min(next, whole.back());
+    }
+    for (int k = rng.below(7); k > 0; --k) small.push_back(rng.between(next, 2.1 * high));
+    const auto grid = [&](const std::vector<double>& more) {
+      const Complex turned{0, -1}, ray{zeta, std::sqrt(1 - zeta * zeta)};
+      PhaseBand band{low * low, high * high, {}, 10};
+      for (const auto& list : {whole, more})
+        for (const double w : list)
+          if (w <= 2 * high) band.poles.push_back(std::pow(w * turned / ray, 2));
+      std::vector<double> points = phase_grid(band, 1);
+      for (double& p : points) p = std::sqrt(p);
+      return points;
+    };
+    const std::vector<double> check = grid(small);
+    const auto samples = static_cast<int>(check.size() + grid({}).size());
+    const double hertz = 1 / (2 * std::numbers::pi);
+    const titop::Scene question{.band_hz = {low * hertz, high * hertz}, .damping_floor = zeta};
+    const std::vector<double> fine = titop_test::fine_points(question, whole, 18 * samples);
+    CHECK(std::is_sorted(fine.begin(), fine.end()));
+    std::size_t fewest = fine.size(), first = 0;
+    for (std::size_t k = 1; k < check.size(); ++k) {
+      std::size_t last = first;
+      while (last < fine.size() && fine[last] <= check[k] * (1 + 1e-12)) ++last;
+      fewest = std::min(fewest, last - first);
+      first = last;
+    }
+    CHECK(fewest >= 10);
+  }
 }
