@@ -294,8 +294,8 @@ std::vector<char> equations_of_chains(const Graph& g, const std::vector<Closing>
 }
 
 /// Points that closed chains hold by their numbers: the elimination would find rounding in place of
-/// their accelerations. The chains' own equations need them, for the forces, and so does what hangs
-/// there, whose own chains may close further on; outputs, gains and sums read nothing.
+/// their accelerations. The chains' own equations need them, for the forces; whatever else reads
+/// one reads nothing, so that outputs are 0 and what hangs there stands on the ground.
 void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& closings,
                 const Held& held) {
   if (held.empty()) return;
@@ -315,8 +315,7 @@ void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& 
     });
   };
   for (std::size_t e = 0; e < g.equations.size(); ++e)
-    if (!in_chain[e] && g.signals[at(g.equations[e].target)].channel < 0)
-      clear(g.equations[e].terms);
+    if (!in_chain[e]) clear(g.equations[e].terms);
   for (Output& o : g.outputs) clear(o.terms);
   if (points.empty()) return;
   std::string names;

@@ -33,7 +33,7 @@ Stage split(Stage stage);
 /// equation says what others say already (two rigid bodies welded at two points, a planar mechanism
 /// of 6-dof joints), the joint is released in these directions and listed, so that every closing
 /// equation left is independent; the motion is the same. Points that the chains leave no motion are
-/// listed: outputs, gains and sums outside the chains read 0 there in place of rounding. Throws
+/// listed: outputs, and equations outside the chains, read 0 there in place of rounding. Throws
 /// kinematic_loop where the geometry does not close, and where a body on the chain does not say
 /// where its ports are. O(terms) where all chains are open, else O(rows^2 columns) per connected
 /// set of chains (compiler/passes/close).

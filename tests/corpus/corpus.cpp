@@ -80,20 +80,10 @@ Errors compare(const System& system, const Json& scene, const Json& answer) {
           pole_error(system.poles(), answer["poles"])};
 }
 
-/// Closed chains may hold every motion by their numbers, not by their structure: the transfer is 0.
-/// titop finds rounding in its place, warns, and keeps states that the rounding seems to move.
-bool is_locked(const Json& answer) {
-  for (const Json& point : answer["transfer"])
-    for (const Json& row : point["G"])
-      for (const Json& entry : row)
-        if (std::abs(complex(entry)) > 1e-50) return false;
-  return true;
-}
-
 }  // namespace
 
 TEST_CASE("200 scenes: order, poles and transfer as assembled by hand, or the refusal by name") {
-  int scenes = 0, refusals = 0, closed = 0, noise = 0;
+  int scenes = 0, refusals = 0, closed = 0;
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(kFolder / "scenes"))
     files.push_back(entry.path());
@@ -120,11 +110,6 @@ TEST_CASE("200 scenes: order, poles and transfer as assembled by hand, or the re
       CHECK(e.factored <= 1e-10);
       CHECK(e.dense <= 1e-8);
       closed += system.log().find("close ") != std::string::npos;
-      if (is_locked(answer) && system.state_space().order() > 0) {
-        CHECK(system.log().find("in double the outputs are right to") != std::string::npos);
-        ++noise;
-        continue;
-      }
       CHECK(system.state_space().order() == answer["order"].get<int>());
       CHECK(e.poles <= 1e-7);
     } catch (const std::exception& error) {
@@ -134,6 +119,5 @@ TEST_CASE("200 scenes: order, poles and transfer as assembled by hand, or the re
   }
   CHECK(scenes == 200);
   CHECK(refusals == 32);
-  CHECK(noise <= 2);
   CHECK(closed >= 30);
 }
