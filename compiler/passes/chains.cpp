@@ -274,14 +274,20 @@ std::vector<Closing> without_hanging(const std::vector<Closing>& closings) {
   return result;
 }
 
-/// The chains' own equations, with the gains and sums that they read.
-std::vector<char> equations_of_chains(const Graph& g, const std::vector<Closing>& closings) {
+/// The chains' own equations, and those that place the point they read (a tree that is held at a
+/// far end), with the gains and sums that they read.
+std::vector<char> placing(const Graph& g, const Motion& motion,
+                          const std::vector<Closing>& closings) {
   std::vector<int> equation_of(g.signals.size(), -1);  // of what is no side of a channel
   for (int e = 0; e < static_cast<int>(g.equations.size()); ++e)
     if (const int target = g.equations[at(e)].target; g.signals[at(target)].channel < 0)
       equation_of[at(target)] = e;
   std::vector<int> open;
   for (const Closing& c : closings) open.insert(open.end(), c.equations.begin(), c.equations.end());
+  for (int p = 0; p < static_cast<int>(g.channels.size()); ++p)
+    if (const int e = motion.tie_above(p);
+        e >= 0 && g.signals[at(g.equations[at(e)].target)].channel != p)
+      open.push_back(e);
   std::vector<char> result(g.equations.size(), 0);
   while (!open.empty()) {
     const int e = open.back();
@@ -303,7 +309,7 @@ void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& 
   const auto holds = [&](const Column& c, int index) { return held.contains({c, index}); };
   const std::vector<char> still = motion.at_rest(holds),
                           grounded = motion.at_rest([](const Column&, int) { return false; });
-  const std::vector<char> in_chain = equations_of_chains(g, without_hanging(closings));
+  const std::vector<char> places = placing(g, motion, without_hanging(closings));
   std::set<int> points;
   const auto clear = [&](std::vector<Term>& terms) {
     std::erase_if(terms, [&](const Term& t) {
@@ -315,7 +321,7 @@ void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& 
     });
   };
   for (std::size_t e = 0; e < g.equations.size(); ++e)
-    if (!in_chain[e]) clear(g.equations[e].terms);
+    if (!places[e]) clear(g.equations[e].terms);
   for (Output& o : g.outputs) clear(o.terms);
   if (points.empty()) return;
   std::string names;
