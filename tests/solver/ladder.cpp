@@ -157,7 +157,7 @@ TEST_CASE("precision: what dies away along a chain, to the smallest numbers, is 
   // So many that 1e-316 arrives, a number of a few digits.
   const int n = 60 + static_cast<int>(std::log(1e-316 / after) / std::log(by_each));
   const System system = compile(far_end(spec, n));
-  REQUIRE(system.certificate().s == doctest::Approx(s));
+  REQUIRE(std::abs(system.certificate().s / s - 1) <= 1e-12);
   const Eigen::MatrixXcd y = system.transfer(s);
   CHECK(y.cwiseAbs().maxCoeff() < 1e-300);
   CHECK(y.cwiseAbs().maxCoeff() > 0);
