@@ -13,6 +13,7 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
 constexpr double kCancelled = 1e-3;  ///< of the terms
+constexpr double kNoise = 1e3;       ///< times one sample of rounding: what may be nothing else
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -25,10 +26,14 @@ MatrixXd by_block(const MatrixXd& m, const Measure& by) {
   return result;
 }
 
+MatrixXd largest(const std::vector<MatrixXcd>& list) {
+  MatrixXd result = MatrixXd::Zero(list.front().rows(), list.front().cols());
+  for (const MatrixXcd& G : list) result = result.cwiseMax(G.cwiseAbs());
+  return result;
+}
+
 MatrixXd block_sizes(const std::vector<MatrixXcd>& exact, const Measure& by) {
-  MatrixXd largest = MatrixXd::Zero(exact.front().rows(), exact.front().cols());
-  for (const MatrixXcd& G : exact) largest = largest.cwiseMax(G.cwiseAbs());
-  const MatrixXd size = by_block(largest, by);
+  const MatrixXd size = by_block(largest(exact), by);
   return by.terms.size() > 0 ? size.cwiseMax(kCancelled * by_block(by.terms, by)) : size;
 }
 
@@ -75,11 +80,23 @@ MatrixXd terms(const System& system, const std::vector<std::complex<double>>& po
   return result;
 }
 
+void add_rounding(Measure& measure, const std::vector<MatrixXcd>& exact, const MatrixXd& terms) {
+  if (measure.terms.size() == 0) measure.terms = MatrixXd::Zero(terms.rows(), terms.cols());
+  const MatrixXd size = by_block(largest(exact), measure),
+                 rounding = by_block(terms, measure) / kTermsPerRounding;
+  for (Index i = 0, r = 0; i < size.rows(); r += measure.rows[at(i++)])
+    for (Index j = 0, c = 0; j < size.cols(); c += measure.cols[at(j++)]) {
+      if (size(i, j) > kNoise * rounding(i, j)) continue;
+      auto block = measure.terms.block(r, c, measure.rows[at(i)], measure.cols[at(j)]);
+      block = block.cwiseMax(terms.block(r, c, block.rows(), block.cols())).eval();
+    }
+}
+
 std::vector<std::complex<double>> some_of(const std::vector<std::complex<double>>& points) {
   std::vector<std::complex<double>> result;
-  const std::size_t step = 1 + points.size() / 8;  // the last ones, where accelerations are largest
-  for (std::size_t k = 0; k < points.size(); k += step)
-    result.push_back(points[points.size() - 1 - k]);
+  const std::size_t step = (points.size() + 7) / 8;  // the last one included
+  for (std::size_t k = points.size(); k > 0; k -= std::min(k, step))
+    result.push_back(points[k - 1]);
   return result;
 }
 
@@ -88,8 +105,7 @@ Difference difference(const std::vector<MatrixXcd>& a, const std::vector<MatrixX
                       const std::vector<std::complex<double>>& points) {
   const Difference first = difference(a, exact, measure);
   if (first.relative <= kClose) return first;
-  MatrixXd more = terms(system, some_of(points));
-  measure.terms = measure.terms.size() > 0 ? measure.terms.cwiseMax(more).eval() : std::move(more);
+  add_rounding(measure, exact, terms(system, some_of(points)));
   return difference(a, exact, measure);
 }
 

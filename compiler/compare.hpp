@@ -41,7 +41,13 @@ Eigen::MatrixXd terms(const System& system, const std::vector<std::complex<doubl
 Eigen::MatrixXd terms(const Graph& graph, const std::vector<std::complex<double>>& points,
                       ParameterValues values);
 
-/// Up to 8 of these points.
+/// Adds the terms of an elimination to the measure, for blocks of `exact` that may be nothing but
+/// its rounding: below 1e3 of one sample of it, where three digits or fewer are left. A block that
+/// stands out is measured by itself, however many digits double has lost.
+void add_rounding(Measure& measure, const std::vector<Eigen::MatrixXcd>& exact,
+                  const Eigen::MatrixXd& terms);
+
+/// Up to 8 of these points, spread over all of them, the last one included.
 std::vector<std::complex<double>> some_of(const std::vector<std::complex<double>>& points);
 
 /// Where two transfers differ most.
@@ -57,8 +63,9 @@ inline constexpr double kClose = 1e-9;
 /// the largest value that the block takes in `exact`, or 1e-3 of its terms where these are larger
 /// and cancel, as by symmetry (in double nothing is right to better than 1e-15 of its terms, and
 /// the entries of a dense model have lost some digits where they were made). No block is measured
-/// by its neighbours: the result is the same in all units of single inputs and outputs. Not finite,
-/// or a difference where `exact` and the terms are 0, is infinitely far.
+/// by its neighbours: the result is the same in all units of scalars and of whole threes; what
+/// stands in one three is taken to share a unit. Not finite, or a difference where `exact` and the
+/// terms are 0, is infinitely far.
 Difference difference(const std::vector<Eigen::MatrixXcd>& a,
                       const std::vector<Eigen::MatrixXcd>& exact, const Measure& measure);
 

@@ -85,8 +85,8 @@ void check_written(const System& system, const Full& what, const std::vector<Com
     const std::vector<MatrixXcd> written = as_written(g, values, points);
     detail::Difference found = detail::difference(written, factored, measure, system, points);
     if (found.relative > detail::kClose) {
-      const MatrixXd more = as_declared(g, detail::terms(g, detail::some_of(points), values));
-      measure.terms = measure.terms.cwiseMax(more);
+      detail::add_rounding(measure, factored,
+                           as_declared(g, detail::terms(g, detail::some_of(points), values)));
       found = detail::difference(written, factored, measure);
     }
     grid.written = found.relative;

@@ -119,6 +119,23 @@ TEST_CASE("a pair between parts that know nothing of each other may not differ a
   CHECK(apart(in_units(wrong, out, in), in_units(right, out, in)) >= 1);
 }
 
+TEST_CASE("a fault as large as the pair is one, however many digits double has lost") {
+  for (const double delta : {1e-8, 1e-10, 1e-11}) {
+    CAPTURE(delta);
+    Diagram d{"ring"};
+    auto u = d.input("u");
+    auto K = d.add("K", Gain{.gain = (1 - delta) / 0.7}), G = d.add("G", Gain{.gain = 0.7});
+    K.in = G.out;
+    G.in = K.out + u;
+    d.output("y") = G.out;
+    const System system = compile(d);
+    const std::vector<MatrixXcd> exact{system.transfer(0, Precision::standard)},
+        twice{2 * exact[0]};
+    Measure by{{1}, {1}};
+    CHECK(difference(twice, exact, by, system, {0}).relative >= 0.5);
+  }
+}
+
 TEST_CASE("twins leave, in whatever units their base is pushed and watched: order 4 of 6") {
   Rng random(11);
   for (int i = 0; i < 30; ++i) {
