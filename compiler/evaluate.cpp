@@ -11,90 +11,7 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-using solve::lift;
 using solve::lifted;
-
-/// In double and below the block itself knows best: its own formula cancels least.
-template <class T>
-solve::Response<T> response_in_double(const Block& block, const T& s, ParameterValues parameters) {
-  Block::Response r = block.response(solve::Scalar<T>::round(s), parameters);
-  if constexpr (std::is_same_v<T, std::complex<double>>)
-    return {std::move(r.X), std::move(r.Y)};
-  else
-    return {lifted<T>(r.X), lifted<T>(r.Y)};
-}
-
-/// Y = rigid + W' diag(s^2 / d) W, d = s^2 + damping s + stiffness.
-template <class T>
-solve::Response<T> modal_response(const Modal& m, const T& s) {
-  const auto n = m.W.rows();
-  const solve::Dense<T> W = lifted<T>(m.W);
-  solve::Response<T> r{solve::Dense<T>(2 * n, W.cols()), lifted<T>(m.rigid)};
-  for (Eigen::Index i = 0; i < n; ++i) {
-    const T d = s * s + lift<T>(m.damping(i)) * s + lift<T>(m.stiffness(i));
-    for (Eigen::Index j = 0; j < W.cols(); ++j) {
-      r.X(i, j) = W(i, j) / d;
-      r.X(n + i, j) = s * r.X(i, j);
-      for (Eigen::Index k = 0; k < W.cols(); ++k) r.Y(k, j) += W(i, k) * s * r.X(n + i, j);
-    }
-  }
-  return r;
-}
-
-/// (s - A)^-1 B: entry by entry for a body with modes, else by elimination with row pivoting.
-template <class T>
-solve::Dense<T> resolvent(const Dynamics& dynamics, const T& s, solve::Dense<T> X) {
-  const auto n = dynamics.A.rows();
-  if (dynamics.modal) {
-    const Modal& m = *dynamics.modal;
-    const auto modes = n / 2;
-    for (Eigen::Index i = 0; i < modes; ++i) {
-      const T c = lift<T>(m.damping(i)), d = s * s + c * s + lift<T>(m.stiffness(i));
-      for (Eigen::Index j = 0; j < X.cols(); ++j) {
-        const T eta = ((s + c) * X(i, j) + X(modes + i, j)) / d;
-        X(modes + i, j) = s * eta - X(i, j);
-        X(i, j) = eta;
-      }
-    }
-    return X;
-  }
-  solve::Dense<T> E = -solve::Dense<T>(lifted<T>(dynamics.A));
-  for (Eigen::Index i = 0; i < n; ++i) E(i, i) += s;
-  for (Eigen::Index k = 0; k < n; ++k) {
-    Eigen::Index best = k;
-    for (Eigen::Index i = k + 1; i < n; ++i)
-      if (solve::size_of(E(i, k)) > solve::size_of(E(best, k))) best = i;
-    E.row(k).swap(E.row(best));
-    X.row(k).swap(X.row(best));
-    for (Eigen::Index i = 0; i < n; ++i) {
-      if (i == k || E(i, k) == T(0)) continue;
-      const T f = E(i, k) / E(k, k);
-      for (Eigen::Index j = k; j < n; ++j) E(i, j) -= f * E(k, j);
-      for (Eigen::Index j = 0; j < X.cols(); ++j) X(i, j) -= f * X(k, j);
-    }
-  }
-  for (Eigen::Index k = 0; k < n; ++k)
-    for (Eigen::Index j = 0; j < X.cols(); ++j) X(k, j) /= E(k, k);
-  return X;
-}
-
-/// X = (s - A)^-1 B, Y = C X + D.
-template <class T>
-solve::Response<T> general_response(const Dynamics& d, const T& s) {
-  solve::Dense<T> X = resolvent<T>(d, s, lifted<T>(d.B));
-  solve::Dense<T> Y = lifted<T>(d.D);
-  for (Eigen::Index i = 0; i < Y.rows(); ++i)
-    for (Eigen::Index j = 0; j < Y.cols(); ++j)
-      for (Eigen::Index k = 0; k < X.rows(); ++k) Y(i, j) += lift<T>(d.C(i, k)) * X(k, j);
-  return {std::move(X), std::move(Y)};
-}
-
-template <class T>
-solve::Response<T> response(const Block& block, const Dynamics& d, const T& s,
-                            ParameterValues parameters) {
-  if (solve::Scalar<T>::epsilon() > 1e-16) return response_in_double(block, s, parameters);
-  return d.modal ? modal_response(*d.modal, s) : general_response(d, s);
-}
 
 /// Nodes whose rows or states are in use.
 std::vector<char> nodes_in_use(const Skeleton& k) {
@@ -337,13 +254,23 @@ solve::RowMatrix<T> Evaluation<T>::outputs() const {
 }
 
 template <class T>
+const Resolvent<T>& Evaluation<T>::resolvent(int node) const {
+  std::call_once(resolvents_once_, [&] {
+    for (const int i : data_.layout().state_nodes) {
+      const Dynamics& d = *data_.numbers.blocks[at(i)];
+      resolvents_.try_emplace(&d, d, s_);
+    }
+  });
+  return resolvents_.at(data_.numbers.blocks[at(node)].get());
+}
+
+template <class T>
 solve::RowMatrix<T> Evaluation<T>::own_response(const solve::RowMatrix<T>& r) const {
   solve::RowMatrix<T> own(r.rows(), r.cols());
   for (const int i : data_.layout().state_nodes) {
-    const Dynamics& d = *data_.numbers.blocks[at(i)];
     const auto first = data_.layout().state_first[at(i)];
-    own.middleRows(first, d.A.rows()) =
-        resolvent(d, s_, solve::Dense<T>(r.middleRows(first, d.A.rows())));
+    const auto n = data_.numbers.blocks[at(i)]->A.rows();
+    own.middleRows(first, n) = resolvent(i).times(r.middleRows(first, n));
   }
   return own;
 }

@@ -2,6 +2,8 @@
 
 #include <map>
 #include <memory>
+#include <mutex>
+#include <titop/compiler/response.hpp>
 #include <titop/compiler/system_data.hpp>
 
 namespace titop::detail {
@@ -70,6 +72,8 @@ class Evaluation {
                                const solve::RowMatrix<T>& inputs) const;
   void refine(const Evaluation<std::complex<double>>& coarse);
   double relative_to_outputs(const solve::RowMatrix<T>& change_of_unknowns) const;
+  /// (s - A)^-1 of this node's block.
+  const Resolvent<T>& resolvent(int node) const;
   /// (s - A)^-1 r of every block by itself.
   solve::RowMatrix<T> own_response(const solve::RowMatrix<T>& r) const;
   /// What these do to the interface unknowns.
@@ -83,6 +87,8 @@ class Evaluation {
   std::vector<int> first_;  ///< per signal: first row of u
   std::map<std::pair<const Block*, const Dynamics*>, solve::Response<T>> responses_;
   std::vector<const solve::Response<T>*> of_node_;
+  mutable std::once_flag resolvents_once_;  ///< made where states are forced: few need them
+  mutable std::map<const Dynamics*, Resolvent<T>> resolvents_;
   solve::JointRows<T> rows_;
   std::unique_ptr<const solve::Factors<T>> factors_;
   solve::RowMatrix<T> rhs_, unknowns_;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <complex>
 #include <string>
 #include <titop/compiler/stage.hpp>
 #include <titop/graph/state_space.hpp>
@@ -61,11 +60,12 @@ class StateMap {
   }
   /// The model's states where the blocks' states and the inputs are these at s.
   template <class Matrix>
-  Matrix model_states(const Matrix& all, const Matrix& u, std::complex<double> s) const {
+  Matrix model_states(const Matrix& all, const Matrix& u, typename Matrix::Scalar s) const {
+    using T = typename Matrix::Scalar;
     Matrix x = kept_rows(all);
-    std::complex<double> power = 1;
+    T power = 1;
     for (const Eigen::MatrixXd& shift : shifts_) {
-      x -= power * (shift.cast<std::complex<double>>() * u);
+      x -= power * (shift.cast<T>() * u);
       power *= s;
     }
     return x;

@@ -5,8 +5,7 @@ namespace titop::detail {
 namespace {
 
 using Eigen::VectorXd;
-using Complex = std::complex<double>;
-using Columns = solve::RowMatrix<Complex>;
+using Columns = solve::RowMatrix<double>;
 
 class Midpoint : public StepRule {
  public:
@@ -15,23 +14,21 @@ class Midpoint : public StepRule {
         s_(2 / h),
         inputs_(static_cast<Eigen::Index>(d.layout().inputs.size())),
         point_(d, s_, Columns::Identity(inputs_, inputs_)),
-        by_inputs_(d.states
-                       .model_states(Columns(point_.states()),
-                                     Columns(Columns::Identity(inputs_, inputs_)), s_)
-                       .real()) {}
+        by_inputs_(d.states.model_states(Columns(point_.states()),
+                                         Columns(Columns::Identity(inputs_, inputs_)), s_)) {}
 
   VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) const override {
-    const Columns forced = (s_.real() * d_.states.expanded(x)).cast<Complex>();
-    VectorXd middle = d_.states.kept_rows(Columns(point_.forced_states(forced))).real();
+    const Columns forced = s_ * d_.states.expanded(x);
+    VectorXd middle = d_.states.kept_rows(Columns(point_.forced_states(forced)));
     middle.noalias() += by_inputs_ * (0.5 * (u0 + u1));
     return 2 * middle - x;
   }
 
  private:
   const SystemData& d_;
-  Complex s_;
+  double s_;
   Eigen::Index inputs_;
-  Evaluation<Complex> point_;
+  Evaluation<double> point_;
   Eigen::MatrixXd by_inputs_;  ///< the model's states x inputs
 };
 

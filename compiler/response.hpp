@@ -1,0 +1,32 @@
+#pragma once
+
+#include <titop/compiler/solve/numbers.hpp>
+
+/// One block by itself at one s. T is a scalar of any precision, complex or, for a real s, double.
+namespace titop::detail {
+
+/// (s - A)^-1 of a block, for any number of right-hand sides.
+template <class T>
+class Resolvent {
+ public:
+  /// A body with modes needs nothing, other blocks one LU with row pivoting: O(states^3). A pole of
+  /// the block at s gives numbers that are not finite.
+  Resolvent(const Dynamics& dynamics, const T& s);
+
+  /// (s - A)^-1 r, states x columns: O(states) per column with modes, else O(states^2).
+  solve::Dense<T> times(solve::Dense<T> r) const;
+
+ private:
+  const Modal* modal_;
+  T s_;
+  solve::Dense<T> lu_;             ///< empty with modes
+  std::vector<Eigen::Index> row_;  ///< that changed places with row k at step k
+};
+
+/// X = (s - A)^-1 B and Y = C X + D: in double and below by the block's own formula, which cancels
+/// least, in finer arithmetic from its matrices.
+template <class T>
+solve::Response<T> response(const Block& block, const Dynamics& dynamics, const T& s,
+                            ParameterValues parameters);
+
+}  // namespace titop::detail
