@@ -82,9 +82,10 @@ Balanced::Balanced(const StateSpace& model, const Split& split, const Samples& s
 }
 
 int Balanced::unstable() const {
-  return static_cast<int>(
-      std::count_if(split_.poles.begin(), split_.poles.end(),
-                    [](const Complex& p) { return p.real() > kUnstable * std::abs(p); }));
+  int count = 0;
+  for (const Complex& p : split_.poles)
+    if (p.real() > kUnstable * std::abs(p)) count += p.imag() > 0 ? 2 : 1;
+  return count;
 }
 
 double Balanced::error(const Choice& choice, double limit) const {

@@ -41,7 +41,7 @@ class Balanced {
   Eigen::Index kept() const { return kept_.part.order(); }
   Eigen::Index silent() const { return split_.kept.order() - kept(); }
   Eigen::Index stable() const { return split_.stable.order(); }
-  int unstable() const;  ///< poles right of the axis
+  int unstable() const;  ///< states of poles right of the axis
 
  private:
   const Balancing& balancing(const Choice& c) const { return *balancings_[c.weighted ? 1 : 0]; }

@@ -84,8 +84,14 @@ class ByStates : public Reduction {
     d.steps.push_back(
         {"kept", dense_.order(), count(from.integrals() + from.kept() + from.stable()), 0,
          fmt::format("no M, D, K, for {}; whole are {} integrals and {} states of poles on the "
-                     "axis or right of it ({} unstable), {} more neither move nor are seen",
-                     setting_.why, from.integrals(), from.kept(), from.unstable(), from.silent())});
+                     "axis or right of it ({} unstable){}, {} more neither move nor are seen",
+                     setting_.why, from.integrals(), from.kept(), from.unstable(),
+                     split_.near > Split{}.near
+                         ? fmt::format(", with those up to a damping ratio of {:.0e} that cannot "
+                                       "be told apart from them",
+                                       split_.near)
+                         : "",
+                     from.silent())});
     d.steps.push_back(
         {"balanced", count(from.stable()), count(choice.order), d.bound.worst,
          fmt::format("{}, {}: the least error at the least order that does",

@@ -45,7 +45,8 @@ class Economy {
     setting_.full = setting_.model;
     setting_.notes = detail::reach_of_data(*setting_.data, scene);
     const int count = (setting_.full.order() + 1) / 2;
-    if (count <= scene.whole_up_to) reduction_ = read(graph);
+    if (!scene.keep_structure) setting_.why = "the scene asks for balanced states";
+    if (!scene.keep_structure || count <= scene.whole_up_to) reduction_ = read(graph);
     if (!reduction_) reduce_bodies(graph, count);
   }
 
@@ -78,13 +79,11 @@ class Economy {
   /// The model's modes, or its states where it is no structure; nothing if these are too many and
   /// bodies can still become smaller.
   std::unique_ptr<Reduction> read(const Graph& graph) {
-    try {
-      if (!setting_.scene.keep_structure)
-        throw detail::NoStructure(Code::bad_value, "the scene asks for balanced states", "");
-      return detail::by_modes(setting_, graph);
-    } catch (const detail::NoStructure& error) {
-      setting_.why = error.mistakes().front().message;
-    }
+    if (setting_.scene.keep_structure) try {
+        return detail::by_modes(setting_, graph);
+      } catch (const detail::NoStructure& error) {
+        setting_.why = error.mistakes().front().message;
+      }
     if (setting_.model.order() <= setting_.scene.balance_up_to) return detail::by_states(setting_);
     if (setting_.smaller) refuse_states();
     return nullptr;

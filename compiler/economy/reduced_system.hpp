@@ -20,7 +20,8 @@ struct ErrorBound {
   int samples = 0;  ///< transfers of the full factored system that it took
   /// Of balanced models: 2 x the sum of the Hankel singular values that were dropped, for the worst
   /// pair, relative as `pairs`. A theorem, not only for the band but everywhere right of the
-  /// imaginary axis (up to rounding in the Gramians); negative where there is none.
+  /// imaginary axis (up to rounding in the Gramians, and beside undamped poles whose effect is
+  /// below 1e-11 of the peaks, which are left out); negative where there is none.
   double anywhere = -1;
 };
 
@@ -83,7 +84,9 @@ class ReducedSystem {
   const System& full() const;
 
   /// Outputs x inputs, O(order), O(order^3) where modes are coupled by damping. transfer(0), where
-  /// there is one, is the full system's. Throws singular if s is a pole.
+  /// there is one, is the full system's for modes of the whole and for balanced states whose rest
+  /// is at rest; where bodies lost modes or states are truncated it is so within the bound. Throws
+  /// singular if s is a pole.
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
 
   /// Dense; states "mode1", "mode1_rate", ...; of balanced models "kept1", ..., "balanced1", ...
@@ -102,7 +105,8 @@ class ReducedSystem {
   const std::vector<Note>& notes() const;
   const std::vector<EconomyStep>& steps() const;
   const std::vector<KeptMode>& modes() const;
-  /// Seconds per step, in their order: not part of to_string, which is the same on every machine.
+  /// Seconds of compile, bodies, modes or split, samples, balance and reduce, as often as each was
+  /// done, in this order: not part of to_string, which is the same on every machine.
   const std::vector<std::pair<std::string, double>>& seconds() const;
 
  private:

@@ -34,10 +34,10 @@ ReducedData Setting::result(Small small, ErrorBound error) const {
 }
 
 std::string Setting::way_out(double reached, const char* limit, const char* rounding_in) const {
-  return fmt::format("ask for {:.0e}, or {} ends there", 2 * reached,
-                     !bodies.empty()
-                         ? fmt::format("raise Scene::{}: what smaller bodies can do", limit)
-                         : fmt::format("use compile(diagram): rounding in {}", rounding_in));
+  const std::string less = 2 * reached < 1 ? fmt::format("ask for {:.0e}, or ", 2 * reached) : "";
+  return less + (!bodies.empty()
+                     ? fmt::format("raise Scene::{}: what smaller bodies can do ends there", limit)
+                     : fmt::format("use compile(diagram): rounding in {} ends there", rounding_in));
 }
 
 void refuse_size(const Setting& setting, Eigen::Index size) {

@@ -73,12 +73,19 @@ double distance(const Eigen::VectorXd& lambda, Index elastic, Index j) {
   return nearest;
 }
 
-/// Modes that had one frequency have one again: in pairs that symmetry makes 0 their terms cancel,
-/// and beside a resonance the last digits between them would not.
-void unite(Whole& w, const Eigen::VectorXd& before, Index count) {
+/// Modes that had one frequency have one again, and one damping: in pairs that symmetry makes 0
+/// their terms cancel, and beside a resonance the last digits between them would not. `found`:
+/// those that have new values; the mean is theirs.
+void unite(Whole& w, const Eigen::VectorXd& before, const std::vector<char>& found) {
+  const auto count = static_cast<Index>(found.size());
   for (Index first = 0, last = 0; first < count; first = last) {
     while (last < count && before(last) == before(first)) ++last;
-    w.lambda.segment(first, last - first).setConstant(w.lambda.segment(first, last - first).mean());
+    double lambda = 0, damping = 0, of = 0;
+    for (Index j = first; j < last; ++j)
+      if (found[static_cast<std::size_t>(j)]) lambda += w.lambda(j), damping += w.damping(j), ++of;
+    if (of == 0) continue;
+    w.lambda.segment(first, last - first).setConstant(lambda / of);
+    if (w.Z.size() > 0) w.Z.diagonal().segment(first, last - first).setConstant(damping / of);
   }
 }
 
@@ -89,6 +96,7 @@ void sharpen(Whole& w, const System& system, double high) {
   Index count = 0;
   while (count < w.elastic() && w.lambda(count) <= high * high) ++count;
   const Eigen::VectorXd before = w.lambda;
+  std::vector<char> moved(static_cast<std::size_t>(count), 0);
   parallel(static_cast<std::size_t>(count), 0, [&] {
     return [&](std::size_t i) {
       const auto j = static_cast<Index>(i);
@@ -99,11 +107,12 @@ void sharpen(Whole& w, const System& system, double high) {
       // Farther than a third of the way to a neighbour it may be the neighbour's pole.
       const double move = std::abs(std::norm(*found) - lambda) / lambda;
       if (!(move <= distance(before, w.elastic(), j) / 3)) return;
+      moved[i] = 1;
       w.lambda(j) = std::norm(*found);
       if (w.Z.size() > 0) w.Z(j, j) = std::max(0.0, -2 * found->real());
     };
   });
-  unite(w, before, count);
+  unite(w, before, moved);
 }
 
 }  // namespace titop::detail

@@ -8,7 +8,8 @@ namespace titop::detail {
 /// 1 / H of the pair that sees the mode best, by secants in s^2): G has lost the digits by which
 /// the mass of a body exceeds that of its modes, the factors have not. Modes that no pair sees well
 /// keep theirs, those that would move more than a third of the way to a neighbour, and all where
-/// damping couples them. About four transfers per mode.
+/// damping couples them. Modes that had one frequency to the last bit keep one. About four
+/// transfers per mode.
 void sharpen(Whole& whole, const System& system, double high);
 
 }  // namespace titop::detail

@@ -84,23 +84,25 @@ class Core {
   void divide() {
     if (try_divide(kNear)) return;
     const Error error = inseparable();
-    for (double near = 10 * kNear; near < 1; near *= 10)
+    for (near = 10 * kNear; near < 1; near *= 10)
       if (try_divide(near)) return;
     throw error;
   }
   Index kept = 0;
+  double near = kNear;        ///< damping ratio up to which poles are kept
   MatrixXd V_kept, V_stable;  ///< order x kept, order x the rest; orthonormal
   MatrixXd over;              ///< kept x stable: right = V_stable + V_kept * over
   MatrixXcd U;                ///< of the stable part's own Schur form
 
  private:
-  bool is_kept(Index i, double near) const {
-    const double least = near / kNear * kRounding * std::numeric_limits<double>::epsilon() * norm();
-    return -pole(i).real() <= std::max(near * std::abs(pole(i)), least);
+  bool is_kept(Index i, double ratio) const {
+    const double least =
+        ratio / kNear * kRounding * std::numeric_limits<double>::epsilon() * norm();
+    return -pole(i).real() <= std::max(ratio * std::abs(pole(i)), least);
   }
-  bool try_divide(double near) {
+  bool try_divide(double ratio) {
     std::vector<char> first;
-    for (Index i = 0; i < order(); ++i) first.push_back(is_kept(i, near));
+    for (Index i = 0; i < order(); ++i) first.push_back(is_kept(i, ratio));
     kept = std::count(first.begin(), first.end(), 1);
     const Index n = order(), rest = n - kept;
     linalg::reorder(schur_, first);
@@ -226,6 +228,7 @@ Split assemble(const StateSpace& m, const Peeled& p, const Core& core) {
   s.kept = part(core.V_kept.transpose() - core.over * core.V_stable.transpose(), core.V_kept,
                 core.V_kept.transpose() * core.A() * core.V_kept);
   s.U = core.U;
+  s.near = core.near;
   s.T = core.schur().T.bottomRightCorner(rest, rest);
   s.stable = part(core.V_stable.transpose(), core.V_stable + core.V_kept * core.over,
                   core.V_stable.transpose() * core.A() * core.V_stable);
