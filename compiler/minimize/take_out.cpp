@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <titop/compiler/minimize/clusters.hpp>
 #include <titop/compiler/minimize/take_out.hpp>
+#include <titop/compiler/some_names.hpp>
 
 namespace titop::modes {
 namespace {
@@ -53,9 +54,9 @@ void keep_names(StateSpace& m, const std::vector<int>& keep) {
 }
 
 std::string list(const std::vector<int>& out, const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < out.size() && i < 8; ++i) text += (i ? ", " : "") + names[at(out[i])];
-  return out.size() > 8 ? text + fmt::format(", and {} more", out.size() - 8) : text;
+  std::vector<std::string> of;
+  for (const int i : out) of.push_back(names[at(i)]);
+  return detail::some_names(of);
 }
 
 /// What leaves a model: relations W x = 0 (rows) that hold for all that inputs can do, and motions

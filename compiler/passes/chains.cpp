@@ -7,6 +7,7 @@
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/passes/union_find.hpp>
+#include <titop/compiler/some_names.hpp>
 #include <titop/graph/drives.hpp>
 #include <utility>
 
@@ -324,10 +325,11 @@ void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& 
     if (!places[e]) clear(g.equations[e].terms);
   for (Output& o : g.outputs) clear(o.terms);
   if (points.empty()) return;
-  std::string names;
-  for (const int p : points) names += (names.empty() ? "" : ", ") + motion.name(p);
+  std::vector<std::string> names;
+  for (const int p : points) names.push_back(motion.name(p));
   stage.notes.push_back(
-      {Note::Kind::info, "chains", "closed chains leave these points no motion: " + names});
+      {Note::Kind::info, "chains",
+       "closed chains leave these points no motion: " + detail::some_names(names)});
 }
 
 }  // namespace

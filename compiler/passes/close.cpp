@@ -4,6 +4,7 @@
 #include <set>
 #include <titop/compiler/passes/close/integrals.hpp>
 #include <titop/compiler/passes/passes.hpp>
+#include <titop/compiler/some_names.hpp>
 
 namespace titop::passes {
 namespace {
@@ -87,13 +88,12 @@ struct Closer {
 };
 
 std::string list(const Graph& g, const std::vector<Dependent>& dependents) {
-  std::string text;
-  for (std::size_t i = 0; i < dependents.size() && i < 8; ++i) {
-    const Node& node = g.nodes[at(dependents[i].node)];
-    text +=
-        (i ? ", " : "") + node.name + "." + node.block->interface().states[at(dependents[i].state)];
+  std::vector<std::string> names;
+  for (const Dependent& d : dependents) {
+    const Node& node = g.nodes[at(d.node)];
+    names.push_back(node.name + "." + node.block->interface().states[at(d.state)]);
   }
-  return dependents.size() > 8 ? text + fmt::format(", and {} more", dependents.size() - 8) : text;
+  return detail::some_names(names);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ using solve::Kept;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
+constexpr double kKeeps = 1e-3;    ///< of the largest: a choice made before may cost three digits
 constexpr double kTie = 1 + 1e-9;  ///< less is rounding: the first in order of names is taken
 
 /// Sums of many numbers, entry by entry.
@@ -101,7 +102,7 @@ int Followers::choose(const Hidden& c) const {
     if (before_[at(i)] && size > kTie * largest_before)
       largest_before = size, best_before = static_cast<int>(i);
   }
-  return largest_before >= 1e-3 * largest ? best_before : best;
+  return largest_before >= kKeeps * largest ? best_before : best;
 }
 
 void Followers::follow(int state, const Hidden& c) {

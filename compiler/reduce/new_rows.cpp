@@ -14,13 +14,6 @@ using solve::RowMatrix;
 
 std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
-/// a M; what cancels to rounding is 0.
-RowVectorXd product(const RowVectorXd& a, const MatrixXd& M) {
-  RowVectorXd result = a * M;
-  const RowVectorXd size = a.cwiseAbs() * M.cwiseAbs();
-  return (result.array().abs() <= solve::kCancelled * size.array()).select(0, result);
-}
-
 }  // namespace
 
 std::pair<int, int> group_of(const Joint& joint, int scalar_row) {
@@ -96,10 +89,10 @@ void NewRows::differentiate(const Hidden& c, const VectorXd& place, std::vector<
     if (own.isZero(0)) continue;
     const Node& node = g.nodes[at(i)];
     put(to, {.rows = static_cast<int>(place.size()), .signal = node.state},
-        place * product(own, m.A));
+        place * solve::product(own, m.A));
     for (int s = node.first_signal; s < node.state; ++s)
       if (const Signal& u = g.signals[at(s)]; u.role == Signal::Role::input && u.active)
-        add(to, over, place * product(own, m.B.middleCols(u.first, u.size)), s);
+        add(to, over, place * solve::product(own, m.B.middleCols(u.first, u.size)), s);
   }
 }
 
@@ -111,7 +104,7 @@ void NewRows::add(std::vector<Piece>& to, std::vector<int>& over, const MatrixXd
     if (v >= 0) over.push_back(v);
     put(to, {.rows = static_cast<int>(matrix.rows()), .entry = v, .signal = m.signal},
         m.coefficient < 0 ? matrix
-                          : MatrixXd(matrix * *d_.numbers.coefficients[at(m.coefficient)]));
+                          : solve::product(matrix, *d_.numbers.coefficients[at(m.coefficient)]));
   }
 }
 

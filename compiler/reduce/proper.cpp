@@ -3,6 +3,7 @@
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/reduce/proper.hpp>
 #include <titop/compiler/solve/blame.hpp>
+#include <titop/compiler/some_names.hpp>
 
 namespace titop::detail {
 namespace {
@@ -119,16 +120,14 @@ void make_proper(Skeleton& k, SystemData& d, const Derivatives& v) {
   if (!by_inputs) return;
   Expansion e = expand(d, v);
   refuse_derivatives(k, d, v, e);
-  std::string names;
-  int count = 0;
+  std::vector<std::string> names;
   for (Index i = 0; i < e.shifts[0].rows(); ++i)
-    if (!e.shifts[0].row(i).isZero(0) && ++count <= 8)
-      names += (count > 1 ? ", " : "") + d.states.names()[at(i)];
-  if (count > 0)
+    if (!e.shifts[0].row(i).isZero(0)) names.push_back(d.states.names()[at(i)]);
+  if (!names.empty())
     k.stage.notes.push_back(
         {Note::Kind::info, "reduce",
-         fmt::format("states less a multiple of the inputs that act where nothing has mass: {}{}",
-                     names, count > 8 ? fmt::format(", and {} more", count - 8) : "")});
+         fmt::format("states less a multiple of the inputs that act where nothing has mass: {}",
+                     some_names(names))});
   d.states.set_inputs(std::move(e.R[0]), std::move(e.shifts));
 }
 

@@ -8,6 +8,7 @@
 #include <titop/compiler/reduce/reduce.hpp>
 #include <titop/compiler/solve/blame.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
+#include <titop/compiler/some_names.hpp>
 
 namespace titop::detail {
 namespace {
@@ -70,10 +71,13 @@ class Reducer {
       if (says_nothing(c)) rows.push_back(c.row);
     if (rows.size() < rest.size()) refuse(rest, {});
     if (!constraints_.empty())
-      refuse(rest, {"that one is said twice shows only after a derivative: motions that nothing "
-                    "determines there are not looked for"});
+      refuse(rest, {},
+             {"this shows only after a derivative: motions that nothing determines are "
+              "not looked for there; give one of these bodies a mass, or hold it"});
     const Undetermined motions = undetermined(k_, d_, rows);
     if (motions.held.empty()) refuse(rest, motions.lines);
+    for (const int row : rows)
+      if (hides_states(row)) refuse(rest, motions.lines);
     for (const int row : rows)  // held, and undetermined all the same: no digit is left
       if (!held_.insert(group_of(k_.joint, row)).second) refuse(rest, motions.lines);
     for (const std::string& line : motions.lines)
@@ -85,20 +89,30 @@ class Reducer {
     k_.joint = held.joint();
   }
 
+  /// At some s a held row's group is written anew with the block's C, and C X(s) must find the
+  /// block's inputs in it: not where partial sums of a long row stand for them.
+  bool hides_states(int row) const {
+    const auto pieces = k_.joint.row(group_of(k_.joint, row).first);
+    const auto is_state = [](const Piece& p) { return p.of == Piece::Left::state; };
+    const auto is_sum = [](const Piece& p) { return p.signal < 0; };
+    return std::any_of(pieces.begin(), pieces.end(), is_state) &&
+           std::any_of(pieces.begin(), pieces.end(), is_sum);
+  }
+
   /// States that nothing reads follow from nothing: 0.
   void leave_out(const StateMarks& states) {
     const auto is_before = [](const Dependent& a, const Dependent& b) {
       return std::pair(a.node, a.state) < std::pair(b.node, b.state);
     };
     std::vector<Dependent>& all = k_.stage.dependents;
-    std::string names;
+    std::vector<std::string> names;
     for (const int node : d_.layout().state_nodes)
       for (int i = 0; i < d_.numbers.blocks[at(node)]->A.rows(); ++i) {
         const int state = d_.layout().state_first[at(node)] + i;
         const Dependent leaves{node, i, {}};
         const auto place = std::lower_bound(all.begin(), all.end(), leaves, is_before);
         if (!states[at(state)] || (place != all.end() && !is_before(leaves, *place))) continue;
-        names += (names.empty() ? "" : ", ") + d_.layout().states[at(state)];
+        names.push_back(d_.layout().states[at(state)]);
         all.insert(place, leaves);
       }
     if (names.empty()) return;
@@ -109,7 +123,8 @@ class Reducer {
     d_.states = StateMap(all, d_.layout());
     k_.stage.notes.push_back(
         {Note::Kind::info, "reduce",
-         fmt::format("states that only say how far that has gone leave the model: {}", names)});
+         fmt::format("states that only say how far that has gone leave the model: {}",
+                     some_names(names))});
   }
 
   static bool says_nothing(const Hidden& c) {
@@ -119,9 +134,9 @@ class Reducer {
   }
 
   /// One mistake for each set of rows; `free`: the motions that those leave undetermined which say
-  /// nothing.
-  [[noreturn]] void refuse(const std::vector<Hidden>& rest,
-                           const std::vector<std::string>& free) const {
+  /// nothing; `why`: what else is to be said.
+  [[noreturn]] void refuse(const std::vector<Hidden>& rest, const std::vector<std::string>& free,
+                           const std::vector<std::string>& why = {}) const {
     std::map<std::vector<int>, std::set<int>> inputs_of;
     for (const Hidden& c : rest) {
       std::set<int>& inputs = inputs_of[c.rows];
@@ -137,6 +152,7 @@ class Reducer {
           solve::blame(k_.stage, d_.numbers.blocks, rows, {inputs.begin(), inputs.end()}));
       Mistake& m = mistakes.back();
       m.details.insert(m.details.end(), free.begin(), free.end());
+      m.details.insert(m.details.end(), why.begin(), why.end());
       if (!free.empty()) m.hint += "; or hold that motion, or ask for nothing that depends on it";
     }
     throw Error(std::move(mistakes));
@@ -175,7 +191,7 @@ class Reducer {
     Hidden c{RowVectorXd(states), {RowVectorXd(inputs)}};
     for (Index i = 0; i < states; ++i) c.g(i) = sum[at(i)].cleaned();
     for (Index i = 0; i < inputs; ++i) c.h[0](i) = sum[at(states + i)].cleaned();
-    for (const RowMatrix<double>& f : forcing_) c.h.push_back(-y * f);
+    for (const RowMatrix<double>& f : forcing_) c.h.push_back(solve::product(-y, f));
     c.rows = std::move(rows);
     return c;
   }
@@ -207,15 +223,12 @@ class Reducer {
   void finish() {
     k_.stage.dependents = followers_.dependents();
     d_.states = StateMap(k_.stage.dependents, d_.layout());
-    std::string names;
-    const auto& added = followers_.added();
-    for (std::size_t i = 0; i < added.size() && i < 8; ++i)
-      names += (i ? ", " : "") + d_.layout().states[at(added[i])];
-    if (added.size() > 8) names += fmt::format(", and {} more", added.size() - 8);
+    std::vector<std::string> names;
+    for (const int state : followers_.added()) names.push_back(d_.layout().states[at(state)]);
     k_.stage.notes.push_back(
         {Note::Kind::info, "reduce",
-         fmt::format("{} states follow from the others where nothing has mass: {}", added.size(),
-                     names)});
+         fmt::format("{} states follow from the others where nothing has mass: {}", names.size(),
+                     some_names(names))});
     make_proper(k_, d_, {followers_.by_input(), forcing_, constraints_});
   }
 

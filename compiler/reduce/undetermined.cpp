@@ -253,6 +253,11 @@ Undetermined undetermined(const Skeleton& k, const SystemData& d, const std::vec
   };
   if (free.value.cols() < count) {
     name("state", all, rates, d.layout().states);
+    if (all.value.cols() > count)
+      result.lines.insert(result.lines.begin(),
+                          fmt::format("{} of these motions, or of what they make together, {} "
+                                      "determined by nothing:",
+                                      count, count > 1 ? "are" : "is"));
     return result;
   }
   if (still.value.cols() < count) {

@@ -33,8 +33,9 @@ struct Readers {
   void of_signal(const MatrixXd& c, int signal, Visit visit) const {
     for (const solve::Meaning& m : k.joint.meaning(signal))
       if (is_state(m.signal))
-        entries(m.coefficient < 0 ? c : MatrixXd(c * *d.numbers.coefficients[at(m.coefficient)]),
-                m.signal, visit);
+        entries(
+            m.coefficient < 0 ? c : solve::product(c, *d.numbers.coefficients[at(m.coefficient)]),
+            m.signal, visit);
   }
 
   /// Calls visit(state) for what rows and outputs read.

@@ -1,3 +1,4 @@
+#include <titop/compiler/solve/null_rows.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
 
 namespace titop::solve {
@@ -16,6 +17,11 @@ Eigen::MatrixXd matrix_of(const Piece& p, const Graph& g, const Numbers& numbers
     case Piece::Left::coefficient: return p.sign * *numbers.coefficients[at(p.left)] * right;
   }
   return {};
+}
+
+Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  const Eigen::MatrixXd sum = a * b, terms = a.cwiseAbs() * b.cwiseAbs();
+  return (sum.array().abs() <= kCancelled * terms.array()).select(0, sum);
 }
 
 }  // namespace titop::solve

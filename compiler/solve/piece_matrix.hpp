@@ -8,4 +8,7 @@ namespace titop::solve {
 /// that of its signal or, for a partial sum, its rows.
 Eigen::MatrixXd matrix_of(const Piece& piece, const Graph& graph, const Numbers& numbers);
 
+/// a b; what cancels to rounding (below kCancelled of its terms) is 0.
+Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);
+
 }  // namespace titop::solve
