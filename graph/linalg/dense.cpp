@@ -2,7 +2,9 @@
 #include <Eigen/LU>
 #include <Eigen/SparseCore>
 #include <algorithm>
-#include <array>
+#include <bitset>
+#include <boost/container/small_vector.hpp>
+#include <boost/dynamic_bitset.hpp>
 #include <cmath>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
@@ -130,8 +132,6 @@ Eigensystem eigensystem(const MatrixXd& A) {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
 constexpr int kSmall = 12;
 /// Small loops are many: no memory is asked for.
 using Small =
@@ -160,35 +160,63 @@ double perron_by_squaring(const Small& M) {
   return std::exp(log_scale);
 }
 
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// By power iteration [Collatz 1942], from above; `times`: M v. |M^-1| |M| has a diagonal of 1 and
+/// more: nothing oscillates. `settled`: the radius is known to 1e-3.
+struct Powers {
+  double radius = 0;
+  bool settled = false;
+};
+template <class Times>
+Powers perron_by_powers(Eigen::Index n, int steps, Times times) {
+  VectorXd v = VectorXd::Ones(n), w, grown;
+  for (int step = 0; step < steps; ++step) {
+    w = times(v);
+    grown = w.cwiseQuotient(v);
+    const double most = grown.maxCoeff();
+    if (most - grown.minCoeff() <= 1e-3 * most) return {most, true};
+    v = (w / w.maxCoeff()).cwiseMax(1e-300);
+  }
+  return {grown.maxCoeff(), false};
+}
+
+double perron(const Small& M) { return perron_by_squaring(M); }
+double perron(const RowMatrix& M) {
+  return perron_by_powers(M.rows(), 200, [&](const VectorXd& v) -> VectorXd { return M * v; })
+      .radius;
+}
+
 /// Spectral radius of M: the largest of its irreducible diagonal blocks. Loops that a zero
 /// coefficient cuts open have rows that reach each other one way only; on them no power converges.
-double perron_of_parts(const Small& M) {
-  const int n = static_cast<int>(M.rows());
-  std::array<unsigned, kSmall> reach{};
-  const auto has = [&](int i, int j) { return (reach[at(i)] >> j & 1u) != 0; };
-  for (int i = 0; i < n; ++i)
-    for (int j = 0; j < n; ++j)
-      if (i == j || M(i, j) != 0) reach[at(i)] |= 1u << j;
-  for (int k = 0; k < n; ++k)
-    for (int i = 0; i < n; ++i)
-      if (has(i, k)) reach[at(i)] |= reach[at(k)];
+/// Set: of as many bits as rows, `none` empty.
+template <class Rows, class Set>
+double perron_of_parts(const Rows& M, const Set& none) {
+  const auto n = static_cast<std::size_t>(M.rows());
+  const auto entry = [&](std::size_t i, std::size_t j) {
+    return M(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+  };
+  boost::container::small_vector<Set, kSmall> reach(n, none);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j)
+      if (i == j || entry(i, j) != 0) reach[i].set(j);
+  for (std::size_t k = 0; k < n; ++k)
+    for (std::size_t i = 0; i < n; ++i)
+      if (reach[i].test(k)) reach[i] |= reach[k];
   double radius = 0;
-  unsigned done = 0;
-  for (int i = 0; i < n; ++i) {
-    if (done >> i & 1u) continue;
-    std::array<int, kSmall> members{};
-    int size = 0;
-    for (int j = i; j < n; ++j)
-      if (has(i, j) && has(j, i)) members[at(size++)] = j, done |= 1u << j;
-    Small part(size, size);
-    for (int r = 0; r < size; ++r)
-      for (int c = 0; c < size; ++c) part(r, c) = M(members[at(r)], members[at(c)]);
-    radius = std::max(radius, size == 1 ? part(0, 0) : perron_by_squaring(part));
+  Set done = none;
+  boost::container::small_vector<Eigen::Index, kSmall> members;
+  for (std::size_t i = 0; i < n; ++i) {
+    if (done.test(i)) continue;
+    members.clear();
+    for (std::size_t j = i; j < n; ++j)
+      if (reach[i].test(j) && reach[j].test(i))
+        members.push_back(static_cast<Eigen::Index>(j)), done.set(j);
+    radius =
+        std::max(radius, members.size() == 1 ? entry(i, i) : perron(Rows(M(members, members))));
   }
   return radius;
 }
-
-using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// y -= a x, n entries.
 TITOP_WIDE void subtract(Eigen::Index n, double a, const double* x, double* y) {
@@ -244,20 +272,14 @@ Rows inverse_by_rows(Rows M) {
   return X;
 }
 
-/// By power iteration [Collatz 1942]. |M^-1| |M| has a diagonal of 1 and more: nothing oscillates.
-double skeel_radius_of_many(const MatrixXd& M) {
-  const RowMatrix inverse = inverse_by_rows<RowMatrix>(M).cwiseAbs();
-  if (inverse.size() == 0) return 0;
-  const Eigen::SparseMatrix<double, Eigen::RowMajor> sizes = M.cwiseAbs().sparseView();
-  VectorXd v = VectorXd::Ones(M.rows()), w, grown;
-  for (int step = 0; step < 200; ++step) {
-    w = sizes * v;
-    w = inverse * w;
-    grown = w.cwiseQuotient(v);
-    if (grown.maxCoeff() - grown.minCoeff() <= 1e-3 * grown.maxCoeff()) break;
-    v = (w / w.maxCoeff()).cwiseMax(1e-300);
-  }
-  return grown.maxCoeff();
+/// |a| |b|; most entries are 0.
+RowMatrix product_of_sizes(const RowMatrix& a, const RowMatrix& b) {
+  RowMatrix result = RowMatrix::Zero(a.rows(), b.cols());
+  const RowMatrix sizes = b.cwiseAbs();
+  for (Eigen::Index i = 0; i < a.rows(); ++i)
+    for (Eigen::Index k = 0; k < a.cols(); ++k)
+      if (a(i, k) != 0) subtract(b.cols(), -std::abs(a(i, k)), &sizes(k, 0), &result(i, 0));
+  return result;
 }
 
 /// [a, b; c, d]: (1 + sqrt|t|)^2 / |1 - t|, t = bc/ad or its inverse, whichever is below 1.
@@ -276,10 +298,23 @@ double skeel_radius_of_two(const MatrixXd& M) {
 
 double skeel_radius(const MatrixXd& M) {
   if (M.rows() == 2) return skeel_radius_of_two(M);
-  if (M.rows() > kSmall) return skeel_radius_of_many(M);
+  if (M.rows() > kSmall) {
+    const RowMatrix inverse = inverse_by_rows<RowMatrix>(M);
+    if (inverse.size() == 0) return 0;
+    constexpr int kWhole = 25;  // where they do not settle by then, mostly the loop is cut open
+    const RowMatrix of_inverse = inverse.cwiseAbs();
+    const Eigen::SparseMatrix<double, Eigen::RowMajor> of_M = M.cwiseAbs().sparseView();
+    const Powers whole = perron_by_powers(M.rows(), kWhole, [&](const VectorXd& v) -> VectorXd {
+      return of_inverse * VectorXd(of_M * v);
+    });
+    if (whole.settled) return whole.radius;
+    return perron_of_parts(product_of_sizes(inverse, M),
+                           boost::dynamic_bitset<>(static_cast<std::size_t>(M.rows())));
+  }
   const Small inverse = inverse_by_rows<Small>(M);
   if (inverse.size() == 0) return 0;
-  return perron_of_parts(inverse.cwiseAbs().lazyProduct(M.cwiseAbs()));
+  return perron_of_parts<Small>(inverse.cwiseAbs().lazyProduct(M.cwiseAbs()),
+                                std::bitset<kSmall>());
 }
 
 }  // namespace titop::linalg

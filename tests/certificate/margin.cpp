@@ -17,6 +17,16 @@ double of_two(double a, double b) {
   return (1 + g) * (1 + g) / std::abs(1 - a * b);
 }
 
+/// I - a P, P the cyclic shift of n: |L^-1| = sum_k |a|^k P^k / |1 - a^n|, k < n, and |L| = I + |a|
+/// P have the vector of ones in common: (1 + |a|) (1 + |a| + ... + |a|^(n-1)) / |1 - a^n|. Other
+/// gains are other units of the same, with a^n their product.
+double of_ring(int n, double product) {
+  const double a = std::pow(std::abs(product), 1.0 / n);
+  double sum = 0;
+  for (int k = 0; k < n; ++k) sum += std::pow(a, k);
+  return (1 + a) * sum / std::abs(1 - product);
+}
+
 void within(double radius, double exact) {
   CHECK(radius >= exact * (1 - 1e-12));
   CHECK(radius <= exact * (1 + kLoose));
@@ -34,20 +44,13 @@ TEST_CASE("Margin of two unknowns that feed each other: as by hand, whatever the
     }
 }
 
-/// I - a P, P the cyclic shift of n: |L^-1| = sum_k |a|^k P^k / |1 - a^n|, k < n, and |L| = I + |a|
-/// P have the vector of ones in common: (1 + |a|) (1 + |a| + ... + |a|^(n-1)) / |1 - a^n|.
 TEST_CASE("Margin of a ring of n equal gains: as by hand, by squaring and by iteration") {
   for (const int n : {3, 5, 12, 13, 40})
     for (const double a : {0.25, -0.9, 3.0}) {
       INFO("n = ", n, ", a = ", a);
       MatrixXd L = MatrixXd::Identity(n, n);
-      double sum = 0, power = 1;
-      for (int i = 0; i < n; ++i) {
-        L(i, (i + 1) % n) = -a;
-        sum += std::abs(power);
-        power *= a;
-      }
-      within(skeel_radius(L), (1 + std::abs(a)) * sum / std::abs(1 - power));
+      for (int i = 0; i < n; ++i) L(i, (i + 1) % n) = -a;
+      within(skeel_radius(L), of_ring(n, std::pow(a, n)));
     }
 }
 
@@ -56,6 +59,20 @@ TEST_CASE("Margin of a loop that a zero cuts open is 1, in any order of its unkn
   // Rounding in the elimination may put something in the place of a zero.
   within(skeel_radius(MatrixXd{{1, 0, 0}, {-2, 1, 0}, {3, -7, 1}}), 1);
   within(skeel_radius(MatrixXd{{-2, 3, 1}, {1, -7, 0}, {0, 1, 0}}), 1);  // rows and columns turned
+}
+
+TEST_CASE("Margin of a large loop that zeros cut open is 1, too") {
+  // A body with nine springs on it, none of which passes an acceleration on: forces F, reactions f.
+  constexpr int n = 9, sum = 2 * n;
+  MatrixXd L = MatrixXd::Identity(2 * n + 2, 2 * n + 2);
+  L(sum, sum + 1) = -1.01;
+  for (int i = 0; i < n; ++i) {
+    L(2 * i, 2 * i + 1) = -1;  // f as F says
+    L(sum + 1, 2 * i) = 1;     // what they sum up to
+  }
+  within(skeel_radius(L), 1);
+  L(3, sum) = -0.4;  // one of them does: a ring of four
+  within(skeel_radius(L), of_ring(4, -0.4 * 1.01));
 }
 
 TEST_CASE("Margin of parts that reach each other one way only is that of the worst part") {
