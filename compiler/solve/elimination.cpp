@@ -43,6 +43,38 @@ TITOP_WIDE void eliminate_wide(std::ptrdiff_t k, std::ptrdiff_t rows, std::ptrdi
   eliminate_below(k, rows, n, a, bounds, size_of<std::complex<double>>);
 }
 
+/// Sizes of n entries; returns the largest.
+template <class T>
+double sizes(std::ptrdiff_t n, const T* a, double* size) {
+  for (std::ptrdiff_t j = 0; j < n; ++j) size[j] = size_of(a[j]);
+  return largest_of(n, [size](std::ptrdiff_t j) { return size[j]; });
+}
+TITOP_WIDE double sizes_wide(std::ptrdiff_t n, const double* a, double* size) {
+  for (std::ptrdiff_t j = 0; j < n; ++j) size[j] = std::abs(a[j]);
+  return largest_of(n, [size](std::ptrdiff_t j) { return size[j]; });
+}
+TITOP_WIDE double sizes_wide(std::ptrdiff_t n, const std::complex<double>* a, double* size) {
+  const double* parts = reinterpret_cast<const double*>(a);
+  for (std::ptrdiff_t j = 0; j < n; ++j)
+    size[j] = std::abs(parts[2 * j]) + std::abs(parts[2 * j + 1]);
+  return largest_of(n, [size](std::ptrdiff_t j) { return size[j]; });
+}
+template <>
+double sizes(std::ptrdiff_t n, const double* a, double* size) {
+  return sizes_wide(n, a, size);
+}
+template <>
+double sizes(std::ptrdiff_t n, const std::complex<double>* a, double* size) {
+  return sizes_wide(n, a, size);
+}
+
+TITOP_WIDE double largest_wide(std::ptrdiff_t n, const double* a) {
+  return largest_of(n, [a](std::ptrdiff_t j) { return a[j]; });
+}
+TITOP_WIDE double largest_product(std::ptrdiff_t n, const double* a, const double* b) {
+  return largest_of(n, [a, b](std::ptrdiff_t j) { return a[j] * b[j]; });
+}
+
 /// 2^e for the exponents of ColumnScale, from the bits: std::ldexp costs more than the rest.
 double power_of_two(std::int16_t e) {
   return std::bit_cast<double>(static_cast<std::uint64_t>(e + 1023) << 52);
@@ -76,20 +108,11 @@ struct Factors<T>::Work {
   T* row(int i) { return m->lu.data() + i * n; }
   double* bounds(int i) { return bound.data() + i * n; }
 
-  double largest() const {
-    double result = 0;
-    for (const T& x : m->lu) result = std::max(result, size_of(x));
-    return result;
-  }
-
   /// Bounds of what has been assembled; returns its largest entry.
   double take_bounds() {
     bound.resize(m->lu.size());
-    double largest = 0;
-    for (std::size_t i = 0; i < m->lu.size(); ++i) {
-      bound[i] = size_of(m->lu[i]);
-      largest = std::max(largest, bound[i]);
-    }
+    const double largest =
+        sizes(static_cast<std::ptrdiff_t>(m->lu.size()), m->lu.data(), bound.data());
     for (int i = 0; i < rows; ++i)
       if (keeps[at(i)] != 1)
         for (std::ptrdiff_t j = 0; j < n; ++j) bounds(i)[j] /= keeps[at(i)];
@@ -100,13 +123,8 @@ struct Factors<T>::Work {
     column.resize(static_cast<std::size_t>(n));
     for (std::ptrdiff_t j = 0; j < n; ++j)
       column[static_cast<std::size_t>(j)] = power_of_two(exponents[j]);
-    row_scale.assign(at(rows), 0);
-    for (int i = 0; i < rows; ++i) {
-      double size = 0;
-      for (std::ptrdiff_t j = 0; j < n; ++j)
-        size = std::max(size, bounds(i)[j] * column[static_cast<std::size_t>(j)]);
-      row_scale[at(i)] = size;
-    }
+    row_scale.resize(at(rows));
+    for (int i = 0; i < rows; ++i) row_scale[at(i)] = largest_product(n, bounds(i), column.data());
   }
 
   /// The pivot of a column is the row where it stands out most against the row's own size: the
@@ -114,12 +132,11 @@ struct Factors<T>::Work {
   int pivot(int k) {
     int best = -1;
     double best_score = 0, left = 0;
-    for (int i = k; i < rows; ++i) {
-      const double size = size_of(row(i)[k]), from = bounds(i)[k];
-      const double score = row_scale[at(i)] > 0 ? size / row_scale[at(i)] : 0;
-      if (score > best_score) best_score = score, best = i;
+    for (int i = k; i < rows; ++i) {  // divisions only where something is larger than before
+      const double size = size_of(row(i)[k]), from = bounds(i)[k], scale = row_scale[at(i)];
+      if (scale > 0 && size > best_score * scale) best_score = size / scale, best = i;
       // What a column keeps after cancellation, over all its rows: invariant under any scaling.
-      if (from > 0) left = std::max(left, size / from);
+      if (from > 0 && size > left * from) left = size / from;
     }
     if (left < m->weakest) m->weakest = left, m->weakest_column = k;
     return left < kNothingLeft * Scalar<T>::epsilon() || !std::isfinite(best_score) ? -1 : best;
@@ -148,9 +165,8 @@ struct Factors<T>::Work {
   }
 
   void judge_finite() {
-    double sum = 0;
-    for (const double b : bound) sum += 0 * b;
-    m->finite = sum == 0;
+    m->finite =
+        std::isfinite(largest_wide(static_cast<std::ptrdiff_t>(bound.size()), bound.data()));
     m->singular = m->singular || !m->finite;
   }
 
@@ -196,7 +212,9 @@ struct Factors<T>::Work {
         m->keeps.resize(at(rows - pivots), 1);
         m->keeps[at(i - pivots)] = share;
       }
-    if (start > 0) m->growth = largest() / start;
+    if (start > 0)  // the bounds have done their work
+      m->growth =
+          sizes(static_cast<std::ptrdiff_t>(m->lu.size()), m->lu.data(), bound.data()) / start;
   }
 };
 

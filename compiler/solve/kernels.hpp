@@ -1,7 +1,9 @@
 #pragma once
 
+#include <bit>
 #include <complex>
 #include <cstddef>
+#include <cstdint>
 #include <titop/graph/linalg/wide.hpp>
 
 /// The inner loops: y -= a x and its like over contiguous entries. Plain loops that a compiler
@@ -60,6 +62,18 @@ inline void add_times(std::ptrdiff_t n, const std::complex<T>& a, const double* 
     v[2 * j] += re * by;
     v[2 * j + 1] += im * by;
   }
+}
+
+/// The largest of n numbers of which none is negative; what is not a number is above all others. By
+/// their bits: whole numbers may be compared in any order.
+template <class Entry>
+inline double largest_of(std::ptrdiff_t n, Entry entry) {
+  std::int64_t most = 0;
+  for (std::ptrdiff_t j = 0; j < n; ++j) {
+    const auto bits = std::bit_cast<std::int64_t>(entry(j));
+    most = bits > most ? bits : most;
+  }
+  return std::bit_cast<double>(most);
 }
 
 /// One step of elimination in a rows x n array: below row k, everything right of column k. `bounds`
