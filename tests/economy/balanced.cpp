@@ -163,6 +163,40 @@ TEST_CASE("an unstable loop stays what it is: the pole right of the axis is kept
   CHECK(beside(r, scene, {truth, {}}, 2000).bound <= 1);
 }
 
+TEST_CASE("an oscillation that grows counts as the two states that it is") {
+  // m x'' - c x' + k x = u, the dashpot driven backwards by a law.
+  const double m = 1, k = 40, c = 0.8;
+  Diagram d{"growing"};
+  auto U = d.input("U");
+  auto z = d.add("z", SpringMass{.mass = m, .stiffness = k});
+  auto K = d.add("K", Lti{.D = one(c)});
+  auto slow = d.add("slow", lag(1, 5));
+  K.in = z.child.rate;
+  slow.in = U;
+  z.parent.accel = 0;
+  z.child.force = slow.out + K.out;
+  d.output("x") = z.stretch;
+  const titop::Scene scene{.band_hz = {0, 5}, .accuracy = 1e-3};
+  const ReducedSystem r = compile(d, scene);
+  CHECK(step(r, "kept").text.find("(2 unstable)") != std::string::npos);
+  const auto truth = [&](Complex s) {
+    return MatrixXcd::Constant(1, 1, 1.0 / (m * s * s - c * s + k) / (s / 5.0 + 1.0));
+  };
+  CHECK(beside(r, scene, {truth, {}}, 2000).bound <= 1);
+}
+
+TEST_CASE("states that are asked for are balanced whatever whole_up_to says of coordinates") {
+  const Held held;
+  const titop::Scene scene{.band_hz = {0, 8},
+                           .accuracy = 1e-2,
+                           .whole_up_to = 5,
+                           .keep_structure = false,
+                           .balance_up_to = 28};
+  const ReducedSystem r = compile(held.diagram(), scene);
+  for (const EconomyStep& s : r.steps()) CHECK(s.name != "bodies");
+  CHECK(beside_by_hand(r, scene, held).bound <= 1);
+}
+
 TEST_CASE("dashpots without springs, and heavy damping that is asked to be balanced") {
   // Masses in honey: a dashpot to the ground each by way of a spring-less block, springs between.
   const double m = 2, k = 300, c = 500;
