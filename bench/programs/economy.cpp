@@ -11,6 +11,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 #include <string_view>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/titop.hpp>
@@ -47,6 +48,12 @@ Eigen::VectorXd frequencies(const System& full, const std::optional<Truncation>&
   return linalg::eigenvalues(dense.A).cwiseAbs();
 }
 
+/// At least one of the accuracies must be: there is nothing to measure else.
+std::vector<WhatIf> reached(const Question& q, std::vector<WhatIf> rows) {
+  if (rows.empty()) throw std::runtime_error(q.name + " reaches none of the accuracies asked for");
+  return rows;
+}
+
 /// All that is measured on one scene.
 class Measured {
  public:
@@ -55,7 +62,7 @@ class Measured {
         quick_(quick),
         diagram_(q.diagram()),
         omega_(2 * std::numbers::pi * q.scene.band_hz[1]),
-        rows_(what_if(diagram_, q.scene, accuracies)),
+        rows_(reached(q, what_if(diagram_, q.scene, accuracies))),
         full_(rows_.back().system.full()) {
     if (q.structure) modes_.emplace(diagram_, q.scene);
     int samples = 0;
@@ -161,6 +168,8 @@ void large() {
       const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
       const auto bodies = std::find_if(r.steps().begin(), r.steps().end(),
                                        [](const EconomyStep& s) { return s.name == "bodies"; });
+      if (bodies == r.steps().end())
+        throw std::runtime_error(fmt::format("{} beams have lost no modes", count));
       fmt::print("{},{},{:.0e},{},{:.1e},{},{:.2e},{:.1f}\n", count, bodies->before, accuracy,
                  bodies->after, bodies->error, r.order(), r.bound().worst, seconds.count());
       std::fflush(stdout);

@@ -6,13 +6,14 @@
 #include <titop/titop.hpp>
 #include <vector>
 
-/// Errors of small models over a band, on a grid that knows nothing of their bounds.
+/// Errors of small models over a band, on points that are not their bounds'.
 namespace titop_bench {
 
 using TransferOf = std::function<Eigen::MatrixXcd(std::complex<double>)>;
 
-/// The full system's transfers on the scene's ray: at equal steps of the band, and at thirteen
-/// points across each pole, as far apart as its peak is wide there. One serves all models.
+/// The full system's transfers on the scene's ray: at equal steps of the band but its start where
+/// that is 0 Hz, and at thirteen points across each pole, each a fifth of its peak's width from the
+/// next. One serves all models.
 class FineGrid {
  public:
   /// `poles` [rad/s]; `least`, outputs x inputs: what counts as 1 where a pair's own peak is below

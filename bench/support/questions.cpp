@@ -4,6 +4,7 @@
 
 #include <numbers>
 
+#include "scenes/frame.hpp"
 #include "scenes/satellite.hpp"
 
 namespace titop_bench {
@@ -12,32 +13,8 @@ namespace {
 using namespace titop;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using scenes::frame;
 using std::numbers::pi;
-
-/// The same body with these modes alone; its mass stays.
-FlexibleBody with_modes_up_to(const FlexibleBody& body, double hertz) {
-  ModalData data = body.data();
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index j = 0; j < data.omega.size(); ++j)
-    if (data.omega(j) <= 2 * pi * hertz) kept.push_back(j);
-  data.omega = data.omega(kept).eval();
-  data.xi = data.xi(kept).eval();
-  data.L_P = data.L_P(kept, Eigen::all).eval();
-  for (ModalChild& child : data.children) child.Phi_C = child.Phi_C(Eigen::all, kept).eval();
-  return FlexibleBody(data);
-}
-
-Diagram frame(const FlexibleBody& beam) {
-  Diagram d{"frame"};
-  auto U = d.input("U", 6);
-  auto b1 = d.add("b1", beam), b2 = d.add("b2", beam), b3 = d.add("b3", beam);
-  b1.parent.accel = 0;
-  mount(b2, b1.child("C"), Rotation::about({1, 2, 3}, 0.7));
-  mount(b3, b2.child("C"), Rotation::about({3, -1, 1}, -1.1));
-  b3.child("C").force = U;
-  d.output("a", 6) = b3.child("C").accel;
-  return d;
-}
 
 /// Its tip carries 50 times its mass.
 Diagram heavy(const FlexibleBody& beam) {
@@ -128,7 +105,7 @@ std::vector<Question> questions(bool quick) {
   const auto ask = [&](Diagram (*build)(const FlexibleBody&), const FlexibleBody& body,
                        double band_hz, bool structure = true) {
     all.push_back({build(body).name(), {.band_hz = {0, band_hz}}, structure, [=](double hertz) {
-                     return build(with_modes_up_to(body, hertz));
+                     return build(FlexibleBody(scenes::up_to(body.data(), hertz)));
                    }});
   };
   ask(frame, undamped, 261);

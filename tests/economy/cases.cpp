@@ -193,7 +193,7 @@ TEST_CASE("a high mode of one body that another's lock brings down into the band
     return truth_of(tree.structure(tree.motion(root, 0), tree.motion(root, 0)));
   };
   const titop::Scene scene{.band_hz = {0, 50}, .accuracy = 1e-4};
-  const Truth truth = by_hand(beam.data()), ruled = by_hand(up_to(beam.data(), 100));
+  const Truth truth = by_hand(beam.data()), ruled = by_hand(scenes::up_to(beam.data(), 100));
   const auto in_band = [&](const Truth& t, double hertz) {
     const double end = 2 * std::numbers::pi * hertz;
     return std::count_if(t.omegas.begin(), t.omegas.end(), [&](double w) { return w <= end; });

@@ -4,6 +4,7 @@
 
 #include <titop/titop.hpp>
 
+#include "../../examples/scenes/frame.hpp"
 #include "economy/tree.hpp"
 
 /// Scenes of the tests of economy, and what is measured on them.
@@ -22,20 +23,9 @@ inline titop::FlexibleBody slim_beam(int elements = 8, double xi = 0) {
   return beam;
 }
 
-/// Three beams in a skew chain, clamped; wrench at the tip to acceleration there.
-inline Diagram frame(const titop::FlexibleBody& beam) {
-  Diagram d{"frame"};
-  auto U = d.input("U", 6);
-  auto b1 = d.add("b1", beam), b2 = d.add("b2", beam), b3 = d.add("b3", beam);
-  b1.parent.accel = 0;
-  mount(b2, b1.child("C"), titop::Rotation::about({1, 2, 3}, 0.7));
-  mount(b3, b2.child("C"), titop::Rotation::about({3, -1, 1}, -1.1));
-  b3.child("C").force = U;
-  d.output("a", 6) = b3.child("C").accel;
-  return d;
-}
+using scenes::frame;
 
-/// The same by hand: its tree, driven and read at the tip.
+/// The frame by hand: its tree, driven and read at the tip.
 inline Assembled frame_by_hand(const titop::ModalData& beam) {
   Tree tree(false);
   const int b1 = tree.add(beam);

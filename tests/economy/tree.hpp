@@ -52,10 +52,6 @@ class Tree {
   std::vector<Body> bodies_;
 };
 
-/// The modes of a body clamped at P up to a frequency, the others cut: what a rule by frequency
-/// leaves of it.
-titop::ModalData up_to(titop::ModalData m, double hertz);
-
 /// A structure in its modes: C (s^2 M + K)^-1 B = rigid / s^2 + sum of c_j b_j / (1 + s^2 mu_j).
 struct InModes {
   Eigen::MatrixXd rigid;  ///< outputs x inputs

@@ -100,7 +100,7 @@ TEST_CASE("the CalculiX frame up to its tenth frequency to 1e-4: 20 coordinates 
   CHECK(own_peak >= 7 * r.order());
 
   // Each beam by its modes up to twice the band: another structure.
-  const ModalData ruled = up_to(beam.data(), 2 * end);
+  const ModalData ruled = scenes::up_to(beam.data(), 2 * end);
   CHECK(ruled.omega.size() >= 4);
   const double off =
       compared(scene, points, truth, sum_of(in_modes<double>(frame_by_hand(ruled), false)).transfer)

@@ -62,7 +62,7 @@ std::vector<double> fine_points(const titop::Scene& scene, const std::vector<dou
 }
 
 bool Compared::is_zero(Eigen::Index i, Eigen::Index j) const {
-  return !(peak(i, j) > 1e-4 * peak.row(i).maxCoeff() * peak.col(j).maxCoeff() / peak.maxCoeff());
+  return !(peak(i, j) > 1e-9 * peak.row(i).maxCoeff() * peak.col(j).maxCoeff() / peak.maxCoeff());
 }
 
 double Compared::relative() const {

@@ -78,18 +78,6 @@ int Tree::add(Body b) {
   return static_cast<int>(bodies_.size()) - 1;
 }
 
-titop::ModalData up_to(titop::ModalData m, double hertz) {
-  std::vector<Eigen::Index> kept;
-  for (Eigen::Index j = 0; j < m.omega.size(); ++j)
-    if (m.omega(j) <= 2 * std::numbers::pi * hertz) kept.push_back(j);
-  m.omega = Eigen::VectorXd(m.omega(kept));
-  if (m.xi.size() > 0) m.xi = Eigen::VectorXd(m.xi(kept));
-  m.L_P = Eigen::MatrixXd(m.L_P(kept, Eigen::all));
-  for (titop::ModalChild& child : m.children)
-    child.Phi_C = Eigen::MatrixXd(child.Phi_C(Eigen::all, kept));
-  return m;
-}
-
 namespace {
 
 /// C (s^2 M + s D + K)^-1 B by LU, scaled.
