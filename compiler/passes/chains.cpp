@@ -2,12 +2,10 @@
 
 #include <Eigen/QR>
 #include <algorithm>
-#include <iterator>
-#include <set>
 #include <titop/compiler/passes/close/lines.hpp>
+#include <titop/compiler/passes/close/still.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/passes/union_find.hpp>
-#include <titop/compiler/some_names.hpp>
 #include <titop/graph/drives.hpp>
 #include <utility>
 
@@ -22,6 +20,8 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double kGap = 1e-6;       ///< a loop that is open by more does not close
 constexpr double kExactGap = 1e-9;  ///< by more it is noted
+constexpr double kUnit =
+    1e-12;  ///< rounding of a few products: a direction is an axis, or has none of it
 
 // --- is there anything to look at? --------------------------------------------------------------
 
@@ -127,19 +127,18 @@ struct Checker {
   }
 };
 
-// --- what is said twice
-// ---------------------------------------------------------------------------
+// --- what is said twice --------------------------------------------------------------------------
 
 MatrixXd orthonormal_rows(const MatrixXd& m) {
   const Eigen::HouseholderQR<MatrixXd> qr(m.transpose());
   MatrixXd Q = (qr.householderQ() * MatrixXd::Identity(m.cols(), m.rows())).transpose();
-  Q = (Q.array().abs() < 1e-12).select(0.0, Q);
+  Q = (Q.array().abs() < kUnit).select(0.0, Q);
   for (Index i = 0; i < Q.rows(); ++i) Q.row(i).normalize();
   // The span of unit vectors is spanned by them: their zeros and ones stay exact.
   const Eigen::VectorXd share = Q.colwise().squaredNorm();
   MatrixXd units(0, Q.cols());
   for (Index j = 0; j < share.size(); ++j)
-    if (share(j) > 1 - 1e-12) {
+    if (share(j) > 1 - kUnit) {
       units.conservativeResize(units.rows() + 1, Q.cols());
       units.bottomRows(1) = Eigen::RowVectorXd::Unit(Q.cols(), j);
     }
@@ -193,31 +192,15 @@ std::string direction_names(const MatrixXd& directions) {
   std::string text;
   for (Index i = 0; i < directions.rows(); ++i) {
     Index j = 0;
-    if (!(directions.row(i).cwiseAbs().maxCoeff(&j) > 1 - 1e-12)) return {};
+    if (!(directions.row(i).cwiseAbs().maxCoeff(&j) > 1 - kUnit)) return {};
     text += (i ? ", " : "") + std::string(kNames[j]);
   }
   return " (" + text + ")";
 }
 
-/// Scalars that are 0 in every motion that the closed chains leave; what the equations prescribe is
-/// none.
-using Held = std::set<Scalar>;
-
-/// `known`: orthonormal columns, spanning all relations between these scalars.
-void add_held(const std::vector<Scalar>& scalars, const MatrixXd& known, Held& held) {
-  const double noise = 64 * 2.2e-16 * static_cast<double>(std::max<Index>(known.cols(), 6));
-  for (Index j = 0; j < known.rows(); ++j) {
-    const Scalar& s = scalars[static_cast<std::size_t>(j)];
-    if (s.column.kind == Column::Kind::prescribed || known.row(j).squaredNorm() < 0.5) continue;
-    Eigen::VectorXd left = -(known * known.row(j).transpose());
-    left(j) += 1;
-    if (left.norm() <= noise) held.insert(s);
-  }
-}
-
 /// Returns what the chains hold altogether.
-Held release_redundant(Stage& stage, const std::vector<Closing>& closings) {
-  Held held;
+AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
+  AtRest held;
   std::vector<Line> lines;
   for (const Closing& c : closings) lines.push_back(line_of(c));
   const Coordinates coordinates(stage.graph, stage.values);
@@ -256,80 +239,6 @@ Held release_redundant(Stage& stage, const std::vector<Closing>& closings) {
     add_held(c.scalars, known, held);
   }
   return held;
-}
-
-// --- what cannot move at all ---------------------------------------------------------------------
-
-/// Scalar points that hang on others, and that nothing else ties, close no chain, though their
-/// equations are no edges of the tree either.
-std::vector<Closing> without_hanging(const std::vector<Closing>& closings) {
-  std::map<Column, int> uses;
-  for (const Closing& c : closings)
-    for (const auto& [column, matrix] : c.form) ++uses[column];
-  std::vector<Closing> result;
-  std::copy_if(closings.begin(), closings.end(), std::back_inserter(result), [&](const Closing& c) {
-    return c.tie->S.rows() != 1 || std::none_of(c.form.begin(), c.form.end(), [&](const auto& f) {
-             return f.first.kind == Column::Kind::root && uses[f.first] == 1 && !f.second.isZero(0);
-           });
-  });
-  return result;
-}
-
-/// The chains' own equations, and those that place the point they read (a tree that is held at a
-/// far end), with the gains and sums that they read.
-std::vector<char> placing(const Graph& g, const Motion& motion,
-                          const std::vector<Closing>& closings) {
-  std::vector<int> equation_of(g.signals.size(), -1);  // of what is no side of a channel
-  for (int e = 0; e < static_cast<int>(g.equations.size()); ++e)
-    if (const int target = g.equations[at(e)].target; g.signals[at(target)].channel < 0)
-      equation_of[at(target)] = e;
-  std::vector<int> open;
-  for (const Closing& c : closings) open.insert(open.end(), c.equations.begin(), c.equations.end());
-  for (int p = 0; p < static_cast<int>(g.channels.size()); ++p)
-    if (const int e = motion.tie_above(p);
-        e >= 0 && g.signals[at(g.equations[at(e)].target)].channel != p)
-      open.push_back(e);
-  std::vector<char> result(g.equations.size(), 0);
-  while (!open.empty()) {
-    const int e = open.back();
-    open.pop_back();
-    if (std::exchange(result[at(e)], 1)) continue;
-    for (const Term& t : g.equations[at(e)].terms)
-      if (equation_of[at(t.signal)] >= 0) open.push_back(equation_of[at(t.signal)]);
-  }
-  return result;
-}
-
-/// Points that closed chains hold by their numbers: the elimination would find rounding in place of
-/// their accelerations. The chains' own equations need them, for the forces; whatever else reads
-/// one reads nothing, so that outputs are 0 and what hangs there stands on the ground.
-void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& closings,
-                const Held& held) {
-  if (held.empty()) return;
-  Graph& g = stage.graph;
-  const auto holds = [&](const Column& c, int index) { return held.contains({c, index}); };
-  const std::vector<char> still = motion.at_rest(holds),
-                          grounded = motion.at_rest([](const Column&, int) { return false; });
-  const std::vector<char> places = placing(g, motion, without_hanging(closings));
-  std::set<int> points;
-  const auto clear = [&](std::vector<Term>& terms) {
-    std::erase_if(terms, [&](const Term& t) {
-      const Signal& s = g.signals[at(t.signal)];
-      if (s.channel < 0 || s.quantity != Quantity::acceleration) return false;
-      if (!still[at(s.channel)] || grounded[at(s.channel)]) return false;
-      points.insert(s.channel);
-      return true;
-    });
-  };
-  for (std::size_t e = 0; e < g.equations.size(); ++e)
-    if (!places[e]) clear(g.equations[e].terms);
-  for (Output& o : g.outputs) clear(o.terms);
-  if (points.empty()) return;
-  std::vector<std::string> names;
-  for (const int p : points) names.push_back(motion.name(p));
-  stage.notes.push_back(
-      {Note::Kind::info, "chains",
-       "closed chains leave these points no motion: " + detail::some_names(names)});
 }
 
 }  // namespace

@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <iterator>
+#include <titop/compiler/passes/close/still.hpp>
+#include <titop/compiler/some_names.hpp>
+#include <utility>
+
+namespace titop::passes::closing {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr double kRounding = 64 * 2.2e-16;  ///< per column of an orthonormal basis
+constexpr double kMostly = 0.5;  ///< less of a unit vector in the span: no need to look closely
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Scalar points that hang on others, and that nothing else ties, close no chain, though their
+/// equations are no edges of the tree either.
+std::vector<Closing> without_hanging(const std::vector<Closing>& closings) {
+  std::map<Column, int> uses;
+  for (const Closing& c : closings)
+    for (const auto& [column, matrix] : c.form) ++uses[column];
+  std::vector<Closing> result;
+  std::copy_if(closings.begin(), closings.end(), std::back_inserter(result), [&](const Closing& c) {
+    return c.tie->S.rows() != 1 || std::none_of(c.form.begin(), c.form.end(), [&](const auto& f) {
+             return f.first.kind == Column::Kind::root && uses[f.first] == 1 && !f.second.isZero(0);
+           });
+  });
+  return result;
+}
+
+/// The chains' own equations, and those that place the point they read (a tree that is held at a
+/// far end), with the gains and sums that they read.
+std::vector<char> placing(const Graph& g, const Motion& motion,
+                          const std::vector<Closing>& closings) {
+  std::vector<int> equation_of(g.signals.size(), -1);  // of what is no side of a channel
+  for (int e = 0; e < static_cast<int>(g.equations.size()); ++e)
+    if (const int target = g.equations[at(e)].target; g.signals[at(target)].channel < 0)
+      equation_of[at(target)] = e;
+  std::vector<int> open;
+  for (const Closing& c : closings) open.insert(open.end(), c.equations.begin(), c.equations.end());
+  for (int p = 0; p < static_cast<int>(g.channels.size()); ++p)
+    if (const int e = motion.tie_above(p);
+        e >= 0 && g.signals[at(g.equations[at(e)].target)].channel != p)
+      open.push_back(e);
+  std::vector<char> result(g.equations.size(), 0);
+  while (!open.empty()) {
+    const int e = open.back();
+    open.pop_back();
+    if (std::exchange(result[at(e)], 1)) continue;
+    for (const Term& t : g.equations[at(e)].terms)
+      if (equation_of[at(t.signal)] >= 0) open.push_back(equation_of[at(t.signal)]);
+  }
+  return result;
+}
+
+}  // namespace
+
+void add_held(const std::vector<Scalar>& scalars, const MatrixXd& known, AtRest& held) {
+  const double noise = kRounding * static_cast<double>(std::max<Index>(known.cols(), 6));
+  for (Index j = 0; j < known.rows(); ++j) {
+    const Scalar& s = scalars[static_cast<std::size_t>(j)];
+    if (s.column.kind == Column::Kind::prescribed || known.row(j).squaredNorm() < kMostly) continue;
+    Eigen::VectorXd left = -(known * known.row(j).transpose());
+    left(j) += 1;
+    if (left.norm() <= noise) held.insert(s);
+  }
+}
+
+void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& closings,
+                const AtRest& held) {
+  if (held.empty()) return;
+  Graph& g = stage.graph;
+  const auto holds = [&](const Column& c, int index) { return held.contains({c, index}); };
+  const std::vector<char> still = motion.at_rest(holds),
+                          grounded = motion.at_rest([](const Column&, int) { return false; });
+  const std::vector<char> places = placing(g, motion, without_hanging(closings));
+  std::set<int> points;
+  const auto clear = [&](std::vector<Term>& terms) {
+    std::erase_if(terms, [&](const Term& t) {
+      const Signal& s = g.signals[at(t.signal)];
+      if (s.channel < 0 || s.quantity != Quantity::acceleration) return false;
+      if (!still[at(s.channel)] || grounded[at(s.channel)]) return false;
+      points.insert(s.channel);
+      return true;
+    });
+  };
+  for (std::size_t e = 0; e < g.equations.size(); ++e)
+    if (!places[e]) clear(g.equations[e].terms);
+  for (Output& o : g.outputs) clear(o.terms);
+  if (points.empty()) return;
+  std::vector<std::string> names;
+  for (const int p : points) names.push_back(motion.name(p));
+  stage.notes.push_back(
+      {Note::Kind::info, "chains",
+       "closed chains leave these points no motion: " + detail::some_names(names)});
+}
+
+}  // namespace titop::passes::closing

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <set>
+#include <titop/compiler/passes/close/lines.hpp>
+
+/// What closed chains hold altogether: points that cannot move though nothing says so.
+namespace titop::passes::closing {
+
+/// Scalars that are 0 in every motion that the closed chains leave; what the equations prescribe is
+/// none.
+using AtRest = std::set<Scalar>;
+
+/// Adds those of one component of the chains. `known`: orthonormal columns, spanning all relations
+/// between these scalars.
+void add_held(const std::vector<Scalar>& scalars, const Eigen::MatrixXd& known, AtRest& held);
+
+/// Points that closed chains hold by their numbers: the elimination would find rounding in place of
+/// their accelerations. The chains' own equations need them, for the forces; whatever else reads
+/// one reads nothing, so that outputs are 0 and what hangs there stands on the ground.
+void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& closings,
+                const AtRest& held);
+
+}  // namespace titop::passes::closing
