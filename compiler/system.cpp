@@ -4,6 +4,7 @@
 #include <cmath>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/parallel.hpp>
+#include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/compiler/system_data.hpp>
@@ -40,22 +41,24 @@ Rates rates(const SystemData& d, const RowMatrix<double>& known, const RowMatrix
   RowMatrix<double> rhs = rows.rhs(known, l.known_first);
   if (more.size() > 0) rhs += more;
   const RowMatrix<double> z = d.factors->solve(rhs);
-  const auto value = [&](int signal) {
-    RowMatrix<double> v = RowMatrix<double>::Zero(g.signals[at(signal)].size, known.cols());
+  RowMatrix<double> v;
+  const auto value = [&](int signal) -> const RowMatrix<double>& {
+    v.setZero(g.signals[at(signal)].size, known.cols());
     rows.add_value(signal, z, known, l.known_first, v.data());
     return v;
   };
-  Rates r{RowMatrix<double>(l.order(), known.cols()),
+  Rates r{RowMatrix<double>::Zero(l.order(), known.cols()),
           RowMatrix<double>::Zero(static_cast<Eigen::Index>(l.outputs.size()), known.cols())};
   for (const int i : l.state_nodes) {
     const Node& node = g.nodes[at(i)];
     const Dynamics& m = *d.numbers.blocks[at(i)];
-    const int first = l.state_first[at(i)];
-    r.xdot.middleRows(first, m.A.rows()).noalias() = m.A * known.middleRows(first, m.A.rows());
+    const Eigen::Index first = l.state_first[at(i)] * known.cols(), n = m.A.rows();
+    double* const xdot = r.xdot.data() + first;
+    solve::add_product(n, n, m.A.data(), known.data() + first, known.cols(), xdot);
     for (int s = node.first_signal; s < node.state; ++s)
       if (const Signal& in = g.signals[at(s)]; in.role == Signal::Role::input && in.active)
-        r.xdot.middleRows(first, m.A.rows()).noalias() +=
-            m.B.middleCols(in.first, in.size) * value(s);
+        solve::add_product(n, in.size, m.B.data() + in.first * n, value(s).data(), known.cols(),
+                           xdot);
   }
   for (std::size_t o = 0; o < g.outputs.size(); ++o)
     for (std::size_t k = 0; k < g.outputs[o].terms.size(); ++k)

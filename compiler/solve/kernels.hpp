@@ -32,9 +32,34 @@ inline void subtract(std::ptrdiff_t n, const std::complex<T>& a, const std::comp
   }
 }
 
+/// y -= l[0] x_0 + l[1] x_1 ..., so many rows x_k of m entries each. A single column is summed in
+/// registers.
+template <class T>
+inline void subtract_rows(std::ptrdiff_t count, const T* l, const T* x, std::ptrdiff_t m, T* y) {
+  if (m == 1) {
+    T sum = y[0];
+    for (std::ptrdiff_t k = 0; k < count; ++k) subtract(1, l[k], x + k, &sum);
+    y[0] = sum;
+    return;
+  }
+  for (std::ptrdiff_t k = 0; k < count; ++k)
+    if (l[k] != T(0)) subtract(m, l[k], x + k * m, y);
+}
+
 /// y += a x, n entries.
 inline void add(std::ptrdiff_t n, double a, const double* x, double* y) {
   for (std::ptrdiff_t j = 0; j < n; ++j) y[j] += a * x[j];
+}
+
+/// y += L x: L rows x cols, column-major, x and y row-major with m columns.
+inline void add_product(std::ptrdiff_t rows, std::ptrdiff_t cols, const double* L, const double* x,
+                        std::ptrdiff_t m, double* y) {
+  for (std::ptrdiff_t k = 0; k < cols; ++k, L += rows, x += m) {
+    if (m == 1)
+      add(rows, x[0], L, y);
+    else
+      for (std::ptrdiff_t i = 0; i < rows; ++i) add(m, L[i], x, y + i * m);
+  }
 }
 
 /// a b for a number b that is real in any case.

@@ -61,6 +61,17 @@ void add_product(double sign, const View<L>& l, const RowMatrix<double>& r, T* t
 /// to -= sign * L * x, x with m columns
 template <class T, class L>
 void subtract_product(double sign, const View<L>& l, const T* x, std::ptrdiff_t m, T* to) {
+  if (m == 1) {  // summed in registers
+    for (std::ptrdiff_t i = 0; i < l.rows; ++i) {
+      T sum = to[i];
+      for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
+        const T a = times(lift<T>(l(i, k)), sign);
+        if (a != T(0)) subtract(1, a, x + k, &sum);
+      }
+      to[i] = sum;
+    }
+    return;
+  }
   for (std::ptrdiff_t i = 0; i < l.rows; ++i)
     for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
       const T a = times(lift<T>(l(i, k)), sign);

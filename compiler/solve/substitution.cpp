@@ -34,9 +34,8 @@ struct Forward {
       std::copy_n(assembled.data() + made.order[at(i)] * m, m, rows.data() + i * m);
     const int n = f.columns();
     for (int i = 1; i < f.row_count; ++i)
-      for (int k = 0; k < std::min(i, f.pivot_count); ++k)
-        if (const T& l = made.lu[at(i * n + k)]; l != T(0))
-          subtract(m, l, rows.data() + k * m, rows.data() + i * m);
+      subtract_rows(std::min(i, f.pivot_count), made.lu.data() + i * n, rows.data(), m,
+                    rows.data() + i * m);
     std::copy_n(rows.data(), f.pivot_count * m, z.data() + f.first_unknown * m);
     std::copy_n(rows.data() + f.pivot_count * m, f.left_over() * m,
                 carried.data() + f.first_carried * m);
@@ -52,12 +51,12 @@ void backward(const Plan& plan, const Front& f, const typename Factors<T>::Made&
     T* to = z.data() + (f.first_unknown + i) * m;
     const T* u = made.lu.data() + i * n + f.pivot_count;
     for (const int v : plan.list(f.border)) {
-      const T* from = z.data() + plan.first[at(v)] * m;
-      for (int k = 0; k < plan.structure.variable_size[at(v)]; ++k, ++u, from += m)
-        subtract(m, *u, from, to);
+      const int size = plan.structure.variable_size[at(v)];
+      subtract_rows(size, u, z.data() + plan.first[at(v)] * m, m, to);
+      u += size;
     }
-    for (int k = i + 1; k < f.pivot_count; ++k)
-      subtract(m, made.lu[at(i * n + k)], z.data() + (f.first_unknown + k) * m, to);
+    subtract_rows(f.pivot_count - i - 1, made.lu.data() + i * n + i + 1,
+                  z.data() + (f.first_unknown + i + 1) * m, m, to);
     const T& pivot = made.lu[at(i * n + i)];
     for (std::ptrdiff_t j = 0; j < m; ++j) to[j] /= pivot;
   }
