@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/system_data.hpp>
-#include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/skeel.hpp>
 
 /// Well-posedness of the algebraic loops, in a number that no change of units moves.
 namespace titop::detail {

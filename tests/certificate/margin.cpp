@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/skeel.hpp>
 
 using Eigen::MatrixXd;
 using titop::linalg::skeel_radius;
