@@ -54,11 +54,11 @@ Rates rates(const SystemData& d, const RowMatrix<double>& known, const RowMatrix
     const Dynamics& m = *d.numbers.blocks[at(i)];
     const Eigen::Index first = l.state_first[at(i)] * known.cols(), n = m.A.rows();
     double* const xdot = r.xdot.data() + first;
-    solve::add_product(n, n, m.A.data(), known.data() + first, known.cols(), xdot);
+    solve::add_dense_product(n, n, m.A.data(), known.data() + first, known.cols(), xdot);
     for (int s = node.first_signal; s < node.state; ++s)
       if (const Signal& in = g.signals[at(s)]; in.role == Signal::Role::input && in.active)
-        solve::add_product(n, in.size, m.B.data() + in.first * n, value(s).data(), known.cols(),
-                           xdot);
+        solve::add_dense_product(n, in.size, m.B.data() + in.first * n, value(s).data(),
+                                 known.cols(), xdot);
   }
   for (std::size_t o = 0; o < g.outputs.size(); ++o)
     for (std::size_t k = 0; k < g.outputs[o].terms.size(); ++k)

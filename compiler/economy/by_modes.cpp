@@ -106,7 +106,7 @@ class ByModes : public Reduction {
     Eigen::VectorXcd left = -(small.V * small.response(s, m));
     for (Index j = 0; j < whole_.elastic(); ++j)
       left(j) += whole_.b(j, m) / (s * (s + whole_.damping(j)) + whole_.lambda(j));
-    if (whole_.blocks.empty()) return "no block";
+    if (whole_.blocks.empty() || left.size() == 0) return "no block";
     // At a resonance what is left turns by a quarter: as it stands when it is largest.
     Index most = 0;
     (left.array().abs() * whole_.lambda.head(left.size()).array().sqrt()).maxCoeff(&most);

@@ -86,7 +86,7 @@ class ByStates : public Reduction {
          fmt::format("no M, D, K, for {}; whole are {} integrals and {} states of poles on the "
                      "axis or right of it ({} unstable){}, {} more neither move nor are seen",
                      setting_.why, from.integrals(), from.kept(), from.unstable(),
-                     split_.near > Split{}.near
+                     split_.near > kUndamped
                          ? fmt::format(", with those up to a damping ratio of {:.0e} that cannot "
                                        "be told apart from them",
                                        split_.near)

@@ -105,8 +105,9 @@ class ReducedSystem {
   const std::vector<Note>& notes() const;
   const std::vector<EconomyStep>& steps() const;
   const std::vector<KeptMode>& modes() const;
-  /// Seconds of compile, bodies, modes or split, samples, balance and reduce, as often as each was
-  /// done, in this order: not part of to_string, which is the same on every machine.
+  /// Seconds of what was done, in the order in which it was, what was done again once each time:
+  /// compile, bodies, modes or split, samples, balance, reduce. Not part of to_string, which is the
+  /// same on every machine.
   const std::vector<std::pair<std::string, double>>& seconds() const;
 
  private:

@@ -53,7 +53,8 @@ struct Setting {
                    const TransferOf& transfer) const;
   /// What is known by now, with this model; `modes` are still to come.
   ReducedData result(Small small, ErrorBound bound) const;
-  /// "ask for ...": what helps where an accuracy is out of reach.
+  /// What helps where an accuracy is out of reach; `limit`: the member of Scene to raise where
+  /// bodies have lost modes; `rounding_in`: what ends else.
   std::string way_out(double reached, const char* limit, const char* rounding_in) const;
 };
 

@@ -11,6 +11,7 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 
 constexpr double kCluster = 2e-9;  ///< relative gap of lambda that counts as none
+constexpr double kSame = 1e-9;     ///< relative: one damping, but for the last digits
 
 /// The pair that sees a mode best, beside what else there is.
 struct Pair {
@@ -73,10 +74,11 @@ double distance(const Eigen::VectorXd& lambda, Index elastic, Index j) {
   return nearest;
 }
 
-/// Modes that had one frequency have one again, and one damping: in pairs that symmetry makes 0
-/// their terms cancel, and beside a resonance the last digits between them would not. `found`:
-/// those that have new values; the mean is theirs.
-void unite(Whole& w, const Eigen::VectorXd& before, const std::vector<char>& found) {
+/// Modes that had one frequency have one again, and one damping where they had one: in pairs that
+/// symmetry makes 0 their terms cancel, and beside a resonance the last digits between them would
+/// not. `found`: those that have new values; the mean is theirs.
+void unite(Whole& w, const Eigen::VectorXd& before, const Eigen::VectorXd& damping_before,
+           const std::vector<char>& found) {
   const auto count = static_cast<Index>(found.size());
   for (Index first = 0, last = 0; first < count; first = last) {
     while (last < count && before(last) == before(first)) ++last;
@@ -85,7 +87,9 @@ void unite(Whole& w, const Eigen::VectorXd& before, const std::vector<char>& fou
       if (found[static_cast<std::size_t>(j)]) lambda += w.lambda(j), damping += w.damping(j), ++of;
     if (of == 0) continue;
     w.lambda.segment(first, last - first).setConstant(lambda / of);
-    if (w.Z.size() > 0) w.Z.diagonal().segment(first, last - first).setConstant(damping / of);
+    const auto was = damping_before.segment(first, last - first);
+    if (w.Z.size() > 0 && was.maxCoeff() - was.minCoeff() <= kSame * was.maxCoeff())
+      w.Z.diagonal().segment(first, last - first).setConstant(damping / of);
   }
 }
 
@@ -96,6 +100,8 @@ void sharpen(Whole& w, const System& system, double high) {
   Index count = 0;
   while (count < w.elastic() && w.lambda(count) <= high * high) ++count;
   const Eigen::VectorXd before = w.lambda;
+  const Eigen::VectorXd damping_before =
+      w.Z.size() > 0 ? Eigen::VectorXd(w.Z.diagonal()) : Eigen::VectorXd::Zero(before.size());
   std::vector<char> moved(static_cast<std::size_t>(count), 0);
   parallel(static_cast<std::size_t>(count), 0, [&] {
     return [&](std::size_t i) {
@@ -112,7 +118,7 @@ void sharpen(Whole& w, const System& system, double high) {
       if (w.Z.size() > 0) w.Z(j, j) = std::max(0.0, -2 * found->real());
     };
   });
-  unite(w, before, moved);
+  unite(w, before, damping_before, moved);
 }
 
 }  // namespace titop::detail

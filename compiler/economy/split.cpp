@@ -18,7 +18,6 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kNear = 1e-6;      ///< damping ratio of what counts as undamped
 constexpr double kRounding = 1e4;   ///< units of the last place of |A| that a real part may be
 constexpr double kTogether = 1e6;   ///< size of what goes over from part to part
 constexpr double kAllAlike = 1e-3;  ///< weight of what states might do that do not
@@ -82,14 +81,14 @@ class Core {
   }
   /// Tells kept and stable apart.
   void divide() {
-    if (try_divide(kNear)) return;
+    if (try_divide(kUndamped)) return;
     const Error error = inseparable();
-    for (near = 10 * kNear; near < 1; near *= 10)
+    for (near = 10 * kUndamped; near < 1; near *= 10)
       if (try_divide(near)) return;
     throw error;
   }
   Index kept = 0;
-  double near = kNear;        ///< damping ratio up to which poles are kept
+  double near = kUndamped;    ///< damping ratio up to which poles are kept
   MatrixXd V_kept, V_stable;  ///< order x kept, order x the rest; orthonormal
   MatrixXd over;              ///< kept x stable: right = V_stable + V_kept * over
   MatrixXcd U;                ///< of the stable part's own Schur form
@@ -97,7 +96,7 @@ class Core {
  private:
   bool is_kept(Index i, double ratio) const {
     const double least =
-        ratio / kNear * kRounding * std::numeric_limits<double>::epsilon() * norm();
+        ratio / kUndamped * kRounding * std::numeric_limits<double>::epsilon() * norm();
     return -pole(i).real() <= std::max(ratio * std::abs(pole(i)), least);
   }
   bool try_divide(double ratio) {

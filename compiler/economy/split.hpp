@@ -7,6 +7,9 @@
 /// What has Gramians, apart from what has none. For the compiler's own files only.
 namespace titop::detail {
 
+/// Damping ratio of what counts as undamped.
+inline constexpr double kUndamped = 1e-6;
+
 /// A model of its own beside the others: all of them together, added, are the whole.
 struct Part {
   Eigen::MatrixXd A, B, C;
@@ -30,7 +33,8 @@ struct Split {
   Part integrals, kept, stable;
   Eigen::MatrixXcd T, U;                    ///< stable.A = U T U^H, T upper triangular, U unitary
   std::vector<std::complex<double>> poles;  ///< of the model, those with Im >= 0
-  double near = 1e-6;  ///< damping ratio up to which poles are kept as if they were on the axis
+  double near =
+      kUndamped;  ///< damping ratio up to which poles are kept as if they were on the axis
 };
 
 /// Throws singular where no such parts can be told apart. O(30 n^3).

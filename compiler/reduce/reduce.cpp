@@ -77,9 +77,13 @@ class Reducer {
     const Undetermined motions = undetermined(k_, d_, rows);
     if (motions.held.empty()) refuse(rest, motions.lines);
     for (const int row : rows)
-      if (hides_states(row)) refuse(rest, motions.lines);
+      if (hides_states(row))
+        refuse(rest, motions.lines,
+               {"it cannot be taken as 0: a sum of many terms stands between it and a block's "
+                "states"});
     for (const int row : rows)  // held, and undetermined all the same: no digit is left
-      if (!held_.insert(group_of(k_.joint, row)).second) refuse(rest, motions.lines);
+      if (!held_.insert(group_of(k_.joint, row)).second)
+        refuse(rest, motions.lines, {"taken as 0 it is undetermined all the same"});
     for (const std::string& line : motions.lines)
       k_.stage.notes.push_back(
           {Note::Kind::info, "reduce", line + ", and nothing asked for depends on it: taken as 0"});
@@ -153,7 +157,9 @@ class Reducer {
       Mistake& m = mistakes.back();
       m.details.insert(m.details.end(), free.begin(), free.end());
       m.details.insert(m.details.end(), why.begin(), why.end());
-      if (!free.empty()) m.hint += "; or hold that motion, or ask for nothing that depends on it";
+      if (!free.empty())
+        m.hint += why.empty() ? "; or hold that motion, or ask for nothing that depends on it"
+                              : "; or hold that motion";
     }
     throw Error(std::move(mistakes));
   }

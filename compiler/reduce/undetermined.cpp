@@ -253,7 +253,7 @@ Undetermined undetermined(const Skeleton& k, const SystemData& d, const std::vec
   };
   if (free.value.cols() < count) {
     name("state", all, rates, d.layout().states);
-    if (all.value.cols() > count)
+    if (!result.lines.empty() && all.value.cols() > count)
       result.lines.insert(result.lines.begin(),
                           fmt::format("{} of these motions, or of what they make together, {} "
                                       "determined by nothing:",

@@ -4,6 +4,7 @@
 #include <complex>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <titop/graph/linalg/wide.hpp>
 
 /// The inner loops: y -= a x and its like over contiguous entries. Plain loops that a compiler
@@ -38,7 +39,8 @@ template <class T>
 inline void subtract_rows(std::ptrdiff_t count, const T* l, const T* x, std::ptrdiff_t m, T* y) {
   if (m == 1) {
     T sum = y[0];
-    for (std::ptrdiff_t k = 0; k < count; ++k) subtract(1, l[k], x + k, &sum);
+    for (std::ptrdiff_t k = 0; k < count; ++k)
+      if (l[k] != T(0)) subtract(1, l[k], x + k, &sum);
     y[0] = sum;
     return;
   }
@@ -52,8 +54,8 @@ inline void add(std::ptrdiff_t n, double a, const double* x, double* y) {
 }
 
 /// y += L x: L rows x cols, column-major, x and y row-major with m columns.
-inline void add_product(std::ptrdiff_t rows, std::ptrdiff_t cols, const double* L, const double* x,
-                        std::ptrdiff_t m, double* y) {
+inline void add_dense_product(std::ptrdiff_t rows, std::ptrdiff_t cols, const double* L,
+                              const double* x, std::ptrdiff_t m, double* y) {
   for (std::ptrdiff_t k = 0; k < cols; ++k, L += rows, x += m) {
     if (m == 1)
       add(rows, x[0], L, y);
@@ -89,13 +91,14 @@ inline void add_times(std::ptrdiff_t n, const std::complex<T>& a, const double* 
   }
 }
 
-/// The largest of n numbers of which none is negative; what is not a number is above all others. By
-/// their bits: whole numbers may be compared in any order.
+/// The largest of n numbers of which none is negative; what is not a number, whatever its sign bit,
+/// is above all others. By their bits: whole numbers may be compared in any order.
 template <class Entry>
 inline double largest_of(std::ptrdiff_t n, Entry entry) {
   std::int64_t most = 0;
   for (std::ptrdiff_t j = 0; j < n; ++j) {
-    const auto bits = std::bit_cast<std::int64_t>(entry(j));
+    const auto bits =
+        std::bit_cast<std::int64_t>(entry(j)) & std::numeric_limits<std::int64_t>::max();
     most = bits > most ? bits : most;
   }
   return std::bit_cast<double>(most);

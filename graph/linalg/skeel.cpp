@@ -44,12 +44,14 @@ double perron_by_squaring(const Small& M) {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// By power iteration [Collatz 1942], from above; `times`: M v. |M^-1| |M| has a diagonal of 1 and
-/// more: nothing oscillates. `settled`: the radius is known to 1e-3.
+/// What power iteration finds.
 struct Powers {
-  double radius = 0;
-  bool settled = false;
+  double radius = 0;     ///< from above
+  bool settled = false;  ///< known to 1e-3
 };
+
+/// Power iteration [Collatz 1942]; `times`: M v. |M^-1| |M| has a diagonal of 1 and more: nothing
+/// oscillates.
 template <class Times>
 Powers perron_by_powers(Eigen::Index n, int steps, Times times) {
   VectorXd v = VectorXd::Ones(n), w, grown;

@@ -56,7 +56,6 @@ TEST_CASE("Margin of a ring of n equal gains: as by hand, by squaring and by ite
 
 TEST_CASE("Margin of a loop that a zero cuts open is 1, in any order of its unknowns") {
   CHECK(skeel_radius(MatrixXd{{1, -5}, {0, 1}}) == 1);
-  // Rounding in the elimination may put something in the place of a zero.
   within(skeel_radius(MatrixXd{{1, 0, 0}, {-2, 1, 0}, {3, -7, 1}}), 1);
   within(skeel_radius(MatrixXd{{-2, 3, 1}, {1, -7, 0}, {0, 1, 0}}), 1);  // rows and columns turned
 }
@@ -73,6 +72,17 @@ TEST_CASE("Margin of a large loop that zeros cut open is 1, too") {
   within(skeel_radius(L), 1);
   L(3, sum) = -0.4;  // one of them does: a ring of four
   within(skeel_radius(L), of_ring(4, -0.4 * 1.01));
+}
+
+TEST_CASE("Margin of two rings of which one drives the other: that of one ring, small and large") {
+  for (const int n : {3, 5, 8, 30}) {
+    CAPTURE(n);
+    MatrixXd L = MatrixXd::Identity(2 * n, 2 * n);
+    for (const int ring : {0, n})
+      for (int i = 0; i < n; ++i) L(ring + i, ring + (i + 1) % n) = -0.5;
+    L(0, n) = 100, L(1, n + 1) = -3, L(2, 2 * n - 1) = 7;
+    within(skeel_radius(L), of_ring(n, std::pow(0.5, n)));
+  }
 }
 
 TEST_CASE("Margin of parts that reach each other one way only is that of the worst part") {

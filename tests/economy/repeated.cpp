@@ -139,3 +139,25 @@ TEST_CASE("all forces at the tip keep both modes of a frequency, or none") {
     CHECK(!counts.empty());
   }
 }
+
+TEST_CASE("two modes of one frequency keep their own damping") {
+  const double m[] = {1, 4}, c[] = {0.02, 0.4}, k[] = {100, 400};
+  Diagram d{"apart"};
+  for (const int i : {0, 1}) {
+    const std::string n = std::to_string(i + 1);
+    auto U = d.input("U" + n);
+    auto z = d.add("z" + n, SpringMass{.mass = m[i], .stiffness = k[i], .damping = c[i]});
+    z.parent.accel = 0;
+    z.child.force = U;
+    d.output("x" + n) = z.stretch;
+  }
+  const titop::Scene scene{.band_hz = {0, 3}, .accuracy = 1e-3, .damping_floor = 1e-3};
+  const auto truth = [&](std::complex<double> s) {
+    Eigen::MatrixXcd H = Eigen::MatrixXcd::Zero(2, 2);
+    for (const int i : {0, 1}) H(i, i) = 1.0 / (m[i] * s * s + c[i] * s + k[i]);
+    return H;
+  };
+  const ReducedSystem r = compile(d, scene);
+  CHECK(r.order() == 4);
+  CHECK(beside(r, scene, {truth, {10}}, 2000).error <= 1e-9);
+}

@@ -42,6 +42,20 @@ TEST_CASE("solver: solutions as by dense LU on trees, rings, stars, grids and fu
   }
 }
 
+TEST_CASE("solver: an overflow is told from a singular system, where only inf * 0 shows it, too") {
+  Structure structure;
+  structure.variable_size = {2};
+  structure.add_row(2, {0});
+  const MatrixXd A{{1e-160, 0}, {1e160, 1}};  // 1e160 / 1e-160 is above all doubles
+  const Health h = factors_of<double>(structure, {{A}}).health();
+  CHECK(h.singular);
+  CHECK(!h.finite);
+  const Eigen::MatrixXcd C = std::complex<double>(1, 1) * A;
+  const Health complex = factors_of<std::complex<double>>(structure, {{C}}).health();
+  CHECK(complex.singular);
+  CHECK(!complex.finite);
+}
+
 TEST_CASE("solver: complex systems") {
   Rng rng(5);
   for (const Kind& kind : kinds(rng)) {
