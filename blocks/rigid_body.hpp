@@ -30,8 +30,8 @@ struct BodyHandle {
 /// No states. Port order: children in the order given, then the parent. Frame: the node's own.
 /// Refused (bad_inertia, not_finite) when it is added: a negative mass, an inertia that is not
 /// symmetric, not positive, or that breaks the triangle inequality; (duplicate_name) two child
-/// points of one name. A mass or inertia of 0 is allowed: a massless link; what it does when freed is
-/// undetermined, and refused (improper) where an output or another block depends on it.
+/// points of one name. A mass or inertia of 0 is allowed: a massless link; what it does when freed
+/// is undetermined, and refused (improper) where an output or another block depends on it.
 struct RigidBody {
   Value mass = 1;                           ///< [kg]
   Matrix3d inertia = Matrix3d::Identity();  ///< about the centre of mass A [kg m^2]
