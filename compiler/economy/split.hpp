@@ -33,8 +33,8 @@ struct Split {
   Part integrals, kept, stable;
   Eigen::MatrixXcd T, U;                    ///< stable.A = U T U^H, T upper triangular, U unitary
   std::vector<std::complex<double>> poles;  ///< of the model, those with Im >= 0
-  double near =
-      kUndamped;  ///< damping ratio up to which poles are kept as if they were on the axis
+  /// Damping ratio up to which poles are kept as if they were on the axis.
+  double near = kUndamped;
 };
 
 /// Throws singular where no such parts can be told apart. O(30 n^3).
