@@ -30,6 +30,7 @@ Joint NewRows::joint() {
   j.piece_begin = {0};
   solve::Structure structure;
   structure.variable_size = old_.plan->structure.variable_size;
+  structure.variable_unit = old_.plan->structure.variable_unit;
   for (int r = 0; r < static_cast<int>(old_.rows.size()); ++r) {
     std::vector<Piece> pieces(old_.row(r).begin(), old_.row(r).end());
     const auto before = old_.plan->structure.row(r);

@@ -93,6 +93,7 @@ struct Factors<T>::Work {
   std::vector<double> row_scale =
       {};                           ///< per row: its size, the columns having been given the same
   std::vector<double> column = {};  ///< the factors that do so
+  std::vector<int> units = {};
   Made* m = nullptr;
   int rows = 0, pivots = 0;
   std::ptrdiff_t n = 0;  ///< columns
@@ -103,6 +104,17 @@ struct Factors<T>::Work {
     made.order.resize(at(rows));
     std::iota(made.order.begin(), made.order.end(), 0);
     keeps.assign(at(rows), 1);
+  }
+
+  /// First columns of what shares a unit, and the end.
+  const std::vector<int>& units_of(const Plan& plan, const Front& front) {
+    units.assign(1, 0);
+    for (const auto range : {front.pivots, front.border})
+      for (const int v : plan.list(range))
+        for (int i = 0; i < plan.structure.variable_size[at(v)];
+             i += plan.structure.variable_unit[at(v)])
+          units.push_back(units.back() + plan.structure.variable_unit[at(v)]);
+    return units;
   }
 
   T* row(int i) { return m->lu.data() + i * n; }
@@ -242,7 +254,7 @@ void Factors<T>::make(int index, const Rows<T>& rows, Work& w, ColumnScale* foun
   assemble(front, rows, w);
   const double start = w.take_bounds();
   if (found)
-    column_scale(w.bound.data(), front.row_count, front.columns(),
+    column_scale(w.bound.data(), front.row_count, w.units_of(*plan_, front),
                  found->data() + front.first_column);
   w.scale_rows(scale_->data() + front.first_column);
   for (int k = 0; k < front.pivot_count && !made->singular; ++k) {

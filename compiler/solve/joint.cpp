@@ -52,14 +52,19 @@ struct Builder {
     for (const Output& o : g.outputs) take(o.terms, j.output_coefficient);
   }
 
+  /// signal: -1 for a partial sum; `like`: what has its unit.
+  void add_variable(int signal, int size, const Signal& like) {
+    j.variables.push_back(signal);
+    structure.add_variable(size, size == 6 && like.quantity != Quantity::plain ? 3 : 1);
+  }
+
   void choose_variables() {
     j.variable_of.assign(g.signals.size(), -1);
     for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
       const Signal& sig = g.signals[at(s)];
       if (!is_unknown(sig) || by[at(s)] >= 0) continue;
       j.variable_of[at(s)] = static_cast<int>(j.variables.size());
-      j.variables.push_back(s);
-      structure.variable_size.push_back(sig.size);
+      add_variable(s, sig.size, sig);
     }
   }
 
@@ -159,8 +164,10 @@ struct Builder {
   void close_row(int stage_row, int size) {
     std::sort(over.begin(), over.end());
     over.erase(std::unique(over.begin(), over.end()), over.end());
+    const Row& row = stage.rows[at(stage_row)];
+    const int target = row.equation >= 0 ? g.equations[at(row.equation)].target : row.output;
     if (!reads_states())
-      while (over.size() > kMost) sum_up(stage_row, size);
+      while (over.size() > kMost) sum_up(stage_row, size, g.signals[at(target)]);
     finish_row(stage_row, size, over);
   }
 
@@ -177,7 +184,7 @@ struct Builder {
   static constexpr std::size_t kMost = 12, kTogether = 4;
 
   /// Replaces each four neighbouring variables of the row by their partial sum.
-  void sum_up(int stage_row, int size) {
+  void sum_up(int stage_row, int size, const Signal& like) {
     const auto begin = j.pieces.begin() + j.piece_begin.back();
     std::vector<Piece> all(begin, j.pieces.end()), top;
     j.pieces.erase(begin, j.pieces.end());
@@ -191,8 +198,7 @@ struct Builder {
     for (const Piece& p : all) (p.entry < 0 ? top : groups[group_of(p.entry)]).push_back(p);
     for (std::size_t k = 0; k < groups.size(); ++k) {
       const int sum = static_cast<int>(j.variables.size());
-      j.variables.push_back(-1);
-      structure.variable_size.push_back(size);
+      add_variable(-1, size, like);
       sums.push_back(sum);
       top.push_back({.of = Piece::Left::one, .rows = size, .entry = sum});
       groups[k].push_back({.of = Piece::Left::one, .rows = size, .entry = sum, .sign = -1});

@@ -209,6 +209,11 @@ void place(Plan& p) {
 
 }  // namespace
 
+void Structure::add_variable(int size, int unit) {
+  variable_size.push_back(size);
+  variable_unit.push_back(unit);
+}
+
 void Structure::add_row(int size, std::vector<int> over) {
   std::sort(over.begin(), over.end());
   over.erase(std::unique(over.begin(), over.end()), over.end());

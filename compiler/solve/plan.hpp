@@ -23,9 +23,13 @@ namespace titop::solve {
 /// Which variables each row group mentions.
 struct Structure {
   std::vector<int> variable_size;    ///< scalars of each variable group
+  std::vector<int> variable_unit;    ///< of them share a unit: 3 of a twist or wrench, else 1
   std::vector<int> row_size;         ///< scalars of each row group
   std::vector<int> row_begin = {0};  ///< row group r has entries row_begin[r] ... row_begin[r + 1]
   std::vector<int> variables;        ///< of all row groups, without repetition, ascending in each
+
+  /// One more variable group; `unit`: see variable_unit.
+  void add_variable(int size, int unit = 1);
 
   /// One more row group of `size` scalars over these variables (sorted, repetitions removed).
   void add_row(int size, std::vector<int> over);

@@ -2,6 +2,7 @@
 #include <bit>
 #include <boost/container/small_vector.hpp>
 #include <cmath>
+#include <numeric>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scaling.hpp>
 
@@ -49,7 +50,8 @@ struct Exponents {
 };
 
 /// Half way towards a largest entry of 1 in every row and column.
-inline void towards_one(const Exponents& x, int* __restrict c, int* __restrict sum) {
+inline void towards_one(const Exponents& x, std::span<const int> units, int* __restrict c,
+                        int* __restrict sum) {
   std::fill_n(sum, x.columns, kNone);
   for (int i = 0; i < x.rows; ++i) {
     const int* __restrict row = x.e + i * x.columns, own = x.r[i];
@@ -61,7 +63,11 @@ inline void towards_one(const Exponents& x, int* __restrict c, int* __restrict s
     }
     if (top > kNone / 2) x.r[i] -= (top + own) / 2;
   }
-  for (int j = 0; j < x.columns; ++j) c[j] -= sum[j] > kNone / 2 ? sum[j] / 2 : 0;
+  for (std::size_t k = 0; k + 1 < units.size(); ++k) {
+    const int top = *std::max_element(sum + units[k], sum + units[k + 1]);
+    if (top > kNone / 2)
+      std::for_each(c + units[k], c + units[k + 1], [top](int& e) { e -= top / 2; });
+  }
 }
 
 /// Forgets entries that are rounding beside the others.
@@ -73,8 +79,8 @@ inline void drop_rounding(const Exponents& x, const int* __restrict c) {
 }
 
 /// Rows, then columns, to a mean of 0.
-inline void centre(const Exponents& x, int* __restrict c, int* __restrict sum,
-                   int* __restrict count) {
+inline void centre(const Exponents& x, std::span<const int> units, int* __restrict c,
+                   int* __restrict sum, int* __restrict count) {
   std::fill_n(sum, x.columns, 0);
   std::fill_n(count, x.columns, 0);
   for (int i = 0; i < x.rows; ++i) {
@@ -91,21 +97,26 @@ inline void centre(const Exponents& x, int* __restrict c, int* __restrict sum,
       count[j] += row[j] > kNone / 2;
     }
   }
-  for (int j = 0; j < x.columns; ++j)
-    if (count[j] > 0) c[j] = -sum[j] / count[j];
+  for (std::size_t k = 0; k + 1 < units.size(); ++k) {
+    const int total = std::accumulate(sum + units[k], sum + units[k + 1], 0);
+    const int number = std::accumulate(count + units[k], count + units[k + 1], 0);
+    if (number > 0) std::fill(c + units[k], c + units[k + 1], -total / number);
+  }
 }
 
-TITOP_WIDE void balance(const Exponents& x) {
-  for (int round = 0; round < 4; ++round) towards_one(x, x.c, x.sum);
+TITOP_WIDE void balance(const Exponents& x, std::span<const int> units) {
+  for (int round = 0; round < 4; ++round) towards_one(x, units, x.c, x.sum);
   drop_rounding(x, x.c);
-  for (int round = 0; round < 3; ++round) centre(x, x.c, x.sum, x.count);
+  for (int round = 0; round < 3; ++round) centre(x, units, x.c, x.sum, x.count);
 }
 
 }  // namespace
 
-void column_scale(const double* magnitudes, int rows, int columns, std::int16_t* exponents) {
+void column_scale(const double* magnitudes, int rows, std::span<const int> units,
+                  std::int16_t* exponents) {
+  const int columns = units.back();
   const Exponents x(magnitudes, rows, columns);
-  balance(x);
+  balance(x, units);
   for (int j = 0; j < columns; ++j) {
     const int rounded = (x.c[j] + (x.c[j] < 0 ? -kOne : kOne) / 2) / kOne;
     exponents[j] = static_cast<std::int16_t>(std::clamp(rounded, -1000, 1000));

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 namespace titop::solve {
 
@@ -8,8 +9,10 @@ namespace titop::solve {
 /// same size whatever the units: first largest entries brought to 1, rows and columns in turn [Ruiz
 /// 2001], then means of binary exponents over the entries [Curtis, Reid 1972]. Entries that the
 /// first step leaves below 1e-13 are rounding (a rotation by pi) and do not count in the second:
-/// they would draw the means along. Writes `columns` exponents, within -1000 ... 1000.
-/// O(rows x columns).
-void column_scale(const double* magnitudes, int rows, int columns, std::int16_t* exponents);
+/// they would draw the means along. Columns of one unit (three of a twist or wrench) get the same
+/// exponent, whichever way their frame is turned. `units`: the first column of each unit, and the
+/// end. Writes one exponent per column, within -1000 ... 1000. O(rows x columns).
+void column_scale(const double* magnitudes, int rows, std::span<const int> units,
+                  std::int16_t* exponents);
 
 }  // namespace titop::solve

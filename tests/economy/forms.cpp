@@ -82,7 +82,8 @@ TEST_CASE("passive stays passive: force to rate at one point, in the band and fa
       const MatrixXcd Y = r.transfer({0.001 * w, w}).middleRows(6, 6);
       const MatrixXcd twice = Y + Y.adjoint();
       CHECK(smallest_eigenvalue(twice) >= -1e-9 * twice.norm());
-      CHECK(matrix_error(Y, MatrixXcd(Y.transpose())) <= 1e-9);  // reciprocal
+      // Reciprocal. At 0.1 rad/s the accelerations that are integrated cancel to (0.1 / 30)^2.
+      CHECK(matrix_error(Y, MatrixXcd(Y.transpose())) <= 1e-8);
     }
   }
 }

@@ -44,7 +44,7 @@ TEST_CASE("solver: solutions as by dense LU on trees, rings, stars, grids and fu
 
 TEST_CASE("solver: an overflow is told from a singular system, where only inf * 0 shows it, too") {
   Structure structure;
-  structure.variable_size = {2};
+  structure.add_variable(2);
   structure.add_row(2, {0});
   const MatrixXd A{{1e-160, 0}, {1e160, 1}};  // 1e160 / 1e-160 is above all doubles
   const Health h = factors_of<double>(structure, {{A}}).health();
@@ -161,7 +161,7 @@ TEST_CASE("solver: the distance from singular shows in the weakest pivot") {
 // in the front that it comes to there is nothing beside it to show that.
 TEST_CASE("solver: a row of which only rounding is left does not pass for a good one further up") {
   System s;
-  s.structure.variable_size = {1, 1, 1, 1};
+  for (int i = 0; i < 4; ++i) s.structure.add_variable(1);
   for (const std::vector<int>& over :
        std::vector<std::vector<int>>{{0, 1}, {0, 1}, {1, 2, 3}, {1, 2, 3}})
     s.structure.add_row(1, over);

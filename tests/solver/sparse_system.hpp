@@ -145,7 +145,7 @@ inline Structure structure_of(const Links& links, const std::vector<int>& sizes)
     over[at(b)].push_back(a);
   }
   Structure s;
-  s.variable_size = sizes;
+  for (const int size : sizes) s.add_variable(size);
   for (std::size_t i = 0; i < sizes.size(); ++i) s.add_row(sizes[i], over[i]);
   return s;
 }
