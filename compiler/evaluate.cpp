@@ -106,16 +106,17 @@ double Evaluation<T>::improve() {
   return relative_to_outputs(correction);
 }
 
-/// One pass over the rows and one solution of twice the columns serve both.
+/// One solution of twice the columns serves both.
 template <class T>
 typename Evaluation<T>::Losses Evaluation<T>::losses() {
-  const auto [residual, magnitudes] = rows_.balance(rhs_, unknowns_);
+  const solve::RowMatrix<T> residual = rows_.residual(rhs_, unknowns_);
+  const solve::RowMatrix<double> magnitudes = rows_.magnitudes(rhs_, unknowns_);
   const auto m = residual.cols();
   SteadyRandom random;
   solve::RowMatrix<T> both(residual.rows(), 2 * m);
   both.leftCols(m) = residual;
   for (Eigen::Index i = 0; i < both.rows(); ++i) {
-    const double unit = (random.next() < 0 ? -1 : 1) * solve::Scalar<T>::epsilon();
+    const double unit = random.unit() * solve::Scalar<T>::epsilon();
     for (Eigen::Index j = 0; j < m; ++j) both(i, m + j) = solve::lift<T>(unit * magnitudes(i, j));
   }
   const solve::RowMatrix<T> changes = factors_->solve(both);

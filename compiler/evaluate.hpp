@@ -55,8 +55,8 @@ class Evaluation {
   struct Losses {
     double change = 0;    ///< improve()
     double rounding = 0;  ///< the change of the outputs, measured as above, if every equation is
-                          ///< off by one unit of the last place of its terms, up or down in a fixed
-                          ///< random order: an estimate of the error, not a bound
+                          ///< off by about one unit of the last place of its terms, up or down in a
+                          ///< fixed random order: an estimate of the error, not a bound
   };
   /// improve(), and what rounding costs. One solution of two columns per column.
   Losses losses();

@@ -13,6 +13,12 @@ class SteadyRandom {
     return static_cast<double>(state_ >> 11) * 0x1p-52 - 1.0;
   }
 
+  /// Of either sign, from a half to one in size: sums of two of one size do not cancel.
+  double unit() {
+    const double x = next();
+    return x < 0 ? (x - 1) / 2 : (x + 1) / 2;
+  }
+
  private:
   unsigned long long state_ = 0x9E3779B97F4A7C15ull;
 };

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <titop/graph/linalg/wide.hpp>
+#include <type_traits>
 
 /// The inner loops: y -= a x and its like over contiguous entries. Plain loops that a compiler
 /// turns into vector instructions; sums are never regrouped, so that every machine gets the same
@@ -39,8 +40,12 @@ template <class T>
 inline void subtract_rows(std::ptrdiff_t count, const T* l, const T* x, std::ptrdiff_t m, T* y) {
   if (m == 1) {
     T sum = y[0];
-    for (std::ptrdiff_t k = 0; k < count; ++k)
-      if (l[k] != T(0)) subtract(1, l[k], x + k, &sum);
+    for (std::ptrdiff_t k = 0; k < count; ++k) {
+      if constexpr (std::is_floating_point_v<T>)
+        sum -= l[k] * x[k];
+      else if (l[k] != T(0))
+        subtract(1, l[k], x + k, &sum);
+    }
     y[0] = sum;
     return;
   }

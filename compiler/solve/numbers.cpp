@@ -61,6 +61,12 @@ void add_product(double sign, const View<L>& l, const RowMatrix<double>& r, T* t
 /// to -= sign * L * x, x with m columns
 template <class T, class L>
 void subtract_product(double sign, const View<L>& l, const T* x, std::ptrdiff_t m, T* to) {
+  if constexpr (std::is_same_v<T, L>)
+    if (m == 1 && l.down == 1) {  // by columns, which stand in a row
+      for (std::ptrdiff_t k = 0; k < l.cols; ++k)
+        if (const T a = times(x[k], sign); a != T(0)) subtract(l.rows, a, l.data + k * l.right, to);
+      return;
+    }
   if (m == 1) {  // summed in registers
     for (std::ptrdiff_t i = 0; i < l.rows; ++i) {
       T sum = to[i];
@@ -77,6 +83,19 @@ void subtract_product(double sign, const View<L>& l, const T* x, std::ptrdiff_t 
       const T a = times(lift<T>(l(i, k)), sign);
       if (a != T(0)) subtract(m, a, x + k * m, to + i * m);
     }
+}
+
+/// to += |L| x, x with m columns, none of them negative
+template <class L>
+void add_sizes(const View<L>& l, const double* x, std::ptrdiff_t m, double* to) {
+  if (m == 1 && l.down == 1) {
+    for (std::ptrdiff_t k = 0; k < l.cols; ++k)
+      for (std::ptrdiff_t i = 0; i < l.rows; ++i) to[i] += size_of(l.data[i + k * l.right]) * x[k];
+    return;
+  }
+  for (std::ptrdiff_t i = 0; i < l.rows; ++i)
+    for (std::ptrdiff_t k = 0; k < l.cols; ++k)
+      if (const double a = size_of(l(i, k)); a != 0) add(m, a, x + k * m, to + i * m);
 }
 
 /// Calls take(view) with the piece's left matrix; `identity` where it is none.
@@ -249,62 +268,77 @@ RowMatrix<T> JointRows<T>::rhs_of_states(const RowMatrix<T>& states, std::span<c
   return result;
 }
 
-/// Calls visit(scalar row, coefficients, scalar unknown, count) for every row and every variable in
-/// it: coefficients of so many unknowns from this one on.
+/// Calls take(scalar row, sign, left, right, variable) for all products sign * left * right *
+/// variable that the rows are sums of: left a view, right a coefficient, or nullptr for 1.
 template <class T>
-template <class Visit>
-void JointRows<T>::visit_entries(Visit visit) const {
+template <class Take>
+void JointRows<T>::by_products(Take take) const {
   const Plan& plan = *joint_.plan;
-  std::vector<int> column;
-  std::vector<T> row;
+  const auto coefficient = [&](int i) { return i < 0 ? nullptr : coefficients_[at(i)].get(); };
   for (int r = 0; r < static_cast<int>(joint_.rows.size()); ++r) {
-    column.clear();
-    int width = 0;
-    for (const int v : plan.structure.row(r)) {
-      column.push_back(width);
-      width += plan.structure.variable_size[at(v)];
-    }
-    const int size = plan.structure.row_size[at(r)];
-    row.assign(at(width) * at(size), T(0));
-    add(r, row.data(), width, column.data());
-    const T* c = row.data();
-    for (int i = 0; i < size; ++i)
-      for (const int v : plan.structure.row(r)) {
-        const int count = plan.structure.variable_size[at(v)];
-        visit(plan.row_first[at(r)] + i, c, plan.first[at(v)], count);
-        c += count;
+    const int row = plan.row_first[at(r)];
+    for (const Piece& p : joint_.row(r)) {
+      if (p.entry >= 0) {
+        const int v = plan.structure.row(r)[at(p.entry)];
+        const RowMatrix<double>* right = coefficient(p.right);
+        with_left(
+            p, m_, coefficients_, 0, [&](const auto& left) { take(row, p.sign, &left, right, v); },
+            [&] { take(row, p.sign, static_cast<const View<double>*>(nullptr), right, v); });
+      } else if (written_out(p) && p.of != Piece::Left::state) {
+        by_inputs(p, [&](const Dense<T>& m, const Meaning& meaning) {
+          const int v = joint_.variable_of[at(meaning.signal)];
+          const auto left = view(m, 0, static_cast<int>(m.rows()), 0, static_cast<int>(m.cols()));
+          if (v >= 0) take(row, 1.0, &left, coefficient(meaning.coefficient), v);
+        });
       }
+    }
   }
 }
 
 template <class T>
 RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const {
+  const Plan& plan = *joint_.plan;
   const std::ptrdiff_t m = rhs.cols();
   RowMatrix<T> result = rhs;
-  visit_entries([&](int row, const T* c, int unknown, int count) {
-    for (int k = 0; k < count; ++k)
-      subtract(m, c[k], unknowns.data() + (unknown + k) * m, result.data() + row * m);
+  std::vector<T> room;
+  by_products([&](int row, double sign, const auto* left, const RowMatrix<double>* right, int v) {
+    const T* x = unknowns.data() + plan.first[at(v)] * m;
+    const std::ptrdiff_t size = right ? right->rows() : plan.structure.variable_size[at(v)];
+    if (right) {
+      room.assign(static_cast<std::size_t>(size * m), T(0));
+      subtract_product(-1, view(*right), x, m, room.data());
+      x = room.data();
+    }
+    T* to = result.data() + row * m;
+    if (left) return subtract_product(sign, *left, x, m, to);
+    for (std::ptrdiff_t i = 0; i < size * m; ++i) to[i] -= times(x[i], sign);
   });
   return result;
 }
 
+/// |left| |right| |x|, not |left * right| |x|: the product rounds as well.
 template <class T>
-Balance<T> JointRows<T>::balance(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const {
+RowMatrix<double> JointRows<T>::magnitudes(const RowMatrix<T>& rhs,
+                                           const RowMatrix<T>& unknowns) const {
+  const Plan& plan = *joint_.plan;
   const std::ptrdiff_t m = rhs.cols();
   const auto sizes = [](const RowMatrix<T>& x) -> RowMatrix<double> {
     return x.unaryExpr([](const T& entry) { return size_of(entry); });
   };
-  Balance<T> result{rhs, sizes(rhs)};
   const RowMatrix<double> size_of_unknowns = sizes(unknowns);
-  visit_entries([&](int row, const T* c, int unknown, int count) {
-    const T* z = unknowns.data() + unknown * m;
-    const double* size = size_of_unknowns.data() + unknown * m;
-    double* const magnitude = result.magnitudes.data() + row * m;
-    for (int k = 0; k < count; ++k, z += m, size += m) {
-      subtract(m, c[k], z, result.residual.data() + row * m);
-      const double own = size_of(c[k]);
-      for (std::ptrdiff_t j = 0; j < m; ++j) magnitude[j] += own * size[j];
+  RowMatrix<double> result = sizes(rhs);
+  std::vector<double> room;
+  by_products([&](int row, double, const auto* left, const RowMatrix<double>* right, int v) {
+    const double* x = size_of_unknowns.data() + plan.first[at(v)] * m;
+    const std::ptrdiff_t size = right ? right->rows() : plan.structure.variable_size[at(v)];
+    if (right) {
+      room.assign(static_cast<std::size_t>(size * m), 0);
+      add_sizes(view(*right), x, m, room.data());
+      x = room.data();
     }
+    double* to = result.data() + row * m;
+    if (left) return add_sizes(*left, x, m, to);
+    for (std::ptrdiff_t i = 0; i < size * m; ++i) to[i] += x[i];
   });
   return result;
 }

@@ -24,13 +24,6 @@ struct Matrices {
   std::vector<const Dense<T>*> states;  ///< X(s); empty for the state space
 };
 
-/// How well some unknowns fulfil the rows.
-template <class T>
-struct Balance {
-  RowMatrix<T> residual;         ///< rhs - rows * unknowns
-  RowMatrix<double> magnitudes;  ///< |rhs| + |rows| |unknowns|
-};
-
 /// The rows of the joint system with numbers.
 template <class T>
 class JointRows : public Rows<T> {
@@ -53,8 +46,8 @@ class JointRows : public Rows<T> {
   /// rhs - (these rows) * unknowns: what is left of every row. O(rows) per column.
   RowMatrix<T> residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
 
-  /// The same, and what it is made of. O(rows) per column.
-  Balance<T> balance(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
+  /// |rhs| + |rows| |unknowns|: what the residual is made of. O(rows) per column.
+  RowMatrix<double> magnitudes(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
 
   /// signal += its meaning in unknowns and known signals; `to`: signal size x columns, row-major.
   void add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
@@ -71,8 +64,8 @@ class JointRows : public Rows<T> {
                       T* to) const;
   template <class Visit>
   void by_inputs(const Piece& p, Visit visit) const;
-  template <class Visit>
-  void visit_entries(Visit visit) const;
+  template <class Take>
+  void by_products(Take take) const;
 
   const Graph& graph_;
   const Joint& joint_;

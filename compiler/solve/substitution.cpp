@@ -16,29 +16,35 @@ struct Forward {
   const Plan& plan;
   std::ptrdiff_t m;  ///< columns
   RowMatrix<T>&z, carried;
-  std::vector<T> assembled = {}, rows = {};
+  std::vector<const T*> assembled = {};  ///< where each row stands
+  std::vector<T> rows = {};
 
   void run(const Front& f, const typename Factors<T>::Made& made, const RowMatrix<T>& rhs) {
     assembled.clear();
-    for (const int r : plan.list(f.rows)) {
-      const T* from = rhs.data() + plan.row_first[at(r)] * m;
-      assembled.insert(assembled.end(), from, from + plan.structure.row_size[at(r)] * m);
-    }
+    const auto take = [&](const T* from, int count) {
+      for (int i = 0; i < count; ++i) assembled.push_back(from + i * m);
+    };
+    for (const int r : plan.list(f.rows))
+      take(rhs.data() + plan.row_first[at(r)] * m, plan.structure.row_size[at(r)]);
     for (const int c : plan.list(f.children)) {
       const Front& child = plan.fronts[at(c)];
-      const T* from = carried.data() + child.first_carried * m;
-      assembled.insert(assembled.end(), from, from + child.left_over() * m);
+      take(carried.data() + child.first_carried * m, child.left_over());
     }
-    rows.resize(assembled.size());
+    rows.resize(assembled.size() * static_cast<std::size_t>(m));
     for (int i = 0; i < f.row_count; ++i)
-      std::copy_n(assembled.data() + made.order[at(i)] * m, m, rows.data() + i * m);
+      copy(1, assembled[at(made.order[at(i)])], rows.data() + i * m);
     const int n = f.columns();
     for (int i = 1; i < f.row_count; ++i)
       subtract_rows(std::min(i, f.pivot_count), made.lu.data() + i * n, rows.data(), m,
                     rows.data() + i * m);
-    std::copy_n(rows.data(), f.pivot_count * m, z.data() + f.first_unknown * m);
-    std::copy_n(rows.data() + f.pivot_count * m, f.left_over() * m,
-                carried.data() + f.first_carried * m);
+    copy(f.pivot_count, rows.data(), z.data() + f.first_unknown * m);
+    copy(f.left_over(), rows.data() + f.pivot_count * m, carried.data() + f.first_carried * m);
+  }
+
+  /// A single column is copied without asking the library for it.
+  void copy(int count, const T* from, T* to) const {
+    if (m != 1) return void(std::copy_n(from, count * m, to));
+    for (int i = 0; i < count; ++i) to[i] = from[i];
   }
 };
 
