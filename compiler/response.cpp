@@ -62,8 +62,9 @@ template <class T>
 Resolvent<T>::Resolvent(const Dynamics& dynamics, const T& s)
     : modal_(dynamics.modal.get()), s_(s) {
   if (modal_) return;
-  lu_ = -Dense<T>(lifted<T>(dynamics.A));
+  lu_ = -lifted<T>(dynamics.A);
   const Index n = lu_.rows();
+  row_.reserve(at(n));
   for (Index i = 0; i < n; ++i) lu_(i, i) += s;
   for (Index k = 0; k < n; ++k) {
     Index best = k;

@@ -15,61 +15,6 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
-namespace detail {
-
-using solve::RowMatrix;
-
-solve::JointRows<double> real_rows(const Skeleton& k, const solve::Numbers& numbers) {
-  solve::Matrices<double> m;
-  for (const auto& block : numbers.blocks) {
-    m.direct.push_back(&block->D);
-    m.output.push_back(&block->C);
-  }
-  return {k.stage.graph, k.joint, numbers.coefficients, std::move(m)};
-}
-
-Rates rates(const SystemData& d, const RowMatrix<double>& known, const RowMatrix<double>& more) {
-  const Graph& g = d.graph();
-  const Layout& l = d.layout();
-  const auto rows = real_rows(*d.skeleton, d.numbers);
-  RowMatrix<double> rhs = rows.rhs(known, l.known_first);
-  if (more.size() > 0) rhs += more;
-  const RowMatrix<double> z = d.factors->solve(rhs);
-  RowMatrix<double> v;
-  const auto value = [&](int signal) -> const RowMatrix<double>& {
-    v.setZero(g.signals[at(signal)].size, known.cols());
-    rows.add_value(signal, z, known, l.known_first, v.data());
-    return v;
-  };
-  Rates r{RowMatrix<double>::Zero(l.order(), known.cols()),
-          RowMatrix<double>::Zero(static_cast<Eigen::Index>(l.outputs.size()), known.cols())};
-  for (const int i : l.state_nodes) {
-    const Node& node = g.nodes[at(i)];
-    const Dynamics& m = *d.numbers.blocks[at(i)];
-    const Eigen::Index first = l.state_first[at(i)] * known.cols(), n = m.A.rows();
-    double* const xdot = r.xdot.data() + first;
-    solve::add_dense_product(n, n, m.A.data(), known.data() + first, known.cols(), xdot);
-    for (int s = node.first_signal; s < node.state; ++s)
-      if (const Signal& in = g.signals[at(s)]; in.role == Signal::Role::input && in.active)
-        solve::add_dense_product(n, in.size, m.B.data() + in.first * n, value(s).data(),
-                                 known.cols(), xdot);
-  }
-  for (std::size_t o = 0; o < g.outputs.size(); ++o)
-    for (std::size_t k = 0; k < g.outputs[o].terms.size(); ++k)
-      r.y.middleRows(l.output_first[o], g.outputs[o].size).noalias() +=
-          *d.numbers.coefficients[at(d.skeleton->joint.output_coefficient[o]) + k] *
-          value(g.outputs[o].terms[k].signal);
-  return r;
-}
-
-}  // namespace detail
-
 int System::order() const { return data_->states.order(); }
 const std::vector<std::string>& System::states() const { return data_->states.names(); }
 const std::vector<std::string>& System::inputs() const { return data_->layout().inputs; }

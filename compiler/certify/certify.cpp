@@ -3,62 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <titop/compiler/certify/residual.hpp>
-#include <titop/compiler/certify/steady_random.hpp>
+#include <titop/compiler/certify/self_check.hpp>
+#include <titop/compiler/system_data.hpp>
 
 namespace titop::detail {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-}  // namespace
-
-std::complex<double> pick_s(const SystemData& d) {
-  double log_sum = 0;
-  int count = 0;
-  for (const int i : d.layout().state_nodes) {
-    const double size = std::sqrt(d.numbers.blocks[at(i)]->A.cwiseAbs().maxCoeff());
-    if (size > 0 && std::isfinite(size)) log_sum += std::log(size), ++count;
-    if (count >= 64) break;
-  }
-  const double w = count ? std::exp(log_sum / count) : 1;
-  return {0.37 * w, 0.93 * w};
-}
-
-namespace {
-
-constexpr double kWarn = 1e-9;         ///< what is worse than this is said in the log
-constexpr double kRealShare = 0.6180;  ///< of |pick_s|: the s of the certificate
-
-/// At one s with one random input: how well the equations hold, and what rounding does to the
-/// outputs. Where double has no digit left the residual is 1.
-void self_check(const SystemData& d, Check& check) try {
-  Certificate& certificate = check.certificate;
-  SteadyRandom random;
-  solve::RowMatrix<double> u(static_cast<Eigen::Index>(d.layout().inputs.size()), 1);
-  for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = random.next();
-  // Real: what holds for every real s holds for every s, at half the arithmetic. Not |pick_s|
-  // itself, where a block by itself may have a pole.
-  const double s = kRealShare * std::abs(pick_s(d));
-  certificate.s = s;
-  if (u.size() == 0) return;  // nothing moves
-  Evaluation<double> point(d, s, u);
-  const WrittenResidual written = written_residual(d, point, s);
-  certificate.residual = written.worst;
-  certificate.residual_where = written.where;
-  const auto losses = point.losses();
-  if (const double lost = std::max(losses.change, losses.rounding); lost > kWarn)
-    check.notes.push_back(
-        {Note::Kind::warning, "certify",
-         fmt::format(
-             "in double the outputs are right to {:.1g} at s = {:.3g}: transfer takes finer "
-             "arithmetic, apply and A, B, C, D have these digits only",
-             lost, s)});
-} catch (const Error& error) {
-  if (!error.has(Code::singular)) throw;
-  check.certificate.residual = 1;
-  check.certificate.residual_where = "in double, not one equation";
-}
 
 constexpr double kFewDigits = 1e-7;  ///< distance from singular at which 9 digits are left
 
@@ -118,7 +69,8 @@ namespace titop {
 
 std::string to_string(const Certificate& c) {
   std::string text;
-  text += fmt::format("equations as written hold to {:.1e} at s = {:.3g}{}\n", c.residual, c.s,
+  text += fmt::format("equations as written hold to {:.1e} {} s = {:.3g}{}\n", c.residual,
+                      c.at_instant ? "with states of their size at" : "at", c.s,
                       c.residual_where.empty() ? "" : " (worst: " + c.residual_where + ")");
   text += c.dense_against_factors < 0
               ? std::string("dense model not written yet\n")

@@ -3,6 +3,7 @@
 #include <limits>
 #include <span>
 #include <titop/compiler/certify/residual.hpp>
+#include <titop/compiler/evaluate.hpp>
 #include <titop/graph/drives.hpp>
 
 namespace titop::detail {
@@ -13,28 +14,6 @@ using Eigen::MatrixXd;
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// All signals at one s.
-class Values {
- public:
-  Values(const SystemData& d, const Evaluation<double>& point) : g_(d.graph()) {
-    for (const Signal& s : g_.signals) first_.push_back(first_.back() + s.size);
-    values_ = point.values(first_);
-  }
-  std::span<const double> of(int signal) const {
-    return {values_.data() + first_[at(signal)], at(first_[at(signal) + 1] - first_[at(signal)])};
-  }
-  /// Computed: active, or external, or at rest because no input moves it.
-  bool known(int signal) const {
-    const Signal& s = g_.signals[at(signal)];
-    return s.active || s.role == Signal::Role::external;
-  }
-
- private:
-  const Graph& g_;
-  std::vector<int> first_ = {0};
-  solve::RowMatrix<double> values_;
-};
 
 double largest_of(std::span<const double> values) {
   double largest = 0;
@@ -89,44 +68,35 @@ struct Balance {
   }
 };
 
-/// Size of a signal's neighbours in its front of the elimination, in the signal's own unit (both by
-/// the scaling of the front's columns): what is 1e-16 of it is what rounding leaves of a 0.
-double size_around(const SystemData& d, const Evaluation<double>& point, int signal) {
-  const solve::Joint& joint = d.skeleton->as_written();  // whose unknowns these are
-  const solve::Plan& plan = *joint.plan;
-  const solve::ColumnScale& scale = *d.scale();
+/// The largest of what the signal stands for.
+double size_around_signal(const SystemData& d, const solve::RowMatrix<double>& unknowns,
+                          int signal) {
+  const solve::Joint& joint = d.skeleton->as_written();
   double result = 0;
-  for (const solve::Meaning& m : joint.meaning(signal)) {
-    const int v = joint.variable_of[at(m.signal)];
-    if (v < 0) continue;
-    const auto front = std::prev(
-        std::upper_bound(plan.fronts.begin(), plan.fronts.end(), plan.first[at(v)],
-                         [](int place, const solve::Front& f) { return place < f.first_unknown; }));
-    double largest = 0;
-    int column = front->first_column, own = 0;
-    for (const auto range : {front->pivots, front->border})
-      for (const int other : plan.list(range)) {
-        if (other == v) own = scale[at(column)];
-        for (int i = 0; i < plan.structure.variable_size[at(other)]; ++i, ++column)
-          largest =
-              std::max(largest, std::ldexp(std::abs(point.unknowns()(plan.first[at(other)] + i)),
-                                           -scale[at(column)]));
-      }
-    result = std::max(result, std::ldexp(largest, own));
-  }
+  for (const solve::Meaning& m : joint.meaning(signal))
+    if (const int v = joint.variable_of[at(m.signal)]; v >= 0)
+      result = std::max(result, size_around(d, unknowns, v));
   return result;
 }
 
 /// The residual of the equations as the user wrote them.
 struct Residual {
   const SystemData& d;
-  const Evaluation<double>& point;
-  const Values& values;
-  double s;
+  const Signals& at_hand;
   const Graph& w = *d.skeleton->stage.source;
   Balance b = {};  ///< of the present equation
   double worst = 0;
   std::string where = {};
+
+  std::span<const double> of(int signal) const {
+    const int first = at_hand.first[at(signal)];
+    return {at_hand.values.data() + first, at(at_hand.first[at(signal) + 1] - first)};
+  }
+  /// Computed: active, or external, or at rest because no input moves it.
+  bool known(int signal) const {
+    const Signal& s = d.graph().signals[at(signal)];
+    return s.active || s.role == Signal::Role::external;
+  }
 
   /// The equation for this signal (-1: states) is complete. `name()` is only asked for where it is
   /// needed. A signal that is 0 but for rounding (a gain of 0, a pinned point) or underflow (far
@@ -140,7 +110,7 @@ struct Residual {
     const double off = b.largest();
     if (off < kUnderflow) return;
     if (r > kSuspicious && off < kInfinity && signal >= 0 &&
-        off <= kRounding * size_around(d, point, signal))
+        off <= kRounding * size_around_signal(d, at_hand.unknowns, signal))
       return;
     worst = r, where = name();
   }
@@ -148,15 +118,15 @@ struct Residual {
 
   /// Subtracts N * (term); N = nullptr: the identity.
   void subtract(const MatrixXd* N, const Term& t, const std::vector<Drive>& drive) {
-    b.known = b.known && values.known(t.signal);
-    const double factor = t.of == Term::Of::position ? -1.0 / (s * s)
-                          : t.of == Term::Of::rate   ? -1.0 / s
+    b.known = b.known && known(t.signal);
+    const double factor = t.of == Term::Of::position ? -1.0 / (at_hand.s * at_hand.s)
+                          : t.of == Term::Of::rate   ? -1.0 / at_hand.s
                                                      : -1.0;
     if (!N && t.factors.empty() && t.of != Term::Of::reaction)
-      return b.add_identity(values.of(t.signal), t.sign * factor);
+      return b.add_identity(of(t.signal), t.sign * factor);
     MatrixXd c = coefficient(w, t, d.numbers.parameters);
     if (N) c = *N * c;
-    b.add(c, values.of(t.signal), factor);
+    b.add(c, of(t.signal), factor);
     if (t.of != Term::Of::reaction) return;
     const int channel = w.signals[at(t.signal)].channel;
     c = -c;
@@ -176,11 +146,11 @@ struct Residual {
   void accel(int channel, int e, const std::vector<Drive>& drive) {
     const Channel& c = w.channels[at(channel)];
     const Equation& q = w.equations[at(e)];
-    b.start(q.part.whole() ? c.size : q.part.rows.rows(), values.known(c.accel));
+    b.start(q.part.whole() ? c.size : q.part.rows.rows(), known(c.accel));
     if (q.part.whole())
-      b.add_identity(values.of(c.accel), 1);
+      b.add_identity(of(c.accel), 1);
     else
-      b.add(q.part.rows, values.of(c.accel), 1);
+      b.add(q.part.rows, of(c.accel), 1);
     for (const Term& t : q.terms) subtract(nullptr, t, drive);
     take(c.accel, [&] { return print(w, q); });
   }
@@ -190,11 +160,11 @@ struct Residual {
     const Drive& own = drive[at(channel)];
     if (own.N.rows() == 0) return;
     const bool whole = own.N.rows() == c.size;  // N is the identity then
-    b.start(own.N.rows(), values.known(c.force));
+    b.start(own.N.rows(), known(c.force));
     if (whole)
-      b.add_identity(values.of(c.force), 1);
+      b.add_identity(of(c.force), 1);
     else
-      b.add(own.N, values.of(c.force), 1);
+      b.add(own.N, of(c.force), 1);
     for (const auto* list : {&own.force, &own.added})
       for (const int e : *list) subtract_force(whole ? nullptr : &own.N, e, drive);
     take(c.force, [&] { return "the forces at " + channel_name(w, channel); });
@@ -210,8 +180,8 @@ struct Residual {
     }
     for (const Equation& q : w.equations) {
       if (w.signals[at(q.target)].channel >= 0) continue;
-      b.start(w.signals[at(q.target)].size, values.known(q.target));
-      b.add_identity(values.of(q.target), 1);
+      b.start(w.signals[at(q.target)].size, known(q.target));
+      b.add_identity(of(q.target), 1);
       for (const Term& t : q.terms) subtract(nullptr, t, drive);
       take(q.target, [&] { return print(w, q); });
     }
@@ -223,16 +193,17 @@ struct Residual {
       const Signal& u = w.signals[at(i)];
       if (u.role != Signal::Role::input) continue;
       const auto c = matrix.block(row, u.first, b.rows(), u.size);
-      b.known = b.known && (values.known(i) || c.isZero(0));
-      b.add(c, values.of(i), -1);
+      b.known = b.known && (known(i) || c.isZero(0));
+      b.add(c, of(i), -1);
     }
   }
 
-  /// s x = A x + B u
-  void states(const Node& node, const Dynamics& m, int end) {
+  /// xdot = A x + B u
+  void states(const Node& node, int index, const Dynamics& m, int end) {
     b.start(m.A.rows(), true);
-    b.add_identity(values.of(node.state), s, true);
-    b.add(m.A, values.of(node.state), -1, true);
+    const double* xdot = at_hand.xdot.data() + d.layout().state_first[at(index)];
+    b.add_identity({xdot, static_cast<std::size_t>(m.A.rows())}, 1, true);
+    b.add(m.A, of(node.state), -1, true);
     subtract_inputs(node, end, m.B, 0);
     take(-1, [&] { return "the states of " + node.name; });
   }
@@ -241,17 +212,17 @@ struct Residual {
   void output(const Node& node, int index, const Dynamics& m, int end, int o) {
     const Signal& y = w.signals[at(o)];
     b.start(y.size, true);
-    b.add_identity(values.of(o), 1);
+    b.add_identity(of(o), 1);
     if (node.state >= 0) {
       const auto C = m.C.middleRows(y.first, y.size);
-      b.known = b.known && (values.known(node.state) || C.isZero(0));
-      b.add(C, values.of(node.state), -1, true);
+      b.known = b.known && (known(node.state) || C.isZero(0));
+      b.add(C, of(node.state), -1, true);
     }
     if (m.sparse.empty()) subtract_inputs(node, end, m.D, y.first);
     for (const Gains& part : m.gains_of_row(y.first)) {
       const int i = input_signal(w, index, part.column);
-      b.known = b.known && values.known(i);
-      b.add(part.gain, values.of(i), -1);
+      b.known = b.known && known(i);
+      b.add(part.gain, of(i), -1);
     }
     take(o, [&] { return name_of(w, o); });
   }
@@ -261,9 +232,10 @@ struct Residual {
       const Node& node = w.nodes[at(index)];
       const Dynamics& m = *d.numbers.blocks[at(index)];
       const int end = end_signal(w, index);
-      if (node.state >= 0 && values.known(node.state)) states(node, m, end);
+      if (node.state >= 0 && known(node.state) && at_hand.xdot.size() > 0)
+        states(node, index, m, end);
       for (int o = node.first_signal; o < end; ++o)
-        if (w.signals[at(o)].role == Signal::Role::output && values.known(o))
+        if (w.signals[at(o)].role == Signal::Role::output && known(o))
           output(node, index, m, end, o);
     }
   }
@@ -271,12 +243,35 @@ struct Residual {
 
 }  // namespace
 
-WrittenResidual written_residual(const SystemData& d, const Evaluation<double>& point, double s) {
-  const Values values(d, point);
-  Residual r{d, point, values, s};
+std::vector<int> first_of_signals(const Graph& graph) {
+  std::vector<int> first = {0};
+  for (const Signal& s : graph.signals) first.push_back(first.back() + s.size);
+  return first;
+}
+
+WrittenResidual written_residual(const SystemData& d, const Signals& signals) {
+  Residual r{d, signals};
   r.equations();
   r.blocks();
   return {r.worst, r.where};
+}
+
+double size_around(const SystemData& d, const solve::RowMatrix<double>& unknowns, int variable) {
+  const solve::Plan& plan = *d.skeleton->as_written().plan;
+  const solve::ColumnScale& scale = *d.scale();
+  const auto front = std::prev(
+      std::upper_bound(plan.fronts.begin(), plan.fronts.end(), plan.first[at(variable)],
+                       [](int place, const solve::Front& f) { return place < f.first_unknown; }));
+  double largest = 0;
+  int column = front->first_column, own = 0;
+  for (const auto range : {front->pivots, front->border})
+    for (const int other : plan.list(range)) {
+      if (other == variable) own = scale[at(column)];
+      for (int i = 0; i < plan.structure.variable_size[at(other)]; ++i, ++column)
+        largest = std::max(
+            largest, std::ldexp(std::abs(unknowns(plan.first[at(other)] + i)), -scale[at(column)]));
+    }
+  return std::ldexp(largest, own);
 }
 
 }  // namespace titop::detail

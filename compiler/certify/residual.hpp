@@ -1,10 +1,22 @@
 #pragma once
 
-#include <titop/compiler/evaluate.hpp>
+#include <titop/compiler/system_data.hpp>
 
 /// How well the equations hold, as the user wrote them and as the blocks state them. For the
 /// compiler's own files only.
 namespace titop::detail {
+
+/// All signals of one input, at one real s or at one instant.
+struct Signals {
+  std::vector<int> first = {};             ///< of every signal in `values`, and the end
+  solve::RowMatrix<double> values = {};    ///< one column
+  solve::RowMatrix<double> unknowns = {};  ///< of the joint system as written
+  solve::RowMatrix<double> xdot = {};      ///< of all blocks' states; none: A x + B u by definition
+  double s = 0;  ///< positions are accelerations over s^2; at an instant there must be none
+};
+
+/// Where signal i begins among all, and the end.
+std::vector<int> first_of_signals(const Graph& graph);
 
 struct WrittenResidual {
   double worst = 0;   ///< Certificate::residual
@@ -12,9 +24,13 @@ struct WrittenResidual {
 };
 
 /// Largest |left - right| over (sum of magnitudes of the terms) of all equations of Stage::source
-/// and all rows of all blocks, with the signals of `point`, which was evaluated at s (real: half
-/// the arithmetic) with one column of inputs. What is 0 but for rounding does not count; what is
-/// not finite counts as 1. O(terms).
-WrittenResidual written_residual(const SystemData& d, const Evaluation<double>& point, double s);
+/// and all rows of all blocks. What is 0 but for rounding does not count; what is not finite counts
+/// as 1. O(terms).
+WrittenResidual written_residual(const SystemData& d, const Signals& signals);
+
+/// Size of an unknown's neighbours in its front of the elimination, in the unknown's own unit (both
+/// by the scaling of the front's columns): what is 1e-16 of it is what rounding leaves of a 0.
+/// Unknowns of the joint system as written. O(front).
+double size_around(const SystemData& d, const solve::RowMatrix<double>& unknowns, int variable);
 
 }  // namespace titop::detail

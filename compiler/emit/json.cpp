@@ -43,6 +43,7 @@ Json certificate(const Certificate& c) {
   return {{"residual", c.residual},
           {"residual_where", c.residual_where},
           {"s", c.s},
+          {"at_instant", c.at_instant},
           {"dense_against_factors", found(c.dense_against_factors)},
           {"dense_error", found(c.dense_error)},
           {"dense_error_s", complex(c.dense_error_s)},

@@ -59,3 +59,44 @@ TEST_CASE("margin and warnings do not depend on the unit of length, 1 nm to 1 Gm
     CHECK(!warns(system));
   }
 }
+
+namespace {
+
+/// y = g (u + y).
+System fed_back(double g) {
+  Diagram d{"fed back"};
+  auto G = d.add("G", Gain{.gain = g});
+  G.in = d.input("u") + G.out;
+  d.output("y") = G.out;
+  return compile(d);
+}
+
+/// A mass on a spring, a force of it by a gain on its own motion.
+template <class Reads>
+System driven(Reads reads) {
+  Diagram d{"driven"};
+  auto z = d.add("z", SpringMass{.mass = 3, .stiffness = 100, .parent_mass = 2});
+  z.parent.accel = 0;
+  z.child.force = d.input("u") - 0.1 * reads(z.child);
+  d.output("a") = z.child.accel;
+  return compile(d);
+}
+
+}  // namespace
+
+TEST_CASE("equations are checked at one instant, at some s where that is not enough") {
+  CHECK(beams(1).certificate().at_instant);
+  const auto accel = [](auto port) { return port.accel; };
+  CHECK(driven(accel).certificate().at_instant);
+  CHECK(driven(accel).certificate().residual <= 1e-15);
+  for (const System& system : {driven([](auto port) { return port.rate; }),
+                               driven([](auto port) { return port.position; })}) {
+    CHECK(!system.certificate().at_instant);
+    CHECK(system.certificate().residual <= 1e-15);
+  }
+  CHECK(fed_back(0.5).certificate().at_instant);
+  CHECK(!warns(fed_back(0.5)));
+  const System close = fed_back(1 - 0x1p-34);  // 6e-11 from singular
+  CHECK(!close.certificate().at_instant);
+  CHECK(warns(close));
+}

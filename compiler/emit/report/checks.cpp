@@ -28,12 +28,12 @@ void add_basic(std::vector<Item>& items, const Certificate& c) {
   items.push_back(
       {"every equation, as it was written", number(c.residual, 2),
        fmt::format(
-           "With a random input at s = {:.3g} rad/s, all signals as the compiled system gives "
-           "them: the "
-           "largest difference of the two sides of an equation or of a block's rows, over "
-           "the sum of the magnitudes of their terms. Rounding alone leaves about 10⁻¹⁶ per "
+           "With a random input {} s = {:.3g} rad/s, all signals as the compiled system gives "
+           "them: the largest difference of the two sides of an equation or of a block's rows, "
+           "over the sum of the magnitudes of their terms. Rounding alone leaves about 10⁻¹⁶ per "
            "term.{}",
-           c.s, c.residual_where.empty() ? "" : " Worst: " + c.residual_where + "."),
+           c.at_instant ? "and states of the size that it gives them at" : "at", c.s,
+           c.residual_where.empty() ? "" : " Worst: " + c.residual_where + "."),
        judged(c.residual, kHolds)});
   if (c.dense_against_factors >= 0)
     items.push_back(

@@ -1,0 +1,101 @@
+#include <titop/compiler/certify/steady_random.hpp>
+#include <titop/compiler/instant.hpp>
+#include <titop/compiler/solve/kernels.hpp>
+#include <titop/compiler/solve/scalar.hpp>
+
+namespace titop::detail {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+using solve::RowMatrix;
+
+}  // namespace
+
+solve::JointRows<double> real_rows(const Skeleton& k, const solve::Numbers& numbers) {
+  solve::Matrices<double> m;
+  m.direct.reserve(numbers.blocks.size());
+  m.output.reserve(numbers.blocks.size());
+  for (const auto& block : numbers.blocks) {
+    m.direct.push_back(&block->D);
+    m.output.push_back(&block->C);
+  }
+  return {k.stage.graph, k.joint, numbers.coefficients, std::move(m)};
+}
+
+Instant::Instant(const SystemData& data, RowMatrix<double> known, const RowMatrix<double>& more)
+    : data_(data),
+      rows_(real_rows(*data.skeleton, data.numbers)),
+      known_(std::move(known)),
+      rhs_(rows_.rhs(known_, data.layout().known_first)) {
+  if (more.size() > 0) rhs_ += more;
+  unknowns_ = data.factors->solve(rhs_);
+}
+
+void Instant::add_value(int signal, const RowMatrix<double>& unknowns,
+                        const RowMatrix<double>& known, double* to) const {
+  rows_.add_value(signal, unknowns, known, data_.layout().known_first, to);
+}
+
+RowMatrix<double> Instant::values(std::span<const int> first) const {
+  const Graph& g = data_.graph();
+  RowMatrix<double> result = RowMatrix<double>::Zero(first.back(), known_.cols());
+  for (int i = 0; i < static_cast<int>(g.signals.size()); ++i)
+    add_value(i, result.data() + first[at(i)] * known_.cols());
+  return result;
+}
+
+RowMatrix<double> Instant::xdot() const {
+  const Graph& g = data_.graph();
+  const Layout& l = data_.layout();
+  RowMatrix<double> result = RowMatrix<double>::Zero(l.order(), known_.cols()), input;
+  for (const int i : l.state_nodes) {
+    const Node& node = g.nodes[at(i)];
+    const Dynamics& m = *data_.numbers.blocks[at(i)];
+    const Eigen::Index first = l.state_first[at(i)] * known_.cols(), n = m.A.rows();
+    double* const xdot = result.data() + first;
+    solve::add_dense_product(n, n, m.A.data(), known_.data() + first, known_.cols(), xdot);
+    for (int s = node.first_signal; s < node.state; ++s)
+      if (const Signal& in = g.signals[at(s)]; in.role == Signal::Role::input && in.active) {
+        input.setZero(in.size, known_.cols());
+        add_value(s, input.data());
+        solve::add_dense_product(n, in.size, m.B.data() + in.first * n, input.data(), known_.cols(),
+                                 xdot);
+      }
+  }
+  return result;
+}
+
+RowMatrix<double> Instant::outputs_of(const RowMatrix<double>& unknowns,
+                                      const RowMatrix<double>& known) const {
+  const Graph& g = data_.graph();
+  const Layout& l = data_.layout();
+  RowMatrix<double> y =
+      RowMatrix<double>::Zero(static_cast<Eigen::Index>(l.outputs.size()), known.cols());
+  RowMatrix<double> value;
+  for (std::size_t o = 0; o < g.outputs.size(); ++o)
+    for (std::size_t k = 0; k < g.outputs[o].terms.size(); ++k) {
+      const int signal = g.outputs[o].terms[k].signal;
+      value.setZero(g.signals[at(signal)].size, known.cols());
+      add_value(signal, unknowns, known, value.data());
+      y.middleRows(l.output_first[o], g.outputs[o].size).noalias() +=
+          *data_.numbers.coefficients[at(data_.skeleton->joint.output_coefficient[o]) + k] * value;
+    }
+  return y;
+}
+
+RowMatrix<double> Instant::doubt() const {
+  RowMatrix<double> off = rows_.residual(rhs_, unknowns_);
+  const RowMatrix<double> magnitudes = rows_.magnitudes(rhs_, unknowns_);
+  SteadyRandom random;
+  for (Eigen::Index i = 0; i < off.size(); ++i)
+    off.data()[i] += random.unit() * solve::Scalar<double>::epsilon() * magnitudes.data()[i];
+  return data_.factors->solve(off);
+}
+
+Rates rates(const SystemData& d, const RowMatrix<double>& known, const RowMatrix<double>& more) {
+  const Instant now(d, known, more);
+  return {now.xdot(), now.outputs()};
+}
+
+}  // namespace titop::detail
