@@ -106,11 +106,10 @@ struct Residual {
     if (!b.known) return;
     const double r = b.relative();
     if (r <= worst) return;
-    constexpr double kRounding = 1e-14;  // some units of the last place of what stands around it
     const double off = b.largest();
     if (off < kUnderflow) return;
     if (r > kSuspicious && off < kInfinity && signal >= 0 &&
-        off <= kRounding * size_around_signal(d, at_hand.unknowns, signal))
+        off <= kLeftOfZero * size_around_signal(d, at_hand.unknowns, signal))
       return;
     worst = r, where = name();
   }

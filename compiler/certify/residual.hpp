@@ -28,9 +28,12 @@ struct WrittenResidual {
 /// as 1. O(terms).
 WrittenResidual written_residual(const SystemData& d, const Signals& signals);
 
+/// What rounding leaves of a 0, beside size_around(): some hundred units of the last place, for it
+/// comes from sums over a front.
+inline constexpr double kLeftOfZero = 1e-13;
+
 /// Size of an unknown's neighbours in its front of the elimination, in the unknown's own unit (both
-/// by the scaling of the front's columns): what is 1e-16 of it is what rounding leaves of a 0.
-/// Unknowns of the joint system as written. O(front).
+/// by the scaling of the front's columns). Unknowns of the joint system as written. O(front).
 double size_around(const SystemData& d, const solve::RowMatrix<double>& unknowns, int variable);
 
 }  // namespace titop::detail

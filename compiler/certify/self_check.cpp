@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <titop/compiler/certify/residual.hpp>
 #include <titop/compiler/certify/self_check.hpp>
 #include <titop/compiler/certify/steady_random.hpp>
@@ -99,13 +98,12 @@ bool is_small(const RowMatrix<double>& change, const RowMatrix<double>& value, E
 
 /// Rounding may cost digits of this unknown, more than it leaves of a 0.
 bool in_doubt(const SystemData& d, const Instant& now, const RowMatrix<double>& change, int v) {
-  constexpr double kRounding = 1e-14;
   const solve::Plan& plan = *d.skeleton->joint.plan;
   const Eigen::Index size = plan.structure.variable_size[at(v)], half = size == 6 ? 3 : size;
   for (Eigen::Index first = plan.first[at(v)], k = 0; k < size; k += half)
     if (!is_small(change, now.unknowns(), first + k, half) &&
         !(change.middleRows(first + k, half).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
-          kRounding * size_around(d, now.unknowns(), v)))
+          kLeftOfZero * size_around(d, now.unknowns(), v)))
       return true;
   return false;
 }
@@ -126,17 +124,21 @@ bool digits_in_doubt(const SystemData& d, const Instant& now) {
   return false;
 }
 
-/// At one instant. Nothing where there is none, or a doubt.
-std::optional<WrittenResidual> check_instant(const SystemData& d, const RowMatrix<double>& u,
-                                             double s) {
-  if (!has_instants(d)) return std::nullopt;
+/// At one instant. False where there is none, or where the equations hold and yet digits may be
+/// lost.
+bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Certificate& c) {
+  if (!has_instants(d)) return false;
   const Instant now(d, known_at_instant(d, u, s));
-  if (!now.unknowns().allFinite() || digits_in_doubt(d, now)) return std::nullopt;
+  if (!now.unknowns().allFinite()) return false;
   Signals signals{first_of_signals(d.graph())};
   signals.values = now.values(signals.first);
   signals.unknowns = now.unknowns();
   const WrittenResidual written = written_residual(d, signals);
-  return written.worst > kWarn ? std::nullopt : std::optional(written);
+  if (written.worst <= kWarn && digits_in_doubt(d, now)) return false;
+  c.residual = written.worst;
+  c.residual_where = written.where;
+  c.at_instant = true;
+  return true;
 }
 
 /// At one real s: what holds for every real s holds for every s, at half the arithmetic.
@@ -169,13 +171,7 @@ void self_check(const SystemData& d, Check& check) try {
   const double s = kRealShare * std::abs(pick_s(d));
   certificate.s = s;
   if (u.size() == 0) return;  // nothing moves
-  if (const auto written = check_instant(d, u, s)) {
-    certificate.residual = written->worst;
-    certificate.residual_where = written->where;
-    certificate.at_instant = true;
-    return;
-  }
-  check_at_s(d, u, s, check);
+  if (!check_instant(d, u, s, certificate)) check_at_s(d, u, s, check);
 } catch (const Error& error) {
   if (!error.has(Code::singular)) throw;
   check.certificate.residual = 1;
