@@ -15,69 +15,76 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-double largest_of(std::span<const double> values) {
-  double largest = 0;
-  for (const double v : values) largest = std::max(largest, std::abs(v));
-  return largest;
-}
+/// Entries of a signal that share a unit: three of a twist or wrench.
+int unit_of(const Signal& s) { return s.size == 6 && s.quantity != Quantity::plain ? 3 : 1; }
 
 /// One equation after the other: left - right, and the sum of magnitudes, row by row.
 struct Balance {
   Eigen::VectorXd difference = {}, magnitude = {};
+  const MatrixXd* part = nullptr;  ///< rows of the target; none: all of it
+  int unit = 1;                    ///< entries of the target that share one; 0: not told apart
   bool known = true;
 
-  void start(Eigen::Index rows, bool is_known) {
+  void start(Eigen::Index rows, int of_target, const MatrixXd* part_of_target = nullptr) {
     difference.setZero(rows);
     magnitude.setZero(rows);
-    known = is_known;
+    unit = of_target;
+    part = part_of_target;
+    known = true;
   }
   Eigen::Index rows() const { return difference.size(); }
+  /// The target's entry that row i is about.
+  Eigen::Index entry(Eigen::Index i) const {
+    if (part) part->row(i).cwiseAbs().maxCoeff(&i);
+    return i;
+  }
 
-  /// factor * c * value. A port signal counts by its largest entry: of a pinned point the
-  /// translation is 0 but for rounding, which its rotation has left there. States count one by one.
+  /// factor * c * value. Entries that share a unit count by the largest of them: what is 0 in some
+  /// frame is rounding in another.
   template <class Matrix>
-  void add(const Matrix& c, std::span<const double> value, double factor, bool by_entry = false) {
-    const double largest = by_entry ? 0 : largest_of(value);
+  void add(const Matrix& c, std::span<const double> value, int shared, double factor) {
     for (Eigen::Index j = 0; j < c.cols(); ++j) {
-      const double x = value[static_cast<std::size_t>(j)];
-      const double size = by_entry ? std::abs(x) : largest;
+      const double x = value[static_cast<std::size_t>(j)], size = largest_with(value, j, shared);
       if (size == 0) continue;
       difference += c.col(j) * (factor * x);
       magnitude += c.col(j).cwiseAbs() * (std::abs(factor) * size);
     }
   }
-  void add_identity(std::span<const double> value, double factor, bool by_entry = false) {
-    const Eigen::Map<const Eigen::VectorXd> x(value.data(), rows());
-    difference += factor * x;
-    if (by_entry)
-      magnitude += std::abs(factor) * x.cwiseAbs();
-    else
-      magnitude.array() += std::abs(factor) * largest_of(value);
+  void add_identity(std::span<const double> value, int shared, double factor) {
+    for (Eigen::Index j = 0; j < rows(); ++j) {
+      difference(j) += factor * value[static_cast<std::size_t>(j)];
+      magnitude(j) += std::abs(factor) * largest_with(value, j, shared);
+    }
   }
+  static double largest_with(std::span<const double> value, Eigen::Index j, int shared) {
+    if (shared == 1) return std::abs(value[static_cast<std::size_t>(j)]);
+    double largest = 0;
+    for (const double x : value.subspan(static_cast<std::size_t>(j / 3 * 3), 3))
+      largest = std::max(largest, std::abs(x));
+    return largest;
+  }
+
   /// Largest difference; infinite where something is not finite.
   double largest() const {
     const double size =
         difference.size() ? difference.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() : 0;
     return std::isfinite(size) ? size : kInfinity;
   }
-  /// 1 where something is not finite.
+  /// Largest share of the rows of one unit; 1 where something is not finite.
   double relative() const {
-    const double off = largest();
-    if (off == kInfinity) return 1;
-    return off > 0 ? off / magnitude.maxCoeff() : 0;
+    if (largest() == kInfinity) return 1;
+    double worst = 0;
+    for (Eigen::Index i = 0, end; i < rows(); i = end) {
+      for (end = i + 1; end < rows() && same_unit(i, end);) ++end;
+      const double off = difference.segment(i, end - i).cwiseAbs().maxCoeff();
+      if (off > 0) worst = std::max(worst, off / magnitude.segment(i, end - i).maxCoeff());
+    }
+    return worst;
+  }
+  bool same_unit(Eigen::Index i, Eigen::Index k) const {
+    return unit == 0 || (unit > 1 && entry(i) / unit == entry(k) / unit);
   }
 };
-
-/// The largest of what the signal stands for.
-double size_around_signal(const SystemData& d, const solve::RowMatrix<double>& unknowns,
-                          int signal) {
-  const solve::Joint& joint = d.skeleton->as_written();
-  double result = 0;
-  for (const solve::Meaning& m : joint.meaning(signal))
-    if (const int v = joint.variable_of[at(m.signal)]; v >= 0)
-      result = std::max(result, size_around(d, unknowns, v));
-  return result;
-}
 
 /// The residual of the equations as the user wrote them.
 struct Residual {
@@ -108,12 +115,30 @@ struct Residual {
     if (r <= worst) return;
     const double off = b.largest();
     if (off < kUnderflow) return;
-    if (r > kSuspicious && off < kInfinity && signal >= 0 &&
-        off <= kLeftOfZero * size_around_signal(d, at_hand.unknowns, signal))
-      return;
+    if (r > kSuspicious && off < kInfinity && signal >= 0 && only_rounding(signal)) return;
     worst = r, where = name();
   }
+  bool only_rounding(int signal) const {
+    for (Eigen::Index i = 0; i < b.rows(); ++i)
+      if (const double off = std::abs(b.difference(i));
+          off > kSuspicious * b.magnitude(i) &&
+          off > kLeftOfZero * size_around_signal(d, at_hand.unknowns, signal, b.entry(i)))
+        return false;
+    return true;
+  }
   static constexpr double kSuspicious = 1e-9;  ///< from here on the log warns: worth a second look
+
+  int unit(int signal) const { return unit_of(w.signals[at(signal)]); }
+
+  /// Begins with these rows of the signal, or with all of it.
+  void start(int signal, const MatrixXd* part) {
+    b.start(part ? part->rows() : w.signals[at(signal)].size, unit(signal), part);
+    b.known = known(signal);
+    if (part)
+      b.add(*part, of(signal), unit(signal), 1);
+    else
+      b.add_identity(of(signal), unit(signal), 1);
+  }
 
   /// Subtracts N * (term); N = nullptr: the identity.
   void subtract(const MatrixXd* N, const Term& t, const std::vector<Drive>& drive) {
@@ -122,10 +147,10 @@ struct Residual {
                           : t.of == Term::Of::rate   ? -1.0 / at_hand.s
                                                      : -1.0;
     if (!N && t.factors.empty() && t.of != Term::Of::reaction)
-      return b.add_identity(of(t.signal), t.sign * factor);
+      return b.add_identity(of(t.signal), unit(t.signal), t.sign * factor);
     MatrixXd c = coefficient(w, t, d.numbers.parameters);
     if (N) c = *N * c;
-    b.add(c, of(t.signal), factor);
+    b.add(c, of(t.signal), unit(t.signal), factor);
     if (t.of != Term::Of::reaction) return;
     const int channel = w.signals[at(t.signal)].channel;
     c = -c;
@@ -145,11 +170,7 @@ struct Residual {
   void accel(int channel, int e, const std::vector<Drive>& drive) {
     const Channel& c = w.channels[at(channel)];
     const Equation& q = w.equations[at(e)];
-    b.start(q.part.whole() ? c.size : q.part.rows.rows(), known(c.accel));
-    if (q.part.whole())
-      b.add_identity(of(c.accel), 1);
-    else
-      b.add(q.part.rows, of(c.accel), 1);
+    start(c.accel, q.part.whole() ? nullptr : &q.part.rows);
     for (const Term& t : q.terms) subtract(nullptr, t, drive);
     take(c.accel, [&] { return print(w, q); });
   }
@@ -159,11 +180,7 @@ struct Residual {
     const Drive& own = drive[at(channel)];
     if (own.N.rows() == 0) return;
     const bool whole = own.N.rows() == c.size;  // N is the identity then
-    b.start(own.N.rows(), known(c.force));
-    if (whole)
-      b.add_identity(of(c.force), 1);
-    else
-      b.add(own.N, of(c.force), 1);
+    start(c.force, whole ? nullptr : &own.N);
     for (const auto* list : {&own.force, &own.added})
       for (const int e : *list) subtract_force(whole ? nullptr : &own.N, e, drive);
     take(c.force, [&] { return "the forces at " + channel_name(w, channel); });
@@ -179,8 +196,7 @@ struct Residual {
     }
     for (const Equation& q : w.equations) {
       if (w.signals[at(q.target)].channel >= 0) continue;
-      b.start(w.signals[at(q.target)].size, known(q.target));
-      b.add_identity(of(q.target), 1);
+      start(q.target, nullptr);
       for (const Term& t : q.terms) subtract(nullptr, t, drive);
       take(q.target, [&] { return print(w, q); });
     }
@@ -193,16 +209,16 @@ struct Residual {
       if (u.role != Signal::Role::input) continue;
       const auto c = matrix.block(row, u.first, b.rows(), u.size);
       b.known = b.known && (known(i) || c.isZero(0));
-      b.add(c, of(i), -1);
+      b.add(c, of(i), unit(i), -1);
     }
   }
 
   /// xdot = A x + B u
   void states(const Node& node, int index, const Dynamics& m, int end) {
-    b.start(m.A.rows(), true);
+    b.start(m.A.rows(), 0);
     const double* xdot = at_hand.xdot.data() + d.layout().state_first[at(index)];
-    b.add_identity({xdot, static_cast<std::size_t>(m.A.rows())}, 1, true);
-    b.add(m.A, of(node.state), -1, true);
+    b.add_identity({xdot, static_cast<std::size_t>(m.A.rows())}, 1, 1);
+    b.add(m.A, of(node.state), 1, -1);
     subtract_inputs(node, end, m.B, 0);
     take(-1, [&] { return "the states of " + node.name; });
   }
@@ -210,18 +226,17 @@ struct Residual {
   /// y = C x + D u
   void output(const Node& node, int index, const Dynamics& m, int end, int o) {
     const Signal& y = w.signals[at(o)];
-    b.start(y.size, true);
-    b.add_identity(of(o), 1);
+    start(o, nullptr);
     if (node.state >= 0) {
       const auto C = m.C.middleRows(y.first, y.size);
       b.known = b.known && (known(node.state) || C.isZero(0));
-      b.add(C, of(node.state), -1, true);
+      b.add(C, of(node.state), 1, -1);
     }
     if (m.sparse.empty()) subtract_inputs(node, end, m.D, y.first);
     for (const Gains& part : m.gains_of_row(y.first)) {
       const int i = input_signal(w, index, part.column);
       b.known = b.known && known(i);
-      b.add(part.gain, of(i), -1);
+      b.add(part.gain, of(i), unit(i), -1);
     }
     take(o, [&] { return name_of(w, o); });
   }
@@ -255,7 +270,8 @@ WrittenResidual written_residual(const SystemData& d, const Signals& signals) {
   return {r.worst, r.where};
 }
 
-double size_around(const SystemData& d, const solve::RowMatrix<double>& unknowns, int variable) {
+double size_around(const SystemData& d, const solve::RowMatrix<double>& unknowns, int variable,
+                   Eigen::Index entry) {
   const solve::Plan& plan = *d.skeleton->as_written().plan;
   const solve::ColumnScale& scale = *d.scale();
   const auto front = std::prev(
@@ -264,13 +280,32 @@ double size_around(const SystemData& d, const solve::RowMatrix<double>& unknowns
   double largest = 0;
   int column = front->first_column, own = 0;
   for (const auto range : {front->pivots, front->border})
-    for (const int other : plan.list(range)) {
-      if (other == variable) own = scale[at(column)];
-      for (int i = 0; i < plan.structure.variable_size[at(other)]; ++i, ++column)
+    for (const int other : plan.list(range))
+      for (int i = 0; i < plan.structure.variable_size[at(other)]; ++i, ++column) {
+        if (other == variable && i == entry) own = scale[at(column)];
         largest = std::max(
             largest, std::ldexp(std::abs(unknowns(plan.first[at(other)] + i)), -scale[at(column)]));
-    }
+      }
   return std::ldexp(largest, own);
+}
+
+double size_around_signal(const SystemData& d, const solve::RowMatrix<double>& unknowns, int signal,
+                          Eigen::Index entry) {
+  const solve::Joint& joint = d.skeleton->as_written();
+  double result = 0;
+  for (const solve::Meaning& m : joint.meaning(signal)) {
+    const int v = joint.variable_of[at(m.signal)];
+    if (v < 0) continue;
+    if (m.coefficient < 0) {
+      result = std::max(result, size_around(d, unknowns, v, entry));
+      continue;
+    }
+    const solve::RowMatrix<double>& c = *d.numbers.coefficients[at(m.coefficient)];
+    for (Eigen::Index j = 0; j < c.cols(); ++j)
+      if (c(entry, j) != 0)
+        result = std::max(result, std::abs(c(entry, j)) * size_around(d, unknowns, v, j));
+  }
+  return result;
 }
 
 }  // namespace titop::detail

@@ -32,8 +32,13 @@ WrittenResidual written_residual(const SystemData& d, const Signals& signals);
 /// comes from sums over a front.
 inline constexpr double kLeftOfZero = 1e-13;
 
-/// Size of an unknown's neighbours in its front of the elimination, in the unknown's own unit (both
-/// by the scaling of the front's columns). Unknowns of the joint system as written. O(front).
-double size_around(const SystemData& d, const solve::RowMatrix<double>& unknowns, int variable);
+/// Size of the neighbours of an entry of an unknown in its front of the elimination, in the entry's
+/// own unit (both by the scaling of the front's columns). Of the joint system as written. O(front).
+double size_around(const SystemData& d, const solve::RowMatrix<double>& unknowns, int variable,
+                   Eigen::Index entry);
+
+/// The same of an entry of a signal that unknowns stand for; 0 of a known one.
+double size_around_signal(const SystemData& d, const solve::RowMatrix<double>& unknowns, int signal,
+                          Eigen::Index entry);
 
 }  // namespace titop::detail

@@ -99,12 +99,43 @@ bool is_small(const RowMatrix<double>& change, const RowMatrix<double>& value, E
 /// Rounding may cost digits of this unknown, more than it leaves of a 0.
 bool in_doubt(const SystemData& d, const Instant& now, const RowMatrix<double>& change, int v) {
   const solve::Plan& plan = *d.skeleton->joint.plan;
-  const Eigen::Index size = plan.structure.variable_size[at(v)], half = size == 6 ? 3 : size;
-  for (Eigen::Index first = plan.first[at(v)], k = 0; k < size; k += half)
-    if (!is_small(change, now.unknowns(), first + k, half) &&
-        !(change.middleRows(first + k, half).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
-          kLeftOfZero * size_around(d, now.unknowns(), v)))
+  const Eigen::Index size = plan.structure.variable_size[at(v)],
+                     unit = plan.structure.variable_unit[at(v)];
+  for (Eigen::Index first = plan.first[at(v)], k = 0; k < size; k += unit)
+    if (!is_small(change, now.unknowns(), first + k, unit) &&
+        !(change.middleRows(first + k, unit).cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <=
+          kLeftOfZero * size_around(d, now.unknowns(), v, k)))
       return true;
+  return false;
+}
+
+/// A row of an output is 0 but for what rounding leaves of its terms.
+bool is_zero(const SystemData& d, const Instant& now, std::size_t output, Eigen::Index row,
+             double value) {
+  const Output& o = d.graph().outputs[output];
+  const int first = d.skeleton->joint.output_coefficient[output];
+  double around = 0;
+  for (std::size_t k = 0; k < o.terms.size(); ++k) {
+    const RowMatrix<double>& c = *d.numbers.coefficients[at(first) + k];
+    for (Eigen::Index j = 0; j < c.cols(); ++j)
+      if (c(row, j) != 0)
+        around += std::abs(c(row, j)) * size_around_signal(d, now.unknowns(), o.terms[k].signal, j);
+  }
+  return std::abs(value) <= kLeftOfZero * around;
+}
+
+bool outputs_in_doubt(const SystemData& d, const Instant& now, const RowMatrix<double>& change) {
+  const RowMatrix<double> none = RowMatrix<double>::Zero(
+      static_cast<Eigen::Index>(d.layout().states.size() + d.layout().inputs.size()), 1);
+  const RowMatrix<double> y = now.outputs(), off = now.outputs_of(change, none);
+  for (std::size_t o = 0; o < d.graph().outputs.size(); ++o) {
+    const Eigen::Index first = d.layout().output_first[o], size = d.graph().outputs[o].size,
+                       unit = size == 6 ? 3 : size;
+    for (Eigen::Index i = 0; i < size; ++i)
+      if (!is_small(off, y, first + i / unit * unit, unit) &&
+          !is_zero(d, now, o, i, y(first + i, 0)))
+        return true;
+  }
   return false;
 }
 
@@ -113,15 +144,7 @@ bool digits_in_doubt(const SystemData& d, const Instant& now) {
   const auto variables = static_cast<int>(d.skeleton->joint.variables.size());
   for (int v = 0; v < variables; ++v)
     if (in_doubt(d, now, change, v)) return true;
-  const RowMatrix<double> none = RowMatrix<double>::Zero(
-      static_cast<Eigen::Index>(d.layout().states.size() + d.layout().inputs.size()), 1);
-  const RowMatrix<double> y = now.outputs(), off = now.outputs_of(change, none);
-  for (std::size_t o = 0; o < d.graph().outputs.size(); ++o) {
-    const Eigen::Index size = d.graph().outputs[o].size, half = size == 6 ? 3 : size;
-    for (Eigen::Index k = 0; k < size; k += half)
-      if (!is_small(off, y, d.layout().output_first[o] + k, half)) return true;
-  }
-  return false;
+  return outputs_in_doubt(d, now, change);
 }
 
 /// At one instant. False where there is none, or where the equations hold and yet digits may be
