@@ -10,12 +10,12 @@ namespace titop {
 struct Certificate {
   /// Largest |left - right| over (sum of magnitudes of the terms) among all equations of the
   /// diagram AS WRITTEN, for one random input, all signals computed by the compiled system: at one
-  /// instant, by the very factors that the model is written from, where every signal follows from
-  /// states and inputs; with positions or rates in the equations, states that follow from others,
-  /// or in doubt about digits, at one real s. Rounding is about 1e-16 times the length of a row.
+  /// instant, by the very factors that the model is written from, or at one real s: with positions
+  /// or rates in the equations, states that follow from others, in a reduced (singular) scene, or
+  /// where digits may be lost. Rounding is about 1e-16 times the length of a row.
   double residual = 0;
   std::string residual_where;  ///< the equation or block that has it
-  /// That real s [rad/s]; at an instant the states are as large as the input makes them there.
+  /// That real s [rad/s]; at an instant the states are about those that single blocks have there.
   double s = 0;
   bool at_instant = false;
   /// Largest relative difference between xdot, y of the dense model and of the factors, for one

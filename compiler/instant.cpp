@@ -27,6 +27,7 @@ Instant::Instant(const SystemData& data, RowMatrix<double> known, const RowMatri
     : data_(data),
       rows_(real_rows(*data.skeleton, data.numbers)),
       known_(std::move(known)),
+      none_(RowMatrix<double>::Zero(known_.rows(), known_.cols())),
       rhs_(rows_.rhs(known_, data.layout().known_first)) {
   if (more.size() > 0) rhs_ += more;
   unknowns_ = data.factors->solve(rhs_);

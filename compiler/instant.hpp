@@ -29,22 +29,28 @@ class Instant {
   /// The diagram's outputs.
   solve::RowMatrix<double> outputs() const { return outputs_of(unknowns_, known_); }
 
-  /// What the outputs are for these unknowns and known signals.
-  solve::RowMatrix<double> outputs_of(const solve::RowMatrix<double>& unknowns,
-                                      const solve::RowMatrix<double>& known) const;
-
   /// How far the unknowns are off, about: their change if every equation is off by what it does not
   /// hold to, and by about one unit of the last place of its terms, up or down in a fixed random
   /// order.
   solve::RowMatrix<double> doubt() const;
+  /// What such a change of the unknowns does: to += that of the signal; that of all outputs.
+  void add_change(int signal, const solve::RowMatrix<double>& change, double* to) const {
+    add_value(signal, change, none_, to);
+  }
+  solve::RowMatrix<double> change_of_outputs(const solve::RowMatrix<double>& change) const {
+    return outputs_of(change, none_);
+  }
 
  private:
+  solve::RowMatrix<double> outputs_of(const solve::RowMatrix<double>& unknowns,
+                                      const solve::RowMatrix<double>& known) const;
   void add_value(int signal, const solve::RowMatrix<double>& unknowns,
                  const solve::RowMatrix<double>& known, double* to) const;
 
   const SystemData& data_;
   solve::JointRows<double> rows_;
-  solve::RowMatrix<double> known_, rhs_, unknowns_;
+  solve::RowMatrix<double> known_, none_;  ///< none_: 0 in place of known_
+  solve::RowMatrix<double> rhs_, unknowns_;
 };
 
 }  // namespace titop::detail

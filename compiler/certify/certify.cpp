@@ -70,7 +70,7 @@ namespace titop {
 std::string to_string(const Certificate& c) {
   std::string text;
   text += fmt::format("equations as written hold to {:.1e} {} s = {:.3g}{}\n", c.residual,
-                      c.at_instant ? "with states of their size at" : "at", c.s,
+                      c.at_instant ? "at an instant, states as of single blocks at" : "at", c.s,
                       c.residual_where.empty() ? "" : " (worst: " + c.residual_where + ")");
   text += c.dense_against_factors < 0
               ? std::string("dense model not written yet\n")

@@ -45,7 +45,7 @@ struct Balance {
   void add(const Matrix& c, std::span<const double> value, int shared, double factor) {
     for (Eigen::Index j = 0; j < c.cols(); ++j) {
       const double x = value[static_cast<std::size_t>(j)], size = largest_with(value, j, shared);
-      if (size == 0) continue;
+      if (size == 0 && x == 0) continue;  // not a number is neither
       difference += c.col(j) * (factor * x);
       magnitude += c.col(j).cwiseAbs() * (std::abs(factor) * size);
     }

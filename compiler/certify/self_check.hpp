@@ -7,13 +7,16 @@ namespace titop::detail {
 constexpr double kWarn = 1e-9;  ///< what is worse than this is said in the log
 
 /// How well the equations as written hold for one random input, and what rounding does to the
-/// outputs: Certificate::residual, residual_where, s, and a note where digits are lost. O(bodies).
+/// outputs: Certificate::residual, residual_where, at_instant, s, and a note where digits are lost.
+/// O(bodies), and an LU of every different block without modes.
 ///
-/// Where every signal follows from states and inputs, at one instant and by the factors themselves:
-/// the states are what each block, moved by itself at s, would make of what the input alone moves
-/// at once, so that no term of an equation hides behind another. With positions or rates in the
-/// equations, dependent states or a reduced scene, and wherever that instant leaves a doubt, at one
-/// real s: the signals are then functions of the input alone, but a second elimination is needed.
+/// At one instant, by the factors themselves: the states are what each block, moved by itself at s,
+/// would make of what the input alone moves at once; what rests then (behind what is strictly
+/// proper) is moved by random inputs of size 1 first. Terms of an equation are then of like size
+/// unless the diagram's own numbers are not. Beside it each block's own formula for s, which
+/// transfers are made of, against its A, B, C, D. With positions or rates in the equations, states
+/// that follow from others or a reduced scene, and where digits may be lost, at one real s: all is
+/// then a function of the input alone, but a second elimination is needed.
 void self_check(const SystemData& data, Check& check);
 
 }  // namespace titop::detail

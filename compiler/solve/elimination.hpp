@@ -53,8 +53,9 @@ struct Patch {
 template <class T>
 using RowMatrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Powers of two that give the columns of each front the same size: found once from real numbers,
-/// they serve every s and every new value, because they answer for units, not for values.
+/// Powers of two that give the columns of each front the same size, one for all that share a unit:
+/// found once from real numbers, they serve every s and every new value, because they answer for
+/// units more than for values.
 /// Front after front (Front::first_column), within -1000 ... 1000.
 using ColumnScale = std::vector<std::int16_t>;
 

@@ -118,6 +118,7 @@ TEST_CASE("star: accelerations of slender booms, mounted obliquely, follow the h
     titop_test::Rng rng(seed);
     const Eigen::VectorXd x = 1e-3 * rng.matrix(system.order(), 1), u = rng.matrix(6, 1);
     const Eigen::VectorXd y = system.apply(x, u).y;
+    REQUIRE(y.allFinite());
     double worst = 0;
     for (int i = 0; i < n; ++i)
       worst = std::max(worst, y.segment<6>(12 * i + 6).lpNorm<Eigen::Infinity>() /

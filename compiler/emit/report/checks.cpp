@@ -32,7 +32,7 @@ void add_basic(std::vector<Item>& items, const Certificate& c) {
            "them: the largest difference of the two sides of an equation or of a block's rows, "
            "over the sum of the magnitudes of their terms. Rounding alone leaves about 10⁻¹⁶ per "
            "term.{}",
-           c.at_instant ? "and states of the size that it gives them at" : "at", c.s,
+           c.at_instant ? "and states as single blocks would have at" : "at", c.s,
            c.residual_where.empty() ? "" : " Worst: " + c.residual_where + "."),
        judged(c.residual, kHolds)});
   if (c.dense_against_factors >= 0)

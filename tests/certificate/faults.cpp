@@ -1,0 +1,111 @@
+#include <doctest/doctest.h>
+
+#include <titop/compiler/certify/residual.hpp>
+#include <titop/compiler/compile_graph.hpp>
+#include <titop/compiler/instant.hpp>
+#include <titop/titop.hpp>
+
+#include "support/rng.hpp"
+
+/// What the default certificate must find: signals that break an equation, a block that says one
+/// thing in A, B, C, D and another at s.
+
+using namespace titop;
+
+namespace {
+
+/// 1 / (s + 1) by its matrices; at s with this sign.
+class Lag : public Block {
+ public:
+  explicit Lag(double sign) : sign_(sign) {
+    face_.inputs = {{"in", 1}};
+    face_.outputs = {{"out", 1, Quantity::plain}};
+    face_.states = {"x"};
+    matrices_->A = -Eigen::MatrixXd::Identity(1, 1);
+    matrices_->B = matrices_->C = Eigen::MatrixXd::Identity(1, 1);
+    matrices_->D = Eigen::MatrixXd::Zero(1, 1);
+  }
+  std::string_view type() const override { return "Lag"; }
+  const Interface& interface() const override { return face_; }
+  std::shared_ptr<const Dynamics> dynamics(ParameterValues) const override { return matrices_; }
+  Response response(std::complex<double> s, ParameterValues) const override {
+    const Eigen::MatrixXcd one = Eigen::MatrixXcd::Identity(1, 1);
+    return {one / (s + 1.0), sign_ * one / (s + 1.0)};
+  }
+
+ private:
+  double sign_;
+  Interface face_;
+  std::shared_ptr<Dynamics> matrices_ = std::make_shared<Dynamics>();
+};
+
+struct LagSpec {
+  double sign = 1;
+  using Handle = Lti::Handle;
+};
+BlockPtr as_block(const LagSpec& spec) { return std::make_shared<Lag>(spec.sign); }
+
+System lag(double sign) {
+  Diagram d{"lag"};
+  auto block = d.add("L", LagSpec{sign});
+  block.in = d.input("u");
+  d.output("y") = block.out;
+  return compile(d);
+}
+
+/// A hub, a boom on it, a spring-mass on the boom and a filter of what it feels.
+Diagram satellite() {
+  Diagram d{"satellite"};
+  auto hub = d.add("hub", RigidBody{.mass = 50,
+                                    .inertia = Eigen::Vector3d(9, 8, 7).asDiagonal(),
+                                    .children = {{"C", {1, 0, 0.5}}}});
+  auto boom = d.add("boom", FlexibleBody{Beam{.length = 3,
+                                              .section = rectangle(0.06, 0.04),
+                                              .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
+                                              .elements = 3,
+                                              .modes = {.kept = 4, .xi = {0.01}}}});
+  auto z = d.add("z", SpringMass{.mass = 2, .stiffness = 300, .damping = 1, .parent_mass = 0.5});
+  auto f = d.add("f", Lti{.A = Eigen::MatrixXd::Constant(1, 1, -4),
+                          .B = Eigen::MatrixXd::Constant(1, 1, 2),
+                          .C = Eigen::MatrixXd::Constant(1, 1, 3),
+                          .D = Eigen::MatrixXd::Constant(1, 1, 0.5)});
+  hub.parent.force = -d.input("U", 6);
+  mount(boom, hub.child("C"), Rotation::about({1, 2, 3}, 0.7));
+  mount(z, boom.child.along({0, 0.6, 0.8}));
+  f.in = z.child.accel;
+  z.child.force = f.out;
+  d.output("a", 6) = boom.child.accel;
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("a block whose response at s is not that of its matrices is named") {
+  CHECK(lag(1).certificate().residual <= 1e-15);
+  const Certificate c = lag(-1).certificate();
+  CHECK(c.residual >= 0.1);
+  CHECK(c.residual_where == "the response of L");
+}
+
+TEST_CASE("a signal that is off by a millionth breaks an equation") {
+  const auto data = detail::compile_graph(satellite().graph(), {});
+  titop_test::Rng rng(3);
+  const auto& l = data->layout();
+  const detail::Instant now(
+      *data, rng.matrix(static_cast<Eigen::Index>(l.states.size() + l.inputs.size()), 1));
+  detail::Signals right{detail::first_of_signals(data->graph())};
+  right.values = now.values(right.first);
+  right.unknowns = now.unknowns();
+  CHECK(detail::written_residual(*data, right).worst <= 1e-12);
+  int tried = 0;
+  for (std::size_t i = 0; i < data->graph().signals.size(); ++i) {
+    const Signal& s = data->graph().signals[i];
+    if (!s.active || s.role == Signal::Role::state) continue;
+    detail::Signals off = right;
+    for (int k = right.first[i]; k < right.first[i + 1]; ++k) off.values(k, 0) *= 1 + 1e-6;
+    CAPTURE(name_of(data->graph(), static_cast<int>(i)));
+    CHECK(detail::written_residual(*data, off).worst >= 1e-8);
+    ++tried;
+  }
+  CHECK(tried >= 12);
+}
