@@ -112,7 +112,7 @@ Diagram oblique(std::uint64_t seed, int n) {
 // cross axes. Taken for a pivot it costs digits of the boom's acceleration; with the hub's columns
 // scaled one by one, entries that are nearly 0 in such a turn made it look as good as the mount.
 TEST_CASE("star: accelerations of slender booms, mounted obliquely, follow the hub's") {
-  for (const std::uint64_t seed : {4, 5, 7, 11}) {
+  for (const std::uint64_t seed : {4U, 5U, 7U, 11U}) {
     const int n = 100;
     const System system = compile(oblique(seed, n), {.minimize_up_to = 0});
     titop_test::Rng rng(seed);
