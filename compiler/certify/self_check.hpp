@@ -13,10 +13,11 @@ constexpr double kWarn = 1e-9;  ///< what is worse than this is said in the log
 /// At one instant, by the factors themselves: the states are what each block, moved by itself at s,
 /// would make of what the input alone moves at once; what rests then (behind what is strictly
 /// proper) is moved by random inputs of size 1 first. Terms of an equation are then of like size
-/// unless the diagram's own numbers are not. Beside it each block's own formula for s, which
-/// transfers are made of, against its A, B, C, D. With positions or rates in the equations, states
-/// that follow from others or a reduced scene, and where digits may be lost, at one real s: all is
-/// then a function of the input alone, but a second elimination is needed.
+/// unless the diagram's own numbers are not. Beside it the blocks' own formula for s, which
+/// transfers are made of, against A, B, C, D, for the first eight of each type. With positions or
+/// rates in the equations, states that follow from others or a reduced scene, and where digits may
+/// be lost, at one real s: all is then a function of the input alone, but a second elimination is
+/// needed.
 void self_check(const SystemData& data, Check& check);
 
 }  // namespace titop::detail
