@@ -27,15 +27,13 @@ Instant::Instant(const SystemData& data, RowMatrix<double> known, const RowMatri
     : data_(data),
       rows_(real_rows(*data.skeleton, data.numbers)),
       known_(std::move(known)),
-      none_(RowMatrix<double>::Zero(known_.rows(), known_.cols())),
       rhs_(rows_.rhs(known_, data.layout().known_first)) {
   if (more.size() > 0) rhs_ += more;
   unknowns_ = data.factors->solve(rhs_);
 }
 
-void Instant::add_value(int signal, const RowMatrix<double>& unknowns,
-                        const RowMatrix<double>& known, double* to) const {
-  rows_.add_value(signal, unknowns, known, data_.layout().known_first, to);
+void Instant::add_value(int signal, double* to) const {
+  rows_.add_value(signal, unknowns_, known_, data_.layout().known_first, to);
 }
 
 RowMatrix<double> Instant::values(std::span<const int> first) const {
@@ -67,31 +65,34 @@ RowMatrix<double> Instant::xdot() const {
   return result;
 }
 
-RowMatrix<double> Instant::outputs_of(const RowMatrix<double>& unknowns,
-                                      const RowMatrix<double>& known) const {
+RowMatrix<double> Instant::outputs() const {
   const Graph& g = data_.graph();
   const Layout& l = data_.layout();
   RowMatrix<double> y =
-      RowMatrix<double>::Zero(static_cast<Eigen::Index>(l.outputs.size()), known.cols());
+      RowMatrix<double>::Zero(static_cast<Eigen::Index>(l.outputs.size()), known_.cols());
   RowMatrix<double> value;
   for (std::size_t o = 0; o < g.outputs.size(); ++o)
     for (std::size_t k = 0; k < g.outputs[o].terms.size(); ++k) {
       const int signal = g.outputs[o].terms[k].signal;
-      value.setZero(g.signals[at(signal)].size, known.cols());
-      add_value(signal, unknowns, known, value.data());
+      value.setZero(g.signals[at(signal)].size, known_.cols());
+      add_value(signal, value.data());
       y.middleRows(l.output_first[o], g.outputs[o].size).noalias() +=
           *data_.numbers.coefficients[at(data_.skeleton->joint.output_coefficient[o]) + k] * value;
     }
   return y;
 }
 
-RowMatrix<double> Instant::doubt() const {
+Instant Instant::doubt() const {
   RowMatrix<double> off = rows_.residual(rhs_, unknowns_);
   const RowMatrix<double> magnitudes = rows_.magnitudes(rhs_, unknowns_);
   SteadyRandom random;
   for (Eigen::Index i = 0; i < off.size(); ++i)
     off.data()[i] += random.unit() * solve::Scalar<double>::epsilon() * magnitudes.data()[i];
-  return data_.factors->solve(off);
+  Instant result(*this);
+  result.known_.setZero();
+  result.unknowns_ = data_.factors->solve(off);
+  result.rhs_ = std::move(off);
+  return result;
 }
 
 Rates rates(const SystemData& d, const RowMatrix<double>& known, const RowMatrix<double>& more) {

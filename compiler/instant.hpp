@@ -18,7 +18,7 @@ class Instant {
   const solve::RowMatrix<double>& unknowns() const { return unknowns_; }
 
   /// to += the signal, size x columns, row-major.
-  void add_value(int signal, double* to) const { add_value(signal, unknowns_, known_, to); }
+  void add_value(int signal, double* to) const;
 
   /// All signals, one below the other: signal i from row first[i] on; first[signals] is the end.
   solve::RowMatrix<double> values(std::span<const int> first) const;
@@ -27,30 +27,17 @@ class Instant {
   solve::RowMatrix<double> xdot() const;
 
   /// The diagram's outputs.
-  solve::RowMatrix<double> outputs() const { return outputs_of(unknowns_, known_); }
+  solve::RowMatrix<double> outputs() const;
 
-  /// How far the unknowns are off, about: their change if every equation is off by what it does not
-  /// hold to, and by about one unit of the last place of its terms, up or down in a fixed random
-  /// order.
-  solve::RowMatrix<double> doubt() const;
-  /// What such a change of the unknowns does: to += that of the signal; that of all outputs.
-  void add_change(int signal, const solve::RowMatrix<double>& change, double* to) const {
-    add_value(signal, change, none_, to);
-  }
-  solve::RowMatrix<double> change_of_outputs(const solve::RowMatrix<double>& change) const {
-    return outputs_of(change, none_);
-  }
+  /// How far all signals are off, about, as an instant of its own (known signals 0): what it takes
+  /// if every equation is off by what it does not hold to, and by about one unit of the last place
+  /// of its terms, up or down in a fixed random order. One more solution.
+  Instant doubt() const;
 
  private:
-  solve::RowMatrix<double> outputs_of(const solve::RowMatrix<double>& unknowns,
-                                      const solve::RowMatrix<double>& known) const;
-  void add_value(int signal, const solve::RowMatrix<double>& unknowns,
-                 const solve::RowMatrix<double>& known, double* to) const;
-
   const SystemData& data_;
   solve::JointRows<double> rows_;
-  solve::RowMatrix<double> known_, none_;  ///< none_: 0 in place of known_
-  solve::RowMatrix<double> rhs_, unknowns_;
+  solve::RowMatrix<double> known_, rhs_, unknowns_;
 };
 
 }  // namespace titop::detail

@@ -59,7 +59,8 @@ struct Balance {
   static double largest_with(std::span<const double> value, Eigen::Index j, int shared) {
     if (shared == 1) return std::abs(value[static_cast<std::size_t>(j)]);
     double largest = 0;
-    for (const double x : value.subspan(static_cast<std::size_t>(j / 3 * 3), 3))
+    for (const double x :
+         value.subspan(at(static_cast<int>(j)) / at(shared) * at(shared), at(shared)))
       largest = std::max(largest, std::abs(x));
     return largest;
   }
@@ -115,18 +116,17 @@ struct Residual {
     if (r <= worst) return;
     const double off = b.largest();
     if (off < kUnderflow) return;
-    if (r > kSuspicious && off < kInfinity && signal >= 0 && only_rounding(signal)) return;
+    if (r > kWarn && off < kInfinity && signal >= 0 && only_rounding(signal)) return;
     worst = r, where = name();
   }
   bool only_rounding(int signal) const {
     for (Eigen::Index i = 0; i < b.rows(); ++i)
       if (const double off = std::abs(b.difference(i));
-          off > kSuspicious * b.magnitude(i) &&
+          off > kWarn * b.magnitude(i) &&
           off > kLeftOfZero * size_around_signal(d, at_hand.unknowns, signal, b.entry(i)))
         return false;
     return true;
   }
-  static constexpr double kSuspicious = 1e-9;  ///< from here on the log warns: worth a second look
 
   int unit(int signal) const { return unit_of(w.signals[at(signal)]); }
 

@@ -6,6 +6,8 @@
 /// compiler's own files only.
 namespace titop::detail {
 
+inline constexpr double kWarn = 1e-9;  ///< what is worse than this is said in the log
+
 /// All signals of one input, at one real s or at one instant.
 struct Signals {
   std::vector<int> first = {};             ///< of every signal in `values`, and the end

@@ -70,21 +70,18 @@ class Resolvents {
       const Dynamics& m = *d.numbers.blocks[at(i)];
       const auto [found, added] = made_.try_emplace({d.graph().nodes[at(i)].block.get(), &m}, m, s);
       of_node_.push_back(&found->second);
-      if (added) first_.push_back(i);
+      if (added) first_.push_back(of_node_.size() - 1);
     }
   }
   /// Of the k-th node with states.
   const Resolvent<double>& operator[](std::size_t k) const { return *of_node_[k]; }
-  /// One node of each.
-  const std::vector<int>& nodes() const { return first_; }
-  const Resolvent<double>& of(const SystemData& d, int node) const {
-    return made_.at({d.graph().nodes[at(node)].block.get(), d.numbers.blocks[at(node)].get()});
-  }
+  /// The first k of each.
+  const std::vector<std::size_t>& different() const { return first_; }
 
  private:
   std::map<std::pair<const Block*, const Dynamics*>, Resolvent<double>> made_;
   std::vector<const Resolvent<double>*> of_node_;
-  std::vector<int> first_;
+  std::vector<std::size_t> first_;
 };
 
 /// Largest |value| over `magnitude`, row by row; 1 where it is not finite.
@@ -103,14 +100,15 @@ WrittenResidual check_responses(const SystemData& d, const Resolvents& resolvent
   WrittenResidual result;
   SteadyRandom random;
   std::map<std::string_view, int> seen;
-  for (const int i : resolvents.nodes()) {
+  for (const std::size_t k : resolvents.different()) {
+    const int i = d.layout().state_nodes[k];
     const Node& node = d.graph().nodes[at(i)];
     if (++seen[node.block->type()] > kOfEachType) continue;
     const Dynamics& m = *d.numbers.blocks[at(i)];
     const auto r = response<double>(*node.block, m, s, d.numbers.parameters);
     Eigen::VectorXd u(m.B.cols());
     for (double& v : u) v = random.next();
-    const Eigen::VectorXd x = resolvents.of(d, i).times(m.B * u), size = u.cwiseAbs();
+    const Eigen::VectorXd x = resolvents[k].times(m.B * u), size = u.cwiseAbs();
     double worst = relative(r.X * u - x, r.X.cwiseAbs() * size + x.cwiseAbs());
     if (m.sparse.empty())
       worst = std::max(worst, relative(r.Y * u - (m.C * x + m.D * u),
@@ -175,7 +173,7 @@ bool any_lost(std::span<const double> value, std::span<const double> off, Around
 /// Digits may be lost of what moves a state or of an output.
 bool digits_in_doubt(const SystemData& d, const Instant& now) {
   const Graph& g = d.graph();
-  const RowMatrix<double> change = now.doubt();
+  const Instant change = now.doubt();
   const auto around = [&](int signal, Eigen::Index entry) {
     return size_around_signal(d, now.unknowns(), signal, entry);
   };
@@ -187,10 +185,10 @@ bool digits_in_doubt(const SystemData& d, const Instant& now) {
       value.assign(at(in.size), 0);
       off.assign(at(in.size), 0);
       now.add_value(k, value.data());
-      now.add_change(k, change, off.data());
+      change.add_value(k, off.data());
       if (any_lost(value, off, [&](Eigen::Index e) { return around(k, e); })) return true;
     }
-  const RowMatrix<double> y = now.outputs(), off_y = now.change_of_outputs(change);
+  const RowMatrix<double> y = now.outputs(), off_y = change.outputs();
   for (std::size_t o = 0; o < g.outputs.size(); ++o) {
     const auto around_output = [&](Eigen::Index row) {
       double sum = 0;

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <titop/compiler/system_data.hpp>
+#include <titop/compiler/certify/residual.hpp>
 
 namespace titop::detail {
-
-constexpr double kWarn = 1e-9;  ///< what is worse than this is said in the log
 
 /// How well the equations as written hold for one random input, and what rounding does to the
 /// outputs: Certificate::residual, residual_where, at_instant, s, and a note where digits are lost.
