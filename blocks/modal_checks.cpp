@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
 #include <titop/blocks/modal_checks.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop {

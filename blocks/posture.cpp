@@ -1,13 +1,12 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <numbers>
 #include <random>
 #include <titop/blocks/posture.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop {
 namespace {

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <titop/graph/invert.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <utility>
 
 namespace titop {

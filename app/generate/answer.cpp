@@ -1,8 +1,8 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <boost/multiprecision/eigen.hpp>
 #include <complex>
 #include <random>
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "generate/assembly.hpp"
 #include "generate/generate.hpp"

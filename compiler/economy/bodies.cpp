@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -8,6 +7,7 @@
 #include <titop/compiler/economy/bodies.hpp>
 #include <titop/compiler/economy/remove_signals.hpp>
 #include <titop/compiler/economy/small.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/modal_form.hpp>
 
 namespace titop::detail {

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <titop/compiler/economy/real_modes.hpp>
 #include <titop/compiler/economy/reduced_data.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 /// The forms that a reduced system can be had in.
 namespace titop {

@@ -1,9 +1,7 @@
-#include <Eigen/LU>
-#include <Eigen/QR>
-#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <titop/compiler/economy/gramians.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/schur.hpp>
 
 namespace titop::detail {
@@ -89,7 +87,8 @@ Cut cut(const Balancing& b, Index r, bool truncated) {
   c.D = MatrixXd::Zero(b.C.rows(), b.B.cols());
   if (truncated || rest == 0) return c;
   const Eigen::PartialPivLU<MatrixXd> lu(b.A.bottomRightCorner(rest, rest));
-  const MatrixXd x = lu.solve(b.A.bottomLeftCorner(rest, r)), u = lu.solve(b.B.bottomRows(rest));
+  const MatrixXd x = lu.solve(MatrixXd(b.A.bottomLeftCorner(rest, r))),
+                 u = lu.solve(MatrixXd(b.B.bottomRows(rest)));
   c.part.A -= b.A.topRightCorner(r, rest) * x;
   c.part.B -= b.A.topRightCorner(r, rest) * u;
   c.part.C -= b.C.rightCols(rest) * x;

@@ -1,8 +1,8 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/economy/small.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <utility>
 
 namespace titop::detail {
@@ -22,7 +22,7 @@ MatrixXcd solve(const Small& m, Complex s, const MatrixXcd& f) {
   if (rest > 0) {
     MatrixXcd S = s * m.Z.bottomRightCorner(rest, rest).cast<Complex>();
     S.diagonal().array() += s * s + m.k.tail(rest).array();
-    x.bottomRows(rest) = S.partialPivLu().solve(f.bottomRows(rest)).eval();
+    x.bottomRows(rest) = S.partialPivLu().solve(MatrixXcd(f.bottomRows(rest)));
   }
   return x;
 }

@@ -1,12 +1,11 @@
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <titop/compiler/economy/split.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/schur.hpp>
 
 namespace titop::detail {
@@ -243,7 +242,7 @@ MatrixXcd solve(const Part& p, Complex s) {
   if (p.order() == 0) return MatrixXcd(0, p.B.cols());
   MatrixXcd S = -p.A.cast<Complex>();
   S.diagonal().array() += s;
-  return S.partialPivLu().solve(p.B.cast<Complex>());
+  return S.partialPivLu().solve(MatrixXcd(p.B.cast<Complex>()));
 }
 
 }  // namespace

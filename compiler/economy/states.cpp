@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -10,6 +8,7 @@
 #include <titop/compiler/economy/small.hpp>
 #include <titop/compiler/economy/states.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop::detail {
 namespace {
@@ -118,7 +117,7 @@ MatrixXcd transfer(const Part& p, Complex s) {
     throw Error(Code::singular,
                 fmt::format("the reduced system has a pole at s = {}{:+}j", s.real(), s.imag()),
                 "evaluate beside the pole");
-  return p.C * lu.solve(p.B.cast<Complex>());
+  return p.C * MatrixXcd(lu.solve(MatrixXcd(p.B.cast<Complex>())));
 }
 
 Index States::order() const {

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <titop/compiler/economy/whole.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop::detail {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/SVD>
+#include <Eigen/Core>
 #include <limits>
 #include <titop/compiler/minimize/modes.hpp>
 
@@ -23,35 +23,12 @@ Matrix unit_columns(Matrix m) {
 
 /// Turns k modes of one frequency among themselves: first those that no input moves go to the end,
 /// then, among the others, those that no output sees. b: k x inputs, c: k x outputs, each column of
-/// weight one. Returns the k x k unitary matrix whose columns are the new modes.
-template <class Matrix>
-Matrix turn(const Matrix& b, const Matrix& c) {
-  const Eigen::Index k = b.rows();
-  Matrix result = Matrix::Identity(k, k);
-  Eigen::Index reached = k;
-  if (b.cols() > 0) {
-    const Eigen::JacobiSVD<Matrix> svd(b, Eigen::ComputeFullU);
-    result = svd.matrixU();
-    const Eigen::VectorXd sigma = svd.singularValues();
-    reached = 0;
-    while (reached < sigma.size() && sigma(reached) > kNoPart * sigma(0)) ++reached;
-  }
-  if (c.cols() > 0 && reached > 1) {
-    const Matrix seen = result.leftCols(reached).adjoint() * c;
-    const Eigen::JacobiSVD<Matrix> svd(seen, Eigen::ComputeFullU);
-    result.leftCols(reached) = (result.leftCols(reached) * svd.matrixU()).eval();
-  }
-  return result;
-}
+/// weight one. Returns the k x k unitary matrix whose columns are the new modes. O(k^2 ports).
+Eigen::MatrixXd turn(const Eigen::MatrixXd& b, const Eigen::MatrixXd& c);
+Eigen::MatrixXcd turn(const Eigen::MatrixXcd& b, const Eigen::MatrixXcd& c);
 
 /// True if no combination of the rows of M vanishes but for rounding. A row far below the others
 /// may be nothing but rounding itself.
-inline bool clearly_full_rank(Eigen::MatrixXd M) {
-  if (M.rows() == 0) return true;
-  const Eigen::VectorXd size = M.rowwise().norm();
-  if (M.cols() < M.rows() || !(size.minCoeff() > kClearRow * size.maxCoeff())) return false;
-  M = size.cwiseInverse().asDiagonal() * M;
-  return Eigen::BDCSVD<Eigen::MatrixXd>(M).singularValues()(M.rows() - 1) > kClearRank;
-}
+bool clearly_full_rank(Eigen::MatrixXd M);
 
 }  // namespace titop::modes

@@ -1,7 +1,7 @@
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/minimize/clusters.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/graded.hpp>
 
 /// Undamped and proportionally damped models.

@@ -1,11 +1,10 @@
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/QR>
 #include <algorithm>
 #include <titop/compiler/minimize/clusters.hpp>
 #include <titop/compiler/minimize/take_out.hpp>
 #include <titop/compiler/some_names.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop::modes {
 namespace {
@@ -42,7 +41,7 @@ std::vector<int> others(Index n, const std::vector<int>& taken) {
 MatrixXd solve_for(const MatrixXd& W, const std::vector<int>& out, const std::vector<int>& keep,
                    const VectorXd& scale, double noise) {
   const MatrixXd S = W * scale.asDiagonal();
-  MatrixXd R = -S(Eigen::all, out).fullPivLu().solve(S(Eigen::all, keep));
+  MatrixXd R = MatrixXd(S(Eigen::all, out)).fullPivLu().solve(MatrixXd(-S(Eigen::all, keep)));
   R = (R.array().abs() <= noise).select(0.0, R);
   return scale(out).asDiagonal() * R * scale(keep).cwiseInverse().asDiagonal();
 }
@@ -142,8 +141,8 @@ Matrix leaving(const Modes<Matrix>& all, const std::vector<Index>& leave,
       if (std::abs(ports(j, l)) <= kSmallShare) clear.push_back(l);
     if (clear.empty() || ports(j, clear).norm() <= kEps) continue;
     const Matrix moved = (inverse.asDiagonal() * ports(stay, clear)).transpose();
-    const Matrix error =
-        moved.completeOrthogonalDecomposition().solve(-ports(j, clear).transpose());
+    const Matrix shown = -ports(j, clear).transpose();
+    const Matrix error = moved.completeOrthogonalDecomposition().solve(shown);
     const Matrix share = inverse.asDiagonal() * error;
     if (error.norm() <= noise && share.norm() <= kSmallShare)
       result.row(static_cast<Index>(k)) += share.transpose() * vectors(stay, Eigen::all);

@@ -1,12 +1,12 @@
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/close/still.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/drives.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <utility>
 
 namespace titop::passes {

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <set>
 #include <titop/compiler/solve/blame.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop::solve {
 namespace {

@@ -1,9 +1,8 @@
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/schur.hpp>
 #include <titop/graph/linalg/wide.hpp>
 

@@ -1,7 +1,6 @@
-#include <Eigen/Cholesky>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <numeric>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/graded.hpp>
 
 namespace titop {

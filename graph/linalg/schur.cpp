@@ -1,7 +1,7 @@
-#include <Eigen/Eigenvalues>
 #include <Eigen/Jacobi>
 #include <cmath>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/schur.hpp>
 
 namespace titop::linalg {

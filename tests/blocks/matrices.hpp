@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Dense>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/state_space.hpp>
 
 /// Comparison of models entry by entry.

@@ -1,9 +1,9 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/QR>
 #include <cmath>
 #include <numbers>
 #include <titop/compiler/compare.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 
 #include "support/rng.hpp"

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "economy/scenes.hpp"
 #include "support/close.hpp"

@@ -1,9 +1,8 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <titop/compiler/economy/gramians.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/schur.hpp>
 
 #include "support/close.hpp"

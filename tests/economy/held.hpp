@@ -2,7 +2,7 @@
 
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "economy/against.hpp"
 

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
 #include <numbers>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"

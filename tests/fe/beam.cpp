@@ -1,6 +1,5 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -9,6 +8,7 @@
 #include <titop/blocks/beam.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 #include <vector>
 

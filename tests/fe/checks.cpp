@@ -1,12 +1,12 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
 #include <titop/blocks/beam.hpp>
 #include <titop/blocks/modal_checks.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <vector>
 
 #include "dynamics.hpp"

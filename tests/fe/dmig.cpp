@@ -2,11 +2,11 @@
 // and 16-column fields, and what is refused.
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
 #include <fstream>
 #include <numbers>
 #include <titop/blocks/fe/dmig.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 #include "dynamics.hpp"

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <Eigen/Dense>
 #include <array>
 #include <complex>
 #include <numeric>
 #include <string>
 #include <titop/blocks/fe/mesh.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <vector>
 
 /// What the tests of this folder compare with: the same structure without modes.

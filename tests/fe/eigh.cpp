@@ -1,12 +1,12 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <string>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 #include "support/refused.hpp"

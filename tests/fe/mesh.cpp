@@ -1,11 +1,11 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
 #include <limits>
 #include <string>
 #include <titop/blocks/beam.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 #include <vector>
 

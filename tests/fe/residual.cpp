@@ -1,10 +1,10 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <string>
 #include <titop/blocks/beam.hpp>
 #include <titop/blocks/fe/calculix.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 #include <vector>
 

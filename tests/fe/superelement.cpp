@@ -2,9 +2,9 @@
 // two copies joined at four grids. Against its own K and M, assembled without the library.
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
 #include <fstream>
 #include <sstream>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 
 #include "dynamics.hpp"

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <Eigen/Geometry>
-#include <Eigen/LU>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"

@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"

@@ -1,9 +1,8 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <functional>
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "../../examples/scenes/satellite.hpp"
 #include "simulate/scenes.hpp"

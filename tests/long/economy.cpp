@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "economy/scenes.hpp"
 #include "support/rng.hpp"

@@ -1,7 +1,8 @@
 #pragma once
 
 // Closed structures by hand: every element's coordinates in terms of shared ones.
-#include <Eigen/Eigenvalues>
+
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "../scenes/by_hand.hpp"
 

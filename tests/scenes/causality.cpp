@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "by_hand.hpp"
 

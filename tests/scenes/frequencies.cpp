@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Eigenvalues>
 #include <fstream>
 #include <string>
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "by_hand.hpp"
 

@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <complex>
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "simulate/scenes.hpp"
 

@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <titop/compiler/transfer.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "scenes/by_hand.hpp"
 #include "support/close.hpp"

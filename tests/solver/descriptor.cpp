@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <Eigen/Dense>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"

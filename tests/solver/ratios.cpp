@@ -1,8 +1,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <Eigen/QR>
 #include <titop/compiler/system.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/mount.hpp>
 
 #include "oracle.hpp"

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <Eigen/Dense>
 #include <memory>
 #include <string>
 #include <titop/compiler/solve/elimination.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <vector>
 
 #include "support/rng.hpp"

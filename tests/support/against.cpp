@@ -1,8 +1,8 @@
 #include "economy/against.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <numbers>
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "economy/tree.hpp"
 

@@ -1,6 +1,6 @@
 #include "support/five_masses.hpp"
 
-#include <Eigen/LU>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop_test {
 

@@ -1,10 +1,10 @@
 #include "support/promises.hpp"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <set>
 #include <stdexcept>
 #include <titop/compiler/passes/incidence.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <utility>
 
 namespace titop_test {

@@ -1,6 +1,6 @@
 #include "support/random_scene.hpp"
 
-#include <Eigen/Cholesky>
+#include <titop/graph/linalg/eigen.hpp>
 
 #include "support/random_draft.hpp"
 

@@ -1,5 +1,5 @@
-#include <Eigen/Cholesky>
 #include <titop/blocks/beam.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/mount.hpp>
 
 #include "support/random_draft.hpp"

@@ -1,10 +1,9 @@
 #include "economy/tree.hpp"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/LU>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop_test {
 namespace {

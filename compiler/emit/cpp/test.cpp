@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/emit/cpp/test.hpp>
 #include <titop/compiler/emit/cpp/test_source.hpp>
 #include <titop/compiler/emit/cpp/text.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop::emit {
 

@@ -1,7 +1,7 @@
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/passes/close/relations.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop::passes::closing {
 namespace {
