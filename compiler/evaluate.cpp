@@ -109,8 +109,8 @@ double Evaluation<T>::improve() {
 /// One solution of twice the columns serves both.
 template <class T>
 typename Evaluation<T>::Losses Evaluation<T>::losses() {
-  const solve::RowMatrix<T> residual = rows_.residual(rhs_, unknowns_);
-  const solve::RowMatrix<double> magnitudes = rows_.magnitudes(rhs_, unknowns_);
+  solve::RowMatrix<double> magnitudes;
+  const solve::RowMatrix<T> residual = rows_.residual(rhs_, unknowns_, &magnitudes);
   const auto m = residual.cols();
   SteadyRandom random;
   solve::RowMatrix<T> both(residual.rows(), 2 * m);

@@ -83,8 +83,7 @@ RowMatrix<double> Instant::outputs() const {
 }
 
 Instant Instant::doubt() const {
-  RowMatrix<double> off = rows_.residual(rhs_, unknowns_);
-  const RowMatrix<double> magnitudes = rows_.magnitudes(rhs_, unknowns_);
+  RowMatrix<double> magnitudes, off = rows_.residual(rhs_, unknowns_, &magnitudes);
   SteadyRandom random;
   for (Eigen::Index i = 0; i < off.size(); ++i)
     off.data()[i] += random.unit() * solve::Scalar<double>::epsilon() * magnitudes.data()[i];

@@ -42,6 +42,12 @@ struct Signal {
   bool row = true;       ///< outputs: the block's row for it is in use
 };
 
+/// How many neighbours among the entries of this signal share a unit: the three of a translation or
+/// of a rotation; else 1.
+inline int entries_per_unit(const Signal& s) {
+  return s.size == 6 && s.quantity != Quantity::plain ? 3 : 1;
+}
+
 /// A pair of signals of one node.
 struct Channel {
   int node = -1, spec = 0, size = 6;

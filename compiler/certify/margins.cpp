@@ -25,7 +25,7 @@ struct Unit {
 
 Unit unit_of(const Signal& s, int i) {
   const bool force = s.quantity == Quantity::force;
-  if (s.size != 6 || s.quantity == Quantity::plain) return {0, force, true};
+  if (entries_per_unit(s) == 1) return {0, force, true};
   return force ? Unit{i >= 3, 1} : Unit{i < 3, 0};
 }
 
@@ -94,12 +94,16 @@ bool take_loop_matrix(const SystemData& d, const Loop& loop, Room& room) {
       columns.push_back(unit_of(g.signals[at(signal)], i));
   Eigen::Index row = 0;
   const auto put = [&](const auto& c, double sign, int signal) {
-    if (const Eigen::Index column = column_of(signal); column >= 0)
+    const Eigen::Index column = column_of(signal);
+    if (column < 0) return;
+    if (c.size() == 1)
+      L(row, column) += sign * c.coeff(0, 0);
+    else
       L.block(row, column, c.rows(), c.cols()) += sign * c;
   };
   const auto put_identity = [&](int signal) {
-    const int n = g.signals[at(signal)].size;
-    put(MatrixXd::Identity(n, n), 1, signal);
+    if (const Eigen::Index column = column_of(signal); column >= 0)
+      for (int i = 0; i < g.signals[at(signal)].size; ++i) L(row + i, column + i) += 1;
   };
   for (const int r : loop.rows) {
     const Row& q = d.skeleton->stage.rows[at(r)];

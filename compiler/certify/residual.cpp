@@ -15,9 +15,6 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Entries of a signal that share a unit: three of a twist or wrench.
-int unit_of(const Signal& s) { return s.size == 6 && s.quantity != Quantity::plain ? 3 : 1; }
-
 /// One equation after the other: left - right, and the sum of magnitudes, row by row.
 struct Balance {
   Eigen::VectorXd difference = {}, magnitude = {};
@@ -128,7 +125,7 @@ struct Residual {
     return true;
   }
 
-  int unit(int signal) const { return unit_of(w.signals[at(signal)]); }
+  int unit(int signal) const { return entries_per_unit(w.signals[at(signal)]); }
 
   /// Begins with these rows of the signal, or with all of it.
   void start(int signal, const MatrixXd* part) {

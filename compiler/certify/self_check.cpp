@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <span>
 #include <string_view>
+#include <titop/compiler/certify/doubt.hpp>
 #include <titop/compiler/certify/residual.hpp>
 #include <titop/compiler/certify/self_check.hpp>
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/instant.hpp>
+#include <tuple>
 
 namespace titop::detail {
 namespace {
@@ -66,22 +67,35 @@ void take_inputs(const SystemData& d, int i, const Instant& now, RowMatrix<doubl
 class Resolvents {
  public:
   Resolvents(const SystemData& d, double s) {
-    for (const int i : d.layout().state_nodes) {
-      const Dynamics& m = *d.numbers.blocks[at(i)];
-      const auto [found, added] = made_.try_emplace({d.graph().nodes[at(i)].block.get(), &m}, m, s);
-      of_node_.push_back(&found->second);
-      if (added) first_.push_back(of_node_.size() - 1);
+    const std::vector<int>& nodes = d.layout().state_nodes;
+    using Key = std::tuple<const Block*, const Dynamics*, std::size_t>;
+    std::vector<Key> keys;
+    keys.reserve(nodes.size());
+    for (std::size_t k = 0; k < nodes.size(); ++k)
+      keys.emplace_back(d.graph().nodes[at(nodes[k])].block.get(),
+                        d.numbers.blocks[at(nodes[k])].get(), k);
+    std::sort(keys.begin(), keys.end());
+    of_node_.resize(nodes.size());
+    const Key* last = nullptr;
+    for (const Key& key : keys) {
+      const auto& [block, dynamics, k] = key;
+      if (!last || block != std::get<0>(*last) || dynamics != std::get<1>(*last)) {
+        made_.emplace_back(*dynamics, s);
+        first_.push_back(k);
+      }
+      of_node_[k] = made_.size() - 1;
+      last = &key;
     }
+    std::sort(first_.begin(), first_.end());
   }
   /// Of the k-th node with states.
-  const Resolvent<double>& operator[](std::size_t k) const { return *of_node_[k]; }
-  /// The first k of each.
+  const Resolvent<double>& operator[](std::size_t k) const { return made_[of_node_[k]]; }
+  /// The first k of each, ascending.
   const std::vector<std::size_t>& different() const { return first_; }
 
  private:
-  std::map<std::pair<const Block*, const Dynamics*>, Resolvent<double>> made_;
-  std::vector<const Resolvent<double>*> of_node_;
-  std::vector<std::size_t> first_;
+  std::vector<Resolvent<double>> made_;
+  std::vector<std::size_t> of_node_, first_;
 };
 
 /// Largest |value| over `magnitude`, row by row; 1 where it is not finite.
@@ -119,93 +133,32 @@ WrittenResidual check_responses(const SystemData& d, const Resolvents& resolvent
   return result;
 }
 
-/// [x; u] with states that each block, moved by itself at s, would make of the inputs that it has
-/// when u alone acts. What is strictly proper passes nothing on at once: blocks that rest behind it
-/// are moved by random inputs, and then all once more by what that gives.
+/// [x; u] with states that each block, moved by itself at s, would make of the inputs that it has.
+/// Where u alone acts most blocks may rest, for what is strictly proper passes nothing on at once:
+/// those inputs are what there is when all blocks are moved by random ones.
 RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>& u,
                                    const Resolvents& resolvents) {
   const Layout& l = d.layout();
   RowMatrix<double> known = RowMatrix<double>::Zero(l.order() + u.rows(), 1), inputs;
   known.bottomRows(u.rows()) = u;
+  const auto move = [&](std::size_t k) {
+    const int i = l.state_nodes[k];
+    const Dynamics& m = *d.numbers.blocks[at(i)];
+    known.middleRows(l.state_first[at(i)], m.A.rows()) =
+        resolvents[k].times(m.B.lazyProduct(inputs));
+  };
   SteadyRandom random;
-  for (int round = 0; round < 2; ++round) {
-    const Instant now(d, known);
-    bool all_move = true;
-    for (std::size_t k = 0; k < l.state_nodes.size(); ++k) {
-      const int i = l.state_nodes[k];
-      const Dynamics& m = *d.numbers.blocks[at(i)];
-      take_inputs(d, i, now, inputs);
-      if (inputs.isZero(0)) {
-        for (double& x : inputs.reshaped()) x = random.next();
-        all_move = false;
-      }
-      known.middleRows(l.state_first[at(i)], m.A.rows()) =
-          resolvents[k].times(m.B.lazyProduct(inputs));
-    }
-    if (all_move) break;
+  for (std::size_t k = 0; k < l.state_nodes.size(); ++k) {
+    inputs.resize(d.numbers.blocks[at(l.state_nodes[k])]->B.cols(), 1);
+    for (double& x : inputs.reshaped()) x = random.next();
+    move(k);
+  }
+  const Instant all_move(d, known);
+  for (std::size_t k = 0; k < l.state_nodes.size(); ++k) {
+    take_inputs(d, l.state_nodes[k], all_move, inputs);
+    move(k);
   }
   return known;
-}
-
-/// Some entries of one unit, how far they are off, and what stands around each of them.
-template <class Around>
-bool lost(std::span<const double> value, std::span<const double> off, Around around) {
-  double largest = 0, change = 0;
-  for (const double v : value) largest = std::max(largest, std::abs(v));
-  for (const double v : off) change = std::abs(v) <= change ? change : std::abs(v);  // NaN too
-  if (change <= kWarn * largest || change <= kUnderflow) return false;
-  for (std::size_t i = 0; i < value.size(); ++i)  // 0 but for rounding?
-    if (!(std::max(std::abs(value[i]), std::abs(off[i])) <= kLeftOfZero * around(i))) return true;
-  return false;
-}
-
-/// The same for all entries of a signal or an output of this size, unit by unit.
-template <class Around>
-bool any_lost(std::span<const double> value, std::span<const double> off, Around around) {
-  const std::size_t unit = value.size() == 6 ? 3 : 1;
-  for (std::size_t first = 0; first < value.size(); first += unit)
-    if (lost(value.subspan(first, unit), off.subspan(first, unit),
-             [&](std::size_t i) { return around(static_cast<Eigen::Index>(first + i)); }))
-      return true;
-  return false;
-}
-
-/// Digits may be lost of what moves a state or of an output.
-bool digits_in_doubt(const SystemData& d, const Instant& now) {
-  const Graph& g = d.graph();
-  const Instant change = now.doubt();
-  const auto around = [&](int signal, Eigen::Index entry) {
-    return size_around_signal(d, now.unknowns(), signal, entry);
-  };
-  std::vector<double> value, off;
-  for (const int i : d.layout().state_nodes)
-    for (int k = g.nodes[at(i)].first_signal; k < g.nodes[at(i)].state; ++k) {
-      const Signal& in = g.signals[at(k)];
-      if (in.role != Signal::Role::input || !in.active) continue;
-      value.assign(at(in.size), 0);
-      off.assign(at(in.size), 0);
-      now.add_value(k, value.data());
-      change.add_value(k, off.data());
-      if (any_lost(value, off, [&](Eigen::Index e) { return around(k, e); })) return true;
-    }
-  const RowMatrix<double> y = now.outputs(), off_y = change.outputs();
-  for (std::size_t o = 0; o < g.outputs.size(); ++o) {
-    const auto around_output = [&](Eigen::Index row) {
-      double sum = 0;
-      for (std::size_t k = 0; k < g.outputs[o].terms.size(); ++k) {
-        const RowMatrix<double>& c =
-            *d.numbers.coefficients[at(d.skeleton->joint.output_coefficient[o]) + k];
-        for (Eigen::Index j = 0; j < c.cols(); ++j)
-          if (c(row, j) != 0) sum += std::abs(c(row, j)) * around(g.outputs[o].terms[k].signal, j);
-      }
-      return sum;
-    };
-    const int first = d.layout().output_first[o];
-    const std::size_t size = at(g.outputs[o].size);
-    if (any_lost({y.data() + first, size}, {off_y.data() + first, size}, around_output))
-      return true;
-  }
-  return false;
 }
 
 /// At one instant. False where there is none, or where the equations hold and yet digits may be

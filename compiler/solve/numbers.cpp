@@ -98,6 +98,34 @@ void add_sizes(const View<L>& l, const double* x, std::ptrdiff_t m, double* to) 
       if (const double a = size_of(l(i, k)); a != 0) add(m, a, x + k * m, to + i * m);
 }
 
+/// to -= sign * left * right * x, x with m columns; left or right nullptr: 1. right * x has `size`
+/// numbers, for which there is `room`.
+template <class T, class Left>
+void subtract_products(double sign, const Left* left, const RowMatrix<double>* right, const T* x,
+                       std::ptrdiff_t size, std::ptrdiff_t m, T* to, std::vector<T>& room) {
+  if (right) {
+    room.assign(static_cast<std::size_t>(size), T(0));
+    subtract_product(-1, view(*right), x, m, room.data());
+    x = room.data();
+  }
+  if (left) return subtract_product(sign, *left, x, m, to);
+  for (std::ptrdiff_t i = 0; i < size; ++i) to[i] -= times(x[i], sign);
+}
+
+/// to += |left| |right| x, likewise.
+template <class Left>
+void add_sizes_of_products(const Left* left, const RowMatrix<double>* right, const double* x,
+                           std::ptrdiff_t size, std::ptrdiff_t m, double* to,
+                           std::vector<double>& room) {
+  if (right) {
+    room.assign(static_cast<std::size_t>(size), 0);
+    add_sizes(view(*right), x, m, room.data());
+    x = room.data();
+  }
+  if (left) return add_sizes(*left, x, m, to);
+  for (std::ptrdiff_t i = 0; i < size; ++i) to[i] += x[i];
+}
+
 /// Calls take(view) with the piece's left matrix; `identity` where it is none.
 template <class T, class Take, class Identity>
 void with_left(const Piece& p, const Matrices<T>& m, const std::vector<Coefficient>& c,
@@ -295,50 +323,27 @@ void JointRows<T>::by_products(Take take) const {
   }
 }
 
+/// Magnitudes are |left| |right| |x|, not |left * right| |x|: the product rounds as well.
 template <class T>
-RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const {
-  const Plan& plan = *joint_.plan;
-  const std::ptrdiff_t m = rhs.cols();
-  RowMatrix<T> result = rhs;
-  std::vector<T> room;
-  by_products([&](int row, double sign, const auto* left, const RowMatrix<double>* right, int v) {
-    const T* x = unknowns.data() + plan.first[at(v)] * m;
-    const std::ptrdiff_t size = right ? right->rows() : plan.structure.variable_size[at(v)];
-    if (right) {
-      room.assign(static_cast<std::size_t>(size * m), T(0));
-      subtract_product(-1, view(*right), x, m, room.data());
-      x = room.data();
-    }
-    T* to = result.data() + row * m;
-    if (left) return subtract_product(sign, *left, x, m, to);
-    for (std::ptrdiff_t i = 0; i < size * m; ++i) to[i] -= times(x[i], sign);
-  });
-  return result;
-}
-
-/// |left| |right| |x|, not |left * right| |x|: the product rounds as well.
-template <class T>
-RowMatrix<double> JointRows<T>::magnitudes(const RowMatrix<T>& rhs,
-                                           const RowMatrix<T>& unknowns) const {
+RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns,
+                                    RowMatrix<double>* magnitudes) const {
   const Plan& plan = *joint_.plan;
   const std::ptrdiff_t m = rhs.cols();
   const auto sizes = [](const RowMatrix<T>& x) -> RowMatrix<double> {
     return x.unaryExpr([](const T& entry) { return size_of(entry); });
   };
-  const RowMatrix<double> size_of_unknowns = sizes(unknowns);
-  RowMatrix<double> result = sizes(rhs);
-  std::vector<double> room;
-  by_products([&](int row, double, const auto* left, const RowMatrix<double>* right, int v) {
-    const double* x = size_of_unknowns.data() + plan.first[at(v)] * m;
-    const std::ptrdiff_t size = right ? right->rows() : plan.structure.variable_size[at(v)];
-    if (right) {
-      room.assign(static_cast<std::size_t>(size * m), 0);
-      add_sizes(view(*right), x, m, room.data());
-      x = room.data();
-    }
-    double* to = result.data() + row * m;
-    if (left) return add_sizes(*left, x, m, to);
-    for (std::ptrdiff_t i = 0; i < size * m; ++i) to[i] += x[i];
+  RowMatrix<T> result = rhs;
+  RowMatrix<double> x_sizes;
+  if (magnitudes) *magnitudes = sizes(rhs), x_sizes = sizes(unknowns);
+  std::vector<T> room;
+  std::vector<double> room_of_sizes;
+  by_products([&](int row, double sign, const auto* left, const RowMatrix<double>* right, int v) {
+    const std::ptrdiff_t from = plan.first[at(v)] * m, to = row * m;
+    const std::ptrdiff_t size = (right ? right->rows() : plan.structure.variable_size[at(v)]) * m;
+    subtract_products(sign, left, right, unknowns.data() + from, size, m, result.data() + to, room);
+    if (magnitudes)
+      add_sizes_of_products(left, right, x_sizes.data() + from, size, m, magnitudes->data() + to,
+                            room_of_sizes);
   });
   return result;
 }

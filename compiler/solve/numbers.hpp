@@ -43,11 +43,10 @@ class JointRows : public Rows<T> {
   RowMatrix<T> rhs_of_states(const RowMatrix<T>& states, std::span<const int> first,
                              const std::vector<const Eigen::MatrixXd*>& output) const;
 
-  /// rhs - (these rows) * unknowns: what is left of every row. O(rows) per column.
-  RowMatrix<T> residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
-
-  /// |rhs| + |rows| |unknowns|: what the residual is made of. O(rows) per column.
-  RowMatrix<double> magnitudes(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns) const;
+  /// rhs - (these rows) * unknowns: what is left of every row. `magnitudes`, where it is asked for,
+  /// becomes |rhs| + |rows| |unknowns|: what that is made of. O(rows) per column.
+  RowMatrix<T> residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns,
+                        RowMatrix<double>* magnitudes = nullptr) const;
 
   /// signal += its meaning in unknowns and known signals; `to`: signal size x columns, row-major.
   void add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,

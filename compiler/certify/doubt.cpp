@@ -1,0 +1,92 @@
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <titop/compiler/certify/doubt.hpp>
+#include <titop/compiler/certify/residual.hpp>
+#include <titop/compiler/evaluate.hpp>
+
+namespace titop::detail {
+namespace {
+
+using solve::RowMatrix;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Some entries of one unit, how far they are off, and what stands around each of them.
+template <class Around>
+bool lost(std::span<const double> value, std::span<const double> off, Around around) {
+  double largest = 0, change = 0;
+  for (const double v : value) largest = std::max(largest, std::abs(v));
+  for (const double v : off) change = std::abs(v) <= change ? change : std::abs(v);  // NaN too
+  if (change <= kWarn * largest || change <= kUnderflow) return false;
+  for (std::size_t i = 0; i < value.size(); ++i)  // 0 but for rounding?
+    if (!(std::max(std::abs(value[i]), std::abs(off[i])) <= kLeftOfZero * around(i))) return true;
+  return false;
+}
+
+/// The same for all entries of a signal or an output, of which `unit` neighbours share one.
+template <class Around>
+bool any_lost(std::span<const double> value, std::span<const double> off, std::size_t unit,
+              Around around) {
+  for (std::size_t first = 0; first < value.size(); first += unit)
+    if (lost(value.subspan(first, unit), off.subspan(first, unit),
+             [&](std::size_t i) { return around(static_cast<Eigen::Index>(first + i)); }))
+      return true;
+  return false;
+}
+
+/// Of an input of a block with states.
+bool moves_in_doubt(const SystemData& d, const Instant& now, const Instant& change) {
+  const Graph& g = d.graph();
+  std::vector<double> value, off;
+  for (const int i : d.layout().state_nodes)
+    for (int k = g.nodes[at(i)].first_signal; k < g.nodes[at(i)].state; ++k) {
+      const Signal& in = g.signals[at(k)];
+      if (in.role != Signal::Role::input || !in.active) continue;
+      value.assign(at(in.size), 0);
+      off.assign(at(in.size), 0);
+      now.add_value(k, value.data());
+      change.add_value(k, off.data());
+      if (any_lost(value, off, at(entries_per_unit(in)), [&](Eigen::Index entry) {
+            return size_around_signal(d, now.unknowns(), k, entry);
+          }))
+        return true;
+    }
+  return false;
+}
+
+/// What stands around a row of output o: of the signals that it is a sum of.
+double size_around_output(const SystemData& d, const Instant& now, std::size_t o,
+                          Eigen::Index row) {
+  const std::vector<Term>& terms = d.graph().outputs[o].terms;
+  double sum = 0;
+  for (std::size_t k = 0; k < terms.size(); ++k) {
+    const RowMatrix<double>& c =
+        *d.numbers.coefficients[at(d.skeleton->joint.output_coefficient[o]) + k];
+    for (Eigen::Index j = 0; j < c.cols(); ++j)
+      if (c(row, j) != 0)
+        sum += std::abs(c(row, j)) * size_around_signal(d, now.unknowns(), terms[k].signal, j);
+  }
+  return sum;
+}
+
+bool outputs_in_doubt(const SystemData& d, const Instant& now, const Instant& change) {
+  const RowMatrix<double> y = now.outputs(), off = change.outputs();
+  for (std::size_t o = 0; o < d.graph().outputs.size(); ++o) {
+    const int first = d.layout().output_first[o];
+    const std::size_t size = at(d.graph().outputs[o].size);
+    if (any_lost({y.data() + first, size}, {off.data() + first, size}, size == 6 ? 3 : 1,
+                 [&](Eigen::Index row) { return size_around_output(d, now, o, row); }))
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+bool digits_in_doubt(const SystemData& d, const Instant& now) {
+  const Instant change = now.doubt();
+  return moves_in_doubt(d, now, change) || outputs_in_doubt(d, now, change);
+}
+
+}  // namespace titop::detail
