@@ -55,7 +55,7 @@ struct Builder {
   /// signal: -1 for a partial sum; `like`: what has its unit.
   void add_variable(int signal, int size, const Signal& like) {
     j.variables.push_back(signal);
-    structure.add_variable(size, size == 6 && like.quantity != Quantity::plain ? 3 : 1);
+    structure.add_variable(size, size == like.size ? entries_per_unit(like) : 1);
   }
 
   void choose_variables() {
@@ -238,7 +238,11 @@ std::span<const Piece> Joint::row(int r) const {
 }
 
 Coefficient coefficient_of(const Term& term) {
-  return std::make_shared<const RowMatrix<double>>(*std::get<Matrix>(term.factors.front()).value);
+  static const auto plus = std::make_shared<const RowMatrix<double>>(RowMatrix<double>::Ones(1, 1)),
+                    minus = std::make_shared<const RowMatrix<double>>(-*plus);
+  const Eigen::MatrixXd& c = *std::get<Matrix>(term.factors.front()).value;
+  if (c.size() == 1 && std::abs(c(0, 0)) == 1) return c(0, 0) > 0 ? plus : minus;  // most scalars
+  return std::make_shared<const RowMatrix<double>>(c);
 }
 
 Joint joint(const Stage& stage, std::vector<Coefficient>& coefficients) {

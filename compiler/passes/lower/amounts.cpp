@@ -43,6 +43,24 @@ Amount times(const MatrixXd& m, Amount sum) {
   return sum;
 }
 
+namespace {
+
+/// Most terms of scalar scenes have a coefficient of 1 or -1: they share it.
+std::shared_ptr<const MatrixXd> shared(MatrixXd c) {
+  static const auto plus = std::make_shared<const MatrixXd>(MatrixXd::Ones(1, 1)),
+                    minus = std::make_shared<const MatrixXd>(-MatrixXd::Ones(1, 1));
+  if (c.size() == 1 && std::abs(c(0, 0)) == 1) return c(0, 0) > 0 ? plus : minus;
+  return std::make_shared<const MatrixXd>(std::move(c));
+}
+
+std::shared_ptr<const Pattern> shared(Pattern p) {
+  static const auto one = std::make_shared<const Pattern>(Pattern::Constant(1, 1, true));
+  if (p.size() == 0) return {};
+  return p.size() == 1 && p(0, 0) ? one : std::make_shared<const Pattern>(std::move(p));
+}
+
+}  // namespace
+
 std::vector<Term> merged(Amount sum) {
   if (sum.size() > 1) std::sort(sum.begin(), sum.end(), less);
   std::vector<Term> terms;
@@ -56,10 +74,8 @@ std::vector<Term> merged(Amount sum) {
       else
         total.p = total.p.array() || sum[i].p.array();
     }
-    Matrix matrix{.value = std::make_shared<const MatrixXd>(std::move(total.c))};
-    if (total.p.size()) matrix.pattern = std::make_shared<const Pattern>(std::move(total.p));
     Term term{.signal = total.signal};
-    term.factors.emplace_back(std::move(matrix));
+    term.factors.emplace_back(Matrix{shared(std::move(total.c)), shared(std::move(total.p))});
     terms.push_back(std::move(term));
   }
   return terms;
