@@ -144,6 +144,8 @@ struct Builder {
   }
 
   void add_rows() {
+    j.pieces.reserve(4 *
+                     stage.rows.size());  // about; what grows by doubling is copied, page by page
     for (int r = 0; r < static_cast<int>(stage.rows.size()); ++r) {
       const Row& row = stage.rows[at(r)];
       if (!row.active) continue;

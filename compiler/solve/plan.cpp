@@ -214,11 +214,12 @@ void Structure::add_variable(int size, int unit) {
   variable_unit.push_back(unit);
 }
 
-void Structure::add_row(int size, std::vector<int> over) {
-  std::sort(over.begin(), over.end());
-  over.erase(std::unique(over.begin(), over.end()), over.end());
+void Structure::add_row(int size, std::span<const int> over) {
   row_size.push_back(size);
   variables.insert(variables.end(), over.begin(), over.end());
+  const auto own = variables.begin() + row_begin.back();
+  std::sort(own, variables.end());
+  variables.erase(std::unique(own, variables.end()), variables.end());
   row_begin.push_back(static_cast<int>(variables.size()));
 }
 

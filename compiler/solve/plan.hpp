@@ -31,8 +31,8 @@ struct Structure {
   /// One more variable group; `unit`: see variable_unit.
   void add_variable(int size, int unit = 1);
 
-  /// One more row group of `size` scalars over these variables (sorted, repetitions removed).
-  void add_row(int size, std::vector<int> over);
+  /// One more row group of `size` scalars over these variables, in any order, repeated or not.
+  void add_row(int size, std::span<const int> over);
   std::span<const int> row(int r) const;
 };
 

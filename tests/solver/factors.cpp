@@ -45,7 +45,7 @@ TEST_CASE("solver: solutions as by dense LU on trees, rings, stars, grids and fu
 TEST_CASE("solver: an overflow is told from a singular system, where only inf * 0 shows it, too") {
   Structure structure;
   structure.add_variable(2);
-  structure.add_row(2, {0});
+  structure.add_row(2, std::vector{0});
   const MatrixXd A{{1e-160, 0}, {1e160, 1}};  // 1e160 / 1e-160 is above all doubles
   const Health h = factors_of<double>(structure, {{A}}).health();
   CHECK(h.singular);
