@@ -6,9 +6,10 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
-/// Eigen's decompositions of matrices of any size, compiled once for all who include this in place
-/// of <Eigen/SVD> and so on: a file that compiles its own takes up to a minute. `solve` is compiled
-/// for plain right-hand sides, so evaluate expressions first.
+// Eigen's decompositions of matrices of any size, compiled once for all who include this in place
+// of <Eigen/SVD> and so on: a file that compiles its own takes up to a minute. `solve` is compiled
+// for plain right-hand sides, so evaluate expressions first.
+/// @cond
 namespace Eigen {
 
 extern template class LLT<MatrixXd>;
@@ -43,3 +44,4 @@ extern template MatrixBase<MatrixXd>::EigenvaluesReturnType MatrixBase<MatrixXd>
     const;
 
 }  // namespace Eigen
+/// @endcond
