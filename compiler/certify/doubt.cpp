@@ -35,7 +35,7 @@ bool any_lost(std::span<const double> value, std::span<const double> off, std::s
   return false;
 }
 
-/// Of an input of a block with states.
+/// Digits may be lost of an input of a block with states.
 bool moves_in_doubt(const SystemData& d, const Instant& now, const Instant& change) {
   const Graph& g = d.graph();
   std::vector<double> value, off;

@@ -133,9 +133,11 @@ WrittenResidual check_responses(const SystemData& d, const Resolvents& resolvent
   return result;
 }
 
-/// [x; u] with states that each block, moved by itself at s, would make of the inputs that it has.
-/// Where u alone acts most blocks may rest, for what is strictly proper passes nothing on at once:
-/// those inputs are what there is when all blocks are moved by random ones.
+/// [x; u] with states that each block, moved by itself at s, would make of the inputs that it has
+/// when u alone acts. What is strictly proper passes nothing on at once: blocks that rest behind it
+/// have, but for their size, the inputs that there are when all of them are moved by random ones.
+/// Those are brought to size 1, for stiff blocks pass on much more than they take, and what u does
+/// must not drown.
 RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>& u,
                                    const Resolvents& resolvents) {
   const Layout& l = d.layout();
@@ -147,15 +149,22 @@ RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>&
     known.middleRows(l.state_first[at(i)], m.A.rows()) =
         resolvents[k].times(m.B.lazyProduct(inputs));
   };
+  const Instant by_u(d, known);
+  std::vector<std::size_t> resting;
   SteadyRandom random;
   for (std::size_t k = 0; k < l.state_nodes.size(); ++k) {
-    inputs.resize(d.numbers.blocks[at(l.state_nodes[k])]->B.cols(), 1);
-    for (double& x : inputs.reshaped()) x = random.next();
+    take_inputs(d, l.state_nodes[k], by_u, inputs);
+    if (inputs.isZero(0)) {
+      resting.push_back(k);
+      for (double& x : inputs.reshaped()) x = random.next();
+    }
     move(k);
   }
+  if (resting.empty()) return known;
   const Instant all_move(d, known);
-  for (std::size_t k = 0; k < l.state_nodes.size(); ++k) {
+  for (const std::size_t k : resting) {
     take_inputs(d, l.state_nodes[k], all_move, inputs);
+    if (const double size = inputs.cwiseAbs().maxCoeff(); size > 0) inputs /= size;
     move(k);
   }
   return known;

@@ -55,7 +55,8 @@ void add_coupled(ModalModel& result, const StateSpace& m, const std::vector<Inde
   const detail::RealModes modes = detail::real_modes(A, "second_order() or state_space()");
   const Index first = 2 * static_cast<Index>(result.A.size()), n = A.rows();
   result.A.insert(result.A.end(), modes.A.begin(), modes.A.end());
-  result.B.middleRows(first, n) = modes.T.partialPivLu().solve(MatrixXd(m.B(states, Eigen::all)));
+  result.B.middleRows(first, n) =
+      MatrixXd(modes.T.partialPivLu().solve(MatrixXd(m.B(states, Eigen::all))));
   result.C.middleCols(first, n) = m.C(Eigen::all, states) * modes.T;
 }
 

@@ -22,7 +22,7 @@ MatrixXcd solve(const Small& m, Complex s, const MatrixXcd& f) {
   if (rest > 0) {
     MatrixXcd S = s * m.Z.bottomRightCorner(rest, rest).cast<Complex>();
     S.diagonal().array() += s * s + m.k.tail(rest).array();
-    x.bottomRows(rest) = S.partialPivLu().solve(MatrixXcd(f.bottomRows(rest)));
+    x.bottomRows(rest) = MatrixXcd(S.partialPivLu().solve(MatrixXcd(f.bottomRows(rest))));
   }
   return x;
 }

@@ -70,7 +70,7 @@ void add_blocks(ModalModel& result, const Part& part, const RealModes& modes) {
   result.B.bottomRows(all - first).setZero();
   result.C.rightCols(all - first).setZero();
   if (n == 0) return;
-  result.B.middleRows(first, n) = modes.T.partialPivLu().solve(part.B);
+  result.B.middleRows(first, n) = MatrixXd(modes.T.partialPivLu().solve(part.B));
   result.C.middleCols(first, n) = part.C * modes.T;
 }
 

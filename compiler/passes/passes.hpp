@@ -57,8 +57,8 @@ Stage order(Stage stage);
 /// `chains`.
 Stage close(Stage stage);
 
-/// The graph's invariants, checked after every pass, in a release after the last one; throws
-/// std::logic_error (a fault of ours). O(terms).
+/// The graph's invariants, checked after every pass, in a release after `lower` and the last
+/// one; throws std::logic_error (a fault of ours). O(terms).
 void verify(const Stage& stage);
 
 }  // namespace titop::passes

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/compiler/solve/joint.hpp>
 
@@ -144,8 +145,8 @@ struct Builder {
   }
 
   void add_rows() {
-    j.pieces.reserve(4 *
-                     stage.rows.size());  // about; what grows by doubling is copied, page by page
+    constexpr std::size_t kPerRow = 4;  // of a two-port block: about as many as there will be
+    j.pieces.reserve(kPerRow * stage.rows.size());
     for (int r = 0; r < static_cast<int>(stage.rows.size()); ++r) {
       const Row& row = stage.rows[at(r)];
       if (!row.active) continue;

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <complex>
 
-/// Eigen's heavy dense routines, instantiated once for the whole library.
+/// Dense solutions and eigenvalues with scaling, and a word on how well they are determined.
 namespace titop::linalg {
 
 /// Solution of E z = F with a word on how well it is determined.

@@ -109,3 +109,38 @@ TEST_CASE("a signal that is off by a millionth breaks an equation") {
   }
   CHECK(tried >= 12);
 }
+
+TEST_CASE("what the input does is not drowned by stiff springs behind it") {
+  // Each spring passes on k / (m s^2), some 3e5, of what it takes.
+  Diagram d{"stack"};
+  auto below = d.add("b0", RigidBody{.mass = 1, .children = {{"C", {0, 0, 0.1}}}});
+  below.parent.force = -d.input("U", 6);
+  for (int i = 1; i <= 3; ++i) {
+    auto k = d.add("k" + std::to_string(i), Bushing{.stiffness = {1e5, 1e5, 1e5, 1e5, 1e5, 1e5}});
+    auto body =
+        d.add("b" + std::to_string(i), RigidBody{.mass = 1, .children = {{"C", {0, 0, 0.1}}}});
+    mount(k, below.child("C"));
+    mount(body, k.child);
+    below = body;
+  }
+  d.output("a", 6) = below.parent.accel;
+  const auto data =
+      std::const_pointer_cast<detail::SystemData>(detail::compile_graph(d.graph(), {}));
+  CHECK(data->checked().certificate.at_instant);
+  CHECK(data->checked().certificate.residual <= 1e-13);
+  // A wrench that acts by a thousandth more than is written.
+  int planted = 0;
+  const Graph& g = data->graph();
+  for (std::size_t e = 0; e < g.equations.size(); ++e)
+    for (std::size_t k = 0; k < g.equations[e].terms.size(); ++k) {
+      const int signal = g.equations[e].terms[k].signal;
+      if (g.signals[static_cast<std::size_t>(signal)].role != Signal::Role::external) continue;
+      auto& c = data->numbers.coefficients[static_cast<std::size_t>(
+                                               data->skeleton->joint.equation_coefficient[e]) +
+                                           k];
+      c = std::make_shared<const solve::RowMatrix<double>>(1.001 * *c);
+      ++planted;
+    }
+  CHECK(planted == 1);
+  CHECK(detail::certify(*data).certificate.residual >= 1e-8);
+}

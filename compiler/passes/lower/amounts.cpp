@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <titop/compiler/passes/lower/amounts.hpp>
 #include <titop/graph/linalg/dense.hpp>
 
@@ -45,15 +46,15 @@ Amount times(const MatrixXd& m, Amount sum) {
 
 namespace {
 
-/// Most terms of scalar scenes have a coefficient of 1 or -1: they share it.
-std::shared_ptr<const MatrixXd> shared(MatrixXd c) {
+/// Most terms of scalar scenes have a coefficient of 1 or -1: they share it, as others do not.
+std::shared_ptr<const MatrixXd> kept(MatrixXd c) {
   static const auto plus = std::make_shared<const MatrixXd>(MatrixXd::Ones(1, 1)),
                     minus = std::make_shared<const MatrixXd>(-MatrixXd::Ones(1, 1));
   if (c.size() == 1 && std::abs(c(0, 0)) == 1) return c(0, 0) > 0 ? plus : minus;
   return std::make_shared<const MatrixXd>(std::move(c));
 }
 
-std::shared_ptr<const Pattern> shared(Pattern p) {
+std::shared_ptr<const Pattern> kept(Pattern p) {
   static const auto one = std::make_shared<const Pattern>(Pattern::Constant(1, 1, true));
   if (p.size() == 0) return {};
   return p.size() == 1 && p(0, 0) ? one : std::make_shared<const Pattern>(std::move(p));
@@ -75,7 +76,7 @@ std::vector<Term> merged(Amount sum) {
         total.p = total.p.array() || sum[i].p.array();
     }
     Term term{.signal = total.signal};
-    term.factors.emplace_back(Matrix{shared(std::move(total.c)), shared(std::move(total.p))});
+    term.factors.emplace_back(Matrix{kept(std::move(total.c)), kept(std::move(total.p))});
     terms.push_back(std::move(term));
   }
   return terms;
