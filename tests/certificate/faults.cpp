@@ -114,7 +114,8 @@ TEST_CASE("what the input does is not drowned by stiff springs behind it") {
   // Each spring passes on k / (m s^2), some 3e5, of what it takes.
   Diagram d{"stack"};
   auto below = d.add("b0", RigidBody{.mass = 1, .children = {{"C", {0, 0, 0.1}}}});
-  below.parent.force = -d.input("U", 6);
+  below.parent.force = 0;
+  below.child("C").force += d.input("U", 6);  // beside the first spring
   for (int i = 1; i <= 3; ++i) {
     auto k = d.add("k" + std::to_string(i), Bushing{.stiffness = {1e5, 1e5, 1e5, 1e5, 1e5, 1e5}});
     auto body =
@@ -142,5 +143,5 @@ TEST_CASE("what the input does is not drowned by stiff springs behind it") {
       ++planted;
     }
   CHECK(planted == 1);
-  CHECK(detail::certify(*data).certificate.residual >= 1e-8);
+  CHECK(detail::certify(*data).certificate.residual > detail::kWarn);
 }
