@@ -75,7 +75,7 @@ TEST_CASE("update: the same model as a fresh compile, whatever parameter changes
     const System updated = before.update(list), fresh = compile(scene(numbers));
     CHECK(distance(updated, fresh) <= 1e-14);
     CHECK(updated.states() == fresh.states());
-    CHECK(updated.certificate().residual <= 1e-12);  // a rate is a small difference
+    CHECK(updated.certificate().residual <= 1e-13);
     CHECK(distance(updated, before) >= 1e-7);
     const std::complex<double> s{0.3, 7};
     CHECK(matrix_error(updated.transfer(s), fresh.transfer(s)) <= 1e-13);
