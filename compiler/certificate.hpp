@@ -11,10 +11,10 @@ struct Certificate {
   /// Largest |left - right| over (sum of magnitudes of the terms) among all equations of the
   /// diagram AS WRITTEN, for one random input, all signals computed by the compiled system: at one
   /// instant, by the very factors that the model is written from (what the input does not move at
-  /// once is moved by inputs of size 1), or at one real s: with positions
-  /// or rates in the equations, states that follow from others, in a reduced (singular) scene, or
-  /// where digits may be lost. Beside an instant also the responses at s of the first eight blocks
-  /// of each type against their A, B, C, D. Rounding is about 1e-16 times the length of a row.
+  /// once is moved by inputs of size 1), or at one real s: with positions or rates in the
+  /// equations, states that follow from others, in a reduced (singular) scene, or where digits may
+  /// be lost. Beside an instant also the responses at s of the first eight blocks of each type
+  /// against their A, B, C, D. Rounding is about 1e-16 times the length of a row.
   double residual = 0;
   std::string residual_where;  ///< the equation or block that has it
   /// That real s [rad/s]; at an instant the states are about those that single blocks have there.

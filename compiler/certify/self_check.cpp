@@ -135,9 +135,9 @@ WrittenResidual check_responses(const SystemData& d, const Resolvents& resolvent
 
 /// [x; u] with states that each block, moved by itself at s, would make of the inputs that it has
 /// when u alone acts. What is strictly proper passes nothing on at once: blocks that rest behind it
-/// have, but for their size, the inputs that there are when all of them are moved by random ones.
-/// Those are brought to size 1, for stiff blocks pass on much more than they take, and what u does
-/// must not drown.
+/// are moved by random inputs first, and then by those that this gives them, brought to size 1, for
+/// stiff blocks pass on much more than they take, and what u does must not drown. One solution, or
+/// two where blocks rest.
 RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>& u,
                                    const Resolvents& resolvents) {
   const Layout& l = d.layout();
