@@ -47,13 +47,14 @@ solve::Response<T> general_response(const Dynamics& d, const T& s) {
   return r;
 }
 
-/// Columns right of k, or right-hand sides: x -= (column k of L) x(k), below row k.
+/// Columns right of k, or right-hand sides, `count` of them, of as many rows as lu: x -= (column k
+/// of L) x(k), below row k.
 template <class T>
-void reduce(const Dense<T>& lu, Index k, Eigen::Ref<Dense<T>> columns) {
-  for (Index j = 0; j < columns.cols(); ++j)
-    if (const T by = columns(k, j); by != T(0))
-      solve::subtract(lu.rows() - k - 1, by, lu.data() + k * lu.rows() + k + 1,
-                      &columns(0, j) + k + 1);
+void reduce(const Dense<T>& lu, Index k, Index count, T* columns) {
+  const Index n = lu.rows();
+  for (T* x = columns; x != columns + count * n; x += n)
+    if (const T by = x[k]; by != T(0))
+      solve::subtract(n - k - 1, by, lu.data() + k * n + k + 1, x + k + 1);
 }
 
 }  // namespace
@@ -71,9 +72,9 @@ Resolvent<T>::Resolvent(const Dynamics& dynamics, const T& s)
     for (Index i = k + 1; i < n; ++i)
       if (solve::size_of(lu_(i, k)) > solve::size_of(lu_(best, k))) best = i;
     row_.push_back(best);
-    lu_.row(k).swap(lu_.row(best));
+    if (best != k) lu_.row(k).swap(lu_.row(best));
     for (Index i = k + 1; i < n; ++i) lu_(i, k) /= lu_(k, k);
-    reduce<T>(lu_, k, lu_.rightCols(n - k - 1));
+    reduce<T>(lu_, k, n - k - 1, lu_.data() + (k + 1) * n);
   }
 }
 
@@ -93,8 +94,8 @@ Dense<T> Resolvent<T>::times(Dense<T> x) const {
   }
   const Index n = lu_.rows();
   for (Index k = 0; k < n; ++k) {
-    x.row(k).swap(x.row(row_[at(k)]));
-    reduce<T>(lu_, k, x);
+    if (row_[at(k)] != k) x.row(k).swap(x.row(row_[at(k)]));
+    reduce<T>(lu_, k, x.cols(), x.data());
   }
   for (Index k = n - 1; k >= 0; --k)
     for (Index j = 0; j < x.cols(); ++j) {

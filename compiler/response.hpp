@@ -1,5 +1,6 @@
 #pragma once
 
+#include <boost/container/small_vector.hpp>
 #include <titop/compiler/solve/numbers.hpp>
 
 /// One block by itself at one s. T is a scalar of any precision, complex or, for a real s, double.
@@ -19,8 +20,8 @@ class Resolvent {
  private:
   const Modal* modal_;
   T s_;
-  solve::Dense<T> lu_;             ///< empty with modes
-  std::vector<Eigen::Index> row_;  ///< that changed places with row k at step k
+  solve::Dense<T> lu_;                                   ///< empty with modes
+  boost::container::small_vector<Eigen::Index, 8> row_;  ///< that changed places with row k then
 };
 
 /// X = (s - A)^-1 B and Y = C X + D: in double and below by the block's own formula, which cancels

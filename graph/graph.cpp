@@ -263,10 +263,6 @@ int input_signal(const Graph& g, int node, int column) {
   return -1;
 }
 
-int end_signal(const Graph& graph, int node) {
-  return graph.nodes[static_cast<std::size_t>(node)].end_signal;
-}
-
 int natural_compare(std::string_view a, std::string_view b) {
   std::size_t i = 0, j = 0;
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };

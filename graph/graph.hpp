@@ -152,7 +152,9 @@ int add_input(Graph& graph, std::string name, int size, std::source_location whe
 /// The node's input signal whose first row in the block's u is `column`. O(log channels).
 int input_signal(const Graph& graph, int node, int column);
 /// First signal that is not of this node any more.
-int end_signal(const Graph& graph, int node);
+inline int end_signal(const Graph& graph, int node) {
+  return graph.nodes[static_cast<std::size_t>(node)].end_signal;
+}
 
 /// Three-way comparison in natural order: "z2" before "z10".
 int natural_compare(std::string_view a, std::string_view b);

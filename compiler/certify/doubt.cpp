@@ -36,19 +36,18 @@ bool any_lost(std::span<const double> value, std::span<const double> off, std::s
 }
 
 /// Digits may be lost of an input of a block with states.
-bool moves_in_doubt(const SystemData& d, const Instant& now, const Instant& change) {
+bool moves_in_doubt(const SystemData& d, const Signals& signals, const Instant& change) {
   const Graph& g = d.graph();
-  std::vector<double> value, off;
+  std::vector<double> off;
   for (const int i : d.layout().state_nodes)
     for (int k = g.nodes[at(i)].first_signal; k < g.nodes[at(i)].state; ++k) {
       const Signal& in = g.signals[at(k)];
       if (in.role != Signal::Role::input || !in.active) continue;
-      value.assign(at(in.size), 0);
       off.assign(at(in.size), 0);
-      now.add_value(k, value.data());
       change.add_value(k, off.data());
+      const std::span value(signals.values.data() + signals.first[at(k)], at(in.size));
       if (any_lost(value, off, at(entries_per_unit(in)), [&](Eigen::Index entry) {
-            return size_around_signal(d, now.unknowns(), k, entry);
+            return size_around_signal(d, signals.unknowns, k, entry);
           }))
         return true;
     }
@@ -84,9 +83,9 @@ bool outputs_in_doubt(const SystemData& d, const Instant& now, const Instant& ch
 
 }  // namespace
 
-bool digits_in_doubt(const SystemData& d, const Instant& now) {
+bool digits_in_doubt(const SystemData& d, const Instant& now, const Signals& signals) {
   const Instant change = now.doubt();
-  return moves_in_doubt(d, now, change) || outputs_in_doubt(d, now, change);
+  return moves_in_doubt(d, signals, change) || outputs_in_doubt(d, now, change);
 }
 
 }  // namespace titop::detail

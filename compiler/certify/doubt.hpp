@@ -1,11 +1,13 @@
 #pragma once
 
+#include <titop/compiler/certify/residual.hpp>
 #include <titop/compiler/instant.hpp>
 
 namespace titop::detail {
 
 /// Digits may be lost of what moves a state, or of an output: Instant::doubt is more than kWarn of
-/// `now` there, and more than what rounding leaves of a 0. One more solution, O(bodies).
-bool digits_in_doubt(const SystemData& d, const Instant& now);
+/// `now` there, and more than what rounding leaves of a 0. `signals`: all signals of `now`. One
+/// more solution, O(bodies).
+bool digits_in_doubt(const SystemData& d, const Instant& now, const Signals& signals);
 
 }  // namespace titop::detail

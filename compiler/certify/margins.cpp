@@ -4,6 +4,7 @@
 #include <cmath>
 #include <titop/compiler/system_data.hpp>
 #include <titop/graph/linalg/skeel.hpp>
+#include <utility>
 
 /// Well-posedness of the algebraic loops, in a number that no change of units moves.
 namespace titop::detail {
@@ -67,74 +68,91 @@ void to_own_units(const std::vector<Unit>& rows, const std::vector<Unit>& column
     }
 }
 
-/// Room for the matrices of all loops, one after the other.
-struct Room {
-  MatrixXd L = {};
-  std::vector<Unit> rows = {}, columns = {};
+/// Puts the rows of a loop, scalar row after scalar row, into its dense matrix.
+struct Filler {
+  const SystemData& d;
+  MatrixXd& L;
+  const std::vector<int>& column;  ///< first one of each signal, -1 if it is not of this loop
+  Index row = 0;
+
+  template <class Matrix>
+  void put(const Matrix& c, double sign, int signal) {
+    const Index first = column[at(signal)];
+    if (first < 0) return;
+    if (c.size() == 1)
+      L(row, first) += sign * c.coeff(0, 0);
+    else
+      L.block(row, first, c.rows(), c.cols()) += sign * c;
+  }
+  void put_identity(int signal) {
+    if (const Index first = column[at(signal)]; first >= 0)
+      for (int i = 0; i < d.graph().signals[at(signal)].size; ++i) L(row + i, first + i) += 1;
+  }
+  void equation(int index) {
+    const Equation& e = d.graph().equations[at(index)];
+    e.part.whole() ? put_identity(e.target) : put(e.part.rows, 1, e.target);
+    const int first = d.skeleton->joint.equation_coefficient[at(index)];
+    for (std::size_t k = 0; k < e.terms.size(); ++k)
+      put(*d.numbers.coefficients[at(first) + k], -1, e.terms[k].signal);
+  }
+  void block_row(int index, int output) {
+    const Node& node = d.graph().nodes[at(index)];
+    const Signal& y = d.graph().signals[at(output)];
+    put_identity(output);
+    for (int i = node.first_signal; i < node.end_signal; ++i)
+      if (const Signal& u = d.graph().signals[at(i)]; u.role == Signal::Role::input)
+        put(d.numbers.blocks[at(index)]->D.block(y.first, u.first, y.size, u.size), -1, i);
+  }
 };
 
-/// Loop matrix of one strong component: its rows and unknowns of the equations, dense, in the
-/// loop's own units. False where rows and unknowns do not match.
+/// Room for one loop after the other.
+struct Room {
+  MatrixXd L = {};
+  std::vector<int> column = {};  ///< of every signal, -1 between loops
+};
+
+/// Loop matrix of one strong component: its rows and unknowns of the equations, dense. False where
+/// rows and unknowns do not match.
 bool take_loop_matrix(const SystemData& d, const Loop& loop, Room& room) {
+  room.L.setZero(loop.unknowns, loop.unknowns);
+  int columns = 0;
+  for (const int s : loop.signals)
+    room.column[at(s)] = std::exchange(columns, columns + d.graph().signals[at(s)].size);
+  Filler fill{d, room.L, room.column};
+  for (const int r : loop.rows) {
+    const Row& q = d.skeleton->stage.rows[at(r)];
+    if (fill.row + q.size <= loop.unknowns)
+      q.equation >= 0 ? fill.equation(q.equation) : fill.block_row(q.node, q.output);
+    fill.row += q.size;
+  }
+  for (const int s : loop.signals) room.column[at(s)] = -1;
+  return fill.row == loop.unknowns;
+}
+
+void to_own_units(const SystemData& d, const Loop& loop, MatrixXd& L) {
   const Graph& g = d.graph();
-  auto& [L, rows, columns] = room;
-  rows.clear();
-  columns.clear();
-  L.setZero(loop.unknowns, loop.unknowns);
-  const auto column_of = [&](int signal) {  // -1: not of this loop, whose signals ascend
-    Eigen::Index column = 0;
-    for (const int s : loop.signals) {
-      if (s == signal) return column;
-      column += g.signals[at(s)].size;
-    }
-    return Eigen::Index{-1};
-  };
+  std::vector<Unit> rows, columns;
   for (const int signal : loop.signals)
     for (int i = 0; i < g.signals[at(signal)].size; ++i)
       columns.push_back(unit_of(g.signals[at(signal)], i));
-  Eigen::Index row = 0;
-  const auto put = [&](const auto& c, double sign, int signal) {
-    const Eigen::Index column = column_of(signal);
-    if (column < 0) return;
-    if (c.size() == 1)
-      L(row, column) += sign * c.coeff(0, 0);
-    else
-      L.block(row, column, c.rows(), c.cols()) += sign * c;
-  };
-  const auto put_identity = [&](int signal) {
-    if (const Eigen::Index column = column_of(signal); column >= 0)
-      for (int i = 0; i < g.signals[at(signal)].size; ++i) L(row + i, column + i) += 1;
-  };
   for (const int r : loop.rows) {
     const Row& q = d.skeleton->stage.rows[at(r)];
-    if (row + q.size > loop.unknowns) return false;
-    if (q.equation >= 0) {
-      const Equation& e = g.equations[at(q.equation)];
-      for (int i = 0; i < q.size; ++i) rows.push_back(unit_of(g.signals[at(e.target)], e.part, i));
-      e.part.whole() ? put_identity(e.target) : put(e.part.rows, 1, e.target);
-      const int first = d.skeleton->joint.equation_coefficient[at(q.equation)];
-      for (std::size_t k = 0; k < e.terms.size(); ++k)
-        put(*d.numbers.coefficients[at(first) + k], -1, e.terms[k].signal);
-    } else {
-      const Signal& y = g.signals[at(q.output)];
-      for (int i = 0; i < q.size; ++i) rows.push_back(unit_of(y, i));
-      put_identity(q.output);
-      for (int i = g.nodes[at(q.node)].first_signal; i < end_signal(g, q.node); ++i)
-        if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input)
-          put(d.numbers.blocks[at(q.node)]->D.block(y.first, u.first, y.size, u.size), -1, i);
-    }
-    row += q.size;
+    for (int i = 0; i < q.size; ++i)
+      if (q.equation >= 0) {
+        const Equation& e = g.equations[at(q.equation)];
+        rows.push_back(unit_of(g.signals[at(e.target)], e.part, i));
+      } else {
+        rows.push_back(unit_of(g.signals[at(q.output)], i));
+      }
   }
-  if (row != loop.unknowns) return false;
-  if (loop.unknowns > 2) to_own_units(rows, columns, L);
-  return true;
+  to_own_units(rows, columns, L);
 }
 
 /// rho(|L^-1| |L|); 1 for a single unknown, 0 where it is not found.
 double margin(const SystemData& d, const Loop& loop, Room& room) {
   if (loop.unknowns == 1) return 1;
   if (loop.unknowns > kExactUpTo || !take_loop_matrix(d, loop, room)) return 0;
-  return linalg::skeel_radius(room.L);
+  return linalg::skeel_radius(room.L, [&](MatrixXd& M) { to_own_units(d, loop, M); });
 }
 
 }  // namespace
@@ -143,6 +161,7 @@ void find_margins(const SystemData& d, std::span<const int> loops, std::vector<d
   const std::vector<Loop>& all = d.skeleton->stage.loops;
   margins.resize(all.size(), 0);
   Room room;
+  room.column.assign(d.graph().signals.size(), -1);
   for (const int i : loops) margins[at(i)] = margin(d, all[at(i)], room);
 }
 

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -11,75 +12,90 @@ namespace {
 
 using Eigen::MatrixXd;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// One equation after the other: left - right, and the sum of magnitudes, row by row.
 struct Balance {
-  Eigen::VectorXd difference = {}, magnitude = {};
+  boost::container::small_vector<double, 8> difference = {}, magnitude = {};
   const MatrixXd* part = nullptr;  ///< rows of the target; none: all of it
   int unit = 1;                    ///< entries of the target that share one; 0: not told apart
   bool known = true;
 
   void start(Eigen::Index rows, int of_target, const MatrixXd* part_of_target = nullptr) {
-    difference.setZero(rows);
-    magnitude.setZero(rows);
+    difference.assign(at(rows), 0);
+    magnitude.assign(at(rows), 0);
     unit = of_target;
     part = part_of_target;
     known = true;
   }
-  Eigen::Index rows() const { return difference.size(); }
+  std::size_t rows() const { return difference.size(); }
   /// The target's entry that row i is about.
-  Eigen::Index entry(Eigen::Index i) const {
-    if (part) part->row(i).cwiseAbs().maxCoeff(&i);
-    return i;
+  Eigen::Index entry(std::size_t i) const {
+    auto e = static_cast<Eigen::Index>(i);
+    if (part) part->row(e).cwiseAbs().maxCoeff(&e);
+    return e;
   }
 
   /// factor * c * value. Entries that share a unit count by the largest of them: what is 0 in some
   /// frame is rounding in another.
   template <class Matrix>
   void add(const Matrix& c, std::span<const double> value, int shared, double factor) {
-    for (Eigen::Index j = 0; j < c.cols(); ++j) {
-      const double x = value[static_cast<std::size_t>(j)], size = largest_with(value, j, shared);
+    if (value.size() == 1 && rows() == 1)  // scalar diagrams have hardly any others
+      return add(0, c(0, 0) * (factor * value[0]), std::abs(c(0, 0) * (factor * value[0])));
+    for (std::size_t j = 0; j < value.size(); ++j) {
+      const double x = value[j], size = largest_with(value, j, shared);
       if (size == 0 && x == 0) continue;  // not a number is neither
-      difference += c.col(j) * (factor * x);
-      magnitude += c.col(j).cwiseAbs() * (std::abs(factor) * size);
+      const double by = factor * x, by_size = std::abs(factor) * size;
+      for (std::size_t i = 0; i < rows(); ++i) {
+        const double entry = c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
+        add(i, entry * by, std::abs(entry) * by_size);
+      }
     }
   }
   void add_identity(std::span<const double> value, int shared, double factor) {
-    for (Eigen::Index j = 0; j < rows(); ++j) {
-      difference(j) += factor * value[static_cast<std::size_t>(j)];
-      magnitude(j) += std::abs(factor) * largest_with(value, j, shared);
-    }
+    if (rows() == 1) return add(0, factor * value[0], std::abs(factor * value[0]));
+    for (std::size_t i = 0; i < rows(); ++i)
+      add(i, factor * value[i], std::abs(factor) * largest_with(value, i, shared));
   }
-  static double largest_with(std::span<const double> value, Eigen::Index j, int shared) {
-    if (shared == 1) return std::abs(value[static_cast<std::size_t>(j)]);
+  void add(std::size_t row, double value, double size) {
+    difference[row] += value;
+    magnitude[row] += size;
+  }
+  static double largest_with(std::span<const double> value, std::size_t j, int shared) {
+    if (shared == 1) return std::abs(value[j]);
     double largest = 0;
-    for (const double x :
-         value.subspan(at(static_cast<int>(j)) / at(shared) * at(shared), at(shared)))
+    for (const double x : value.subspan(j / at(shared) * at(shared), at(shared)))
       largest = std::max(largest, std::abs(x));
     return largest;
   }
 
   /// Largest difference; infinite where something is not finite.
   double largest() const {
-    const double size =
-        difference.size() ? difference.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() : 0;
-    return std::isfinite(size) ? size : kInfinity;
+    double size = 0;
+    for (const double x : difference) {
+      if (!std::isfinite(x)) return kInfinity;
+      size = std::max(size, std::abs(x));
+    }
+    return size;
   }
   /// Largest share of the rows of one unit; 1 where something is not finite.
   double relative() const {
     if (largest() == kInfinity) return 1;
     double worst = 0;
-    for (Eigen::Index i = 0, end; i < rows(); i = end) {
-      for (end = i + 1; end < rows() && same_unit(i, end);) ++end;
-      const double off = difference.segment(i, end - i).cwiseAbs().maxCoeff();
-      if (off > 0) worst = std::max(worst, off / magnitude.segment(i, end - i).maxCoeff());
+    for (std::size_t i = 0; i < rows();) {
+      const std::size_t first = i;
+      double off = 0, size = 0;
+      do {
+        off = std::max(off, std::abs(difference[i]));
+        size = std::max(size, magnitude[i]);
+      } while (++i < rows() && same_unit(first, i));
+      if (off > 0) worst = std::max(worst, off / size);
     }
     return worst;
   }
-  bool same_unit(Eigen::Index i, Eigen::Index k) const {
+  bool same_unit(std::size_t i, std::size_t k) const {
     return unit == 0 || (unit > 1 && entry(i) / unit == entry(k) / unit);
   }
 };
@@ -117,9 +133,9 @@ struct Residual {
     worst = r, where = name();
   }
   bool only_rounding(int signal) const {
-    for (Eigen::Index i = 0; i < b.rows(); ++i)
-      if (const double off = std::abs(b.difference(i));
-          off > kWarn * b.magnitude(i) &&
+    for (std::size_t i = 0; i < b.rows(); ++i)
+      if (const double off = std::abs(b.difference[i]);
+          off > kWarn * b.magnitude[i] &&
           off > kLeftOfZero * size_around_signal(d, at_hand.unknowns, signal, b.entry(i)))
         return false;
     return true;
@@ -204,7 +220,7 @@ struct Residual {
     for (int i = node.first_signal; i < end; ++i) {
       const Signal& u = w.signals[at(i)];
       if (u.role != Signal::Role::input) continue;
-      const auto c = matrix.block(row, u.first, b.rows(), u.size);
+      const auto c = matrix.block(row, u.first, static_cast<Eigen::Index>(b.rows()), u.size);
       b.known = b.known && (known(i) || c.isZero(0));
       b.add(c, of(i), unit(i), -1);
     }

@@ -75,16 +75,22 @@ class Resolvents {
       keys.emplace_back(d.graph().nodes[at(nodes[k])].block.get(),
                         d.numbers.blocks[at(nodes[k])].get(), k);
     std::sort(keys.begin(), keys.end());
+    const auto is_new = [&](std::size_t i) {
+      return i == 0 || std::get<0>(keys[i]) != std::get<0>(keys[i - 1]) ||
+             std::get<1>(keys[i]) != std::get<1>(keys[i - 1]);
+    };
+    std::size_t different = 0;
+    for (std::size_t i = 0; i < keys.size(); ++i) different += is_new(i);
+    made_.reserve(different);
+    first_.reserve(different);
     of_node_.resize(nodes.size());
-    const Key* last = nullptr;
-    for (const Key& key : keys) {
-      const auto& [block, dynamics, k] = key;
-      if (!last || block != std::get<0>(*last) || dynamics != std::get<1>(*last)) {
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+      const auto& [block, dynamics, k] = keys[i];
+      if (is_new(i)) {
         made_.emplace_back(*dynamics, s);
         first_.push_back(k);
       }
       of_node_[k] = made_.size() - 1;
-      last = &key;
     }
     std::sort(first_.begin(), first_.end());
   }
@@ -110,7 +116,7 @@ double relative(const Eigen::VectorXd& value, const Eigen::VectorXd& magnitude) 
 /// The blocks' own formulas at s, which transfers are made of, against their A, B, C, D, for random
 /// inputs: of the first blocks of each type, for a type has one formula. An instant needs none.
 WrittenResidual check_responses(const SystemData& d, const Resolvents& resolvents, double s) {
-  constexpr int kOfEachType = 8;
+  constexpr int kOfEachType = 4;
   WrittenResidual result;
   SteadyRandom random;
   std::map<std::string_view, int> seen;
@@ -135,37 +141,23 @@ WrittenResidual check_responses(const SystemData& d, const Resolvents& resolvent
 
 /// [x; u] with states that each block, moved by itself at s, would make of the inputs that it has
 /// when u alone acts. What is strictly proper passes nothing on at once: blocks that rest behind it
-/// are moved by random inputs first, and then by those that this gives them, brought to size 1, for
-/// stiff blocks pass on much more than they take, and what u does must not drown. One solution, or
-/// two where blocks rest.
+/// are moved by random inputs of size 1, not by what the others would give them, for stiff blocks
+/// pass on much more than they take, and what u does must not drown. One solution.
 RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>& u,
                                    const Resolvents& resolvents) {
   const Layout& l = d.layout();
   RowMatrix<double> known = RowMatrix<double>::Zero(l.order() + u.rows(), 1), inputs;
   known.bottomRows(u.rows()) = u;
-  const auto move = [&](std::size_t k) {
-    const int i = l.state_nodes[k];
-    const Dynamics& m = *d.numbers.blocks[at(i)];
-    known.middleRows(l.state_first[at(i)], m.A.rows()) =
-        resolvents[k].times(m.B.lazyProduct(inputs));
-  };
   const Instant by_u(d, known);
-  std::vector<std::size_t> resting;
   SteadyRandom random;
   for (std::size_t k = 0; k < l.state_nodes.size(); ++k) {
-    take_inputs(d, l.state_nodes[k], by_u, inputs);
-    if (inputs.isZero(0)) {
-      resting.push_back(k);
+    const int i = l.state_nodes[k];
+    const Dynamics& m = *d.numbers.blocks[at(i)];
+    take_inputs(d, i, by_u, inputs);
+    if (inputs.isZero(0))
       for (double& x : inputs.reshaped()) x = random.next();
-    }
-    move(k);
-  }
-  if (resting.empty()) return known;
-  const Instant all_move(d, known);
-  for (const std::size_t k : resting) {
-    take_inputs(d, l.state_nodes[k], all_move, inputs);
-    if (const double size = inputs.cwiseAbs().maxCoeff(); size > 0) inputs /= size;
-    move(k);
+    known.middleRows(l.state_first[at(i)], m.A.rows()) =
+        resolvents[k].times(m.B.lazyProduct(inputs));
   }
   return known;
 }
@@ -185,7 +177,7 @@ bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Ce
   if (const auto responses = check_responses(d, resolvents, s);
       responses.worst > std::max(kWarn, written.worst))
     written = responses;
-  if (written.worst <= kWarn && digits_in_doubt(d, now)) return false;
+  if (written.worst <= kWarn && digits_in_doubt(d, now, signals)) return false;
   c.residual = written.worst;
   c.residual_where = written.where;
   c.at_instant = true;

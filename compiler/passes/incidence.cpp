@@ -8,10 +8,6 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-bool is_unknown(const Signal& s) {
-  return s.active && (s.role == Signal::Role::input || s.role == Signal::Role::output);
-}
-
 std::vector<Row> rows_of(const Graph& g) {
   std::vector<Row> rows;
   for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {

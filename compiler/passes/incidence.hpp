@@ -50,6 +50,8 @@ class Mentioned {
 std::vector<int> mentioned(const Graph& graph, const Row& row);
 
 /// True for signals that the equations determine: neither states nor external inputs.
-bool is_unknown(const Signal& signal);
+inline bool is_unknown(const Signal& s) {
+  return s.active && (s.role == Signal::Role::input || s.role == Signal::Role::output);
+}
 
 }  // namespace titop::passes

@@ -230,16 +230,6 @@ struct Builder {
 
 }  // namespace
 
-std::span<const Meaning> Joint::meaning(int signal) const {
-  const auto begin = at(meaning_begin[at(signal)]);
-  return {meanings.data() + begin, at(meaning_begin[at(signal) + 1]) - begin};
-}
-
-std::span<const Piece> Joint::row(int r) const {
-  const auto begin = at(piece_begin[at(r)]);
-  return {pieces.data() + begin, at(piece_begin[at(r) + 1]) - begin};
-}
-
 Coefficient coefficient_of(const Term& term) {
   static const auto plus = std::make_shared<const RowMatrix<double>>(RowMatrix<double>::Ones(1, 1)),
                     minus = std::make_shared<const RowMatrix<double>>(-*plus);

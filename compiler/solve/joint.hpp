@@ -55,8 +55,16 @@ struct Joint {
   std::vector<int> output_coefficient;    ///< output -> the same
   std::shared_ptr<const Plan> plan;
 
-  std::span<const Meaning> meaning(int signal) const;
-  std::span<const Piece> row(int r) const;
+  std::span<const Meaning> meaning(int signal) const { return of(signal, meanings, meaning_begin); }
+  std::span<const Piece> row(int r) const { return of(r, pieces, piece_begin); }
+
+ private:
+  template <class List>
+  static std::span<const typename List::value_type> of(int i, const List& all,
+                                                       const std::vector<int>& begin) {
+    const int* const b = begin.data() + i;
+    return {all.data() + b[0], all.data() + b[1]};
+  }
 };
 
 /// A whole equation whose terms are no targets themselves is written out (its pivot is 1 and needs

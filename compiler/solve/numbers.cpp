@@ -27,6 +27,12 @@ View<T> view(const Dense<T>& m, int row, int rows, int col, int cols) {
   return {m.data() + row + col * m.rows(), rows, cols, 1, m.rows()};
 }
 
+template <class T>
+bool is_number(const View<T>* m) {
+  return !m || (m->rows == 1 && m->cols == 1);
+}
+bool is_number(const RowMatrix<double>* m) { return !m || m->size() == 1; }
+
 /// to += sign * L
 template <class T, class L>
 void add_matrix(double sign, const View<L>& l, T* to, std::ptrdiff_t stride) {
@@ -249,10 +255,17 @@ void JointRows<T>::subtract_known(const Piece& p, const RowMatrix<T>& known,
     });
     return;
   }
-  if (p.right < 0 && p.of == Piece::Left::state)
-    return with_left(
-        p, m_, coefficients_, graph_.signals[at(p.signal)].size,
-        [&](const auto& left) { subtract_product(p.sign, left, value(p.signal), m, to); }, [] {});
+  if (p.right < 0 && p.of == Piece::Left::state) {
+    const int states = graph_.signals[at(p.signal)].size;
+    const View<T> C = view(*m_.output[at(p.left)], p.row, p.rows, 0, states);
+    if (m != 1 || p.rows > 1) return subtract_product(p.sign, C, value(p.signal), m, to);
+    const T* const x = value(p.signal);
+    T sum = to[0];
+    for (int k = 0; k < states; ++k)
+      if (x[k] != T(0)) sum -= times(x[k], p.sign) * C(0, k);
+    to[0] = sum;
+    return;
+  }
   const Dense<T> c = dense(p, m_, coefficients_, graph_.signals[at(p.signal)].size);
   const View<T> left = view(c, 0, static_cast<int>(c.rows()), 0, static_cast<int>(c.cols()));
   subtract_product(1, left, value(p.signal), m, to);
@@ -267,10 +280,16 @@ void JointRows<T>::add_value(int signal, const RowMatrix<T>& unknowns, const Row
     const T* value = v >= 0 ? unknowns.data() + joint_.plan->first[at(v)] * m
                             : known.data() + first[at(meaning.signal)] * m;
     if (meaning.coefficient >= 0) {
-      subtract_product(-1, view(*coefficients_[at(meaning.coefficient)]), value, m, to);
-      continue;
+      const RowMatrix<double>& c = *coefficients_[at(meaning.coefficient)];
+      if (m != 1 || c.size() > 1)
+        subtract_product(-1, view(c), value, m, to);
+      else if (c(0, 0) != 0)
+        to[0] += times(value[0], c(0, 0));
+    } else if (size == 1) {  // as most signals of scalar diagrams
+      to[0] += value[0];
+    } else {
+      for (std::ptrdiff_t i = 0; i < size; ++i) to[i] += value[i];
     }
-    for (std::ptrdiff_t i = 0; i < size; ++i) to[i] += value[i];
   }
 }
 
@@ -339,6 +358,16 @@ RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>&
   std::vector<double> room_of_sizes;
   by_products([&](int row, double sign, const auto* left, const RowMatrix<double>* right, int v) {
     const std::ptrdiff_t from = plan.first[at(v)] * m, to = row * m;
+    if (m == 1 && plan.structure.variable_size[at(v)] == 1 && is_number(left) &&
+        is_number(right)) {  // scalar diagrams have no others
+      T c = left ? lift<T>((*left)(0, 0)) : T(1);
+      double size = size_of(c);
+      if (right) c = times(c, (*right)(0, 0)), size *= std::abs((*right)(0, 0));
+      if (c == T(0)) return;
+      result.data()[to] -= times(c, sign) * unknowns.data()[from];
+      if (magnitudes) magnitudes->data()[to] += size * x_sizes.data()[from];
+      return;
+    }
     const std::ptrdiff_t size = (right ? right->rows() : plan.structure.variable_size[at(v)]) * m;
     subtract_products(sign, left, right, unknowns.data() + from, size, m, result.data() + to, room);
     if (magnitudes)

@@ -171,6 +171,48 @@ void eliminate_all(Plan& p, const std::vector<int>& when) {
   }
 }
 
+/// Every front right behind those below it, as they were found, with its lists: what a front takes
+/// from its children then lies near, however far apart the order of elimination visits them. What
+/// happens in a front, and so every number, stays the same.
+void in_postorder(Plan& p) {
+  const int count = static_cast<int>(p.fronts.size());
+  std::vector<char> below(at(count), 0);
+  for (const Front& f : p.fronts)
+    for (const int c : p.list(f.children)) below[at(c)] = 1;
+  std::vector<Front> fronts;
+  std::vector<int> lists, place(at(count));
+  fronts.reserve(at(count));
+  lists.reserve(p.lists.size());
+  const auto moved = [&](Front::Range range) {
+    const auto old = p.list(range);
+    lists.insert(lists.end(), old.begin(), old.end());
+    return Front::Range{static_cast<int>(lists.size()) - range.count, range.count};
+  };
+  std::vector<std::pair<int, int>> open;  // a front, and how many of its children are done
+  for (int root = 0; root < count; ++root) {
+    if (below[at(root)]) continue;
+    open.emplace_back(root, 0);
+    while (!open.empty()) {
+      auto& [front, done] = open.back();
+      Front f = p.fronts[at(front)];
+      if (done < f.children.count) {
+        open.emplace_back(p.list(f.children)[at(done++)], 0);
+        continue;
+      }
+      place[at(front)] = static_cast<int>(fronts.size());
+      f.rows = moved(f.rows);
+      f.children = moved(f.children);
+      for (int& c : std::span(lists).last(at(f.children.count))) c = place[at(c)];
+      f.pivots = moved(f.pivots);
+      f.border = moved(f.border);
+      fronts.push_back(f);
+      open.pop_back();
+    }
+  }
+  p.fronts = std::move(fronts);
+  p.lists = std::move(lists);
+}
+
 /// Where every pivot, entry and row left over stands.
 void place(Plan& p) {
   p.first.assign(p.structure.variable_size.size(), 0);
@@ -223,10 +265,6 @@ void Structure::add_row(int size, std::span<const int> over) {
   row_begin.push_back(static_cast<int>(variables.size()));
 }
 
-std::span<const int> Structure::row(int r) const {
-  return {variables.data() + row_begin[at(r)], at(row_begin[at(r) + 1] - row_begin[at(r)])};
-}
-
 namespace {
 
 double work(const Plan& p) {
@@ -249,6 +287,7 @@ Plan plan(Structure structure) {
     eliminate_all(cut, dissection(cut.structure));
     if (work(cut) < work(result)) result = std::move(cut);
   }
+  in_postorder(result);
   place(result);
   return result;
 }

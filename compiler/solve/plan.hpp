@@ -33,7 +33,10 @@ struct Structure {
 
   /// One more row group of `size` scalars over these variables, in any order, repeated or not.
   void add_row(int size, std::span<const int> over);
-  std::span<const int> row(int r) const;
+  std::span<const int> row(int r) const {
+    const int* const begin = row_begin.data() + r;
+    return {variables.data() + begin[0], variables.data() + begin[1]};
+  }
 };
 
 /// One dense front. Ranges of Plan::lists.
@@ -55,7 +58,7 @@ struct Front {
   int left_over() const { return row_count - pivot_count; }
 };
 
-/// Fronts, children before parents, and where everything stands in them.
+/// Fronts in postorder, children before parents, and where everything stands in them.
 struct Plan {
   Structure structure;
   std::vector<Front> fronts;

@@ -19,52 +19,70 @@ struct Forward {
   std::vector<const T*> assembled = {};  ///< where each row stands
   std::vector<T> rows = {};
 
-  void run(const Front& f, const typename Factors<T>::Made& made, const RowMatrix<T>& rhs) {
-    assembled.clear();
-    const auto take = [&](const T* from, int count) {
-      for (int i = 0; i < count; ++i) assembled.push_back(from + i * m);
-    };
+  /// Calls take(rows, count) for all that the front is assembled from.
+  template <class Take>
+  void assemble(const Front& f, const RowMatrix<T>& rhs, Take take) const {
     for (const int r : plan.list(f.rows))
       take(rhs.data() + plan.row_first[at(r)] * m, plan.structure.row_size[at(r)]);
     for (const int c : plan.list(f.children)) {
       const Front& child = plan.fronts[at(c)];
       take(carried.data() + child.first_carried * m, child.left_over());
     }
+  }
+
+  void run(const Front& f, const typename Factors<T>::Made& made, const RowMatrix<T>& rhs) {
+    if (m == 1) return run_one(f, made, rhs);
+    assembled.clear();
+    assemble(f, rhs, [&](const T* from, int count) {
+      for (int i = 0; i < count; ++i) assembled.push_back(from + i * m);
+    });
     rows.resize(assembled.size() * static_cast<std::size_t>(m));
     for (int i = 0; i < f.row_count; ++i)
-      copy(1, assembled[at(made.order[at(i)])], rows.data() + i * m);
+      std::copy_n(assembled[at(made.order[at(i)])], m, rows.data() + i * m);
     const int n = f.columns();
     for (int i = 1; i < f.row_count; ++i)
       subtract_rows(std::min(i, f.pivot_count), made.lu.data() + i * n, rows.data(), m,
                     rows.data() + i * m);
-    copy(f.pivot_count, rows.data(), z.data() + f.first_unknown * m);
-    copy(f.left_over(), rows.data() + f.pivot_count * m, carried.data() + f.first_carried * m);
+    std::copy_n(rows.data(), f.pivot_count * m, z.data() + f.first_unknown * m);
+    std::copy_n(rows.data() + f.pivot_count * m, f.left_over() * m,
+                carried.data() + f.first_carried * m);
   }
 
-  /// A single column is copied without asking the library for it.
-  void copy(int count, const T* from, T* to) const {
-    if (m != 1) return void(std::copy_n(from, count * m, to));
-    for (int i = 0; i < count; ++i) to[i] = from[i];
+  /// The same for a single column, whose numbers are copied at once.
+  void run_one(const Front& f, const typename Factors<T>::Made& made, const RowMatrix<T>& rhs) {
+    if (rows.size() < at(f.row_count)) rows.resize(at(f.row_count));
+    T* end = rows.data();
+    assemble(f, rhs, [&](const T* from, int count) {
+      *end++ = from[0];  // most rows of scalar diagrams are one
+      for (int i = 1; i < count; ++i) *end++ = from[i];
+    });
+    T* const pivots = z.data() + f.first_unknown;
+    T* const left = carried.data() + f.first_carried - f.pivot_count;
+    const T* l = made.lu.data();
+    for (int i = 0; i < f.row_count; ++i, l += f.columns()) {
+      T sum = rows[at(made.order[at(i)])];
+      subtract_rows(std::min(i, f.pivot_count), l, pivots, 1, &sum);
+      (i < f.pivot_count ? pivots : left)[i] = sum;
+    }
   }
 };
 
 /// Pivots of a front from its border and U, in place.
 template <class T>
 void backward(const Plan& plan, const Front& f, const typename Factors<T>::Made& made,
-              std::ptrdiff_t m, RowMatrix<T>& z) {
-  const int n = f.columns();
+              std::ptrdiff_t m, T* z) {
+  T* const pivots = z + f.first_unknown * m;
   for (int i = f.pivot_count - 1; i >= 0; --i) {
-    T* to = z.data() + (f.first_unknown + i) * m;
-    const T* u = made.lu.data() + i * n + f.pivot_count;
+    T* to = pivots + i * m;
+    const T* row = made.lu.data() + i * f.columns();
+    const T* u = row + f.pivot_count;
     for (const int v : plan.list(f.border)) {
       const int size = plan.structure.variable_size[at(v)];
-      subtract_rows(size, u, z.data() + plan.first[at(v)] * m, m, to);
+      subtract_rows(size, u, z + plan.first[at(v)] * m, m, to);
       u += size;
     }
-    subtract_rows(f.pivot_count - i - 1, made.lu.data() + i * n + i + 1,
-                  z.data() + (f.first_unknown + i + 1) * m, m, to);
-    const T& pivot = made.lu[at(i * n + i)];
-    for (std::ptrdiff_t j = 0; j < m; ++j) to[j] /= pivot;
+    subtract_rows(f.pivot_count - i - 1, row + i + 1, to + m, m, to);
+    for (std::ptrdiff_t j = 0; j < m; ++j) to[j] /= row[i];
   }
 }
 
@@ -76,7 +94,10 @@ RowMatrix<T> Factors<T>::solve(const RowMatrix<T>& rhs) const {
   Forward<T> forward{*plan_, rhs.cols(), z, carried};
   for (std::size_t i = 0; i < fronts_.size(); ++i) forward.run(plan_->fronts[i], *fronts_[i], rhs);
   for (std::size_t i = fronts_.size(); i-- > 0;)
-    backward<T>(*plan_, plan_->fronts[i], *fronts_[i], rhs.cols(), z);
+    if (rhs.cols() == 1)  // known to the compiler
+      backward<T>(*plan_, plan_->fronts[i], *fronts_[i], 1, z.data());
+    else
+      backward<T>(*plan_, plan_->fronts[i], *fronts_[i], rhs.cols(), z.data());
   return z;
 }
 

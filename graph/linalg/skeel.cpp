@@ -1,9 +1,14 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <bitset>
 #include <boost/container/small_vector.hpp>
 #include <boost/dynamic_bitset.hpp>
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
 #include <titop/graph/linalg/skeel.hpp>
 #include <titop/graph/linalg/wide.hpp>
 
@@ -166,83 +171,140 @@ RowMatrix product_of_sizes(const RowMatrix& a, const RowMatrix& b) {
   return result;
 }
 
+/// p = mantissa * 2^exponent. The larger of p and 1/p is the same ring, turned round.
+double skeel_radius_of_ring(Eigen::Index n, double mantissa, int exponent) {
+  double p = std::ldexp(mantissa, exponent);
+  if (std::abs(p) > 1) p = std::ldexp(1 / mantissa, -exponent);
+  const double c = std::pow(std::abs(p), 1 / static_cast<double>(n));
+  double sum = 0;
+  for (Eigen::Index k = 0; k < n; ++k) sum = 1 + c * sum;
+  return p == 1 ? 0 : (1 + c) * sum / std::abs(1 - p);
+}
+
+/// Some of up to 128 rows or columns.
+struct Set {
+  std::array<std::uint64_t, 2> bits = {};
+
+  static Set first(Eigen::Index n) {
+    Set s;
+    for (Eigen::Index i = 0; i < n; ++i) s.put(i);
+    return s;
+  }
+  void put(Eigen::Index i) { bits[word(i)] |= bit(i); }
+  void drop(Eigen::Index i) { bits[word(i)] &= ~bit(i); }
+  bool has(Eigen::Index i) const { return bits[word(i)] & bit(i); }
+  bool empty() const { return (bits[0] | bits[1]) == 0; }
+  /// Exactly one; exactly two. Not by counting bits, for which old machines have no instruction.
+  bool one() const { return !empty() && without_front().empty(); }
+  bool two() const { return !empty() && without_front().one(); }
+  /// The first, where there is one.
+  Eigen::Index front() const {
+    return bits[0] ? std::countr_zero(bits[0]) : 64 + std::countr_zero(bits[1]);
+  }
+  Set without_front() const {
+    const std::uint64_t a = bits[0], b = bits[1];
+    return a ? Set{{a & (a - 1), b}} : Set{{a, b & (b - 1)}};
+  }
+  /// Where there are two: the other one.
+  Eigen::Index other_than(Eigen::Index i) const {
+    Set s = *this;
+    s.drop(i);
+    return s.front();
+  }
+  friend Set operator&(const Set& a, const Set& b) {
+    return {{a.bits[0] & b.bits[0], a.bits[1] & b.bits[1]}};
+  }
+
+ private:
+  static std::size_t word(Eigen::Index i) { return static_cast<std::size_t>(i) / 64; }
+  static std::uint64_t bit(Eigen::Index i) { return std::uint64_t{1} << (i % 64); }
+};
+
 /// Peels off rows and columns with a single entry, again and again: M is block triangular, and what
 /// goes stands on its diagonal by itself, where the radius is 1.
 class Peeled {
  public:
   using List = boost::container::small_vector<Eigen::Index, kSmall>;
 
-  explicit Peeled(const MatrixXd& M) : M_(M), in_row_(at(M.rows())), in_col_(at(M.rows())) {
-    for (Eigen::Index j = 0; j < M.cols(); ++j)
-      for (Eigen::Index i = 0; i < M.rows(); ++i)
-        if (M(i, j) != 0) ++in_row_[at(i)], ++in_col_[at(j)];
+  explicit Peeled(const MatrixXd& M)
+      : M_(M),
+        n_(M.rows()),
+        left_(n_),
+        in_row_(static_cast<std::size_t>(n_)),
+        in_col_(static_cast<std::size_t>(n_)),
+        rows_(Set::first(n_)),
+        cols_(rows_) {
+    const double* entry = M.data();
+    for (Eigen::Index j = 0; j < n_; ++j)
+      for (Eigen::Index i = 0; i < n_; ++i)
+        if (*entry++ != 0) of(in_row_, i).put(j), of(in_col_, j).put(i);
     for (bool more = true; more;) {
       more = false;
-      for (Eigen::Index i = 0; i < M.rows(); ++i)
-        if (in_row_[at(i)] == 1) more = take(i, column_of(i));
-      for (Eigen::Index j = 0; j < M.cols(); ++j)
-        if (in_col_[at(j)] == 1) more = take(row_of(j), j);
+      for (Eigen::Index i = 0; i < n_; ++i)
+        if (rows_.has(i) && row(i).one()) more = take(i, row(i).front());
+      for (Eigen::Index j = 0; j < n_; ++j)
+        if (cols_.has(j) && col(j).one()) more = take(col(j).front(), j);
     }
   }
   /// Nothing is left in some row or column.
   bool singular() const {
-    return std::count(in_row_.begin(), in_row_.end(), 0) > 0 ||
-           std::count(in_col_.begin(), in_col_.end(), 0) > 0;
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if ((rows_.has(i) && row(i).empty()) || (cols_.has(i) && col(i).empty())) return true;
+    return false;
   }
-  bool whole() const { return taken_ == 0; }
-  List rows() const { return left(in_row_); }
-  List cols() const { return left(in_col_); }
+  bool whole() const { return left_ == n_; }
+  bool empty() const { return left_ == 0; }
+  List rows() const { return list(rows_); }
+  List cols() const { return list(cols_); }
+
+  /// Of what is left, if that is one ring, in which every unknown stands in its own row and in the
+  /// next one's only: (1 + c)(1 + c + ... + c^(n-1)) / |1 - p|, p the product of the n gains and c
+  /// = |p|^(1/n). Others: nothing.
+  std::optional<double> radius_of_ring() const {
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if ((rows_.has(i) && !row(i).two()) || (cols_.has(i) && !col(i).two())) return {};
+    // Along the ring: from a row's own entry to its other one, and up or down to the next row.
+    const Eigen::Index start = rows_.front();
+    Eigen::Index i = start, own = row(start).front(), n = 0;
+    double mantissa = 1;
+    int exponent = 0;
+    do {
+      const Eigen::Index next = row(i).other_than(own);
+      int e = 0, e_own = 0;
+      mantissa *= std::frexp(-M_(i, next), &e) / std::frexp(M_(i, own), &e_own);
+      exponent += e - e_own;
+      i = col(next).other_than(i), own = next, ++n;
+    } while (i != start);
+    if (n != left_) return {};  // several rings
+    return skeel_radius_of_ring(n, mantissa, exponent);
+  }
 
  private:
-  static constexpr int kTaken = -1;
-  static std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
+  using Sets = boost::container::small_vector<Set, kSmall>;
 
-  Eigen::Index column_of(Eigen::Index row) const {
-    Eigen::Index j = 0;
-    while (in_col_[at(j)] == kTaken || M_(row, j) == 0) ++j;
-    return j;
-  }
-  Eigen::Index row_of(Eigen::Index column) const {
-    Eigen::Index i = 0;
-    while (in_row_[at(i)] == kTaken || M_(i, column) == 0) ++i;
-    return i;
-  }
-  bool take(Eigen::Index row, Eigen::Index column) {
-    in_row_[at(row)] = in_col_[at(column)] = kTaken;
-    for (Eigen::Index i = 0; i < M_.rows(); ++i)
-      if (in_row_[at(i)] != kTaken && M_(i, column) != 0) --in_row_[at(i)];
-    for (Eigen::Index j = 0; j < M_.cols(); ++j)
-      if (in_col_[at(j)] != kTaken && M_(row, j) != 0) --in_col_[at(j)];
-    ++taken_;
+  static Set& of(Sets& sets, Eigen::Index i) { return sets[static_cast<std::size_t>(i)]; }
+  Set row(Eigen::Index i) const { return in_row_[static_cast<std::size_t>(i)] & cols_; }
+  Set col(Eigen::Index j) const { return in_col_[static_cast<std::size_t>(j)] & rows_; }
+  bool take(Eigen::Index i, Eigen::Index j) {
+    rows_.drop(i);
+    cols_.drop(j);
+    --left_;
     return true;
   }
-  using Counts = boost::container::small_vector<int, kSmall>;
-  static List left(const Counts& counts) {
-    List list;
-    for (std::size_t i = 0; i < counts.size(); ++i)
-      if (counts[i] != kTaken) list.push_back(static_cast<Eigen::Index>(i));
-    return list;
+  List list(const Set& set) const {
+    List result;
+    for (Eigen::Index i = 0; i < n_; ++i)
+      if (set.has(i)) result.push_back(i);
+    return result;
   }
 
   const MatrixXd& M_;
-  Counts in_row_, in_col_;
-  int taken_ = 0;
+  Eigen::Index n_, left_;
+  Sets in_row_, in_col_;  ///< entries
+  Set rows_, cols_;       ///< that are left
 };
 
-/// [a, b; c, d]: (1 + sqrt|t|)^2 / |1 - t|, t = bc/ad or its inverse, whichever is below 1.
-double skeel_radius_of_two(const MatrixXd& M) {
-  const bool diagonal = M(0, 0) != 0 && M(1, 1) != 0;
-  double t = diagonal ? (M(0, 1) / M(0, 0)) * (M(1, 0) / M(1, 1)) : 2;
-  if (!(std::abs(t) <= 1)) {
-    if (M(0, 1) == 0 || M(1, 0) == 0) return 0;
-    t = (M(0, 0) / M(0, 1)) * (M(1, 1) / M(1, 0));
-  }
-  const double sum = 1 + std::sqrt(std::abs(t));
-  return t == 1 ? 0 : sum * sum / std::abs(1 - t);
-}
-
 double skeel_radius_of_core(const MatrixXd& M) {
-  if (M.rows() == 2) return skeel_radius_of_two(M);
   if (M.rows() > kSmall) {
     const RowMatrix inverse = inverse_by_rows<RowMatrix>(M);
     if (inverse.size() == 0) return 0;
@@ -264,13 +326,22 @@ double skeel_radius_of_core(const MatrixXd& M) {
 
 }  // namespace
 
-double skeel_radius(const MatrixXd& M) {
-  if (M.rows() == 2) return skeel_radius_of_two(M);
+double skeel_radius(MatrixXd& M, const std::function<void(MatrixXd&)>& scale) {
+  if (M.rows() != M.cols() || M.rows() > 128)
+    throw std::invalid_argument("skeel_radius: a square matrix of up to 128 rows");
   const Peeled peeled(M);
   if (peeled.singular()) return 0;
+  if (peeled.empty()) return 1;
+  if (const auto ring = peeled.radius_of_ring()) return *ring;
+  if (scale) scale(M);
   if (peeled.whole()) return skeel_radius_of_core(M);
   const auto rows = peeled.rows();
-  return rows.empty() ? 1 : skeel_radius_of_core(M(rows, peeled.cols()));
+  return skeel_radius_of_core(M(rows, peeled.cols()));
+}
+
+double skeel_radius(const MatrixXd& M) {
+  MatrixXd copy = M;
+  return skeel_radius(copy, {});
 }
 
 }  // namespace titop::linalg

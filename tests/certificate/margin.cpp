@@ -1,7 +1,12 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <random>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/skeel.hpp>
+#include <vector>
 
 using Eigen::MatrixXd;
 using titop::linalg::skeel_radius;
@@ -44,7 +49,7 @@ TEST_CASE("Margin of two unknowns that feed each other: as by hand, whatever the
     }
 }
 
-TEST_CASE("Margin of a ring of n equal gains: as by hand, by squaring and by iteration") {
+TEST_CASE("Margin of a ring of n equal gains: as by hand") {
   for (const int n : {3, 5, 12, 13, 40})
     for (const double a : {0.25, -0.9, 3.0}) {
       INFO("n = ", n, ", a = ", a);
@@ -52,6 +57,47 @@ TEST_CASE("Margin of a ring of n equal gains: as by hand, by squaring and by ite
       for (int i = 0; i < n; ++i) L(i, (i + 1) % n) = -a;
       within(skeel_radius(L), of_ring(n, std::pow(a, n)));
     }
+}
+
+TEST_CASE("Margin of a ring: as by hand in any units, in any order, beside another ring") {
+  std::mt19937 random(7);
+  for (const int n : {2, 3, 6, 13, 60})
+    for (const double product : {-0.7, 1e-9, 0.999, 40.0}) {
+      CAPTURE(n);
+      CAPTURE(product);
+      // Units of the unknowns up to 250 orders of magnitude apart, of the equations as well.
+      std::vector<int> order(static_cast<std::size_t>(n));
+      std::iota(order.begin(), order.end(), 0);
+      std::shuffle(order.begin(), order.end(), random);
+      Eigen::VectorXd row(n), column(n);
+      for (double& x : row) x = std::ldexp(1, static_cast<int>(random() % 800) - 400);
+      for (double& x : column) x = std::ldexp(1, static_cast<int>(random() % 800) - 400);
+      MatrixXd L = MatrixXd::Zero(n, n);
+      for (int i = 0; i < n; ++i) {
+        const int r = order[static_cast<std::size_t>(i)], next = (i + 1) % n;
+        L(r, i) += row(r) * column(i);
+        L(r, next) += (i == 0 ? -product : -1) * row(r) * column(next);
+      }
+      within(skeel_radius(L), of_ring(n, product));
+      MatrixXd two = MatrixXd::Zero(n + 3, n + 3);
+      two.topLeftCorner(n, n) =
+          row.cwiseInverse().asDiagonal() * L * column.cwiseInverse().asDiagonal();
+      two.bottomRightCorner(3, 3) << 1, -0.2, 0, 0, 1, -0.2, -0.2, 0, 1;
+      if (n > 2) within(skeel_radius(two), std::max(of_ring(n, product), of_ring(3, 0.008)));
+    }
+}
+
+TEST_CASE("Margin of what is no ring: the largest eigenvalue, as Eigen finds it") {
+  std::srand(3);
+  for (const int n : {3, 4, 7, 12, 13, 30}) {
+    CAPTURE(n);
+    const MatrixXd L = MatrixXd::Random(n, n) + MatrixXd::Identity(n, n);
+    const MatrixXd product = L.inverse().cwiseAbs() * L.cwiseAbs();
+    const double radius =
+        Eigen::EigenSolver<MatrixXd>(product, false).eigenvalues().cwiseAbs().maxCoeff();
+    CHECK(skeel_radius(L) >= radius * (1 - 1e-9));
+    CHECK(skeel_radius(L) <= radius * (1 + kLoose));
+  }
 }
 
 TEST_CASE("Margin of a loop that a zero cuts open is 1, in any order of its unknowns") {

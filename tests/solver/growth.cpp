@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "sparse_system.hpp"
@@ -75,6 +76,26 @@ TEST_CASE("solver: a star takes one front per arm, with few rows") {
   const Plan p = plan(structure_of(star(200), std::vector<int>(200, 6)));
   CHECK(p.fronts.size() <= 200);
   for (const Front& f : p.fronts) CHECK(f.row_count <= 4 * 6);
+}
+
+TEST_CASE("solver: what stands below a front stands right before it") {
+  Rng rng(4);
+  for (const auto& [links, n] : {std::pair(tree(300, rng), 300), std::pair(star(40), 40),
+                                 std::pair(grid(9, 9), 81), std::pair(ring(50), 50)}) {
+    const Plan p = plan(structure_of(links, std::vector<int>(at(n), 6)));
+    std::vector<int> below(p.fronts.size(), 0);  // fronts, those below these included
+    for (std::size_t f = 0; f < p.fronts.size(); ++f) {
+      std::vector<int> children(p.list(p.fronts[f].children).begin(),
+                                p.list(p.fronts[f].children).end());
+      std::sort(children.begin(), children.end());
+      int next = static_cast<int>(f);
+      for (auto c = children.rbegin(); c != children.rend(); ++c) {
+        CHECK(*c == next - 1);
+        next = *c - below[at(*c)];
+        below[f] += 1 + below[at(*c)];
+      }
+    }
+  }
 }
 
 TEST_CASE("solver: every scalar is eliminated once, children before their parents") {
