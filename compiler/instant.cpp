@@ -37,11 +37,7 @@ void Instant::add_value(int signal, double* to) const {
 }
 
 RowMatrix<double> Instant::values(std::span<const int> first) const {
-  const Graph& g = data_.graph();
-  RowMatrix<double> result = RowMatrix<double>::Zero(first.back(), known_.cols());
-  for (int i = 0; i < static_cast<int>(g.signals.size()); ++i)
-    add_value(i, result.data() + first[at(i)] * known_.cols());
-  return result;
+  return rows_.values(unknowns_, known_, data_.layout().known_first, first);
 }
 
 RowMatrix<double> Instant::xdot() const {

@@ -294,6 +294,15 @@ void JointRows<T>::add_value(int signal, const RowMatrix<T>& unknowns, const Row
 }
 
 template <class T>
+RowMatrix<T> JointRows<T>::values(const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
+                                  std::span<const int> first, std::span<const int> place) const {
+  RowMatrix<T> result = RowMatrix<T>::Zero(place.back(), known.cols());
+  for (int i = 0; i < static_cast<int>(graph_.signals.size()); ++i)
+    add_value(i, unknowns, known, first, result.data() + place[at(i)] * known.cols());
+  return result;
+}
+
+template <class T>
 RowMatrix<T> JointRows<T>::rhs_of_states(const RowMatrix<T>& states, std::span<const int> first,
                                          const std::vector<const Eigen::MatrixXd*>& output) const {
   const Plan& plan = *joint_.plan;

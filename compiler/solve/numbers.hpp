@@ -52,6 +52,10 @@ class JointRows : public Rows<T> {
   void add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
                  std::span<const int> first, T* to) const;
 
+  /// All signals, one below the other: signal i from row place[i] on; place[signals] is the end.
+  RowMatrix<T> values(const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
+                      std::span<const int> first, std::span<const int> place) const;
+
  private:
   /// A state, at one s.
   bool written_out(const Piece& p) const {

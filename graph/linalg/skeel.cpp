@@ -171,10 +171,31 @@ RowMatrix product_of_sizes(const RowMatrix& a, const RowMatrix& b) {
   return result;
 }
 
-/// p = mantissa * 2^exponent. The larger of p and 1/p is the same ring, turned round.
-double skeel_radius_of_ring(Eigen::Index n, double mantissa, int exponent) {
-  double p = std::ldexp(mantissa, exponent);
-  if (std::abs(p) > 1) p = std::ldexp(1 / mantissa, -exponent);
+/// A product of quotients that may overflow on the way: value * 2^exponent.
+struct Quotient {
+  double value = 1;
+  int exponent = 0;
+
+  void multiply(double numerator, double denominator) {
+    if (const double q = numerator / denominator; is_usual(q)) {
+      value *= q;
+    } else {
+      int up = 0, down = 0;
+      value *= std::frexp(numerator, &up) / std::frexp(denominator, &down);
+      exponent += up - down;
+    }
+    if (is_usual(value)) return;
+    int e = 0;
+    value = std::frexp(value, &e);
+    exponent += e;
+  }
+  static bool is_usual(double x) { return std::abs(x) > 1e-150 && std::abs(x) < 1e150; }
+};
+
+/// p and 1/p belong to the same ring, turned round.
+double skeel_radius_of_ring(Eigen::Index n, const Quotient& product) {
+  double p = std::ldexp(product.value, product.exponent);
+  if (std::abs(p) > 1) p = std::ldexp(1 / product.value, -product.exponent);
   const double c = std::pow(std::abs(p), 1 / static_cast<double>(n));
   double sum = 0;
   for (Eigen::Index k = 0; k < n; ++k) sum = 1 + c * sum;
@@ -266,17 +287,14 @@ class Peeled {
     // Along the ring: from a row's own entry to its other one, and up or down to the next row.
     const Eigen::Index start = rows_.front();
     Eigen::Index i = start, own = row(start).front(), n = 0;
-    double mantissa = 1;
-    int exponent = 0;
+    Quotient product;
     do {
       const Eigen::Index next = row(i).other_than(own);
-      int e = 0, e_own = 0;
-      mantissa *= std::frexp(-M_(i, next), &e) / std::frexp(M_(i, own), &e_own);
-      exponent += e - e_own;
+      product.multiply(-M_(i, next), M_(i, own));
       i = col(next).other_than(i), own = next, ++n;
     } while (i != start);
     if (n != left_) return {};  // several rings
-    return skeel_radius_of_ring(n, mantissa, exponent);
+    return skeel_radius_of_ring(n, product);
   }
 
  private:
