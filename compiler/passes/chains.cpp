@@ -90,40 +90,50 @@ struct Checker {
   std::vector<Mistake> mistakes = {};
   std::vector<Note> notes = {};
 
-  void check(const Closing& c) {
+  std::string target(const Closing& c) const {
+    return name_of(g, g.equations[at(c.tie->equation)].target);
+  }
+  void refuse(const Closing& c, std::string what, std::string hint) {
     const Equation& e = g.equations[at(c.tie->equation)];
-    const auto refuse = [&](std::string what, std::string hint) {
-      mistakes.push_back({Code::kinematic_loop,
-                          std::move(what),
-                          {fmt::format("{:<50} {}", print(g, e), to_string(e.where)),
-                           "the chain: " + way(motion, c)},
-                          std::move(hint)});
-    };
+    mistakes.push_back({Code::kinematic_loop,
+                        std::move(what),
+                        {fmt::format("{:<50} {}", print(g, e), to_string(e.where)),
+                         "the chain: " + way(motion, c)},
+                        std::move(hint)});
+  }
+
+  /// What is on the way says where its ports are, and how they move.
+  void check_blocks(const Closing& c) {
     if (const int node = motion.silent(c.chain); node >= 0)
-      return refuse(fmt::format("{} closes a chain through {}, which does not say where its ports "
+      return refuse(c,
+                    fmt::format("{} closes a chain through {}, which does not say where its ports "
                                 "are",
-                                name_of(g, e.target), g.nodes[at(node)].name),
+                                target(c), g.nodes[at(node)].name),
                     "give its block kinematics() (README: how to add a block), or open one joint");
     for (const auto& [column, matrix] : c.form)
       if (column.kind == Column::Kind::states)
         for (Index j = 0; j < matrix.cols(); ++j)
           if (!matrix.col(j).isZero(0) && coordinates.rate_of(column.id, static_cast<int>(j)) < 0)
             return refuse(
+                c,
                 fmt::format(
                     "{} closes a chain through {}, whose state {} has no rate among its "
                     "states",
-                    name_of(g, e.target), g.nodes[at(column.id)].name,
+                    target(c), g.nodes[at(column.id)].name,
                     g.nodes[at(column.id)].block->interface().states[static_cast<std::size_t>(j)]),
                 "positions in kinematics() must be states whose derivatives are states too");
+  }
+
+  void check_gap(const Closing& c) {
     if (c.gap > kGap)
-      refuse(fmt::format("{} closes a chain that does not meet: off by {:.1e} of its size",
-                         name_of(g, e.target), c.gap),
+      refuse(c,
+             fmt::format("{} closes a chain that does not meet: off by {:.1e} of its size",
+                         target(c), c.gap),
              "look at the lengths and rotations around the chain; joints hold at the posture that "
              "the rotations give");
     else if (c.gap > kExactGap)
-      notes.push_back(
-          {Note::Kind::warning, "chains",
-           fmt::format("{} closes its chain to {:.1e} only", name_of(g, e.target), c.gap)});
+      notes.push_back({Note::Kind::warning, "chains",
+                       fmt::format("{} closes its chain to {:.1e} only", target(c), c.gap)});
   }
 };
 
@@ -243,21 +253,39 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
 
 }  // namespace
 
+namespace {
+
+/// Equations that close a chain, and are in use.
+std::vector<Closing> closings_of(const Graph& g, const Motion& motion) {
+  std::vector<Closing> result;
+  for (const Tie& tie : motion.ties())
+    if (tie.closes && g.equations[at(tie.equation)].active) result.push_back(motion.closing(tie));
+  return result;
+}
+
+/// Throws what is wrong with the chains; notes what is narrow.
+void check_chains(Stage& stage, const Twins& twins, const Motion& motion,
+                  const std::vector<Closing>& closings) {
+  const Coordinates coordinates(stage.graph, stage.values);
+  Checker blocks{stage.graph, motion, coordinates};
+  for (const Closing& c : closings) blocks.check_blocks(c);
+  if (!blocks.mistakes.empty()) throw Error(std::move(blocks.mistakes));
+  const Motion geometry(stage.graph, stage.values, twins, Ground::last);
+  Checker gaps{stage.graph, geometry, coordinates};
+  for (const Closing& c : closings_of(stage.graph, geometry)) gaps.check_gap(c);
+  if (!gaps.mistakes.empty()) throw Error(std::move(gaps.mistakes));
+  stage.notes.insert(stage.notes.end(), gaps.notes.begin(), gaps.notes.end());
+}
+
+}  // namespace
+
 Stage chains(Stage stage) {
   if (!Quick{stage.graph}.closes(stage.values)) return stage;
   stage.closes = true;
   const Twins twins(stage.graph);
   const Motion motion(stage.graph, stage.values, twins);
-  const Coordinates coordinates(stage.graph, stage.values);
-  Checker checker{stage.graph, motion, coordinates};
-  std::vector<Closing> closings;
-  for (const Tie& tie : motion.ties()) {
-    if (!tie.closes || !stage.graph.equations[at(tie.equation)].active) continue;
-    closings.push_back(motion.closing(tie));
-    checker.check(closings.back());
-  }
-  if (!checker.mistakes.empty()) throw Error(std::move(checker.mistakes));
-  stage.notes.insert(stage.notes.end(), checker.notes.begin(), checker.notes.end());
+  const std::vector<Closing> closings = closings_of(stage.graph, motion);
+  check_chains(stage, twins, motion, closings);
   stage.chained = !closings.empty();
   if (stage.chained) hold_still(stage, motion, closings, release_redundant(stage, closings));
   return stage;

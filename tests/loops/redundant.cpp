@@ -176,3 +176,35 @@ TEST_CASE(
   d.output("a", 6) = A.child("near").accel;
   CHECK(compile(d).transfer({0, 1}).isZero(0));
 }
+
+TEST_CASE("a chain that does not meet is refused, whatever the name of a spring beside it") {
+  // A table on two legs that stand on the ground, and a spring from it to the ground.
+  const auto table = [](const char* spring, double low) {
+    Diagram d{"table"};
+    auto base = d.add("base", RigidBody{.children = {{"C1"}, {"C2", {0, 1, low}}}});
+    auto top = d.add("top", RigidBody{.mass = 3,
+                                      .inertia = Eigen::Matrix3d::Identity(),
+                                      .children = {{"S", {0, 1, 0}}, {"C", {0.3, 0.2, 0.1}}}});
+    auto held = d.add(spring, Bushing{.stiffness = 100 * by_hand::Matrix6::Identity()});
+    const RigidBody leg{.mass = 0.1,
+                        .inertia = 0.01 * Eigen::Matrix3d::Identity(),
+                        .children = {{"end", {0, 0, 1}}}};
+    auto one = d.add("leg1", leg), two = d.add("leg2", leg);
+    ground(base), mount(held, top.child("C")), ground(held.child);
+    joint(d, "foot1", one, base.child("C1"), {}, ball());
+    joint(d, "foot2", two, base.child("C2"), {}, ball());
+    joint(d, "head1", top, one.child, {}, ball());
+    auto head = d.add("head2", Joint{ball()});
+    mount(head, two.child), weld(top.child("S"), head.child);
+    for (const char* axis : {"rx", "ry", "rz"}) head.axis(axis).force = 0;
+    top.child("C").force += d.input("U", 6);
+    d.output("a", 6) = top.parent.accel;
+    return d;
+  };
+  for (const char* name : {"a", "foot15", "head15", "leg15", "z"}) {
+    CAPTURE(name);
+    CHECK(titop_test::compile_error(table(name, 0)).mistakes().empty());
+    CHECK(titop_test::says(titop_test::compile_error(table(name, 0.1)), Code::kinematic_loop,
+                           {"closes a chain that does not meet"}));
+  }
+}

@@ -55,7 +55,9 @@ struct Stand {
     const double l = units.length, m = units.mass;
     auto U = d.input("U", 6);
     const Param mu = d.param("mu", 0.0), softer = d.param("softer", 1.0);
-    auto base = d.add("base", RigidBody{.children = {{"C"}, {"C2"}}});
+    // The second strut stands beside the first as S stands beside P.
+    const Vector3d beside = about(turns.axis, turns.foot) * about(turns.axis, turns.head) * kPS;
+    auto base = d.add("base", RigidBody{.children = {{"C"}, {"C2", l * beside}}});
     auto body = d.add("body", RigidBody{.mass = kBody * m,
                                         .inertia = m * l * l * Matrix3d(kInertia.asDiagonal()),
                                         .PA = l * kPA,

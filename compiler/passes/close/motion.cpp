@@ -35,11 +35,11 @@ double relative_gap(const MatrixXd& gap, const MatrixXd& sizes) {
 
 }  // namespace
 
-Motion::Motion(const Graph& graph, ParameterValues values, const Twins& twins)
+Motion::Motion(const Graph& graph, ParameterValues values, const Twins& twins, Ground ground)
     : g_(graph), ground_(static_cast<int>(graph.channels.size())), at_point_(at(ground_) + 1) {
   add_bodies(values);
   add_ties(twins);
-  plant();
+  plant(ground);
 }
 
 std::string Motion::name(int point) const {
@@ -132,7 +132,7 @@ Motion::Edge Motion::reversed(const Edge& e) const {
   return r;
 }
 
-void Motion::plant() {
+void Motion::plant(Ground ground) {
   UnionFind joined(ground_ + 1);
   std::vector<char> one_way(at(ground_) + 1, 0);
   const auto join = [&](int e) {
@@ -144,15 +144,19 @@ void Motion::plant() {
     join(e);
     if (edges_[at(e)].one_way && edges_[at(e)].from != ground_) one_way[at(edges_[at(e)].to)] = 1;
   }
-  for (Tie& tie : ties_) {
+  const auto take = [&](Tie& tie) {
     auto edge = edge_of(tie);
     // A point that only its own body can place is never the way to anything else.
     tie.closes = !edge || one_way[at(edge->to)] || one_way[at(edge->from)] ||
                  joined.find(edge->to) == joined.find(edge->from);
-    if (tie.closes) continue;
+    if (tie.closes) return;
     edges_.push_back(std::move(*edge));
     join(static_cast<int>(edges_.size()) - 1);
-  }
+  };
+  for (Tie& tie : ties_)
+    if (ground == Ground::by_name || !tie.points.empty()) take(tie);
+  for (Tie& tie : ties_)
+    if (ground == Ground::last && tie.points.empty()) take(tie);
   up_.assign(at(ground_) + 1, {});
   depth_.assign(at(ground_) + 1, -1);
   root_.assign(at(ground_) + 1, -1);

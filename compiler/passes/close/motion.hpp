@@ -27,12 +27,17 @@ struct Closing {
   std::vector<int> equations = {};  ///< ties on the way round, this one too
 };
 
+/// When a spanning forest takes what stands on the ground. `last`: a chain that closes without the
+/// ground is then seen as one, whatever the names; the ground itself has no geometry.
+enum class Ground { by_name, last };
+
 /// Points (channels) and the ground, joined by bodies and by equations: a spanning forest, body
 /// edges first, so that only equations ever close a chain; then equations by name, those against a
 /// block's default direction last.
 class Motion {
  public:
-  Motion(const Graph& graph, ParameterValues values, const Twins& twins);
+  Motion(const Graph& graph, ParameterValues values, const Twins& twins,
+         Ground ground = Ground::by_name);
 
   const std::vector<Tie>& ties() const { return ties_; }
   /// Both ways from the tie to where they meet: what lies beyond the chain is exactly 0.
@@ -65,7 +70,7 @@ class Motion {
   void add_ties(const Twins& twins);
   std::optional<Edge> edge_of(const Tie& tie) const;
   Edge reversed(const Edge& edge) const;
-  void plant();
+  void plant(Ground ground);
   int meeting(int a, int b) const;
   bool rigid_between(int point, int above) const;
   /// The ties between a point and one above it (-1: the root).
