@@ -13,7 +13,7 @@ concept HasParent = requires(const Handle& body) {
 };
 
 namespace detail {
-/// child.accel = T_ba^-1 site.accel, site.force += sign * T_ba child.force. The frames of T_ba are
+/// child.accel = T_ba^-1 site.accel, site.force += sign * T_ba child_force. The frames of T_ba are
 /// named after the two nodes if it has no names of its own.
 void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, SignalRef site_force,
            const Rotation& T_ba, const std::source_location& at, double sign = 1);
@@ -22,23 +22,24 @@ void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location
 
 /// Fixes `body` (frame a, at its parent point P) to the child point `site` of another body (frame
 /// b): same motion there, wrench back. T_ba: components in frame a to components in frame b.
-///     body.parent.accel = T_ba^-1 * site.accel;   site.force += T_ba * body.parent.force;
+///     body.parent.accel = T_ba^-1 * site.accel;   site.force += T_ba * body.parent.reaction;
+/// What the user adds to body.parent.force acts on the body, from outside: `+= -U` is a wrench U.
 template <class Handle>
   requires HasParent<Handle, 6>
 void mount(const Handle& body, const DualPort<6>& site, const Rotation& T_ba = {},
            std::source_location at = std::source_location::current()) {
-  detail::mount(body.parent.accel, body.parent.force, site.accel, site.force, T_ba, at);
+  detail::mount(body.parent.accel, body.parent.reaction, site.accel, site.force, T_ba, at);
 }
 
-/// The same on a single axis: body.parent.accel = site.accel; site.force += body.parent.force. The
-/// site may be one axis of a point with six degrees of freedom: `mount(z, hub.child("C").along(r))`
-/// hangs a spring-mass on it that moves along r, `.about(r)` one that turns about r (then with an
-/// inertia [kg m^2] for a mass). What it weighs is felt along r only.
+/// The same on a single axis: body.parent.accel = site.accel; site.force += body.parent.reaction.
+/// The site may be one axis of a point with six degrees of freedom: `mount(z,
+/// hub.child("C").along(r))` hangs a spring-mass on it that moves along r, `.about(r)` one that
+/// turns about r (then with an inertia [kg m^2] for a mass). What it weighs is felt along r only.
 template <class Handle>
   requires HasParent<Handle, 1>
 void mount(const Handle& body, const DualPort<1>& site,
            std::source_location at = std::source_location::current()) {
-  detail::mount(body.parent.accel, body.parent.force, site.accel, site.force, {}, at);
+  detail::mount(body.parent.accel, body.parent.reaction, site.accel, site.force, {}, at);
 }
 
 namespace detail {

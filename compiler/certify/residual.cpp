@@ -159,13 +159,14 @@ struct Residual {
     const double factor = t.of == Term::Of::position ? -1.0 / (at_hand.s * at_hand.s)
                           : t.of == Term::Of::rate   ? -1.0 / at_hand.s
                                                      : -1.0;
-    if (!N && t.factors.empty() && t.of != Term::Of::reaction)
+    const int channel = w.signals[at(t.signal)].channel;
+    const bool less = t.of == Term::Of::reaction && !drive[at(channel)].added.empty();
+    if (!N && t.factors.empty() && !less)
       return b.add_identity(of(t.signal), unit(t.signal), t.sign * factor);
     MatrixXd c = coefficient(w, t, d.numbers.parameters);
     if (N) c = *N * c;
     b.add(c, of(t.signal), unit(t.signal), factor);
-    if (t.of != Term::Of::reaction) return;
-    const int channel = w.signals[at(t.signal)].channel;
+    if (!less) return;
     c = -c;
     for (const int e : drive[at(channel)].added) subtract_force(&c, e, drive);
   }
