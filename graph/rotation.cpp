@@ -3,14 +3,18 @@
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <cmath>
+#include <limits>
 #include <titop/graph/error.hpp>
 #include <titop/graph/rotation.hpp>
 
 namespace titop {
 namespace {
 
+/// A right angle is one, as far as doubles go: the 6e-17 that they have for its cosine would tie
+/// motions together that nothing ties.
 Matrix3d turn(const Vector3d& axis, double angle) {
-  return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+  const Matrix3d T = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+  return (T.array().abs() <= std::numeric_limits<double>::epsilon()).select(0, T);
 }
 
 }  // namespace
