@@ -13,7 +13,7 @@ struct Certificate {
   /// instant, by the very factors that the model is written from (what the input does not move at
   /// once is moved by inputs of size 1), or at one real s: with positions or rates in the
   /// equations, states that follow from others, in a reduced (singular) scene, or where digits may
-  /// be lost. Beside an instant also the responses at s of the first eight blocks of each type
+  /// be lost. Beside an instant also the responses at s of the first four blocks of each type
   /// against their A, B, C, D. Rounding is about 1e-16 times the length of a row.
   double residual = 0;
   std::string residual_where;  ///< the equation or block that has it

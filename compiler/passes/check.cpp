@@ -247,43 +247,48 @@ void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
   }
 }
 
-/// Per channel: some term reads its reaction.
-std::vector<char> reactions_read(const Graph& g) {
-  std::vector<char> read(g.channels.size(), 0);
-  const auto look = [&](const std::vector<Term>& terms) {
-    for (const Term& t : terms)
-      if (t.of == Term::Of::reaction && t.signal >= 0)
-        read[at(g.signals[at(t.signal)].channel)] = 1;
-  };
-  for (const Equation& e : g.equations) look(e.terms);
-  for (const Output& o : g.outputs) look(o.terms);
-  return read;
+/// What the forces of other points take from a channel's force.
+struct Passed {
+  bool whole = false;     ///< all of it
+  bool reaction = false;  ///< less what was added to it
+};
+
+std::vector<Passed> passed_on(const Graph& g) {
+  std::vector<Passed> result(g.channels.size());
+  for (const Equation& e : g.equations) {
+    if (e.target < 0 || g.signals[at(e.target)].quantity != Quantity::force) continue;
+    for (const Term& t : e.terms) {
+      const int channel = t.signal < 0 ? -1 : g.signals[at(t.signal)].channel;
+      if (channel < 0 || t.signal != g.channels[at(channel)].force) continue;
+      (t.of == Term::Of::reaction ? result[at(channel)].reaction : result[at(channel)].whole) =
+          true;
+    }
+  }
+  return result;
 }
 
-/// What `+=` adds at a point that moves with another acts on it through the reaction alone. (Where
-/// the ground or an input moves it, the support takes it.)
+/// Where a point moves with another, its force is what that takes; what `+=` adds acts through the
+/// reaction alone. To pass on the whole force is to say that nothing was added.
 void check_added(Checker& c, const Channel& channel, const Drive& drive) {
   const Graph& g = c.graph;
   const auto says = [&](int e) { return !g.equations[at(e)].terms.empty(); };
   const auto tied = [&](int e) {
-    const auto& terms = g.equations[at(e)].terms;
-    return std::any_of(terms.begin(), terms.end(), [&](const Term& t) {
-      return t.signal >= 0 && g.signals[at(t.signal)].channel >= 0 && t.of == Term::Of::signal;
-    });
+    const Equation& q = g.equations[at(e)];
+    return q.part.whole() && std::any_of(q.terms.begin(), q.terms.end(), [&](const Term& t) {
+             return t.signal >= 0 && g.signals[at(t.signal)].channel >= 0;
+           });
   };
   const auto added = std::find_if(drive.added.begin(), drive.added.end(), says);
   const auto tie = std::find_if(drive.accel.begin(), drive.accel.end(), tied);
   if (added == drive.added.end() || tie == drive.accel.end()) return;
   const Equation &a = g.equations[at(*tie)], &b = g.equations[at(*added)];
-  const std::string point = channel_name(g, static_cast<int>(&channel - g.channels.data()));
   c.add(Code::two_equations,
-        fmt::format("what is added to {} goes nowhere: its acceleration is driven, and nothing "
-                    "reads {}.reaction",
-                    name_of(g, channel.force), point),
+        fmt::format("what is added to {} goes nowhere: its acceleration is driven, and the whole "
+                    "force is passed on",
+                    name_of(g, channel.force)),
         {line(print(g, a), a.where), line(print(g, b), b.where)},
-        fmt::format("pass on {}.reaction, the force less what is added, in place of {}.force, as "
-                    "mount does; or add to the point that it moves with",
-                    point, point));
+        "pass on the port's reaction, the force less what is added, as mount does; or add to the "
+        "force of the point that it moves with");
 }
 
 void check_one_way(Checker& c) {
@@ -359,11 +364,11 @@ Stage check(Stage stage) {
   for (const Equation& e : stage.graph.equations) check_equation(c, e);
   const std::vector<Drive> all = drives(stage.graph);
   for (std::size_t i = 0; i < all.size(); ++i) check_channel(c, stage.graph.channels[i], all[i]);
-  std::vector<char> read;  // only looked for where something is added to what is driven
+  std::vector<Passed> passed;  // only looked for where something is added to what is driven
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].added.empty() || all[i].accel.empty()) continue;
-    if (read.empty()) read = reactions_read(stage.graph);
-    if (!read[i]) check_added(c, stage.graph.channels[i], all[i]);
+    if (passed.empty()) passed = passed_on(stage.graph);
+    if (passed[i].whole && !passed[i].reaction) check_added(c, stage.graph.channels[i], all[i]);
   }
   check_one_way(c);
   check_outputs(c);

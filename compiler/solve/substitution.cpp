@@ -57,12 +57,12 @@ struct Forward {
       for (int i = 1; i < count; ++i) *end++ = from[i];
     });
     T* const pivots = z.data() + f.first_unknown;
-    T* const left = carried.data() + f.first_carried - f.pivot_count;
+    T* const left = carried.data() + f.first_carried;
     const T* l = made.lu.data();
     for (int i = 0; i < f.row_count; ++i, l += f.columns()) {
       T sum = rows[at(made.order[at(i)])];
       subtract_rows(std::min(i, f.pivot_count), l, pivots, 1, &sum);
-      (i < f.pivot_count ? pivots : left)[i] = sum;
+      (i < f.pivot_count ? pivots[i] : left[i - f.pivot_count]) = sum;
     }
   }
 };

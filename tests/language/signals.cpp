@@ -363,10 +363,53 @@ TEST_CASE(
   };
   CHECK(says(compile_error(scene(false)), Code::two_equations,
              {"what is added to b.parent.force goes nowhere", "b.parent.accel = a.child.accel",
-              "b.parent.force += -u", "pass on b.parent.reaction"}));
+              "b.parent.force += -u", "pass on the port's reaction"}));
   CHECK(compile_error(scene(false, true)).mistakes().empty());  // the ground takes it
   // u at the point of masses 2 and 1.5 between springs of 26 and 7, on which another 3 hangs.
   const Complex s(0.2, 1.3), t = 7.0 * 3.0 * s * s / (3.0 * s * s + 7.0);
   const Complex exact = s * s / (3.5 * s * s + 26.0 + t);
   CHECK(std::abs(compile(scene(true)).transfer(s)(0, 0) - exact) <= 1e-14 * std::abs(exact));
+}
+
+TEST_CASE(
+    "what is added where it acts is not refused: free directions, and motion that follows a "
+    "signal") {
+  const auto by_parts = [](bool added) {  // B's point carries A's; A turns as a torque says
+    Diagram d{"ball"};
+    auto u = d.input("u", 3);
+    auto A = d.add("A", brick()), B = d.add("B", brick());
+    const Rotation T = kTurn.named("B", "A");
+    B.parent.force = 0;
+    A.parent.accel.linear = T.inverse() * B.child("C1").accel.linear;
+    B.child("C1").force.linear = T * A.parent.force.linear;
+    B.child("C1").force.angular = 0;
+    if (added)
+      A.parent.force.angular += -u;
+    else
+      A.parent.force.angular = -u;
+    d.output("a", 6) = A.parent.accel;
+    return d;
+  };
+  const System one = compile(by_parts(true)), other = compile(by_parts(false));
+  CHECK(matrix_error(one.static_gain(), other.static_gain()) <= 1e-15);
+  CHECK(one.static_gain().norm() > 0.1);
+
+  Diagram d{"servo"};  // b's point follows, whatever it takes
+  auto u = d.input("u");
+  auto a = d.add("a", SpringMass{.mass = 2, .stiffness = 26}),
+       b = d.add("b", SpringMass{.mass = 3, .stiffness = 7});
+  ground(a);
+  b.parent.accel = -0.5 * a.child.accel;
+  b.parent.force += -u;
+  a.child.force = u;
+  d.output("x") = b.child.accel;
+  CHECK(compile_error(d).mistakes().empty());
+}
+
+TEST_CASE("points that are mounted on each other: refused, not written out for ever") {
+  Diagram d{"round"};
+  auto A = d.add("A", brick()), B = d.add("B", brick());
+  mount(A, B.parent), mount(B, A.parent);
+  d.output("r", 6) = A.parent.reaction;
+  CHECK(says(compile_error(d), Code::ill_posed, {"is passed round to itself", "asked for at"}));
 }

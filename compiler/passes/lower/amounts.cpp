@@ -131,6 +131,21 @@ Amount Lowering::added(const std::vector<int>& equations) {
   return sum;
 }
 
+/// What `+=` adds to a channel's force. Throws ill_posed where that reads the channel's own
+/// reaction.
+Amount Lowering::added_to(int channel) {
+  if (drive[at(channel)].added.empty()) return {};
+  if (std::find(within.begin(), within.end(), channel) != within.end())
+    throw Error(
+        Code::ill_posed,
+        fmt::format("the reaction at {} is passed round to itself", channel_name(g, channel)),
+        "these points move with each other: let one of them be carried by something else");
+  within.push_back(channel);
+  Amount sum = added(drive[at(channel)].added);
+  within.pop_back();
+  return sum;
+}
+
 Amount Lowering::terms(const std::vector<Term>& list) {
   Amount sum;
   for (const Term& t : list) {
@@ -144,7 +159,7 @@ Amount Lowering::terms(const std::vector<Term>& list) {
       append(sum, integrated(times(c, structure(g, t), twin(channel, level)), level));
       continue;
     }
-    if (t.of == Term::Of::reaction) append(sum, times(-c, added(drive[at(channel)].added)));
+    if (t.of == Term::Of::reaction) append(sum, times(-c, added_to(channel)));
     sum.push_back({t.signal, std::move(c), numbers_only ? Pattern() : structure(g, t)});
   }
   return sum;

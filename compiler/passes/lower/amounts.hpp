@@ -29,9 +29,10 @@ struct Lowering {
   ParameterValues values;
   std::shared_ptr<const std::vector<Drive>> all_drives;
   const std::vector<Drive>& drive = *all_drives;
-  std::vector<char> visiting;  ///< channels whose position is being written out
-  std::vector<int> met = {};   ///< parameters met since it was last cleared
-  int asked = -1;              ///< node whose matrices are at hand
+  std::vector<char> visiting;    ///< channels whose position is being written out
+  std::vector<int> within = {};  ///< channels whose reaction is being written out
+  std::vector<int> met = {};     ///< parameters met since it was last cleared
+  int asked = -1;                ///< node whose matrices are at hand
   std::shared_ptr<const Dynamics> at_hand = {};
   std::vector<Mistake> mistakes = {};
   std::vector<RigidMotion> motions;
@@ -79,6 +80,7 @@ struct Lowering {
   Amount own_motion(int channel) const;
   Amount integrated(Amount sum, Level level);
   Amount added(const std::vector<int>& equations);
+  Amount added_to(int channel);
 };
 
 template <class F>
@@ -87,6 +89,7 @@ Amount Lowering::collect(const std::source_location& where, F amount) {
     return amount();
   } catch (const Error& error) {
     std::fill(visiting.begin(), visiting.end(), 0);
+    within.clear();
     for (Mistake m : error.mistakes()) {
       m.details.push_back("asked for at " + to_string(where));
       mistakes.push_back(std::move(m));
