@@ -4,7 +4,6 @@
 #include <bit>
 #include <bitset>
 #include <boost/container/small_vector.hpp>
-#include <boost/dynamic_bitset.hpp>
 #include <cmath>
 #include <cstdint>
 #include <optional>
@@ -20,6 +19,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr int kSmall = 12;
+constexpr int kMost = 128;  ///< rows: two words of bits
 /// Small loops are many: no memory is asked for.
 using Small =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kSmall, kSmall>;
@@ -202,7 +202,7 @@ double skeel_radius_of_ring(Eigen::Index n, const Quotient& product) {
   return p == 1 ? 0 : (1 + c) * sum / std::abs(1 - p);
 }
 
-/// Some of up to 128 rows or columns.
+/// Some of up to kMost rows or columns.
 struct Set {
   std::array<std::uint64_t, 2> bits = {};
 
@@ -333,8 +333,7 @@ double skeel_radius_of_core(const MatrixXd& M) {
       return of_inverse * VectorXd(of_M * v);
     });
     if (whole.settled) return whole.radius;
-    return perron_of_parts(product_of_sizes(inverse, M),
-                           boost::dynamic_bitset<>(static_cast<std::size_t>(M.rows())));
+    return perron_of_parts(product_of_sizes(inverse, M), std::bitset<kMost>());
   }
   const Small inverse = inverse_by_rows<Small>(M);
   if (inverse.size() == 0) return 0;
@@ -345,7 +344,7 @@ double skeel_radius_of_core(const MatrixXd& M) {
 }  // namespace
 
 double skeel_radius(MatrixXd& M, const std::function<void(MatrixXd&)>& scale) {
-  if (M.rows() != M.cols() || M.rows() > 128)
+  if (M.rows() != M.cols() || M.rows() > kMost)
     throw std::invalid_argument("skeel_radius: a square matrix of up to 128 rows");
   const Peeled peeled(M);
   if (peeled.singular()) return 0;
