@@ -47,62 +47,76 @@ solve::Response<T> general_response(const Dynamics& d, const T& s) {
   return r;
 }
 
-/// Columns right of k, or right-hand sides, `count` of them, of as many rows as lu: x -= (column k
-/// of L) x(k), below row k.
+/// Columns right of k, or right-hand sides, `count` of them, of as many rows as lu, n x n: x -=
+/// (column k of L) x(k), below row k.
 template <class T>
-void reduce(const Dense<T>& lu, Index k, Index count, T* columns) {
-  const Index n = lu.rows();
+void reduce(Index n, const T* lu, Index k, Index count, T* columns) {
   for (T* x = columns; x != columns + count * n; x += n)
     if (const T by = x[k]; by != T(0))
-      solve::subtract(n - k - 1, by, lu.data() + k * n + k + 1, x + k + 1);
+      solve::subtract(n - k - 1, by, lu + k * n + k + 1, x + k + 1);
+}
+
+/// Rows a and b of n x columns numbers, column-major, change places.
+template <class T>
+void swap_rows(Index n, Index columns, T* x, Index a, Index b) {
+  for (T* const end = x + columns * n; x != end; x += n) std::swap(x[a], x[b]);
 }
 
 }  // namespace
 
 template <class T>
 Resolvent<T>::Resolvent(const Dynamics& dynamics, const T& s)
-    : modal_(dynamics.modal.get()), s_(s) {
+    : modal_(dynamics.modal.get()), s_(s), n_(dynamics.A.rows()) {
   if (modal_) return;
-  lu_ = -lifted<T>(dynamics.A);
-  const Index n = lu_.rows();
-  row_.reserve(at(n));
-  for (Index i = 0; i < n; ++i) lu_(i, i) += s;
-  for (Index k = 0; k < n; ++k) {
+  lu_.reserve(at(n_ * n_));
+  for (const double& a : dynamics.A.reshaped()) lu_.push_back(-lift<T>(a));
+  row_.reserve(at(n_));
+  T* const lu = lu_.data();
+  for (Index i = 0; i < n_; ++i) lu[i + i * n_] += s;
+  for (Index k = 0; k < n_; ++k) {
+    T* const column = lu + k * n_;
     Index best = k;
-    for (Index i = k + 1; i < n; ++i)
-      if (solve::size_of(lu_(i, k)) > solve::size_of(lu_(best, k))) best = i;
+    for (Index i = k + 1; i < n_; ++i)
+      if (solve::size_of(column[i]) > solve::size_of(column[best])) best = i;
     row_.push_back(best);
-    if (best != k) lu_.row(k).swap(lu_.row(best));
-    for (Index i = k + 1; i < n; ++i) lu_(i, k) /= lu_(k, k);
-    reduce<T>(lu_, k, n - k - 1, lu_.data() + (k + 1) * n);
+    if (best != k) swap_rows(n_, n_, lu, k, best);
+    for (Index i = k + 1; i < n_; ++i) column[i] /= column[k];
+    reduce(n_, lu, k, n_ - k - 1, column + n_);
   }
 }
 
 template <class T>
-Dense<T> Resolvent<T>::times(Dense<T> x) const {
-  if (modal_) {
-    const auto modes = modal_->stiffness.size();
-    for (Index i = 0; i < modes; ++i) {
-      const T c = lift<T>(modal_->damping(i)), d = s_ * s_ + c * s_ + lift<T>(modal_->stiffness(i));
-      for (Index j = 0; j < x.cols(); ++j) {
-        const T eta = ((s_ + c) * x(i, j) + x(modes + i, j)) / d;
-        x(modes + i, j) = s_ * eta - x(i, j);
-        x(i, j) = eta;
-      }
-    }
-    return x;
+Dense<T> Resolvent<T>::times(Dense<T> r) const {
+  apply(r.cols(), r.data());
+  return r;
+}
+
+template <class T>
+void Resolvent<T>::apply(Index columns, T* r) const {
+  if (modal_) return apply_modes(columns, r);
+  const T* const lu = lu_.data();
+  for (Index k = 0; k < n_; ++k) {
+    if (row_[at(k)] != k) swap_rows(n_, columns, r, k, row_[at(k)]);
+    reduce(n_, lu, k, columns, r);
   }
-  const Index n = lu_.rows();
-  for (Index k = 0; k < n; ++k) {
-    if (row_[at(k)] != k) x.row(k).swap(x.row(row_[at(k)]));
-    reduce<T>(lu_, k, x.cols(), x.data());
-  }
-  for (Index k = n - 1; k >= 0; --k)
-    for (Index j = 0; j < x.cols(); ++j) {
-      x(k, j) /= lu_(k, k);
-      solve::subtract(k, x(k, j), lu_.data() + k * n, &x(0, j));
+  for (T* x = r; x != r + columns * n_; x += n_)
+    for (Index k = n_; k-- > 0;) {
+      x[k] /= lu[k + k * n_];
+      solve::subtract(k, x[k], lu + k * n_, x);
     }
-  return x;
+}
+
+template <class T>
+void Resolvent<T>::apply_modes(Index columns, T* r) const {
+  const Index modes = modal_->stiffness.size();
+  for (Index i = 0; i < modes; ++i) {
+    const T c = lift<T>(modal_->damping(i)), d = s_ * s_ + c * s_ + lift<T>(modal_->stiffness(i));
+    for (T* x = r; x != r + columns * n_; x += n_) {
+      const T eta = ((s_ + c) * x[i] + x[modes + i]) / d;
+      x[modes + i] = s_ * eta - x[i];
+      x[i] = eta;
+    }
+  }
 }
 
 template <class T>

@@ -16,12 +16,18 @@ class Resolvent {
 
   /// (s - A)^-1 r, states x columns: O(states) per column with modes, else O(states^2).
   solve::Dense<T> times(solve::Dense<T> r) const;
+  /// The same in place, r column-major.
+  void apply(Eigen::Index columns, T* r) const;
 
  private:
+  void apply_modes(Eigen::Index columns, T* r) const;
+
   const Modal* modal_;
   T s_;
-  solve::Dense<T> lu_;                                   ///< empty with modes
-  boost::container::small_vector<Eigen::Index, 8> row_;  ///< that changed places with row k then
+  Eigen::Index n_;
+  // Small blocks are many: no memory is asked for.
+  boost::container::small_vector<T, 16> lu_;             ///< column-major; empty with modes
+  boost::container::small_vector<Eigen::Index, 4> row_;  ///< that changed places with row k then
 };
 
 /// X = (s - A)^-1 B and Y = C X + D: in double and below by the block's own formula, which cancels

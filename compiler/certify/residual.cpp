@@ -18,19 +18,21 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// One equation after the other: left - right, and the sum of magnitudes, row by row.
 struct Balance {
-  boost::container::small_vector<double, 8> difference = {}, magnitude = {};
+  struct Row {
+    double difference = 0, magnitude = 0;
+  };
+  boost::container::small_vector<Row, 8> row = {};
   const MatrixXd* part = nullptr;  ///< rows of the target; none: all of it
   int unit = 1;                    ///< entries of the target that share one; 0: not told apart
   bool known = true;
 
   void start(Eigen::Index rows, int of_target, const MatrixXd* part_of_target = nullptr) {
-    difference.assign(at(rows), 0);
-    magnitude.assign(at(rows), 0);
+    row.assign(at(rows), Row());
     unit = of_target;
     part = part_of_target;
     known = true;
   }
-  std::size_t rows() const { return difference.size(); }
+  std::size_t rows() const { return row.size(); }
   /// The target's entry that row i is about.
   Eigen::Index entry(std::size_t i) const {
     auto e = static_cast<Eigen::Index>(i);
@@ -42,8 +44,14 @@ struct Balance {
   /// frame is rounding in another.
   template <class Matrix>
   void add(const Matrix& c, std::span<const double> value, int shared, double factor) {
-    if (value.size() == 1 && rows() == 1)  // scalar diagrams have hardly any others
-      return add(0, c(0, 0) * (factor * value[0]), std::abs(c(0, 0) * (factor * value[0])));
+    if (shared == 1 && rows() == 1) {  // scalar diagrams have hardly any others
+      double sum = 0, size = 0;
+      for (std::size_t j = 0; j < value.size(); ++j) {
+        const double x = c(0, static_cast<Eigen::Index>(j)) * (factor * value[j]);
+        sum += x, size += std::abs(x);
+      }
+      return add(0, sum, size);
+    }
     for (std::size_t j = 0; j < value.size(); ++j) {
       const double x = value[j], size = largest_with(value, j, shared);
       if (size == 0 && x == 0) continue;  // not a number is neither
@@ -59,9 +67,9 @@ struct Balance {
     for (std::size_t i = 0; i < rows(); ++i)
       add(i, factor * value[i], std::abs(factor) * largest_with(value, i, shared));
   }
-  void add(std::size_t row, double value, double size) {
-    difference[row] += value;
-    magnitude[row] += size;
+  void add(std::size_t i, double value, double size) {
+    row[i].difference += value;
+    row[i].magnitude += size;
   }
   static double largest_with(std::span<const double> value, std::size_t j, int shared) {
     if (shared == 1) return std::abs(value[j]);
@@ -74,22 +82,24 @@ struct Balance {
   /// Largest difference; infinite where something is not finite.
   double largest() const {
     double size = 0;
-    for (const double x : difference) {
-      if (!std::isfinite(x)) return kInfinity;
-      size = std::max(size, std::abs(x));
+    for (const Row& r : row) {
+      if (!std::isfinite(r.difference)) return kInfinity;
+      size = std::max(size, std::abs(r.difference));
     }
     return size;
   }
   /// Largest share of the rows of one unit; 1 where something is not finite.
   double relative() const {
     if (largest() == kInfinity) return 1;
+    if (rows() == 1)
+      return row[0].difference == 0 ? 0 : std::abs(row[0].difference) / row[0].magnitude;
     double worst = 0;
     for (std::size_t i = 0; i < rows();) {
       const std::size_t first = i;
       double off = 0, size = 0;
       do {
-        off = std::max(off, std::abs(difference[i]));
-        size = std::max(size, magnitude[i]);
+        off = std::max(off, std::abs(row[i].difference));
+        size = std::max(size, row[i].magnitude);
       } while (++i < rows() && same_unit(first, i));
       if (off > 0) worst = std::max(worst, off / size);
     }
@@ -134,8 +144,8 @@ struct Residual {
   }
   bool only_rounding(int signal) const {
     for (std::size_t i = 0; i < b.rows(); ++i)
-      if (const double off = std::abs(b.difference[i]);
-          off > kWarn * b.magnitude[i] &&
+      if (const double off = std::abs(b.row[i].difference);
+          off > kWarn * b.row[i].magnitude &&
           off > kLeftOfZero * size_around_signal(d, at_hand.unknowns, signal, b.entry(i)))
         return false;
     return true;
@@ -273,6 +283,7 @@ struct Residual {
 
 std::vector<int> first_of_signals(const Graph& graph) {
   std::vector<int> first = {0};
+  first.reserve(graph.signals.size() + 1);
   for (const Signal& s : graph.signals) first.push_back(first.back() + s.size);
   return first;
 }

@@ -10,6 +10,7 @@
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/instant.hpp>
+#include <titop/compiler/solve/kernels.hpp>
 #include <tuple>
 
 namespace titop::detail {
@@ -116,7 +117,7 @@ double relative(const Eigen::VectorXd& value, const Eigen::VectorXd& magnitude) 
 /// The blocks' own formulas at s, which transfers are made of, against their A, B, C, D, for random
 /// inputs: of the first blocks of each type, for a type has one formula. An instant needs none.
 WrittenResidual check_responses(const SystemData& d, const Resolvents& resolvents, double s) {
-  constexpr int kOfEachType = 4;
+  constexpr int kOfEachType = 2;
   WrittenResidual result;
   SteadyRandom random;
   std::map<std::string_view, int> seen;
@@ -156,8 +157,9 @@ RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>&
     take_inputs(d, i, by_u, inputs);
     if (inputs.isZero(0))
       for (double& x : inputs.reshaped()) x = random.next();
-    known.middleRows(l.state_first[at(i)], m.A.rows()) =
-        resolvents[k].times(m.B.lazyProduct(inputs));
+    double* const x = known.data() + l.state_first[at(i)];
+    solve::add_dense_product(m.B.rows(), m.B.cols(), m.B.data(), inputs.data(), 1, x);
+    resolvents[k].apply(1, x);
   }
   return known;
 }

@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <optional>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/numbers.hpp>
 #include <titop/compiler/solve/scalar.hpp>
@@ -26,12 +28,6 @@ template <class T>
 View<T> view(const Dense<T>& m, int row, int rows, int col, int cols) {
   return {m.data() + row + col * m.rows(), rows, cols, 1, m.rows()};
 }
-
-template <class T>
-bool is_number(const View<T>* m) {
-  return !m || (m->rows == 1 && m->cols == 1);
-}
-bool is_number(const RowMatrix<double>* m) { return !m || m->size() == 1; }
 
 /// to += sign * L
 template <class T, class L>
@@ -324,11 +320,30 @@ RowMatrix<T> JointRows<T>::rhs_of_states(const RowMatrix<T>& states, std::span<c
   return result;
 }
 
-/// Calls take(scalar row, sign, left, right, variable) for all products sign * left * right *
-/// variable that the rows are sums of: left a view, right a coefficient, or nullptr for 1.
+/// |left| |right| of a piece whose variable is a single number, and left * right; nothing where
+/// these are not single numbers.
 template <class T>
-template <class Take>
-void JointRows<T>::by_products(Take take) const {
+std::optional<std::pair<double, T>> JointRows<T>::number(const Piece& p) const {
+  T c(1);
+  if (p.of == Piece::Left::direct && p.rows == 1 && p.cols == 1)
+    c = (*m_.direct[at(p.left)])(p.row, p.col);
+  else if (p.of == Piece::Left::coefficient && coefficients_[at(p.left)]->size() == 1)
+    c = lift<T>(*coefficients_[at(p.left)]->data());
+  else if (p.of != Piece::Left::one)
+    return {};
+  if (p.right < 0) return std::pair(size_of(c), c);
+  const RowMatrix<double>& right = *coefficients_[at(p.right)];
+  if (right.size() != 1) return {};
+  return std::pair(size_of(c) * std::abs(*right.data()), times(c, *right.data()));
+}
+
+/// Calls take(scalar row, sign, left, right, variable) for all products sign * left * right *
+/// variable that the rows are sums of: left a view, right a coefficient, or nullptr for 1. Where
+/// these are single numbers, of which scalar diagrams are made, calls take_number(scalar row, sign,
+/// |left| |right|, left * right, variable) instead.
+template <class T>
+template <class Take, class TakeNumber>
+void JointRows<T>::by_products(Take take, TakeNumber take_number) const {
   const Plan& plan = *joint_.plan;
   const auto coefficient = [&](int i) { return i < 0 ? nullptr : coefficients_[at(i)].get(); };
   for (int r = 0; r < static_cast<int>(joint_.rows.size()); ++r) {
@@ -336,6 +351,11 @@ void JointRows<T>::by_products(Take take) const {
     for (const Piece& p : joint_.row(r)) {
       if (p.entry >= 0) {
         const int v = plan.structure.row(r)[at(p.entry)];
+        if (plan.structure.variable_size[at(v)] == 1)
+          if (const auto c = number(p)) {
+            take_number(row, p.sign, c->first, c->second, v);
+            continue;
+          }
         const RowMatrix<double>* right = coefficient(p.right);
         with_left(
             p, m_, coefficients_, 0, [&](const auto& left) { take(row, p.sign, &left, right, v); },
@@ -365,23 +385,21 @@ RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>&
   if (magnitudes) *magnitudes = sizes(rhs), x_sizes = sizes(unknowns);
   std::vector<T> room;
   std::vector<double> room_of_sizes;
-  by_products([&](int row, double sign, const auto* left, const RowMatrix<double>* right, int v) {
+  const auto product = [&](int row, double sign, const auto* left, const RowMatrix<double>* right,
+                           int v) {
     const std::ptrdiff_t from = plan.first[at(v)] * m, to = row * m;
-    if (m == 1 && plan.structure.variable_size[at(v)] == 1 && is_number(left) &&
-        is_number(right)) {  // scalar diagrams have no others
-      T c = left ? lift<T>((*left)(0, 0)) : T(1);
-      double size = size_of(c);
-      if (right) c = times(c, (*right)(0, 0)), size *= std::abs((*right)(0, 0));
-      if (c == T(0)) return;
-      result.data()[to] -= times(c, sign) * unknowns.data()[from];
-      if (magnitudes) magnitudes->data()[to] += size * x_sizes.data()[from];
-      return;
-    }
     const std::ptrdiff_t size = (right ? right->rows() : plan.structure.variable_size[at(v)]) * m;
     subtract_products(sign, left, right, unknowns.data() + from, size, m, result.data() + to, room);
     if (magnitudes)
       add_sizes_of_products(left, right, x_sizes.data() + from, size, m, magnitudes->data() + to,
                             room_of_sizes);
+  };
+  by_products(product, [&](int row, double sign, double size, const T& c, int v) {
+    if (c == T(0)) return;
+    const std::ptrdiff_t from = plan.first[at(v)] * m, to = row * m;
+    const T by = times(c, sign);
+    subtract_rows(1, &by, unknowns.data() + from, m, result.data() + to);
+    if (magnitudes) solve::add(m, size, x_sizes.data() + from, magnitudes->data() + to);
   });
   return result;
 }

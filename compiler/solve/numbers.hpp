@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <titop/compiler/solve/joint.hpp>
+#include <utility>
 
 namespace titop::solve {
 
@@ -67,8 +69,9 @@ class JointRows : public Rows<T> {
                       T* to) const;
   template <class Visit>
   void by_inputs(const Piece& p, Visit visit) const;
-  template <class Take>
-  void by_products(Take take) const;
+  std::optional<std::pair<double, T>> number(const Piece& p) const;
+  template <class Take, class TakeNumber>
+  void by_products(Take take, TakeNumber take_number) const;
 
   const Graph& graph_;
   const Joint& joint_;

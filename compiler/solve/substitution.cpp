@@ -19,23 +19,17 @@ struct Forward {
   std::vector<const T*> assembled = {};  ///< where each row stands
   std::vector<T> rows = {};
 
-  /// Calls take(rows, count) for all that the front is assembled from.
-  template <class Take>
-  void assemble(const Front& f, const RowMatrix<T>& rhs, Take take) const {
+  void run(const Front& f, const typename Factors<T>::Made& made, const RowMatrix<T>& rhs) {
+    assembled.clear();
+    const auto take = [&](const T* from, int count) {
+      for (int i = 0; i < count; ++i) assembled.push_back(from + i * m);
+    };
     for (const int r : plan.list(f.rows))
       take(rhs.data() + plan.row_first[at(r)] * m, plan.structure.row_size[at(r)]);
     for (const int c : plan.list(f.children)) {
       const Front& child = plan.fronts[at(c)];
       take(carried.data() + child.first_carried * m, child.left_over());
     }
-  }
-
-  void run(const Front& f, const typename Factors<T>::Made& made, const RowMatrix<T>& rhs) {
-    if (m == 1) return run_one(f, made, rhs);
-    assembled.clear();
-    assemble(f, rhs, [&](const T* from, int count) {
-      for (int i = 0; i < count; ++i) assembled.push_back(from + i * m);
-    });
     rows.resize(assembled.size() * static_cast<std::size_t>(m));
     for (int i = 0; i < f.row_count; ++i)
       std::copy_n(assembled[at(made.order[at(i)])], m, rows.data() + i * m);
@@ -47,25 +41,41 @@ struct Forward {
     std::copy_n(rows.data() + f.pivot_count * m, f.left_over() * m,
                 carried.data() + f.first_carried * m);
   }
-
-  /// The same for a single column, whose numbers are copied at once.
-  void run_one(const Front& f, const typename Factors<T>::Made& made, const RowMatrix<T>& rhs) {
-    if (rows.size() < at(f.row_count)) rows.resize(at(f.row_count));
-    T* end = rows.data();
-    assemble(f, rhs, [&](const T* from, int count) {
-      *end++ = from[0];  // most rows of scalar diagrams are one
-      for (int i = 1; i < count; ++i) *end++ = from[i];
-    });
-    T* const pivots = z.data() + f.first_unknown;
-    T* const left = carried.data() + f.first_carried;
-    const T* l = made.lu.data();
-    for (int i = 0; i < f.row_count; ++i, l += f.columns()) {
-      T sum = rows[at(made.order[at(i)])];
-      subtract_rows(std::min(i, f.pivot_count), l, pivots, 1, &sum);
-      (i < f.pivot_count ? pivots[i] : left[i - f.pivot_count]) = sum;
-    }
-  }
 };
+
+/// The same for a single column, whose numbers are copied at once; `rows`: room for as many.
+template <class T>
+void forward_one(const Plan& plan, const Front& f, const typename Factors<T>::Made& made,
+                 const T* rhs, T* z, T* carried, T* rows) {
+  T* end = rows;
+  const int* const size = plan.structure.row_size.data();
+  const int* const first = plan.row_first.data();
+  for (const int r : plan.list(f.rows)) {
+    const T* const from = rhs + first[r];
+    *end++ = from[0];  // most rows of scalar diagrams are one
+    for (int i = 1; i < size[r]; ++i) *end++ = from[i];
+  }
+  for (const int c : plan.list(f.children)) {
+    const Front& child = plan.fronts[at(c)];
+    const T* const from = carried + child.first_carried;
+    for (int i = 0; i < child.left_over(); ++i) *end++ = from[i];
+  }
+  T* const pivots = z + f.first_unknown;
+  T* const left = carried + f.first_carried;
+  const int* const order = made.order.data();
+  const T* l = made.lu.data();
+  const int columns = f.columns();
+  pivots[0] = rows[order[0]];
+  for (int i = 1; i < f.row_count; ++i) {
+    T sum = rows[order[i]];
+    l += columns;
+    if (f.pivot_count == 1)  // as most fronts of scalar diagrams
+      subtract_rows(1, l, pivots, 1, &sum);
+    else
+      subtract_rows(std::min(i, f.pivot_count), l, pivots, 1, &sum);
+    (i < f.pivot_count ? pivots[i] : left[i - f.pivot_count]) = sum;
+  }
+}
 
 /// Pivots of a front from its border and U, in place.
 template <class T>
@@ -78,10 +88,11 @@ void backward(const Plan& plan, const Front& f, const typename Factors<T>::Made&
     const T* u = row + f.pivot_count;
     for (const int v : plan.list(f.border)) {
       const int size = plan.structure.variable_size[at(v)];
-      subtract_rows(size, u, z + plan.first[at(v)] * m, m, to);
+      const T* x = z + plan.first[at(v)] * m;
+      size == 1 ? subtract_rows(1, u, x, m, to) : subtract_rows(size, u, x, m, to);
       u += size;
     }
-    subtract_rows(f.pivot_count - i - 1, row + i + 1, to + m, m, to);
+    if (i + 1 < f.pivot_count) subtract_rows(f.pivot_count - i - 1, row + i + 1, to + m, m, to);
     for (std::ptrdiff_t j = 0; j < m; ++j) to[j] /= row[i];
   }
 }
@@ -90,14 +101,22 @@ void backward(const Plan& plan, const Front& f, const typename Factors<T>::Made&
 
 template <class T>
 RowMatrix<T> Factors<T>::solve(const RowMatrix<T>& rhs) const {
-  RowMatrix<T> z(plan_->unknowns, rhs.cols()), carried(plan_->carried, rhs.cols());
-  Forward<T> forward{*plan_, rhs.cols(), z, carried};
-  for (std::size_t i = 0; i < fronts_.size(); ++i) forward.run(plan_->fronts[i], *fronts_[i], rhs);
+  const Plan& plan = *plan_;
+  const std::ptrdiff_t m = rhs.cols();
+  RowMatrix<T> z(plan.unknowns, m), carried(plan.carried, m);
+  if (m == 1) {
+    RowMatrix<T> rows(plan.unknowns, 1);  // of one front: never more
+    for (std::size_t i = 0; i < fronts_.size(); ++i)
+      forward_one(plan, plan.fronts[i], *fronts_[i], rhs.data(), z.data(), carried.data(),
+                  rows.data());
+    for (std::size_t i = fronts_.size(); i-- > 0;)  // 1 is known to the compiler
+      backward(plan, plan.fronts[i], *fronts_[i], 1, z.data());
+    return z;
+  }
+  Forward<T> forward{plan, m, z, carried};
+  for (std::size_t i = 0; i < fronts_.size(); ++i) forward.run(plan.fronts[i], *fronts_[i], rhs);
   for (std::size_t i = fronts_.size(); i-- > 0;)
-    if (rhs.cols() == 1)  // known to the compiler
-      backward<T>(*plan_, plan_->fronts[i], *fronts_[i], 1, z.data());
-    else
-      backward<T>(*plan_, plan_->fronts[i], *fronts_[i], rhs.cols(), z.data());
+    backward(plan, plan.fronts[i], *fronts_[i], m, z.data());
   return z;
 }
 

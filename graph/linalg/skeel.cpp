@@ -1,11 +1,8 @@
 #include <Eigen/SparseCore>
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <bitset>
 #include <boost/container/small_vector.hpp>
 #include <cmath>
-#include <cstdint>
 #include <optional>
 #include <stdexcept>
 #include <titop/graph/linalg/skeel.hpp>
@@ -19,7 +16,7 @@ using Eigen::VectorXd;
 namespace {
 
 constexpr int kSmall = 12;
-constexpr int kMost = 128;  ///< rows: two words of bits
+constexpr int kMost = 128;  ///< rows
 /// Small loops are many: no memory is asked for.
 using Small =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kSmall, kSmall>;
@@ -189,57 +186,23 @@ struct Quotient {
     value = std::frexp(value, &e);
     exponent += e;
   }
+  double number() const { return exponent == 0 ? value : std::ldexp(value, exponent); }
+  Quotient inverse() const { return {1 / value, -exponent}; }
   static bool is_usual(double x) { return std::abs(x) > 1e-150 && std::abs(x) < 1e150; }
 };
 
 /// p and 1/p belong to the same ring, turned round.
 double skeel_radius_of_ring(Eigen::Index n, const Quotient& product) {
-  double p = std::ldexp(product.value, product.exponent);
-  if (std::abs(p) > 1) p = std::ldexp(1 / product.value, -product.exponent);
-  const double c = std::pow(std::abs(p), 1 / static_cast<double>(n));
+  double p = product.number();
+  if (std::abs(p) > 1) p = product.inverse().number();
+  double c = std::abs(p);
+  Eigen::Index root = n;  // mostly 4, of two channels
+  for (; root % 2 == 0; root /= 2) c = std::sqrt(c);
+  if (root > 1) c = std::pow(c, 1 / static_cast<double>(root));
   double sum = 0;
   for (Eigen::Index k = 0; k < n; ++k) sum = 1 + c * sum;
   return p == 1 ? 0 : (1 + c) * sum / std::abs(1 - p);
 }
-
-/// Some of up to kMost rows or columns.
-struct Set {
-  std::array<std::uint64_t, 2> bits = {};
-
-  static Set first(Eigen::Index n) {
-    Set s;
-    for (Eigen::Index i = 0; i < n; ++i) s.put(i);
-    return s;
-  }
-  void put(Eigen::Index i) { bits[word(i)] |= bit(i); }
-  void drop(Eigen::Index i) { bits[word(i)] &= ~bit(i); }
-  bool has(Eigen::Index i) const { return bits[word(i)] & bit(i); }
-  bool empty() const { return (bits[0] | bits[1]) == 0; }
-  /// Exactly one; exactly two. Not by counting bits, for which old machines have no instruction.
-  bool one() const { return !empty() && without_front().empty(); }
-  bool two() const { return !empty() && without_front().one(); }
-  /// The first, where there is one.
-  Eigen::Index front() const {
-    return bits[0] ? std::countr_zero(bits[0]) : 64 + std::countr_zero(bits[1]);
-  }
-  Set without_front() const {
-    const std::uint64_t a = bits[0], b = bits[1];
-    return a ? Set{{a & (a - 1), b}} : Set{{a, b & (b - 1)}};
-  }
-  /// Where there are two: the other one.
-  Eigen::Index other_than(Eigen::Index i) const {
-    Set s = *this;
-    s.drop(i);
-    return s.front();
-  }
-  friend Set operator&(const Set& a, const Set& b) {
-    return {{a.bits[0] & b.bits[0], a.bits[1] & b.bits[1]}};
-  }
-
- private:
-  static std::size_t word(Eigen::Index i) { return static_cast<std::size_t>(i) / 64; }
-  static std::uint64_t bit(Eigen::Index i) { return std::uint64_t{1} << (i % 64); }
-};
 
 /// Peels off rows and columns with a single entry, again and again: M is block triangular, and what
 /// goes stands on its diagonal by itself, where the radius is 1.
@@ -248,30 +211,25 @@ class Peeled {
   using List = boost::container::small_vector<Eigen::Index, kSmall>;
 
   explicit Peeled(const MatrixXd& M)
-      : M_(M),
-        n_(M.rows()),
-        left_(n_),
-        in_row_(static_cast<std::size_t>(n_)),
-        in_col_(static_cast<std::size_t>(n_)),
-        rows_(Set::first(n_)),
-        cols_(rows_) {
-    const double* entry = M.data();
-    for (Eigen::Index j = 0; j < n_; ++j)
-      for (Eigen::Index i = 0; i < n_; ++i)
-        if (*entry++ != 0) of(in_row_, i).put(j), of(in_col_, j).put(i);
-    for (bool more = true; more;) {
-      more = false;
-      for (Eigen::Index i = 0; i < n_; ++i)
-        if (rows_.has(i) && row(i).one()) more = take(i, row(i).front());
-      for (Eigen::Index j = 0; j < n_; ++j)
-        if (cols_.has(j) && col(j).one()) more = take(col(j).front(), j);
+      : M_(M), n_(static_cast<std::size_t>(M.rows())), left_(n_), rows_(n_), cols_(n_) {
+    const double* value = M.data();
+    for (std::size_t j = 0; j < n_; ++j)
+      for (std::size_t i = 0; i < n_; ++i)
+        if (*value++ != 0) rows_[i].put(j), cols_[j].put(i);
+    for (std::size_t before = n_ + 1; left_ > 0 && left_ < before;) {
+      before = left_;
+      for (std::size_t i = 0; i < n_; ++i)
+        if (rows_[i].entries == 1)
+          leave(rows_, cols_, i, [&](std::size_t k, std::size_t j) { return entry(k, j); });
+      for (std::size_t j = 0; j < n_; ++j)
+        if (cols_[j].entries == 1)
+          leave(cols_, rows_, j, [&](std::size_t k, std::size_t i) { return entry(i, k); });
     }
   }
   /// Nothing is left in some row or column.
   bool singular() const {
-    for (Eigen::Index i = 0; i < n_; ++i)
-      if ((rows_.has(i) && row(i).empty()) || (cols_.has(i) && col(i).empty())) return true;
-    return false;
+    return !all(rows_, [](int entries) { return entries != 0; }) ||
+           !all(cols_, [](int entries) { return entries != 0; });
   }
   bool whole() const { return left_ == n_; }
   bool empty() const { return left_ == 0; }
@@ -282,44 +240,66 @@ class Peeled {
   /// next one's only: (1 + c)(1 + c + ... + c^(n-1)) / |1 - p|, p the product of the n gains and c
   /// = |p|^(1/n). Others: nothing.
   std::optional<double> radius_of_ring() const {
-    for (Eigen::Index i = 0; i < n_; ++i)
-      if ((rows_.has(i) && !row(i).two()) || (cols_.has(i) && !col(i).two())) return {};
+    const auto two = [](int entries) { return entries < 0 || entries == 2; };
+    if (!all(rows_, two) || !all(cols_, two)) return {};
+    std::size_t start = 0, own = 0, n = 0;
+    while (rows_[start].entries < 0) ++start;
+    while (cols_[own].entries < 0 || entry(start, own) == 0) ++own;
     // Along the ring: from a row's own entry to its other one, and up or down to the next row.
-    const Eigen::Index start = rows_.front();
-    Eigen::Index i = start, own = row(start).front(), n = 0;
+    std::size_t i = start;
     Quotient product;
     do {
-      const Eigen::Index next = row(i).other_than(own);
-      product.multiply(-M_(i, next), M_(i, own));
-      i = col(next).other_than(i), own = next, ++n;
+      const std::size_t next = rows_[i].places ^ own;
+      product.multiply(-entry(i, next), entry(i, own));
+      i ^= cols_[next].places, own = next, ++n;
     } while (i != start);
     if (n != left_) return {};  // several rings
-    return skeel_radius_of_ring(n, product);
+    return skeel_radius_of_ring(static_cast<Eigen::Index>(n), product);
   }
 
  private:
-  using Sets = boost::container::small_vector<Set, kSmall>;
+  /// A row or a column: of its entries their number and the exclusive or of their places, which is
+  /// the place of a single one, and of two, with either one's place, the place of the other.
+  struct Line {
+    int entries = 0;  ///< -1: peeled off
+    std::size_t places = 0;
+    void put(std::size_t place) { ++entries, places ^= place; }
+    void drop(std::size_t place) { --entries, places ^= place; }
+  };
+  using Lines = boost::container::small_vector<Line, kSmall>;
 
-  static Set& of(Sets& sets, Eigen::Index i) { return sets[static_cast<std::size_t>(i)]; }
-  Set row(Eigen::Index i) const { return in_row_[static_cast<std::size_t>(i)] & cols_; }
-  Set col(Eigen::Index j) const { return in_col_[static_cast<std::size_t>(j)] & rows_; }
-  bool take(Eigen::Index i, Eigen::Index j) {
-    rows_.drop(i);
-    cols_.drop(j);
-    --left_;
-    return true;
+  double entry(std::size_t i, std::size_t j) const {
+    return M_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
   }
-  List list(const Set& set) const {
+  /// A line leaves with its single entry and the line across it. entry(k, place): of line k there.
+  template <class Entry>
+  void leave(Lines& lines, Lines& across, std::size_t line, Entry entry) {
+    --left_;
+    const std::size_t place = lines[line].places;
+    Line& other = across[place];
+    lines[line].entries = -1;
+    other.drop(line);
+    if (other.entries == 1)
+      lines[other.places].drop(place);
+    else if (other.entries > 1)
+      for (std::size_t k = 0; k < n_; ++k)
+        if (lines[k].entries > 0 && entry(k, place) != 0) lines[k].drop(place);
+    other.entries = -1;
+  }
+  template <class Test>
+  static bool all(const Lines& lines, Test test) {
+    return std::all_of(lines.begin(), lines.end(), [&](const Line& l) { return test(l.entries); });
+  }
+  static List list(const Lines& lines) {
     List result;
-    for (Eigen::Index i = 0; i < n_; ++i)
-      if (set.has(i)) result.push_back(i);
+    for (std::size_t i = 0; i < lines.size(); ++i)
+      if (lines[i].entries >= 0) result.push_back(static_cast<Eigen::Index>(i));
     return result;
   }
 
   const MatrixXd& M_;
-  Eigen::Index n_, left_;
-  Sets in_row_, in_col_;  ///< entries
-  Set rows_, cols_;       ///< that are left
+  std::size_t n_, left_;
+  Lines rows_, cols_;
 };
 
 double skeel_radius_of_core(const MatrixXd& M) {
@@ -347,8 +327,8 @@ double skeel_radius(MatrixXd& M, const std::function<void(MatrixXd&)>& scale) {
   if (M.rows() != M.cols() || M.rows() > kMost)
     throw std::invalid_argument("skeel_radius: a square matrix of up to 128 rows");
   const Peeled peeled(M);
-  if (peeled.singular()) return 0;
   if (peeled.empty()) return 1;
+  if (peeled.singular()) return 0;
   if (const auto ring = peeled.radius_of_ring()) return *ring;
   if (scale) scale(M);
   if (peeled.whole()) return skeel_radius_of_core(M);
