@@ -21,6 +21,13 @@ void add(Weights& w, int channel, const MatrixXd& m) {
   if (!fresh) place->second += m;
 }
 
+/// Whether a channel's force is what its block does to the outside: at a parent point and about the
+/// axis of a joint. At a child point, of a bushing too, it is what is done to the block.
+bool is_outward(const Graph& g, const Channel& c) {
+  const auto& specs = g.nodes[at(c.node)].block->interface().channels;
+  return c.takes == Takes::accel && specs[at(c.spec)].name != "child";
+}
+
 /// What each input does as a force on bodies: along a child's own wrench, against a parent's. Empty
 /// for inputs that (also) do something else.
 std::map<int, Weights> forces(const Graph& g, ParameterValues values) {
@@ -35,7 +42,7 @@ std::map<int, Weights> forces(const Graph& g, ParameterValues values) {
         continue;
       }
       const MatrixXd c = coefficient(g, t, values);
-      const double sign = g.channels[at(target.channel)].takes == Takes::force ? 1 : -1;
+      const double sign = is_outward(g, g.channels[at(target.channel)]) ? -1 : 1;
       add(result[t.signal], target.channel,
           sign * (e.part.whole() ? c : MatrixXd(e.part.rows.transpose() * c)));
     }

@@ -52,6 +52,29 @@ TEST_CASE("two free masses: one pair of poles, passive, order 2, decided exactly
     CHECK(text.find(item) != std::string::npos);
 }
 
+TEST_CASE(
+    "a wrench on the child point of a bushing is dual to its acceleration, one on a parent to "
+    "-it") {
+  Diagram d{"isolated"};
+  auto U = d.input("U", 6), V = d.input("V", 6);
+  auto isolator = d.add("isolator", Bushing{.stiffness = {100, 200, 300, 10, 20, 30},
+                                            .damping = {1, 2, 3, 0.1, 0.2, 0.3}});
+  auto below =
+      d.add("below", RigidBody{.mass = 5, .inertia = Eigen::Vector3d(4, 5, 6).asDiagonal()});
+  auto body = d.add("body", RigidBody{.mass = 2, .inertia = Eigen::Vector3d(1, 2, 3).asDiagonal()});
+  mount(body, isolator.child);
+  mount(isolator, below.parent);
+  isolator.child.force += U;
+  below.parent.force += -V;
+  d.output("above", 6) = isolator.child.accel;
+  d.output("at V", 6) = below.parent.accel;
+  const FullCertificate c = certify(compile(d));
+  CHECK(c.holds());
+  CHECK(c.passivity.pairs == 2);
+  CHECK(c.passivity.structure);
+  CHECK(c.passivity.least >= -1e-12);  // above 0 where dampers move; a free mass alone gives 0
+}
+
 TEST_CASE("a negative damper in a controller: active and unstable, and no fault of the compiler") {
   // Reads the relative speed and pushes with it.
   Diagram e{"driven"};
