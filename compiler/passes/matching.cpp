@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <deque>
 #include <titop/compiler/passes/matching.hpp>
 
 namespace titop::passes {
@@ -32,32 +31,53 @@ void take_defaults(const Graph& g, const Incidence& inc, Matching& m) {
   }
 }
 
-/// One augmenting path from a free row, breadth first. False if there is none.
-bool augment(const Incidence& inc, Matching& m, int start) {
-  std::vector<int> from(m.col_to_row.size(), -1);  // column -> row that found it
-  std::deque<int> queue{start};
-  while (!queue.empty()) {
-    const int row = queue.front();
-    queue.pop_front();
-    for (const int col : inc.cols(row)) {
-      if (from[at(col)] >= 0 || !fits(inc, row, col)) continue;
-      from[at(col)] = row;
-      if (m.col_to_row[at(col)] >= 0) {
-        queue.push_back(m.col_to_row[at(col)]);
-        continue;
+/// Augmenting paths, breadth first. What a path has looked at is forgotten after it: many free
+/// rows, each with a free column nearby, cost no more than their neighbourhoods.
+class Augmenting {
+ public:
+  Augmenting(const Incidence& inc, Matching& m)
+      : inc_(inc), m_(m), from_(m.col_to_row.size(), -1) {}
+
+  /// One path from a free row, if there is one. Where there is none, none will ever lead through
+  /// what has been looked at: that stays marked.
+  void from(int start) {
+    rows_.assign(1, start);
+    found_.clear();
+    for (std::size_t next = 0; next < rows_.size(); ++next)
+      if (const int free = look_from(rows_[next]); free >= 0) {
+        flip(free, start);
+        for (const int col : found_) from_[at(col)] = -1;
+        return;
       }
-      for (int c = col; c >= 0;) {  // flip the path back to its start
-        const int r = from[at(c)];
-        const int next = m.row_to_col[at(r)];
-        m.row_to_col[at(r)] = c;
-        m.col_to_row[at(c)] = r;
-        c = r == start ? -1 : next;
-      }
-      return true;
+  }
+
+ private:
+  /// A free column of this row, or -1: then the rows of all its other columns are to be looked at.
+  int look_from(int row) {
+    for (const int col : inc_.cols(row)) {
+      if (from_[at(col)] >= 0 || !fits(inc_, row, col)) continue;
+      from_[at(col)] = row;
+      found_.push_back(col);
+      if (m_.col_to_row[at(col)] < 0) return col;
+      rows_.push_back(m_.col_to_row[at(col)]);
+    }
+    return -1;
+  }
+  /// The path that ends in this column, back to its start: every row gets the column found by it.
+  void flip(int col, int start) {
+    for (int c = col; c >= 0;) {
+      const int row = from_[at(c)], before = m_.row_to_col[at(row)];
+      m_.row_to_col[at(row)] = c;
+      m_.col_to_row[at(c)] = row;
+      c = row == start ? -1 : before;
     }
   }
-  return false;
-}
+
+  const Incidence& inc_;
+  Matching& m_;
+  std::vector<int> from_;          ///< column -> row that found it
+  std::vector<int> rows_, found_;  ///< of the present path: to be looked at; columns found
+};
 
 }  // namespace
 
@@ -70,8 +90,9 @@ Matching maximum_matching(const Graph& g, const Incidence& inc) {
   Matching m{std::vector<int>(at(inc.row_vertices()), -1),
              std::vector<int>(inc.signal_of.size(), -1)};
   take_defaults(g, inc, m);
+  Augmenting path(inc, m);
   for (int r = 0; r < inc.row_vertices(); ++r)
-    if (m.row_to_col[at(r)] < 0) augment(inc, m, r);
+    if (m.row_to_col[at(r)] < 0) path.from(r);
   return m;
 }
 
