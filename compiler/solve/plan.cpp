@@ -12,15 +12,16 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Live row sets: original row groups first, then the rows that fronts leave over. A variable's
 /// list of sets may hold dead ones; `live` counts the others. Every front replaces at least one set
-/// of each border variable by one, so no list outgrows its first size.
+/// of each border variable by one, so no list outgrows its first size; it has half as much room
+/// again, or dead ones would be looked for with every new one (a hub has very many).
 class Merging {
  public:
   explicit Merging(Plan& plan) : p_(plan), s_(plan.structure) {
     const auto sets = s_.row_size.size(), variables = s_.variable_size.size();
     begin_.assign(variables + 1, 0);
     for (const int v : s_.variables) ++begin_[at(v) + 1];
-    for (std::size_t v = 0; v < variables; ++v) begin_[v + 1] += begin_[v];
-    sets_.resize(s_.variables.size());
+    for (std::size_t v = 0; v < variables; ++v) begin_[v + 1] += begin_[v] + begin_[v + 1] / 2;
+    sets_.resize(at(begin_.back()));
     used_.assign(variables, 0);
     for (int r = 0; r < static_cast<int>(sets); ++r)
       for (const int v : s_.row(r)) sets_[at(begin_[at(v)] + used_[at(v)]++)] = r;
