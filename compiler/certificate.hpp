@@ -37,7 +37,8 @@ struct Certificate {
   /// Largest margin rho(|L^-1| |L|) of an algebraic loop with matrix L, and its first signal: 1 for
   /// no loop, 4/delta at distance delta from singular; invariant under any change of units.
   double margin = 1;
-  bool margin_is_exact = true;  ///< false where some loops were too large for it (see the notes)
+  bool margin_is_exact = true;  ///< false where some loops were too large for it (see the notes),
+                                ///< or have no inverse in double (50 digits, or states, decide)
   std::string margin_where;
   int fronts = 0;         ///< of the elimination
   int fronts_made = 0;    ///< of them, by the last compile or update; the others are shared

@@ -74,7 +74,8 @@ void timed(detail::SystemData& data, const char* name, F f) {
       name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 
-void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
+/// `least`: see least_pivot.
+void solve_joint(detail::Skeleton& k, detail::SystemData& d, double least) {
   k.layout = detail::make_layout(k.stage.graph);
   d.states = detail::StateMap(k.stage.dependents, k.layout);
   d.numbers.parameters = k.stage.values;
@@ -84,14 +85,14 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
   d.factors =
       std::make_unique<const solve::Factors<double>>(k.joint.plan, detail::real_rows(k, d.numbers));
   k.dependents = detail::find_dependents(k.stage, k.joint);
-  if (d.factors->health().singular) detail::reduce(k, d);
+  if (d.factors->health().singular || least > 0) detail::reduce(k, d, least);
   detail::judge_internal_forces(k, d);
   k.stage.notes.push_back({Note::Kind::info, "solve",
                            fmt::format("{} unknowns in {} fronts", k.joint.plan->unknowns,
                                        k.joint.plan->fronts.size())});
 }
 
-std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options) {
+std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options, double least = 0) {
   auto data = std::make_shared<detail::SystemData>();
   auto skeleton = std::make_shared<detail::Skeleton>();
   data->skeleton = skeleton;
@@ -108,7 +109,7 @@ std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options) {
     });
     dump(options, ++number, pass.name, stage);
   }
-  timed(*data, "solve", [&] { solve_joint(*skeleton, *data); });
+  timed(*data, "solve", [&] { solve_joint(*skeleton, *data, least); });
   data->notes = stage.notes;
   data->margins = std::make_shared<const std::vector<double>>(stage.loops.size(), 0.0);
   data->changed_loops.resize(stage.loops.size());
@@ -134,12 +135,17 @@ System compile(const Diagram& diagram, const Options& options) {
 namespace detail {
 
 std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Options& options) {
-  Stage stage;
-  stage.graph = graph;
-  stage.values = nominal_values(graph);
-  auto data = run(std::move(stage), options);
-  timed(*data, "certify", [&] { certify_now(*data); });
-  return data;
+  const auto made = [&](double least) {
+    Stage stage;
+    stage.graph = graph;
+    stage.values = nominal_values(graph);
+    auto data = run(std::move(stage), options, least);
+    timed(*data, "certify", [&] { certify_now(*data); });
+    return data;
+  };
+  auto data = made(0);
+  const double least = data->checked().least;
+  return least > 0 ? made(least) : data;
 }
 
 std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector<double>& values) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <titop/compiler/certify/self_check.hpp>
+#include <titop/compiler/reduce/weak_pivot.hpp>
 #include <titop/compiler/system_data.hpp>
 
 namespace titop::detail {
@@ -46,6 +47,7 @@ Check certify(const SystemData& d) {
   find_margins(d, d.changed_loops, margins);
   worst_margin(d, margins, check);
   self_check(d, check);
+  check.least = least_pivot(d, check);
   c.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   // At distance delta from singular the margin is about 4/delta, and a pivot keeps delta/2.
   const double by_margin = 4 / c.margin, by_pivot = 2 * c.weakest_pivot;
@@ -60,6 +62,10 @@ Check certify(const SystemData& d) {
   if (c.residual > kWarn)
     check.notes.push_back({Note::Kind::warning, "certify",
                            fmt::format("{} holds only to {:.1g}", c.residual_where, c.residual)});
+  if (check.least > 0)
+    check.notes.push_back({Note::Kind::warning, "certify",
+                           "no digit is left: 50 digits find these equations singular, where "
+                           "double takes rounding for a pivot"});
   return check;
 }
 

@@ -148,7 +148,8 @@ void to_own_units(const SystemData& d, const Loop& loop, MatrixXd& L) {
   to_own_units(rows, columns, L);
 }
 
-/// rho(|L^-1| |L|); 1 for a single unknown, 0 where it is not found.
+/// rho(|L^-1| |L|); 1 for a single unknown, 0 where it is not found: of large loops, and where L
+/// has no inverse in double.
 double margin(const SystemData& d, const Loop& loop, Room& room) {
   if (loop.unknowns == 1) return 1;
   if (loop.unknowns > kExactUpTo || !take_loop_matrix(d, loop, room)) return 0;
@@ -170,12 +171,15 @@ void worst_margin(const SystemData& d, std::span<const double> margins, Check& c
   const std::vector<Loop>& loops = d.skeleton->stage.loops;
   int skipped = 0;
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    skipped += loops[i].unknowns > kExactUpTo;
+    if (loops[i].unknowns > kExactUpTo)
+      ++skipped;
+    else if (margins[i] == 0)
+      check.singular_loop = true;
     if (margins[i] <= c.margin) continue;
     c.margin = margins[i];
     c.margin_where = name_of(d.graph(), loops[i].signals.front());
   }
-  c.margin_is_exact = skipped == 0;
+  c.margin_is_exact = skipped == 0 && !check.singular_loop;
   if (skipped > 0)
     check.notes.push_back(
         {Note::Kind::info, "certify",

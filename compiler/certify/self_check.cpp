@@ -198,7 +198,8 @@ void check_at_s(const SystemData& d, const RowMatrix<double>& u, double s, Check
   check.certificate.residual = written.worst;
   check.certificate.residual_where = written.where;
   const auto losses = point.losses();
-  if (const double lost = std::max(losses.change, losses.rounding); lost > kWarn)
+  check.lost = std::max(losses.change, losses.rounding);
+  if (const double lost = check.lost; lost > kWarn)
     check.notes.push_back(
         {Note::Kind::warning, "certify",
          fmt::format(

@@ -12,7 +12,7 @@ namespace titop::detail {
 /// would make of what the input alone moves at once, or, where that is nothing (behind what is
 /// strictly proper), of inputs of size 1. Terms of an equation are then of like size unless the
 /// diagram's own numbers are not. Beside it the blocks' own formula for s, which transfers are made
-/// of, against A, B, C, D, for the first four of each type. With positions or rates in the
+/// of, against A, B, C, D, for the first two of each type. With positions or rates in the
 /// equations, states that follow from others or a reduced scene, and where digits may be lost, at
 /// one real s: all is then a function of the input alone, but a second elimination is needed.
 void self_check(const SystemData& data, Check& check);

@@ -6,6 +6,7 @@
 #include <titop/compiler/reduce/new_rows.hpp>
 #include <titop/compiler/reduce/proper.hpp>
 #include <titop/compiler/reduce/reduce.hpp>
+#include <titop/compiler/reduce/weak_pivot.hpp>
 #include <titop/compiler/solve/blame.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
 #include <titop/compiler/some_names.hpp>
@@ -25,14 +26,15 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 class Reducer {
  public:
   /// `held`: row groups and rows in them where motions are held already.
-  Reducer(Skeleton& k, SystemData& d, std::set<std::pair<int, int>>& held)
-      : k_(k), d_(d), followers_(k, d), held_(held) {}
+  Reducer(Skeleton& k, SystemData& d, double least, std::set<std::pair<int, int>>& held)
+      : k_(k), d_(d), least_(least), followers_(k, d), held_(held) {}
 
   /// False where undetermined motions have been taken out of the system as written: begin again.
   bool run() {
     k_.before_reduce = k_.joint;
     factor();
     d_.scale_as_written = d_.factors->scale();
+    if (held_.empty() && d_.factors->patches().empty()) throw Error(no_digit_left(k_, d_));
     while (!d_.factors->patches().empty())
       if (!step()) return false;
     if (!constraints_.empty()) finish();
@@ -42,6 +44,7 @@ class Reducer {
  private:
   bool step() {
     const std::vector<Hidden> found = constraints();
+    if (found.empty()) throw Error(no_digit_left(k_, d_));
     if (const std::vector<Hidden> rest = followers_.add(found); !rest.empty()) {
       hold_or_refuse(rest);
       return false;
@@ -58,7 +61,7 @@ class Reducer {
 
   void factor() {
     d_.factors = std::make_unique<const solve::Factors<double>>(
-        k_.joint.plan, real_rows(k_, d_.numbers), nullptr, solve::NoPivot::patch);
+        k_.joint.plan, real_rows(k_, d_.numbers), nullptr, solve::NoPivot::patch, least_);
     if (const solve::Health h = d_.factors->health(); h.singular)
       throw Error(solve::overflow(k_.stage, k_.joint, h));
   }
@@ -240,6 +243,7 @@ class Reducer {
 
   Skeleton& k_;
   SystemData& d_;
+  double least_;
   Followers followers_;
   std::set<std::pair<int, int>>& held_;
   std::vector<RowMatrix<double>> forcing_;  ///< [j]: rows x inputs, of u^(j + 1)
@@ -248,9 +252,9 @@ class Reducer {
 
 }  // namespace
 
-void reduce(Skeleton& k, SystemData& d) {
+void reduce(Skeleton& k, SystemData& d, double least) {
   std::set<std::pair<int, int>> held;
-  while (!Reducer(k, d, held).run()) {
+  while (!Reducer(k, d, least, held).run()) {
   }
 }
 

@@ -17,12 +17,12 @@
 /// which nothing asked for depends (undetermined.hpp), it is taken as 0 in its place, and noted.
 namespace titop::detail {
 
-/// Replaces k.joint and d.factors, which are singular, by regular ones; completes
-/// k.stage.dependents and d.states; keeps the equations as written, undetermined motions at 0, in
-/// k.before_reduce. Throws improper (input, output, number of derivatives and the equation that
-/// makes it), or what solve::blame says where a constraint repeats or contradicts what is known
-/// (with what depends on the motion that is left undetermined), not_finite. O(bodies) per missing
-/// pivot.
-void reduce(Skeleton& k, SystemData& d);
+/// Replaces k.joint and d.factors, which are singular, by regular ones (`least`: of its terms that
+/// a pivot has to keep, see least_pivot); completes k.stage.dependents and d.states; keeps the
+/// equations as written, undetermined motions at 0, in k.before_reduce. Throws improper (input,
+/// output, number of derivatives and the equation that makes it), or what solve::blame says where a
+/// constraint repeats or contradicts what is known (with what depends on the motion that is left
+/// undetermined), not_finite. O(bodies) per missing pivot.
+void reduce(Skeleton& k, SystemData& d, double least);
 
 }  // namespace titop::detail

@@ -14,10 +14,6 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// A pivot that keeps less than this many units of rounding has no digit left: 1e-14 of its terms
-/// is a pivot of one to two digits, 1e-15 is rounding.
-constexpr double kNothingLeft = 16;
-
 /// Adds the rows that a child front left over; their `keeps` go along.
 template <class T>
 void add_child(const Plan& plan, const Front& child, const typename Factors<T>::Made& made,
@@ -88,6 +84,7 @@ double power_of_two(std::int16_t e) {
 /// not pass for a good one further up.
 template <class T>
 struct Factors<T>::Work {
+  double least;                    ///< of its terms, that a pivot has to keep
   std::vector<double> bound = {};  ///< as Made::lu
   std::vector<double> keeps = {};  ///< per row
   std::vector<double> row_scale =
@@ -151,14 +148,14 @@ struct Factors<T>::Work {
       if (from > 0 && size > left * from) left = size / from;
     }
     if (left < m->weakest) m->weakest = left, m->weakest_column = k;
-    return left < kNothingLeft * Scalar<T>::epsilon() || !std::isfinite(best_score) ? -1 : best;
+    return left < least || !std::isfinite(best_score) ? -1 : best;
   }
 
   /// The column has no pivot: the row of which least is left gets one, of its own size. What was
   /// left of the column is rounding.
   int patch(int k) {
     int best = k;
-    double least = std::numeric_limits<double>::infinity();
+    double fewest = std::numeric_limits<double>::infinity();
     for (int i = k; i < rows; ++i) {
       row(i)[k] = T(0);
       double left = 0;
@@ -166,7 +163,7 @@ struct Factors<T>::Work {
         if (row_scale[at(i)] > 0)
           left = std::max(
               left, size_of(row(i)[j]) * column[static_cast<std::size_t>(j)] / row_scale[at(i)]);
-      if (left < least) least = left, best = i;
+      if (left < fewest) fewest = left, best = i;
     }
     const double size = row_scale[at(best)] > 0 ? row_scale[at(best)] : 1;
     const double value = size / column[at(k)];
@@ -186,8 +183,7 @@ struct Factors<T>::Work {
   void clean(int k) {
     for (std::ptrdiff_t e = (k + 1) * n; e < static_cast<std::ptrdiff_t>(m->lu.size()); ++e)
       if (T& x = m->lu[static_cast<std::size_t>(e)];
-          e % n > k &&
-          size_of(x) <= kNothingLeft * Scalar<T>::epsilon() * bound[static_cast<std::size_t>(e)])
+          e % n > k && size_of(x) <= least * bound[static_cast<std::size_t>(e)])
         x = T(0);
   }
 
@@ -274,14 +270,15 @@ void Factors<T>::make(int index, const Rows<T>& rows, Work& w, ColumnScale* foun
 
 template <class T>
 Factors<T>::Factors(std::shared_ptr<const Plan> plan, const Rows<T>& rows,
-                    std::shared_ptr<const ColumnScale> scale, NoPivot no_pivot)
+                    std::shared_ptr<const ColumnScale> scale, NoPivot no_pivot, double least)
     : plan_(std::move(plan)),
       scale_(std::move(scale)),
       fronts_(plan_->fronts.size()),
-      no_pivot_(no_pivot) {
+      no_pivot_(no_pivot),
+      least_(std::max(least, kNothingLeft * Scalar<T>::epsilon())) {
   std::shared_ptr<ColumnScale> found;
   if (!scale_) scale_ = found = std::make_shared<ColumnScale>(at(plan_->columns));
-  Work work;
+  Work work{least_};
   for (int i = 0; i < static_cast<int>(fronts_.size()) && singular_ < 0; ++i) {
     make(i, rows, work, found.get());
     if (fronts_[at(i)]->singular) singular_ = i;
@@ -297,7 +294,7 @@ Factors<T> Factors<T>::changed(const Rows<T>& rows, std::span<const int> row_gro
     for (int f = plan_->front_of_row[at(r)]; f >= 0 && !todo[at(f)];
          f = plan_->fronts[at(f)].parent)
       todo[at(f)] = 1;
-  Work work;
+  Work work{least_};
   for (int f = 0; f < static_cast<int>(fronts_.size()) && result.singular_ < 0; ++f) {
     if (!todo[at(f)]) continue;
     result.make(f, rows, work, nullptr);

@@ -35,6 +35,10 @@ struct Health {
   std::vector<int> singular_variables;
 };
 
+/// A pivot that keeps less than this many units of rounding has no digit left: 1e-14 of its terms
+/// is a pivot of one to two digits, 1e-15 is rounding.
+constexpr double kNothingLeft = 16;
+
 /// What to do where a column has no pivot with a digit left.
 enum class NoPivot {
   stop,   ///< there: the factors are of no use
@@ -65,8 +69,11 @@ template <class T>
 class Factors {
  public:
   /// Factors the system. O(sum of front sizes^3). `scale`: of a similar system; found if absent.
+  /// `least`: share of its terms that a pivot has to keep; never less than kNothingLeft units of
+  /// rounding.
   Factors(std::shared_ptr<const Plan> plan, const Rows<T>& rows,
-          std::shared_ptr<const ColumnScale> scale = nullptr, NoPivot no_pivot = NoPivot::stop);
+          std::shared_ptr<const ColumnScale> scale = nullptr, NoPivot no_pivot = NoPivot::stop,
+          double least = 0);
 
   /// The factors where only these row groups have new coefficients: the fronts that they enter and
   /// all above are made again, the others shared. O(those fronts) and one pointer per front.
@@ -107,6 +114,7 @@ class Factors {
   std::shared_ptr<const ColumnScale> scale_;
   std::vector<std::shared_ptr<const Made>> fronts_;
   NoPivot no_pivot_ = NoPivot::stop;
+  double least_ = 0;
   int made_ = 0;
   int singular_ = -1;  ///< first singular front
 };

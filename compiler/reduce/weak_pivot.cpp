@@ -1,0 +1,76 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <titop/compiler/certify/residual.hpp>
+#include <titop/compiler/reduce/weak_pivot.hpp>
+#include <titop/compiler/solve/scalar.hpp>
+#include <titop/compiler/some_names.hpp>
+
+namespace titop::detail {
+namespace {
+
+using solve::Complex50;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr double kFewDigits = 1e-7;  ///< of its terms: half of the digits are left
+constexpr double kMostProducts = 1e7;
+
+bool is_doubtful(const Check& check) {
+  const Certificate& c = check.certificate;
+  return c.weakest_pivot < kFewDigits || c.margin > 10 / kFewDigits || check.singular_loop ||
+         c.residual > kWarn || check.lost > 1e-3;
+}
+
+double products(const solve::Plan& plan) {
+  double sum = 0;
+  for (const solve::Front& f : plan.fronts)
+    sum += static_cast<double>(f.row_count) * f.pivot_count * f.columns();
+  return sum;
+}
+
+/// What cancels leaves exactly nothing there, so that no rounding is taken for a pivot further up.
+bool singular_in_50_digits(const Skeleton& k, const SystemData& d) {
+  std::vector<solve::Dense<Complex50>> direct;
+  solve::Matrices<Complex50> m;
+  direct.reserve(d.numbers.blocks.size());
+  for (const auto& block : d.numbers.blocks) {
+    direct.push_back(solve::lifted<Complex50>(block->D));
+    m.direct.push_back(&direct.back());
+  }
+  const solve::JointRows<Complex50> rows(k.stage.graph, k.joint, d.numbers.coefficients,
+                                         std::move(m));
+  const solve::Factors<Complex50> factors(k.joint.plan, rows, d.factors->scale(),
+                                          solve::NoPivot::patch);
+  const double rounding = solve::kNothingLeft * solve::Scalar<double>::epsilon();
+  const solve::Health h = factors.health();
+  return h.finite && (!factors.patches().empty() || h.weakest < rounding);
+}
+
+}  // namespace
+
+double least_pivot(const SystemData& d, const Check& check) {
+  const Skeleton& k = *d.skeleton;
+  if (!is_doubtful(check) || products(*k.joint.plan) > kMostProducts) return 0;
+  if (!singular_in_50_digits(k, d)) return 0;
+  return std::clamp(2 * check.certificate.weakest_pivot, 1e-13, 1e-11);
+}
+
+Mistake no_digit_left(const Skeleton& k, const SystemData& d) {
+  const int variable = d.factors->health().weakest_variable;
+  const int signal = variable < 0 ? -1 : k.joint.variables[at(variable)];
+  std::vector<std::string> ports;
+  for (const Loop& loop : k.stage.loops)
+    if (std::find(loop.signals.begin(), loop.signals.end(), signal) != loop.signals.end())
+      for (const int s : loop.signals) ports.push_back(name_of(k.stage.graph, s));
+  if (ports.empty() && signal >= 0) ports.push_back(name_of(k.stage.graph, signal));
+  return {Code::ill_posed,
+          fmt::format("the algebraic loop through {} has no unique solution, or none with a digit "
+                      "in double",
+                      ports.empty() ? "a sum of many terms" : some_names(ports)),
+          {"seen in 50 digits, where double takes rounding for a pivot"},
+          "break the direct feedthrough there: give one block of the loop a state, or change a "
+          "gain"};
+}
+
+}  // namespace titop::detail

@@ -1,0 +1,115 @@
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <titop/graph/linalg/eigen.hpp>
+#include <titop/titop.hpp>
+
+#include "support/close.hpp"
+#include "support/mistakes.hpp"
+#include "support/rng.hpp"
+
+/// Loops in which every block feeds every other one. Rounding of many pivots adds up there, and
+/// what is left of an exactly singular loop looks like a pivot: 50 digits tell.
+
+using namespace titop;
+using namespace titop_test;
+using Eigen::MatrixXd;
+
+namespace {
+
+/// out = in, in = (1 - L) out + u: L out = u.
+Diagram diagram(const MatrixXd& L) {
+  const auto n = static_cast<int>(L.rows());
+  Diagram d{"dense"};
+  auto u = d.input("u", n);
+  std::vector<Gain::Handle> g;
+  for (int i = 0; i < n; ++i) g.push_back(d.add(fmt::format("g{}", i), Gain{.gain = 1}));
+  for (int i = 0; i < n; ++i) {
+    Expr sum = MatrixXd(MatrixXd::Identity(n, n).row(i)) * u;
+    for (int j = 0; j < n; ++j)
+      if (const double w = (i == j) - L(i, j); w != 0)
+        sum = sum + w * g[static_cast<std::size_t>(j)].out;
+    g[static_cast<std::size_t>(i)].in = sum;
+  }
+  for (int i = 0; i < n; ++i) d.output(fmt::format("y{}", i)) = g[static_cast<std::size_t>(i)].out;
+  return d;
+}
+
+/// Sixteenths: sums and multiples by powers of two are exact.
+double sixteenths(Rng& rng) { return (rng.below(33) - 16) / 16.0; }
+
+MatrixXd full(std::uint64_t seed) {
+  Rng rng(seed);
+  const int n = 3 + rng.below(6);
+  MatrixXd L(n, n);
+  for (double& entry : L.reshaped()) entry = sixteenths(rng);
+  return L;
+}
+
+/// 1 on the diagonal, a few entries beside it.
+MatrixXd sparse(std::uint64_t seed) {
+  Rng rng(seed);
+  const int n = 4 + rng.below(10);
+  MatrixXd L = MatrixXd::Identity(n, n);
+  for (int i = 0; i < n; ++i)
+    for (int j = 0; j < n; ++j)
+      if (i != j && rng.chance(2.5 / n)) L(i, j) = sixteenths(rng);
+  return L;
+}
+
+/// One row becomes a sum of two to four others, times powers of two: the rank is n - 1 exactly.
+MatrixXd made_singular(MatrixXd L, std::uint64_t seed) {
+  Rng rng(seed);
+  const auto n = static_cast<int>(L.rows());
+  std::vector<int> rows;
+  for (int i = 0; i < n; ++i) rows.push_back(i);
+  rng.shuffle(rows);
+  const std::size_t count = static_cast<std::size_t>(2 + rng.below(std::min(n - 2, 3)));
+  L.row(rows[0]).setZero();
+  for (std::size_t k = 1; k <= count && k < rows.size(); ++k)
+    L.row(rows[0]) += std::ldexp(rng.chance(0.5) ? 1 : -1, rng.below(3) - 1) * L.row(rows[k]);
+  return L;
+}
+
+}  // namespace
+
+TEST_CASE("1000 exactly singular loops, dense or nearly: every one is refused") {
+  int refused = 0;
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
+    CAPTURE(seed);
+    const Error e =
+        compile_error(diagram(made_singular(seed % 2 ? full(seed) : sparse(seed), seed + 7)));
+    refused += e.has(Code::ill_posed);
+  }
+  CHECK(refused == 1000);
+}
+
+TEST_CASE("500 regular ones: none is refused, and the answer is that of L") {
+  double worst = 0;
+  int regular = 0;
+  for (std::uint64_t seed = 1; seed <= 500; ++seed) {
+    CAPTURE(seed);
+    const MatrixXd L = seed % 2 ? full(seed) : sparse(seed);
+    const Eigen::VectorXd sizes = L.bdcSvd().singularValues();
+    if (sizes.minCoeff() < 1e-6 * sizes.maxCoeff()) continue;  // some are singular by chance
+    ++regular;
+    const Eigen::MatrixXcd G = compile(diagram(L)).transfer({0.1, 1});
+    using Long = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+    const Long exact = L.cast<long double>().fullPivLu().inverse();
+    worst = std::max(worst, matrix_error(G, exact.cast<double>()));
+  }
+  CHECK(regular >= 480);
+  CHECK(worst <= 1e-12);
+}
+
+TEST_CASE("a loop whose pivots have all lost a little is refused by 50 digits, and says so") {
+  // Exactly singular; double finds a pivot of 1e-16 in a front of its own, where nothing cancels.
+  const MatrixXd L{{-0.25, 0.5, -0.625, -0.875, -0.9375},
+                   {0.9375, 0.875, -0.75, 0.4375, 0.875},
+                   {0.5, 1, -1, 0.1875, 0},
+                   {-0.6875, 0.4375, -0.5, -0.125, 0.9375},
+                   {-0.9375, -1.875, 1.875, 0.34375, 0.0625}};
+  const Error e = compile_error(diagram(L));
+  CHECK(e.has(Code::ill_posed));
+  CHECK(std::string(e.what()).find("has no unique solution") != std::string::npos);
+}
