@@ -28,7 +28,8 @@ struct JudgedMode {
 struct OrderVerdict {
   bool judged = false;  ///< false: `minimize` has not run; only the structure has been looked at
   int order = 0;        ///< of the model
-  /// The minimal order lies between these two, both included; equal: it is decided.
+  /// The minimal order lies between these two, both included; equal: it is decided, as far as
+  /// double precision tells data apart.
   int lowest = 0, highest = 0;
   bool exact = false;   ///< decided by exact arithmetic (compiler/exact_order.hpp)
   double to_fewer = 1;  ///< least visibility among the modes that stay: what the next would cost
@@ -53,8 +54,10 @@ struct Minimized {
   std::vector<std::string> notes;  ///< in plain words; the verdict is the first
 };
 
-/// Minimal by effect. Each mode has a visibility v: the relative half-bandwidth in which it stands
-/// out of the rest of the transfer, a pure number in which every input, output and unit cancels:
+/// Minimal by effect: what is left out may still be there in the last bits of the data, and the
+/// verdict says where that is so. Each mode has a visibility v: the relative half-bandwidth in
+/// which it stands out of the rest of the transfer, a pure number in which every input, output and
+/// unit cancels:
 ///
 ///     w_i = 1 / max(|l_i - l_j|, 0.01 l_j),  q = sqrt(sum b_i^2 w_i),  r = sqrt(sum c_i^2 w_i)
 ///     v_j = max_k(|c_kj| / r_k) max_l(|b_jl| / q_l) / (2 l_j)
@@ -69,10 +72,14 @@ struct Minimized {
 /// those of closed chains with the help of their energy,
 /// the others by the eigenvalues of A (l = s) and the condition numbers of these; poles at 0 and
 /// ill-conditioned ones stay. The verdict's interval counts
-///  - upwards, dropped modes above 1e-17, which only rounding cannot tell from nothing;
+///  - upwards, dropped modes above 1e-17 or above their own rounding bound: the first might matter,
+///    the second are there, however little they do;
 ///  - downwards, kept modes below 1e-9 within 1e4 of their bound; ill-conditioned poles; poles at 0
 ///    where the ranks of inputs and outputs there do not show that they are needed.
-/// With `exact_order` the least visible modes leave until the order is that one. Cost O(n^3).
+/// A decided order is that of all data which rounding tells from those given: what lies below its
+/// own bound (two frequencies one ulp apart) counts as nothing, and only exact arithmetic says if
+/// it is. With `exact_order` the least visible modes leave until the order is that one. Cost
+/// O(n^3).
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options = {});
 
 }  // namespace titop

@@ -96,6 +96,15 @@ void check_written(const System& system, const Full& what, const std::vector<Com
   }
 }
 
+/// States that left as nothing but rounding may be there in the last bits of the data. That is no
+/// fault of the model, but no order that double precision has decided either.
+void reach_up_to(const ExactOrder& exact, OrderVerdict& v) {
+  int before = v.order;
+  for (const JudgedMode& m : v.removed) before += m.states;
+  if (exact.decided && v.judged && exact.order <= before)
+    v.highest = std::max(v.highest, exact.order);
+}
+
 void list_faults(FullCertificate& c) {
   const auto fault = [&c](double value, double allowed, const char* text) {
     if (!(value <= allowed)) c.faults.push_back(fmt::format("{} {:.1e}", text, value));
@@ -141,6 +150,7 @@ FullCertificate certify(const System& system, const Full& what) {
   }
   c.basic = system.certificate();
   c.exact = exact_order(*system.stage().source, what.exact, values_of(system));
+  reach_up_to(c.exact, c.order);
   set_range(omegas, c.grid);
   c.grid.points = system.inputs().empty() || system.outputs().empty() ? 0 : what.points;
   if (c.grid.points > 0) {

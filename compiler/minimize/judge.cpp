@@ -12,7 +12,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kNothing = 1e-17;  ///< far narrower than the spacing of doubles at a pole
+/// Far narrower than the spacing of doubles at a pole: by effect nothing, but no proof of a 0.
+constexpr double kNothing = 1e-17;
 constexpr double kDoubtful = 1e-9;  ///< above it a mode always stays
 constexpr double kFarOff = 1e-6;    ///< above it not even exact arithmetic makes a mode leave
 
@@ -77,6 +78,15 @@ Verdict judge(const ModeSet& m, Index j, double resolution) {
   return v;
 }
 
+/// Not told from 0 by double precision, and too narrow for it to matter if it is none.
+bool is_zero(const Verdict& v) { return v.visibility <= kNothing && v.visibility <= v.bound; }
+
+/// Why a mode left, or may have to.
+std::string reason(const Verdict& v, bool hardly) {
+  if (v.unreachable) return hardly ? "inputs hardly move it" : "no input moves it";
+  return hardly ? "outputs hardly see it" : "no output sees it";
+}
+
 }  // namespace
 
 std::vector<Verdict> judge(const ModeSet& m, double resolution) {
@@ -116,16 +126,14 @@ OrderVerdict sum_up(const std::vector<Verdict>& verdicts, const ModeSet& m, int 
     };
     if (v.drop) {
       r.order -= m.states[j];
-      more += v.visibility > kNothing ? m.states[j] : 0;
+      more += is_zero(v) ? 0 : m.states[j];
       r.to_more = std::max(r.to_more, v.visibility);
-      r.removed.push_back(report(v.unreachable ? "no input moves it" : "no output sees it"));
+      r.removed.push_back(report(reason(v, v.visibility > 10 * v.bound)));
     } else {
       r.to_fewer = m.apart[j].empty() ? std::min(r.to_fewer, v.visibility) : r.to_fewer;
       if (!v.doubtful) continue;
       fewer += m.states[j];
-      r.undecided.push_back(report(!m.apart[j].empty() ? m.apart[j]
-                                   : v.unreachable     ? "inputs hardly move it"
-                                                       : "outputs hardly see it"));
+      r.undecided.push_back(report(m.apart[j].empty() ? reason(v, true) : m.apart[j]));
     }
   }
   r.lowest = r.order - fewer;

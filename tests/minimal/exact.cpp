@@ -55,7 +55,7 @@ TEST_CASE("five masses: 8 where k4/m4 = k5/m5, decided exactly; 10 one ulp besid
   CHECK(exact_order(five(std::nextafter(130, 0)).graph()).order == 10);
   CHECK(exact_order(five(170).graph()).order == 10);
   CHECK(exact_order(five(130, 0x1p-40).graph()).order == 8);
-  // Without it, what lies below the spacing of doubles at the pole counts as nothing.
+  // Without it, what lies below its own rounding counts as nothing.
   CHECK(compile(five(std::nextafter(130, 200))).state_space().order() == 8);
   const System exactly = compile(five(std::nextafter(130, 200)), {.exact_up_to = 10});
   CHECK(exactly.state_space().order() == 10);
@@ -63,6 +63,31 @@ TEST_CASE("five masses: 8 where k4/m4 = k5/m5, decided exactly; 10 one ulp besid
   const System even = compile(five(130), {.exact_up_to = 10});
   CHECK(even.state_space().order() == 8);
   CHECK(even.log().find("exact: order 8") != std::string::npos);
+}
+
+TEST_CASE("five masses, k5/m5 beside k4/m4: order 8 by effect, and the interval reaches to 10") {
+  CHECK(compile(five(130)).order_verdict().decided());
+  // Visible above its rounding, and far narrower than the spacing of doubles at the pole.
+  for (const double apart : {1e-12, 1e-10, 1e-9, 1e-8}) {
+    CAPTURE(apart);
+    const Diagram d = five(130 * (1 + apart));
+    const System system = compile(d);
+    const OrderVerdict& v = system.order_verdict();
+    REQUIRE(exact_order(d.graph()).order == 10);
+    CHECK(system.state_space().order() == 8);
+    CHECK(v.lowest == 8);
+    CHECK(v.highest == 10);
+    REQUIRE(v.removed.size() == 1);
+    CHECK(v.removed[0].visibility > v.removed[0].bound);
+    CHECK(to_string(v).find("order 8, undecided between 8 and 10 at this precision") == 0);
+    CHECK(certify(system).holds());
+  }
+  // One ulp is less than rounding: exact arithmetic finds it, and that is no fault of the model.
+  const FullCertificate one = certify(compile(five(std::nextafter(130, 200))));
+  CHECK(one.holds());
+  CHECK(one.exact.order == 10);
+  CHECK(one.order.lowest == 8);
+  CHECK(one.order.highest == 10);
 }
 
 TEST_CASE("six masses between walls: 10 of 12 are reached, all are seen") {

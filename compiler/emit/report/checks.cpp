@@ -116,6 +116,11 @@ std::string marked(Mark mark) {
                              : "";
 }
 
+/// With what exact arithmetic says, where it was asked.
+const OrderVerdict& order_of(const Subject& s, const FullCertificate* full) {
+  return full && full->order.judged ? full->order : s.system.order_verdict();
+}
+
 std::string as_range(const OrderVerdict& v) {
   if (!v.judged)
     return fmt::format(
@@ -127,7 +132,7 @@ std::string as_range(const OrderVerdict& v) {
         "Order {} is undecided: at this precision the minimal order lies between {} "
         "and {}{}{}.",
         v.order, v.lowest, v.highest,
-        v.highest > v.order ? "; what left is zero as far as rounding can tell" : "",
+        v.highest > v.order ? "; what left has no effect that this precision could tell" : "",
         v.lowest < v.order ? "; what is in doubt is kept" : "");
   return fmt::format("Order {} is minimal{}.", v.order,
                      v.exact ? ", decided in exact arithmetic" : ", decided beyond rounding");
@@ -211,8 +216,8 @@ std::string certificate_section(const Subject& s, const FullCertificate* full) {
   return text;
 }
 
-std::string order_section(const Subject& s) {
-  const OrderVerdict& v = s.system.order_verdict();
+std::string order_section(const Subject& s, const FullCertificate* full) {
+  const OrderVerdict& v = order_of(s, full);
   std::string text = "<p>" + as_range(v) + "</p>\n";
   if (v.judged && v.order > 0)
     text += fmt::format(
@@ -252,7 +257,7 @@ std::string order_section(const Subject& s) {
 
 std::string summary(const Subject& s, const FullCertificate* full) {
   const Certificate c = s.system.certificate();
-  const OrderVerdict& v = s.system.order_verdict();
+  const OrderVerdict& v = order_of(s, full);
   std::string text = tiles(s) + "<ul class=\"verdicts\">\n" + stability(s);
   if (full && !full->holds()) {
     for (const std::string& fault : full->faults) text += verdict("bad", escaped(fault));

@@ -48,7 +48,7 @@ Responses responses(const Subject& subject);
 std::string scene_section(const Subject& subject);
 std::string poles_section(const Subject& subject);
 std::string certificate_section(const Subject& subject, const FullCertificate* full);
-std::string order_section(const Subject& subject);
+std::string order_section(const Subject& subject, const FullCertificate* full);
 std::string passes_section(const Subject& subject, const FullCertificate* full);
 
 /// What must be known before anything else: stability, order, whether all checks hold; warnings.
