@@ -12,6 +12,8 @@ namespace {
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
 /// The minimal order where exact arithmetic is asked for and has found it; -1: not.
 int exact_order_of(const SystemData& d, int states) {
   if (states > d.skeleton->options.exact_up_to) return -1;
@@ -50,13 +52,81 @@ OrderVerdict back_to(int order, double judged, OrderVerdict v) {
   return v;
 }
 
+/// Part of an entry of the transfer in which finer arithmetic and the dense model must agree for
+/// what it says of the order to count, and least visibility of a mode that counts then.
+constexpr double kCertain = 1e-6;
+constexpr double kMoving = 1e-9;  ///< of an entry: what changes less with s may be rounding
+
+/// The self-check says that digits are lost, of equations, pivots, loops or outputs.
+bool digits_are_lost(const SystemData& d) {
+  const std::vector<Note>& notes = d.checked().notes;
+  return std::any_of(notes.begin(), notes.end(), [](const Note& n) {
+    return n.pass == "certify" && n.kind == Note::Kind::warning;
+  });
+}
+
+/// The model with those inputs and outputs alone whose dynamics are not rounding: in some entry,
+/// what changes with s is as finer arithmetic says.
+StateSpace with_certain_ports(const System& system, const SystemData& d, const StateSpace& m) {
+  const std::complex<double> s = pick_s(d);
+  const auto transfers = [&](std::complex<double> z) {
+    return std::pair(system.transfer(z, Precision::as_needed), m.transfer(z));
+  };
+  const auto [exact, dense] = transfers(s);
+  Eigen::MatrixX<bool> certain = Eigen::MatrixX<bool>::Zero(exact.rows(), exact.cols());
+  for (const double factor : {0.1, 10.0}) {
+    const auto [other_exact, other_dense] = transfers(factor * s);
+    const MatrixXd size = exact.cwiseAbs().cwiseMax(other_exact.cwiseAbs());
+    const MatrixXd change = (other_exact - exact).cwiseAbs();
+    const MatrixXd off = (other_dense - dense - (other_exact - exact)).cwiseAbs();
+    certain = certain.array() ||
+              (change.array() > kMoving * size.array() && off.array() <= kCertain * change.array());
+  }
+  StateSpace part{m.A, {}, {}, {}, m.states, {}, {}};
+  std::vector<int> in, out;
+  for (int l = 0; l < certain.cols(); ++l)
+    if (certain.col(l).any()) in.push_back(l), part.inputs.push_back(m.inputs[at(l)]);
+  for (int i = 0; i < certain.rows(); ++i)
+    if (certain.row(i).any()) out.push_back(i), part.outputs.push_back(m.outputs[at(i)]);
+  part.B = m.B(Eigen::all, in);
+  part.C = m.C(out, Eigen::all);
+  part.D = m.D(out, in);
+  return part;
+}
+
+/// Every port is judged against its own size, so one that is nothing but rounding would count as
+/// moved and seen. Where digits are lost, only what the others show is certain: part of the inputs
+/// and outputs needs no more states than all of them.
+void doubt_lost_digits(const System& system, const SystemData& d, const StateSpace& dense,
+                       MinimizeOptions options, OrderVerdict& v) {
+  if (v.exact || v.lowest == 0 || dense.inputs.empty() || dense.outputs.empty()) return;
+  if (!digits_are_lost(d)) return;
+  options.resolution = std::max(options.resolution, kCertain);
+  int certain = 0;
+  try {
+    const StateSpace part = with_certain_ports(system, d, dense);
+    if (!part.inputs.empty()) certain = minimize(part, options).order.lowest;
+  } catch (const Error& error) {
+    if (!error.has(Code::singular)) throw;  // no transfer: nothing is certain
+  }
+  if (certain >= v.lowest) return;
+  v.lowest = certain;
+  d.dense_notes.push_back(
+      {Note::Kind::warning, "minimize",
+       fmt::format("digits are lost (see certify): of {} states, {} are certainly needed", v.order,
+                   certain)});
+}
+
 }  // namespace
 
 void minimize_checked(const System& system, const SystemData& d, StateSpace& dense) {
   const double resolution = d.skeleton->options.resolution;
-  Minimized m = minimize(dense, {.resolution = resolution,
-                                 .exact_order = exact_order_of(d, dense.order()),
-                                 .energy = d.states.trivial() ? MatrixXd() : potential_energy(d)});
+  const MinimizeOptions options{.resolution = resolution,
+                                .exact_order = exact_order_of(d, dense.order()),
+                                .energy = d.states.trivial() ? MatrixXd() : potential_energy(d)};
+  Minimized m = minimize(dense, options);
+  doubt_lost_digits(system, d, dense, options, m.order);
+  if (!m.notes.empty()) m.notes.front() = to_string(m.order);
   const bool removed = !m.order.removed.empty();
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
     std::vector<MatrixXcd> before, after;

@@ -29,7 +29,8 @@ struct OrderVerdict {
   bool judged = false;  ///< false: `minimize` has not run; only the structure has been looked at
   int order = 0;        ///< of the model
   /// The minimal order lies between these two, both included; equal: it is decided, as far as
-  /// double precision tells data apart.
+  /// double precision tells data apart. Of a system whose self-check says that digits are lost,
+  /// `lowest` counts only what inputs and outputs show whose dynamics finer arithmetic confirms.
   int lowest = 0, highest = 0;
   bool exact = false;   ///< decided by exact arithmetic (compiler/exact_order.hpp)
   double to_fewer = 1;  ///< least visibility among the modes that stay: what the next would cost

@@ -111,6 +111,7 @@ TEST_CASE("200 scenes: order, poles and transfer as assembled by hand, or the re
       CHECK(e.dense <= 1e-8);
       closed += system.log().find("close ") != std::string::npos;
       CHECK(system.state_space().order() == answer["order"].get<int>());
+      CHECK(system.order_verdict().decided());
       CHECK(e.poles <= 1e-7);
     } catch (const std::exception& error) {
       why = error.what();
