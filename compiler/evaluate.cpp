@@ -106,22 +106,37 @@ double Evaluation<T>::improve() {
   return relative_to_outputs(correction);
 }
 
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::rounding_of(const solve::RowMatrix<double>& magnitudes) {
+  SteadyRandom random;
+  solve::RowMatrix<T> result(magnitudes.rows(), magnitudes.cols());
+  for (Eigen::Index i = 0; i < result.rows(); ++i) {
+    const double unit = random.unit() * solve::Scalar<T>::epsilon();
+    for (Eigen::Index j = 0; j < result.cols(); ++j)
+      result(i, j) = solve::lift<T>(unit * magnitudes(i, j));
+  }
+  return result;
+}
+
 /// One solution of twice the columns serves both.
 template <class T>
 typename Evaluation<T>::Losses Evaluation<T>::losses() {
   solve::RowMatrix<double> magnitudes;
   const solve::RowMatrix<T> residual = rows_.residual(rhs_, unknowns_, &magnitudes);
   const auto m = residual.cols();
-  SteadyRandom random;
   solve::RowMatrix<T> both(residual.rows(), 2 * m);
-  both.leftCols(m) = residual;
-  for (Eigen::Index i = 0; i < both.rows(); ++i) {
-    const double unit = random.unit() * solve::Scalar<T>::epsilon();
-    for (Eigen::Index j = 0; j < m; ++j) both(i, m + j) = solve::lift<T>(unit * magnitudes(i, j));
-  }
+  both << residual, rounding_of(magnitudes);
   const solve::RowMatrix<T> changes = factors_->solve(both);
   unknowns_ += changes.leftCols(m);
   return {relative_to_outputs(changes.leftCols(m)), relative_to_outputs(changes.rightCols(m))};
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::rounding() const {
+  solve::RowMatrix<double> magnitudes;
+  rows_.residual(rhs_, unknowns_, &magnitudes);
+  const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), u_.cols());
+  return outputs_of(factors_->solve(rounding_of(magnitudes)), none, nullptr);
 }
 
 namespace {

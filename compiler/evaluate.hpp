@@ -60,6 +60,8 @@ class Evaluation {
   };
   /// improve(), and what rounding costs. One solution of two columns per column.
   Losses losses();
+  /// The change of the outputs by rounding as above, outputs x columns.
+  solve::RowMatrix<T> rounding() const;
   /// Of the elimination: see Certificate::weakest_pivot.
   double weakest_pivot() const { return factors_->health().weakest; }
 
@@ -71,6 +73,8 @@ class Evaluation {
   solve::RowMatrix<T> value_of(int signal, const solve::RowMatrix<T>& unknowns,
                                const solve::RowMatrix<T>& inputs) const;
   void refine(const Evaluation<std::complex<double>>& coarse);
+  /// One unit of the last place of these, up or down in a fixed random order, row by row.
+  static solve::RowMatrix<T> rounding_of(const solve::RowMatrix<double>& magnitudes);
   double relative_to_outputs(const solve::RowMatrix<T>& change_of_unknowns) const;
   /// (s - A)^-1 of this node's block.
   const Resolvent<T>& resolvent(int node) const;

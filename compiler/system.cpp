@@ -163,12 +163,13 @@ const StateSpace& System::state_space() const {
       if (!m->allFinite()) refuse_overflow("the dense model of " + d.graph().name);
     d.dense_against_factors = detail::dense_difference(d, dense);
     d.dense_error = detail::dense_error(d, dense);
-    if (const auto [error, at_s] = d.dense_error; error > 1e-9)
+    if (const double error = d.dense_error.error; error > 1e-9)
       d.dense_notes.push_back(
           {Note::Kind::warning, "dense",
            fmt::format("written as A, B, C, D the model keeps {:.0f} digits at s = {:.3g}{:+.3g}j; "
                        "System::transfer and apply keep them all",
-                       std::max(0.0, -std::log10(error)), at_s.real(), at_s.imag())});
+                       std::max(0.0, -std::log10(error)), d.dense_error.s.real(),
+                       d.dense_error.s.imag())});
     d.dense_order.order = d.dense_order.highest = dense.order();
     d.dense_order.judged = dense.order() == 0;
     if (dense.order() > 0 && dense.order() <= options.minimize_up_to) {
@@ -202,6 +203,8 @@ Certificate System::certificate() const {
     c.dense_against_factors = data_->dense_against_factors;
     c.dense_error = data_->dense_error.error;
     c.dense_error_s = data_->dense_error.s;
+    c.dense_error_where_small = data_->dense_error.where_small;
+    c.dense_error_where_small_s = data_->dense_error.where_small_s;
   }
   return c;
 }

@@ -47,10 +47,12 @@ struct Skeleton {
   const solve::Joint& as_written() const { return before_reduce ? *before_reduce : joint; }
 };
 
-/// What rounding the dense model costs, and where.
+/// What rounding the dense model costs, and where: see Certificate::dense_error and below.
 struct DenseError {
   double error = 0;
   std::complex<double> s;
+  double where_small = 0;
+  std::complex<double> where_small_s;
 };
 
 /// What `certify` finds.
@@ -82,7 +84,7 @@ struct SystemData {
   mutable std::once_flag dense_once;
   mutable StateSpace dense;
   mutable double dense_against_factors = -1;
-  mutable DenseError dense_error{-1, {}};
+  mutable DenseError dense_error{-1, {}, -1, {}};
   mutable std::vector<Note> dense_notes;
   mutable OrderVerdict dense_order;
   mutable std::atomic<bool> dense_ready = false;  ///< all of the above may be read
@@ -117,7 +119,7 @@ void write_dense(const SystemData& data, StateSpace& model, int threads);
 /// and u (fixed seed). O(n^2).
 double dense_difference(const SystemData& data, const StateSpace& dense);
 
-/// See Certificate::dense_error. O(n^2).
+/// See Certificate::dense_error. O(n^2) per s.
 DenseError dense_error(const SystemData& data, const StateSpace& dense);
 
 /// Margins of these loops of the stage, others left as they are.

@@ -82,9 +82,11 @@ std::string to_string(const Certificate& c) {
               ? std::string("dense model not written yet\n")
               : fmt::format(
                     "dense model agrees with the factors to {:.1e}; its rounding changes the "
-                    "transfer by {:.1e} at s = {:.3g}{:+.3g}j\n",
+                    "outputs by {:.1e} of their largest at s = {:.3g}{:+.3g}j, by {:.1e} of what "
+                    "they are at s = {:.3g}{:+.3g}j\n",
                     c.dense_against_factors, c.dense_error, c.dense_error_s.real(),
-                    c.dense_error_s.imag());
+                    c.dense_error_s.imag(), c.dense_error_where_small,
+                    c.dense_error_where_small_s.real(), c.dense_error_where_small_s.imag());
   text += fmt::format("weakest pivot keeps {:.1e} of its terms{}, growth {:.3g}\n", c.weakest_pivot,
                       c.weakest_where.empty() ? "" : " (" + c.weakest_where + ")", c.pivot_growth);
   text +=

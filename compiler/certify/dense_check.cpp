@@ -1,6 +1,9 @@
 #include <algorithm>
+#include <cmath>
+#include <deque>
 #include <limits>
 #include <titop/compiler/certify/steady_random.hpp>
+#include <titop/compiler/compare.hpp>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/system_data.hpp>
 
@@ -8,12 +11,14 @@
 namespace titop::detail {
 namespace {
 
-using Eigen::VectorXcd;
+using Eigen::Index;
+using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// The model's states block by block: first and count.
 std::vector<std::pair<int, int>> segments(const SystemData& d) {
@@ -56,28 +61,139 @@ double dense_difference(const SystemData& d, const StateSpace& m) {
   return worst;
 }
 
-DenseError dense_error(const SystemData& d, const StateSpace& m) {
-  using T = std::complex<double>;
+namespace {
+
+using T = std::complex<double>;
+
+constexpr Index kColumns = 8;   ///< inputs are tried one by one up to this many
+constexpr double kNoise = 1e3;  ///< times the factors' own rounding: what may be nothing else
+
+/// Where the dense model is tried: far below, at and above the blocks' frequencies, and below the
+/// slowest of them, where that is lower still.
+std::vector<T> tried(const SystemData& d) {
+  const T s = pick_s(d);
+  std::vector<T> result = {1e-4 * s, 1e-2 * s, s, 1e2 * s};
+  double slowest = kInfinity;
+  for (const int i : d.layout().state_nodes)
+    if (const double size = d.numbers.blocks[at(i)]->A.cwiseAbs().maxCoeff(); size > 0)
+      slowest = std::min(slowest, std::sqrt(size));
+  if (slowest < 1e-2 * std::abs(s)) result.push_back(1e-2 * slowest / std::abs(s) * s);
+  return result;
+}
+
+/// Inputs of one unit side by side in one column, at random; in two where they are few: by luck one
+/// sample of rounding may be nothing. Those of many units must share columns, scaled so that they
+/// push the states alike.
+solve::RowMatrix<T> tried_inputs(const StateSpace& m, const std::vector<int>& units) {
+  const Index n = std::ssize(units), columns = 2 * n <= kColumns ? 2 * n : std::min(n, kColumns);
+  solve::RowMatrix<T> u = solve::RowMatrix<T>::Zero(m.B.cols(), columns);
   SteadyRandom random;
-  solve::RowMatrix<T> u(m.B.cols(), 1);
-  for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = {random.next(), random.next()};
-  DenseError worst;
-  if (u.size() == 0 || m.C.rows() == 0 || m.A.size() == 0) return worst;
-  for (const double factor : {1e-4, 1e-2, 1.0, 1e2}) {
-    const T s = factor * pick_s(d);
-    const Evaluation<T> point(d, s, u);
-    const solve::RowMatrix<T> x = d.states.model_states(point.states(), u, s);
-    VectorXcd left = -s * x;
-    for (Eigen::Index j = 0; j < m.A.cols(); ++j) left += m.A.col(j) * x(j);
-    left += m.B * u;
-    const solve::RowMatrix<T> change = point.forced(d.states.expanded(solve::RowMatrix<T>(left))),
-                              y = point.outputs();
+  for (Index k = 0, first = 0; k < std::max(n, columns); ++k) {
+    if (k == n) first = 0;
+    const int size = units[at(k % n)];
+    const double push = m.B.middleCols(first, size).cwiseAbs().maxCoeff();
+    const double scale = columns < n && push > 0 ? 1 / push : 1;
+    for (const Index end = first + size; first < end; ++first)
+      u(first, k % columns) = scale * T(random.next(), random.next());
+  }
+  return u;
+}
+
+/// Largest entries of the outputs of one unit, column by column.
+MatrixXd by_unit(const solve::RowMatrix<T>& y, const std::vector<int>& units) {
+  MatrixXd result(std::ssize(units), y.cols());
+  for (Index i = 0, first = 0; i < result.rows(); first += units[at(i++)])
+    result.row(i) = y.middleRows(first, units[at(i)]).cwiseAbs().colwise().maxCoeff();
+  return result;
+}
+
+/// Of outputs of one unit, by columns of the inputs.
+struct Sizes {
+  MatrixXd value;     ///< by the factors
+  MatrixXd rounding;  ///< of the factors
+};
+
+/// How far the dense model is off at one s.
+struct Sample {
+  T s;
+  Sizes sizes;
+  MatrixXd off;
+};
+
+/// A x of all of these: once through memory.
+std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
+                                       const std::vector<solve::RowMatrix<T>>& x) {
+  const Index m = x.front().cols();
+  MatrixXd parts(A.cols(), 2 * m * std::ssize(x));
+  for (Index i = 0; i < std::ssize(x); ++i)
+    parts.middleCols(2 * m * i, 2 * m) << x[at(i)].real(), x[at(i)].imag();
+  const MatrixXd product = A * parts;
+  std::vector<solve::RowMatrix<T>> result(x.size(), solve::RowMatrix<T>(A.rows(), m));
+  for (Index i = 0; i < std::ssize(x); ++i) {
+    result[at(i)].real() = product.middleCols(2 * m * i, m);
+    result[at(i)].imag() = product.middleCols(2 * m * i + m, m);
+  }
+  return result;
+}
+
+/// What the factors' states leave in the equations of the dense model, A x + B u - s x, carried to
+/// the outputs by the factors.
+std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const std::vector<T>& list,
+                           const Measure& units) {
+  const solve::RowMatrix<T> u = tried_inputs(m, units.cols);
+  std::deque<Evaluation<T>> points;
+  std::vector<solve::RowMatrix<T>> x;
+  for (const T s : list) {
+    points.emplace_back(d, s, u);
+    x.push_back(d.states.model_states(points.back().states(), u, s));
+  }
+  const std::vector<solve::RowMatrix<T>> Ax = moved(m.A, x);
+  std::vector<Sample> result;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const solve::RowMatrix<T> left = Ax[i] + m.B * u - list[i] * x[i];
     // What C itself costs in rounding is one product: below what is looked for here.
-    const double off = change.cwiseAbs().maxCoeff(), size = y.cwiseAbs().maxCoeff();
-    const double error = !change.allFinite() || !y.allFinite() ? kInfinity
-                         : off > 0                             ? off / size
-                                                               : 0;
-    if (error > worst.error) worst = {error, s};
+    const solve::RowMatrix<T> change = points[i].forced(d.states.expanded(left));
+    result.push_back(
+        {list[i],
+         {by_unit(points[i].outputs(), units.rows), by_unit(points[i].rounding(), units.rows)},
+         by_unit(change, units.rows)});
+  }
+  return result;
+}
+
+/// The largest error relative to the output's own size. An output that is nothing but rounding, 0
+/// by symmetry, counts beside its neighbours or what cancels in it: the same in all units, too.
+double relative(const MatrixXd& off, const Sizes& sizes) {
+  const MatrixXd& size = sizes.value;
+  if (!off.allFinite() || !size.allFinite()) return kInfinity;
+  const VectorXd of_row = size.rowwise().maxCoeff(), of_column = size.colwise().maxCoeff();
+  double worst = 0;
+  for (Index i = 0; i < off.rows(); ++i)
+    for (Index j = 0; j < off.cols(); ++j) {
+      if (off(i, j) <= kUnderflow) continue;
+      const bool noise = size(i, j) <= kNoise * sizes.rounding(i, j);
+      const double beside =
+          std::max(std::sqrt(of_row(i)) * std::sqrt(of_column(j)), sizes.rounding(i, j) / kEpsilon);
+      worst = std::max(worst, off(i, j) / (noise ? beside : size(i, j)));
+    }
+  return worst;
+}
+
+}  // namespace
+
+DenseError dense_error(const SystemData& d, const StateSpace& m) {
+  DenseError worst;
+  if (m.B.cols() == 0 || m.C.rows() == 0 || m.A.size() == 0) return worst;
+  const std::vector<Sample> samples = sample(d, m, tried(d), measure(d.graph(), {}));
+  Sizes largest = samples.front().sizes;
+  for (const Sample& p : samples) {
+    largest.value = largest.value.cwiseMax(p.sizes.value);
+    largest.rounding = largest.rounding.cwiseMax(p.sizes.rounding);
+  }
+  for (const Sample& p : samples) {
+    if (const double e = relative(p.off, largest); e > worst.error) worst.error = e, worst.s = p.s;
+    if (const double e = relative(p.off, p.sizes); e > worst.where_small)
+      worst.where_small = e, worst.where_small_s = p.s;
   }
   return worst;
 }

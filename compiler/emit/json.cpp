@@ -47,6 +47,8 @@ Json certificate(const Certificate& c) {
           {"dense_against_factors", found(c.dense_against_factors)},
           {"dense_error", found(c.dense_error)},
           {"dense_error_s", complex(c.dense_error_s)},
+          {"dense_error_where_small", found(c.dense_error_where_small)},
+          {"dense_error_where_small_s", complex(c.dense_error_where_small_s)},
           {"weakest_pivot", c.weakest_pivot},
           {"weakest_where", c.weakest_where},
           {"pivot_growth", c.pivot_growth},

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <functional>
 #include <numbers>
 #include <titop/compiler/compare.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -25,6 +26,7 @@ namespace {
 const std::vector<Complex> kPoints = {{0.05, 0.7}, {0.2, 3}, {0.5, 9}, {2, 40}};
 const Measure kScalars{std::vector<int>(4, 1), std::vector<int>(4, 1)};
 
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
 double unit(Rng& random) { return std::pow(10, random.below(19) - 9); }
 VectorXd units(Rng& random) {
   return VectorXd::NullaryExpr(4, [&] { return unit(random); });
@@ -71,6 +73,32 @@ double apart(const StateSpace& a, const StateSpace& exact) {
   Measure by = kScalars;
   by.terms = terms(a, kPoints).cwiseMax(terms(exact, kPoints));
   return difference(of_a, of_exact, by).relative;
+}
+
+/// Masses of 1 and 0.01 in a chain, pushed at the last `inputs` of them: where the first one is,
+/// and how the last one accelerates.
+System chain(int masses, int inputs, const std::function<double()>& unit) {
+  Diagram d{"chain"};
+  std::vector<SpringMass::Handle> z;
+  for (int i = 0; i < masses; ++i) {
+    z.push_back(d.add("z" + std::to_string(i),
+                      SpringMass{.mass = i % 2 ? 0.01 : 1.0, .stiffness = 3e6, .damping = 0.01}));
+    if (i > 0)
+      mount(z[at(i)], z[at(i - 1)].child);
+    else
+      ground(z[0]);
+  }
+  for (int i = masses - inputs; i < masses; ++i)
+    z[at(i)].child.force += unit() * d.input("u" + std::to_string(i));
+  d.output("x") = unit() * z.front().position;
+  d.output("a") = unit() * z.back().child.accel;
+  return compile(d, {.minimize_up_to = 0});
+}
+
+/// The same but for what another rounding of the coefficients makes of it.
+void check_alike(double a, double b) {
+  CHECK(a <= 5 * b);
+  CHECK(b <= 5 * a);
 }
 
 }  // namespace
@@ -199,5 +227,25 @@ TEST_CASE("outputs that nothing can move but rounding: no fault, in whatever uni
     const FullCertificate c = certify(system);
     CAPTURE(to_string(c));
     CHECK(c.holds());
+  }
+}
+
+TEST_CASE("what the dense model loses is the same in all units, by few inputs and by many") {
+  Rng random(17);
+  for (const auto& [masses, inputs] : {std::pair(6, 1), std::pair(6, 2), std::pair(12, 12)}) {
+    CAPTURE(inputs);
+    const System in_m = chain(masses, inputs, [] { return 1.0; });
+    in_m.state_space();
+    const Certificate right = in_m.certificate();
+    CHECK(right.dense_error <= 1e-11);  // nothing of what matters
+    CHECK(right.dense_error_where_small >= 1e-9);
+    for (int i = 0; i < 10; ++i) {
+      const System system = chain(masses, inputs, [&] { return unit(random); });
+      system.state_space();
+      const Certificate c = system.certificate();
+      check_alike(c.dense_error, right.dense_error);
+      check_alike(c.dense_error_where_small, right.dense_error_where_small);
+      CHECK(system.log().find("the model keeps") == std::string::npos);
+    }
   }
 }

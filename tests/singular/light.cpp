@@ -88,23 +88,31 @@ double error(const std::vector<MatrixXcd>& a, const std::vector<MatrixXcd>& b) {
 const std::vector<std::complex<double>> kPoints = {{0.05, 0.3}, {0.2, 1.9}, {1, 14}};
 constexpr Form kForms[] = {{false, false}, {true, false}, {false, true}, {true, true}};
 
-/// The transfer is right to 1e-12, and so is the dense model but for what it states.
+/// The transfer is right to 1e-12; the dense model, which may have lost digits, is finite.
 void check(const Numbers& n, Form form, bool parent_read) {
   const System system = compile(scene(n, form, parent_read), {.minimize_up_to = 0});
-  std::vector<MatrixXcd> a, b, right;
+  std::vector<MatrixXcd> a, right;
   for (const auto s : kPoints) {
     a.push_back(system.transfer(s));
-    b.push_back(system.state_space().transfer(s));
     right.push_back(exact(n, form, s).topRows(parent_read ? 2 : 1));
   }
   CHECK(error(a, right) <= 1e-12);
   const StateSpace& m = system.state_space();
   CHECK((m.A.allFinite() && m.B.allFinite() && m.C.allFinite() && m.D.allFinite()));
-  // What is stated is of inputs of one size: in units in which forces and motions are of one.
-  if (n.m != 1) return;
-  const double dense = error(b, right), stated = system.certificate().dense_error;
-  CAPTURE(stated);
-  CHECK(dense <= std::max(1e-12, 100 * stated));
+}
+
+/// What the dense model loses: as its certificate says, and in truth at that s.
+struct Loss {
+  double stated, found;
+};
+
+Loss loss(const Numbers& n, Form form) {
+  const System system = compile(scene(n, form, true), {.minimize_up_to = 0});
+  const StateSpace& dense = system.state_space();
+  const Certificate c = system.certificate();
+  const std::complex<double> s = c.dense_error_where_small_s;
+  if (s == 0.0) return {0, 0};
+  return {c.dense_error_where_small, error({dense.transfer(s)}, {exact(n, form, s)})};
 }
 
 }  // namespace
@@ -138,4 +146,28 @@ TEST_CASE("mass ratios of 1e-12 and 1e12, and what is off by units") {
         CAPTURE(ratio);
         check({.m = unit, .k = 3 * unit, .c = 0.02 * unit, .m0 = ratio * unit}, form, true);
       }
+}
+
+TEST_CASE("what the dense model loses is stated, at all masses, damped or not") {
+  int all = 0, far = 0;
+  for (const Form form : kForms)
+    for (const double c : {0.0, 0.02})
+      for (const double k : {3.0, 3e-9, 3e9})
+        for (const double m : {1.0, 1e-12, 1e12})
+          for (const double m0 : {1.0, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-30, 1e12}) {
+            CAPTURE(form.child_accel);
+            CAPTURE(form.parent_force);
+            CAPTURE(c);
+            CAPTURE(k);
+            CAPTURE(m);
+            CAPTURE(m0);
+            const auto [stated, found] = loss({.m = m, .k = k, .c = c, .m0 = m0}, form);
+            CAPTURE(stated);
+            CAPTURE(found);
+            CHECK(std::min(found, 1.0) <= std::max(1e-12, 3 * stated));  // 1: no digit is left
+            // Not as close from above: it is to first order, more than 1 where nothing is left, and
+            // what rounds to nothing by luck in `found` need not do so in it.
+            ++all, far += std::min(stated, 1.0) > std::max(1e-12, 30 * found);
+          }
+  CHECK(far * 10 <= all);
 }

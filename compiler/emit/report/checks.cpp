@@ -43,9 +43,11 @@ void add_basic(std::vector<Item>& items, const Certificate& c) {
          judged(c.dense_against_factors, kHolds)});
   if (c.dense_error >= 0)
     items.push_back({"what rounding A, B, C, D costs", number(c.dense_error, 2),
-                     fmt::format("The largest relative change of an output that writing the model "
-                                 "in 16 digits makes, found at {}.",
-                                 place(c.dense_error_s)),
+                     fmt::format("The largest change of an output that writing the model in 16 "
+                                 "digits makes, over that output's largest size; found at {}. Over "
+                                 "its size at the same s: {}, found at {}.",
+                                 place(c.dense_error_s), number(c.dense_error_where_small, 2),
+                                 place(c.dense_error_where_small_s)),
                      judged(c.dense_error, kHolds)});
   items.push_back({"weakest pivot", number(c.weakest_pivot, 2),
                    fmt::format("What is left of the terms that formed it{}: 1 is no cancellation, "
