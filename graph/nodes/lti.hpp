@@ -5,7 +5,8 @@
 namespace titop {
 
 /// A controller or filter: xdot = A x + B in, out = C x + D in; plain signals without frames.
-/// Shapes are checked (code size), entries too (not_finite), when it is added.
+/// Shapes are checked (code size), entries too (not_finite), when it is added. With A = 0, B = C =
+/// 1 and D = 0 it is an Integrator: what bodies hold already adds no states.
 ///
 ///     auto K = d.add("K", Lti{.A = a, .B = b, .C = c, .D = Eigen::MatrixXd::Zero(1, 1)});
 ///     K.in = h.rate;   h.torque = K.out;

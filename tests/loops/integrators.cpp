@@ -59,6 +59,15 @@ TEST_CASE("five masses in every spelling: order 10, the same transfer to 1e-13")
          y.in = w.out;
          d.output("x3") = 0.25 * x.out + 0.75 * y.out;
        }},
+      {"integrators as matrices",
+       [](Diagram& d, const Five& z) {
+         const MatrixXd one = MatrixXd::Identity(1, 1);
+         const Lti integral{.A = 0 * one, .B = one, .C = one};
+         auto v = d.add("v", integral), x = d.add("x", integral);
+         v.in = z[2].child.accel;
+         x.in = v.out;
+         d.output("x3") = x.out;
+       }},
       {"integrated rate",
        [](Diagram& d, const Five& z) {
          auto x = d.add("x", Integrator{});
