@@ -172,13 +172,15 @@ const StateSpace& System::state_space() const {
                        d.dense_error.s.imag())});
     d.dense_order.order = d.dense_order.highest = dense.order();
     d.dense_order.judged = dense.order() == 0;
-    if (dense.order() > 0 && dense.order() <= options.minimize_up_to) {
+    const int judged_up_to =
+        options.minimize_up_to > 0 ? std::max(options.minimize_up_to, options.exact_up_to) : 0;
+    if (dense.order() > 0 && dense.order() <= judged_up_to) {
       detail::minimize_checked(*this, d, dense);
     } else if (dense.order() > 0) {
       d.dense_notes.push_back(
           {Note::Kind::info, "minimize",
            fmt::format("not run: {} states are more than {} (Options::minimize_up_to)",
-                       dense.order(), options.minimize_up_to)});
+                       dense.order(), judged_up_to)});
     }
     d.dense = std::move(dense);
     d.dense_ready.store(true, std::memory_order_release);

@@ -42,7 +42,8 @@ struct Options {
   double resolution = 0;
   InternalForces internal_forces = InternalForces::refuse;
   /// Up to this many states the minimal order is found in exact arithmetic as well, where the data
-  /// allow it (compiler/exact_order.hpp), and decides what `minimize` takes out. 0: never.
+  /// allow it (compiler/exact_order.hpp), and decides what `minimize` takes out, which then runs up
+  /// to as many unless minimize_up_to is 0. 0: never.
   int exact_up_to = 0;
 };
 
@@ -118,8 +119,10 @@ class System {
   /// is found anew where the old one no longer serves (Certificate::plans_renewed counts that).
   /// Pivots are judged at once; the rest of the certificate, and the warnings that come of it, are
   /// found when certificate(), notes(), log() or state_space() is first asked for: O(bodies).
-  /// Throws unknown_name (with the names there are), not_finite, what the blocks throw for values
-  /// that make no block (bad_inertia, bad_value), improper and ill_posed.
+  /// `minimize` is no part of it: state_space() of the new system judges the new values, and may
+  /// have another order (Options::minimize_up_to = 0 keeps all states at all values). Throws
+  /// unknown_name (with the names there are), not_finite, what the blocks throw for values that
+  /// make no block (bad_inertia, bad_value), improper and ill_posed.
   ///
   /// Where new values change how a closed chain moves, or bring a term in or leave one out, all
   /// passes run again, at the cost of `compile` and with its throws; the log says so, and warns if

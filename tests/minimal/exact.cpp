@@ -65,6 +65,15 @@ TEST_CASE("five masses: 8 where k4/m4 = k5/m5, decided exactly; 10 one ulp besid
   CHECK(even.log().find("exact: order 8") != std::string::npos);
 }
 
+TEST_CASE(
+    "exact arithmetic that is asked for up to more states than minimize has them all judged") {
+  const System system = compile(five(130), {.minimize_up_to = 5, .exact_up_to = 10});
+  CHECK(system.state_space().order() == 8);
+  CHECK(system.order_verdict().exact);
+  CHECK(compile(five(130), {.minimize_up_to = 5}).state_space().order() == 10);
+  CHECK(compile(five(130), {.minimize_up_to = 0, .exact_up_to = 10}).state_space().order() == 10);
+}
+
 TEST_CASE("five masses, k5/m5 beside k4/m4: order 8 by effect, and the interval reaches to 10") {
   CHECK(compile(five(130)).order_verdict().decided());
   // Visible above its rounding, and far narrower than the spacing of doubles at the pole.

@@ -53,6 +53,27 @@ TEST_CASE(
   CHECK(r.notes.front() == text);
 }
 
+TEST_CASE("update judges nothing, the dense model of the new values does: 6, 4 and 6 states") {
+  Diagram d{"pair"};
+  auto u = d.input("u");
+  auto hub = d.add("hub", SpringMass{.mass = 4, .stiffness = 64});
+  auto a = d.add("a", SpringMass{.mass = 1, .stiffness = 25});
+  auto b = d.add("b", SpringMass{.mass = 1, .stiffness = d.param("k", 49)});
+  ground(hub);
+  mount(a, hub.child);
+  mount(b, hub.child);
+  hub.child.force += u;
+  d.output("x") = hub.stretch;
+  const System first = compile(d), equal = first.update({{"k", 25}}),
+               apart = equal.update({{"k", 36}});
+  CHECK(equal.order() == 6);  // states keep number and meaning
+  CHECK(first.state_space().order() == 6);
+  CHECK(equal.state_space().order() == 4);
+  CHECK(equal.order_verdict().decided());
+  CHECK(apart.state_space().order() == 6);
+  CHECK(compile(d, {.minimize_up_to = 0}).update({{"k", 25}}).state_space().order() == 6);
+}
+
 TEST_CASE("a pair that differs by 1e-6 keeps its 6 states, and says how little they do") {
   const Minimized r = minimize(pair(25, 25 * (1 + 1e-6)));
   CHECK(r.model.order() == 6);
