@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <titop/compiler/certify/residual.hpp>
 #include <titop/compiler/reduce/weak_pivot.hpp>
+#include <titop/compiler/solve/null_rows.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/some_names.hpp>
 
@@ -15,6 +16,10 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double kFewDigits = 1e-7;  ///< of its terms: half of the digits are left
 constexpr double kMostProducts = 1e7;
+
+/// Below it an entry counts as nothing where 50 digits have found that something is: some hundred
+/// units of rounding at least, and never more than what null_rows takes for cancelled.
+constexpr double kNothingAtLeast = 1e-13;
 
 bool is_doubtful(const Check& check) {
   const Certificate& c = check.certificate;
@@ -49,11 +54,17 @@ bool singular_in_50_digits(const Skeleton& k, const SystemData& d) {
 
 }  // namespace
 
-double least_pivot(const SystemData& d, const Check& check) {
+double least_pivot(const SystemData& d, Check& check) {
   const Skeleton& k = *d.skeleton;
-  if (!is_doubtful(check) || products(*k.joint.plan) > kMostProducts) return 0;
+  if (!is_doubtful(check)) return 0;
+  if (products(*k.joint.plan) > kMostProducts) {
+    check.notes.push_back({Note::Kind::warning, "certify",
+                           "whether these equations have a solution with a digit left is not "
+                           "decided: the scene is too large for an elimination in 50 digits"});
+    return 0;
+  }
   if (!singular_in_50_digits(k, d)) return 0;
-  return std::clamp(2 * check.certificate.weakest_pivot, 1e-13, 1e-11);
+  return std::clamp(2 * check.certificate.weakest_pivot, kNothingAtLeast, solve::kCancelled);
 }
 
 Mistake no_digit_left(const Skeleton& k, const SystemData& d) {

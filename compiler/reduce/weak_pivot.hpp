@@ -11,8 +11,9 @@ namespace titop::detail {
 /// double to find it; 0: the factors serve. Asked where the certificate has a doubt: a pivot keeps
 /// less than 1e-7, a loop's margin is above 1e8 or was not found, the outputs are right to less
 /// than 3 digits, or equations do not hold. One elimination in 50 digits then, for scenes of up to
-/// 1e7 products (some 10,000 scalar bodies, some seconds); 0 beyond.
-double least_pivot(const SystemData& d, const Check& check);
+/// 1e7 products (some 10,000 scalar bodies, some seconds); beyond, a note says that it is not
+/// decided, and 0.
+double least_pivot(const SystemData& d, Check& check);
 
 /// The ports of the weakest pivot's loop, as an ill_posed mistake: where 50 digits find a system
 /// singular, and double cannot say which rows depend on each other.
