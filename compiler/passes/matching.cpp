@@ -31,8 +31,8 @@ void take_defaults(const Graph& g, const Incidence& inc, Matching& m) {
   }
 }
 
-/// Augmenting paths, breadth first. What a path has looked at is forgotten after it: many free
-/// rows, each with a free column nearby, cost no more than their neighbourhoods.
+/// Augmenting paths, breadth first. Many free rows, each with a free column nearby, cost no more
+/// than their neighbourhoods.
 class Augmenting {
  public:
   Augmenting(const Incidence& inc, Matching& m)

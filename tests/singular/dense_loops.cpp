@@ -102,7 +102,7 @@ TEST_CASE("500 regular ones: none is refused, and the answer is that of L") {
   CHECK(worst <= 1e-12);
 }
 
-TEST_CASE("a loop whose pivots have all lost a little is refused by 50 digits, and says so") {
+TEST_CASE("a loop in which rounding stands in a front of its own is refused") {
   // Exactly singular; double finds a pivot of 1e-16 in a front of its own, where nothing cancels.
   const MatrixXd L{{-0.25, 0.5, -0.625, -0.875, -0.9375},
                    {0.9375, 0.875, -0.75, 0.4375, 0.875},
