@@ -109,7 +109,11 @@ struct Rates {
 Rates rates(const SystemData& data, const solve::RowMatrix<double>& known,
             const solve::RowMatrix<double>& more = {});
 
-/// A frequency inside the blocks' own range, off the axis so that no pole is near.
+/// About the largest frequency of a block [rad/s], by its matrix A (n x n): the same whatever the
+/// units of its states, and in units of 1 / time. 0 where A says nothing of it. O(n^2) as a rule.
+double frequency_of(const Eigen::MatrixXd& A);
+
+/// A frequency inside the blocks' own range, off the axis so that no pole is near. O(bodies).
 std::complex<double> pick_s(const SystemData& data);
 
 /// The dense model before `minimize`, into buffers that are resized only if they do not fit.

@@ -75,8 +75,8 @@ std::vector<T> tried(const SystemData& d) {
   std::vector<T> result = {1e-4 * s, 1e-2 * s, s, 1e2 * s};
   double slowest = kInfinity;
   for (const int i : d.layout().state_nodes)
-    if (const double size = d.numbers.blocks[at(i)]->A.cwiseAbs().maxCoeff(); size > 0)
-      slowest = std::min(slowest, std::sqrt(size));
+    if (const double w = frequency_of(d.numbers.blocks[at(i)]->A); w > 0)
+      slowest = std::min(slowest, w);
   if (slowest < 1e-2 * std::abs(s)) result.push_back(1e-2 * slowest / std::abs(s) * s);
   return result;
 }

@@ -18,22 +18,6 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-}  // namespace
-
-std::complex<double> pick_s(const SystemData& d) {
-  double log_sum = 0;
-  int count = 0;
-  for (const int i : d.layout().state_nodes) {
-    const double size = std::sqrt(d.numbers.blocks[at(i)]->A.cwiseAbs().maxCoeff());
-    if (size > 0 && std::isfinite(size)) log_sum += std::log(size), ++count;
-    if (count >= 64) break;
-  }
-  const double w = count ? std::exp(log_sum / count) : 1;
-  return {0.37 * w, 0.93 * w};
-}
-
-namespace {
-
 using solve::RowMatrix;
 
 constexpr double kRealShare = 0.6180;  ///< of |pick_s|: the s of the certificate

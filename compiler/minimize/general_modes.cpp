@@ -110,7 +110,8 @@ void find_needed(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C, ModeSe
   const auto full = [](const MatrixXd& a, const MatrixXd& b) {
     if (b.cols() == 0) return true;
     MatrixXd both(a.rows(), a.cols() + b.cols());
-    both << a, std::max(a.rowwise().norm().maxCoeff(), 1.0) * unit_columns(b);
+    const double size = a.rowwise().norm().maxCoeff();
+    both << a, (size > 0 ? size : 1) * unit_columns(b);
     return clearly_full_rank(both);
   };
   const bool needed = full(A, B) && full(A.transpose(), C.transpose());

@@ -1,0 +1,52 @@
+#include <cmath>
+#include <titop/compiler/system_data.hpp>
+
+/// Where in s a system is tried.
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Of a block whose states act on themselves through others only: the shortest such round trips,
+/// of up to kLongest steps.
+double by_longer_ways(const MatrixXd& A, double size) {
+  constexpr int kLongest = 8;
+  const MatrixXd step = A.cwiseAbs() / size;
+  MatrixXd ways = step * step;
+  for (int steps = 3; steps <= kLongest; ++steps) {
+    ways = (ways * step).eval();
+    if (const double round = ways.diagonal().maxCoeff(); round > 0)
+      return size * std::pow(round, 1.0 / steps);
+  }
+  return 0;
+}
+
+}  // namespace
+
+// Products of entries along round trips do not change with the units of the states, as single
+// entries do: the 1 between position and rate would stand for a frequency otherwise.
+double frequency_of(const MatrixXd& A) {
+  double square = 0;
+  for (Index j = 0; j < A.cols(); ++j)
+    for (Index i = 0; i <= j; ++i) square = std::max(square, std::abs(A(i, j) * A(j, i)));
+  if (square > 0) return std::sqrt(square);
+  const double size = A.cwiseAbs().maxCoeff();
+  return size > 0 && std::isfinite(size) ? by_longer_ways(A, size) : 0;
+}
+
+std::complex<double> pick_s(const SystemData& d) {
+  double log_sum = 0;
+  int count = 0;
+  for (const int i : d.layout().state_nodes) {
+    const double w = frequency_of(d.numbers.blocks[at(i)]->A);
+    if (w > 0 && std::isfinite(w)) log_sum += std::log(w), ++count;
+    if (count >= 64) break;
+  }
+  const double w = count ? std::exp(log_sum / count) : 1;
+  return {0.37 * w, 0.93 * w};
+}
+
+}  // namespace titop::detail
