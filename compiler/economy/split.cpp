@@ -5,6 +5,7 @@
 #include <limits>
 #include <titop/compiler/economy/split.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/balance.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/schur.hpp>
 

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/balance.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
-#include <titop/graph/linalg/schur.hpp>
 #include <titop/graph/linalg/wide.hpp>
 
 namespace titop::linalg {
@@ -58,27 +58,6 @@ Inverse inverse(const MatrixXd& M) {
   return {lu.inverse(), lu.rcond()};
 }
 
-VectorXd balance(MatrixXd& A) {
-  const auto n = A.rows();
-  VectorXd d = VectorXd::Ones(n);
-  for (int sweep = 0; sweep < 20; ++sweep) {
-    bool changed = false;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const double c = A.col(i).cwiseAbs().sum() - std::abs(A(i, i));
-      const double r = A.row(i).cwiseAbs().sum() - std::abs(A(i, i));
-      if (c == 0 || r == 0) continue;
-      const double f = power_of_two_near(std::sqrt(r / c));
-      if (c * f + r / f >= 0.95 * (c + r)) continue;
-      A.col(i) *= f;
-      A.row(i) /= f;
-      d(i) *= f;
-      changed = true;
-    }
-    if (!changed) break;
-  }
-  return d;
-}
-
 namespace {
 
 void check(const MatrixXd& A, Eigen::ComputationInfo info) {
@@ -95,11 +74,17 @@ void check(const MatrixXd& A, Eigen::ComputationInfo info) {
 Eigen::VectorXcd eigenvalues(const MatrixXd& A) {
   if (A.rows() == 0) return {};
   check(A, Eigen::Success);
-  MatrixXd balanced = A;
-  balance(balanced);
-  const Eigen::EigenSolver<MatrixXd> solver(balanced, /*computeEigenvectors=*/false);
-  check(A, solver.info());
-  return solver.eigenvalues();
+  Eigen::VectorXcd result(A.rows());
+  Eigen::Index first = 0;
+  for (const std::vector<int>& part : parts(A)) {
+    MatrixXd balanced = A(part, part);
+    balance(balanced);
+    const Eigen::EigenSolver<MatrixXd> solver(balanced, /*computeEigenvectors=*/false);
+    check(A, solver.info());
+    result.segment(first, balanced.rows()) = solver.eigenvalues();
+    first += balanced.rows();
+  }
+  return result;
 }
 
 Eigensystem eigensystem(const MatrixXd& A) {

@@ -23,7 +23,8 @@ struct Inverse {
 };
 Inverse inverse(const Eigen::MatrixXd& M);
 
-/// Eigenvalues of a real square matrix after balancing by powers of two. O(n^3).
+/// Eigenvalues of a real square matrix: of each of its parts by itself (linalg/balance.hpp), after
+/// balancing by powers of two. O(n^3).
 /// Throws not_finite for entries that are not; singular if the iteration does not converge.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 

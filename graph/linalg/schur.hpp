@@ -19,10 +19,6 @@ Schur schur(const Eigen::MatrixXd& A);
 /// first columns of Q then span what belongs to them. O(n) per exchange.
 void reorder(Schur& schur, std::vector<char> first);
 
-/// Diagonal similarity by powers of two that makes rows and columns of A alike, in place: returns d
-/// with A_new = diag(d)^-1 A diag(d) [Parlett, Reinsch 1969].
-Eigen::VectorXd balance(Eigen::MatrixXd& A);
-
 /// A X - X B = C for upper triangular A (m x m) and B (n x n) without a common eigenvalue, C m x n.
 /// O(m n (m + n)).
 Eigen::MatrixXcd sylvester(const Eigen::MatrixXcd& A, const Eigen::MatrixXcd& B,

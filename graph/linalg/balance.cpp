@@ -1,0 +1,146 @@
+#include <algorithm>
+#include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/strong_components.hpp>
+#include <cmath>
+#include <titop/graph/linalg/balance.hpp>
+#include <titop/graph/linalg/eigen.hpp>
+#include <vector>
+
+namespace titop::linalg {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+/// Wanted: t(row) - t(col) = log2, or a number below by the same for all.
+struct Ratio {
+  int row, col;
+  double log2;
+};
+
+/// Least squares over all ratios, as near to 0 as they leave open [Curtis, Reid 1972]. With
+/// `level`, that number is found too.
+VectorXd fit(const std::vector<Ratio>& ratios, int n, bool level) {
+  MatrixXd N = MatrixXd::Zero(n + 1, n + 1);
+  VectorXd r = VectorXd::Zero(n + 1);
+  for (const auto& [i, j, log2] : ratios) {
+    N(i, i) += 1, N(j, j) += 1;
+    N(i, j) -= 1, N(j, i) -= 1;
+    r(i) += log2, r(j) -= log2;
+    if (!level) continue;
+    N(i, n) += 1, N(n, i) += 1;
+    N(j, n) -= 1, N(n, j) -= 1;
+    N(n, n) += 1;
+    r(n) += log2;
+  }
+  constexpr double kLeftOpen = 1e-9;  // far below the softest chain of ratios, n^-2
+  N.diagonal().array() += kLeftOpen * std::max(1.0, N.diagonal().maxCoeff());
+  return Eigen::LLT<MatrixXd>(N).solve(r).head(n);
+}
+
+double power_of_two(double log2) { return std::exp2(std::round(log2)); }
+
+void scale(MatrixXd& A, VectorXd& d, Index i, double factor) {
+  A.col(i) *= factor;
+  A.row(i) /= factor;
+  d(i) *= factor;
+}
+
+/// Logarithms alike over all entries that are not 0, for sizes far apart; entries that are nothing
+/// but rounding count like others.
+VectorXd by_logarithms(MatrixXd& A) {
+  std::vector<Ratio> ratios;
+  for (int j = 0; j < A.cols(); ++j)
+    for (int i = 0; i < A.rows(); ++i)
+      if (i != j && A(i, j) != 0) ratios.push_back({i, j, std::log2(std::abs(A(i, j)))});
+  const VectorXd t = fit(ratios, static_cast<int>(A.rows()), /*level=*/true);
+  VectorXd d = VectorXd::Ones(A.rows());
+  for (Index i = 0; i < A.rows(); ++i) scale(A, d, i, power_of_two(t(i)));
+  return d;
+}
+
+/// Makes each state's row and column alike in turn: to the least norm, if sizes are not too far
+/// apart for so many sweeps.
+void sweep(MatrixXd& A, VectorXd& d) {
+  constexpr int kSweeps = 20;
+  for (int k = 0; k < kSweeps; ++k) {
+    bool changed = false;
+    for (Index i = 0; i < A.rows(); ++i) {
+      const double own = std::abs(A(i, i)), column = A.col(i).cwiseAbs().sum() - own,
+                   row = A.row(i).cwiseAbs().sum() - own;
+      if (!(column > 0 && row > 0)) continue;
+      const double f = power_of_two(std::log2(row / column) / 2);
+      if (column * f + row / f >= 0.95 * (column + row)) continue;
+      scale(A, d, i, f);
+      changed = true;
+    }
+    if (!changed) return;
+  }
+}
+
+/// The scales of one part: by logarithms, unless rounding among the entries has led them astray.
+VectorXd within(const MatrixXd& part) {
+  MatrixXd one = part, other = part;
+  VectorXd d_one = VectorXd::Ones(part.rows()), d_other = by_logarithms(other);
+  sweep(one, d_one);
+  sweep(other, d_other);
+  constexpr double kAsGood = 1.25;
+  return other.cwiseAbs().sum() <= kAsGood * one.cwiseAbs().sum() ? d_other : d_one;
+}
+
+/// Makes the largest entry between two parts as large as the largest within one.
+void fit_between(MatrixXd& A, VectorXd& d, const std::vector<std::vector<int>>& parts) {
+  const int count = static_cast<int>(parts.size());
+  std::vector<int> part(at(A.rows()));
+  for (int p = 0; p < count; ++p)
+    for (const int i : parts[at(p)]) part[at(i)] = p;
+  MatrixXd largest = MatrixXd::Zero(count, count);
+  for (int j = 0; j < A.cols(); ++j)
+    for (int i = 0; i < A.rows(); ++i) {
+      double& most = largest(part[at(i)], part[at(j)]);
+      most = std::max(most, std::abs(A(i, j)));
+    }
+  const double within = largest.diagonal().maxCoeff();
+  std::vector<Ratio> ratios;
+  for (int i = 0; i < count; ++i)
+    for (int j = 0; j < count; ++j)
+      if (i != j && largest(i, j) > 0)
+        ratios.push_back({i, j, std::log2(largest(i, j) / (within > 0 ? within : 1))});
+  if (ratios.empty()) return;
+  const VectorXd t = fit(ratios, count, /*level=*/within == 0);
+  for (int i = 0; i < A.rows(); ++i) scale(A, d, i, power_of_two(t(part[at(i)])));
+}
+
+}  // namespace
+
+VectorXd balance(MatrixXd& A) {
+  VectorXd d = VectorXd::Ones(A.rows());
+  if (!A.allFinite()) return d;
+  const std::vector<std::vector<int>> sets = parts(A);
+  for (const std::vector<int>& part : sets) {
+    if (part.size() < 2) continue;
+    const VectorXd of_part = within(A(part, part));
+    for (std::size_t i = 0; i < part.size(); ++i)
+      scale(A, d, part[i], of_part(static_cast<Index>(i)));
+  }
+  if (sets.size() > 1) fit_between(A, d, sets);
+  return d;
+}
+
+std::vector<std::vector<int>> parts(const MatrixXd& A) {
+  boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS> acts(at(A.rows()));
+  for (int j = 0; j < A.cols(); ++j)
+    for (int i = 0; i < A.rows(); ++i)
+      if (i != j && A(i, j) != 0) boost::add_edge(at(j), at(i), acts);
+  std::vector<int> part(at(A.rows()));
+  const int count = boost::strong_components(
+      acts, boost::make_iterator_property_map(part.begin(), get(boost::vertex_index, acts)));
+  std::vector<std::vector<int>> result(at(count));
+  for (int i = 0; i < A.rows(); ++i) result[at(part[at(i)])].push_back(i);
+  return result;
+}
+
+}  // namespace titop::linalg
