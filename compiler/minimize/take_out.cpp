@@ -101,7 +101,7 @@ void remove(StateSpace& m, Leaving l, const std::vector<int>& dependent,
     remove_unreachable(m, l, dependent);
   }
   if (l.V.cols() > 0) {
-    const std::vector<int> out = pivots(l.V.transpose());
+    const std::vector<int> out = pivots(l.V.transpose() * l.scale.cwiseInverse().asDiagonal());
     notes.push_back("states that the others are now taken relative to: " + list(out, m.states));
     remove_unseen(m, l, out);
   }
