@@ -40,47 +40,77 @@ RowMatrix<double> Instant::values(std::span<const int> first) const {
   return rows_.values(unknowns_, known_, data_.layout().known_first, first);
 }
 
-RowMatrix<double> Instant::xdot() const {
+template <class Add>
+void Instant::products_of_xdot(Add add) const {
   const Graph& g = data_.graph();
   const Layout& l = data_.layout();
-  RowMatrix<double> result = RowMatrix<double>::Zero(l.order(), known_.cols()), input;
+  RowMatrix<double> input;
   for (const int i : l.state_nodes) {
     const Node& node = g.nodes[at(i)];
     const Dynamics& m = *data_.numbers.blocks[at(i)];
-    const Eigen::Index first = l.state_first[at(i)] * known_.cols(), n = m.A.rows();
-    double* const xdot = result.data() + first;
-    solve::add_dense_product(n, n, m.A.data(), known_.data() + first, known_.cols(), xdot);
+    const Eigen::Index first = l.state_first[at(i)], n = m.A.rows();
+    using Eigen::MatrixXd;
+    add(first, Eigen::Map<const MatrixXd>(m.A.data(), n, n), known_.data() + first * known_.cols());
     for (int s = node.first_signal; s < node.state; ++s)
       if (const Signal& in = g.signals[at(s)]; in.role == Signal::Role::input && in.active) {
         input.setZero(in.size, known_.cols());
         add_value(s, input.data());
-        solve::add_dense_product(n, in.size, m.B.data() + in.first * n, input.data(), known_.cols(),
-                                 xdot);
+        add(first, Eigen::Map<const MatrixXd>(m.B.data() + in.first * n, n, in.size), input.data());
       }
   }
-  return result;
 }
 
-RowMatrix<double> Instant::outputs() const {
+template <class Add>
+void Instant::products_of_outputs(Add add) const {
   const Graph& g = data_.graph();
-  const Layout& l = data_.layout();
-  RowMatrix<double> y =
-      RowMatrix<double>::Zero(static_cast<Eigen::Index>(l.outputs.size()), known_.cols());
   RowMatrix<double> value;
   for (std::size_t o = 0; o < g.outputs.size(); ++o)
     for (std::size_t k = 0; k < g.outputs[o].terms.size(); ++k) {
       const int signal = g.outputs[o].terms[k].signal;
       value.setZero(g.signals[at(signal)].size, known_.cols());
       add_value(signal, value.data());
-      y.middleRows(l.output_first[o], g.outputs[o].size).noalias() +=
-          *data_.numbers.coefficients[at(data_.skeleton->joint.output_coefficient[o]) + k] * value;
+      add(data_.layout().output_first[o],
+          *data_.numbers.coefficients[at(data_.skeleton->joint.output_coefficient[o]) + k], value);
     }
+}
+
+RowMatrix<double> Instant::xdot() const {
+  RowMatrix<double> result = RowMatrix<double>::Zero(data_.layout().order(), known_.cols());
+  products_of_xdot([&](Eigen::Index first, const auto& m, const double* x) {
+    solve::add_dense_product(m.rows(), m.cols(), m.data(), x, known_.cols(),
+                             result.data() + first * known_.cols());
+  });
+  return result;
+}
+
+RowMatrix<double> Instant::xdot_terms() const {
+  RowMatrix<double> result = RowMatrix<double>::Zero(data_.layout().order(), known_.cols());
+  products_of_xdot([&](Eigen::Index first, const auto& m, const double* x) {
+    const Eigen::Map<const RowMatrix<double>> value(x, m.cols(), known_.cols());
+    result.middleRows(first, m.rows()).noalias() += m.cwiseAbs() * value.cwiseAbs();
+  });
+  return result;
+}
+
+RowMatrix<double> Instant::outputs() const {
+  RowMatrix<double> y = RowMatrix<double>::Zero(std::ssize(data_.layout().outputs), known_.cols());
+  products_of_outputs([&](Eigen::Index first, const auto& m, const RowMatrix<double>& value) {
+    y.middleRows(first, m.rows()).noalias() += m * value;
+  });
   return y;
 }
 
-Instant Instant::doubt() const {
+RowMatrix<double> Instant::outputs_terms() const {
+  RowMatrix<double> y = RowMatrix<double>::Zero(std::ssize(data_.layout().outputs), known_.cols());
+  products_of_outputs([&](Eigen::Index first, const auto& m, const RowMatrix<double>& value) {
+    y.middleRows(first, m.rows()).noalias() += m.cwiseAbs() * value.cwiseAbs();
+  });
+  return y;
+}
+
+Instant Instant::doubt(int sample) const {
   RowMatrix<double> magnitudes, off = rows_.residual(rhs_, unknowns_, &magnitudes);
-  SteadyRandom random;
+  SteadyRandom random(sample);
   for (Eigen::Index i = 0; i < off.size(); ++i)
     off.data()[i] += random.unit() * solve::Scalar<double>::epsilon() * magnitudes.data()[i];
   Instant result(*this);

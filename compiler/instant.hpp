@@ -29,12 +29,23 @@ class Instant {
   /// The diagram's outputs.
   solve::RowMatrix<double> outputs() const;
 
+  /// Sums of the magnitudes of the terms that xdot and the outputs are made of.
+  solve::RowMatrix<double> xdot_terms() const;
+  solve::RowMatrix<double> outputs_terms() const;
+
   /// How far all signals are off, about, as an instant of its own (known signals 0): what it takes
   /// if every equation is off by what it does not hold to, and by about one unit of the last place
-  /// of its terms, up or down in a fixed random order. One more solution.
-  Instant doubt() const;
+  /// of its terms, up or down in a random order, fixed for each `sample`. One more solution.
+  Instant doubt(int sample = 0) const;
 
  private:
+  /// add(first row of xdot, matrix, what it multiplies), of all products that xdot is the sum of.
+  template <class Add>
+  void products_of_xdot(Add add) const;
+  /// Likewise of the outputs.
+  template <class Add>
+  void products_of_outputs(Add add) const;
+
   const SystemData& data_;
   solve::JointRows<double> rows_;
   solve::RowMatrix<double> known_, rhs_, unknowns_;

@@ -124,8 +124,9 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
   const MinimizeOptions options{.resolution = resolution,
                                 .exact_order = exact_order_of(d, dense.order()),
                                 .energy = d.states.trivial() ? MatrixXd() : potential_energy(d)};
-  Minimized m = minimize(dense, options);
-  doubt_lost_digits(system, d, dense, options, m.order);
+  const StateSpace judged = without_rounding(d, dense);
+  Minimized m = minimize(judged, options);
+  doubt_lost_digits(system, d, judged, options, m.order);
   if (!m.notes.empty()) m.notes.front() = to_string(m.order);
   const bool removed = !m.order.removed.empty();
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
@@ -153,7 +154,7 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
     d.dense_notes.push_back(
         {removed ? Note::Kind::removed : Note::Kind::info, "minimize", std::move(text)});
   d.dense_order = std::move(m.order);
-  dense = std::move(m.model);
+  if (removed) dense = std::move(m.model);
 }
 
 }  // namespace titop::detail

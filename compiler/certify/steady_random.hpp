@@ -6,6 +6,12 @@ namespace titop::detail {
 /// the same on every run and every machine.
 class SteadyRandom {
  public:
+  SteadyRandom() = default;
+  /// Another sequence for each number.
+  explicit SteadyRandom(int sequence) {
+    state_ ^= static_cast<unsigned long long>(sequence) * 0xD1B54A32D192ED03ull;
+  }
+
   double next() {
     state_ ^= state_ << 13;
     state_ ^= state_ >> 7;

@@ -28,6 +28,17 @@ void make_real(linalg::Eigensystem& e, double noise) {
   }
 }
 
+/// Left and right vectors of one norm in the states' own sizes, whatever their units.
+void normalize(linalg::Eigensystem& e) {
+  for (Index j = 0; j < e.values.size(); ++j) {
+    const double right = e.V.col(j).cwiseQuotient(e.scale).norm(),
+                 left = (e.W.row(j).transpose().cwiseProduct(e.scale)).norm();
+    const double factor = std::sqrt(left) / std::sqrt(right);
+    e.V.col(j) *= factor;
+    e.W.row(j) /= factor;
+  }
+}
+
 /// Numbers the clusters: chains of eigenvalues of the upper half plane (and the axis) with gaps up
 /// to what counts as equal. O(n^2).
 void find_clusters(const linalg::Eigensystem& e, double noise, double resolution, ModeSet& m) {
@@ -75,7 +86,8 @@ void turn_clusters(const StateSpace& model, const ModeSet& m, linalg::Eigensyste
   }
 }
 
-/// First order: rounding of size eps |A| in A turns w_j by (w_j dA v_i) / (s_j - s_i) into w_i.
+/// First order: rounding of size eps |A| in A turns w_j by (w_j dA v_i) / (s_j - s_i) into w_i, and
+/// v_i by as much into v_j.
 void find_mixing(const linalg::Eigensystem& e, const VectorXd& left, const VectorXd& right,
                  double size, ModeSet& m) {
   const Index n = e.values.size();
@@ -85,7 +97,7 @@ void find_mixing(const linalg::Eigensystem& e, const VectorXd& left, const Vecto
     for (Index i = 0; i < n; ++i) {
       const double gap = std::abs(e.values(i) - e.values(j));
       m.distance(i, j) = gap;
-      const double noise = kEps * size * std::max(left(j) * right(i), left(i) * right(j));
+      const double noise = kEps * size * left(j) * right(i);
       m.mixing(i, j) = gap > 0 ? std::min(1.0, noise / gap) : 1;
     }
 }
@@ -128,6 +140,7 @@ General general_modes(const StateSpace& model, double resolution) {
   const MatrixXd balanced = e.scale.cwiseInverse().asDiagonal() * model.A * e.scale.asDiagonal();
   const double size = balanced.norm();
   make_real(e, 100 * kEps * size);
+  normalize(e);
   find_clusters(e, 100 * kEps * size, resolution, m);
   turn_clusters(model, m, e);
   m.lambda = m.omega = e.values.cwiseAbs();

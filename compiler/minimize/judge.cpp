@@ -14,6 +14,9 @@ using Eigen::VectorXd;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// Far narrower than the spacing of doubles at a pole: by effect nothing, but no proof of a 0.
 constexpr double kNothing = 1e-17;
+/// Rounding's part of a mode that nobody misses: above it, what looks like nothing may be
+/// something.
+constexpr double kNarrow = 1e-14;
 constexpr double kDoubtful = 1e-9;  ///< above it a mode always stays
 constexpr double kFarOff = 1e-6;    ///< above it not even exact arithmetic makes a mode leave
 
@@ -29,12 +32,12 @@ VectorXd background(const MatrixXd& rows, const ModeSet& m, Index j) {
   return sum.cwiseSqrt();
 }
 
-/// Rounding's part in the row of mode j: what the other modes may have put into it.
-VectorXd rounding(const MatrixXd& rows, const ModeSet& m, Index j) {
+/// Rounding's part in the row of mode j: what the other modes may have put into it, by `mixing`.
+VectorXd rounding(const MatrixXd& rows, const ModeSet& m, Index j, const VectorXd& mixing) {
   VectorXd sum = VectorXd::Zero(rows.cols());
   for (Index i = 0; i < rows.rows(); ++i) {
     const bool same = m.cluster[at(i)] == m.cluster[at(j)];
-    sum += (same ? kEps : m.mixing(i, j)) * rows.row(i).transpose();
+    sum += (same ? kEps : mixing(i)) * rows.row(i).transpose();
   }
   return sum;
 }
@@ -50,10 +53,10 @@ double largest(const VectorXd& mine, const VectorXd& background) {
 /// One side of a mode, inputs or outputs: its size against the background, and rounding's.
 struct Side {
   double size, noise;
-  Side(const MatrixXd& rows, const ModeSet& m, Index j) {
+  Side(const MatrixXd& rows, const ModeSet& m, Index j, const VectorXd& mixing) {
     const VectorXd all = background(rows, m, j);
     size = largest(rows.row(j), all);
-    noise = largest(rounding(rows, m, j), all);
+    noise = largest(rounding(rows, m, j, mixing), all);
   }
   /// All states are driven, or seen.
   explicit Side(double lambda) : size(std::sqrt(lambda)), noise(0) {}
@@ -66,8 +69,8 @@ Verdict judge(const ModeSet& m, Index j, double resolution) {
     return v;
   }
   const bool inputs = m.b.cols() > 0, outputs = m.c.cols() > 0;
-  const Side b = inputs ? Side(m.b, m, j) : Side(m.lambda(j));
-  const Side c = outputs ? Side(m.c, m, j) : Side(m.lambda(j));
+  const Side b = inputs ? Side(m.b, m, j, m.mixing.col(j)) : Side(m.lambda(j));
+  const Side c = outputs ? Side(m.c, m, j, m.mixing.row(j)) : Side(m.lambda(j));
   v.visibility = b.size * c.size / (2 * m.lambda(j));
   v.bound = std::max(c.size * b.noise, b.size * c.noise) / (2 * m.lambda(j));
   v.unreachable = inputs && (!outputs || b.size <= c.size);
@@ -79,7 +82,7 @@ Verdict judge(const ModeSet& m, Index j, double resolution) {
 }
 
 /// Not told from 0 by double precision, and too narrow for it to matter if it is none.
-bool is_zero(const Verdict& v) { return v.visibility <= kNothing && v.visibility <= v.bound; }
+bool is_zero(const Verdict& v) { return v.visibility <= v.bound && v.bound <= kNarrow; }
 
 /// Why a mode left, or may have to.
 std::string reason(const Verdict& v, bool hardly) {

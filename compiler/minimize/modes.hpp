@@ -13,13 +13,15 @@ namespace titop::modes {
 
 /// Sizes of what drives each mode and of what it shows.
 struct ModeSet {
-  Eigen::VectorXd lambda;          ///< of each mode: omega^2, or |s|
-  Eigen::VectorXd omega;           ///< |s| [rad/s]
-  Eigen::MatrixXd b, c;            ///< modes x nu, modes x ny: magnitudes
-  std::vector<int> cluster;        ///< modes of one frequency share a number
-  std::vector<int> states;         ///< of each mode; 0: the conjugate partner counts for it
-  Eigen::MatrixXd distance;        ///< |lambda_i - lambda_j|
-  Eigen::MatrixXd mixing;          ///< e_ij: how much of mode i rounding may put into mode j
+  Eigen::VectorXd lambda;    ///< of each mode: omega^2, or |s|
+  Eigen::VectorXd omega;     ///< |s| [rad/s]
+  Eigen::MatrixXd b, c;      ///< modes x nu, modes x ny: magnitudes
+  std::vector<int> cluster;  ///< modes of one frequency share a number
+  std::vector<int> states;   ///< of each mode; 0: the conjugate partner counts for it
+  Eigen::MatrixXd distance;  ///< |lambda_i - lambda_j|
+  /// e_ij: how much of mode i's drive rounding may put into that of mode j; shown by outputs, how
+  /// much of mode j into mode i.
+  Eigen::MatrixXd mixing;
   std::vector<std::string> apart;  ///< why it is not judged: pole at 0, ill-conditioned; or ""
   std::vector<char> needed;        ///< not judged, and yet known to be part of a minimal model
 

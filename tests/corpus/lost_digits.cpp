@@ -11,6 +11,8 @@ using titop_test::Folder;
 
 TEST_CASE("where digits are lost, rounding decides no order: the interval holds the exact one") {
   // Some ports of these are nothing but rounding, which judged by its own size moves and sees all.
+  // Where that can be told from their equations they count as 0, elsewhere the order is in doubt.
+  int doubted = 0;
   for (const char* scene : {"--seed 9258 --shape star --bodies 4 --loops 4",
                             "--seed 9100 --shape chain --bodies 8 --loops 4",
                             "--seed 9092 --shape chain --bodies 8 --loops 3",
@@ -26,8 +28,8 @@ TEST_CASE("where digits are lost, rounding decides no order: the interval holds 
     const OrderVerdict& v = system.order_verdict();
     CHECK(v.lowest <= exact);
     CHECK(v.highest >= exact);
-    CHECK(v.highest > v.lowest);
-    CHECK(system.log().find("digits are lost (see certify)") != std::string::npos);
+    doubted += system.log().find("digits are lost (see certify)") != std::string::npos;
     CHECK(system.log().find(titop::to_string(v)) != std::string::npos);
   }
+  CHECK(doubted > 0);
 }

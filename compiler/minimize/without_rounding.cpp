@@ -1,0 +1,41 @@
+#include <limits>
+#include <titop/compiler/instant.hpp>
+
+/// Entries of a dense model that are nothing but rounding.
+namespace titop::detail {
+
+StateSpace without_rounding(const SystemData& d, StateSpace m) {
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  // Rounding is as large as its samples are, but for luck: of four, none is small.
+  constexpr int kSamples = 4;
+  constexpr double kTimes = 32;
+  using solve::RowMatrix;
+  const Eigen::Index n = m.A.rows(), all = n + m.B.cols();
+  const RowMatrix<double> one = RowMatrix<double>::Identity(all, all), u = one.bottomRows(all - n);
+  const RowMatrix<double> x = d.states.expanded(RowMatrix<double>(one.topRows(n)), u);
+  RowMatrix<double> known(x.rows() + u.rows(), all);
+  known << x, u;
+  const Instant now(d, std::move(known));
+  RowMatrix<double> of_x = kEpsilon * now.xdot_terms(), of_y = kEpsilon * now.outputs_terms();
+  for (int i = 0; i < kSamples; ++i) {
+    const Instant off = now.doubt(i);
+    of_x = of_x.cwiseMax(off.xdot().cwiseAbs());
+    of_y = of_y.cwiseMax(off.outputs().cwiseAbs());
+  }
+  // The model was written in another order: where that makes a difference, it is rounding.
+  RowMatrix<double> x_written(n, all), y_written(m.C.rows(), all);
+  x_written << m.A, m.B;
+  y_written << m.C, m.D;
+  of_x = d.states.kept_rows(of_x).cwiseMax((d.states.kept_rows(now.xdot()) - x_written).cwiseAbs());
+  of_y = of_y.cwiseMax((now.outputs() - y_written).cwiseAbs());
+  const auto clear = [&](Eigen::MatrixXd& entries, const auto& rounding) {
+    entries = (entries.array().abs() <= kTimes * rounding.array()).select(0.0, entries);
+  };
+  clear(m.A, of_x.leftCols(n));
+  clear(m.B, of_x.rightCols(all - n));
+  clear(m.C, of_y.leftCols(n));
+  clear(m.D, of_y.rightCols(all - n));
+  return m;
+}
+
+}  // namespace titop::detail
