@@ -47,10 +47,42 @@ std::vector<int> blocks(const List& list) {
   return result;
 }
 
+/// From which inputs a path leads to which outputs: 1, else 0. O(n^2 inputs).
+MatrixXd paths(const StateSpace& m) {
+  MatrixXd result = MatrixXd::Zero(m.D.rows(), m.D.cols());
+  std::vector<Index> next;
+  for (Index j = 0; j < m.D.cols(); ++j) {
+    Eigen::VectorXd moved = Eigen::VectorXd::Zero(m.A.rows());
+    const auto reach = [&](const auto& column) {
+      for (Index i = 0; i < moved.size(); ++i)
+        if (column(i) != 0 && moved(i) == 0) moved(i) = 1, next.push_back(i);
+    };
+    reach(m.B.col(j));
+    while (!next.empty()) {
+      const Index k = next.back();
+      next.pop_back();
+      reach(m.A.col(k));
+    }
+    for (Index i = 0; i < m.D.rows(); ++i) {
+      const bool seen = (m.C.row(i).transpose().array() * moved.array() != 0).any();
+      result(i, j) = m.D(i, j) != 0 || seen;
+    }
+  }
+  return result;
+}
+
 }  // namespace
 
 Measure measure(const Graph& graph, MatrixXd terms) {
   return {blocks(graph.outputs), blocks(graph.inputs), std::move(terms)};
+}
+
+std::vector<MatrixXcd> transfers(const StateSpace& m,
+                                 const std::vector<std::complex<double>>& points) {
+  const MatrixXcd there = paths(m).cast<std::complex<double>>();
+  std::vector<MatrixXcd> list;
+  for (const std::complex<double> s : points) list.push_back(m.transfer(s).cwiseProduct(there));
+  return list;
 }
 
 MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& points) {

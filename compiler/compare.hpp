@@ -23,6 +23,11 @@ struct Measure {
 /// Blocks of a graph's outputs and inputs, as declared: threes where three divides a signal's size.
 Measure measure(const Graph& graph, Eigen::MatrixXd terms);
 
+/// The model's transfers at these points. A pair without a path through nonzero entries of A, B, C
+/// and D is 0 in them, and not what row operations leave of it. O(points n^3).
+std::vector<Eigen::MatrixXcd> transfers(const StateSpace& m,
+                                        const std::vector<std::complex<double>>& points);
+
 /// What the entries of m's transfer are the sums of, before anything cancels: with the responses
 /// X = (s I - A)^-1 B and W = C (s I - A)^-1, which make G = D + W (s I - A) X, the largest
 /// |D| + |W| |s I - A| |X| at these points. In any units of states, inputs and outputs.

@@ -130,12 +130,10 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
   if (!m.notes.empty()) m.notes.front() = to_string(m.order);
   const bool removed = !m.order.removed.empty();
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
-    std::vector<MatrixXcd> before, after;
+    std::vector<MatrixXcd> before;
     const std::vector<std::complex<double>> points = near_modes(m.order.removed);
-    for (const std::complex<double> s : points) {
-      before.push_back(system.transfer(s));
-      after.push_back(m.model.transfer(s));
-    }
+    for (const std::complex<double> s : points) before.push_back(system.transfer(s));
+    const std::vector<MatrixXcd> after = transfers(m.model, points);
     Measure by =
         measure(*d.skeleton->stage.source, terms(dense, points).cwiseMax(terms(m.model, points)));
     m.order.change = difference(after, before, by, system, points).relative;

@@ -155,14 +155,14 @@ FullCertificate certify(const System& system, const Full& what) {
   c.grid.points = system.inputs().empty() || system.outputs().empty() ? 0 : what.points;
   if (c.grid.points > 0) {
     const std::vector<Complex> points = grid_of(c.grid);
-    std::vector<MatrixXcd> factored, written;
+    std::vector<MatrixXcd> factored;
     for (const Complex s : points) factored.push_back(system.transfer(s));
     detail::Measure measure = detail::measure(*system.stage().source, {});
     if (dense) {
       measure.terms =
           detail::terms(model, points).cwiseMax(detail::terms(system.state_space(), points));
-      for (const Complex s : points) written.push_back(system.state_space().transfer(s));
-      const auto [worst, k] = detail::difference(written, factored, measure, system, points);
+      const auto [worst, k] = detail::difference(detail::transfers(system.state_space(), points),
+                                                 factored, measure, system, points);
       c.grid.done = true;
       c.grid.dense = worst;
       c.grid.dense_s = points[k];

@@ -97,6 +97,34 @@ TEST_CASE("a pair that is 0 by symmetry: a fault in it is found, in all units") 
   }
 }
 
+TEST_CASE("a pair without a path between: no fault of what row operations leave of its 0") {
+  // The first mass moves the second through a filter; nothing comes back. Elimination of the second
+  // one's stiffness beside the filter's larger gain turns rows.
+  for (const double gain : {-7.0, 3.0, 400.0}) {
+    CAPTURE(gain);
+    Diagram d{"one way"};
+    auto a = d.add("a", SpringMass{.mass = 1, .stiffness = 4});
+    auto b = d.add("b", SpringMass{.mass = 2, .stiffness = 18});
+    auto filter = d.add("filter", Lti{.D = MatrixXd{{gain}}});
+    ground(a);
+    ground(b);
+    filter.in = a.stretch;
+    a.child.force = d.input("f");
+    b.child.force = d.input("g");
+    b.child.force += filter.out;
+    d.output("a") = a.child.accel;
+    d.output("b") = b.child.accel;
+    const System system = compile(d);
+    const FullCertificate c = certify(system);
+    CAPTURE(to_string(c));
+    CHECK(c.holds());
+    for (const MatrixXcd& G : transfers(system.state_space(), kPoints)) {
+      CHECK(G(0, 1) == 0.0);
+      CHECK(std::abs(G(1, 0)) > 1e-3);
+    }
+  }
+}
+
 TEST_CASE("difference: blocks of three share their size, scalars have their own") {
   const auto lists = [](double off) {
     MatrixXcd G = MatrixXcd::Constant(4, 3, 1);
