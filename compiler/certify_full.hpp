@@ -64,8 +64,33 @@ struct FullCertificate {
     int pairs = 0;
     double least = 0;
     std::complex<double> where;
-    bool structure = false;  ///< no one-way port is driven: a negative value is a fault
+    /// A negative value is a fault: no one-way port is driven, no gain stands between motions and
+    /// forces, and what moves with another gives its wrench back there.
+    bool structure = false;
   } passivity;
+
+  /// Of the same pairs, scalar by scalar: how far G_ij, the acceleration where force i acts by
+  /// force j, is from G_ji (reciprocity of Maxwell and Betti). Largest over the grid of |G_ij -
+  /// G_ji| over sqrt(|G_ii| |G_jj|), or over |G_ij| or |G_ji| where one is larger (at a held point
+  /// G_ii is 0), at the same s; three translations or rotations of a port share their size. The
+  /// same in all units of the forces. What is 0 but for rounding counts over 1e-3 of the terms that
+  /// cancel. Inputs that are no such forces are 0 here: a motion imposed by one is held.
+  ///
+  /// All bodies and joints of the library are reciprocal: their masses, stiffnesses and dampings
+  /// are symmetric (to 1e-9, or refused when they are added), modes are damped one by one, and none
+  /// has gyroscopic terms. A block of your own may have some: then nothing is expected of the
+  /// whole.
+  struct Reciprocity : Checked {
+    int forces = 0;  ///< scalar
+    double asymmetry = 0;
+    std::complex<double> where;
+    std::string first, second;  ///< the two, as System::inputs() calls them; empty at 0
+    /// A structure, as for passivity, of blocks that are reciprocal each by itself (their responses
+    /// at one s, to 1e-12; data symmetric to 1e-9 only are none): an asymmetry above 1e-8 is a
+    /// fault.
+    bool structure = false;
+    std::string why_no_structure;  ///< "K.in is driven, a one-way port"
+  } reciprocity;
 
   /// Of the minimal dense model. Where exact arithmetic finds states that were taken out as nothing
   /// but rounding (two frequencies one ulp apart), the interval reaches up to the exact order.
@@ -73,8 +98,8 @@ struct FullCertificate {
   ExactOrder exact;  ///< independent of all passes, where the diagram is small
 
   /// What does not hold, in words; empty if all that was checked does: equations, transfers and
-  /// dense model to 1e-8, poles to 1e-6, a structure passive to 1e-9, the exact order inside the
-  /// verdict's interval, and nothing that the order step had to put back.
+  /// dense model to 1e-8, poles to 1e-6, a structure passive to 1e-9 and reciprocal to 1e-8, the
+  /// exact order inside the verdict's interval, and nothing that the order step had to put back.
   std::vector<std::string> faults;
   bool holds() const { return faults.empty(); }
 };

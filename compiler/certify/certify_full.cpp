@@ -4,6 +4,8 @@
 #include <cmath>
 #include <titop/compiler/certify/passivity.hpp>
 #include <titop/compiler/certify/poles.hpp>
+#include <titop/compiler/certify/reciprocity.hpp>
+#include <titop/compiler/certify/structure.hpp>
 #include <titop/compiler/certify_full.hpp>
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/system.hpp>
@@ -20,7 +22,7 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double kHolds = 1e-8;      ///< equations, transfers, dense model
 constexpr double kPoleHolds = 1e-6;  ///< to first order only
-constexpr double kPassive = 1e-9;    ///< below the axis by more than rounding
+constexpr double kReciprocal = 1e-8;
 
 /// s = (0.05 + j) w, w from a tenth of the lowest to ten times the highest, evenly in log w.
 std::vector<Complex> grid_of(const FullCertificate::Grid& grid) {
@@ -96,6 +98,25 @@ void check_written(const System& system, const Full& what, const std::vector<Com
   }
 }
 
+/// What forces and the accelerations where they act say of each other. What does not hold is
+/// looked at again with what rounding does.
+void check_pairs(const System& system, const std::vector<Complex>& points,
+                 const std::vector<MatrixXcd>& factored, FullCertificate& c) {
+  const Graph& g = *system.stage().source;
+  const std::vector<double> values = values_of(system);
+  const full::DualPairs pairs = full::dual_pairs(g, values);
+  const std::string no_structure = full::why_no_structure(g, values);
+  full::DualTransfers transfers = full::dual_transfers(pairs, points, factored);
+  const auto check = [&] {
+    c.passivity = full::check_passivity(pairs, transfers, no_structure.empty());
+    c.reciprocity = full::check_reciprocity(system, pairs, transfers, no_structure, values);
+  };
+  check();
+  if (c.passivity.least >= -full::kPassive && c.reciprocity.asymmetry <= detail::kClose) return;
+  transfers = full::with_rounding(system, pairs, std::move(transfers));
+  check();
+}
+
 /// States that left as nothing but rounding may be there in the last bits of the data. That is no
 /// fault of the model, but no order that double precision has decided either.
 void reach_up_to(const ExactOrder& exact, OrderVerdict& v) {
@@ -106,7 +127,7 @@ void reach_up_to(const ExactOrder& exact, OrderVerdict& v) {
 }
 
 void list_faults(FullCertificate& c) {
-  const auto fault = [&c](double value, double allowed, const char* text) {
+  const auto fault = [&c](double value, double allowed, const std::string& text) {
     if (!(value <= allowed)) c.faults.push_back(fmt::format("{} {:.1e}", text, value));
   };
   fault(c.basic.residual, kHolds, "equations as written hold only to");
@@ -119,13 +140,18 @@ void list_faults(FullCertificate& c) {
                     c.order.change));
   fault(c.poles.error, kPoleHolds, "poles of the dense model differ from the factors' by");
   if (c.passivity.structure) {
-    fault(-c.passivity.least, kPassive, "energy comes out of a structure:");
+    fault(-c.passivity.least, full::kPassive, "energy comes out of a structure:");
     if (c.poles.right > 0)
       c.faults.push_back(
           fmt::format("{} poles of a structure lie right of the axis, the worst by "
                       "{:.1e} of its size",
                       c.poles.right, c.poles.rightmost.real() / std::abs(c.poles.rightmost)));
   }
+  if (const auto& r = c.reciprocity; r.structure)
+    fault(r.asymmetry, kReciprocal,
+          fmt::format("forces {} and {} on a structure do not move each other alike (reciprocity), "
+                      "by",
+                      r.first, r.second));
   if (c.exact.decided && c.order.judged &&
       (c.exact.order < c.order.lowest || c.exact.order > c.order.highest))
     c.faults.push_back(fmt::format("the minimal order is {}, not between {} and {}", c.exact.order,
@@ -168,10 +194,10 @@ FullCertificate certify(const System& system, const Full& what) {
       c.grid.dense_s = points[k];
     }
     check_written(system, what, points, factored, measure, c.grid);
-    c.passivity =
-        full::check_passivity(*system.stage().source, values_of(system), points, factored);
+    check_pairs(system, points, factored, c);
   } else {
-    c.grid.why_not = c.passivity.why_not = "without inputs, or without outputs, nothing transfers";
+    c.grid.why_not = c.passivity.why_not = c.reciprocity.why_not =
+        "without inputs, or without outputs, nothing transfers";
   }
   list_faults(c);
   return c;
@@ -209,14 +235,26 @@ std::string to_string(const FullCertificate::Passivity& p) {
   return fmt::format(
       "{} pairs of a force and the acceleration where it acts: {} at all points "
       "(least {:.1e} of 1, {})\n",
-      p.pairs, p.least >= -kPassive ? "passive" : "not passive", p.least, at_s(p.where));
+      p.pairs, p.least >= -full::kPassive ? "passive" : "not passive", p.least, at_s(p.where));
+}
+
+std::string to_string(const FullCertificate::Reciprocity& r) {
+  if (!r.done) return "reciprocity not checked: " + r.why_not + "\n";
+  std::string text = fmt::format("{} forces: {}", r.forces,
+                                 r.asymmetry <= kReciprocal ? "reciprocal" : "not reciprocal");
+  if (r.asymmetry > 0)
+    text += fmt::format(" (what {} and {} do where the other acts differs by {:.1e}, {})", r.first,
+                        r.second, r.asymmetry, at_s(r.where));
+  if (!r.structure) text += "; nothing asks for it: " + r.why_no_structure;
+  return text + "\n";
 }
 
 }  // namespace
 
 std::string to_string(const FullCertificate& c) {
   std::string text = to_string(c.basic) + to_string(c.grid) + to_string(c.poles) +
-                     to_string(c.passivity) + to_string(c.order) + "\n" + to_string(c.exact) + "\n";
+                     to_string(c.passivity) + to_string(c.reciprocity) + to_string(c.order) + "\n" +
+                     to_string(c.exact) + "\n";
   if (c.holds()) return text + "no fault found in what was checked\n";
   for (const std::string& fault : c.faults) text += "FAULT: " + fault + "\n";
   return text;

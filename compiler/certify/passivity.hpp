@@ -1,15 +1,15 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <titop/compiler/certify/dual_pairs.hpp>
 #include <titop/compiler/certify_full.hpp>
-#include <titop/graph/graph.hpp>
-#include <vector>
 
 namespace titop::full {
 
-/// Of the diagram as written, with its transfers at these points (declared order).
-FullCertificate::Passivity check_passivity(const Graph& graph, const std::vector<double>& values,
-                                           const std::vector<std::complex<double>>& points,
-                                           const std::vector<Eigen::MatrixXcd>& transfers);
+/// Below the axis by more than rounding.
+inline constexpr double kPassive = 1e-9;
+
+/// `structure`: see compiler/certify/structure.hpp.
+FullCertificate::Passivity check_passivity(const DualPairs& pairs, const DualTransfers& transfers,
+                                           bool structure);
 
 }  // namespace titop::full

@@ -142,6 +142,36 @@ TEST_CASE("what was removed, and why: twin masses swing against each other unsee
   CHECK(rows[0][4] != "");
 }
 
+TEST_CASE("the certificate says whether forces are reciprocal, and why nothing asks for it") {
+  const auto certificate = [](bool pushed_by_filter) {
+    Diagram d{"two"};
+    auto a = d.add("a", SpringMass{.mass = 1, .stiffness = 4});
+    auto b = d.add("b", SpringMass{.mass = 2, .stiffness = 18});
+    ground(a);
+    mount(b, a.child);
+    if (pushed_by_filter) {
+      auto filter = d.add("filter", Gain{.gain = 3});
+      filter.in = a.stretch;
+      b.child.force += filter.out;
+    }
+    a.child.force += d.input("f");
+    b.child.force += d.input("g");
+    d.output("a") = a.child.accel;
+    d.output("b") = b.child.accel;
+    return section(report_html(compile(d), kNoDiagrams), "certificate");
+  };
+  int rows = 0;
+  for (const bool pushed : {false, true})
+    for (const auto& row : cells(certificate(pushed)))
+      if (has(row[0], "reciprocity")) {
+        ++rows;
+        CHECK(has(row[2], "holds") == !pushed);
+        CHECK(has(row[3], "Of 2 forces"));
+        CHECK(has(row[3], "nothing asks for it: filter.in is driven") == pushed);
+      }
+  CHECK(rows == 2);
+}
+
 TEST_CASE("the summary says what matters first: unstable, unchecked, undecided") {
   CHECK(has(report_html(five_masses(), kNoDiagrams), "10 on the axis (undamped)"));
   Diagram d{"rolls away"};

@@ -68,6 +68,18 @@ void add_not_done(std::vector<Item>& items, const char* what, const std::string&
   items.push_back({what, "not checked", why_not});
 }
 
+void add_reciprocity(std::vector<Item>& items, const FullCertificate::Reciprocity& r) {
+  if (!r.done) return add_not_done(items, "reciprocity", r.why_not);
+  items.push_back(
+      {"reciprocity", number(r.asymmetry, 2),
+       fmt::format("Of {}: the largest difference between what one does where the other acts and "
+                   "the other way round, over what each does where it acts itself{}{}.",
+                   count(static_cast<std::size_t>(r.forces), "force"),
+                   r.first.empty() ? "" : fmt::format("; {} and {}", r.first, r.second),
+                   r.structure ? "" : "; nothing asks for it: " + r.why_no_structure),
+       r.structure ? judged(r.asymmetry, kHolds) : Mark::none});
+}
+
 void add_full(std::vector<Item>& items, const FullCertificate& f) {
   if (f.grid.done) {
     const std::string over = fmt::format(
@@ -110,6 +122,7 @@ void add_full(std::vector<Item>& items, const FullCertificate& f) {
                      f.passivity.structure ? judged(-f.passivity.least, 1e-9) : Mark::none});
   else
     add_not_done(items, "passivity", f.passivity.why_not);
+  add_reciprocity(items, f.reciprocity);
 }
 
 std::string marked(Mark mark) {
@@ -212,7 +225,7 @@ std::string certificate_section(const Subject& s, const FullCertificate* full) {
   text += "</tbody></table></div>\n";
   if (!full)
     text += fmt::format(
-        "<p class=\"note\">Poles, passivity and transfers over a grid were not "
+        "<p class=\"note\">Poles, passivity, reciprocity and transfers over a grid were not "
         "checked: {} states are more than {} (ReportOptions::full_up_to).</p>\n",
         s.system.order(), s.options.full_up_to);
   return text;

@@ -1,0 +1,154 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <titop/compiler/certify/dual_pairs.hpp>
+#include <titop/compiler/certify/steady_random.hpp>
+#include <titop/compiler/certify/structure.hpp>
+#include <titop/graph/drives.hpp>
+
+namespace titop::full {
+namespace {
+
+using Eigen::VectorXd;
+using Vectors = std::vector<VectorXd>;  ///< one per channel
+
+constexpr double kNoWork = 1e-12;  ///< of the sum of magnitudes: rounding of rotations
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// What makes an equation more than a connection of bodies; empty if nothing does.
+std::string beside_bodies(const Graph& g, const Equation& e) {
+  const std::string target = name_of(g, e.target);
+  if (g.signals[at(e.target)].channel < 0) return target + " is driven, a one-way port";
+  for (const Term& t : e.terms) {
+    const Signal& s = g.signals[at(t.signal)];
+    if (s.role == Signal::Role::external) continue;
+    if (s.channel < 0 || t.of == Term::Of::position || t.of == Term::Of::rate)
+      return fmt::format("{} is driven by {}", target, name_of(g, t.signal));
+    for (const Factor& f : t.factors)
+      if (std::holds_alternative<Value>(f) || std::holds_alternative<Matrix>(f))
+        return fmt::format("{} is driven by a gain on {}", target, name_of(g, t.signal));
+  }
+  return "";
+}
+
+/// The equations between bodies, without the diagram's inputs.
+class Connections {
+ public:
+  Connections(const Graph& g, ParameterValues values)
+      : g_(g), values_(values), drive_(drives(g)), accel_(zeros()), force_(zeros()) {
+    Vectors any = zeros();
+    randomize(0, size(), any);
+    settle([&](std::size_t c) {
+      const Drive& d = drive_[c];
+      return replace(accel_[c], d.N.transpose() * (d.N * any[c]) + sum(d.accel, c));
+    });
+  }
+
+  std::size_t size() const { return g_.channels.size(); }
+
+  /// What wrenches of the motions imposed on channels [first, end) do in all, over the sum of
+  /// magnitudes; motions are random.
+  double work(std::size_t first, std::size_t end) {
+    Vectors any = zeros();
+    randomize(first, end, any);
+    force_ = reaction_ = zeros();
+    settle([&](std::size_t c) {
+      const Drive& d = drive_[c];
+      const VectorXd added = sum(d.added, c);
+      const bool moved =
+          replace(force_[c], d.S.transpose() * (d.S * any[c]) +
+                                 d.N.transpose() * (d.N * (sum(d.force, c) + added)));
+      return replace(reaction_[c], force_[c] - added) || moved;
+    });
+    double all = 0, magnitudes = 0;
+    for (std::size_t c = 0; c < size(); ++c) {
+      const VectorXd each = force_[c].cwiseProduct(accel_[c]);
+      all += is_outward(g_.nodes[at(g_.channels[c].node)].block->interface().channels[at(
+                 g_.channels[c].spec)])
+                 ? -each.sum()
+                 : each.sum();
+      magnitudes += each.cwiseAbs().sum();
+    }
+    return magnitudes > 0 ? std::abs(all) / magnitudes : 0;
+  }
+
+ private:
+  Vectors zeros() const {
+    Vectors list;
+    for (const Channel& c : g_.channels) list.push_back(VectorXd::Zero(c.size));
+    return list;
+  }
+
+  static void randomize(std::size_t first, std::size_t end, Vectors& list) {
+    detail::SteadyRandom random;
+    for (std::size_t c = first; c < end; ++c)
+      for (double& x : list[c]) x = random.unit();
+  }
+
+  static bool replace(VectorXd& old, const VectorXd& now) {
+    const bool moved = old != now;
+    old = now;
+    return moved;
+  }
+
+  /// Until all equations hold: they follow one another, so that as many rounds do as stand in a
+  /// row. `update` says whether anything moved.
+  template <class Update>
+  void settle(const Update& update) const {
+    bool moved = true;
+    for (std::size_t round = 0; moved && round <= 2 * size(); ++round) {
+      moved = false;
+      for (std::size_t c = 0; c < size(); ++c) moved = update(c) || moved;
+    }
+  }
+
+  /// Right-hand sides of these equations on channel c.
+  VectorXd sum(const std::vector<int>& equations, std::size_t c) const {
+    VectorXd result = VectorXd::Zero(g_.channels[c].size);
+    for (const int e : equations) {
+      const Equation& equation = g_.equations[at(e)];
+      for (const Term& t : equation.terms) {
+        const Signal& s = g_.signals[at(t.signal)];
+        if (s.role == Signal::Role::external) continue;
+        const VectorXd x = coefficient(g_, t, values_) * of(t, s.channel);
+        result += equation.part.whole() ? x : VectorXd(equation.part.rows.transpose() * x);
+      }
+    }
+    return result;
+  }
+
+  const VectorXd& of(const Term& t, int channel) const {
+    if (t.of == Term::Of::reaction) return reaction_[at(channel)];
+    return (g_.channels[at(channel)].accel == t.signal ? accel_ : force_)[at(channel)];
+  }
+
+  const Graph& g_;
+  ParameterValues values_;
+  std::vector<Drive> drive_;
+  Vectors accel_, force_, reaction_;
+};
+
+/// The first channel whose motion is imposed and whose wrench does not come back, by halves: work
+/// is linear in the wrenches.
+std::string taken_for_nothing(const Graph& g, Connections& all) {
+  std::size_t first = 0, end = all.size();
+  if (all.work(first, end) <= kNoWork) return "";
+  while (end - first > 1) {
+    const std::size_t middle = (first + end) / 2;
+    (all.work(first, middle) > kNoWork ? end : first) = middle;
+  }
+  return fmt::format("{} takes a motion and does not give its wrench back there",
+                     channel_name(g, static_cast<int>(first)));
+}
+
+}  // namespace
+
+std::string why_no_structure(const Graph& g, ParameterValues values) {
+  for (const Equation& e : g.equations)
+    if (std::string found = beside_bodies(g, e); !found.empty()) return found;
+  Connections all(g, values);
+  return taken_for_nothing(g, all);
+}
+
+}  // namespace titop::full
