@@ -1,5 +1,5 @@
 // The command line. Exit codes: 0 done, 1 the scene or a file is refused (the errors are on
-// stderr), 2 not understood.
+// stderr), 2 not understood, 3 compiled, but the full certificate does not hold.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,6 +24,7 @@ using namespace titop;
 constexpr const char* kUsage = R"(usage:
   titop check SCENE.json                 compiles, says how many states, inputs and outputs
   titop compile SCENE.json               log, poles and certificate
+  titop certify SCENE.json               the full certificate; as JSON, too, with -o
   titop draw SCENE.json FILE.dot         the diagram for Graphviz (dot -Tsvg FILE.dot)
   titop draw --compiled SCENE.json FILE.dot    the same after all passes
   titop report SCENE.json                one HTML page for reading and printing: SCENE.html, or -o
@@ -36,14 +37,15 @@ constexpr const char* kUsage = R"(usage:
 options:
   --fold COUNT                           draw, report: at most so many boxes, each whole subtrees;
                                          draw: all if left out; report: 40, 0 for all
-  -o FILE                                report: where to
+  -o FILE                                report: where to; certify: also a FILE for programs
   --band LOW HIGH                        report: of the frequency responses, Hz
   --until SECONDS                        report: of the step responses
   --no-diagrams                          report: without drawings, which need Graphviz
   --sample-time SECONDS                  for .hpp: also `step`
   --omega LOW HIGH COUNT                 for .csv: rad/s, logarithmic
   --minimize-up-to STATES                100 if left out; 0: never
-exit code: 0 done, 1 refused (errors on stderr), 2 not understood
+exit code: 0 done, 1 refused (errors on stderr), 2 not understood,
+           3 certify: something does not hold (the lines that begin with FAULT)
 )";
 
 /// What was typed.
@@ -131,6 +133,14 @@ void show(const Arguments& a) {
   std::fputs((system.log() + poles + to_string(system.certificate())).c_str(), stdout);
 }
 
+/// 3 where the model is not to be trusted: another matter than a scene that is refused.
+int certify_scene(const Arguments& a) {
+  const FullCertificate certificate = certify(compiled(a));
+  std::fputs(to_string(certificate).c_str(), stdout);
+  if (!a.to.empty()) write_json(certificate, a.to);
+  return certificate.holds() ? 0 : 3;
+}
+
 void draw(const Arguments& a) {
   const DotOptions options{.fold = std::max(a.fold, 0)};
   const std::string text =
@@ -182,17 +192,24 @@ void generate_scene(const std::vector<std::string>& words) try {
 
 struct Command {
   const char* name;
-  std::size_t words;  ///< with its own
-  void (*run)(const Arguments&);
+  std::size_t words;             ///< with its own
+  int (*run)(const Arguments&);  ///< exit code
 };
-constexpr Command kCommands[] = {{"check", 2, check},
-                                 {"compile", 2, show},
-                                 {"draw", 3, draw},
-                                 {"report", 2, report},
-                                 {"export", 3, export_model}};
 
-void run(const std::vector<std::string>& all) {
-  if (!all.empty() && all[0] == "generate") return generate_scene({all.begin() + 1, all.end()});
+template <void (*F)(const Arguments&)>
+int done(const Arguments& a) {
+  F(a);
+  return 0;
+}
+constexpr Command kCommands[] = {{"check", 2, done<check>},     {"compile", 2, done<show>},
+                                 {"certify", 2, certify_scene}, {"draw", 3, done<draw>},
+                                 {"report", 2, done<report>},   {"export", 3, done<export_model>}};
+
+int run(const std::vector<std::string>& all) {
+  if (!all.empty() && all[0] == "generate") {
+    generate_scene({all.begin() + 1, all.end()});
+    return 0;
+  }
   const Arguments a = parse(all);
   if (a.words.empty()) throw Misuse{"what is to be done?"};
   for (const Command& command : kCommands) {
@@ -207,8 +224,7 @@ void run(const std::vector<std::string>& all) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  run({argv + 1, argv + argc});
-  return 0;
+  return run({argv + 1, argv + argc});
 } catch (const Misuse& misuse) {
   std::fputs(fmt::format("titop: {}\n{}{}", misuse.what, kUsage, generate::kUsage).c_str(), stderr);
   return 2;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <titop/compiler/certify_full.hpp>
 #include <titop/compiler/system.hpp>
 
 /// Models as files for other programs. Numbers are written so that they read back to the last bit.
@@ -38,5 +39,14 @@ void write_csv(const System& system, std::span<const double> omega,
 /// poles.
 std::string model_json(const System& system);
 void write_json(const System& system, const std::filesystem::path& file);
+
+/// The full certificate as one JSON object: "format" ("titop certificate 1"), "holds", "faults" (a
+/// list of texts), "basic" (as "certificate" of a model), then "grid", "poles", "passivity",
+/// "reciprocity", "order" and "exact" with the fields of `FullCertificate` by their names; complex
+/// numbers are pairs [re, im]. Each but "order" has "done" and "why_not" (null where it is done);
+/// "order" has "judged" and "decided". What was not checked or not found is null, as is a number
+/// that is not finite; no item is left out. Keys keep this order.
+std::string certificate_json(const FullCertificate& certificate);
+void write_json(const FullCertificate& certificate, const std::filesystem::path& file);
 
 }  // namespace titop

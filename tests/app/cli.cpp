@@ -49,6 +49,36 @@ TEST_CASE("check and compile say what there is") {
   CHECK(has(r.out, "equations as written hold to"));
 }
 
+TEST_CASE("certify: as text and as JSON; exit code 3 where something does not hold") {
+  const Shell shell;
+  Run r = shell.titop("certify masses.json -o c.json");
+  CHECK(r.code == 0);
+  CHECK(r.err.empty());
+  const FullCertificate c = certify(compile(Shell::diagram()));
+  CHECK(c.holds());
+  CHECK(r.out == to_string(c));
+  CHECK(shell.folder.read("c.json") == certificate_json(c));
+  // A loop at 1e-10 from singular: its gain is only known to six digits.
+  Diagram d{"ring"};
+  auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 4});
+  ground(z);
+  auto K = d.add("K", Gain{.gain = (1 - 1e-10) / 0.7}), G = d.add("G", Gain{.gain = 0.7});
+  auto u = d.input("u");
+  K.in = G.out;
+  G.in = K.out + u + z.stretch;
+  z.child.force += u;
+  d.output("y") = G.out;
+  write_scene(d, shell.folder.path / "ring.json");
+  r = shell.titop("certify ring.json -o ring.certificate.json");
+  CHECK(r.code == 3);
+  CHECK(has(r.out, "FAULT: the transfer of the dense model differs"));
+  CHECK(has(shell.folder.read("ring.certificate.json"), "\"holds\": false"));
+  CHECK(shell.titop("certify none.json").code == 1);
+  r = shell.titop("certify masses.json -o none/c.json");
+  CHECK(r.code == 1);
+  CHECK(has(r.err, "error[bad-file]"));
+}
+
 TEST_CASE("draw writes what to_dot says") {
   const Shell shell;
   CHECK(shell.titop("draw masses.json a.dot").code == 0);
@@ -135,7 +165,7 @@ TEST_CASE("what is not understood: exit code 2 and the usage on stderr") {
         "export masses.json g.csv --omega 1 x 3", "export masses.json g.csv --omega 3 1 3",
         "export masses.json m.hpp --sample-time", "report", "report masses.json -o",
         "report masses.json --band 1", "report masses.json --band 1 2 --band 1 2",
-        "draw --fold -1 masses.json a.dot"}) {
+        "draw --fold -1 masses.json a.dot", "certify", "certify masses.json c.json"}) {
     INFO(words);
     const Run r = shell.titop(words);
     CHECK(r.code == 2);
