@@ -67,6 +67,9 @@ using T = std::complex<double>;
 
 constexpr Index kColumns = 8;   ///< inputs are tried one by one up to this many
 constexpr double kNoise = 1e3;  ///< times the factors' own rounding: what may be nothing else
+/// Of neighbours in row and column: what rotations leave of a 0, cos(pi / 2) = 6e-17. It has its
+/// digits in the factors, but stands for none.
+constexpr double kOfNeighbours = 1e-14;
 
 /// Where the dense model is tried: far below, at and above the blocks' frequencies, and below the
 /// slowest of them, where that is lower still.
@@ -162,8 +165,9 @@ std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const std::
 }
 
 /// The largest error relative to the output's own size. An output that is nothing but rounding, 0
-/// by symmetry, counts beside its neighbours or what cancels in it: the same in all units, too.
-double relative(const MatrixXd& off, const Sizes& sizes) {
+/// by symmetry, counts beside its neighbours or what cancels in it: the same in all units, too. So
+/// does what is below `of_neighbours` of those in its row and column.
+double relative(const MatrixXd& off, const Sizes& sizes, double of_neighbours) {
   const MatrixXd& size = sizes.value;
   if (!off.allFinite() || !size.allFinite()) return kInfinity;
   const VectorXd of_row = size.rowwise().maxCoeff(), of_column = size.colwise().maxCoeff();
@@ -171,9 +175,10 @@ double relative(const MatrixXd& off, const Sizes& sizes) {
   for (Index i = 0; i < off.rows(); ++i)
     for (Index j = 0; j < off.cols(); ++j) {
       if (off(i, j) <= kUnderflow) continue;
-      const bool noise = size(i, j) <= kNoise * sizes.rounding(i, j);
-      const double beside =
-          std::max(std::sqrt(of_row(i)) * std::sqrt(of_column(j)), sizes.rounding(i, j) / kEpsilon);
+      const double around = std::sqrt(of_row(i)) * std::sqrt(of_column(j));
+      const bool noise =
+          size(i, j) <= std::max(kNoise * sizes.rounding(i, j), of_neighbours * around);
+      const double beside = std::max(around, sizes.rounding(i, j) / kEpsilon);
       worst = std::max(worst, off(i, j) / (noise ? beside : size(i, j)));
     }
   return worst;
@@ -191,8 +196,9 @@ DenseError dense_error(const SystemData& d, const StateSpace& m) {
     largest.rounding = largest.rounding.cwiseMax(p.sizes.rounding);
   }
   for (const Sample& p : samples) {
-    if (const double e = relative(p.off, largest); e > worst.error) worst.error = e, worst.s = p.s;
-    if (const double e = relative(p.off, p.sizes); e > worst.where_small)
+    if (const double e = relative(p.off, largest, kOfNeighbours); e > worst.error)
+      worst.error = e, worst.s = p.s;
+    if (const double e = relative(p.off, p.sizes, 0); e > worst.where_small)
       worst.where_small = e, worst.where_small_s = p.s;
   }
   return worst;

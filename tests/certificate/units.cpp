@@ -7,6 +7,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 
+#include "support/random_scene.hpp"
 #include "support/rng.hpp"
 
 /// Every input and every output in units of its own, powers of ten from 1e-9 to 1e9: how far two
@@ -247,5 +248,20 @@ TEST_CASE("what the dense model loses is the same in all units, by few inputs an
       check_alike(c.dense_error_where_small, right.dense_error_where_small);
       CHECK(system.log().find("the model keeps") == std::string::npos);
     }
+  }
+}
+
+TEST_CASE("what is 1e-17 of its neighbours in row and column is no loss of digits") {
+  // What turned frames leave of a 0 has digits in the factors, and others in A, B, C, D.
+  const System system = compile(titop_test::random_scene(titop_test::random_options(186)).build());
+  const StateSpace& dense = system.state_space();
+  const Certificate c = system.certificate();
+  CHECK(c.dense_error <= 1e-12);
+  for (const Complex s : {Complex(1e-4, 3e-4), Complex(1, 3)}) {
+    const MatrixXcd right = system.transfer(s, Precision::digits50);
+    const VectorXd rows = right.rowwise().lpNorm<Eigen::Infinity>(),
+                   columns = right.colwise().lpNorm<Eigen::Infinity>();
+    const MatrixXd around = rows.cwiseSqrt() * columns.cwiseSqrt().transpose();
+    CHECK(((dense.transfer(s) - right).cwiseAbs().array() <= 1e-12 * around.array()).all());
   }
 }
