@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
 #include <boost/graph/strong_components.hpp>
-#include <numeric>
-#include <span>
+#include <titop/compiler/passes/arrows.hpp>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/compiler/passes/passes.hpp>
 
@@ -13,39 +12,11 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Arrows between signals: those from s are to[begin[s]] ... to[begin[s + 1]].
-struct Arrows {
-  std::vector<int> begin, to;
-
-  std::span<const int> from(int s) const {
-    return {to.data() + begin[at(s)], at(begin[at(s) + 1] - begin[at(s)])};
-  }
-  int signals() const { return static_cast<int>(begin.size()) - 1; }
-};
-
-/// Sorted, without repetition. O(pairs + signals).
-Arrows arrows(const std::vector<std::pair<int, int>>& pairs, std::size_t signals) {
-  Arrows a{std::vector<int>(signals + 1, 0), std::vector<int>(pairs.size())};
-  for (const auto& [from, to] : pairs) ++a.begin[at(from) + 1];
-  std::partial_sum(a.begin.begin(), a.begin.end(), a.begin.begin());
-  std::vector<int> next(a.begin.begin(), a.begin.end() - 1);
-  for (const auto& [from, to] : pairs) a.to[at(next[at(from)]++)] = to;
-  int end = 0;
-  for (std::size_t s = 0; s < signals; ++s) {
-    const auto first = a.to.begin() + a.begin[s], last = a.to.begin() + next[s];
-    std::sort(first, last);
-    a.begin[s] = end;
-    end = static_cast<int>(std::unique_copy(first, last, a.to.begin() + end) - a.to.begin());
-  }
-  a.begin[signals] = end;
-  a.to.resize(at(end));
-  return a;
-}
-
 /// signal -> signals that its row needs; states need the inputs that move them.
 Arrows dependencies(const Stage& stage) {
   const Graph& g = stage.graph;
   std::vector<std::pair<int, int>> needs;
+  needs.reserve(2 * g.signals.size());  // of a two-port block: about as many as there will be
   std::vector<int> list;
   Mentioned mentioned(g);
   for (const auto& [row, signal] : stage.matched.rows) {
@@ -72,19 +43,11 @@ Arrows dependencies(const Stage& stage) {
           u.role == Signal::Role::input && moved.middleCols(u.first, u.size).any())
         needs.emplace_back(node.state, s);
   }
-  return arrows(needs, g.signals.size());
-}
-
-Arrows reversed(const Arrows& needs) {
-  std::vector<std::pair<int, int>> feeds;
-  feeds.reserve(needs.to.size());
-  for (int i = 0; i < needs.signals(); ++i)
-    for (const int j : needs.from(i)) feeds.emplace_back(j, i);
-  return arrows(feeds, at(needs.signals()));
+  return Arrows(needs, g.signals.size());
 }
 
 std::vector<char> reach(const Arrows& next, std::vector<int> front) {
-  std::vector<char> seen(at(next.signals()), 0);
+  std::vector<char> seen(at(next.count()), 0);
   for (const int s : front) seen[at(s)] = 1;
   while (!front.empty()) {
     const int s = front.back();
@@ -111,7 +74,7 @@ void set_aside(Stage& stage, const Arrows& needs) {
   for (const Released& r : stage.released) sources.push_back(g.equations[at(r.equation)].target);
   if (g.inputs.empty()) sources.insert(sources.end(), states.begin(), states.end());
   if (g.outputs.empty()) sinks.insert(sinks.end(), states.begin(), states.end());
-  const std::vector<char> moved = reach(reversed(needs), sources), seen = reach(needs, sinks);
+  const std::vector<char> moved = reach(needs.reversed(), sources), seen = reach(needs, sinks);
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
     Signal& sig = g.signals[at(s)];
     if (sig.role == Signal::Role::external || !sig.active || (moved[at(s)] && seen[at(s)]))
@@ -132,11 +95,12 @@ using Digraph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_p
 /// Strong component of every signal; components come out dependencies first.
 std::pair<std::vector<int>, int> components(const Graph& g, const Arrows& needs) {
   std::vector<std::pair<int, int>> edges;
-  for (int s = 0; s < needs.signals(); ++s)
+  edges.reserve(needs.arrows());
+  for (int s = 0; s < needs.count(); ++s)
     if (is_unknown(g.signals[at(s)]))
       for (const int t : needs.from(s))
         if (is_unknown(g.signals[at(t)])) edges.emplace_back(s, t);
-  const Digraph digraph(boost::edges_are_sorted, edges.begin(), edges.end(), needs.signals());
+  const Digraph digraph(boost::edges_are_sorted, edges.begin(), edges.end(), needs.count());
   std::vector<int> component(g.signals.size()), root(g.signals.size());
   std::vector<boost::default_color_type> color(g.signals.size());
   std::vector<int> time(g.signals.size());
