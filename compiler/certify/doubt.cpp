@@ -40,8 +40,9 @@ bool any_lost(std::span<const double> value, std::span<const double> off, std::s
 bool moves_in_doubt(const SystemData& d, const Signals& signals, const Instant& change) {
   const Graph& g = d.graph();
   boost::container::small_vector<double, 6> off;
-  for (const int i : d.layout().state_nodes)
-    for (int k = g.nodes[at(i)].first_signal; k < g.nodes[at(i)].state; ++k) {
+  for (std::size_t i = 0; i < g.nodes.size(); ++i)
+    for (int k = g.nodes[i].first_signal; d.layout().state_first[i] >= 0 && k < g.nodes[i].state;
+         ++k) {
       const Signal& in = g.signals[at(k)];
       if (in.role != Signal::Role::input || !in.active) continue;
       const std::span value(signals.values.data() + signals.first[at(k)], at(in.size));

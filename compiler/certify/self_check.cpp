@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 #include <string_view>
 #include <titop/compiler/certify/doubt.hpp>
 #include <titop/compiler/certify/residual.hpp>
@@ -11,7 +12,7 @@
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/instant.hpp>
 #include <titop/compiler/solve/kernels.hpp>
-#include <tuple>
+#include <utility>
 
 namespace titop::detail {
 namespace {
@@ -48,46 +49,21 @@ void take_inputs(const SystemData& d, int i, const Instant& now, RowMatrix<doubl
       now.add_value(k, inputs.data() + in.first);
 }
 
-/// (s - A)^-1 of the blocks with states, those that are the same object once.
-class Resolvents {
- public:
-  Resolvents(const SystemData& d, double s) {
-    const std::vector<int>& nodes = d.layout().state_nodes;
-    using Key = std::tuple<const Block*, const Dynamics*, std::size_t>;
-    std::vector<Key> keys;
-    keys.reserve(nodes.size());
-    for (std::size_t k = 0; k < nodes.size(); ++k)
-      keys.emplace_back(d.graph().nodes[at(nodes[k])].block.get(),
-                        d.numbers.blocks[at(nodes[k])].get(), k);
-    std::sort(keys.begin(), keys.end());
-    const auto is_new = [&](std::size_t i) {
-      return i == 0 || std::get<0>(keys[i]) != std::get<0>(keys[i - 1]) ||
-             std::get<1>(keys[i]) != std::get<1>(keys[i - 1]);
-    };
-    std::size_t different = 0;
-    for (std::size_t i = 0; i < keys.size(); ++i) different += is_new(i);
-    made_.reserve(different);
-    first_.reserve(different);
-    of_node_.resize(nodes.size());
-    for (std::size_t i = 0; i < keys.size(); ++i) {
-      const auto& [block, dynamics, k] = keys[i];
-      if (is_new(i)) {
-        made_.emplace_back(*dynamics, s);
-        first_.push_back(k);
-      }
-      of_node_[k] = made_.size() - 1;
-    }
-    std::sort(first_.begin(), first_.end());
+/// x = (s - A)^-1 x of every block by itself, x the states of all blocks. Blocks that are the same
+/// object share what is made for one of them; no more than that of one is kept.
+void resolve(const SystemData& d, double s, double* x) {
+  std::vector<std::pair<const Dynamics*, int>> blocks;
+  blocks.reserve(d.layout().state_nodes.size());
+  for (const int i : d.layout().state_nodes)
+    blocks.emplace_back(d.numbers.blocks[at(i)].get(), d.layout().state_first[at(i)]);
+  std::sort(blocks.begin(), blocks.end());
+  for (std::size_t k = 0; k < blocks.size();) {
+    const Dynamics* const block = blocks[k].first;
+    const Resolvent<double> resolvent(*block, s);
+    for (; k < blocks.size() && blocks[k].first == block; ++k)
+      resolvent.apply(1, x + blocks[k].second);
   }
-  /// Of the k-th node with states.
-  const Resolvent<double>& operator[](std::size_t k) const { return made_[of_node_[k]]; }
-  /// The first k of each, ascending.
-  const std::vector<std::size_t>& different() const { return first_; }
-
- private:
-  std::vector<Resolvent<double>> made_;
-  std::vector<std::size_t> of_node_, first_;
-};
+}
 
 /// Largest |value| over `magnitude`, row by row; 1 where it is not finite.
 double relative(const Eigen::VectorXd& value, const Eigen::VectorXd& magnitude) {
@@ -100,20 +76,20 @@ double relative(const Eigen::VectorXd& value, const Eigen::VectorXd& magnitude) 
 
 /// The blocks' own formulas at s, which transfers are made of, against their A, B, C, D, for random
 /// inputs: of the first blocks of each type, for a type has one formula. An instant needs none.
-WrittenResidual check_responses(const SystemData& d, const Resolvents& resolvents, double s) {
-  constexpr int kOfEachType = 2;
+WrittenResidual check_responses(const SystemData& d, double s) {
+  constexpr std::size_t kOfEachType = 2;
   WrittenResidual result;
   SteadyRandom random;
-  std::map<std::string_view, int> seen;
-  for (const std::size_t k : resolvents.different()) {
-    const int i = d.layout().state_nodes[k];
+  std::map<std::string_view, std::set<const Dynamics*>> seen;
+  for (const int i : d.layout().state_nodes) {
     const Node& node = d.graph().nodes[at(i)];
-    if (++seen[node.block->type()] > kOfEachType) continue;
     const Dynamics& m = *d.numbers.blocks[at(i)];
+    auto& of_type = seen[node.block->type()];
+    if (of_type.size() == kOfEachType || !of_type.insert(&m).second) continue;
     const auto r = response<double>(*node.block, m, s, d.numbers.parameters);
     Eigen::VectorXd u(m.B.cols());
     for (double& v : u) v = random.next();
-    const Eigen::VectorXd x = resolvents[k].times(m.B * u), size = u.cwiseAbs();
+    const Eigen::VectorXd x = Resolvent<double>(m, s).times(m.B * u), size = u.cwiseAbs();
     double worst = relative(r.X * u - x, r.X.cwiseAbs() * size + x.cwiseAbs());
     if (m.sparse.empty())
       worst = std::max(worst, relative(r.Y * u - (m.C * x + m.D * u),
@@ -128,23 +104,22 @@ WrittenResidual check_responses(const SystemData& d, const Resolvents& resolvent
 /// when u alone acts. What is strictly proper passes nothing on at once: blocks that rest behind it
 /// are moved by random inputs of size 1, not by what the others would give them, for stiff blocks
 /// pass on much more than they take, and what u does must not drown. One solution.
-RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>& u,
-                                   const Resolvents& resolvents) {
+RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>& u, double s) {
   const Layout& l = d.layout();
   RowMatrix<double> known = RowMatrix<double>::Zero(l.order() + u.rows(), 1), inputs;
   known.bottomRows(u.rows()) = u;
   const Instant by_u(d, known);
   SteadyRandom random;
-  for (std::size_t k = 0; k < l.state_nodes.size(); ++k) {
-    const int i = l.state_nodes[k];
+  for (int i = 0; i < static_cast<int>(l.state_first.size()); ++i) {
+    if (l.state_first[at(i)] < 0) continue;
     const Dynamics& m = *d.numbers.blocks[at(i)];
     take_inputs(d, i, by_u, inputs);
     if (inputs.isZero(0))
       for (double& x : inputs.reshaped()) x = random.next();
-    double* const x = known.data() + l.state_first[at(i)];
-    solve::add_dense_product(m.B.rows(), m.B.cols(), m.B.data(), inputs.data(), 1, x);
-    resolvents[k].apply(1, x);
+    solve::add_dense_product(m.B.rows(), m.B.cols(), m.B.data(), inputs.data(), 1,
+                             known.data() + l.state_first[at(i)]);
   }
+  resolve(d, s, known.data());
   return known;
 }
 
@@ -152,15 +127,14 @@ RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>&
 /// lost.
 bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Certificate& c) {
   if (!has_instants(d)) return false;
-  const Resolvents resolvents(d, s);
-  const Instant now(d, known_at_instant(d, u, resolvents));
+  const Instant now(d, known_at_instant(d, u, s));
   if (!now.unknowns().allFinite()) return false;
   Signals signals{first_of_signals(d.graph())};
   signals.values = now.values(signals.first);
   signals.unknowns = now.unknowns();
   WrittenResidual written = written_residual(d, signals);
   // Two formulas for one thing differ by more than rounding near a block's own real pole.
-  if (const auto responses = check_responses(d, resolvents, s);
+  if (const auto responses = check_responses(d, s);
       responses.worst > std::max(kWarn, written.worst))
     written = responses;
   if (written.worst <= kWarn && digits_in_doubt(d, now, signals)) return false;
