@@ -13,10 +13,11 @@ namespace titop::passes {
 /// not_finite. O(terms).
 Stage check(Stage stage);
 
-/// Nodes, inputs and equations stand in natural order of their names; every driven part has
-/// exactly one equation; `+=`, reactions and positions are written out; every term has one numeric
-/// coefficient; Gain and Sum are equations. Positions and rates that
-/// no state holds get Integrators, listed, once per assembly. Throws not_finite. O(terms).
+/// Nodes, inputs and equations stand in an order that their names decide, nodes of a tree beside
+/// their neighbours; every driven part has exactly one equation; `+=`, reactions and positions are
+/// written out; every term has one numeric coefficient; Gain and Sum are equations. Positions and
+/// rates that no state holds get Integrators, listed, once per assembly. Throws not_finite.
+/// O(terms).
 Stage lower(Stage stage);
 
 /// The terms of these equations and outputs (by their places in Stage::origins) for other parameter

@@ -12,7 +12,7 @@ using solve::Kept;
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double kKeeps = 1e-3;    ///< of the largest: a choice made before may cost three digits
-constexpr double kTie = 1 + 1e-9;  ///< less is rounding: the first in order of names is taken
+constexpr double kTie = 1 + 1e-9;  ///< less is rounding: the first is taken
 
 /// Sums of many numbers, entry by entry.
 struct KeptRow {

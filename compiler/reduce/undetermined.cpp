@@ -15,7 +15,7 @@ using solve::KeptMatrix;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-constexpr double kTie = 1 + 1e-9;  ///< less is rounding: the first in order of names is taken
+constexpr double kTie = 1 + 1e-9;  ///< less is rounding: the first in the graph is taken
 
 /// rows of `to` from `first` on += c * m
 template <class C, class Block>
@@ -110,7 +110,7 @@ struct Place {
 
 /// Where a motion shows most: rotations first, whose unit is no length, then translations, then
 /// axes of joints and scalar points; of equals a parent's of a body without states (no joint), then
-/// the first in order of names. No signal where it is no motion of a port.
+/// the first in the graph. No signal where it is no motion of a port.
 class Showing {
  public:
   Showing(const Skeleton& k, const Motions& motions) : k_(k), g_(k.stage.graph), motions_(motions) {

@@ -24,7 +24,7 @@ void demand(bool holds, const std::string& what) {
 void demand_lowered(const Stage& stage) {
   const Graph& g = stage.graph;
   for (std::size_t i = 1; i < g.nodes.size(); ++i)
-    demand(natural_compare(g.nodes[i - 1].name, g.nodes[i].name) < 0, "nodes stand by name");
+    demand(natural_compare(g.nodes[0].name, g.nodes[i].name) < 0, "the first name comes first");
   for (const Node& node : g.nodes)
     demand(node.lowered == node.block->is_algebraic(), node.name + " is an equation");
   const auto lowered = [&](const std::vector<Term>& terms) {

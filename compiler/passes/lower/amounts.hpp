@@ -25,7 +25,7 @@ Amount times(const Eigen::MatrixXd& m, const Pattern& declared, Amount sum);
 
 /// Writes right-hand sides out, for one set of parameter values.
 struct Lowering {
-  const Graph& g;  ///< as the user wrote it, in order of names
+  const Graph& g;  ///< as the user wrote it, in the order of by_name
   ParameterValues values;
   std::shared_ptr<const std::vector<Drive>> all_drives;
   const std::vector<Drive>& drive = *all_drives;

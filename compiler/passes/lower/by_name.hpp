@@ -4,8 +4,9 @@
 
 namespace titop::passes {
 
-/// The same graph with nodes, inputs and outputs in natural order of their names, so that nothing
-/// after this depends on the order in which the user wrote them.
+/// The same graph in an order that names decide, so that nothing after this depends on the order in
+/// which the user wrote it: inputs and outputs in natural order of their names, nodes too, or along
+/// the trees that they make, equations in the order of their targets.
 Graph by_name(Graph graph);
 
 }  // namespace titop::passes

@@ -91,7 +91,7 @@ void add_rigid_motions(Stage& stage, Graph& g) {
   }
   if (missing.empty()) return;
   add_integrators(g, missing, stage.motions);
-  // In order of names again; the motions follow by theirs.
+  // In the order of by_name again; the motions follow by theirs.
   std::vector<std::pair<std::string, std::string>> names;
   for (const RigidMotion& m : stage.motions)
     names.emplace_back(titop::name_of(g, m.signal), g.nodes[at(m.node)].name);
