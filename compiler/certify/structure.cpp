@@ -16,10 +16,9 @@ constexpr double kNoWork = 1e-12;  ///< of the sum of magnitudes: rounding of ro
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// What makes an equation more than a connection of bodies; empty if nothing does.
+/// What makes an equation between channels more than a connection of bodies; empty if nothing does.
 std::string beside_bodies(const Graph& g, const Equation& e) {
   const std::string target = name_of(g, e.target);
-  if (g.signals[at(e.target)].channel < 0) return target + " is driven, a one-way port";
   for (const Term& t : e.terms) {
     const Signal& s = g.signals[at(t.signal)];
     if (s.role == Signal::Role::external) continue;
@@ -145,6 +144,9 @@ std::string taken_for_nothing(const Graph& g, Connections& all) {
 }  // namespace
 
 std::string why_no_structure(const Graph& g, ParameterValues values) {
+  for (const Equation& e : g.equations)
+    if (g.signals[at(e.target)].channel < 0)
+      return name_of(g, e.target) + " is driven, a one-way port";
   for (const Equation& e : g.equations)
     if (std::string found = beside_bodies(g, e); !found.empty()) return found;
   Connections all(g, values);

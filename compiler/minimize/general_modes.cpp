@@ -133,7 +133,7 @@ void find_needed(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C, ModeSe
 }  // namespace
 
 General general_modes(const StateSpace& model, double resolution) {
-  General g{linalg::eigensystem(model.A), {}};
+  General g{linalg::eigensystem(model.A, linalg::balance_parts), {}};
   linalg::Eigensystem& e = g.e;
   ModeSet& m = g.modes;
   const Index n = e.values.size();

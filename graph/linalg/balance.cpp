@@ -118,6 +118,12 @@ void fit_between(MatrixXd& A, VectorXd& d, const std::vector<std::vector<int>>& 
 
 VectorXd balance(MatrixXd& A) {
   VectorXd d = VectorXd::Ones(A.rows());
+  if (A.allFinite()) sweep(A, d);
+  return d;
+}
+
+VectorXd balance_parts(MatrixXd& A) {
+  VectorXd d = VectorXd::Ones(A.rows());
   if (!A.allFinite()) return d;
   const std::vector<std::vector<int>> sets = parts(A);
   for (const std::vector<int>& part : sets) {

@@ -5,14 +5,17 @@
 
 namespace titop::linalg {
 
-/// Diagonal similarity by powers of two that makes the entries of A (n x n) alike, in place:
-/// returns d with A_new = diag(d)^-1 A diag(d). States that all act on one another: by sweeps over
-/// rows and columns [Parlett, Reinsch 1969], from A and from a fit of logarithms [Curtis, Reid
-/// 1972], since sweeps end early where units are far apart. Parts that act on others one way only,
-/// which no sweep brings together, act with entries about as large as the largest within a part. So
-/// the result is the same in all units of states and time, but for factors of about 2. A matrix
-/// with entries that are not finite is left as it is. O(n^3 / 3).
+/// Diagonal similarity by powers of two that makes rows and columns of A (n x n) alike, in place:
+/// returns d with A_new = diag(d)^-1 A diag(d) [Parlett, Reinsch 1969]. A matrix with entries that
+/// are not finite is left as it is. O(n^2).
 Eigen::VectorXd balance(Eigen::MatrixXd& A);
+
+/// Likewise, to the same result in all units of states and time, but for factors of about 2. States
+/// that all act on one another: by the sweeps of `balance`, which end early where units are far
+/// apart, after a fit of logarithms [Curtis, Reid 1972]. Parts that act on others one way only,
+/// which no sweep brings together, act with entries about as large as the largest within a part:
+/// for vectors; eigenvalues alone need no parts to be near. O(n^3 / 3).
+Eigen::VectorXd balance_parts(Eigen::MatrixXd& A);
 
 /// Sets of states that all act on one another, directly or through others (the strong components of
 /// A's pattern of entries other than 0): the eigenvalues of A are those of its parts. O(n^2).

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/graph/error.hpp>
-#include <titop/graph/linalg/balance.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/wide.hpp>
@@ -87,11 +86,11 @@ Eigen::VectorXcd eigenvalues(const MatrixXd& A) {
   return result;
 }
 
-Eigensystem eigensystem(const MatrixXd& A) {
+Eigensystem eigensystem(const MatrixXd& A, VectorXd (*balancing)(MatrixXd&)) {
   if (A.rows() == 0) return {{}, MatrixXcd(0, 0), MatrixXcd(0, 0), {}, 1};
   check(A, Eigen::Success);
   MatrixXd balanced = A;
-  const VectorXd d = balance(balanced);
+  const VectorXd d = balancing(balanced);
   const Eigen::EigenSolver<MatrixXd> solver(balanced);
   check(A, solver.info());
   Eigensystem result;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <titop/graph/linalg/balance.hpp>
 
 /// Dense solutions and eigenvalues with scaling, and a word on how well they are determined.
 namespace titop::linalg {
@@ -32,9 +33,11 @@ Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 struct Eigensystem {
   Eigen::VectorXcd values;
   Eigen::MatrixXcd V, W;
-  Eigen::VectorXd scale;  ///< the states' own sizes, by balancing (powers of two)
+  Eigen::VectorXd scale;  ///< the states' own sizes, by `balancing` (powers of two)
   double rcond_V = 0;     ///< reciprocal condition number of V: near 0 where A is near defective
 };
-Eigensystem eigensystem(const Eigen::MatrixXd& A);
+/// `balancing`: balance keeps small eigenvalues sharpest, balance_parts what parts do to others.
+Eigensystem eigensystem(const Eigen::MatrixXd& A,
+                        Eigen::VectorXd (*balancing)(Eigen::MatrixXd&) = balance);
 
 }  // namespace titop::linalg
