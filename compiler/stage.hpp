@@ -97,17 +97,17 @@ struct Dependent {
 /// What travels through the passes: the graph and what is known about it so far.
 struct Stage {
   Graph graph;
-  std::vector<double> values;           ///< parameter values
-  std::shared_ptr<const Graph> source;  ///< after lower: in its order, equations as written
-  std::vector<Origin> origins;          ///< after lower: of every equation, then of every output
-  std::shared_ptr<const std::vector<Drive>> drives;  ///< of source, where there are parameters
-  std::vector<RigidMotion> motions;                  ///< after lower
-  std::vector<Note> notes;                           ///< the log
-  std::vector<Row> rows;                             ///< after match: all rows
-  Matched matched;                                   ///< after match
-  std::vector<Inversion> inversions;                 ///< after match
-  std::vector<Loop> loops;                           ///< after order: dependencies first
-  bool chained = false;                              ///< after chains: some chain is closed
+  std::vector<double> values;            ///< parameter values
+  std::shared_ptr<const Graph> source;   ///< after lower: in its order, equations as written
+  std::vector<Origin> origins;           ///< after lower: of every equation, then of every output
+  std::shared_ptr<const Drives> drives;  ///< of source, where there are parameters
+  std::vector<RigidMotion> motions;      ///< after lower
+  std::vector<Note> notes;               ///< the log
+  std::vector<Row> rows;                 ///< after match: all rows
+  Matched matched;                       ///< after match
+  std::vector<Inversion> inversions;     ///< after match
+  std::vector<Loop> loops;               ///< after order: dependencies first
+  bool chained = false;                  ///< after chains: some chain is closed
   bool closes = false;                ///< after chains: chains close, or Integrators may hold twins
   std::vector<Released> released;     ///< after chains
   std::vector<Dependent> dependents;  ///< after close: by node and state; after solve: all

@@ -18,13 +18,13 @@ struct Assembly {
   const Graph& graph;
   ParameterValues values;
   std::complex<double> s;
-  std::vector<Drive> drive;
+  Drives drive;
   std::vector<int> column;  ///< first column of each signal; inputs count apart
   int unknowns = 0, inputs = 0, outputs = 0, row = 0;
   MatrixXcd E, F;
 
   Assembly(const Graph& g, ParameterValues v, std::complex<double> at_s)
-      : graph(g), values(v), s(at_s), drive(drives(g)) {
+      : graph(g), values(v), s(at_s), drive(g) {
     for (const Signal& sig : g.signals) {
       int& count = sig.role == Signal::Role::external ? inputs : unknowns;
       column.push_back(count);
@@ -59,7 +59,7 @@ struct Assembly {
   }
 
   /// row -= factor * (what these equations add to their channel's force)
-  void subtract_equations(const MatrixXcd& factor, const std::vector<int>& equations) {
+  void subtract_equations(const MatrixXcd& factor, std::span<const int> equations) {
     for (const int e : equations) {
       const Part& part = graph.equations[at(e)].part;
       subtract(part.whole() ? factor : MatrixXcd(factor * part.rows.transpose()),

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <numeric>
 #include <titop/graph/drives.hpp>
 
 namespace titop {
@@ -24,44 +25,66 @@ MatrixXd complement(const MatrixXd& S, int n) {
   return basis.bottomRows(n - S.rows());
 }
 
-std::vector<Drive> drives(const Graph& graph) {
-  std::vector<Drive> result(graph.channels.size());
-  for (int e = 0; e < static_cast<int>(graph.equations.size()); ++e) {
-    const Equation& equation = graph.equations[static_cast<std::size_t>(e)];
-    if (equation.target < 0 || equation.of_block) continue;
-    const Signal& target = graph.signals[static_cast<std::size_t>(equation.target)];
-    if (target.channel < 0) continue;
-    Drive& drive = result[static_cast<std::size_t>(target.channel)];
-    const Channel& channel = graph.channels[static_cast<std::size_t>(target.channel)];
-    if (equation.accumulate)
-      drive.added.push_back(e);
-    else
-      (equation.target == channel.accel ? drive.accel : drive.force).push_back(e);
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// In which list an equation stands: three of each channel. -1: in none.
+int list_of(const Graph& graph, const Equation& e) {
+  if (e.target < 0 || e.of_block) return -1;
+  const int channel = graph.signals[at(e.target)].channel;
+  if (channel < 0) return -1;
+  if (e.accumulate) return 3 * channel + 2;
+  return 3 * channel + (e.target == graph.channels[at(channel)].accel ? 0 : 1);
+}
+
+/// The directions, of n, that these equations on an acceleration leave free.
+MatrixXd left_by(const Graph& graph, std::span<const int> equations, int n) {
+  MatrixXd S(0, n);
+  for (const int e : equations) {
+    const Part& part = graph.equations[at(e)].part;
+    const MatrixXd rows = part.whole() ? MatrixXd::Identity(n, n) : part.rows;
+    S.conservativeResize(S.rows() + rows.rows(), n);
+    S.bottomRows(rows.rows()) = rows;
   }
-  for (std::size_t c = 0; c < result.size(); ++c) {
-    const int n = graph.channels[c].size;
-    std::vector<int>& accel = result[c].accel;
-    const auto part = [&](int e) -> const Part& {
-      return graph.equations[static_cast<std::size_t>(e)].part;
+  return complement(S, n);
+}
+
+}  // namespace
+
+Drives::Drives(const Graph& graph) : drives_(graph.channels.size()) {
+  std::vector<int> list, begin(3 * drives_.size() + 1, 0);
+  list.reserve(graph.equations.size());
+  for (const Equation& e : graph.equations) {
+    list.push_back(list_of(graph, e));
+    if (list.back() >= 0) ++begin[at(list.back() + 1)];
+  }
+  std::partial_sum(begin.begin(), begin.end(), begin.begin());
+  equations_.resize(at(begin.back()));
+  std::vector<int> next = begin;
+  for (int e = 0; e < static_cast<int>(list.size()); ++e)
+    if (const int l = list[at(e)]; l >= 0) equations_[at(next[at(l)]++)] = e;
+  const auto part = [&](int e) -> const Part& { return graph.equations[at(e)].part; };
+  for (std::size_t c = 0; c < drives_.size(); ++c) {
+    const auto of = [&](std::size_t i) {
+      return std::span(equations_.data() + begin[3 * c + i],
+                       equations_.data() + begin[3 * c + i + 1]);
     };
-    if (accel.empty() || part(accel.front()).whole()) {  // by far the most
-      (accel.empty() ? result[c].N : result[c].S).setIdentity(n, n);
-      (accel.empty() ? result[c].S : result[c].N).resize(0, n);
-      continue;
+    Drive& drive = drives_[c];
+    const std::span<int> accel = of(0);
+    drive.accel = accel, drive.force = of(1), drive.added = of(2);
+    const int n = graph.channels[c].size;
+    if (accel.empty()) {
+      drive.N.setIdentity(n, n);
+    } else if (part(accel.front()).whole()) {
+      drive.N.resize(0, n);
+    } else {
+      // The basis must not depend on the order in which the parts were written.
+      std::stable_sort(accel.begin(), accel.end(),
+                       [&](int a, int b) { return part(a).name < part(b).name; });
+      drive.N = left_by(graph, accel, n);
     }
-    // The basis must not depend on the order in which the parts were written.
-    std::stable_sort(accel.begin(), accel.end(),
-                     [&](int a, int b) { return part(a).name < part(b).name; });
-    MatrixXd& S = result[c].S;
-    S.resize(0, n);
-    for (const int e : accel) {
-      const MatrixXd rows = part(e).whole() ? MatrixXd::Identity(n, n) : part(e).rows;
-      S.conservativeResize(S.rows() + rows.rows(), n);
-      S.bottomRows(rows.rows()) = rows;
-    }
-    result[c].N = complement(S, n);
   }
-  return result;
 }
 
 }  // namespace titop

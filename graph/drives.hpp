@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <titop/graph/graph.hpp>
 #include <vector>
 
@@ -8,15 +9,25 @@ namespace titop {
 
 /// Who drives a channel: the equations on its two signals and the directions that they take.
 struct Drive {
-  std::vector<int> accel, force, added;  ///< equations: `accel =`, `force =`, `force +=`
-  Eigen::MatrixXd S;                     ///< rows: directions in which the acceleration is driven
-  Eigen::MatrixXd N;                     ///< rows: the others; there the force is driven
+  std::span<const int> accel, force, added;  ///< equations: `accel =`, `force =`, `force +=`
+  /// Orthonormal rows: directions in which no acceleration is driven, but the force (unit vectors
+  /// where none is oblique).
+  Eigen::MatrixXd N;
 };
 
-/// The drives of all channels, by what the user wrote (not by rows of blocks). S and N together are
-/// an orthonormal basis of the channel's space (the unit vectors where no direction is oblique).
-/// O(equations).
-std::vector<Drive> drives(const Graph& graph);
+/// The drives of all channels, by what the user wrote (not by rows of blocks). O(equations).
+class Drives {
+ public:
+  explicit Drives(const Graph& graph);
+  Drives(Drives&&) = default;  // a copy's lists would be those of the original
+
+  std::size_t size() const { return drives_.size(); }
+  const Drive& operator[](std::size_t channel) const { return drives_[channel]; }
+
+ private:
+  std::vector<int> equations_;  ///< of all lists
+  std::vector<Drive> drives_;
+};
 
 /// Orthonormal rows spanning the complement of the orthonormal rows of S (m x n).
 Eigen::MatrixXd complement(const Eigen::MatrixXd& S, int n);

@@ -164,7 +164,7 @@ struct Residual {
   }
 
   /// Subtracts N * (term); N = nullptr: the identity.
-  void subtract(const MatrixXd* N, const Term& t, const std::vector<Drive>& drive) {
+  void subtract(const MatrixXd* N, const Term& t, const Drives& drive) {
     b.known = b.known && known(t.signal);
     const double factor = t.of == Term::Of::position ? -1.0 / (at_hand.s * at_hand.s)
                           : t.of == Term::Of::rate   ? -1.0 / at_hand.s
@@ -181,7 +181,7 @@ struct Residual {
     for (const int e : drive[at(channel)].added) subtract_force(&c, e, drive);
   }
 
-  void subtract_force(const MatrixXd* N, int e, const std::vector<Drive>& drive) {
+  void subtract_force(const MatrixXd* N, int e, const Drives& drive) {
     const Equation& q = w.equations[at(e)];
     if (q.part.whole()) {
       for (const Term& t : q.terms) subtract(N, t, drive);
@@ -191,7 +191,7 @@ struct Residual {
     for (const Term& t : q.terms) subtract(&f, t, drive);
   }
 
-  void accel(int channel, int e, const std::vector<Drive>& drive) {
+  void accel(int channel, int e, const Drives& drive) {
     const Channel& c = w.channels[at(channel)];
     const Equation& q = w.equations[at(e)];
     start(c.accel, q.part.whole() ? nullptr : &q.part.rows);
@@ -199,7 +199,7 @@ struct Residual {
     take(c.accel, [&] { return print(w, q); });
   }
 
-  void force(int channel, const std::vector<Drive>& drive) {
+  void force(int channel, const Drives& drive) {
     const Channel& c = w.channels[at(channel)];
     const Drive& own = drive[at(channel)];
     if (own.N.rows() == 0) return;
@@ -211,9 +211,9 @@ struct Residual {
   }
 
   void equations() {
-    const auto& cached = d.skeleton->stage.drives;
-    const std::vector<Drive> made = cached ? std::vector<Drive>{} : drives(w);
-    const std::vector<Drive>& drive = cached ? *cached : made;
+    const auto& kept = d.skeleton->stage.drives;
+    const auto all = kept ? kept : std::make_shared<const Drives>(w);
+    const Drives& drive = *all;
     for (int c = 0; c < static_cast<int>(drive.size()); ++c) {
       for (const int e : drive[at(c)].accel) accel(c, e, drive);
       force(c, drive);

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <span>
 #include <titop/compiler/certify/dual_pairs.hpp>
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/certify/structure.hpp>
@@ -35,7 +36,7 @@ std::string beside_bodies(const Graph& g, const Equation& e) {
 class Connections {
  public:
   Connections(const Graph& g, ParameterValues values)
-      : g_(g), values_(values), drive_(drives(g)), accel_(zeros()), force_(zeros()) {
+      : g_(g), values_(values), drive_(g), accel_(zeros()), force_(zeros()) {
     Vectors any = zeros();
     randomize(0, size(), any);
     settle([&](std::size_t c) {
@@ -56,8 +57,7 @@ class Connections {
       const Drive& d = drive_[c];
       const VectorXd added = sum(d.added, c);
       const bool moved =
-          replace(force_[c], d.S.transpose() * (d.S * any[c]) +
-                                 d.N.transpose() * (d.N * (sum(d.force, c) + added)));
+          replace(force_[c], any[c] + d.N.transpose() * (d.N * (sum(d.force, c) + added - any[c])));
       return replace(reaction_[c], force_[c] - added) || moved;
     });
     double all = 0, magnitudes = 0;
@@ -103,7 +103,7 @@ class Connections {
   }
 
   /// Right-hand sides of these equations on channel c.
-  VectorXd sum(const std::vector<int>& equations, std::size_t c) const {
+  VectorXd sum(std::span<const int> equations, std::size_t c) const {
     VectorXd result = VectorXd::Zero(g_.channels[c].size);
     for (const int e : equations) {
       const Equation& equation = g_.equations[at(e)];
@@ -124,7 +124,7 @@ class Connections {
 
   const Graph& g_;
   ParameterValues values_;
-  std::vector<Drive> drive_;
+  Drives drive_;
   Vectors accel_, force_, reaction_;
 };
 

@@ -55,7 +55,7 @@ struct Columns {
 class Assembly {
  public:
   Assembly(const Graph& g, const ExactOptions& options, ParameterValues values)
-      : g_(g), values_(values), columns_(g), drive_(drives(g)), rows_(options.bits) {
+      : g_(g), values_(values), columns_(g), drive_(g), rows_(options.bits) {
     if (columns_.states > options.states)
       throw Undecided{fmt::format("{} states are more than {} (ExactOptions::states)",
                                   columns_.states, options.states)};
@@ -104,7 +104,7 @@ class Assembly {
         subtract_forces(rows, Fraction(-1) * c, drive_[at(g_.signals[at(t.signal)].channel)].added);
     }
   }
-  void subtract_forces(Block& rows, const Matrix& factor, const std::vector<int>& equations) {
+  void subtract_forces(Block& rows, const Matrix& factor, std::span<const int> equations) {
     for (const int e : equations) {
       const Part& part = g_.equations[at(e)].part;
       subtract(
@@ -185,7 +185,7 @@ class Assembly {
   const Graph& g_;
   ParameterValues values_;
   Columns columns_;
-  std::vector<Drive> drive_;
+  Drives drive_;
   Echelon rows_;
 };
 

@@ -215,7 +215,7 @@ std::string free_way_out(const Graph& graph, const Channel& channel) {
 void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
   const Graph& g = c.graph;
   const int index = static_cast<int>(&channel - g.channels.data());
-  std::vector<int> set = drive.accel;
+  std::vector<int> set(drive.accel.begin(), drive.accel.end());
   set.insert(set.end(), drive.force.begin(), drive.force.end());
   int rows = 0;
   bool clash = false;
@@ -362,7 +362,7 @@ Stage check(Stage stage) {
   check_names(c, stage.graph.outputs, "output");
   check_names(c, stage.graph.parameters, "parameter");
   for (const Equation& e : stage.graph.equations) check_equation(c, e);
-  const std::vector<Drive> all = drives(stage.graph);
+  const Drives all(stage.graph);
   for (std::size_t i = 0; i < all.size(); ++i) check_channel(c, stage.graph.channels[i], all[i]);
   std::vector<Passed> passed;  // only looked for where something is added to what is driven
   for (std::size_t i = 0; i < all.size(); ++i) {

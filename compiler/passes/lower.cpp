@@ -43,7 +43,7 @@ struct Lowered {
       equation({Origin::Of::accel, e}, c.accel, l.g.equations[at(e)].part,
                l.g.equations[at(e)].where);
     if (d.N.rows() == 0) return;
-    const std::vector<int>& first = d.force.empty() ? d.added : d.force;
+    const std::span<const int> first = d.force.empty() ? d.added : d.force;
     equation({Origin::Of::force, index}, c.force,
              d.N.rows() == c.size ? Part{} : Part{d.N, ".free"},
              first.empty() ? l.g.nodes[at(c.node)].where : l.g.equations[at(first.front())].where);
@@ -90,7 +90,7 @@ Stage lower(Stage stage) {
   add_rigid_motions(stage, source);
   stage.source = std::make_shared<const Graph>(std::move(source));
   Graph g = without_equations(*stage.source);
-  auto all_drives = std::make_shared<const std::vector<Drive>>(drives(*stage.source));
+  auto all_drives = std::make_shared<const Drives>(*stage.source);
   Lowering l(*stage.source, stage.values, all_drives, stage.motions);
   if (!g.parameters.empty()) stage.drives = std::move(all_drives);
   Lowered out{l};

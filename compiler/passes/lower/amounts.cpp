@@ -121,7 +121,7 @@ Amount Lowering::integrated(Amount sum, Level level) {
 }
 
 /// What these equations add up to on their channel, in the channel's own space.
-Amount Lowering::added(const std::vector<int>& equations) {
+Amount Lowering::added(std::span<const int> equations) {
   Amount sum;
   for (const int e : equations) {
     const Part& part = g.equations[at(e)].part;

@@ -27,8 +27,8 @@ Amount times(const Eigen::MatrixXd& m, const Pattern& declared, Amount sum);
 struct Lowering {
   const Graph& g;  ///< as the user wrote it, in the order of by_name
   ParameterValues values;
-  std::shared_ptr<const std::vector<Drive>> all_drives;
-  const std::vector<Drive>& drive = *all_drives;
+  std::shared_ptr<const Drives> all_drives;
+  const Drives& drive = *all_drives;
   std::vector<char> visiting;    ///< channels whose position is being written out
   std::vector<int> within = {};  ///< channels whose reaction is being written out
   std::vector<int> met = {};     ///< parameters met since it was last cleared
@@ -41,7 +41,7 @@ struct Lowering {
 
   enum class Level { position, rate };
 
-  Lowering(const Graph& graph, ParameterValues v, std::shared_ptr<const std::vector<Drive>> d,
+  Lowering(const Graph& graph, ParameterValues v, std::shared_ptr<const Drives> d,
            std::vector<RigidMotion> m)
       : g(graph),
         values(v),
@@ -79,7 +79,7 @@ struct Lowering {
   std::optional<Step> through_body(Amount& sum, const Step& here, Level level);
   Amount own_motion(int channel) const;
   Amount integrated(Amount sum, Level level);
-  Amount added(const std::vector<int>& equations);
+  Amount added(std::span<const int> equations);
   Amount added_to(int channel);
 };
 

@@ -78,8 +78,7 @@ void add_rigid_motions(Stage& stage, Graph& g) {
   if (!asks_for_motion(g)) return;
   std::set<RigidMotion> missing;
   {
-    Lowering l(g, stage.values, std::make_shared<const std::vector<Drive>>(drives(g)),
-               stage.motions);
+    Lowering l(g, stage.values, std::make_shared<const Drives>(g), stage.motions);
     const auto look = [&](const std::vector<Term>& terms, const std::source_location& where) {
       for (const Term& t : terms)
         if (t.of == Term::Of::position || t.of == Term::Of::rate)
