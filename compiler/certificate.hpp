@@ -28,8 +28,10 @@ struct Certificate {
   /// frequencies (residual of the factors' states in the dense model, carried to the outputs by the
   /// factors). By inputs of one unit: random ones, three translations or rotations of a port
   /// together; from the ninth unit on some share a column. Outputs likewise; what is 0 but for
-  /// rounding counts beside its neighbours. The same in all units of inputs and outputs. Negative
-  /// where no dense model has been written. Above 1e-9 the log warns.
+  /// rounding, or 1e-14 of what stands in its row and column (what turned frames leave of a 0),
+  /// counts beside its neighbours. The same in all units of inputs and outputs; in other units of
+  /// states and time other numbers are written, and round differently. Negative where no dense
+  /// model has been written. Above 1e-9 the log warns.
   double dense_error = -1;
   std::complex<double> dense_error_s;  ///< where it is largest
   /// The same over the size of the output at that same s: an acceleration falls with s^2 far below

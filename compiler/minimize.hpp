@@ -73,14 +73,17 @@ struct Minimized {
 /// those of closed chains with the help of their energy,
 /// the others by the eigenvalues of A (l = s) and the condition numbers of these; poles at 0 and
 /// ill-conditioned ones stay. The verdict's interval counts
-///  - upwards, dropped modes above 1e-17 or above their own rounding bound: the first might matter,
-///    the second are there, however little they do;
+///  - upwards, dropped modes above their own rounding bound, which are there, however little they
+///    do, and those whose bound is above 1e-14, where something might hide;
 ///  - downwards, kept modes below 1e-9 within 1e4 of their bound; ill-conditioned poles; poles at 0
 ///    where the ranks of inputs and outputs there do not show that they are needed.
 /// A decided order is that of all data which rounding tells from those given: what lies below its
 /// own bound (two frequencies one ulp apart) counts as nothing, and only exact arithmetic says if
-/// it is. With `exact_order` the least visible modes leave until the order is that one. Cost
-/// O(n^3).
+/// it is. Modes are vectors of one size in the states' own units (linalg::balance_parts): in other
+/// units of the model the verdict is the same but for what rounding decides, and that counts as
+/// undecided. `System::state_space` first sets entries to 0 that its factors cannot tell from 0
+/// (32 times the largest of four samples of rounding). With `exact_order` the least visible modes
+/// leave until the order is that one. Cost O(n^3).
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options = {});
 
 }  // namespace titop
