@@ -74,7 +74,7 @@ TEST_CASE("10,000 changes of units: random scenes, points without mass, feedthro
 
 TEST_CASE("10,000 changes of units: what is certain of the minimal order") {
   int all = 0, other_interval = 0;
-  for (int seed = 1; seed <= 1000; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     const auto scene = titop_test::random_scene(titop_test::random_options(seed));
     const Said here(scene.build(), 100);
     Rng rng(seed);
