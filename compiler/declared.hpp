@@ -20,4 +20,16 @@ std::vector<int> as_declared(const List& list) {
   return order;
 }
 
+/// First row or column of each output or input where those stand in the declared order. O(n).
+template <class List>
+std::vector<int> first_as_declared(const List& list) {
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
+  std::vector<int> size(list.size()), first(list.size()), result;
+  for (const auto& item : list) size[at(item.declared)] = item.size;
+  int total = 0;
+  for (std::size_t i = 0; i < list.size(); ++i) first[i] = total, total += size[i];
+  for (const auto& item : list) result.push_back(first[at(item.declared)]);
+  return result;
+}
+
 }  // namespace titop::detail

@@ -8,6 +8,7 @@
 #include <titop/compiler/certify/structure.hpp>
 #include <titop/compiler/certify_full.hpp>
 #include <titop/compiler/compare.hpp>
+#include <titop/compiler/declared.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/compiler/transfer.hpp>
 
@@ -17,8 +18,6 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double kHolds = 1e-8;      ///< equations, transfers, dense model
 constexpr double kPoleHolds = 1e-6;  ///< to first order only
@@ -44,12 +43,10 @@ void set_range(const std::vector<double>& omegas, FullCertificate::Grid& grid) {
 /// Rows (or columns) of each output (or input), from the graph's order to the declared one.
 template <class List>
 std::vector<int> declared(const List& list) {
-  std::vector<int> size(list.size()), first(list.size()), result;
-  for (const auto& item : list) size[at(item.declared)] = item.size;
-  int total = 0;
-  for (std::size_t i = 0; i < list.size(); ++i) first[i] = total, total += size[i];
-  for (const auto& item : list)
-    for (int k = 0; k < item.size; ++k) result.push_back(first[at(item.declared)] + k);
+  const std::vector<int> first = detail::first_as_declared(list);
+  std::vector<int> result;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    for (int k = 0; k < list[i].size; ++k) result.push_back(first[i] + k);
   return result;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 #include <titop/compiler/certify/dual_pairs.hpp>
+#include <titop/compiler/declared.hpp>
 
 namespace titop::full {
 namespace {
@@ -69,17 +70,6 @@ bool dual(const Weights& force, const Weights& motion) {
   return true;
 }
 
-/// First column (or row) of each input (or output) in the declared order.
-template <class List>
-std::vector<int> first_of(const List& list) {
-  std::vector<int> size(list.size()), first(list.size()), result;
-  for (const auto& item : list) size[at(item.declared)] = item.size;
-  int total = 0;
-  for (std::size_t i = 0; i < list.size(); ++i) first[i] = total, total += size[i];
-  for (const auto& item : list) result.push_back(first[at(item.declared)]);
-  return result;
-}
-
 void add_pair(const Input& input, int column, int row, DualPairs& pairs) {
   ++pairs.count;
   for (int k = 0; k < input.size; ++k) {
@@ -98,7 +88,8 @@ bool is_outward(const ChannelSpec& channel) {
 
 DualPairs dual_pairs(const Graph& g, ParameterValues values) {
   DualPairs pairs;
-  const std::vector<int> columns = first_of(g.inputs), rows = first_of(g.outputs);
+  const std::vector<int> columns = detail::first_as_declared(g.inputs),
+                         rows = detail::first_as_declared(g.outputs);
   const std::map<int, Weights> force = forces(g, values);
   for (std::size_t i = 0; i < g.inputs.size(); ++i) {
     const auto f = force.find(g.inputs[i].signal);

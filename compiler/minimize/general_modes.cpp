@@ -34,6 +34,7 @@ void normalize(linalg::Eigensystem& e) {
     const double right = e.V.col(j).cwiseQuotient(e.scale).norm(),
                  left = (e.W.row(j).transpose().cwiseProduct(e.scale)).norm();
     const double factor = std::sqrt(left) / std::sqrt(right);
+    if (!(factor > 0) || !std::isfinite(factor)) continue;  // no basis: judged ill-conditioned
     e.V.col(j) *= factor;
     e.W.row(j) /= factor;
   }
