@@ -1,33 +1,9 @@
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <optional>
-#include <titop/compiler/solve/kernels.hpp>
-#include <titop/compiler/solve/numbers.hpp>
-#include <titop/compiler/solve/scalar.hpp>
+#include <titop/compiler/solve/pieces.hpp>
 
 namespace titop::solve {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-/// A rectangle of a matrix of scalars T, in either order of storage.
-template <class T>
-struct View {
-  const T* data;
-  std::ptrdiff_t rows, cols, down, right;
-  const T& operator()(std::ptrdiff_t i, std::ptrdiff_t j) const {
-    return data[i * down + j * right];
-  }
-};
-
-View<double> view(const RowMatrix<double>& m) {
-  return {m.data(), m.rows(), m.cols(), m.cols(), 1};
-}
-template <class T>
-View<T> view(const Dense<T>& m, int row, int rows, int col, int cols) {
-  return {m.data() + row + col * m.rows(), rows, cols, 1, m.rows()};
-}
 
 /// to += sign * L
 template <class T, class L>
@@ -58,110 +34,6 @@ void add_product(double sign, const View<L>& l, const RowMatrix<double>& r, T* t
     for (std::ptrdiff_t k = 0; k < l.cols; ++k)
       if (const T a = times(lift<T>(l(i, k)), sign); a != T(0))
         add_times(r.cols(), a, r.data() + k * r.cols(), to + i * stride);
-}
-
-/// to -= sign * L * x, x with m columns
-template <class T, class L>
-void subtract_product(double sign, const View<L>& l, const T* x, std::ptrdiff_t m, T* to) {
-  if constexpr (std::is_same_v<T, L>)
-    if (m == 1 && l.down == 1) {  // by columns, which stand in a row
-      for (std::ptrdiff_t k = 0; k < l.cols; ++k)
-        if (const T a = times(x[k], sign); a != T(0)) subtract(l.rows, a, l.data + k * l.right, to);
-      return;
-    }
-  if (m == 1) {  // summed in registers
-    for (std::ptrdiff_t i = 0; i < l.rows; ++i) {
-      T sum = to[i];
-      for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
-        const T a = times(lift<T>(l(i, k)), sign);
-        if (a != T(0)) subtract(1, a, x + k, &sum);
-      }
-      to[i] = sum;
-    }
-    return;
-  }
-  for (std::ptrdiff_t i = 0; i < l.rows; ++i)
-    for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
-      const T a = times(lift<T>(l(i, k)), sign);
-      if (a != T(0)) subtract(m, a, x + k * m, to + i * m);
-    }
-}
-
-/// to += |L| x, x with m columns, none of them negative
-template <class L>
-void add_sizes(const View<L>& l, const double* x, std::ptrdiff_t m, double* to) {
-  if (m == 1 && l.down == 1) {
-    for (std::ptrdiff_t k = 0; k < l.cols; ++k)
-      for (std::ptrdiff_t i = 0; i < l.rows; ++i) to[i] += size_of(l.data[i + k * l.right]) * x[k];
-    return;
-  }
-  for (std::ptrdiff_t i = 0; i < l.rows; ++i)
-    for (std::ptrdiff_t k = 0; k < l.cols; ++k)
-      if (const double a = size_of(l(i, k)); a != 0) add(m, a, x + k * m, to + i * m);
-}
-
-/// to -= sign * left * right * x, x with m columns; left or right nullptr: 1. right * x has `size`
-/// numbers, for which there is `room`.
-template <class T, class Left>
-void subtract_products(double sign, const Left* left, const RowMatrix<double>* right, const T* x,
-                       std::ptrdiff_t size, std::ptrdiff_t m, T* to, std::vector<T>& room) {
-  if (right) {
-    room.assign(static_cast<std::size_t>(size), T(0));
-    subtract_product(-1, view(*right), x, m, room.data());
-    x = room.data();
-  }
-  if (left) return subtract_product(sign, *left, x, m, to);
-  for (std::ptrdiff_t i = 0; i < size; ++i) to[i] -= times(x[i], sign);
-}
-
-/// to += |left| |right| x, likewise.
-template <class Left>
-void add_sizes_of_products(const Left* left, const RowMatrix<double>* right, const double* x,
-                           std::ptrdiff_t size, std::ptrdiff_t m, double* to,
-                           std::vector<double>& room) {
-  if (right) {
-    room.assign(static_cast<std::size_t>(size), 0);
-    add_sizes(view(*right), x, m, room.data());
-    x = room.data();
-  }
-  if (left) return add_sizes(*left, x, m, to);
-  for (std::ptrdiff_t i = 0; i < size; ++i) to[i] += x[i];
-}
-
-/// Calls take(view) with the piece's left matrix; `identity` where it is none.
-template <class T, class Take, class Identity>
-void with_left(const Piece& p, const Matrices<T>& m, const std::vector<Coefficient>& c,
-               Eigen::Index states, Take take, Identity identity) {
-  switch (p.of) {
-    case Piece::Left::one: identity(); break;
-    case Piece::Left::direct:
-      take(view(*m.direct[at(p.left)], p.row, p.rows, p.col, p.cols));
-      break;
-    case Piece::Left::state:
-      take(view(*m.output[at(p.left)], p.row, p.rows, 0, static_cast<int>(states)));
-      break;
-    case Piece::Left::coefficient: take(view(*c[at(p.left)])); break;
-  }
-}
-
-/// sign * left * right as a matrix.
-template <class T>
-Dense<T> dense(const Piece& p, const Matrices<T>& m, const std::vector<Coefficient>& c, int size) {
-  const auto right = [&] {
-    return p.right < 0 ? Dense<T>(Dense<T>::Identity(size, size))
-                       : Dense<T>(lifted<T>(*c[at(p.right)]));
-  };
-  Dense<T> result;
-  with_left(
-      p, m, c, size,
-      [&](const auto& left) {
-        Dense<T> l(left.rows, left.cols);
-        for (Eigen::Index i = 0; i < l.rows(); ++i)
-          for (Eigen::Index k = 0; k < l.cols(); ++k) l(i, k) = lift<T>(left(i, k));
-        result = lift<T>(p.sign) * l.lazyProduct(right());
-      },
-      [&] { result = lift<T>(p.sign) * right(); });
-  return result;
 }
 
 }  // namespace
@@ -206,20 +78,6 @@ void JointRows<T>::add_state(const Piece& p, int r, T* to, std::ptrdiff_t stride
     else
       add_product(1, left, *coefficients_[at(meaning.coefficient)], to + column[entry], stride);
   });
-}
-
-/// Calls visit(matrix, meaning) for all that the inputs of a known state's node stand for.
-template <class T>
-template <class Visit>
-void JointRows<T>::by_inputs(const Piece& p, Visit visit) const {
-  const Signal& x = graph_.signals[at(p.signal)];
-  const Dense<T> m = dense(p, m_, coefficients_, x.size);
-  for (int i = graph_.nodes[at(x.node)].first_signal; i < p.signal; ++i) {
-    const Signal& u = graph_.signals[at(i)];
-    if (u.role != Signal::Role::input || !u.active) continue;
-    const Dense<T> by_u = m.lazyProduct(m_.states[at(x.node)]->middleCols(u.first, u.size));
-    for (const Meaning& meaning : joint_.meaning(i)) visit(by_u, meaning);
-  }
 }
 
 template <class T>
@@ -317,90 +175,6 @@ RowMatrix<T> JointRows<T>::rhs_of_states(const RowMatrix<T>& states, std::span<c
       const Dense<T> c = dense(p, m_, coefficients_, size);
       subtract_product(1, view(c, 0, static_cast<int>(c.rows()), 0, size), x, m, to);
     }
-  return result;
-}
-
-/// |left| |right| of a piece whose variable is a single number, and left * right; nothing where
-/// these are not single numbers.
-template <class T>
-std::optional<std::pair<double, T>> JointRows<T>::number(const Piece& p) const {
-  T c(1);
-  if (p.of == Piece::Left::direct && p.rows == 1 && p.cols == 1)
-    c = (*m_.direct[at(p.left)])(p.row, p.col);
-  else if (p.of == Piece::Left::coefficient && coefficients_[at(p.left)]->size() == 1)
-    c = lift<T>(*coefficients_[at(p.left)]->data());
-  else if (p.of != Piece::Left::one)
-    return {};
-  if (p.right < 0) return std::pair(size_of(c), c);
-  const RowMatrix<double>& right = *coefficients_[at(p.right)];
-  if (right.size() != 1) return {};
-  return std::pair(size_of(c) * std::abs(*right.data()), times(c, *right.data()));
-}
-
-/// Calls take(scalar row, sign, left, right, variable) for all products sign * left * right *
-/// variable that the rows are sums of: left a view, right a coefficient, or nullptr for 1. Where
-/// these are single numbers, of which scalar diagrams are made, calls take_number(scalar row, sign,
-/// |left| |right|, left * right, variable) instead.
-template <class T>
-template <class Take, class TakeNumber>
-void JointRows<T>::by_products(Take take, TakeNumber take_number) const {
-  const Plan& plan = *joint_.plan;
-  const auto coefficient = [&](int i) { return i < 0 ? nullptr : coefficients_[at(i)].get(); };
-  for (int r = 0; r < static_cast<int>(joint_.rows.size()); ++r) {
-    const int row = plan.row_first[at(r)];
-    for (const Piece& p : joint_.row(r)) {
-      if (p.entry >= 0) {
-        const int v = plan.structure.row(r)[at(p.entry)];
-        if (plan.structure.variable_size[at(v)] == 1)
-          if (const auto c = number(p)) {
-            take_number(row, p.sign, c->first, c->second, v);
-            continue;
-          }
-        const RowMatrix<double>* right = coefficient(p.right);
-        with_left(
-            p, m_, coefficients_, 0, [&](const auto& left) { take(row, p.sign, &left, right, v); },
-            [&] { take(row, p.sign, static_cast<const View<double>*>(nullptr), right, v); });
-      } else if (written_out(p) && p.of != Piece::Left::state) {
-        by_inputs(p, [&](const Dense<T>& m, const Meaning& meaning) {
-          const int v = joint_.variable_of[at(meaning.signal)];
-          const auto left = view(m, 0, static_cast<int>(m.rows()), 0, static_cast<int>(m.cols()));
-          if (v >= 0) take(row, 1.0, &left, coefficient(meaning.coefficient), v);
-        });
-      }
-    }
-  }
-}
-
-/// Magnitudes are |left| |right| |x|, not |left * right| |x|: the product rounds as well.
-template <class T>
-RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns,
-                                    RowMatrix<double>* magnitudes) const {
-  const Plan& plan = *joint_.plan;
-  const std::ptrdiff_t m = rhs.cols();
-  const auto sizes = [](const RowMatrix<T>& x) -> RowMatrix<double> {
-    return x.unaryExpr([](const T& entry) { return size_of(entry); });
-  };
-  RowMatrix<T> result = rhs;
-  RowMatrix<double> x_sizes;
-  if (magnitudes) *magnitudes = sizes(rhs), x_sizes = sizes(unknowns);
-  std::vector<T> room;
-  std::vector<double> room_of_sizes;
-  const auto product = [&](int row, double sign, const auto* left, const RowMatrix<double>* right,
-                           int v) {
-    const std::ptrdiff_t from = plan.first[at(v)] * m, to = row * m;
-    const std::ptrdiff_t size = (right ? right->rows() : plan.structure.variable_size[at(v)]) * m;
-    subtract_products(sign, left, right, unknowns.data() + from, size, m, result.data() + to, room);
-    if (magnitudes)
-      add_sizes_of_products(left, right, x_sizes.data() + from, size, m, magnitudes->data() + to,
-                            room_of_sizes);
-  };
-  by_products(product, [&](int row, double sign, double size, const T& c, int v) {
-    if (c == T(0)) return;
-    const std::ptrdiff_t from = plan.first[at(v)] * m, to = row * m;
-    const T by = times(c, sign);
-    subtract_rows(1, &by, unknowns.data() + from, m, result.data() + to);
-    if (magnitudes) solve::add(m, size, x_sizes.data() + from, magnitudes->data() + to);
-  });
   return result;
 }
 
