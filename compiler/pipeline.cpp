@@ -37,7 +37,7 @@ struct Pass {
 constexpr Pass kPasses[] = {
     {"check", passes::check},  // the user's mistakes, in the user's words: before anything moves
     {"lower", passes::lower},  // one numeric coefficient per term; names decide the order from here
-    {"split", passes::split},  // parts without input or output: no later pass need look at them
+    {"split", passes::split},  // parts without output: no later pass need look at them
     {"chains", passes::chains},  // what closes a chain twice is released: no rank can fail below
     {"match", passes::match},    // who determines whom: channel inversions come out here
     {"order", passes::order},    // loops, and what no input reaches or no output sees

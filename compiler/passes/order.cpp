@@ -58,9 +58,44 @@ std::vector<char> reach(const Arrows& next, std::vector<int> front) {
   return seen;
 }
 
+using Digraph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_property,
+                                                   boost::no_property, boost::no_property, int>;
+
+/// Strong component of every unknown signal; components come out dependencies first. What moves or
+/// sees one of its signals does so with all of them.
+struct Components {
+  std::vector<int> of;
+  std::vector<std::size_t> size;  ///< in signals
+};
+
+Components components(const Graph& g, const Arrows& needs) {
+  std::vector<std::pair<int, int>> edges;
+  edges.reserve(needs.arrows());
+  for (int s = 0; s < needs.count(); ++s)
+    if (is_unknown(g.signals[at(s)]))
+      for (const int t : needs.from(s))
+        if (is_unknown(g.signals[at(t)])) edges.emplace_back(s, t);
+  const Digraph digraph(boost::edges_are_sorted, edges.begin(), edges.end(), needs.count());
+  std::vector<int> component(g.signals.size()), root(g.signals.size());
+  std::vector<boost::default_color_type> color(g.signals.size());
+  std::vector<int> time(g.signals.size());
+  const auto index = boost::get(boost::vertex_index, digraph);
+  const auto map = [&](auto& list) {
+    return boost::make_iterator_property_map(list.begin(), index);
+  };
+  const int count = boost::strong_components(
+      digraph, map(component),
+      boost::root_map(map(root)).color_map(map(color)).discover_time_map(map(time)));
+  Components result{std::move(component), std::vector<std::size_t>(at(count), 0)};
+  for (int s = 0; s < static_cast<int>(g.signals.size()); ++s)
+    if (is_unknown(g.signals[at(s)])) ++result.size[at(result.of[at(s)])];
+  return result;
+}
+
 /// Signals that an input (or, without inputs, any state) moves, and that an output (or any state)
-/// sees; the rest is set aside.
-void set_aside(Stage& stage, const Arrows& needs) {
+/// sees; the rest is set aside. But loops that are seen stay: that what no input moves rests is
+/// only so if they have one solution.
+void set_aside(Stage& stage, const Arrows& needs, const Components& parts) {
   Graph& g = stage.graph;
   std::vector<int> sources, sinks, states;
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
@@ -79,6 +114,7 @@ void set_aside(Stage& stage, const Arrows& needs) {
     Signal& sig = g.signals[at(s)];
     if (sig.role == Signal::Role::external || !sig.active || (moved[at(s)] && seen[at(s)]))
       continue;
+    if (is_unknown(sig) && seen[at(s)] && parts.size[at(parts.of[at(s)])] > 1) continue;
     sig.active = false;
     sig.at_rest = !moved[at(s)];
     if (sig.role != Signal::Role::state) continue;
@@ -89,45 +125,17 @@ void set_aside(Stage& stage, const Arrows& needs) {
   }
 }
 
-using Digraph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_property,
-                                                   boost::no_property, boost::no_property, int>;
-
-/// Strong component of every signal; components come out dependencies first.
-std::pair<std::vector<int>, int> components(const Graph& g, const Arrows& needs) {
-  std::vector<std::pair<int, int>> edges;
-  edges.reserve(needs.arrows());
-  for (int s = 0; s < needs.count(); ++s)
-    if (is_unknown(g.signals[at(s)]))
-      for (const int t : needs.from(s))
-        if (is_unknown(g.signals[at(t)])) edges.emplace_back(s, t);
-  const Digraph digraph(boost::edges_are_sorted, edges.begin(), edges.end(), needs.count());
-  std::vector<int> component(g.signals.size()), root(g.signals.size());
-  std::vector<boost::default_color_type> color(g.signals.size());
-  std::vector<int> time(g.signals.size());
-  const auto index = boost::get(boost::vertex_index, digraph);
-  const auto map = [&](auto& list) {
-    return boost::make_iterator_property_map(list.begin(), index);
-  };
-  const int count = boost::strong_components(
-      digraph, map(component),
-      boost::root_map(map(root)).color_map(map(color)).discover_time_map(map(time)));
-  return {std::move(component), count};
-}
-
-void find_loops(Stage& stage, const Arrows& needs) {
+void find_loops(Stage& stage, const Components& parts) {
   const Graph& g = stage.graph;
-  const auto [component, count] = components(g, needs);
-  std::vector<Loop> loops(at(count));
-  std::vector<std::size_t> size(at(count), 0);
-  for (int s = 0; s < static_cast<int>(g.signals.size()); ++s)
-    if (is_unknown(g.signals[at(s)])) ++size[at(component[at(s)])];
-  for (std::size_t l = 0; l < loops.size(); ++l) {
-    loops[l].signals.reserve(size[l]);
-    loops[l].rows.reserve(size[l]);
-  }
+  const std::vector<int>& component = parts.of;
+  std::vector<Loop> loops(parts.size.size());
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
     if (!is_unknown(g.signals[at(s)])) continue;
     Loop& loop = loops[at(component[at(s)])];
+    if (loop.signals.empty()) {
+      loop.signals.reserve(parts.size[at(component[at(s)])]);
+      loop.rows.reserve(parts.size[at(component[at(s)])]);
+    }
     loop.signals.push_back(s);
     loop.unknowns += g.signals[at(s)].size;
   }
@@ -150,7 +158,8 @@ void find_loops(Stage& stage, const Arrows& needs) {
 
 Stage order(Stage stage) {
   const auto needs = dependencies(stage);
-  set_aside(stage, needs);
+  const Components parts = components(stage.graph, needs);
+  set_aside(stage, needs, parts);
   // Equations and rows follow their unknowns, not the signal that they are written for.
   std::vector<char> row_active(stage.rows.size(), 0);
   for (const auto& [row, signal] : stage.matched.rows)
@@ -162,7 +171,7 @@ Stage order(Stage stage) {
     else
       stage.graph.signals[at(stage.rows[r].output)].row = row_active[r];
   }
-  find_loops(stage, needs);
+  find_loops(stage, parts);
   int coupled = 0, largest = 0;
   for (const Loop& loop : stage.loops)
     if (loop.signals.size() > 1) ++coupled, largest = std::max(largest, loop.unknowns);

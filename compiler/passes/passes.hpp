@@ -25,9 +25,8 @@ Stage lower(Stage stage);
 std::vector<std::vector<Term>> lower_again(const Stage& stage, const std::vector<int>& origins,
                                            ParameterValues values);
 
-/// Connected parts (ground not counted) without an input or without an output are set aside and
-/// listed; not so if the diagram has no inputs (outputs) at all: then all states count as driven
-/// (seen). O(terms).
+/// Connected parts (ground not counted) without an output are set aside and listed; not so if the
+/// diagram has no outputs at all: then all states count as seen. O(terms).
 Stage split(Stage stage);
 
 /// Closed kinematic chains, through the ground or among bodies, are consistent: where a closing
@@ -48,7 +47,9 @@ Stage chains(Stage stage);
 Stage match(Stage stage);
 
 /// Block triangular form: strong components are the algebraic loops, dependencies first. What no
-/// input reaches or no output sees is set aside and listed. O(terms).
+/// input reaches or no output sees is set aside and listed; without inputs (outputs) all states
+/// count as driven (seen). Loops that no input reaches stay where an output sees them: that they
+/// rest is so only if they have one solution. O(terms).
 Stage order(Stage stage);
 
 /// States that follow from others are known, on position and on velocity level: dependent

@@ -23,25 +23,20 @@ UnionFind connect(const Graph& g) {
 Stage split(Stage stage) {
   Graph& g = stage.graph;
   UnionFind parts = connect(g);
-  std::vector<char> driven(g.signals.size(), 0), seen(g.signals.size(), 0);
-  for (const Input& i : g.inputs) driven[at(parts.find(i.signal))] = 1;
+  std::vector<char> seen(g.signals.size(), 0);
   for (const Output& o : g.outputs)
     for (const Term& t : o.terms) seen[at(parts.find(t.signal))] = 1;
   for (const Node& node : g.nodes) {
     const int root = parts.find(node.first_signal);
-    const bool keep =
-        (driven[at(root)] || g.inputs.empty()) && (seen[at(root)] || g.outputs.empty());
-    if (keep) continue;
-    stage.notes.push_back({Note::Kind::removed, "split",
-                           fmt::format("{}: no {} is connected to it", node.name,
-                                       driven[at(root)] || g.inputs.empty() ? "output" : "input")});
+    if (seen[at(root)] || g.outputs.empty()) continue;
+    stage.notes.push_back(
+        {Note::Kind::removed, "split", fmt::format("{}: no output is connected to it", node.name)});
   }
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
     Signal& sig = g.signals[at(s)];
     const int root = parts.find(s);
     if (sig.role != Signal::Role::external)
-      sig.row = sig.active =
-          (driven[at(root)] || g.inputs.empty()) && (seen[at(root)] || g.outputs.empty());
+      sig.row = sig.active = seen[at(root)] || g.outputs.empty();
   }
   for (Equation& e : g.equations) e.active = g.signals[at(e.target)].active;
   return stage;

@@ -155,7 +155,7 @@ TEST_CASE("lower: one numeric coefficient per term, one equation per driven part
 
 TEST_CASE("split: parts that hang together with nothing are set aside and listed") {
   const Stage stage = run_until(scenes()[2].make(), "split");
-  CHECK(has_note(stage, Note::Kind::removed, "island: no input is connected to it"));
+  CHECK(has_note(stage, Note::Kind::removed, "island: no output is connected to it"));
   for (const Signal& s : stage.graph.signals)
     if (s.node >= 0) CHECK(s.active == (stage.graph.nodes[at(s.node)].name != "island"));
 }

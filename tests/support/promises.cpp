@@ -77,17 +77,13 @@ void spread(const Graph& g, std::vector<char>& marked) {
 
 void demand_split(const Stage& stage) {
   const Graph& g = stage.graph;
-  std::vector<char> driven(g.signals.size(), g.inputs.empty());
   std::vector<char> seen(g.signals.size(), g.outputs.empty());
-  for (const Input& i : g.inputs) driven[at(i.signal)] = 1;
   for (const Output& o : g.outputs)
     for (const Term& t : o.terms) seen[at(t.signal)] = 1;
-  spread(g, driven);
   spread(g, seen);
   for (std::size_t s = 0; s < g.signals.size(); ++s)
-    demand(g.signals[s].role == Signal::Role::external ||
-               g.signals[s].active == (driven[s] && seen[s]),
-           "set aside is what has no input or no output: " + name_of(g, static_cast<int>(s)));
+    demand(g.signals[s].role == Signal::Role::external || g.signals[s].active == (seen[s] != 0),
+           "set aside is what has no output: " + name_of(g, static_cast<int>(s)));
 }
 
 namespace {

@@ -15,7 +15,7 @@ struct Promise {
 constexpr Promise kPromises[] = {
     {"check", "sizes, quantities and frames agree; each channel is driven once"},
     {"lower", "sums, gains and rotations are coefficients of equations"},
-    {"split", "parts without input or output are set aside"},
+    {"split", "parts without output are set aside"},
     {"chains", "closed chains meet; what closes them twice is released"},
     {"match", "every row has its unknown; channel inversions are known"},
     {"order", "algebraic loops are known; what cannot matter is set aside"},
