@@ -60,8 +60,8 @@ struct Check {
   Certificate certificate;
   std::vector<Note> notes;  ///< all of the system, its own at the end
   double lost = 0;  ///< of the outputs, by rounding, in double; 0 where it was not asked for
-  bool singular_loop = false;  ///< one of a size that has a margin, but without one in double
-  double least = 0;            ///< see least_pivot
+  int loop_without_digit = -1;  ///< of the stage, by its margin, or without one in double
+  double least = 0;             ///< see least_pivot
 };
 
 struct SystemData {

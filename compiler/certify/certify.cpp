@@ -63,9 +63,8 @@ Check certify(const SystemData& d) {
     check.notes.push_back({Note::Kind::warning, "certify",
                            fmt::format("{} holds only to {:.1g}", c.residual_where, c.residual)});
   if (check.least > 0)
-    check.notes.push_back({Note::Kind::warning, "certify",
-                           "no digit is left: 50 digits find these equations singular, where "
-                           "double takes rounding for a pivot"});
+    check.notes.push_back(
+        {Note::Kind::warning, "certify", "no digit is left: double takes rounding for a pivot"});
   return check;
 }
 

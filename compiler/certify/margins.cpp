@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <titop/compiler/system_data.hpp>
 #include <titop/graph/linalg/skeel.hpp>
 #include <utility>
@@ -16,6 +17,10 @@ using Eigen::MatrixXd;
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr int kExactUpTo = 120;  ///< unknowns; above it a dense inverse per loop costs too much
+
+/// At distance delta from singular a margin is about 4 / delta: from here on the last two units of
+/// a loop's own numbers decide every digit of the answer.
+constexpr double kWithoutDigit = 2 / std::numeric_limits<double>::epsilon();
 
 /// Powers of length and of force in a number's unit. Scalars may mean anything: only their force
 /// counts.
@@ -169,17 +174,20 @@ void find_margins(const SystemData& d, std::span<const int> loops, std::vector<d
 void worst_margin(const SystemData& d, std::span<const double> margins, Check& check) {
   Certificate& c = check.certificate;
   const std::vector<Loop>& loops = d.skeleton->stage.loops;
-  int skipped = 0;
+  int skipped = 0, without = 0;
   for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (loops[i].unknowns > kExactUpTo)
+    if (loops[i].unknowns > kExactUpTo) {
       ++skipped;
-    else if (margins[i] == 0)
-      check.singular_loop = true;
+      continue;
+    }
+    without += margins[i] == 0;
+    if ((margins[i] == 0 || margins[i] > kWithoutDigit) && check.loop_without_digit < 0)
+      check.loop_without_digit = static_cast<int>(i);
     if (margins[i] <= c.margin) continue;
     c.margin = margins[i];
     c.margin_where = name_of(d.graph(), loops[i].signals.front());
   }
-  c.margin_is_exact = skipped == 0 && !check.singular_loop;
+  c.margin_is_exact = skipped == 0 && without == 0;
   if (skipped > 0)
     check.notes.push_back(
         {Note::Kind::info, "certify",

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <titop/compiler/certify/residual.hpp>
 #include <titop/compiler/reduce/weak_pivot.hpp>
 #include <titop/compiler/solve/null_rows.hpp>
@@ -23,8 +24,8 @@ constexpr double kNothingAtLeast = 1e-13;
 
 bool is_doubtful(const Check& check) {
   const Certificate& c = check.certificate;
-  return c.weakest_pivot < kFewDigits || c.margin > 10 / kFewDigits || check.singular_loop ||
-         c.residual > kWarn || check.lost > 1e-3;
+  return c.weakest_pivot < kFewDigits || c.margin > 10 / kFewDigits ||
+         check.loop_without_digit >= 0 || c.residual > kWarn || check.lost > 1e-3;
 }
 
 double products(const solve::Plan& plan) {
@@ -52,11 +53,36 @@ bool singular_in_50_digits(const Skeleton& k, const SystemData& d) {
   return h.finite && (!factors.patches().empty() || h.weakest < rounding);
 }
 
+/// By its margin.
+const Loop* loop_without_digit(const Skeleton& k, const SystemData& d) {
+  std::vector<int> all(k.stage.loops.size());
+  std::iota(all.begin(), all.end(), 0);
+  std::vector<double> margins;
+  find_margins(d, all, margins);
+  Check check;
+  worst_margin(d, margins, check);
+  return check.loop_without_digit < 0 ? nullptr : &k.stage.loops[at(check.loop_without_digit)];
+}
+
+/// Of the loop without a digit, or of the weakest pivot's; empty: of no signal.
+std::vector<int> signals_without_digit(const Skeleton& k, const SystemData& d) {
+  if (const Loop* const loop = loop_without_digit(k, d)) return loop->signals;
+  const int variable = d.factors->health().weakest_variable;
+  const int signal = variable < 0 ? -1 : k.joint.variables[at(variable)];
+  if (signal < 0) return {};
+  for (const Loop& loop : k.stage.loops)
+    if (std::find(loop.signals.begin(), loop.signals.end(), signal) != loop.signals.end())
+      return loop.signals;
+  return {signal};
+}
+
 }  // namespace
 
 double least_pivot(const SystemData& d, Check& check) {
   const Skeleton& k = *d.skeleton;
   if (!is_doubtful(check)) return 0;
+  // Of reduced equations, those as written may well have loops that are singular by themselves.
+  if (check.loop_without_digit >= 0 && !k.before_reduce) return kNothingAtLeast;
   if (products(*k.joint.plan) > kMostProducts) {
     check.notes.push_back({Note::Kind::warning, "certify",
                            "whether these equations have a solution with a digit left is not "
@@ -68,18 +94,13 @@ double least_pivot(const SystemData& d, Check& check) {
 }
 
 Mistake no_digit_left(const Skeleton& k, const SystemData& d) {
-  const int variable = d.factors->health().weakest_variable;
-  const int signal = variable < 0 ? -1 : k.joint.variables[at(variable)];
   std::vector<std::string> ports;
-  for (const Loop& loop : k.stage.loops)
-    if (std::find(loop.signals.begin(), loop.signals.end(), signal) != loop.signals.end())
-      for (const int s : loop.signals) ports.push_back(name_of(k.stage.graph, s));
-  if (ports.empty() && signal >= 0) ports.push_back(name_of(k.stage.graph, signal));
+  for (const int s : signals_without_digit(k, d)) ports.push_back(name_of(k.stage.graph, s));
   return {Code::ill_posed,
           fmt::format("the algebraic loop through {} has no unique solution, or none with a digit "
                       "in double",
                       ports.empty() ? "a sum of many terms" : some_names(ports)),
-          {"seen in 50 digits, where double takes rounding for a pivot"},
+          {"no digit is left: double takes rounding for a pivot there"},
           "break the direct feedthrough there: give one block of the loop a state, or change a "
           "gain"};
 }
