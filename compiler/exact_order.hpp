@@ -26,15 +26,16 @@ struct ExactOptions {
 /// integers of any length: every double is a fraction with a power of two below. Ranks of
 /// [B, A B, ...], [C; C A; ...] and of their product, by elimination without division.
 ///
-/// Exact for the numbers that the blocks' matrices hold, as doubles: k / m has been rounded if m is
-/// no power of two (equal ratios stay equal). A rotation counts as exact if its entries are
-/// fractions of denominators up to 1000 (0.6 is 3/5) and these are orthonormal; parts (.along)
-/// likewise; other matrices count as they stand. Another rotation is refused by name: with rounded
-/// cosines a redundant constraint becomes an independent one. Not decided either: a diagram without
-/// inputs or without outputs; equations that do not determine the outputs without derivatives; more
-/// states, unknowns or bits than the options say. Throws nothing of its own but the mistakes that
-/// the graph has noted; what blocks throw for bad values passes through. Cost: milliseconds for
-/// whole numbers, even with a hundred states; states^3 products of numbers that grow otherwise.
+/// Exact for the numbers that the blocks' matrices hold, as doubles (of a body with modes, its
+/// modes and frequencies): k / m has been rounded if m is no power of two (equal ratios stay
+/// equal). A rotation counts as exact if its entries are fractions of denominators up to 1000 (0.6
+/// is 3/5) and these are orthonormal; parts (.along) likewise; other matrices count as they stand.
+/// Another rotation is refused by name: with rounded cosines a redundant constraint becomes an
+/// independent one. Not decided either: a diagram without inputs or without outputs; equations that
+/// do not determine the outputs without derivatives; more states, unknowns or bits than the options
+/// say. Throws nothing of its own but the mistakes that the graph has noted; what blocks throw for
+/// bad values passes through. Cost: milliseconds for whole numbers, even with a hundred states;
+/// states^3 products of numbers that grow otherwise.
 ExactOrder exact_order(const Graph& graph, const ExactOptions& options = {},
                        ParameterValues values = {});
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <titop/compiler/compare.hpp>
-#include <titop/compiler/exact_order.hpp>
+#include <titop/compiler/exact/of_stage.hpp>
 #include <titop/compiler/system_data.hpp>
 
 /// The dense model of a system, minimized: nothing is removed on trust.
@@ -19,8 +19,8 @@ int exact_order_of(const SystemData& d, int states) {
   if (states > d.skeleton->options.exact_up_to) return -1;
   // Blocks' states that follow from others count there, and so do integrators of positions.
   const ExactOrder exact =
-      exact_order(*d.skeleton->stage.source, {.states = 4 * d.skeleton->options.exact_up_to},
-                  d.numbers.parameters);
+      exact::order_of_stage(d.skeleton->stage, states,
+                            {.states = 4 * d.skeleton->options.exact_up_to}, d.numbers.parameters);
   d.dense_notes.push_back({Note::Kind::info, "minimize", to_string(exact)});
   return exact.decided ? exact.order : -1;
 }

@@ -9,6 +9,7 @@
 #include <titop/compiler/certify_full.hpp>
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/declared.hpp>
+#include <titop/compiler/exact/of_stage.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/compiler/transfer.hpp>
 
@@ -172,7 +173,7 @@ FullCertificate certify(const System& system, const Full& what) {
     c.order.order = c.order.highest = system.order();
   }
   c.basic = system.certificate();
-  c.exact = exact_order(*system.stage().source, what.exact, values_of(system));
+  c.exact = exact::order_of_stage(system.stage(), system.order(), what.exact, values_of(system));
   reach_up_to(c.exact, c.order);
   set_range(omegas, c.grid);
   c.grid.points = system.inputs().empty() || system.outputs().empty() ? 0 : what.points;

@@ -52,6 +52,42 @@ struct Columns {
   }
 };
 
+/// C and D of a block: of its modal form where it has one, for with rounded products of its modes
+/// no closure would hold.
+class ExactBlock {
+ public:
+  explicit ExactBlock(const Dynamics& d) : d_(d) {}
+
+  /// Some rows of C.
+  Matrix states(Index row, Index rows) const {
+    if (!d_.modal) return fractions(d_.C.middleRows(row, rows));
+    const Index n = d_.modal->W.rows();
+    const Matrix W = fractions(d_.modal->W.middleCols(row, rows)),
+                 stiffness = fractions(d_.modal->stiffness), damping = fractions(d_.modal->damping);
+    Matrix C(rows, 2 * n);
+    for (Index i = 0; i < rows; ++i)
+      for (Index k = 0; k < n; ++k) {
+        C(i, k) = -W(k, i) * stiffness(k, 0);
+        C(i, n + k) = -W(k, i) * damping(k, 0);
+      }
+    return C;
+  }
+  /// A part of D.
+  Matrix direct(Index row, Index col, Index rows, Index cols) const {
+    if (!d_.modal)
+      return fractions(d_.direct(static_cast<int>(row), static_cast<int>(col),
+                                 static_cast<int>(rows), static_cast<int>(cols)));
+    Matrix D = fractions(d_.modal->W.middleCols(row, rows)).transposed() *
+               fractions(d_.modal->W.middleCols(col, cols));
+    const Matrix rigid = fractions(d_.modal->rigid.block(row, col, rows, cols));
+    for (std::size_t i = 0; i < D.entries.size(); ++i) D.entries[i] += rigid.entries[i];
+    return D;
+  }
+
+ private:
+  const Dynamics& d_;
+};
+
 class Assembly {
  public:
   Assembly(const Graph& g, const ExactOptions& options, ParameterValues values)
@@ -146,19 +182,20 @@ class Assembly {
   void add_block(int index) {
     const Node& node = g_.nodes[at(index)];
     const auto d = node.block->dynamics(values_);
+    const ExactBlock exact(*d);
     const int end = end_signal(g_, index);
     const auto equation = [&](int column, const Signal* y) {
       const Index row = y ? y->first : 0, size = y ? y->size : d->A.rows();
       Block rows(static_cast<std::size_t>(size));
       add(rows, Matrix::identity(size), column);
       if (node.state >= 0)
-        add(rows, fractions(y ? d->C.middleRows(row, size) : d->A),
-            columns_.of_signal[at(node.state)], -1);
+        add(rows, y ? exact.states(row, size) : fractions(d->A), columns_.of_signal[at(node.state)],
+            -1);
       for (int i = node.first_signal; i < end; ++i)
         if (const Signal& u = g_.signals[at(i)]; u.role == Signal::Role::input)
           add(rows,
-              fractions(y ? d->direct(y->first, u.first, y->size, u.size)
-                          : Eigen::MatrixXd(d->B.middleCols(u.first, u.size))),
+              y ? exact.direct(y->first, u.first, y->size, u.size)
+                : fractions(d->B.middleCols(u.first, u.size)),
               columns_.of_signal[at(i)], -1);
       take(rows);
     };
