@@ -14,6 +14,7 @@ using Eigen::MatrixXd;
 
 constexpr double kCancelled = 1e-3;  ///< of the terms
 constexpr double kNoise = 1e3;       ///< times one sample of rounding: what may be nothing else
+constexpr double kFinest = 1e-30;    ///< of its neighbours: what 50 digits may leave of a 0
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -69,6 +70,16 @@ MatrixXd paths(const StateSpace& m) {
     }
   }
   return result;
+}
+
+/// What 50 digits leave of a 0 counts as one: of blocks that are 0 in the other transfers.
+void forgive_zeros(const MatrixXd& other, MatrixXd& size) {
+  const Eigen::VectorXd output = size.rowwise().maxCoeff();
+  const Eigen::RowVectorXd input = size.colwise().maxCoeff();
+  for (Index i = 0; i < size.rows(); ++i)
+    for (Index j = 0; j < size.cols(); ++j)
+      if (other(i, j) == 0)
+        size(i, j) = std::max(size(i, j), kFinest * std::max(output(i), input(j)));
 }
 
 }  // namespace
@@ -145,7 +156,8 @@ Difference difference(const std::vector<MatrixXcd>& a, const std::vector<MatrixX
                       const Measure& measure) {
   Difference worst;
   if (exact.empty() || exact.front().size() == 0) return worst;
-  const MatrixXd size = block_sizes(exact, measure);
+  MatrixXd size = block_sizes(exact, measure);
+  forgive_zeros(by_block(largest(a), measure), size);
   for (std::size_t k = 0; k < exact.size(); ++k) {
     if (!a[k].allFinite() || !exact[k].allFinite()) return {HUGE_VAL, k};
     const MatrixXd off = by_block((a[k] - exact[k]).cwiseAbs(), measure);

@@ -125,6 +125,25 @@ TEST_CASE("a pair without a path between: no fault of what row operations leave 
   }
 }
 
+TEST_CASE("what 50 digits leave of a 0 is no fault: a loaded end without mass on a free body") {
+  Diagram d{"loaded end"};
+  auto a = d.add(
+      "a",
+      RigidBody{.mass = 3, .inertia = Eigen::Matrix3d::Identity(), .children = {{"q", {1, 1, 0}}}});
+  Vector6 k;
+  k << 100, 200, 300, 10, 20, 30;
+  auto s = d.add("s", Bushing{.stiffness = k});
+  a.parent.force = -d.input("U", 6);
+  mount(s, a.child("q"));
+  s.child.force += d.input("v", 6);
+  d.output("stretch", 6) = s.displacement;
+  const System system = compile(d);
+  CHECK(system.state_space().order() == 0);
+  CHECK((system.state_space().D.rightCols(6) * k.asDiagonal() - Matrix6::Identity()).norm() <=
+        1e-15);
+  CHECK(certify(system).faults == std::vector<std::string>{});
+}
+
 TEST_CASE("difference: blocks of three share their size, scalars have their own") {
   const auto lists = [](double off) {
     MatrixXcd G = MatrixXcd::Constant(4, 3, 1);
