@@ -23,6 +23,8 @@ class LtiBlock : public Block {
   Pattern feedthrough() const override {
     return Pattern::Constant(matrices_->D.rows(), matrices_->D.cols(), !matrices_->D.isZero(0));
   }
+  /// A gain by another name.
+  bool is_algebraic() const override { return matrices_->A.rows() == 0; }
   bool has_frame() const override { return false; }
 
  private:

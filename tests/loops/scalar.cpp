@@ -168,3 +168,27 @@ TEST_CASE("five masses in a ring in space: order 8") {
   }
   CHECK(by_hand::pole_error(all_poles(modes), elastic_poles(a, 1)) <= 1e-12);
 }
+
+TEST_CASE("a lever between two masses, by a factor, a Gain or a static Lti: order 2") {
+  for (const int spelling : {0, 1, 2}) {
+    CAPTURE(spelling);
+    Diagram d{"lever"};
+    auto u = d.input("u");
+    auto a = d.add("a", SpringMass{.mass = 2, .stiffness = 30});
+    auto b = d.add("b", SpringMass{.mass = 1, .stiffness = 20});
+    ground(a), ground(b);
+    auto gain = d.add("gain", Gain{.gain = 2});
+    auto lti = d.add("lti", Lti{.D = MatrixXd{{2}}});
+    gain.in = a.child.accel;
+    lti.in = a.child.accel;
+    if (spelling == 0) b.child.accel = 2 * a.child.accel;
+    if (spelling == 1) b.child.accel = gain.out;
+    if (spelling == 2) b.child.accel = lti.out;
+    a.child.force = u - 2 * b.child.force;
+    d.output("x") = a.stretch;
+    const System system = compile(d);
+    CHECK(system.order() == 2);
+    const Complex s{0.3, 1.1};  // (m_a + 4 m_b) s^2 + k_a + 4 k_b
+    CHECK(std::abs(system.transfer(s)(0, 0) * (6.0 * s * s + 110.0) - 1.0) <= 1e-15);
+  }
+}
