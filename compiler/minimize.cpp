@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <titop/compiler/minimize.hpp>
+#include <titop/compiler/minimize/integrators.hpp>
 #include <titop/compiler/minimize/take_out.hpp>
 #include <titop/compiler/name_order.hpp>
 
@@ -60,6 +61,36 @@ Minimized minimize_as_it_stands(const StateSpace& model, const MinimizeOptions& 
   return result;
 }
 
+/// Both verdicts, of which the second is on what the first has left.
+void add_first(const Minimized& first, Minimized& r) {
+  OrderVerdict& v = r.order;
+  const OrderVerdict& before = first.order;
+  v.lowest -= before.order - before.lowest;
+  v.highest += before.highest - before.order;
+  v.to_more = std::max(v.to_more, before.to_more);
+  v.removed.insert(v.removed.begin(), before.removed.begin(), before.removed.end());
+  v.undecided.insert(v.undecided.begin(), before.undecided.begin(), before.undecided.end());
+  r.notes.insert(r.notes.begin() + 1, first.notes.begin() + 1, first.notes.end());
+  r.notes.front() = to_string(v);
+}
+
+/// Integrators that nothing depends on are left out at first: beside their poles at 0 the other
+/// modes have no symmetric form, and eigenvectors keep few digits.
+Minimized minimize_in_order(const StateSpace& model, const MinimizeOptions& options) {
+  const modes::Integrated states = modes::find_integrators(model);
+  if (states.integrators.empty() || states.rest.empty() || options.exact_order >= 0)
+    return minimize_as_it_stands(model, options);
+  MinimizeOptions of_rest = options;
+  if (options.energy.rows() == model.A.rows())
+    of_rest.energy = options.energy(states.rest, states.rest);
+  const Minimized first = minimize_as_it_stands(without_integrators(model, states), of_rest);
+  if (first.order.removed.empty()) return minimize_as_it_stands(model, options);
+  Minimized result = minimize_as_it_stands(with_integrators(first.model, model, states),
+                                           {.resolution = options.resolution});
+  add_first(first, result);
+  return result;
+}
+
 }  // namespace
 
 std::string to_string(const OrderVerdict& v) {
@@ -87,11 +118,11 @@ std::string to_string(const OrderVerdict& v) {
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options) {
   // By name, so that the last bits do not depend on the order in which the diagram was written.
   const std::optional<NameOrder> order = name_order(model);
-  if (!order) return minimize_as_it_stands(model, options);
+  if (!order) return minimize_in_order(model, options);
   MinimizeOptions sorted = options;
   if (options.energy.rows() == model.A.rows())
     sorted.energy = options.energy(order->states, order->states);
-  Minimized result = minimize_as_it_stands(by_name(model, *order), sorted);
+  Minimized result = minimize_in_order(by_name(model, *order), sorted);
   result.model = as_before(result.model, model.states, *order);
   return result;
 }

@@ -72,7 +72,8 @@ struct Minimized {
 /// Undamped or proportionally damped models are treated as symmetric eigenproblems (l = omega^2),
 /// those of closed chains with the help of their energy,
 /// the others by the eigenvalues of A (l = s) and the condition numbers of these; poles at 0 and
-/// ill-conditioned ones stay. The verdict's interval counts
+/// ill-conditioned ones stay. Integrators that act on nothing else, of positions and rates that
+/// outputs read, are left out at first and judged with what remains. The verdict's interval counts
 ///  - upwards, dropped modes above their own rounding bound, which are there, however little they
 ///    do, and those whose bound is above 1e-14, where something might hide;
 ///  - downwards, kept modes below 1e-9 within 1e4 of their bound; ill-conditioned poles; poles at 0

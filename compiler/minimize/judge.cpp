@@ -32,12 +32,13 @@ VectorXd background(const MatrixXd& rows, const ModeSet& m, Index j) {
   return sum.cwiseSqrt();
 }
 
-/// Rounding's part in the row of mode j: what the other modes may have put into it, by `mixing`.
+/// Rounding's part in the row of mode j: what the other modes may have put into it, by `mixing`;
+/// those of its cluster twice, once in turning them, once in the product with B or C.
 VectorXd rounding(const MatrixXd& rows, const ModeSet& m, Index j, const VectorXd& mixing) {
   VectorXd sum = VectorXd::Zero(rows.cols());
   for (Index i = 0; i < rows.rows(); ++i) {
     const bool same = m.cluster[at(i)] == m.cluster[at(j)];
-    sum += (same ? kEps : mixing(i)) * rows.row(i).transpose();
+    sum += (same ? 2 * kEps : mixing(i)) * rows.row(i).transpose();
   }
   return sum;
 }

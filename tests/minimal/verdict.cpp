@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <numbers>
 #include <titop/titop.hpp>
 
 /// What `minimize` says of the order, beside the model.
@@ -142,4 +143,38 @@ TEST_CASE("not judged: larger than Options::minimize_up_to") {
   CHECK(!system.order_verdict().judged);
   CHECK(!system.order_verdict().decided());
   CHECK(to_string(system.order_verdict()).find("not judged") != std::string::npos);
+}
+
+TEST_CASE("two equal beams on a hub whose attitude is read: what the hub cannot move leaves") {
+  for (const int elements : {1, 2})
+    for (const bool at_tip : {false, true}) {
+      CAPTURE(elements);
+      CAPTURE(at_tip);
+      const Beam beam{.length = 1,
+                      .section = tube(0.04, 0.03),
+                      .material = {.E = 70e9, .nu = 0.25, .rho = 2700},
+                      .elements = elements};
+      Diagram d{"mirrored"};
+      auto U = d.input("U", 6);
+      auto hub = d.add("hub", RigidBody{.mass = 20,
+                                        .inertia = Eigen::Vector3d(2, 3, 4).asDiagonal(),
+                                        .children = {{"A", {0.5, 0, 0}}, {"B", {-0.5, 0, 0}}}});
+      auto a = d.add("a", FlexibleBody{beam}), b = d.add("b", FlexibleBody{beam});
+      hub.parent.force = -U;
+      mount(a, hub.child("A"));
+      mount(b, hub.child("B"), Rotation::about({0, 0, 1}, std::numbers::pi));
+      if (at_tip)
+        d.output("acc", 6) = a.child.accel;
+      else
+        d.output("acc", 6) = hub.parent.accel;
+      d.output("attitude", 3) = hub.parent.position.angular();
+      const System system = compile(d);
+      // Three angles and their rates; per element and beam six modes, of which one of extension and
+      // one of torsion pull and turn the hub both ways at once.
+      const int order = 6 + elements * (2 * 12 - 2 * 2);
+      CHECK(system.order() == 6 + elements * 2 * 12);
+      CHECK(system.state_space().order() == order);
+      CHECK(system.order_verdict().lowest <= order);
+      CHECK(system.order_verdict().highest >= order);
+    }
 }
