@@ -92,7 +92,8 @@ struct Judge {
   std::vector<Mistake> mistakes = {};
   std::vector<Note> notes = {};
 
-  void found(const std::string& reader, int signal, const std::source_location& where) {
+  void found(const std::string& reader, int signal, const std::source_location& where,
+             const std::vector<std::string>& causes = {}) {
     const Graph& g = k.stage.graph;
     std::string joints;
     for (const Released& r : k.stage.released) {
@@ -104,12 +105,15 @@ struct Judge {
          fmt::format("{} reads {}, an internal force that motion does not determine: the "
                      "smallest wrench at {} is taken",
                      reader, name_of(g, signal), joints)});
+    std::vector<std::string> lines = {
+        "written at " + to_string(where),
+        fmt::format("the chain is held more than once; released: {}", joints)};
+    lines.insert(lines.end(), causes.begin(), causes.end());
     mistakes.push_back(
         {Code::kinematic_loop,
          fmt::format("{} reads {}, an internal force that is not determined", reader,
                      name_of(g, signal)),
-         {"written at " + to_string(where),
-          fmt::format("the chain is held more than once; released: {}", joints)},
+         std::move(lines),
          "make a body of the chain flexible, let the joint leave free what the others hold already "
          "(.linear, .angular, .along(r)), or take the minimal-norm ones: "
          "Options{.internal_forces = InternalForces::minimal_norm}"});
@@ -163,7 +167,9 @@ struct Judge {
       const Node& node = g.nodes[at(g.signals[at(y)].node)];
       if (node.block->interface().channels.empty()) continue;
       if (const int signal = stress.shown_by(sum); signal >= 0) {
-        found("the motion of " + node.name, signal, node.where);
+        found("the motion of " + node.name, signal, node.where,
+              {"either a force elsewhere is computed from it, or the chain meets only nearly: look "
+               "at the lengths and rotations around it"});
         return;  // all that hangs on it moves as well
       }
     }

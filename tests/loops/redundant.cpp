@@ -105,6 +105,20 @@ TEST_CASE("an internal force in other units, or one that moves another body, is 
   CHECK(says(compile_error(d), Code::kinematic_loop, {"the motion of C", "not determined"}));
 }
 
+TEST_CASE("a chain that meets only nearly: refused, with the lengths named as a cause") {
+  using namespace titop_test;
+  for (const double off : {1e-6, 1e-8}) {
+    CAPTURE(off);
+    Diagram d{"nearly"};
+    auto A = d.add("A", block(4, {1, 0.5, 0.2})), B = d.add("B", block(3, {0.5, 0.25 + off, 0.1}));
+    A.parent.force = -d.input("U", 6);
+    mount(B, A.child("near"));
+    weld(B.child("far"), A.child("far"));
+    d.output("a", 6) = A.parent.accel;
+    CHECK(says(compile_error(d), Code::kinematic_loop, {"look at the lengths"}));
+  }
+}
+
 TEST_CASE("what both supports of a body held twice bear together is determined") {
   Diagram d{"held twice"};
   auto A = d.add("A", block(4, {1, 0, 0}));
