@@ -94,6 +94,9 @@ StateSpace with_certain_ports(const System& system, const SystemData& d, const S
   return part;
 }
 
+/// Of entries that keep fewer digits, rounding may be all that is left of a mode's.
+constexpr double kFewDigits = 1e-3;
+
 /// Every port is judged against its own size, so one that is nothing but rounding would count as
 /// moved and seen. Where digits are lost, only what the others show is certain: part of the inputs
 /// and outputs needs no more states than all of them.
@@ -127,6 +130,7 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
   const StateSpace judged = without_rounding(d, dense);
   Minimized m = minimize(judged, options);
   doubt_lost_digits(system, d, judged, options, m.order);
+  if (d.dense_error.error > kFewDigits && !m.order.exact) m.order.highest = dense.order();
   if (!m.notes.empty()) m.notes.front() = to_string(m.order);
   const bool removed = !m.order.removed.empty();
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {

@@ -30,7 +30,9 @@ struct OrderVerdict {
   int order = 0;        ///< of the model
   /// The minimal order lies between these two, both included; equal: it is decided, as far as
   /// double precision tells data apart. Of a system whose self-check says that digits are lost,
-  /// `lowest` counts only what inputs and outputs show whose dynamics finer arithmetic confirms.
+  /// `lowest` counts only what inputs and outputs show whose dynamics finer arithmetic confirms; of
+  /// one whose dense model keeps less than 3 digits (Certificate::dense_error), `highest` counts
+  /// all.
   int lowest = 0, highest = 0;
   bool exact = false;   ///< decided by exact arithmetic (compiler/exact_order.hpp)
   double to_fewer = 1;  ///< least visibility among the modes that stay: what the next would cost
