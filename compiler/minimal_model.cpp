@@ -25,8 +25,21 @@ int exact_order_of(const SystemData& d, int states) {
   return exact.decided ? exact.order : -1;
 }
 
-/// Beside the slowest, a middle and the fastest of the modes that leave, and the most visible one.
-std::vector<std::complex<double>> near_modes(std::vector<JudgedMode> modes) {
+/// Beside the slowest, a middle and the fastest of the modes that leave, and the most visible one;
+/// for integrators, at `s` and far below.
+std::vector<std::complex<double>> near_modes(std::vector<JudgedMode> modes,
+                                             std::complex<double> s) {
+  constexpr double kBelow = 1e-3;
+  const auto integrators = std::stable_partition(modes.begin(), modes.end(),
+                                                 [](const JudgedMode& m) { return m.omega > 0; });
+  if (integrators != modes.end()) {
+    modes.erase(integrators, modes.end());
+    std::vector<std::complex<double>> points{s, kBelow * s};
+    if (modes.empty()) return points;
+    const auto others = near_modes(modes, s);
+    points.insert(points.end(), others.begin(), others.end());
+    return points;
+  }
   std::sort(modes.begin(), modes.end(),
             [](const JudgedMode& a, const JudgedMode& b) { return a.omega < b.omega; });
   const auto most = std::max_element(
@@ -124,10 +137,11 @@ void doubt_lost_digits(const System& system, const SystemData& d, const StateSpa
 
 void minimize_checked(const System& system, const SystemData& d, StateSpace& dense) {
   const double resolution = d.skeleton->options.resolution;
+  const auto [judged, rounding] = without_rounding(d, dense);
   const MinimizeOptions options{.resolution = resolution,
                                 .exact_order = exact_order_of(d, dense.order()),
-                                .energy = d.states.trivial() ? MatrixXd() : potential_energy(d)};
-  const StateSpace judged = without_rounding(d, dense);
+                                .energy = d.states.trivial() ? MatrixXd() : potential_energy(d),
+                                .rounding = rounding};
   Minimized m = minimize(judged, options);
   doubt_lost_digits(system, d, judged, options, m.order);
   if (d.dense_error.error > kFewDigits && !m.order.exact) m.order.highest = dense.order();
@@ -135,7 +149,7 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
   const bool removed = !m.order.removed.empty();
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
     std::vector<MatrixXcd> before;
-    const std::vector<std::complex<double>> points = near_modes(m.order.removed);
+    const std::vector<std::complex<double>> points = near_modes(m.order.removed, pick_s(d));
     for (const std::complex<double> s : points) before.push_back(system.transfer(s));
     const std::vector<MatrixXcd> after = transfers(m.model, points);
     Measure by =

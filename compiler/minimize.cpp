@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <titop/compiler/minimize.hpp>
-#include <titop/compiler/minimize/integrators.hpp>
+#include <titop/compiler/minimize/needless.hpp>
 #include <titop/compiler/minimize/take_out.hpp>
 #include <titop/compiler/name_order.hpp>
 
@@ -61,34 +61,97 @@ Minimized minimize_as_it_stands(const StateSpace& model, const MinimizeOptions& 
   return result;
 }
 
-/// Both verdicts, of which the second is on what the first has left.
-void add_first(const Minimized& first, Minimized& r) {
+/// `rest` and the integrators of the model, which act on each other no more.
+StateSpace side_by_side(const StateSpace& rest, const StateSpace& model,
+                        const modes::Integrated& states) {
+  StateSpace apart = model;
+  apart.A(states.integrators, states.rest).setZero();
+  StateSpace with_rates = rest;
+  const Eigen::Index k = std::ssize(states.integrators), n = rest.A.rows();
+  with_rates.C.conservativeResize(model.C.rows() + k, n);
+  with_rates.C.bottomRows(k).setZero();
+  with_rates.D.conservativeResize(model.C.rows() + k, model.B.cols());
+  with_rates.D.bottomRows(k) = modes::decouple(model, states)->B;
+  return modes::with_integrators(with_rates, apart, states);
+}
+
+/// The modes beside integrators that all count. Integrators keep their meaning where as much leaves
+/// without touching what they integrate.
+Minimized minimize_beside(const modes::Sampled& sampled, const modes::Integrated& states,
+                          const StateSpace& rest, const MinimizeOptions& options) {
+  const StateSpace& model = sampled.model;
+  Minimized result = minimize_as_it_stands(rest, options);
+  const Minimized coupled =
+      minimize_as_it_stands(modes::without_integrators(model, states), options);
+  if (coupled.model.order() < result.model.order()) result = coupled;
+  if (coupled.model.order() == result.model.order()) {
+    result.notes = coupled.notes;
+    result.model = modes::with_integrators(coupled.model, model, states);
+  } else {
+    result.model = side_by_side(result.model, model, states);
+    result.notes.push_back("integrators are those of the motion without the other states");
+  }
+  const int k = static_cast<int>(states.integrators.size());
+  for (int* order : {&result.order.order, &result.order.lowest, &result.order.highest}) *order += k;
+  return result;
+}
+
+/// A model without integrators that nothing needs.
+Minimized minimize_needed(const modes::Sampled& sampled, const MinimizeOptions& options,
+                          const Eigen::MatrixXd& energy_of_rest) {
+  MinimizeOptions of_rest{.resolution = options.resolution,
+                          .exact_order = options.exact_order,
+                          .energy = energy_of_rest};
+  const modes::Integrated states = modes::find_integrators(sampled.model);
+  if (states.integrators.empty()) return minimize_as_it_stands(sampled.model, of_rest);
+  const auto rest = modes::decoupled_rest(sampled, states);
+  if (options.exact_order >= 0 || !rest) {
+    of_rest.energy.resize(0, 0);
+    return minimize_as_it_stands(sampled.model, of_rest);
+  }
+  return minimize_beside(sampled, states, *rest, of_rest);
+}
+
+/// What was found of the integrators, into the verdict on what was left of the model.
+void add_needless(const modes::Needless& n, Minimized& r) {
   OrderVerdict& v = r.order;
-  const OrderVerdict& before = first.order;
-  v.lowest -= before.order - before.lowest;
-  v.highest += before.highest - before.order;
-  v.to_more = std::max(v.to_more, before.to_more);
-  v.removed.insert(v.removed.begin(), before.removed.begin(), before.removed.end());
-  v.undecided.insert(v.undecided.begin(), before.undecided.begin(), before.undecided.end());
-  r.notes.insert(r.notes.begin() + 1, first.notes.begin() + 1, first.notes.end());
+  if (!v.exact) {
+    v.lowest = std::max(0, v.lowest - static_cast<int>(n.doubtful.size()));
+    v.highest += n.hidden;
+  }
+  for (const JudgedMode& mode : n.removed) v.to_more = std::max(v.to_more, mode.visibility);
+  v.removed.insert(v.removed.begin(), n.removed.begin(), n.removed.end());
+  v.undecided.insert(v.undecided.begin(), n.doubtful.begin(), n.doubtful.end());
+  if (r.notes.empty()) r.notes.emplace_back();
+  r.notes.insert(r.notes.begin() + 1, n.notes.begin(), n.notes.end());
   r.notes.front() = to_string(v);
 }
 
-/// Integrators that nothing depends on are left out at first: beside their poles at 0 the other
-/// modes have no symmetric form, and eigenvectors keep few digits.
 Minimized minimize_in_order(const StateSpace& model, const MinimizeOptions& options) {
   const modes::Integrated states = modes::find_integrators(model);
-  if (states.integrators.empty() || states.rest.empty() || options.exact_order >= 0)
+  const bool open = model.inputs.empty() && model.outputs.empty();
+  if (states.integrators.empty() || open) return minimize_as_it_stands(model, options);
+  modes::Sampled sampled = modes::sampled(model, options.rounding);
+  const std::optional<modes::Needless> needless = modes::take_out_needless(sampled);
+  if (!needless || sampled.model.order() < options.exact_order)
     return minimize_as_it_stands(model, options);
-  MinimizeOptions of_rest = options;
-  if (options.energy.rows() == model.A.rows())
-    of_rest.energy = options.energy(states.rest, states.rest);
-  const Minimized first = minimize_as_it_stands(without_integrators(model, states), of_rest);
-  if (first.order.removed.empty()) return minimize_as_it_stands(model, options);
-  Minimized result = minimize_as_it_stands(with_integrators(first.model, model, states),
-                                           {.resolution = options.resolution});
-  add_first(first, result);
+  Eigen::MatrixXd energy;
+  if (options.energy.rows() == model.A.rows()) energy = options.energy(states.rest, states.rest);
+  Minimized result = minimize_needed(sampled, options, energy);
+  add_needless(*needless, result);
   return result;
+}
+
+/// The rounding of a model's entries if it has their sizes, with the model's names; else nothing.
+StateSpace fitting(const StateSpace& rounding, const StateSpace& model) {
+  const auto same = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+    return a.rows() == b.rows() && a.cols() == b.cols();
+  };
+  if (!same(rounding.A, model.A) || !same(rounding.B, model.B) || !same(rounding.C, model.C) ||
+      !same(rounding.D, model.D))
+    return {};
+  return {rounding.A,   rounding.B,   rounding.C,   rounding.D,
+          model.states, model.inputs, model.outputs};
 }
 
 }  // namespace
@@ -115,13 +178,16 @@ std::string to_string(const OrderVerdict& v) {
   return text;
 }
 
-Minimized minimize(const StateSpace& model, const MinimizeOptions& options) {
+Minimized minimize(const StateSpace& model, const MinimizeOptions& given) {
+  MinimizeOptions options = given;
+  options.rounding = fitting(given.rounding, model);
   // By name, so that the last bits do not depend on the order in which the diagram was written.
   const std::optional<NameOrder> order = name_order(model);
   if (!order) return minimize_in_order(model, options);
   MinimizeOptions sorted = options;
   if (options.energy.rows() == model.A.rows())
     sorted.energy = options.energy(order->states, order->states);
+  if (options.rounding.A.size() > 0) sorted.rounding = by_name(options.rounding, *order);
   Minimized result = minimize_in_order(by_name(model, *order), sorted);
   result.model = as_before(result.model, model.states, *order);
   return result;

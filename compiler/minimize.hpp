@@ -13,6 +13,9 @@ struct MinimizeOptions {
   /// form of models whose mass couples the coordinates, as where chains are closed. What does not
   /// fit the model is not used.
   Eigen::MatrixXd energy = {};
+  /// What rounding may have put into each entry of A, B, C and D: matrices of their sizes, or empty
+  /// for 2.2e-16 of the entry. It decides which integrators count. Not used if it does not fit.
+  StateSpace rounding = {};
 };
 
 /// A mode that left, or that may have to.
@@ -75,11 +78,16 @@ struct Minimized {
 /// those of closed chains with the help of their energy,
 /// the others by the eigenvalues of A (l = s) and the condition numbers of these; poles at 0 and
 /// ill-conditioned ones stay. Integrators that act on nothing else, of positions and rates that
-/// outputs read, are left out at first and judged with what remains. The verdict's interval counts
+/// outputs read, are taken apart, and both parts judged by themselves: zdot = N z + B u is what no
+/// mode moves of them, and the ranks of [B, N B, ...] and [C; C N; ...] say which of them follow
+/// from other states (a position that these hold already) and which no output sees apart from
+/// others (the common motion, where outputs read differences). A rank is decided against four
+/// samples of rounding, 32 times the largest. The verdict's interval counts
 ///  - upwards, dropped modes above their own rounding bound, which are there, however little they
 ///    do, and those whose bound is above 1e-14, where something might hide;
-///  - downwards, kept modes below 1e-9 within 1e4 of their bound; ill-conditioned poles; poles at 0
-///    where the ranks of inputs and outputs there do not show that they are needed.
+///  - downwards, kept modes below 1e-9 within 1e4 of their bound; integrators within 1e4 of their
+///    rounding; ill-conditioned poles; other poles at 0 where the ranks of inputs and outputs there
+///    do not show that they are needed.
 /// A decided order is that of all data which rounding tells from those given: what lies below its
 /// own bound (two frequencies one ulp apart) counts as nothing, and only exact arithmetic says if
 /// it is. Modes are vectors of one size in the states' own units (linalg::balance_parts): in other

@@ -123,10 +123,14 @@ void write_dense(const SystemData& data, StateSpace& model, int threads);
 /// and u (fixed seed). O(n^2).
 double dense_difference(const SystemData& data, const StateSpace& dense);
 
+/// A dense model and what rounding may have put into each of its entries.
+struct Rounded {
+  StateSpace model, rounding;
+};
 /// The dense model with 0 for every entry that is nothing but rounding: not above some 30 times
 /// what the factors say that rounding makes of 0 there. What does not act on something else then
 /// does not, in any units. O(bodies * order), for models that `minimize` judges.
-StateSpace without_rounding(const SystemData& data, StateSpace dense);
+Rounded without_rounding(const SystemData& data, StateSpace dense);
 
 /// See Certificate::dense_error. O(n^2) per s.
 DenseError dense_error(const SystemData& data, const StateSpace& dense);

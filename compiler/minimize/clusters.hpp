@@ -27,6 +27,29 @@ Matrix unit_columns(Matrix m) {
 Eigen::MatrixXd turn(const Eigen::MatrixXd& b, const Eigen::MatrixXd& c);
 Eigen::MatrixXcd turn(const Eigen::MatrixXcd& b, const Eigen::MatrixXcd& c);
 
+/// Parts of a model that share no state, by number.
+struct Parts {
+  std::vector<int> of_state, of_mode;
+  bool one() const;  ///< all modes are of one part
+};
+/// A mode is of the part of the state where it is largest; parts whose modes share a frequency
+/// count as one. `vectors`: states x modes. O(n^2).
+Parts find_parts(const Eigen::MatrixXd& A, const Eigen::MatrixXd& vectors, const ModeSet& m);
+
+/// What vectors (states x modes) have outside the part of their mode is rounding, and becomes 0.
+template <class Matrix>
+void keep_to_parts(const Parts& parts, Matrix&& vectors) {
+  for (Eigen::Index j = 0; j < vectors.cols(); ++j)
+    for (Eigen::Index i = 0; i < vectors.rows(); ++i)
+      if (parts.of_state[static_cast<std::size_t>(i)] != parts.of_mode[static_cast<std::size_t>(j)])
+        vectors(i, j) = 0;
+}
+
+/// Modes of one part may be of any size against those of another: an input that moves one far,
+/// which no output sees, would hide the others. Brings what moves a part and what it shows, each
+/// against the largest of its port, to one size.
+void balance_sides(const Parts& parts, ModeSet& m);
+
 /// True if no combination of the rows of M vanishes but for rounding. A row far below the others
 /// may be nothing but rounding itself.
 bool clearly_full_rank(Eigen::MatrixXd M);

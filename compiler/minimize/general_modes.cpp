@@ -103,10 +103,11 @@ void find_mixing(const linalg::Eigensystem& e, const VectorXd& left, const Vecto
     }
 }
 
-/// Poles at 0 and ill-conditioned ones: clusters or Jordan blocks, kept whole.
-void set_apart(const VectorXd& condition, ModeSet& m) {
+/// Poles at 0 and ill-conditioned ones: clusters or Jordan blocks, kept whole. `size`: of A, which
+/// a Jordan block at 0 has without a pole of that size.
+void set_apart(const VectorXd& condition, double size, ModeSet& m) {
   const Index n = m.size();
-  const double largest = n ? m.lambda.maxCoeff() : 0;
+  const double largest = n ? std::max(m.lambda.maxCoeff(), size) : 0;
   m.apart.assign(at(n), "");
   m.needed.assign(at(n), 0);
   for (Index j = 0; j < n; ++j) {
@@ -143,16 +144,23 @@ General general_modes(const StateSpace& model, double resolution) {
   make_real(e, 100 * kEps * size);
   normalize(e);
   find_clusters(e, 100 * kEps * size, resolution, m);
-  turn_clusters(model, m, e);
   m.lambda = m.omega = e.values.cwiseAbs();
+  const MatrixXd right_sizes = (e.scale.cwiseInverse().asDiagonal() * e.V).cwiseAbs(),
+                 left_sizes = (e.W * e.scale.asDiagonal()).cwiseAbs().transpose();
+  const Parts parts =
+      find_parts(model.A, unit_columns(right_sizes).cwiseMax(unit_columns(left_sizes)), m);
+  keep_to_parts(parts, e.V);
+  keep_to_parts(parts, e.W.transpose());
+  turn_clusters(model, m, e);
   m.b = (e.W * model.B).cwiseAbs();
   m.c = (model.C * e.V).transpose().cwiseAbs();
+  balance_sides(parts, m);
   for (Index j = 0; j < n; ++j)
     m.states.push_back(e.values(j).imag() > 0 ? 2 : e.values(j).imag() < 0 ? 0 : 1);
   const VectorXd left = (e.W * e.scale.asDiagonal()).rowwise().norm(),
                  right = (e.scale.cwiseInverse().asDiagonal() * e.V).colwise().norm();
   find_mixing(e, left, right, size, m);
-  set_apart(left.cwiseProduct(right), m);
+  set_apart(left.cwiseProduct(right), size, m);
   find_needed(balanced, e.scale.cwiseInverse().asDiagonal() * model.B,
               model.C * e.scale.asDiagonal(), m);
   return g;

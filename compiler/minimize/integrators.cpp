@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <numeric>
 #include <titop/compiler/minimize/integrators.hpp>
+#include <titop/graph/linalg/balance.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop::modes {
 namespace {
@@ -66,6 +68,57 @@ StateSpace with_integrators(const StateSpace& rest, const StateSpace& model,
   m.inputs = model.inputs;
   m.outputs = model.outputs;
   return m;
+}
+
+namespace {
+
+/// X A_rest = taken + N X, where a power of N is 0: `divided(Y)` is Y A_rest^-1.
+template <class Divided>
+MatrixXd followed(const MatrixXd& N, const MatrixXd& taken, const Divided& divided) {
+  MatrixXd X = MatrixXd::Zero(taken.rows(), taken.cols());
+  for (Index step = 0; step < N.rows(); ++step) {
+    const MatrixXd before = X;
+    X = divided(MatrixXd(taken + N * X));
+    if (!X.allFinite() || X == before) break;
+  }
+  return X;
+}
+
+}  // namespace
+
+std::optional<Decoupled> decouple(const StateSpace& model, const Integrated& states) {
+  const auto& [rest, integrators] = states;
+  Decoupled d{MatrixXd::Zero(std::ssize(integrators), std::ssize(rest)),
+              model.A(integrators, integrators), model.B(integrators, Eigen::all),
+              model.C(Eigen::all, rest)};
+  if (rest.empty()) return d;
+  MatrixXd A = model.A(rest, rest);
+  const Eigen::VectorXd scale = linalg::balance_parts(A);
+  const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd(A.transpose()));
+  const auto divided = [&](const MatrixXd& Y) {
+    const MatrixXd right = Y.transpose();
+    return MatrixXd(MatrixXd(lu.solve(right)).transpose());
+  };
+  const MatrixXd taken = model.A(integrators, rest) * scale.asDiagonal();
+  d.X = followed(d.N, taken, divided) * scale.cwiseInverse().asDiagonal();
+  d.B -= d.X * model.B(rest, Eigen::all);
+  d.C_rest += model.C(Eigen::all, integrators) * d.X;
+  if (!d.X.allFinite() || !d.B.allFinite() || !d.C_rest.allFinite()) return std::nullopt;
+  return d;
+}
+
+MatrixXd terms_of_B(const StateSpace& model, const Integrated& states) {
+  const auto& [rest, integrators] = states;
+  MatrixXd terms = model.B(integrators, Eigen::all).cwiseAbs();
+  if (rest.empty()) return terms;
+  MatrixXd A = model.A(rest, rest);
+  const Eigen::VectorXd scale = linalg::balance_parts(A);
+  const MatrixXd one = MatrixXd::Identity(A.rows(), A.cols()),
+                 inverse = Eigen::PartialPivLU<MatrixXd>(A).solve(one).cwiseAbs();
+  const MatrixXd N = model.A(integrators, integrators).cwiseAbs(),
+                 taken = model.A(integrators, rest).cwiseAbs() * scale.asDiagonal();
+  const MatrixXd X = followed(N, taken, [&](const MatrixXd& Y) { return MatrixXd(Y * inverse); });
+  return terms + X * scale.cwiseInverse().asDiagonal() * model.B(rest, Eigen::all).cwiseAbs();
 }
 
 }  // namespace titop::modes

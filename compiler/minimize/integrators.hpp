@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
@@ -20,5 +21,19 @@ StateSpace without_integrators(const StateSpace& model, const Integrated& states
 /// `rest`, perhaps with fewer states than it had, with the integrators of the model again.
 StateSpace with_integrators(const StateSpace& rest, const StateSpace& model,
                             const Integrated& states);
+
+/// The same transfer as a sum: the rest, and the integrators by themselves.
+struct Decoupled {
+  Eigen::MatrixXd X;  ///< integrators = z + X rest, with zdot = N z + B u: what no mode moves
+  Eigen::MatrixXd N, B;
+  Eigen::MatrixXd C_rest;  ///< what outputs see of the rest, with its part in the integrators
+};
+/// None where the rest has a pole at 0 too. The order of a model is that of both parts, since they
+/// have no pole in common. O(rest^3).
+std::optional<Decoupled> decouple(const StateSpace& model, const Integrated& states);
+
+/// What the entries of Decoupled::B are sums of, before anything cancels, in the solution for X
+/// either. O(rest^3).
+Eigen::MatrixXd terms_of_B(const StateSpace& model, const Integrated& states);
 
 }  // namespace titop::modes

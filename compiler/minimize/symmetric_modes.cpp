@@ -136,13 +136,16 @@ std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolut
   s.Q = e.V;
   ModeSet& m = s.modes;
   find_clusters(e.lambda, resolution, m);
-  turn_clusters(p, m, s.Q);
   m.lambda = e.lambda.cwiseAbs();
+  const Parts parts = find_parts(form->S, s.Q.cwiseAbs(), m);
+  keep_to_parts(parts, s.Q);
+  turn_clusters(p, m, s.Q);
   m.omega = m.lambda.cwiseSqrt();
   m.states.assign(at(m.size()), 2);
   m.b = (s.Q.transpose() * p.b).cwiseAbs();
   const MatrixXd pq = s.Q.transpose() * p.cq, pv = m.omega.asDiagonal() * s.Q.transpose() * p.cv;
   m.c = (pq.array().square() + pv.array().square()).sqrt();
+  balance_sides(parts, m);
   find_mixing(e.lambda, m);
   find_rigid(p, s.Q, m);
   return s;

@@ -29,13 +29,6 @@ std::vector<int> pivots(const MatrixXd& W) {
   return result;
 }
 
-std::vector<int> others(Index n, const std::vector<int>& taken) {
-  std::vector<int> rest;
-  for (int i = 0; i < n; ++i)
-    if (!std::binary_search(taken.begin(), taken.end(), i)) rest.push_back(i);
-  return rest;
-}
-
 /// out = R keep on the span of the relations (rows W), with the states in units of `scale`:
 /// coefficients that are only rounding there are 0, so that zeros of the model stay zeros.
 MatrixXd solve_for(const MatrixXd& W, const std::vector<int>& out, const std::vector<int>& keep,
@@ -66,44 +59,23 @@ struct Leaving {
   double noise;
 };
 
-/// The states `out` follow from the others.
-void remove_unreachable(StateSpace& m, Leaving& l, const std::vector<int>& out) {
-  const std::vector<int> keep = others(m.A.rows(), out);
-  const MatrixXd T_dep = solve_for(l.W, out, keep, l.scale, l.noise);
-  const MatrixXd A = m.A(keep, keep) + m.A(keep, out) * T_dep;
-  const MatrixXd C = m.C(Eigen::all, keep) + m.C(Eigen::all, out) * T_dep;
-  m.B = m.B(keep, Eigen::all).eval();
-  m.A = A;
-  m.C = C;
-  keep_names(m, keep);
-  l.V = l.V(keep, Eigen::all).eval();
-  l.scale = l.scale(keep).eval();
-}
-
-/// The others are taken relative to the states `out`.
-void remove_unseen(StateSpace& m, const Leaving& l, const std::vector<int>& out) {
-  const std::vector<int> keep = others(m.A.rows(), out);
-  const MatrixXd P =
-      solve_for(l.V.transpose(), out, keep, l.scale.cwiseInverse(), l.noise).transpose();
-  const MatrixXd A = m.A(keep, keep) + P * m.A(out, keep);
-  const MatrixXd B = m.B(keep, Eigen::all) + P * m.B(out, Eigen::all);
-  m.A = A;
-  m.B = B;
-  m.C = m.C(Eigen::all, keep).eval();
-  keep_names(m, keep);
-}
-
 /// `dependent`: the states that follow, where the caller knows better than W alone.
 void remove(StateSpace& m, Leaving l, const std::vector<int>& dependent,
             std::vector<std::string>& notes) {
   if (l.W.rows() > 0) {
-    notes.push_back("states that follow from the others: " + list(dependent, m.states));
-    remove_unreachable(m, l, dependent);
+    const std::vector<int> keep = others(m.A.rows(), dependent);
+    notes.push_back(note_of_dependent(m, dependent));
+    take_out_dependent(m, dependent, solve_for(l.W, dependent, keep, l.scale, l.noise));
+    l.V = l.V(keep, Eigen::all).eval();
+    l.scale = l.scale(keep).eval();
   }
   if (l.V.cols() > 0) {
     const std::vector<int> out = pivots(l.V.transpose() * l.scale.cwiseInverse().asDiagonal());
-    notes.push_back("states that the others are now taken relative to: " + list(out, m.states));
-    remove_unseen(m, l, out);
+    notes.push_back(note_of_unseen(m, out));
+    take_out_unseen(
+        m, out,
+        solve_for(l.V.transpose(), out, others(m.A.rows(), out), l.scale.cwiseInverse(), l.noise)
+            .transpose());
   }
 }
 
@@ -186,6 +158,37 @@ std::vector<int> both_levels(const std::vector<int>& coordinates, const Symmetri
 }
 
 }  // namespace
+
+std::vector<int> others(Index states, const std::vector<int>& out) {
+  std::vector<int> rest;
+  for (int i = 0; i < states; ++i)
+    if (!std::binary_search(out.begin(), out.end(), i)) rest.push_back(i);
+  return rest;
+}
+
+std::string note_of_dependent(const StateSpace& m, const std::vector<int>& out) {
+  return "states that follow from the others: " + list(out, m.states);
+}
+
+std::string note_of_unseen(const StateSpace& m, const std::vector<int>& out) {
+  return "states that the others are now taken relative to: " + list(out, m.states);
+}
+
+void take_out_dependent(StateSpace& m, const std::vector<int>& out, const MatrixXd& T) {
+  const std::vector<int> keep = others(m.A.rows(), out);
+  m.A = (m.A(keep, keep) + m.A(keep, out) * T).eval();
+  m.C = (m.C(Eigen::all, keep) + m.C(Eigen::all, out) * T).eval();
+  m.B = m.B(keep, Eigen::all).eval();
+  keep_names(m, keep);
+}
+
+void take_out_unseen(StateSpace& m, const std::vector<int>& out, const MatrixXd& P) {
+  const std::vector<int> keep = others(m.A.rows(), out);
+  m.A = (m.A(keep, keep) + P * m.A(out, keep)).eval();
+  m.B = (m.B(keep, Eigen::all) + P * m.B(out, Eigen::all)).eval();
+  m.C = m.C(Eigen::all, keep).eval();
+  keep_names(m, keep);
+}
 
 void take_out(const Symmetric& s, const std::vector<Verdict>& verdicts, StateSpace& model,
               std::vector<std::string>& notes) {

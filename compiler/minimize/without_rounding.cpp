@@ -4,7 +4,7 @@
 /// Entries of a dense model that are nothing but rounding.
 namespace titop::detail {
 
-StateSpace without_rounding(const SystemData& d, StateSpace m) {
+Rounded without_rounding(const SystemData& d, StateSpace m) {
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
   // Rounding is as large as its samples are, but for luck: of four, none is small.
   constexpr int kSamples = 4;
@@ -28,14 +28,18 @@ StateSpace without_rounding(const SystemData& d, StateSpace m) {
   y_written << m.C, m.D;
   of_x = d.states.kept_rows(of_x).cwiseMax((d.states.kept_rows(now.xdot()) - x_written).cwiseAbs());
   of_y = of_y.cwiseMax((now.outputs() - y_written).cwiseAbs());
-  const auto clear = [&](Eigen::MatrixXd& entries, const auto& rounding) {
+  const auto clear = [&](Eigen::MatrixXd& entries, const Eigen::MatrixXd& rounding) {
     entries = (entries.array().abs() <= kTimes * rounding.array()).select(0.0, entries);
   };
-  clear(m.A, of_x.leftCols(n));
-  clear(m.B, of_x.rightCols(all - n));
-  clear(m.C, of_y.leftCols(n));
-  clear(m.D, of_y.rightCols(all - n));
-  return m;
+  StateSpace rounding{of_x.leftCols(n), of_x.rightCols(all - n),
+                      of_y.leftCols(n), of_y.rightCols(all - n),
+                      m.states,         m.inputs,
+                      m.outputs};
+  clear(m.A, rounding.A);
+  clear(m.B, rounding.B);
+  clear(m.C, rounding.C);
+  clear(m.D, rounding.D);
+  return {std::move(m), std::move(rounding)};
 }
 
 }  // namespace titop::detail

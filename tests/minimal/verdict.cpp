@@ -100,17 +100,18 @@ TEST_CASE("the exact order decides where visibility does not") {
 }
 
 TEST_CASE("poles at 0: needed where ranks show it, else undecided") {
-  // Two integrators of one input, added up: one would do.
+  // Two integrators of one input, added up: one will do.
   const Minimized twins =
       minimize(model(MatrixXd::Zero(2, 2), MatrixXd::Ones(2, 1), MatrixXd::Ones(1, 2)));
-  CHECK(!twins.order.decided());
-  CHECK(twins.order.lowest <= 1);
-  CHECK(twins.order.highest == 2);
-  CHECK(to_string(twins.order).find("undecided between 0 and 2") != std::string::npos);
-  CHECK(to_string(twins.order).find("its pole is at 0") != std::string::npos);
-  const StateSpace twin_model =
-      model(MatrixXd::Zero(2, 2), MatrixXd::Ones(2, 1), MatrixXd::Ones(1, 2));
-  CHECK(exact_order(twin_model).order == 1);
+  CHECK(twins.model.order() == 1);
+  CHECK(twins.order.decided());
+  // Two that act on another pole stay.
+  const Minimized inner = minimize(model(MatrixXd{{0, 0, 0}, {0, 0, 0}, {1, 1, -2}},
+                                         MatrixXd{{1}, {1}, {0}}, MatrixXd{{0, 0, 1}}));
+  CHECK(!inner.order.decided());
+  CHECK(inner.order.lowest <= 2);
+  CHECK(inner.order.highest == 3);
+  CHECK(to_string(inner.order).find("its pole is at 0") != std::string::npos);
   // A double integrator, and one beside an oscillation.
   CHECK(minimize(model(MatrixXd{{0, 1}, {0, 0}}, MatrixXd{{0}, {1}}, MatrixXd{{1, 0}}))
             .order.decided());
@@ -119,6 +120,15 @@ TEST_CASE("poles at 0: needed where ranks show it, else undecided") {
                      MatrixXd{{0}, {1}, {0}, {1}}, MatrixXd{{1, 0, 1, 0}}));
   CHECK(mixed.order.decided());
   CHECK(mixed.order.order == 4);
+}
+
+TEST_CASE("states of any size that act on no other: what one input does to one hides no other") {
+  // 1e-1 * 1e3 / (s + 20), and a pole that is pushed by 1e16 and seen by nobody, or by 1e-16.
+  const MatrixXd A{{-20, 0}, {0, -10}}, B{{0.1}, {1e16}};
+  CHECK(minimize(model(A, B, MatrixXd{{1000, 0}})).model.order() == 1);
+  const Minimized both = minimize(model(A, B, MatrixXd{{1000, 1e-16}}));
+  CHECK(both.model.order() == 2);
+  CHECK(both.order.decided());
 }
 
 TEST_CASE("equal real poles are turned until what no input moves stands alone") {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+/// Which rows of a small matrix say something of their own, in any units. For the compiler's own
+/// files.
+namespace titop::modes {
+
+/// Rows that no others make, and those that these make: M(out) = T M(keep).
+struct IndependentRows {
+  struct Row {
+    int row = 0;
+    double own = 0;    ///< what the others do not make, of its size
+    double bound = 0;  ///< what rounding alone may have made of that
+  };
+  std::vector<int> keep;
+  std::vector<Row> out;
+  Eigen::MatrixXd T;          ///< out x keep
+  std::vector<Row> doubtful;  ///< of `keep`: rounding may be all that they have of their own
+};
+
+/// `rounding`: what rounding may have put into each entry. A row leaves if what is its own lies
+/// below 32 times that, and that is below 1e-9 of the row, or, of a row that is nothing but
+/// rounding, of `terms`, what its entries are sums of. A row is in doubt below 1e4 times its
+/// rounding. Rows of lower `level` make those of the same and of higher ones, and not the other way
+/// round. Rows and columns are scaled first: their units do not matter. O(rows^3 columns).
+IndependentRows independent_rows(const Eigen::MatrixXd& M, const Eigen::MatrixXd& rounding,
+                                 const Eigen::MatrixXd& terms, const std::vector<int>& level);
+
+}  // namespace titop::modes
