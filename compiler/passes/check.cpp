@@ -195,6 +195,27 @@ bool overlap(const Equation& a, const Equation& b) {
   return (a.part.rows * b.part.rows.transpose()).cwiseAbs().maxCoeff() > 1e-12;
 }
 
+/// Two driven parts that share some of their directions, and not all of them.
+bool oblique(const Equation& a, const Equation& b) {
+  if (a.part.whole() || b.part.whole()) return false;
+  const Eigen::MatrixXd &A = a.part.rows, &B = b.part.rows;
+  const Eigen::MatrixXd left = B - B * A.transpose() * A;
+  return left.rowwise().norm().minCoeff() > 1e-9;
+}
+
+/// The direction of b that is at right angles to a, where both are one: "(0, 0.6, 0.8)".
+std::string oblique_way_out(const Equation& a, const Equation& b) {
+  const Eigen::MatrixXd &A = a.part.rows, &B = b.part.rows;
+  if (A.rows() != 1 || B.rows() != 1) return "drive parts that are at right angles to each other";
+  const Eigen::RowVectorXd left = (B - B * A.transpose() * A).normalized();
+  const Eigen::Index first =
+      left.size() == 6 && left.head(3).norm() < left.tail(3).norm() ? Eigen::Index{3} : 0;
+  return fmt::format(
+      "drive directions at right angles: in place of the second its part across the first, "
+      "({:.6g}, {:.6g}, {:.6g})",
+      left(first), left(first + 1), left(first + 2));
+}
+
 std::string free_way_out(const Graph& graph, const Channel& channel) {
   const std::string name = channel_name(graph, static_cast<int>(&channel - graph.channels.data()));
   const std::string accel = name_of(graph, channel.accel), force = name_of(graph, channel.force);
@@ -227,6 +248,13 @@ void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
       if (!overlap(a, b)) continue;
       clash = true;
       const bool same = a.target == b.target;
+      if (oblique(b, a)) {
+        c.add(Code::two_equations,
+              fmt::format("{}{} and {}{} are both driven, and are not at right angles",
+                          name_of(g, b.target), b.part.name, name_of(g, a.target), a.part.name),
+              {line(print(g, b), b.where), line(print(g, a), a.where)}, oblique_way_out(b, a));
+        continue;
+      }
       c.add(Code::two_equations,
             same ? fmt::format("{} is driven twice", name_of(g, a.target))
                  : fmt::format("{} is driven on both sides, acceleration and force",

@@ -86,6 +86,17 @@ TEST_CASE("no-equation: a channel that is driven in part says what is left") {
   CHECK(compile_error(d).has(Code::two_equations));
 }
 
+TEST_CASE("two directions of one point that are not at right angles: which one to take instead") {
+  Diagram d{"oblique"};
+  auto A = d.add("A", RigidBody{});
+  A.parent.accel.along({1, 0, 0}) = 0;
+  A.parent.accel.along({1, 1, 0}) = 0;
+  d.output("a", 6) = A.parent.accel;
+  CHECK(says(compile_error(d), Code::two_equations,
+             {"A.parent.accel.linear.along(1, 0, 0)", "A.parent.accel.linear.along(1, 1, 0)",
+              "not at right angles", "(0, 1, 0)"}));
+}
+
 TEST_CASE("two-equations: outputs and one-way ports") {
   Diagram d{"scene"};
   auto u = d.input("u");

@@ -103,6 +103,26 @@ Diagram triangle() {
   return d;
 }
 
+/// Two chains, free in space: of one a position that the states hold already is integrated again,
+/// of the other only a difference of positions is read.
+Diagram free_chains() {
+  Diagram d{"free chains"};
+  auto u = d.input("u"), v = d.input("v");
+  auto a = d.add("a", SpringMass{.mass = 1, .stiffness = 10, .damping = 0.1, .parent_mass = 2});
+  auto c = d.add("c", SpringMass{.mass = 4, .stiffness = 50, .damping = 0.2, .parent_mass = 3});
+  auto f = d.add("f", Lti{.A = Eigen::MatrixXd{{0, 1}, {0, 0}},
+                          .B = Eigen::MatrixXd{{0}, {1}},
+                          .C = Eigen::MatrixXd::Identity(2, 2)});
+  a.parent.force = u;
+  a.child.force = -v;
+  c.parent.force = v;
+  f.in = a.child.accel;
+  d.output("x", 2) = f.out;
+  d.output("root") = a.parent.position;
+  d.output("relative") = c.child.position - c.parent.position;
+  return d;
+}
+
 int faults(const System& system, const std::string& name) {
   const FullCertificate c = certify(system, {.points = 12});
   if (c.holds()) return 0;
@@ -126,9 +146,10 @@ int run() {
   if (check(near_singular(), "near singular")) return 1;
   if (check(no_mass(), "no mass")) return 1;
   if (check(triangle(), "triangle")) return 1;
+  if (check(free_chains(), "free chains")) return 1;
   for (const double off : {0.0, 1e-3})
     if (check(in_tune(off), "in tune but for " + std::to_string(off))) return 1;
-  for (const std::uint64_t seed : {3U, 15U, 27U, 42U})
+  for (const std::uint64_t seed : {3U, 15U, 27U})
     if (check(titop_test::random_scene(titop_test::random_options(seed)).build(),
               "random " + std::to_string(seed)))
       return 1;
