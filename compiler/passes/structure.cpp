@@ -5,6 +5,7 @@
 #include <set>
 #include <titop/compiler/passes/matching.hpp>
 #include <titop/compiler/passes/union_find.hpp>
+#include <titop/compiler/some_names.hpp>
 
 /// The structurally singular part, in the user's words.
 namespace titop::passes {
@@ -41,10 +42,9 @@ std::vector<char> too_few(const Incidence& inc, const Matching& m) {
   return seen;
 }
 
+/// For the first line: all of them stand below it, one by one.
 std::string joined(const std::set<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
+  return detail::some_names(std::vector<std::string>(names.begin(), names.end()));
 }
 
 /// One independent part: equations too many, signals that nothing determines, or both.
@@ -123,6 +123,15 @@ struct Singular {
     return result;
   }
 
+  /// The equation sets a motion or a force, and joins no points: where some do, one of them is the
+  /// mistake more likely than how the bodies hang together.
+  bool imposes(int equation) const {
+    const std::vector<Term>& terms = g.equations[at(equation)].terms;
+    return std::none_of(terms.begin(), terms.end(), [&](const Term& t) {
+      return t.signal >= 0 && g.signals[at(t.signal)].channel >= 0;
+    });
+  }
+
   std::string describe(const Row& row) const {
     if (row.equation < 0)
       return fmt::format("what {} gives at {}", g.nodes[at(row.node)].name, name_of(g, row.output));
@@ -150,9 +159,12 @@ struct Singular {
       result.message +=
           fmt::format("{}{} missing there: {}", p.too_many > 0 ? "; " : "",
                       p.too_few == 1 ? "one is" : fmt::format("{} are", p.too_few), joined(there));
+    const bool imposed =
+        std::any_of(p.cures.begin(), p.cures.end(), [&](int e) { return imposes(e); });
     for (const int e : p.cures)
-      sides.insert(fmt::format("{} instead of {}", name_of(g, other_side(e)),
-                               name_of(g, g.equations[at(e)].target)));
+      if (imposes(e) || !imposed)
+        sides.insert(fmt::format("{} instead of {}", name_of(g, other_side(e)),
+                                 name_of(g, g.equations[at(e)].target)));
     result.hint = sides.empty() ? "leave out one of these equations, or give the blocks between "
                                   "them modes or joints to move by"
                                 : "drive the other side of one of these channels: " + joined(sides);

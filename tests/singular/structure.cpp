@@ -52,6 +52,22 @@ TEST_CASE("structure: equations too many, signals missing, and cures that repair
     CHECK(compile_error(imposed(cure)).mistakes().empty());
 }
 
+TEST_CASE(
+    "structure: what imposes the motion is named as the cure, not how the bodies hang together") {
+  Diagram d{"chain"};
+  auto a = d.add("a", brick()), b = d.add("b", brick()), c = d.add("c", brick());
+  a.parent.accel = 0;
+  mount(b, a.child);
+  mount(c, b.child);
+  c.child.accel = d.input("U", 6);
+  d.output("y", 6) = b.parent.accel;
+  const Error e = compile_error(d);
+  CHECK(says(e, Code::structure,
+             {"a.parent.force instead of a.parent.accel",
+              "c.child(\"C\").force instead of c.child(\"C\").accel", "b.parent.accel = a.child"}));
+  CHECK(e.mistakes().front().hint.find("b.parent") == std::string::npos);
+}
+
 TEST_CASE("structure: two bodies imposed twice are two mistakes") {
   const Error e = compile_error(imposed(Cure::none, "B", imposed(Cure::none)));
   REQUIRE(e.mistakes().size() == 2);
