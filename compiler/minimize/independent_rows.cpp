@@ -13,8 +13,7 @@ using Eigen::VectorXd;
 constexpr double kRounding = 32;     ///< times the largest of a few samples of it
 constexpr double kClearly = 1e4;     ///< times rounding: not made by it
 constexpr double kFewDigits = 1e-9;  ///< of a row: where rounding is more, nothing leaves
-
-constexpr double kOfNoise = 1e12;  ///< times rounding: what it counts for where rows are scaled
+constexpr double kOfNoise = 1e12;    ///< times rounding: what it counts for where rows are scaled
 
 /// What brings the largest entries of all rows and columns to 1 [Ruiz 2001].
 struct Factors {
@@ -114,6 +113,7 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
       r.doubtful.push_back({i, own, bound});
   }
   std::sort(r.keep.begin(), r.keep.end());
+  std::sort(r.out.begin(), r.out.end(), [](const auto& a, const auto& b) { return a.row < b.row; });
   r.T = MatrixXd::Zero(std::ssize(r.out), std::ssize(r.keep));
   for (std::size_t i = 0; i < r.out.size(); ++i) {
     const IndependentRows::Row& out = r.out[i];

@@ -14,7 +14,7 @@ struct IndependentRows {
     double own = 0;    ///< what the others do not make, of its size
     double bound = 0;  ///< what rounding alone may have made of that
   };
-  std::vector<int> keep;
+  std::vector<int> keep;  ///< ascending, as `out`
   std::vector<Row> out;
   Eigen::MatrixXd T;          ///< out x keep
   std::vector<Row> doubtful;  ///< of `keep`: rounding may be all that they have of their own

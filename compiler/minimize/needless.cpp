@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/minimize/clusters.hpp>
 #include <titop/compiler/minimize/independent_rows.hpp>
 #include <titop/compiler/minimize/needless.hpp>
@@ -11,8 +10,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr int kSamples = 4;
-constexpr double kRounding = 32;  ///< times the largest sample
 constexpr double kHides = 1e-11;  ///< of a row: what more rounding than that may hide counts
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -35,25 +32,14 @@ int powers_of(const MatrixXd& N) {
   return count;
 }
 
-/// How many steps each integrator is away from those that no integrator acts on; `sign` -1: counted
-/// downwards.
-std::vector<int> levels(const MatrixXd& N, int sign) {
+/// How many steps each integrator is away from those on which no integrator acts.
+std::vector<int> levels(const MatrixXd& N) {
   std::vector<int> level(static_cast<std::size_t>(N.rows()), 0);
   for (Index sweep = 0; sweep < N.rows(); ++sweep)
     for (int i = 0; i < N.rows(); ++i)
       for (int j = 0; j < N.cols(); ++j)
         if (N(i, j) != 0) level[at(i)] = std::max(level[at(i)], level[at(j)] + 1);
-  for (int& l : level) l *= sign;
   return level;
-}
-
-/// Largest deviation from `value` among what `f` makes of the samples. They show what rounding of
-/// the entries does; where sums cancel, the sum's own may be more, and be the same in all.
-template <class Sample, class F>
-MatrixXd rounding_of(const std::vector<Sample>& samples, const MatrixXd& value, const F& f) {
-  MatrixXd most = MatrixXd::Zero(value.rows(), value.cols());
-  for (const Sample& off : samples) most = most.cwiseMax((f(off) - value).cwiseAbs());
-  return most;
 }
 
 /// A model and its samples, decoupled.
@@ -73,38 +59,14 @@ std::optional<Apart> apart(const Sampled& s, const Integrated& states) {
   return result;
 }
 
-MatrixXd cleared(const MatrixXd& value, const MatrixXd& rounding) {
-  return (value.array().abs() <= kRounding * rounding.array()).select(0.0, value);
-}
-
-/// Entries that rounding alone may have made are 0 from here on.
-void clear_rounding(Sampled& s) {
-  for (MatrixXd StateSpace::*part : {&StateSpace::A, &StateSpace::B, &StateSpace::C}) {
-    MatrixXd& entries = s.model.*part;
-    entries = cleared(
-        entries, rounding_of(s.off, entries, [&](const StateSpace& off) { return off.*part; }));
-  }
-}
-
-/// Coefficients of a sample: what was solved for has rounding of its own.
-MatrixXd jittered(MatrixXd T, int sample) {
-  detail::SteadyRandom random(kSamples + 1 + sample);
-  for (Index c = 0; c < T.cols(); ++c)
-    for (Index r = 0; r < T.rows(); ++r) T(r, c) *= 1 + 4 * kEps * random.unit();
-  return T;
-}
-
-/// The integrators that leave: as states of the model in ascending order, where they stand among
-/// the integrators, and where among `out`.
+/// The integrators that leave: where they stand among the integrators, and as states of the model.
 struct Leaving {
-  std::vector<int> states, rows, order;
+  std::vector<int> rows, states;
   Leaving(const IndependentRows& independent, const Integrated& of) {
-    const auto& out = independent.out;
-    for (int i = 0; i < std::ssize(out); ++i) order.push_back(i);
-    std::sort(order.begin(), order.end(),
-              [&](int a, int b) { return out[at(a)].row < out[at(b)].row; });
-    for (const int i : order) rows.push_back(out[at(i)].row);
-    for (const int i : rows) states.push_back(of.integrators[at(i)]);
+    for (const IndependentRows::Row& out : independent.out) {
+      rows.push_back(out.row);
+      states.push_back(of.integrators[at(out.row)]);
+    }
   }
 };
 
@@ -138,7 +100,7 @@ IndependentRows moved(const StateSpace& model, const Apart& d, const Integrated&
   const MatrixXd K = moved_by(d.model),
                  terms = driven(d.model.N.cwiseAbs(), terms_of_B(model, states), powers);
   const MatrixXd rounding = rounding_of(d.off, K, moved_by).cwiseMax(kEps * terms);
-  return independent_rows(K, rounding, terms, levels(d.model.N, 1));
+  return independent_rows(K, rounding, terms, levels(d.model.N));
 }
 
 /// States that follow from the others: out = T keep + (X_out - T X_keep) rest.
@@ -149,7 +111,7 @@ bool take_out_undriven(Sampled& s, const Integrated& states, Needless& n) {
   report(rows, "no input moves it", n);
   if (rows.out.empty()) return true;
   const Leaving leaving(rows, states);
-  const MatrixXd T = rows.T(leaving.order, Eigen::all);
+  const MatrixXd& T = rows.T;
   const auto by_rest = [&](const Decoupled& part) {
     return MatrixXd(part.X(leaving.rows, Eigen::all) - T * part.X(rows.keep, Eigen::all));
   };
@@ -161,7 +123,7 @@ bool take_out_undriven(Sampled& s, const Integrated& states, Needless& n) {
                           on_others(clear, states.rest, all, leaving.states);
   n.notes.push_back(note_of_dependent(s.model, leaving.states));
   take_out_dependent(s.model, leaving.states, follow);
-  for (int i = 0; i < kSamples; ++i)
+  for (int i = 0; i < std::ssize(s.off); ++i)
     take_out_dependent(s.off[at(i)], leaving.states, jittered(follow, i));
   clear_rounding(s);
   return true;
@@ -179,42 +141,21 @@ void take_out_unseen(Sampled& s, const Integrated& states, Needless& n) {
   const MatrixXd O = seen(s.model), rounding = rounding_of(s.off, O, seen);
   // Of entries that are 0 it is not known what cancels.
   const MatrixXd any = MatrixXd::Zero(O.rows(), O.cols());
-  const IndependentRows rows =
-      independent_rows(O, rounding, any, levels(part(s.model).transpose(), -1));
+  const IndependentRows rows = independent_rows(O, rounding, any, levels(part(s.model)));
   report(rows, "no output sees it", n);
   if (rows.out.empty()) return;
   const Leaving leaving(rows, states);
   const MatrixXd P =
-      on_others(rows.T(leaving.order, Eigen::all), pick(states.integrators, rows.keep),
-                s.model.A.rows(), leaving.states)
+      on_others(rows.T, pick(states.integrators, rows.keep), s.model.A.rows(), leaving.states)
           .transpose();
   n.notes.push_back(note_of_unseen(s.model, leaving.states));
   modes::take_out_unseen(s.model, leaving.states, P);
-  for (int i = 0; i < kSamples; ++i)
+  for (int i = 0; i < std::ssize(s.off); ++i)
     modes::take_out_unseen(s.off[at(i)], leaving.states, jittered(P, i));
   clear_rounding(s);
 }
 
 }  // namespace
-
-Sampled sampled(const StateSpace& model, const StateSpace& rounding) {
-  Sampled s{model, {}};
-  for (int i = 1; i <= kSamples; ++i) {
-    detail::SteadyRandom random(i);
-    StateSpace off = model;
-    const auto add = [&](MatrixXd& m, const MatrixXd& sizes) {
-      for (Index c = 0; c < m.cols(); ++c)
-        for (Index r = 0; r < m.rows(); ++r)
-          m(r, c) += (sizes.size() ? sizes(r, c) : kEps * std::abs(m(r, c))) * random.unit();
-    };
-    add(off.A, rounding.A);
-    add(off.B, rounding.B);
-    add(off.C, rounding.C);
-    add(off.D, rounding.D);
-    s.off.push_back(std::move(off));
-  }
-  return s;
-}
 
 std::optional<StateSpace> decoupled_rest(const Sampled& s, const Integrated& states) {
   const std::optional<Apart> d = apart(s, states);

@@ -3,19 +3,12 @@
 #include <string>
 #include <titop/compiler/minimize.hpp>
 #include <titop/compiler/minimize/integrators.hpp>
+#include <titop/compiler/minimize/sampled.hpp>
 #include <vector>
 
 /// Integrators that the transfer does not need: rigid motions that nothing drives or that cancel in
 /// all outputs, positions that the other states hold already. For the compiler's own files.
 namespace titop::modes {
-
-/// A model, and as it might be as well: rounding of the given sizes added to its entries.
-struct Sampled {
-  StateSpace model;
-  std::vector<StateSpace> off;
-};
-/// `rounding`: of every entry; empty: 2.2e-16 of it. Four samples from fixed seeds.
-Sampled sampled(const StateSpace& model, const StateSpace& rounding);
 
 /// The rest of a decoupled model (integrators.hpp); entries are 0 that rounding alone may have
 /// made. None where the rest has a pole at 0 too.

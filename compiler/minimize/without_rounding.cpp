@@ -1,5 +1,6 @@
 #include <limits>
 #include <titop/compiler/instant.hpp>
+#include <titop/compiler/minimize/sampled.hpp>
 
 /// Entries of a dense model that are nothing but rounding.
 namespace titop::detail {
@@ -8,7 +9,6 @@ Rounded without_rounding(const SystemData& d, StateSpace m) {
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
   // Rounding is as large as its samples are, but for luck: of four, none is small.
   constexpr int kSamples = 4;
-  constexpr double kTimes = 32;
   using solve::RowMatrix;
   const Eigen::Index n = m.A.rows(), all = n + m.B.cols();
   const RowMatrix<double> one = RowMatrix<double>::Identity(all, all), u = one.bottomRows(all - n);
@@ -28,17 +28,14 @@ Rounded without_rounding(const SystemData& d, StateSpace m) {
   y_written << m.C, m.D;
   of_x = d.states.kept_rows(of_x).cwiseMax((d.states.kept_rows(now.xdot()) - x_written).cwiseAbs());
   of_y = of_y.cwiseMax((now.outputs() - y_written).cwiseAbs());
-  const auto clear = [&](Eigen::MatrixXd& entries, const Eigen::MatrixXd& rounding) {
-    entries = (entries.array().abs() <= kTimes * rounding.array()).select(0.0, entries);
-  };
   StateSpace rounding{of_x.leftCols(n), of_x.rightCols(all - n),
                       of_y.leftCols(n), of_y.rightCols(all - n),
                       m.states,         m.inputs,
                       m.outputs};
-  clear(m.A, rounding.A);
-  clear(m.B, rounding.B);
-  clear(m.C, rounding.C);
-  clear(m.D, rounding.D);
+  m.A = modes::cleared(m.A, rounding.A);
+  m.B = modes::cleared(m.B, rounding.B);
+  m.C = modes::cleared(m.C, rounding.C);
+  m.D = modes::cleared(m.D, rounding.D);
   return {std::move(m), std::move(rounding)};
 }
 
