@@ -6,6 +6,7 @@
 #include <titop/compiler/minimize/needless.hpp>
 #include <titop/compiler/minimize/take_out.hpp>
 #include <titop/compiler/name_order.hpp>
+#include <titop/graph/error.hpp>
 
 namespace titop {
 namespace {
@@ -82,8 +83,9 @@ Minimized minimize_beside(const modes::Sampled& sampled, const modes::Integrated
   const StateSpace& model = sampled.model;
   Minimized result = minimize_as_it_stands(rest, options);
   const Minimized coupled =
-      minimize_as_it_stands(modes::without_integrators(model, states), options);
-  if (coupled.model.order() < result.model.order()) result = coupled;
+      minimize_as_it_stands(modes::without_integrators(model, states),
+                            {.resolution = options.resolution, .energy = options.energy});
+  if (coupled.model.order() < result.model.order() && !result.order.exact) result = coupled;
   if (coupled.model.order() == result.model.order()) {
     result.notes = coupled.notes;
     result.model = modes::with_integrators(coupled.model, model, states);
@@ -104,11 +106,13 @@ Minimized minimize_needed(const modes::Sampled& sampled, const MinimizeOptions& 
                           .energy = energy_of_rest};
   const modes::Integrated states = modes::find_integrators(sampled.model);
   if (states.integrators.empty()) return minimize_as_it_stands(sampled.model, of_rest);
+  const int k = static_cast<int>(states.integrators.size());
   const auto rest = modes::decoupled_rest(sampled, states);
-  if (options.exact_order >= 0 || !rest) {
+  if (!rest || (options.exact_order >= 0 && options.exact_order < k)) {
     of_rest.energy.resize(0, 0);
     return minimize_as_it_stands(sampled.model, of_rest);
   }
+  if (options.exact_order >= 0) of_rest.exact_order = options.exact_order - k;
   return minimize_beside(sampled, states, *rest, of_rest);
 }
 
@@ -179,6 +183,9 @@ std::string to_string(const OrderVerdict& v) {
 }
 
 Minimized minimize(const StateSpace& model, const MinimizeOptions& given) {
+  if (!model.A.allFinite() || !model.B.allFinite() || !model.C.allFinite() || !model.D.allFinite())
+    throw Error(Code::not_finite, "minimize: entries of the model are not finite",
+                "look for overflow in the data");
   MinimizeOptions options = given;
   options.rounding = fitting(given.rounding, model);
   // By name, so that the last bits do not depend on the order in which the diagram was written.

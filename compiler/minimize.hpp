@@ -22,7 +22,7 @@ struct MinimizeOptions {
 struct JudgedMode {
   double omega = 0;   ///< |s| [rad/s]
   int states = 1;     ///< 2 for a pair of poles
-  double visibility;  ///< see `minimize`
+  double visibility;  ///< see `minimize`; of an integrator: what no other makes of its row
   double bound;       ///< what rounding alone may have made of it
   std::string why;    ///< "no input moves it", "no output sees it", "its pole is at 0", ...
 };
@@ -77,12 +77,12 @@ struct Minimized {
 /// Undamped or proportionally damped models are treated as symmetric eigenproblems (l = omega^2),
 /// those of closed chains with the help of their energy,
 /// the others by the eigenvalues of A (l = s) and the condition numbers of these; poles at 0 and
-/// ill-conditioned ones stay. Integrators that act on nothing else, of positions and rates that
-/// outputs read, are taken apart, and both parts judged by themselves: zdot = N z + B u is what no
-/// mode moves of them, and the ranks of [B, N B, ...] and [C; C N; ...] say which of them follow
-/// from other states (a position that these hold already) and which no output sees apart from
-/// others (the common motion, where outputs read differences). A rank is decided against four
-/// samples of rounding, 32 times the largest. The verdict's interval counts
+/// ill-conditioned ones stay, with all that share their pole. Integrators that act on nothing else,
+/// of positions and rates that outputs read, are taken apart, and both parts judged by themselves:
+/// zdot = N z + B u is what no mode moves of them, and the ranks of [B, N B, ...] and [C; C N; ...]
+/// say which of them follow from other states (a position that these hold already) and which no
+/// output sees apart from others (the common motion, where outputs read differences). A rank is
+/// decided against four samples of rounding, 32 times the largest. The verdict's interval counts
 ///  - upwards, dropped modes above their own rounding bound, which are there, however little they
 ///    do, and those whose bound is above 1e-14, where something might hide;
 ///  - downwards, kept modes below 1e-9 within 1e4 of their bound; integrators within 1e4 of their
@@ -94,7 +94,7 @@ struct Minimized {
 /// units of the model the verdict is the same but for what rounding decides, and that counts as
 /// undecided. `System::state_space` first sets entries to 0 that its factors cannot tell from 0
 /// (32 times the largest of four samples of rounding). With `exact_order` the least visible modes
-/// leave until the order is that one. Cost O(n^3).
+/// leave until the order is that one. Cost O(n^3). Throws not_finite for entries that are not.
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options = {});
 
 }  // namespace titop

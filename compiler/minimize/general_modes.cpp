@@ -64,7 +64,26 @@ void find_clusters(const linalg::Eigensystem& e, double noise, double resolution
   }
 }
 
-void turn_clusters(const StateSpace& model, const ModeSet& m, linalg::Eigensystem& e) {
+constexpr double kIll = 1e6;  ///< condition number of an eigenvalue that is not judged
+
+/// Condition numbers of the eigenvalues, the states in their own sizes; within a cluster the
+/// largest counts for all: beside a Jordan block of the same pole no vector is a mode of its own.
+VectorXd conditions(const linalg::Eigensystem& e, const ModeSet& m) {
+  const VectorXd left = (e.W * e.scale.asDiagonal()).rowwise().norm(),
+                 right = (e.scale.cwiseInverse().asDiagonal() * e.V).colwise().norm();
+  const Index n = e.values.size();
+  std::vector<double> worst(at(n), 0);
+  for (Index j = 0; j < n; ++j) {
+    const double own = left(j) * right(j);
+    double& most = worst[at(m.cluster[at(j)])];
+    most = own <= most ? most : own;  // not a number: stays one
+  }
+  return VectorXd::NullaryExpr(n, [&](Index j) { return worst[at(m.cluster[at(j)])]; });
+}
+
+/// Of the clusters that are well-conditioned.
+void turn_clusters(const StateSpace& model, const ModeSet& m, const VectorXd& condition,
+                   linalg::Eigensystem& e) {
   const Index n = e.values.size();
   for (Index first = 0; first < n; ++first) {
     std::vector<Index> members, partners;
@@ -76,6 +95,7 @@ void turn_clusters(const StateSpace& model, const ModeSet& m, linalg::Eigensyste
       (e.values(j).imag() > 0 ? complex : real) = true;
     }
     if (members.size() < 2 || members.front() != first || (real && complex)) continue;
+    if (!(condition(first) <= kIll)) continue;
     const MatrixXcd b = unit_columns(MatrixXcd(e.W(members, Eigen::all) * model.B));
     const MatrixXcd c = unit_columns(MatrixXcd((model.C * e.V(Eigen::all, members)).adjoint()));
     const MatrixXcd U = turn(b, c);
@@ -113,7 +133,7 @@ void set_apart(const VectorXd& condition, double size, ModeSet& m) {
   for (Index j = 0; j < n; ++j) {
     if (m.lambda(j) <= 1e9 * kEps * largest)
       m.apart[at(j)] = kAtZero;
-    else if (!(condition(j) <= 1e6))
+    else if (!(condition(j) <= kIll))
       m.apart[at(j)] = "it is ill-conditioned, as multiple poles are";
   }
 }
@@ -151,7 +171,8 @@ General general_modes(const StateSpace& model, double resolution) {
       find_parts(model.A, unit_columns(right_sizes).cwiseMax(unit_columns(left_sizes)), m);
   keep_to_parts(parts, e.V);
   keep_to_parts(parts, e.W.transpose());
-  turn_clusters(model, m, e);
+  const VectorXd condition = conditions(e, m);
+  turn_clusters(model, m, condition, e);
   m.b = (e.W * model.B).cwiseAbs();
   m.c = (model.C * e.V).transpose().cwiseAbs();
   balance_sides(parts, m);
@@ -160,7 +181,7 @@ General general_modes(const StateSpace& model, double resolution) {
   const VectorXd left = (e.W * e.scale.asDiagonal()).rowwise().norm(),
                  right = (e.scale.cwiseInverse().asDiagonal() * e.V).colwise().norm();
   find_mixing(e, left, right, size, m);
-  set_apart(left.cwiseProduct(right), size, m);
+  set_apart(condition.cwiseMax(left.cwiseProduct(right)), size, m);
   find_needed(balanced, e.scale.cwiseInverse().asDiagonal() * model.B,
               model.C * e.scale.asDiagonal(), m);
   return g;

@@ -92,6 +92,41 @@ TEST_CASE("random integrators in whole numbers: the order is the exact one, the 
   CHECK(fewer < 1900);
 }
 
+TEST_CASE("Jordan blocks beside integrators: what is not told apart stays, with all of its pole") {
+  int blocks = 0;
+  for (int seed = 0; seed < 1000; ++seed) {
+    CAPTURE(seed);
+    titop_test::Rng rng(static_cast<std::uint64_t>(seed));
+    StateSpace m = whole_numbers(rng);
+    // The same with one pole in place of up to three.
+    for (Index i = 0; i < m.A.rows(); ++i)
+      if (m.A(i, i) != 0) m.A(i, i) = -1, ++blocks;
+    const int exact = exact_order(m).order;
+    const Minimized r = minimize(m);
+    CHECK(r.model.order() >= exact);
+    CHECK(r.order.lowest <= exact);
+    CHECK(r.order.highest >= exact);
+    const std::complex<double> s(0.3, 0.7);
+    const MatrixXcd before = m.transfer(s), after = r.model.transfer(s);
+    CHECK((before - after).cwiseAbs().maxCoeff() <=
+          1e-12 * std::max(1.0, before.cwiseAbs().maxCoeff()));
+    // Asked for the exact order: no less, and the same transfer.
+    const Minimized asked = minimize(m, {.exact_order = exact});
+    CHECK(asked.model.order() >= exact);
+    CHECK((before - asked.model.transfer(s)).cwiseAbs().maxCoeff() <=
+          1e-6 * std::max(1.0, before.cwiseAbs().maxCoeff()));
+  }
+  CHECK(blocks > 1000);
+}
+
+TEST_CASE("entries that are not finite are refused") {
+  for (MatrixXd StateSpace::*part : {&StateSpace::A, &StateSpace::B, &StateSpace::C}) {
+    StateSpace m = model(MatrixXd::Zero(2, 2), MatrixXd::Ones(2, 1), MatrixXd::Ones(1, 2));
+    (m.*part)(0, 0) = std::nan("");
+    CHECK_THROWS_AS(minimize(m), Error);
+  }
+}
+
 TEST_CASE("in other units of states, inputs, outputs and time the same integrators count") {
   int missed = 0;
   for (int seed = 0; seed < 500; ++seed) {
