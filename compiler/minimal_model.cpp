@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/exact/of_stage.hpp>
+#include <titop/compiler/minimize/effect.hpp>
 #include <titop/compiler/system_data.hpp>
 
 /// The dense model of a system, minimized: nothing is removed on trust.
@@ -23,46 +24,6 @@ int exact_order_of(const SystemData& d, int states) {
                             {.states = 4 * d.skeleton->options.exact_up_to}, d.numbers.parameters);
   d.dense_notes.push_back({Note::Kind::info, "minimize", to_string(exact)});
   return exact.decided ? exact.order : -1;
-}
-
-/// Beside the slowest, a middle and the fastest of the modes that leave, and the most visible one;
-/// for integrators, at `s` and far below.
-std::vector<std::complex<double>> near_modes(std::vector<JudgedMode> modes,
-                                             std::complex<double> s) {
-  constexpr double kBelow = 1e-3;
-  const auto integrators = std::stable_partition(modes.begin(), modes.end(),
-                                                 [](const JudgedMode& m) { return m.omega > 0; });
-  if (integrators != modes.end()) {
-    modes.erase(integrators, modes.end());
-    std::vector<std::complex<double>> points{s, kBelow * s};
-    if (modes.empty()) return points;
-    const auto others = near_modes(modes, s);
-    points.insert(points.end(), others.begin(), others.end());
-    return points;
-  }
-  std::sort(modes.begin(), modes.end(),
-            [](const JudgedMode& a, const JudgedMode& b) { return a.omega < b.omega; });
-  const auto most = std::max_element(
-      modes.begin(), modes.end(),
-      [](const JudgedMode& a, const JudgedMode& b) { return a.visibility < b.visibility; });
-  std::vector<std::complex<double>> points;
-  for (const double omega :
-       {modes.front().omega, modes[modes.size() / 2].omega, modes.back().omega, most->omega})
-    points.emplace_back(0.1 * omega, omega);
-  return points;
-}
-
-/// The verdict where its modes stay after all. A mode of visibility v changes the transfer by up to
-/// 10 v at these points: where some that were judged not to matter did more, the verdict keeps the
-/// change that was measured, although nothing is removed, and the certificate calls it a fault.
-OrderVerdict back_to(int order, double judged, OrderVerdict v) {
-  v.order = v.highest = order;
-  v.undecided.insert(v.undecided.end(), v.removed.begin(), v.removed.end());
-  v.removed.clear();
-  v.to_fewer = std::min(v.to_fewer, v.to_more);
-  v.to_more = 0;
-  if (v.change <= 100 * judged) v.change = -1;  // rounding
-  return v;
 }
 
 /// Part of an entry of the transfer in which finer arithmetic and the dense model must agree for
@@ -142,14 +103,14 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
                                 .exact_order = exact_order_of(d, dense.order()),
                                 .energy = d.states.trivial() ? MatrixXd() : potential_energy(d),
                                 .rounding = rounding};
-  Minimized m = minimize(judged, options);
+  Minimized m = modes::minimize_unmeasured(judged, options);
   doubt_lost_digits(system, d, judged, options, m.order);
   if (d.dense_error.error > kFewDigits && !m.order.exact) m.order.highest = dense.order();
   if (!m.notes.empty()) m.notes.front() = to_string(m.order);
   const bool removed = !m.order.removed.empty();
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
     std::vector<MatrixXcd> before;
-    const std::vector<std::complex<double>> points = near_modes(m.order.removed, pick_s(d));
+    const std::vector<std::complex<double>> points = modes::near_modes(m.order.removed, pick_s(d));
     for (const std::complex<double> s : points) before.push_back(system.transfer(s));
     const std::vector<MatrixXcd> after = transfers(m.model, points);
     Measure by =
@@ -157,13 +118,10 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
     m.order.change = difference(after, before, by, system, points).relative;
     m.notes.front() = to_string(m.order);
   }
-  if (m.order.change > std::max(1e-8, 10 * resolution)) {
-    const OrderVerdict kept = back_to(dense.order(), std::max(1e-8, resolution), m.order);
+  if (modes::put_back(dense, resolution, m)) {
     d.dense_notes.push_back(
-        {Note::Kind::warning, "minimize",
-         fmt::format("nothing was removed, since that changes the transfer by {:.1e}: {}",
-                     m.order.change, to_string(kept))});
-    d.dense_order = kept;
+        {Note::Kind::warning, "minimize", fmt::format("{}: {}", m.notes.back(), m.notes.front())});
+    d.dense_order = std::move(m.order);
     return;
   }
   for (std::string& text : m.notes)

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <titop/compiler/minimize.hpp>
+#include <titop/compiler/minimize/effect.hpp>
 #include <titop/compiler/minimize/needless.hpp>
 #include <titop/compiler/minimize/take_out.hpp>
 #include <titop/compiler/name_order.hpp>
@@ -182,7 +183,7 @@ std::string to_string(const OrderVerdict& v) {
   return text;
 }
 
-Minimized minimize(const StateSpace& model, const MinimizeOptions& given) {
+Minimized modes::minimize_unmeasured(const StateSpace& model, const MinimizeOptions& given) {
   if (!model.A.allFinite() || !model.B.allFinite() || !model.C.allFinite() || !model.D.allFinite())
     throw Error(Code::not_finite, "minimize: entries of the model are not finite",
                 "look for overflow in the data");
@@ -197,6 +198,13 @@ Minimized minimize(const StateSpace& model, const MinimizeOptions& given) {
   if (options.rounding.A.size() > 0) sorted.rounding = by_name(options.rounding, *order);
   Minimized result = minimize_in_order(by_name(model, *order), sorted);
   result.model = as_before(result.model, model.states, *order);
+  return result;
+}
+
+Minimized minimize(const StateSpace& model, const MinimizeOptions& options) {
+  Minimized result = modes::minimize_unmeasured(model, options);
+  modes::measure_change(model, result);
+  modes::put_back(model, options.resolution, result);
   return result;
 }
 

@@ -69,10 +69,10 @@ struct Minimized {
 ///     v_j = max_k(|c_kj| / r_k) max_l(|b_jl| / q_l) / (2 l_j)
 ///
 /// Without it the transfer changes by at most v_j / zeta_j of what the others do there. A mode is
-/// dropped if its v lies below ten times its own rounding bound and below 1e-9, or below 1e-17, or
-/// below the resolution; in doubt it stays. Modes of equal frequency are turned among themselves
-/// first, so that what no input moves stands alone. A mode that no input moves becomes a relation
-/// between states, one that no output sees likewise: the rest keep name and meaning.
+/// dropped if its v lies below ten times its own rounding bound or 1e-17, and both below 1e-9, or
+/// if v lies below the resolution; in doubt it stays. Modes of equal frequency are turned among
+/// themselves first, so that what no input moves stands alone. A mode that no input moves becomes a
+/// relation between states, one that no output sees likewise: the rest keep name and meaning.
 ///
 /// Undamped or proportionally damped models are treated as symmetric eigenproblems (l = omega^2),
 /// those of closed chains with the help of their energy,
@@ -85,16 +85,18 @@ struct Minimized {
 /// decided against four samples of rounding, 32 times the largest. The verdict's interval counts
 ///  - upwards, dropped modes above their own rounding bound, which are there, however little they
 ///    do, and those whose bound is above 1e-14, where something might hide;
-///  - downwards, kept modes below 1e-9 within 1e4 of their bound; integrators within 1e4 of their
-///    rounding; ill-conditioned poles; other poles at 0 where the ranks of inputs and outputs there
-///    do not show that they are needed.
+///  - downwards, kept modes below 1e-9 within 1e4 of their bound, and any within ten times their
+///    bound; integrators within 1e4 of their rounding; ill-conditioned poles; other poles at 0
+///    where the ranks of inputs and outputs there do not show that they are needed.
 /// A decided order is that of all data which rounding tells from those given: what lies below its
 /// own bound (two frequencies one ulp apart) counts as nothing, and only exact arithmetic says if
 /// it is. Modes are vectors of one size in the states' own units (linalg::balance_parts): in other
 /// units of the model the verdict is the same but for what rounding decides, and that counts as
 /// undecided. `System::state_space` first sets entries to 0 that its factors cannot tell from 0
 /// (32 times the largest of four samples of rounding). With `exact_order` the least visible modes
-/// leave until the order is that one. Cost O(n^3). Throws not_finite for entries that are not.
+/// leave until the order is that one. The transfer is measured before and after, near the modes
+/// that left: if it has changed by more than 1e-8 and ten times the resolution, the whole model is
+/// the result, and the notes say so. Cost O(n^3). Throws not_finite for entries that are not.
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options = {});
 
 }  // namespace titop

@@ -75,10 +75,12 @@ Verdict judge(const ModeSet& m, Index j, double resolution) {
   v.visibility = b.size * c.size / (2 * m.lambda(j));
   v.bound = std::max(c.size * b.noise, b.size * c.noise) / (2 * m.lambda(j));
   v.unreachable = inputs && (!outputs || b.size <= c.size);
-  v.drop = (v.visibility <= 10 * v.bound && v.visibility <= kDoubtful) ||
-           v.visibility <= kNothing || v.visibility <= resolution;
-  v.doubtful =
-      !v.drop && v.visibility <= kDoubtful && v.visibility <= 1e4 * std::max(v.bound, kEps * kEps);
+  const bool nothing = v.visibility <= 10 * v.bound || v.visibility <= kNothing;
+  v.drop =
+      (nothing && v.visibility <= kDoubtful && v.bound <= kDoubtful) || v.visibility <= resolution;
+  const bool small =
+      v.visibility <= kDoubtful && v.visibility <= 1e4 * std::max(v.bound, kEps * kEps);
+  v.doubtful = !v.drop && (small || v.visibility <= 10 * v.bound);
   return v;
 }
 
@@ -105,15 +107,21 @@ bool drop_down_to(int exact, int order, const ModeSet& m, std::vector<Verdict>& 
   std::stable_sort(weakest.begin(), weakest.end(), [&](std::size_t a, std::size_t b) {
     return verdicts[a].visibility < verdicts[b].visibility;
   });
-  int left = order - exact;
-  for (Verdict& v : verdicts) v.drop = v.doubtful = false;
-  for (const std::size_t j : weakest) {
-    const bool may = m.apart[j].empty() && m.states[j] > 0 && verdicts[j].visibility <= kFarOff;
-    if (!may || m.states[j] > left) continue;
-    verdicts[j].drop = true;
-    left -= m.states[j];
-  }
-  return left == 0;
+  const std::vector<Verdict> judged = verdicts;
+  const auto drop = [&](const auto& may) {
+    int left = order - exact;
+    for (Verdict& v : verdicts) v.drop = v.doubtful = false;
+    for (const std::size_t j : weakest) {
+      if (!m.apart[j].empty() || m.states[j] == 0 || m.states[j] > left || !may(judged[j]))
+        continue;
+      verdicts[j].drop = true;
+      left -= m.states[j];
+    }
+    return left == 0;
+  };
+  if (drop([](const Verdict& v) { return v.visibility <= kFarOff; })) return true;
+  // The order does not say which modes leave then: those that would without it.
+  return drop([](const Verdict& v) { return v.drop; });
 }
 
 OrderVerdict sum_up(const std::vector<Verdict>& verdicts, const ModeSet& m, int order) {

@@ -51,30 +51,66 @@ std::string list(const std::vector<int>& out, const std::vector<std::string>& na
   return detail::some_names(of);
 }
 
-/// What leaves a model: relations W x = 0 (rows) that hold for all that inputs can do, and motions
-/// V (columns) that show in no output. `scale`: units of the states.
+/// Modes that leave a model by one of their sides.
+struct Side {
+  MatrixXd W;  ///< rows: of x, the modes' coordinates but for a factor
+  MatrixXd V;  ///< columns: their motions
+};
+
+/// What leaves a model: relations `undriven.W` x = 0 that hold for all that inputs can do, and
+/// motions `unseen.V` that show in no output. `scale`: units of the states.
 struct Leaving {
-  MatrixXd W, V;
+  Side undriven, unseen;
   VectorXd scale;
   double noise;
 };
 
+/// left right, without entries that are nothing but rounding of vectors of this size, the states in
+/// units of `scale`.
+MatrixXd cleared_product(const MatrixXd& left, const MatrixXd& right, const VectorXd& scale,
+                         double noise) {
+  const VectorXd l = (left * scale.asDiagonal()).rowwise().norm(),
+                 r = (scale.cwiseInverse().asDiagonal() * right).colwise().norm();
+  const MatrixXd product = left * right;
+  return (product.array().abs() <= noise * (l * r.transpose()).array()).select(0.0, product);
+}
+
+/// B -= V (W V)^-1 W B. What inputs do to modes that leave would be put into those that stay: then
+/// the transfer would change in proportion to it, and not to that times what outputs see.
+void drive_no_more(const Leaving& l, MatrixXd& B) {
+  const auto& [W, V] = l.undriven;
+  const MatrixXd driven = cleared_product(W, B, l.scale, l.noise);
+  if (!driven.isZero(0)) B -= V * MatrixXd(W * V).partialPivLu().solve(driven);
+}
+
+/// C -= C V (W V)^-1 W, likewise.
+void see_no_more(const Leaving& l, MatrixXd& C) {
+  const auto& [W, V] = l.unseen;
+  const MatrixXd seen = cleared_product(C, V, l.scale, l.noise);
+  if (!seen.isZero(0)) C -= seen * MatrixXd(MatrixXd(W * V).partialPivLu().solve(W));
+}
+
 /// `dependent`: the states that follow, where the caller knows better than W alone.
 void remove(StateSpace& m, Leaving l, const std::vector<int>& dependent,
             std::vector<std::string>& notes) {
-  if (l.W.rows() > 0) {
+  if (const MatrixXd& W = l.undriven.W; W.rows() > 0) {
     const std::vector<int> keep = others(m.A.rows(), dependent);
     notes.push_back(note_of_dependent(m, dependent));
-    take_out_dependent(m, dependent, solve_for(l.W, dependent, keep, l.scale, l.noise));
-    l.V = l.V(keep, Eigen::all).eval();
+    const MatrixXd T = solve_for(W, dependent, keep, l.scale, l.noise);
+    drive_no_more(l, m.B);
+    take_out_dependent(m, dependent, T);
+    Side& next = l.unseen;
+    next.W = (next.W(Eigen::all, keep) + next.W(Eigen::all, dependent) * T).eval();
+    next.V = next.V(keep, Eigen::all).eval();
     l.scale = l.scale(keep).eval();
   }
-  if (l.V.cols() > 0) {
-    const std::vector<int> out = pivots(l.V.transpose() * l.scale.cwiseInverse().asDiagonal());
+  if (const MatrixXd& V = l.unseen.V; V.cols() > 0) {
+    const std::vector<int> out = pivots(V.transpose() * l.scale.cwiseInverse().asDiagonal());
     notes.push_back(note_of_unseen(m, out));
+    see_no_more(l, m.C);
     take_out_unseen(
         m, out,
-        solve_for(l.V.transpose(), out, others(m.A.rows(), out), l.scale.cwiseInverse(), l.noise)
+        solve_for(V.transpose(), out, others(m.A.rows(), out), l.scale.cwiseInverse(), l.noise)
             .transpose());
   }
 }
@@ -205,10 +241,17 @@ void take_out(const Symmetric& s, const std::vector<Verdict>& verdicts, StateSpa
   };
   const MatrixXd left = modes(s.D_inverse * model.B(s.qdot, Eigen::all), unreachable) * s.D_inverse;
   const MatrixXd right = s.D * modes(shown.transpose(), unseen).transpose();
+  const auto levels = [&](const MatrixXd& half) { return on_both(half, s, states); };
+  const auto motions = [&](const std::vector<Index>& of) { return s.D * s.Q(Eigen::all, of); };
+  const auto coordinates = [&](const std::vector<Index>& of) {
+    return s.Q(Eigen::all, of).transpose() * s.D_inverse;
+  };
   // Energy weight: soft coordinates are chosen to depend on the others.
   const VectorXd weight = s.D_inverse.colwise().norm().cwiseInverse();
-  Leaving l{on_both(left, s, states), on_both(right.transpose(), s, states).transpose(),
-            VectorXd(states), 64 * kEps};
+  Leaving l{{levels(left), levels(motions(unreachable).transpose()).transpose()},
+            {levels(coordinates(unseen)), levels(right.transpose()).transpose()},
+            VectorXd(states),
+            64 * kEps};
   for (std::size_t i = 0; i < s.q.size(); ++i)
     l.scale(s.q[i]) = l.scale(s.qdot[i]) = weight(static_cast<Index>(i));
   const std::vector<int> dependent =
@@ -223,34 +266,36 @@ void take_out(const General& g, const std::vector<Verdict>& verdicts, StateSpace
   for (Index j = 0; j < n; ++j)
     if (verdicts[at(j)].drop && g.modes.states[at(j)] > 0)
       (verdicts[at(j)].unreachable ? unreachable : unseen).push_back(j);
+  // A pair of poles by its real and imaginary part.
+  const auto real_rows = [&](const MatrixXcd& rows, const std::vector<Index>& of) {
+    MatrixXd result(0, n);
+    for (std::size_t k = 0; k < of.size(); ++k) {
+      const Eigen::RowVectorXcd row = rows.row(static_cast<Index>(k));
+      const bool pair = g.modes.states[at(of[k])] == 2;
+      result.conservativeResize(result.rows() + (pair ? 2 : 1), n);
+      result.row(result.rows() - 1) = row.imag();
+      result.row(result.rows() - (pair ? 2 : 1)) = row.real();
+    }
+    return result;
+  };
   const auto relations = [&](const MatrixXcd& vectors, const VectorXd& sizes,
                              const MatrixXcd& ports, const std::vector<Index>& leave) {
-    const MatrixXcd rows =
-        leaving(Modes<MatrixXcd>{vectors, sizes, ports}, leave, staying(g.modes, leave), g.modes,
-                kNoise * g.modes.lambda.maxCoeff());
-    std::vector<Eigen::RowVectorXd> list;
-    for (std::size_t k = 0; k < leave.size(); ++k) {
-      const Eigen::RowVectorXcd row = rows.row(static_cast<Index>(k));
-      list.push_back(row.real());
-      if (g.modes.states[at(leave[k])] == 2) list.push_back(row.imag());
-    }
-    return list;
+    return real_rows(leaving(Modes<MatrixXcd>{vectors, sizes, ports}, leave,
+                             staying(g.modes, leave), g.modes, kNoise * g.modes.lambda.maxCoeff()),
+                     leave);
   };
   const VectorXd& scale = g.e.scale;
-  const std::vector<Eigen::RowVectorXd>
-      left = relations(g.e.W, (g.e.W * scale.asDiagonal()).rowwise().norm(), g.e.W * model.B,
-                       unreachable),
-      right =
-          relations(g.e.V.transpose(), (scale.cwiseInverse().asDiagonal() * g.e.V).colwise().norm(),
-                    (model.C * g.e.V).transpose(), unseen);
-  const auto stack = [n](const std::vector<Eigen::RowVectorXd>& rows) {
-    MatrixXd m(static_cast<Index>(rows.size()), n);
-    for (std::size_t i = 0; i < rows.size(); ++i) m.row(static_cast<Index>(i)) = rows[i];
-    return m;
-  };
-  Leaving l{stack(left), stack(right).transpose(), g.e.scale, 1e-12};
+  const MatrixXcd V = g.e.V.transpose();
+  const MatrixXd left = relations(g.e.W, (g.e.W * scale.asDiagonal()).rowwise().norm(),
+                                  g.e.W * model.B, unreachable),
+                 right = relations(V, (V * scale.cwiseInverse().asDiagonal()).rowwise().norm(),
+                                   (model.C * g.e.V).transpose(), unseen);
+  Leaving l{{left, real_rows(V(unreachable, Eigen::all), unreachable).transpose()},
+            {real_rows(g.e.W(unseen, Eigen::all), unseen), right.transpose()},
+            scale,
+            1e-12};
   const std::vector<int> dependent =
-      left.empty() ? std::vector<int>{} : pivots(l.W * l.scale.asDiagonal());
+      left.rows() == 0 ? std::vector<int>{} : pivots(left * scale.asDiagonal());
   remove(model, std::move(l), dependent, notes);
 }
 

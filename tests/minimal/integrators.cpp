@@ -92,6 +92,23 @@ TEST_CASE("random integrators in whole numbers: the order is the exact one, the 
   CHECK(fewer < 1900);
 }
 
+/// What holds of any model: no less than is needed, the truth inside the interval, and the same
+/// transfer, whether the exact order is given or not.
+void check_nothing_lost(const StateSpace& m) {
+  const int exact = exact_order(m).order;
+  const std::complex<double> s(0.3, 0.7);
+  const MatrixXcd before = m.transfer(s);
+  const double size = std::max(1.0, before.cwiseAbs().maxCoeff());
+  const Minimized r = minimize(m), asked = minimize(m, {.exact_order = exact});
+  CHECK(r.order.lowest <= exact);
+  CHECK(r.order.highest >= exact);
+  for (const Minimized* of : {&r, &asked}) {
+    CHECK(of->model.order() >= exact);
+    CHECK(of->model.order() == of->order.order);
+    CHECK((before - of->model.transfer(s)).cwiseAbs().maxCoeff() <= 1e-10 * size);
+  }
+}
+
 TEST_CASE("Jordan blocks beside integrators: what is not told apart stays, with all of its pole") {
   int blocks = 0;
   for (int seed = 0; seed < 1000; ++seed) {
@@ -101,22 +118,38 @@ TEST_CASE("Jordan blocks beside integrators: what is not told apart stays, with 
     // The same with one pole in place of up to three.
     for (Index i = 0; i < m.A.rows(); ++i)
       if (m.A(i, i) != 0) m.A(i, i) = -1, ++blocks;
-    const int exact = exact_order(m).order;
-    const Minimized r = minimize(m);
-    CHECK(r.model.order() >= exact);
-    CHECK(r.order.lowest <= exact);
-    CHECK(r.order.highest >= exact);
-    const std::complex<double> s(0.3, 0.7);
-    const MatrixXcd before = m.transfer(s), after = r.model.transfer(s);
-    CHECK((before - after).cwiseAbs().maxCoeff() <=
-          1e-12 * std::max(1.0, before.cwiseAbs().maxCoeff()));
-    // Asked for the exact order: no less, and the same transfer.
-    const Minimized asked = minimize(m, {.exact_order = exact});
-    CHECK(asked.model.order() >= exact);
-    CHECK((before - asked.model.transfer(s)).cwiseAbs().maxCoeff() <=
-          1e-6 * std::max(1.0, before.cwiseAbs().maxCoeff()));
+    check_nothing_lost(m);
   }
   CHECK(blocks > 1000);
+}
+
+TEST_CASE("poles at 0 that drive others, beside integrators: nothing is lost, the interval holds") {
+  int poles = 0;
+  for (int seed = 0; seed < 1000; ++seed) {
+    CAPTURE(seed);
+    titop_test::Rng rng(static_cast<std::uint64_t>(seed));
+    StateSpace m = whole_numbers(rng);
+    for (Index i = 0; i < m.A.rows(); ++i)
+      if (m.A(i, i) == -3) m.A(i, i) = 0, ++poles;  // x_2, which acts on x_1
+    check_nothing_lost(m);
+  }
+  CHECK(poles > 200);
+  // Of random models: one whose mode at -1 is known to 1e12 of its size beside a double pole at 0,
+  // and two whose modes are rounding of what acts on them.
+  MatrixXd A = MatrixXd::Zero(8, 8);
+  A.row(0) << -1, 0, 0, 0, 0, 0, 0, 0;
+  A(1, 1) = -2, A(1, 2) = 1, A(3, 1) = A(4, 1) = 2, A(5, 0) = 1;
+  A(6, 0) = A(6, 5) = -1, A(6, 1) = 2, A(7, 6) = -1;
+  check_nothing_lost(model(A, MatrixXd{{0, -2, 1, 0, -2, 2, 2, 0}}.transpose(),
+                           MatrixXd{{0, -1, 0, 0, 0, 0, -2, 0}, {2, 0, -2, 0, 0, 0, -1, 0}}));
+  A = MatrixXd::Zero(7, 7);
+  A(0, 0) = A(0, 2) = A(2, 3) = A(5, 0) = -1, A(1, 1) = -2, A(2, 2) = -3;
+  A(4, 2) = A(6, 0) = 2, A(6, 3) = 1;
+  check_nothing_lost(
+      model(A, MatrixXd{{0, 2, 0, 0, 2, -2, 1}}.transpose(), MatrixXd{{-1, 0, 0, 0, 0, -2, 0}}));
+  A = MatrixXd::Zero(4, 4);
+  A(0, 0) = -1, A(0, 1) = A(2, 1) = 1, A(3, 1) = 2, A(2, 0) = 1;
+  check_nothing_lost(model(A, MatrixXd{{0, 2}, {0, 2}, {-1, 0}, {-1, 0}}, MatrixXd{{1, 0, 0, 0}}));
 }
 
 TEST_CASE("entries that are not finite are refused") {

@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
@@ -93,10 +94,45 @@ TEST_CASE("the exact order decides where visibility does not") {
   CHECK(told.model.order() == 4);
   CHECK(told.order.exact);
   CHECK(to_string(told.order).find("exact: order 4") == 0);
+  // What inputs do to the mode and what outputs see of it are each 1e-6: their product is missed.
+  REQUIRE(told.order.removed.size() == 1);
+  CHECK(told.order.removed[0].visibility > 1e-14);
+  CHECK(told.order.change > told.order.removed[0].visibility);
+  CHECK(told.order.change <= 100 * told.order.removed[0].visibility);
+  // The dual model, whose inputs hardly move it.
+  const Minimized dual = minimize(
+      {m.A.transpose(), m.C.transpose(), m.B.transpose(), m.D.transpose(), m.states, {"v"}, {"z"}},
+      {.exact_order = 4});
+  CHECK(dual.model.order() == 4);
+  CHECK(dual.order.change <= 100 * told.order.removed[0].visibility);
   // Never a mode that can be seen: 2 of 4 would be wrong, and is not done.
   const Minimized wrong = minimize(pair(25, 100), {.exact_order = 2});
   CHECK(wrong.model.order() == 6);
   CHECK(wrong.notes.size() == 2);
+}
+
+TEST_CASE(
+    "what leaves by a wrong exact order and is missed is put back, with the change measured") {
+  // 1 / (s + 1) + c / (s + 3)
+  const auto sum = [](double c) {
+    return model(MatrixXd{{-1, 0}, {0, -3}}, MatrixXd{{1}, {1}}, MatrixXd{{1, c}});
+  };
+  const std::complex<double> s(0.3, 3);  // beside the second pole
+  for (const double c : {3e-8, 1e-6}) {
+    const Minimized r = minimize(sum(c), {.exact_order = 1});
+    CHECK(r.model.A == sum(c).A);
+    CHECK(r.model.C == sum(c).C);
+    CHECK(r.order.order == 2);
+    CHECK(r.order.removed.empty());
+    const double missed = std::abs(c / (s + 3.0)) / std::abs(1.0 / (s + 1.0) + c / (s + 3.0));
+    CHECK(r.notes.back() ==
+          fmt::format("nothing was removed, since that changes the transfer by {:.1e}", missed));
+  }
+  // Below 1e-8 it may leave, and the change is said.
+  const Minimized r = minimize(sum(1e-9), {.exact_order = 1});
+  CHECK(r.model.order() == 1);
+  CHECK(r.order.change > 1e-10);
+  CHECK(r.order.change < 1e-8);
 }
 
 TEST_CASE("poles at 0: needed where ranks show it, else undecided") {
