@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/minimize/effect.hpp>
 #include <titop/compiler/system_data.hpp>
@@ -18,7 +19,10 @@ OrderVerdict back_to(int order, double judged, OrderVerdict v) {
   v.removed.clear();
   v.to_fewer = std::min(v.to_fewer, v.to_more);
   v.to_more = 0;
-  if (v.change <= 100 * judged) v.change = -1;  // rounding
+  if (v.change <= 100 * judged)
+    v.change = -1;  // rounding
+  else if (!v.exact)
+    v.lowest = 0;  // the modes that stayed were judged in the same way
   return v;
 }
 
@@ -51,7 +55,8 @@ std::vector<std::complex<double>> near_modes(std::vector<JudgedMode> modes,
 
 void measure_change(const StateSpace& whole, Minimized& m) {
   if (m.order.removed.empty() || whole.inputs.empty() || whole.outputs.empty()) return;
-  const double frequency = detail::frequency_of(whole.A), w = frequency > 0 ? frequency : 1;
+  const double frequency = detail::frequency_of(whole.A),
+               w = frequency > 0 && std::isfinite(frequency) ? frequency : 1;
   const auto points = near_modes(m.order.removed, {0.37 * w, 0.93 * w});
   const std::vector<MatrixXcd> before = detail::transfers(whole, points),
                                after = detail::transfers(m.model, points);

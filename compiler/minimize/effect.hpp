@@ -21,8 +21,8 @@ void measure_change(const StateSpace& whole, Minimized& m);
 /// If what left changed the transfer by more than 1e-8 and ten times the resolution, everything
 /// stays after all: true, with the verdict and then the reason as notes. A mode of visibility v
 /// changes the transfer by up to 10 v at the points of `near_modes`: where some that were judged
-/// not to matter did more, the verdict keeps the change that was measured, although nothing is
-/// removed, and the full certificate calls it a fault.
+/// not to matter did more, no lower end of the order is certain, and the verdict keeps the change
+/// that was measured, although nothing is removed: the full certificate calls it a fault.
 bool put_back(const StateSpace& whole, double resolution, Minimized& m);
 
 }  // namespace titop::modes

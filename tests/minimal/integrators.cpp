@@ -152,6 +152,27 @@ TEST_CASE("poles at 0 that drive others, beside integrators: nothing is lost, th
   check_nothing_lost(model(A, MatrixXd{{0, 2}, {0, 2}, {-1, 0}, {-1, 0}}, MatrixXd{{1, 0, 0, 0}}));
 }
 
+TEST_CASE("two dozen integrators in whole numbers: what rounding breaks is put back") {
+  int put_back = 0;
+  for (int seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    titop_test::Rng rng(static_cast<std::uint64_t>(seed));
+    const Index k = whole(rng, 12, 24), r = 2;
+    const auto sparse = [&] { return whole(rng, -2, 2) * (whole(rng, 0, 2) == 0); };
+    MatrixXd A = MatrixXd::NullaryExpr(r + k, r + k, sparse).triangularView<Eigen::StrictlyLower>();
+    A.topLeftCorner(r, r) << -1, 1, 0, -2;
+    const StateSpace m =
+        model(A, MatrixXd::NullaryExpr(r + k, 2, sparse), MatrixXd::NullaryExpr(2, r + k, sparse));
+    check_nothing_lost(m);
+    const Minimized result = minimize(m);
+    if (result.notes.back().find("nothing was removed") == std::string::npos) continue;
+    ++put_back;
+    CHECK(result.model.A == m.A);
+    CHECK(!result.order.decided());
+  }
+  CHECK(put_back > 0);
+}
+
 TEST_CASE("entries that are not finite are refused") {
   for (MatrixXd StateSpace::*part : {&StateSpace::A, &StateSpace::B, &StateSpace::C}) {
     StateSpace m = model(MatrixXd::Zero(2, 2), MatrixXd::Ones(2, 1), MatrixXd::Ones(1, 2));
