@@ -88,8 +88,11 @@ void balance_sides(const Parts& parts, ModeSet& m) {
     for (Index j = 0; j < m.size(); ++j) {
       const int p = part[at(j)];
       const double factor = b(p) > 0 && c(p) > 0 ? std::sqrt(std::sqrt(c(p) / b(p))) : 0;
+      const double inverse = factor > 0 ? 1 / factor : 0;
       m.b.row(j) *= factor;
-      m.c.row(j) *= factor > 0 ? 1 / factor : 0;
+      m.c.row(j) *= inverse;
+      if (m.b_apart.size() > 0) m.b_apart.row(j) *= factor;
+      if (m.c_apart.size() > 0) m.c_apart.row(j) *= inverse;
     }
   }
 }

@@ -13,6 +13,28 @@ using Eigen::VectorXd;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
+/// Where the vectors of some poles are hardly a basis, as of a Jordan block, W = V^-1 loses digits
+/// of all the others: simple poles get their left vectors from A' itself.
+void sharpen_left(const MatrixXd& balanced, linalg::Eigensystem& e) {
+  constexpr double kGood = 1e-4;   ///< rcond of a basis whose inverse will do
+  constexpr double kClear = 1e-6;  ///< of |A|: distance of a simple pole
+  if (e.rcond_V > kGood) return;
+  const linalg::Eigensystem left = linalg::eigensystem(
+      balanced.transpose(), [](MatrixXd& A) -> VectorXd { return VectorXd::Ones(A.rows()); });
+  const double clear = kClear * balanced.norm();
+  for (Index j = 0; j < e.values.size(); ++j) {
+    const VectorXd there = (left.values.array() - e.values(j)).abs(),
+                   here = (e.values.array() - e.values(j)).abs();
+    Index k = 0;
+    there.minCoeff(&k);
+    const bool simple = (here.array() < clear).count() == 1 && (there.array() < clear).count() == 1;
+    const Eigen::RowVectorXcd w = left.V.col(k).transpose() *
+                                  e.scale.cwiseInverse().cast<std::complex<double>>().asDiagonal();
+    const std::complex<double> product = w * e.V.col(j);
+    if (simple && std::abs(product) > 0) e.W.row(j) = w / product;
+  }
+}
+
 /// Eigenvalues that rounding has made a complex pair become two real ones; their vectors stay a
 /// basis of the same plane.
 void make_real(linalg::Eigensystem& e, double noise) {
@@ -138,6 +160,30 @@ void set_apart(const VectorXd& condition, double size, ModeSet& m) {
   }
 }
 
+/// First order again, of all modes together that stand apart: those of a Jordan block are large and
+/// cancel. O(n^2 ports) for each of them.
+void find_apart(const StateSpace& model, const linalg::Eigensystem& e, const VectorXd& left,
+                const VectorXd& right, double size, ModeSet& m) {
+  const Index n = m.size();
+  m.b_apart = MatrixXd::Zero(n, model.B.cols());
+  m.c_apart = MatrixXd::Zero(n, model.C.rows());
+  std::vector<Index> apart;
+  for (Index j = 0; j < n; ++j)
+    if (!m.apart[at(j)].empty()) apart.push_back(j);
+  if (apart.empty()) return;
+  for (const Index j : apart) m.mixing.row(j).setZero(), m.mixing.col(j).setZero();
+  const MatrixXcd V = e.scale.cwiseInverse().asDiagonal() * e.V(Eigen::all, apart),
+                  W = e.W(apart, Eigen::all) * e.scale.asDiagonal(),
+                  b = e.W(apart, Eigen::all) * model.B, c = model.C * e.V(Eigen::all, apart);
+  const double noise = kEps * size;
+  for (Index j = 0; j < n; ++j) {
+    if (!m.apart[at(j)].empty()) continue;
+    const Eigen::VectorXcd by = (e.values(j) - e.values(apart).array()).inverse().matrix();
+    m.b_apart.row(j) = noise * left(j) * (V * by.asDiagonal() * b).colwise().norm();
+    m.c_apart.row(j) = noise * right(j) * (c * by.asDiagonal() * W).rowwise().norm().transpose();
+  }
+}
+
 /// Poles at 0 are needed if [A, B] and [A', C'] have full rank. A, B, C: balanced.
 void find_needed(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C, ModeSet& m) {
   if (std::find(m.apart.begin(), m.apart.end(), kAtZero) == m.apart.end()) return;
@@ -158,9 +204,9 @@ General general_modes(const StateSpace& model, double resolution) {
   General g{linalg::eigensystem(model.A, linalg::balance_parts), {}};
   linalg::Eigensystem& e = g.e;
   ModeSet& m = g.modes;
-  const Index n = e.values.size();
   const MatrixXd balanced = e.scale.cwiseInverse().asDiagonal() * model.A * e.scale.asDiagonal();
   const double size = balanced.norm();
+  sharpen_left(balanced, e);
   make_real(e, 100 * kEps * size);
   normalize(e);
   find_clusters(e, 100 * kEps * size, resolution, m);
@@ -175,13 +221,14 @@ General general_modes(const StateSpace& model, double resolution) {
   turn_clusters(model, m, condition, e);
   m.b = (e.W * model.B).cwiseAbs();
   m.c = (model.C * e.V).transpose().cwiseAbs();
-  balance_sides(parts, m);
-  for (Index j = 0; j < n; ++j)
+  for (Index j = 0; j < m.size(); ++j)
     m.states.push_back(e.values(j).imag() > 0 ? 2 : e.values(j).imag() < 0 ? 0 : 1);
   const VectorXd left = (e.W * e.scale.asDiagonal()).rowwise().norm(),
                  right = (e.scale.cwiseInverse().asDiagonal() * e.V).colwise().norm();
   find_mixing(e, left, right, size, m);
   set_apart(condition.cwiseMax(left.cwiseProduct(right)), size, m);
+  find_apart(model, e, left, right, size, m);
+  balance_sides(parts, m);
   find_needed(balanced, e.scale.cwiseInverse().asDiagonal() * model.B,
               model.C * e.scale.asDiagonal(), m);
   return g;

@@ -34,8 +34,9 @@ VectorXd background(const MatrixXd& rows, const ModeSet& m, Index j) {
 
 /// Rounding's part in the row of mode j: what the other modes may have put into it, by `mixing`;
 /// those of its cluster twice, once in turning them, once in the product with B or C.
-VectorXd rounding(const MatrixXd& rows, const ModeSet& m, Index j, const VectorXd& mixing) {
-  VectorXd sum = VectorXd::Zero(rows.cols());
+VectorXd rounding(const MatrixXd& rows, const MatrixXd& apart, const ModeSet& m, Index j,
+                  const VectorXd& mixing) {
+  VectorXd sum = apart.size() > 0 ? VectorXd(apart.row(j)) : VectorXd(VectorXd::Zero(rows.cols()));
   for (Index i = 0; i < rows.rows(); ++i) {
     const bool same = m.cluster[at(i)] == m.cluster[at(j)];
     sum += (same ? 2 * kEps : mixing(i)) * rows.row(i).transpose();
@@ -54,10 +55,11 @@ double largest(const VectorXd& mine, const VectorXd& background) {
 /// One side of a mode, inputs or outputs: its size against the background, and rounding's.
 struct Side {
   double size, noise;
-  Side(const MatrixXd& rows, const ModeSet& m, Index j, const VectorXd& mixing) {
+  Side(const MatrixXd& rows, const MatrixXd& apart, const ModeSet& m, Index j,
+       const VectorXd& mixing) {
     const VectorXd all = background(rows, m, j);
     size = largest(rows.row(j), all);
-    noise = largest(rounding(rows, m, j, mixing), all);
+    noise = largest(rounding(rows, apart, m, j, mixing), all);
   }
   /// All states are driven, or seen.
   explicit Side(double lambda) : size(std::sqrt(lambda)), noise(0) {}
@@ -70,8 +72,8 @@ Verdict judge(const ModeSet& m, Index j, double resolution) {
     return v;
   }
   const bool inputs = m.b.cols() > 0, outputs = m.c.cols() > 0;
-  const Side b = inputs ? Side(m.b, m, j, m.mixing.col(j)) : Side(m.lambda(j));
-  const Side c = outputs ? Side(m.c, m, j, m.mixing.row(j)) : Side(m.lambda(j));
+  const Side b = inputs ? Side(m.b, m.b_apart, m, j, m.mixing.col(j)) : Side(m.lambda(j));
+  const Side c = outputs ? Side(m.c, m.c_apart, m, j, m.mixing.row(j)) : Side(m.lambda(j));
   v.visibility = b.size * c.size / (2 * m.lambda(j));
   v.bound = std::max(c.size * b.noise, b.size * c.noise) / (2 * m.lambda(j));
   v.unreachable = inputs && (!outputs || b.size <= c.size);
