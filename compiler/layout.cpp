@@ -30,6 +30,7 @@ Layout make_layout(const Graph& g) {
     for (const std::string& s : node.block->interface().states)
       l.states.push_back(node.name + "." + s);
   }
+  std::sort(l.state_nodes.begin(), l.state_nodes.end());
   l.input_first.resize(g.inputs.size());
   for (const int i : as_declared(g.inputs)) {
     const Input& input = g.inputs[at(i)];

@@ -13,7 +13,7 @@ namespace titop::detail {
 
 /// Where the rows and columns of the model come from.
 struct Layout {
-  std::vector<int> state_nodes;   ///< nodes with states, in the user's order
+  std::vector<int> state_nodes;   ///< nodes with states, as memory has them: in the graph's order
   std::vector<int> state_first;   ///< per node: first row of x, -1 for none
   std::vector<int> input_first;   ///< per graph input: first column of u
   std::vector<int> output_first;  ///< per graph output: first row of y

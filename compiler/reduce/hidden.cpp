@@ -41,14 +41,16 @@ Followers::Followers(const Skeleton& k, const SystemData& d)
     : layout_(d.layout()), inputs_(static_cast<Index>(d.layout().inputs.size())) {
   const Index n = layout_.order();
   is_rate_.assign(at(n), 0);
+  node_.assign(at(n), -1);
+  first_.assign(at(n), -1);
   before_.assign(at(n), 0);
   weight_ = Eigen::VectorXd::Zero(n);
   const passes::closing::Coordinates coordinates(k.stage.graph, k.stage.values);
   for (const int node : layout_.state_nodes) {
     const int first = layout_.state_first[at(node)];
     const Index count = d.numbers.blocks[at(node)]->A.rows();
-    node_.resize(at(first + count), node), first_.resize(at(first + count), first);
     for (int i = 0; i < count; ++i) {
+      node_[at(first + i)] = node, first_[at(first + i)] = first;
       const int rate = coordinates.rate_of(node, i);
       if (rate < 0) continue;
       is_rate_[at(first + rate)] = 1;
