@@ -15,6 +15,8 @@ using Eigen::MatrixXd;
 constexpr double kCancelled = 1e-3;  ///< of the terms
 constexpr double kNoise = 1e3;       ///< times one sample of rounding: what may be nothing else
 constexpr double kFinest = 1e-30;    ///< of its neighbours: what 50 digits may leave of a 0
+/// Of its neighbours: the terms of a 0 that one order of sums hits exactly and another to 1e-17.
+constexpr double kHitBy = 1e-3;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -127,11 +129,14 @@ void add_rounding(Measure& measure, const std::vector<MatrixXcd>& exact, const M
   if (measure.terms.size() == 0) measure.terms = MatrixXd::Zero(terms.rows(), terms.cols());
   const MatrixXd size = by_block(largest(exact), measure),
                  rounding = by_block(terms, measure) / kTermsPerRounding;
+  const Eigen::VectorXd output = size.rowwise().maxCoeff().cwiseSqrt();
+  const Eigen::RowVectorXd input = size.colwise().maxCoeff().cwiseSqrt();
   for (Index i = 0, r = 0; i < size.rows(); r += measure.rows[at(i++)])
     for (Index j = 0, c = 0; j < size.cols(); c += measure.cols[at(j++)]) {
       if (size(i, j) > kNoise * rounding(i, j)) continue;
       auto block = measure.terms.block(r, c, measure.rows[at(i)], measure.cols[at(j)]);
       block = block.cwiseMax(terms.block(r, c, block.rows(), block.cols())).eval();
+      if (size(i, j) == 0) block = block.cwiseMax(kHitBy * output(i) * input(j)).eval();
     }
 }
 

@@ -48,7 +48,9 @@ Eigen::MatrixXd terms(const Graph& graph, const std::vector<std::complex<double>
 
 /// Adds the terms of an elimination to the measure, for blocks of `exact` that may be nothing but
 /// its rounding: below 1e3 of one sample of it, where three digits or fewer are left. A block that
-/// stands out is measured by itself, however many digits double has lost.
+/// stands out is measured by itself, however many digits double has lost. Where `exact` is 0 to the
+/// last bit, as turned frames may leave it, there is no sample: 1e-3 of the geometric mean of what
+/// stands in its row and column counts as terms, so that `difference` has 1 at 1e-6 of that.
 void add_rounding(Measure& measure, const std::vector<Eigen::MatrixXcd>& exact,
                   const Eigen::MatrixXd& terms);
 
