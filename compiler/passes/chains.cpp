@@ -233,7 +233,8 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
         stage.notes.push_back(
             {Note::Kind::warning, "chains",
              fmt::format("{}: {} of {} closing equations are independent, by a narrow margin "
-                         "(smallest kept {:.1e}, largest dropped {:.1e}, tolerance {:.0e})",
+                         "(smallest kept {:.1e}, largest dropped {:.1e}, tolerance {:.0e}): give "
+                         "angles and lengths to all their digits",
                          name, rows - r.directions.rows(), rows, r.weakest, r.dropped,
                          kRankTolerance)});
       if (r.directions.rows() == 0) continue;

@@ -82,7 +82,7 @@ struct Closer {
     for (const int l : c.lines)
       if (const int e = lines[at(l)].equation; e >= 0)
         names += (names.empty() ? "" : ", ") + name_of(g, g.equations[at(e)].target);
-    const bool taken = found.weakest < 1e3 * kRankTolerance;
+    const bool taken = found.weakest < kNarrow;
     doubts.push_back({std::move(names), taken ? found.weakest : found.dropped, taken});
   }
 };

@@ -132,15 +132,19 @@ TEST_CASE("what both supports of a body held twice bear together is determined")
   CHECK((G - exact).cwiseAbs().maxCoeff() <= 1e-13);
 }
 
-TEST_CASE("rigid four-bar, four sprung pins: order 2, three closing equations redundant") {
-  // Crank, coupler and rocker of length 1, pins 1 apart: a parallelogram. Crank and rocker turn by
-  // phi, the coupler only translates; every pin is turned by phi against its spring.
-  constexpr double m = 2, k = 30;
-  const double I = m / 12;  // slender links about their middle, about every axis
+namespace {
+
+constexpr double kLink = 2, kPin = 30;       ///< mass of a link [kg], spring of a pin [N m/rad]
+constexpr double kLinkInertia = kLink / 12;  ///< slender, about its middle; taken about every axis
+
+/// Crank, coupler and rocker of length 1, pins 1 apart: a parallelogram. Crank and rocker turn by
+/// phi, the coupler only translates; every pin is turned by phi against its spring. The last pin's
+/// axis leans by `tilt` out of parallel to the others.
+Diagram parallelogram(double tilt) {
   Diagram d{"parallelogram"};
   const auto link = [&] {
-    return RigidBody{.mass = m,
-                     .inertia = I * Matrix3d::Identity(),
+    return RigidBody{.mass = kLink,
+                     .inertia = kLinkInertia * Matrix3d::Identity(),
                      .PA = {0.5, 0, 0},
                      .children = {{"C", {1, 0, 0}}}};
   };
@@ -154,30 +158,58 @@ TEST_CASE("rigid four-bar, four sprung pins: order 2, three closing equations re
   auto p1 = hinge(d, "p1", crank, base.child("J1"), up, z);
   auto p2 = hinge(d, "p2", coupler, crank.child, down, z);
   auto p3 = hinge(d, "p3", rocker, base.child("J2"), up, z);
-  auto p4 = d.add("p4", Hinge{z});
+  auto p4 = d.add("p4", Hinge{{tilt, 0, 1}});
   mount(p4, rocker.child, down);
   weld(coupler.child, p4.child);
-  for (const auto& p : {p1, p2, p3, p4}) p.torque = k * p.angle;
+  for (const auto& p : {p1, p2, p3, p4}) p.torque = kPin * p.angle;
   crank.child("C").force += d.input("F", 6);
   d.output("turn") = p4.angle;
   d.output("tip", 6) = coupler.child.accel;
-  const System system = compile(d);
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("rigid four-bar, four sprung pins: order 2, three closing equations redundant") {
+  const System system = compile(parallelogram(0));
   CHECK(system.order() == 2);
   CHECK(system.log().find("3 of 6 closing equations are redundant (z, about x, about y)") !=
         std::string::npos);
-  const double inertia =
-      2 * (I + m / 4) + m;  // crank and rocker about their pins, coupler moves by 1
-  const double omega = std::sqrt(4 * k / inertia);
+  const double inertia = 2 * (kLinkInertia + kLink / 4) +
+                         kLink;  // crank and rocker about their pins, coupler moves by 1
+  const double omega = std::sqrt(4 * kPin / inertia);
   REQUIRE(system.poles().size() == 1);
   CHECK(std::abs(system.poles()[0].omega / omega - 1) <= 1e-14);
   // A force along the coupler on the crank's tip, which points along y of the world: -y of the
   // crank.
   const Complex s{0.1, 3};
   const Complex phi =
-      1.0 / (inertia * s * s + 4 * k);  // torque of a unit force along y of the crank
+      1.0 / (inertia * s * s + 4 * kPin);  // torque of a unit force along y of the crank
   const MatrixXcd G = system.transfer(s);
   CHECK(std::abs(G(0, 1) / -phi - 1.0) <= 1e-12);
   CHECK(std::abs(G(1, 1) / (-s * s * phi) - 1.0) <= 1e-12);
+}
+
+TEST_CASE("a pin out of parallel locks a four-bar; by a narrow margin, that is warned of") {
+  // pi / 2 typed as 1.5708 is off by 3.7e-6.
+  for (const auto& [tilt, order, narrow] : {std::tuple(0.3, 0, false),
+                                            {1e-2, 0, false},
+                                            {1.5708 - pi / 2, 0, true},
+                                            {1e-7, 0, true},
+                                            {1e-11, 2, true},
+                                            {1e-15, 2, false}}) {
+    CAPTURE(tilt);
+    const System system = compile(parallelogram(tilt));
+    CAPTURE(system.log());
+    CHECK(system.order() == order);
+    CHECK((system.log().find("by a narrow margin") != std::string::npos) == narrow);
+    const bool warned =
+        std::any_of(system.notes().begin(), system.notes().end(), [](const Note& n) {
+          return n.kind == Note::Kind::warning && n.pass == "chains" &&
+                 n.text.find("angles and lengths") != std::string::npos;
+        });
+    CHECK(warned == narrow);
+  }
 }
 
 TEST_CASE(

@@ -6,8 +6,12 @@
 namespace titop::passes::closing {
 
 /// Ranks are decided at this, absolutely, after scaling to 1: exact data give pivots of 1e-3 and
-/// more or 1e-15 and less. Within a factor 1000 of it the decision is doubtful and is reported.
+/// more or 1e-15 and less.
 constexpr double kRankTolerance = 1e-9;
+
+/// Decisions by pivots that neither leave are doubtful, and reported: kept ones below the first
+/// (pi / 2 typed as 1.5708 tilts an axis by 4e-6), dropped ones above the second.
+constexpr double kNarrow = 1e-4, kNothing = 1e-12;
 
 /// Homogeneous relations R z = 0 between scalars.
 struct Relations {
@@ -28,9 +32,7 @@ struct Independent {
   Eigen::MatrixXd T;
   double weakest = 1;  ///< smallest pivot that was taken
   double dropped = 0;  ///< largest that was not
-  bool doubtful() const {
-    return weakest < 1e3 * kRankTolerance || dropped > 1e-3 * kRankTolerance;
-  }
+  bool doubtful() const { return weakest < kNarrow || dropped > kNothing; }
 };
 
 /// Scales the relations so that units do not matter: columns in units of energy (eta by 1/omega:
@@ -53,9 +55,7 @@ struct Redundant {
   Eigen::MatrixXd directions;
   double weakest = 1;  ///< smallest singular value that counts
   double dropped = 0;  ///< largest that does not
-  bool doubtful() const {
-    return weakest < 1e3 * kRankTolerance || dropped > 1e-3 * kRankTolerance;
-  }
+  bool doubtful() const { return weakest < kNarrow || dropped > kNothing; }
 };
 /// `known`: orthonormal columns spanning the rows met before; grows by what is new.
 Redundant redundant(const Eigen::MatrixXd& rows, Eigen::MatrixXd& known);
