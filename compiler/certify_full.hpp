@@ -64,8 +64,8 @@ struct FullCertificate {
     int pairs = 0;
     double least = 0;
     std::complex<double> where;
-    /// A negative value is a fault: no one-way port is driven, no gain stands between motions and
-    /// forces, and what moves with another gives its wrench back there.
+    /// A negative value is a fault: no one-way block pushes, forces follow motions as those of
+    /// springs and dampers do, and what moves with another gives its wrench back there.
     bool structure = false;
   } passivity;
 
@@ -89,7 +89,7 @@ struct FullCertificate {
     /// at one s, to 1e-12; data symmetric to 1e-9 only are none): an asymmetry above 1e-8 is a
     /// fault.
     bool structure = false;
-    std::string why_no_structure;  ///< "K.in is driven, a one-way port"
+    std::string why_no_structure;  ///< "hub.parent.force is driven by K.out"
   } reciprocity;
 
   /// Of the minimal dense model. Where exact arithmetic finds states that were taken out as nothing

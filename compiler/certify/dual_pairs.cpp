@@ -20,10 +20,6 @@ void add(Weights& w, int channel, const MatrixXd& m) {
   if (!fresh) place->second += m;
 }
 
-const ChannelSpec& spec_of(const Graph& g, const Channel& c) {
-  return g.nodes[at(c.node)].block->interface().channels[at(c.spec)];
-}
-
 /// What each input does as a force on bodies: along a child's own wrench, against a parent's. Empty
 /// for inputs that (also) do something else.
 std::map<int, Weights> forces(const Graph& g, ParameterValues values) {
@@ -38,7 +34,7 @@ std::map<int, Weights> forces(const Graph& g, ParameterValues values) {
         continue;
       }
       const MatrixXd c = coefficient(g, t, values);
-      const double sign = is_outward(spec_of(g, g.channels[at(target.channel)])) ? -1 : 1;
+      const double sign = is_outward(g, target.channel) ? -1 : 1;
       add(result[t.signal], target.channel,
           sign * (e.part.whole() ? c : MatrixXd(e.part.rows.transpose() * c)));
     }
@@ -84,6 +80,11 @@ void add_pair(const Input& input, int column, int row, DualPairs& pairs) {
 
 bool is_outward(const ChannelSpec& channel) {
   return channel.takes == Takes::accel && channel.name != "child";
+}
+
+bool is_outward(const Graph& g, int channel) {
+  const Channel& c = g.channels[at(channel)];
+  return is_outward(g.nodes[at(c.node)].block->interface().channels[at(c.spec)]);
 }
 
 DualPairs dual_pairs(const Graph& g, ParameterValues values) {

@@ -13,6 +13,7 @@ namespace titop::full {
 /// Whether a channel's force is what its block does to the outside: at a parent point and about the
 /// axis of a joint. At a child point, of a bushing too, it is what is done to the block.
 bool is_outward(const ChannelSpec& channel);
+bool is_outward(const Graph& graph, int channel);
 
 /// Both are in the declared order, scalar by scalar: row out[k] of a transfer is the motion along
 /// which the force of column in[k] works.

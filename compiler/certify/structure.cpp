@@ -3,6 +3,7 @@
 #include <cmath>
 #include <span>
 #include <titop/compiler/certify/dual_pairs.hpp>
+#include <titop/compiler/certify/springs.hpp>
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/certify/structure.hpp>
 #include <titop/graph/drives.hpp>
@@ -17,22 +18,27 @@ constexpr double kNoWork = 1e-12;  ///< of the sum of magnitudes: rounding of ro
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// What makes an equation between channels more than a connection of bodies; empty if nothing does.
-std::string beside_bodies(const Graph& g, const Equation& e) {
-  const std::string target = name_of(g, e.target);
+/// What makes an equation of a channel more than a connection of bodies, springs and dampers; empty
+/// if nothing does.
+std::string beside_bodies(const Graph& g, const Equation& e, ParameterValues values) {
+  const Signal& target = g.signals[at(e.target)];
+  const bool force = g.channels[at(target.channel)].force == e.target;
   for (const Term& t : e.terms) {
     const Signal& s = g.signals[at(t.signal)];
     if (s.role == Signal::Role::external) continue;
-    if (s.channel < 0 || t.of == Term::Of::position || t.of == Term::Of::rate)
-      return fmt::format("{} is driven by {}", target, name_of(g, t.signal));
+    const bool motion = !of_motions(g, t, values).empty();
+    if (motion && force) continue;
+    if (motion || s.channel < 0)
+      return fmt::format("{} is driven by {}", name_of(g, e.target), name_of(g, t.signal));
     for (const Factor& f : t.factors)
       if (std::holds_alternative<Value>(f) || std::holds_alternative<Matrix>(f))
-        return fmt::format("{} is driven by a gain on {}", target, name_of(g, t.signal));
+        return fmt::format("{} is driven by a gain on {}", name_of(g, e.target),
+                           name_of(g, t.signal));
   }
   return "";
 }
 
-/// The equations between bodies, without the diagram's inputs.
+/// The equations between bodies: without the diagram's inputs, springs and dampers.
 class Connections {
  public:
   Connections(const Graph& g, ParameterValues values)
@@ -63,10 +69,7 @@ class Connections {
     double all = 0, magnitudes = 0;
     for (std::size_t c = 0; c < size(); ++c) {
       const VectorXd each = force_[c].cwiseProduct(accel_[c]);
-      all += is_outward(g_.nodes[at(g_.channels[c].node)].block->interface().channels[at(
-                 g_.channels[c].spec)])
-                 ? -each.sum()
-                 : each.sum();
+      all += is_outward(g_, static_cast<int>(c)) ? -each.sum() : each.sum();
       magnitudes += each.cwiseAbs().sum();
     }
     return magnitudes > 0 ? std::abs(all) / magnitudes : 0;
@@ -109,7 +112,7 @@ class Connections {
       const Equation& equation = g_.equations[at(e)];
       for (const Term& t : equation.terms) {
         const Signal& s = g_.signals[at(t.signal)];
-        if (s.role == Signal::Role::external) continue;
+        if (s.channel < 0 || t.of == Term::Of::position || t.of == Term::Of::rate) continue;
         const VectorXd x = coefficient(g_, t, values_) * of(t, s.channel);
         result += equation.part.whole() ? x : VectorXd(equation.part.rows.transpose() * x);
       }
@@ -144,11 +147,15 @@ std::string taken_for_nothing(const Graph& g, Connections& all) {
 }  // namespace
 
 std::string why_no_structure(const Graph& g, ParameterValues values) {
-  for (const Equation& e : g.equations)
-    if (g.signals[at(e.target)].channel < 0)
-      return name_of(g, e.target) + " is driven, a one-way port";
-  for (const Equation& e : g.equations)
-    if (std::string found = beside_bodies(g, e); !found.empty()) return found;
+  for (const Equation& e : g.equations) {
+    const Signal& target = g.signals[at(e.target)];
+    if (target.channel >= 0) {
+      if (std::string found = beside_bodies(g, e, values); !found.empty()) return found;
+    } else if (!g.nodes[at(target.node)].block->interface().channels.empty()) {
+      return name_of(g, e.target) + " is driven, a one-way port of a body";
+    }
+  }
+  if (std::string found = why_no_springs(g, values); !found.empty()) return found;
   Connections all(g, values);
   return taken_for_nothing(g, all);
 }

@@ -5,11 +5,13 @@
 
 namespace titop::full {
 
-/// Why a diagram as written is no structure; empty if it is one: bodies and joints only, no one-way
-/// port driven, no gain between motions and forces, and connections that do no work, so that what
-/// moves with another gives its wrench back there. The last by random motions and wrenches that fit
-/// the connections and must do no work together (Tellegen's theorem). O(terms), times the number of
-/// equations in a row without a body between them.
+/// Why a diagram as written is no structure; empty if it is one: bodies, joints, and forces by
+/// positions and rates that are those of springs and dampers (certify/springs.hpp); no other gain
+/// between motions and forces, nothing that a one-way block pushes; and connections that do no
+/// work, so that what moves with another gives its wrench back there. The last by random motions
+/// and wrenches that fit the connections and must do no work together (Tellegen's theorem). What
+/// only reads does not count. O(terms), times the number of equations in a row without a body
+/// between them.
 std::string why_no_structure(const Graph& graph, ParameterValues values);
 
 }  // namespace titop::full

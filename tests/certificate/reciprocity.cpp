@@ -152,13 +152,13 @@ TEST_CASE("a filter that reads here and pushes there: measured as by hand, and n
     CHECK(c.holds());
     CHECK(r.done);
     CHECK(!r.structure);
-    CHECK(has(r.why_no_structure, "filter.in is driven, a one-way port"));
+    CHECK(has(r.why_no_structure, "b.child.force is driven by filter.out"));
     CHECK(((r.first == "f1" && r.second == "f2") || (r.first == "f2" && r.second == "f1")));
     const auto G = [&](Complex s) { return one_way_by_hand(g, s); };
     check_is(r, worst(grid(2, 3), G));
     const std::string text = to_string(c);
     CHECK(has(text, "2 forces: not reciprocal"));
-    CHECK(has(text, "nothing asks for it: filter.in is driven"));
+    CHECK(has(text, "nothing asks for it: b.child.force is driven"));
   }
 }
 

@@ -165,7 +165,7 @@ TEST_CASE("no structure, and why; names with quotes; modes that left") {
   FullCertificate c = certify(compile(two(true)));
   check_same(c);
   CHECK(parsed(c).at("reciprocity").at("why_no_structure") ==
-        "filter.in is driven, a one-way port");
+        "b.child.force is driven by filter.out");
   const auto [f, g] =
       std::pair(parsed(c).at("reciprocity").at("first"), parsed(c).at("reciprocity").at("second"));
   CHECK((f == "\"f\", N" || g == "\"f\", N"));

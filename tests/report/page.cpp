@@ -167,7 +167,7 @@ TEST_CASE("the certificate says whether forces are reciprocal, and why nothing a
         ++rows;
         CHECK(has(row[2], "holds") == !pushed);
         CHECK(has(row[3], "Of 2 forces"));
-        CHECK(has(row[3], "nothing asks for it: filter.in is driven") == pushed);
+        CHECK(has(row[3], "nothing asks for it: b.child.force is driven") == pushed);
       }
   CHECK(rows == 2);
 }

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <titop/graph/graph.hpp>
+#include <vector>
+
+/// Springs and dampers written as equations: `h.torque = k * h.angle + c * h.rate`.
+namespace titop::full {
+
+/// gain * the position (or rate) of a channel.
+struct OfMotion {
+  Term::Of of;  ///< position or rate
+  int channel;
+  Eigen::MatrixXd gain;
+};
+
+/// A term as a sum of such: of a port's position or rate, or of a one-way output that is the
+/// position or rate of points whose accelerations its block takes (a joint's angle, a bushing's
+/// displacement; by its matrices). Empty if it is anything else.
+std::vector<OfMotion> of_motions(const Graph& graph, const Term& term, ParameterValues values);
+
+/// Whether forces that follow positions and rates are those of springs and dampers: the gains from
+/// all positions to all forces, in the signs of work, are symmetric and positive semidefinite, and
+/// so are those from rates. To 1e-12 of their diagonal, in all units. Empty if they are, else the
+/// first force of those that are not. O(terms), and m^3 for m degrees of freedom that such springs
+/// tie together.
+std::string why_no_springs(const Graph& graph, ParameterValues values);
+
+}  // namespace titop::full
