@@ -20,6 +20,8 @@ namespace detail {
 struct SystemData;
 }
 class Excitation;
+struct Full;
+struct FullCertificate;
 struct Simulation;
 struct Trajectory;
 
@@ -145,6 +147,7 @@ class System {
   const Stage& stage() const;
 
  private:
+  friend FullCertificate certify(const System&, const Full&);
   friend Trajectory simulate(const System&, const Excitation&, const Simulation&);
 
   std::shared_ptr<const detail::SystemData> data_;

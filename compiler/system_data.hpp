@@ -127,6 +127,9 @@ double dense_difference(const SystemData& data, const StateSpace& dense);
 struct Rounded {
   StateSpace model, rounding;
 };
+/// What rounding may put into the entries of a dense model of these sizes and names: the largest of
+/// four samples by the factors. O(bodies * order).
+StateSpace rounding_of(const SystemData& data, const StateSpace& dense);
 /// The dense model with 0 for every entry that is nothing but rounding: not above some 30 times
 /// what the factors say that rounding makes of 0 there. What does not act on something else then
 /// does not, in any units. O(bodies * order), for models that `minimize` judges.

@@ -11,6 +11,7 @@
 #include <titop/compiler/declared.hpp>
 #include <titop/compiler/exact/of_stage.hpp>
 #include <titop/compiler/system.hpp>
+#include <titop/compiler/system_data.hpp>
 #include <titop/compiler/transfer.hpp>
 
 namespace titop {
@@ -166,7 +167,7 @@ FullCertificate certify(const System& system, const Full& what) {
   if (dense) {
     c.order = system.order_verdict();
     system.write(model);
-    c.poles = full::check_poles(system, model, omegas);
+    c.poles = full::check_poles(system, model, detail::rounding_of(*system.data_, model).A, omegas);
   } else {
     c.poles.why_not = c.grid.why_not = fmt::format("{} states are more than {} (Full::dense_up_to)",
                                                    system.order(), what.dense_up_to);

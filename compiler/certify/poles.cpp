@@ -37,7 +37,7 @@ double smeared_zero(const Eigen::MatrixXd& A, const VectorXcd& values) {
 }  // namespace
 
 FullCertificate::Poles check_poles(const System& system, const StateSpace& model,
-                                   std::vector<double>& omegas) {
+                                   const Eigen::MatrixXd& rounding, std::vector<double>& omegas) {
   FullCertificate::Poles p;
   p.done = true;
   p.count = model.order();
@@ -49,7 +49,9 @@ FullCertificate::Poles check_poles(const System& system, const StateSpace& model
   for (Index k = 0; k < e.values.size(); ++k) {
     const std::complex<double> s = e.values(k);
     const double size = std::abs(s);
-    if (size <= smeared || !(kEps * norm * left(k) * right(k) <= kMeasurable * size)) continue;
+    const double moved = (e.W.row(k).cwiseAbs() * rounding * e.V.col(k).cwiseAbs())(0);
+    if (size <= smeared || !(kEps * norm * left(k) * right(k) + moved <= kMeasurable * size))
+      continue;
     omegas.push_back(size);
     const int both = s.imag() != 0 ? 2 : 1;
     if (s.imag() < 0) continue;

@@ -7,8 +7,10 @@
 /// Items of the full certificate (compiler/certify_full.hpp). For the compiler's own files.
 namespace titop::full {
 
-/// Poles of the dense model against the factors; `omegas`: |s| of those that are not 0, ascending.
+/// Poles of the dense model against the factors, but for those that rounding may have made of 0 or
+/// moved by more than 1e-8 of their size: `rounding` of each entry of A, and what eigenvalues in
+/// double lose. `omegas`: |s| of those measured, ascending.
 FullCertificate::Poles check_poles(const System& system, const StateSpace& model,
-                                   std::vector<double>& omegas);
+                                   const Eigen::MatrixXd& rounding, std::vector<double>& omegas);
 
 }  // namespace titop::full

@@ -53,6 +53,29 @@ TEST_CASE("two free masses: one pair of poles, passive, order 2, decided exactly
 }
 
 TEST_CASE(
+    "a spring between two points that are driven: poles at 0, whatever rounding makes of them") {
+  // d2(stretch)/dt2 = w - v; the force that moves the mass so holds k stretch, which cancels.
+  int off = 0;
+  for (int k = 1; k <= 40; ++k) {
+    const double stiffness = k / 7.0, mass = 0.3 + k / 11.0;
+    CAPTURE(stiffness);
+    Diagram d{"driven"};
+    auto z = d.add("z", SpringMass{.mass = mass, .stiffness = stiffness, .damping = 0.01 * k});
+    z.parent.accel = d.input("v");
+    z.child.accel = d.input("w");
+    d.output("stretch") = z.stretch;
+    const System system = compile(d, {.minimize_up_to = 0});
+    const FullCertificate c = certify(system, {.points = 6});
+    CAPTURE(to_string(c));
+    CHECK(c.holds());
+    CHECK(c.poles.count == 2);
+    CHECK(c.poles.measured == 0);
+    off += !system.state_space().A.row(1).isZero(0);
+  }
+  CHECK(off >= 5);  // rounding does make something of them
+}
+
+TEST_CASE(
     "a wrench on the child point of a bushing is dual to its acceleration, one on a parent to "
     "-it") {
   Diagram d{"isolated"};
