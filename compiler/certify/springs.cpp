@@ -15,7 +15,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kRounding = 1e-12;  ///< of the diagonal
+constexpr double kRounding = 1e-12;  ///< of the axes' sizes
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -75,32 +75,44 @@ std::vector<std::vector<int>> tied(const Gains& gains, std::size_t channels) {
   return result;
 }
 
-MatrixXd among(const std::vector<int>& channels, const Graph& g, const Gains& gains) {
-  std::map<int, Index> first;
-  Index size = 0;
-  for (const int c : channels) first[c] = std::exchange(size, size + g.channels[at(c)].size);
-  MatrixXd K = MatrixXd::Zero(size, size);
-  for (const auto& [pair, gain] : gains)
-    if (const auto row = first.find(pair.first); row != first.end())
-      K.block(row->second, first.at(pair.second), gain.rows(), gain.cols()) = gain;
-  return K;
-}
+/// Gains among these channels as one matrix. Axes that share a unit have the size of the largest
+/// gain among them: what rotations leave of a 0 is no spring, and no fault.
+struct Among {
+  MatrixXd K;
+  Eigen::VectorXd size;
 
-/// Symmetric and positive semidefinite, each row and column over the root of its diagonal.
-bool stores_or_takes(const MatrixXd& K) {
-  const Eigen::VectorXd size = K.diagonal();
-  if (!K.allFinite() || size.minCoeff() < 0) return false;
-  Eigen::VectorXd scale = Eigen::VectorXd::Zero(size.size());
-  for (Index i = 0; i < size.size(); ++i) {
-    if (size(i) > 0)
-      scale(i) = 1 / std::sqrt(size(i));
-    else if (!K.row(i).isZero(0) || !K.col(i).isZero(0))
-      return false;
+  Among(const std::vector<int>& channels, const Graph& g, const Gains& gains) {
+    std::map<int, Index> first;
+    Index rows = 0;
+    for (const int c : channels) first[c] = std::exchange(rows, rows + g.channels[at(c)].size);
+    K.setZero(rows, rows);
+    for (const auto& [pair, gain] : gains)
+      if (const auto row = first.find(pair.first); row != first.end())
+        K.block(row->second, first.at(pair.second), gain.rows(), gain.cols()) = gain;
+    size = K.diagonal();
+    for (const auto& [c, row] : first) {
+      const int each = entries_per_unit(g.signals[at(g.channels[at(c)].accel)]);
+      for (Index i = row; i < row + g.channels[at(c)].size; i += each) {
+        auto unit = size.segment(i, each);
+        unit.setConstant(unit.maxCoeff());
+      }
+    }
   }
-  const MatrixXd S = scale.asDiagonal() * K * scale.asDiagonal();
-  return (S - S.transpose()).cwiseAbs().maxCoeff() <= kRounding &&
-         eigh(S).lambda.minCoeff() >= -kRounding * static_cast<double>(S.rows());
-}
+
+  bool symmetric_and_semidefinite() const {
+    if (!K.allFinite()) return false;
+    Eigen::VectorXd scale = Eigen::VectorXd::Zero(size.size());
+    for (Index i = 0; i < size.size(); ++i) {
+      if (size(i) > 0)
+        scale(i) = 1 / std::sqrt(size(i));
+      else if (!K.row(i).isZero(0) || !K.col(i).isZero(0))
+        return false;
+    }
+    const MatrixXd S = scale.asDiagonal() * K * scale.asDiagonal();
+    return (S - S.transpose()).cwiseAbs().maxCoeff() <= kRounding &&
+           eigh(S).lambda.minCoeff() >= -kRounding * static_cast<double>(S.rows());
+  }
+};
 
 }  // namespace
 
@@ -129,7 +141,7 @@ std::string why_no_springs(const Graph& g, ParameterValues values) {
   for (const Term::Of of : {Term::Of::position, Term::Of::rate}) {
     const Gains all = gains(g, values, of);
     for (const std::vector<int>& channels : tied(all, g.channels.size())) {
-      if (stores_or_takes(among(channels, g, all))) continue;
+      if (Among(channels, g, all).symmetric_and_semidefinite()) continue;
       const auto pushed = std::find_if(channels.begin(), channels.end(), [&](int c) {
         return all.lower_bound({c, 0}) != all.lower_bound({c + 1, 0});
       });

@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <functional>
+#include <numbers>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"
@@ -143,6 +143,38 @@ TEST_CASE("sprung hinges and control of the attitude where it is measured: a str
   CHECK(has(why(satellite(-1, 0, 100, 60)), "hinge L.torque follows positions as no springs do"));
   CHECK(has(why(satellite(1, -0.1, 100, 60)), "hinge L.torque follows rates as no dampers do"));
   CHECK(has(why(satellite(1, 0, -1, 60)), "hub.parent.force follows positions as no springs do"));
+}
+
+TEST_CASE("a spring of six axes between two bodies in frames of any kind") {
+  // K on the difference of two points in the frame of one of them, as wrenches on both.
+  const auto tied_by = [](const Matrix6& K, const Matrix6& back, const Rotation& T) {
+    Diagram d{"tied by equations"};
+    auto a = d.add("a", RigidBody{.mass = 5, .children = {{"p", {1, 0.5, 0}}}});
+    auto b = d.add("b", RigidBody{.mass = 3, .PA = {0.2, 0, 0.3}, .children = {{"q"}}});
+    release(a), release(b);
+    const auto p = a.child("p"), q = b.child("q");
+    const Rotation to_a = T.named("a", "b");
+    p.force = d.input("F", 6) - K * p.position + K * (to_a * q.position);
+    q.force = d.input("G", 6) - to_a.inverse() * (back * (to_a * q.position - p.position));
+    d.output("p", 6) = p.accel;
+    d.output("q", 6) = q.accel;
+    return certify(compile(d), {.points = 6});
+  };
+  const Vector6 axes[] = {(Vector6() << 3e4, 2e4, 1e4, 300, 200, 100).finished(),
+                          (Vector6() << 0, 2e4, 0, 300, 0, 0).finished()};
+  for (const Vector6& k : axes)
+    for (const Rotation& T :
+         {Rotation::about({0, 0, 1}, std::numbers::pi / 2), Rotation::about({1, 2, -1}, 0.7)}) {
+      Matrix6 R = Matrix6::Zero();
+      R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = T.nominal();
+      const Matrix6 K = R * k.asDiagonal() * R.transpose();
+      const FullCertificate c = tied_by(K, K, T);
+      CAPTURE(to_string(c));
+      CHECK(c.holds());
+      CHECK(c.reciprocity.structure);
+      CHECK(c.reciprocity.asymmetry <= 1e-11);
+      CHECK(!tied_by(K, 1.001 * K, T).reciprocity.structure);
+    }
 }
 
 TEST_CASE("what only reads a structure does not change it") {
