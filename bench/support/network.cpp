@@ -38,7 +38,7 @@ class Export {
       return graph_.nodes[at(i)].declared < graph_.nodes[at(j)].declared;
     });
     for (const int i : order)
-      if (is_block(graph_.nodes[at(i)])) add_node(i);
+      if (is_block(i)) add_node(i);
     for (const int e : equation_)
       if (e >= 0) add_equation(graph_.equations[at(e)]);
     add_outputs();
@@ -46,9 +46,14 @@ class Export {
   }
 
  private:
-  /// A hub of many ports is one too; sums and gains are in the equations.
-  static bool is_block(const titop::Node& node) {
-    return !node.lowered || !node.block->interface().channels.empty();
+  /// A hub of many ports is one too, and a sum or gain in an algebraic loop, whose inputs have
+  /// equations of their own; others are in the equations.
+  bool is_block(int node) const {
+    const titop::Node& n = graph_.nodes[at(node)];
+    bool in_loop = false;
+    for (int s = n.first_signal; s < end_signal(graph_, node); ++s)
+      in_loop = in_loop || (graph_.signals[at(s)].role == Signal::Role::input && driven(s));
+    return in_loop || !n.lowered || !n.block->interface().channels.empty();
   }
 
   bool driven(int signal) const { return equation_[at(signal)] >= 0; }
