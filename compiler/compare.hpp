@@ -70,9 +70,9 @@ inline constexpr double kClose = 1e-9;
 /// the largest value that the block takes in `exact`, or 1e-3 of its terms where these are larger
 /// and cancel, as by symmetry (in double nothing is right to better than 1e-15 of its terms, and
 /// the entries of a dense model have lost some digits where they were made). No block is measured
-/// by its neighbours: the result is the same in all units of scalars and of whole threes; what
-/// stands in one three is taken to share a unit. Not finite, or a difference where `exact` and the
-/// terms are 0, is infinitely far.
+/// by its neighbours (but a 0 to the last bit, by add_rounding): the result is the same in all
+/// units of scalars and of whole threes; what stands in one three is taken to share a unit. Not
+/// finite, or a difference where `exact` and the terms are 0, is infinitely far.
 Difference difference(const std::vector<Eigen::MatrixXcd>& a,
                       const std::vector<Eigen::MatrixXcd>& exact, const Measure& measure);
 

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <boost/pending/disjoint_sets.hpp>
+#include <cmath>
 #include <map>
-#include <numeric>
 #include <titop/compiler/certify/dual_pairs.hpp>
 #include <titop/compiler/certify/springs.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
-#include <vector>
+#include <utility>
 
 namespace titop::full {
 namespace {

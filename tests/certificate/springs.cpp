@@ -55,8 +55,8 @@ Matrix2d two(double a, double b, double c, double d) {
 }
 
 /// A free hub with two panels on hinges, their springs and dampers as equations; attitude control
-/// of the hub by wheels.
-Diagram satellite(double k, double c, double kp, double kd) {
+/// of the hub by wheels. `watched`: a filter reads the left hinge's angle.
+Diagram satellite(double k, double c, double kp, double kd, bool watched = false) {
   Diagram d{"satellite"};
   auto hub = d.add("hub", RigidBody{.mass = 80,
                                     .inertia = Vector3d(9, 8, 7).asDiagonal(),
@@ -76,12 +76,52 @@ Diagram satellite(double k, double c, double kp, double kd) {
     auto h = hinge(d, std::string("hinge ") + side, panel, hub.child(side),
                    Rotation::about({1, 0, 2}, *side == 'L' ? 1.4 : -1.7), {0, 1, 0});
     h.torque = k * h.angle + c * h.rate;
+    if (watched && *side == 'L') {
+      auto filter = d.add("filter", Lti{.A = Eigen::MatrixXd{{-3}},
+                                        .B = Eigen::MatrixXd{{1}},
+                                        .C = Eigen::MatrixXd{{2}},
+                                        .D = Eigen::MatrixXd{{0}}});
+      filter.in = h.angle;
+      d.output("filtered") = filter.out;
+    }
     panel.child.force += d.input(std::string("F ") + side, 6);
     d.output(std::string("a ") + side, 6) = panel.child.accel;
   }
   d.output("turn", 3) = hub.parent.accel.angular;
   return d;
 }
+
+/// A mass of 2 kg with a force at a point, and one by a one-way port.
+struct PushedMass {
+  struct Handle {
+    Handle(Graph* graph, int node)
+        : at(detail::channel<1>(graph, node, 0)),
+          push(detail::SignalRef(graph, detail::port_signal(*graph, node, "push"))) {}
+    DualPort<1> at;
+    Port<0, Kind::plain> push;
+  };
+};
+
+class PushedMassBlock : public Block {
+ public:
+  PushedMassBlock() {
+    face_.channels = {{"at", 1, Takes::force}};
+    face_.inputs = {{"push", 1}};
+    matrices_->A.resize(0, 0);
+    matrices_->B.resize(0, 2);
+    matrices_->C.resize(1, 0);
+    matrices_->D = Eigen::MatrixXd{{0.5, 0.5}};
+  }
+  std::string_view type() const override { return "PushedMass"; }
+  const Interface& interface() const override { return face_; }
+  std::shared_ptr<const Dynamics> dynamics(ParameterValues) const override { return matrices_; }
+
+ private:
+  Interface face_;
+  std::shared_ptr<Dynamics> matrices_ = std::make_shared<Dynamics>();
+};
+
+BlockPtr as_block(const PushedMass&) { return std::make_shared<PushedMassBlock>(); }
 
 }  // namespace
 
@@ -178,16 +218,28 @@ TEST_CASE("a spring of six axes between two bodies in frames of any kind") {
 }
 
 TEST_CASE("what only reads a structure does not change it") {
-  Diagram d = satellite(40, 0.3, 100, 60);
-  auto filter = d.add("filter", Lti{.A = Eigen::MatrixXd{{-3}},
-                                    .B = Eigen::MatrixXd{{1}},
-                                    .C = Eigen::MatrixXd{{2}},
-                                    .D = Eigen::MatrixXd{{0}}});
-  filter.in = d.input("noise");
-  d.output("filtered") = filter.out;
-  const FullCertificate c = certify(compile(d), {.points = 4});
+  const System system = compile(satellite(40, 0.3, 100, 60, true));
+  const FullCertificate c = certify(system, {.points = 4});
   CAPTURE(to_string(c));
   CHECK(c.holds());
   CHECK(c.reciprocity.structure);
   CHECK(c.reciprocity.forces == 3 + 6 + 6);
+  // It does read: the last output follows the first force.
+  CHECK(std::abs(system.transfer({0, 1})(system.outputs().size() - 1, 0)) > 0);
+}
+
+TEST_CASE("a body that a one-way port pushes is no structure, and the port is named") {
+  Diagram d{"pushed"};
+  auto body = d.add("body", PushedMass{});
+  auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 4});
+  ground(z);
+  body.at.force = d.input("f");
+  body.push = d.input("p");
+  z.child.force = d.input("g");
+  d.output("a") = body.at.accel;
+  d.output("z") = z.child.accel;
+  const FullCertificate c = certify(compile(d), {.points = 2});
+  CHECK(c.holds());
+  CHECK(!c.passivity.structure);
+  CHECK(c.reciprocity.why_no_structure == "body.push is driven, a one-way port of a body");
 }
