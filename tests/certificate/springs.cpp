@@ -225,7 +225,7 @@ TEST_CASE("what only reads a structure does not change it") {
   CHECK(c.reciprocity.structure);
   CHECK(c.reciprocity.forces == 3 + 6 + 6);
   // It does read: the last output follows the first force.
-  CHECK(std::abs(system.transfer({0, 1})(system.outputs().size() - 1, 0)) > 0);
+  CHECK(std::abs(system.transfer({0, 1})(std::ssize(system.outputs()) - 1, 0)) > 0);
 }
 
 TEST_CASE("a body that a one-way port pushes is no structure, and the port is named") {
