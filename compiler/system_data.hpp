@@ -135,7 +135,7 @@ StateSpace rounding_of(const SystemData& data, const StateSpace& dense);
 /// does not, in any units. O(bodies * order), for models that `minimize` judges.
 Rounded without_rounding(const SystemData& data, StateSpace dense);
 
-/// See Certificate::dense_error. O(n^2) per s.
+/// See Certificate::dense_error. O(n^2) per s; O(n^3) for up to 100 states where it is large.
 DenseError dense_error(const SystemData& data, const StateSpace& dense);
 
 /// Margins of these loops of the stage, others left as they are.

@@ -35,16 +35,17 @@ struct Product {
 template <class L, int C, int R>
 [[gnu::always_inline]] inline void rows_of_product(const Product& p, std::ptrdiff_t i) {
   constexpr std::ptrdiff_t n = sizeof(L) / sizeof(double);
+  constexpr std::size_t width = C, height = R;
   for (std::ptrdiff_t j = 0; j < p.m; j += C * n) {
     double* const y = p.y + i * p.y_stride + j;
-    L sum[R][C];
+    L sum[height][width];
     for (int r = 0; r < R; ++r)
       for (int c = 0; c < C; ++c) {
         sum[r][c] = L{};
         if (p.add) load(sum[r][c], y + r * p.y_stride + c * n);
       }
     for (std::ptrdiff_t k = 0; k < p.inner; ++k) {
-      L x[C];
+      L x[width];
       for (int c = 0; c < C; ++c) load(x[c], p.x + k * p.m + j + c * n);
       for (int r = 0; r < R; ++r)
         for (int c = 0; c < C; ++c) sum[r][c] += p.a[(i + r) * p.stride + k] * x[c];

@@ -154,7 +154,7 @@ TEST_CASE("what the dense model loses is stated, at all masses, damped or not") 
     for (const double c : {0.0, 0.02})
       for (const double k : {3.0, 3e-9, 3e9})
         for (const double m : {1.0, 1e-12, 1e12})
-          for (const double m0 : {1.0, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-30, 1e12}) {
+          for (const double m0 : {1.0, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15, 1e-30, 1e-60, 1e12}) {
             CAPTURE(form.child_accel);
             CAPTURE(form.parent_force);
             CAPTURE(c);
@@ -170,4 +170,17 @@ TEST_CASE("what the dense model loses is stated, at all masses, damped or not") 
             ++all, far += std::min(stated, 1.0) > std::max(1e-12, 60 * found);
           }
   CHECK(far * 10 <= all);
+}
+
+TEST_CASE("of a force on hardly any mass the dense model's answer at the mass behind is right") {
+  for (const double m0 : {1e-20, 1e-40, 1e-60, 1e-100, 1e-200, 1e-300}) {
+    CAPTURE(m0);
+    const Numbers n{.m0 = m0};
+    const Form form{.child_accel = false, .parent_force = true};
+    const System system = compile(scene(n, form, false), {.minimize_up_to = 0});
+    const StateSpace& dense = system.state_space();
+    for (const auto s : kPoints)
+      CHECK(error({dense.transfer(s)}, {exact(n, form, s).topRows(1)}) <= 1e-15);
+    CHECK(system.certificate().dense_error <= 1e-9);  // above it the log would warn
+  }
 }

@@ -38,8 +38,8 @@ Eigen::VectorXd Scene::factors(const std::vector<std::vector<Dim>>& dims, const 
 std::vector<Eigen::Index> Scene::blocks(const std::vector<std::vector<Dim>>& dims) {
   std::vector<Eigen::Index> result;
   for (const auto& signal : dims)
-    for (std::size_t i = 0; i < signal.size(); i += signal.size() % 3 == 0 ? 3 : 1)
-      result.push_back(signal.size() % 3 == 0 ? 3 : 1);
+    for (std::size_t i = 0, step = signal.size() % 3 == 0 ? 3 : 1; i < signal.size(); i += step)
+      result.push_back(static_cast<Eigen::Index>(step));
   return result;
 }
 
