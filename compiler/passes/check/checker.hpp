@@ -1,0 +1,46 @@
+#pragma once
+
+#include <fmt/format.h>
+
+#include <titop/compiler/passes/passes.hpp>
+#include <unordered_map>
+
+/// What the checks of a graph have in common, and the checks themselves: each adds its mistakes, so
+/// that a user sees all of them at once.
+namespace titop::passes {
+
+struct Checker {
+  const Graph& graph;
+  std::vector<Mistake> mistakes;
+  std::vector<Note> notes;
+  std::unordered_map<std::string_view, int> node_index = {};
+
+  explicit Checker(const Graph& g) : graph(g), mistakes(g.mistakes) {}
+
+  /// -1 where no node has this name. The index is made where a rotation names its frames.
+  int find_node(const std::string& name) {
+    if (name.empty()) return -1;
+    if (node_index.empty())
+      for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+        node_index.emplace(graph.nodes[i].name, static_cast<int>(i));
+    const auto found = node_index.find(name);
+    return found == node_index.end() ? -1 : found->second;
+  }
+
+  void add(Code code, std::string message, std::vector<std::string> details, std::string hint) {
+    mistakes.push_back({code, std::move(message), std::move(details), std::move(hint)});
+  }
+};
+
+inline std::string line(const std::string& text, const std::source_location& where) {
+  return fmt::format("{:<50} {}", text, to_string(where));
+}
+
+/// Sizes, quantities and frames of the terms on right-hand sides (terms.cpp).
+void check_equations(Checker& c);
+void check_outputs(Checker& c);
+
+/// Every direction of a channel and every one-way port is driven once (drives.cpp).
+void check_drives(Checker& c);
+
+}  // namespace titop::passes

@@ -1,0 +1,181 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <titop/compiler/passes/check/checker.hpp>
+
+namespace titop::passes {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// What a term is, after its factors.
+struct Kind {
+  int size = 0;
+  Quantity quantity = Quantity::plain;
+  int frame = kNoFrame;
+};
+
+/// One factor of a term; false where the term makes no sense from here on.
+bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term,
+           const std::source_location& where) {
+  const auto place = [&] { return line(print(c.graph, term), where); };
+  if (const auto* k = std::get_if<Value>(&factor)) {
+    kind.quantity = Quantity::plain;
+    if (!std::isfinite(k->nominal()))
+      c.add(Code::not_finite, fmt::format("a gain is {}", k->nominal()), {place()},
+            "give a finite gain");
+  } else if (const auto* m = std::get_if<Matrix>(&factor)) {
+    if (m->value->cols() != kind.size) {
+      c.add(Code::size,
+            fmt::format("a {}x{} matrix multiplies a signal of size {}", m->value->rows(),
+                        m->value->cols(), kind.size),
+            {place()}, fmt::format("the matrix needs {} columns", kind.size));
+      return false;
+    }
+    if (!m->value->allFinite())
+      c.add(Code::not_finite, "a matrix has entries that are not finite", {place()},
+            "check the matrix' source");
+    kind = {static_cast<int>(m->value->rows()), Quantity::plain,
+            kind.frame == kNoFrame ? kNoFrame : kUnknownFrame};
+  } else if (const auto* p = std::get_if<Part>(&factor)) {
+    if (p->whole()) return true;
+    if (p->rows.cols() != kind.size) {
+      c.add(Code::size, fmt::format("{} is taken of a signal of size {}", p->name, kind.size),
+            {place()}, ".linear and .angular belong to dual vectors of 6");
+      return false;
+    }
+    kind.size = static_cast<int>(p->rows.rows());
+  } else if (const auto& T = std::get<Rotation>(factor); !T.is_identity() || !T.to().empty()) {
+    if (kind.size != 3 && kind.size != 6 && !(T.is_identity() && kind.size == 1)) {
+      c.add(Code::size, fmt::format("a rotation multiplies a signal of size {}", kind.size),
+            {place()}, "rotations act on vectors of 3 and dual vectors of 6");
+      return false;
+    }
+    const int from = c.find_node(T.from()), to = c.find_node(T.to());
+    if (kind.frame >= 0 && from >= 0 && from != kind.frame) {
+      c.add(Code::frame,
+            fmt::format("the rotation {}<-{} meets a signal in {}", T.to(), T.from(),
+                        frame_name(c.graph, kind.frame)),
+            {place()}, "use its inverse(), or name the frames that it really has");
+    }
+    kind.frame = to >= 0 ? to : kUnknownFrame;
+  }
+  return true;
+}
+
+/// Kind of a term; size -1 where it makes no sense (already noted).
+Kind describe(Checker& c, const Term& term, const std::source_location& where) {
+  if (term.signal < 0) return {-1};
+  const Signal& s = c.graph.signals[at(term.signal)];
+  Kind kind{s.size, s.quantity, s.frame};
+  if (term.of == Term::Of::position) kind.quantity = Quantity::position;
+  if (term.of == Term::Of::rate) kind.quantity = Quantity::velocity;
+  for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f)
+    if (!apply(c, kind, *f, term, where)) return {-1};
+  return kind;
+}
+
+std::string frame_hint(const Checker& c, int target, const Term& term) {
+  const Signal& t = c.graph.signals[at(target)];
+  const Signal& s = c.graph.signals[at(term.signal)];
+  const std::string plain = print(c.graph, Term{term.signal, term.of, 1, {}});
+  if (t.channel >= 0 && s.channel >= 0 && t.quantity == Quantity::acceleration)
+    return fmt::format("write mount({}, {}, T_ba), or T_ba.inverse() * {}",
+                       c.graph.nodes[at(t.node)].name, channel_name(c.graph, s.channel), plain);
+  return fmt::format("write T * {} with the rotation T that takes it from one frame to the other",
+                     plain);
+}
+
+/// The right-hand side of an equation or output. What it says of itself costs more than the checks:
+/// only mistakes ask for it.
+struct RightSide {
+  const std::vector<Term>& terms;
+  const std::source_location& where;
+  int target = -1;  ///< signal; -1: an output
+  std::function<std::string()> name, text;
+};
+
+/// All terms against what they drive. `expected.frame` kNoFrame adopts the first frame met.
+void check_terms(Checker& c, const RightSide& side, Kind expected) {
+  const bool adopts_frame = expected.frame == kNoFrame;
+  const Term* from = nullptr;  // whose kind or frame is expected; none: the target's
+  const auto place = [&] { return line(side.text(), side.where); };
+  const auto origin = [&] { return from ? print(c.graph, *from) : side.name(); };
+  for (const Term& term : side.terms) {
+    const Kind kind = describe(c, term, side.where);
+    if (kind.size < 0) continue;
+    if (kind.size != expected.size) {
+      c.add(Code::size,
+            fmt::format("{} has size {}, its equation has {} of size {}", side.name(),
+                        expected.size, print(c.graph, term), kind.size),
+            {place()},
+            fmt::format("both sides must have size {}; take .linear, .angular or "
+                        ".along(r), or give the {} another size",
+                        expected.size, side.target < 0 ? "output" : "signal"));
+      continue;
+    }
+    if (expected.quantity == Quantity::plain && kind.quantity != Quantity::plain) {
+      expected.quantity = kind.quantity;
+      from = &term;
+    } else if (kind.quantity != Quantity::plain && kind.quantity != expected.quantity) {
+      c.add(Code::quantity,
+            fmt::format("{} is of kind {}, {} of kind {}", origin(), to_string(expected.quantity),
+                        print(c.graph, term), to_string(kind.quantity)),
+            {place()}, "a gain with units in front, as k * signal, makes it a plain signal");
+    }
+    if (kind.frame == kUnknownFrame) {
+      c.notes.push_back({Note::Kind::unchecked, "check",
+                         fmt::format("{}: the frame of {} is unknown ({})", side.name(),
+                                     print(c.graph, term), to_string(side.where))});
+    } else if (kind.frame != kNoFrame) {
+      if (expected.frame == kNoFrame && adopts_frame) {
+        expected.frame = kind.frame;
+        from = &term;
+      } else if (expected.frame >= 0 && kind.frame != expected.frame) {
+        c.add(
+            Code::frame,
+            fmt::format("{} is in {}, its equation is in {}", adopts_frame ? origin() : side.name(),
+                        frame_name(c.graph, expected.frame), frame_name(c.graph, kind.frame)),
+            {place()},
+            side.target < 0 ? "rotate one of them first" : frame_hint(c, side.target, term));
+      }
+    }
+  }
+}
+
+void check_equation(Checker& c, const Equation& e) {
+  const Signal& s = c.graph.signals[at(e.target)];
+  const Kind expected{e.part.whole() ? s.size : static_cast<int>(e.part.rows.rows()), s.quantity,
+                      s.frame};
+  check_terms(c,
+              {e.terms, e.where, e.target, [&] { return name_of(c.graph, e.target) + e.part.name; },
+               [&] { return print(c.graph, e); }},
+              expected);
+}
+
+}  // namespace
+
+void check_equations(Checker& c) {
+  for (const Equation& e : c.graph.equations) check_equation(c, e);
+}
+
+void check_outputs(Checker& c) {
+  for (const Output& o : c.graph.outputs) {
+    if (!o.set) {
+      c.add(Code::no_equation, fmt::format("output {} is not set", o.name),
+            {"it was declared at " + to_string(o.where)},
+            fmt::format("write d.output(\"{}\") = ...", o.name));
+      continue;
+    }
+    const auto text = [&] {
+      std::string all = fmt::format("output(\"{}\") = ", o.name);
+      for (std::size_t i = 0; i < o.terms.size(); ++i)
+        if (o.terms[i].signal >= 0) all += (i ? " + " : "") + print(c.graph, o.terms[i]);
+      return all;
+    };
+    check_terms(c, {o.terms, o.where, -1, [&] { return "output " + o.name; }, text},
+                {o.size, Quantity::plain, kNoFrame});
+  }
+}
+
+}  // namespace titop::passes
