@@ -16,21 +16,32 @@ void add_names(std::vector<std::string>& names, const std::string& name, int siz
     names.push_back(size == 1 ? name : fmt::format("{}({})", name, i));
 }
 
+/// Names stand as declared; nodes are visited as they lie in memory.
+void add_states(const Graph& g, Layout& l) {
+  std::vector<int> first(g.nodes.size() + 1, 0);
+  for (const Node& node : g.nodes)
+    if (node.state >= 0 && g.signals[at(node.state)].active)
+      first[at(node.declared) + 1] = static_cast<int>(node.block->interface().states.size());
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  l.states.resize(at(first.back()));
+  for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
+    const Node& node = g.nodes[at(i)];
+    if (node.state < 0 || !g.signals[at(node.state)].active) continue;
+    const int begin = first[at(node.declared)];
+    l.state_first[at(i)] = l.known_first[at(node.state)] = begin;
+    l.state_nodes.push_back(i);
+    std::string* name = l.states.data() + begin;
+    for (const std::string& s : node.block->interface().states) *name++ = node.name + "." + s;
+  }
+}
+
 }  // namespace
 
 Layout make_layout(const Graph& g) {
   Layout l;
   l.known_first.assign(g.signals.size(), -1);
   l.state_first.assign(g.nodes.size(), -1);
-  for (const int i : as_declared(g.nodes)) {
-    const Node& node = g.nodes[at(i)];
-    if (node.state < 0 || !g.signals[at(node.state)].active) continue;
-    l.state_first[at(i)] = l.known_first[at(node.state)] = static_cast<int>(l.states.size());
-    l.state_nodes.push_back(i);
-    for (const std::string& s : node.block->interface().states)
-      l.states.push_back(node.name + "." + s);
-  }
-  std::sort(l.state_nodes.begin(), l.state_nodes.end());
+  add_states(g, l);
   l.input_first.resize(g.inputs.size());
   for (const int i : as_declared(g.inputs)) {
     const Input& input = g.inputs[at(i)];

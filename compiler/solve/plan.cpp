@@ -1,9 +1,8 @@
 #include <algorithm>
-#include <cstdint>
-#include <functional>
-#include <queue>
+#include <map>
 #include <titop/compiler/solve/dissection.hpp>
 #include <titop/compiler/solve/plan.hpp>
+#include <tuple>
 
 namespace titop::solve {
 namespace {
@@ -140,31 +139,27 @@ std::span<const int> Merging::merge(int v) {
 /// counted when fewer are left.
 constexpr int kMany = 64;
 
-/// `when`: variables with a smaller number go first; empty: no matter.
+/// `when`: variables with a smaller number go first; empty: no matter. Of those that cost the same
+/// the last one found does: its neighbours are at hand, so that trees are taken branch by branch.
 void eliminate_all(Plan& p, const std::vector<int>& when) {
   Merging m(p);
-  // When and columns, then rows and variable: none is negative, so two numbers order all four.
-  using Entry = std::pair<std::uint64_t, std::uint64_t>;
-  const auto both = [](int high, int low) {
-    return static_cast<std::uint64_t>(high) << 32 | static_cast<std::uint64_t>(low);
-  };
-  std::vector<Entry> room;
-  room.reserve(3 * p.structure.variable_size.size());
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue({}, std::move(room));
-  std::vector<std::pair<int, int>> cost(p.structure.variable_size.size());
+  using Cost = std::tuple<int, int, int>;  // when, columns, rows
+  std::map<Cost, std::vector<int>> waiting;
+  std::vector<Cost> cost(p.structure.variable_size.size());
   const auto push = [&](int v, bool exact) {
-    cost[at(v)] = exact || m.live(v) <= kMany ? m.cost(v) : std::pair(m.live(v), 0);
-    queue.push(
-        {both(when.empty() ? 0 : when[at(v)], cost[at(v)].first), both(cost[at(v)].second, v)});
+    const auto [columns, rows] = exact || m.live(v) <= kMany ? m.cost(v) : std::pair(m.live(v), 0);
+    cost[at(v)] = {when.empty() ? 0 : when[at(v)], columns, rows};
+    waiting[cost[at(v)]].push_back(v);
   };
-  for (int v = 0; v < static_cast<int>(cost.size()); ++v) push(v, false);
-  while (!queue.empty()) {
-    const auto [first, second] = queue.top();
-    queue.pop();
-    const int v = static_cast<int>(second & 0xffffffff);
-    const std::pair c(static_cast<int>(first & 0xffffffff), static_cast<int>(second >> 32));
+  for (int v = static_cast<int>(cost.size()); v-- > 0;) push(v, false);
+  while (!waiting.empty()) {
+    const auto least = waiting.begin();
+    const Cost c = least->first;
+    const int v = least->second.back();
+    least->second.pop_back();
+    if (least->second.empty()) waiting.erase(least);
     if (m.gone(v) || c != cost[at(v)]) continue;
-    if (c.second == 0 && m.live(v) > 0) {  // not counted yet
+    if (std::get<2>(c) == 0 && m.live(v) > 0) {  // not counted yet
       push(v, true);
       continue;
     }

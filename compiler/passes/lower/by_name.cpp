@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <numeric>
-#include <titop/compiler/passes/arrows.hpp>
 #include <titop/compiler/passes/lower/along_trees.hpp>
 #include <titop/compiler/passes/lower/by_name.hpp>
 
@@ -21,6 +20,11 @@ std::vector<int> sorted_by_name(const List& list) {
   return order;
 }
 
+/// What gets a new place lies far apart in memory: it is asked for some steps ahead, and what it
+/// points to half as many.
+constexpr std::size_t kAhead = 8;
+void fetch(const void* p) { __builtin_prefetch(p); }
+
 }  // namespace
 
 Graph by_name(Graph g) {
@@ -31,7 +35,11 @@ Graph by_name(Graph g) {
   out.channels.reserve(g.channels.size());
   out.signals.reserve(g.signals.size());
   std::vector<int> signal(g.signals.size(), -1);
-  for (const int i : along_trees(g, sorted_by_name(g.nodes))) {
+  const std::vector<int> order = along_trees(g, sorted_by_name(g.nodes));
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    if (k + 2 * kAhead < order.size()) fetch(&g.nodes[at(order[k + 2 * kAhead])]);
+    if (k + kAhead < order.size()) fetch(g.nodes[at(order[k + kAhead])].block.get());
+    const int i = order[k];
     Node& node = g.nodes[at(i)];
     const int added = add_node(out, std::move(node.name), std::move(node.block), node.where);
     out.nodes[at(added)].declared = node.declared;
@@ -47,18 +55,22 @@ Graph by_name(Graph g) {
   const auto rename = [&](std::vector<Term>& terms) {
     for (Term& t : terms) t.signal = signal[at(t.signal)];
   };
-  std::vector<std::pair<int, int>> targets;
-  targets.reserve(g.equations.size());
+  std::vector<std::pair<int, int>> by_target;
+  by_target.reserve(g.equations.size());
   for (const Equation& e : g.equations)
-    targets.emplace_back(signal[at(e.target)], static_cast<int>(targets.size()));
+    by_target.emplace_back(signal[at(e.target)], static_cast<int>(by_target.size()));
+  std::sort(by_target.begin(), by_target.end());
   out.equations.reserve(g.equations.size());
-  const Arrows equations(targets, out.signals.size());
-  for (int s = 0; s < equations.count(); ++s)
-    for (const int i : equations.from(s)) {
-      Equation& e = out.equations.emplace_back(std::move(g.equations[at(i)]));
-      e.target = s;
-      rename(e.terms);
-    }
+  for (std::size_t k = 0; k < by_target.size(); ++k) {
+    if (k + 2 * kAhead < by_target.size())
+      fetch(&g.equations[at(by_target[k + 2 * kAhead].second)]);
+    if (k + kAhead < by_target.size())
+      fetch(g.equations[at(by_target[k + kAhead].second)].terms.data());
+    const auto [s, i] = by_target[k];
+    Equation& e = out.equations.emplace_back(std::move(g.equations[at(i)]));
+    e.target = s;
+    rename(e.terms);
+  }
   for (const int i : sorted_by_name(g.outputs)) {
     out.outputs.push_back(std::move(g.outputs[at(i)]));
     rename(out.outputs.back().terms);
