@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <titop/compiler/solve/dissection.hpp>
 #include <titop/compiler/solve/plan.hpp>
@@ -140,24 +141,29 @@ std::span<const int> Merging::merge(int v) {
 constexpr int kMany = 64;
 
 /// `when`: variables with a smaller number go first; empty: no matter. Of those that cost the same
-/// the last one found does: its neighbours are at hand, so that trees are taken branch by branch.
+/// the first does, whichever was found last: branch by branch would be quicker, but goes down into
+/// branches from where they join, which cost a chain of sixteen booms two digits.
 void eliminate_all(Plan& p, const std::vector<int>& when) {
   Merging m(p);
-  using Cost = std::tuple<int, int, int>;  // when, columns, rows
-  std::map<Cost, std::vector<int>> waiting;
+  using Cost = std::tuple<int, int, int>;    // when, columns, rows
+  std::map<Cost, std::vector<int>> waiting;  // of each cost a heap, the first variable on top
   std::vector<Cost> cost(p.structure.variable_size.size());
   const auto push = [&](int v, bool exact) {
     const auto [columns, rows] = exact || m.live(v) <= kMany ? m.cost(v) : std::pair(m.live(v), 0);
     cost[at(v)] = {when.empty() ? 0 : when[at(v)], columns, rows};
-    waiting[cost[at(v)]].push_back(v);
+    std::vector<int>& heap = waiting[cost[at(v)]];
+    heap.push_back(v);
+    std::push_heap(heap.begin(), heap.end(), std::greater<>());
   };
-  for (int v = static_cast<int>(cost.size()); v-- > 0;) push(v, false);
+  for (int v = 0; v < static_cast<int>(cost.size()); ++v) push(v, false);
   while (!waiting.empty()) {
     const auto least = waiting.begin();
     const Cost c = least->first;
-    const int v = least->second.back();
-    least->second.pop_back();
-    if (least->second.empty()) waiting.erase(least);
+    std::vector<int>& heap = least->second;
+    std::pop_heap(heap.begin(), heap.end(), std::greater<>());
+    const int v = heap.back();
+    heap.pop_back();
+    if (heap.empty()) waiting.erase(least);
     if (m.gone(v) || c != cost[at(v)]) continue;
     if (std::get<2>(c) == 0 && m.live(v) > 0) {  // not counted yet
       push(v, true);
