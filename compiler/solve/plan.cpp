@@ -120,6 +120,10 @@ std::span<const int> Merging::merge(int v) {
     for (const int w : all)
       if (live_[at(w)] == 0) p_.lists.push_back(w), f.pivot_count += size(w), gone_[at(w)] = 1;
   });
+  // Vectors before the scalars along one of their directions: the angle of a hinge taken first cost
+  // a satellite six digits of A.
+  std::stable_sort(p_.lists.begin() + f.pivots.begin, p_.lists.end(),
+                   [&](int a, int b) { return size(a) > size(b); });
   f.border = list([&] {
     for (const int w : all)
       if (live_[at(w)] > 0) p_.lists.push_back(w), f.border_count += size(w);

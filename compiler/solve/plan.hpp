@@ -15,9 +15,10 @@
 /// bodies this is the leaf-to-root recursion, one front per junction, O(bodies).
 ///
 /// Order: the variable whose front would be smallest comes next (minimum degree on the merged
-/// rows, by priority queue), ties by index; indices follow the names, so the order does too. Where
-/// that leads to wide fronts (grids, many loops) nested dissection is tried as well, with minimum
-/// degree inside its parts, and the order of less work taken.
+/// rows, by priority queue), ties by index; indices follow the names, so the order does too. Pivots
+/// of one front: vectors before scalars, then by index. Where that leads to wide fronts (grids,
+/// many loops) nested dissection is tried as well, with minimum degree inside its parts, and the
+/// order of less work taken.
 namespace titop::solve {
 
 /// Which variables each row group mentions.

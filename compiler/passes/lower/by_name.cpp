@@ -44,8 +44,8 @@ Graph by_name(Graph g) {
     const int added = add_node(out, std::move(node.name), std::move(node.block), node.where);
     out.nodes[at(added)].declared = node.declared;
     const int count = node.end_signal - node.first_signal;
-    for (int k = 0; k < count; ++k)
-      signal[at(node.first_signal + k)] = out.nodes[at(added)].first_signal + k;
+    for (int n = 0; n < count; ++n)
+      signal[at(node.first_signal + n)] = out.nodes[at(added)].first_signal + n;
   }
   for (const int i : sorted_by_name(g.inputs)) {
     Input& input = g.inputs[at(i)];
