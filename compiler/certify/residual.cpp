@@ -15,6 +15,7 @@ using Eigen::MatrixXd;
 std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kPlain = 1e-12;  ///< rounding up to this needs no excuse
 
 /// One equation after the other: left - right, and the sum of magnitudes, row by row.
 struct Balance {
@@ -139,13 +140,13 @@ struct Residual {
     if (r <= worst) return;
     const double off = b.largest();
     if (off < kUnderflow) return;
-    if (r > kWarn && off < kInfinity && signal >= 0 && only_rounding(signal)) return;
+    if (r > kPlain && off < kInfinity && signal >= 0 && only_rounding(signal)) return;
     worst = r, where = name();
   }
   bool only_rounding(int signal) const {
     for (std::size_t i = 0; i < b.rows(); ++i)
       if (const double off = std::abs(b.row[i].difference);
-          off > kWarn * b.row[i].magnitude &&
+          off > kPlain * b.row[i].magnitude &&
           off > kLeftOfZero * size_around_signal(d, at_hand.unknowns, signal, b.entry(i)))
         return false;
     return true;
