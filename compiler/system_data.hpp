@@ -75,6 +75,7 @@ struct SystemData {
   std::shared_ptr<const std::vector<double>> margins;
   std::vector<int> changed_loops;                       ///< by updates since
   int plans_renewed = 0;                                ///< by updates since
+  std::vector<double> scaled_at;                        ///< parameters when the scaling was found
   std::vector<Note> notes;                              ///< but those of `certify`
   std::vector<std::pair<std::string, double>> seconds;  ///< per pass
 

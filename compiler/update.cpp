@@ -213,10 +213,37 @@ System compiled_again(const SystemData& old, const std::vector<int>& changed,
   return System(std::move(d));
 }
 
-/// True where the scaling found for the old values no longer serves: pivots that were good have
-/// lost half their digits, or none are left.
+/// True where a value has moved so far that the scaling found for another one may not serve.
+bool has_moved(double value, double scaled_at) {
+  constexpr double kFar = 8;
+  const double a = std::abs(value), b = std::abs(scaled_at);
+  return a > kFar * b || b > kFar * a;
+}
+
+/// True where pivots that were good have lost half their digits, or none are left.
 bool outgrown(const solve::Health& now, const solve::Health& before) {
   return now.singular || now.weakest < 1e-8 * before.weakest || now.growth > 1e8 * before.growth;
+}
+
+/// The factors for the new values, scaled anew where need be.
+void refactor(const SystemData& old, const std::vector<int>& changed, SystemData& d) {
+  const Skeleton& k = *d.skeleton;
+  const auto rows = real_rows(k, d.numbers);
+  const auto& values = d.numbers.parameters;
+  d.scaled_at = old.scaled_at;
+  const bool rescale = std::any_of(changed.begin(), changed.end(), [&](int p) {
+    return has_moved(values[at(p)], d.scaled_at[at(p)]);
+  });
+  for (const int p : changed)
+    if (rescale) d.scaled_at[at(p)] = values[at(p)];
+  d.factors = std::make_unique<const solve::Factors<double>>(
+      old.factors->changed(rows, united(k, changed, &Dependents::rows), rescale));
+  const bool all = outgrown(d.factors->health(), old.factors->health());
+  if (all) {
+    d.scaled_at = values;
+    d.factors = std::make_unique<const solve::Factors<double>>(k.joint.plan, rows);
+  }
+  d.plans_renewed = old.plans_renewed + (rescale || all);
 }
 
 }  // namespace
@@ -235,14 +262,7 @@ System System::update(const ParameterList& list) const {
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
   if (!remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers))
     return compiled_again(*data_, changed, d->numbers.parameters);
-  const auto rows = real_rows(k, d->numbers);
-  d->plans_renewed = data_->plans_renewed;
-  d->factors = std::make_unique<const solve::Factors<double>>(
-      data_->factors->changed(rows, united(k, changed, &Dependents::rows)));
-  if (outgrown(d->factors->health(), data_->factors->health())) {
-    d->factors = std::make_unique<const solve::Factors<double>>(k.joint.plan, rows);
-    ++d->plans_renewed;
-  }
+  refactor(*data_, changed, *d);
   if (d->factors->health().singular)  // it may reduce: a mass of 0
     return compiled_again(*data_, changed, d->numbers.parameters);
   d->notes = data_->notes;

@@ -286,9 +286,12 @@ Factors<T>::Factors(std::shared_ptr<const Plan> plan, const Rows<T>& rows,
 }
 
 template <class T>
-Factors<T> Factors<T>::changed(const Rows<T>& rows, std::span<const int> row_groups) const {
+Factors<T> Factors<T>::changed(const Rows<T>& rows, std::span<const int> row_groups,
+                               bool rescale) const {
   Factors result(*this);
   result.made_ = 0;
+  std::shared_ptr<ColumnScale> found;
+  if (rescale) result.scale_ = found = std::make_shared<ColumnScale>(*scale_);
   std::vector<char> todo(fronts_.size(), 0);
   for (const int r : row_groups)
     for (int f = plan_->front_of_row[at(r)]; f >= 0 && !todo[at(f)];
@@ -297,7 +300,7 @@ Factors<T> Factors<T>::changed(const Rows<T>& rows, std::span<const int> row_gro
   Work work{least_};
   for (int f = 0; f < static_cast<int>(fronts_.size()) && result.singular_ < 0; ++f) {
     if (!todo[at(f)]) continue;
-    result.make(f, rows, work, nullptr);
+    result.make(f, rows, work, found.get());
     if (result.fronts_[at(f)]->singular) result.singular_ = f;
   }
   return result;

@@ -77,7 +77,8 @@ class Factors {
 
   /// The factors where only these row groups have new coefficients: the fronts that they enter and
   /// all above are made again, the others shared. O(those fronts) and one pointer per front.
-  Factors changed(const Rows<T>& rows, std::span<const int> row_groups) const;
+  /// `rescale`: they find their columns' scale anew, as a constructor would; one number per column.
+  Factors changed(const Rows<T>& rows, std::span<const int> row_groups, bool rescale = false) const;
 
   /// Solves for right-hand sides (unknowns x m, in the order of Plan::row_first); returns the
   /// unknowns (in the order of Plan::first). O(sum of front sizes^2) per column.

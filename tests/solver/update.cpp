@@ -6,6 +6,7 @@
 
 #include "support/close.hpp"
 #include "support/mistakes.hpp"
+#include "support/rng.hpp"
 
 /// New values on the old plan against a fresh compile of the same numbers.
 
@@ -13,6 +14,7 @@ using namespace titop;
 using titop_test::error_of;
 using titop_test::matrix_error;
 using titop_test::relative;
+using titop_test::Rng;
 using titop_test::says;
 
 namespace {
@@ -126,12 +128,95 @@ TEST_CASE("update: one body changed makes only the fronts up to the root again")
   CHECK(before.update({{"m", 1.0}}).certificate().fronts_made == 0);
 }
 
-TEST_CASE("update: the scaling is found anew where it no longer serves, and that is counted") {
-  // Units change under it: a mass of 1 becomes 1e-250, and half of all exponents move.
-  const System before = compile(tree(3));
-  const System after = before.update({{"m", 1e-250}});
-  CHECK(after.certificate().residual <= 1e-12);
-  CHECK(after.certificate().plans_renewed <= 1);
+namespace {
+
+/// A chain whose numbers are parameters: of every mass, its share of the parent's side and spring.
+Diagram chain(const ParameterList& values) {
+  Diagram d{"chain"};
+  auto u = d.input("u");
+  std::vector<SpringMass::Handle> z;
+  z.reserve(values.size() / 3);
+  auto next = [&, i = std::size_t{0}]() mutable {
+    const auto& [name, value] = values[i++];
+    return d.param(name, value);
+  };
+  for (std::size_t i = 0; i < values.size() / 3; ++i) {
+    const Value mass = next(), parent_mass = next(), stiffness = next();
+    z.push_back(
+        d.add(fmt::format("z{}", i + 1),
+              SpringMass{.mass = mass, .stiffness = stiffness, .parent_mass = parent_mass}));
+    if (i == 0)
+      ground(z[0]);
+    else
+      mount(z.back(), z[i - 1].child);
+  }
+  z.back().child.force = u;
+  d.output("first") = z[0].child.accel;
+  d.output("last") = z.back().child.accel;
+  return d;
+}
+
+/// Values of all its parameters, within so many decades of those that one would take.
+ParameterList numbers(int bodies, double decades, Rng& random) {
+  ParameterList list;
+  const auto about = [&](double value) {
+    return value * std::pow(10, decades * random.between(-1, 1));
+  };
+  for (int i = 1; i <= bodies; ++i) {
+    list.emplace_back(fmt::format("m{}", i), about(1));
+    list.emplace_back(fmt::format("p{}", i), about(0.5));
+    list.emplace_back(fmt::format("k{}", i), about(100));
+  }
+  return list;
+}
+
+}  // namespace
+
+TEST_CASE("update: far from the old values it gives what a fresh compile gives, and counts that") {
+  Rng random(8);
+  for (int round = 0; round < 100; ++round) {
+    const ParameterList start = numbers(8, 0, random), far = numbers(8, 12, random);
+    const System updated = compile(chain(start)).update(far), fresh = compile(chain(far));
+    CHECK(distance(updated, fresh) == 0);
+    CHECK(updated.certificate().plans_renewed == 1);
+    CHECK(updated.certificate().residual == fresh.certificate().residual);
+  }
+}
+
+TEST_CASE("update: near the old values the scaling stays, and that is no loss") {
+  Rng random(9);
+  for (int round = 0; round < 100; ++round) {
+    const ParameterList start = numbers(8, 0, random), near = numbers(8, 0.8, random);
+    const System updated = compile(chain(start)).update(near), fresh = compile(chain(near));
+    CHECK(distance(updated, fresh) <= 1e-13);
+    CHECK(updated.certificate().plans_renewed == 0);
+    CHECK(updated.certificate().residual <= 1e-13);
+  }
+}
+
+TEST_CASE("update: steps that are small each, far in all, count from where the scaling was found") {
+  const System start = compile(tree(3));
+  System system = start;
+  for (int i = 1; i <= 12; ++i) system = system.update({{"m", std::pow(4.0, i)}});
+  // 4, 16 (anew), 64, 256 (anew), ...
+  CHECK(system.certificate().plans_renewed == 6);
+  CHECK(distance(system, start.update({{"m", std::pow(4.0, 12)}})) == 0);
+}
+
+TEST_CASE("update: where pivots lose half their digits all is made anew, and that is counted") {
+  // What is left of 1 - g: the value moves by less than 2, the pivot by a thousand million.
+  Diagram d{"loop"};
+  const Param g = d.param("g", 0.6);
+  auto u = d.input("u");
+  auto sum = d.add("sum", Sum{.signs = "++"});
+  sum.in(1) = u;
+  sum.in(2) = g * sum.out;
+  d.output("y") = sum.out;
+  const System before = compile(d);
+  CHECK(before.update({{"g", 0.7}}).certificate().plans_renewed == 0);
+  const System after = before.update({{"g", 1 - 1e-10}});
+  CHECK(after.certificate().plans_renewed == 1);
+  CHECK(relative(after.static_gain()(0, 0), 1e10) <= 1e-5);  // 1 - g is off by 1e-16
 }
 
 TEST_CASE("update: the certificate, asked for late, is of the new values and warns of them") {
