@@ -38,7 +38,7 @@ struct Certificate {
   std::complex<double> dense_error_s;  ///< where it is largest
   /// The same over the size of the output at that same s: an acceleration falls with s^2 far below
   /// the modes, and the digits that A, B, C, D give it there with it. It grows towards lower s than
-  /// those tried.
+  /// those tried. Above 1e-6 the log warns.
   double dense_error_where_small = -1;
   std::complex<double> dense_error_where_small_s;  ///< where it is largest
   /// Smallest pivot over the sum of magnitudes that formed it: 1 no cancellation, 1e-16 nothing
@@ -54,7 +54,7 @@ struct Certificate {
   std::string margin_where;
   int fronts = 0;         ///< of the elimination
   int fronts_made = 0;    ///< of them, by the last compile or update; the others are shared
-  int plans_renewed = 0;  ///< updates since compile that could not keep plan and scaling
+  int plans_renewed = 0;  ///< updates since compile that found the scaling, or all, anew
   double seconds = 0;     ///< what this check cost
 };
 

@@ -145,15 +145,22 @@ struct Builder {
   }
 };
 
-Eigen::SparseMatrix<double> sparse(Eigen::Index rows, Eigen::Index cols, const Triplets& t) {
-  Eigen::SparseMatrix<double> m(rows, cols);
-  m.setFromTriplets(t.begin(), t.end());
-  return m;
+/// The sum of these entries, where they stand in the matrix already if they do.
+void fill(Eigen::SparseMatrix<double>& m, Eigen::Index rows, Eigen::Index cols,
+          const Triplets& list) {
+  if (m.rows() == rows && m.cols() == cols && m.isCompressed()) {
+    m.coeffs().setZero();
+    for (auto t = list.begin(); t != list.end() && m.isCompressed(); ++t)
+      m.coeffRef(t->row(), t->col()) += t->value();
+    if (m.isCompressed()) return;  // no entry was new
+  }
+  m.resize(rows, cols);
+  m.setFromTriplets(list.begin(), list.end());
 }
 
 }  // namespace
 
-Descriptor System::descriptor() const {
+void System::write(Descriptor& form) const {
   Builder b{*data_};
   b.add_states();
   b.add_rows();
@@ -164,15 +171,21 @@ Descriptor System::descriptor() const {
   const auto ny = static_cast<Eigen::Index>(outputs().size());
   Triplets e;
   for (int i = 0; i < order(); ++i) e.emplace_back(i, i, 1.0);
-  return {.E = sparse(n, n, e),
-          .A = sparse(n, n, b.A),
-          .B = sparse(n, nu, b.B),
-          .C = sparse(ny, n, b.C),
-          .D = sparse(ny, nu, b.D),
-          .states = order(),
-          .names = b.names(),
-          .inputs = inputs(),
-          .outputs = outputs()};
+  fill(form.E, n, n, e);
+  fill(form.A, n, n, b.A);
+  fill(form.B, n, nu, b.B);
+  fill(form.C, ny, n, b.C);
+  fill(form.D, ny, nu, b.D);
+  form.states = order();
+  form.names = b.names();
+  form.inputs = inputs();
+  form.outputs = outputs();
+}
+
+Descriptor System::descriptor() const {
+  Descriptor form;
+  write(form);
+  return form;
 }
 
 }  // namespace titop

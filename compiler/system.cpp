@@ -132,11 +132,11 @@ MatrixXcd System::transfer(std::complex<double> s, Precision precision) const {
   return G;
 }
 
-std::vector<MatrixXcd> System::frequency_response(std::span<const double> omega,
-                                                  int threads) const {
+std::vector<MatrixXcd> System::frequency_response(std::span<const double> omega, int threads,
+                                                  Precision precision) const {
   std::vector<MatrixXcd> result(omega.size());
   detail::parallel(omega.size(), threads, [&] {
-    return [&](std::size_t i) { result[i] = transfer({0, omega[i]}); };
+    return [&](std::size_t i) { result[i] = transfer({0, omega[i]}, precision); };
   });
   return result;
 }
@@ -151,6 +151,30 @@ MatrixXd System::static_gain() const {
   }
 }
 
+namespace {
+
+constexpr double kLost = 1e-9;  ///< of the outputs: more than this is said
+/// Of outputs where they are small: an acceleration far below the modes loses some as it is.
+constexpr double kLostWhereSmall = 1e-6;
+
+void warn_of_lost_digits(const detail::DenseError& e, std::vector<Note>& notes) {
+  const auto digits = [](double error) { return std::max(0.0, -std::log10(error)); };
+  if (e.error > kLost)
+    notes.push_back(
+        {Note::Kind::warning, "dense",
+         fmt::format("written as A, B, C, D the model keeps {:.0f} digits at s = {:.3g}{:+.3g}j; "
+                     "System::transfer and apply keep them all",
+                     digits(e.error), e.s.real(), e.s.imag())});
+  else if (e.where_small > kLostWhereSmall)
+    notes.push_back(
+        {Note::Kind::warning, "dense",
+         fmt::format("at s = {:.3g}{:+.3g}j, where outputs are small, A, B, C, D keep {:.0f} "
+                     "digits of them; System::transfer and apply keep them all",
+                     e.where_small_s.real(), e.where_small_s.imag(), digits(e.where_small))});
+}
+
+}  // namespace
+
 const StateSpace& System::state_space() const {
   std::call_once(data_->dense_once, [&] {
     const detail::SystemData& d = *data_;
@@ -163,13 +187,7 @@ const StateSpace& System::state_space() const {
       if (!m->allFinite()) refuse_overflow("the dense model of " + d.graph().name);
     d.dense_against_factors = detail::dense_difference(d, dense);
     d.dense_error = detail::dense_error(d, dense);
-    if (const double error = d.dense_error.error; error > 1e-9)
-      d.dense_notes.push_back(
-          {Note::Kind::warning, "dense",
-           fmt::format("written as A, B, C, D the model keeps {:.0f} digits at s = {:.3g}{:+.3g}j; "
-                       "System::transfer and apply keep them all",
-                       std::max(0.0, -std::log10(error)), d.dense_error.s.real(),
-                       d.dense_error.s.imag())});
+    warn_of_lost_digits(d.dense_error, d.dense_notes);
     d.dense_order.order = d.dense_order.highest = dense.order();
     d.dense_order.judged = dense.order() == 0;
     const int judged_up_to =
@@ -199,16 +217,37 @@ void System::write(StateSpace& model, int threads) const {
 
 std::vector<Pole> System::poles() const { return titop::poles(state_space()); }
 
-Certificate System::certificate() const {
-  Certificate c = data_->checked().certificate;
-  if (data_->dense_ready.load(std::memory_order_acquire)) {
-    c.dense_against_factors = data_->dense_against_factors;
-    c.dense_error = data_->dense_error.error;
-    c.dense_error_s = data_->dense_error.s;
-    c.dense_error_where_small = data_->dense_error.where_small;
-    c.dense_error_where_small_s = data_->dense_error.where_small_s;
-  }
+namespace {
+
+Certificate with_dense(Certificate c, double against_factors, const detail::DenseError& error) {
+  c.dense_against_factors = against_factors;
+  c.dense_error = error.error;
+  c.dense_error_s = error.s;
+  c.dense_error_where_small = error.where_small;
+  c.dense_error_where_small_s = error.where_small_s;
   return c;
+}
+
+}  // namespace
+
+Certificate System::certificate() const {
+  const Certificate& c = data_->checked().certificate;
+  if (!data_->dense_ready.load(std::memory_order_acquire)) return c;
+  return with_dense(c, data_->dense_against_factors, data_->dense_error);
+}
+
+Certificate System::certificate(const StateSpace& written) const {
+  if (written.states != states() || written.inputs != inputs() || written.outputs != outputs())
+    throw Error(Code::size,
+                fmt::format("certificate: a model of {} states, {} inputs and {} outputs is none "
+                            "that {} writes",
+                            written.states.size(), written.inputs.size(), written.outputs.size(),
+                            data_->graph().name),
+                fmt::format("give it what System::write made: {} states, {} inputs, {} outputs; "
+                            "what state_space() made is in certificate()",
+                            states().size(), inputs().size(), outputs().size()));
+  return with_dense(data_->checked().certificate, detail::dense_difference(*data_, written),
+                    detail::dense_error(*data_, written));
 }
 
 std::string System::log() const {

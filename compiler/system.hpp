@@ -87,10 +87,11 @@ class System {
   Eigen::MatrixXcd transfer(std::complex<double> s,
                             Precision precision = Precision::as_needed) const;
 
-  /// transfer(j omega) for each omega [rad/s], on `threads` threads (0: all cores); the same to the
-  /// last bit whatever their number. O(bodies) per frequency.
-  std::vector<Eigen::MatrixXcd> frequency_response(std::span<const double> omega,
-                                                   int threads = 0) const;
+  /// transfer(j omega, precision) for each omega [rad/s], on `threads` threads (0: all cores); the
+  /// same to the last bit whatever their number. O(bodies) per frequency.
+  std::vector<Eigen::MatrixXcd> frequency_response(
+      std::span<const double> omega, int threads = 0,
+      Precision precision = Precision::as_needed) const;
 
   /// transfer(0), real. Throws singular if the system has a pole at 0 (a free hinge, an
   /// integrator).
@@ -106,11 +107,16 @@ class System {
 
   /// The dense model before `minimize`, into a model of the caller's, whose memory is used again
   /// where it fits: what a loop over parameters wants. O(n^2), on `threads` threads (0: all cores),
-  /// the same to the last bit whatever their number.
+  /// the same to the last bit whatever their number. What writing it down costs is for
+  /// certificate(model) to say.
   void write(StateSpace& model, int threads = 0) const;
 
   /// The model before elimination as sparse matrices (compiler/descriptor.hpp). O(bodies).
   Descriptor descriptor() const;
+
+  /// The same into a form of the caller's. Matrices of the same size whose entries stand where
+  /// theirs did keep their memory; entries that have become 0 stay as zeros.
+  void write(Descriptor& form) const;
 
   /// Poles of state_space() with frequency, damping and the blocks that take part. O(n^3).
   std::vector<Pole> poles() const;
@@ -118,7 +124,9 @@ class System {
   /// A new system where parameters (Diagram::param) have other values; those not named keep theirs.
   /// It shares the plan with this one, and all fronts of the elimination that do not depend on
   /// them: O(those fronts) and one pointer per block. States keep number and meaning. The scaling
-  /// is found anew where the old one no longer serves (Certificate::plans_renewed counts that).
+  /// of these fronts is found anew where a value has moved by more than a factor of 8 since it was
+  /// found, that of all where pivots have lost half their digits (Certificate::plans_renewed counts
+  /// both); the numbers are then those of a fresh compile.
   /// Pivots are judged at once; the rest of the certificate, and the warnings that come of it, are
   /// found when certificate(), notes(), log() or state_space() is first asked for: O(bodies).
   /// `minimize` is no part of it: state_space() of the new system judges the new values, and may
@@ -135,6 +143,10 @@ class System {
   ParameterList parameters() const;
 
   Certificate certificate() const;
+  /// The certificate with what it says of a dense model (`dense_...`) said of this one, which
+  /// write() made: what writing it down costs. O(n^2), some products with A. Throws size where it
+  /// is no model of this system before `minimize`.
+  Certificate certificate(const StateSpace& written) const;
   /// What the passes did: counts, inversions, what was removed, what was not checked.
   const std::vector<Note>& notes() const;
   /// The notes as text, one per line; after state_space() also what `minimize` did.

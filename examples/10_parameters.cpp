@@ -58,10 +58,13 @@ int main() {
   std::vector<ParameterList> points;
   for (int i = 1; i <= 9; ++i) points.push_back({{"spring", 100.0 * i}, {"tip", 0.5 * i}});
   std::vector<double> hertz(points.size()), errors(points.size());
-  sweep(system, points, [&](std::size_t i, const System& at) {
+  const auto each = [&](std::size_t i, const System& at) {
     hertz[i] = at.poles().front().hertz;
     errors[i] = error(at, points[i][0].second, points[i][1].second);
-  });
+  };
+  sweep(system, points, each, {.progress = [](std::size_t done, std::size_t all) {
+          std::fprintf(stderr, "\r%zu of %zu points%s", done, all, done == all ? "\n" : "");
+        }});
   std::printf("\n%12s %10s %12s\n", "spring [N/m]", "tip [kg]", "mode [Hz]");
   double worst = std::max(error(system, kSpring, kTip), error(heavy, kSpring, 8));
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -139,7 +139,7 @@ Prepared titop_descriptor(Case c, int n) {
 Prepared titop_redescriptor(Case c, int n) {
   const auto sweep = std::make_shared<Sweep>(c, n);
   const auto model = std::make_shared<titop::Descriptor>();
-  return {[=] { *model = sweep->next().descriptor(); }, {}};
+  return {[=] { sweep->next().write(*model); }, {}};
 }
 
 // --- what a user would pick instead ------------------------------------------------------------

@@ -20,7 +20,7 @@ using titop::Value;
 
 namespace {
 
-constexpr std::array kNames{"A", "BL", "C", "D", "F", "K", "T", "R", "G"};
+constexpr std::array kNames{"A", "BL", "C", "D", "F", "K", "T", "CB", "R", "G"};
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
@@ -119,7 +119,8 @@ Diagram flexible(Case c, int n, const SceneOptions& options) {
   b[0].parent.force = -U;
   for (int i = 1; i < n; ++i) {
     b.push_back(d.add(fmt::format("B{}", i + 1), i % 2 ? heavy : light));
-    const auto& site = b[at(c == Case::T ? (i - 1) / 2 : i - 1)].child;
+    const int on = c == Case::T ? (i - 1) / 2 : c == Case::CB && i % 2 == 0 ? i - 2 : i - 1;
+    const auto& site = b[at(on)].child;
     const Eigen::Vector3d axis = random.axis();
     const Rotation T = Rotation::about(axis, varied(random.between(0.1, 3), i));
     if (c == Case::K)
@@ -217,7 +218,8 @@ Diagram scene(Case c, int n, const SceneOptions& options) {
     case Case::C: return scalar(c, n, options);
     case Case::D:
     case Case::K:
-    case Case::T: return flexible(c, n, options);
+    case Case::T:
+    case Case::CB: return flexible(c, n, options);
     case Case::F: return fan(n, options);
     case Case::R: return ring(n);
     case Case::G: return grid(n);

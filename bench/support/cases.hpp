@@ -15,6 +15,7 @@ enum class Case {
   F,   ///< [Alazard 2015] Fig. 17: one hub with n flexible appendages
   K,   ///< chain of flexible bodies with a hinge and a controller at every joint, free root
   T,   ///< balanced binary tree of flexible bodies, free root
+  CB,  ///< comb: a chain of flexible bodies, one more at every joint of it, free root
   R,   ///< ring of flexible bodies, closed on itself, free (n >= 3)
   G,   ///< planar grid: n rigid nodes (rounded to a square), beams between neighbours, free
 };
@@ -23,7 +24,7 @@ enum class Case {
 std::string name_of(Case c);
 Case case_of(const std::string& name);
 
-/// What parameter "p" multiplies: masses (A, BL, C) or mounting angles (D, F, K, T).
+/// What parameter "p" multiplies: masses (A, BL, C) or mounting angles (D, F, K, T, CB).
 enum class Varies {
   nothing,  ///< there is no parameter
   one,      ///< that of body n/2

@@ -1,9 +1,9 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <titop/compiler/system.hpp>
-#include <titop/graph/mount.hpp>
+#include <titop/titop.hpp>
 
+#include "support/mistakes.hpp"
 #include "support/random_scene.hpp"
 
 /// What writing the dense model down costs: said beforehand, found when it is tried.
@@ -67,4 +67,55 @@ TEST_CASE("dense export: what it costs at mass ratios is said, and so it is") {
     CHECK(said <= 100 * found);
     CHECK(warns(system) == (said > 1e-9));
   }
+}
+
+TEST_CASE("dense export: what write() made is judged as what state_space() made, without it") {
+  for (const double ratio : {1.0, 1e9}) {
+    const System system = chain(ratio);
+    StateSpace written;
+    system.write(written);
+    const Certificate of_written = system.certificate(written);
+    CHECK(system.certificate().dense_error < 0);  // none of its own yet
+    system.state_space();
+    const Certificate own = system.certificate();
+    CHECK(of_written.dense_error == own.dense_error);
+    CHECK(of_written.dense_error_where_small == own.dense_error_where_small);
+    CHECK(of_written.dense_against_factors == own.dense_against_factors);
+    CHECK(of_written.residual == own.residual);
+    // A wrong entry is found.
+    written.A(written.order() - 1, 0) += 1e-3 * written.A.cwiseAbs().maxCoeff();
+    CHECK(system.certificate(written).dense_against_factors >= 1e-5);
+  }
+  CHECK(titop_test::says(titop_test::error_of([] {
+                           StateSpace model;
+                           chain(1).write(model);
+                           model.states.pop_back();
+                           (void)chain(1).certificate(model);
+                         }),
+                         Code::size, {"119 states", "chain", "System::write", "120 states"}));
+}
+
+TEST_CASE("dense export: an output that is small where slow modes are warns of its digits") {
+  // A stiff mass (10^4 rad/s) that carries a soft one (1 rad/s): far below both the acceleration of
+  // the first is s^2 / k1 times the force, what is left of 1/m1 - 1/m1.
+  Diagram d{"stiff and soft"};
+  auto u = d.input("u");
+  auto stiff = d.add("stiff", SpringMass{.mass = 1.0, .stiffness = 1e8});
+  auto soft = d.add("soft", SpringMass{.mass = 1.0, .stiffness = 1.0});
+  ground(stiff);
+  mount(soft, stiff.child);
+  stiff.child.force += u;
+  d.output("a") = stiff.child.accel;
+  const System system = compile(d, {.minimize_up_to = 0});
+  system.state_space();
+  const Certificate c = system.certificate();
+  CHECK(c.dense_error <= 1e-12);
+  const std::complex<double> s = c.dense_error_where_small_s;
+  const auto exact = system.transfer(s, Precision::digits50);
+  CHECK(std::abs(exact(0, 0) * 1e8 / (s * s) - 1.0) <= 1e-2);  // k1: the soft mass hardly counts
+  const double off = (system.state_space().transfer(s) - exact).norm() / exact.norm();
+  CHECK(off <= 100 * c.dense_error_where_small);
+  CHECK(c.dense_error_where_small >= 1e-6);
+  CHECK(system.log().find("where outputs are small, A, B, C, D keep") != std::string::npos);
+  CHECK(!warns(system));
 }

@@ -62,52 +62,51 @@ TEST_CASE("descriptor: entries grow linearly with the bodies") {
   CHECK(thirty - twenty == twenty - ten);
 }
 
-namespace {
-
-Diagram one_mass() {
-  Diagram d{"one"};
-  auto u = d.input("u");
-  auto z = d.add("z", SpringMass{.mass = d.param("m", 1.0), .stiffness = 100.0});
-  ground(z);
-  z.child.force = u;
-  d.output("x") = z.stretch;
-  return d;
-}
-
-}  // namespace
-
-TEST_CASE("sweep: the frequency of one mass is sqrt(k/m), with any number of threads") {
-  const System system = compile(one_mass());
-  std::vector<ParameterList> points;
-  for (int i = 1; i <= 50; ++i) points.push_back({{"m", 0.1 * i}});
-  const auto run = [&](int threads, std::size_t& reports) {
-    std::vector<double> omega(points.size());
-    sweep(system, points,
-          [&](std::size_t i, const System& at) { omega[i] = at.poles().front().omega; },
-          {.threads = threads, .progress = [&](std::size_t, std::size_t all) {
-             ++reports;
-             CHECK(all == 50);
-           }});
-    return omega;
-  };
-  std::size_t first = 0, second = 0;
-  const auto one = run(1, first), four = run(4, second);
-  CHECK(first == points.size());
-  CHECK(second == points.size());
-  CHECK(one == four);
-  for (std::size_t i = 0; i < one.size(); ++i)
-    CHECK(titop_test::relative(one[i], std::sqrt(100.0 / (0.1 * double(i + 1)))) <= 1e-14);
-}
-
-TEST_CASE("sweep: the first point that makes no model is named") {
-  const System system = compile(one_mass());
-  const std::vector<ParameterList> points{{{"m", 1.0}}, {{"m", -1.0}}, {{"m", -2.0}}};
-  std::string text;
-  try {
-    sweep(system, points, [](std::size_t, const System&) {}, {.threads = 3});
-  } catch (const Error& error) {
-    text = error.what();
+TEST_CASE("descriptor: of bodies with six degrees of freedom and joints, too") {
+  int compared = 0;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    titop_test::SceneOptions options = titop_test::random_options(seed);
+    options.family = seed % 2 ? titop_test::Family::spatial : titop_test::Family::mixed;
+    options.incomplete = false;
+    const System system = compile(titop_test::random_scene(options).build());
+    const Descriptor m = system.descriptor();
+    if (m.inputs.empty() || m.outputs.empty() || m.A.rows() == 0 || m.A.rows() > 400) continue;
+    const std::complex<double> s{0.7, 5};
+    const Eigen::MatrixXcd right = system.transfer(s);
+    const Eigen::MatrixXd size = right.cwiseAbs();
+    if (size.rowwise().maxCoeff().minCoeff() == 0 || size.colwise().maxCoeff().minCoeff() == 0)
+      continue;  // what nothing moves is rounding there
+    CAPTURE(seed);
+    CHECK(matrix_error(transfer_of(m, s), right) <= 1e-9);
+    ++compared;
   }
-  CHECK(text.find("z with the new values") != std::string::npos);
-  CHECK(text.find("at point 1 of the sweep") != std::string::npos);
+  CHECK(compared >= 20);
+}
+
+TEST_CASE("descriptor: into a form of the caller's, which keeps its memory") {
+  Diagram d{"two"};
+  const Param m1 = d.param("m", 1.0);
+  auto u = d.input("u");
+  auto a = d.add("a", SpringMass{.mass = m1, .stiffness = 100.0});
+  auto b = d.add("b", SpringMass{.mass = 2.0, .stiffness = 50.0, .parent_mass = 0.5 * m1});
+  ground(a);
+  mount(b, a.child);
+  b.child.force = u;
+  d.output("a") = b.child.accel;
+  const System system = compile(d), other = system.update({{"m", 3.0}});
+  Descriptor form;
+  system.write(form);
+  const double* memory = form.A.valuePtr();
+  other.write(form);
+  CHECK(form.A.valuePtr() == memory);
+  const Descriptor fresh = other.descriptor();
+  CHECK((form.A - fresh.A).norm() == 0);
+  CHECK((form.B - fresh.B).norm() == 0);
+  CHECK((form.C - fresh.C).norm() == 0);
+  CHECK((form.D - fresh.D).norm() == 0);
+  CHECK((form.A - system.descriptor().A).norm() > 0);
+  const System bigger = compile(chain(4));  // does not fit
+  bigger.write(form);
+  CHECK(form.names == bigger.descriptor().names);
+  CHECK((form.A - bigger.descriptor().A).norm() == 0);
 }

@@ -165,18 +165,3 @@ TEST_CASE("precision: what dies away along a chain, to the smallest numbers, is 
   for (const Note& note : system.notes())
     CHECK_MESSAGE(note.kind != Note::Kind::warning, note.text);
 }
-
-TEST_CASE("sweeps: the same bits for any number of threads") {
-  const System system = compile(Chain().diagram());
-  std::vector<double> omega;
-  for (int i = 0; i < 40; ++i) omega.push_back(0.3 * std::pow(1.2, i));
-  const auto one = system.frequency_response(omega, 1), three = system.frequency_response(omega, 3);
-  REQUIRE(one.size() == omega.size());
-  for (std::size_t i = 0; i < one.size(); ++i) CHECK(one[i] == three[i]);
-  StateSpace a, b;
-  system.write(a, 1);
-  system.write(b, 3);
-  CHECK(a.A == b.A);
-  CHECK(a.B == b.B);
-  CHECK(a.C == b.C);
-}

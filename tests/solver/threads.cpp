@@ -1,0 +1,173 @@
+#include <doctest/doctest.h>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <thread>
+#include <titop/titop.hpp>
+
+#include "support/close.hpp"
+
+/// Sweeps, and what many threads may ask of one System: the same to the last bit, however many.
+
+using namespace titop;
+
+namespace {
+
+Diagram one_mass() {
+  Diagram d{"one"};
+  auto u = d.input("u");
+  auto z = d.add("z", SpringMass{.mass = d.param("m", 1.0), .stiffness = 100.0});
+  ground(z);
+  z.child.force = u;
+  d.output("x") = z.stretch;
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("sweep: the frequency of one mass is sqrt(k/m), with any number of threads") {
+  const System system = compile(one_mass());
+  std::vector<ParameterList> points;
+  for (int i = 1; i <= 50; ++i) points.push_back({{"m", 0.1 * i}});
+  const auto run = [&](int threads, std::size_t& reports) {
+    std::vector<double> omega(points.size());
+    sweep(system, points,
+          [&](std::size_t i, const System& at) { omega[i] = at.poles().front().omega; },
+          {.threads = threads, .progress = [&](std::size_t, std::size_t all) {
+             ++reports;
+             CHECK(all == 50);
+           }});
+    return omega;
+  };
+  std::size_t first = 0, second = 0;
+  const auto one = run(1, first), four = run(4, second);
+  CHECK(first == points.size());
+  CHECK(second == points.size());
+  CHECK(one == four);
+  for (std::size_t i = 0; i < one.size(); ++i)
+    CHECK(titop_test::relative(one[i], std::sqrt(100.0 / (0.1 * double(i + 1)))) <= 1e-14);
+}
+
+TEST_CASE("sweep: the first point that makes no model is named") {
+  const System system = compile(one_mass());
+  const std::vector<ParameterList> points{{{"m", 1.0}}, {{"m", -1.0}}, {{"m", -2.0}}};
+  std::string text;
+  try {
+    sweep(system, points, [](std::size_t, const System&) {}, {.threads = 3});
+  } catch (const Error& error) {
+    text = error.what();
+  }
+  CHECK(text.find("z with the new values") != std::string::npos);
+  CHECK(text.find("at point 1 of the sweep") != std::string::npos);
+}
+
+namespace {
+
+/// A hub with two hinged booms of six modes: three-dimensional, 6 inputs, an angle as a parameter.
+Diagram spacecraft() {
+  Diagram d{"spacecraft"};
+  auto U = d.input("U", 6);
+  auto hub = d.add("hub", RigidBody{.mass = 85,
+                                    .inertia = Vector3d(9, 11, 13).asDiagonal(),
+                                    .children = {{"C1", {0.3, 0, 0.1}}, {"C2", {-0.3, 0, 0.2}}}});
+  const FlexibleBody boom = Beam{.length = 2.0,
+                                 .section = rectangle(0.06, 0.04),
+                                 .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
+                                 .elements = 4,
+                                 .modes = {.kept = 6, .xi = {0.005}}};
+  auto left = d.add("left", boom), right = d.add("right", boom);
+  hub.parent.force = -U;
+  const Rotation T = Rotation::about({1, 2, 9}, Value(d.param("angle", 0.4)));
+  auto drive = hinge(d, "drive", left, hub.child("C1"), T, {0, 1, 0});
+  drive.torque = 120 * drive.angle + 3.0 * drive.rate;
+  mount(right, hub.child("C2"), Rotation::about({0, 0, 1}, 3.0));
+  d.output("a", 6) = right.child.accel;
+  d.output("angle") = drive.angle;
+  return d;
+}
+
+bool same(const StateSpace& a, const StateSpace& b) {
+  return a.A == b.A && a.B == b.B && a.C == b.C && a.D == b.D;
+}
+
+}  // namespace
+
+TEST_CASE("threads: frequency responses and dense models have the same bits") {
+  const System system = compile(spacecraft());
+  std::vector<double> omega;
+  for (int i = 0; i < 40; ++i) omega.push_back(0.3 * std::pow(1.2, i));
+  const auto one = system.frequency_response(omega, 1);
+  REQUIRE(one.size() == omega.size());
+  StateSpace alone;
+  system.write(alone, 1);
+  for (const int threads : {2, 3, 7}) {
+    CAPTURE(threads);
+    const auto many = system.frequency_response(omega, threads);
+    for (std::size_t i = 0; i < one.size(); ++i) CHECK(one[i] == many[i]);
+    StateSpace model;
+    system.write(model, threads);
+    CHECK(same(alone, model));
+  }
+}
+
+TEST_CASE("threads: a frequency response in the precision that is asked for") {
+  const System system = compile(spacecraft());
+  const std::array omega{1.0, 30.0};
+  for (const Precision p : {Precision::single, Precision::standard, Precision::digits50}) {
+    const auto found = system.frequency_response(omega, 2, p);
+    for (std::size_t i = 0; i < omega.size(); ++i)
+      CHECK(found[i] == system.transfer({0, omega[i]}, p));
+  }
+  const auto coarse = system.frequency_response(omega, 2, Precision::single);
+  CHECK(coarse[0] != system.frequency_response(omega)[0]);
+}
+
+TEST_CASE("threads: sweeps over parameters have the same bits") {
+  const System system = compile(spacecraft());
+  std::vector<ParameterList> points;
+  for (int i = 0; i < 20; ++i) points.push_back({{"angle", 0.1 * i}});
+  const auto run = [&](int threads) {
+    std::vector<std::pair<StateSpace, Eigen::MatrixXcd>> found(points.size());
+    sweep(system, points,
+          [&](std::size_t i, const System& at) {
+            at.write(found[i].first, 1);
+            found[i].second = at.transfer({0, 7});
+          },
+          {.threads = threads});
+    return found;
+  };
+  const auto one = run(1), many = run(5);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    CHECK(same(one[i].first, many[i].first));
+    CHECK(one[i].second == many[i].second);
+  }
+  CHECK(!same(one[1].first, one[2].first));
+}
+
+TEST_CASE("threads: what is found when it is first asked for may be asked for by all at once") {
+  const System alone = compile(spacecraft());
+  const std::string log = (alone.state_space(), alone.log());
+  for (int round = 0; round < 10; ++round) {
+    const System compiled = compile(spacecraft()).update({{"angle", 1.0}});
+    const System system = compiled.update({{"angle", 0.4}});
+    std::atomic<int> waiting{6};
+    std::array<StateSpace, 6> models = {};
+    std::array<double, 6> residuals{};
+    std::vector<std::thread> threads;
+    for (std::size_t i = 0; i < models.size(); ++i)
+      threads.emplace_back([&, i] {
+        --waiting;
+        while (waiting > 0) std::this_thread::yield();
+        residuals[i] = system.certificate().residual;
+        models[i] = system.state_space();
+        (void)system.log();
+      });
+    for (std::thread& t : threads) t.join();
+    for (std::size_t i = 0; i < models.size(); ++i) {
+      CHECK(same(models[i], alone.state_space()));
+      CHECK(residuals[i] == alone.certificate().residual);
+    }
+  }
+  CHECK(log.find("minimize") != std::string::npos);
+}
