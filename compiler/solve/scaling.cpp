@@ -2,9 +2,11 @@
 #include <bit>
 #include <boost/container/small_vector.hpp>
 #include <cmath>
+#include <cstring>
 #include <numeric>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scaling.hpp>
+#define TITOP_PART [[gnu::always_inline]] inline
 
 namespace titop::solve {
 namespace {
@@ -17,109 +19,198 @@ constexpr int kOne = 16;
 constexpr int kNone = -(1 << 24);  ///< the exponent of 0
 constexpr int kRounding = -691;    ///< 1e-13
 
-/// log2 to within 0.09, from the bits: exponents are all that scaling needs.
-int exponent(double x) {
-  if (!(x > 0) || !std::isfinite(x)) return kNone;
-  const auto bits = std::bit_cast<std::uint64_t>(x);
-  return static_cast<int>(bits >> 48) - 1023 * kOne;
+/// log2 of n magnitudes to within 0.09, from the bits: exponents are all that scaling needs. The
+/// upper half of a double holds them; of what is below 1e-314 it is 0.
+TITOP_PART void exponents_of(int n, const double* x, int* __restrict e) {
+  for (int k = 0; k < n; ++k) {
+    const auto bits = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(x[k]));
+    const int upper = static_cast<int>(bits >> 32);
+    e[k] = upper > 0 && upper < 0x7ff00000 ? (upper >> 16) - 1023 * kOne : kNone;
+  }
 }
 
-constexpr int kLanes = 8;  ///< columns are padded to a multiple of it: whole vectors only
+constexpr int kLanes = 8;  ///< units are padded to a multiple of it: whole vectors only
+using Lanes __attribute__((vector_size(kLanes * sizeof(int)))) = int;
 
-/// All in one buffer: fronts are small and many.
+/// (By reference: a vector returned by value has another ABI without AVX.)
+TITOP_PART void load(Lanes& to, const int* from) { std::memcpy(&to, from, sizeof to); }
+TITOP_PART void store(int* to, const Lanes& from) { std::memcpy(to, &from, sizeof from); }
+
+TITOP_PART int largest_of(const Lanes& lanes) {
+  Lanes x = lanes;
+  Lanes y = __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3);
+  x = x > y ? x : y;
+  y = __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5);
+  x = x > y ? x : y;
+  return std::max(x[0], x[1]);
+}
+
+TITOP_PART int sum_of(const Lanes& lanes) {
+  Lanes x = lanes;
+  x += __builtin_shufflevector(x, x, 4, 5, 6, 7, 0, 1, 2, 3);
+  x += __builtin_shufflevector(x, x, 2, 3, 0, 1, 6, 7, 4, 5);
+  return x[0] + x[1];
+}
+
+/// A front's exponents. The columns of a unit are scaled alike: after the entries themselves have
+/// been looked at once, the front is one of rows and units. All in one buffer: fronts are small and
+/// many. Unit u of row i is at i * width + u.
 struct Exponents {
-  int rows, columns;  ///< columns with their padding, which holds exponents of 0
-  boost::container::small_vector<int, 1024> buffer;
-  int* e = buffer.data();       ///< of the entries as they are
-  int* c = e + rows * columns;  ///< added to them: of the columns,
-  int* sum = c + columns;       ///< per column: largest entry, or sum
-  int* count = sum + columns;
-  int* r = count + columns;  ///< of the rows
+  std::span<const int> units;
+  int rows, columns;
+  int count = static_cast<int>(units.size()) - 1;
+  int width = (count + kLanes - 1) / kLanes * kLanes;  ///< units with their padding
+  int deep = 0;                                        ///< columns of the largest unit
+  boost::container::small_vector<int, 2048> buffer;
+  int* e = nullptr;       ///< of the entries: the first column of all units, the second ...
+  int* top = nullptr;     ///< per row and unit: the largest,
+  int* total = nullptr;   ///< the sum of those that count,
+  int* number = nullptr;  ///< and how many they are
+  int* r = nullptr;       ///< added to them: of the rows,
+  int* c = nullptr;       ///< of the units
+  int *a = nullptr, *b = nullptr;  ///< per unit: what a round works with
+  int* line = nullptr;             ///< exponents of one row
 
-  Exponents(const double* a, int m, int n)
-      : rows(m),
-        columns((n + kLanes - 1) / kLanes * kLanes),
-        buffer(at(m * columns + 3 * columns + m), boost::container::default_init) {
-    for (int i = 0; i < m; ++i) {
-      for (int j = 0; j < n; ++j) e[i * columns + j] = exponent(a[i * n + j]);
-      std::fill(e + i * columns + n, e + (i + 1) * columns, kNone);
-    }
-    std::fill_n(c, columns, 0);
-    std::fill_n(r, rows, 0);
+  Exponents(int m, std::span<const int> of_units)
+      : units(of_units), rows(m), columns(units.back()) {
+    for (int u = 0; u < count; ++u) deep = std::max(deep, units[at(u + 1)] - units[at(u)]);
+    const int size = m * width;
+    const int longer = std::max(m, width);
+    buffer.resize(at((deep + 3) * size + m + width + 2 * longer + columns),
+                  boost::container::default_init);
+    e = buffer.data();
+    top = e + deep * size, total = top + size, number = total + size;
+    r = number + size, c = r + m, a = c + width, b = a + longer, line = b + longer;
   }
 };
 
-/// Half way towards a largest entry of 1 in every row and column.
-inline void towards_one(const Exponents& x, std::span<const int> units, int* __restrict c,
-                        int* __restrict sum) {
-  std::fill_n(sum, x.columns, kNone);
+TITOP_PART void take(const Exponents& x, const double* magnitudes) {
+  const int size = x.rows * x.width;
+  std::fill_n(x.e, x.deep * size, kNone);
+  std::fill(x.r, x.a, 0);
   for (int i = 0; i < x.rows; ++i) {
-    const int* __restrict row = x.e + i * x.columns, own = x.r[i];
-    int top = kNone;
-    for (int j = 0; j < x.columns; ++j) {
-      const int entry = row[j] + c[j];
-      top = std::max(top, entry);
-      sum[j] = std::max(sum[j], entry + own);
-    }
-    if (top > kNone / 2) x.r[i] -= (top + own) / 2;
+    exponents_of(x.columns, magnitudes + i * x.columns, x.line);
+    int* to = x.e + i * x.width;
+    for (int u = 0; u < x.count; ++u, ++to)
+      for (int j = x.units[at(u)], k = 0; j < x.units[at(u + 1)]; ++j, ++k)
+        to[k * size] = x.line[j];
   }
-  for (std::size_t k = 0; k + 1 < units.size(); ++k) {
-    const int top = *std::max_element(sum + units[k], sum + units[k + 1]);
-    if (top > kNone / 2)
-      std::for_each(c + units[k], c + units[k + 1], [top](int& e) { e -= top / 2; });
+  for (int i = 0; i < size; i += kLanes) {
+    Lanes top, entry;
+    load(top, x.e + i);
+    for (int k = 1; k < x.deep; ++k) {
+      load(entry, x.e + k * size + i);
+      top = top > entry ? top : entry;
+    }
+    store(x.top + i, top);
   }
 }
 
-/// Forgets entries that are rounding beside the others.
-inline void drop_rounding(const Exponents& x, const int* __restrict c) {
+/// exponent -= half of what the largest sum with it is, where there is any.
+TITOP_PART void take_half(int n, const int* __restrict largest, int* __restrict exponent) {
+  for (int i = 0; i < n; ++i) exponent[i] -= largest[i] > kNone / 2 ? largest[i] / 2 : 0;
+}
+
+/// Half way towards a largest entry of 1 in every row and column.
+TITOP_PART void towards_one(const Exponents& x, int* of_rows, int* of_units) {
   for (int i = 0; i < x.rows; ++i) {
-    int* __restrict row = x.e + i * x.columns, own = x.r[i];
-    for (int j = 0; j < x.columns; ++j) row[j] = row[j] + own + c[j] < kRounding ? kNone : row[j];
+    Lanes top = Lanes{} + kNone, entry, c;
+    for (int u = 0; u < x.width; u += kLanes) {
+      load(entry, x.top + i * x.width + u);
+      load(c, x.c + u);
+      entry += c;
+      top = top > entry ? top : entry;
+    }
+    of_rows[i] = largest_of(top) + x.r[i];
+  }
+  for (int u = 0; u < x.width; u += kLanes) {
+    Lanes top = Lanes{} + kNone, entry, c;
+    load(c, x.c + u);
+    for (int i = 0; i < x.rows; ++i) {
+      load(entry, x.top + i * x.width + u);
+      entry += x.r[i];
+      top = top > entry ? top : entry;
+    }
+    store(of_units + u, top + c);
+  }
+  take_half(x.rows, of_rows, x.r);
+  take_half(x.width, of_units, x.c);
+}
+
+/// Counts the entries that are not rounding beside the others.
+TITOP_PART void count_entries(const Exponents& x) {
+  const int size = x.rows * x.width;
+  for (int i = 0; i < x.rows; ++i)
+    for (int u = 0; u < x.width; u += kLanes) {
+      Lanes c, entry, total{}, number{};
+      load(c, x.c + u);
+      for (int k = 0; k < x.deep; ++k) {
+        load(entry, x.e + k * size + i * x.width + u);
+        const Lanes counts = (entry + c >= kRounding - x.r[i]) & (entry > kNone / 2);  // 0 or -1
+        total += entry & counts;
+        number -= counts;
+      }
+      store(x.total + i * x.width + u, total);
+      store(x.number + i * x.width + u, number);
+    }
+}
+
+/// to = -total / number, where there is any. By way of doubles, of which processors divide many at
+/// once: the quotient of two ints, cut to a whole number, is the same.
+TITOP_PART void take_means(int n, const int* __restrict total, const int* __restrict number,
+                           int* __restrict to) {
+  for (int i = 0; i < n; ++i) {
+    const int mean = static_cast<int>(-static_cast<double>(total[i]) / std::max(number[i], 1));
+    to[i] = number[i] > 0 ? mean : to[i];
   }
 }
 
 /// Rows, then columns, to a mean of 0.
-inline void centre(const Exponents& x, std::span<const int> units, int* __restrict c,
-                   int* __restrict sum, int* __restrict count) {
-  std::fill_n(sum, x.columns, 0);
-  std::fill_n(count, x.columns, 0);
+TITOP_PART void centre(const Exponents& x, int* totals, int* numbers) {
   for (int i = 0; i < x.rows; ++i) {
-    const int* __restrict row = x.e + i * x.columns;
-    int total = 0, number = 0;
-    for (int j = 0; j < x.columns; ++j) {
-      total += row[j] > kNone / 2 ? row[j] + c[j] : 0;
-      number += row[j] > kNone / 2;
+    Lanes row_total{}, row_number{}, total, number, c;
+    for (int u = 0; u < x.width; u += kLanes) {
+      load(total, x.total + i * x.width + u);
+      load(number, x.number + i * x.width + u);
+      load(c, x.c + u);
+      row_total += total + number * c;
+      row_number += number;
     }
-    if (number > 0) x.r[i] = -total / number;
-    const int own = x.r[i];
-    for (int j = 0; j < x.columns; ++j) {
-      sum[j] += row[j] > kNone / 2 ? row[j] + own : 0;
-      count[j] += row[j] > kNone / 2;
+    totals[i] = sum_of(row_total);
+    numbers[i] = sum_of(row_number);
+  }
+  take_means(x.rows, totals, numbers, x.r);
+  for (int u = 0; u < x.width; u += kLanes) {
+    Lanes unit_total{}, unit_number{}, total, number;
+    for (int i = 0; i < x.rows; ++i) {
+      load(total, x.total + i * x.width + u);
+      load(number, x.number + i * x.width + u);
+      unit_total += total + number * x.r[i];
+      unit_number += number;
     }
+    store(totals + u, unit_total);
+    store(numbers + u, unit_number);
   }
-  for (std::size_t k = 0; k + 1 < units.size(); ++k) {
-    const int total = std::accumulate(sum + units[k], sum + units[k + 1], 0);
-    const int number = std::accumulate(count + units[k], count + units[k + 1], 0);
-    if (number > 0) std::fill(c + units[k], c + units[k + 1], -total / number);
-  }
+  take_means(x.width, totals, numbers, x.c);
 }
 
-TITOP_WIDE void balance(const Exponents& x, std::span<const int> units) {
-  for (int round = 0; round < 4; ++round) towards_one(x, units, x.c, x.sum);
-  drop_rounding(x, x.c);
-  for (int round = 0; round < 3; ++round) centre(x, units, x.c, x.sum, x.count);
+TITOP_WIDE void balance(const Exponents& x, const double* magnitudes) {
+  take(x, magnitudes);
+  for (int round = 0; round < 4; ++round) towards_one(x, x.a, x.b);
+  count_entries(x);
+  for (int round = 0; round < 3; ++round) centre(x, x.a, x.b);
 }
 
 }  // namespace
 
 void column_scale(const double* magnitudes, int rows, std::span<const int> units,
                   std::int16_t* exponents) {
-  const int columns = units.back();
-  const Exponents x(magnitudes, rows, columns);
-  balance(x, units);
-  for (int j = 0; j < columns; ++j) {
-    const int rounded = (x.c[j] + (x.c[j] < 0 ? -kOne : kOne) / 2) / kOne;
-    exponents[j] = static_cast<std::int16_t>(std::clamp(rounded, -1000, 1000));
+  const Exponents x(rows, units);
+  balance(x, magnitudes);
+  for (int u = 0; u < x.count; ++u) {
+    const int rounded = (x.c[u] + (x.c[u] < 0 ? -kOne : kOne) / 2) / kOne;
+    std::fill(exponents + units[at(u)], exponents + units[at(u + 1)],
+              static_cast<std::int16_t>(std::clamp(rounded, -1000, 1000)));
   }
 }
 
