@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/close/still.hpp>
 #include <titop/compiler/passes/passes.hpp>
@@ -32,10 +33,14 @@ struct Quick {
   int ground = static_cast<int>(g.channels.size());
 
   void bodies(ParameterValues values) {
+    const Block* met = nullptr;  // nodes that share a block often stand side by side
+    std::optional<Kinematics> k;
     for (const Node& node : g.nodes) {
       const auto& channels = node.block->interface().channels;
       if (channels.empty()) continue;
-      const auto k = channels.size() < 2 ? std::nullopt : node.block->kinematics(values);
+      if (node.block.get() != met)
+        k = channels.size() < 2 ? std::nullopt : node.block->kinematics(values);
+      met = node.block.get();
       for (int i = 1; i < static_cast<int>(channels.size()); ++i)
         if (!k) joined.unite(node.first_channel, node.first_channel + i);
       for (int i = 0; k && i < static_cast<int>(channels.size()); ++i)

@@ -61,6 +61,8 @@ std::vector<char> reach(const Arrows& next, std::vector<int> front) {
 using Digraph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_property,
                                                    boost::no_property, boost::no_property, int>;
 
+using Vertex = boost::graph_traits<Digraph>::vertex_descriptor;
+
 /// Strong component of every unknown signal; components come out dependencies first. What moves or
 /// sees one of its signals does so with all of them.
 struct Components {
@@ -70,23 +72,29 @@ struct Components {
 
 Components components(const Graph& g, const Arrows& needs) {
   std::vector<std::pair<int, int>> edges;
-  edges.reserve(needs.arrows());
+  edges.reserve(needs.arrows() + at(needs.count()));
   for (int s = 0; s < needs.count(); ++s)
     if (is_unknown(g.signals[at(s)]))
       for (const int t : needs.from(s))
         if (is_unknown(g.signals[at(t)])) edges.emplace_back(s, t);
-  const Digraph digraph(boost::edges_are_sorted, edges.begin(), edges.end(), needs.count());
-  std::vector<int> component(g.signals.size()), root(g.signals.size());
-  std::vector<boost::default_color_type> color(g.signals.size());
-  std::vector<int> time(g.signals.size());
+  // From one more vertex all others are reached: a search from each of them would ask for a stack
+  // of its own. It is the last component, by itself.
+  const int all = needs.count();
+  for (int s = 0; s < all; ++s) edges.emplace_back(all, s);
+  const Digraph digraph(boost::edges_are_sorted, edges.begin(), edges.end(), all + 1);
+  std::vector<int> component(at(all + 1)), root(at(all + 1)), time(at(all + 1));
+  std::vector<boost::default_color_type> color(at(all + 1));
   const auto index = boost::get(boost::vertex_index, digraph);
   const auto map = [&](auto& list) {
     return boost::make_iterator_property_map(list.begin(), index);
   };
-  const int count = boost::strong_components(
-      digraph, map(component),
-      boost::root_map(map(root)).color_map(map(color)).discover_time_map(map(time)));
-  Components result{std::move(component), std::vector<std::size_t>(at(count), 0)};
+  const int count = boost::strong_components(digraph, map(component),
+                                             boost::root_map(map(root))
+                                                 .color_map(map(color))
+                                                 .discover_time_map(map(time))
+                                                 .root_vertex(static_cast<Vertex>(all)));
+  component.pop_back();
+  Components result{std::move(component), std::vector<std::size_t>(at(count - 1), 0)};
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s)
     if (is_unknown(g.signals[at(s)])) ++result.size[at(result.of[at(s)])];
   return result;

@@ -122,8 +122,8 @@ std::span<const int> Merging::merge(int v) {
   });
   // Vectors before the scalars along one of their directions: the angle of a hinge taken first cost
   // a satellite six digits of A.
-  std::stable_sort(p_.lists.begin() + f.pivots.begin, p_.lists.end(),
-                   [&](int a, int b) { return size(a) > size(b); });
+  std::sort(p_.lists.begin() + f.pivots.begin, p_.lists.end(),
+            [&](int a, int b) { return size(a) != size(b) ? size(a) > size(b) : a < b; });
   f.border = list([&] {
     for (const int w : all)
       if (live_[at(w)] > 0) p_.lists.push_back(w), f.border_count += size(w);
