@@ -13,6 +13,10 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 using solve::lifted;
 
+constexpr int kSteps = 30;          ///< of refinement: as many as kShrinks needs for 16 digits
+constexpr double kSettled = 1e-12;  ///< a larger change of the outputs asks for one more
+constexpr double kShrinks = 0.25;   ///< changes that shrink by less are no way to the solution
+
 /// Nodes whose rows or states are in use.
 std::vector<char> nodes_in_use(const Skeleton& k) {
   std::vector<char> used(k.stage.graph.nodes.size(), 0);
@@ -23,6 +27,13 @@ std::vector<char> nodes_in_use(const Skeleton& k) {
 }
 
 }  // namespace
+
+Error no_digit_left(const SystemData& data, std::complex<double> s) {
+  return {Code::singular,
+          fmt::format("{} has a pole at s = {}{:+}j, or no digit is left there in this precision",
+                      data.graph().name, s.real(), s.imag()),
+          "evaluate beside it, or with Precision::digits50"};
+}
 
 template <class T>
 solve::Matrices<T> Evaluation<T>::respond(const T& s) {
@@ -70,11 +81,7 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
           Code::not_finite,
           fmt::format("{} at s = {}{:+}j: numbers overflow", data.graph().name, z.real(), z.imag()),
           "take an s of smaller or larger modulus, or other units");
-    throw Error(
-        Code::singular,
-        fmt::format("{} has a pole at s = {}{:+}j, or no digit is left there in this precision",
-                    data.graph().name, z.real(), z.imag()),
-        "evaluate beside it, or with Precision::digits50");
+    throw no_digit_left(data, z);
   }
   unknowns_ = factors_->solve(rhs_);
 }
@@ -86,17 +93,19 @@ void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
     return solve::RowMatrix<T>(m.unaryExpr([](const D& x) { return solve::Scalar<T>::from(x); }));
   };
   unknowns_ = up(coarse.unknowns());
-  for (int step = 0; step < 3; ++step) {
+  double before = 1;
+  for (int step = 0; step < kSteps; ++step) {
     const solve::RowMatrix<T> left = rows_.residual(rhs_, unknowns_);
-    correction_ = up(
+    const solve::RowMatrix<T> correction = up(
         coarse.solve(left.unaryExpr([](const T& x) -> D { return solve::Scalar<T>::round(x); })));
-    unknowns_ += correction_;
+    unknowns_ += correction;
+    last_change_ = relative_to_outputs(correction);
+    // What the next step would change: this step's change, smaller by as much again.
+    const double next = last_change_ * (last_change_ / before);
+    const bool settled = last_change_ <= kSettled && next <= solve::Scalar<T>::epsilon();
+    if (settled || !(last_change_ <= kShrinks * before)) return;
+    before = last_change_;
   }
-}
-
-template <class T>
-double Evaluation<T>::last_change() const {
-  return relative_to_outputs(correction_);
 }
 
 template <class T>

@@ -11,6 +11,9 @@ namespace titop::detail {
 /// Smaller numbers have no digits to keep: what has died away along a chain of thousands.
 inline constexpr double kUnderflow = 1e-290;
 
+/// What an evaluation at s is refused with, if s is a pole or as good as one.
+Error no_digit_left(const SystemData& data, std::complex<double> s);
+
 /// A compiled diagram at one s, driven by its external inputs: every signal on demand. T is a
 /// complex scalar of any precision, or double for a real s at less than half the cost; blocks that
 /// are the same object are evaluated once.
@@ -18,8 +21,8 @@ template <class T>
 class Evaluation {
  public:
   /// u: inputs x columns. Throws singular if s is a pole of the system or of a block. With
-  /// `coarse`, the same s and u in double, its factors serve: three steps of iterative refinement,
-  /// blocks and residuals in T.
+  /// `coarse`, the same s and u in double, its factors serve: iterative refinement,
+  /// blocks and residuals in T, until the outputs have settled or their changes shrink no more.
   Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
              const Evaluation<std::complex<double>>* coarse = nullptr);
 
@@ -46,7 +49,7 @@ class Evaluation {
   /// With `coarse`: the change of the outputs by the last step of refinement, about the error of
   /// the step before: per block of the transfer (a port by a port, dual vectors in halves), blocks
   /// below 1e-4 of their neighbours counted as that.
-  double last_change() const;
+  double last_change() const { return last_change_; }
   /// One step of refinement, residual and all in T: what the elimination itself has lost (growth
   /// that no single pivot shows) is mended by it. Returns the change of the outputs, measured as
   /// above.
@@ -96,7 +99,7 @@ class Evaluation {
   solve::JointRows<T> rows_;
   std::unique_ptr<const solve::Factors<T>> factors_;
   solve::RowMatrix<T> rhs_, unknowns_;
-  solve::RowMatrix<T> correction_;  ///< of the last step of refinement
+  double last_change_ = 0;
 };
 
 }  // namespace titop::detail

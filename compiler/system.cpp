@@ -37,6 +37,7 @@ namespace {
 
 using Double = std::complex<double>;
 using Extended = std::complex<long double>;
+using Twofold = std::complex<solve::DoubleDouble>;
 
 template <class T>
 MatrixXcd rounded(const solve::RowMatrix<T>& m) {
@@ -63,10 +64,21 @@ MatrixXcd standard_transfer(const detail::SystemData& d, Double s) {
   return rounded<Double>(point.outputs());
 }
 
+/// The factors of `coarse`, all else in T.
+template <class T>
+detail::Evaluation<T> refined(const detail::SystemData& d, Double s,
+                              const detail::Evaluation<Double>& coarse) {
+  return {d, solve::Scalar<T>::from(s), unit_inputs<T>(d), &coarse};
+}
+
+constexpr double kNoDigit = 0.1;  ///< where outputs change by more, refinement leads nowhere
+
+template <class T>
 MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
   const detail::Evaluation<Double> coarse(d, s, unit_inputs<Double>(d));
-  return rounded<Extended>(
-      detail::Evaluation<Extended>(d, Extended(s), unit_inputs<Extended>(d), &coarse).outputs());
+  const auto result = refined<T>(d, s, coarse);
+  if (!(result.last_change() <= kNoDigit)) throw detail::no_digit_left(d, s);
+  return rounded<T>(result.outputs());
 }
 
 constexpr double kEnough = 1e-12;
@@ -79,17 +91,19 @@ double lost_by(detail::Evaluation<Double>& e) {
 }
 
 /// Finer than double, where double costs `lost`: refined or long double if their own rounding
-/// (2000 times finer) leaves enough, else 50 digits.
+/// (2000 times finer) leaves enough, else refined in double-double if that settles, else 50 digits.
 MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
                          const detail::Evaluation<Double>& plain, double lost) {
   const double kFiner = solve::Scalar<Extended>::epsilon() / solve::Scalar<Double>::epsilon();
   if (lost * kFiner <= kEnough) {
-    const detail::Evaluation<Extended> refined(d, Extended(s), unit_inputs<Extended>(d), &plain);
-    if (refined.last_change() <= kEnough) return rounded<Extended>(refined.outputs());
+    const auto once = refined<Extended>(d, s, plain);
+    if (once.last_change() <= kEnough) return rounded<Extended>(once.outputs());
     const detail::Evaluation<Extended> more(d, Extended(s), unit_inputs<Extended>(d));
     if (solve::Scalar<Extended>::epsilon() <= kEnough * more.weakest_pivot())
       return rounded<Extended>(more.outputs());
   }
+  const auto twice = refined<Twofold>(d, s, plain);
+  if (twice.last_change() <= kEnough) return rounded<Twofold>(twice.outputs());
   return transfer_in<solve::Complex50>(d, s);
 }
 
@@ -109,7 +123,8 @@ MatrixXcd transfer_with(const detail::SystemData& d, Double s, Precision precisi
   switch (precision) {
     case Precision::single: return transfer_in<std::complex<float>>(d, s);
     case Precision::standard: return standard_transfer(d, s);
-    case Precision::refined: return refined_transfer(d, s);
+    case Precision::refined: return refined_transfer<Extended>(d, s);
+    case Precision::twofold: return refined_transfer<Twofold>(d, s);
     case Precision::extended: return transfer_in<Extended>(d, s);
     case Precision::digits50: return transfer_in<solve::Complex50>(d, s);
     case Precision::as_needed: return transfer_as_needed(d, s);

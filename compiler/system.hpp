@@ -54,11 +54,13 @@ struct Options {
 enum class Precision {
   single,    ///< float: 7 digits; blocks in double
   standard,  ///< double: 16 digits; one step of refinement mends what the elimination loses
-  refined,   ///< factors in double, blocks and residuals in long double: three refinements
+  refined,   ///< factors in double, blocks and residuals in long double: refined until the outputs
+             ///< settle
+  twofold,   ///< the same in double-double: 32 digits, on any machine
   extended,  ///< long double: 19 digits on x86
   digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower: an oracle
   as_needed  ///< double, and finer where the weakest pivot has lost more than four digits: refined
-             ///< if that settles, else long double or 50 digits
+             ///< or twofold if that settles, else long double or 50 digits
 };
 
 /// Values of parameters by name: {{"k1", 12.0}, {"angle", 0.3}}.

@@ -63,6 +63,7 @@ void add_library(std::vector<Entry>& list, const System& system) {
   add("float", Precision::single);
   add("double", Precision::standard);
   add("refined", Precision::refined);
+  add("twofold", Precision::twofold);
   add("long double", Precision::extended);
   add("50 digits", Precision::digits50);
   add("as needed", Precision::as_needed);
@@ -189,6 +190,7 @@ void responses(Case c, int n) {
   factored("float", Precision::single);
   factored("double", Precision::standard);
   factored("refined", Precision::refined);
+  factored("twofold", Precision::twofold);
   factored("as needed", Precision::as_needed);
   response(c, n, "dense model and LU", "double", exact, [&] {
     StateSpace m;

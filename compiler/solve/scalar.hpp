@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 #include <limits>
+#include <titop/compiler/solve/double_double.hpp>
 #include <type_traits>
 
 /// What the kernel asks of a scalar, real or complex, of any precision.
@@ -12,16 +13,20 @@ namespace titop::solve {
 using Complex50 = boost::multiprecision::cpp_complex_50;
 
 /// Calls X(T) for every scalar that one s is evaluated with.
-#define TITOP_COMPLEX_SCALARS(X) \
-  X(std::complex<float>)         \
-  X(std::complex<double>)        \
-  X(std::complex<long double>)   \
+#define TITOP_COMPLEX_SCALARS(X)                \
+  X(std::complex<float>)                        \
+  X(std::complex<double>)                       \
+  X(std::complex<long double>)                  \
+  X(std::complex<::titop::solve::DoubleDouble>) \
   X(::titop::solve::Complex50)
 
 template <class T>
 struct Scalar {
   static double epsilon() { return static_cast<double>(std::numeric_limits<T>::epsilon()); }
-  static double size(const T& x) { return static_cast<double>(std::abs(x)); }
+  static double size(const T& x) {
+    using std::abs;
+    return static_cast<double>(abs(x));
+  }
   static T from(double x) { return static_cast<T>(x); }
   /// At a real s: what a block answers there is real, too.
   static T from(std::complex<double> x) { return static_cast<T>(x.real()); }

@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <optional>
 #include <titop/compiler/system.hpp>
 #include <titop/graph/mount.hpp>
 #include <titop/graph/nodes/lti.hpp>
@@ -72,28 +73,30 @@ TEST_CASE("precision: each step of the ladder is as good as its digits") {
   const double single = worst_of(system, chain, Precision::single);
   const double standard = worst_of(system, chain, Precision::standard);
   const double refined = worst_of(system, chain, Precision::refined);
+  const double twofold = worst_of(system, chain, Precision::twofold);
   const double extended = worst_of(system, chain, Precision::extended);
   const double digits50 = worst_of(system, chain, Precision::digits50);
-  MESSAGE(fmt::format("{:.1e} {:.1e} {:.1e} {:.1e} {:.1e}", single, standard, refined, extended,
-                      digits50));
+  MESSAGE(fmt::format("{:.1e} {:.1e} {:.1e} {:.1e} {:.1e} {:.1e}", single, standard, refined,
+                      twofold, extended, digits50));
   CHECK(single <= 1e-2);
   CHECK(standard <= 1e-10);
   CHECK(refined <= 1e-13);
   CHECK(refined <= 1e-2 * standard);
   CHECK(extended <= 1e-13);
   // What is compared is rounded to double.
+  CHECK(twofold <= 3e-16);
   CHECK(digits50 <= 3e-16);
   CHECK(single >= 1e4 * standard);
 }
 
 namespace {
 
-/// out = (1 + 1e-10) in, fed back to itself with u: a loop of margin 4e10 about its pole.
-Diagram nearly_singular() {
+/// out = (1 + e) in, fed back to itself by 1 - e with u: e^2 from its pole.
+Diagram nearly_singular(double e) {
   Diagram d{"near"};
   auto u = d.input("u");
-  auto K = d.add("K", Lti{.D = Eigen::MatrixXd::Constant(1, 1, 1 + 0x1p-33)});
-  auto L = d.add("L", Lti{.D = Eigen::MatrixXd::Constant(1, 1, 1 - 0x1p-33)});
+  auto K = d.add("K", Lti{.D = Eigen::MatrixXd::Constant(1, 1, 1 + e)});
+  auto L = d.add("L", Lti{.D = Eigen::MatrixXd::Constant(1, 1, 1 - e)});
   K.in = L.out + u;
   L.in = K.out;
   d.output("y") = K.out;
@@ -104,7 +107,8 @@ Diagram nearly_singular() {
 
 TEST_CASE("precision: as needed goes up where cancellation has eaten the digits of double") {
   // (1 + e)(1 - e) = 1 - e^2, so that y/u = (1 + e)/e^2: with e = 2^-33 no digit is left in double.
-  CHECK(titop_test::says(titop_test::compile_error(nearly_singular()), Code::ill_posed, {"K"}));
+  CHECK(titop_test::says(titop_test::compile_error(nearly_singular(0x1p-33)), Code::ill_posed,
+                         {"K"}));
   // With e^2 = 2^-40 eight digits are lost: double shows it, `as_needed` has them all.
   Diagram d{"near"};
   auto u = d.input("u");
@@ -121,8 +125,74 @@ TEST_CASE("precision: as needed goes up where cancellation has eaten the digits 
     return std::abs(system.transfer({0, 1}, p)(0, 0) - exact) / std::abs(exact);
   };
   CHECK(error(Precision::as_needed) <= 1e-15);
+  CHECK(error(Precision::twofold) <= 1e-15);
   CHECK(error(Precision::digits50) <= 1e-15);
   CHECK(system.certificate().weakest_pivot <= 1e-10);
+}
+
+namespace {
+
+constexpr double kPole = 0.7;
+
+Lti first_order(double c, double D) {
+  const auto one = [](double x) { return Eigen::MatrixXd::Constant(1, 1, x); };
+  return {.A = one(-kPole), .B = one(1), .C = one(c), .D = one(D)};
+}
+
+/// A loop by c / (s + kPole) + 1/2, and around it one by by / (s + kPole): where s = 2, each may be
+/// as near to its pole as one likes; at infinity they are far.
+Diagram loop_in_loop(double c, double by) {
+  Diagram d{"loops"};
+  auto u = d.input("u");
+  auto K = d.add("K", first_order(c, 0.5));
+  auto L = d.add("L", first_order(by, 0));
+  K.in = K.out + u + L.out;
+  L.in = K.out + u + L.out;
+  d.output("y") = K.out + u + L.out;
+  return d;
+}
+
+/// At s = 2; none where it is refused for its lack of digits.
+std::optional<double> answer(const System& system, Precision precision) {
+  try {
+    return system.transfer(2, precision)(0, 0).real();
+  } catch (const Error& error) {
+    CHECK(error.has(Code::singular));
+    return {};
+  }
+}
+
+}  // namespace
+
+TEST_CASE("precision: refinement in 32 digits gives all of double, or says that none is left") {
+  int right = 0, lost_in_double = 0, refused = 0, refused_here = 0;
+  for (int k = 20; k <= 50; k += 2)
+    for (int j = 1; j <= 4; ++j) {
+      const double e = std::ldexp(1, -k), c = (2 + kPole) * (0.5 - e),
+                   by = (2 + kPole) * e * (1 - j * e);
+      const System system = compile(loop_in_loop(c, by));
+      const Real exact = 1 / (Real(0.5) - (Real(c) + Real(by)) / (Real(2) + Real(kPole)));
+      CAPTURE(k);
+      CAPTURE(j);
+      const auto off = [&](double y) { return std::abs(static_cast<double>(Real(y) / exact - 1)); };
+      const auto plain = answer(system, Precision::standard),
+                 found = answer(system, Precision::twofold);
+      if (found) {
+        CHECK(off(*found) <= 3e-16);
+        ++right;
+        lost_in_double += !plain || off(*plain) > 1e-6;
+      } else {
+        ++refused;
+        refused_here += plain.has_value();
+      }
+    }
+  MESSAGE(
+      fmt::format("{} right, {} of them lost in double; {} refused, {} of them answered in double",
+                  right, lost_in_double, refused, refused_here));
+  CHECK(right >= 15);
+  CHECK(lost_in_double >= 15);
+  CHECK(refused > refused_here);  // some where double has no pivot, more where it has a wrong one
+  CHECK(refused_here >= 20);
 }
 
 namespace {
