@@ -82,6 +82,7 @@ draw_task() {
       best_octave "$out/octave.csv" "$scene" 'sparse matrices$' |
         timed "$name" "Octave sparse matrices"
       ;;
+    sweep) series "$out/octave.csv" sweep "$scene" "Octave freqresp" | timed "$name" "Octave freqresp" ;;
   esac
   keyed "$name" "$title" "bodies" "seconds; slopes over the last four points"
 }
@@ -126,7 +127,7 @@ draw_precision() {
       print $6, ($7 < 1e-17 ? 1e-17 : $7), substr($5, 1, 1) == "5" ? "50" : substr($5, 1, 1) }' \
     "$out/accuracy.csv" >"$work/$name.notes"
   keyed "$name" "case $scene ($n bodies): one transfer" \
-    "seconds; f: float, d: double, r: refined, l: long double, a: as needed" "largest relative error"
+    "seconds; f: float, d: double, r: refined, t: twofold, l: long double, a: as needed" "largest relative error"
 }
 
 # 100 frequencies from the compiled system on.
@@ -142,7 +143,7 @@ draw_response() {
   awk -F, -v OFS=, '$1 == "response" && $4 == "titop" { print $6, $7, substr($5, 1, 1) }' \
     "$out/accuracy.csv" >"$work/$name.notes"
   keyed "$name" "case D (2 and 10 and 50 bodies): 100 frequencies" \
-    "seconds; f: float, d: double, r: refined, a: as needed" "largest relative error"
+    "seconds; f: float, d: double, r: refined, t: twofold, a: as needed" "largest relative error"
 }
 
 # Error of every method while one quantity goes to an extreme, with the steepest slope; rings where the library warns or

@@ -1,5 +1,6 @@
 % octave-cli octave.m SCENE LIMIT LABEL FILE...: the model of each network (programs/network.cpp), sizes
-% ascending, in all ways that Octave and its control package have; one CSV row each on stdout. A way
+% ascending, in all ways that Octave and its control package have, and the package's response of the
+% model at 100 frequencies; one CSV row each on stdout. A way
 % is left out where, by the growth of the last two sizes, it would take longer than LIMIT seconds.
 % The error is that of [A B; C D] V against titop's, per row over the row's magnitude.
 1;
@@ -82,13 +83,18 @@ function s = network (file)
   end
 end
 
-% fastest of at least two runs, or one of more than 3 s
-function [seconds, err] = timed (way, s)
-  seconds = Inf; total = 0; runs = 0;
+% fastest of at least two runs, or one of more than 3 s; `result` is the last one's
+function [seconds, result] = fastest (way, outputs)
+  seconds = Inf; total = 0; runs = 0; result = cell (1, outputs);
   while (runs < 2 && total < 3) || (total < 0.5 && runs < 1000)
-    t = tic (); [a, b, c, d] = way (s); t = toc (t);
+    t = tic (); [result{:}] = way (); t = toc (t);
     seconds = min (seconds, t); total += t; ++runs;
   end
+end
+
+function [seconds, err] = timed (way, s)
+  [seconds, result] = fastest (@() way (s), 4);
+  [a, b, c, d] = result{:};
   if rows (a) != rows (s.A)
     err = Inf;  % a descriptor model, or states lost
     return;
@@ -97,12 +103,23 @@ function [seconds, err] = timed (way, s)
   err = full (max (max (abs (M * s.V - s.MV), [], 2) ./ max (max (abs (M), [], 2), realmin)));
 end
 
+% the response of the model at all frequencies; the error is over the largest of its input's column
+function [seconds, err] = timed_response (s)
+  [a, b, c, d] = by_hand (s);
+  model = ss (a, b, c, d);
+  [seconds, result] = fastest (@() freqresp (model, s.w), 1);
+  h = reshape (permute (result{1}, [1, 3, 2]), [], columns (d));
+  err = max (max (abs (h - complex (s.H_re, s.H_im))) ./ max (abs (h)));
+end
+
 pkg load control
 warning ("off", "all");
 list = argv ();
 scene = list{1}; limit = str2double (list{2}); label = list{3};  % which BLAS
-ways = {"names", @by_names; "append", @by_append; "mconnect", @by_mconnect; "lft", @by_lft; ...
-        "dense matrices", @by_hand; "sparse matrices", @by_sparse};
+ways = {"compile", "names", @(s) timed(@by_names, s); "compile", "append", @(s) timed(@by_append, s);
+        "compile", "mconnect", @(s) timed(@by_mconnect, s); "compile", "lft", @(s) timed(@by_lft, s);
+        "compile", "dense matrices", @(s) timed(@by_hand, s);
+        "compile", "sparse matrices", @(s) timed(@by_sparse, s); "sweep", "freqresp", @timed_response};
 last = [zeros(rows (ways), 2), 1.5 * ones(rows (ways), 1)];  % n, seconds, exponent
 for f = 4 : numel (list)
   s = network (list{f});
@@ -110,11 +127,11 @@ for f = 4 : numel (list)
     note = "";
     exponent = min (3, max (1, last(k,3) + 0.5));
     if last(k,1) && last(k,2) * (s.n / last(k,1)) ^ exponent > limit
-      printf ("compile,%s,%d,Octave %s%s,,,given up\n", scene, s.n, ways{k,1}, label);
+      printf ("%s,%s,%d,Octave %s%s,,,given up\n", ways{k,1}, scene, s.n, ways{k,2}, label);
       continue;
     end
     try
-      [seconds, err] = timed (ways{k,2}, s);
+      [seconds, err] = ways{k,3} (s);
       if ! (err <= 1e-6)
         note = "disagrees";
       end
@@ -122,9 +139,11 @@ for f = 4 : numel (list)
         last(k,3) = log (seconds / last(k,2)) / log (s.n / last(k,1));
       end
       last(k,1:2) = [s.n, seconds];
-      printf ("compile,%s,%d,Octave %s%s,%.4g,%.2g,%s\n", scene, s.n, ways{k,1}, label, seconds, err, note);
+      printf ("%s,%s,%d,Octave %s%s,%.4g,%.2g,%s\n", ways{k,1}, scene, s.n, ways{k,2}, label, ...
+              seconds, err, note);
     catch e
-      printf ("compile,%s,%d,Octave %s%s,,,%s\n", scene, s.n, ways{k,1}, label, strrep (e.message, ",", ";"));
+      printf ("%s,%s,%d,Octave %s%s,,,%s\n", ways{k,1}, scene, s.n, ways{k,2}, label, ...
+              strrep (e.message, ",", ";"));
     end
     fflush (stdout);
   end

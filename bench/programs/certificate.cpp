@@ -38,9 +38,9 @@ bool row(Case c, int n, int rounds) {
     const System system = compile(diagram, options);
     system.write(dense, 1);
     model = std::min(model, since(start));
-    const titop::Certificate c = system.certificate();
-    certificate = std::min(certificate, c.seconds);
-    holds = holds && c.residual < 1e-10;
+    const titop::Certificate found = system.certificate();
+    certificate = std::min(certificate, found.seconds);
+    holds = holds && found.residual < 1e-10;
     start = Clock::now();
     const System other = first.update({{"p", i % 2 ? 1.0625 : 1.03125}});
     new_values = std::min(new_values, since(start));

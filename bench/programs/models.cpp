@@ -1,3 +1,4 @@
+#include <complex>
 #include <cstring>
 #include <memory>
 #include <random>
@@ -142,6 +143,22 @@ Prepared titop_redescriptor(Case c, int n) {
   return {[=] { sweep->next().write(*model); }, {}};
 }
 
+/// The step by effect, which compile is timed without: the dense model without what cannot matter.
+Prepared by_effect(Case c, int n) {
+  struct Data {
+    StateSpace model;
+    titop::Minimized result = {};
+  };
+  const auto data = std::make_shared<Data>();
+  compiled(scene(c, n)).write(data->model);
+  return {[=] { data->result = titop::minimize(data->model); },
+          [=] {
+            const std::complex<double> s(0.2, 3);
+            const std::vector<Eigen::MatrixXcd> found{data->result.model.transfer(s)};
+            return difference(found, {data->model.transfer(s)});
+          }};
+}
+
 // --- what a user would pick instead ------------------------------------------------------------
 
 struct Other : Reference {
@@ -227,6 +244,7 @@ std::vector<Method> methods() {
     list.push_back(method("compile", c, "memset of A", sizes, memset_of_A));
     list.push_back(method("recompile", c, "titop", sizes, titop_recompile));
     list.push_back(method("recompile", c, "sparse LU", sizes, sparse_recompile));
+    list.push_back(method("minimize", c, "titop", sizes, by_effect));
     const auto& long_sizes = scalar ? many : bodies;
     list.push_back(method("factor", c, "titop", long_sizes, titop_factor));
     list.push_back(method("factor", c, "titop descriptor", long_sizes, titop_descriptor));

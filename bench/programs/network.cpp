@@ -11,10 +11,12 @@
 #include "support/matfile.hpp"
 
 /// `network SCENE N FILE`: the network for Octave, with some columns V and titop's [A B; C D] V,
-/// against which Octave checks what it has found.
+/// against which Octave checks what it has found, and titop's response H at 100 frequencies w, one
+/// below the other.
 namespace titop_bench {
 namespace {
 
+using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
 MatrixXd random(Eigen::Index rows, Eigen::Index cols) {
@@ -43,6 +45,13 @@ void write(const std::string& name, int n, const std::string& path) {
   file.add("A", net.A), file.add("B", net.B), file.add("C", net.C), file.add("D", net.D);
   file.add("K", net.K), file.add("E", net.E), file.add("F", net.F), file.add("G", net.G);
   file.add("V", V), file.add("MV", MV);
+  const std::vector<double> w = frequencies(100);
+  const std::vector<MatrixXcd> response = system.frequency_response(w);
+  MatrixXcd H(100 * m.C.rows(), m.B.cols());
+  for (Eigen::Index i = 0; i < 100; ++i)
+    H.middleRows(i * m.C.rows(), m.C.rows()) = response[static_cast<std::size_t>(i)];
+  file.add("w", Eigen::VectorXd::Map(w.data(), 100));
+  file.add("H_re", H.real()), file.add("H_im", H.imag());
 }
 
 }  // namespace

@@ -1,4 +1,3 @@
-#include <cmath>
 #include <memory>
 
 #include "methods/sparse_lu.hpp"
@@ -21,18 +20,16 @@ struct Setup {
   System system;
   Network network;
   StateSpace model = {};
-  std::vector<double> omega = {};
+  std::vector<double> omega;
   std::vector<MatrixXcd> response = {};
   VectorXd x, u, product = {};
 
-  Setup(Case c, int n, int frequencies)
+  Setup(Case c, int n, int points)
       : system(compile(scene(c, n), {.minimize_up_to = 0})),
         network(network_of(system)),
+        omega(frequencies(points)),
         x(VectorXd::LinSpaced(system.order(), -1, 1)),
-        u(VectorXd::Ones(static_cast<Eigen::Index>(system.inputs().size()))) {
-    for (int k = 0; k < frequencies; ++k)
-      omega.push_back(0.11 * std::pow(1e4, k / std::max(1.0, frequencies - 1.0)));
-  }
+        u(VectorXd::Ones(static_cast<Eigen::Index>(system.inputs().size()))) {}
   double from_titop() const { return difference(response, system.frequency_response(omega)); }
   double product_from_titop() const {
     const System::Rates r = system.apply(x, u);
@@ -52,19 +49,19 @@ Prepared sweep(const std::shared_ptr<Setup>& scene, Answer answer) {
           [=] { return scene->from_titop(); }};
 }
 
-Prepared titop_sweep(Case c, int n, int frequencies, int threads) {
-  const auto scene = std::make_shared<Setup>(c, n, frequencies);
+Prepared titop_sweep(Case c, int n, int points, int threads) {
+  const auto scene = std::make_shared<Setup>(c, n, points);
   return {[=] { scene->response = scene->system.frequency_response(scene->omega, threads); }, {}};
 }
 
-Prepared sparse_sweep(Case c, int n, int frequencies) {
-  const auto scene = std::make_shared<Setup>(c, n, frequencies);
+Prepared sparse_sweep(Case c, int n, int points) {
+  const auto scene = std::make_shared<Setup>(c, n, points);
   const auto pencil = std::make_shared<SparsePencil<>>(scene->network);
   return sweep(scene, [=](std::complex<double> s) { return pencil->transfer(s); });
 }
 
-Prepared dense_sweep(Case c, int n, int frequencies) {
-  const auto scene = std::make_shared<Setup>(c, n, frequencies);
+Prepared dense_sweep(Case c, int n, int points) {
+  const auto scene = std::make_shared<Setup>(c, n, points);
   scene->system.write(scene->model);
   return sweep(scene, [=](std::complex<double> s) { return scene->model.transfer(s); });
 }

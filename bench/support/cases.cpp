@@ -227,4 +227,11 @@ Diagram scene(Case c, int n, const SceneOptions& options) {
   throw std::invalid_argument("no such case");
 }
 
+std::vector<double> frequencies(int count) {
+  std::vector<double> omega;
+  for (int k = 0; k < count; ++k)
+    omega.push_back(0.11 * std::pow(1e4, k / std::max(1.0, count - 1.0)));
+  return omega;
+}
+
 }  // namespace titop_bench
