@@ -40,23 +40,25 @@ MatrixXd times_map(const MatrixXd& M, const StateMap& map) {
 
 StateMap::StateMap(const std::vector<Dependent>& dependents, const Layout& l) {
   const auto n = l.states.size();
+  Map map;
   std::vector<char> leaves(n, 0);
   for (const Dependent& d : dependents) leaves[at(l.state_first[at(d.node)] + d.state)] = 1;
   std::vector<int> place(n, -1);
-  names_.reserve(n - dependents.size());
-  kept_.reserve(n - dependents.size());
+  map.names.reserve(n - dependents.size());
+  map.kept.reserve(n - dependents.size());
   for (std::size_t i = 0; i < n; ++i) {
     if (leaves[i]) continue;
-    place[i] = static_cast<int>(kept_.size());
-    kept_.push_back(static_cast<int>(i));
-    names_.push_back(l.states[i]);
+    place[i] = static_cast<int>(map.kept.size());
+    map.kept.push_back(static_cast<int>(i));
+    map.names.push_back(l.states[i]);
   }
   for (const Dependent& d : dependents) {
     Row row{l.state_first[at(d.node)] + d.state, {}};
     for (const Dependent::Share& s : d.of)
       row.of.emplace_back(place[at(l.state_first[at(s.node)] + s.state)], s.factor);
-    rows_.push_back(std::move(row));
+    map.rows.push_back(std::move(row));
   }
+  map_ = std::make_shared<const Map>(std::move(map));
 }
 
 void StateMap::reduce(StateSpace& m) const {
@@ -65,10 +67,10 @@ void StateMap::reduce(StateSpace& m) const {
     add_product(m.B, m.A, by_input_);
     add_product(m.D, m.C, by_input_);
   }
-  m.A = times_map(m.A(kept_, Eigen::all), *this);
-  m.B = m.B(kept_, Eigen::all).eval();
+  m.A = times_map(m.A(kept(), Eigen::all), *this);
+  m.B = m.B(kept(), Eigen::all).eval();
   m.C = times_map(m.C, *this);
-  m.states = names_;
+  m.states = names();
 }
 
 }  // namespace titop::detail

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <string>
 #include <titop/compiler/stage.hpp>
 #include <titop/graph/state_space.hpp>
@@ -24,27 +25,28 @@ class StateMap {
     by_input_ = std::move(by_input), shifts_ = std::move(shifts);
   }
 
-  bool trivial() const { return rows_.empty(); }
+  bool trivial() const { return map_->rows.empty(); }
   const Eigen::MatrixXd& by_input() const { return by_input_; }  ///< empty: 0
-  const std::vector<int>& kept() const { return kept_; }         ///< among the blocks' states
-  const std::vector<std::string>& names() const { return names_; }
-  int order() const { return static_cast<int>(kept_.size()); }
+  const std::vector<int>& kept() const { return map_->kept; }    ///< among the blocks' states
+  const std::vector<std::string>& names() const { return map_->names; }
+  int order() const { return static_cast<int>(map_->kept.size()); }
 
   /// One dependent state: sum of factor * x(place).
   struct Row {
     int state = -1;  ///< among the blocks' states
     std::vector<std::pair<int, double>> of;
   };
-  const std::vector<Row>& dependent() const { return rows_; }
+  const std::vector<Row>& dependent() const { return map_->rows; }
 
   /// T x: blocks' states x columns. O(entries of T) per column.
   template <class Matrix>
   Matrix expanded(const Matrix& x) const {
     if (trivial()) return x;
-    Matrix all(static_cast<Eigen::Index>(kept_.size() + rows_.size()), x.cols());
-    for (std::size_t i = 0; i < kept_.size(); ++i)
-      all.row(kept_[i]) = x.row(static_cast<Eigen::Index>(i));
-    for (const Row& row : rows_) {
+    const auto& [kept, names, rows] = *map_;
+    Matrix all(static_cast<Eigen::Index>(kept.size() + rows.size()), x.cols());
+    for (std::size_t i = 0; i < kept.size(); ++i)
+      all.row(kept[i]) = x.row(static_cast<Eigen::Index>(i));
+    for (const Row& row : rows) {
       all.row(row.state).setZero();
       for (const auto& [place, factor] : row.of)
         all.row(row.state) += typename Matrix::Scalar(factor) * x.row(place);
@@ -74,16 +76,19 @@ class StateMap {
   template <class Matrix>
   Matrix kept_rows(const Matrix& all) const {
     if (trivial()) return all;
-    return all(kept_, Eigen::all);
+    return all(map_->kept, Eigen::all);
   }
   /// The model of all blocks' states becomes the model of the kept ones; entries that cancel to
   /// rounding (64 units) are 0. O(order * entries of T).
   void reduce(StateSpace& model) const;
 
  private:
-  std::vector<int> kept_;
-  std::vector<std::string> names_;
-  std::vector<Row> rows_;
+  struct Map {
+    std::vector<int> kept;
+    std::vector<std::string> names;
+    std::vector<Row> rows;
+  };
+  std::shared_ptr<const Map> map_ = std::make_shared<const Map>();  ///< updates share it
   Eigen::MatrixXd by_input_;
   std::vector<Eigen::MatrixXd> shifts_;
 };
