@@ -92,8 +92,10 @@ class std::numeric_limits<titop::solve::DoubleDouble> : public std::numeric_limi
   static titop::solve::DoubleDouble epsilon() { return 0x1p-104; }
 };
 
+/// @cond  Doxygen finds no scope for what stands in a namespace that is not the project's.
 template <>
 struct Eigen::NumTraits<titop::solve::DoubleDouble>
     : Eigen::GenericNumTraits<titop::solve::DoubleDouble> {
   enum { AddCost = 20, MulCost = 30 };
 };
+/// @endcond
