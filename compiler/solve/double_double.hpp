@@ -1,15 +1,26 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cfloat>
 #include <cmath>
+#include <complex>
 #include <limits>
+
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__)
+#error "double-double is made of what rounding leaves: compile without -ffast-math"
+#endif
 
 namespace titop::solve {
 
+static_assert(FLT_EVAL_METHOD == 0, "double-double needs every operation rounded to double");
+
 /// A number of 32 digits as the sum of two doubles, the second at most half a unit of the last
 /// place of the first [Dekker 1971, Knuth]: some twenty operations of doubles per sum or product,
-/// where a number of 50 digits takes hundreds. The range is that of double. What overflows becomes
-/// NaN. Rounding of one operation: a few 2^-104.
+/// where a number of 50 digits takes hundreds. Rounding of one operation: at most 2^-104.
+///
+/// The range is less than that of double, for what goes into an operation and for what comes out:
+/// above 2^995 (3e299) it may become NaN, below 2^-967 (8e-292) it loses the second double.
 class DoubleDouble {
  public:
   DoubleDouble() = default;
@@ -29,7 +40,7 @@ class DoubleDouble {
     const DoubleDouble p = exact_product(a.high_, b.high_);
     return ordered_sum(p.high_, p.low_ + (a.high_ * b.low_ + a.low_ * b.high_));
   }
-  /// Long division, three digits to the base 2^53.
+  /// Long division, three digits to the base 2^53: two leave twice the rounding.
   friend DoubleDouble operator/(const DoubleDouble& a, const DoubleDouble& b) {
     const double first = a.high_ / b.high_;
     DoubleDouble left = a - b * first;
@@ -50,6 +61,10 @@ class DoubleDouble {
     return a.high_ < b.high_ || (a.high_ == b.high_ && a.low_ < b.low_);
   }
   friend DoubleDouble abs(const DoubleDouble& a) { return a.high_ < 0 ? -a : a; }
+  /// a 2^e.
+  friend DoubleDouble ldexp(const DoubleDouble& a, int e) {
+    return {std::ldexp(a.high_, e), std::ldexp(a.low_, e)};
+  }
 
  private:
   DoubleDouble(double high, double low) : high_(high), low_(low) {}
@@ -83,11 +98,35 @@ class DoubleDouble {
   double high_ = 0, low_ = 0;
 };
 
+/// z times a power of two that brings it near 1, and to `exponent` what that has taken away.
+inline std::complex<DoubleDouble> near_one(const std::complex<DoubleDouble>& z, int& exponent) {
+  const auto size = [](const DoubleDouble& x) { return std::abs(static_cast<double>(x)); };
+  std::frexp(std::max(size(z.real()), size(z.imag())), &exponent);
+  return {ldexp(z.real(), -exponent), ldexp(z.imag(), -exponent)};
+}
+
+/// The standard says nothing of complex numbers of other types than its own, and its libraries
+/// square the divisor as it stands: no digit is left where that is beyond double-double's range.
+/// Here as far as double reaches, wherever numerator and divisor are. Found beside the arguments.
+inline std::complex<DoubleDouble> operator/(const std::complex<DoubleDouble>& a,
+                                            const std::complex<DoubleDouble>& b) {
+  int up = 0, down = 0;
+  const std::complex<DoubleDouble> x = near_one(a, up), y = near_one(b, down);
+  const DoubleDouble re = y.real(), im = y.imag(), square = re * re + im * im;
+  return {ldexp((x.real() * re + x.imag() * im) / square, up - down),
+          ldexp((x.imag() * re - x.real() * im) / square, up - down)};
+}
+inline std::complex<DoubleDouble>& operator/=(std::complex<DoubleDouble>& a,
+                                              const std::complex<DoubleDouble>& b) {
+  return a = a / b;
+}
+
 }  // namespace titop::solve
 
 template <>
 class std::numeric_limits<titop::solve::DoubleDouble> : public std::numeric_limits<double> {
  public:
+  static constexpr bool is_iec559 = false;
   static constexpr int digits = 105, digits10 = 31, max_digits10 = 33;
   static titop::solve::DoubleDouble epsilon() { return 0x1p-104; }
 };
