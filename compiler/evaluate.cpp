@@ -13,9 +13,16 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 using solve::lifted;
 
-constexpr int kSteps = 30;          ///< of refinement: as many as kShrinks needs for 16 digits
-constexpr double kSettled = 1e-12;  ///< a larger change of the outputs asks for one more
-constexpr double kShrinks = 0.25;   ///< changes that shrink by less are no way to the solution
+/// Of refinement, at most: at kShrinks each they lead to 1e-18.
+constexpr int kSteps = 30;
+/// A change of the outputs by more asks for another step, whatever T.
+constexpr double kSettled = 1e-12;
+/// Where steps shrink by less, refinement ends: at the rounding of T, or with no result where it
+/// has not come so far.
+constexpr double kShrinks = 0.25;
+/// If the first step changes no block of the unknowns by more, that steps shrink is plain by then;
+/// else a second step has to show it.
+constexpr double kPlain = 1e-9;
 
 /// Nodes whose rows or states are in use.
 std::vector<char> nodes_in_use(const Skeleton& k) {
@@ -33,6 +40,17 @@ Error no_digit_left(const SystemData& data, std::complex<double> s) {
           fmt::format("{} has a pole at s = {}{:+}j, or no digit is left there in this precision",
                       data.graph().name, s.real(), s.imag()),
           "evaluate beside it, or with Precision::digits50"};
+}
+
+Error not_refined(const SystemData& data, std::complex<double> s, double error) {
+  const std::string place =
+      fmt::format("{} at s = {}{:+}j: ", data.graph().name, s.real(), s.imag());
+  if (std::isinf(error))
+    return {Code::not_finite, place + "numbers leave the range that this precision has",
+            "take Precision::digits50, an s of smaller or larger modulus, or other units"};
+  return {Code::singular,
+          place + "refinement does not lead to 12 digits, from factors in double that have too few",
+          "take Precision::as_needed or Precision::digits50"};
 }
 
 template <class T>
@@ -84,28 +102,6 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
     throw no_digit_left(data, z);
   }
   unknowns_ = factors_->solve(rhs_);
-}
-
-template <class T>
-void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
-  using D = std::complex<double>;
-  const auto up = [](const solve::RowMatrix<D>& m) {
-    return solve::RowMatrix<T>(m.unaryExpr([](const D& x) { return solve::Scalar<T>::from(x); }));
-  };
-  unknowns_ = up(coarse.unknowns());
-  double before = 1;
-  for (int step = 0; step < kSteps; ++step) {
-    const solve::RowMatrix<T> left = rows_.residual(rhs_, unknowns_);
-    const solve::RowMatrix<T> correction = up(
-        coarse.solve(left.unaryExpr([](const T& x) -> D { return solve::Scalar<T>::round(x); })));
-    unknowns_ += correction;
-    last_change_ = relative_to_outputs(correction);
-    // What the next step would change: this step's change, smaller by as much again.
-    const double next = last_change_ * (last_change_ / before);
-    const bool settled = last_change_ <= kSettled && next <= solve::Scalar<T>::epsilon();
-    if (settled || !(last_change_ <= kShrinks * before)) return;
-    before = last_change_;
-  }
 }
 
 template <class T>
@@ -183,6 +179,12 @@ Eigen::MatrixXd block_sizes(const Matrix& m, const std::vector<Eigen::Index>& ro
 }  // namespace
 
 template <class T>
+std::vector<Eigen::Index> Evaluation<T>::groups_of_columns() const {
+  if (u_.cols() != u_.rows()) return {0, u_.cols()};  // not one column per input
+  return groups(data_.graph().inputs, data_.layout().input_first, 0, u_.cols());
+}
+
+template <class T>
 double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) const {
   const auto rounded = [](const solve::RowMatrix<T>& m) {
     return Eigen::MatrixXcd(
@@ -192,10 +194,8 @@ double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) c
   const Eigen::MatrixXcd y = rounded(outputs());
   const Eigen::MatrixXcd change = rounded(outputs_of(unknowns, none, nullptr));
   if (!y.allFinite() || !change.allFinite()) return std::numeric_limits<double>::infinity();
-  const Layout& layout = data_.layout();
-  const auto rows = groups(data_.graph().outputs, layout.output_first, 0, y.rows());
-  auto cols = groups(data_.graph().inputs, layout.input_first, 0, y.cols());
-  if (u_.cols() != u_.rows()) cols = {0, y.cols()};  // not one column per input
+  const auto rows = groups(data_.graph().outputs, data_.layout().output_first, 0, y.rows());
+  const auto cols = groups_of_columns();
   const Eigen::MatrixXd size = block_sizes(y, rows, cols), off = block_sizes(change, rows, cols);
   double worst = 0;
   for (Eigen::Index i = 0; i < size.rows(); ++i)
@@ -207,6 +207,90 @@ double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) c
         worst = std::max(worst, off(i, j) / (noise ? beside : size(i, j)));
     }
   return worst;
+}
+
+template <class T>
+Eigen::ArrayXd Evaluation<T>::sizes_of_unknowns(
+    const solve::RowMatrix<std::complex<double>>& unknowns) const {
+  const solve::Plan& plan = *data_.skeleton->as_written().plan;
+  const auto cols = groups_of_columns();
+  Eigen::ArrayXd sizes(plan.unknowns * u_.cols());  // room enough
+  Eigen::Index n = 0;
+  for (std::size_t v = 0; v < plan.first.size(); ++v)
+    for (int i = 0; i < plan.structure.variable_size[v]; i += plan.structure.variable_unit[v])
+      for (std::size_t j = 0; j + 1 < cols.size(); ++j) {
+        double largest = 0;
+        for (int row = plan.first[v] + i; row < plan.first[v] + i + plan.structure.variable_unit[v];
+             ++row)
+          for (Eigen::Index col = cols[j]; col < cols[j + 1]; ++col)
+            largest = std::max(largest, solve::size_of(unknowns(row, col)));
+        sizes(n++) = largest;
+      }
+  return sizes.head(n);
+}
+
+namespace {
+
+bool at_most(const Eigen::ArrayXd& change, const Eigen::ArrayXd& limit) {
+  return (change <= limit.max(kUnderflow)).all();
+}
+
+}  // namespace
+
+/// The step of refinement from here. `rounding`: about the error that the rounding of T leaves in
+/// the outputs; not looked for where it is nothing as long as double has one digit.
+template <class T>
+solve::RowMatrix<std::complex<double>> Evaluation<T>::change_by(
+    const Evaluation<std::complex<double>>& coarse, double* rounding) const {
+  using D = std::complex<double>;
+  const auto down = [](const solve::RowMatrix<T>& m) {
+    return solve::RowMatrix<D>(
+        m.unaryExpr([](const T& x) -> D { return solve::Scalar<T>::round(x); }));
+  };
+  if (!rounding || solve::Scalar<T>::epsilon() <= kSettled * 0x1p-53)
+    return coarse.solve(down(rows_.residual(rhs_, unknowns_)));
+  solve::RowMatrix<double> magnitudes;
+  const solve::RowMatrix<T> residual = rows_.residual(rhs_, unknowns_, &magnitudes);
+  const auto m = residual.cols();
+  solve::RowMatrix<D> both(residual.rows(), 2 * m);
+  both << down(residual), down(rounding_of(magnitudes));
+  const solve::RowMatrix<D> changes = coarse.solve(both);
+  *rounding = relative_to_outputs(lifted<T>(changes.rightCols(m)));
+  return changes.leftCols(m);
+}
+
+/// Every step multiplies the error by I - F^-1 L (F: the factors, L: the matrix), and so the step
+/// itself: what F has wrong shrinks slowly, or not at all, and small steps are then no sign of a
+/// small error. It is looked for in the unknowns, where it stands alone, not in the outputs, of
+/// which it may be a small share.
+template <class T>
+void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
+  unknowns_ = lifted<T>(coarse.unknowns());
+  const Eigen::ArrayXd start = sizes_of_unknowns(coarse.unknowns());  // the step from 0
+  Eigen::ArrayXd sizes_before;
+  double before = 1, rounding = 0;
+  bool leads = false;
+  for (int step = 0; step < kSteps; ++step) {
+    // Where the first step is enough, it is so small that the rounding of T, far finer, is nothing.
+    const solve::RowMatrix<std::complex<double>> change =
+        change_by(coarse, step == 1 ? &rounding : nullptr);
+    const solve::RowMatrix<T> correction = lifted<T>(change);
+    unknowns_ += correction;
+    const double now = relative_to_outputs(correction);
+    if (!leads) {
+      const Eigen::ArrayXd sizes = sizes_of_unknowns(change);
+      // What rounding has left of a 0 is changed altogether by the first step, and no more after.
+      leads = step == 0 ? at_most(sizes, kPlain * start)
+                        : at_most(sizes, kShrinks * sizes_before.max(0x1p-53 * start));
+      sizes_before = sizes;
+    }
+    refinement_error_ = leads || std::isinf(now) ? std::max(now, rounding) : 1;
+    if (std::isinf(now) || (step > 0 && !leads)) return;
+    // What the next step would change: this step's change, smaller by as much again.
+    const bool settled = now <= kSettled && now * (now / before) <= solve::Scalar<T>::epsilon();
+    if (leads && (settled || (step > 0 && !(now <= kShrinks * before)))) return;
+    before = now;
+  }
 }
 
 template <class T>

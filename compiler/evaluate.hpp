@@ -14,6 +14,9 @@ inline constexpr double kUnderflow = 1e-290;
 /// What an evaluation at s is refused with, if s is a pole or as good as one.
 Error no_digit_left(const SystemData& data, std::complex<double> s);
 
+/// What Evaluation::refinement_error() is refused with, where it is too much.
+Error not_refined(const SystemData& data, std::complex<double> s, double error);
+
 /// A compiled diagram at one s, driven by its external inputs: every signal on demand. T is a
 /// complex scalar of any precision, or double for a real s at less than half the cost; blocks that
 /// are the same object are evaluated once.
@@ -22,7 +25,8 @@ class Evaluation {
  public:
   /// u: inputs x columns. Throws singular if s is a pole of the system or of a block. With
   /// `coarse`, the same s and u in double, its factors serve: iterative refinement,
-  /// blocks and residuals in T, until the outputs have settled or their changes shrink no more.
+  /// blocks and residuals in T, until the outputs have settled or their changes shrink no more:
+  /// see refinement_error().
   Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
              const Evaluation<std::complex<double>>* coarse = nullptr);
 
@@ -46,10 +50,12 @@ class Evaluation {
 
   const solve::RowMatrix<T>& unknowns() const { return unknowns_; }
   solve::RowMatrix<T> solve(const solve::RowMatrix<T>& rhs) const { return factors_->solve(rhs); }
-  /// With `coarse`: the change of the outputs by the last step of refinement, about the error of
-  /// the step before: per block of the transfer (a port by a port, dual vectors in halves), blocks
-  /// below 1e-4 of their neighbours counted as that.
-  double last_change() const { return last_change_; }
+  /// With `coarse`: about the error of the outputs, from above: their change by the last step of
+  /// refinement. 1 where a step did not shrink some unknown's error, infinite where numbers have
+  /// overflown. Measured per block of the transfer (a port by a port, dual vectors in halves), over
+  /// the block's largest entry; where the change is more than 1e-3 of that, as of a 0 that rounding
+  /// has left, over the geometric mean of the largest entries of the block's row and column.
+  double refinement_error() const { return refinement_error_; }
   /// One step of refinement, residual and all in T: what the elimination itself has lost (growth
   /// that no single pivot shows) is mended by it. Returns the change of the outputs, measured as
   /// above.
@@ -76,6 +82,12 @@ class Evaluation {
   solve::RowMatrix<T> value_of(int signal, const solve::RowMatrix<T>& unknowns,
                                const solve::RowMatrix<T>& inputs) const;
   void refine(const Evaluation<std::complex<double>>& coarse);
+  solve::RowMatrix<std::complex<double>> change_by(const Evaluation<std::complex<double>>& coarse,
+                                                   double* rounding) const;
+  /// Largest entries of what shares a unit, variable by variable, for each group of columns.
+  Eigen::ArrayXd sizes_of_unknowns(const solve::RowMatrix<std::complex<double>>& unknowns) const;
+  /// The columns' groups, an input each, dual vectors in halves: their first ones, and the end.
+  std::vector<Eigen::Index> groups_of_columns() const;
   /// One unit of the last place of these, up or down in a fixed random order, row by row.
   static solve::RowMatrix<T> rounding_of(const solve::RowMatrix<double>& magnitudes);
   double relative_to_outputs(const solve::RowMatrix<T>& change_of_unknowns) const;
@@ -99,7 +111,7 @@ class Evaluation {
   solve::JointRows<T> rows_;
   std::unique_ptr<const solve::Factors<T>> factors_;
   solve::RowMatrix<T> rhs_, unknowns_;
-  double last_change_ = 0;
+  double refinement_error_ = 0;
 };
 
 }  // namespace titop::detail

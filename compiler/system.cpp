@@ -71,17 +71,17 @@ detail::Evaluation<T> refined(const detail::SystemData& d, Double s,
   return {d, solve::Scalar<T>::from(s), unit_inputs<T>(d), &coarse};
 }
 
-constexpr double kNoDigit = 0.1;  ///< where outputs change by more, refinement leads nowhere
+/// An error of the outputs by more asks for a finer precision, or is refused.
+constexpr double kEnough = 1e-12;
 
 template <class T>
 MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
   const detail::Evaluation<Double> coarse(d, s, unit_inputs<Double>(d));
   const auto result = refined<T>(d, s, coarse);
-  if (!(result.last_change() <= kNoDigit)) throw detail::no_digit_left(d, s);
+  if (const double error = result.refinement_error(); !(error <= kEnough))
+    throw detail::not_refined(d, s, error);
   return rounded<T>(result.outputs());
 }
-
-constexpr double kEnough = 1e-12;
 
 /// What is lost in double, once a step of refinement has mended what the elimination loses: by the
 /// weakest pivot, by what rounding does to the outputs, by what that step leaves.
@@ -90,20 +90,17 @@ double lost_by(detail::Evaluation<Double>& e) {
   return std::max({2e-16 / e.weakest_pivot(), rounding, change * change});
 }
 
-/// Finer than double, where double costs `lost`: refined or long double if their own rounding
-/// (2000 times finer) leaves enough, else refined in double-double if that settles, else 50 digits.
+/// Finer than double, where double costs `lost`: refined if its own rounding (2000 times finer)
+/// leaves enough and it settles, else refined in double-double if that settles, else 50 digits.
 MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
                          const detail::Evaluation<Double>& plain, double lost) {
   const double kFiner = solve::Scalar<Extended>::epsilon() / solve::Scalar<Double>::epsilon();
   if (lost * kFiner <= kEnough) {
     const auto once = refined<Extended>(d, s, plain);
-    if (once.last_change() <= kEnough) return rounded<Extended>(once.outputs());
-    const detail::Evaluation<Extended> more(d, Extended(s), unit_inputs<Extended>(d));
-    if (solve::Scalar<Extended>::epsilon() <= kEnough * more.weakest_pivot())
-      return rounded<Extended>(more.outputs());
+    if (once.refinement_error() <= kEnough) return rounded<Extended>(once.outputs());
   }
   const auto twice = refined<Twofold>(d, s, plain);
-  if (twice.last_change() <= kEnough) return rounded<Twofold>(twice.outputs());
+  if (twice.refinement_error() <= kEnough) return rounded<Twofold>(twice.outputs());
   return transfer_in<solve::Complex50>(d, s);
 }
 

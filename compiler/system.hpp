@@ -55,12 +55,12 @@ enum class Precision {
   single,    ///< float: 7 digits; blocks in double
   standard,  ///< double: 16 digits; one step of refinement mends what the elimination loses
   refined,   ///< factors in double, blocks and residuals in long double: refined until the outputs
-             ///< settle
+             ///< settle, or refused; see System::transfer
   twofold,   ///< the same in double-double: 32 digits, on any machine
   extended,  ///< long double: 19 digits on x86
   digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower: an oracle
   as_needed  ///< double, and finer where the weakest pivot has lost more than four digits: refined
-             ///< or twofold if that settles, else long double or 50 digits
+             ///< or twofold if that settles, else 50 digits
 };
 
 /// Values of parameters by name: {{"k1", 12.0}, {"angle", 0.3}}.
@@ -86,6 +86,14 @@ class System {
   /// Transfer matrix at s (outputs x inputs) through the factors of the same plan: O(bodies), full
   /// accuracy at any mass ratio unless a coarser precision is asked for. Throws singular if s is a
   /// pole of the system or of a block.
+  ///
+  /// `refined` and `twofold` are right to 1e-12 of each block of the transfer (a port by a port),
+  /// or throw singular, even where no pole is: their factors are in double, and where these have
+  /// not one digit for some unknown, or the rounding of long double costs more, they do not lead
+  /// there. That is judged by estimates: of how steps of refinement shrink, in all unknowns, and of
+  /// rounding. Where numbers leave the range that DoubleDouble has, `twofold` throws not_finite.
+  /// The way out of all that is `as_needed`, or `digits50`. `single`, `standard` and `extended`
+  /// refuse only a pivot without a digit: what many pivots lose together they do not see.
   Eigen::MatrixXcd transfer(std::complex<double> s,
                             Precision precision = Precision::as_needed) const;
 

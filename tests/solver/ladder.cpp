@@ -4,6 +4,7 @@
 #include <optional>
 #include <titop/compiler/system.hpp>
 #include <titop/graph/mount.hpp>
+#include <titop/graph/nodes/gain.hpp>
 #include <titop/graph/nodes/lti.hpp>
 
 #include "oracle.hpp"
@@ -140,16 +141,29 @@ Lti first_order(double c, double D) {
 }
 
 /// A loop by c / (s + kPole) + 1/2, and around it one by by / (s + kPole): where s = 2, each may be
-/// as near to its pole as one likes; at infinity they are far.
-Diagram loop_in_loop(double c, double by) {
+/// as near to its pole as one likes; at infinity they are far. The output is what enters, or that
+/// times `gain` beside u.
+Diagram loop_in_loop(double c, double by, std::optional<double> gain = {}) {
   Diagram d{"loops"};
   auto u = d.input("u");
   auto K = d.add("K", first_order(c, 0.5));
   auto L = d.add("L", first_order(by, 0));
   K.in = K.out + u + L.out;
   L.in = K.out + u + L.out;
-  d.output("y") = K.out + u + L.out;
+  if (gain)
+    d.output("y") = u + *gain * (K.out + u + L.out);
+  else
+    d.output("y") = K.out + u + L.out;
   return d;
+}
+
+/// What enters, at s = 2, for u = 1.
+Real entering(double c, double by) {
+  return 1 / (Real(0.5) - (Real(c) + Real(by)) / (Real(2) + Real(kPole)));
+}
+
+double off(double found, const Real& exact) {
+  return std::abs(static_cast<double>(Real(found) / exact - 1));
 }
 
 /// At s = 2; none where it is refused for its lack of digits.
@@ -171,16 +185,15 @@ TEST_CASE("precision: refinement in 32 digits gives all of double, or says that 
       const double e = std::ldexp(1, -k), c = (2 + kPole) * (0.5 - e),
                    by = (2 + kPole) * e * (1 - j * e);
       const System system = compile(loop_in_loop(c, by));
-      const Real exact = 1 / (Real(0.5) - (Real(c) + Real(by)) / (Real(2) + Real(kPole)));
+      const Real exact = entering(c, by);
       CAPTURE(k);
       CAPTURE(j);
-      const auto off = [&](double y) { return std::abs(static_cast<double>(Real(y) / exact - 1)); };
       const auto plain = answer(system, Precision::standard),
                  found = answer(system, Precision::twofold);
       if (found) {
-        CHECK(off(*found) <= 3e-16);
+        CHECK(off(*found, exact) <= 3e-16);
         ++right;
-        lost_in_double += !plain || off(*plain) > 1e-6;
+        lost_in_double += !plain || off(*plain, exact) > 1e-6;
       } else {
         ++refused;
         refused_here += plain.has_value();
@@ -193,6 +206,123 @@ TEST_CASE("precision: refinement in 32 digits gives all of double, or says that 
   CHECK(lost_in_double >= 15);
   CHECK(refused > refused_here);  // some where double has no pivot, more where it has a wrong one
   CHECK(refused_here >= 20);
+}
+
+namespace {
+
+/// Answers of one precision to many scenes.
+struct Answers {
+  Precision precision;
+  int right = 0, refused = 0, wrong = 0;
+  double worst = 0;
+
+  void ask(const System& system, const Real& exact) {
+    const auto found = answer(system, precision);
+    if (!found) {
+      ++refused;
+      return;
+    }
+    const double error = off(*found, exact);
+    ++(error <= 1e-12 ? right : wrong);
+    if (!(error <= worst)) worst = error;
+  }
+};
+
+/// By refined, twofold and as_needed: none of them may be wrong.
+struct AnswersOfAll {
+  Answers refined{Precision::refined}, twofold{Precision::twofold}, as_needed{Precision::as_needed};
+
+  /// What enters is this share of the output, about.
+  void ask(double c, double by, double share) {
+    const double gain = share / static_cast<double>(entering(c, by));
+    const System system = compile(loop_in_loop(c, by, gain));
+    const Real exact = 1 + Real(gain) * entering(c, by);
+    for (Answers* a : {&refined, &twofold, &as_needed}) a->ask(system, exact);
+  }
+  void check() const {
+    for (const Answers* a : {&refined, &twofold, &as_needed}) {
+      MESSAGE(fmt::format("{} right, {} refused, {} wrong by up to {:.1e}", a->right, a->refused,
+                          a->wrong, a->worst));
+      CHECK(a->wrong == 0);
+    }
+  }
+};
+
+}  // namespace
+
+// What has no digit in double is a small share of the output, and by so much smaller are its
+// changes from step to step, whether they lead anywhere or not.
+TEST_CASE("precision: refinement is not taken in by outputs of which little is ill-determined") {
+  AnswersOfAll all;
+  for (int k = 20; k <= 34; ++k)
+    for (int j = 1; j <= 40; j += 3)
+      for (const double share : {1.0, 1e-2, 1e-4, 1e-8}) {
+        const double e = std::ldexp(1, -k);
+        all.ask((2 + kPole) * (0.5 - e), (2 + kPole) * e * (1 - j * 0.25 * e), share);
+      }
+  all.check();
+  CHECK(all.refined.right >= 50);
+  CHECK(all.twofold.right >= 400);
+  CHECK(all.as_needed.refused == 0);
+  // One of many that were 61 % off.
+  const System system =
+      compile(loop_in_loop(0x1.5999994333334p+0, 0x1.599999639999ap-26, -0x1.54p-58));
+  CHECK_FALSE(answer(system, Precision::refined).has_value());
+  CHECK_FALSE(answer(system, Precision::twofold).has_value());
+  CHECK(answer(system, Precision::as_needed) == answer(system, Precision::digits50));
+}
+
+// So near that the factors are wrong by many times what is left: every step is then a tiny part of
+// the way, as if it had arrived.
+TEST_CASE("precision: refinement is not taken in by steps that are small since they lead nowhere") {
+  AnswersOfAll all;
+  for (int k = 6; k <= 34; ++k)
+    for (int ulps = -4; ulps <= 4; ++ulps)
+      for (const double share : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10}) {
+        const double c = (2 + kPole) * (0.5 - 1.37 * std::ldexp(1, -k));
+        const double pole = static_cast<double>((Real(2) + Real(kPole)) / 2 - Real(c));
+        const double by = pole + ulps * (std::nextafter(pole, 1) - pole);
+        if (Real(c) + Real(by) != (Real(2) + Real(kPole)) / 2) all.ask(c, by, share);
+      }
+  all.check();
+  CHECK(all.twofold.refused >= 900);
+  CHECK(all.as_needed.right >= 500);  // the others have no pivot in double
+}
+
+TEST_CASE("precision: what a precision refuses names another one") {
+  const auto error = [](const Diagram& d, std::complex<double> s, Precision precision) {
+    return titop_test::error_of([&] { compile(d).transfer(s, precision); });
+  };
+  const Diagram near = loop_in_loop(0x1.5999994333334p+0, 0x1.599999639999ap-26, -0x1.54p-58);
+  CHECK(titop_test::says(error(near, 2, Precision::twofold), Code::singular,
+                         {"loops", "12 digits", "Precision::as_needed"}));
+  // 1e301 is beyond double-double, not beyond double.
+  Diagram d{"units"};
+  auto u = d.input("u");
+  auto G = d.add("G", Gain{.gain = 1e-301});
+  auto H = d.add("H", first_order(1e301, 0));
+  H.in = u;
+  G.in = H.out;
+  d.output("y") = G.out;
+  CHECK(titop_test::says(error(d, {0, 1}, Precision::twofold), Code::not_finite,
+                         {"units", "range", "Precision::digits50"}));
+  const auto y = [&](Precision p) { return compile(d).transfer({0, 1}, p)(0, 0); };
+  CHECK(std::abs(y(Precision::as_needed) - 1.0 / std::complex<double>(kPole, 1)) <= 1e-15);
+}
+
+TEST_CASE("precision: at an s far from 1 all have their digits") {
+  Diagram d{"integrator"};
+  auto u = d.input("u");
+  const auto one = [](double x) { return Eigen::MatrixXd::Constant(1, 1, x); };
+  auto K = d.add("K", Lti{.A = one(0), .B = one(1), .C = one(1), .D = one(0)});
+  K.in = u;
+  d.output("y") = K.out;
+  const System system = compile(d);
+  for (const double size : {1e-170, 1e-161, 1e-150, 1e155})
+    for (const Precision p : {Precision::standard, Precision::refined, Precision::twofold}) {
+      const std::complex<double> s(size, 2 * size);
+      CHECK(std::abs(system.transfer(s, p)(0, 0) * s - 1.0) <= 1e-15);
+    }
 }
 
 namespace {
