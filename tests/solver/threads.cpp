@@ -114,7 +114,8 @@ TEST_CASE("threads: frequency responses and dense models have the same bits") {
 TEST_CASE("threads: a frequency response in the precision that is asked for") {
   const System system = compile(spacecraft());
   const std::array omega{1.0, 30.0};
-  for (const Precision p : {Precision::single, Precision::standard, Precision::digits50}) {
+  for (const Precision p : {Precision::single, Precision::standard, Precision::refined,
+                            Precision::twofold, Precision::extended, Precision::digits50}) {
     const auto found = system.frequency_response(omega, 2, p);
     for (std::size_t i = 0; i < omega.size(); ++i)
       CHECK(found[i] == system.transfer({0, omega[i]}, p));
@@ -146,14 +147,18 @@ TEST_CASE("threads: sweeps over parameters have the same bits") {
 }
 
 TEST_CASE("threads: what is found when it is first asked for may be asked for by all at once") {
-  const System alone = compile(spacecraft());
-  const std::string log = (alone.state_space(), alone.log());
+  const auto there_and_back = [] {
+    return compile(spacecraft()).update({{"angle", 1.0}}).update({{"angle", 0.4}});
+  };
+  const System fresh = compile(spacecraft()), alone = there_and_back();
+  CHECK(same(fresh.state_space(), alone.state_space()));
+  const std::string log = alone.log();
   for (int round = 0; round < 10; ++round) {
-    const System compiled = compile(spacecraft()).update({{"angle", 1.0}});
-    const System system = compiled.update({{"angle", 0.4}});
+    const System system = there_and_back();
     std::atomic<int> waiting{6};
     std::array<StateSpace, 6> models = {};
     std::array<double, 6> residuals{};
+    std::array<std::string, 6> logs;
     std::vector<std::thread> threads;
     for (std::size_t i = 0; i < models.size(); ++i)
       threads.emplace_back([&, i] {
@@ -161,12 +166,13 @@ TEST_CASE("threads: what is found when it is first asked for may be asked for by
         while (waiting > 0) std::this_thread::yield();
         residuals[i] = system.certificate().residual;
         models[i] = system.state_space();
-        (void)system.log();
+        logs[i] = system.log();
       });
     for (std::thread& t : threads) t.join();
     for (std::size_t i = 0; i < models.size(); ++i) {
       CHECK(same(models[i], alone.state_space()));
       CHECK(residuals[i] == alone.certificate().residual);
+      CHECK(logs[i] == log);
     }
   }
   CHECK(log.find("minimize") != std::string::npos);
