@@ -20,7 +20,8 @@ constexpr int kNone = -(1 << 24);  ///< the exponent of 0
 constexpr int kRounding = -691;    ///< 1e-13
 
 /// log2 of n magnitudes to within 0.09, from the bits: exponents are all that scaling needs. The
-/// upper half of a double holds them; of what is below 1e-314 it is 0.
+/// upper half of a double holds them; subnormal numbers count as 2^-1023 or a little more, and as 0
+/// below 2e-314.
 TITOP_PART void exponents_of(int n, const double* x, int* __restrict e) {
   for (int k = 0; k < n; ++k) {
     const auto bits = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(x[k]));
@@ -82,6 +83,8 @@ struct Exponents {
     top = e + deep * size, total = top + size, number = total + size;
     r = number + size, c = r + m, a = c + width, b = a + longer, line = b + longer;
   }
+  Exponents(const Exponents&) = delete;  // the pointers are into its own buffer
+  Exponents& operator=(const Exponents&) = delete;
 };
 
 TITOP_PART void take(const Exponents& x, const double* magnitudes) {
@@ -205,7 +208,7 @@ TITOP_WIDE void balance(const Exponents& x, const double* magnitudes) {
 
 void column_scale(const double* magnitudes, int rows, std::span<const int> units,
                   std::int16_t* exponents) {
-  const Exponents x(rows, units);
+  Exponents x(rows, units);
   balance(x, magnitudes);
   for (int u = 0; u < x.count; ++u) {
     const int rounded = (x.c[u] + (x.c[u] < 0 ? -kOne : kOne) / 2) / kOne;

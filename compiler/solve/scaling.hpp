@@ -11,7 +11,9 @@ namespace titop::solve {
 /// first step leaves below 1e-13 are rounding (a rotation by pi) and do not count in the second:
 /// they would draw the means along. Columns of one unit (three of a twist or wrench) get the same
 /// exponent, whichever way their frame is turned. `units`: the first column of each unit, and the
-/// end. Writes one exponent per column, within -1000 ... 1000. O(rows x columns).
+/// end. Writes one exponent per column, within -1000 ... 1000. O(rows x columns), and scratch of 4
+/// ints per entry where all units are scalars, 2 where all are threes, 6 at most; units per row
+/// count up to a multiple of eight.
 void column_scale(const double* magnitudes, int rows, std::span<const int> units,
                   std::int16_t* exponents);
 
