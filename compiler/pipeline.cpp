@@ -112,6 +112,7 @@ std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options, d
   timed(*data, "solve", [&] { solve_joint(*skeleton, *data, least); });
   data->notes = stage.notes;
   data->scaled_at = data->numbers.parameters;
+  data->scaled_health = data->factors->health();
   data->margins = std::make_shared<const std::vector<double>>(stage.loops.size(), 0.0);
   data->changed_loops.resize(stage.loops.size());
   std::iota(data->changed_loops.begin(), data->changed_loops.end(), 0);

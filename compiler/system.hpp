@@ -136,7 +136,7 @@ class System {
   /// them: O(those fronts) and one pointer per block. States keep number and meaning. The scaling
   /// of these fronts is found anew where a value has moved by more than a factor of 8 since it was
   /// found, that of all where pivots have lost half their digits (Certificate::plans_renewed counts
-  /// both); the numbers are then those of a fresh compile.
+  /// both); the numbers are then those of a fresh compile, to rounding.
   /// Pivots are judged at once; the rest of the certificate, and the warnings that come of it, are
   /// found when certificate(), notes(), log() or state_space() is first asked for: O(bodies).
   /// `minimize` is no part of it: state_space() of the new system judges the new values, and may

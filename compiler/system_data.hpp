@@ -76,6 +76,7 @@ struct SystemData {
   std::vector<int> changed_loops;                       ///< by updates since
   int plans_renewed = 0;                                ///< by updates since
   std::vector<double> scaled_at;                        ///< parameters when the scaling was found
+  solve::Health scaled_health;                          ///< of the factors then
   std::vector<Note> notes;                              ///< but those of `certify`
   std::vector<std::pair<std::string, double>> seconds;  ///< per pass
 

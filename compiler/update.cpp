@@ -220,9 +220,10 @@ bool has_moved(double value, double scaled_at) {
   return a > kFar * b || b > kFar * a;
 }
 
-/// True where pivots that were good have lost half their digits, or none are left.
-bool outgrown(const solve::Health& now, const solve::Health& before) {
-  return now.singular || now.weakest < 1e-8 * before.weakest || now.growth > 1e8 * before.growth;
+/// True where pivots have lost half the digits that they had when the scaling was found, in however
+/// many updates, or none are left.
+bool outgrown(const solve::Health& now, const solve::Health& scaled) {
+  return now.singular || now.weakest < 1e-8 * scaled.weakest || now.growth > 1e8 * scaled.growth;
 }
 
 /// The factors for the new values, scaled anew where need be.
@@ -238,10 +239,17 @@ void refactor(const SystemData& old, const std::vector<int>& changed, SystemData
     if (rescale) d.scaled_at[at(p)] = values[at(p)];
   d.factors = std::make_unique<const solve::Factors<double>>(
       old.factors->changed(rows, united(k, changed, &Dependents::rows), rescale));
-  const bool all = outgrown(d.factors->health(), old.factors->health());
+  const solve::Health now = d.factors->health();
+  const bool all = outgrown(now, old.scaled_health);
+  d.scaled_health = old.scaled_health;
+  if (rescale) {  // some fronts only: what all of them have lost still counts
+    d.scaled_health.weakest = std::max(d.scaled_health.weakest, now.weakest);
+    d.scaled_health.growth = std::min(d.scaled_health.growth, now.growth);
+  }
   if (all) {
     d.scaled_at = values;
     d.factors = std::make_unique<const solve::Factors<double>>(k.joint.plan, rows);
+    d.scaled_health = d.factors->health();
   }
   d.plans_renewed = old.plans_renewed + (rescale || all);
 }

@@ -219,6 +219,31 @@ TEST_CASE("update: where pivots lose half their digits all is made anew, and tha
   CHECK(relative(after.static_gain()(0, 0), 1e10) <= 1e-5);  // 1 - g is off by 1e-16
 }
 
+TEST_CASE("update: digits that go in many small steps are made good as those that go in one") {
+  // The pivot 1 - g, of terms 1 + g, falls to a tenth with every step: from 0.4 / 1.6 at g = 0.6 it
+  // has lost half its digits where 10^-k / 2 < 1e-8 / 4, from k = 9 on.
+  Diagram d{"loop"};
+  const Param g = d.param("g", 0.6);
+  auto u = d.input("u");
+  auto sum = d.add("sum", Sum{.signs = "++"});
+  sum.in(1) = u;
+  sum.in(2) = g * sum.out;
+  d.output("y") = sum.out;
+  const System start = compile(d);
+  System system = start;
+  for (int k = 1; k <= 12; ++k) {
+    CAPTURE(k);
+    const ParameterList values{{"g", 1 - std::pow(10, -k)}};
+    system = system.update(values);
+    CHECK(system.certificate().plans_renewed == (k < 9 ? 0 : 1));
+    const System at_once = start.update(values);
+    CHECK(at_once.certificate().plans_renewed == (k < 9 ? 0 : 1));
+    CHECK(system.static_gain()(0, 0) == at_once.static_gain()(0, 0));
+  }
+  // From there on a loss counts anew: back to where most digits are, and nothing is lost.
+  CHECK(system.update({{"g", 0.6}}).certificate().plans_renewed == 1);
+}
+
 TEST_CASE("update: the certificate, asked for late, is of the new values and warns of them") {
   // A ring of two signals with gain g around has margin (1 + r) / (1 - r), r = g^(1/2).
   Diagram d{"loop"};
