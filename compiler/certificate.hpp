@@ -20,8 +20,10 @@ struct Certificate {
   /// That real s [rad/s]; at an instant the states are about those that single blocks have there.
   double s = 0;
   bool at_instant = false;  ///< which of the two
-  /// Largest relative difference between xdot, y of the dense model and of the factors, for one
-  /// random x, u; negative where no dense model has been written.
+  /// Largest difference between xdot, y of the dense model and of the factors, for one random x and
+  /// for one random u, beside the terms that they are made of: of a block's states, of the outputs
+  /// of one unit. Where the factors themselves lose digits, what cancels there counts as a term.
+  /// Negative where no dense model has been written.
   double dense_against_factors = -1;
   /// What writing the dense model down costs: the largest change of an output that its rounding
   /// makes, over the largest size of that output, at s far below, at and above the blocks'

@@ -249,15 +249,7 @@ Certificate System::certificate() const {
 }
 
 Certificate System::certificate(const StateSpace& written) const {
-  if (written.states != states() || written.inputs != inputs() || written.outputs != outputs())
-    throw Error(Code::size,
-                fmt::format("certificate: a model of {} states, {} inputs and {} outputs is none "
-                            "that {} writes",
-                            written.states.size(), written.inputs.size(), written.outputs.size(),
-                            data_->graph().name),
-                fmt::format("give it what System::write made: {} states, {} inputs, {} outputs; "
-                            "what state_space() made is in certificate()",
-                            states().size(), inputs().size(), outputs().size()));
+  detail::require_written(*data_, written);
   return with_dense(data_->checked().certificate, detail::dense_difference(*data_, written),
                     detail::dense_error(*data_, written));
 }

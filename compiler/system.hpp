@@ -154,8 +154,9 @@ class System {
 
   Certificate certificate() const;
   /// The certificate with what it says of a dense model (`dense_...`) said of this one, which
-  /// write() made: what writing it down costs. O(n^2), some products with A. Throws size where it
-  /// is no model of this system before `minimize`.
+  /// write() made: what writing it down costs. O(n^2), some products with A. Throws size where
+  /// names or matrices are not those of a model of this system before `minimize`, not_finite where
+  /// an entry is not. A model of other values is found by dense_against_factors.
   Certificate certificate(const StateSpace& written) const;
   /// What the passes did: counts, inversions, what was removed, what was not checked.
   const std::vector<Note>& notes() const;

@@ -121,9 +121,10 @@ std::complex<double> pick_s(const SystemData& data);
 /// The dense model before `minimize`, into buffers that are resized only if they do not fit.
 void write_dense(const SystemData& data, StateSpace& model, int threads);
 
-/// Largest relative difference of xdot between the dense model and the factors, for one random x
-/// and u (fixed seed). O(n^2).
+/// See Certificate::dense_against_factors. O(n^2).
 double dense_difference(const SystemData& data, const StateSpace& dense);
+/// Throws size and not_finite where this is no model that write_dense makes of this system.
+void require_written(const SystemData& data, const StateSpace& dense);
 
 /// A dense model and what rounding may have put into each of its entries.
 struct Rounded {

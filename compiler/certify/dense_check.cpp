@@ -5,6 +5,7 @@
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/evaluate.hpp>
+#include <titop/compiler/instant.hpp>
 #include <titop/compiler/system_data.hpp>
 #include <titop/graph/linalg/dense.hpp>
 
@@ -21,9 +22,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// The model's states block by block: first and count.
-std::vector<std::pair<int, int>> segments(const SystemData& d) {
-  std::vector<std::pair<int, int>> result;
+/// Rows of [xdot; y] that share a size, first and count: block by block, then unit by unit.
+std::vector<std::pair<Index, Index>> groups(const SystemData& d) {
+  std::vector<std::pair<Index, Index>> result;
   const std::vector<int>& kept = d.states.kept();
   for (const int i : d.layout().state_nodes) {
     const int begin = d.layout().state_first[at(i)],
@@ -31,34 +32,66 @@ std::vector<std::pair<int, int>> segments(const SystemData& d) {
     const auto first = std::lower_bound(kept.begin(), kept.end(), begin);
     result.emplace_back(first - kept.begin(), std::lower_bound(first, kept.end(), end) - first);
   }
+  Index first = d.states.order();
+  for (const int size : measure(d.graph(), {}).rows) {
+    result.emplace_back(first, size);
+    first += size;
+  }
   return result;
+}
+
+/// Columns of [xdot; y] of the model, and what rounding makes of them.
+struct Response {
+  MatrixXd value, rounding;
+};
+
+Response by_factors(const SystemData& d, const solve::RowMatrix<double>& x,
+                    const solve::RowMatrix<double>& u) {
+  const solve::RowMatrix<double> all = d.states.expanded(x, u);
+  solve::RowMatrix<double> known(all.rows() + u.rows(), u.cols());
+  known << all, u;
+  const Instant now(d, std::move(known));
+  // What cancels on the way is no part of the last terms: a sample of rounding tells its size.
+  const Instant off = now.doubt();
+  const auto both = [&](const solve::RowMatrix<double>& xdot, const solve::RowMatrix<double>& y) {
+    MatrixXd result(x.rows() + y.rows(), u.cols());
+    result << d.states.kept_rows(xdot), y;
+    return result;
+  };
+  const MatrixXd terms = kEpsilon * both(now.xdot_terms(), now.outputs_terms());
+  return {both(now.xdot(), now.outputs()),
+          terms.cwiseMax(both(off.xdot(), off.outputs()).cwiseAbs())};
 }
 
 }  // namespace
 
 double dense_difference(const SystemData& d, const StateSpace& m) {
-  if (m.A.size() == 0) return 0;
+  const Index n = m.A.rows();
+  // States alone and inputs alone: whatever their units, neither hides the other.
+  solve::RowMatrix<double> x = MatrixXd::Zero(n, 2), u = MatrixXd::Zero(m.B.cols(), 2);
   SteadyRandom random;
-  VectorXd x(m.A.rows()), u(m.B.cols());
-  for (Eigen::Index i = 0; i < x.size(); ++i) x(i) = random.next();
-  for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = random.next();
-  const VectorXd all = d.states.expanded(x, u);
-  solve::RowMatrix<double> known(all.size() + u.size(), 1);
-  known << all, u;
-  const Rates exact = rates(d, known);
-  VectorXd off = d.states.kept_rows(VectorXd(exact.xdot)), size = VectorXd::Zero(x.size());
-  for (const auto& [matrix, vector] : {std::pair(&m.A, &x), std::pair(&m.B, &u)})
-    for (Eigen::Index j = 0; j < matrix->cols(); ++j) {  // once through memory
-      off -= matrix->col(j) * (*vector)(j);
-      size += matrix->col(j).cwiseAbs() * std::abs((*vector)(j));
+  for (Index i = 0; i < n; ++i) x(i, 0) = random.next();
+  for (Index i = 0; i < u.rows(); ++i) u(i, 1) = random.next();
+  auto [off, rounding] = by_factors(d, x, u);
+  MatrixXd of_model = MatrixXd::Zero(off.rows(), 2);
+  const auto take = [&](const MatrixXd& matrix, Index first, Index column, const auto& factors) {
+    for (Index j = 0; j < matrix.cols(); ++j) {  // once through memory
+      const double factor = factors(j, column);
+      off.col(column).segment(first, matrix.rows()) -= matrix.col(j) * factor;
+      of_model.col(column).segment(first, matrix.rows()) +=
+          matrix.col(j).cwiseAbs() * (kEpsilon * std::abs(factor));
     }
-  if (!off.allFinite()) return kInfinity;
+  };
+  take(m.A, 0, 0, x), take(m.B, 0, 1, u), take(m.C, n, 0, x), take(m.D, n, 1, u);
+  rounding = rounding.cwiseMax(of_model);
+  if (!off.allFinite() || !rounding.allFinite()) return kInfinity;
   double worst = 0;
-  for (const auto& [first, n] : segments(d)) {
-    if (n == 0) continue;
-    const double largest = size.segment(first, n).maxCoeff();
-    if (largest > 0) worst = std::max(worst, off.segment(first, n).cwiseAbs().maxCoeff() / largest);
-  }
+  for (const auto& [first, count] : groups(d))
+    for (Index j = 0; j < 2 && count > 0; ++j) {
+      const double largest = rounding.col(j).segment(first, count).maxCoeff();
+      const double difference = off.col(j).segment(first, count).cwiseAbs().maxCoeff();
+      if (largest > 0) worst = std::max(worst, kEpsilon * (difference / largest));
+    }
   return worst;
 }
 

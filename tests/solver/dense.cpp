@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <limits>
 #include <titop/titop.hpp>
 
 #include "support/mistakes.hpp"
@@ -118,4 +119,124 @@ TEST_CASE("dense export: an output that is small where slow modes are warns of i
   CHECK(c.dense_error_where_small >= 1e-6);
   CHECK(system.log().find("where outputs are small, A, B, C, D keep") != std::string::npos);
   CHECK(!warns(system));
+}
+
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN(),
+                 kInfinite = std::numeric_limits<double>::infinity();
+
+/// One mass on a spring, pushed by `push` N per unit of u and read by a gain that is a parameter.
+System reading(double push = 1) {
+  Diagram d{"reading"};
+  const Param out = d.param("out", 2.0);
+  auto u = d.input("u");
+  auto z = d.add("z", SpringMass{.mass = 3.0, .stiffness = 10.0});
+  ground(z);
+  z.child.force += push * u;
+  d.output("x") = out * z.stretch;
+  d.output("a") = out * z.child.accel;
+  return compile(d, {.minimize_up_to = 0});
+}
+
+StateSpace written(const System& system) {
+  StateSpace model;
+  system.write(model);
+  return model;
+}
+
+/// What is said of the model once `change` has been made to it.
+template <class F>
+double difference(const System& system, F change) {
+  StateSpace model = written(system);
+  change(model);
+  return system.certificate(model).dense_against_factors;
+}
+
+}  // namespace
+
+TEST_CASE("dense export: a model of other numbers differs from the factors, whichever they are") {
+  using Matrix = Eigen::MatrixXd StateSpace::*;
+  for (const double push : {1.0, 1e-12, 1e12}) {  // units of u: what it does to x is no measure
+    CAPTURE(push);
+    const System system = reading(push);
+    CHECK(difference(system, [](StateSpace&) {}) <= 1e-15);
+    for (const Matrix m : {&StateSpace::A, &StateSpace::B, &StateSpace::C, &StateSpace::D}) {
+      // The last entries: none is 0.
+      CHECK(difference(system, [&](StateSpace& model) {
+              (model.*m)((model.*m).rows() - 1, 0) *= 1.001;
+            }) >= 1e-4);
+      CHECK(difference(system, [&](StateSpace& model) { model.*m *= 1000; }) >= 0.5);
+      CHECK(difference(system, [&](StateSpace& model) { (model.*m).setZero(); }) >= 0.5);
+    }
+  }
+}
+
+TEST_CASE("dense export: a model of another update differs from the factors") {
+  const System system = reading();
+  const StateSpace other = written(system.update({{"out", 5.0}}));
+  CHECK(system.certificate(other).dense_against_factors >= 0.5);  // 5 for 2: by 3 of 5
+  CHECK(system.update({{"out", 5.0}}).certificate(other).dense_against_factors <= 1e-15);
+}
+
+TEST_CASE("dense export: of a diagram without states D is compared") {
+  Diagram d{"gain"};
+  auto u = d.input("u");
+  auto g = d.add("g", Gain{.gain = 3});
+  g.in = u;
+  d.output("y") = g.out;
+  const System system = compile(d);
+  CHECK(difference(system, [](StateSpace&) {}) <= 1e-15);
+  CHECK(difference(system, [](StateSpace& m) { m.D(0, 0) = 3.1; }) >= 0.01);
+}
+
+TEST_CASE("dense export: an output that is 0 by symmetry makes no difference of its rounding") {
+  Rng rng(5);
+  for (int round = 0; round < 20; ++round) {
+    Diagram d{"across"};
+    auto u = d.input("u");
+    auto B = d.add("B", RigidBody{.mass = 3.7});
+    const Vector3d along = rng.rotation() * Vector3d::UnitX();
+    Eigen::MatrixXd push = Eigen::MatrixXd::Zero(6, 1), read = Eigen::MatrixXd::Zero(1, 6);
+    push.topRows(3) = along;
+    read.leftCols(3) = along.cross(rng.rotation() * Vector3d::UnitY()).transpose();
+    B.parent.force = Eigen::MatrixXd(-push) * u;
+    d.output("across") = read * B.parent.accel;
+    d.output("along") = Eigen::MatrixXd(push.transpose()) * B.parent.accel;
+    const System system = compile(d);
+    CHECK(difference(system, [](StateSpace&) {}) <= 1e-15);
+    CHECK(difference(system, [](StateSpace& m) { m.D(1, 0) *= 1.001; }) >= 1e-4);
+  }
+}
+
+TEST_CASE("dense export: what is no model of the system is refused by name") {
+  const System system = reading();
+  const auto refused = [&](auto change) {
+    StateSpace model = written(system);
+    change(model);
+    return titop_test::error_of([&] { (void)system.certificate(model); });
+  };
+  using titop_test::says;
+  CHECK(says(refused([](StateSpace& m) { m.A.resize(0, 0); }), Code::size,
+             {"A of the model is 0 x 0", "2 x 2", "System::write"}));
+  CHECK(says(refused([](StateSpace& m) { m.A = Eigen::MatrixXd::Zero(3, 3); }), Code::size,
+             {"A of the model is 3 x 3", "2 x 2"}));
+  CHECK(says(refused([](StateSpace& m) { m.B = Eigen::MatrixXd::Zero(2, 2); }), Code::size,
+             {"B of the model is 2 x 2", "2 x 1"}));
+  const Error both = refused([](StateSpace& m) { m.C.transposeInPlace(), m.D.resize(0, 1); });
+  CHECK(both.mistakes().size() == 1);  // C is 2 x 2
+  CHECK(says(both, Code::size, {"D of the model is 0 x 1", "2 x 1"}));
+  CHECK(refused([](StateSpace& m) { m.C.resize(1, 2), m.D.resize(1, 1); }).mistakes().size() == 2);
+  CHECK(says(refused([](StateSpace& m) { m.states[1] = "w"; }), Code::size,
+             {"state 2 of the model is w", "in this system it is z.", "System::write"}));
+  CHECK(says(refused([](StateSpace& m) { m.inputs[0] = "w"; }), Code::size,
+             {"input 1 of the model is w", "in this system it is u"}));
+  CHECK(says(refused([](StateSpace& m) { std::swap(m.outputs[0], m.outputs[1]); }), Code::size,
+             {"output 1 of the model is a", "in this system it is x"}));
+  CHECK(says(refused([](StateSpace& m) { m.A(0, 1) = kInfinite; }), Code::not_finite,
+             {"A of the model has inf at", "below 1e308"}));
+  const Error nan = refused([](StateSpace& m) { m.C.setConstant(kNan), m.D(1, 0) = kNan; });
+  CHECK(nan.mistakes().size() == 2);
+  CHECK(says(nan, Code::not_finite, {"C of the model has nan at x, z."}));
+  CHECK(says(nan, Code::not_finite, {"D of the model has nan at a, u", "System::write"}));
 }

@@ -1,0 +1,100 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <titop/compiler/system_data.hpp>
+
+/// What is said of a dense model that is none of this system.
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+std::string counts(std::size_t states, std::size_t inputs, std::size_t outputs) {
+  return fmt::format("{} states, {} inputs and {} outputs", states, inputs, outputs);
+}
+
+void refuse_counts(const SystemData& d, const StateSpace& m) {
+  const Layout& l = d.layout();
+  const std::vector<std::string>& states = d.states.names();
+  if (m.states.size() == states.size() && m.inputs.size() == l.inputs.size() &&
+      m.outputs.size() == l.outputs.size())
+    return;
+  throw Error(
+      Code::size,
+      fmt::format("certificate: a model of {} is none that {} writes",
+                  counts(m.states.size(), m.inputs.size(), m.outputs.size()), d.graph().name),
+      fmt::format("give it what System::write made: {}; what state_space() made is in "
+                  "certificate()",
+                  counts(states.size(), l.inputs.size(), l.outputs.size())));
+}
+
+/// The first name that differs.
+void compare_names(const char* what, const std::vector<std::string>& given,
+                   const std::vector<std::string>& expected, std::vector<Mistake>& mistakes) {
+  const auto [is, should] = std::mismatch(given.begin(), given.end(), expected.begin());
+  if (is == given.end()) return;
+  mistakes.push_back({Code::size,
+                      fmt::format("certificate: {} {} of the model is {}, in this system it is {}",
+                                  what, is - given.begin() + 1, *is, *should),
+                      {},
+                      "give it what System::write of this system made"});
+}
+
+void compare_size(const char* what, const MatrixXd& m, Index rows, Index columns,
+                  std::vector<Mistake>& mistakes) {
+  if (m.rows() == rows && m.cols() == columns) return;
+  mistakes.push_back({Code::size,
+                      fmt::format("certificate: {} of the model is {} x {}, by its names it is "
+                                  "{} x {}",
+                                  what, m.rows(), m.cols(), rows, columns),
+                      {},
+                      "give it the model as System::write made it"});
+}
+
+/// The first entry that is infinite or no number, by the names of its row and column.
+void find_not_finite(const char* what, const MatrixXd& m, const std::vector<std::string>& rows,
+                     const std::vector<std::string>& columns, std::vector<Mistake>& mistakes) {
+  for (Index j = 0; j < m.cols(); ++j)
+    for (Index i = 0; i < m.rows(); ++i)
+      if (!std::isfinite(m(i, j))) {
+        mistakes.push_back(
+            {Code::not_finite,
+             fmt::format("certificate: {} of the model has {} at {}, {}", what, m(i, j),
+                         rows[static_cast<std::size_t>(i)], columns[static_cast<std::size_t>(j)]),
+             {},
+             "write it again; if System::write made this, take other units, or smaller gains: all "
+             "numbers must stay below 1e308"});
+        return;
+      }
+}
+
+void throw_if_any(std::vector<Mistake> mistakes) {
+  if (!mistakes.empty()) throw Error(std::move(mistakes));
+}
+
+}  // namespace
+
+void require_written(const SystemData& d, const StateSpace& m) {
+  refuse_counts(d, m);
+  std::vector<Mistake> mistakes;
+  compare_names("state", m.states, d.states.names(), mistakes);
+  compare_names("input", m.inputs, d.layout().inputs, mistakes);
+  compare_names("output", m.outputs, d.layout().outputs, mistakes);
+  const Index n = std::ssize(m.states), inputs = std::ssize(m.inputs),
+              outputs = std::ssize(m.outputs);
+  compare_size("A", m.A, n, n, mistakes);
+  compare_size("B", m.B, n, inputs, mistakes);
+  compare_size("C", m.C, outputs, n, mistakes);
+  compare_size("D", m.D, outputs, inputs, mistakes);
+  throw_if_any(std::move(mistakes));
+  mistakes = {};
+  find_not_finite("A", m.A, m.states, m.states, mistakes);
+  find_not_finite("B", m.B, m.states, m.inputs, mistakes);
+  find_not_finite("C", m.C, m.outputs, m.states, mistakes);
+  find_not_finite("D", m.D, m.outputs, m.inputs, mistakes);
+  throw_if_any(std::move(mistakes));
+}
+
+}  // namespace titop::detail
