@@ -35,12 +35,12 @@ struct Certificate {
   /// states and time other numbers are written, and round differently. Above 1e-9 and
   /// up to 100 states it is at most 30 times what the model's own answers are off by, as the
   /// residual itself can round where a point has hardly any mass. Negative where no dense model has
-  /// been written. Above 1e-9 the log warns.
+  /// been written. Above 1e-9 the log warns, and names output and input (up to eight units).
   double dense_error = -1;
   std::complex<double> dense_error_s;  ///< where it is largest
   /// The same over the size of the output at that same s: an acceleration falls with s^2 far below
   /// the modes, and the digits that A, B, C, D give it there with it. It grows towards lower s than
-  /// those tried. Above 1e-6 the log warns.
+  /// those tried. Above 1e-6 the log warns of it, too, where it costs another digit.
   double dense_error_where_small = -1;
   std::complex<double> dense_error_where_small_s;  ///< where it is largest
   /// Smallest pivot over the sum of magnitudes that formed it: 1 no cancellation, 1e-16 nothing

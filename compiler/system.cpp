@@ -163,30 +163,6 @@ MatrixXd System::static_gain() const {
   }
 }
 
-namespace {
-
-constexpr double kLost = 1e-9;  ///< of the outputs: more than this is said
-/// Of outputs where they are small: an acceleration far below the modes loses some as it is.
-constexpr double kLostWhereSmall = 1e-6;
-
-void warn_of_lost_digits(const detail::DenseError& e, std::vector<Note>& notes) {
-  const auto digits = [](double error) { return std::max(0.0, -std::log10(error)); };
-  if (e.error > kLost)
-    notes.push_back(
-        {Note::Kind::warning, "dense",
-         fmt::format("written as A, B, C, D the model keeps {:.0f} digits at s = {:.3g}{:+.3g}j; "
-                     "System::transfer and apply keep them all",
-                     digits(e.error), e.s.real(), e.s.imag())});
-  else if (e.where_small > kLostWhereSmall)
-    notes.push_back(
-        {Note::Kind::warning, "dense",
-         fmt::format("at s = {:.3g}{:+.3g}j, where outputs are small, A, B, C, D keep {:.0f} "
-                     "digits of them; System::transfer and apply keep them all",
-                     e.where_small_s.real(), e.where_small_s.imag(), digits(e.where_small))});
-}
-
-}  // namespace
-
 const StateSpace& System::state_space() const {
   std::call_once(data_->dense_once, [&] {
     const detail::SystemData& d = *data_;
@@ -199,7 +175,7 @@ const StateSpace& System::state_space() const {
       if (!m->allFinite()) refuse_overflow("the dense model of " + d.graph().name);
     d.dense_against_factors = detail::dense_difference(d, dense);
     d.dense_error = detail::dense_error(d, dense);
-    warn_of_lost_digits(d.dense_error, d.dense_notes);
+    detail::warn_of_lost_digits(d, d.dense_error, d.dense_notes);
     d.dense_order.order = d.dense_order.highest = dense.order();
     d.dense_order.judged = dense.order() == 0;
     const int judged_up_to =
@@ -233,10 +209,10 @@ namespace {
 
 Certificate with_dense(Certificate c, double against_factors, const detail::DenseError& error) {
   c.dense_against_factors = against_factors;
-  c.dense_error = error.error;
-  c.dense_error_s = error.s;
-  c.dense_error_where_small = error.where_small;
-  c.dense_error_where_small_s = error.where_small_s;
+  c.dense_error = error.beside_largest.error;
+  c.dense_error_s = error.beside_largest.s;
+  c.dense_error_where_small = error.where_small.error;
+  c.dense_error_where_small_s = error.where_small.s;
   return c;
 }
 

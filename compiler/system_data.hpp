@@ -49,10 +49,12 @@ struct Skeleton {
 
 /// What rounding the dense model costs, and where: see Certificate::dense_error and below.
 struct DenseError {
-  double error = 0;
-  std::complex<double> s;
-  double where_small = 0;
-  std::complex<double> where_small_s;
+  struct Worst {
+    double error = 0;
+    std::complex<double> s = 0;
+    int output = -1, input = -1;  ///< units of measure(); -1 where many share it
+  };
+  Worst beside_largest, where_small;
 };
 
 /// What `certify` finds.
@@ -86,7 +88,7 @@ struct SystemData {
   mutable std::once_flag dense_once;
   mutable StateSpace dense;
   mutable double dense_against_factors = -1;
-  mutable DenseError dense_error{-1, {}, -1, {}};
+  mutable DenseError dense_error{{-1}, {-1}};
   mutable std::vector<Note> dense_notes;
   mutable OrderVerdict dense_order;
   mutable std::atomic<bool> dense_ready = false;  ///< all of the above may be read
@@ -140,6 +142,8 @@ Rounded without_rounding(const SystemData& data, StateSpace dense);
 
 /// See Certificate::dense_error. O(n^2) per s; O(n^3) for up to 100 states where it is large.
 DenseError dense_error(const SystemData& data, const StateSpace& dense);
+/// A warning for each of the two that is too large.
+void warn_of_lost_digits(const SystemData& data, const DenseError& error, std::vector<Note>& notes);
 
 /// Margins of these loops of the stage, others left as they are.
 void find_margins(const SystemData& data, std::span<const int> loops, std::vector<double>& margins);

@@ -105,16 +105,54 @@ constexpr double kNoise = 1e3;  ///< times the factors' own rounding: what may b
 /// digits in the factors, but stands for none.
 constexpr double kOfNeighbours = 1e-14;
 
-/// Where the dense model is tried: far below, at and above the blocks' frequencies, and below the
-/// slowest of them, where that is lower still.
-std::vector<T> tried(const SystemData& d) {
+/// Largest entries of the outputs of one unit, column by column.
+MatrixXd by_unit(const solve::RowMatrix<T>& y, const std::vector<int>& units) {
+  MatrixXd result(std::ssize(units), y.cols());
+  for (Index i = 0, first = 0; i < result.rows(); first += units[at(i++)])
+    result.row(i) = y.middleRows(first, units[at(i)]).cwiseAbs().colwise().maxCoeff();
+  return result;
+}
+
+/// Powers of s by which outputs fall from one decade to the next: whole ones, all of them, below
+/// all modes that show.
+bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers) {
+  constexpr double kWhole = 0.03;
+  const MatrixXd p = (here.array() / below.array()).log10();
+  const MatrixXd whole = p.array().round();
+  const auto shows = here.array() > kUnderflow && below.array() > kUnderflow;
+  const bool same =
+      whole.size() == powers.size() &&
+      (!shows || ((p - whole).array().abs() < kWhole && (whole - powers).array() == 0)).all();
+  powers = whole;
+  return same;
+}
+
+/// About the slowest mode that the outputs show, from s downwards: a row of slow bodies bends more
+/// slowly than any of them by itself. O(bodies) per decade.
+T slowest_shown(const SystemData& d, T s, const solve::RowMatrix<T>& u,
+                const std::vector<int>& units) {
+  constexpr int kDecades = 10;
+  MatrixXd here = by_unit(Evaluation<T>(d, s, u).outputs(), units), powers;
+  for (int k = 1; k <= kDecades; ++k) {
+    s *= 0.1;
+    MatrixXd below = by_unit(Evaluation<T>(d, s, u).outputs(), units);
+    if (whole_powers(here, below, powers)) return 100.0 * s;  // two decades without a mode
+    here = std::move(below);
+  }
+  return 1e10 * s;
+}
+
+/// Where the dense model is tried: far below, at and above the blocks' frequencies, and at and
+/// below the slowest mode that shows, where that is lower still.
+std::vector<T> tried(const SystemData& d, const solve::RowMatrix<T>& u,
+                     const std::vector<int>& units) {
   const T s = pick_s(d);
   std::vector<T> result = {1e-4 * s, 1e-2 * s, s, 1e2 * s};
-  double slowest = kInfinity;
-  for (const int i : d.layout().state_nodes)
-    if (const double w = frequency_of(d.numbers.blocks[at(i)]->A); w > 0)
-      slowest = std::min(slowest, w);
-  if (slowest < 1e-2 * std::abs(s)) result.push_back(1e-2 * slowest / std::abs(s) * s);
+  const T slowest = slowest_shown(d, s, u, units);
+  if (std::abs(slowest) < 2e-2 * std::abs(s)) {
+    result.push_back(slowest);
+    result.push_back(1e-2 * slowest);
+  }
   return result;
 }
 
@@ -134,14 +172,6 @@ solve::RowMatrix<T> tried_inputs(const StateSpace& m, const std::vector<int>& un
       u(first, k % columns) = scale * T(random.next(), random.next());
   }
   return u;
-}
-
-/// Largest entries of the outputs of one unit, column by column.
-MatrixXd by_unit(const solve::RowMatrix<T>& y, const std::vector<int>& units) {
-  MatrixXd result(std::ssize(units), y.cols());
-  for (Index i = 0, first = 0; i < result.rows(); first += units[at(i++)])
-    result.row(i) = y.middleRows(first, units[at(i)]).cwiseAbs().colwise().maxCoeff();
-  return result;
 }
 
 /// Of outputs of one unit, by columns of the inputs.
@@ -178,7 +208,7 @@ std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
 /// the outputs by the factors.
 std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve::RowMatrix<T>& u,
                            const Measure& units) {
-  const std::vector<T> list = tried(d);
+  const std::vector<T> list = tried(d, u, units.rows);
   std::deque<Evaluation<T>> points;
   std::vector<solve::RowMatrix<T>> x;
   for (const T s : list) {
@@ -217,11 +247,11 @@ void bound_by_answer(Sample& p, const StateSpace& m, const solve::RowMatrix<T>& 
 /// The largest error relative to the output's own size. An output that is nothing but rounding, 0
 /// by symmetry, counts beside its neighbours or what cancels in it: the same in all units, too. So
 /// does what is below `of_neighbours` of those in its row and column.
-double relative(const MatrixXd& off, const Sizes& sizes, double of_neighbours) {
+DenseError::Worst relative(const MatrixXd& off, const Sizes& sizes, double of_neighbours) {
   const MatrixXd& size = sizes.value;
-  if (!off.allFinite() || !size.allFinite()) return kInfinity;
+  if (!off.allFinite() || !size.allFinite()) return {kInfinity};
   const VectorXd of_row = size.rowwise().maxCoeff(), of_column = size.colwise().maxCoeff();
-  double worst = 0;
+  DenseError::Worst worst;
   for (Index i = 0; i < off.rows(); ++i)
     for (Index j = 0; j < off.cols(); ++j) {
       if (off(i, j) <= kUnderflow) continue;
@@ -229,7 +259,8 @@ double relative(const MatrixXd& off, const Sizes& sizes, double of_neighbours) {
       const bool noise =
           size(i, j) <= std::max(kNoise * sizes.rounding(i, j), of_neighbours * around);
       const double beside = std::max(around, sizes.rounding(i, j) / kEpsilon);
-      worst = std::max(worst, off(i, j) / (noise ? beside : size(i, j)));
+      if (const double error = off(i, j) / (noise ? beside : size(i, j)); error > worst.error)
+        worst = {error, {}, static_cast<int>(i), static_cast<int>(j)};
     }
   return worst;
 }
@@ -241,13 +272,21 @@ DenseError worst_of(const std::vector<Sample>& samples) {
     largest.value = largest.value.cwiseMax(p.sizes.value);
     largest.rounding = largest.rounding.cwiseMax(p.sizes.rounding);
   }
+  const auto keep = [](const DenseError::Worst& found, T s, DenseError::Worst& so_far) {
+    if (found.error > so_far.error) so_far = found, so_far.s = s;
+  };
   for (const Sample& p : samples) {
-    if (const double e = relative(p.off, largest, kOfNeighbours); e > worst.error)
-      worst.error = e, worst.s = p.s;
-    if (const double e = relative(p.off, p.sizes, 0); e > worst.where_small)
-      worst.where_small = e, worst.where_small_s = p.s;
+    keep(relative(p.off, largest, kOfNeighbours), p.s, worst.beside_largest);
+    keep(relative(p.off, p.sizes, 0), p.s, worst.where_small);
   }
   return worst;
+}
+
+/// Columns of the inputs tried become units of inputs.
+DenseError by_input(DenseError e, int units) {
+  for (DenseError::Worst* w : {&e.beside_largest, &e.where_small})
+    w->input = units <= kColumns && w->input >= 0 ? w->input % units : -1;
+  return e;
 }
 
 }  // namespace
@@ -258,10 +297,12 @@ DenseError dense_error(const SystemData& d, const StateSpace& m) {
   const solve::RowMatrix<T> u = tried_inputs(m, units.cols);
   std::vector<Sample> samples = sample(d, m, u, units);
   const DenseError estimate = worst_of(samples);
-  if (std::max(estimate.error, estimate.where_small) <= kDoubted || m.order() > kAnsweredUpTo)
-    return estimate;
-  for (Sample& p : samples) bound_by_answer(p, m, u, units.rows);
-  return worst_of(samples);
+  const double worst = std::max(estimate.beside_largest.error, estimate.where_small.error);
+  if (worst > kDoubted && m.order() <= kAnsweredUpTo) {
+    for (Sample& p : samples) bound_by_answer(p, m, u, units.rows);
+    return by_input(worst_of(samples), static_cast<int>(units.cols.size()));
+  }
+  return by_input(estimate, static_cast<int>(units.cols.size()));
 }
 
 }  // namespace titop::detail

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <titop/compiler/compare.hpp>
 #include <titop/compiler/system_data.hpp>
 
-/// What is said of a dense model that is none of this system.
+/// What is said of a dense model: that it is none of this system, or what it costs.
 namespace titop::detail {
 namespace {
 
@@ -95,6 +96,48 @@ void require_written(const SystemData& d, const StateSpace& m) {
   find_not_finite("C", m.C, m.outputs, m.states, mistakes);
   find_not_finite("D", m.D, m.outputs, m.inputs, mistakes);
   throw_if_any(std::move(mistakes));
+}
+
+namespace {
+
+constexpr double kLost = 1e-9;  ///< of the outputs: more than this is said
+/// Of outputs where they are small: an acceleration far below the modes loses some as it is.
+constexpr double kLostWhereSmall = 1e-6;
+constexpr double kAnotherDigit = 10;
+
+/// "z", or "U(1) to U(3)" of three that share their unit.
+std::string name_of_unit(const std::vector<std::string>& names, const std::vector<int>& units,
+                         int unit) {
+  std::size_t first = 0;
+  for (int i = 0; i < unit; ++i)
+    first += static_cast<std::size_t>(units[static_cast<std::size_t>(i)]);
+  const auto size = static_cast<std::size_t>(units[static_cast<std::size_t>(unit)]);
+  return size == 1 ? names[first] : names[first] + " to " + names[first + size - 1];
+}
+
+/// "3 digits of y driven by u"
+std::string digits_of(const SystemData& d, const DenseError::Worst& w) {
+  const Measure units = measure(d.graph(), {});
+  std::string text = fmt::format("{:.0f} digits", std::max(0.0, -std::log10(w.error)));
+  if (w.output >= 0) text += " of " + name_of_unit(d.layout().outputs, units.rows, w.output);
+  if (w.input >= 0) text += " driven by " + name_of_unit(d.layout().inputs, units.cols, w.input);
+  return text;
+}
+
+}  // namespace
+
+void warn_of_lost_digits(const SystemData& d, const DenseError& e, std::vector<Note>& notes) {
+  const auto warn = [&](const char* text, const DenseError::Worst& w) {
+    const std::string s = fmt::format("{:.3g}{:+.3g}j", w.s.real(), w.s.imag());
+    notes.push_back({Note::Kind::warning, "dense",
+                     fmt::format(fmt::runtime(text), s, digits_of(d, w)) +
+                         "; System::transfer and apply keep them all"});
+  };
+  if (e.beside_largest.error > kLost)
+    warn("written as A, B, C, D the model keeps {1} at s = {0}", e.beside_largest);
+  if (e.where_small.error > kLostWhereSmall &&
+      e.where_small.error > kAnotherDigit * e.beside_largest.error)
+    warn("at s = {0}, where outputs are small, A, B, C, D keep {1}", e.where_small);
 }
 
 }  // namespace titop::detail

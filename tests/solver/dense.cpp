@@ -67,6 +67,8 @@ TEST_CASE("dense export: what it costs at mass ratios is said, and so it is") {
     CHECK(found <= 100 * said);
     CHECK(said <= 100 * found);
     CHECK(warns(system) == (said > 1e-9));
+    CHECK(warns(system) == (system.log().find(" digits of tip(") != std::string::npos));
+    CHECK(warns(system) == (system.log().find(" driven by U(") != std::string::npos));
   }
 }
 
@@ -117,8 +119,42 @@ TEST_CASE("dense export: an output that is small where slow modes are warns of i
   const double off = (system.state_space().transfer(s) - exact).norm() / exact.norm();
   CHECK(off <= 100 * c.dense_error_where_small);
   CHECK(c.dense_error_where_small >= 1e-6);
-  CHECK(system.log().find("where outputs are small, A, B, C, D keep") != std::string::npos);
+  const std::string log = system.log();
+  CHECK(log.find("where outputs are small, A, B, C, D keep") != std::string::npos);
+  CHECK(log.find(" digits of a driven by u; System::transfer") != std::string::npos);
   CHECK(!warns(system));
+}
+
+TEST_CASE("dense export: digits lost of the largest output do not hide those of a small one") {
+  // Side by side: bodies of very different masses, and the stiff mass that carries a soft one.
+  Diagram d{"both"};
+  const auto u = d.input("u"), v = d.input("v");
+  std::vector<SpringMass::Handle> z;
+  for (int i = 0; i < 10; ++i) {
+    z.push_back(
+        d.add(fmt::format("z{}", i + 1),
+              SpringMass{.mass = i % 2 ? 1e9 : 1.0, .stiffness = 100.0 + i, .parent_mass = 0.5}));
+    i == 0 ? ground(z[0]) : mount(z.back(), z[static_cast<std::size_t>(i) - 1].child);
+  }
+  auto stiff = d.add("stiff", SpringMass{.mass = 1.0, .stiffness = 1e8});
+  auto soft = d.add("soft", SpringMass{.mass = 1.0, .stiffness = 1.0});
+  ground(stiff);
+  mount(soft, stiff.child);
+  z[4].child.force += u;
+  stiff.child.force += v;
+  d.output("last") = z.back().child.accel;
+  d.output("a") = stiff.child.accel;
+  const System system = compile(d, {.minimize_up_to = 0});
+  system.state_space();
+  const Certificate c = system.certificate();
+  CHECK(c.dense_error >= 1e-9);
+  CHECK(c.dense_error_where_small >= 1e-6);
+  CHECK(c.dense_error_where_small >= 10 * c.dense_error);
+  CHECK(warns(system));
+  const std::string log = system.log();
+  CHECK(log.find(" digits of last driven by u at s = ") != std::string::npos);
+  CHECK(log.find("where outputs are small, A, B, C, D keep 0 digits of a driven by v") !=
+        std::string::npos);
 }
 
 namespace {
