@@ -105,7 +105,8 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
                                 .rounding = rounding};
   Minimized m = modes::minimize_unmeasured(judged, options);
   doubt_lost_digits(system, d, judged, options, m.order);
-  if (d.dense_error.beside_largest.error > kFewDigits && !m.order.exact) m.order.highest = dense.order();
+  if (d.dense_error.beside_largest.error > kFewDigits && !m.order.exact)
+    m.order.highest = dense.order();
   if (!m.notes.empty()) m.notes.front() = to_string(m.order);
   const bool removed = !m.order.removed.empty();
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
