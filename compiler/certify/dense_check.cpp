@@ -105,54 +105,16 @@ constexpr double kNoise = 1e3;  ///< times the factors' own rounding: what may b
 /// digits in the factors, but stands for none.
 constexpr double kOfNeighbours = 1e-14;
 
-/// Largest entries of the outputs of one unit, column by column.
-MatrixXd by_unit(const solve::RowMatrix<T>& y, const std::vector<int>& units) {
-  MatrixXd result(std::ssize(units), y.cols());
-  for (Index i = 0, first = 0; i < result.rows(); first += units[at(i++)])
-    result.row(i) = y.middleRows(first, units[at(i)]).cwiseAbs().colwise().maxCoeff();
-  return result;
-}
-
-/// Powers of s by which outputs fall from one decade to the next: whole ones, all of them, below
-/// all modes that show.
-bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers) {
-  constexpr double kWhole = 0.03;
-  const MatrixXd p = (here.array() / below.array()).log10();
-  const MatrixXd whole = p.array().round();
-  const auto shows = here.array() > kUnderflow && below.array() > kUnderflow;
-  const bool same =
-      whole.size() == powers.size() &&
-      (!shows || ((p - whole).array().abs() < kWhole && (whole - powers).array() == 0)).all();
-  powers = whole;
-  return same;
-}
-
-/// About the slowest mode that the outputs show, from s downwards: a row of slow bodies bends more
-/// slowly than any of them by itself. O(bodies) per decade.
-T slowest_shown(const SystemData& d, T s, const solve::RowMatrix<T>& u,
-                const std::vector<int>& units) {
-  constexpr int kDecades = 10;
-  MatrixXd here = by_unit(Evaluation<T>(d, s, u).outputs(), units), powers;
-  for (int k = 1; k <= kDecades; ++k) {
-    s *= 0.1;
-    MatrixXd below = by_unit(Evaluation<T>(d, s, u).outputs(), units);
-    if (whole_powers(here, below, powers)) return 100.0 * s;  // two decades without a mode
-    here = std::move(below);
-  }
-  return 1e10 * s;
-}
-
-/// Where the dense model is tried: far below, at and above the blocks' frequencies, and at and
-/// below the slowest mode that shows, where that is lower still.
-std::vector<T> tried(const SystemData& d, const solve::RowMatrix<T>& u,
-                     const std::vector<int>& units) {
+/// Where the dense model is tried: far below, at and above the blocks' frequencies, and below the
+/// slowest of them, where that is lower still.
+std::vector<T> tried(const SystemData& d) {
   const T s = pick_s(d);
   std::vector<T> result = {1e-4 * s, 1e-2 * s, s, 1e2 * s};
-  const T slowest = slowest_shown(d, s, u, units);
-  if (std::abs(slowest) < 2e-2 * std::abs(s)) {
-    result.push_back(slowest);
-    result.push_back(1e-2 * slowest);
-  }
+  double slowest = kInfinity;
+  for (const int i : d.layout().state_nodes)
+    if (const double w = frequency_of(d.numbers.blocks[at(i)]->A); w > 0)
+      slowest = std::min(slowest, w);
+  if (slowest < 1e-2 * std::abs(s)) result.push_back(1e-2 * slowest / std::abs(s) * s);
   return result;
 }
 
@@ -172,6 +134,14 @@ solve::RowMatrix<T> tried_inputs(const StateSpace& m, const std::vector<int>& un
       u(first, k % columns) = scale * T(random.next(), random.next());
   }
   return u;
+}
+
+/// Largest entries of the outputs of one unit, column by column.
+MatrixXd by_unit(const solve::RowMatrix<T>& y, const std::vector<int>& units) {
+  MatrixXd result(std::ssize(units), y.cols());
+  for (Index i = 0, first = 0; i < result.rows(); first += units[at(i++)])
+    result.row(i) = y.middleRows(first, units[at(i)]).cwiseAbs().colwise().maxCoeff();
+  return result;
 }
 
 /// Of outputs of one unit, by columns of the inputs.
@@ -208,7 +178,7 @@ std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
 /// the outputs by the factors.
 std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve::RowMatrix<T>& u,
                            const Measure& units) {
-  const std::vector<T> list = tried(d, u, units.rows);
+  const std::vector<T> list = tried(d);
   std::deque<Evaluation<T>> points;
   std::vector<solve::RowMatrix<T>> x;
   for (const T s : list) {
