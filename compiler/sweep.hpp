@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <functional>
 #include <span>
 #include <titop/compiler/system.hpp>
@@ -8,7 +9,7 @@ namespace titop {
 
 struct SweepOptions {
   int threads = 0;  ///< 0: all cores
-  /// Called with (done, all) after each point, by one thread at a time: print it, or draw a bar.
+  /// Called with (done, all) after each point, by one thread at a time: `progress_line()` draws it.
   std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
@@ -22,5 +23,22 @@ struct SweepOptions {
 void sweep(const System& system, std::span<const ParameterList> points,
            const std::function<void(std::size_t, const System&)>& visit,
            const SweepOptions& options = {});
+
+enum class DrawLine {
+  on_terminals,  ///< nothing where the file is no terminal: logs stay short
+  always,
+};
+
+/// A line for SweepOptions::progress, drawn over itself at most five times a second; its last state
+/// has a newline.
+///
+///     sweep(s, points, visit, {.progress = progress_line()});
+///
+///     117 of 400 points, 29 %, 12 s left
+///
+/// The time left takes the rest to be as long as what is done, counted from the making of the line:
+/// one for each sweep. `to` must stay open.
+std::function<void(std::size_t, std::size_t)> progress_line(std::FILE* to = stderr,
+                                                            DrawLine draw = DrawLine::on_terminals);
 
 }  // namespace titop

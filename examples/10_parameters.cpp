@@ -62,9 +62,7 @@ int main() {
     hertz[i] = at.poles().front().hertz;
     errors[i] = error(at, points[i][0].second, points[i][1].second);
   };
-  sweep(system, points, each, {.progress = [](std::size_t done, std::size_t all) {
-          std::fprintf(stderr, "\r%zu of %zu points%s", done, all, done == all ? "\n" : "");
-        }});
+  sweep(system, points, each, {.progress = progress_line()});  // on a terminal
   std::printf("\n%12s %10s %12s\n", "spring [N/m]", "tip [kg]", "mode [Hz]");
   double worst = std::max(error(system, kSpring, kTip), error(heavy, kSpring, 8));
   for (std::size_t i = 0; i < points.size(); ++i) {
