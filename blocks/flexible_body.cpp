@@ -120,8 +120,8 @@ ModalData without_modes(const RigidBody& body) {
   d.omega.resize(0);
   d.xi.resize(0);
   d.L_P.resize(0, 6);
-  check_inertia(body.mass.nominal(), body.inertia);
-  d.D_P = rigid_mass(body.mass.nominal(), body.inertia, -body.PA);
+  check_inertia(body.mass.nominal(), body.inertia.nominal());
+  d.D_P = rigid_mass(body.mass.nominal(), body.inertia.nominal(), -body.PA);
   for (const ChildPoint& c : body.children) d.children.push_back({c.name, c.PC, MatrixXd(6, 0)});
   return d;
 }

@@ -128,9 +128,10 @@ class RigidBodyBlock : public Block, public Specified<RigidBody> {
   const Interface& interface() const override { return face_; }
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
     const double m = spec_.mass.at(values);
-    check_inertia(m, spec_.inertia);
+    const Matrix3d I_A = spec_.inertia.at(values);
+    check_inertia(m, I_A);
     auto d = std::make_shared<Dynamics>();
-    const Matrix6 D_P = rigid_mass(m, spec_.inertia, -spec_.PA);
+    const Matrix6 D_P = rigid_mass(m, I_A, -spec_.PA);
     if (is_algebraic())
       d->sparse = rigid_gains(PC_, D_P);
     else
@@ -151,7 +152,11 @@ class RigidBodyBlock : public Block, public Specified<RigidBody> {
   std::optional<Kinematics> kinematics(ParameterValues) const override {
     return body_kinematics(PC_, std::vector<MatrixXd>(PC_.size(), MatrixXd(6, 0)));
   }
-  std::vector<Value> values() const override { return {spec_.mass}; }
+  std::vector<Value> values() const override {
+    std::vector<Value> all = spec_.inertia.values();
+    all.push_back(spec_.mass);
+    return all;
+  }
   /// A hub of many ports is its equations: each point moves with P, each wrench goes to P. A hub of
   /// few stays together, so that its pivots are chosen among all its rows (a digit more).
   bool is_algebraic() const override { return PC_.size() > 7; }
@@ -174,7 +179,7 @@ class RigidBodyBlock : public Block, public Specified<RigidBody> {
 }  // namespace
 
 BlockPtr as_block(const RigidBody& spec) {
-  check_inertia(spec.mass.nominal(), spec.inertia);
+  check_inertia(spec.mass.nominal(), spec.inertia.nominal());
   bool finite = spec.PA.allFinite();
   for (const ChildPoint& c : spec.children) finite = finite && c.PC.allFinite();
   if (!finite)

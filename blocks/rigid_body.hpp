@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <titop/blocks/inertia.hpp>
 #include <titop/graph/diagram.hpp>
 #include <titop/graph/linalg/kinematics.hpp>
 #include <vector>
@@ -28,14 +29,15 @@ struct BodyHandle {
 ///     F_P   = sum over C of tau_CP' F_C - D_P xdd_P
 ///
 /// No states. Port order: children in the order given, then the parent. Frame: the node's own.
-/// Refused (bad_inertia, not_finite) when it is added: a negative mass, an inertia that is not
+/// Mass and inertia may be parameters. Refused (bad_inertia, not_finite) when it is added, and by
+/// `update` for new values: a negative mass, an inertia that is not
 /// symmetric, not positive, or that breaks the triangle inequality; (duplicate_name) two child
 /// points of one name. A mass or inertia of 0 is allowed: a massless link; what it does when freed
 /// is undetermined, and refused (improper) where an output or another block depends on it.
 struct RigidBody {
-  Value mass = 1;                           ///< [kg]
-  Matrix3d inertia = Matrix3d::Identity();  ///< about the centre of mass A [kg m^2]
-  Vector3d PA = Vector3d::Zero();           ///< from P to the centre of mass [m]
+  Value mass = 1;                          ///< [kg]
+  Inertia inertia = Matrix3d::Identity();  ///< about the centre of mass A [kg m^2]
+  Vector3d PA = Vector3d::Zero();          ///< from P to the centre of mass [m]
   std::vector<ChildPoint> children = {};
 
   using Handle = BodyHandle;

@@ -49,10 +49,26 @@ BlockPtr read_spring_mass(const Place& p, const ReadValue& value, const FindBody
                              .parent_mass = value(p.at("parent_mass"))});
 }
 
+/// Three rows of numbers; with parameters xx, yy, zz, xy, xz, yz.
+Json inertia_json(const Inertia& inertia, const WriteValue& value) {
+  const std::vector<Value> entries = inertia.values();
+  if (entries.empty()) return rows(inertia.nominal());
+  Json result = Json::array();
+  for (const Value& v : entries) result.push_back(value(v));
+  return result;
+}
+
+Inertia read_inertia(const Place& p, const ReadValue& value) {
+  if (p.size() == 3) return p.matrix(3, 3);
+  if (p.size() != 6) p.refuse("three rows, or the six entries xx, yy, zz, xy, xz, yz");
+  return {value(p.item(0)), value(p.item(1)), value(p.item(2)),
+          value(p.item(3)), value(p.item(4)), value(p.item(5))};
+}
+
 void write_rigid_body(const Block& b, const WriteValue& value, const NameBody&, Json& j) {
   const auto& spec = spec_of<RigidBody>(b);
   j["mass"] = value(spec.mass);
-  j["inertia"] = rows(spec.inertia);
+  j["inertia"] = inertia_json(spec.inertia, value);
   j["PA"] = list(spec.PA);
   j["children"] = Json::array();
   for (const ChildPoint& c : spec.children)
@@ -62,7 +78,7 @@ void write_rigid_body(const Block& b, const WriteValue& value, const NameBody&, 
 BlockPtr read_rigid_body(const Place& p, const ReadValue& value, const FindBody&) {
   p.only({"name", "type", "mass", "inertia", "PA", "children"});
   RigidBody spec{.mass = value(p.at("mass")),
-                 .inertia = p.at("inertia").matrix(3, 3),
+                 .inertia = read_inertia(p.at("inertia"), value),
                  .PA = p.at("PA").vector(3)};
   const Place children = p.at("children");
   for (std::size_t i = 0; i < children.size(); ++i)

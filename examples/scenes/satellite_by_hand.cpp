@@ -12,7 +12,7 @@ by_hand::Structure satellite_by_hand(const titop::ModalData& boom) {
   const by_hand::Matrix6 tau_AP = by_hand::tau(-hub_spec.PA);
   by_hand::Matrix6 hub = by_hand::Matrix6::Zero();
   hub.topLeftCorner<3, 3>().diagonal().setConstant(85);
-  hub.bottomRightCorner<3, 3>() = hub_spec.inertia;
+  hub.bottomRightCorner<3, 3>() = hub_spec.inertia.nominal();
   a.M.topLeftCorner<6, 6>() = tau_AP.transpose() * hub * tau_AP;
   by_hand::MatrixXd own(6 + N, 6 + N);
   own << boom.D_P, boom.L_P.transpose(), boom.L_P, by_hand::MatrixXd::Identity(N, N);

@@ -126,7 +126,7 @@ TEST_CASE("RigidBody: of very many points, each with its own lever arm") {
   const VectorXd u = rng.matrix(6 * points + 6, 1);
   const Vector3d a = u.segment<3>(6 * points), w = u.tail<3>();
   VectorXd y(u.size());
-  Vector3d F = -m * a, torque = -spec.inertia * w;
+  Vector3d F = -m * a, torque = -spec.inertia.nominal() * w;
   for (int i = 0; i < points; ++i) {
     const Vector3d& PC = spec.children[static_cast<std::size_t>(i)].PC;
     const Vector3d f = u.segment<3>(6 * i);

@@ -31,7 +31,7 @@ int Tree::add(const titop::RigidBody& r, int on, int port, const Eigen::Matrix3d
   Body b{{}, on, port, T, columns_, {}, {}};
   by_hand::Matrix6 own = by_hand::Matrix6::Zero();
   own.topLeftCorner<3, 3>().diagonal().setConstant(r.mass.nominal());
-  own.bottomRightCorner<3, 3>() = r.inertia;
+  own.bottomRightCorner<3, 3>() = r.inertia.nominal();
   const MatrixXl tau = by_hand::tau(-r.PA).cast<long double>();
   b.mass = tau.transpose() * own.cast<long double>() * tau;
   for (const auto& child : r.children)

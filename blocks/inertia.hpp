@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <titop/graph/linalg/kinematics.hpp>
+#include <titop/graph/value.hpp>
+#include <vector>
+
+namespace titop {
+
+/// Inertia of a rigid body [kg m^2]: a 3 x 3 matrix, or its entries, each of which may be a
+/// parameter. Whether a body has it is checked where it is used.
+///
+///     .inertia = Vector3d(9, 11, 13).asDiagonal()
+///     .inertia = {J, J, 2.0 * J}                    // principal moments: xx, yy, zz
+///     .inertia = {20, 25, J, 0, -1.5, 0}            // xx, yy, zz, xy, xz, yz
+///
+/// xy, xz and yz are entries of the matrix: xy = - integral of x y dm. O(1), 200 bytes more where
+/// it has parameters.
+class Inertia {
+ public:
+  template <class M>
+  Inertia(const Eigen::EigenBase<M>& matrix) : matrix_(matrix.derived()) {}
+  Inertia(Value xx, Value yy, Value zz, Value xy = 0, Value xz = 0, Value yz = 0);
+
+  Matrix3d at(ParameterValues values) const;
+  /// Parameters at their nominal values.
+  Matrix3d nominal() const { return matrix_; }
+  /// xx, yy, zz, xy, xz, yz; empty where none is a parameter.
+  std::vector<Value> values() const;
+
+ private:
+  Matrix3d matrix_;
+  std::shared_ptr<const std::array<Value, 6>> entries_;  ///< only with parameters
+};
+
+}  // namespace titop
