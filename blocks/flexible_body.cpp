@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cmath>
+#include <mutex>
 #include <titop/blocks/body_interface.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/modal_checks.hpp>
@@ -29,18 +31,56 @@ void check_shapes(const ModalData& d) {
              fmt::format("6 x {}, a column per mode", n));
 }
 
+struct Modes {
+  VectorXd omega, xi;  // N each, [rad/s] and [-]
+};
+
+void check_modes(const Modes& m) {
+  for (Eigen::Index i = 0; i < m.omega.size(); ++i) {
+    const auto refuse = [&](Code code, const char* hint) {
+      throw Error(code,
+                  fmt::format("mode {} has omega {} rad/s and damping ratio {}", i + 1, m.omega(i),
+                              m.xi(i)),
+                  hint);
+    };
+    if (!std::isfinite(m.omega(i)) || !std::isfinite(m.xi(i)))
+      refuse(Code::not_finite, "give finite numbers");
+    if (!(m.omega(i) > 0) || m.xi(i) < 0)
+      refuse(Code::bad_modes,
+             "omega must be positive (modes clamped at P have no rigid motion), xi 0 or more");
+  }
+}
+
+/// The numbers of all modes with these in their place; number(value) is what a value stands for.
+template <class Number>
+VectorXd replaced(VectorXd numbers, const std::map<int, Value>& values, Number number) {
+  for (const auto& [mode, value] : values) {
+    if (mode < 1 || mode > numbers.size())
+      throw Error(Code::bad_modes,
+                  fmt::format("a value is given for mode {} of {}", mode, numbers.size()),
+                  "modes count from 1, as in eta1");
+    numbers(mode - 1) = number(value);
+  }
+  return numbers;
+}
+
+template <class Number>
+Modes modes_of(const FlexibleBody::Spec& spec, Number number) {
+  Modes m{replaced(spec.data->omega, spec.values.omega, number),
+          replaced(spec.data->xi, spec.values.xi, number)};
+  check_modes(m);
+  return m;
+}
+
+double nominal_of(const Value& value) { return value.nominal(); }
+
 void check_values(const ModalData& d) {
   bool finite = d.omega.allFinite() && d.xi.allFinite() && d.L_P.allFinite() && d.D_P.allFinite();
   for (const ModalChild& c : d.children) finite = finite && c.Phi_C.allFinite() && c.PC.allFinite();
   if (!finite)
     throw Error(Code::not_finite, "the modal data have entries that are not finite",
                 "check omega, xi, L_P, D_P and Phi_C");
-  for (Eigen::Index i = 0; i < d.omega.size(); ++i)
-    if (!(d.omega(i) > 0) || d.xi(i) < 0)
-      throw Error(Code::bad_modes,
-                  fmt::format("mode {} has omega {} rad/s and damping ratio {}", i + 1, d.omega(i),
-                              d.xi(i)),
-                  "omega must be positive (modes clamped at P have no rigid motion), xi 0 or more");
+  check_modes({d.omega, d.xi});
 }
 
 void check_mass(const ModalData& d) {
@@ -63,42 +103,78 @@ void check_mass(const ModalData& d) {
         "check units and signs of L_P against D_P, or ModalData::digits");
 }
 
-class FlexibleBodyBlock : public Block, public Specified<ModalData> {
- public:
-  explicit FlexibleBodyBlock(std::shared_ptr<const ModalData> data) : data_(std::move(data)) {
-    std::vector<std::string> names;
-    for (const ModalChild& c : data_->children) {
-      names.push_back(c.name);
-      PC_.push_back(c.PC);
-    }
-    face_ = body_interface(names, static_cast<int>(data_->omega.size()));
-    modal_ = {modal_input(*data_), rigid_part(PC_, data_->D_P), data_->omega.cwiseAbs2(),
-              2 * data_->xi.cwiseProduct(data_->omega)};
-    matrices_ = modal_dynamics(modal_);
+/// What bodies of the same data share, whatever the values of their modes.
+struct Shapes {
+  std::vector<Vector3d> PC;
+  Interface face;
+  MatrixXd W, rigid;
+};
+
+std::shared_ptr<const Shapes> shapes_of(const ModalData& data) {
+  auto s = std::make_shared<Shapes>();
+  std::vector<std::string> names;
+  for (const ModalChild& c : data.children) {
+    names.push_back(c.name);
+    s->PC.push_back(c.PC);
   }
-  const ModalData& spec() const override { return *data_; }
+  s->face = body_interface(names, static_cast<int>(data.omega.size()));
+  s->W = modal_input(data);
+  s->rigid = rigid_part(s->PC, data.D_P);
+  return s;
+}
+
+class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec> {
+ public:
+  FlexibleBodyBlock(std::shared_ptr<const FlexibleBody::Spec> spec,
+                    std::shared_ptr<const Shapes> shapes)
+      : spec_(std::move(spec)), shapes_(std::move(shapes)) {
+    if (spec_->values.empty()) made_ = modal_dynamics(modal({spec_->data->omega, spec_->data->xi}));
+  }
+  const FlexibleBody::Spec& spec() const override { return *spec_; }
+  const std::shared_ptr<const Shapes>& shapes() const { return shapes_; }
   std::string_view type() const override { return "FlexibleBody"; }
-  const Interface& interface() const override { return face_; }
-  std::shared_ptr<const Dynamics> dynamics(ParameterValues) const override { return matrices_; }
+  const Interface& interface() const override { return shapes_->face; }
+  /// All nodes of one body ask for the same: what was made last is kept, and shared.
+  std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
+    if (spec_->values.empty()) return made_;
+    Modes m = modes_at(values);
+    {
+      const std::scoped_lock lock(keeping_);
+      if (made_ && m.omega == made_for_.omega && m.xi == made_for_.xi) return made_;
+    }
+    auto made = modal_dynamics(modal(m));
+    const std::scoped_lock lock(keeping_);
+    made_ = made;
+    made_for_ = std::move(m);
+    return made;
+  }
   std::optional<Kinematics> kinematics(ParameterValues) const override {
     std::vector<MatrixXd> Phi;
-    for (const ModalChild& c : data_->children) Phi.push_back(c.Phi_C);
-    return body_kinematics(PC_, Phi);
+    for (const ModalChild& c : spec_->data->children) Phi.push_back(c.Phi_C);
+    return body_kinematics(shapes_->PC, Phi);
   }
-  Response response(std::complex<double> s, ParameterValues) const override {
-    return modal_response(modal_, s, type());
+  std::vector<Value> values() const override {
+    std::vector<Value> all;
+    for (const auto* list : {&spec_->values.omega, &spec_->values.xi})
+      for (const auto& [mode, value] : *list) all.push_back(value);
+    return all;
+  }
+  Response response(std::complex<double> s, ParameterValues values) const override {
+    if (const auto d = dynamics(values); d->modal) return modal_response(*d->modal, s, type());
+    return modal_response({shapes_->W, shapes_->rigid, {}, {}}, s, type());
   }
   std::optional<Cause> why_singular(int channel, ParameterValues) const override {
-    if (channel == static_cast<int>(data_->children.size())) {
-      const ResidualMass r = residual_mass(*data_);
+    const ModalData& data = *spec_->data;
+    if (channel == static_cast<int>(data.children.size())) {
+      const ResidualMass r = residual_mass(data);
       return Cause{
           fmt::format("has no residual mass in {}", component_name(r.component)),
           fmt::format("keep fewer modes, or leave {} of P as the modes have it and impose the "
                       "motion there",
                       component_name(r.component))};
     }
-    const ModalChild& c = data_->children[static_cast<std::size_t>(channel)];
-    const ChildRank rank = child_rank(*data_, c);
+    const ModalChild& c = data.children[static_cast<std::size_t>(channel)];
+    const ChildRank rank = child_rank(data, c);
     std::string blocked;
     for (const std::string& b : rank.blocked) blocked += (blocked.empty() ? "" : ", ") + b;
     return Cause{
@@ -108,11 +184,18 @@ class FlexibleBodyBlock : public Block, public Specified<ModalData> {
   }
 
  private:
-  std::shared_ptr<const ModalData> data_;
-  std::vector<Vector3d> PC_;
-  Interface face_;
-  Modal modal_;
-  std::shared_ptr<const Dynamics> matrices_;
+  Modes modes_at(ParameterValues values) const {
+    return modes_of(*spec_, [&](const Value& v) { return v.at(values); });
+  }
+  Modal modal(const Modes& m) const {
+    return {shapes_->W, shapes_->rigid, m.omega.cwiseAbs2(), 2 * m.xi.cwiseProduct(m.omega)};
+  }
+
+  std::shared_ptr<const FlexibleBody::Spec> spec_;
+  std::shared_ptr<const Shapes> shapes_;
+  mutable std::mutex keeping_;
+  mutable std::shared_ptr<const Dynamics> made_;
+  mutable Modes made_for_;
 };
 
 ModalData without_modes(const RigidBody& body) {
@@ -137,17 +220,38 @@ MatrixXd modal_input(const ModalData& d) {
   return W;
 }
 
-FlexibleBody::FlexibleBody(ModalData data)
-    : data_(std::make_shared<const ModalData>(std::move(data))) {
-  check_shapes(*data_);
-  check_values(*data_);
-  check_mass(*data_);
-  block_ = std::make_shared<FlexibleBodyBlock>(data_);
+FlexibleBody::FlexibleBody(ModalData given) {
+  auto data = std::make_shared<const ModalData>(std::move(given));
+  check_shapes(*data);
+  check_values(*data);
+  check_mass(*data);
+  spec_ = std::make_shared<const Spec>(Spec{data});
+  block_ = std::make_shared<const FlexibleBodyBlock>(spec_, shapes_of(*data));
+}
+
+FlexibleBody::FlexibleBody(const FlexibleBody& body, const ModeValues& values) {
+  Spec spec{body.spec_->data, values};
+  spec.values.omega.insert(body.spec_->values.omega.begin(), body.spec_->values.omega.end());
+  spec.values.xi.insert(body.spec_->values.xi.begin(), body.spec_->values.xi.end());
+  spec_ = std::make_shared<const Spec>(std::move(spec));
+  block_ = std::make_shared<const FlexibleBodyBlock>(
+      spec_, static_cast<const FlexibleBodyBlock&>(*body.block_).shapes());
 }
 
 FlexibleBody::FlexibleBody(const Beam& beam) : FlexibleBody(modal_data(beam)) {}
 FlexibleBody::FlexibleBody(const RigidBody& body) : FlexibleBody(without_modes(body)) {}
 
-BlockPtr as_block(const FlexibleBody& body) { return body.block(); }
+ModalData FlexibleBody::nominal() const {
+  Modes m = modes_of(*spec_, nominal_of);
+  ModalData result = data();
+  result.omega = std::move(m.omega);
+  result.xi = std::move(m.xi);
+  return result;
+}
+
+BlockPtr as_block(const FlexibleBody& body) {
+  if (!body.spec().values.empty()) modes_of(body.spec(), nominal_of);  // refuses what is no body
+  return body.block();
+}
 
 }  // namespace titop

@@ -1,11 +1,21 @@
 #pragma once
 
+#include <map>
 #include <titop/blocks/beam.hpp>
 #include <titop/blocks/modal_data.hpp>
 #include <titop/blocks/rigid_body.hpp>
 #include <titop/graph/diagram.hpp>
 
 namespace titop {
+
+/// Frequencies and damping ratios, numbers or parameters, in place of those of the data, by the
+/// number of the mode: 1 is that of eta1.
+struct ModeValues {
+  std::map<int, Value> omega = {};  ///< natural frequencies [rad/s], > 0
+  std::map<int, Value> xi = {};     ///< damping ratios [-], >= 0
+
+  bool empty() const { return omega.empty() && xi.empty(); }
+};
 
 /// Flexible body, the two-port M_PC and its N-port form: [Alazard 2015] eq. (14). With N
 /// mass-normalised modes clamped at P and W = [Phi_C' ... , -L_P] (N x inputs),
@@ -21,19 +31,36 @@ namespace titop {
 /// bad_modes (shapes, omega <= 0, xi < 0, D_P0 negative beyond the data's digits, with the degree
 /// of freedom), bad_inertia (D_P not symmetric or with a negative mass), not_finite,
 /// duplicate_name. Cost of a compile: O(N (6 + 6 children)); of its transfer at s: the same.
+///
+///     FlexibleBody{boom, {.omega = {{1, w1}, {3, 2.0 * w1}}, .xi = {{1, z}}}}
+///
+/// is boom with other values for some modes, w1 and z being parameters. Shapes, participations and
+/// masses are boom's, and shared with it. Values are checked when it is added, and by `update` for
+/// new ones: bad_modes (no such mode, omega <= 0, xi < 0), not_finite. New values cost O(N^2 + N
+/// inputs^2), once for all nodes that use the same FlexibleBody. A beam of another E has all its
+/// omegas times one parameter, sqrt(E / E0); of another density or length it has other shapes too.
 class FlexibleBody {
  public:
   FlexibleBody(ModalData data);
   FlexibleBody(const Beam& beam);       ///< through modal_data(beam)
   FlexibleBody(const RigidBody& body);  ///< no modes; parameters at their nominal values
+  /// Values that `body` has already stay where these are silent.
+  FlexibleBody(const FlexibleBody& body, const ModeValues& values);
 
-  const ModalData& data() const { return *data_; }
+  /// What its block is made from.
+  struct Spec {
+    std::shared_ptr<const ModalData> data;
+    ModeValues values = {};
+  };
+  const Spec& spec() const { return *spec_; }
+  const ModalData& data() const { return *spec_->data; }  ///< as given, without other values
+  ModalData nominal() const;  ///< with these, parameters at their nominal values
   const BlockPtr& block() const { return block_; }
 
   using Handle = BodyHandle;
 
  private:
-  std::shared_ptr<const ModalData> data_;
+  std::shared_ptr<const Spec> spec_;
   BlockPtr block_;
 };
 

@@ -42,7 +42,7 @@ PortHamiltonian port_hamiltonian(const SpringMass& spec) {
 }
 
 PortHamiltonian port_hamiltonian(const FlexibleBody& body) {
-  const ModalData& d = body.data();
+  const ModalData d = body.nominal();
   const auto n = d.omega.size();
   const MatrixXd W = modal_input(d);
   PortHamiltonian s;

@@ -33,7 +33,7 @@ struct PortHamiltonian {
 
 /// Eq. (7): q = stretch, p = m times its rate. Parameters at their nominal values.
 PortHamiltonian port_hamiltonian(const SpringMass& spec);
-/// Eq. (17) in modal coordinates.
+/// Eq. (17) in modal coordinates. Parameters at their nominal values.
 PortHamiltonian port_hamiltonian(const FlexibleBody& body);
 
 }  // namespace titop

@@ -3,7 +3,7 @@
 namespace titop {
 
 /// A block that remembers what it was made from, for the scene file. Spec: SpringMass, RigidBody,
-/// ModalData, Bushing, or the axes of a joint.
+/// FlexibleBody::Spec, Bushing, or the axes of a joint.
 template <class Spec>
 class Specified {
  public:

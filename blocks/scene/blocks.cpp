@@ -87,13 +87,38 @@ BlockPtr read_rigid_body(const Place& p, const ReadValue& value, const FindBody&
   return as_block(spec);
 }
 
-void write_flexible_body(const Block& b, const WriteValue&, const NameBody& body, Json& j) {
-  j["body"] = body(b);
+/// Values of some modes, by their numbers.
+Json modes_json(const std::map<int, Value>& modes, const WriteValue& value) {
+  Json result = Json::array();
+  for (const auto& [mode, of] : modes) result.push_back({{"mode", mode}, {"value", value(of)}});
+  return result;
 }
 
-BlockPtr read_flexible_body(const Place& p, const ReadValue&, const FindBody& body) {
-  p.only({"name", "type", "body"});
-  return body(p.at("body"));
+std::map<int, Value> read_modes(const Place& p, const char* key, const ReadValue& value) {
+  std::map<int, Value> modes;
+  if (!p.has(key)) return modes;
+  const Place list = p.at(key);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const Place item = list.item(i);
+    item.only({"mode", "value"});
+    if (!modes.emplace(item.at("mode").integer(), value(item.at("value"))).second)
+      item.at("mode").refuse("a mode that no value before is for");
+  }
+  return modes;
+}
+
+void write_flexible_body(const Block& b, const WriteValue& value, const NameBody& body, Json& j) {
+  const auto& spec = spec_of<FlexibleBody::Spec>(b);
+  j["body"] = body(*spec.data);
+  if (!spec.values.omega.empty()) j["omega"] = modes_json(spec.values.omega, value);
+  if (!spec.values.xi.empty()) j["xi"] = modes_json(spec.values.xi, value);
+}
+
+BlockPtr read_flexible_body(const Place& p, const ReadValue& value, const FindBody& body) {
+  p.only({"name", "type", "body", "omega", "xi"});
+  const FlexibleBody shared = body(p.at("body"));
+  const ModeValues values{.omega = read_modes(p, "omega", value), .xi = read_modes(p, "xi", value)};
+  return as_block(values.empty() ? shared : FlexibleBody(shared, values));
 }
 
 // --- joints --------------------------------------------------------------------------------------
@@ -267,8 +292,7 @@ BlockPtr read_block(const Place& place, const ReadValue& value, const FindBody& 
   return type->read(place, value, body);
 }
 
-Json body_json(const Block& flexible_body) {
-  const ModalData& data = spec_of<ModalData>(flexible_body);
+Json body_json(const ModalData& data) {
   Json json = {{"omega", list(data.omega)}, {"xi", list(data.xi)},   {"L_P", rows(data.L_P)},
                {"D_P", rows(data.D_P)},     {"digits", data.digits}, {"children", Json::array()}};
   for (const ModalChild& c : data.children)
@@ -276,7 +300,7 @@ Json body_json(const Block& flexible_body) {
   return json;
 }
 
-BlockPtr read_body(const Place& p) {
+FlexibleBody read_body(const Place& p) {
   p.only({"omega", "xi", "L_P", "D_P", "digits", "children"});
   ModalData data;
   data.omega = p.at("omega").vector();
@@ -291,7 +315,7 @@ BlockPtr read_body(const Place& p) {
     data.children.push_back(
         {c.at("name").text(), c.at("PC").vector(3), c.at("Phi_C").matrix(6, n)});
   }
-  return FlexibleBody(std::move(data)).block();
+  return data;
 }
 
 }  // namespace titop::scene

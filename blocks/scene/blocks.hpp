@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/scene/json.hpp>
 #include <titop/graph/block.hpp>
 
@@ -11,8 +12,8 @@ namespace titop::scene {
 using WriteValue = std::function<Json(const Value&)>;
 using ReadValue = std::function<Value(const Place&)>;
 /// The name under which shared modal data stand in the file.
-using NameBody = std::function<std::string(const Block&)>;
-using FindBody = std::function<BlockPtr(const Place&)>;
+using NameBody = std::function<std::string(const ModalData&)>;
+using FindBody = std::function<FlexibleBody(const Place&)>;
 
 /// The fields of this block behind "name" and "type". Throws bad_value for a type of the user's
 /// own.
@@ -22,7 +23,7 @@ void write_block(const Block& block, const WriteValue& value, const NameBody& bo
 BlockPtr read_block(const Place& place, const ReadValue& value, const FindBody& body);
 
 /// Shared modal data.
-Json body_json(const Block& flexible_body);
-BlockPtr read_body(const Place& place);
+Json body_json(const ModalData& data);
+FlexibleBody read_body(const Place& place);
 
 }  // namespace titop::scene

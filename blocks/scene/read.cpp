@@ -34,7 +34,7 @@ class Reader {
     each(all.at("parameters"), [&](const Place& p) { read_parameter(p); });
     for (const std::string& name : all.at("bodies").keys()) {
       const Place body = all.at("bodies").at(name.c_str());
-      bodies_[name] = named(body, name, [&] { return scene::read_body(body); });
+      bodies_.insert_or_assign(name, named(body, name, [&] { return scene::read_body(body); }));
     }
     each(all.at("blocks"), [&](const Place& p) { read_block(p); });
     each(all.at("inputs"), [&](const Place& p) { read_input(p); });
@@ -210,7 +210,7 @@ class Reader {
 
   Graph* graph_ = nullptr;  ///< of the diagram, once it has a block or an input
   std::map<std::string, Param> parameters_;
-  std::map<std::string, BlockPtr> bodies_;
+  std::map<std::string, FlexibleBody> bodies_;
   std::map<std::string, int> nodes_, inputs_;
 };
 

@@ -64,10 +64,10 @@ class Writer {
 
   Json block(const Node& node) {
     Json json = {{"name", node.name}};
-    const auto body = [&](const Block& b) {
+    const auto body = [&](const ModalData& data) {
       const auto [at, is_new] =
-          body_names_.insert({&b, fmt::format("body{}", body_names_.size() + 1)});
-      if (is_new) bodies_[at->second] = scene::body_json(b);
+          body_names_.insert({&data, fmt::format("body{}", body_names_.size() + 1)});
+      if (is_new) bodies_[at->second] = scene::body_json(data);
       return at->second;
     };
     scene::write_block(
@@ -143,7 +143,7 @@ class Writer {
   }
 
   const Graph& g_;
-  std::map<const Block*, std::string> body_names_;
+  std::map<const ModalData*, std::string> body_names_;
   Json bodies_ = Json::object();
 };
 

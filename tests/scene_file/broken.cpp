@@ -81,6 +81,41 @@ TEST_CASE("what a program may have written by mistake") {
           "blocks[0].damping: found lists too deep to print, expected a number or");
 }
 
+TEST_CASE("values of modes and entries of an inertia are refused with their place") {
+  const std::string body =
+      R"("bodies": {"wing": {"omega": [2], "xi": [0], "L_P": [[1, 0, 0, 0, 0, 0]], "digits": 15,
+      "D_P": [[2, 0, 0, 0, 0, 0], [0, 2, 0, 0, 0, 0], [0, 0, 2, 0, 0, 0], [0, 0, 0, 1, 0, 0],
+              [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]], "children": []}})";
+  const auto with = [&](const std::string& block, const std::string& words) {
+    const std::string file = replaced(replaced(kGood, "\"bodies\": {}", body), "\"blocks\": [",
+                                      "\"blocks\": [{\"name\": \"A\", " + block + "}, ");
+    if (words.empty())
+      CHECK_NOTHROW(parse_scene(file, "cart.json"));
+    else
+      titop_test::check_refused([&] { parse_scene(file, "cart.json"); }, words);
+  };
+  const auto wing = [&](const std::string& values, const std::string& words) {
+    with(R"("type": "FlexibleBody", "body": "wing", )" + values, words);
+  };
+  wing(R"("omega": [{"mode": 1, "value": {"parameter": "k"}}])", "");
+  wing(R"("omega": [{"mode": 1, "value": -2}])", "blocks[0], A: mode 1 has omega -2");
+  wing(R"("xi": [{"mode": 2, "value": 0}])", "blocks[0], A: a value is given for mode 2 of 1");
+  wing(R"("xi": [{"mode": 1, "value": {"parameter": "q"}}])",
+       "blocks[0].xi[0].value.parameter: found \"q\"");
+  wing(R"("xi": [{"mode": 1, "value": 0}, {"mode": 1, "value": 0}])",
+       "blocks[0].xi[1].mode: found 1, expected a mode that no value before");
+  wing(R"("xi": [0.1])", "blocks[0].xi[0]: found 0.1, expected an object");
+  const auto rigid = [&](const std::string& inertia, const std::string& words) {
+    with(
+        R"("type": "RigidBody", "mass": 1, "PA": [0, 0, 0], "children": [], "inertia": )" + inertia,
+        words);
+  };
+  rigid(R"([1, 1, {"parameter": "k", "scale": 0.1}, 0, 0, 0])", "");
+  rigid(R"([1, 1, {"parameter": "k"}, 0, 0, 0])", "A: principal moments 1, 1 and 10");
+  rigid("[1, 2]", "blocks[0].inertia: found [1,2], expected three rows, or the six");
+  rigid("[1, 1, 1]", "blocks[0].inertia[0]: found 1, expected a list of 3 numbers");
+}
+
 TEST_CASE("numbers that make no block are refused with the block's name") {
   refused("\"mass\": 1", "\"mass\": -1", "cart.json: blocks[0], z: SpringMass has mass -1");
   const std::string body =
