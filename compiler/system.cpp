@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/parallel.hpp>
 #include <titop/compiler/solve/kernels.hpp>
@@ -104,12 +105,39 @@ MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
   return transfer_in<solve::Complex50>(d, s);
 }
 
-/// The coarsest precision whose rounding changes the outputs by no more than kEnough.
+/// In T, where double has no pivot; none where T has too few digits for it, or where the last place
+/// of the data decides all digits of the outputs, as at a pole.
+template <class T>
+std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Double s) {
+  constexpr double kNoDigit = 0.1;
+  try {
+    detail::Evaluation<T> point(d, solve::Scalar<T>::from(s), unit_inputs<T>(d));
+    const double rounding = point.losses().rounding;
+    const double in_double =
+        rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
+    if (rounding <= kEnough && in_double <= kNoDigit) return rounded<T>(point.outputs());
+  } catch (const Error&) {  // a pole of a block, or no pivot here either
+  }
+  return {};
+}
+
+/// The coarsest precision whose rounding changes the outputs by no more than kEnough. Grids lose
+/// more digits on the way than in the end: the last pivots of a wide front may have none left in
+/// double, far from any pole.
 MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
-  detail::Evaluation<Double> plain(d, s, unit_inputs<Double>(d));
-  const double lost = lost_by(plain);
-  if (lost <= kEnough) return rounded<Double>(plain.outputs());
-  return finer_transfer(d, s, plain, lost);
+  std::optional<detail::Evaluation<Double>> plain;
+  try {
+    plain.emplace(d, s, unit_inputs<Double>(d));
+  } catch (const Error& error) {
+    if (!error.has(Code::singular)) throw;
+    auto G = transfer_without_pivot<Extended>(d, s);
+    if (!G) G = transfer_without_pivot<solve::Complex50>(d, s);
+    if (!G) throw;
+    return *G;
+  }
+  const double lost = lost_by(*plain);
+  if (lost <= kEnough) return rounded<Double>(plain->outputs());
+  return finer_transfer(d, s, *plain, lost);
 }
 
 }  // namespace

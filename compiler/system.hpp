@@ -60,7 +60,8 @@ enum class Precision {
   extended,  ///< long double: 19 digits on x86
   digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower: an oracle
   as_needed  ///< double, and finer where the weakest pivot has lost more than four digits: refined
-             ///< or twofold if that settles, else 50 digits
+             ///< or twofold if that settles, else 50 digits; where double has no pivot at all
+             ///< though s is no pole, as in wide grids, long double or 50 digits
 };
 
 /// Values of parameters by name: {{"k1", 12.0}, {"angle", 0.3}}.

@@ -286,7 +286,8 @@ TEST_CASE("precision: refinement is not taken in by steps that are small since t
       }
   all.check();
   CHECK(all.twofold.refused >= 900);
-  CHECK(all.as_needed.right >= 500);  // the others have no pivot in double
+  // 306 have no pivot in double, and nearly all of these an answer in more digits.
+  CHECK(all.as_needed.right >= 1100);
 }
 
 TEST_CASE("precision: what a precision refuses names another one") {
