@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 
 constexpr double kCancelled = 1e-3;  ///< of the terms
 constexpr double kNoise = 1e3;       ///< times one sample of rounding: what may be nothing else
-constexpr double kFinest = 1e-30;    ///< of its neighbours: what 50 digits may leave of a 0
+constexpr double kFinest = 1e-24;    ///< of its neighbours: what 32 digits may leave of a 0
 /// Of its neighbours: the terms of a 0 that one order of sums hits exactly and another to 1e-17.
 constexpr double kHitBy = 1e-3;
 
@@ -74,7 +74,7 @@ MatrixXd paths(const StateSpace& m) {
   return result;
 }
 
-/// What 50 digits leave of a 0 counts as one: of blocks that are 0 in the other transfers.
+/// What 32 digits or 50 leave of a 0 counts as one: of blocks that are 0 in the other transfers.
 void forgive_zeros(const MatrixXd& other, MatrixXd& size) {
   const Eigen::VectorXd output = size.rowwise().maxCoeff();
   const Eigen::RowVectorXd input = size.colwise().maxCoeff();
