@@ -27,15 +27,16 @@ struct Certificate {
   double dense_against_factors = -1;
   /// What writing the dense model down costs: the largest change of an output that its rounding
   /// makes, over the largest size of that output, at s far below, at and above the blocks'
-  /// frequencies (residual of the factors' states in the dense model, carried to the outputs by the
-  /// factors). By inputs of one unit: random ones, three translations or rotations of a port
-  /// together; from the ninth unit on some share a column. Outputs likewise; what is 0 but for
-  /// rounding, or 1e-14 of what stands in its row and column (what turned frames leave of a 0),
-  /// counts beside its neighbours. The same in all units of inputs and outputs; in other units of
-  /// states and time other numbers are written, and round differently. Above 1e-9 and
-  /// up to 100 states it is at most 30 times what the model's own answers are off by, as the
-  /// residual itself can round where a point has hardly any mass. Negative where no dense model has
-  /// been written. Above 1e-9 the log warns, and names output and input (up to eight units).
+  /// frequencies, at and below the slowest mode that the outputs show (residual of the factors'
+  /// states in the dense model, carried to the outputs by the factors). By inputs of one unit:
+  /// random ones, three translations or rotations of a port together; from the ninth unit on some
+  /// share a column. Outputs likewise; what is 0 but for rounding, or 1e-14 of what stands in its
+  /// row and column (what turned frames leave of a 0), counts beside its neighbours. The same in
+  /// all units of inputs and outputs; in other units of states and time other numbers are written,
+  /// and round differently. Above 1e-9 and up to 100 states it is at most 30 times what the model's
+  /// own answers are off by, as the residual itself can round where a point has hardly any mass.
+  /// Negative where no dense model has been written. Above 1e-9 the log warns, and names output and
+  /// input (up to eight units).
   double dense_error = -1;
   std::complex<double> dense_error_s;  ///< where it is largest
   /// The same over the size of the output at that same s: an acceleration falls with s^2 far below

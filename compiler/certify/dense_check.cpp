@@ -105,9 +105,52 @@ constexpr double kNoise = 1e3;  ///< times the factors' own rounding: what may b
 /// digits in the factors, but stands for none.
 constexpr double kOfNeighbours = 1e-14;
 
-/// Where the dense model is tried: far below, at and above the blocks' frequencies, and below the
-/// slowest of them, where that is lower still.
-std::vector<T> tried(const SystemData& d) {
+/// Largest entries of the outputs of one unit, column by column.
+MatrixXd by_unit(const solve::RowMatrix<T>& y, const std::vector<int>& units) {
+  MatrixXd result(std::ssize(units), y.cols());
+  for (Index i = 0, first = 0; i < result.rows(); first += units[at(i++)])
+    result.row(i) = y.middleRows(first, units[at(i)]).cwiseAbs().colwise().maxCoeff();
+  return result;
+}
+
+/// Powers of s by which outputs fall from one decade to the next: whole ones, all of them, below
+/// all modes that show.
+bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers) {
+  constexpr double kWhole = 0.03;
+  const MatrixXd p = (here.array() / below.array()).log10();
+  const MatrixXd whole = p.array().round();
+  const auto shows = here.array() > kUnderflow && below.array() > kUnderflow;
+  const bool same =
+      whole.size() == powers.size() &&
+      (!shows || ((p - whole).array().abs() < kWhole && (whole - powers).array() == 0)).all();
+  powers = whole;
+  return same;
+}
+
+/// About the slowest mode that the outputs show, from s downwards: a row of slow bodies bends more
+/// slowly than any of them by itself. s itself where that is not to be seen: an output is rounding,
+/// or the factors have no digits so far below. O(bodies) per decade.
+T slowest_shown(const SystemData& d, const T s, const solve::RowMatrix<T>& u,
+                const std::vector<int>& units) {
+  constexpr int kDecades = 10;
+  try {
+    T at = s;
+    MatrixXd here = by_unit(Evaluation<T>(d, at, u).outputs(), units), powers;
+    for (int k = 1; k <= kDecades; ++k) {
+      at *= 0.1;
+      MatrixXd below = by_unit(Evaluation<T>(d, at, u).outputs(), units);
+      if (whole_powers(here, below, powers)) return 100.0 * at;  // two decades without a mode
+      here = std::move(below);
+    }
+  } catch (const Error&) {
+  }
+  return s;
+}
+
+/// Where the dense model is tried: far below, at and above the blocks' frequencies; below the
+/// slowest of them, and at and below the slowest mode that shows, where those are lower still.
+std::vector<T> tried(const SystemData& d, const solve::RowMatrix<T>& u,
+                     const std::vector<int>& units) {
   const T s = pick_s(d);
   std::vector<T> result = {1e-4 * s, 1e-2 * s, s, 1e2 * s};
   double slowest = kInfinity;
@@ -115,6 +158,11 @@ std::vector<T> tried(const SystemData& d) {
     if (const double w = frequency_of(d.numbers.blocks[at(i)]->A); w > 0)
       slowest = std::min(slowest, w);
   if (slowest < 1e-2 * std::abs(s)) result.push_back(1e-2 * slowest / std::abs(s) * s);
+  const T shown = slowest_shown(d, s, u, units);
+  if (std::abs(shown) < 2e-2 * std::abs(s)) {
+    result.push_back(shown);
+    result.push_back(1e-2 * shown);
+  }
   return result;
 }
 
@@ -134,14 +182,6 @@ solve::RowMatrix<T> tried_inputs(const StateSpace& m, const std::vector<int>& un
       u(first, k % columns) = scale * T(random.next(), random.next());
   }
   return u;
-}
-
-/// Largest entries of the outputs of one unit, column by column.
-MatrixXd by_unit(const solve::RowMatrix<T>& y, const std::vector<int>& units) {
-  MatrixXd result(std::ssize(units), y.cols());
-  for (Index i = 0, first = 0; i < result.rows(); first += units[at(i++)])
-    result.row(i) = y.middleRows(first, units[at(i)]).cwiseAbs().colwise().maxCoeff();
-  return result;
 }
 
 /// Of outputs of one unit, by columns of the inputs.
@@ -178,7 +218,7 @@ std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
 /// the outputs by the factors.
 std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve::RowMatrix<T>& u,
                            const Measure& units) {
-  const std::vector<T> list = tried(d);
+  const std::vector<T> list = tried(d, u, units.rows);
   std::deque<Evaluation<T>> points;
   std::vector<solve::RowMatrix<T>> x;
   for (const T s : list) {

@@ -277,3 +277,32 @@ TEST_CASE("dense export: what is no model of the system is refused by name") {
   CHECK(says(nan, Code::not_finite, {"C of the model has nan at x, z."}));
   CHECK(says(nan, Code::not_finite, {"D of the model has nan at a, u", "System::write"}));
 }
+
+TEST_CASE("dense export: a row of stiff bodies whose slow modes suffer is warned of") {
+  // No body has a mode below 80 rad/s by itself; ten of them in a row bend at 0.5 rad/s, six
+  // decades below the fastest of their modes.
+  Diagram d{"row"};
+  const auto F = d.input("F", 6);
+  const FlexibleBody beam = Beam{.length = 2.0,
+                                 .section = rectangle(0.06, 0.04),
+                                 .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
+                                 .elements = 8,
+                                 .modes = {.kept = 20, .xi = {0.005}}};
+  std::vector<FlexibleBody::Handle> b;
+  for (int i = 0; i < 10; ++i) {
+    b.push_back(d.add(fmt::format("b{}", i + 1), beam));
+    i == 0 ? ground(b[0]) : mount(b.back(), b[static_cast<std::size_t>(i) - 1].child);
+  }
+  b.back().child.force += F;
+  d.output("a", 6) = b.back().child.accel;
+  const System system = compile(d, {.minimize_up_to = 0});
+  const StateSpace& model = system.state_space();
+  const Certificate c = system.certificate();
+  const std::complex<double> s = c.dense_error_where_small_s;
+  CHECK(std::abs(s) < 1);  // at its slow modes, or below them
+  const Eigen::MatrixXcd exact = system.transfer(s, Precision::digits50);
+  const double off = (model.transfer(s) - exact).norm() / exact.norm();
+  CHECK(off >= 1e-6);
+  CHECK(off <= 100 * c.dense_error_where_small);
+  CHECK(system.log().find("where outputs are small, A, B, C, D keep") != std::string::npos);
+}
