@@ -14,7 +14,9 @@ using Eigen::MatrixXd;
 
 constexpr double kCancelled = 1e-3;  ///< of the terms
 constexpr double kNoise = 1e3;       ///< times one sample of rounding: what may be nothing else
-constexpr double kFinest = 1e-24;    ///< of its neighbours: what 32 digits may leave of a 0
+/// Of its neighbours: 32 digits may leave 1e-26 of a 0, which is then 1e-8 of this, as much as is
+/// allowed; double leaves 1e-17.
+constexpr double kFinest = 1e-18;
 /// Of its neighbours: the terms of a 0 that one order of sums hits exactly and another to 1e-17.
 constexpr double kHitBy = 1e-3;
 
