@@ -109,7 +109,7 @@ MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
 /// of the data decides all digits of the outputs, as at a pole.
 template <class T>
 std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Double s) {
-  constexpr double kNoDigit = 0.1;
+  constexpr double kNoDigit = 0.1;  // of the outputs, by the last place of the data
   try {
     detail::Evaluation<T> point(d, solve::Scalar<T>::from(s), unit_inputs<T>(d));
     const double rounding = point.losses().rounding;

@@ -116,7 +116,7 @@ MatrixXd by_unit(const solve::RowMatrix<T>& y, const std::vector<int>& units) {
 /// Powers of s by which outputs fall from one decade to the next: whole ones, all of them, below
 /// all modes that show.
 bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers) {
-  constexpr double kWhole = 0.03;
+  constexpr double kWhole = 0.03;  // a mode a decade off changes a size by some 1 %: 0.004
   const MatrixXd p = (here.array() / below.array()).log10();
   const MatrixXd whole = p.array().round();
   const auto shows = here.array() > kUnderflow && below.array() > kUnderflow;
@@ -132,7 +132,7 @@ bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers)
 /// or the factors have no digits so far below. O(bodies) per decade.
 T slowest_shown(const SystemData& d, const T s, const solve::RowMatrix<T>& u,
                 const std::vector<int>& units) {
-  constexpr int kDecades = 10;
+  constexpr int kDecades = 10;  // below them double has no digits of what is slow
   try {
     T at = s;
     MatrixXd here = by_unit(Evaluation<T>(d, at, u).outputs(), units), powers;
