@@ -107,7 +107,8 @@ struct Builder {
     A = moved(A, true, true), B = moved(B, true, false), C = moved(C, false, true);
     for (const StateMap::Row& row : d.states.dependent()) {
       A.emplace_back(place[at(row.state)], place[at(row.state)], -1.0);
-      for (const auto& [from, factor] : row.of) A.emplace_back(place[at(row.state)], from, factor);
+      for (const auto& [of, factor] : row.of)
+        A.emplace_back(place[at(row.state)], place[at(of)], factor);
       for (int j = 0; j < d.states.by_input().cols(); ++j)
         if (const double r = d.states.by_input()(row.state, j); r != 0)
           B.emplace_back(place[at(row.state)], j, r);

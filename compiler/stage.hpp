@@ -84,7 +84,8 @@ struct Released {
 };
 
 /// A state that follows from others, because chains are closed or because it integrates what other
-/// states hold: x(node, state) = sum of factor * x(node, state).
+/// states hold: x(node, state) = sum of factor * x(node, state). What stands on the right is
+/// independent, or follows from others before it in the list.
 struct Dependent {
   struct Share {
     int node = -1, state = -1;
@@ -110,7 +111,7 @@ struct Stage {
   bool chained = false;                  ///< after chains: some chain is closed
   bool closes = false;                ///< after chains: chains close, or Integrators may hold twins
   std::vector<Released> released;     ///< after chains
-  std::vector<Dependent> dependents;  ///< after close: by node and state; after solve: all
+  std::vector<Dependent> dependents;  ///< after close: of chains, in turn; after solve: all
   std::vector<Dependent> before;      ///< those of the system that `update` starts from
 };
 

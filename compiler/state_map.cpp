@@ -20,20 +20,23 @@ void add_product(MatrixXd& to, const MatrixXd& M, const MatrixXd& R) {
 
 /// M T by columns.
 MatrixXd times_map(const MatrixXd& M, const StateMap& map) {
-  MatrixXd result = M(Eigen::all, map.kept());
-  MatrixXd size = result.cwiseAbs();
-  std::vector<char> touched(at(map.order()), 0);
-  for (const StateMap::Row& row : map.dependent())
-    for (const auto& [place, factor] : row.of) {
-      result.col(place) += factor * M.col(row.state);
-      size.col(place) += std::abs(factor) * M.col(row.state).cwiseAbs();
-      touched[at(place)] = 1;
-    }
-  for (Index j = 0; j < result.cols(); ++j)
+  MatrixXd all = M, size = M.cwiseAbs();
+  std::vector<char> touched(at(M.cols()), 0);
+  const auto clean = [&](Index j) {
     if (touched[at(j)])
-      result.col(j) =
-          (result.col(j).array().abs() <= kRounding * size.col(j).array()).select(0, result.col(j));
-  return result;
+      all.col(j) =
+          (all.col(j).array().abs() <= kRounding * size.col(j).array()).select(0, all.col(j));
+  };
+  for (auto row = map.dependent().rbegin(); row != map.dependent().rend(); ++row) {
+    clean(row->state);
+    for (const auto& [of, factor] : row->of) {
+      all.col(of) += factor * all.col(row->state);
+      size.col(of) += std::abs(factor) * size.col(row->state);
+      touched[at(of)] = 1;
+    }
+  }
+  for (const int j : map.kept()) clean(j);
+  return all(Eigen::all, map.kept());
 }
 
 }  // namespace
@@ -43,19 +46,17 @@ StateMap::StateMap(const std::vector<Dependent>& dependents, const Layout& l) {
   Map map;
   std::vector<char> leaves(n, 0);
   for (const Dependent& d : dependents) leaves[at(l.state_first[at(d.node)] + d.state)] = 1;
-  std::vector<int> place(n, -1);
   map.names.reserve(n - dependents.size());
   map.kept.reserve(n - dependents.size());
   for (std::size_t i = 0; i < n; ++i) {
     if (leaves[i]) continue;
-    place[i] = static_cast<int>(map.kept.size());
     map.kept.push_back(static_cast<int>(i));
     map.names.push_back(l.states[i]);
   }
   for (const Dependent& d : dependents) {
     Row row{l.state_first[at(d.node)] + d.state, {}};
     for (const Dependent::Share& s : d.of)
-      row.of.emplace_back(place[at(l.state_first[at(s.node)] + s.state)], s.factor);
+      row.of.emplace_back(l.state_first[at(s.node)] + s.state, s.factor);
     map.rows.push_back(std::move(row));
   }
   map_ = std::make_shared<const Map>(std::move(map));

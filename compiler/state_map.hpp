@@ -31,14 +31,15 @@ class StateMap {
   const std::vector<std::string>& names() const { return map_->names; }
   int order() const { return static_cast<int>(map_->kept.size()); }
 
-  /// One dependent state: sum of factor * x(place).
+  /// One dependent state: sum of factor * state, all among the blocks' states. A row may read what
+  /// rows before it give.
   struct Row {
-    int state = -1;  ///< among the blocks' states
+    int state = -1;
     std::vector<std::pair<int, double>> of;
   };
   const std::vector<Row>& dependent() const { return map_->rows; }
 
-  /// T x: blocks' states x columns. O(entries of T) per column.
+  /// T x: blocks' states x columns. O(entries of the rows) per column.
   template <class Matrix>
   Matrix expanded(const Matrix& x) const {
     if (trivial()) return x;
@@ -48,8 +49,8 @@ class StateMap {
       all.row(kept[i]) = x.row(static_cast<Eigen::Index>(i));
     for (const Row& row : rows) {
       all.row(row.state).setZero();
-      for (const auto& [place, factor] : row.of)
-        all.row(row.state) += typename Matrix::Scalar(factor) * x.row(place);
+      for (const auto& [of, factor] : row.of)
+        all.row(row.state) += typename Matrix::Scalar(factor) * all.row(of);
     }
     return all;
   }
@@ -79,7 +80,7 @@ class StateMap {
     return all(map_->kept, Eigen::all);
   }
   /// The model of all blocks' states becomes the model of the kept ones; entries that cancel to
-  /// rounding (64 units) are 0. O(order * entries of T).
+  /// rounding (64 units) are 0. O(order * entries of the rows).
   void reduce(StateSpace& model) const;
 
  private:

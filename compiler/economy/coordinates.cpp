@@ -129,25 +129,22 @@ void find_kept(Raw& raw, const StateMap& states) {
   }
   std::vector<char> leaves(at(raw.all()), 0);
   for (const StateMap::Row& row : states.dependent()) leaves[at(coordinate[at(row.state)])] = 1;
-  std::vector<int> place(at(raw.all()), -1);
   for (Index i = 0; i < raw.all(); ++i)
-    if (!leaves[at(i)]) {
-      place[at(i)] = static_cast<int>(raw.kept.size());
-      raw.kept.push_back(static_cast<int>(i));
-    }
+    if (!leaves[at(i)]) raw.kept.push_back(static_cast<int>(i));
   if (states.trivial()) return;
   raw.T = MatrixXd::Zero(raw.all(), static_cast<Index>(raw.kept.size()));
   for (std::size_t k = 0; k < raw.kept.size(); ++k) raw.T(raw.kept[k], static_cast<Index>(k)) = 1;
   for (const StateMap::Row& row : states.dependent()) {
     const int i = coordinate[at(row.state)];
     if (raw.pairs.rate[at(i)] != row.state) continue;  // positions follow the same map
-    for (const auto& [from, factor] : row.of) {
-      const int j = place[at(coordinate[at(states.kept()[at(from)])])];
-      if (j < 0)
-        refuse(fmt::format("{} follows from {} at one level only", raw.name(i),
-                           states.names()[at(from)]));
-      raw.T(i, j) = factor;
+    for (const auto& [of, factor] : row.of) {
+      const int j = coordinate[at(of)];
+      if (leaves[at(j)])  // and is not known yet: its rate does not leave
+        refuse(
+            fmt::format("{} follows from {} at one level only", raw.name(i), raw.m.states[at(of)]));
+      raw.T.row(i) += factor * raw.T.row(j);
     }
+    leaves[at(i)] = 0;
   }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <titop/compiler/passes/close/lines.hpp>
+#include <titop/compiler/passes/close/redundant.hpp>
 #include <titop/compiler/passes/close/still.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/passes/union_find.hpp>
@@ -227,11 +228,11 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
   };
   for (Component& c : components(lines, classify)) {
     const Factors factors = scale(c.relations);
-    MatrixXd known(c.relations.R.cols(), 0);
+    const Redundancy found = redundancy(c.relations);
     for (std::size_t i = 0; i < c.lines.size(); ++i) {
       const Line& line = lines[at(c.lines[i])];
       const auto rows = static_cast<Index>(line.unit.size());
-      const Redundant r = redundant(c.relations.R.middleRows(c.first_row[i], rows), known);
+      const Redundant& r = found.blocks[i];
       const std::string name =
           name_of(stage.graph, stage.graph.equations[at(line.equation)].target);
       if (r.doubtful())
@@ -243,8 +244,7 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
                          name, rows - r.directions.rows(), rows, r.weakest, r.dropped,
                          kRankTolerance)});
       if (r.directions.rows() == 0) continue;
-      const MatrixXd directions =
-          orthonormal_rows(r.directions * factors.row.segment(c.first_row[i], rows).asDiagonal());
+      const MatrixXd directions = orthonormal_rows(r.directions * factors.row[i].asDiagonal());
       stage.notes.push_back(
           {Note::Kind::info, "chains",
            fmt::format("{}: {} of {} closing equations are redundant{}; internal forces there are "
@@ -252,7 +252,8 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
                        name, directions.rows(), rows, direction_names(directions))});
       release(stage, line.equation, directions);
     }
-    add_held(c.scalars, known, held);
+    for (const int j : found.held)
+      if (c.scalars[at(j)].column.kind != Column::Kind::prescribed) held.insert(c.scalars[at(j)]);
   }
   return held;
 }

@@ -59,15 +59,14 @@ struct Closer {
           preferred.push_back(i);
       const Independent found = independent(std::move(c.relations), preferred);
       warn(c, lines, found, level);
-      for (std::size_t d = 0; d < found.dependent.size(); ++d) {
-        const Scalar& s = c.scalars[at(found.dependent[d])];
+      for (const Independent::Follows& f : found.follow) {
+        const Scalar& s = c.scalars[at(f.dependent)];
         const auto [node, index] = state(s, level);
         Dependent dependent{node, index};
-        for (std::size_t i = 0; i < found.independent.size(); ++i)
-          if (const double t = found.T(static_cast<Index>(d), static_cast<Index>(i)); t != 0) {
-            const auto [of, at_index] = state(c.scalars[at(found.independent[i])], level);
-            dependent.of.push_back({of, at_index, t});
-          }
+        for (const auto& [independent, factor] : f.of) {
+          const auto [of, at_index] = state(c.scalars[at(independent)], level);
+          dependent.of.push_back({of, at_index, factor});
+        }
         dependents.push_back(std::move(dependent));
         if (level == Level::position) positions.push_back(s);
       }
@@ -87,7 +86,10 @@ struct Closer {
   }
 };
 
-std::string list(const Graph& g, const std::vector<Dependent>& dependents) {
+std::string list(const Graph& g, std::vector<Dependent> dependents) {
+  std::sort(dependents.begin(), dependents.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.node, a.state) < std::pair(b.node, b.state);
+  });
   std::vector<std::string> names;
   for (const Dependent& d : dependents) {
     const Node& node = g.nodes[at(d.node)];
@@ -131,9 +133,6 @@ Stage close(Stage stage) {
                      "{:.0e}): order {}, or {} if that were taken for {}",
                      d.joints, d.pivot, kRankTolerance, order, d.taken ? order + 2 : order - 2,
                      d.taken ? "nothing" : "a constraint")});
-  std::sort(stage.dependents.begin(), stage.dependents.end(), [](const auto& a, const auto& b) {
-    return std::pair(a.node, a.state) < std::pair(b.node, b.state);
-  });
   if (!stage.dependents.empty())
     stage.notes.push_back({Note::Kind::info, "close",
                            fmt::format("{} states follow from the others: {}",

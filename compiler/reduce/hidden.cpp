@@ -61,9 +61,16 @@ Followers::Followers(const Skeleton& k, const SystemData& d)
     if (layout_.state_first[at(b.node)] >= 0)
       before_[at(layout_.state_first[at(b.node)] + b.state)] = 1;
   for (const Dependent& dep : k.stage.dependents) {
-    Follower& f = of_state_[layout_.state_first[at(dep.node)] + dep.state];
-    for (const Dependent::Share& s : dep.of)
-      f.of[layout_.state_first[at(s.node)] + s.state] = s.factor;
+    std::map<int, double> of;
+    for (const Dependent::Share& s : dep.of) {
+      const int state = layout_.state_first[at(s.node)] + s.state;
+      if (const auto found = of_state_.find(state); found == of_state_.end())
+        of[state] += s.factor;
+      else
+        for (const auto& [independent, factor] : found->second.of)
+          of[independent] += s.factor * factor;
+    }
+    of_state_[layout_.state_first[at(dep.node)] + dep.state].of = std::move(of);
   }
 }
 

@@ -108,19 +108,16 @@ class Reducer {
 
   /// States that nothing reads follow from nothing: 0.
   void leave_out(const StateMarks& states) {
-    const auto is_before = [](const Dependent& a, const Dependent& b) {
-      return std::pair(a.node, a.state) < std::pair(b.node, b.state);
-    };
     std::vector<Dependent>& all = k_.stage.dependents;
+    std::set<std::pair<int, int>> left;
+    for (const Dependent& d : all) left.emplace(d.node, d.state);
     std::vector<std::string> names;
     for (const int node : d_.layout().state_nodes)
       for (int i = 0; i < d_.numbers.blocks[at(node)]->A.rows(); ++i) {
         const int state = d_.layout().state_first[at(node)] + i;
-        const Dependent leaves{node, i, {}};
-        const auto place = std::lower_bound(all.begin(), all.end(), leaves, is_before);
-        if (!states[at(state)] || (place != all.end() && !is_before(leaves, *place))) continue;
+        if (!states[at(state)] || left.contains({node, i})) continue;
         names.push_back(d_.layout().states[at(state)]);
-        all.insert(place, leaves);
+        all.push_back({node, i, {}});
       }
     if (names.empty()) return;
     for (Dependent& other : all)  // read by nothing as well

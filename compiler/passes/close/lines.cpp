@@ -50,19 +50,26 @@ Component component(const std::vector<Line>& lines, std::vector<int> own,
     c.relations.role.push_back(meaning.role);
     c.relations.weight(i) = meaning.weight;
   }
-  int rows = 0, units = 0;
+  int units = 0;
   for (const int l : c.lines) {
-    c.first_row.push_back(rows);
-    rows += static_cast<int>(lines[at(l)].unit.size());
-    for (const int u : lines[at(l)].unit) c.relations.unit.push_back(units + u);
+    std::map<int, std::pair<const Eigen::MatrixXd*, Index>> entries;  // column: where it is from
+    for (const auto& [column, matrix] : lines[at(l)].form)
+      for (Index j = 0; j < matrix.cols(); ++j)
+        if (const auto found = place.find({column, static_cast<int>(j)});
+            found != place.end() && !matrix.col(j).isZero(0))
+          entries.try_emplace(found->second, &matrix, j);
+    RowBlock block;
+    block.M.resize(static_cast<Index>(lines[at(l)].unit.size()),
+                   static_cast<Index>(entries.size()));
+    for (const auto& [at_place, from] : entries) {
+      block.M.col(static_cast<Index>(block.columns.size())) = from.first->col(from.second);
+      block.columns.push_back(at_place);
+    }
+    c.relations.blocks.push_back(std::move(block));
+    c.relations.unit.emplace_back();
+    for (const int u : lines[at(l)].unit) c.relations.unit.back().push_back(units + u);
     units += 3;
   }
-  c.relations.R = Eigen::MatrixXd::Zero(rows, static_cast<Index>(scalars.size()));
-  for (std::size_t i = 0; i < c.lines.size(); ++i)
-    for (const auto& [column, matrix] : lines[at(c.lines[i])].form)
-      for (Index j = 0; j < matrix.cols(); ++j)
-        if (const auto found = place.find({column, static_cast<int>(j)}); found != place.end())
-          c.relations.R.col(found->second).segment(c.first_row[i], matrix.rows()) += matrix.col(j);
   return c;
 }
 

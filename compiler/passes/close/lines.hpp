@@ -22,10 +22,9 @@ struct Scalar {
   auto operator<=>(const Scalar&) const = default;
 };
 
-/// Lines that share columns, as a matrix.
+/// Lines that share columns, as relations: a block per line.
 struct Component {
   std::vector<int> lines = {};
-  std::vector<int> first_row = {};  ///< per line
   std::vector<Scalar> scalars = {};
   Relations relations = {};
 };

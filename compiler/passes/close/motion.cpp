@@ -5,6 +5,8 @@
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <unordered_map>
+#include <utility>
 
 namespace titop::passes::closing {
 namespace {
@@ -13,6 +15,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+constexpr int kTreeWays = 16;  ///< what a search for a shorter way may cost, in the tree's
+constexpr int kNear = 40;      ///< a way of fewer edges is looked for first: a bay of a ladder
 
 bool has_orthonormal_rows(const MatrixXd& m) {
   return m.rows() <= m.cols() &&
@@ -144,7 +149,9 @@ void Motion::plant(Ground ground) {
     join(e);
     if (edges_[at(e)].one_way && edges_[at(e)].from != ground_) one_way[at(edges_[at(e)].to)] = 1;
   }
+  int turn = 0;
   const auto take = [&](Tie& tie) {
+    tie.turn = turn++;
     auto edge = edge_of(tie);
     // A point that only its own body can place is never the way to anything else.
     tie.closes = !edge || one_way[at(edge->to)] || one_way[at(edge->from)] ||
@@ -157,7 +164,11 @@ void Motion::plant(Ground ground) {
     if (ground == Ground::by_name || !tie.points.empty()) take(tie);
   for (Tie& tie : ties_)
     if (ground == Ground::last && tie.points.empty()) take(tie);
+  shortcut_.resize(at(ground_) + 1);
+  for (const Tie& tie : ties_)
+    if (tie.closes) plant_shortcut(tie, one_way);
   up_.assign(at(ground_) + 1, {});
+  below_.resize(at(ground_) + 1);
   depth_.assign(at(ground_) + 1, -1);
   root_.assign(at(ground_) + 1, -1);
   std::vector<int> starts{ground_};
@@ -175,6 +186,7 @@ void Motion::plant(Ground ground) {
         const int other = edge.from == p ? edge.to : edge.from;
         if (depth_[at(other)] >= 0) continue;
         up_[at(other)] = edge.from == p ? edge : reversed(edge);
+        below_[at(p)].push_back(other);
         depth_[at(other)] = depth_[at(p)] + 1, root_[at(other)] = start;
         queue.push_back(other);
       }
@@ -189,19 +201,95 @@ int Motion::meeting(int a, int b) const {
   return a;
 }
 
-bool Motion::rigid_between(int point, int above) const {
-  for (; point != above; point = up_[at(point)].from)
-    if (!up_[at(point)].rigid) return false;
-  return true;
+Motion::Way Motion::up_from(int point, int above) const {
+  Way way;
+  for (; point != above && depth_[at(point)] > 0; point = up_[at(point)].from)
+    way.edges.push_back(up_[at(point)]);
+  way.to = point;
+  return way;
 }
 
-MatrixXd Motion::walk(Form& form, MatrixXd factor, int point, int above, MatrixXd* sizes) const {
-  while (point != above && depth_[at(point)] > 0) {
-    const Edge& e = up_[at(point)];
+bool Motion::Way::rigid() const {
+  return std::all_of(edges.begin(), edges.end(), [](const Edge& e) { return e.rigid; });
+}
+
+/// Only a tie that leaves nothing free: its free angle would be one more unknown.
+void Motion::plant_shortcut(const Tie& tie, const std::vector<char>& one_way) {
+  if (tie.S.rows() != tie.S.cols()) return;
+  auto edge = edge_of(tie);
+  if (!edge || one_way[at(edge->to)] || one_way[at(edge->from)] || edge->to == edge->from) return;
+  if (edge->from != ground_) shortcut_[at(edge->from)].push_back({tie.turn, reversed(*edge)});
+  shortcut_[at(edge->to)].push_back({tie.turn, std::move(*edge)});
+}
+
+std::vector<int> Motion::shorter(int a, int b, int turn, int length) const {
+  std::unordered_map<int, int> before[2] = {{{a, a}}, {{b, b}}};  // on the way back to that end
+  std::vector<int> front[2] = {{a}, {b}};
+  int left = kTreeWays * length;  // edges that may be looked at
+  for (int levels = 0; levels < length - 1; ++levels) {
+    const int side = front[0].size() <= front[1].size() ? 0 : 1;
+    std::vector<int> next;
+    int met = -1;
+    const auto reach = [&](int from, int to) {
+      --left;
+      if (met >= 0 || !before[side].try_emplace(to, from).second) return;
+      next.push_back(to);
+      if (before[1 - side].contains(to)) met = to;
+    };
+    for (const int p : front[side]) {
+      if (static_cast<int>(below_[at(p)].size() + shortcut_[at(p)].size()) >= left) return {};
+      if (depth_[at(p)] > 0) reach(p, up_[at(p)].from);
+      for (const int q : below_[at(p)]) reach(p, q);
+      for (const Shortcut& s : shortcut_[at(p)])
+        if (s.turn < turn) reach(p, s.edge.from);
+    }
+    if (met >= 0) {
+      std::vector<int> way{met};
+      while (way.back() != a) way.push_back(before[0].at(way.back()));
+      std::reverse(way.begin(), way.end());
+      while (way.back() != b) way.push_back(before[1].at(way.back()));
+      return way;
+    }
+    if (next.empty()) return {};
+    front[side] = std::move(next);
+  }
+  return {};
+}
+
+Motion::Edge Motion::edge_between(int point, int next, int turn) const {
+  if (depth_[at(point)] > 0 && up_[at(point)].from == next) return up_[at(point)];
+  if (depth_[at(next)] > 0 && up_[at(next)].from == point) return reversed(up_[at(next)]);
+  return std::find_if(shortcut_[at(point)].begin(), shortcut_[at(point)].end(),
+                      [&](const Shortcut& s) { return s.turn < turn && s.edge.from == next; })
+      ->edge;
+}
+
+std::pair<Motion::Way, Motion::Way> Motion::ways(const Tie& tie) const {
+  const int a = tie.target, b = tie.points.empty() ? ground_ : tie.points.begin()->first;
+  if (tie.points.size() > 1) return {up_from(a, -1), up_from(b, -1)};
+  std::vector<int> way = shorter(a, b, tie.turn, kNear);
+  if (way.empty()) {
+    const int top = meeting(a, b);
+    if (top < 0) return {up_from(a, -1), up_from(b, -1)};
+    way = shorter(a, b, tie.turn, depth_[at(a)] + depth_[at(b)] - 2 * depth_[at(top)]);
+    if (way.empty()) return {up_from(a, top), up_from(b, top)};
+  }
+  const auto nearest = std::min_element(way.begin(), way.end(), [&](int p, int q) {
+    return std::pair(p != ground_, depth_[at(p)]) < std::pair(q != ground_, depth_[at(q)]);
+  });
+  Way there{*nearest}, back{*nearest};
+  for (auto p = way.begin(); p != nearest; ++p)
+    there.edges.push_back(edge_between(*p, *(p + 1), tie.turn));
+  for (auto p = way.end() - 1; p != nearest; --p)
+    back.edges.push_back(edge_between(*p, *(p - 1), tie.turn));
+  return {std::move(there), std::move(back)};
+}
+
+MatrixXd Motion::walk(Form& form, MatrixXd factor, const Way& way, MatrixXd* sizes) const {
+  for (const Edge& e : way.edges) {
     add(form, factor, e.own);
     if (e.from == ground_) return MatrixXd(factor.rows(), 0);
     factor = factor * e.R;
-    point = e.from;
     if (sizes && sizes->cols() == factor.cols()) *sizes = sizes->cwiseMax(factor.cwiseAbs());
   }
   return factor;
@@ -214,7 +302,8 @@ void Motion::add_root(Form& form, const MatrixXd& factor, int root) const {
 Form Motion::position(int channel) const {
   Form form;
   const int size = g_.channels[at(channel)].size;
-  add_root(form, walk(form, MatrixXd::Identity(size, size), channel, -1), root_[at(channel)]);
+  add_root(form, walk(form, MatrixXd::Identity(size, size), up_from(channel, -1)),
+           root_[at(channel)]);
   return form;
 }
 
@@ -236,61 +325,63 @@ std::vector<char> Motion::at_rest(const std::function<bool(const Column&, int)>&
   return result;
 }
 
-void Motion::list_ties(int point, int above, std::vector<int>& equations) const {
-  for (; point != above && depth_[at(point)] > 0; point = up_[at(point)].from)
-    if (up_[at(point)].equation >= 0) equations.push_back(up_[at(point)].equation);
+MatrixXd Motion::less_angles(MatrixXd gap, const Form& form) {
+  MatrixXd free(gap.rows(), 0);
+  for (const auto& [column, matrix] : form)
+    if (column.kind == Column::Kind::angle) {
+      free.conservativeResize(gap.rows(), free.cols() + matrix.cols());
+      free.rightCols(matrix.cols()) = matrix;
+    }
+  MatrixXd basis(0, gap.rows());
+  for (Index j = 0; j < free.cols(); ++j) {
+    Eigen::RowVectorXd v = free.col(j).transpose();
+    const double size = v.norm();
+    for (int twice = 0; twice < 2; ++twice) v -= (v * basis.transpose()) * basis;
+    if (!(v.norm() > 1e-9 * size)) continue;
+    basis.conservativeResize(basis.rows() + 1, gap.rows());
+    basis.bottomRows(1) = v.normalized();
+  }
+  gap -= basis.transpose() * (basis * gap);
+  return gap;
 }
 
 Closing Motion::closing(const Tie& tie) const {
   Closing result{.tie = &tie, .equations = {tie.equation}};
   add(result.form, -MatrixXd::Identity(tie.S.rows(), tie.S.rows()), tie.own);
-  const int other = tie.points.empty() ? ground_ : tie.points.begin()->first;
-  int top = tie.points.size() > 1 ? -1 : meeting(tie.target, other);
-  for (int p = tie.target; p != ground_ && p != top && depth_[at(p)] > 0; p = up_[at(p)].from)
-    result.chain.push_back(p);
-  if (top >= 0) result.chain.push_back(top);
-  std::vector<int> back;
-  for (int p = other; top >= 0 && p != top; p = up_[at(p)].from) back.push_back(p);
-  result.chain.insert(result.chain.end(), back.rbegin(), back.rend());
+  auto [there, back] = ways(tie);
+  const bool meets = tie.points.size() <= 1 && there.to == back.to;
+  for (const Edge& e : there.edges) result.chain.push_back(e.to);
+  if (meets) {
+    result.chain.push_back(there.to);
+    for (auto e = back.edges.rbegin(); e != back.edges.rend(); ++e) result.chain.push_back(e->to);
+  }
+  const auto list = [&](const Way& way) {
+    for (const Edge& e : way.edges)
+      if (e.equation >= 0) result.equations.push_back(e.equation);
+  };
   // A gear passes on motions that are not rigid: there the whole assembly's motion counts.
-  const bool rigid = top >= 0 && top != ground_ && rigid_between(tie.target, top) &&
-                     rigid_between(other, top) &&
+  const bool to_ground = meets && there.to == ground_;
+  const bool rigid = meets && !to_ground && there.rigid() && back.rigid() &&
                      (tie.points.empty() || has_orthonormal_rows(tie.points.begin()->second));
-  if (top != ground_ && !rigid) top = -1;
-  list_ties(tie.target, top, result.equations);
-  for (const auto& [point, c] : tie.points) list_ties(point, top, result.equations);
   MatrixXd sizes = tie.S.cwiseAbs();  // how far the way round leads
-  MatrixXd here = walk(result.form, tie.S, tie.target, top, &sizes);
-  if (top < 0) add_root(result.form, here, root_[at(tie.target)]);
-  MatrixXd gap = here;
+  if (!rigid && !to_ground) {
+    there = up_from(tie.target, -1);
+    list(there);
+    add_root(result.form, walk(result.form, tie.S, there), root_[at(tie.target)]);
+    for (const auto& [point, c] : tie.points) {
+      back = up_from(point, -1);
+      list(back);
+      add_root(result.form, walk(result.form, -c, back), root_[at(point)]);
+    }
+    return result;
+  }
+  list(there), list(back);
+  MatrixXd gap = walk(result.form, tie.S, there, &sizes);
   for (const auto& [point, c] : tie.points) {
-    const MatrixXd there = walk(result.form, -c, point, top, &sizes);
-    if (top < 0)
-      add_root(result.form, there, root_[at(point)]);
-    else if (top != ground_)
-      gap += there;
+    const MatrixXd at_meeting = walk(result.form, -c, back, &sizes);
+    if (!to_ground) gap += at_meeting;
   }
-  if (top < 0 || top == ground_) return result;
-  // What a free angle on the way can take up is no gap.
-  MatrixXd free(gap.rows(), 0);
-  for (const auto& [column, matrix] : result.form)
-    if (column.kind == Column::Kind::angle) {
-      free.conservativeResize(gap.rows(), free.cols() + matrix.cols());
-      free.rightCols(matrix.cols()) = matrix;
-    }
-  if (free.cols() > 0) {
-    MatrixXd basis(0, gap.rows());
-    for (Index j = 0; j < free.cols(); ++j) {
-      Eigen::RowVectorXd v = free.col(j).transpose();
-      const double size = v.norm();
-      for (int twice = 0; twice < 2; ++twice) v -= (v * basis.transpose()) * basis;
-      if (!(v.norm() > 1e-9 * size)) continue;
-      basis.conservativeResize(basis.rows() + 1, gap.rows());
-      basis.bottomRows(1) = v.normalized();
-    }
-    gap -= basis.transpose() * (basis * gap);
-  }
-  result.gap = relative_gap(gap, sizes);
+  if (!to_ground) result.gap = relative_gap(less_angles(std::move(gap), result.form), sizes);
   return result;
 }
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <titop/compiler/passes/close/twin.hpp>
 #include <titop/compiler/stage.hpp>
+#include <utility>
+#include <vector>
 
 namespace titop::passes::closing {
 
@@ -15,6 +17,7 @@ struct Tie {
   std::map<int, Eigen::MatrixXd> points = {};  ///< channel -> rows x size
   Form own = {};                               ///< prescribed columns
   bool closes = false;                         ///< no edge of the tree: it closes a chain
+  int turn = 0;                                ///< when the spanning forest came to it
 };
 
 /// A closing equation: form + gap * (position of the meeting point) = 0, where `gap` is 0 if the
@@ -40,7 +43,10 @@ class Motion {
          Ground ground = Ground::by_name);
 
   const std::vector<Tie>& ties() const { return ties_; }
-  /// Both ways from the tie to where they meet: what lies beyond the chain is exactly 0.
+  /// Both ways from the tie to where they meet: what lies beyond the chain is exactly 0. The way
+  /// round is the tree's, or a shorter one through ties that close chains themselves and come
+  /// before this one: then it is the tree's closing equation less some of theirs, and a ladder's
+  /// rungs close a bay each. O(length of the tree's way).
   Closing closing(const Tie& tie) const;
   /// Position of a point from the root of its assembly.
   Form position(int channel) const;
@@ -70,15 +76,35 @@ class Motion {
   void add_ties(const Twins& twins);
   std::optional<Edge> edge_of(const Tie& tie) const;
   Edge reversed(const Edge& edge) const;
+  /// From one point to another, or to the root (`to` -1): each edge leads on from the one before.
+  struct Way {
+    int to = -1;
+    std::vector<Edge> edges = {};
+    bool rigid() const;
+  };
+  /// A tie that closes a chain, from either side.
+  struct Shortcut {
+    int turn = 0;  ///< the tie's
+    Edge edge = {};
+  };
+
   void plant(Ground ground);
+  void plant_shortcut(const Tie& tie, const std::vector<char>& one_way);
   int meeting(int a, int b) const;
-  bool rigid_between(int point, int above) const;
-  /// The ties between a point and one above it (-1: the root).
-  void list_ties(int point, int above, std::vector<int>& equations) const;
-  /// form += factor * x_point, down to `above` (-1: the root); what multiplies x_above. `sizes`
-  /// grows to the largest entries met on the way.
-  Eigen::MatrixXd walk(Form& form, Eigen::MatrixXd factor, int point, int above,
+  /// In the tree, up to `above`.
+  Way up_from(int point, int above) const;
+  /// The points from `a` to `b` on a way of less than `length` edges, through ties before this one;
+  /// empty if none is found at the cost of some tree ways.
+  std::vector<int> shorter(int a, int b, int turn, int length) const;
+  Edge edge_between(int point, int next, int turn) const;
+  /// The two ways from the ends of a tie to where they meet.
+  std::pair<Way, Way> ways(const Tie& tie) const;
+  /// form += factor * x_point, along the way; what multiplies its end. `sizes` grows to the largest
+  /// entries met.
+  Eigen::MatrixXd walk(Form& form, Eigen::MatrixXd factor, const Way& way,
                        Eigen::MatrixXd* sizes = nullptr) const;
+  /// What a free angle on the way can take up is no gap.
+  static Eigen::MatrixXd less_angles(Eigen::MatrixXd gap, const Form& form);
   void add_root(Form& form, const Eigen::MatrixXd& factor, int root) const;
 
   const Graph& g_;
@@ -88,6 +114,8 @@ class Motion {
   std::vector<std::vector<int>> at_point_;  ///< edges of the forest
   std::vector<Edge> up_;                    ///< per point: from the one above it
   std::vector<int> depth_, root_;
+  std::vector<std::vector<int>> below_;          ///< per point: those right below it
+  std::vector<std::vector<Shortcut>> shortcut_;  ///< per point: edges that start there
 };
 
 }  // namespace titop::passes::closing

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 namespace titop::passes::closing {
@@ -13,51 +14,59 @@ constexpr double kRankTolerance = 1e-9;
 /// (pi / 2 typed as 1.5708 tilts an axis by 4e-6), dropped ones above the second.
 constexpr double kNarrow = 1e-4, kNothing = 1e-12;
 
-/// Homogeneous relations R z = 0 between scalars.
+/// A pivot to be taken before the best ones are known.
+constexpr double kGoodPivot = 1e-3;
+
+/// Rows with the columns in which they have entries: M is rows x columns.
+struct RowBlock {
+  std::vector<int> columns = {};  ///< ascending
+  Eigen::MatrixXd M = {};
+};
+
+/// Homogeneous relations R z = 0 between scalars, R as blocks of rows.
 struct Relations {
   enum class Role {
     unknown,     ///< to be eliminated: a free displacement, a prescribed motion
     integral,    ///< state of an Integrator: leaves first
     coordinate,  ///< any other coordinate
   };
-  Eigen::MatrixXd R = {};
-  std::vector<int> unit = {};  ///< rows of one number share a factor: three translations, rotations
-  std::vector<Role> role = {};  ///< per column
+  std::vector<RowBlock> blocks = {};
+  std::vector<std::vector<int>> unit = {};  ///< per block and row: rows of one number share a
+                                            ///< factor (three translations, three rotations)
+  std::vector<Role> role = {};              ///< per column
   Eigen::VectorXd weight = {};  ///< 1 / sqrt(stiffness) where the coordinate stores energy, else 0
-};
-
-/// z_dependent = T z_independent, for coordinates and integrals.
-struct Independent {
-  std::vector<int> dependent, independent;
-  Eigen::MatrixXd T;
-  double weakest = 1;  ///< smallest pivot that was taken
-  double dropped = 0;  ///< largest that was not
-  bool doubtful() const { return weakest < kNarrow || dropped > kNothing; }
 };
 
 /// Scales the relations so that units do not matter: columns in units of energy (eta by 1/omega:
 /// soft modes become dependent), one factor for the translations or rotations of a closing
 /// equation, taken before any elimination (afterwards noise would become 1), all other columns to
-/// largest entry 1. Returns by what rows and columns were multiplied.
+/// largest entry 1. Returns by what rows and columns were multiplied. O(entries).
 struct Factors {
-  Eigen::VectorXd row, column;
+  std::vector<Eigen::VectorXd> row;  ///< per block
+  Eigen::VectorXd column;
 };
 Factors scale(Relations& relations);
 
-/// Householder elimination with column pivoting: unknowns first, then `preferred` columns and
-/// integrals while their pivots keep 1e-3, then all coordinates. Ties go to the first column.
-/// O(rows^2 columns).
-Independent independent(Relations relations, const std::vector<int>& preferred = {});
-
-/// Directions among these rows (k x rows, orthonormal) in which they follow from the rows met
-/// before. All rows are scaled.
-struct Redundant {
-  Eigen::MatrixXd directions;
-  double weakest = 1;  ///< smallest singular value that counts
-  double dropped = 0;  ///< largest that does not
+/// z_dependent = sum of factor * z, for coordinates and integrals; in turn: what stands on the right
+/// is independent, or follows already. (Written in independent coordinates only, a ladder's rungs
+/// would follow from all bays before them, each.)
+struct Independent {
+  struct Follows {
+    int dependent = -1;
+    std::vector<std::pair<int, double>> of = {};  ///< column, factor
+  };
+  std::vector<Follows> follow = {};
+  double weakest = 1;  ///< smallest pivot that was taken
+  double dropped = 0;  ///< largest that was not
   bool doubtful() const { return weakest < kNarrow || dropped > kNothing; }
 };
-/// `known`: orthonormal columns spanning the rows met before; grows by what is new.
-Redundant redundant(const Eigen::MatrixXd& rows, Eigen::MatrixXd& known);
+
+/// Householder elimination with column pivoting, block by block: what is read in one block only is
+/// eliminated there, the blocks that are left merge two by two, the smallest first. In each block
+/// unknowns come first, then `preferred` columns and integrals while their pivots keep 1e-3, then
+/// all coordinates; until the last block only by pivots that are as good as others'. Ties go to the
+/// first column. O(columns) where every chain has a body of its own, about columns^1.5 for planar
+/// grids of chains; O(rows^2 columns) of blocks that merge without leaving anything behind.
+Independent independent(Relations relations, const std::vector<int>& preferred = {});
 
 }  // namespace titop::passes::closing

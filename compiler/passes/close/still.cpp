@@ -7,12 +7,6 @@
 namespace titop::passes::closing {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-
-constexpr double kRounding = 64 * 2.2e-16;  ///< per column of an orthonormal basis
-constexpr double kMostly = 0.5;  ///< less of a unit vector in the span: no need to look closely
-
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Scalar points that hang on others, and that nothing else ties, close no chain, though their
@@ -56,17 +50,6 @@ std::vector<char> placing(const Graph& g, const Motion& motion,
 }
 
 }  // namespace
-
-void add_held(const std::vector<Scalar>& scalars, const MatrixXd& known, AtRest& held) {
-  const double noise = kRounding * static_cast<double>(std::max<Index>(known.cols(), 6));
-  for (Index j = 0; j < known.rows(); ++j) {
-    const Scalar& s = scalars[static_cast<std::size_t>(j)];
-    if (s.column.kind == Column::Kind::prescribed || known.row(j).squaredNorm() < kMostly) continue;
-    Eigen::VectorXd left = -(known * known.row(j).transpose());
-    left(j) += 1;
-    if (left.norm() <= noise) held.insert(s);
-  }
-}
 
 void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& closings,
                 const AtRest& held) {

@@ -10,10 +10,6 @@ namespace titop::passes::closing {
 /// none.
 using AtRest = std::set<Scalar>;
 
-/// Adds those of one component of the chains. `known`: orthonormal columns, spanning all relations
-/// between these scalars.
-void add_held(const std::vector<Scalar>& scalars, const Eigen::MatrixXd& known, AtRest& held);
-
 /// Points that closed chains hold by their numbers: the elimination would find rounding in place of
 /// their accelerations. The chains' own equations need them, for the forces; whatever else reads
 /// one reads nothing, so that outputs are 0 and what hangs there stands on the ground.

@@ -1,0 +1,246 @@
+#include <algorithm>
+#include <deque>
+#include <map>
+#include <titop/compiler/passes/close/redundant.hpp>
+#include <titop/compiler/passes/close/reflections.hpp>
+#include <titop/compiler/passes/close/uses.hpp>
+#include <titop/compiler/passes/union_find.hpp>
+#include <titop/graph/linalg/eigen.hpp>
+
+namespace titop::passes::closing {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::RowVectorXd;
+using Eigen::VectorXd;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+constexpr double kRounding = 64 * 2.2e-16;  ///< per column of an orthonormal basis
+constexpr int kFewColumns = 6;              ///< fewer count as so many
+constexpr double kMostly = 0.5;  ///< less of a unit vector in the span: no need to look closely
+
+/// Rows, and which of their columns no later part has: in these the rows span what `basis` spans
+/// (columns), and the rows are `factor` basis'.
+struct Part {
+  std::vector<int> own, others;
+  MatrixXd basis, factor, rest;  ///< rest: rows x others
+
+  /// Of a vector over `own`: what is not in the span.
+  double outside(const VectorXd& v) const { return (v - basis * (basis.transpose() * v)).norm(); }
+  double rounding() const {
+    return kRounding * static_cast<double>(std::max<Index>(basis.cols(), kFewColumns));
+  }
+};
+
+/// Adds to `known` (orthonormal columns) what is new in the rows.
+Redundant by_singular_values(const MatrixXd& rows, MatrixXd& known) {
+  Redundant result;
+  MatrixXd left = rows;
+  for (int twice = 0; twice < 2; ++twice)
+    if (known.cols() > 0) left -= (left * known) * known.transpose();
+  const Eigen::JacobiSVD<MatrixXd> svd(left, Eigen::ComputeFullU | Eigen::ComputeThinV);
+  const VectorXd& sigma = svd.singularValues();
+  Index rank = 0;
+  while (rank < sigma.size() && sigma(rank) > kRankTolerance) ++rank;
+  if (rank > 0) result.weakest = sigma(rank - 1);
+  if (rank < sigma.size()) result.dropped = sigma(rank);
+  MatrixXd fresh = svd.matrixV().leftCols(rank);  // of small values: with rounding, made large
+  if (known.cols() > 0) fresh -= known * (known.transpose() * fresh);
+  fresh.colwise().normalize();
+  known.conservativeResize(rows.cols(), known.cols() + rank);
+  known.rightCols(rank) = fresh;
+  result.directions = svd.matrixU().rightCols(rows.rows() - rank).transpose();
+  return result;
+}
+
+struct Finder {
+  std::vector<RowBlock> blocks;
+  std::vector<MatrixXd> directions = {};  ///< per block: the rows left, in its own rows
+  Uses uses;
+  std::deque<int> queue = {};
+  std::vector<char> queued;
+  std::vector<Part> parts = {};
+  std::vector<int> part_of;  ///< per column: the part that has it as its own, -1: none
+  Redundancy result = {};
+
+  explicit Finder(const Relations& r)
+      : blocks(r.blocks),
+        uses(static_cast<int>(r.role.size())),
+        queued(blocks.size(), 0),
+        part_of(r.role.size(), -1) {
+    result.blocks.resize(blocks.size());
+    for (int b = 0; b < static_cast<int>(blocks.size()); ++b) {
+      const Index rows = blocks[at(b)].M.rows();
+      directions.emplace_back(MatrixXd::Identity(rows, rows));
+      for (const int c : blocks[at(b)].columns) uses.add(c, b);
+      push(b);
+    }
+  }
+
+  void push(int block) {
+    if (!std::exchange(queued[at(block)], 1)) queue.push_back(block);
+  }
+  void leave(int column, int block) {
+    uses.remove(column, block);
+    if (uses.alone(column)) push(uses.block(column));
+  }
+
+  /// Sets rows aside that have pivots in columns of their own.
+  void set_aside(int b) {
+    RowBlock& block = blocks[at(b)];
+    const auto width = static_cast<int>(block.columns.size());
+    std::vector<int> own;
+    for (int i = 0; i < width; ++i)
+      if (uses.alone(block.columns[at(i)])) own.push_back(i);
+    if (own.empty()) return;
+    MatrixXd M(block.M.rows(), width + directions[at(b)].cols());
+    M << block.M, directions[at(b)];
+    Reflections e(std::move(M));
+    e.take(own, kGoodPivot);
+    const Index done = e.done(), left = block.M.rows() - done;
+    if (done == 0) return;
+    Part part;
+    RowBlock rest;
+    std::vector<int> own_places, other_places, rest_places;
+    for (int i = 0; i < width; ++i) {
+      const int c = block.columns[at(i)];
+      const double norm = e.norm(i);
+      const bool gone = left == 0 || e.taken(i) || norm <= (uses.alone(c) ? kNothing : 0);
+      const bool is_own = gone && uses.alone(c);
+      (is_own ? own_places : other_places).push_back(i);
+      (is_own ? part.own : part.others).push_back(c);
+      if (is_own) part_of[at(c)] = static_cast<int>(parts.size());
+      if (!gone) rest_places.push_back(i), rest.columns.push_back(c);
+    }
+    set_basis(part, e.matrix().topRows(done)(Eigen::all, own_places));
+    part.rest = e.matrix().topRows(done)(Eigen::all, other_places);
+    rest.M = e.matrix().bottomRows(left)(Eigen::all, rest_places);
+    directions[at(b)] = e.matrix().bottomRightCorner(left, directions[at(b)].cols());
+    parts.push_back(std::move(part));
+    const std::vector<int> before = std::move(block.columns);
+    block = std::move(rest);
+    for (const int c : before)
+      if (!std::binary_search(block.columns.begin(), block.columns.end(), c)) leave(c, b);
+  }
+
+  static void set_basis(Part& part, const MatrixXd& rows) {
+    const Eigen::HouseholderQR<MatrixXd> qr(rows.transpose());
+    const Index n = rows.rows();
+    part.basis = qr.householderQ() * MatrixXd::Identity(rows.cols(), n);
+    part.factor = MatrixXd(qr.matrixQR().topRows(n).triangularView<Eigen::Upper>()).transpose();
+  }
+
+  /// The rest, in order, each connected set of blocks for itself.
+  void decide_rest() {
+    UnionFind joined(static_cast<int>(blocks.size()));
+    std::map<int, int> first;
+    for (int b = 0; b < static_cast<int>(blocks.size()); ++b)
+      for (const int c : blocks[at(b)].columns)
+        if (const auto [place, added] = first.try_emplace(c, b); !added)
+          joined.unite(place->second, b);
+    std::map<int, std::vector<int>> sets;
+    for (int b = 0; b < static_cast<int>(blocks.size()); ++b) sets[joined.find(b)].push_back(b);
+    for (const auto& [of, members] : sets) decide(members);
+  }
+
+  void decide(const std::vector<int>& members) {
+    Part part;
+    for (const int b : members)
+      part.own.insert(part.own.end(), blocks[at(b)].columns.begin(), blocks[at(b)].columns.end());
+    std::sort(part.own.begin(), part.own.end());
+    part.own.erase(std::unique(part.own.begin(), part.own.end()), part.own.end());
+    part.basis.resize(static_cast<Index>(part.own.size()), 0);
+    for (const int b : members) {
+      Redundant& r = result.blocks[at(b)];
+      if (part.own.empty()) {  // nothing moves at all
+        r.directions = directions[at(b)];
+        continue;
+      }
+      MatrixXd rows = MatrixXd::Zero(blocks[at(b)].M.rows(), static_cast<Index>(part.own.size()));
+      for (std::size_t i = 0; i < blocks[at(b)].columns.size(); ++i)
+        rows.col(std::lower_bound(part.own.begin(), part.own.end(), blocks[at(b)].columns[i]) -
+                 part.own.begin()) = blocks[at(b)].M.col(static_cast<Index>(i));
+      if (rows.rows() == 0) {
+        r.directions.resize(0, directions[at(b)].cols());
+        continue;
+      }
+      r = by_singular_values(rows, part.basis);
+      r.directions = r.directions * directions[at(b)];
+    }
+    for (const int c : part.own) part_of[at(c)] = static_cast<int>(parts.size());
+    parts.push_back(std::move(part));
+  }
+
+  /// Is the unit vector of a column in the span of all rows?
+  bool held(int column) const {
+    const int own = part_of[at(column)];
+    if (own < 0) return false;
+    const Part& part = parts[at(own)];
+    const auto place =
+        std::lower_bound(part.own.begin(), part.own.end(), column) - part.own.begin();
+    if (part.basis.row(place).squaredNorm() < kMostly) return false;
+    if (part.outside(VectorXd::Unit(part.basis.rows(), place)) > part.rounding()) return false;
+    std::map<int, double> left;  // what the rows have elsewhere
+    const double size = subtract(part, VectorXd::Unit(part.basis.rows(), place), left);
+    return cancels(std::move(left), std::max(1.0, size));
+  }
+
+  /// `left` -= the rows' combination that is v in their own columns, in the others. Returns the
+  /// largest sum of sizes: rounding is in proportion to it.
+  static double subtract(const Part& part, const VectorXd& v, std::map<int, double>& left) {
+    if (part.others.empty()) return 0;
+    const VectorXd y = part.factor.triangularView<Eigen::Lower>().transpose().solve(
+        VectorXd(part.basis.transpose() * v));
+    const VectorXd others = part.rest.transpose() * y;
+    const VectorXd sizes = part.rest.cwiseAbs().transpose() * y.cwiseAbs();
+    for (std::size_t i = 0; i < part.others.size(); ++i) {
+      const auto k = static_cast<Index>(i);
+      if (std::abs(others(k)) > kRounding * sizes(k)) left[part.others[i]] -= others(k);
+    }
+    return sizes.maxCoeff();
+  }
+
+  /// Later parts' rows cancel this vector; each can do so with its own columns only.
+  bool cancels(std::map<int, double> left, double size) const {
+    while (true) {
+      int next = -1;
+      for (const auto& [c, x] : left) {
+        if (std::abs(x) <= kFewColumns * kRounding * size) continue;
+        if (part_of[at(c)] < 0) return false;
+        if (next < 0 || part_of[at(c)] < next) next = part_of[at(c)];
+      }
+      if (next < 0) return true;
+      const Part& p = parts[at(next)];
+      VectorXd v = VectorXd::Zero(p.basis.rows());
+      for (std::size_t i = 0; i < p.own.size(); ++i)
+        if (const auto found = left.find(p.own[i]); found != left.end())
+          v(static_cast<Index>(i)) = found->second, left.erase(found);
+      if (p.outside(v) > p.rounding() * size) return false;
+      size = std::max(size, subtract(p, v, left));
+    }
+  }
+
+  void run() {
+    while (!queue.empty()) {
+      const int b = queue.front();
+      queue.pop_front();
+      queued[at(b)] = 0;
+      set_aside(b);
+    }
+    decide_rest();
+    for (int c = 0; c < static_cast<int>(part_of.size()); ++c)
+      if (held(c)) result.held.push_back(c);
+  }
+};
+
+}  // namespace
+
+Redundancy redundancy(const Relations& scaled) {
+  Finder finder(scaled);
+  finder.run();
+  return std::move(finder.result);
+}
+
+}  // namespace titop::passes::closing

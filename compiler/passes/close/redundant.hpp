@@ -1,0 +1,29 @@
+#pragma once
+
+#include <titop/compiler/passes/close/relations.hpp>
+
+namespace titop::passes::closing {
+
+/// Directions among a block's rows (k x rows, orthonormal) in which they follow from the blocks
+/// before it.
+struct Redundant {
+  Eigen::MatrixXd directions;
+  double weakest = 1;  ///< smallest singular value that counts
+  double dropped = 0;  ///< largest that does not
+  bool doubtful() const { return weakest < kNarrow || dropped > kNothing; }
+};
+
+/// What scaled relations say, and what they say twice.
+struct Redundancy {
+  std::vector<Redundant> blocks = {};  ///< per block
+  std::vector<int> held = {};          ///< columns that are 0 in all that the relations leave
+};
+
+/// Rows that alone have some columns follow from nothing, and nothing from them: they are set aside
+/// until every column that is left has more than one block, or the rows there less than full rank
+/// (pivots of 1e-3). What is left is decided densely, in order, by singular values above
+/// kRankTolerance. A column is held if its unit vector is in the span of all rows. O(entries) where
+/// every chain has a body of its own, O(rows^2 columns) for connected sets of those that have not.
+Redundancy redundancy(const Relations& scaled);
+
+}  // namespace titop::passes::closing

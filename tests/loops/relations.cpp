@@ -1,0 +1,171 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <titop/compiler/passes/close/redundant.hpp>
+#include <titop/compiler/passes/close/relations.hpp>
+#include <titop/graph/linalg/eigen.hpp>
+
+#include "support/rng.hpp"
+
+/// Ranks and followers of relations that share columns, block by block, against singular values of
+/// all of them at once.
+
+using namespace titop::passes::closing;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using titop_test::Rng;
+
+namespace {
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+Index width(const Relations& r) { return static_cast<Index>(r.role.size()); }
+
+MatrixXd dense(const Relations& r, std::size_t blocks) {
+  MatrixXd all(0, width(r));
+  for (std::size_t b = 0; b < blocks; ++b) {
+    const Index first = all.rows();
+    all.conservativeResize(first + r.blocks[b].M.rows(), Eigen::NoChange);
+    all.bottomRows(r.blocks[b].M.rows()).setZero();
+    for (std::size_t k = 0; k < r.blocks[b].columns.size(); ++k)
+      all.col(r.blocks[b].columns[k]).tail(r.blocks[b].M.rows()) =
+          r.blocks[b].M.col(static_cast<Index>(k));
+  }
+  return all;
+}
+
+Index rank(const MatrixXd& m) {
+  if (m.size() == 0) return 0;
+  return (Eigen::JacobiSVD<MatrixXd>(m).singularValues().array() > 1e-9).count();
+}
+
+MatrixXd null_space(const MatrixXd& m) {
+  const Eigen::JacobiSVD<MatrixXd, Eigen::FullPivHouseholderQRPreconditioner> svd(
+      m, Eigen::ComputeFullV);
+  return svd.matrixV().rightCols(m.cols() - (svd.singularValues().array() > 1e-9).count());
+}
+
+/// Loops side by side, as in a grid: each has columns of its own, and shares others with those on
+/// either side. Some loops repeat combinations of others; some columns are unknowns; some loops
+/// have a row with one entry, which holds its column.
+Relations loops(Rng& rng) {
+  Relations r;
+  const int count = 3 + rng.below(6), across = 1 + rng.below(3), size = 1 + rng.below(4);
+  const int columns = count * across * 2;
+  r.role.assign(at(columns), Relations::Role::coordinate);
+  r.weight = Eigen::VectorXd::Ones(columns);
+  const bool unknowns = rng.below(2) == 0;
+  for (int c = 0; c < columns; ++c) {
+    r.weight(c) = rng.below(3) == 0 ? 1e-2 : 1;
+    if (unknowns && rng.below(5) == 0) r.role[at(c)] = Relations::Role::unknown, r.weight(c) = 0;
+  }
+  for (int b = 0; b < count; ++b) {
+    std::set<int> own;
+    for (int k = 0; k < 4 * across; ++k)
+      own.insert((2 * across * b + k) % columns);  // the last meets the first: a ring
+    if (rng.below(4) == 0) own.insert(rng.below(columns));
+    RowBlock block{{own.begin(), own.end()}, {}};
+    block.M.resize(size, static_cast<Index>(own.size()));
+    for (Index i = 0; i < size; ++i)
+      for (Index j = 0; j < block.M.cols(); ++j)
+        block.M(i, j) = rng.below(3) == 0 ? 0 : rng.between(-1, 1);
+    if (rng.below(4) == 0) {
+      block.M.row(0).setZero();
+      block.M(0, rng.below(static_cast<int>(block.M.cols()))) = 1;
+    }
+    if (b > 1 && rng.below(3) == 0) {  // says in one direction what two others say
+      const auto &one = r.blocks[at(b - 1)], &two = r.blocks[at(rng.below(b - 1))];
+      std::set<int> all(block.columns.begin(), block.columns.end());
+      all.insert(one.columns.begin(), one.columns.end());
+      all.insert(two.columns.begin(), two.columns.end());
+      RowBlock wide{{all.begin(), all.end()}, {}};
+      wide.M = MatrixXd::Zero(size, static_cast<Index>(all.size()));
+      const auto add = [&](const RowBlock& from, Index row, Index to, double factor) {
+        for (std::size_t k = 0; k < from.columns.size(); ++k)
+          wide.M(to, std::lower_bound(wide.columns.begin(), wide.columns.end(), from.columns[k]) -
+                         wide.columns.begin()) += factor * from.M(row, static_cast<Index>(k));
+      };
+      for (Index i = 1; i < size; ++i) add(block, i, i, 1);
+      add(one, 0, 0, 0.7), add(two, size - 1, 0, -0.4);
+      block = std::move(wide);
+    }
+    r.blocks.push_back(std::move(block));
+    r.unit.push_back(std::vector<int>(at(size), b));
+  }
+  return r;
+}
+
+}  // namespace
+
+TEST_CASE("redundant directions and held columns: as singular values of all relations say") {
+  int repeated = 0, held = 0;
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    Relations r = loops(rng);
+    scale(r);
+    const Redundancy found = redundancy(r);
+    REQUIRE(found.blocks.size() == r.blocks.size());
+    Index before = 0;
+    for (std::size_t b = 0; b < r.blocks.size(); ++b) {
+      const MatrixXd& directions = found.blocks[b].directions;
+      const Index rows = r.blocks[b].M.rows(), now = rank(dense(r, b + 1));
+      CHECK(directions.rows() == rows - (now - before));
+      before = now;
+      CHECK((directions * directions.transpose() -
+             MatrixXd::Identity(directions.rows(), directions.rows()))
+                .norm() <= 1e-12);
+      // They follow from the blocks before: nothing of them is left where these are 0.
+      const MatrixXd N =
+          b == 0 ? MatrixXd(MatrixXd::Identity(width(r), width(r))) : null_space(dense(r, b));
+      const MatrixXd all = dense(r, b + 1);
+      CHECK((directions * all.bottomRows(rows) * N).norm() <= 1e-9);
+      repeated += static_cast<int>(directions.rows());
+    }
+    const MatrixXd N = null_space(dense(r, r.blocks.size()));
+    std::set<int> still;
+    for (Index c = 0; c < width(r); ++c)
+      if (N.row(c).norm() <= 1e-11) still.insert(static_cast<int>(c));
+    CHECK(std::set<int>(found.held.begin(), found.held.end()) == still);
+    held += static_cast<int>(still.size());
+  }
+  CHECK(repeated >= 100);
+  CHECK(held >= 100);
+}
+
+TEST_CASE("followers: as many as the rank says, and right in every motion that is left") {
+  int of_others = 0;
+  for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    const Relations r = loops(rng);
+    const Independent found = independent(r);
+    const MatrixXd R = dense(r, r.blocks.size()), N = null_space(R);
+    std::vector<Index> unknowns;
+    for (Index c = 0; c < width(r); ++c)
+      if (r.role[at(c)] == Relations::Role::unknown) unknowns.push_back(c);
+    const Index rows = rank(R) - rank(R(Eigen::all, unknowns));
+    CHECK(static_cast<Index>(found.follow.size()) == rows);
+    std::set<int> known;
+    std::set<int> followers;
+    for (const auto& f : found.follow) followers.insert(f.dependent);
+    CHECK(followers.size() == found.follow.size());
+    for (const auto& f : found.follow) {
+      CHECK(r.role[at(f.dependent)] != Relations::Role::unknown);
+      Eigen::RowVectorXd off = N.row(f.dependent);
+      double size = 1;
+      for (const auto& [c, factor] : f.of) {
+        CHECK(r.role[at(c)] != Relations::Role::unknown);
+        CHECK((!followers.contains(c) || known.contains(c)));  // in turn
+        of_others += known.contains(c);
+        off -= factor * N.row(c);
+        size = std::max(size, std::abs(factor));
+      }
+      CHECK(off.norm() <= 1e-10 * size);
+      known.insert(f.dependent);
+    }
+  }
+  CHECK(of_others >= 100);
+}
