@@ -75,6 +75,9 @@ detail::Evaluation<T> refined(const detail::SystemData& d, Double s,
 /// An error of the outputs by more asks for a finer precision, or is refused.
 constexpr double kEnough = 1e-12;
 
+/// The rounding of one random order is an estimate: others have been up to so many times as large.
+constexpr double kRoundings = 4;
+
 template <class T>
 MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
   const detail::Evaluation<Double> coarse(d, s, unit_inputs<Double>(d));
@@ -84,11 +87,14 @@ MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
   return rounded<T>(result.outputs());
 }
 
-/// What is lost in double, once a step of refinement has mended what the elimination loses: by the
-/// weakest pivot, by what rounding does to the outputs, by what that step leaves.
-double lost_by(detail::Evaluation<Double>& e) {
-  const auto [change, rounding] = e.losses();
-  return std::max({2e-16 / e.weakest_pivot(), rounding, change * change});
+/// What is lost in T, once a step of refinement has mended what the elimination loses, which it did
+/// by `losses`: by the weakest pivot, by what rounding does to the outputs, by what that step
+/// leaves, which takes another step to know.
+template <class T>
+double lost_by(detail::Evaluation<T>& e, const typename detail::Evaluation<T>::Losses& losses) {
+  const double left = losses.change <= kEnough ? 0 : e.improve();
+  return std::max(
+      {solve::Scalar<T>::epsilon() / e.weakest_pivot(), kRoundings * losses.rounding, left});
 }
 
 /// Finer than double, where double costs `lost`: refined if its own rounding (2000 times finer)
@@ -112,10 +118,11 @@ std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Dou
   constexpr double kNoDigit = 0.1;  // of the outputs, by the last place of the data
   try {
     detail::Evaluation<T> point(d, solve::Scalar<T>::from(s), unit_inputs<T>(d));
-    const double rounding = point.losses().rounding;
+    const auto losses = point.losses();
     const double in_double =
-        rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
-    if (rounding <= kEnough && in_double <= kNoDigit) return rounded<T>(point.outputs());
+        losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
+    if (lost_by(point, losses) <= kEnough && in_double <= kNoDigit)
+      return rounded<T>(point.outputs());
   } catch (const Error&) {  // a pole of a block, or no pivot here either
   }
   return {};
@@ -135,7 +142,7 @@ MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
     if (!G) throw;
     return *G;
   }
-  const double lost = lost_by(*plain);
+  const double lost = lost_by(*plain, plain->losses());
   if (lost <= kEnough) return rounded<Double>(plain->outputs());
   return finer_transfer(d, s, *plain, lost);
 }

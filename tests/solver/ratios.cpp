@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <titop/blocks/beam.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/mount.hpp>
@@ -159,6 +160,80 @@ TEST_CASE("mass ratios: heavy bodies tied through light ones that do not give al
     CAPTURE(ratio);
     CHECK(by_default <= 1e-12);
     CHECK(in_double <= 1e-9);
+  }
+}
+
+/// On the axis, point by point: no other point's size helps.
+template <class Scene>
+double worst_on_axis(const Scene& scene, Eigen::Index p) {
+  const System system = compile(scene.diagram());
+  double worst = 0;
+  for (int k = 0; k < 8; ++k) {
+    const std::complex<double> s(0, 0.1 * std::pow(10, k / 2.0));
+    const Eigen::MatrixXcd exact = scene.exact(s), off = system.transfer(s) - exact;
+    for (Eigen::Index i = 0; i < exact.rows(); i += p)
+      for (Eigen::Index j = 0; j < exact.cols(); j += p)
+        worst = std::max(worst, off.block(i, j, p, p).cwiseAbs().maxCoeff() /
+                                    exact.block(i, j, p, p).cwiseAbs().maxCoeff());
+  }
+  return worst;
+}
+
+TEST_CASE("mass ratios: the frequency response of ten flexible bodies, against 150 digits") {
+  for (const double ratio : {1e-12, 1e-9, 1e-6, 1.0, 1e6, 1e9, 1e12}) {
+    double worst = 0;
+    for (std::uint64_t seed = 4; seed <= 5; ++seed)
+      for (const Modes modes : {Modes::independent, Modes::random, Modes::bending})
+        worst = std::max(worst, worst_on_axis(Flexible(seed, 10, ratio, modes), 3));
+    MESSAGE(fmt::format("ratio {:.0e}: {:.1e}", ratio, worst));
+    CAPTURE(ratio);
+    CHECK(worst <= 1e-12);
+  }
+}
+
+namespace {
+
+/// Beams, light and heavy in turn, on joints turned at random.
+Diagram beams(double ratio, std::uint64_t seed) {
+  Rng rng(seed);
+  const auto beam = [](double scale) {
+    return FlexibleBody(Beam{.length = 2,
+                             .section = rectangle(0.06, 0.04),
+                             .material = {.E = 70e9 * scale, .nu = 0.33, .rho = 2700 * scale},
+                             .elements = 4,
+                             .modes = {.kept = 6, .xi = {0.005}}});
+  };
+  const FlexibleBody light = beam(1 / ratio), heavy = beam(ratio);
+  Diagram d{"beams"};
+  std::vector<FlexibleBody::Handle> b;
+  for (int i = 0; i < 10; ++i) b.push_back(d.add(fmt::format("b{}", i + 1), i % 2 ? heavy : light));
+  b.front().parent.force = -d.input("U", 6);
+  for (std::size_t i = 1; i < b.size(); ++i)
+    mount(b[i], b[i - 1].child, Rotation::matrix(rng.rotation()));
+  d.output("tip", 6) = b.back().child.accel;
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("mass ratios: beams, where a step of refinement leaves more than the square of itself") {
+  for (const double ratio : {1.0, 1e6, 1e9}) {  // light ones by 1 / ratio
+    double worst = 0;
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+      const System system = compile(beams(ratio, seed));
+      for (int k = 0; k < 12; ++k) {
+        const std::complex<double> s(0, 0.11 * std::pow(10, k / 5.0));
+        const Eigen::MatrixXcd exact = system.transfer(s, Precision::digits50),
+                               off = system.transfer(s) - exact;
+        for (int i = 0; i < 6; i += 3)
+          for (int j = 0; j < 6; j += 3)
+            worst = std::max(worst, off.block(i, j, 3, 3).cwiseAbs().maxCoeff() /
+                                        exact.block(i, j, 3, 3).cwiseAbs().maxCoeff());
+      }
+    }
+    MESSAGE(fmt::format("ratio {:.0e}: {:.1e}", ratio, worst));
+    CAPTURE(ratio);
+    CHECK(worst <= 1e-12);
   }
 }
 
