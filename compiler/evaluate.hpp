@@ -17,6 +17,10 @@ Error no_digit_left(const SystemData& data, std::complex<double> s);
 /// What Evaluation::refinement_error() is refused with, where it is too much.
 Error not_refined(const SystemData& data, std::complex<double> s, double error);
 
+/// What rounding costs is estimated by one random order of it: others have cost up to so many times
+/// as much.
+constexpr double kRoundings = 4;
+
 /// A compiled diagram at one s, driven by its external inputs: every signal on demand. T is a
 /// complex scalar of any precision, or double for a real s at less than half the cost; blocks that
 /// are the same object are evaluated once.

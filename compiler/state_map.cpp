@@ -22,10 +22,13 @@ void add_product(MatrixXd& to, const MatrixXd& M, const MatrixXd& R) {
 MatrixXd times_map(const MatrixXd& M, const StateMap& map) {
   MatrixXd all = M, size = M.cwiseAbs();
   std::vector<char> touched(at(M.cols()), 0);
+  // Sizes count from what is left: along a chain of followers they would grow with every link, and
+  // take what is there for rounding.
   const auto clean = [&](Index j) {
     if (touched[at(j)])
       all.col(j) =
           (all.col(j).array().abs() <= kRounding * size.col(j).array()).select(0, all.col(j));
+    size.col(j) = all.col(j).cwiseAbs();
   };
   for (auto row = map.dependent().rbegin(); row != map.dependent().rend(); ++row) {
     clean(row->state);

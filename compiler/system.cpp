@@ -75,9 +75,6 @@ detail::Evaluation<T> refined(const detail::SystemData& d, Double s,
 /// An error of the outputs by more asks for a finer precision, or is refused.
 constexpr double kEnough = 1e-12;
 
-/// The rounding of one random order is an estimate: others have been up to so many times as large.
-constexpr double kRoundings = 4;
-
 template <class T>
 MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
   const detail::Evaluation<Double> coarse(d, s, unit_inputs<Double>(d));
@@ -93,8 +90,9 @@ MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
 template <class T>
 double lost_by(detail::Evaluation<T>& e, const typename detail::Evaluation<T>::Losses& losses) {
   const double left = losses.change <= kEnough ? 0 : e.improve();
-  return std::max(
-      {solve::Scalar<T>::epsilon() / e.weakest_pivot(), kRoundings * losses.rounding, left});
+  if (std::isnan(left) || std::isnan(losses.rounding)) return HUGE_VAL;
+  return std::max({solve::Scalar<T>::epsilon() / e.weakest_pivot(),
+                   detail::kRoundings * losses.rounding, left});
 }
 
 /// Finer than double, where double costs `lost`: refined if its own rounding (2000 times finer)

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <titop/compiler/passes/close/integrals.hpp>
 #include <titop/compiler/passes/passes.hpp>
@@ -30,7 +31,9 @@ struct Closer {
   std::vector<Doubt> doubts = {};
   std::vector<Dependent> dependents = {};
   std::set<std::pair<int, int>> before = {};  ///< states that followed from the others before
-  std::vector<Scalar> positions = {};         ///< dependent on position level
+  int closings = 0;  ///< of all lines on either level, so many come first: those of chains
+  std::vector<Scalar> positions = {};  ///< dependent on position level, in order
+  std::map<std::vector<int>, Independent> of_positions = {};  ///< by lines, all of them of chains
 
   std::optional<closing::Meaning> classify(const Scalar& s) const {
     using Role = Relations::Role;
@@ -48,16 +51,28 @@ struct Closer {
     return {s.column.id, own ? s.index : coordinates.rate_of(s.column.id, s.index)};
   }
 
+  /// Columns that followed before, and coordinates whose positions follow.
+  std::vector<int> preferred(const Component& c, Level level) const {
+    std::vector<int> list;
+    for (int i = 0; i < static_cast<int>(c.scalars.size()); ++i)
+      if (std::binary_search(positions.begin(), positions.end(), c.scalars[at(i)]) ||
+          (c.relations.role[at(i)] != Relations::Role::unknown &&
+           before.contains(state(c.scalars[at(i)], level))))
+        list.push_back(i);
+    return list;
+  }
+
   void close(const std::vector<Line>& lines, Level level) {
     const auto meaning = [&](const Scalar& s) { return classify(s); };
+    std::vector<Scalar> now;
     for (Component& c : components(lines, meaning)) {
-      std::vector<int> preferred;
-      for (int i = 0; i < static_cast<int>(c.scalars.size()); ++i)
-        if (std::binary_search(positions.begin(), positions.end(), c.scalars[at(i)]) ||
-            (c.relations.role[at(i)] != Relations::Role::unknown &&
-             before.contains(state(c.scalars[at(i)], level))))
-          preferred.push_back(i);
-      const Independent found = independent(std::move(c.relations), preferred);
+      Independent found;
+      if (const auto same = of_positions.find(c.lines); same != of_positions.end())
+        found = same->second;  // rates follow as positions do, coordinate by coordinate
+      else
+        found = independent(std::move(c.relations), preferred(c, level));
+      if (level == Level::position && c.lines.back() < closings)
+        of_positions.emplace(c.lines, found);
       warn(c, lines, found, level);
       for (const Independent::Follows& f : found.follow) {
         const Scalar& s = c.scalars[at(f.dependent)];
@@ -68,9 +83,10 @@ struct Closer {
           dependent.of.push_back({of, at_index, factor});
         }
         dependents.push_back(std::move(dependent));
-        if (level == Level::position) positions.push_back(s);
+        if (level == Level::position) now.push_back(s);
       }
     }
+    positions = std::move(now);
     std::sort(positions.begin(), positions.end());
   }
 
@@ -119,6 +135,7 @@ Stage close(Stage stage) {
     (i.level == 1 ? on_rates : on_positions).push_back(std::move(line));
   }
   Closer closer{g, coordinates};
+  closer.closings = static_cast<int>(closed.size());
   for (const Dependent& d : stage.before) closer.before.emplace(d.node, d.state);
   closer.close(on_positions, Level::position);
   closer.close(on_rates, Level::velocity);

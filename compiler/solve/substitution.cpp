@@ -97,13 +97,14 @@ void backward(const Plan& plan, const Front& f, const typename Factors<T>::Made&
   }
 }
 
-/// The numbers of a front that is next but one: they stand where elimination put them, far from one
-/// another where there are many, and most of a solution's time is waiting for them.
+/// The numbers of the front that comes next: they stand where elimination put them, far from one
+/// another where there are many, and most of a solution's time is waiting for them. Of a wide front
+/// the beginning: the processor goes on by itself.
 template <class T>
 void fetch(const typename Factors<T>::Made& made) {
-  constexpr std::size_t kLine = 64;
+  constexpr std::size_t kLine = 64, kMost = 8192;
   const auto* const from = reinterpret_cast<const char*>(made.lu.data());
-  const std::size_t bytes = made.lu.size() * sizeof(T);
+  const std::size_t bytes = std::min(made.lu.size() * sizeof(T), kMost);
   for (std::size_t i = 0; i < bytes; i += kLine) __builtin_prefetch(from + i);
   __builtin_prefetch(made.order.data());
 }

@@ -99,6 +99,21 @@ TEST_CASE("dense export: what write() made is judged as what state_space() made,
                          Code::size, {"119 states", "chain", "System::write", "120 states"}));
 }
 
+TEST_CASE("dense export: write() fills the caller's buffer again, whatever stands there") {
+  const System system = chain(1);
+  StateSpace model;
+  system.write(model);
+  const StateSpace first = model;
+  const std::vector<const double*> before = {model.A.data(), model.B.data(), model.C.data(),
+                                             model.D.data()};
+  for (Eigen::MatrixXd* m : {&model.A, &model.B, &model.C, &model.D})
+    m->setConstant(std::numeric_limits<double>::quiet_NaN());
+  system.write(model);
+  CHECK(std::vector<const double*>{model.A.data(), model.B.data(), model.C.data(),
+                                   model.D.data()} == before);
+  CHECK((model.A == first.A && model.B == first.B && model.C == first.C && model.D == first.D));
+}
+
 TEST_CASE("dense export: an output that is small where slow modes are warns of its digits") {
   // A stiff mass (10^4 rad/s) that carries a soft one (1 rad/s): far below both the acceleration of
   // the first is s^2 / k1 times the force, what is left of 1/m1 - 1/m1.

@@ -203,8 +203,10 @@ TEST_CASE("update: steps that are small each, far in all, count from where the s
   CHECK(distance(system, start.update({{"m", std::pow(4.0, 12)}})) == 0);
 }
 
-TEST_CASE("update: where pivots lose half their digits all is made anew, and that is counted") {
-  // What is left of 1 - g: the value moves by less than 2, the pivot by a thousand million.
+namespace {
+
+/// y = u / (1 - g), g a parameter, 0.6 at first.
+Diagram loop() {
   Diagram d{"loop"};
   const Param g = d.param("g", 0.6);
   auto u = d.input("u");
@@ -212,7 +214,14 @@ TEST_CASE("update: where pivots lose half their digits all is made anew, and tha
   sum.in(1) = u;
   sum.in(2) = g * sum.out;
   d.output("y") = sum.out;
-  const System before = compile(d);
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("update: where pivots lose half their digits all is made anew, and that is counted") {
+  // What is left of 1 - g: the value moves by less than 2, the pivot by a thousand million.
+  const System before = compile(loop());
   CHECK(before.update({{"g", 0.7}}).certificate().plans_renewed == 0);
   const System after = before.update({{"g", 1 - 1e-10}});
   CHECK(after.certificate().plans_renewed == 1);
@@ -222,14 +231,7 @@ TEST_CASE("update: where pivots lose half their digits all is made anew, and tha
 TEST_CASE("update: digits that go in many small steps are made good as those that go in one") {
   // The pivot 1 - g, of terms 1 + g, falls to a tenth with every step: from 0.4 / 1.6 at g = 0.6 it
   // has lost half its digits where 10^-k / 2 < 1e-8 / 4, from k = 9 on.
-  Diagram d{"loop"};
-  const Param g = d.param("g", 0.6);
-  auto u = d.input("u");
-  auto sum = d.add("sum", Sum{.signs = "++"});
-  sum.in(1) = u;
-  sum.in(2) = g * sum.out;
-  d.output("y") = sum.out;
-  const System start = compile(d);
+  const System start = compile(loop());
   System system = start;
   for (int k = 1; k <= 12; ++k) {
     CAPTURE(k);

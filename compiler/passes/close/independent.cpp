@@ -67,6 +67,12 @@ struct Fronts {
     return places;
   }
 
+  /// No other front has any of its columns.
+  bool all_own(const RowBlock& front) const {
+    return std::all_of(front.columns.begin(), front.columns.end(),
+                       [&](int c) { return uses.alone(c); });
+  }
+
   /// Unknowns; false if one is left.
   bool take_unknowns(const RowBlock& front, bool last, Reflections& e) {
     const auto is_unknown = [&](int c) { return role[at(c)] == Role::unknown; };
@@ -78,6 +84,14 @@ struct Fronts {
            static_cast<std::ptrdiff_t>(unknowns.size());
   }
 
+  std::vector<int> shared_preferred(const RowBlock& front) const {
+    std::vector<int> places;
+    for (std::size_t i = 0; i < front.columns.size(); ++i)
+      if (const int c = front.columns[i]; preferred[at(c)] != 0 && !uses.alone(c))
+        places.push_back(static_cast<int>(i));
+    return places;
+  }
+
   void take_coordinates(const RowBlock& front, bool last, Reflections& e) {
     const auto is = [&](Role r) { return [this, r](int c) { return role[at(c)] == r; }; };
     e.take(own(front, [&](int c) { return preferred[at(c)] != 0 && role[at(c)] != Role::unknown; }),
@@ -85,8 +99,10 @@ struct Fronts {
     e.take(own(front, is(Role::integral)), kGoodPivot);
     const auto all = own(front, [&](int c) { return role[at(c)] != Role::unknown; });
     std::vector<int> rivals;
-    if (!last)
+    if (!last) {
       for (std::size_t i = 0; i < front.columns.size(); ++i) rivals.push_back(static_cast<int>(i));
+      if (!shared_preferred(front).empty()) return;  // rows may wait for these: see take_beside
+    }
     const double left = e.take(all, last ? kRankTolerance : kGoodPivot, last ? 0 : kShare, rivals);
     if (last) result.dropped = std::max(result.dropped, left);
   }
@@ -117,6 +133,7 @@ struct Fronts {
     for (int i = 0; i < static_cast<int>(front.columns.size()); ++i)
       if (!e.taken(i)) (uses.alone(front.columns[at(i)]) ? alone : shared).push_back(i);
     Reflections waiting(std::move(rows));
+    waiting.take(shared_preferred(front), 0, kGoodPivot, alone);
     waiting.take(shared, 0, 1 / kShare, alone);
     const Index wait = waiting.done();
     Reflections o(waiting.matrix().bottomRows(waiting.matrix().rows() - wait));
@@ -149,17 +166,17 @@ struct Fronts {
         places.push_back(i), left.columns.push_back(c);
     }
     left.M = rows(Eigen::all, places);
-    // Unknowns that have gone may have been all that its coordinates waited for.
+    // Columns that have gone may have been all that the others waited for: unknowns, or those of
+    // other fronts.
     const bool fewer = rows.rows() > 0 && left.columns.size() < front.columns.size();
     front = std::move(left);
-    if (fewer && !no_unknowns) push(f);
+    if (fewer && (!no_unknowns || all_own(front))) push(f);
   }
 
   void eliminate(int f) {
     const RowBlock& front = fronts[at(f)];
     if (own(front, [](int) { return true; }).empty()) return;
-    const bool last = std::all_of(front.columns.begin(), front.columns.end(),
-                                  [&](int c) { return uses.alone(c); });
+    const bool last = all_own(front);
     Reflections e(front.M);
     const bool no_unknowns = take_unknowns(front, last, e);
     const Index first = e.done();

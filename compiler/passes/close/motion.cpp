@@ -227,7 +227,8 @@ std::vector<int> Motion::shorter(int a, int b, int turn, int length) const {
   std::vector<int> front[2] = {{a}, {b}};
   int left = kTreeWays * length;  // edges that may be looked at
   for (int levels = 0; levels < length - 1; ++levels) {
-    const int side = front[0].size() <= front[1].size() ? 0 : 1;
+    // From the ground too much goes out.
+    const int side = b == ground_ || front[0].size() <= front[1].size() ? 0 : 1;
     std::vector<int> next;
     int met = -1;
     const auto reach = [&](int from, int to) {

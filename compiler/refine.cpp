@@ -1,0 +1,227 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <titop/compiler/certify/steady_random.hpp>
+#include <titop/compiler/evaluate.hpp>
+#include <titop/compiler/solve/scalar.hpp>
+
+/// Of an evaluation: how good it is, and how it becomes better. The rest is in evaluate.cpp.
+namespace titop::detail {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+using solve::lifted;
+
+/// Of refinement, at most: at kShrinks each they lead to 1e-18.
+constexpr int kSteps = 30;
+/// A change of the outputs by more asks for another step, whatever T.
+constexpr double kSettled = 1e-12;
+/// Where steps shrink by less, refinement ends: at the rounding of T, or with no result where it
+/// has not come so far.
+constexpr double kShrinks = 0.25;
+/// If the first step changes no block of the unknowns by more, that steps shrink is plain by then;
+/// else a second step has to show it.
+constexpr double kPlain = 1e-9;
+
+}  // namespace
+
+template <class T>
+double Evaluation<T>::improve() {
+  const solve::RowMatrix<T> correction = factors_->solve(rows_.residual(rhs_, unknowns_));
+  unknowns_ += correction;
+  return relative_to_outputs(correction);
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::rounding_of(const solve::RowMatrix<double>& magnitudes) {
+  SteadyRandom random;
+  solve::RowMatrix<T> result(magnitudes.rows(), magnitudes.cols());
+  for (Eigen::Index i = 0; i < result.rows(); ++i) {
+    const double unit = random.unit() * solve::Scalar<T>::epsilon();
+    for (Eigen::Index j = 0; j < result.cols(); ++j)
+      result(i, j) = solve::lift<T>(unit * magnitudes(i, j));
+  }
+  return result;
+}
+
+/// One solution of twice the columns serves both.
+template <class T>
+typename Evaluation<T>::Losses Evaluation<T>::losses() {
+  solve::RowMatrix<double> magnitudes;
+  const solve::RowMatrix<T> residual = rows_.residual(rhs_, unknowns_, &magnitudes);
+  const auto m = residual.cols();
+  solve::RowMatrix<T> both(residual.rows(), 2 * m);
+  both << residual, rounding_of(magnitudes);
+  const solve::RowMatrix<T> changes = factors_->solve(both);
+  unknowns_ += changes.leftCols(m);
+  return {relative_to_outputs(changes.leftCols(m)), relative_to_outputs(changes.rightCols(m))};
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::rounding() const {
+  solve::RowMatrix<double> magnitudes;
+  rows_.residual(rhs_, unknowns_, &magnitudes);
+  const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), u_.cols());
+  return outputs_of(factors_->solve(rounding_of(magnitudes)), none, nullptr);
+}
+
+namespace {
+
+/// The first rows of groups that share a unit: ports, dual vectors in halves; and the end.
+template <class List>
+std::vector<Eigen::Index> groups(const List& list, const std::vector<int>& first, int begin,
+                                 Eigen::Index end) {
+  std::vector<Eigen::Index> result;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    result.push_back(first[i] - begin);
+    if (list[i].size == 6) result.push_back(first[i] - begin + 3);
+  }
+  std::sort(result.begin(), result.end());
+  result.push_back(end);
+  return result;
+}
+
+/// Largest entries of the blocks that these groups make.
+template <class Matrix>
+Eigen::MatrixXd block_sizes(const Matrix& m, const std::vector<Eigen::Index>& rows,
+                            const std::vector<Eigen::Index>& cols) {
+  const auto n = [](const auto& list) { return static_cast<Eigen::Index>(list.size()) - 1; };
+  Eigen::MatrixXd result(n(rows), n(cols));
+  for (Eigen::Index i = 0; i < result.rows(); ++i)
+    for (Eigen::Index j = 0; j < result.cols(); ++j)
+      result(i, j) = m.block(rows[at(static_cast<int>(i))], cols[at(static_cast<int>(j))],
+                             rows[at(static_cast<int>(i) + 1)] - rows[at(static_cast<int>(i))],
+                             cols[at(static_cast<int>(j) + 1)] - cols[at(static_cast<int>(j))])
+                         .cwiseAbs()
+                         .maxCoeff();
+  return result;
+}
+
+}  // namespace
+
+template <class T>
+std::vector<Eigen::Index> Evaluation<T>::groups_of_columns() const {
+  if (u_.cols() != u_.rows()) return {0, u_.cols()};  // not one column per input
+  return groups(data_.graph().inputs, data_.layout().input_first, 0, u_.cols());
+}
+
+template <class T>
+double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) const {
+  const auto rounded = [](const solve::RowMatrix<T>& m) {
+    return Eigen::MatrixXcd(
+        m.unaryExpr([](const T& x) -> std::complex<double> { return solve::Scalar<T>::round(x); }));
+  };
+  const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), u_.cols());
+  const Eigen::MatrixXcd y = rounded(outputs());
+  const Eigen::MatrixXcd change = rounded(outputs_of(unknowns, none, nullptr));
+  if (!y.allFinite() || !change.allFinite()) return std::numeric_limits<double>::infinity();
+  const auto rows = groups(data_.graph().outputs, data_.layout().output_first, 0, y.rows());
+  const auto cols = groups_of_columns();
+  const Eigen::MatrixXd size = block_sizes(y, rows, cols), off = block_sizes(change, rows, cols);
+  double worst = 0;
+  for (Eigen::Index i = 0; i < size.rows(); ++i)
+    for (Eigen::Index j = 0; j < size.cols(); ++j) {
+      // A block that is 0 by symmetry is nothing but rounding: it counts beside its neighbours.
+      const double beside = std::sqrt(size.row(i).maxCoeff()) * std::sqrt(size.col(j).maxCoeff());
+      const bool noise = size(i, j) <= 1e3 * off(i, j);
+      if (off(i, j) > kUnderflow)
+        worst = std::max(worst, off(i, j) / (noise ? beside : size(i, j)));
+    }
+  return worst;
+}
+
+template <class T>
+Eigen::ArrayXd Evaluation<T>::sizes_of_unknowns(
+    const solve::RowMatrix<std::complex<double>>& unknowns) const {
+  const solve::Plan& plan = *data_.skeleton->as_written().plan;
+  const auto cols = groups_of_columns();
+  Eigen::ArrayXd sizes(plan.unknowns * u_.cols());  // room enough
+  Eigen::Index n = 0;
+  for (std::size_t v = 0; v < plan.first.size(); ++v)
+    for (int i = 0; i < plan.structure.variable_size[v]; i += plan.structure.variable_unit[v])
+      for (std::size_t j = 0; j + 1 < cols.size(); ++j) {
+        double largest = 0;
+        for (int row = plan.first[v] + i; row < plan.first[v] + i + plan.structure.variable_unit[v];
+             ++row)
+          for (Eigen::Index col = cols[j]; col < cols[j + 1]; ++col)
+            largest = std::max(largest, solve::size_of(unknowns(row, col)));
+        sizes(n++) = largest;
+      }
+  return sizes.head(n);
+}
+
+namespace {
+
+bool at_most(const Eigen::ArrayXd& change, const Eigen::ArrayXd& limit) {
+  return (change <= limit.max(kUnderflow)).all();
+}
+
+}  // namespace
+
+/// The step of refinement from here. `rounding`: about the error that the rounding of T leaves in
+/// the outputs; not looked for where it is nothing as long as double has one digit.
+template <class T>
+solve::RowMatrix<std::complex<double>> Evaluation<T>::change_by(
+    const Evaluation<std::complex<double>>& coarse, double* rounding) const {
+  using D = std::complex<double>;
+  const auto down = [](const solve::RowMatrix<T>& m) {
+    return solve::RowMatrix<D>(
+        m.unaryExpr([](const T& x) -> D { return solve::Scalar<T>::round(x); }));
+  };
+  if (!rounding || solve::Scalar<T>::epsilon() <= kSettled * 0x1p-53)
+    return coarse.solve(down(rows_.residual(rhs_, unknowns_)));
+  solve::RowMatrix<double> magnitudes;
+  const solve::RowMatrix<T> residual = rows_.residual(rhs_, unknowns_, &magnitudes);
+  const auto m = residual.cols();
+  solve::RowMatrix<D> both(residual.rows(), 2 * m);
+  both << down(residual), down(rounding_of(magnitudes));
+  const solve::RowMatrix<D> changes = coarse.solve(both);
+  *rounding = kRoundings * relative_to_outputs(lifted<T>(changes.rightCols(m)));
+  return changes.leftCols(m);
+}
+
+/// Every step multiplies the error by I - F^-1 L (F: the factors, L: the matrix), and so the step
+/// itself: what F has wrong shrinks slowly, or not at all, and small steps are then no sign of a
+/// small error. It is looked for in the unknowns, where it stands alone, not in the outputs, of
+/// which it may be a small share.
+template <class T>
+void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
+  unknowns_ = lifted<T>(coarse.unknowns());
+  const Eigen::ArrayXd start = sizes_of_unknowns(coarse.unknowns());  // the step from 0
+  Eigen::ArrayXd sizes_before;
+  double before = 1, rounding = 0;
+  bool leads = false;
+  for (int step = 0; step < kSteps; ++step) {
+    // Where the first step is enough, it is so small that the rounding of T, far finer, is nothing.
+    const solve::RowMatrix<std::complex<double>> change =
+        change_by(coarse, step == 1 ? &rounding : nullptr);
+    const solve::RowMatrix<T> correction = lifted<T>(change);
+    unknowns_ += correction;
+    const double now = relative_to_outputs(correction);
+    if (!leads) {
+      const Eigen::ArrayXd sizes = sizes_of_unknowns(change);
+      // What rounding has left of a 0 is changed altogether by the first step, and no more after.
+      leads = step == 0 ? at_most(sizes, kPlain * start)
+                        : at_most(sizes, kShrinks * sizes_before.max(0x1p-53 * start));
+      sizes_before = sizes;
+    }
+    refinement_error_ = leads || std::isinf(now) ? std::max(now, rounding) : 1;
+    if (std::isinf(now) || (step > 0 && !leads)) return;
+    // What the next step would change: this step's change, smaller by as much again.
+    const bool settled = now <= kSettled && now * (now / before) <= solve::Scalar<T>::epsilon();
+    if (leads && (settled || (step > 0 && !(now <= kShrinks * before)))) return;
+    before = now;
+  }
+}
+
+#define TITOP_INSTANTIATE(T)                                    \
+  template double Evaluation<T>::improve();                     \
+  template Evaluation<T>::Losses Evaluation<T>::losses();       \
+  template solve::RowMatrix<T> Evaluation<T>::rounding() const; \
+  template void Evaluation<T>::refine(const Evaluation<std::complex<double>>&);
+TITOP_INSTANTIATE(double)
+TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
+#undef TITOP_INSTANTIATE
+
+}  // namespace titop::detail
