@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <titop/compiler/passes/passes.hpp>
@@ -145,5 +146,132 @@ TEST_CASE("what follows from what: linear in the bays of a ladder, n^1.5 log n i
     CAPTURE(rungs);
     CHECK(entries({81, 2, rungs}) <= 4.4 * entries({21, 2, rungs}));
     CHECK(entries({17, 17, rungs}) <= 8.0 * 4 / 3 * entries({9, 9, rungs}));  // 64 and 256 loops
+  }
+}
+
+namespace {
+
+/// A braced truss of rigid bars on pins, all in one plane: every bay has two loops.
+Diagram truss(int bays) {
+  Diagram d{"truss"};
+  RigidBody node{.mass = 5, .inertia = 0.1 * Matrix3d::Identity()};
+  for (int k = 0; k < 8; ++k) node.children.push_back({"p" + std::to_string(k)});
+  std::vector<BodyHandle> nodes;
+  for (int k = 0; k < 2 * (bays + 1); ++k) nodes.push_back(d.add("N" + std::to_string(k), node));
+  std::vector<int> used(nodes.size(), 0);
+  std::vector<char> placed(nodes.size(), 0);
+  placed[0] = 1;
+  int count = 0;
+  const auto bar = [&](int a, int b) {  // two nodes stand side by side, bays 1 m apart
+    const Vector3d v(b / 2 - a / 2, b % 2 - a % 2, 0);
+    const Rotation R = Rotation::about({0, 0, 1}, std::atan2(v.y(), v.x()));
+    const std::string name = std::to_string(count++);
+    const auto site = [&](int n) {
+      return nodes[at(n)].child("p" + std::to_string(used[at(n)]++));
+    };
+    auto start = d.add("P" + name, Hinge{{0, 0, 1}}), end = d.add("Q" + name, Hinge{{0, 0, 1}});
+    start.torque = 0.3 * start.rate + 5.0 * start.angle;
+    end.torque = 0.2 * end.rate + 3.0 * end.angle;
+    auto body = d.add("B" + name, RigidBody{.mass = 4,
+                                            .inertia = Vector3d(0.1, 1.4, 1.4).asDiagonal(),
+                                            .PA = v.norm() / 2 * Vector3d::UnitX(),
+                                            .children = {{"C", v.norm() * Vector3d::UnitX()}}});
+    mount(start, site(a), R), mount(body, start.child), mount(end, body.child("C"));
+    if (placed[at(b)])
+      weld(end.child, site(b), R);
+    else
+      mount(nodes[at(b)], end.child, R.inverse());
+    placed[at(b)] = 1;
+  };
+  bar(0, 1);
+  for (int i = 1; i <= bays; ++i) {
+    bar(2 * i - 2, 2 * i), bar(2 * i - 1, 2 * i + 1), bar(2 * i, 2 * i + 1);
+    bar(2 * i - 2, 2 * i + 1);
+  }
+  nodes.front().parent.force = -d.input("U", 6);
+  d.output("a", 6) = nodes.back().child("p7").accel;
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("a truss of rigid bars: along twenty followers nothing is taken for rounding") {
+  for (const int bays : {3, 20}) {
+    CAPTURE(bays);
+    const System system = compile(truss(bays), {.minimize_up_to = 0});
+    const Complex s(0.3, 40);
+    CHECK(by_hand::transfer_error({system.state_space().transfer(s)},
+                                  {system.transfer(s, Precision::digits50)}) <= 1e-8);
+  }
+}
+
+TEST_CASE("two stiff supports beside a slide: stiff directions are constraints like the others") {
+  // The slide leaves x; both bushings hold the rest, by springs up to 1e8 times stiffer.
+  for (const double ratio : {1.0, 2e6, 1e8}) {
+    CAPTURE(ratio);
+    Diagram d{"supports"};
+    auto S = d.add("S", Slide{{1, 0, 0}});
+    ground(S);
+    S.force = 0.3 * S.rate;
+    auto B = d.add(
+        "T",
+        RigidBody{.mass = 4, .inertia = Vector3d(0.1, 1.4, 1.4).asDiagonal(), .children = {{"a"}}});
+    mount(B, S.child);
+    for (int i = 0; i < 2; ++i) {
+      const double k = 100;
+      auto K = d.add("U" + std::to_string(i),
+                     Bushing{.stiffness = {k, k * ratio, k * ratio, k, k * ratio, k * ratio},
+                             .damping = {1, 1, 1, 1, 1, 1}});
+      ground(K);
+      weld(K.child, B.child("a"));
+    }
+    B.child("a").force += d.input("F", 6);
+    d.output("a", 6) = B.child("a").accel;
+    const System system = compile(d, {.minimize_up_to = 0});
+    CHECK(system.order() == 2);
+    const Complex s(0.3, 5);
+    const Complex exact = s * s / (4.0 * s * s + (2.0 + 0.3) * s + 200.0);
+    CHECK(std::abs(system.state_space().transfer(s)(0, 0) - exact) <= 1e-12 * std::abs(exact));
+  }
+}
+
+TEST_CASE("ladders: positions and rates of the same coordinates follow, and stay after an update") {
+  for (const double rungs : {1.0, 0.1}) {
+    const auto scene = [&](double turn) {
+      Diagram d{"twisted"};
+      const Param phi = d.param("phi", turn);
+      const RigidBody node{
+          .mass = 5, .inertia = 0.1 * Matrix3d::Identity(), .children = {{"E"}, {"N"}, {"S"}}};
+      const Rotation up =
+          Rotation::about({0, 0, 1}, std::numbers::pi / 2) * Rotation::about({1, 0, 0}, Value(phi));
+      std::vector<BodyHandle> nodes;
+      for (int j = 0; j < 2; ++j)
+        for (int i = 0; i < 4; ++i) {
+          const std::string place = std::to_string(i) + "_" + std::to_string(j);
+          nodes.push_back(d.add("N" + place, node));
+          if (i > 0) {
+            auto b = d.add("H" + place, beam(1));
+            mount(b, nodes[at(4 * j + i - 1)].child("E")), mount(nodes.back(), b.child);
+          }
+          if (j == 0) continue;
+          auto b = d.add("V" + place, beam(rungs));
+          mount(b, nodes[at(i)].child("N"), up);
+          i == 0 ? mount(nodes.back(), b.child, up.inverse())
+                 : weld(b.child, nodes.back().child("S"), up);
+        }
+      nodes.front().parent.force = -d.input("U", 6);
+      d.output("a", 6) = nodes.back().parent.accel;
+      return d;
+    };
+    const System before = compile(scene(0.2), {.minimize_up_to = 0});
+    const std::vector<std::string>& names = before.states();
+    for (const std::string& name : names)
+      if (!name.ends_with("_rate"))
+        CHECK(std::count(names.begin(), names.end(), name + "_rate") == 1);
+    const System after = before.update({{"phi", 1.3}});
+    CHECK(after.states() == names);
+    const Complex s(0.3, 40);
+    CHECK(by_hand::transfer_error({after.transfer(s)},
+                                  {compile(scene(1.3)).transfer(s, Precision::digits50)}) <= 1e-11);
   }
 }
