@@ -66,11 +66,12 @@ struct Closer {
     const auto meaning = [&](const Scalar& s) { return classify(s); };
     std::vector<Scalar> now;
     for (Component& c : components(lines, meaning)) {
-      Independent found;
-      if (const auto same = of_positions.find(c.lines); same != of_positions.end())
-        found = same->second;  // rates follow as positions do, coordinate by coordinate
-      else
-        found = independent(std::move(c.relations), preferred(c, level));
+      const auto same = of_positions.find(c.lines);
+      const std::vector<int> first = preferred(c, level);  // before the relations move on
+      const Independent found =
+          same != of_positions.end()
+              ? same->second  // rates follow as positions do, coordinate by coordinate
+              : independent(std::move(c.relations), first);
       if (level == Level::position && c.lines.back() < closings)
         of_positions.emplace(c.lines, found);
       warn(c, lines, found, level);

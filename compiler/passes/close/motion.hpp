@@ -46,7 +46,8 @@ class Motion {
   /// Both ways from the tie to where they meet: what lies beyond the chain is exactly 0. The way
   /// round is the tree's, or a shorter one through ties that close chains themselves and come
   /// before this one: then it is the tree's closing equation less some of theirs, and a ladder's
-  /// rungs close a bay each. O(length of the tree's way).
+  /// rungs close a bay each. Ties that let go in some direction are no such way. Some 600 edges are
+  /// looked at, else up to 16 per edge of the tree's way.
   Closing closing(const Tie& tie) const;
   /// Position of a point from the root of its assembly.
   Form position(int channel) const;

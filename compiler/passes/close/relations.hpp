@@ -37,19 +37,20 @@ struct Relations {
   Eigen::VectorXd weight = {};  ///< 1 / sqrt(stiffness) where the coordinate stores energy, else 0
 };
 
-/// Scales the relations so that units do not matter: columns in units of energy (eta by 1/omega:
-/// soft modes become dependent), one factor for the translations or rotations of a closing
-/// equation, taken before any elimination (afterwards noise would become 1), all other columns to
-/// largest entry 1. Returns by what rows and columns were multiplied. O(entries).
+/// By what rows and columns were multiplied.
 struct Factors {
   std::vector<Eigen::VectorXd> row;  ///< per block
   Eigen::VectorXd column;
 };
+/// Scales the relations so that units do not matter: columns in units of energy (eta by 1/omega:
+/// soft modes become dependent), one factor for the translations or rotations of a closing
+/// equation, taken before any elimination (afterwards noise would become 1), all other columns to
+/// largest entry 1. O(entries).
 Factors scale(Relations& relations);
 
-/// z_dependent = sum of factor * z, for coordinates and integrals; in turn: what stands on the right
-/// is independent, or follows already. (Written in independent coordinates only, a ladder's rungs
-/// would follow from all bays before them, each.)
+/// z_dependent = sum of factor * z, for coordinates and integrals; in turn: what stands on the
+/// right is independent, or follows already. (Written in independent coordinates only, a ladder's
+/// rungs would follow from all bays before them, each.)
 struct Independent {
   struct Follows {
     int dependent = -1;
@@ -63,10 +64,11 @@ struct Independent {
 
 /// Householder elimination with column pivoting, block by block: what is read in one block only is
 /// eliminated there, the blocks that are left merge two by two, the smallest first. In each block
-/// unknowns come first, then `preferred` columns and integrals while their pivots keep 1e-3, then
-/// all coordinates; until the last block only by pivots that are as good as others'. Ties go to the
-/// first column. O(columns) where every chain has a body of its own, about columns^1.5 for planar
-/// grids of chains; O(rows^2 columns) of blocks that merge without leaving anything behind.
+/// unknowns come first, then `preferred` columns (rows wait for one that other blocks have too) and
+/// integrals while their pivots keep 1e-3, then all coordinates; until the last block only by
+/// pivots that are as good as others'. Ties go to the first column. O(columns) where every chain
+/// has a body of its own, about columns^1.5 for planar grids of chains; O(rows^2 columns) of blocks
+/// that merge without leaving anything behind.
 Independent independent(Relations relations, const std::vector<int>& preferred = {});
 
 }  // namespace titop::passes::closing
