@@ -16,15 +16,12 @@ std::string to_dot(const Stage& stage, const DotOptions& options) {
       "width=0.2 margin=\"0.06,0.03\"];\n"
       "  edge [fontname=\"Helvetica\" fontsize=9 fontcolor=\"{3}\" color=\"{2}\" arrowsize=0.7];\n"
       "{5}{6}}}\n",
-      dot::quoted(stage.graph.name), dot::colour::ink, dot::colour::line, dot::colour::soft,
+      dot::quoted(stage.now().name), dot::colour::ink, dot::colour::line, dot::colour::soft,
       dot::draw_legend(p), dot::draw_nodes(p), dot::draw_wires(p) + dot::draw_folded_wires(p));
 }
 
 std::string to_dot(const Diagram& diagram, const DotOptions& options) {
-  Stage stage;
-  stage.graph = diagram.graph();
-  stage.values = nominal_values(stage.graph);
-  return to_dot(stage, options);
+  return to_dot(as_written(diagram.graph()), options);
 }
 
 }  // namespace titop

@@ -130,6 +130,13 @@ void certify_now(detail::SystemData& data) {
 
 }  // namespace
 
+Stage as_written(const Graph& graph) {
+  Stage stage;
+  stage.source = std::shared_ptr<const Graph>(std::shared_ptr<void>(), &graph);  // owns nothing
+  stage.values = nominal_values(graph);
+  return stage;
+}
+
 System compile(const Diagram& diagram, const Options& options) {
   return System(detail::compile_graph(diagram.graph(), options));
 }
@@ -138,10 +145,7 @@ namespace detail {
 
 std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Options& options) {
   const auto made = [&](double least) {
-    Stage stage;
-    stage.graph = graph;
-    stage.values = nominal_values(graph);
-    auto data = run(std::move(stage), options, least);
+    auto data = run(as_written(graph), options, least);
     timed(*data, "certify", [&] { certify_now(*data); });
     return data;
   };
@@ -152,7 +156,7 @@ std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Option
 
 std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector<double>& values) {
   Stage stage;
-  stage.graph = *old.stage.source;
+  stage.source = old.stage.source;
   stage.values = values;
   stage.before = old.stage.dependents;
   stage.motions = old.stage.motions;

@@ -97,9 +97,9 @@ struct Dependent {
 
 /// What travels through the passes: the graph and what is known about it so far.
 struct Stage {
-  Graph graph;
+  Graph graph;                           ///< after lower
   std::vector<double> values;            ///< parameter values
-  std::shared_ptr<const Graph> source;   ///< after lower: in its order, equations as written
+  std::shared_ptr<const Graph> source;   ///< equations as written; after lower in its order
   std::vector<Origin> origins;           ///< after lower: of every equation, then of every output
   std::shared_ptr<const Drives> drives;  ///< of source, where there are parameters
   std::vector<RigidMotion> motions;      ///< after lower
@@ -113,6 +113,13 @@ struct Stage {
   std::vector<Released> released;     ///< after chains
   std::vector<Dependent> dependents;  ///< after close: of chains, in turn; after solve: all
   std::vector<Dependent> before;      ///< those of the system that `update` starts from
+
+  /// What the passes have made of the diagram so far.
+  const Graph& now() const { return origins.empty() ? *source : graph; }
 };
+
+/// What the passes begin with, for nominal values. `lower` copies the graph, which has to live
+/// until then.
+Stage as_written(const Graph& graph);
 
 }  // namespace titop

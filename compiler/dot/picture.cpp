@@ -52,14 +52,14 @@ std::vector<int> number_loops(const Stage& stage) {
     if (loop.signals.size() < 2) continue;
     std::string first;
     for (const int s : loop.signals)
-      if (const std::string n = name_of(stage.graph, s);
+      if (const std::string n = name_of(stage.now(), s);
           first.empty() || natural_compare(n, first) < 0)
         first = n;
     named.emplace_back(first, &loop);
   }
   std::sort(named.begin(), named.end(),
             [](const auto& a, const auto& b) { return natural_compare(a.first, b.first) < 0; });
-  std::vector<int> number(stage.graph.signals.size(), 0);
+  std::vector<int> number(stage.now().signals.size(), 0);
   for (std::size_t i = 0; i < named.size(); ++i)
     for (const int s : named[i].second->signals) number[at(s)] = static_cast<int>(i) + 1;
   return number;
@@ -141,7 +141,7 @@ void share_ends(Picture& p) {
 }  // namespace
 
 Picture picture(const Stage& stage, int most) {
-  const Graph& g = stage.graph;
+  const Graph& g = stage.now();
   Picture p{stage, g,  {}, {}, {}, by_name(g.nodes), by_name(g.inputs), by_name(g.outputs), {},
             {},    {}, {}, {}, {}};
   p.node_id = ids(g.nodes, p.nodes, block_prefix);

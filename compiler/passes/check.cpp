@@ -28,11 +28,12 @@ void check_names(Checker& c, const List& list, std::string_view what) {
 }  // namespace
 
 Stage check(Stage stage) {
-  Checker c(stage.graph);
-  check_names(c, stage.graph.nodes, "node");
-  check_names(c, stage.graph.inputs, "input");
-  check_names(c, stage.graph.outputs, "output");
-  check_names(c, stage.graph.parameters, "parameter");
+  const Graph& g = *stage.source;
+  Checker c(g);
+  check_names(c, g.nodes, "node");
+  check_names(c, g.inputs, "input");
+  check_names(c, g.outputs, "output");
+  check_names(c, g.parameters, "parameter");
   check_equations(c);
   check_drives(c);
   check_outputs(c);

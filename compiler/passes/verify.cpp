@@ -14,7 +14,7 @@ void demand(bool holds, const char* what) {
 }  // namespace
 
 void verify(const Stage& stage) {
-  const Graph& g = stage.graph;
+  const Graph& g = stage.now();
   const auto signals = static_cast<int>(g.signals.size());
   const auto valid = [&](int s) { return s >= 0 && s < signals; };
   for (const Channel& c : g.channels) {

@@ -81,8 +81,7 @@ Diagram grid(const Shape& shape) {
 }
 
 Stage until_chains(const Diagram& d) {
-  Stage stage;
-  stage.graph = d.graph();
+  Stage stage = as_written(d.graph());
   for (const auto pass : {passes::check, passes::lower, passes::split, passes::chains})
     stage = pass(std::move(stage));
   return stage;

@@ -65,8 +65,7 @@ TEST_CASE("random networks with closed chains: order by the null space, transfer
   for (std::uint64_t seed = 1; seed <= 300; ++seed) {
     CAPTURE(seed);
     const Diagram d = network(seed);
-    Stage stage;
-    stage.graph = d.graph();
+    Stage stage = as_written(d.graph());
     std::string why;
     try {
       for (const auto pass : {passes::check, passes::lower, passes::split, passes::chains})

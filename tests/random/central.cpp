@@ -17,9 +17,7 @@ namespace {
 constexpr std::uint64_t kScenes = 200;
 
 titop::Stage lowered(const titop::Diagram& d) {
-  titop::Stage stage;
-  stage.graph = d.graph();
-  return titop::passes::lower(titop::passes::check(std::move(stage)));
+  return titop::passes::lower(titop::passes::check(titop::as_written(d.graph())));
 }
 
 }  // namespace

@@ -74,15 +74,13 @@ PassError pass_error(const Scene& scene) {
   const auto rows = Scene::blocks(scene.outputs), cols = Scene::blocks(scene.inputs);
   const std::complex<double> s = points(diagram.graph().nodes.size(), 1).front();
   const std::vector<MatrixXcd> exact{transfer(diagram.graph(), s)};
-  Stage stage;
-  stage.graph = diagram.graph();
-  stage.values = nominal_values(stage.graph);
+  Stage stage = as_written(diagram.graph());
   PassError error;
   for (const Pass& pass : all) {
     stage = pass.run(std::move(stage));
     passes::verify(stage);
     if (pass.promise) pass.promise(stage);
-    const MatrixXcd now = as_declared(stage.graph, transfer(stage.graph, s));
+    const MatrixXcd now = as_declared(stage.now(), transfer(stage.now(), s));
     const double e = transfer_error<MatrixXcd>({now}, exact, rows, cols);
     if (e > error.worst) error = {e, pass.name};
   }

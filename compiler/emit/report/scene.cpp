@@ -73,8 +73,8 @@ std::string blocks(const Graph& g) {
 std::string diagram(const Subject& s, const Stage& stage, const char* title, const char* caption) {
   const std::string dot_text = to_dot(stage, {.fold = s.options.fold});
   const std::string svg =
-      drawing(dot_text, fmt::format("diagram of {}, {}", stage.graph.name, title));
-  const bool large = stage.graph.nodes.size() > 12;
+      drawing(dot_text, fmt::format("diagram of {}, {}", stage.now().name, title));
+  const bool large = stage.now().nodes.size() > 12;
   return fmt::format(
       "<h3>{}</h3>\n<figure class=\"diagram\"><div class=\"canvas{}\">{}</div><figcaption>{}"
       "</figcaption></figure>\n",
@@ -84,8 +84,7 @@ std::string diagram(const Subject& s, const Stage& stage, const char* title, con
 std::string diagrams(const Subject& s) {
   if (!s.options.diagrams) return {};
   const Stage& after = s.system.stage();
-  Stage before;
-  before.graph = after.source ? *after.source : after.graph;
+  Stage before = as_written(*after.source);
   before.values = after.values;
   return diagram(s, before, "As written",
                  "Filled arrows carry accelerations, open ones forces or wrenches; thick lines are "
@@ -98,7 +97,7 @@ std::string diagrams(const Subject& s) {
 }  // namespace
 
 std::string scene_section(const Subject& s) {
-  const Graph& g = s.system.stage().source ? *s.system.stage().source : s.system.stage().graph;
+  const Graph& g = *s.system.stage().source;
   return blocks(g) + "<h3>Inputs</h3>\n" +
          ports(g.inputs, s.inputs, "input", [&](int i) { return drives(s.system.stage(), i); }) +
          "<h3>Outputs</h3>\n" +

@@ -194,8 +194,6 @@ void add(std::vector<Scalar>& list, const std::string& name, int size, int row, 
                   static_cast<int>(list.size())});
 }
 
-const Graph& written(const Stage& stage) { return stage.source ? *stage.source : stage.graph; }
-
 constexpr std::size_t kNamed = 4;  ///< more are counted
 
 std::string listed(const std::vector<std::string>& names) {
@@ -208,7 +206,7 @@ std::string listed(const std::vector<std::string>& names) {
 }  // namespace
 
 std::vector<Scalar> scalar_inputs(const Stage& stage) {
-  const Graph& g = written(stage);
+  const Graph& g = *stage.source;
   const Natures natures(g);
   std::vector<Scalar> list;
   for (const int i : detail::as_declared(g.inputs)) {
@@ -220,7 +218,7 @@ std::vector<Scalar> scalar_inputs(const Stage& stage) {
 }
 
 std::vector<Scalar> scalar_outputs(const Stage& stage) {
-  const Graph& g = written(stage);
+  const Graph& g = *stage.source;
   const Natures natures(g);
   std::vector<Scalar> list;
   for (const int i : detail::as_declared(g.outputs)) {
@@ -232,7 +230,7 @@ std::vector<Scalar> scalar_outputs(const Stage& stage) {
 }
 
 std::string drives(const Stage& stage, int input) {
-  const Graph& g = written(stage);
+  const Graph& g = *stage.source;
   std::vector<std::string> names;
   for (const Equation& e : g.equations)
     for (const Term& t : e.terms)
@@ -245,7 +243,7 @@ std::string drives(const Stage& stage, int input) {
 }
 
 std::string reads(const Stage& stage, int output) {
-  const Graph& g = written(stage);
+  const Graph& g = *stage.source;
   std::vector<std::string> names;
   for (const Term& t : g.outputs[at(output)].terms)
     if (t.signal >= 0) names.push_back(print(g, t));

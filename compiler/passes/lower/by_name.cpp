@@ -27,10 +27,10 @@ void fetch(const void* p) { __builtin_prefetch(p); }
 
 }  // namespace
 
-Graph by_name(Graph g) {
+Graph by_name(const Graph& g) {
   Graph out;
-  out.name = std::move(g.name);
-  out.parameters = std::move(g.parameters);
+  out.name = g.name;
+  out.parameters = g.parameters;
   out.nodes.reserve(g.nodes.size());
   out.channels.reserve(g.channels.size());
   out.signals.reserve(g.signals.size());
@@ -40,16 +40,16 @@ Graph by_name(Graph g) {
     if (k + 2 * kAhead < order.size()) fetch(&g.nodes[at(order[k + 2 * kAhead])]);
     if (k + kAhead < order.size()) fetch(g.nodes[at(order[k + kAhead])].block.get());
     const int i = order[k];
-    Node& node = g.nodes[at(i)];
-    const int added = add_node(out, std::move(node.name), std::move(node.block), node.where);
+    const Node& node = g.nodes[at(i)];
+    const int added = add_node(out, node.name, node.block, node.where);
     out.nodes[at(added)].declared = node.declared;
     const int count = node.end_signal - node.first_signal;
     for (int n = 0; n < count; ++n)
       signal[at(node.first_signal + n)] = out.nodes[at(added)].first_signal + n;
   }
   for (const int i : sorted_by_name(g.inputs)) {
-    Input& input = g.inputs[at(i)];
-    signal[at(input.signal)] = add_input(out, std::move(input.name), input.size, input.where);
+    const Input& input = g.inputs[at(i)];
+    signal[at(input.signal)] = add_input(out, input.name, input.size, input.where);
     out.inputs.back().declared = input.declared;
   }
   const auto rename = [&](std::vector<Term>& terms) {
@@ -67,12 +67,12 @@ Graph by_name(Graph g) {
     if (k + kAhead < by_target.size())
       fetch(g.equations[at(by_target[k + kAhead].second)].terms.data());
     const auto [s, i] = by_target[k];
-    Equation& e = out.equations.emplace_back(std::move(g.equations[at(i)]));
+    Equation& e = out.equations.emplace_back(g.equations[at(i)]);
     e.target = s;
     rename(e.terms);
   }
   for (const int i : sorted_by_name(g.outputs)) {
-    out.outputs.push_back(std::move(g.outputs[at(i)]));
+    out.outputs.push_back(g.outputs[at(i)]);
     rename(out.outputs.back().terms);
   }
   return out;
