@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <titop/compiler/ahead.hpp>
 #include <titop/compiler/declared.hpp>
 #include <titop/compiler/system_data.hpp>
 
@@ -19,13 +20,17 @@ void add_names(std::vector<std::string>& names, const std::string& name, int siz
 /// Names stand as declared; nodes are visited as they lie in memory.
 void add_states(const Graph& g, Layout& l) {
   std::vector<int> first(g.nodes.size() + 1, 0);
-  for (const Node& node : g.nodes)
+  for (std::size_t i = 0; i < g.nodes.size(); ++i) {
+    const Node& node = g.nodes[i];
+    fetch_ahead(g, i);
     if (node.state >= 0 && g.signals[at(node.state)].active)
       first[at(node.declared) + 1] = static_cast<int>(node.block->interface().states.size());
+  }
   std::partial_sum(first.begin(), first.end(), first.begin());
   l.states.resize(at(first.back()));
   for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
     const Node& node = g.nodes[at(i)];
+    fetch_ahead(g, at(i));
     if (node.state < 0 || !g.signals[at(node.state)].active) continue;
     const int begin = first[at(node.declared)];
     l.state_first[at(i)] = l.known_first[at(node.state)] = begin;

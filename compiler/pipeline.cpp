@@ -7,6 +7,7 @@
 #include <iterator>
 #include <numeric>
 #include <system_error>
+#include <titop/compiler/ahead.hpp>
 #include <titop/compiler/compile_graph.hpp>
 #include <titop/compiler/dot.hpp>
 #include <titop/compiler/passes/passes.hpp>
@@ -79,8 +80,10 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d, double least) {
   k.layout = detail::make_layout(k.stage.graph);
   d.states = detail::StateMap(k.stage.dependents, k.layout);
   d.numbers.parameters = k.stage.values;
-  for (const Node& node : k.stage.graph.nodes)
+  for (const Node& node : k.stage.graph.nodes) {
+    fetch_ahead(k.stage.graph, d.numbers.blocks.size());
     d.numbers.blocks.push_back(node.block->dynamics(k.stage.values));
+  }
   k.joint = solve::joint(k.stage, d.numbers.coefficients);
   d.factors =
       std::make_unique<const solve::Factors<double>>(k.joint.plan, detail::real_rows(k, d.numbers));

@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <string_view>
+#include <titop/compiler/ahead.hpp>
 #include <titop/compiler/certify/doubt.hpp>
 #include <titop/compiler/certify/residual.hpp>
 #include <titop/compiler/certify/self_check.hpp>
@@ -83,6 +84,7 @@ WrittenResidual check_responses(const SystemData& d, double s) {
   std::map<std::string_view, std::set<const Dynamics*>> seen;
   for (const int i : d.layout().state_nodes) {
     const Node& node = d.graph().nodes[at(i)];
+    fetch_ahead(d.graph(), at(i));
     const Dynamics& m = *d.numbers.blocks[at(i)];
     auto& of_type = seen[node.block->type()];
     if (of_type.size() == kOfEachType || !of_type.insert(&m).second) continue;

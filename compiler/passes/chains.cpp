@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <titop/compiler/ahead.hpp>
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/close/redundant.hpp>
 #include <titop/compiler/passes/close/still.hpp>
@@ -36,7 +37,9 @@ struct Quick {
   void bodies(ParameterValues values) {
     const Block* met = nullptr;  // nodes that share a block often stand side by side
     std::optional<Kinematics> k;
+    std::size_t turn = 0;
     for (const Node& node : g.nodes) {
+      fetch_ahead(g, turn++);
       const auto& channels = node.block->interface().channels;
       if (channels.empty()) continue;
       if (node.block.get() != met)
@@ -67,8 +70,11 @@ struct Quick {
   }
 
   bool closes(ParameterValues values) {
-    for (const Node& node : g.nodes)
+    std::size_t turn = 0;
+    for (const Node& node : g.nodes) {
+      fetch_ahead(g, turn++);
       if (node.block->type() == "Integrator") return true;
+    }
     bodies(values);
     return std::any_of(g.equations.begin(), g.equations.end(),
                        [&](const Equation& e) { return tied_twice(e); });

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <titop/compiler/ahead.hpp>
 #include <titop/compiler/passes/incidence.hpp>
 
 namespace titop::passes {
@@ -46,6 +47,7 @@ struct Declared {
 std::vector<Declared> all_declared(const Graph& g, Sight sight) {
   std::vector<Declared> result;
   for (const Node& node : g.nodes) {
+    fetch_ahead(g, result.size());
     result.emplace_back();
     if (node.lowered) continue;
     result.back().direct = node.block->feedthrough();
@@ -112,6 +114,7 @@ void Mentioned::add(const Row& row, std::vector<int>& to) {
   const Node& node = g_.nodes[at(row.node)];
   if (node_ != row.node) {
     node_ = row.node;
+    fetch_ahead(g_, at(node_));
     direct_ = node.block->feedthrough();
     seen_ = node.block->seen_by();
   }

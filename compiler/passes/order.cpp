@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
 #include <boost/graph/strong_components.hpp>
+#include <titop/compiler/ahead.hpp>
 #include <titop/compiler/passes/arrows.hpp>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/compiler/passes/passes.hpp>
@@ -36,6 +37,7 @@ Arrows dependencies(const Stage& stage) {
   }
   for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
     const Node& node = g.nodes[at(i)];
+    fetch_ahead(g, at(i));
     if (node.state < 0 || !g.signals[at(node.state)].active) continue;
     const Pattern moved = node.block->moved_by();
     for (int s = node.first_signal; s < end_signal(g, i); ++s)
