@@ -130,7 +130,7 @@ struct Builder {
   }
 
   std::vector<std::string> names() const {
-    std::vector<std::string> result = d.states.names();
+    std::vector<std::string> result = d.state_names();
     for (const StateMap::Row& row : d.states.dependent())
       result.push_back(d.layout().states[at(row.state)]);
     result.resize(at(states + k.joint.plan->unknowns));

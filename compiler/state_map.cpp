@@ -49,12 +49,11 @@ StateMap::StateMap(const std::vector<Dependent>& dependents, const Layout& l) {
   Map map;
   std::vector<char> leaves(n, 0);
   for (const Dependent& d : dependents) leaves[at(l.state_first[at(d.node)] + d.state)] = 1;
-  map.names.reserve(n - dependents.size());
   map.kept.reserve(n - dependents.size());
   for (std::size_t i = 0; i < n; ++i) {
     if (leaves[i]) continue;
     map.kept.push_back(static_cast<int>(i));
-    map.names.push_back(l.states[i]);
+    if (!dependents.empty()) map.names.push_back(l.states[i]);
   }
   for (const Dependent& d : dependents) {
     Row row{l.state_first[at(d.node)] + d.state, {}};
@@ -74,7 +73,7 @@ void StateMap::reduce(StateSpace& m) const {
   m.A = times_map(m.A(kept(), Eigen::all), *this);
   m.B = m.B(kept(), Eigen::all).eval();
   m.C = times_map(m.C, *this);
-  m.states = names();
+  m.states = map_->names;
 }
 
 }  // namespace titop::detail

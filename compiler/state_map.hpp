@@ -28,7 +28,10 @@ class StateMap {
   bool trivial() const { return map_->rows.empty(); }
   const Eigen::MatrixXd& by_input() const { return by_input_; }  ///< empty: 0
   const std::vector<int>& kept() const { return map_->kept; }    ///< among the blocks' states
-  const std::vector<std::string>& names() const { return map_->names; }
+  /// The model's states; `blocks` are those of the blocks.
+  const std::vector<std::string>& names(const std::vector<std::string>& blocks) const {
+    return trivial() ? blocks : map_->names;
+  }
   int order() const { return static_cast<int>(map_->kept.size()); }
 
   /// One dependent state: sum of factor * state, all among the blocks' states. A row may read what
@@ -86,7 +89,7 @@ class StateMap {
  private:
   struct Map {
     std::vector<int> kept;
-    std::vector<std::string> names;
+    std::vector<std::string> names;  ///< of those kept; none where all are
     std::vector<Row> rows;
   };
   std::shared_ptr<const Map> map_ = std::make_shared<const Map>();  ///< updates share it

@@ -17,7 +17,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 int System::order() const { return data_->states.order(); }
-const std::vector<std::string>& System::states() const { return data_->states.names(); }
+const std::vector<std::string>& System::states() const { return data_->state_names(); }
 const std::vector<std::string>& System::inputs() const { return data_->layout().inputs; }
 const std::vector<std::string>& System::outputs() const { return data_->layout().outputs; }
 const Stage& System::stage() const { return data_->skeleton->stage; }

@@ -95,6 +95,7 @@ struct SystemData {
 
   const Graph& graph() const { return skeleton->stage.graph; }
   const Layout& layout() const { return skeleton->layout; }
+  const std::vector<std::string>& state_names() const { return states.names(layout().states); }
   /// The certificate: found by `compile`; of an updated system when it is first asked for.
   const Check& checked() const;
   const std::shared_ptr<const solve::ColumnScale>& scale() const {

@@ -101,15 +101,16 @@ void add_channel(Assembly& a, const Channel& channel, const Drive& drive) {
     a.subtract(MatrixXd::Identity(S.rows(), S.rows()), equations[at(e)].terms);
     a.row += static_cast<int>(S.rows());
   }
-  if (drive.N.rows() == 0) return;
+  if (drive.free == 0) return;
   bool active =
       drive.force.empty() && drive.added.empty() ? a.graph.signals[at(channel.force)].active : true;
   for (const int e : drive.force) active = active && equations[at(e)].active;
   if (!active) return;
-  a.add(drive.N, channel.force);
-  a.subtract_equations(drive.N, drive.force);
-  a.subtract_equations(drive.N, drive.added);
-  a.row += static_cast<int>(drive.N.rows());
+  const MatrixXd N = drive.N();
+  a.add(N, channel.force);
+  a.subtract_equations(N, drive.force);
+  a.subtract_equations(N, drive.added);
+  a.row += drive.free;
 }
 
 /// signal (or output) = sum of its terms

@@ -207,7 +207,7 @@ System compiled_again(const SystemData& old, const std::vector<int>& changed,
                       fmt::format("{}: closed chains or the equations' terms change, all compiled "
                                   "again",
                                   text_of(*old.skeleton, changed, values))});
-  if (d->states.names() != old.states.names())
+  if (d->state_names() != old.state_names())
     d->notes.push_back({Note::Kind::warning, "update",
                         "other states depend on the rest than before: the model's states differ"});
   return System(std::move(d));

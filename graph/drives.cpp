@@ -73,16 +73,15 @@ Drives::Drives(const Graph& graph) : drives_(graph.channels.size()) {
     Drive& drive = drives_[c];
     const std::span<int> accel = of(0);
     drive.accel = accel, drive.force = of(1), drive.added = of(2);
-    const int n = graph.channels[c].size;
+    drive.size = graph.channels[c].size;
     if (accel.empty()) {
-      drive.N.setIdentity(n, n);
-    } else if (part(accel.front()).whole()) {
-      drive.N.resize(0, n);
-    } else {
+      drive.free = drive.size;
+    } else if (!part(accel.front()).whole()) {
       // The basis must not depend on the order in which the parts were written.
       std::stable_sort(accel.begin(), accel.end(),
                        [&](int a, int b) { return part(a).name < part(b).name; });
-      drive.N = left_by(graph, accel, n);
+      drive.some = left_by(graph, accel, drive.size);
+      drive.free = static_cast<int>(drive.some.rows());
     }
   }
 }

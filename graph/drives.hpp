@@ -10,9 +10,15 @@ namespace titop {
 /// Who drives a channel: the equations on its two signals and the directions that they take.
 struct Drive {
   std::span<const int> accel, force, added;  ///< equations: `accel =`, `force =`, `force +=`
-  /// Orthonormal rows: directions in which no acceleration is driven, but the force (unit vectors
-  /// where none is oblique).
-  Eigen::MatrixXd N;
+  int size = 0;                              ///< of the channel
+  int free = 0;               ///< directions in which no acceleration is driven, but the force
+  Eigen::MatrixXd some = {};  ///< N where these are some of all; else they need no matrix
+
+  bool all_free() const { return free == size; }
+  /// Orthonormal rows of these directions, free x size (unit vectors where none is oblique).
+  Eigen::MatrixXd N() const {
+    return some.size() ? some : Eigen::MatrixXd(Eigen::MatrixXd::Identity(free, size));
+  }
 };
 
 /// The drives of all channels, by what the user wrote (not by rows of blocks). O(equations).

@@ -80,7 +80,7 @@ int rows_of(const Graph& graph, const Term& term) {
 MatrixXd coefficient(const Graph& graph, const Term& term, ParameterValues values) {
   const int size = graph.signals[static_cast<std::size_t>(term.signal)].size;
   std::optional<MatrixXd> result;  // none: the identity
-  const auto apply = [&](const MatrixXd& m) { result = result ? MatrixXd(m * *result) : m; };
+  const auto apply = [&](MatrixXd m) { result = result ? MatrixXd(m * *result) : std::move(m); };
   double scale = term.sign;
   for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f) {
     if (const auto* k = std::get_if<Value>(&*f)) {
@@ -104,7 +104,7 @@ Pattern structure(const Graph& graph, const Term& term) {
     return Pattern((a.cast<int>() * b.cast<int>()).array() > 0);
   };
   std::optional<Pattern> result;  // none: the identity
-  const auto apply = [&](const Pattern& p) { result = result ? product(p, *result) : p; };
+  const auto apply = [&](Pattern p) { result = result ? product(p, *result) : std::move(p); };
   for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f) {
     if (const auto* m = std::get_if<Matrix>(&*f)) {
       apply(m->pattern ? *m->pattern : Pattern(m->value->array() != 0));

@@ -18,7 +18,7 @@ std::string counts(std::size_t states, std::size_t inputs, std::size_t outputs) 
 
 void refuse_counts(const SystemData& d, const StateSpace& m) {
   const Layout& l = d.layout();
-  const std::vector<std::string>& states = d.states.names();
+  const std::vector<std::string>& states = d.state_names();
   if (m.states.size() == states.size() && m.inputs.size() == l.inputs.size() &&
       m.outputs.size() == l.outputs.size())
     return;
@@ -80,7 +80,7 @@ void throw_if_any(std::vector<Mistake> mistakes) {
 void require_written(const SystemData& d, const StateSpace& m) {
   refuse_counts(d, m);
   std::vector<Mistake> mistakes;
-  compare_names("state", m.states, d.states.names(), mistakes);
+  compare_names("state", m.states, d.state_names(), mistakes);
   compare_names("input", m.inputs, d.layout().inputs, mistakes);
   compare_names("output", m.outputs, d.layout().outputs, mistakes);
   const Index n = std::ssize(m.states), inputs = std::ssize(m.inputs),

@@ -203,11 +203,11 @@ struct Residual {
   void force(int channel, const Drives& drive) {
     const Channel& c = w.channels[at(channel)];
     const Drive& own = drive[at(channel)];
-    if (own.N.rows() == 0) return;
-    const bool whole = own.N.rows() == c.size;  // N is the identity then
-    start(c.force, whole ? nullptr : &own.N);
+    if (own.free == 0) return;
+    const MatrixXd* const N = own.all_free() ? nullptr : &own.some;
+    start(c.force, N);
     for (const auto* list : {&own.force, &own.added})
-      for (const int e : *list) subtract_force(whole ? nullptr : &own.N, e, drive);
+      for (const int e : *list) subtract_force(N, e, drive);
     take(c.force, [&] { return "the forces at " + channel_name(w, channel); });
   }
 

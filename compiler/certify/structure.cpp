@@ -47,7 +47,7 @@ class Connections {
     randomize(0, size(), any);
     settle([&](std::size_t c) {
       const Drive& d = drive_[c];
-      return replace(accel_[c], d.N.transpose() * (d.N * any[c]) + sum(d.accel, c));
+      return replace(accel_[c], d.N().transpose() * (d.N() * any[c]) + sum(d.accel, c));
     });
   }
 
@@ -62,8 +62,9 @@ class Connections {
     settle([&](std::size_t c) {
       const Drive& d = drive_[c];
       const VectorXd added = sum(d.added, c);
+      const Eigen::MatrixXd N = d.N();
       const bool moved =
-          replace(force_[c], any[c] + d.N.transpose() * (d.N * (sum(d.force, c) + added - any[c])));
+          replace(force_[c], any[c] + N.transpose() * (N * (sum(d.force, c) + added - any[c])));
       return replace(reaction_[c], force_[c] - added) || moved;
     });
     double all = 0, magnitudes = 0;

@@ -171,7 +171,7 @@ class Assembly {
       const Matrix projector = S.transposed() * S;
       for (std::size_t i = 0; i < rest.entries.size(); ++i) rest.entries[i] -= projector.entries[i];
     }
-    if (drive.N.rows() == 0) return;
+    if (drive.free == 0) return;
     Block rows(at(channel.size));
     add(rows, rest, columns_.of_signal[at(channel.force)]);
     subtract_forces(rows, rest, drive.force);

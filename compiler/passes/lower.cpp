@@ -42,10 +42,9 @@ struct Lowered {
     for (const int e : d.accel)
       equation({Origin::Of::accel, e}, c.accel, l.g.equations[at(e)].part,
                l.g.equations[at(e)].where);
-    if (d.N.rows() == 0) return;
+    if (d.free == 0) return;
     const std::span<const int> first = d.force.empty() ? d.added : d.force;
-    equation({Origin::Of::force, index}, c.force,
-             d.N.rows() == c.size ? Part{} : Part{d.N, ".free"},
+    equation({Origin::Of::force, index}, c.force, d.all_free() ? Part{} : Part{d.some, ".free"},
              first.empty() ? l.g.nodes[at(c.node)].where : l.g.equations[at(first.front())].where);
   }
 

@@ -122,7 +122,7 @@ void make_proper(Skeleton& k, SystemData& d, const Derivatives& v) {
   refuse_derivatives(k, d, v, e);
   std::vector<std::string> names;
   for (Index i = 0; i < e.shifts[0].rows(); ++i)
-    if (!e.shifts[0].row(i).isZero(0)) names.push_back(d.states.names()[at(i)]);
+    if (!e.shifts[0].row(i).isZero(0)) names.push_back(d.state_names()[at(i)]);
   if (!names.empty())
     k.stage.notes.push_back(
         {Note::Kind::info, "reduce",

@@ -185,7 +185,7 @@ void Lowering::walk(Amount& sum, Step at_channel, Level level) {
     next.reset();
     const Drive& d = drive[at(here.channel)];
     const bool back = visiting[at(here.channel)];  // round a closed chain: the motion of all of it
-    if (back || (!d.accel.empty() && d.N.rows() > 0)) {
+    if (back || (!d.accel.empty() && d.free > 0)) {
       append(sum, times(here.factor, here.declared, own_motion(here.channel)));
       break;
     }
@@ -274,7 +274,7 @@ Amount Lowering::force(int channel) {
   const Drive& d = drive[at(channel)];
   Amount sum = added(d.force);
   append(sum, added(d.added));
-  return d.N.rows() == g.channels[at(channel)].size ? sum : times(d.N, std::move(sum));
+  return d.all_free() ? sum : times(d.some, std::move(sum));
 }
 
 /// out = D in.
