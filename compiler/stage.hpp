@@ -79,8 +79,10 @@ struct RigidMotion {
 
 /// A closing equation that says something twice: in these directions the joint is released.
 struct Released {
-  int equation = -1;  ///< of the released force (new), in Stage::graph
-  int channel = -1;   ///< whose wrench is not determined there
+  int equation = -1;    ///< of the released force (new), in Stage::graph
+  int channel = -1;     ///< whose wrench is not determined there
+  int closing = -1;     ///< the closing equation; where all of it is released, the same
+  Equation whole = {};  ///< as it was: it holds, for what is released follows from closings before
 };
 
 /// A state that follows from others, because chains are closed or because it integrates what other

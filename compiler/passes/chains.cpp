@@ -195,14 +195,15 @@ void release(Stage& stage, int equation, const MatrixXd& directions) {
   if (directions.rows() == g.channels[at(channel)].size) force.part = {};
   Origin nothing{.of = Origin::Of::released, .index = equation};
   if (kept.rows() == 0) {
+    stage.released.push_back({equation, channel, equation, g.equations[at(equation)]});
     g.equations[at(equation)] = force;
     stage.origins[at(equation)] = nothing;
-    stage.released.push_back({equation, channel});
     return;
   }
+  const auto fresh = static_cast<int>(g.equations.size());
+  stage.released.push_back({fresh, channel, equation, g.equations[at(equation)]});
   keep_rows(g, g.equations[at(equation)], kept);
   stage.origins[at(equation)].times = kept;
-  stage.released.push_back({static_cast<int>(g.equations.size()), channel});
   stage.origins.insert(stage.origins.begin() + static_cast<std::ptrdiff_t>(g.equations.size()),
                        nothing);
   g.equations.push_back(std::move(force));

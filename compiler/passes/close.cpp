@@ -121,7 +121,7 @@ Stage close(Stage stage) {
   if (!stage.closes) return stage;
   const Graph& g = stage.graph;
   const Twins twins(g);
-  const Motion motion(g, stage.values, twins);
+  const Motion motion(g, stage.values, twins, Ground::by_name, stage.released);
   const Coordinates coordinates(g, stage.values);
   std::vector<Line> closed, on_positions, on_rates;
   for (const Tie& tie : motion.ties())

@@ -95,9 +95,9 @@ Stage until_close(const Diagram& d) {
 }
 
 /// Entries of the map from the states that stay.
-double entries(const Shape& shape) {
+double entries(const Diagram& diagram) {
   double count = 0;
-  for (const Dependent& d : until_close(grid(shape)).dependents)
+  for (const Dependent& d : until_close(diagram).dependents)
     count += static_cast<double>(d.of.size());
   return count;
 }
@@ -143,20 +143,27 @@ TEST_CASE("ladders and grids: the dense model answers as the equations as writte
 TEST_CASE("what follows from what: linear in the bays of a ladder, n^1.5 log n in a grid") {
   for (const double rungs : {1.0, 0.1, 8.0}) {
     CAPTURE(rungs);
-    CHECK(entries({81, 2, rungs}) <= 4.4 * entries({21, 2, rungs}));
-    CHECK(entries({17, 17, rungs}) <= 8.0 * 4 / 3 * entries({9, 9, rungs}));  // 64 and 256 loops
+    const auto count = [&](int along, int across) { return entries(grid({along, across, rungs})); };
+    CHECK(count(81, 2) <= 4.4 * count(21, 2));
+    CHECK(count(17, 17) <= 8.0 * 4 / 3 * count(9, 9));  // 64 and 256 loops
   }
 }
 
 namespace {
 
 /// A braced truss of rigid bars on pins, all in one plane: every bay has two loops.
-Diagram truss(int bays) {
+struct Truss {
+  int bays = 1;
+  bool crossed = false;  ///< a second brace, which holds nothing that the first does not
+};
+
+Diagram truss(const Truss& shape) {
   Diagram d{"truss"};
   RigidBody node{.mass = 5, .inertia = 0.1 * Matrix3d::Identity()};
   for (int k = 0; k < 8; ++k) node.children.push_back({"p" + std::to_string(k)});
   std::vector<BodyHandle> nodes;
-  for (int k = 0; k < 2 * (bays + 1); ++k) nodes.push_back(d.add("N" + std::to_string(k), node));
+  for (int k = 0; k < 2 * (shape.bays + 1); ++k)
+    nodes.push_back(d.add("N" + std::to_string(k), node));
   std::vector<int> used(nodes.size(), 0);
   std::vector<char> placed(nodes.size(), 0);
   placed[0] = 1;
@@ -183,9 +190,10 @@ Diagram truss(int bays) {
     placed[at(b)] = 1;
   };
   bar(0, 1);
-  for (int i = 1; i <= bays; ++i) {
+  for (int i = 1; i <= shape.bays; ++i) {
     bar(2 * i - 2, 2 * i), bar(2 * i - 1, 2 * i + 1), bar(2 * i, 2 * i + 1);
     bar(2 * i - 2, 2 * i + 1);
+    if (shape.crossed) bar(2 * i - 1, 2 * i);
   }
   nodes.front().parent.force = -d.input("U", 6);
   d.output("a", 6) = nodes.back().child("p7").accel;
@@ -195,12 +203,22 @@ Diagram truss(int bays) {
 }  // namespace
 
 TEST_CASE("a truss of rigid bars: along twenty followers nothing is taken for rounding") {
-  for (const int bays : {3, 20}) {
-    CAPTURE(bays);
-    const System system = compile(truss(bays), {.minimize_up_to = 0});
-    const Complex s(0.3, 40);
-    CHECK(by_hand::transfer_error({system.state_space().transfer(s)},
-                                  {system.transfer(s, Precision::digits50)}) <= 1e-8);
+  for (const bool crossed : {false, true})
+    for (const int bays : {3, 20}) {
+      CAPTURE(crossed);
+      CAPTURE(bays);
+      const System system = compile(truss({bays, crossed}), {.minimize_up_to = 0});
+      CHECK(system.order() == 2 * 2 * (bays + 1));  // the nodes turn, the bars do not
+      const Complex s(0.3, 40);
+      CHECK(by_hand::transfer_error({system.state_space().transfer(s)},
+                                    {system.transfer(s, Precision::digits50)}) <= 1e-8);
+    }
+}
+
+TEST_CASE("a truss of rigid bars: what follows from what is linear in its bays") {
+  for (const bool crossed : {false, true}) {
+    CAPTURE(crossed);
+    CHECK(entries(truss({80, crossed})) <= 4.4 * entries(truss({20, crossed})));
   }
 }
 

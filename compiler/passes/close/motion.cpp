@@ -40,11 +40,14 @@ double relative_gap(const MatrixXd& gap, const MatrixXd& sizes) {
 
 }  // namespace
 
-Motion::Motion(const Graph& graph, ParameterValues values, const Twins& twins, Ground ground)
+Motion::Motion(const Graph& graph, ParameterValues values, const Twins& twins, Ground ground,
+               std::span<const Released> released)
     : g_(graph), ground_(static_cast<int>(graph.channels.size())), at_point_(at(ground_) + 1) {
   add_bodies(values);
-  add_ties(twins);
-  plant(ground);
+  add_ties(twins, ground);
+  std::vector<Tie> whole;
+  for (const Released& r : released) whole.push_back(tie_of(r.whole, r.closing, twins, ground));
+  plant(whole);
 }
 
 std::string Motion::name(int point) const {
@@ -83,23 +86,30 @@ void Motion::add_body(int index, ParameterValues values) {
   }
 }
 
-void Motion::add_ties(const Twins& twins) {
-  std::vector<Tie> inverted;
+void Motion::add_ties(const Twins& twins, Ground ground) {
   for (int e = 0; e < static_cast<int>(g_.equations.size()); ++e) {
     const Equation& q = g_.equations[at(e)];
     const Signal& target = g_.signals[at(q.target)];
     if (q.of_block || target.channel < 0 || target.quantity != Quantity::acceleration) continue;
-    Tie tie{.equation = e, .target = target.channel};
-    tie.S = q.part.whole() ? MatrixXd::Identity(target.size, target.size) : q.part.rows;
-    const Twin twin = twins.of(q.terms);
-    tie.points = twin.points;
-    for (const auto* list : {&twin.rates, &twin.integrals, &twin.states, &twin.others})
-      for (const auto& [signal, c] : *list) add(tie.own, {Column::Kind::prescribed, signal}, c);
-    const Channel& c = g_.channels[at(target.channel)];
-    (c.takes == Takes::accel ? ties_ : inverted).push_back(std::move(tie));
+    ties_.push_back(tie_of(q, e, twins, ground));
   }
+  std::sort(ties_.begin(), ties_.end(), [](const Tie& a, const Tie& b) { return a.turn < b.turn; });
+}
+
+Tie Motion::tie_of(const Equation& q, int index, const Twins& twins, Ground ground) const {
+  const Signal& target = g_.signals[at(q.target)];
+  Tie tie{.equation = index, .target = target.channel};
+  tie.S = q.part.whole() ? MatrixXd::Identity(target.size, target.size) : q.part.rows;
+  const Twin twin = twins.of(q.terms);
+  tie.points = twin.points;
+  for (const auto* list : {&twin.rates, &twin.integrals, &twin.states, &twin.others})
+    for (const auto& [signal, c] : *list) add(tie.own, {Column::Kind::prescribed, signal}, c);
   // A locked child point closes the chain rather than the joint that carries the body.
-  for (Tie& tie : inverted) ties_.push_back(std::move(tie));
+  const auto all = static_cast<int>(g_.equations.size());
+  const bool inverted = g_.channels[at(target.channel)].takes != Takes::accel;
+  tie.turn =
+      index + (inverted ? all : 0) + (ground == Ground::last && tie.points.empty() ? 2 * all : 0);
+  return tie;
 }
 
 /// The tie as an edge of the tree, if its coefficient can be turned round: whole, or orthonormal.
@@ -137,7 +147,8 @@ Motion::Edge Motion::reversed(const Edge& e) const {
   return r;
 }
 
-void Motion::plant(Ground ground) {
+/// `released`: as they were.
+void Motion::plant(std::span<const Tie> released) {
   UnionFind joined(ground_ + 1);
   std::vector<char> one_way(at(ground_) + 1, 0);
   const auto join = [&](int e) {
@@ -149,24 +160,19 @@ void Motion::plant(Ground ground) {
     join(e);
     if (edges_[at(e)].one_way && edges_[at(e)].from != ground_) one_way[at(edges_[at(e)].to)] = 1;
   }
-  int turn = 0;
-  const auto take = [&](Tie& tie) {
-    tie.turn = turn++;
+  for (Tie& tie : ties_) {
     auto edge = edge_of(tie);
     // A point that only its own body can place is never the way to anything else.
     tie.closes = !edge || one_way[at(edge->to)] || one_way[at(edge->from)] ||
                  joined.find(edge->to) == joined.find(edge->from);
-    if (tie.closes) return;
+    if (tie.closes) continue;
     edges_.push_back(std::move(*edge));
     join(static_cast<int>(edges_.size()) - 1);
-  };
-  for (Tie& tie : ties_)
-    if (ground == Ground::by_name || !tie.points.empty()) take(tie);
-  for (Tie& tie : ties_)
-    if (ground == Ground::last && tie.points.empty()) take(tie);
+  }
   shortcut_.resize(at(ground_) + 1);
   for (const Tie& tie : ties_)
     if (tie.closes) plant_shortcut(tie, one_way);
+  for (const Tie& tie : released) plant_shortcut(tie, one_way);
   up_.assign(at(ground_) + 1, {});
   below_.resize(at(ground_) + 1);
   depth_.assign(at(ground_) + 1, -1);

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <titop/compiler/passes/close/twin.hpp>
 #include <titop/compiler/stage.hpp>
@@ -17,7 +18,7 @@ struct Tie {
   std::map<int, Eigen::MatrixXd> points = {};  ///< channel -> rows x size
   Form own = {};                               ///< prescribed columns
   bool closes = false;                         ///< no edge of the tree: it closes a chain
-  int turn = 0;                                ///< when the spanning forest came to it
+  int turn = 0;                                ///< when the spanning forest comes to it
 };
 
 /// A closing equation: form + gap * (position of the meeting point) = 0, where `gap` is 0 if the
@@ -39,15 +40,17 @@ enum class Ground { by_name, last };
 /// block's default direction last.
 class Motion {
  public:
+  /// `released`: by `chains`, from these equations; the ways round go through what they were.
   Motion(const Graph& graph, ParameterValues values, const Twins& twins,
-         Ground ground = Ground::by_name);
+         Ground ground = Ground::by_name, std::span<const Released> released = {});
 
   const std::vector<Tie>& ties() const { return ties_; }
   /// Both ways from the tie to where they meet: what lies beyond the chain is exactly 0. The way
   /// round is the tree's, or a shorter one through ties that close chains themselves and come
   /// before this one: then it is the tree's closing equation less some of theirs, and a ladder's
-  /// rungs close a bay each. Ties that let go in some direction are no such way. Some 600 edges are
-  /// looked at, else up to 16 per edge of the tree's way.
+  /// rungs close a bay each. What `chains` has released of theirs follows in turn from closing
+  /// equations before: all together say the same. Ties that let go in some direction are no such
+  /// way. Some 600 edges are looked at, else up to 16 per edge of the tree's way.
   Closing closing(const Tie& tie) const;
   /// Position of a point from the root of its assembly.
   Form position(int channel) const;
@@ -74,7 +77,8 @@ class Motion {
 
   void add_bodies(ParameterValues values);
   void add_body(int node, ParameterValues values);
-  void add_ties(const Twins& twins);
+  void add_ties(const Twins& twins, Ground ground);
+  Tie tie_of(const Equation& equation, int index, const Twins& twins, Ground ground) const;
   std::optional<Edge> edge_of(const Tie& tie) const;
   Edge reversed(const Edge& edge) const;
   /// From one point to another, or to the root (`to` -1): each edge leads on from the one before.
@@ -89,7 +93,7 @@ class Motion {
     Edge edge = {};
   };
 
-  void plant(Ground ground);
+  void plant(std::span<const Tie> released);
   void plant_shortcut(const Tie& tie, const std::vector<char>& one_way);
   int meeting(int a, int b) const;
   /// In the tree, up to `above`.
