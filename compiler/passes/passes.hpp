@@ -35,10 +35,10 @@ Stage split(Stage stage);
 /// equation left is independent; the motion is the same. Points that the chains leave no motion are
 /// listed: outputs, and equations outside the chains, read 0 there in place of rounding. Throws
 /// kinematic_loop where the geometry does not close, and where a body on the chain does not say
-/// where its ports are. O(terms) where all chains are open; where flexible bodies close them,
-/// about linear in the loops of a ladder, n^1.5 in a planar grid; O(rows^2 columns) for each
-/// connected set of loops in which no body belongs to one alone, as of rigid bars on pins
-/// (compiler/passes/close).
+/// where its ports are. O(terms) where all chains are open; about linear in the loops of a ladder
+/// or a truss, n^1.5 in a planar grid of flexible bodies; at worst O(rows^2 columns), for connected
+/// sets of loops in which no body belongs to one alone and names that follow one another are far
+/// apart (compiler/passes/close).
 Stage chains(Stage stage);
 
 /// Every row has its unknown: maximum bipartite matching by whole signals from each channel's

@@ -97,6 +97,34 @@ Relations loops(Rng& rng) {
   return r;
 }
 
+/// Loops one after the other, as in a truss: none has a column to itself, every fifth says in one
+/// direction what the two before it say.
+Relations strip(Rng& rng, int count) {
+  Relations r;
+  const int columns = 2 * count + 4;
+  r.role.assign(at(columns), Relations::Role::coordinate);
+  r.weight = Eigen::VectorXd::Ones(columns);
+  for (int b = 0; b < count; ++b) {
+    RowBlock block;
+    for (int c = 2 * b; c < 2 * b + 6; ++c) block.columns.push_back(c);
+    block.M.resize(2, 6);
+    for (double& x : block.M.reshaped()) x = rng.between(-1, 1);
+    if (b % 5 == 4) {
+      const RowBlock &one = r.blocks[at(b - 1)], &two = r.blocks[at(b - 2)];
+      block.columns.clear();
+      for (int c = 2 * b - 4; c < 2 * b + 6; ++c) block.columns.push_back(c);
+      MatrixXd M = MatrixXd::Zero(2, 10);
+      M.bottomRightCorner(1, 6) = block.M.row(1);
+      M.row(0).segment(2, 6) = 0.7 * one.M.row(0).tail(6);
+      M.row(0).head(6) -= 0.4 * two.M.row(1).tail(6);
+      block.M = M;
+    }
+    r.blocks.push_back(std::move(block));
+    r.unit.push_back({b, b});
+  }
+  return r;
+}
+
 }  // namespace
 
 TEST_CASE("redundant directions and held columns: as singular values of all relations say") {
@@ -168,4 +196,25 @@ TEST_CASE("followers: as many as the rank says, and right in every motion that i
     }
   }
   CHECK(of_others >= 100);
+}
+
+TEST_CASE("redundant directions along a truss: the same, and no more columns open at once") {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    CAPTURE(seed);
+    for (const int count : {30, 600}) {
+      Rng rng(seed);
+      Relations r = strip(rng, count);
+      scale(r);
+      const Redundancy found = redundancy(r);
+      CHECK(found.widest <= 20);
+      Index repeated = 0;
+      for (int b = 0; b < count; ++b) {
+        const Redundant& block = found.blocks[at(b)];
+        CHECK(!block.doubtful());
+        CHECK(block.directions.rows() == (b % 5 == 4 ? 1 : 0));
+        repeated += block.directions.rows();
+      }
+      if (count == 30) CHECK(rank(dense(r, r.blocks.size())) == 2 * count - repeated);
+    }
+  }
 }

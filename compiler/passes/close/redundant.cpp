@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <deque>
+#include <iterator>
 #include <map>
 #include <titop/compiler/passes/close/redundant.hpp>
 #include <titop/compiler/passes/close/reflections.hpp>
@@ -34,24 +35,33 @@ struct Part {
   }
 };
 
-/// Adds to `known` (orthonormal columns) what is new in the rows.
+/// Adds to `known` (orthonormal rows) what is new in these rows.
 Redundant by_singular_values(const MatrixXd& rows, MatrixXd& known) {
   Redundant result;
   MatrixXd left = rows;
-  for (int twice = 0; twice < 2; ++twice)
-    if (known.cols() > 0) left -= (left * known) * known.transpose();
+  for (int twice = 0; twice < 2; ++twice) left -= (left * known.transpose()) * known;
   const Eigen::JacobiSVD<MatrixXd> svd(left, Eigen::ComputeFullU | Eigen::ComputeThinV);
   const VectorXd& sigma = svd.singularValues();
   Index rank = 0;
   while (rank < sigma.size() && sigma(rank) > kRankTolerance) ++rank;
   if (rank > 0) result.weakest = sigma(rank - 1);
   if (rank < sigma.size()) result.dropped = sigma(rank);
-  MatrixXd fresh = svd.matrixV().leftCols(rank);  // of small values: with rounding, made large
-  if (known.cols() > 0) fresh -= known * (known.transpose() * fresh);
-  fresh.colwise().normalize();
-  known.conservativeResize(rows.cols(), known.cols() + rank);
-  known.rightCols(rank) = fresh;
+  // Of small values: with rounding, made large.
+  MatrixXd fresh = svd.matrixV().leftCols(rank).transpose();
+  fresh -= (fresh * known.transpose()) * known;
+  fresh.rowwise().normalize();
+  known.conservativeResize(known.rows() + rank, Eigen::NoChange);
+  known.bottomRows(rank) = fresh;
   result.directions = svd.matrixU().rightCols(rows.rows() - rank).transpose();
+  return result;
+}
+
+/// These rows over more columns (ascending), 0 in the new ones.
+MatrixXd over(const std::vector<int>& columns, const RowBlock& rows) {
+  MatrixXd result = MatrixXd::Zero(rows.M.rows(), static_cast<Index>(columns.size()));
+  for (std::size_t i = 0; i < rows.columns.size(); ++i)
+    result.col(std::lower_bound(columns.begin(), columns.end(), rows.columns[i]) -
+               columns.begin()) = rows.M.col(static_cast<Index>(i));
   return result;
 }
 
@@ -90,39 +100,52 @@ struct Finder {
   /// Sets rows aside that have pivots in columns of their own.
   void set_aside(int b) {
     RowBlock& block = blocks[at(b)];
-    const auto width = static_cast<int>(block.columns.size());
-    std::vector<int> own;
-    for (int i = 0; i < width; ++i)
-      if (uses.alone(block.columns[at(i)])) own.push_back(i);
+    const auto alone = [&](int c) { return uses.alone(c); };
+    const std::vector<int> own = places(block.columns, alone);
     if (own.empty()) return;
-    MatrixXd M(block.M.rows(), width + directions[at(b)].cols());
+    MatrixXd M(block.M.rows(), block.M.cols() + directions[at(b)].cols());
     M << block.M, directions[at(b)];
     Reflections e(std::move(M));
     e.take(own, kGoodPivot);
-    const Index done = e.done(), left = block.M.rows() - done;
-    if (done == 0) return;
-    Part part;
-    RowBlock rest;
-    std::vector<int> own_places, other_places, rest_places;
-    for (int i = 0; i < width; ++i) {
-      const int c = block.columns[at(i)];
-      const double norm = e.norm(i);
-      const bool gone = left == 0 || e.taken(i) || norm <= (uses.alone(c) ? kNothing : 0);
-      const bool is_own = gone && uses.alone(c);
-      (is_own ? own_places : other_places).push_back(i);
-      (is_own ? part.own : part.others).push_back(c);
-      if (is_own) part_of[at(c)] = static_cast<int>(parts.size());
-      if (!gone) rest_places.push_back(i), rest.columns.push_back(c);
-    }
-    set_basis(part, e.matrix().topRows(done)(Eigen::all, own_places));
-    part.rest = e.matrix().topRows(done)(Eigen::all, other_places);
-    rest.M = e.matrix().bottomRows(left)(Eigen::all, rest_places);
-    directions[at(b)] = e.matrix().bottomRightCorner(left, directions[at(b)].cols());
-    parts.push_back(std::move(part));
-    const std::vector<int> before = std::move(block.columns);
-    block = std::move(rest);
+    if (e.done() == 0) return;
+    directions[at(b)] =
+        e.matrix().bottomRightCorner(block.M.rows() - e.done(), directions[at(b)].cols());
+    const std::vector<int> before = block.columns;
+    block = rest(before, e, alone);
     for (const int c : before)
       if (!std::binary_search(block.columns.begin(), block.columns.end(), c)) leave(c, b);
+  }
+
+  template <class Asked>
+  static std::vector<int> places(const std::vector<int>& columns, Asked asked) {
+    std::vector<int> result;
+    for (std::size_t i = 0; i < columns.size(); ++i)
+      if (asked(columns[i])) result.push_back(static_cast<int>(i));
+    return result;
+  }
+
+  /// Rows with a pivot become a part, which takes along their own columns where nothing is left of
+  /// them. Returns the others.
+  template <class Own>
+  RowBlock rest(const std::vector<int>& columns, const Reflections& e, Own is_own) {
+    const Index done = e.done(), left = e.matrix().rows() - done;
+    Part part;
+    RowBlock rows;
+    std::vector<int> own, others, stay;
+    for (int i = 0; i < static_cast<int>(columns.size()); ++i) {
+      const int c = columns[at(i)];
+      const bool gone = left == 0 || e.taken(i) || e.norm(i) <= (is_own(c) ? kNothing : 0);
+      const bool goes_along = gone && is_own(c);
+      (goes_along ? own : others).push_back(i);
+      (goes_along ? part.own : part.others).push_back(c);
+      if (goes_along) part_of[at(c)] = static_cast<int>(parts.size());
+      if (!gone) stay.push_back(i), rows.columns.push_back(c);
+    }
+    set_basis(part, e.matrix().topRows(done)(Eigen::all, own));
+    part.rest = e.matrix().topRows(done)(Eigen::all, others);
+    rows.M = e.matrix().bottomRows(left)(Eigen::all, stay);
+    parts.push_back(std::move(part));
+    return rows;
   }
 
   static void set_basis(Part& part, const MatrixXd& rows) {
@@ -145,32 +168,45 @@ struct Finder {
     for (const auto& [of, members] : sets) decide(members);
   }
 
+  /// Goes along the blocks with what those so far say of the columns that are still to come: a
+  /// combination of them in which another column stays is nothing that a block could repeat.
   void decide(const std::vector<int>& members) {
-    Part part;
+    std::map<int, int> last;  // per column
     for (const int b : members)
-      part.own.insert(part.own.end(), blocks[at(b)].columns.begin(), blocks[at(b)].columns.end());
-    std::sort(part.own.begin(), part.own.end());
-    part.own.erase(std::unique(part.own.begin(), part.own.end()), part.own.end());
-    part.basis.resize(static_cast<Index>(part.own.size()), 0);
+      for (const int c : blocks[at(b)].columns) last[c] = b;
+    RowBlock known{{}, MatrixXd(0, 0)};  // orthonormal rows
     for (const int b : members) {
-      Redundant& r = result.blocks[at(b)];
-      if (part.own.empty()) {  // nothing moves at all
-        r.directions = directions[at(b)];
-        continue;
-      }
-      MatrixXd rows = MatrixXd::Zero(blocks[at(b)].M.rows(), static_cast<Index>(part.own.size()));
-      for (std::size_t i = 0; i < blocks[at(b)].columns.size(); ++i)
-        rows.col(std::lower_bound(part.own.begin(), part.own.end(), blocks[at(b)].columns[i]) -
-                 part.own.begin()) = blocks[at(b)].M.col(static_cast<Index>(i));
-      if (rows.rows() == 0) {
-        r.directions.resize(0, directions[at(b)].cols());
-        continue;
-      }
-      r = by_singular_values(rows, part.basis);
-      r.directions = r.directions * directions[at(b)];
+      std::vector<int> columns;
+      std::set_union(known.columns.begin(), known.columns.end(), blocks[at(b)].columns.begin(),
+                     blocks[at(b)].columns.end(), std::back_inserter(columns));
+      known = {columns, over(columns, known)};
+      result.widest = std::max(result.widest, static_cast<int>(columns.size()));
+      decide(b, known);
+      if (b != members.back()) close(known, [&](int c) { return last.at(c) <= b; });
     }
+    Part part;
+    part.own = std::move(known.columns);
+    part.basis = known.M.transpose();
     for (const int c : part.own) part_of[at(c)] = static_cast<int>(parts.size());
     parts.push_back(std::move(part));
+  }
+
+  void decide(int b, RowBlock& known) {
+    Redundant& r = result.blocks[at(b)];
+    r.directions = directions[at(b)];
+    if (r.directions.rows() == 0 || known.columns.empty()) return;  // none left, or nothing moves
+    r = by_singular_values(over(known.columns, blocks[at(b)]), known.M);
+    r.directions = r.directions * directions[at(b)];
+  }
+
+  /// Columns that no block to come has.
+  template <class Closed>
+  void close(RowBlock& known, Closed closed) {
+    const std::vector<int> own = places(known.columns, closed);
+    if (own.empty()) return;
+    Reflections e(known.M);
+    e.take(own, kGoodPivot);
+    if (e.done() > 0) known = rest(known.columns, e, closed);
   }
 
   /// Is the unit vector of a column in the span of all rows?

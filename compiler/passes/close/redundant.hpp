@@ -17,13 +17,16 @@ struct Redundant {
 struct Redundancy {
   std::vector<Redundant> blocks = {};  ///< per block
   std::vector<int> held = {};          ///< columns that are 0 in all that the relations leave
+  int widest = 0;                      ///< columns that were open at once
 };
 
 /// Rows that alone have some columns follow from nothing, and nothing from them: they are set aside
 /// until every column that is left has more than one block, or the rows there less than full rank
-/// (pivots of 1e-3). What is left is decided densely, in order, by singular values above
-/// kRankTolerance. A column is held if its unit vector is in the span of all rows. O(entries) where
-/// every chain has a body of its own, O(rows^2 columns) for connected sets of those that have not.
+/// (pivots of 1e-3). What is left is decided in order, by singular values above kRankTolerance of
+/// what is new; what was found is set aside in turn, as soon as no block to come has its columns. A
+/// column is held if its unit vector is in the span of all rows. O(entries) where every chain has a
+/// body of its own; else rows * open^2, `open` the columns between a block and those to come: a few
+/// along a truss, all of them where names that follow one another are far apart.
 Redundancy redundancy(const Relations& scaled);
 
 }  // namespace titop::passes::closing
