@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 #include <titop/compiler/system_data.hpp>
 
 /// Closed chains that hold more than once: which internal forces the motion does not determine.
@@ -14,30 +16,47 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr double kMoves = 1e-7;   ///< of what could cancel in a sum; rounding gives 1e-12
 constexpr double kNoise = 1e-10;  ///< of the largest internal force: zero
 
+/// More released directions than these are judged by as many sums of all of them.
+constexpr std::size_t kSums = 32;
+
+/// Right-hand sides: a unit wrench in each of these rows or, where they are many, sums of all with
+/// factors within +-1 as if by chance. What one wrench moves every sum moves, but for a coincidence
+/// in each of them; the factors are always the same ones.
+RowMatrix<double> wrenches(int unknowns, const std::vector<int>& rows) {
+  const bool each = rows.size() <= kSums;
+  RowMatrix<double> rhs =
+      RowMatrix<double>::Zero(unknowns, static_cast<Eigen::Index>(std::min(rows.size(), kSums)));
+  std::minstd_rand factors;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    for (Eigen::Index j = 0; j < rhs.cols(); ++j)
+      if (!each)
+        rhs(rows[k], j) = 2 * static_cast<double>(factors()) / std::minstd_rand::max() - 1;
+      else if (j == static_cast<Eigen::Index>(k))
+        rhs(rows[k], j) = 1;
+  return rhs;
+}
+
 /// One term of a sum.
 struct Share {
   int signal = -1;
   Eigen::MatrixXd c;
 };
 
-/// All signals for a unit wrench in every released direction, one column each.
+/// All signals for unit wrenches in the released directions.
 class SelfStress {
  public:
   SelfStress(const Skeleton& k, const SystemData& d)
       : g_(k.stage.graph), first_(k.layout.known_first) {
-    std::vector<int> begin;
-    Eigen::Index columns = 0;
+    std::vector<int> released;  // scalar rows
     for (int r = 0; r < static_cast<int>(k.joint.rows.size()); ++r) {
       const int e = k.stage.rows[at(k.joint.rows[at(r)])].equation;
       if (e < 0 || k.stage.origins[at(e)].of != Origin::Of::released) continue;
-      begin.push_back(r);
-      columns += k.joint.plan->structure.row_size[at(r)];
-    }
-    RowMatrix<double> rhs = RowMatrix<double>::Zero(k.joint.plan->unknowns, columns);
-    Eigen::Index column = 0;
-    for (const int r : begin)
       for (int i = 0; i < k.joint.plan->structure.row_size[at(r)]; ++i)
-        rhs(k.joint.plan->row_first[at(r)] + i, column++) = 1;
+        released.push_back(k.joint.plan->row_first[at(r)] + i);
+    }
+    directions_ = released.size();
+    const RowMatrix<double> rhs = wrenches(k.joint.plan->unknowns, released);
+    const Eigen::Index columns = rhs.cols();
     known_ = RowMatrix<double>::Zero(
         k.layout.order() + static_cast<Eigen::Index>(k.layout.inputs.size()), columns);
     unknowns_ = d.factors->solve(rhs);
@@ -47,7 +66,9 @@ class SelfStress {
         largest_ = std::max(largest_, value(s).cwiseAbs().maxCoeff());
   }
 
-  bool empty() const { return known_.cols() == 0; }
+  bool empty() const { return directions_ == 0; }
+  bool summed() const { return directions_ > kSums; }
+  std::size_t directions() const { return directions_; }
 
   RowMatrix<double> value(int signal) const {
     RowMatrix<double> v = RowMatrix<double>::Zero(g_.signals[at(signal)].size, known_.cols());
@@ -62,6 +83,8 @@ class SelfStress {
   int shown_by(const std::vector<Share>& sum) const {
     if (sum.empty()) return -1;
     const Eigen::Index rows = sum.front().c.rows(), columns = known_.cols();
+    // What one wrench moves stands beside what all others do.
+    const double moves = kMoves / std::sqrt(summed() ? static_cast<double>(directions_) : 1);
     RowMatrix<double> total = RowMatrix<double>::Zero(rows, columns), size = total;
     int first = -1;
     for (const Share& share : sum) {
@@ -69,7 +92,7 @@ class SelfStress {
       if (q != Quantity::force && q != Quantity::plain) continue;
       const RowMatrix<double> v = value(share.signal);
       total += share.c * v;
-      size += kMoves * (share.c.cwiseAbs() * v.cwiseAbs());
+      size += moves * (share.c.cwiseAbs() * v.cwiseAbs());
       size.colwise() += kNoise * largest_ * share.c.cwiseAbs().rowwise().sum();
       if (first < 0 && v.size() > 0 && v.cwiseAbs().maxCoeff() > kNoise * largest_)
         first = share.signal;
@@ -83,6 +106,7 @@ class SelfStress {
   std::unique_ptr<const solve::JointRows<double>> rows_;
   RowMatrix<double> known_, unknowns_;
   double largest_ = 0;
+  std::size_t directions_ = 0;
 };
 
 struct Judge {
@@ -200,6 +224,11 @@ void judge_internal_forces(Skeleton& k, const SystemData& d) {
   judge.bodies();
   if (!judge.mistakes.empty() && k.options.internal_forces == InternalForces::refuse)
     throw Error(std::move(judge.mistakes));
+  if (stress.summed())
+    k.stage.notes.push_back(
+        {Note::Kind::info, "solve",
+         fmt::format("who reads an undetermined internal force is judged by {} sums of {} of them",
+                     kSums, stress.directions())});
   k.stage.notes.insert(k.stage.notes.end(), judge.notes.begin(), judge.notes.end());
 }
 

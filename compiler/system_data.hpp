@@ -152,7 +152,8 @@ void find_margins(const SystemData& data, std::span<const int> loops, std::vecto
 void worst_margin(const SystemData& data, std::span<const double> margins, Check& check);
 /// What is released in a closed chain (Stage::released) leaves internal forces undetermined: throws
 /// kinematic_loop for every output and controller that reads one, or notes them as minimal-norm
-/// where Options::internal_forces says so. One solution per released direction.
+/// where Options::internal_forces says so. One solution per released direction; 32 where these are
+/// more, of sums of them.
 void judge_internal_forces(Skeleton& skeleton, const SystemData& data);
 
 /// All passes once more for these values of the parameters. States that followed from the others

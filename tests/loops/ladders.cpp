@@ -6,6 +6,7 @@
 #include <titop/compiler/passes/passes.hpp>
 
 #include "assembly.hpp"
+#include "support/mistakes.hpp"
 #include "support/promises.hpp"
 
 /// Loops that share bodies: ladders and planar grids of beams. What the passes do grows with the
@@ -155,6 +156,8 @@ namespace {
 struct Truss {
   int bays = 1;
   bool crossed = false;  ///< a second brace, which holds nothing that the first does not
+  int read = -1;         ///< the bar of which a force is an output
+  bool axial = true;     ///< of it along the bar; else all
 };
 
 Diagram truss(const Truss& shape) {
@@ -171,7 +174,7 @@ Diagram truss(const Truss& shape) {
   const auto bar = [&](int a, int b) {  // two nodes stand side by side, bays 1 m apart
     const Vector3d v(b / 2 - a / 2, b % 2 - a % 2, 0);
     const Rotation R = Rotation::about({0, 0, 1}, std::atan2(v.y(), v.x()));
-    const std::string name = std::to_string(count++);
+    const std::string name = std::to_string(count);
     const auto site = [&](int n) {
       return nodes[at(n)].child("p" + std::to_string(used[at(n)]++));
     };
@@ -188,6 +191,11 @@ Diagram truss(const Truss& shape) {
     else
       mount(nodes[at(b)], end.child, R.inverse());
     placed[at(b)] = 1;
+    if (count++ != shape.read) return;
+    if (shape.axial)
+      d.output("F") = body.parent.force.along({1, 0, 0});
+    else
+      d.output("F", 6) = body.parent.force;
   };
   bar(0, 1);
   for (int i = 1; i <= shape.bays; ++i) {
@@ -219,6 +227,18 @@ TEST_CASE("a truss of rigid bars: what follows from what is linear in its bays")
   for (const bool crossed : {false, true}) {
     CAPTURE(crossed);
     CHECK(entries(truss({80, crossed})) <= 4.4 * entries(truss({20, crossed})));
+  }
+}
+
+TEST_CASE("a truss of rigid bars: who reads an internal force is found by a few sums of them all") {
+  using namespace titop_test;
+  for (const int read : {3, 40}) {
+    CAPTURE(read);
+    const System system = compile(truss({12, false, read}), {.minimize_up_to = 0});
+    CHECK(system.log().find("judged by 32 sums of 72") != std::string::npos);
+    const std::string reads = "output F reads B" + std::to_string(read) + ".parent.force";
+    CHECK(says(compile_error(truss({12, false, read, false})), Code::kinematic_loop, {reads}));
+    CHECK(says(compile_error(truss({12, true, read})), Code::kinematic_loop, {reads}));
   }
 }
 
