@@ -30,6 +30,14 @@ struct Product {
   bool add;
 };
 
+struct Substitution {
+  bool upper;
+  std::ptrdiff_t rows, pivots, m;
+  const double* lu;
+  std::ptrdiff_t stride;
+  double* x;
+};
+
 /// R rows from row i on, C registers of columns at a time: their sums stay in registers, and every
 /// entry of x that is loaded serves all rows.
 template <class L, int C, int R>
@@ -74,6 +82,36 @@ template <class L>
   for (int c = 0; c < C; ++c) store(y + c * p.y_stride, sum[c]);
 }
 
+/// One row of a substitution, a register of columns from j on: sums stay there.
+template <class L>
+[[gnu::always_inline]] inline void substitute_row(const Substitution& s, std::ptrdiff_t r,
+                                                  std::ptrdiff_t from, std::ptrdiff_t to,
+                                                  std::ptrdiff_t j, bool divide) {
+  const double* const a = s.lu + r * s.stride;
+  double* const x = s.x + j;
+  L sum;
+  load(sum, x + r * s.m);
+  for (std::ptrdiff_t k = from; k < to; ++k) {
+    L row;
+    load(row, x + k * s.m);
+    sum -= a[k] * row;
+  }
+  if (divide) sum /= a[r];
+  store(x + r * s.m, sum);
+}
+
+template <class L>
+[[gnu::always_inline]] inline void substitution(const Substitution& s) {
+  constexpr std::ptrdiff_t n = sizeof(L) / sizeof(double);
+  if (s.upper)
+    for (std::ptrdiff_t r = s.pivots - 1; r >= 0; --r)
+      for (std::ptrdiff_t j = 0; j < s.m; j += n) substitute_row<L>(s, r, r + 1, s.pivots, j, true);
+  else
+    for (std::ptrdiff_t r = 1; r < s.rows; ++r)
+      for (std::ptrdiff_t j = 0; j < s.m; j += n)
+        substitute_row<L>(s, r, 0, r < s.pivots ? r : s.pivots, j, false);
+}
+
 template <class L, int C>
 [[gnu::always_inline]] inline void product(const Product& p, std::ptrdiff_t rows) {
   std::ptrdiff_t i = 0;
@@ -98,7 +136,10 @@ void product_2(const Product& p, std::ptrdiff_t rows) { product<Lanes<2>, 2>(p, 
 void transposed_2(const Product& p, std::ptrdiff_t rows) {
   transposed<Lanes<2>, Lanes<2>>(p, rows);
 }
+void substitution_2(const Substitution& s) { substitution<Lanes<2>>(s); }
 #if defined(__x86_64__)
+[[gnu::target("avx2")]] void substitution_4(const Substitution& s) { substitution<Lanes<4>>(s); }
+[[gnu::target("avx512f")]] void substitution_8(const Substitution& s) { substitution<Lanes<8>>(s); }
 [[gnu::target("avx2")]] void product_4(const Product& p, std::ptrdiff_t rows) {
   product<Lanes<4>, 2>(p, rows);
 }
@@ -117,16 +158,18 @@ struct Kernels {
   int lanes;
   void (*product)(const Product&, std::ptrdiff_t rows);
   void (*transposed)(const Product&, std::ptrdiff_t rows);
+  void (*substitution)(const Substitution&);
 };
 
 /// Those that this processor has, the widest first.
 std::vector<Kernels> kernels_here() {
   std::vector<Kernels> list;
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f")) list.push_back({8, product_8, transposed_8});
-  if (__builtin_cpu_supports("avx2")) list.push_back({4, product_4, transposed_4});
+  if (__builtin_cpu_supports("avx512f"))
+    list.push_back({8, product_8, transposed_8, substitution_8});
+  if (__builtin_cpu_supports("avx2")) list.push_back({4, product_4, transposed_4, substitution_4});
 #endif
-  list.push_back({2, product_2, transposed_2});
+  list.push_back({2, product_2, transposed_2, substitution_2});
   return list;
 }
 
@@ -148,6 +191,16 @@ void multiply_transposed(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff
                          const double* at, const double* x, double* y, std::ptrdiff_t y_stride,
                          bool add, int lanes) {
   kernels(lanes).transposed({inner, m, at, rows, x, y, y_stride, add}, rows);
+}
+
+void substitute_lower(std::ptrdiff_t rows, std::ptrdiff_t pivots, std::ptrdiff_t m,
+                      const double* lu, std::ptrdiff_t stride, double* x, int lanes) {
+  kernels(lanes).substitution({false, rows, pivots, m, lu, stride, x});
+}
+
+void substitute_upper(std::ptrdiff_t pivots, std::ptrdiff_t m, const double* lu,
+                      std::ptrdiff_t stride, double* x, int lanes) {
+  kernels(lanes).substitution({true, pivots, pivots, m, lu, stride, x});
 }
 
 TITOP_WIDE void scale(std::ptrdiff_t n, double factor, const double* x, double* y) {

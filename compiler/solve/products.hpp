@@ -19,6 +19,16 @@ void multiply_transposed(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff
                          const double* at, const double* x, double* y, std::ptrdiff_t y_stride,
                          bool add, int lanes = 8);
 
+/// Row by row, x (rows x m, row-major, m a multiple of 8) loses what the rows above bring with
+/// them: L^-1 x where L (rows x pivots, its diagonal 1) stands below the diagonal of lu, rows
+/// `stride` apart. Below the pivots that is x' - L' L^-1 x.
+void substitute_lower(std::ptrdiff_t rows, std::ptrdiff_t pivots, std::ptrdiff_t m,
+                      const double* lu, std::ptrdiff_t stride, double* x, int lanes = 8);
+
+/// x = U^-1 x, U (pivots x pivots) on and above the diagonal of lu.
+void substitute_upper(std::ptrdiff_t pivots, std::ptrdiff_t m, const double* lu,
+                      std::ptrdiff_t stride, double* x, int lanes = 8);
+
 /// y = factor * x, n entries. No -0 is written.
 void scale(std::ptrdiff_t n, double factor, const double* x, double* y);
 

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <titop/compiler/solve/products.hpp>
 #include <vector>
 
@@ -56,4 +57,35 @@ TEST_CASE("multiply, and the same transposed: as plain loops, to the last bit, a
             CHECK(yt == transposed);
           }
         }
+}
+
+TEST_CASE("substitutions: as plain loops, to the last bit, at every width") {
+  Rng rng(7);
+  for (const std::ptrdiff_t pivots : {1, 6, 13})
+    for (const std::ptrdiff_t rows : {pivots, pivots + 5})
+      for (const std::ptrdiff_t m : {8, 24}) {
+        const std::ptrdiff_t stride = pivots + 3;
+        const auto lu = numbers(rng, rows * stride), start = numbers(rng, rows * m);
+        std::vector<double> lower = start, upper = start;
+        const auto at = [](std::ptrdiff_t i) { return static_cast<std::size_t>(i); };
+        for (std::ptrdiff_t j = 0; j < m; ++j) {
+          for (std::ptrdiff_t r = 0; r < rows; ++r)
+            for (std::ptrdiff_t k = 0; k < std::min(r, pivots); ++k)
+              lower[at(r * m + j)] -= lu[at(r * stride + k)] * lower[at(k * m + j)];
+          for (std::ptrdiff_t r = pivots - 1; r >= 0; --r) {
+            for (std::ptrdiff_t k = r + 1; k < pivots; ++k)
+              upper[at(r * m + j)] -= lu[at(r * stride + k)] * upper[at(k * m + j)];
+            upper[at(r * m + j)] /= lu[at(r * stride + r)];
+          }
+        }
+        for (const int lanes : {8, 4, 2}) {
+          INFO(rows, " rows, ", pivots, " pivots, ", m, " columns, ", lanes, " lanes");
+          std::vector<double> x = start;
+          titop::solve::substitute_lower(rows, pivots, m, lu.data(), stride, x.data(), lanes);
+          CHECK(x == lower);
+          x = start;
+          titop::solve::substitute_upper(pivots, m, lu.data(), stride, x.data(), lanes);
+          CHECK(x == upper);
+        }
+      }
 }
