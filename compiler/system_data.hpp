@@ -34,6 +34,8 @@ struct Dependents {
 };
 std::vector<Dependents> find_dependents(const Stage& stage, const solve::Joint& joint);
 
+struct Writing;
+
 /// What does not depend on numbers: shared by all systems that `update` makes of one another.
 struct Skeleton {
   Stage stage;  ///< after the passes
@@ -42,6 +44,9 @@ struct Skeleton {
   std::optional<solve::Joint> before_reduce;  ///< as written, where that is singular there
   Layout layout;
   std::vector<Dependents> dependents;  ///< per parameter
+
+  mutable std::once_flag writing_once;
+  mutable std::shared_ptr<const Writing> writing;  ///< see writing_of
 
   /// The equations as written: for transfers, which need no state space.
   const solve::Joint& as_written() const { return before_reduce ? *before_reduce : joint; }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/products.hpp>
 #include <titop/compiler/solve/propagation.hpp>
 
@@ -9,15 +8,7 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 std::size_t at(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
 
-/// x = U^-1 x for rows of n entries, U in the upper triangle of lu.
-void solve_upper(const double* lu, std::ptrdiff_t stride, std::ptrdiff_t pivots, double* x,
-                 std::ptrdiff_t n) {
-  for (std::ptrdiff_t r = pivots - 1; r >= 0; --r) {
-    double* const row = x + r * n;
-    for (std::ptrdiff_t k = r + 1; k < pivots; ++k) subtract(n, lu[r * stride + k], x + k * n, row);
-    for (std::ptrdiff_t j = 0; j < n; ++j) row[j] /= lu[r * stride + r];
-  }
-}
+std::ptrdiff_t padded(std::ptrdiff_t columns) { return (columns + 7) / 8 * 8; }
 
 /// Room that is there is not cleared again.
 void grow(std::vector<double>& room, std::size_t size) {
@@ -26,38 +17,38 @@ void grow(std::vector<double>& room, std::size_t size) {
 
 }  // namespace
 
-Propagation::Propagation(const Factors<double>& factors)
-    : factors_(factors), plan_(factors.plan()) {
+Propagation::Propagation(const Factors<double>& factors, std::vector<double>& room)
+    : factors_(factors), plan_(factors.plan()), formed_(room) {
   std::size_t total = 0;
+  place_.reserve(plan_.fronts.size());
   for (const Front& f : plan_.fronts) {
-    const std::size_t pivots = at(f.pivot_count);
-    Place p{total, total + pivots * pivots, 0};
-    p.border = p.carry + at(f.left_over()) * pivots;
-    total = p.border + pivots * at(f.border_count);
+    Place p{padded(f.pivot_count), padded(f.border_count), total, 0, 0};
+    p.carry = p.own + at(f.pivot_count * p.by_pivots);
+    p.border = p.carry + at(f.left_over() * p.by_pivots);
+    total = p.border + at(f.pivot_count * p.by_border);
     place_.push_back(p);
   }
-  formed_.resize(total);
-  for (int i = 0; i < static_cast<int>(plan_.fronts.size()); ++i) form(i, formed_.data());
+  grow(formed_, total);
+  for (int i = 0; i < static_cast<int>(plan_.fronts.size()); ++i) form(i);
 }
 
-void Propagation::form(int index, double* to) const {
+/// `carry` stands below `own` and comes of the same substitution.
+void Propagation::form(int index) {
   const Front& f = plan_.fronts[at(index)];
+  const Place& p = place_[at(index)];
   const double* const lu = factors_.made(at(index)).lu.data();
-  const std::ptrdiff_t n = f.columns(), pivots = f.pivot_count, b = f.border_count;
-  double* const own = to + place_[at(index)].own;
-  for (std::ptrdiff_t r = 0; r < f.row_count; ++r) {  // L^-1, then -L' L^-1: the same recursion
-    double* const row = own + r * pivots;
-    std::fill_n(row, pivots, 0.0);
-    if (r < pivots) row[r] = 1;
-    for (std::ptrdiff_t k = 0; k < std::min(r, pivots); ++k)
-      if (const double l = lu[r * n + k]; l != 0)
-        subtract(std::min(k + 1, pivots), l, own + k * pivots, row);
-  }
-  solve_upper(lu, n, pivots, own, pivots);
-  double* const border = to + place_[at(index)].border;
+  const std::ptrdiff_t n = f.columns(), pivots = f.pivot_count;
+  double* const own = formed_.data() + p.own;
+  std::fill_n(own, f.row_count * p.by_pivots, 0.0);
+  for (std::ptrdiff_t r = 0; r < pivots; ++r) own[r * p.by_pivots + r] = 1;
+  substitute_lower(f.row_count, pivots, p.by_pivots, lu, n, own);
+  substitute_upper(pivots, p.by_pivots, lu, n, own);
+  double* const border = formed_.data() + p.border;
+  std::fill_n(border, pivots * p.by_border, 0.0);
   for (std::ptrdiff_t r = 0; r < pivots; ++r)
-    for (std::ptrdiff_t j = 0; j < b; ++j) border[r * b + j] = -lu[r * n + pivots + j];
-  solve_upper(lu, n, pivots, border, b);
+    for (std::ptrdiff_t j = 0; j < f.border_count; ++j)
+      border[r * p.by_border + j] = -lu[r * n + pivots + j];
+  substitute_upper(pivots, p.by_border, lu, n, border);
 }
 
 /// The rows of a front as they come: nullptr where nothing has reached them yet.
@@ -107,8 +98,8 @@ void Propagation::forward(int index, std::ptrdiff_t m, Space& space) const {
   }
   const Place& p = place_[at(index)];
   const std::ptrdiff_t n = f.pivot_count;
-  multiply(f.left_over(), n, m, formed_.data() + p.carry, n, r, rest, true);
-  if (n > 1) return multiply(n, n, m, formed_.data() + p.own, n, r, top, false);
+  multiply(f.left_over(), n, m, formed_.data() + p.carry, p.by_pivots, r, rest, true);
+  if (n > 1) return multiply(n, n, m, formed_.data() + p.own, p.by_pivots, r, top, false);
   // A division rounds once, a product with the inverse twice.
   const double pivot = factors_.made(at(index)).lu.front();
   for (std::ptrdiff_t j = 0; j < m; ++j) top[j] = r[j] / pivot;
@@ -119,14 +110,15 @@ void Propagation::add_border(int index, std::ptrdiff_t m, bool add, std::vector<
   const Front& f = plan_.fronts[at(index)];
   double* const top = z.data() + f.first_unknown * m;
   if (!add && f.border_count == 0) std::fill_n(top, f.pivot_count * m, 0.0);
-  const double* w = formed_.data() + place_[at(index)].border;
+  const Place& p = place_[at(index)];
+  const double* w = formed_.data() + p.border;
   const auto border = plan_.list(f.border);
   for (std::size_t b = 0; b < border.size();) {
     const int first = plan_.first[at(border[b])];
     int size = 0;  // of neighbours among the unknowns, taken together
     for (; b < border.size() && plan_.first[at(border[b])] == first + size; ++b)
       size += plan_.structure.variable_size[at(border[b])];
-    multiply(f.pivot_count, size, m, w, f.border_count, z.data() + first * m, top, add);
+    multiply(f.pivot_count, size, m, w, p.by_border, z.data() + first * m, top, add);
     add = true;
     w += size;
   }

@@ -11,7 +11,8 @@ namespace titop::solve {
 /// U^-1 L^-1 r - U^-1 (border of U) (border unknowns). O(unknowns x front size) per column.
 class Propagation {
  public:
-  explicit Propagation(const Factors<double>& factors);
+  /// `room`: where the products go; it must live as long, and is not cleared.
+  Propagation(const Factors<double>& factors, std::vector<double>& room);
 
   /// What one solution needs; each thread has its own.
   struct Space {
@@ -34,19 +35,20 @@ class Propagation {
   void gather(const Front& front, std::ptrdiff_t m, Space& space) const;
   void forward(int front, std::ptrdiff_t m, Space& space) const;
   void add_border(int front, std::ptrdiff_t m, bool add, std::vector<double>& z) const;
-  void form(int front, double* to) const;
+  void form(int front);
 
-  /// Where a front's matrices begin, row-major one after the other.
+  /// Where a front's matrices begin, row-major one after the other, rows padded to 8.
   struct Place {
-    std::size_t own = 0;     ///< U^-1 L^-1: pivots x pivots
-    std::size_t carry = 0;   ///< -L' L^-1: rows left over x pivots
-    std::size_t border = 0;  ///< -U^-1 (border of U): pivots x border
+    std::ptrdiff_t by_pivots = 0, by_border = 0;  ///< from row to row
+    std::size_t own = 0;                          ///< U^-1 L^-1: pivots x pivots
+    std::size_t carry = 0;                        ///< -L' L^-1: rows left over x pivots
+    std::size_t border = 0;                       ///< -U^-1 (border of U): pivots x border
   };
 
   const Factors<double>& factors_;
   const Plan& plan_;
   std::vector<Place> place_;
-  std::vector<double> formed_;
+  std::vector<double>& formed_;
 };
 
 }  // namespace titop::solve

@@ -1,0 +1,163 @@
+#include <algorithm>
+#include <titop/compiler/dense/writing.hpp>
+#include <titop/compiler/system_data.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using solve::Piece;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+
+struct Builder {
+  Writing& w;
+  const SystemData& d;
+  const Skeleton& k = *d.skeleton;
+  const Graph& g = d.graph();
+  const Layout& layout = d.layout();
+
+  Index modes(int node) const {
+    const auto& modal = d.numbers.blocks[at(node)]->modal;
+    return modal ? modal->W.rows() : 0;
+  }
+
+  // --- sources ---------------------------------------------------------------------------------
+
+  void find_sources() {
+    std::vector<int> source_of(g.signals.size(), -1);
+    const auto add = [&](int signal, int node, bool modal) {
+      source_of[at(signal)] = static_cast<int>(w.sources.size());
+      w.sources.push_back(
+          {node, layout.known_first[at(signal)], g.signals[at(signal)].size, modal});
+    };
+    for (const int i : layout.state_nodes) add(g.nodes[at(i)].state, i, modes(i) > 0);
+    for (const Input& in : g.inputs) add(in.signal, -1, false);
+    // A body whose states are also read by equations acts through all of them.
+    for (const Piece& p : k.joint.pieces)
+      if (p.entry < 0 && p.of != Piece::Left::state)
+        w.sources[at(source_of[at(p.signal)])].modal = false;
+    for (Writing::Source& s : w.sources) {
+      if (s.modal) s.columns = modes(s.node);
+      s.front = static_cast<int>(k.joint.plan->fronts.size());
+    }
+    for (int r = 0; r < static_cast<int>(k.joint.rows.size()); ++r)
+      for (int p = k.joint.piece_begin[at(r)]; p < k.joint.piece_begin[at(r) + 1]; ++p) {
+        const Piece& piece = k.joint.pieces[at(p)];
+        if (piece.entry >= 0) continue;
+        Writing::Source& s = w.sources[at(source_of[at(piece.signal)])];
+        s.acts.emplace_back(r, p);
+        s.front = std::min(s.front, k.joint.plan->front_of_row[at(r)]);
+      }
+    std::stable_sort(
+        w.sources.begin(), w.sources.end(),
+        [](const Writing::Source& a, const Writing::Source& b) { return a.front < b.front; });
+  }
+
+  void find_batches() {
+    Index columns = Writing::kBatch;
+    for (std::size_t i = 0; i < w.sources.size(); ++i) {
+      if (columns + w.sources[i].columns > Writing::kBatch) w.batches.push_back(i), columns = 0;
+      columns += w.sources[i].columns;
+    }
+    w.batches.push_back(w.sources.size());
+  }
+
+  // --- targets ---------------------------------------------------------------------------------
+
+  void find_targets() {
+    for (const int i : layout.state_nodes) {
+      const Node& node = g.nodes[at(i)];
+      // Coordinates move with their rates, whatever acts: no input enters their rows.
+      Writing::Target t;
+      t.still = modes(i);
+      t.row = layout.state_first[at(i)] + t.still;
+      t.rows = g.signals[at(node.state)].size - t.still;
+      for (int s = node.first_signal; s < node.state; ++s)
+        if (const Signal& in = g.signals[at(s)]; in.role == Signal::Role::input && in.active)
+          read(t, s, {.node = i, .column = in.first, .size = in.size});
+      w.targets.push_back(std::move(t));
+    }
+    for (std::size_t o = 0; o < g.outputs.size(); ++o) {
+      Writing::Target t;
+      t.row = layout.order() + layout.output_first[o];
+      t.rows = g.outputs[o].size;
+      const auto& terms = g.outputs[o].terms;
+      for (std::size_t n = 0; n < terms.size(); ++n)
+        read(t, terms[n].signal,
+             {.coefficient = k.joint.output_coefficient[o] + static_cast<int>(n),
+              .size = g.signals[at(terms[n].signal)].size});
+      w.targets.push_back(std::move(t));
+    }
+    std::sort(w.targets.begin(), w.targets.end(),
+              [](const Writing::Target& a, const Writing::Target& b) { return a.row < b.row; });
+    for (Writing::Target& t : w.targets) place_coefficients(t);
+  }
+
+  /// `to` is the signal until coefficients have their place.
+  void read(Writing::Target& t, int signal, Writing::Term term) const {
+    for (const solve::Meaning& m : k.joint.meaning(signal)) {
+      term.times = m.coefficient;
+      term.known = k.joint.variable_of[at(m.signal)] < 0;
+      term.to = m.signal;
+      t.terms.push_back(term);
+    }
+  }
+
+  /// Those of a target stand in the order of the unknowns; neighbours are read as one.
+  void place_coefficients(Writing::Target& t) {
+    const solve::Plan& plan = *k.joint.plan;
+    t.padded = (t.rows + 3) / 4 * 4;
+    std::vector<int> variables;
+    for (const Writing::Term& term : t.terms)
+      if (!term.known) variables.push_back(k.joint.variable_of[at(term.to)]);
+    std::sort(variables.begin(), variables.end(),
+              [&](int a, int b) { return plan.first[at(a)] < plan.first[at(b)]; });
+    variables.erase(std::unique(variables.begin(), variables.end()), variables.end());
+    std::vector<Index> place(variables.size());
+    for (std::size_t i = 0; i < variables.size(); ++i) {
+      const Index first = plan.first[at(variables[i])],
+                  size = plan.structure.variable_size[at(variables[i])];
+      place[i] = w.coefficients;
+      w.coefficients += size * t.padded;
+      if (t.parts.empty() || t.parts.back().first + t.parts.back().size != first)
+        t.parts.push_back({first, 0, place[i]});
+      t.parts.back().size += size;
+    }
+    for (Writing::Term& term : t.terms) {
+      const int v = k.joint.variable_of[at(term.to)];
+      const auto found = std::find(variables.begin(), variables.end(), v);
+      term.to = term.known ? layout.known_first[at(term.to)] : place[at(found - variables.begin())];
+    }
+  }
+};
+
+}  // namespace
+
+Writing::Writing(const SystemData& data) {
+  Builder builder{*this, data};
+  builder.find_sources();
+  builder.find_batches();
+  builder.find_targets();
+  for (const int i : data.layout().state_nodes) modal.emplace_back(i, builder.modes(i) > 0);
+}
+
+bool Writing::fits(const SystemData& data) const {
+  return std::all_of(modal.begin(), modal.end(), [&](const auto& m) {
+    return (data.numbers.blocks[at(m.first)]->modal != nullptr) == m.second;
+  });
+}
+
+Index Writing::width(std::size_t batch) const {
+  Index m = 0;
+  for (std::size_t i = batches[batch]; i < batches[batch + 1]; ++i) m += sources[i].columns;
+  return (m + 7) / 8 * 8;
+}
+
+std::shared_ptr<const Writing> writing_of(const SystemData& data) {
+  const Skeleton& k = *data.skeleton;
+  std::call_once(k.writing_once, [&] { k.writing = std::make_shared<const Writing>(data); });
+  return k.writing->fits(data) ? k.writing : std::make_shared<const Writing>(data);
+}
+
+}  // namespace titop::detail

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace titop::detail {
+
+struct Skeleton;
+struct SystemData;
+
+/// How the dense model is written, by structure alone: made once for all values. Every column of A
+/// and B answers one state or input that acts on some rows of the joint system (a source); every
+/// row of xdot and y reads some unknowns (a target). A body with N modes acts through its N modal
+/// forces, not its 2 N states: half the columns.
+struct Writing {
+  static constexpr Eigen::Index kBatch = 48;  ///< columns at a time
+
+  explicit Writing(const SystemData& data);
+
+  /// What acts on the rows of the joint system.
+  struct Source {
+    int node = -1;             ///< of a state; -1: external inputs
+    Eigen::Index first = 0;    ///< first column in [x; u]
+    Eigen::Index columns = 0;  ///< modes where it acts through its modes, else states or inputs
+    bool modal = false;
+    std::vector<std::pair<int, int>> acts = {};  ///< row group, piece
+    int front = 0;                               ///< the first front it enters
+  };
+
+  /// Factor of a target times what it stands for: B of a node or a coefficient, times another.
+  struct Term {
+    int node = -1, coefficient = -1;  ///< one of the two
+    Eigen::Index column = 0, size = 0;
+    int times = -1;  ///< a coefficient; -1: identity
+    bool known = false;
+    Eigen::Index to = 0;  ///< column in [x; u], or where its coefficients begin
+  };
+
+  /// Unknowns that stand side by side.
+  struct Part {
+    Eigen::Index first = 0, size = 0;
+    Eigen::Index coefficients = 0;  ///< where they begin: size x rows, padded
+  };
+
+  /// Rows of xdot or y: sum of coefficients times unknowns and of known terms.
+  struct Target {
+    Eigen::Index row = 0;  ///< first row of [xdot; y]
+    Eigen::Index rows = 0;
+    Eigen::Index padded = 0;  ///< rows, up to a multiple of 4
+    Eigen::Index still = 0;   ///< rows of the node above: coordinates move with their rates
+    std::vector<Term> terms = {};
+    std::vector<Part> parts = {};
+  };
+
+  std::vector<Source> sources;              ///< fronts ascend
+  std::vector<Target> targets;              ///< rows ascend
+  std::vector<std::size_t> batches;         ///< first sources, and the end
+  std::vector<std::pair<int, bool>> modal;  ///< nodes with states: by their modes?
+  Eigen::Index coefficients = 0;            ///< of all targets
+
+  /// False where blocks have got or lost their modal form.
+  bool fits(const SystemData& data) const;
+  /// Columns of a batch, up to a multiple of 8: no sum depends on their number.
+  Eigen::Index width(std::size_t batch) const;
+};
+
+/// That of the skeleton, made when first asked for; another where it does not fit.
+std::shared_ptr<const Writing> writing_of(const SystemData& data);
+
+}  // namespace titop::detail
