@@ -219,3 +219,59 @@ TEST_CASE("values that make no modes and no inertia") {
              }),
              Code::bad_inertia, {"hub with the new values: the inertia is not positive"}));
 }
+
+namespace {
+
+/// A SpringMass that shows its modal form at some values only.
+struct NowAndThen {
+  titop::SpringMass spec;
+  titop::Value shows;  ///< above 0
+  using Handle = titop::SpringMass::Handle;
+};
+
+class NowAndThenBlock : public titop::Block {
+ public:
+  explicit NowAndThenBlock(const NowAndThen& n) : inner_(as_block(n.spec)), shows_(n.shows) {}
+  std::string_view type() const override { return "NowAndThen"; }
+  const titop::Interface& interface() const override { return inner_->interface(); }
+  std::shared_ptr<const titop::Dynamics> dynamics(titop::ParameterValues v) const override {
+    auto d = std::make_shared<titop::Dynamics>(*inner_->dynamics(v));
+    if (shows_.at(v) <= 0) d->modal = nullptr;
+    return d;
+  }
+  std::vector<titop::Value> values() const override { return {shows_}; }
+
+ private:
+  titop::BlockPtr inner_;
+  titop::Value shows_;
+};
+
+titop::BlockPtr as_block(const NowAndThen& n) { return std::make_shared<NowAndThenBlock>(n); }
+
+}  // namespace
+
+TEST_CASE("update: a block that loses its modal form is written by its states, and back again") {
+  const auto scene = [](double shows) {
+    titop::Diagram d{"now and then"};
+    const auto u = d.input("u");
+    const auto p = d.param("shows", shows);
+    auto z = d.add("z", NowAndThen{{.mass = 2.0, .stiffness = 3.0, .damping = 0.5}, p});
+    auto last = d.add("last", titop::SpringMass{.mass = 1.0, .stiffness = 5.0});
+    ground(z);
+    mount(last, z.child);
+    last.child.force = u;
+    d.output("a") = last.child.accel;
+    return titop::compile(d, {.minimize_up_to = 0});
+  };
+  for (const double first : {1.0, -1.0}) {
+    const titop::System system = scene(first);
+    titop::StateSpace before, after, fresh;
+    system.write(before);
+    system.update({{"shows", -first}}).write(after);
+    scene(-first).write(fresh);
+    CHECK((after.A == fresh.A && after.B == fresh.B && after.C == fresh.C && after.D == fresh.D));
+    CHECK((after.A - before.A).norm() <= 1e-15 * before.A.norm());
+    system.write(after);
+    CHECK(after.A == before.A);
+  }
+}
