@@ -5,7 +5,6 @@
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
-#include <unordered_map>
 #include <utility>
 
 namespace titop::passes::closing {
@@ -15,9 +14,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-constexpr int kTreeWays = 16;  ///< what a search for a shorter way may cost, in the tree's
-constexpr int kNear = 40;      ///< a way of fewer edges is looked for first: a bay of a ladder
 
 bool has_orthonormal_rows(const MatrixXd& m) {
   return m.rows() <= m.cols() &&
@@ -147,7 +143,6 @@ Motion::Edge Motion::reversed(const Edge& e) const {
   return r;
 }
 
-/// `released`: as they were.
 void Motion::plant(std::span<const Tie> released) {
   UnionFind joined(ground_ + 1);
   std::vector<char> one_way(at(ground_) + 1, 0);
@@ -173,6 +168,10 @@ void Motion::plant(std::span<const Tie> released) {
   for (const Tie& tie : ties_)
     if (tie.closes) plant_shortcut(tie, one_way);
   for (const Tie& tie : released) plant_shortcut(tie, one_way);
+  hang(one_way);
+}
+
+void Motion::hang(const std::vector<char>& one_way) {
   up_.assign(at(ground_) + 1, {});
   below_.resize(at(ground_) + 1);
   depth_.assign(at(ground_) + 1, -1);
@@ -217,79 +216,6 @@ Motion::Way Motion::up_from(int point, int above) const {
 
 bool Motion::Way::rigid() const {
   return std::all_of(edges.begin(), edges.end(), [](const Edge& e) { return e.rigid; });
-}
-
-/// Only a tie that leaves nothing free: its free angle would be one more unknown.
-void Motion::plant_shortcut(const Tie& tie, const std::vector<char>& one_way) {
-  if (tie.S.rows() != tie.S.cols()) return;
-  auto edge = edge_of(tie);
-  if (!edge || one_way[at(edge->to)] || one_way[at(edge->from)] || edge->to == edge->from) return;
-  if (edge->from != ground_) shortcut_[at(edge->from)].push_back({tie.turn, reversed(*edge)});
-  shortcut_[at(edge->to)].push_back({tie.turn, std::move(*edge)});
-}
-
-std::vector<int> Motion::shorter(int a, int b, int turn, int length) const {
-  std::unordered_map<int, int> before[2] = {{{a, a}}, {{b, b}}};  // on the way back to that end
-  std::vector<int> front[2] = {{a}, {b}};
-  int left = kTreeWays * length;  // edges that may be looked at
-  for (int levels = 0; levels < length - 1; ++levels) {
-    // From the ground too much goes out.
-    const int side = b == ground_ || front[0].size() <= front[1].size() ? 0 : 1;
-    std::vector<int> next;
-    int met = -1;
-    const auto reach = [&](int from, int to) {
-      --left;
-      if (met >= 0 || !before[side].try_emplace(to, from).second) return;
-      next.push_back(to);
-      if (before[1 - side].contains(to)) met = to;
-    };
-    for (const int p : front[side]) {
-      if (static_cast<int>(below_[at(p)].size() + shortcut_[at(p)].size()) >= left) return {};
-      if (depth_[at(p)] > 0) reach(p, up_[at(p)].from);
-      for (const int q : below_[at(p)]) reach(p, q);
-      for (const Shortcut& s : shortcut_[at(p)])
-        if (s.turn < turn) reach(p, s.edge.from);
-    }
-    if (met >= 0) {
-      std::vector<int> way{met};
-      while (way.back() != a) way.push_back(before[0].at(way.back()));
-      std::reverse(way.begin(), way.end());
-      while (way.back() != b) way.push_back(before[1].at(way.back()));
-      return way;
-    }
-    if (next.empty()) return {};
-    front[side] = std::move(next);
-  }
-  return {};
-}
-
-Motion::Edge Motion::edge_between(int point, int next, int turn) const {
-  if (depth_[at(point)] > 0 && up_[at(point)].from == next) return up_[at(point)];
-  if (depth_[at(next)] > 0 && up_[at(next)].from == point) return reversed(up_[at(next)]);
-  return std::find_if(shortcut_[at(point)].begin(), shortcut_[at(point)].end(),
-                      [&](const Shortcut& s) { return s.turn < turn && s.edge.from == next; })
-      ->edge;
-}
-
-std::pair<Motion::Way, Motion::Way> Motion::ways(const Tie& tie) const {
-  const int a = tie.target, b = tie.points.empty() ? ground_ : tie.points.begin()->first;
-  if (tie.points.size() > 1) return {up_from(a, -1), up_from(b, -1)};
-  std::vector<int> way = shorter(a, b, tie.turn, kNear);
-  if (way.empty()) {
-    const int top = meeting(a, b);
-    if (top < 0) return {up_from(a, -1), up_from(b, -1)};
-    way = shorter(a, b, tie.turn, depth_[at(a)] + depth_[at(b)] - 2 * depth_[at(top)]);
-    if (way.empty()) return {up_from(a, top), up_from(b, top)};
-  }
-  const auto nearest = std::min_element(way.begin(), way.end(), [&](int p, int q) {
-    return std::pair(p != ground_, depth_[at(p)]) < std::pair(q != ground_, depth_[at(q)]);
-  });
-  Way there{*nearest}, back{*nearest};
-  for (auto p = way.begin(); p != nearest; ++p)
-    there.edges.push_back(edge_between(*p, *(p + 1), tie.turn));
-  for (auto p = way.end() - 1; p != nearest; --p)
-    back.edges.push_back(edge_between(*p, *(p - 1), tie.turn));
-  return {std::move(there), std::move(back)};
 }
 
 MatrixXd Motion::walk(Form& form, MatrixXd factor, const Way& way, MatrixXd* sizes) const {

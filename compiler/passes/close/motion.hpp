@@ -93,7 +93,10 @@ class Motion {
     Edge edge = {};
   };
 
+  /// The spanning forest, and the ties that close chains; `released`: as they were.
   void plant(std::span<const Tie> released);
+  /// Every point below one that is nearer to its root; a point of `one_way` is no root.
+  void hang(const std::vector<char>& one_way);
   void plant_shortcut(const Tie& tie, const std::vector<char>& one_way);
   int meeting(int a, int b) const;
   /// In the tree, up to `above`.
