@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/system_data.hpp>
 
 /// Closed chains that hold more than once: which internal forces the motion does not determine.
@@ -20,17 +20,17 @@ constexpr double kNoise = 1e-10;  ///< of the largest internal force: zero
 constexpr std::size_t kSums = 32;
 
 /// Right-hand sides: a unit wrench in each of these rows or, where they are many, sums of all with
-/// factors within +-1 as if by chance. What one wrench moves every sum moves, but for a coincidence
-/// in each of them; the factors are always the same ones.
+/// random factors within +-1. What one wrench moves every sum moves, but for a coincidence in each
+/// of them.
 RowMatrix<double> wrenches(int unknowns, const std::vector<int>& rows) {
   const bool each = rows.size() <= kSums;
   RowMatrix<double> rhs =
       RowMatrix<double>::Zero(unknowns, static_cast<Eigen::Index>(std::min(rows.size(), kSums)));
-  std::minstd_rand factors;
+  SteadyRandom random;
   for (std::size_t k = 0; k < rows.size(); ++k)
     for (Eigen::Index j = 0; j < rhs.cols(); ++j)
       if (!each)
-        rhs(rows[k], j) = 2 * static_cast<double>(factors()) / std::minstd_rand::max() - 1;
+        rhs(rows[k], j) = random.next();
       else if (j == static_cast<Eigen::Index>(k))
         rhs(rows[k], j) = 1;
   return rhs;

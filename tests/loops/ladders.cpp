@@ -234,6 +234,8 @@ TEST_CASE("a truss of rigid bars: who reads an internal force is found by a few 
   using namespace titop_test;
   for (const int read : {3, 40}) {
     CAPTURE(read);
+    // A hinge holds five directions; round each of 24 triangles the three out of the plane are
+    // held already.
     const System system = compile(truss({12, false, read}), {.minimize_up_to = 0});
     CHECK(system.log().find("judged by 32 sums of 72") != std::string::npos);
     const std::string reads = "output F reads B" + std::to_string(read) + ".parent.force";
