@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/graph.hpp>
@@ -116,8 +117,13 @@ struct Stage {
   std::vector<Dependent> dependents;  ///< after close: of chains, in turn; after solve: all
   std::vector<Dependent> before;      ///< those of the system that `update` starts from
 
+  /// Throws std::logic_error where the stage has not begun with `as_written`.
+  const Graph& written() const {
+    if (!source) throw std::logic_error("a stage without a diagram: begin with as_written(graph)");
+    return *source;
+  }
   /// What the passes have made of the diagram so far.
-  const Graph& now() const { return origins.empty() ? *source : graph; }
+  const Graph& now() const { return origins.empty() ? written() : graph; }
 };
 
 /// What the passes begin with, for nominal values. `lower` copies the graph, which has to live

@@ -28,7 +28,7 @@ void check_names(Checker& c, const List& list, std::string_view what) {
 }  // namespace
 
 Stage check(Stage stage) {
-  const Graph& g = *stage.source;
+  const Graph& g = stage.written();
   Checker c(g);
   check_names(c, g.nodes, "node");
   check_names(c, g.inputs, "input");

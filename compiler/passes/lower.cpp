@@ -85,7 +85,7 @@ Graph without_equations(const Graph& g) {
 }  // namespace
 
 Stage lower(Stage stage) {
-  Graph source = by_name(*stage.source);
+  Graph source = by_name(stage.written());
   add_rigid_motions(stage, source);
   stage.source = std::make_shared<const Graph>(std::move(source));
   Graph g = without_equations(*stage.source);

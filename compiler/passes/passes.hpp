@@ -2,9 +2,10 @@
 
 #include <titop/compiler/stage.hpp>
 
-/// The passes before numbers, in their order. Each is a pure function: it takes a stage and gives
-/// the next one; it does not print, keeps nothing between calls, and throws only for the user's
-/// mistakes, all of them together. Every pass keeps `transfer(graph, s)`.
+/// The passes before numbers, in their order, from as_written(graph) on. Each is a pure function:
+/// it takes a stage and gives the next one; it does not print, keeps nothing between calls, and
+/// throws only for the user's mistakes, all of them together. Every pass keeps `transfer(graph,
+/// s)`.
 namespace titop::passes {
 
 /// Sizes, quantities and frames agree; each channel is driven exactly once per degree of freedom;

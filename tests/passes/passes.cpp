@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <set>
+#include <stdexcept>
+#include <titop/compiler/dot.hpp>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/compiler/passes/passes.hpp>
 
@@ -91,6 +93,12 @@ TEST_CASE("every pass keeps the transfer, and so do the system and its dense mod
          {"check", "lower", "split", "chains", "match", "order", "close", "solve", "certify"})
       CHECK(std::count(passes.begin(), passes.end(), pass) == 1);
   }
+}
+
+TEST_CASE("a stage that has not begun with a diagram is refused") {
+  CHECK_THROWS_AS(passes::check({}), std::logic_error);
+  CHECK_THROWS_AS(passes::lower({}), std::logic_error);
+  CHECK_THROWS_AS(to_dot(Stage{}), std::logic_error);
 }
 
 TEST_CASE("lower: nodes stand along trees, from the first name; where a chain closes, by name") {
