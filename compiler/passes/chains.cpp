@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 #include <titop/compiler/ahead.hpp>
+#include <titop/compiler/passes/close/along.hpp>
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/close/redundant.hpp>
 #include <titop/compiler/passes/close/still.hpp>
@@ -225,7 +226,7 @@ std::string direction_names(const MatrixXd& directions) {
 AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
   AtRest held;
   std::vector<Line> lines;
-  for (const Closing& c : closings) lines.push_back(line_of(c));
+  for (const int c : along(closings)) lines.push_back(line_of(closings[at(c)]));
   const Coordinates coordinates(stage.graph, stage.values);
   // Whatever moves at all counts, prescribed motions too: they must agree with what is said twice.
   const auto classify = [&](const Scalar& s) -> std::optional<closing::Meaning> {

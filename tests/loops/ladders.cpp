@@ -6,6 +6,7 @@
 #include <titop/compiler/passes/passes.hpp>
 
 #include "assembly.hpp"
+#include "stages.hpp"
 #include "support/mistakes.hpp"
 #include "support/promises.hpp"
 
@@ -81,28 +82,6 @@ Diagram grid(const Shape& shape) {
   return d;
 }
 
-Stage until_chains(const Diagram& d) {
-  Stage stage = as_written(d.graph());
-  for (const auto pass : {passes::check, passes::lower, passes::split, passes::chains})
-    stage = pass(std::move(stage));
-  return stage;
-}
-
-Stage until_close(const Diagram& d) {
-  Stage stage = until_chains(d);
-  for (const auto pass : {passes::match, passes::order, passes::close})
-    stage = pass(std::move(stage));
-  return stage;
-}
-
-/// Entries of the map from the states that stay.
-double entries(const Diagram& diagram) {
-  double count = 0;
-  for (const Dependent& d : until_close(diagram).dependents)
-    count += static_cast<double>(d.of.size());
-  return count;
-}
-
 }  // namespace
 
 TEST_CASE("ladders and grids: the passes keep their promises, every rung closes six relations") {
@@ -147,100 +126,6 @@ TEST_CASE("what follows from what: linear in the bays of a ladder, n^1.5 log n i
     const auto count = [&](int along, int across) { return entries(grid({along, across, rungs})); };
     CHECK(count(81, 2) <= 4.4 * count(21, 2));
     CHECK(count(17, 17) <= 8.0 * 4 / 3 * count(9, 9));  // 64 and 256 loops
-  }
-}
-
-namespace {
-
-/// A braced truss of rigid bars on pins, all in one plane: every bay has two loops.
-struct Truss {
-  int bays = 1;
-  bool crossed = false;  ///< a second brace, which holds nothing that the first does not
-  int read = -1;         ///< the bar of which a force is an output
-  bool axial = true;     ///< of it along the bar; else all
-};
-
-Diagram truss(const Truss& shape) {
-  Diagram d{"truss"};
-  RigidBody node{.mass = 5, .inertia = 0.1 * Matrix3d::Identity()};
-  for (int k = 0; k < 8; ++k) node.children.push_back({"p" + std::to_string(k)});
-  std::vector<BodyHandle> nodes;
-  for (int k = 0; k < 2 * (shape.bays + 1); ++k)
-    nodes.push_back(d.add("N" + std::to_string(k), node));
-  std::vector<int> used(nodes.size(), 0);
-  std::vector<char> placed(nodes.size(), 0);
-  placed[0] = 1;
-  int count = 0;
-  const auto bar = [&](int a, int b) {  // two nodes stand side by side, bays 1 m apart
-    const Vector3d v(b / 2 - a / 2, b % 2 - a % 2, 0);
-    const Rotation R = Rotation::about({0, 0, 1}, std::atan2(v.y(), v.x()));
-    const std::string name = std::to_string(count);
-    const auto site = [&](int n) {
-      return nodes[at(n)].child("p" + std::to_string(used[at(n)]++));
-    };
-    auto start = d.add("P" + name, Hinge{{0, 0, 1}}), end = d.add("Q" + name, Hinge{{0, 0, 1}});
-    start.torque = 0.3 * start.rate + 5.0 * start.angle;
-    end.torque = 0.2 * end.rate + 3.0 * end.angle;
-    auto body = d.add("B" + name, RigidBody{.mass = 4,
-                                            .inertia = Vector3d(0.1, 1.4, 1.4).asDiagonal(),
-                                            .PA = v.norm() / 2 * Vector3d::UnitX(),
-                                            .children = {{"C", v.norm() * Vector3d::UnitX()}}});
-    mount(start, site(a), R), mount(body, start.child), mount(end, body.child("C"));
-    if (placed[at(b)])
-      weld(end.child, site(b), R);
-    else
-      mount(nodes[at(b)], end.child, R.inverse());
-    placed[at(b)] = 1;
-    if (count++ != shape.read) return;
-    if (shape.axial)
-      d.output("F") = body.parent.force.along({1, 0, 0});
-    else
-      d.output("F", 6) = body.parent.force;
-  };
-  bar(0, 1);
-  for (int i = 1; i <= shape.bays; ++i) {
-    bar(2 * i - 2, 2 * i), bar(2 * i - 1, 2 * i + 1), bar(2 * i, 2 * i + 1);
-    bar(2 * i - 2, 2 * i + 1);
-    if (shape.crossed) bar(2 * i - 1, 2 * i);
-  }
-  nodes.front().parent.force = -d.input("U", 6);
-  d.output("a", 6) = nodes.back().child("p7").accel;
-  return d;
-}
-
-}  // namespace
-
-TEST_CASE("a truss of rigid bars: along twenty followers nothing is taken for rounding") {
-  for (const bool crossed : {false, true})
-    for (const int bays : {3, 20}) {
-      CAPTURE(crossed);
-      CAPTURE(bays);
-      const System system = compile(truss({bays, crossed}), {.minimize_up_to = 0});
-      CHECK(system.order() == 2 * 2 * (bays + 1));  // the nodes turn, the bars do not
-      const Complex s(0.3, 40);
-      CHECK(by_hand::transfer_error({system.state_space().transfer(s)},
-                                    {system.transfer(s, Precision::digits50)}) <= 1e-8);
-    }
-}
-
-TEST_CASE("a truss of rigid bars: what follows from what is linear in its bays") {
-  for (const bool crossed : {false, true}) {
-    CAPTURE(crossed);
-    CHECK(entries(truss({80, crossed})) <= 4.4 * entries(truss({20, crossed})));
-  }
-}
-
-TEST_CASE("a truss of rigid bars: who reads an internal force is found by a few sums of them all") {
-  using namespace titop_test;
-  for (const int read : {3, 40}) {
-    CAPTURE(read);
-    // A hinge holds five directions; round each of 24 triangles the three out of the plane are
-    // held already.
-    const System system = compile(truss({12, false, read}), {.minimize_up_to = 0});
-    CHECK(system.log().find("judged by 32 sums of 72") != std::string::npos);
-    const std::string reads = "output F reads B" + std::to_string(read) + ".parent.force";
-    CHECK(says(compile_error(truss({12, false, read, false})), Code::kinematic_loop, {reads}));
-    CHECK(says(compile_error(truss({12, true, read})), Code::kinematic_loop, {reads}));
   }
 }
 

@@ -43,7 +43,7 @@ Motion::Motion(const Graph& graph, ParameterValues values, const Twins& twins, G
   add_ties(twins, ground);
   std::vector<Tie> whole;
   for (const Released& r : released) whole.push_back(tie_of(r.whole, r.closing, twins, ground));
-  plant(whole);
+  plant(std::move(whole));
 }
 
 std::string Motion::name(int point) const {
@@ -103,8 +103,8 @@ Tie Motion::tie_of(const Equation& q, int index, const Twins& twins, Ground grou
   // A locked child point closes the chain rather than the joint that carries the body.
   const auto all = static_cast<int>(g_.equations.size());
   const bool inverted = g_.channels[at(target.channel)].takes != Takes::accel;
-  tie.turn =
-      index + (inverted ? all : 0) + (ground == Ground::last && tie.points.empty() ? 2 * all : 0);
+  tie.late = ground == Ground::last && tie.points.empty();
+  tie.turn = index + (inverted ? all : 0) + (tie.late ? 2 * all : 0);
   return tie;
 }
 
@@ -143,7 +143,7 @@ Motion::Edge Motion::reversed(const Edge& e) const {
   return r;
 }
 
-void Motion::plant(std::span<const Tie> released) {
+void Motion::plant(std::vector<Tie> released) {
   UnionFind joined(ground_ + 1);
   std::vector<char> one_way(at(ground_) + 1, 0);
   const auto join = [&](int e) {
@@ -164,11 +164,10 @@ void Motion::plant(std::span<const Tie> released) {
     edges_.push_back(std::move(*edge));
     join(static_cast<int>(edges_.size()) - 1);
   }
-  shortcut_.resize(at(ground_) + 1);
-  for (const Tie& tie : ties_)
-    if (tie.closes) plant_shortcut(tie, one_way);
-  for (const Tie& tie : released) plant_shortcut(tie, one_way);
   hang(one_way);
+  for (Tie& tie : ties_)
+    if (tie.closes) tie.length = tree_way(tie);
+  plant_shortcuts(std::move(released), one_way);
 }
 
 void Motion::hang(const std::vector<char>& one_way) {
@@ -176,12 +175,13 @@ void Motion::hang(const std::vector<char>& one_way) {
   below_.resize(at(ground_) + 1);
   depth_.assign(at(ground_) + 1, -1);
   root_.assign(at(ground_) + 1, -1);
+  jump_.resize(at(ground_) + 1);
   std::vector<int> starts{ground_};
   for (int p = 0; p < ground_; ++p)
     if (!one_way[at(p)]) starts.push_back(p);
   for (const int start : starts) {
     if (depth_[at(start)] >= 0) continue;
-    depth_[at(start)] = 0, root_[at(start)] = start;
+    depth_[at(start)] = 0, root_[at(start)] = start, jump_[at(start)] = start;
     std::deque<int> queue{start};
     while (!queue.empty()) {
       const int p = queue.front();
@@ -193,6 +193,9 @@ void Motion::hang(const std::vector<char>& one_way) {
         up_[at(other)] = edge.from == p ? edge : reversed(edge);
         below_[at(p)].push_back(other);
         depth_[at(other)] = depth_[at(p)] + 1, root_[at(other)] = start;
+        const int far = jump_[at(p)], farther = jump_[at(far)];
+        const bool even = depth_[at(p)] - depth_[at(far)] == depth_[at(far)] - depth_[at(farther)];
+        jump_[at(other)] = even ? farther : p;
         queue.push_back(other);
       }
     }
@@ -201,8 +204,14 @@ void Motion::hang(const std::vector<char>& one_way) {
 
 int Motion::meeting(int a, int b) const {
   if (root_[at(a)] != root_[at(b)]) return -1;
-  while (a != b)
-    (depth_[at(a)] >= depth_[at(b)] ? a : b) = up_[at(depth_[at(a)] >= depth_[at(b)] ? a : b)].from;
+  if (depth_[at(a)] < depth_[at(b)]) std::swap(a, b);
+  while (depth_[at(a)] > depth_[at(b)])
+    a = depth_[at(jump_[at(a)])] >= depth_[at(b)] ? jump_[at(a)] : up_[at(a)].from;
+  while (a != b) {
+    const bool far = jump_[at(a)] != jump_[at(b)];
+    a = far ? jump_[at(a)] : up_[at(a)].from;
+    b = far ? jump_[at(b)] : up_[at(b)].from;
+  }
   return a;
 }
 

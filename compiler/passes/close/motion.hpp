@@ -6,6 +6,7 @@
 #include <string>
 #include <titop/compiler/passes/close/twin.hpp>
 #include <titop/compiler/stage.hpp>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,7 +19,13 @@ struct Tie {
   std::map<int, Eigen::MatrixXd> points = {};  ///< channel -> rows x size
   Form own = {};                               ///< prescribed columns
   bool closes = false;                         ///< no edge of the tree: it closes a chain
+  bool late = false;                           ///< from the ground, and that comes last
   int turn = 0;                                ///< when the spanning forest comes to it
+  int length = 0;                              ///< edges of the tree's way round, if it closes one
+
+  /// A tie that closes a chain may go through those of lower rank.
+  using Rank = std::tuple<bool, int, int>;
+  Rank rank() const { return {late, length, turn}; }
 };
 
 /// A closing equation: form + gap * (position of the meeting point) = 0, where `gap` is 0 if the
@@ -46,11 +53,12 @@ class Motion {
 
   const std::vector<Tie>& ties() const { return ties_; }
   /// Both ways from the tie to where they meet: what lies beyond the chain is exactly 0. The way
-  /// round is the tree's, or a shorter one through ties that close chains themselves and come
-  /// before this one: then it is the tree's closing equation less some of theirs, and a ladder's
-  /// rungs close a bay each. What `chains` has released of theirs follows in turn from closing
-  /// equations before: all together say the same. Ties that let go in some direction are no such
-  /// way. Some 600 edges are looked at, else up to 16 per edge of the tree's way.
+  /// round is the tree's, or a shorter one through ties that close chains themselves, by a shorter
+  /// way in the tree (of equals those before it): then it is the tree's closing equation less
+  /// some of theirs, and a ladder's rungs close a bay each. What `chains` has released of theirs
+  /// follows in turn from closing equations before: all together say the same. Ties that let go in
+  /// some direction are no such way. Some 600 edges are looked at, else up to 16 per edge of the
+  /// tree's way.
   Closing closing(const Tie& tie) const;
   /// Position of a point from the root of its assembly.
   Form position(int channel) const;
@@ -89,22 +97,26 @@ class Motion {
   };
   /// A tie that closes a chain, from either side.
   struct Shortcut {
-    int turn = 0;  ///< the tie's
+    Tie::Rank rank = {};  ///< the tie's
     Edge edge = {};
   };
 
   /// The spanning forest, and the ties that close chains; `released`: as they were.
-  void plant(std::span<const Tie> released);
+  void plant(std::vector<Tie> released);
   /// Every point below one that is nearer to its root; a point of `one_way` is no root.
   void hang(const std::vector<char>& one_way);
+  /// Ties that close chains, as ways for others: those of the graph, and `released` as they were.
+  void plant_shortcuts(std::vector<Tie> released, const std::vector<char>& one_way);
   void plant_shortcut(const Tie& tie, const std::vector<char>& one_way);
+  int tree_way(const Tie& tie) const;
+  /// Where the tree's ways up from both meet, -1 if they do not. O(log depth).
   int meeting(int a, int b) const;
   /// In the tree, up to `above`.
   Way up_from(int point, int above) const;
-  /// The points from `a` to `b` on a way of less than `length` edges, through ties before this one;
-  /// empty if none is found at the cost of some tree ways.
-  std::vector<int> shorter(int a, int b, int turn, int length) const;
-  Edge edge_between(int point, int next, int turn) const;
+  /// The points from `a` to `b` on a way of less than `length` edges, through ties before this
+  /// rank; empty if none is found at the cost of some tree ways.
+  std::vector<int> shorter(int a, int b, Tie::Rank rank, int length) const;
+  Edge edge_between(int point, int next, Tie::Rank rank) const;
   /// The two ways from the ends of a tie to where they meet.
   std::pair<Way, Way> ways(const Tie& tie) const;
   /// form += factor * x_point, along the way; what multiplies its end. `sizes` grows to the largest
@@ -122,6 +134,7 @@ class Motion {
   std::vector<std::vector<int>> at_point_;  ///< edges of the forest
   std::vector<Edge> up_;                    ///< per point: from the one above it
   std::vector<int> depth_, root_;
+  std::vector<int> jump_;                        ///< per point: one far above it (skew-binary)
   std::vector<std::vector<int>> below_;          ///< per point: those right below it
   std::vector<std::vector<Shortcut>> shortcut_;  ///< per point: edges that start there
 };

@@ -26,7 +26,7 @@ struct Redundancy {
 /// what is new; what was found is set aside in turn, as soon as no block to come has its columns. A
 /// column is held if its unit vector is in the span of all rows. O(entries) where every chain has a
 /// body of its own; else rows * open^2, `open` the columns between a block and those to come: a few
-/// along a truss, all of them where names that follow one another are far apart.
+/// where blocks come `along` a truss.
 Redundancy redundancy(const Relations& scaled);
 
 }  // namespace titop::passes::closing

@@ -14,16 +14,36 @@ constexpr int kNear = 40;      ///< a way of fewer edges is looked for first: a 
 
 }  // namespace
 
+int Motion::tree_way(const Tie& tie) const {
+  const int a = tie.target, b = tie.points.empty() ? ground_ : tie.points.begin()->first;
+  const int top = meeting(a, b);
+  return depth_[at(a)] + depth_[at(b)] - (top < 0 ? 0 : 2 * depth_[at(top)]);
+}
+
+void Motion::plant_shortcuts(std::vector<Tie> released, const std::vector<char>& one_way) {
+  shortcut_.resize(at(ground_) + 1);
+  for (const Tie& tie : ties_)
+    if (tie.closes) plant_shortcut(tie, one_way);
+  for (Tie& tie : released) {
+    tie.length = tree_way(tie);
+    plant_shortcut(tie, one_way);
+  }
+  // A search finds the same ways whether ties have been released or not.
+  for (auto& from : shortcut_)
+    std::sort(from.begin(), from.end(),
+              [](const Shortcut& a, const Shortcut& b) { return a.rank < b.rank; });
+}
+
 /// Only a tie that leaves nothing free: its free angle would be one more unknown.
 void Motion::plant_shortcut(const Tie& tie, const std::vector<char>& one_way) {
   if (tie.S.rows() != tie.S.cols()) return;
   auto edge = edge_of(tie);
   if (!edge || one_way[at(edge->to)] || one_way[at(edge->from)] || edge->to == edge->from) return;
-  if (edge->from != ground_) shortcut_[at(edge->from)].push_back({tie.turn, reversed(*edge)});
-  shortcut_[at(edge->to)].push_back({tie.turn, std::move(*edge)});
+  if (edge->from != ground_) shortcut_[at(edge->from)].push_back({tie.rank(), reversed(*edge)});
+  shortcut_[at(edge->to)].push_back({tie.rank(), std::move(*edge)});
 }
 
-std::vector<int> Motion::shorter(int a, int b, int turn, int length) const {
+std::vector<int> Motion::shorter(int a, int b, Tie::Rank rank, int length) const {
   std::unordered_map<int, int> before[2] = {{{a, a}}, {{b, b}}};  // on the way back to that end
   std::vector<int> front[2] = {{a}, {b}};
   int left = kTreeWays * length;  // edges that may be looked at
@@ -43,7 +63,7 @@ std::vector<int> Motion::shorter(int a, int b, int turn, int length) const {
       if (depth_[at(p)] > 0) reach(p, up_[at(p)].from);
       for (const int q : below_[at(p)]) reach(p, q);
       for (const Shortcut& s : shortcut_[at(p)])
-        if (s.turn < turn) reach(p, s.edge.from);
+        if (s.rank < rank) reach(p, s.edge.from);
     }
     if (met >= 0) {
       std::vector<int> way{met};
@@ -58,22 +78,22 @@ std::vector<int> Motion::shorter(int a, int b, int turn, int length) const {
   return {};
 }
 
-Motion::Edge Motion::edge_between(int point, int next, int turn) const {
+Motion::Edge Motion::edge_between(int point, int next, Tie::Rank rank) const {
   if (depth_[at(point)] > 0 && up_[at(point)].from == next) return up_[at(point)];
   if (depth_[at(next)] > 0 && up_[at(next)].from == point) return reversed(up_[at(next)]);
   return std::find_if(shortcut_[at(point)].begin(), shortcut_[at(point)].end(),
-                      [&](const Shortcut& s) { return s.turn < turn && s.edge.from == next; })
+                      [&](const Shortcut& s) { return s.rank < rank && s.edge.from == next; })
       ->edge;
 }
 
 std::pair<Motion::Way, Motion::Way> Motion::ways(const Tie& tie) const {
   const int a = tie.target, b = tie.points.empty() ? ground_ : tie.points.begin()->first;
   if (tie.points.size() > 1) return {up_from(a, -1), up_from(b, -1)};
-  std::vector<int> way = shorter(a, b, tie.turn, kNear);
+  std::vector<int> way = shorter(a, b, tie.rank(), kNear);
   if (way.empty()) {
     const int top = meeting(a, b);
     if (top < 0) return {up_from(a, -1), up_from(b, -1)};
-    way = shorter(a, b, tie.turn, depth_[at(a)] + depth_[at(b)] - 2 * depth_[at(top)]);
+    way = shorter(a, b, tie.rank(), tie.length);
     if (way.empty()) return {up_from(a, top), up_from(b, top)};
   }
   const auto nearest = std::min_element(way.begin(), way.end(), [&](int p, int q) {
@@ -81,9 +101,9 @@ std::pair<Motion::Way, Motion::Way> Motion::ways(const Tie& tie) const {
   });
   Way there{*nearest}, back{*nearest};
   for (auto p = way.begin(); p != nearest; ++p)
-    there.edges.push_back(edge_between(*p, *(p + 1), tie.turn));
+    there.edges.push_back(edge_between(*p, *(p + 1), tie.rank()));
   for (auto p = way.end() - 1; p != nearest; --p)
-    back.edges.push_back(edge_between(*p, *(p - 1), tie.turn));
+    back.edges.push_back(edge_between(*p, *(p - 1), tie.rank()));
   return {std::move(there), std::move(back)};
 }
 
