@@ -5,9 +5,9 @@
 #include <limits>
 #include <numeric>
 #include <titop/compiler/solve/elimination.hpp>
-#include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/solve/scaling.hpp>
+#include <titop/compiler/solve/steps.hpp>
 
 namespace titop::solve {
 namespace {
@@ -29,47 +29,11 @@ void add_child(const Plan& plan, const Front& child, const typename Factors<T>::
   }
 }
 
-TITOP_WIDE void eliminate_wide(std::ptrdiff_t k, std::ptrdiff_t rows, std::ptrdiff_t n, double* a,
-                               double* bounds) {
-  eliminate_below(k, rows, n, a, bounds, [](double x) { return std::abs(x); });
-}
-
-TITOP_WIDE void eliminate_wide(std::ptrdiff_t k, std::ptrdiff_t rows, std::ptrdiff_t n,
-                               std::complex<double>* a, double* bounds) {
-  eliminate_below(k, rows, n, a, bounds, size_of<std::complex<double>>);
-}
-
-/// Sizes of n entries; returns the largest.
-template <class T>
-double sizes(std::ptrdiff_t n, const T* a, double* size) {
-  for (std::ptrdiff_t j = 0; j < n; ++j) size[j] = size_of(a[j]);
-  return largest_of(n, [size](std::ptrdiff_t j) { return size[j]; });
-}
-TITOP_WIDE double sizes_wide(std::ptrdiff_t n, const double* a, double* size) {
-  for (std::ptrdiff_t j = 0; j < n; ++j) size[j] = std::abs(a[j]);
-  return largest_of(n, [size](std::ptrdiff_t j) { return size[j]; });
-}
-TITOP_WIDE double sizes_wide(std::ptrdiff_t n, const std::complex<double>* a, double* size) {
-  const double* parts = reinterpret_cast<const double*>(a);
-  for (std::ptrdiff_t j = 0; j < n; ++j)
-    size[j] = std::abs(parts[2 * j]) + std::abs(parts[2 * j + 1]);
-  return largest_of(n, [size](std::ptrdiff_t j) { return size[j]; });
-}
-template <>
-double sizes(std::ptrdiff_t n, const double* a, double* size) {
-  return sizes_wide(n, a, size);
-}
-template <>
-double sizes(std::ptrdiff_t n, const std::complex<double>* a, double* size) {
-  return sizes_wide(n, a, size);
-}
-
-TITOP_WIDE double largest_wide(std::ptrdiff_t n, const double* a) {
-  return largest_of(n, [a](std::ptrdiff_t j) { return a[j]; });
-}
-TITOP_WIDE double largest_product(std::ptrdiff_t n, const double* a, const double* b) {
-  return largest_of(n, [a, b](std::ptrdiff_t j) { return a[j] * b[j]; });
-}
+/// Steps of elimination that are taken in their own columns first, in all others then: a front is
+/// gone through once for so many steps.
+constexpr int kPanel = 32;
+/// Fewer are taken in all columns at once.
+constexpr int kFewSteps = 16;
 
 /// 2^e for the exponents of ColumnScale, from the bits: std::ldexp costs more than the rest.
 double power_of_two(std::int16_t e) {
@@ -174,8 +138,7 @@ struct Factors<T>::Work {
   }
 
   void judge_finite() {
-    m->finite =
-        std::isfinite(largest_wide(static_cast<std::ptrdiff_t>(bound.size()), bound.data()));
+    m->finite = std::isfinite(largest(static_cast<std::ptrdiff_t>(bound.size()), bound.data()));
     m->singular = m->singular || !m->finite;
   }
 
@@ -195,11 +158,31 @@ struct Factors<T>::Work {
     std::swap(m->order[at(a)], m->order[at(b)]);
   }
 
-  void eliminate(int k) {
-    if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::complex<double>>)
-      eliminate_wide(k, rows, n, m->lu.data(), bound.data());
-    else
-      eliminate_below(k, rows, n, m->lu.data(), bound.data(), size_of<T>);
+  /// Takes pivots from column k up to `end`, in the columns up to `to`; returns how far it came.
+  int steps(int k, int end, std::ptrdiff_t to, NoPivot no_pivot) {
+    for (; k < end; ++k) {
+      int best = pivot(k);
+      if (best < 0 && no_pivot == NoPivot::patch) best = patch(k);
+      m->singular = best < 0;
+      if (m->singular) break;
+      swap(k, best);
+      eliminate_below(k, to, rows, n, m->lu.data(), bound.data());
+      if (no_pivot == NoPivot::patch) clean(k);
+    }
+    return k;
+  }
+
+  void eliminate(NoPivot no_pivot) {
+    // A patch looks at whole rows.
+    if (no_pivot == NoPivot::patch || pivots < kFewSteps) {
+      steps(0, pivots, n, no_pivot);
+      return;
+    }
+    for (int k = 0; k < pivots && !m->singular;) {
+      const int first = k, end = std::min(k + kPanel, pivots);
+      k = steps(first, end, end, no_pivot);
+      if (!m->singular) eliminate_right(first, end, rows, n, m->lu.data(), bound.data());
+    }
   }
 
   /// Largest share that cancellation has left of a row left over; 1 unless it is little: ordinary
@@ -253,15 +236,7 @@ void Factors<T>::make(int index, const Rows<T>& rows, Work& w, ColumnScale* foun
     column_scale(w.bound.data(), front.row_count, w.units_of(*plan_, front),
                  found->data() + front.first_column);
   w.scale_rows(scale_->data() + front.first_column);
-  for (int k = 0; k < front.pivot_count && !made->singular; ++k) {
-    int best = w.pivot(k);
-    if (best < 0 && no_pivot_ == NoPivot::patch) best = w.patch(k);
-    made->singular = best < 0;
-    if (made->singular) break;
-    w.swap(k, best);
-    w.eliminate(k);
-    if (no_pivot_ == NoPivot::patch) w.clean(k);
-  }
+  w.eliminate(no_pivot_);
   w.judge_finite();
   w.finish(start);
   fronts_[at(index)] = std::move(made);

@@ -1,11 +1,8 @@
 #pragma once
 
-#include <bit>
+#include <algorithm>
 #include <complex>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
-#include <titop/graph/linalg/wide.hpp>
 #include <type_traits>
 
 /// The inner loops: y -= a x and its like over contiguous entries. Plain loops that a compiler
@@ -93,37 +90,6 @@ inline void add_times(std::ptrdiff_t n, const std::complex<T>& a, const double* 
     const T by = static_cast<T>(x[j]);
     v[2 * j] += re * by;
     v[2 * j + 1] += im * by;
-  }
-}
-
-/// The largest of n numbers of which none is negative; what is not a number, whatever its sign bit,
-/// is above all others. By their bits: whole numbers may be compared in any order.
-template <class Entry>
-inline double largest_of(std::ptrdiff_t n, Entry entry) {
-  std::int64_t most = 0;
-  for (std::ptrdiff_t j = 0; j < n; ++j) {
-    const auto bits =
-        std::bit_cast<std::int64_t>(entry(j)) & std::numeric_limits<std::int64_t>::max();
-    most = bits > most ? bits : most;
-  }
-  return std::bit_cast<double>(most);
-}
-
-/// One step of elimination in a rows x n array: below row k, everything right of column k. `bounds`
-/// gets the sums of magnitudes.
-template <class T, class Size>
-inline void eliminate_below(std::ptrdiff_t k, std::ptrdiff_t rows, std::ptrdiff_t n, T* a,
-                            double* bounds, Size size) {
-  const T* from = a + k * n + k;
-  const double* const bound = bounds + k * n + k + 1;
-  const std::ptrdiff_t right = n - k - 1;
-  for (std::ptrdiff_t i = k + 1; i < rows; ++i) {
-    T* to = a + i * n + k;
-    if (to[0] == T(0)) continue;
-    const T l = to[0] / from[0];
-    to[0] = l;
-    subtract(right, l, from + 1, to + 1);
-    add(right, size(l), bound, bounds + i * n + k + 1);
   }
 }
 

@@ -1,6 +1,7 @@
 #include <cstring>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/products.hpp>
+#include <titop/graph/linalg/wide.hpp>
 #include <vector>
 
 namespace titop::solve {

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scaling.hpp>
+#include <titop/graph/linalg/wide.hpp>
 #define TITOP_PART [[gnu::always_inline]] inline
 
 namespace titop::solve {

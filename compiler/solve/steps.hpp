@@ -1,0 +1,115 @@
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <titop/compiler/solve/kernels.hpp>
+#include <titop/compiler/solve/scalar.hpp>
+
+/// Steps of elimination on a front: rows x n entries, row-major, and `bounds`, as many, which get
+/// the sums of the magnitudes that entries are made of. For double and its complex numbers in the
+/// widest vectors that the processor has (steps.cpp); the same bits on every machine.
+namespace titop::solve {
+
+/// The largest of n numbers of which none is negative; what is not a number, whatever its sign bit,
+/// is above all others. By their bits: whole numbers may be compared in any order.
+template <class Entry>
+inline double largest_of(std::ptrdiff_t n, Entry entry) {
+  std::int64_t most = 0;
+  for (std::ptrdiff_t j = 0; j < n; ++j) {
+    const auto bits =
+        std::bit_cast<std::int64_t>(entry(j)) & std::numeric_limits<std::int64_t>::max();
+    most = bits > most ? bits : most;
+  }
+  return std::bit_cast<double>(most);
+}
+
+/// One step of elimination in a rows x n array: below row k, right of column k up to column `end`.
+/// `bounds` gets the sums of magnitudes.
+template <class T, class Size>
+[[gnu::always_inline]] inline void eliminate_below(std::ptrdiff_t k, std::ptrdiff_t end,
+                                                   std::ptrdiff_t rows, std::ptrdiff_t n, T* a,
+                                                   double* bounds, Size size) {
+  const T* from = a + k * n + k;
+  const double* const bound = bounds + k * n + k + 1;
+  const std::ptrdiff_t right = end - k - 1;
+  for (std::ptrdiff_t i = k + 1; i < rows; ++i) {
+    T* to = a + i * n + k;
+    if (to[0] == T(0)) continue;
+    const T l = to[0] / from[0];
+    to[0] = l;
+    subtract(right, l, from + 1, to + 1);
+    add(right, size(l), bound, bounds + i * n + k + 1);
+  }
+}
+
+/// Steps k ... end - 1, taken up to column `end`, go on in N columns from j on: what a row gets
+/// stays in registers, step by step, with the bits that whole steps give.
+template <std::size_t N, class T, class Size>
+[[gnu::always_inline]] inline void eliminate_columns(std::ptrdiff_t k, std::ptrdiff_t end,
+                                                     std::ptrdiff_t rows, std::ptrdiff_t n,
+                                                     std::ptrdiff_t j, T* a, double* bounds,
+                                                     Size size) {
+  for (std::ptrdiff_t i = k + 1; i < rows; ++i) {
+    T y[N];
+    double bound[N];
+    std::copy_n(a + i * n + j, N, y);
+    std::copy_n(bounds + i * n + j, N, bound);
+    for (std::ptrdiff_t p = k; p < (i < end ? i : end); ++p) {
+      const T l = a[i * n + p];
+      if (l == T(0)) continue;
+      subtract(N, l, a + p * n + j, y);
+      add(N, size(l), bounds + p * n + j, bound);
+    }
+    std::copy_n(y, N, a + i * n + j);
+    std::copy_n(bound, N, bounds + i * n + j);
+  }
+}
+
+/// The same in all columns from `end` on.
+template <class T, class Size>
+[[gnu::always_inline]] inline void eliminate_right(std::ptrdiff_t k, std::ptrdiff_t end,
+                                                   std::ptrdiff_t rows, std::ptrdiff_t n, T* a,
+                                                   double* bounds, Size size) {
+  std::ptrdiff_t j = end;
+  for (; j + 16 <= n; j += 16) eliminate_columns<16>(k, end, rows, n, j, a, bounds, size);
+  for (; j + 4 <= n; j += 4) eliminate_columns<4>(k, end, rows, n, j, a, bounds, size);
+  for (; j < n; ++j) eliminate_columns<1>(k, end, rows, n, j, a, bounds, size);
+}
+
+/// Of any other scalar.
+template <class T>
+void eliminate_below(std::ptrdiff_t k, std::ptrdiff_t end, std::ptrdiff_t rows, std::ptrdiff_t n,
+                     T* a, double* bounds) {
+  eliminate_below(k, end, rows, n, a, bounds, size_of<T>);
+}
+void eliminate_below(std::ptrdiff_t k, std::ptrdiff_t end, std::ptrdiff_t rows, std::ptrdiff_t n,
+                     double* a, double* bounds);
+void eliminate_below(std::ptrdiff_t k, std::ptrdiff_t end, std::ptrdiff_t rows, std::ptrdiff_t n,
+                     std::complex<double>* a, double* bounds);
+
+template <class T>
+void eliminate_right(std::ptrdiff_t k, std::ptrdiff_t end, std::ptrdiff_t rows, std::ptrdiff_t n,
+                     T* a, double* bounds) {
+  eliminate_right(k, end, rows, n, a, bounds, size_of<T>);
+}
+void eliminate_right(std::ptrdiff_t k, std::ptrdiff_t end, std::ptrdiff_t rows, std::ptrdiff_t n,
+                     double* a, double* bounds);
+void eliminate_right(std::ptrdiff_t k, std::ptrdiff_t end, std::ptrdiff_t rows, std::ptrdiff_t n,
+                     std::complex<double>* a, double* bounds);
+
+/// Sizes of n entries; returns the largest.
+template <class T>
+double sizes(std::ptrdiff_t n, const T* a, double* size) {
+  for (std::ptrdiff_t j = 0; j < n; ++j) size[j] = size_of(a[j]);
+  return largest_of(n, [size](std::ptrdiff_t j) { return size[j]; });
+}
+double sizes(std::ptrdiff_t n, const double* a, double* size);
+double sizes(std::ptrdiff_t n, const std::complex<double>* a, double* size);
+
+/// The largest of a[j], and of a[j] b[j]; none is negative.
+double largest(std::ptrdiff_t n, const double* a);
+double largest_product(std::ptrdiff_t n, const double* a, const double* b);
+
+}  // namespace titop::solve
