@@ -177,7 +177,7 @@ class Writer {
       double* const to = room.rhs.data() + (room.rhs.size() - at(height * m)) + first;
       if (!s.modal) {
         Eigen::Map<RowMatrix<double>, 0, Eigen::OuterStride<>>(
-            to, height, s.columns, Eigen::OuterStride<>(m)) -= solve::matrix_of(p, g_, d_.numbers);
+            to, height, s.columns, Eigen::OuterStride<>(m)) -= solve::matrix_of(p, d_.numbers);
         continue;
       }
       const MatrixXd& W = block(s.node).modal->W;

@@ -74,7 +74,7 @@ struct Builder {
             p.entry < 0 ? place(p.signal)
                         : Place{states + plan.first[at(plan.structure.row(r)[at(p.entry)])], false};
         put(to.input ? B : A, states + plan.row_first[at(r)], to.first,
-            solve::matrix_of(p, g, d.numbers));
+            solve::matrix_of(p, d.numbers));
       }
   }
 

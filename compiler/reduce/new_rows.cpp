@@ -63,8 +63,7 @@ void NewRows::rewrite(int r, const Group& group, std::vector<Piece>& pieces,
   for (const Hidden* c : group.derivatives) mask.row(group_of(old_, c->row).second).setZero();
   for (const Held* h : group.held) mask.row(group_of(old_, h->row).second).setZero();
   std::vector<Piece> result;
-  for (const Piece& p : pieces)
-    put(result, p, mask * solve::matrix_of(p, k_.stage.graph, d_.numbers));
+  for (const Piece& p : pieces) put(result, p, mask * solve::matrix_of(p, d_.numbers));
   for (const Hidden* c : group.derivatives) differentiate(*c, place(c->row), result, over);
   for (const Held* h : group.held) add(result, over, place(h->row) * h->direction, h->signal);
   pieces = std::move(result);
@@ -76,6 +75,7 @@ void NewRows::put(std::vector<Piece>& to, Piece p, const MatrixXd& matrix) {
   p.of = Piece::Left::coefficient;
   p.left = static_cast<int>(d_.numbers.coefficients.size());
   p.right = -1;
+  p.size = static_cast<int>(matrix.cols());
   p.sign = 1;
   d_.numbers.coefficients.push_back(std::make_shared<const RowMatrix<double>>(matrix));
   to.push_back(p);
@@ -89,8 +89,7 @@ void NewRows::differentiate(const Hidden& c, const VectorXd& place, std::vector<
     const RowVectorXd own = c.g.segment(d_.layout().state_first[at(i)], m.A.rows());
     if (own.isZero(0)) continue;
     const Node& node = g.nodes[at(i)];
-    put(to, {.rows = static_cast<int>(place.size()), .signal = node.state},
-        place * solve::product(own, m.A));
+    put(to, {.signal = node.state}, place * solve::product(own, m.A));
     for (int s = node.first_signal; s < node.state; ++s)
       if (const Signal& u = g.signals[at(s)]; u.role == Signal::Role::input && u.active)
         add(to, over, place * solve::product(own, m.B.middleCols(u.first, u.size)), s);
@@ -103,7 +102,7 @@ void NewRows::add(std::vector<Piece>& to, std::vector<int>& over, const MatrixXd
   for (const solve::Meaning& m : old_.meaning(signal)) {
     const int v = old_.variable_of[at(m.signal)];
     if (v >= 0) over.push_back(v);
-    put(to, {.rows = static_cast<int>(matrix.rows()), .entry = v, .signal = m.signal},
+    put(to, {.entry = v, .signal = m.signal},
         m.coefficient < 0 ? matrix
                           : solve::product(matrix, *d_.numbers.coefficients[at(m.coefficient)]));
   }

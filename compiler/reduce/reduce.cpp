@@ -188,7 +188,7 @@ class Reducer {
       rows.push_back(k_.joint.rows[at(r)]);
       for (const Piece& p : k_.joint.row(r)) {
         if (p.entry >= 0) continue;
-        const MatrixXd m = solve::matrix_of(p, k_.stage.graph, d_.numbers);
+        const MatrixXd m = solve::matrix_of(p, d_.numbers);
         const RowVectorXd value = own * m, size = own.cwiseAbs() * m.cwiseAbs();
         const int first = d_.layout().known_first[at(p.signal)];
         for (Index i = 0; i < value.size(); ++i) sum[at(first + i)].add(value(i), size(i));

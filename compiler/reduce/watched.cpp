@@ -44,7 +44,7 @@ struct Readers {
     const auto state = [&](Index, Index j) { visit(j); };
     for (const solve::Piece& p : k.joint.pieces)
       if (p.entry < 0 && is_state(p.signal))
-        entries(solve::matrix_of(p, g, d.numbers), p.signal, state);
+        entries(solve::matrix_of(p, d.numbers), p.signal, state);
     for (std::size_t o = 0; o < g.outputs.size(); ++o)
       for (std::size_t t = 0; t < g.outputs[o].terms.size(); ++t)
         of_signal(*d.numbers.coefficients[at(k.joint.output_coefficient[o]) + t],

@@ -87,12 +87,14 @@ struct Builder {
   /// Adds piece * signal, the signal written in what it stands for.
   void add(Piece piece, int signal) {
     for (const Meaning& m : j.meaning(signal)) {
+      const Signal& signal_of = g.signals[at(m.signal)];
       piece.signal = m.signal;
+      piece.size = signal_of.size;
       piece.right = m.coefficient;
       piece.entry = j.variable_of[at(m.signal)];  // the variable, until the row is complete
       if (piece.entry >= 0) over.push_back(piece.entry);
       j.pieces.push_back(piece);
-      if (g.signals[at(m.signal)].role == Signal::Role::state) mention_inputs(m.signal);
+      if (signal_of.role == Signal::Role::state) mention_inputs(m.signal);
     }
   }
 
@@ -141,6 +143,7 @@ struct Builder {
                         .row = y.first,
                         .rows = y.size,
                         .signal = n.state,
+                        .size = g.signals[at(n.state)].size,
                         .sign = -1});
   }
 
@@ -203,8 +206,8 @@ struct Builder {
       const int sum = static_cast<int>(j.variables.size());
       add_variable(-1, size, like);
       sums.push_back(sum);
-      top.push_back({.of = Piece::Left::one, .rows = size, .entry = sum});
-      groups[k].push_back({.of = Piece::Left::one, .rows = size, .entry = sum, .sign = -1});
+      top.push_back({.of = Piece::Left::one, .entry = sum, .size = size});
+      groups[k].push_back({.of = Piece::Left::one, .entry = sum, .size = size, .sign = -1});
       std::vector<int> members(
           over.begin() + static_cast<std::ptrdiff_t>(k * kTogether),
           over.begin() + static_cast<std::ptrdiff_t>(std::min(over.size(), (k + 1) * kTogether)));

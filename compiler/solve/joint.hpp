@@ -32,7 +32,8 @@ struct Piece {
   int row = 0, rows = 0, col = 0, cols = 0;  ///< the block of the node's matrix
   int right = -1;                            ///< coefficients[right]; -1: identity
   int entry = -1;                            ///< place in the row of the structure; -1: known
-  int signal = -1;                           ///< what is multiplied; -1: a partial sum of size rows
+  int signal = -1;                           ///< what is multiplied; -1: a partial sum
+  int size = 0;                              ///< its scalars
   double sign = 1;
 };
 

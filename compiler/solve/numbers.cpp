@@ -48,7 +48,7 @@ void JointRows<T>::add(int r, T* to, std::ptrdiff_t stride, const int* column) c
     T* const place = to + column[p.entry];
     const RowMatrix<double>* right = p.right < 0 ? nullptr : coefficients_[at(p.right)].get();
     with_left(
-        p, m_, coefficients_, 0,
+        p, m_, coefficients_,
         [&](const auto& left) {
           if (right)
             add_product(p.sign, left, *right, place, stride);
@@ -57,8 +57,7 @@ void JointRows<T>::add(int r, T* to, std::ptrdiff_t stride, const int* column) c
         },
         [&] {
           if (right) return add_matrix(p.sign, view(*right), place, stride);
-          const int size = p.signal < 0 ? p.rows : graph_.signals[at(p.signal)].size;
-          for (int i = 0; i < size; ++i) place[i * stride + i] += lift<T>(p.sign);
+          for (int i = 0; i < p.size; ++i) place[i * stride + i] += lift<T>(p.sign);
         });
   }
 }
@@ -110,17 +109,16 @@ void JointRows<T>::subtract_known(const Piece& p, const RowMatrix<T>& known,
     return;
   }
   if (p.right < 0 && p.of == Piece::Left::state) {
-    const int states = graph_.signals[at(p.signal)].size;
-    const View<T> C = view(*m_.output[at(p.left)], p.row, p.rows, 0, states);
+    const View<T> C = view(*m_.output[at(p.left)], p.row, p.rows, 0, p.size);
     if (m != 1 || p.rows > 1) return subtract_product(p.sign, C, value(p.signal), m, to);
     const T* const x = value(p.signal);
     T sum = to[0];
-    for (int k = 0; k < states; ++k)
+    for (int k = 0; k < p.size; ++k)
       if (x[k] != T(0)) sum -= times(x[k], p.sign) * C(0, k);
     to[0] = sum;
     return;
   }
-  const Dense<T> c = dense(p, m_, coefficients_, graph_.signals[at(p.signal)].size);
+  const Dense<T> c = dense(p, m_, coefficients_);
   const View<T> left = view(c, 0, static_cast<int>(c.rows()), 0, static_cast<int>(c.cols()));
   subtract_product(1, left, value(p.signal), m, to);
 }
@@ -165,15 +163,14 @@ RowMatrix<T> JointRows<T>::rhs_of_states(const RowMatrix<T>& states, std::span<c
   for (int r = 0; r < static_cast<int>(joint_.rows.size()); ++r)
     for (const Piece& p : joint_.row(r)) {
       if (p.entry >= 0 || graph_.signals[at(p.signal)].role != Signal::Role::state) continue;
-      const int size = graph_.signals[at(p.signal)].size;
       const T* x = states.data() + first[at(p.signal)] * m;
       T* to = result.data() + plan.row_first[at(r)] * m;
       if (p.of == Piece::Left::state) {
-        subtract_product(p.sign, view(*output[at(p.left)], p.row, p.rows, 0, size), x, m, to);
+        subtract_product(p.sign, view(*output[at(p.left)], p.row, p.rows, 0, p.size), x, m, to);
         continue;
       }
-      const Dense<T> c = dense(p, m_, coefficients_, size);
-      subtract_product(1, view(c, 0, static_cast<int>(c.rows()), 0, size), x, m, to);
+      const Dense<T> c = dense(p, m_, coefficients_);
+      subtract_product(1, view(c, 0, static_cast<int>(c.rows()), 0, p.size), x, m, to);
     }
   return result;
 }

@@ -3,11 +3,11 @@
 
 namespace titop::solve {
 
-Eigen::MatrixXd matrix_of(const Piece& p, const Graph& g, const Numbers& numbers) {
+Eigen::MatrixXd matrix_of(const Piece& p, const Numbers& numbers) {
   const auto at = [](int i) { return static_cast<std::size_t>(i); };
-  const int size = p.signal < 0 ? p.rows : g.signals[at(p.signal)].size;
-  const Eigen::MatrixXd right = p.right < 0 ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(size, size))
-                                            : Eigen::MatrixXd(*numbers.coefficients[at(p.right)]);
+  const Eigen::MatrixXd right = p.right < 0
+                                    ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(p.size, p.size))
+                                    : Eigen::MatrixXd(*numbers.coefficients[at(p.right)]);
   switch (p.of) {
     case Piece::Left::one: return p.sign * right;
     case Piece::Left::direct:

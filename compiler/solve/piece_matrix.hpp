@@ -4,9 +4,8 @@
 
 namespace titop::solve {
 
-/// sign * left * right of a piece for the state space (D and C of the blocks), rows x size, size
-/// that of its signal or, for a partial sum, its rows.
-Eigen::MatrixXd matrix_of(const Piece& piece, const Graph& graph, const Numbers& numbers);
+/// sign * left * right of a piece for the state space (D and C of the blocks), rows x Piece::size.
+Eigen::MatrixXd matrix_of(const Piece& piece, const Numbers& numbers);
 
 /// a b; what cancels to rounding (below kCancelled of its terms) is 0.
 Eigen::MatrixXd product(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b);

@@ -56,30 +56,28 @@ void subtract_product(double sign, const View<L>& l, const T* x, std::ptrdiff_t 
 
 /// Calls take(view) with the piece's left matrix; `identity` where it is none.
 template <class T, class Take, class Identity>
-void with_left(const Piece& p, const Matrices<T>& m, const std::vector<Coefficient>& c,
-               Eigen::Index states, Take take, Identity identity) {
+void with_left(const Piece& p, const Matrices<T>& m, const std::vector<Coefficient>& c, Take take,
+               Identity identity) {
   switch (p.of) {
     case Piece::Left::one: identity(); break;
     case Piece::Left::direct:
       take(view(*m.direct[at(p.left)], p.row, p.rows, p.col, p.cols));
       break;
-    case Piece::Left::state:
-      take(view(*m.output[at(p.left)], p.row, p.rows, 0, static_cast<int>(states)));
-      break;
+    case Piece::Left::state: take(view(*m.output[at(p.left)], p.row, p.rows, 0, p.size)); break;
     case Piece::Left::coefficient: take(view(*c[at(p.left)])); break;
   }
 }
 
 /// sign * left * right as a matrix.
 template <class T>
-Dense<T> dense(const Piece& p, const Matrices<T>& m, const std::vector<Coefficient>& c, int size) {
+Dense<T> dense(const Piece& p, const Matrices<T>& m, const std::vector<Coefficient>& c) {
   const auto right = [&] {
-    return p.right < 0 ? Dense<T>(Dense<T>::Identity(size, size))
+    return p.right < 0 ? Dense<T>(Dense<T>::Identity(p.size, p.size))
                        : Dense<T>(lifted<T>(*c[at(p.right)]));
   };
   Dense<T> result;
   with_left(
-      p, m, c, size,
+      p, m, c,
       [&](const auto& left) {
         Dense<T> l(left.rows, left.cols);
         for (Eigen::Index i = 0; i < l.rows(); ++i)
@@ -95,7 +93,7 @@ template <class T>
 template <class Visit>
 void JointRows<T>::by_inputs(const Piece& p, Visit visit) const {
   const Signal& x = graph_.signals[at(p.signal)];
-  const Dense<T> m = dense(p, m_, coefficients_, x.size);
+  const Dense<T> m = dense(p, m_, coefficients_);
   for (int i = graph_.nodes[at(x.node)].first_signal; i < p.signal; ++i) {
     const Signal& u = graph_.signals[at(i)];
     if (u.role != Signal::Role::input || !u.active) continue;

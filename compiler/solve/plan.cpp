@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <functional>
+#include <limits>
 #include <map>
 #include <titop/compiler/solve/dissection.hpp>
 #include <titop/compiler/solve/plan.hpp>
@@ -177,9 +178,26 @@ void eliminate_all(Plan& p, const std::vector<int>& when) {
   }
 }
 
-/// Every front right behind those below it, as they were found, with its lists: what a front takes
-/// from its children then lies near, however far apart the order of elimination visits them. What
-/// happens in a front, and so every number, stays the same.
+/// Every front's children, those that begin with later rows first.
+std::vector<int> last_rows_first(const Plan& p) {
+  std::vector<int> children = p.lists, begins(p.fronts.size());
+  for (std::size_t i = 0; i < p.fronts.size(); ++i) {
+    const Front& f = p.fronts[i];
+    int& begin = begins[i] = std::numeric_limits<int>::max();
+    for (const int r : p.list(f.rows)) begin = std::min(begin, r);
+    for (const int c : p.list(f.children)) begin = std::min(begin, begins[at(c)]);
+    const auto own = std::span(children).subspan(at(f.children.begin), at(f.children.count));
+    std::stable_sort(own.begin(), own.end(),
+                     [&](int a, int b) { return begins[at(a)] > begins[at(b)]; });
+  }
+  return children;
+}
+
+/// Every front right behind those below it, with its lists: what a front takes from its children
+/// then lies near, however far apart the order of elimination visits them. Rows stand as a walk
+/// meets their nodes that goes depth first: taken from the last to the first, the fronts of a tree
+/// go through memory in one direction. What happens in a front, and so every number, stays the
+/// same.
 void in_postorder(Plan& p) {
   const int count = static_cast<int>(p.fronts.size());
   std::vector<char> below(at(count), 0);
@@ -194,6 +212,7 @@ void in_postorder(Plan& p) {
     lists.insert(lists.end(), old.begin(), old.end());
     return Front::Range{static_cast<int>(lists.size()) - range.count, range.count};
   };
+  const std::vector<int> children = last_rows_first(p);
   std::vector<std::pair<int, int>> open;  // a front, and how many of its children are done
   for (int root = 0; root < count; ++root) {
     if (below[at(root)]) continue;
@@ -202,7 +221,7 @@ void in_postorder(Plan& p) {
       auto& [front, done] = open.back();
       Front f = p.fronts[at(front)];
       if (done < f.children.count) {
-        open.emplace_back(p.list(f.children)[at(done++)], 0);
+        open.emplace_back(children[at(f.children.begin + done++)], 0);
         continue;
       }
       place[at(front)] = static_cast<int>(fronts.size());

@@ -86,7 +86,7 @@ void JointRows<T>::by_products(Take take, TakeNumber take_number) const {
           }
         const RowMatrix<double>* right = coefficient(p.right);
         with_left(
-            p, m_, coefficients_, 0, [&](const auto& left) { take(row, p.sign, &left, right, v); },
+            p, m_, coefficients_, [&](const auto& left) { take(row, p.sign, &left, right, v); },
             [&] { take(row, p.sign, static_cast<const View<double>*>(nullptr), right, v); });
       } else if (written_out(p) && p.of != Piece::Left::state) {
         by_inputs(p, [&](const Dense<T>& m, const Meaning& meaning) {
