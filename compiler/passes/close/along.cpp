@@ -15,7 +15,8 @@ struct Walk {
   Lists columns, with;   ///< per chain: columns that others have too; per column: chains
   Lists through, users;  ///< per chain: those that its way goes through; whose ways go through it
   std::vector<int> unopened, waiting;       ///< per chain: how many of its columns, of `through`
-  std::vector<char> opened, done;           ///< per column; per chain
+  std::vector<char> opened;                 ///< per column
+  std::vector<char> met, done;              ///< per chain; met: begun, at least
   std::set<std::pair<int, int>> near = {};  ///< unopened columns, chain: where some are open
   std::deque<int> free = {};                ///< chains that open nothing and wait for nothing
   std::vector<int> result = {};
@@ -24,6 +25,7 @@ struct Walk {
       : columns(closings.size()),
         through(closings.size()),
         users(closings.size()),
+        met(closings.size(), 0),
         done(closings.size(), 0) {
     std::map<Column, std::vector<int>> all;
     std::unordered_map<int, int> of_equation;
@@ -59,6 +61,7 @@ struct Walk {
   }
   void decide(int c) {
     if (std::exchange(done[at(c)], 1)) return;
+    met[at(c)] = 1;
     result.push_back(c);
     near.erase({unopened[at(c)], c});
     for (const int column : columns[at(c)])
@@ -69,11 +72,14 @@ struct Walk {
   /// Decides what the way of this chain goes through, and then itself.
   void reach(int goal) {
     std::vector<std::pair<int, std::size_t>> stack{{goal, 0}};
+    met[at(goal)] = 1;
     while (!stack.empty()) {
       auto& [c, next] = stack.back();
-      while (next < through[at(c)].size() && done[at(through[at(c)][next])]) ++next;
+      while (next < through[at(c)].size() && met[at(through[at(c)][next])]) ++next;
       if (next < through[at(c)].size()) {
-        stack.emplace_back(through[at(c)][next], 0);
+        const int before = through[at(c)][next];
+        met[at(before)] = 1;
+        stack.emplace_back(before, 0);
         continue;
       }
       decide(c);
