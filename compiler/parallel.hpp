@@ -4,6 +4,9 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
+#include <functional>
+#include <optional>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -17,31 +20,40 @@ inline int thread_count(int wanted, std::size_t tasks) {
   return std::max(1, std::min(wanted > 0 ? wanted : cores, most));
 }
 
-/// Runs task(i) for i = 0 ... count - 1, in no order, on `threads` threads; make() gives each
+/// Runs task(i) for i = 0 ... count - 1, in no order, on up to `threads` threads; make() gives each
 /// thread its own task object (its workspace). What a task does must not depend on the others: the
-/// results are then the same for any number of threads. Of several exceptions the one of the lowest
-/// i is thrown, once all threads have stopped.
+/// results are then the same for any number of threads. What the task of the lowest i throws is
+/// thrown, once all threads have stopped; those before it have been done.
 template <class Make>
 void parallel(std::size_t count, int threads, Make make) {
   std::atomic<std::size_t> next{0};
   std::vector<std::exception_ptr> failed(count);
-  std::atomic<bool> stop{false};
-  const auto run = [&] {
-    auto task = make();
-    for (std::size_t i = next++; i < count && !stop; i = next++) {
+  std::atomic<std::size_t> end{count};  // the first that has failed: those before it are still done
+  const auto work = [&] {
+    std::optional<decltype(make())> task;
+    for (std::size_t i = next++; i < end; i = next++) {
       try {
-        task(i);
+        if (!task) task.emplace(make());
+        (*task)(i);
       } catch (...) {
         failed[i] = std::current_exception();
-        stop = true;
+        for (std::size_t e = end; i < e && !end.compare_exchange_weak(e, i);) {
+        }
       }
     }
   };
-  {
-    std::vector<std::jthread> pool;
-    for (int t = 1; t < thread_count(threads, count); ++t) pool.emplace_back(run);
-    run();
-  }
+  // Every thread starts the next one before it sets to work, while tasks wait: on a machine of many
+  // cores no more are started than come in time to share the work.
+  const int most = thread_count(threads, count);
+  const std::function<void(int)> run = [&](int started) {
+    std::jthread following;
+    try {
+      if (started < most && next + 1 < end) following = std::jthread(std::cref(run), started + 1);
+    } catch (const std::system_error&) {  // there is no other: these do all of it
+    }
+    work();
+  };
+  run(1);
   for (const std::exception_ptr& e : failed)
     if (e) std::rethrow_exception(e);
 }

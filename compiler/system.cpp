@@ -180,7 +180,11 @@ MatrixXcd System::transfer(std::complex<double> s, Precision precision) const {
 std::vector<MatrixXcd> System::frequency_response(std::span<const double> omega, int threads,
                                                   Precision precision) const {
   std::vector<MatrixXcd> result(omega.size());
-  detail::parallel(omega.size(), threads, [&] {
+  // A thread costs more to start than a few responses of a small system.
+  constexpr double kWorthIt = 100;  // unknowns, about 1 us each
+  const int unknowns = data_->skeleton->joint.plan->unknowns;
+  const bool few = threads == 0 && static_cast<double>(omega.size()) * unknowns < kWorthIt;
+  detail::parallel(omega.size(), few ? 1 : threads, [&] {
     return [&](std::size_t i) { result[i] = transfer({0, omega[i]}, precision); };
   });
   return result;

@@ -1,9 +1,12 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <thread>
+#include <titop/compiler/parallel.hpp>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"
@@ -60,6 +63,38 @@ TEST_CASE("sweep: the first point that makes no model is named") {
   }
   CHECK(text.find("z with the new values") != std::string::npos);
   CHECK(text.find("at point 1 of the sweep") != std::string::npos);
+}
+
+TEST_CASE("threads: every task is done once, on as many threads as there are tasks at most") {
+  for (const int threads : {1, 3, 64})
+    for (const std::size_t count : {0u, 1u, 2u, 40u}) {
+      CAPTURE(threads);
+      CAPTURE(count);
+      std::vector<std::atomic<int>> done(count);
+      std::atomic<int> made = 0;
+      detail::parallel(count, threads, [&] {
+        ++made;
+        return [&](std::size_t i) { ++done[i]; };
+      });
+      CHECK(std::all_of(done.begin(), done.end(), [](const auto& times) { return times == 1; }));
+      CHECK(made <= std::min<int>(threads, static_cast<int>(count)));
+    }
+}
+
+TEST_CASE("threads: what a task, or the making of one, throws comes out when all have stopped") {
+  for (const int threads : {1, 3, 64}) {
+    CAPTURE(threads);
+    const auto make = []() -> std::function<void(std::size_t)> {
+      throw std::runtime_error("no room");
+    };
+    CHECK_THROWS_WITH(detail::parallel(40, threads, make), "no room");
+    const auto task = [] {
+      return [](std::size_t i) {
+        if (i >= 20) throw std::runtime_error(std::to_string(i));
+      };
+    };
+    CHECK_THROWS_WITH(detail::parallel(40, threads, task), "20");
+  }
 }
 
 namespace {
