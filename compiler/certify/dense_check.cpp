@@ -215,16 +215,24 @@ std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
 }
 
 /// What the factors' states leave in the equations of the dense model, A x + B u - s x, carried to
-/// the outputs by the factors.
+/// the outputs by the factors. Points where these have no digit (springs along directions that
+/// chains hold, far below all modes) say nothing of the model. Throws singular where none is left.
 std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve::RowMatrix<T>& u,
                            const Measure& units) {
-  const std::vector<T> list = tried(d, u, units.rows);
+  std::vector<T> list;
   std::deque<Evaluation<T>> points;
   std::vector<solve::RowMatrix<T>> x;
-  for (const T s : list) {
-    points.emplace_back(d, s, u);
+  for (const T s : tried(d, u, units.rows)) {
+    try {
+      points.emplace_back(d, s, u);
+    } catch (const Error& error) {
+      if (!error.has(Code::singular)) throw;
+      continue;
+    }
+    list.push_back(s);
     x.push_back(d.states.model_states(points.back().states(), u, s));
   }
+  if (list.empty()) throw no_digit_left(d, pick_s(d));
   const std::vector<solve::RowMatrix<T>> Ax = moved(m.A, x);
   std::vector<Sample> result;
   for (std::size_t i = 0; i < list.size(); ++i) {
