@@ -91,3 +91,32 @@ TEST_CASE("the same bars left open move") {
   const MatrixXcd G = system.transfer({0.1, 1});
   CHECK(G.block(2, 1, 3, 3).cwiseAbs().maxCoeff() >= 1e-3);
 }
+
+TEST_CASE("a hub of many points between two pins that are not parallel: what hangs there stands") {
+  Diagram d{"hub"};
+  RigidBody spec{.mass = 3};
+  for (int k = 0; k < 9; ++k)
+    spec.children.push_back({"C" + std::to_string(k), {0.1 * k, 0.3, -0.2 * k}});
+  auto hub = d.add("hub", spec);
+  release(hub);
+  for (int k = 0; k < 2; ++k) {
+    auto pin = d.add("pin" + std::to_string(k), Hinge{{k ? 0.0 : 1.0, 0.6, 0.8}});
+    pin.torque = 20.0 * pin.angle;
+    mount(pin, hub.child("C" + std::to_string(k)));
+    ground(pin.child);
+  }
+  auto hung =
+      d.add("hung", SpringMass{.mass = kMass, .stiffness = kStiffness, .damping = kDamping});
+  mount(hung, hub.child("C7").along({1, 2, 2}));
+  hung.child.force += d.input("u");
+  d.output("stretch") = hung.stretch;
+  d.output("hub", 6) = hub.child("C8").accel;
+  const System system = compile(d);
+  CHECK(system.order() == 2);
+  for (const Complex z : points({0.3, 5, 70})) {
+    const Complex x = 1.0 / (kMass * z * z + kDamping * z + kStiffness);
+    const MatrixXcd G = system.transfer(z);
+    CHECK(std::abs(G(0, 0) / x - 1.0) <= 1e-13);
+    CHECK(G.bottomRows(6).isZero(0));
+  }
+}

@@ -69,8 +69,11 @@ void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& 
       return true;
     });
   };
+  const auto of_body = [&](const Equation& e) {
+    return e.of_block && g.signals[at(e.target)].channel >= 0;
+  };
   for (std::size_t e = 0; e < g.equations.size(); ++e)
-    if (!places[e]) clear(g.equations[e].terms);
+    if (!places[e] && !of_body(g.equations[e])) clear(g.equations[e].terms);
   for (Output& o : g.outputs) clear(o.terms);
   if (points.empty()) return;
   std::vector<std::string> names;

@@ -11,8 +11,9 @@ namespace titop::passes::closing {
 using AtRest = std::set<Scalar>;
 
 /// Points that closed chains hold by their numbers: the elimination would find rounding in place of
-/// their accelerations. The chains' own equations need them, for the forces; whatever else reads
-/// one reads nothing, so that outputs are 0 and what hangs there stands on the ground.
+/// their accelerations. The chains' own equations need them, for the forces, and so do bodies that
+/// `lower` has turned into equations; whatever else reads one reads nothing, so that outputs are 0
+/// and what hangs there stands on the ground.
 void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& closings,
                 const AtRest& held);
 
