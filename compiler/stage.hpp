@@ -56,7 +56,7 @@ struct Matched {
 struct Origin {
   enum class Of {
     accel,      ///< equation `index` of the source, on an acceleration
-    released,   ///< nothing: a joint lets go of what is held twice
+    released,   ///< what others add to the force of channel `index`: a joint held twice lets go
     force,      ///< all that drives the force of channel `index`
     one_way,    ///< equation `index` of the source, on a one-way port
     algebraic,  ///< the row of output signal `index` of a node that has become coefficients
@@ -65,7 +65,7 @@ struct Origin {
   Of of = Of::accel;
   int index = -1;
   std::vector<int> parameters = {};  ///< that its coefficients depend on, ascending
-  Eigen::MatrixXd times = {};        ///< rows of it that are kept (pass `chains`); empty: all
+  Eigen::MatrixXd times = {};        ///< rows of it that count (pass `chains`); empty: all
 };
 
 /// Integrators that `lower` adds for motions that no state holds.

@@ -7,6 +7,7 @@
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/close/redundant.hpp>
 #include <titop/compiler/passes/close/still.hpp>
+#include <titop/compiler/passes/lower/amounts.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/drives.hpp>
@@ -182,8 +183,9 @@ void keep_rows(Graph& g, Equation& e, const MatrixXd& rows) {
   }
 }
 
-/// In these directions (rows, in the space of the equation's rows) the joint lets go.
-void release(Stage& stage, int equation, const MatrixXd& directions) {
+/// In these directions (rows, in the space of the equation's rows) the joint lets go: it passes
+/// nothing on, and the wrench at its point is what others add there.
+void release(Stage& stage, int equation, const MatrixXd& directions, Lowering& lowering) {
   Graph& g = stage.graph;
   const MatrixXd S = g.equations[at(equation)].part.whole()
                          ? MatrixXd::Identity(directions.cols(), directions.cols())
@@ -193,12 +195,13 @@ void release(Stage& stage, int equation, const MatrixXd& directions) {
   Equation force{.target = g.channels[at(channel)].force,
                  .part = {directions * S, ".redundant"},
                  .where = g.equations[at(equation)].where};
-  if (directions.rows() == g.channels[at(channel)].size) force.part = {};
-  Origin nothing{.of = Origin::Of::released, .index = equation};
+  Origin others{.of = Origin::Of::released, .index = channel, .times = force.part.rows};
+  if (directions.rows() == g.channels[at(channel)].size) force.part = {}, others.times = {};
+  force.terms = lowering.written_out(others);
   if (kept.rows() == 0) {
     stage.released.push_back({equation, channel, equation, g.equations[at(equation)]});
     g.equations[at(equation)] = force;
-    stage.origins[at(equation)] = nothing;
+    stage.origins[at(equation)] = std::move(others);
     return;
   }
   const auto fresh = static_cast<int>(g.equations.size());
@@ -206,7 +209,7 @@ void release(Stage& stage, int equation, const MatrixXd& directions) {
   keep_rows(g, g.equations[at(equation)], kept);
   stage.origins[at(equation)].times = kept;
   stage.origins.insert(stage.origins.begin() + static_cast<std::ptrdiff_t>(g.equations.size()),
-                       nothing);
+                       std::move(others));
   g.equations.push_back(std::move(force));
 }
 
@@ -225,6 +228,7 @@ std::string direction_names(const MatrixXd& directions) {
 /// Returns what the chains hold altogether.
 AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
   AtRest held;
+  std::optional<Lowering> lowering;  // few chains are closed twice
   std::vector<Line> lines;
   for (const int c : along(closings)) lines.push_back(line_of(closings[at(c)]));
   const Coordinates coordinates(stage.graph, stage.values);
@@ -258,7 +262,10 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
            fmt::format("{}: {} of {} closing equations are redundant{}; internal forces there are "
                        "not determined",
                        name, directions.rows(), rows, direction_names(directions))});
-      release(stage, line.equation, directions);
+      if (!lowering)
+        lowering.emplace(*stage.source, stage.values, std::make_shared<const Drives>(*stage.source),
+                         stage.motions);
+      release(stage, line.equation, directions, *lowering);
     }
     for (const int j : found.held)
       if (c.scalars[at(j)].column.kind != Column::Kind::prescribed) held.insert(c.scalars[at(j)]);

@@ -18,11 +18,7 @@ struct Lowered {
   std::vector<Origin> origins = {};
 
   std::vector<Term> terms(Origin origin, const std::source_location& where) {
-    l.met.clear();
-    std::vector<Term> result = merged(l.collect(where, [&] { return l.amount(origin); }));
-    std::sort(l.met.begin(), l.met.end());
-    l.met.erase(std::unique(l.met.begin(), l.met.end()), l.met.end());
-    origin.parameters = l.met;
+    std::vector<Term> result = l.collect(where, [&] { return l.written_out(origin); });
     origins.push_back(std::move(origin));
     return result;
   }
@@ -122,11 +118,7 @@ std::vector<std::vector<Term>> lower_again(const Stage& stage, const std::vector
   Lowering l(*stage.source, values, stage.drives, stage.motions);
   l.numbers_only = true;
   std::vector<std::vector<Term>> result;
-  for (const int o : origins) {
-    const Origin& origin = stage.origins[at(o)];
-    Amount sum = l.amount(origin);
-    result.push_back(merged(origin.times.size() ? times(origin.times, std::move(sum)) : sum));
-  }
+  for (const int o : origins) result.push_back(merged(l.amount(stage.origins[at(o)])));
   return result;
 }
 

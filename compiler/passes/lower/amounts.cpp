@@ -300,16 +300,30 @@ Amount Lowering::algebraic(int output) {
   return sum;
 }
 
-Amount Lowering::amount(const Origin& o) {
+Amount Lowering::of_source(const Origin& o) {
   switch (o.of) {
     case Origin::Of::accel:
     case Origin::Of::one_way: return terms(g.equations[at(o.index)].terms);
-    case Origin::Of::released: return {};
+    case Origin::Of::released: return added_to(o.index);
     case Origin::Of::force: return force(o.index);
     case Origin::Of::algebraic: return algebraic(o.index);
     case Origin::Of::output: return terms(g.outputs[at(o.index)].terms);
   }
   return {};
+}
+
+Amount Lowering::amount(const Origin& origin) {
+  Amount sum = of_source(origin);
+  return origin.times.size() ? times(origin.times, std::move(sum)) : sum;
+}
+
+std::vector<Term> Lowering::written_out(Origin& origin) {
+  met.clear();
+  std::vector<Term> result = merged(amount(origin));
+  std::sort(met.begin(), met.end());
+  met.erase(std::unique(met.begin(), met.end()), met.end());
+  origin.parameters = met;
+  return result;
 }
 
 }  // namespace titop::passes

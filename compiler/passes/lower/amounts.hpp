@@ -51,6 +51,8 @@ struct Lowering {
 
   /// What an equation or output of the lowered graph amounts to.
   Amount amount(const Origin& origin);
+  /// The same as terms; the origin learns which parameters they depend on.
+  std::vector<Term> written_out(Origin& origin);
   void meet(const Value& v) {
     if (v.is_parameter()) met.push_back(v.index());
   }
@@ -61,12 +63,13 @@ struct Lowering {
 
   /// What one equation or output amounts to; its mistakes are kept, with the line it stands on.
   template <class F>
-  Amount collect(const std::source_location& where, F amount);
+  auto collect(const std::source_location& where, F find) -> decltype(find());
   Amount terms(const std::vector<Term>& list);
   /// All that drives the channel's force.
   Amount force(int channel);
   /// The row of this output signal of an algebraic node.
   Amount algebraic(int output);
+  Amount of_source(const Origin& origin);
   Amount twin(int channel, Level level);
   /// A point on the way, and by what its motion counts.
   struct Step {
@@ -84,9 +87,9 @@ struct Lowering {
 };
 
 template <class F>
-Amount Lowering::collect(const std::source_location& where, F amount) {
+auto Lowering::collect(const std::source_location& where, F find) -> decltype(find()) {
   try {
-    return amount();
+    return find();
   } catch (const Error& error) {
     std::fill(visiting.begin(), visiting.end(), 0);
     within.clear();
