@@ -20,20 +20,6 @@ bool has_orthonormal_rows(const MatrixXd& m) {
          (m * m.transpose() - MatrixXd::Identity(m.rows(), m.rows())).cwiseAbs().maxCoeff() <= 1e-9;
 }
 
-/// Blocks of three by three of a 6-dof matrix have each their own unit; others are one block.
-double relative_gap(const MatrixXd& gap, const MatrixXd& sizes) {
-  double worst = 0;
-  const Index step = gap.cols() == 6 ? 3 : gap.cols();
-  for (Index j = 0; j < gap.cols(); j += step)
-    for (Index i = 0; i < gap.rows(); i += (gap.rows() == 6 ? 3 : gap.rows())) {
-      const Index rows = gap.rows() == 6 ? 3 : gap.rows();
-      const double size = sizes.block(i, j, rows, step).maxCoeff();
-      const double off = gap.block(i, j, rows, step).cwiseAbs().maxCoeff();
-      if (off > 0) worst = std::max(worst, off / size);
-    }
-  return worst;
-}
-
 }  // namespace
 
 Motion::Motion(const Graph& graph, ParameterValues values, const Twins& twins, Ground ground,
@@ -139,7 +125,9 @@ Motion::Edge Motion::reversed(const Edge& e) const {
   Edge r = e;
   r.to = e.from, r.from = e.to;
   r.R = linalg::inverse(e.R).matrix;
-  for (auto& [column, matrix] : r.own) matrix = -(r.R * matrix);
+  Sum own;
+  own.meet(r.R), own.add(-r.R, e.own);
+  r.own = own.cleaned();
   return r;
 }
 
@@ -227,26 +215,28 @@ bool Motion::Way::rigid() const {
   return std::all_of(edges.begin(), edges.end(), [](const Edge& e) { return e.rigid; });
 }
 
-MatrixXd Motion::walk(Form& form, MatrixXd factor, const Way& way, MatrixXd* sizes) const {
+MatrixXd Motion::walk(Sum& sum, MatrixXd factor, const Way& way) const {
+  sum.meet(factor);
   for (const Edge& e : way.edges) {
-    add(form, factor, e.own);
+    sum.add(factor, e.own);
     if (e.from == ground_) return MatrixXd(factor.rows(), 0);
     factor = factor * e.R;
-    if (sizes && sizes->cols() == factor.cols()) *sizes = sizes->cwiseMax(factor.cwiseAbs());
+    sum.meet(factor);
   }
   return factor;
 }
 
-void Motion::add_root(Form& form, const MatrixXd& factor, int root) const {
-  if (root != ground_) add(form, {Column::Kind::root, root}, factor);
+void Motion::add_root(Sum& sum, const MatrixXd& factor, int root) const {
+  if (root == ground_) return;
+  sum.add(factor, {{{Column::Kind::root, root}, MatrixXd::Identity(factor.cols(), factor.cols())}});
 }
 
 Form Motion::position(int channel) const {
-  Form form;
+  Sum sum;
   const int size = g_.channels[at(channel)].size;
-  add_root(form, walk(form, MatrixXd::Identity(size, size), up_from(channel, -1)),
+  add_root(sum, walk(sum, MatrixXd::Identity(size, size), up_from(channel, -1)),
            root_[at(channel)]);
-  return form;
+  return sum.cleaned();
 }
 
 std::vector<char> Motion::at_rest(const std::function<bool(const Column&, int)>& held) const {
@@ -289,7 +279,9 @@ MatrixXd Motion::less_angles(MatrixXd gap, const Form& form) {
 
 Closing Motion::closing(const Tie& tie) const {
   Closing result{.tie = &tie, .equations = {tie.equation}};
-  add(result.form, -MatrixXd::Identity(tie.S.rows(), tie.S.rows()), tie.own);
+  Sum sum;
+  const MatrixXd minus = -MatrixXd::Identity(tie.S.rows(), tie.S.rows());
+  sum.meet(minus), sum.add(minus, tie.own);
   auto [there, back] = ways(tie);
   const bool meets = tie.points.size() <= 1 && there.to == back.to;
   for (const Edge& e : there.edges) result.chain.push_back(e.to);
@@ -305,25 +297,26 @@ Closing Motion::closing(const Tie& tie) const {
   const bool to_ground = meets && there.to == ground_;
   const bool rigid = meets && !to_ground && there.rigid() && back.rigid() &&
                      (tie.points.empty() || has_orthonormal_rows(tie.points.begin()->second));
-  MatrixXd sizes = tie.S.cwiseAbs();  // how far the way round leads
   if (!rigid && !to_ground) {
     there = up_from(tie.target, -1);
     list(there);
-    add_root(result.form, walk(result.form, tie.S, there), root_[at(tie.target)]);
+    add_root(sum, walk(sum, tie.S, there), root_[at(tie.target)]);
     for (const auto& [point, c] : tie.points) {
       back = up_from(point, -1);
       list(back);
-      add_root(result.form, walk(result.form, -c, back), root_[at(point)]);
+      add_root(sum, walk(sum, -c, back), root_[at(point)]);
     }
+    result.form = sum.cleaned();
     return result;
   }
   list(there), list(back);
-  MatrixXd gap = walk(result.form, tie.S, there, &sizes);
+  MatrixXd gap = walk(sum, tie.S, there);
   for (const auto& [point, c] : tie.points) {
-    const MatrixXd at_meeting = walk(result.form, -c, back, &sizes);
+    const MatrixXd at_meeting = walk(sum, -c, back);
     if (!to_ground) gap += at_meeting;
   }
-  if (!to_ground) result.gap = relative_gap(less_angles(std::move(gap), result.form), sizes);
+  result.form = sum.cleaned();
+  if (!to_ground) result.gap = sum.relative(less_angles(std::move(gap), result.form));
   return result;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <titop/compiler/passes/close/sum.hpp>
 #include <titop/compiler/passes/close/twin.hpp>
 #include <titop/compiler/stage.hpp>
 #include <tuple>
@@ -119,13 +120,11 @@ class Motion {
   Edge edge_between(int point, int next, Tie::Rank rank) const;
   /// The two ways from the ends of a tie to where they meet.
   std::pair<Way, Way> ways(const Tie& tie) const;
-  /// form += factor * x_point, along the way; what multiplies its end. `sizes` grows to the largest
-  /// entries met.
-  Eigen::MatrixXd walk(Form& form, Eigen::MatrixXd factor, const Way& way,
-                       Eigen::MatrixXd* sizes = nullptr) const;
+  /// sum += factor * x_point, along the way; what multiplies its end.
+  Eigen::MatrixXd walk(Sum& sum, Eigen::MatrixXd factor, const Way& way) const;
   /// What a free angle on the way can take up is no gap.
   static Eigen::MatrixXd less_angles(Eigen::MatrixXd gap, const Form& form);
-  void add_root(Form& form, const Eigen::MatrixXd& factor, int root) const;
+  void add_root(Sum& sum, const Eigen::MatrixXd& factor, int root) const;
 
   const Graph& g_;
   int ground_;

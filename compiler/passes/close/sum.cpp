@@ -1,0 +1,68 @@
+#include <algorithm>
+#include <titop/compiler/passes/close/sum.hpp>
+
+namespace titop::passes::closing {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr double kEpsilon = 2.2e-16;
+constexpr double kUnits = 32;  ///< of rounding, in what a way begins with
+constexpr double kUnitsEach = 2;
+
+/// 0 for translations, 1 for rotations, of six.
+std::size_t half(Index i, Index count) { return count == 6 && i >= 3 ? 1 : 0; }
+
+}  // namespace
+
+void Sum::meet(const MatrixXd& factor) {
+  ++factors_;
+  for (Index j = 0; j < factor.cols(); ++j)
+    for (Index i = 0; i < factor.rows(); ++i) {
+      auto& most = most_[half(i, factor.rows())];
+      const double size = std::abs(factor(i, j));
+      most[half(j, factor.cols())] = std::max(most[half(j, factor.cols())], size);
+      if (factor.cols() != 6) most[1] = std::max(most[1], size);
+    }
+}
+
+void Sum::add(const MatrixXd& factor, const Form& own) {
+  const double units = (kUnits + kUnitsEach * factors_) * kEpsilon;
+  for (const auto& [column, matrix] : own) {
+    closing::add(form_, column, factor * matrix);
+    MatrixXd rounding(factor.rows(), matrix.cols());
+    for (Index j = 0; j < matrix.cols(); ++j) {
+      std::array<double, 2> size = {};
+      for (Index k = 0; k < matrix.rows(); ++k) {
+        double& s = size[half(k, matrix.rows())];
+        s = std::max(s, std::abs(matrix(k, j)));
+      }
+      for (Index i = 0; i < factor.rows(); ++i) {
+        const auto& most = most_[half(i, factor.rows())];
+        rounding(i, j) = units * (most[0] * size[0] + most[1] * size[1]);
+      }
+    }
+    closing::add(rounding_, column, rounding);
+  }
+}
+
+double Sum::relative(const MatrixXd& gap) const {
+  double worst = 0;
+  for (Index j = 0; j < gap.cols(); ++j)
+    for (Index i = 0; i < gap.rows(); ++i)
+      if (const double off = std::abs(gap(i, j)); off > 0)
+        worst = std::max(worst, off / most_[half(i, gap.rows())][half(j, gap.cols())]);
+  return worst;
+}
+
+Form Sum::cleaned() const {
+  Form result;
+  for (const auto& [column, matrix] : form_) {
+    MatrixXd m = (matrix.array().abs() <= rounding_.at(column).array()).select(0.0, matrix);
+    if (!m.isZero(0)) result.emplace(column, std::move(m));
+  }
+  return result;
+}
+
+}  // namespace titop::passes::closing
