@@ -114,12 +114,19 @@ solve::RowMatrix<T> Evaluation<T>::value(int signal) const {
 
 template <class T>
 solve::RowMatrix<T> Evaluation<T>::values(std::span<const int> first) const {
+  return values_of(unknowns_, u_, first);
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::values_of(const solve::RowMatrix<T>& unknowns,
+                                             const solve::RowMatrix<T>& inputs,
+                                             std::span<const int> first) const {
   const Graph& g = data_.graph();
-  solve::RowMatrix<T> result = solve::RowMatrix<T>::Zero(first.back(), u_.cols());
+  solve::RowMatrix<T> result = solve::RowMatrix<T>::Zero(first.back(), inputs.cols());
   for (int i = 0; i < static_cast<int>(g.signals.size()); ++i) {
     const Signal& s = g.signals[at(i)];
     if (s.role != Signal::Role::state) {
-      rows_.add_value(i, unknowns_, u_, first_, result.data() + first[at(i)] * u_.cols());
+      rows_.add_value(i, unknowns, inputs, first_, result.data() + first[at(i)] * inputs.cols());
       continue;
     }
     if (!s.active) continue;

@@ -75,6 +75,8 @@ class Evaluation {
   Losses losses();
   /// The change of the outputs by rounding as above, outputs x columns.
   solve::RowMatrix<T> rounding() const;
+  /// Likewise of all signals, as values().
+  solve::RowMatrix<T> rounding_of_values(std::span<const int> first) const;
   /// Of the elimination: see Certificate::weakest_pivot.
   double weakest_pivot() const { return factors_->health().weakest; }
 
@@ -83,6 +85,11 @@ class Evaluation {
   solve::RowMatrix<T> outputs_of(const solve::RowMatrix<T>& unknowns,
                                  const solve::RowMatrix<T>& inputs,
                                  const solve::RowMatrix<T>* states) const;
+  solve::RowMatrix<T> values_of(const solve::RowMatrix<T>& unknowns,
+                                const solve::RowMatrix<T>& inputs,
+                                std::span<const int> first) const;
+  /// What the unknowns change by.
+  solve::RowMatrix<T> change_by_rounding() const;
   solve::RowMatrix<T> value_of(int signal, const solve::RowMatrix<T>& unknowns,
                                const solve::RowMatrix<T>& inputs) const;
   void refine(const Evaluation<std::complex<double>>& coarse);

@@ -59,11 +59,20 @@ typename Evaluation<T>::Losses Evaluation<T>::losses() {
 }
 
 template <class T>
-solve::RowMatrix<T> Evaluation<T>::rounding() const {
+solve::RowMatrix<T> Evaluation<T>::change_by_rounding() const {
   solve::RowMatrix<double> magnitudes;
   rows_.residual(rhs_, unknowns_, &magnitudes);
-  const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), u_.cols());
-  return outputs_of(factors_->solve(rounding_of(magnitudes)), none, nullptr);
+  return factors_->solve(rounding_of(magnitudes));
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::rounding() const {
+  return outputs_of(change_by_rounding(), solve::RowMatrix<T>::Zero(u_.rows(), u_.cols()), nullptr);
+}
+
+template <class T>
+solve::RowMatrix<T> Evaluation<T>::rounding_of_values(std::span<const int> first) const {
+  return values_of(change_by_rounding(), solve::RowMatrix<T>::Zero(u_.rows(), u_.cols()), first);
 }
 
 namespace {
@@ -215,10 +224,11 @@ void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
   }
 }
 
-#define TITOP_INSTANTIATE(T)                                    \
-  template double Evaluation<T>::improve();                     \
-  template Evaluation<T>::Losses Evaluation<T>::losses();       \
-  template solve::RowMatrix<T> Evaluation<T>::rounding() const; \
+#define TITOP_INSTANTIATE(T)                                                                  \
+  template double Evaluation<T>::improve();                                                   \
+  template Evaluation<T>::Losses Evaluation<T>::losses();                                     \
+  template solve::RowMatrix<T> Evaluation<T>::rounding() const;                               \
+  template solve::RowMatrix<T> Evaluation<T>::rounding_of_values(std::span<const int>) const; \
   template void Evaluation<T>::refine(const Evaluation<std::complex<double>>&);
 TITOP_INSTANTIATE(double)
 TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)

@@ -1,4 +1,5 @@
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <titop/compiler/certify/passivity.hpp>
 
@@ -8,12 +9,19 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXcd;
 
-/// What rounding may make of each diagonal entry.
-Eigen::VectorXd floors(const DualTransfers& t) {
-  Eigen::VectorXd result(t.G.front().rows());
+/// Of the largest entry that shares its units: less is rounding, along an axis that something
+/// holds.
+constexpr double kOfUnit = 64 * 2.2e-16;
+
+/// What rounding may make of each diagonal entry of G / s.
+Eigen::VectorXd floors(const DualTransfers& t, std::size_t point) {
+  const double s = std::abs(t.points[point]);
+  Eigen::VectorXd result(t.G[point].rows());
   Index first = 0;
   for (const Index n : t.by.rows) {
-    result.segment(first, n).setConstant(t.floor(first, first, n, n));
+    const double largest = t.G[point].block(first, first, n, n).cwiseAbs().maxCoeff();
+    const double rounding = std::max(t.floor(first, first, n, n), kOfUnit * largest);
+    result.segment(first, n).setConstant(rounding / s);
     first += n;
   }
   return result;
@@ -51,10 +59,9 @@ FullCertificate::Passivity check_passivity(const DualPairs& pairs, const DualTra
   }
   p.done = true;
   p.least = 1;
-  const Eigen::VectorXd floor = floors(transfers);
   for (std::size_t k = 0; k < transfers.points.size(); ++k) {
     const std::complex<double> s = transfers.points[k];
-    const double now = least(transfers.G[k] / s, floor / std::abs(s));
+    const double now = least(transfers.G[k] / s, floors(transfers, k));
     if (now < p.least) p.least = now, p.where = s;
   }
   return p;

@@ -16,6 +16,13 @@ std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPlain = 1e-12;  ///< rounding up to this needs no excuse
+/// One sample of rounding may be small by luck: a hundredth of what it can be.
+constexpr double kTermPerRounding = 100 / std::numeric_limits<double>::epsilon();
+
+/// Entries of a signal; what they count as, with a sign or without.
+struct Entries {
+  std::span<const double> value, size;
+};
 
 /// One equation after the other: left - right, and the sum of magnitudes, row by row.
 struct Balance {
@@ -44,17 +51,18 @@ struct Balance {
   /// factor * c * value. Entries that share a unit count by the largest of them: what is 0 in some
   /// frame is rounding in another.
   template <class Matrix>
-  void add(const Matrix& c, std::span<const double> value, int shared, double factor) {
+  void add(const Matrix& c, const Entries& x_of, int shared, double factor) {
+    const auto [value, sizes] = x_of;
     if (shared == 1 && rows() == 1) {  // scalar diagrams have hardly any others
       double sum = 0, size = 0;
       for (std::size_t j = 0; j < value.size(); ++j) {
-        const double x = c(0, static_cast<Eigen::Index>(j)) * (factor * value[j]);
-        sum += x, size += std::abs(x);
+        const double by = c(0, static_cast<Eigen::Index>(j)) * factor;
+        sum += by * value[j], size += std::abs(by * sizes[j]);
       }
       return add(0, sum, size);
     }
     for (std::size_t j = 0; j < value.size(); ++j) {
-      const double x = value[j], size = largest_with(value, j, shared);
+      const double x = value[j], size = largest_with(sizes, j, shared);
       if (size == 0 && x == 0) continue;  // not a number is neither
       const double by = factor * x, by_size = std::abs(factor) * size;
       for (std::size_t i = 0; i < rows(); ++i) {
@@ -63,19 +71,19 @@ struct Balance {
       }
     }
   }
-  void add_identity(std::span<const double> value, int shared, double factor) {
-    if (rows() == 1) return add(0, factor * value[0], std::abs(factor * value[0]));
+  void add_identity(const Entries& x, int shared, double factor) {
+    if (rows() == 1) return add(0, factor * x.value[0], std::abs(factor * x.size[0]));
     for (std::size_t i = 0; i < rows(); ++i)
-      add(i, factor * value[i], std::abs(factor) * largest_with(value, i, shared));
+      add(i, factor * x.value[i], std::abs(factor) * largest_with(x.size, i, shared));
   }
   void add(std::size_t i, double value, double size) {
     row[i].difference += value;
     row[i].magnitude += size;
   }
-  static double largest_with(std::span<const double> value, std::size_t j, int shared) {
-    if (shared == 1) return std::abs(value[j]);
+  static double largest_with(std::span<const double> size, std::size_t j, int shared) {
+    if (shared == 1) return std::abs(size[j]);
     double largest = 0;
-    for (const double x : value.subspan(j / at(shared) * at(shared), at(shared)))
+    for (const double x : size.subspan(j / at(shared) * at(shared), at(shared)))
       largest = std::max(largest, std::abs(x));
     return largest;
   }
@@ -116,13 +124,22 @@ struct Residual {
   const SystemData& d;
   const Signals& at_hand;
   const Graph& w = *d.skeleton->stage.source;
-  Balance b = {};  ///< of the present equation
+  std::vector<double> sizes = {};  ///< of all values, where rounding is known
+  Balance b = {};                  ///< of the present equation
   double worst = 0;
   std::string where = {};
 
-  std::span<const double> of(int signal) const {
+  void find_sizes() {
+    sizes.resize(at(at_hand.rounding.size()));
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+      sizes[i] = std::max(std::abs(at_hand.values.data()[i]),
+                          kTermPerRounding * std::abs(at_hand.rounding.data()[i]));
+  }
+  Entries of(int signal) const {
     const int first = at_hand.first[at(signal)];
-    return {at_hand.values.data() + first, at(at_hand.first[at(signal) + 1] - first)};
+    const std::size_t count = at(at_hand.first[at(signal) + 1] - first);
+    const double* const values = at_hand.values.data();
+    return {{values + first, count}, {(sizes.empty() ? values : sizes.data()) + first, count}};
   }
   /// Computed: active, or external, or at rest because no input moves it.
   bool known(int signal) const {
@@ -238,11 +255,10 @@ struct Residual {
     }
   }
 
-  /// xdot = A x + B u
-  void states(const Node& node, int index, const Dynamics& m, int end) {
+  /// s x = A x + B u
+  void states(const Node& node, const Dynamics& m, int end) {
     b.start(m.A.rows(), 0);
-    const double* xdot = at_hand.xdot.data() + d.layout().state_first[at(index)];
-    b.add_identity({xdot, static_cast<std::size_t>(m.A.rows())}, 1, 1);
+    b.add_identity(of(node.state), 1, at_hand.s);
     b.add(m.A, of(node.state), 1, -1);
     subtract_inputs(node, end, m.B, 0);
     take(-1, [&] { return "the states of " + node.name; });
@@ -271,8 +287,7 @@ struct Residual {
       const Node& node = w.nodes[at(index)];
       const Dynamics& m = *d.numbers.blocks[at(index)];
       const int end = end_signal(w, index);
-      if (node.state >= 0 && known(node.state) && at_hand.xdot.size() > 0)
-        states(node, index, m, end);
+      if (node.state >= 0 && known(node.state) && at_hand.s != 0) states(node, m, end);
       for (int o = node.first_signal; o < end; ++o)
         if (w.signals[at(o)].role == Signal::Role::output && known(o))
           output(node, index, m, end, o);
@@ -291,6 +306,7 @@ std::vector<int> first_of_signals(const Graph& graph) {
 
 WrittenResidual written_residual(const SystemData& d, const Signals& signals) {
   Residual r{d, signals};
+  r.find_sizes();
   r.equations();
   r.blocks();
   return {r.worst, r.where};

@@ -13,8 +13,9 @@ struct Signals {
   std::vector<int> first = {};             ///< of every signal in `values`, and the end
   solve::RowMatrix<double> values = {};    ///< one column
   solve::RowMatrix<double> unknowns = {};  ///< of the joint system as written
-  solve::RowMatrix<double> xdot = {};      ///< of all blocks' states; none: A x + B u by definition
-  double s = 0;  ///< positions are accelerations over s^2; at an instant there must be none
+  solve::RowMatrix<double> rounding = {};  ///< one sample of it, as `values`; none: not known
+  double s = 0;  ///< xdot = s x, positions are accelerations over s^2. 0: an instant, where xdot is
+                 ///< A x + B u by definition and positions there must be none
 };
 
 /// Where signal i begins among all, and the end.
@@ -26,7 +27,8 @@ struct WrittenResidual {
 };
 
 /// Largest |left - right| over (sum of magnitudes of the terms) of all equations of Stage::source
-/// and all rows of all blocks. What is 0 but for rounding does not count; what is not finite counts
+/// and all rows of all blocks. What is 0 but for rounding does not count; where a sample of that is
+/// known, a term is no smaller than what rounding can be a last place of. What is not finite counts
 /// as 1. O(terms).
 WrittenResidual written_residual(const SystemData& d, const Signals& signals);
 
