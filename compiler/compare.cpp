@@ -2,6 +2,7 @@
 #include <cmath>
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/declared.hpp>
+#include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/graph/linalg/dense.hpp>
 
@@ -100,27 +101,58 @@ std::vector<MatrixXcd> transfers(const StateSpace& m,
   return list;
 }
 
+namespace {
+
+/// |(s I - A)^-1 B| and |C (s I - A)^-1|.
+struct Gain {
+  MatrixXd of_states, to_outputs;
+};
+
+Gain gain(const StateSpace& m, std::complex<double> s) {
+  const MatrixXcd K = s * MatrixXcd::Identity(m.A.rows(), m.A.rows()) - m.A;
+  return {linalg::solve(K, m.B.cast<std::complex<double>>()).z.cwiseAbs(),
+          linalg::solve(K.transpose(), m.C.transpose().cast<std::complex<double>>())
+              .z.transpose()
+              .cwiseAbs()};
+}
+
+}  // namespace
+
 MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& points) {
   MatrixXd result = m.D.cwiseAbs();
   if (m.A.rows() == 0) return result;
   for (const std::complex<double> s : points) {
-    const MatrixXcd K = s * MatrixXcd::Identity(m.A.rows(), m.A.rows()) - m.A;
-    const MatrixXcd X = linalg::solve(K, m.B.cast<std::complex<double>>()).z,
-                    W = linalg::solve(K.transpose(), m.C.transpose().cast<std::complex<double>>())
-                            .z;
-    const MatrixXd right = K.cwiseAbs() * X.cwiseAbs(), sum = W.cwiseAbs().transpose() * right;
+    const Gain by = gain(m, s);
+    const MatrixXd K = (s * MatrixXcd::Identity(m.A.rows(), m.A.rows()) - m.A).cwiseAbs(),
+                   right = K * by.of_states, sum = by.to_outputs * right;
     if (sum.allFinite()) result = result.cwiseMax(m.D.cwiseAbs() + sum);
   }
   return result;
 }
 
+MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
+                           const std::vector<std::complex<double>>& points) {
+  MatrixXd result = rounding.D;
+  for (const std::complex<double> s : points) {
+    if (m.A.rows() == 0) break;
+    const Gain by = gain(m, s);
+    const MatrixXd states = rounding.B + rounding.A * by.of_states,
+                   sum = by.to_outputs * states + rounding.C * by.of_states;
+    if (sum.allFinite()) result = result.cwiseMax(rounding.D + sum);
+  }
+  return kTermsPerRounding * result;
+}
+
 MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points) {
-  MatrixXd result = MatrixXd::Zero(static_cast<Index>(system.outputs().size()),
-                                   static_cast<Index>(system.inputs().size()));
+  const auto inputs = static_cast<Index>(system.inputs().size());
+  const solve::RowMatrix<std::complex<double>> each = MatrixXcd::Identity(inputs, inputs);
+  MatrixXd result = MatrixXd::Zero(static_cast<Index>(system.outputs().size()), inputs);
+  const auto add = [&result](const auto& off) {
+    if (off.allFinite()) result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());
+  };
   for (const std::complex<double> s : points) try {
-      const MatrixXcd off =
-          system.transfer(s, Precision::standard) - system.transfer(s, Precision::extended);
-      result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());
+      add(Evaluation<std::complex<double>>(*system.data_, s, each).rounding());
+      add(system.transfer(s, Precision::standard) - system.transfer(s, Precision::extended));
     } catch (const Error&) {
       // No digit is left there in one of the two: other points must do.
     }

@@ -34,6 +34,11 @@ std::vector<Eigen::MatrixXcd> transfers(const StateSpace& m,
 /// O(points n^3).
 Eigen::MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& points);
 
+/// The same of the model's own rounding, what it may have put into each entry of A, B, C and D
+/// (matrices of their sizes): kTermsPerRounding times |dD| + |W| |dB| + |dC| |X| + |W| |dA| |X|.
+Eigen::MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
+                                  const std::vector<std::complex<double>>& points);
+
 /// What one rounding stands for: it is one sample, after a step of refinement, of what many may do.
 inline constexpr double kTermsPerRounding = 100 / std::numeric_limits<double>::epsilon();
 

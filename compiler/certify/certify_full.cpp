@@ -74,6 +74,28 @@ std::vector<MatrixXcd> as_written(const Graph& g, const std::vector<double>& val
   return list;
 }
 
+/// A model, and what rounding may have put into each of its entries.
+struct Written {
+  const StateSpace &model, &rounding;
+};
+
+/// What differs is looked at again with what the model's rounding does.
+void check_dense(const System& system, const Written& before, const std::vector<Complex>& points,
+                 const std::vector<MatrixXcd>& factored, detail::Measure& measure,
+                 FullCertificate::Grid& grid) {
+  const std::vector<MatrixXcd> dense = detail::transfers(system.state_space(), points);
+  detail::Difference found = detail::difference(dense, factored, measure, system, points);
+  if (found.relative > detail::kClose) {
+    detail::add_rounding(
+        measure, factored,
+        detail::terms_of_rounding(before.model, before.rounding, detail::some_of(points)));
+    found = detail::difference(dense, factored, measure);
+  }
+  grid.done = true;
+  grid.dense = found.relative;
+  grid.dense_s = points[found.point];
+}
+
 void check_written(const System& system, const Full& what, const std::vector<Complex>& points,
                    const std::vector<MatrixXcd>& factored, detail::Measure measure,
                    FullCertificate::Grid& grid) {
@@ -163,11 +185,12 @@ FullCertificate certify(const System& system, const Full& what) {
   FullCertificate c;
   const bool dense = system.order() <= what.dense_up_to;
   std::vector<double> omegas;
-  StateSpace model;  // before `minimize`
+  StateSpace model, rounding;  // before `minimize`
   if (dense) {
     c.order = system.order_verdict();
     system.write(model);
-    c.poles = full::check_poles(system, model, detail::rounding_of(*system.data_, model).A, omegas);
+    rounding = detail::rounding_of(*system.data_, model);
+    c.poles = full::check_poles(system, model, rounding.A, omegas);
   } else {
     c.poles.why_not = c.grid.why_not = fmt::format("{} states are more than {} (Full::dense_up_to)",
                                                    system.order(), what.dense_up_to);
@@ -186,11 +209,7 @@ FullCertificate certify(const System& system, const Full& what) {
     if (dense) {
       measure.terms =
           detail::terms(model, points).cwiseMax(detail::terms(system.state_space(), points));
-      const auto [worst, k] = detail::difference(detail::transfers(system.state_space(), points),
-                                                 factored, measure, system, points);
-      c.grid.done = true;
-      c.grid.dense = worst;
-      c.grid.dense_s = points[k];
+      check_dense(system, {model, rounding}, points, factored, measure, c.grid);
     }
     check_written(system, what, points, factored, measure, c.grid);
     check_pairs(system, points, factored, c);

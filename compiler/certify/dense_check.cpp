@@ -19,6 +19,8 @@ using Eigen::VectorXd;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoise = 1e3;     ///< times rounding: what may be nothing else
+constexpr double kDoubted = 1e-9;  ///< what is above this is looked at again, at some cost
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -63,17 +65,48 @@ Response by_factors(const SystemData& d, const solve::RowMatrix<double>& x,
           terms.cwiseMax(both(off.xdot(), off.outputs()).cwiseAbs())};
 }
 
+using Groups = std::vector<std::pair<Index, Index>>;
+
+/// Columns of [xdot; y]: states alone and inputs alone, whatever their units, neither hides the
+/// other.
+constexpr Index kAlone = 2;
+
+/// |dA| |x| and the like of a model's entries.
+MatrixXd product(const StateSpace& of, const MatrixXd& x, const MatrixXd& u) {
+  MatrixXd result(of.A.rows() + of.C.rows(), kAlone);
+  result << of.A * x.cwiseAbs() + of.B * u.cwiseAbs(), of.C * x.cwiseAbs() + of.D * u.cwiseAbs();
+  return result;
+}
+
+/// The largest |off| over rounding, in units of the last place. Groups that are nothing but
+/// `noise`, where it is known, count beside it.
+double relative(const MatrixXd& off, const Response& r, const Groups& groups,
+                const MatrixXd& noise = {}) {
+  if (!off.allFinite() || !r.rounding.allFinite()) return kInfinity;
+  double worst = 0;
+  for (const auto& [first, count] : groups)
+    for (Index j = 0; j < kAlone && count > 0; ++j) {
+      const auto largest = [first = first, count = count, j](const MatrixXd& m) {
+        return m.col(j).segment(first, count).cwiseAbs().maxCoeff();
+      };
+      double size = largest(r.rounding);
+      if (noise.size() > 0 && largest(r.value) <= kNoise * largest(noise))
+        size = std::max(size, largest(noise));
+      if (size > 0) worst = std::max(worst, kEpsilon * (largest(off) / size));
+    }
+  return worst;
+}
+
 }  // namespace
 
 double dense_difference(const SystemData& d, const StateSpace& m) {
   const Index n = m.A.rows();
-  // States alone and inputs alone: whatever their units, neither hides the other.
-  solve::RowMatrix<double> x = MatrixXd::Zero(n, 2), u = MatrixXd::Zero(m.B.cols(), 2);
+  solve::RowMatrix<double> x = MatrixXd::Zero(n, kAlone), u = MatrixXd::Zero(m.B.cols(), kAlone);
   SteadyRandom random;
   for (Index i = 0; i < n; ++i) x(i, 0) = random.next();
   for (Index i = 0; i < u.rows(); ++i) u(i, 1) = random.next();
-  auto [off, rounding] = by_factors(d, x, u);
-  MatrixXd of_model = MatrixXd::Zero(off.rows(), 2);
+  Response r = by_factors(d, x, u);
+  MatrixXd off = r.value, of_model = MatrixXd::Zero(off.rows(), kAlone);
   const auto take = [&](const MatrixXd& matrix, Index first, Index column, const auto& factors) {
     for (Index j = 0; j < matrix.cols(); ++j) {  // once through memory
       const double factor = factors(j, column);
@@ -83,24 +116,17 @@ double dense_difference(const SystemData& d, const StateSpace& m) {
     }
   };
   take(m.A, 0, 0, x), take(m.B, 0, 1, u), take(m.C, n, 0, x), take(m.D, n, 1, u);
-  rounding = rounding.cwiseMax(of_model);
-  if (!off.allFinite() || !rounding.allFinite()) return kInfinity;
-  double worst = 0;
-  for (const auto& [first, count] : groups(d))
-    for (Index j = 0; j < 2 && count > 0; ++j) {
-      const double largest = rounding.col(j).segment(first, count).maxCoeff();
-      const double difference = off.col(j).segment(first, count).cwiseAbs().maxCoeff();
-      if (largest > 0) worst = std::max(worst, kEpsilon * (difference / largest));
-    }
-  return worst;
+  r.rounding = r.rounding.cwiseMax(of_model);
+  const double worst = relative(off, r, groups(d));
+  if (worst <= kDoubted || worst == kInfinity) return worst;
+  return relative(off, r, groups(d), product(rounding_of(d, m), x, u));
 }
 
 namespace {
 
 using T = std::complex<double>;
 
-constexpr Index kColumns = 8;   ///< inputs are tried one by one up to this many
-constexpr double kNoise = 1e3;  ///< times the factors' own rounding: what may be nothing else
+constexpr Index kColumns = 8;  ///< inputs are tried one by one up to this many
 /// Of neighbours in row and column: what rotations leave of a 0, cos(pi / 2) = 6e-17. It has its
 /// digits in the factors, but stands for none.
 constexpr double kOfNeighbours = 1e-14;
@@ -248,7 +274,6 @@ std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve
   return result;
 }
 
-constexpr double kDoubted = 1e-9;     ///< an estimate above this is compared with an answer
 constexpr Index kAnsweredUpTo = 100;  ///< states
 constexpr double kLuck = 30;          ///< by which one answer may be closer than it should be
 

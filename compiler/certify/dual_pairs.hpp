@@ -46,7 +46,7 @@ DualTransfers dual_transfers(const DualPairs& pairs,
                              const std::vector<Eigen::MatrixXcd>& transfers);
 
 /// The same, so that blocks which are rounding and no more have a floor: by eight transfers in
-/// double and in long double. Slow.
+/// double and in long double, and 1e-36 of the largest entry of all, whatever the units. Slow.
 DualTransfers with_rounding(const System& system, const DualPairs& pairs, DualTransfers transfers);
 
 }  // namespace titop::full

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <limits>
@@ -16,18 +17,22 @@ std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPlain = 1e-12;  ///< rounding up to this needs no excuse
-/// One sample of rounding may be small by luck: a hundredth of what it can be.
-constexpr double kTermPerRounding = 100 / std::numeric_limits<double>::epsilon();
+/// Of the largest of its kind.
+constexpr double kOfLargest = 1e-14;
+/// One sample of rounding may be small by luck, and says nothing of rounding in the coefficients.
+constexpr double kRoundings = 1e4;
 
-/// Entries of a signal; what they count as, with a sign or without.
+/// Entries of a signal, and a sample of their rounding where it is known.
 struct Entries {
-  std::span<const double> value, size;
+  std::span<const double> value, rounding = {};
 };
 
-/// One equation after the other: left - right, and the sum of magnitudes, row by row.
+/// One equation after the other: left - right, and the sums of magnitudes, row by row.
 struct Balance {
   struct Row {
-    double difference = 0, magnitude = 0;
+    double difference = 0, magnitude = 0, rounding = 0;
+    /// What rounding does not explain.
+    double off() const { return std::max(std::abs(difference) - kRoundings * rounding, 0.0); }
   };
   boost::container::small_vector<Row, 8> row = {};
   const MatrixXd* part = nullptr;  ///< rows of the target; none: all of it
@@ -51,63 +56,62 @@ struct Balance {
   /// factor * c * value. Entries that share a unit count by the largest of them: what is 0 in some
   /// frame is rounding in another.
   template <class Matrix>
-  void add(const Matrix& c, const Entries& x_of, int shared, double factor) {
-    const auto [value, sizes] = x_of;
-    if (shared == 1 && rows() == 1) {  // scalar diagrams have hardly any others
-      double sum = 0, size = 0;
-      for (std::size_t j = 0; j < value.size(); ++j) {
-        const double by = c(0, static_cast<Eigen::Index>(j)) * factor;
-        sum += by * value[j], size += std::abs(by * sizes[j]);
+  void add(const Matrix& c, const Entries& x, int shared, double factor) {
+    if (shared == 1 && rows() == 1 && x.rounding.empty()) {  // scalar diagrams: hardly any others
+      Row sum;
+      for (std::size_t j = 0; j < x.value.size(); ++j) {
+        const double by = c(0, static_cast<Eigen::Index>(j)) * factor * x.value[j];
+        sum.difference += by, sum.magnitude += std::abs(by);
       }
-      return add(0, sum, size);
+      return add(0, sum, 1);
     }
-    for (std::size_t j = 0; j < value.size(); ++j) {
-      const double x = value[j], size = largest_with(sizes, j, shared);
-      if (size == 0 && x == 0) continue;  // not a number is neither
-      const double by = factor * x, by_size = std::abs(factor) * size;
-      for (std::size_t i = 0; i < rows(); ++i) {
-        const double entry = c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
-        add(i, entry * by, std::abs(entry) * by_size);
-      }
+    for (std::size_t j = 0; j < x.value.size(); ++j) {
+      const Row term = entry_of(x, j, shared);
+      if (term.magnitude == 0 && term.difference == 0) continue;  // not a number is neither
+      for (std::size_t i = 0; i < rows(); ++i)
+        add(i, term, factor * c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
     }
   }
   void add_identity(const Entries& x, int shared, double factor) {
-    if (rows() == 1) return add(0, factor * x.value[0], std::abs(factor * x.size[0]));
     for (std::size_t i = 0; i < rows(); ++i)
-      add(i, factor * x.value[i], std::abs(factor) * largest_with(x.size, i, shared));
+      add(i, entry_of(x, i, rows() == 1 ? 1 : shared), factor);
   }
-  void add(std::size_t i, double value, double size) {
-    row[i].difference += value;
-    row[i].magnitude += size;
+  void add(std::size_t i, const Row& term, double factor) {
+    row[i].difference += factor * term.difference;
+    row[i].magnitude += std::abs(factor) * term.magnitude;
+    row[i].rounding += std::abs(factor) * term.rounding;
   }
-  static double largest_with(std::span<const double> size, std::size_t j, int shared) {
-    if (shared == 1) return std::abs(size[j]);
+  static Row entry_of(const Entries& x, std::size_t j, int shared) {
+    return {x.value[j], largest_with(x.value, j, shared),
+            x.rounding.empty() ? 0 : largest_with(x.rounding, j, shared)};
+  }
+  static double largest_with(std::span<const double> list, std::size_t j, int shared) {
+    if (shared == 1) return std::abs(list[j]);
     double largest = 0;
-    for (const double x : size.subspan(j / at(shared) * at(shared), at(shared)))
+    for (const double x : list.subspan(j / at(shared) * at(shared), at(shared)))
       largest = std::max(largest, std::abs(x));
     return largest;
   }
 
-  /// Largest difference; infinite where something is not finite.
+  /// Largest difference beyond rounding; infinite where something is not finite.
   double largest() const {
     double size = 0;
     for (const Row& r : row) {
       if (!std::isfinite(r.difference)) return kInfinity;
-      size = std::max(size, std::abs(r.difference));
+      size = std::max(size, r.off());
     }
     return size;
   }
   /// Largest share of the rows of one unit; 1 where something is not finite.
   double relative() const {
     if (largest() == kInfinity) return 1;
-    if (rows() == 1)
-      return row[0].difference == 0 ? 0 : std::abs(row[0].difference) / row[0].magnitude;
+    if (rows() == 1) return row[0].off() == 0 ? 0 : row[0].off() / row[0].magnitude;
     double worst = 0;
     for (std::size_t i = 0; i < rows();) {
       const std::size_t first = i;
       double off = 0, size = 0;
       do {
-        off = std::max(off, std::abs(row[i].difference));
+        off = std::max(off, row[i].off());
         size = std::max(size, row[i].magnitude);
       } while (++i < rows() && same_unit(first, i));
       if (off > 0) worst = std::max(worst, off / size);
@@ -124,22 +128,17 @@ struct Residual {
   const SystemData& d;
   const Signals& at_hand;
   const Graph& w = *d.skeleton->stage.source;
-  std::vector<double> sizes = {};  ///< of all values, where rounding is known
-  Balance b = {};                  ///< of the present equation
+  Balance b = {};                      ///< of the present equation
+  std::array<double, 9> largest = {};  ///< see find_largest()
   double worst = 0;
   std::string where = {};
 
-  void find_sizes() {
-    sizes.resize(at(at_hand.rounding.size()));
-    for (std::size_t i = 0; i < sizes.size(); ++i)
-      sizes[i] = std::max(std::abs(at_hand.values.data()[i]),
-                          kTermPerRounding * std::abs(at_hand.rounding.data()[i]));
-  }
   Entries of(int signal) const {
     const int first = at_hand.first[at(signal)];
     const std::size_t count = at(at_hand.first[at(signal) + 1] - first);
-    const double* const values = at_hand.values.data();
-    return {{values + first, count}, {(sizes.empty() ? values : sizes.data()) + first, count}};
+    Entries result{{at_hand.values.data() + first, count}};
+    if (at_hand.rounding.size() > 0) result.rounding = {at_hand.rounding.data() + first, count};
+    return result;
   }
   /// Computed: active, or external, or at rest because no input moves it.
   bool known(int signal) const {
@@ -162,11 +161,30 @@ struct Residual {
   }
   bool only_rounding(int signal) const {
     for (std::size_t i = 0; i < b.rows(); ++i)
-      if (const double off = std::abs(b.row[i].difference);
+      if (const double off = b.row[i].off();
           off > kPlain * b.row[i].magnitude &&
-          off > kLeftOfZero * size_around_signal(d, at_hand.unknowns, signal, b.entry(i)))
+          off > kLeftOfZero * size_around_signal(d, at_hand.unknowns, signal, b.entry(i)) &&
+          !(off <= kOfLargest * largest[kind(signal, b.entry(i))]))
         return false;
     return true;
+  }
+
+  /// Accelerations, forces and all else; of these translations, rotations and scalars.
+  std::size_t kind(int signal, Eigen::Index entry) const {
+    const Signal& s = w.signals[at(signal)];
+    const bool on_channel = s.channel >= 0;
+    const std::size_t of = !on_channel ? 2 : w.channels[at(s.channel)].force == signal ? 1 : 0;
+    return 3 * of + (s.size == 6 ? at(entry / 3) : 2);
+  }
+  /// Chains that are closed twice mix all that they hold: a motion or a wrench that they make 0 is
+  /// rounding of the others, and so may be all that its equation has.
+  void find_largest() {
+    if (d.skeleton->stage.released.empty()) return;
+    for (int k = 0; k < static_cast<int>(w.signals.size()); ++k)
+      if (known(k))
+        for (std::size_t i = 0; const double x : of(k).value)
+          if (double& size = largest[kind(k, static_cast<Eigen::Index>(i++))]; std::abs(x) > size)
+            size = std::abs(x);
   }
 
   int unit(int signal) const { return entries_per_unit(w.signals[at(signal)]); }
@@ -306,7 +324,7 @@ std::vector<int> first_of_signals(const Graph& graph) {
 
 WrittenResidual written_residual(const SystemData& d, const Signals& signals) {
   Residual r{d, signals};
-  r.find_sizes();
+  if (signals.rounding.size() > 0) r.find_largest();
   r.equations();
   r.blocks();
   return {r.worst, r.where};

@@ -27,9 +27,9 @@ struct WrittenResidual {
 };
 
 /// Largest |left - right| over (sum of magnitudes of the terms) of all equations of Stage::source
-/// and all rows of all blocks. What is 0 but for rounding does not count; where a sample of that is
-/// known, a term is no smaller than what rounding can be a last place of. What is not finite counts
-/// as 1. O(terms).
+/// and all rows of all blocks. What is 0 but for rounding does not count, nor does, where a sample
+/// of rounding is known, a difference below 1e4 times what it makes of the terms, or below 1e-14 of
+/// the largest of its kind where chains are closed twice. What is not finite counts as 1. O(terms).
 WrittenResidual written_residual(const SystemData& d, const Signals& signals);
 
 /// What rounding leaves of a 0, beside size_around(): some hundred units of the last place, for it

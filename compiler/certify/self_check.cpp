@@ -135,6 +135,10 @@ bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Ce
   signals.values = now.values(signals.first);
   signals.unknowns = now.unknowns();
   WrittenResidual written = written_residual(d, signals);
+  if (written.worst > kWarn) {  // of what chains hold still only rounding may be left
+    signals.rounding = now.doubt().values(signals.first);
+    written = written_residual(d, signals);
+  }
   // Two formulas for one thing differ by more than rounding near a block's own real pole.
   if (const auto responses = check_responses(d, s);
       responses.worst > std::max(kWarn, written.worst))

@@ -263,8 +263,10 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
                        "not determined",
                        name, directions.rows(), rows, direction_names(directions))});
       if (!lowering)
-        lowering.emplace(*stage.source, stage.values, std::make_shared<const Drives>(*stage.source),
-                         stage.motions);
+        lowering.emplace(
+            *stage.source, stage.values,
+            stage.drives ? stage.drives : std::make_shared<const Drives>(*stage.source),
+            stage.motions);
       release(stage, line.equation, directions, *lowering);
     }
     for (const int j : found.held)

@@ -41,6 +41,50 @@ struct Assembly {
   }
 };
 
+/// Of a rigid body at P, whose center of mass is at PA and whose inertia is about that.
+inline by_hand::Matrix6 mass_at_P(double mass, const Eigen::Matrix3d& inertia,
+                                  const Eigen::Vector3d& PA) {
+  by_hand::Matrix6 D = by_hand::Matrix6::Zero();
+  D.topLeftCorner<3, 3>().diagonal().setConstant(mass);
+  D.bottomRightCorner<3, 3>() = inertia;
+  const by_hand::Matrix6 t = by_hand::tau(-PA);
+  return t.transpose() * D * t;
+}
+
+/// A frame whose x axis points along `direction`.
+inline Eigen::Matrix3d along_x(const Eigen::Vector3d& direction, const Eigen::Matrix3d& any) {
+  Eigen::Matrix3d R;
+  R.col(0) = direction.normalized();
+  R.col(1) = R.col(0).cross(any.col(1)).normalized();
+  R.col(2) = R.col(0).cross(R.col(1));
+  return R;
+}
+
+/// What is left of a structure where some rows are held.
+struct Left {
+  by_hand::Structure structure;
+  bool clear = true;   ///< no singular value of the rows is near the limit of their rank
+  bool twice = false;  ///< the rows say something more than once
+};
+
+/// On the null space of `held` q = 0.
+inline Left left_free(const by_hand::Structure& a, const MatrixXd& held) {
+  const Eigen::JacobiSVD<MatrixXd> svd(held, Eigen::ComputeFullV);
+  const VectorXd& sigma = svd.singularValues();
+  Index rank = 0;
+  Left left;
+  for (Index i = 0; i < sigma.size(); ++i) {
+    const double relative = sigma(i) / sigma(0);
+    rank += relative > 1e-9;
+    left.clear = left.clear && (relative > 1e-4 || relative < 1e-13);
+  }
+  left.twice = rank < held.rows();
+  const MatrixXd Z = svd.matrixV().rightCols(held.cols() - rank);
+  left.structure = {Z.transpose() * a.M * Z, Z.transpose() * a.D * Z, Z.transpose() * a.K * Z,
+                    Z.transpose() * a.B, a.C * Z};
+  return left;
+}
+
 /// omegas of K x = omega^2 M x, the `zeros` lowest left out.
 inline std::vector<Complex> elastic_poles(const by_hand::Structure& a, Index zeros) {
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(a.K, a.M, Eigen::EigenvaluesOnly);

@@ -66,15 +66,7 @@ struct Frame {
   }
 };
 
-Matrix3d along_x(const Vector3d& direction, const Matrix3d& any) {
-  Matrix3d R;
-  R.col(0) = direction.normalized();
-  R.col(1) = R.col(0).cross(any.col(1)).normalized();
-  R.col(2) = R.col(0).cross(R.col(1));
-  return R;
-}
-
-/// Makes one; all pins of a plane one are in the plane across `normal`.
+/// Makes one; all joints of a plane one are in one plane, and their axes in it or across it.
 struct Maker {
   Rng rng;
   bool plane;
@@ -173,8 +165,6 @@ struct Scene {
   const Frame& f;
   titop::Diagram d{"frame"};
   std::vector<titop::BodyHandle> bodies = {};
-  std::vector<titop::Joint::Handle> joints = {};
-  std::vector<int> asked = {};  ///< of every body: child points taken
 
   titop::BodyHandle add(int i) {
     const Part& p = f.parts[at(i)];
@@ -241,14 +231,6 @@ struct Scene {
   }
 };
 
-by_hand::Matrix6 mass_at_P(const Part& p) {
-  by_hand::Matrix6 D = by_hand::Matrix6::Zero();
-  D.topLeftCorner<3, 3>().diagonal().setConstant(p.mass);
-  D.bottomRightCorner<3, 3>() = p.inertia();
-  const by_hand::Matrix6 t = by_hand::tau(-p.PA);
-  return t.transpose() * D * t;
-}
-
 /// All bodies by themselves: rigid ones with six coordinates, beams with twelve, in their frames.
 struct ByHand {
   const Frame& f;
@@ -268,7 +250,7 @@ struct ByHand {
       if (p.beam)
         all.beam(p.tube().numbers(), all.unit(n, 6), all.unit(n + 6, 6), n + 12);
       else
-        all.add(mass_at_P(p), MatrixXd::Zero(6, 6), all.unit(n, 6));
+        all.add(mass_at_P(p.mass, p.inertia(), p.PA), MatrixXd::Zero(6, 6), all.unit(n, 6));
       n += p.beam ? 12 : 6;
     }
     if (f.grounded) hold(all.unit(0, 6));
@@ -312,24 +294,6 @@ struct ByHand {
       all.a.D += kDamping * m.stiffness * row.transpose() * row;
     }
   }
-
-  /// What the joints leave. `clear`: no singular value is near the limit.
-  by_hand::Structure free(bool& clear, bool& twice) const {
-    const Eigen::JacobiSVD<MatrixXd> svd(held, Eigen::ComputeFullV);
-    const VectorXd& sigma = svd.singularValues();
-    Index rank = 0;
-    clear = true;
-    for (Index i = 0; i < sigma.size(); ++i) {
-      const double relative = sigma(i) / sigma(0);
-      rank += relative > 1e-9;
-      clear = clear && (relative > 1e-4 || relative < 1e-13);
-    }
-    twice = rank < held.rows();
-    const MatrixXd Z = svd.matrixV().rightCols(held.cols() - rank);
-    const by_hand::Structure& a = all.a;
-    return {Z.transpose() * a.M * Z, Z.transpose() * a.D * Z, Z.transpose() * a.K * Z,
-            Z.transpose() * a.B, a.C * Z};
-  }
 };
 
 /// Coordinates that nothing springs back: accelerations do not show them.
@@ -341,15 +305,16 @@ Index unsprung(const by_hand::Structure& a) {
 }
 
 struct Counts {
-  int compared = 0, twice = 0, loops = 0, beams = 0, still = 0;
+  int compared = 0, twice = 0, loops = 0, beams = 0, still = 0, unsure = 0;
 };
 
 void compare(const Frame& f, Counts& count) {
-  bool clear = false, twice = false;
-  const by_hand::Structure exact = ByHand(f).free(clear, twice);
+  const ByHand by_hand(f);
+  const auto [exact, clear, twice] = left_free(by_hand.all.a, by_hand.held);
   if (!clear) return;
   const titop::Diagram d = Scene{f}.build();
   const titop::System system = titop::compile(d, {.minimize_up_to = 0});
+  count.unsure += !(system.certificate().residual <= 1e-9);
   const Index moving = exact.M.rows() - (f.on_ground() ? 0 : 6);
   CHECK(system.order() <= 2 * moving);  // what a clamped hub cuts off is left out
   if (!f.on_ground() && unsprung(exact) == 6) CHECK(system.order() == 2 * moving);
@@ -389,4 +354,6 @@ TEST_CASE("150 frames in space and 150 in a plane: orders and transfers as by M,
   CHECK(count.twice >= 150);
   CHECK(count.loops >= 500);
   CHECK(count.beams >= 200);
+  // In one of them the joints leave hardly any motion: all signals of the check are rounding.
+  CHECK(count.unsure <= 1);
 }

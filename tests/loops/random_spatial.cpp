@@ -40,15 +40,6 @@ Link link(Rng& rng, bool beam) {
   return {rng.rotation(), beam, rng.between(1, 5), 1, 0.3 * Vector3d(rng.matrix(3, 1))};
 }
 
-/// A frame whose x axis points along `direction`.
-Matrix3d along(const Vector3d& direction, const Matrix3d& any) {
-  Matrix3d R;
-  R.col(0) = direction.normalized();
-  R.col(1) = R.col(0).cross(any.col(1)).normalized();
-  R.col(2) = R.col(0).cross(R.col(1));
-  return R;
-}
-
 /// `planar`: pins in a plane, all axes across it.
 Chain random_chain(Rng& rng, bool planar) {
   Chain c;
@@ -67,7 +58,7 @@ Chain random_chain(Rng& rng, bool planar) {
         c.pins[static_cast<std::size_t>(i) + 1] - c.pins[static_cast<std::size_t>(i)];
     Link l = link(rng, rng.chance(0.3));
     l.length = way.norm();
-    if (l.beam) l.R = along(way, l.R);
+    if (l.beam) l.R = along_x(way, l.R);
     c.links.push_back(l);
   }
   c.watched = rng.below(count);
@@ -118,14 +109,6 @@ titop::Diagram diagram(const Chain& c) {
   return d;
 }
 
-by_hand::Matrix6 mass_at_P(const Link& l) {
-  by_hand::Matrix6 D = by_hand::Matrix6::Zero();
-  D.topLeftCorner<3, 3>().diagonal().setConstant(l.mass);
-  D.bottomRightCorner<3, 3>() = l.inertia();
-  const by_hand::Matrix6 t = by_hand::tau(-l.PA);
-  return t.transpose() * D * t;
-}
-
 /// All bodies by themselves: rigid ones with six coordinates, beams with twelve, in their frames.
 struct ByHand {
   Assembly all;
@@ -138,7 +121,7 @@ struct ByHand {
     return n;
   }
   explicit ByHand(const Chain& c) : all(size(c), 12, 12), held(0, size(c)) {
-    all.add(mass_at_P(c.hub), MatrixXd::Zero(6, 6), all.unit(0, 6));
+    all.add(mass_at_P(c.hub.mass, c.hub.inertia(), c.hub.PA), MatrixXd::Zero(6, 6), all.unit(0, 6));
     Index first = 6;
     for (std::size_t i = 0; i < c.links.size(); ++i) {
       const Link& l = c.links[i];
@@ -148,7 +131,7 @@ struct ByHand {
         all.beam(l.tube().numbers(), start.back(), end.back(), first + 12);
       } else {
         end.push_back(by_hand::tau(l.R.transpose() * (c.pins[i] - c.pins[i + 1])) * start.back());
-        all.add(mass_at_P(l), MatrixXd::Zero(6, 6), start.back());
+        all.add(mass_at_P(l.mass, l.inertia(), l.PA), MatrixXd::Zero(6, 6), start.back());
       }
       first += l.beam ? 12 : 6;
     }
@@ -169,7 +152,7 @@ struct ByHand {
                    above =
                        i < last ? MatrixXd(by_hand::dual(c.links[i].R) * start[i]) : of_hub(last);
     const MatrixXd apart = above - below;
-    const Matrix3d frame = along(c.axes[i], c.hub.R);
+    const Matrix3d frame = along_x(c.axes[i], c.hub.R);
     MatrixXd rows(5, apart.cols());
     rows << apart.topRows(3), frame.rightCols(2).transpose() * apart.bottomRows(3);
     held.conservativeResize(held.rows() + 5, held.cols());
@@ -177,23 +160,6 @@ struct ByHand {
     const MatrixXd angle = frame.col(0).transpose() * apart.bottomRows(3);
     all.a.K += c.stiffness[i] * angle.transpose() * angle;
     all.a.D += kDamping * c.stiffness[i] * angle.transpose() * angle;
-  }
-
-  /// What the joints leave. `clear`: no singular value is near the limit.
-  by_hand::Structure free(bool& clear) const {
-    const Eigen::JacobiSVD<MatrixXd> svd(held, Eigen::ComputeFullV);
-    const VectorXd& sigma = svd.singularValues();
-    Index rank = 0;
-    clear = true;
-    for (Index i = 0; i < sigma.size(); ++i) {
-      const double relative = sigma(i) / sigma(0);
-      rank += relative > 1e-9;
-      clear = clear && (relative > 1e-4 || relative < 1e-13);
-    }
-    const MatrixXd Z = svd.matrixV().rightCols(held.cols() - rank);
-    const by_hand::Structure& a = all.a;
-    return {Z.transpose() * a.M * Z, Z.transpose() * a.D * Z, Z.transpose() * a.K * Z,
-            Z.transpose() * a.B, a.C * Z};
   }
 };
 
@@ -203,8 +169,8 @@ void compare(bool planar, int seeds, int& redundant, int& beams) {
     CAPTURE(seed);
     Rng rng(static_cast<std::uint64_t>(seed));
     const Chain chain = random_chain(rng, planar);
-    bool clear = false;
-    const by_hand::Structure exact = ByHand(chain).free(clear);
+    const ByHand by_hand(chain);
+    const auto [exact, clear, twice] = left_free(by_hand.all.a, by_hand.held);
     if (!clear) continue;
     const titop::System system = titop::compile(diagram(chain));
     CHECK(system.order() == 2 * (exact.M.rows() - 6));

@@ -33,11 +33,7 @@ Diagram welded(bool forces) {
 }
 
 by_hand::Matrix6 mass(double m, const Vector3d& A) {
-  by_hand::Matrix6 D = by_hand::Matrix6::Zero();
-  D.topLeftCorner<3, 3>().diagonal().setConstant(m);
-  D.bottomRightCorner<3, 3>() = (m * Vector3d(0.2, 0.3, 0.4)).asDiagonal();
-  const by_hand::Matrix6 t = by_hand::tau(-A);
-  return t.transpose() * D * t;
+  return mass_at_P(m, (m * Vector3d(0.2, 0.3, 0.4)).asDiagonal(), A);
 }
 
 /// A beam, at its tip a body and one on a sprung hinge; the tip and the first body welded again.

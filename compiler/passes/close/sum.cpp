@@ -8,8 +8,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr double kEpsilon = 2.2e-16;
-constexpr double kUnits = 32;  ///< of rounding, in what a way begins with
-constexpr double kUnitsEach = 2;
+constexpr double kUnits = 32;     ///< of rounding in a product of any two matrices of six
+constexpr double kUnitsEach = 2;  ///< more with every factor: what a product of six sums adds
 
 /// 0 for translations, 1 for rotations, of six.
 std::size_t half(Index i, Index count) { return count == 6 && i >= 3 ? 1 : 0; }

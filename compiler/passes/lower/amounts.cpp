@@ -300,7 +300,7 @@ Amount Lowering::algebraic(int output) {
   return sum;
 }
 
-Amount Lowering::of_source(const Origin& o) {
+Amount Lowering::all_rows(const Origin& o) {
   switch (o.of) {
     case Origin::Of::accel:
     case Origin::Of::one_way: return terms(g.equations[at(o.index)].terms);
@@ -313,7 +313,7 @@ Amount Lowering::of_source(const Origin& o) {
 }
 
 Amount Lowering::amount(const Origin& origin) {
-  Amount sum = of_source(origin);
+  Amount sum = all_rows(origin);
   return origin.times.size() ? times(origin.times, std::move(sum)) : sum;
 }
 

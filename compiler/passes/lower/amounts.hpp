@@ -69,7 +69,8 @@ struct Lowering {
   Amount force(int channel);
   /// The row of this output signal of an algebraic node.
   Amount algebraic(int output);
-  Amount of_source(const Origin& origin);
+  /// All rows of amount(origin), whether they count or not.
+  Amount all_rows(const Origin& origin);
   Amount twin(int channel, Level level);
   /// A point on the way, and by what its motion counts.
   struct Step {
