@@ -109,7 +109,18 @@ RowMatrix<double> Instant::outputs_terms() const {
 }
 
 Instant Instant::doubt(int sample) const {
-  RowMatrix<double> magnitudes, off = rows_.residual(rhs_, unknowns_, &magnitudes);
+  RowMatrix<double> magnitudes, left = rows_.residual(rhs_, unknowns_, &magnitudes);
+  return off_by(std::move(left), magnitudes, sample);
+}
+
+Instant Instant::rounding() const {
+  RowMatrix<double> magnitudes;
+  rows_.residual(rhs_, unknowns_, &magnitudes);
+  return off_by(RowMatrix<double>::Zero(magnitudes.rows(), magnitudes.cols()), magnitudes, 0);
+}
+
+Instant Instant::off_by(RowMatrix<double> off, const RowMatrix<double>& magnitudes,
+                        int sample) const {
   SteadyRandom random(sample);
   for (Eigen::Index i = 0; i < off.size(); ++i)
     off.data()[i] += random.unit() * solve::Scalar<double>::epsilon() * magnitudes.data()[i];

@@ -37,8 +37,13 @@ class Instant {
   /// if every equation is off by what it does not hold to, and by about one unit of the last place
   /// of its terms, up or down in a random order, fixed for each `sample`. One more solution.
   Instant doubt(int sample = 0) const;
+  /// The same of rounding alone, whether the equations hold or not.
+  Instant rounding() const;
 
  private:
+  /// Every equation is off by this, and by one unit of the last place of its terms.
+  Instant off_by(solve::RowMatrix<double> off, const solve::RowMatrix<double>& magnitudes,
+                 int sample) const;
   /// add(first row of xdot, matrix, what it multiplies), of all products that xdot is the sum of.
   template <class Add>
   void products_of_xdot(Add add) const;

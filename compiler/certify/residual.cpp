@@ -32,7 +32,10 @@ struct Balance {
   struct Row {
     double difference = 0, magnitude = 0, rounding = 0;
     /// What rounding does not explain.
-    double off() const { return std::max(std::abs(difference) - kRoundings * rounding, 0.0); }
+    double off() const {
+      const double explained = std::isfinite(rounding) ? kRoundings * rounding : 0;
+      return std::max(std::abs(difference) - explained, 0.0);
+    }
   };
   boost::container::small_vector<Row, 8> row = {};
   const MatrixXd* part = nullptr;  ///< rows of the target; none: all of it

@@ -136,7 +136,7 @@ bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Ce
   signals.unknowns = now.unknowns();
   WrittenResidual written = written_residual(d, signals);
   if (written.worst > kWarn) {  // of what chains hold still only rounding may be left
-    signals.rounding = now.doubt().values(signals.first);
+    signals.rounding = now.rounding().values(signals.first);
     written = written_residual(d, signals);
   }
   // Two formulas for one thing differ by more than rounding near a block's own real pole.
