@@ -201,6 +201,7 @@ inline std::vector<titop::Axis> axes_of(const Joined& j, const Matrix3d& to) {
 struct Scene {
   const Frame& f;
   int read = -1;  ///< a joint that hangs a body: the wrench there of the body on what it hangs on
+  bool driven = false;  ///< the first body moves as input A says
   titop::Diagram d{"frame"};
   std::vector<titop::BodyHandle> bodies = {};
 
@@ -273,7 +274,10 @@ struct Scene {
 
   titop::Diagram build() {
     for (int i = 0; i < static_cast<int>(f.parts.size()); ++i) bodies.push_back(add(i));
-    f.grounded ? ground(bodies[0]) : release(bodies[0]);
+    if (driven)
+      bodies[0].parent.accel = d.input("A", 6);
+    else
+      f.grounded ? ground(bodies[0]) : release(bodies[0]);
     for (const Joined& j : f.joints) j.closes ? close(j) : hang(j);
     for (const Hung& h : f.hung) hang(h);
     for (const Cushion& c : f.cushions) add(c);
