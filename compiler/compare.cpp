@@ -2,7 +2,6 @@
 #include <cmath>
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/declared.hpp>
-#include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/graph/linalg/dense.hpp>
 
@@ -144,15 +143,12 @@ MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
 }
 
 MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points) {
-  const auto inputs = static_cast<Index>(system.inputs().size());
-  const solve::RowMatrix<std::complex<double>> each = MatrixXcd::Identity(inputs, inputs);
-  MatrixXd result = MatrixXd::Zero(static_cast<Index>(system.outputs().size()), inputs);
-  const auto add = [&result](const auto& off) {
-    if (off.allFinite()) result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());
-  };
+  MatrixXd result = MatrixXd::Zero(static_cast<Index>(system.outputs().size()),
+                                   static_cast<Index>(system.inputs().size()));
   for (const std::complex<double> s : points) try {
-      add(Evaluation<std::complex<double>>(*system.data_, s, each).rounding());
-      add(system.transfer(s, Precision::standard) - system.transfer(s, Precision::extended));
+      const MatrixXcd off =
+          system.transfer(s, Precision::standard) - system.transfer(s, Precision::extended);
+      result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());
     } catch (const Error&) {
       // No digit is left there in one of the two: other points must do.
     }

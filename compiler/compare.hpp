@@ -36,6 +36,7 @@ Eigen::MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double
 
 /// The same of the model's own rounding, what it may have put into each entry of A, B, C and D
 /// (matrices of their sizes): kTermsPerRounding times |dD| + |W| |dB| + |dC| |X| + |W| |dA| |X|.
+/// O(points n^3).
 Eigen::MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
                                   const std::vector<std::complex<double>>& points);
 

@@ -16,12 +16,9 @@
 
 namespace titop {
 
-class System;
-
 namespace detail {
 struct SystemData;
-Eigen::MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points);
-}  // namespace detail
+}
 class Excitation;
 struct Full;
 struct FullCertificate;
@@ -175,7 +172,6 @@ class System {
 
  private:
   friend FullCertificate certify(const System&, const Full&);
-  friend Eigen::MatrixXd detail::terms(const System&, const std::vector<std::complex<double>>&);
   friend Trajectory simulate(const System&, const Excitation&, const Simulation&);
 
   std::shared_ptr<const detail::SystemData> data_;

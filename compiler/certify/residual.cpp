@@ -20,7 +20,7 @@ constexpr double kPlain = 1e-12;  ///< rounding up to this needs no excuse
 /// Of the largest of its kind.
 constexpr double kOfLargest = 1e-14;
 /// One sample of rounding may be small by luck, and says nothing of rounding in the coefficients.
-constexpr double kRoundings = 1e4;
+constexpr double kSamples = 1e4;
 
 /// Entries of a signal, and a sample of their rounding where it is known.
 struct Entries {
@@ -33,7 +33,7 @@ struct Balance {
     double difference = 0, magnitude = 0, rounding = 0;
     /// What rounding does not explain.
     double off() const {
-      const double explained = std::isfinite(rounding) ? kRoundings * rounding : 0;
+      const double explained = std::isfinite(rounding) ? kSamples * rounding : 0;
       return std::max(std::abs(difference) - explained, 0.0);
     }
   };
