@@ -60,29 +60,53 @@ inline Eigen::Matrix3d along_x(const Eigen::Vector3d& direction, const Eigen::Ma
   return R;
 }
 
+/// Rows that are held: the motions that they leave, and the multipliers along which they say
+/// nothing new, which stay open.
+struct Rows {
+  Eigen::JacobiSVD<MatrixXd> svd;
+  Index rank = 0;
+  bool clear = true;  ///< no singular value is near the limit of the rank
+
+  explicit Rows(const MatrixXd& held) : svd(held, Eigen::ComputeFullU | Eigen::ComputeFullV) {
+    const VectorXd& sigma = svd.singularValues();
+    for (Index i = 0; i < sigma.size(); ++i) {
+      const double relative = sigma(i) / sigma(0);
+      rank += relative > 1e-9;
+      clear = clear && (relative > 1e-4 || relative < 1e-13);
+    }
+  }
+  MatrixXd motions() const { return svd.matrixV().rightCols(svd.matrixV().cols() - rank); }
+  MatrixXd open() const { return svd.matrixU().rightCols(svd.matrixU().cols() - rank); }
+  /// The smallest q with held q = right.
+  MatrixXcd motion(const MatrixXcd& right) const {
+    return svd.matrixV().leftCols(rank) *
+           (inverse().asDiagonal() * (svd.matrixU().leftCols(rank).transpose() * right));
+  }
+  /// The smallest multipliers with held' multipliers = f.
+  MatrixXcd multipliers(const MatrixXcd& f) const {
+    return svd.matrixU().leftCols(rank) *
+           (inverse().asDiagonal() * (svd.matrixV().leftCols(rank).transpose() * f));
+  }
+
+ private:
+  VectorXd inverse() const { return svd.singularValues().head(rank).cwiseInverse(); }
+};
+
 /// What is left of a structure where some rows are held.
 struct Left {
   by_hand::Structure structure;
-  bool clear = true;   ///< no singular value of the rows is near the limit of their rank
+  bool clear = true;   ///< see Rows
   bool twice = false;  ///< the rows say something more than once
 };
 
 /// On the null space of `held` q = 0.
 inline Left left_free(const by_hand::Structure& a, const MatrixXd& held) {
-  const Eigen::JacobiSVD<MatrixXd> svd(held, Eigen::ComputeFullV);
-  const VectorXd& sigma = svd.singularValues();
-  Index rank = 0;
-  Left left;
-  for (Index i = 0; i < sigma.size(); ++i) {
-    const double relative = sigma(i) / sigma(0);
-    rank += relative > 1e-9;
-    left.clear = left.clear && (relative > 1e-4 || relative < 1e-13);
-  }
-  left.twice = rank < held.rows();
-  const MatrixXd Z = svd.matrixV().rightCols(held.cols() - rank);
-  left.structure = {Z.transpose() * a.M * Z, Z.transpose() * a.D * Z, Z.transpose() * a.K * Z,
-                    Z.transpose() * a.B, a.C * Z};
-  return left;
+  const Rows rows(held);
+  const MatrixXd Z = rows.motions();
+  return {{Z.transpose() * a.M * Z, Z.transpose() * a.D * Z, Z.transpose() * a.K * Z,
+           Z.transpose() * a.B, a.C * Z},
+          rows.clear,
+          rows.rank < held.rows()};
 }
 
 /// omegas of K x = omega^2 M x, the `zeros` lowest left out.

@@ -361,7 +361,9 @@ struct ByHand {
     all.a.K += q.transpose() * K * q;
     all.a.D += kDamping * q.transpose() * K * q;
   }
-  void add_spring(double stiffness, const MatrixXd& row) {
+  /// Of the present joint.
+  void spring(double stiffness, const MatrixXd& row) {
+    spring(stiffness * MatrixXd::Identity(1, 1), row);
     Parts& p = parts.back();
     p.q.conservativeResize(p.q.rows() + 1, held.cols());
     p.q.bottomRows(1) = row;
@@ -383,9 +385,7 @@ struct ByHand {
     for (const Move& m : j.moves) {
       const MatrixXd row = q.row(k++);
       if (m.mode == Move::Mode::locked) hold(row);
-      if (m.mode != Move::Mode::sprung) continue;
-      spring(m.stiffness * MatrixXd::Identity(1, 1), row);
-      add_spring(m.stiffness, row);
+      if (m.mode == Move::Mode::sprung) spring(m.stiffness, row);
     }
   }
 };

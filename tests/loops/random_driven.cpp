@@ -14,16 +14,10 @@ namespace {
 /// Accelerations from [A; U] at s: q = (what A alone asks for) + (what the joints leave).
 MatrixXcd driven(const ByHand& h, Complex s) {
   const by_hand::Structure& a = h.all.a;
-  const Eigen::JacobiSVD<MatrixXd> svd(h.held, Eigen::ComputeFullV | Eigen::ComputeFullU);
-  const Index rank = (svd.singularValues().array() > 1e-9 * svd.singularValues()(0)).count();
-  const VectorXd inverse = svd.singularValues().head(rank).cwiseInverse();
-  const MatrixXd first = MatrixXd::Identity(h.held.rows(), 6);
-  const MatrixXcd N = svd.matrixV().rightCols(h.held.cols() - rank),
-                  Z = s * s * a.M + s * a.D + a.K;
+  const Rows rows(h.held);
+  const MatrixXcd N = rows.motions(), Z = s * s * a.M + s * a.D + a.K;
   MatrixXcd q = MatrixXcd::Zero(a.M.rows(), 12), force = q;
-  q.leftCols(6) = svd.matrixV().leftCols(rank) *
-                  (inverse.asDiagonal() * (svd.matrixU().leftCols(rank).transpose() * first)) /
-                  (s * s);
+  q.leftCols(6) = rows.motion(MatrixXcd::Identity(h.held.rows(), 6)) / (s * s);
   force.rightCols(6) = a.B.cast<Complex>();
   if (N.cols() > 0)
     q += N * titop::linalg::solve(N.transpose() * Z * N, N.transpose() * (force - Z * q)).z;

@@ -12,32 +12,13 @@ using namespace titop;
 
 namespace {
 
-/// Rows that are held: the motions that they leave, and the multipliers along which they say
-/// nothing new, which stay open.
-struct Rows {
-  Eigen::JacobiSVD<MatrixXd> svd;
-  Index rank = 0;
-
-  explicit Rows(const MatrixXd& held) : svd(held, Eigen::ComputeFullU | Eigen::ComputeFullV) {
-    const VectorXd& sigma = svd.singularValues();
-    rank = (sigma.array() > 1e-9 * sigma(0)).count();
-  }
-  MatrixXd motions() const { return svd.matrixV().rightCols(svd.matrixV().cols() - rank); }
-  MatrixXd open() const { return svd.matrixU().rightCols(svd.matrixU().cols() - rank); }
-  /// The smallest multipliers with rows' * multipliers = f.
-  MatrixXcd multipliers(const MatrixXcd& f) const {
-    const VectorXd inverse = svd.singularValues().head(rank).cwiseInverse();
-    return svd.matrixU().leftCols(rank) *
-           (inverse.asDiagonal() * (svd.matrixV().leftCols(rank).transpose() * f));
-  }
-};
-
 /// The wrench at s of the body that joint k hangs on what it hangs on, in the body's frame, per
 /// unit input: the multipliers of the joint's rows and its springs, on the body's own coordinates.
 MatrixXcd wrench(const ByHand& h, const Rows& rows, int k, Complex s) {
   const by_hand::Structure& a = h.all.a;
   const MatrixXcd Z = s * s * a.M + s * a.D + a.K, B = a.B.cast<Complex>(), N = rows.motions();
-  const MatrixXcd q = N * linalg::solve(N.transpose() * Z * N, N.transpose() * B).z;
+  MatrixXcd q = MatrixXcd::Zero(a.M.rows(), B.cols());
+  if (N.cols() > 0) q = N * linalg::solve(N.transpose() * Z * N, N.transpose() * B).z;
   const MatrixXcd lambda = rows.multipliers(B - Z * q);
   const ByHand::Parts& p = h.parts[at(k)];
   const Eigen::VectorXcd spring = p.stiffness.cast<Complex>() * (1.0 + kDamping * s);
@@ -53,8 +34,8 @@ struct Counts {
 
 void compare(const Frame& f, int read, Counts& count) {
   const ByHand by_hand(f);
-  if (!left_free(by_hand.all.a, by_hand.held).clear) return;
   const Rows rows(by_hand.held);
+  if (!rows.clear) return;
   const MatrixXd open = rows.open();
   const ByHand::Parts& p = by_hand.parts[at(read)];
   const double off = open.cols() && p.count ? open.middleRows(p.first, p.count).norm() : 0;
