@@ -67,7 +67,41 @@ Diagram braced(double angle) {
   return d;
 }
 
+/// A boom whose end is pinned to the ground, pushed and watched there: it only turns.
+Diagram pinned(double angle) {
+  Diagram d{"pinned"};
+  const Rotation T = Rotation::about({1, 2, 2}, angle), R = Rotation::about({3, -1, 2}, 2 * angle);
+  auto hub = d.add("hub", RigidBody{.mass = 3,
+                                    .inertia = Vector3d(0.2, 0.3, 0.4).asDiagonal(),
+                                    .PA = {0.1, 0.2, 0.3},
+                                    .children = {{"C", {1, 0.3, 0.2}}}});
+  auto boom = d.add("boom", FlexibleBody{Beam{.length = 3,
+                                              .section = rectangle(0.06, 0.04),
+                                              .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
+                                              .elements = 1}});
+  release(hub), mount(boom, hub.child("C"), T);
+  auto h = d.add("h", Joint{{about({1, 2, 3}, "q")}});
+  mount(h, boom.child, R), ground(h.child);
+  h.axis("q").force = 50.0 * h.axis("q").position + 0.5 * h.axis("q").rate;
+  boom.child.force += d.input("U", 6);
+  d.output("a", 6) = boom.child.accel;
+  return d;
+}
+
 }  // namespace
+
+TEST_CASE(
+    "forces on what is pinned: nothing moves along them, and that is passive and reciprocal") {
+  for (int k = 1; k <= 12; ++k) {
+    CAPTURE(k);
+    const FullCertificate c = certify(compile(pinned(0.2 * k), {.minimize_up_to = 0}));
+    CAPTURE(to_string(c));
+    CHECK(c.passivity.done);
+    CHECK(c.passivity.least >= -1e-12);
+    CHECK(c.reciprocity.asymmetry <= 1e-8);
+    CHECK(c.holds());
+  }
+}
 
 TEST_CASE("along what joints hold there is rounding only: no energy, and no equation that fails") {
   for (int k = 1; k <= 12; ++k) {
