@@ -34,7 +34,7 @@ Prepared changed(Case c, int n, Varies varies) {
   };
   const auto data = std::make_shared<Data>(Data{compiled(scene(c, n, {.varies = varies}))});
   const auto once = [=] {
-    data->p = data->p == 1 ? 1.0625 : 1;
+    data->p = data->p == 1.0625 ? 1.125 : 1.0625;  // never that of `first`
     data->last.emplace(data->first.update({{"p", data->p}}));
   };
   return {once, [=] {  // compared at one s with a compile at the same value

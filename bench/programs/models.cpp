@@ -92,7 +92,8 @@ Prepared titop_factor(Case c, int n) {
   return {[=] { data->product = data->probe(compiled(data->diagram)); }, {}};
 }
 
-/// Every body's parameter goes to and fro; compared with a compile at the same value.
+/// Every body's parameter gets another value each time, never that of the system which is updated:
+/// nothing would be made again. Compared with a compile at the same value.
 struct Sweep {
   Case c;
   int n;
@@ -106,7 +107,7 @@ struct Sweep {
       : c(scene_case), n(size), system(compiled(at(1))), probe(system) {}
   Diagram at(double value) const { return scene(c, n, {.varies = Varies::all, .p = value}); }
   System next() {
-    p = p == 1 ? 1.0625 : 1;
+    p = p == 1.0625 ? 1.125 : 1.0625;
     return system.update({{"p", p}});
   }
 };
