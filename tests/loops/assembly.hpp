@@ -60,14 +60,16 @@ inline Eigen::Matrix3d along_x(const Eigen::Vector3d& direction, const Eigen::Ma
   return R;
 }
 
-/// Rows that are held: the motions that they leave, and the multipliers along which they say
-/// nothing new, which stay open.
-struct Rows {
+/// Constraints held q = 0 by the singular values of their matrix: the motions that they leave, and
+/// the multipliers along which they say nothing new, which stay open.
+struct Constraints {
+  MatrixXd held;
   Eigen::JacobiSVD<MatrixXd> svd;
   Index rank = 0;
   bool clear = true;  ///< no singular value is near the limit of the rank
 
-  explicit Rows(const MatrixXd& held) : svd(held, Eigen::ComputeFullU | Eigen::ComputeFullV) {
+  explicit Constraints(const MatrixXd& rows)
+      : held(rows), svd(rows, Eigen::ComputeFullU | Eigen::ComputeFullV) {
     const VectorXd& sigma = svd.singularValues();
     for (Index i = 0; i < sigma.size(); ++i) {
       const double relative = sigma(i) / sigma(0);
@@ -75,10 +77,12 @@ struct Rows {
       clear = clear && (relative > 1e-4 || relative < 1e-13);
     }
   }
+  bool redundant() const { return rank < held.rows(); }
   MatrixXd motions() const { return svd.matrixV().rightCols(svd.matrixV().cols() - rank); }
   MatrixXd open() const { return svd.matrixU().rightCols(svd.matrixU().cols() - rank); }
   /// The smallest q with held q = right.
-  MatrixXcd motion(const MatrixXcd& right) const {
+  template <class Matrix>
+  Matrix motion(const Matrix& right) const {
     return svd.matrixV().leftCols(rank) *
            (inverse().asDiagonal() * (svd.matrixU().leftCols(rank).transpose() * right));
   }
@@ -92,21 +96,47 @@ struct Rows {
   VectorXd inverse() const { return svd.singularValues().head(rank).cwiseInverse(); }
 };
 
-/// What is left of a structure where some rows are held.
-struct Left {
-  by_hand::Structure structure;
-  bool clear = true;   ///< see Rows
-  bool twice = false;  ///< the rows say something more than once
+/// A structure under constraints, in coordinates of the motions that they leave.
+inline by_hand::Structure constrained(const by_hand::Structure& a, const Constraints& constraints) {
+  const MatrixXd N = constraints.motions();
+  return {N.transpose() * a.M * N, N.transpose() * a.D * N, N.transpose() * a.K * N,
+          N.transpose() * a.B, a.C * N};
+}
+
+/// What forces do at s, and what the constraints bear.
+struct ConstrainedMotion {
+  MatrixXcd q;      ///< `given` and motions that the constraints leave
+  MatrixXcd borne;  ///< force - (s^2 M + s D + K) q, which does no work on these motions
 };
 
-/// On the null space of `held` q = 0.
-inline Left left_free(const by_hand::Structure& a, const MatrixXd& held) {
-  const Rows rows(held);
-  const MatrixXd Z = rows.motions();
-  return {{Z.transpose() * a.M * Z, Z.transpose() * a.D * Z, Z.transpose() * a.K * Z,
-           Z.transpose() * a.B, a.C * Z},
-          rows.clear,
-          rows.rank < held.rows()};
+/// `given`: a motion that is prescribed. Beams are up to 1e9 N/m stiff: rounding of q times that
+/// would be forces of 1e-8, not little beside springs of 20 N/m. So what is left over is formed in
+/// long double, and the motions and q are refined by it.
+inline ConstrainedMotion constrained_motion(const by_hand::Structure& a,
+                                            const Constraints& constraints, Complex s,
+                                            const MatrixXcd& force, const MatrixXcd& given) {
+  using Wide = std::complex<long double>;
+  using RealWide = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  using ComplexWide = Eigen::Matrix<Wide, Eigen::Dynamic, Eigen::Dynamic>;
+  const MatrixXd motions = constraints.motions();
+  RealWide real = motions.cast<long double>();
+  const RealWide off = constraints.held.cast<long double>() * real;
+  real -= constraints.motion(MatrixXd(off.cast<double>())).cast<long double>();
+  const ComplexWide N = real.cast<Wide>(), F = force.cast<Wide>();
+  const Wide z(s);
+  const ComplexWide Z = z * z * a.M.cast<Wide>() + z * a.D.cast<Wide>() + a.K.cast<Wide>();
+  ComplexWide q = given.cast<Wide>(), borne = F - Z * q;
+  if (N.cols() > 0) {
+    const MatrixXcd dynamic = s * s * a.M + s * a.D + a.K;
+    const Eigen::PartialPivLU<MatrixXcd> lu(motions.transpose() * dynamic * motions);
+    for (int step = 0; step < 4; ++step) {
+      const ComplexWide work = N.transpose() * borne;
+      const MatrixXcd y = lu.solve(MatrixXcd(work.cast<Complex>()));
+      q += N * y.cast<Wide>();
+      borne = F - Z * q;
+    }
+  }
+  return {q.cast<Complex>(), borne.cast<Complex>()};
 }
 
 /// omegas of K x = omega^2 M x, the `zeros` lowest left out.

@@ -170,8 +170,9 @@ void compare(bool planar, int seeds, int& redundant, int& beams) {
     Rng rng(static_cast<std::uint64_t>(seed));
     const Chain chain = random_chain(rng, planar);
     const ByHand by_hand(chain);
-    const auto [exact, clear, twice] = left_free(by_hand.all.a, by_hand.held);
-    if (!clear) continue;
+    const Constraints constraints(by_hand.held);
+    if (!constraints.clear) continue;
+    const by_hand::Structure exact = constrained(by_hand.all.a, constraints);
     const titop::System system = titop::compile(diagram(chain));
     CHECK(system.order() == 2 * (exact.M.rows() - 6));
     const std::vector<Complex> s = points({2, 30, 400});

@@ -1,15 +1,23 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
 #include <complex>
+#include <cstdint>
+#include <memory>
 #include <titop/compiler/solve/steps.hpp>
 #include <vector>
 
+#include "sparse_system.hpp"
 #include "support/rng.hpp"
 
-/// Elimination by panels, some steps at a time: bit by bit what whole steps give.
+/// Elimination by panels, some steps at a time: bit by bit what whole steps give; the steps alone
+/// first, then with their pivots as the solver takes them.
 
 namespace {
 
+using solver_test::MatrixXd;
 using titop_test::Rng;
 
 template <class T>
@@ -80,10 +88,123 @@ void compare() {
     }
 }
 
+/// A textbook's elimination by rows, whole steps, with pivots: the row where the column stands out
+/// most against the row's own size at the start, its columns given the same size by `column`.
+struct Textbook {
+  MatrixXd lu;
+  std::vector<int> order;      ///< which row of the start stands at each place
+  double growth = 1;           ///< the largest entry that is left over the largest at the start
+  int inside = 0, across = 0;  ///< swaps within 32 rows that are one panel, and beyond
+
+  Textbook(const MatrixXd& a, int pivots, const Eigen::VectorXd& column) : lu(a) {
+    const int rows = static_cast<int>(a.rows());
+    std::vector<double> size;
+    for (int i = 0; i < rows; ++i) {
+      order.push_back(i);
+      size.push_back(0);
+      for (int j = 0; j < a.cols(); ++j)
+        size.back() = std::max(size.back(), std::abs(a(i, j)) * column(j));
+    }
+    const auto stands_out = [&](int i, int k) {
+      return std::abs(lu(i, k)) / size[solver_test::at(i)];
+    };
+    for (int k = 0; k < pivots; ++k) {
+      int best = k;
+      for (int i = k + 1; i < rows; ++i)
+        if (stands_out(i, k) > stands_out(best, k)) best = i;
+      inside += best > k && best / 32 == k / 32;
+      across += best / 32 > k / 32;
+      lu.row(k).swap(lu.row(best));
+      std::swap(size[solver_test::at(k)], size[solver_test::at(best)]);
+      std::swap(order[solver_test::at(k)], order[solver_test::at(best)]);
+      for (int i = k + 1; i < rows; ++i) {
+        if (lu(i, k) == 0) continue;
+        const double l = lu(i, k) / lu(k, k);
+        for (int j = k + 1; j < a.cols(); ++j) lu(i, j) -= l * lu(k, j);
+        lu(i, k) = l;
+      }
+    }
+    growth = lu.cwiseAbs().maxCoeff() / a.cwiseAbs().maxCoeff();
+  }
+};
+
+/// Rows of very different size, one entry of four 0; each column has a large entry, in whatever
+/// row, so that cancellation leaves something of many steps.
+MatrixXd in_no_order(int rows, int columns, Rng& rng) {
+  MatrixXd a(rows, columns);
+  std::vector<int> place;
+  for (int i = 0; i < rows; ++i) place.push_back(i);
+  rng.shuffle(place);
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j) a(i, j) = rng.below(4) == 0 ? 0 : rng.between(-1, 1);
+  for (int j = 0; j < std::min(rows, columns); ++j) a(place[solver_test::at(j)], j) += 4;
+  for (int i = 0; i < rows; ++i) a.row(i) *= rng.octaves(-20, 20);
+  return a;
+}
+
+/// The solver's factors of a front of these numbers, as its constructor makes them. The columns
+/// that are no pivots go on to another front, which has as many rows more as it takes.
+void compare_factors(int rows, int columns, int pivots, Rng& rng) {
+  INFO(rows, " x ", columns, ", ", pivots, " pivots");
+  const MatrixXd a = in_no_order(rows, columns, rng);
+  titop::solve::Structure structure;
+  std::vector<solver_test::RowEntries<double>> entries{{a.leftCols(pivots)}};
+  structure.add_variable(pivots);
+  if (columns == pivots) {
+    structure.add_row(rows, std::vector{0});
+  } else {
+    structure.add_variable(columns - pivots);
+    structure.add_row(rows, std::vector{0, 1});
+    structure.add_row(columns - rows, std::vector{1});
+    entries[0].push_back(a.rightCols(columns - pivots));
+    entries.push_back({in_no_order(columns - rows, columns - pivots, rng)});
+  }
+  const auto plan = std::make_shared<const titop::solve::Plan>(titop::solve::plan(structure));
+  const auto front = static_cast<std::size_t>(plan->front_of_row[0]);
+  const titop::solve::Front& f = plan->fronts[front];
+  REQUIRE(f.row_count == rows);
+  REQUIRE(f.columns() == columns);
+  REQUIRE(f.pivot_count == pivots);
+  REQUIRE(f.children.count == 0);
+
+  // The columns' sizes are given: how the solver finds them is a matter of scaling.cpp.
+  auto scale = std::make_shared<titop::solve::ColumnScale>();
+  for (int j = 0; j < plan->columns; ++j)
+    scale->push_back(static_cast<std::int16_t>(rng.below(5) - 2));
+  Eigen::VectorXd column(columns);
+  for (int j = 0; j < columns; ++j)
+    column(j) = std::ldexp(1.0, (*scale)[solver_test::at(f.first_column + j)]);
+
+  const Textbook exact(a, pivots, column);
+  CHECK(exact.inside > 0);
+  CHECK(exact.across > 0);
+  const titop::solve::Factors<double> factors(plan, solver_test::EntryRows<double>(entries), scale);
+  CHECK(!factors.health().singular);
+  const auto& made = factors.made(front);
+  REQUIRE(made.lu.size() == static_cast<std::size_t>(rows * columns));
+  CHECK(std::vector<int>(made.order.begin(), made.order.end()) == exact.order);
+  int other = 0;
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < columns; ++j)
+      other += std::bit_cast<std::uint64_t>(made.lu[solver_test::at(i * columns + j)]) !=
+               std::bit_cast<std::uint64_t>(exact.lu(i, j));
+  CHECK(other == 0);
+  CHECK(made.growth == exact.growth);
+}
+
 }  // namespace
 
 TEST_CASE("elimination by panels: as whole steps, to the last bit") {
   compare<double>();
   compare<std::complex<double>>();
   compare<long double>();
+}
+
+TEST_CASE("factors of a front of several panels: as a textbook's whole steps, to the last bit") {
+  Rng rng(12);
+  for (int draw = 0; draw < 5; ++draw) {
+    compare_factors(70, 70, 70, rng);
+    compare_factors(73, 78, 70, rng);  // three rows are left over, eight columns
+    compare_factors(60, 66, 34, rng);
+  }
 }
