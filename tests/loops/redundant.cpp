@@ -281,3 +281,29 @@ TEST_CASE("a chain that does not meet is refused, whatever the name of a spring 
                            {"closes a chain that does not meet"}));
   }
 }
+
+TEST_CASE(
+    "a pin of a mechanism of a millimetre: a gap counts beside its arms, not beside a metre") {
+  const auto pinned = [](double off) {
+    constexpr double kArm = 1e-3;
+    const auto part = [](const Vector3d& first, const Vector3d& second) {
+      return RigidBody{.mass = 1e-3,
+                       .inertia = 1e-9 * Eigen::Matrix3d::Identity(),
+                       .children = {{"C1", first}, {"C2", second}}};
+    };
+    Diagram d{"small"};
+    auto A = d.add("A", part({kArm, 0, 0}, {2 * kArm, off, 0}));
+    auto B = d.add("B", part({kArm, 0, 0}, {0, kArm, 0}));
+    A.parent.force = -d.input("U", 6);
+    mount(B, A.child("C1"));
+    const Rotation T = Rotation().named("A", "B");
+    B.child("C1").accel.linear = T.inverse() * A.child("C2").accel.linear;
+    release(B.child("C1"));
+    A.child("C2").force += -(T * B.child("C1").reaction);
+    d.output("a", 6) = A.parent.accel;
+    return d;
+  };
+  CHECK(titop_test::compile_error(pinned(0)).mistakes().empty());
+  CHECK(titop_test::says(titop_test::compile_error(pinned(1e-6)), Code::kinematic_loop,
+                         {"closes a chain that does not meet"}));
+}

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <limits>
 #include <titop/compiler/passes/close/sum.hpp>
 
 namespace titop::passes::closing {
@@ -7,7 +8,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kEpsilon = 2.2e-16;
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kUnits = 32;     ///< of rounding in a product of any two matrices of six
 constexpr double kUnitsEach = 2;  ///< more with every factor: what a product of six sums adds
 
@@ -23,7 +24,12 @@ void Sum::meet(const MatrixXd& factor) {
       auto& most = most_[half(i, factor.rows())];
       const double size = std::abs(factor(i, j));
       most[half(j, factor.cols())] = std::max(most[half(j, factor.cols())], size);
-      if (factor.cols() != 6) most[1] = std::max(most[1], size);
+      if (factor.cols() != 6) {
+        most[1] = std::max(most[1], size);
+        continue;
+      }
+      double& of_six = most_of_six_[half(i, factor.rows())][half(j, 6)];
+      of_six = std::max(of_six, size);
     }
 }
 
@@ -48,11 +54,12 @@ void Sum::add(const MatrixXd& factor, const Form& own) {
 }
 
 double Sum::relative(const MatrixXd& gap) const {
+  const Largest& most = gap.cols() == 6 ? most_of_six_ : most_;
   double worst = 0;
   for (Index j = 0; j < gap.cols(); ++j)
     for (Index i = 0; i < gap.rows(); ++i)
       if (const double off = std::abs(gap(i, j)); off > 0)
-        worst = std::max(worst, off / most_[half(i, gap.rows())][half(j, gap.cols())]);
+        worst = std::max(worst, off / most[half(i, gap.rows())][half(j, gap.cols())]);
   return worst;
 }
 

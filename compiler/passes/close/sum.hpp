@@ -15,7 +15,8 @@ class Sum {
   void meet(const Eigen::MatrixXd& factor);
   /// += factor * own; the factor has been met.
   void add(const Eigen::MatrixXd& factor, const Form& own);
-  /// Largest entry of `gap` (same rows) over the largest met there.
+  /// Largest entry of `gap` (same rows) over the largest met there, of factors with as many
+  /// columns: others are in other units.
   double relative(const Eigen::MatrixXd& gap) const;
 
   /// Entries below their rounding are 0; columns of nothing else are left out.
@@ -23,7 +24,8 @@ class Sum {
 
  private:
   Form form_, rounding_;
-  std::array<std::array<double, 2>, 2> most_ = {};  ///< of factors: rows, columns
+  using Largest = std::array<std::array<double, 2>, 2>;  ///< of rows, of columns
+  Largest most_ = {}, most_of_six_ = {};  ///< of all factors; of those with six columns
   double factors_ = 0;
 };
 
