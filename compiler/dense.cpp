@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <atomic>
+#include <latch>
 #include <titop/compiler/dense/writing.hpp>
 #include <titop/compiler/parallel.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
@@ -16,20 +18,32 @@ using solve::RowMatrix;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Room for solutions. A thread keeps it from model to model while it is small: fresh memory would
-/// cost as much as the work.
+/// Room for the solutions of one thread.
 struct Room {
   solve::Propagation::Space space;
-  std::vector<double> values;                  ///< of the columns of a batch, one after the other
-  std::vector<double> coefficients, products;  ///< of the thread that began: others read them
-  std::vector<int> rows;                       ///< of a batch's right-hand sides
+  std::vector<double> values;  ///< of the columns of a batch, one after the other
+  std::vector<int> rows;       ///< of a batch's right-hand sides
   std::vector<double> rhs;
 };
-Room& room_of_thread() {
-  static thread_local Room room;
-  return room;
+
+/// What a thread that writes models keeps from one to the next while it is small, for itself and
+/// for those that it starts: fresh memory would cost as much as the work.
+struct Kept {
+  std::vector<double> coefficients, products;  ///< all threads read them
+  std::vector<Room> rooms;
+};
+Kept& kept_by_thread() {
+  static thread_local Kept kept;
+  return kept;
 }
 constexpr std::size_t kKeep = 1 << 17;  ///< numbers: 1 MB each
+constexpr std::size_t kKeepRooms = 8;
+
+/// Whoever waits goes on, even if this task has thrown: its numbers are not used then.
+struct Done {
+  std::latch& latch;
+  ~Done() { latch.count_down(); }
+};
 
 class Writer {
  public:
@@ -46,20 +60,34 @@ class Writer {
 
   void write() {
     shape();
-    Room& own = room_of_thread();
-    find_coefficients(own.coefficients);
-    const solve::Propagation propagation(*d_.factors, own.products);
+    Kept& kept = kept_by_thread();
+    solve::Propagation propagation(*d_.factors, kept.products);
     const std::size_t batches = w_->batches.size() - 1;
     Index most = 0;
     for (std::size_t i = 0; i < batches; ++i) most = std::max(most, w_->width(i));
-    parallel(batches, threads(batches), [&] {
-      Room& room = room_of_thread();
-      room.values.assign(at(values_ * most), 0);
-      return [this, &propagation, &own, &room](std::size_t i) {
-        columns(propagation, own.coefficients.data(), i, room);
-      };
+    kept.coefficients.assign(at(w_->coefficients), 0);
+    // What batches read are tasks, too: these are taken first, and all others wait for them.
+    constexpr std::size_t kFirst = 2;
+    std::latch first(kFirst);
+    const std::size_t tasks = kFirst + batches;
+    kept.rooms.resize(std::max(kept.rooms.size(), at(thread_count(threads(batches), tasks))));
+    std::atomic<std::size_t> room{0};
+    parallel(tasks, threads(batches), [&] {
+      Room* const own = &kept.rooms[room++];
+      return
+          [this, &propagation, &kept, &first, most, own, cleared = false](std::size_t i) mutable {
+            if (i >= kFirst) {
+              if (!cleared) own->values.assign(at(values_ * most), 0);
+              cleared = true;
+              first.wait();
+              return columns(propagation, kept.coefficients.data(), i - kFirst, *own);
+            }
+            const Done done{first};
+            i == 0 ? propagation.form() : find_coefficients(kept.coefficients.data());
+          };
     });
-    if (std::max(own.products.size(), own.space.z.size()) > kKeep) own = {};
+    const bool large = std::max(kept.products.size(), kept.rooms.front().space.z.size()) > kKeep;
+    if (large || kept.rooms.size() > kKeepRooms) kept = {};
     add_known();
     for (const int i : d_.layout().state_nodes) add_own(i);
   }
@@ -112,14 +140,14 @@ class Writer {
     return term.times < 0 ? term.size : coefficient(term.times).cols();
   }
 
-  void find_coefficients(std::vector<double>& to) const {
-    to.assign(at(w_->coefficients), 0);
+  /// `to`: zeros.
+  void find_coefficients(double* to) const {
     for (const Writing::Target& t : w_->targets)
       for (const Writing::Term& term : t.terms)
         if (!term.known)
           add_term(t, term,
-                   Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>(
-                       to.data() + term.to, t.rows, size(term), Eigen::OuterStride<>(t.padded)));
+                   Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>(to + term.to, t.rows, size(term),
+                                                                 Eigen::OuterStride<>(t.padded)));
   }
 
   void add_known() {

@@ -62,7 +62,7 @@ struct Assembly {
   void subtract_equations(const MatrixXcd& factor, std::span<const int> equations) {
     for (const int e : equations) {
       const Part& part = graph.equations[at(e)].part;
-      subtract(part.whole() ? factor : MatrixXcd(factor * part.rows.transpose()),
+      subtract(part.whole() ? factor : MatrixXcd(factor * part.rows().transpose()),
                graph.equations[at(e)].terms);
     }
   }
@@ -96,7 +96,7 @@ void add_channel(Assembly& a, const Channel& channel, const Drive& drive) {
   for (const int e : drive.accel) {
     if (!equations[at(e)].active) continue;
     const Part& part = equations[at(e)].part;
-    const MatrixXd S = part.whole() ? MatrixXd::Identity(channel.size, channel.size) : part.rows;
+    const MatrixXd S = part.whole() ? MatrixXd::Identity(channel.size, channel.size) : part.rows();
     a.add(S, channel.accel);
     a.subtract(MatrixXd::Identity(S.rows(), S.rows()), equations[at(e)].terms);
     a.row += static_cast<int>(S.rows());

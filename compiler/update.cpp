@@ -158,7 +158,7 @@ bool remake_coefficients(const Skeleton& k, const std::vector<int>& origins, sol
     if (made.size() != terms[i].size()) return false;
     for (std::size_t t = 0; t < made.size(); ++t) {
       if (made[t].signal != terms[i][t].signal) return false;
-      n.coefficients[at(first) + t] = solve::coefficient_of(terms[i][t]);
+      n.coefficients[at(first) + t] = solve::coefficient_of(terms[i][t].coefficient);
     }
   }
   return true;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <complex>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,7 +15,7 @@ namespace titop {
 
 /// What a signal is. A plain signal (a controller's output, an external input) takes the quantity
 /// of what it drives; the others must agree.
-enum class Quantity { plain, acceleration, velocity, position, force };
+enum class Quantity : std::int8_t { plain, acceleration, velocity, position, force };
 
 /// Which signal of a channel the block takes by default: a child channel takes the wrench and
 /// gives the acceleration (inverse dynamics), a parent channel the other way round (direct

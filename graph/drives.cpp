@@ -43,7 +43,7 @@ MatrixXd left_by(const Graph& graph, std::span<const int> equations, int n) {
   MatrixXd S(0, n);
   for (const int e : equations) {
     const Part& part = graph.equations[at(e)].part;
-    const MatrixXd rows = part.whole() ? MatrixXd::Identity(n, n) : part.rows;
+    const MatrixXd rows = part.whole() ? MatrixXd::Identity(n, n) : part.rows();
     S.conservativeResize(S.rows() + rows.rows(), n);
     S.bottomRows(rows.rows()) = rows;
   }
@@ -79,7 +79,7 @@ Drives::Drives(const Graph& graph) : drives_(graph.channels.size()) {
     } else if (!part(accel.front()).whole()) {
       // The basis must not depend on the order in which the parts were written.
       std::stable_sort(accel.begin(), accel.end(),
-                       [&](int a, int b) { return part(a).name < part(b).name; });
+                       [&](int a, int b) { return part(a).name() < part(b).name(); });
       drive.some = left_by(graph, accel, drive.size);
       drive.free = static_cast<int>(drive.some.rows());
     }

@@ -41,6 +41,15 @@ std::string frame_name(const Graph& graph, int frame) {
   return fmt::format("frame {}", graph.nodes[static_cast<std::size_t>(frame)].name);
 }
 
+Part::Part(MatrixXd rows, std::string name) {
+  if (rows.size() > 0) held_ = std::make_shared<const Held>(Held{std::move(rows), std::move(name)});
+}
+
+const Part::Held& Part::held() const {
+  static const Held all;
+  return held_ ? *held_ : all;
+}
+
 std::vector<double> nominal_values(const Graph& graph) {
   std::vector<double> values;
   for (const Parameter& p : graph.parameters) values.push_back(p.value);
@@ -62,7 +71,7 @@ int rows_after(const Factor& factor, int rows) {
   if (const auto* m = std::get_if<Matrix>(&factor))
     return m->value->cols() == rows ? static_cast<int>(m->value->rows()) : -1;
   if (const auto* p = std::get_if<Part>(&factor))
-    return p->whole() ? rows : p->rows.cols() == rows ? static_cast<int>(p->rows.rows()) : -1;
+    return p->whole() ? rows : p->rows().cols() == rows ? static_cast<int>(p->rows().rows()) : -1;
   if (const auto* T = std::get_if<Rotation>(&factor))
     return rows == 3 || rows == 6 || T->is_identity() ? rows : -1;
   return rows;
@@ -88,7 +97,7 @@ MatrixXd coefficient(const Graph& graph, const Term& term, ParameterValues value
     } else if (const auto* m = std::get_if<Matrix>(&*f)) {
       apply(*m->value);
     } else if (const auto* p = std::get_if<Part>(&*f)) {
-      if (!p->whole()) apply(p->rows);
+      if (!p->whole()) apply(p->rows());
     } else if (const auto& T = std::get<Rotation>(*f); !T.is_identity()) {
       apply(on_vector(T.at(values), result ? static_cast<int>(result->rows()) : size));
     }
@@ -109,7 +118,7 @@ Pattern structure(const Graph& graph, const Term& term) {
     if (const auto* m = std::get_if<Matrix>(&*f)) {
       apply(m->pattern ? *m->pattern : Pattern(m->value->array() != 0));
     } else if (const auto* p = std::get_if<Part>(&*f)) {
-      if (!p->whole()) apply(p->rows.array() != 0);
+      if (!p->whole()) apply(p->rows().array() != 0);
     } else if (const auto* T = std::get_if<Rotation>(&*f); T && !T->is_identity()) {
       const int rows = result ? static_cast<int>(result->rows()) : size;
       apply(on_vector(Matrix3d::Ones(), rows).array() != 0);
@@ -150,7 +159,7 @@ std::string print_unsigned(const Graph& graph, const Term& term, bool& negative)
       else if (std::abs(gain) != 1)
         text += fmt::format("{:.6g} * ", std::abs(gain));
     } else {
-      parts += std::get<Part>(f).name;
+      parts += std::get<Part>(f).name();
     }
   }
   text += term.of == Term::Of::signal
@@ -171,7 +180,7 @@ std::string print(const Graph& graph, const Term& term) {
 }
 
 std::string print(const Graph& graph, const Equation& equation) {
-  std::string text = name_of(graph, equation.target) + equation.part.name;
+  std::string text = name_of(graph, equation.target) + equation.part.name();
   text += equation.accumulate ? " +=" : " =";
   if (equation.terms.empty()) return text + " 0";
   for (std::size_t i = 0; i < equation.terms.size(); ++i) {

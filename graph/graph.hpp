@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <source_location>
 #include <string>
@@ -19,16 +20,32 @@ namespace titop {
 constexpr int kNoFrame = -1;       ///< scalars and plain signals: nothing to check
 constexpr int kUnknownFrame = -2;  ///< a nameless rotation or a matrix made it: listed in the log
 
-/// Which part of a signal: all of it, or the span of some orthonormal rows.
-struct Part {
-  Eigen::MatrixXd rows = {};  ///< m x size, orthonormal rows; 0 x 0 means all
-  std::string name = {};      ///< ".linear", ".angular", ".along(0, 0, 1)" for messages
+/// Which part of a signal: all of it, or the span of some orthonormal rows. Copies share what they
+/// hold.
+class Part {
+ public:
+  Part() = default;  ///< all of it
+  /// `rows`: m x size, orthonormal; 0 x 0 means all. `name`: for messages.
+  Part(Eigen::MatrixXd rows, std::string name);
 
-  bool whole() const { return rows.size() == 0; }
+  bool whole() const { return !held_; }
+  const Eigen::MatrixXd& rows() const { return held().rows; }
+  /// ".linear", ".angular", ".along(0, 0, 1)"; empty of all.
+  const std::string& name() const { return held().name; }
+
+ private:
+  struct Held {
+    Eigen::MatrixXd rows = {};
+    std::string name = {};
+  };
+  const Held& held() const;
+
+  std::shared_ptr<const Held> held_;
 };
 
 struct Signal {
-  enum class Role { input, output, state, external };  ///< of its block; external: of the diagram
+  /// Of its block; external: of the diagram.
+  enum class Role : std::int8_t { input, output, state, external };
   Role role = Role::input;
   Quantity quantity = Quantity::plain;
   int node = -1;  ///< owner, -1 for external inputs
@@ -85,12 +102,12 @@ struct Term {
 /// target (or a part of it) = sum of terms. With `accumulate`, one more term of a force.
 struct Equation {
   int target = -1;
-  Part part = {};
   bool accumulate = false;
-  std::vector<Term> terms = {};
-  std::source_location where = {};
   bool active = true;
   bool of_block = false;  ///< a row of a block that `lower` has turned into equations
+  Part part = {};
+  std::vector<Term> terms = {};
+  std::source_location where = {};
 };
 
 struct Input {

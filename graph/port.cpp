@@ -8,7 +8,7 @@ namespace titop::detail {
 namespace {
 
 int size_of(const Graph& graph, int signal, const Part& part) {
-  if (!part.whole()) return static_cast<int>(part.rows.rows());
+  if (!part.whole()) return static_cast<int>(part.rows().rows());
   return signal < 0 ? 6 : graph.signals[static_cast<std::size_t>(signal)].size;
 }
 
@@ -39,7 +39,11 @@ void SignalRef::set(const Rhs& rhs, bool accumulate, double sign) const {
   note_missing(*graph_, {Term{.signal = signal_}}, rhs.where());
   note_missing(*graph_, rhs.expr().terms(), rhs.where());
   if (signal_ < 0) return;
-  Equation equation{signal_, part_, accumulate, rhs.expr().terms(), rhs.where()};
+  Equation equation{.target = signal_,
+                    .accumulate = accumulate,
+                    .part = part_,
+                    .terms = rhs.expr().terms(),
+                    .where = rhs.where()};
   for (Term& term : equation.terms) term.sign *= sign;
   note_foreign_parameters(*graph_, equation.terms, rhs.where());
   graph_->equations.push_back(std::move(equation));
@@ -50,8 +54,7 @@ SignalRef SignalRef::half(std::string name, Eigen::Index first) const {
     throw Error(Code::size, fmt::format("{} has no part {}", text_of(*graph_, expr()), name),
                 ".linear and .angular belong to whole dual vectors of 6");
   SignalRef half = *this;
-  half.part_ = {Eigen::MatrixXd::Zero(3, 6), std::move(name)};
-  half.part_.rows.middleCols(first, 3).setIdentity();
+  half.part_ = {Eigen::MatrixXd::Identity(6, 6).middleRows(first, 3), std::move(name)};
   return half;
 }
 
@@ -70,9 +73,9 @@ SignalRef SignalRef::along(const Vector3d& r) const {
         fmt::format("{} has size {} and no part {}", text_of(*graph_, expr()), size, name),
         "along(r) belongs to vectors of 3: take .linear or .angular of a dual vector first");
   SignalRef component = *this;
-  component.part_.rows = part_.whole() ? Eigen::MatrixXd(r.normalized().transpose())
-                                       : Eigen::MatrixXd(r.normalized().transpose() * part_.rows);
-  component.part_.name += name;
+  component.part_ = {part_.whole() ? Eigen::MatrixXd(r.normalized().transpose())
+                                   : Eigen::MatrixXd(r.normalized().transpose() * part_.rows()),
+                     part_.name() + name};
   return component;
 }
 

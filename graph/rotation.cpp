@@ -26,12 +26,23 @@ Rotation Rotation::about(const Vector3d& axis, Value angle) {
                 fmt::format("no rotation about the axis ({}, {}, {}) by {}", axis.x(), axis.y(),
                             axis.z(), angle.nominal()),
                 "give a finite axis other than 0 and a finite angle [rad]");
-  Rotation result;
-  if (angle.is_parameter())
-    result.steps_.push_back(Turn{axis / length, angle});
-  else
-    result.steps_.push_back(turn(axis / length, angle.nominal()));
-  return result;
+  if (angle.is_parameter()) return Rotation(Held{{Turn{axis / length, angle}}});
+  return Rotation(Held{{turn(axis / length, angle.nominal())}});
+}
+
+const Rotation::Held& Rotation::held() const {
+  static const Held nothing;
+  return held_ ? *held_ : nothing;
+}
+
+const Rotation::Names& Rotation::names() const {
+  static const Names none;
+  return held_ && held_->names ? *held_->names : none;
+}
+
+std::shared_ptr<const Rotation::Names> Rotation::named_pair(std::string to, std::string from) {
+  if (to.empty() && from.empty()) return {};
+  return std::make_shared<const Names>(Names{std::move(to), std::move(from)});
 }
 
 namespace {
@@ -57,67 +68,58 @@ Rotation Rotation::of_steps(std::vector<Step> steps) {
     else if (const double off = std::get<Turn>(step).axis.norm() - 1; !(std::abs(off) <= 1e-9))
       throw Error(Code::not_a_rotation, fmt::format("an axis of length {}", off + 1),
                   "give a unit vector");
-  Rotation result;
-  result.steps_ = std::move(steps);
-  return result;
+  return Rotation(Held{std::move(steps)});
 }
 
 Rotation Rotation::matrix(const Matrix3d& T) {
   check_rotation(T);
   const Eigen::JacobiSVD<Matrix3d> svd(T, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Rotation result;
   // An exact rotation (a permutation of axes, say) must stay exact.
   const bool exact = (T.transpose() * T - Matrix3d::Identity()).isZero(0);
-  result.steps_.push_back(exact ? T : Matrix3d(svd.matrixU() * svd.matrixV().transpose()));
-  return result;
+  return Rotation(Held{{exact ? T : Matrix3d(svd.matrixU() * svd.matrixV().transpose())}});
 }
 
 Rotation Rotation::named(std::string to, std::string from) const {
-  Rotation result = *this;
-  result.to_ = std::move(to);
-  result.from_ = std::move(from);
-  return result;
+  return Rotation(Held{steps(), named_pair(std::move(to), std::move(from))});
 }
 
 Rotation Rotation::inverse() const {
-  Rotation result;
-  result.to_ = from_;
-  result.from_ = to_;
-  for (auto step = steps_.rbegin(); step != steps_.rend(); ++step) {
+  Held inverse{{}, named_pair(from(), to())};
+  for (auto step = steps().rbegin(); step != steps().rend(); ++step) {
     if (const auto* T = std::get_if<Matrix3d>(&*step)) {
-      result.steps_.push_back(Matrix3d(T->transpose()));
+      inverse.steps.push_back(Matrix3d(T->transpose()));
     } else {
       const Turn& t = std::get<Turn>(*step);
-      result.steps_.push_back(Turn{-t.axis, t.angle});
+      inverse.steps.push_back(Turn{-t.axis, t.angle});
     }
   }
-  return result;
+  return Rotation(std::move(inverse));
 }
 
 Rotation operator*(const Rotation& T_cb, const Rotation& T_ba) {
-  if (!T_cb.from_.empty() && !T_ba.to_.empty() && T_cb.from_ != T_ba.to_)
+  if (!T_cb.from().empty() && !T_ba.to().empty() && T_cb.from() != T_ba.to())
     throw Error(Code::frame,
-                fmt::format("the rotation {}<-{} cannot follow the rotation {}<-{}", T_cb.to_,
-                            T_cb.from_, T_ba.to_, T_ba.from_),
+                fmt::format("the rotation {}<-{} cannot follow the rotation {}<-{}", T_cb.to(),
+                            T_cb.from(), T_ba.to(), T_ba.from()),
                 "compose T_cb * T_ba, or take the inverse of one of them");
-  Rotation result = T_cb;
-  result.from_ = T_ba.from_;
-  for (const auto& step : T_ba.steps_) {
-    auto* last = result.steps_.empty() ? nullptr : std::get_if<Matrix3d>(&result.steps_.back());
+  Rotation::Held both = T_cb.held();
+  both.names = Rotation::named_pair(T_cb.to(), T_ba.from());
+  for (const auto& step : T_ba.steps()) {
+    auto* last = both.steps.empty() ? nullptr : std::get_if<Matrix3d>(&both.steps.back());
     const auto* next = std::get_if<Matrix3d>(&step);
     if (last && next)
       *last = Matrix3d(*last * *next);
     else
-      result.steps_.push_back(step);
+      both.steps.push_back(step);
   }
-  return result;
+  return Rotation(std::move(both));
 }
 
 Matrix3d Rotation::at(ParameterValues values) const {
   Matrix3d T = Matrix3d::Identity();
-  for (const Step& step : steps_) {
+  for (const Step& step : steps()) {
     if (const auto* M = std::get_if<Matrix3d>(&step)) {
-      T = steps_.size() == 1 ? *M : Matrix3d(T * *M);
+      T = steps().size() == 1 ? *M : Matrix3d(T * *M);
     } else {
       const Turn& t = std::get<Turn>(step);
       T = Matrix3d(T * turn(t.axis, t.angle.at(values)));
@@ -128,7 +130,7 @@ Matrix3d Rotation::at(ParameterValues values) const {
 
 Matrix3d Rotation::nominal() const {
   Matrix3d T = Matrix3d::Identity();
-  for (const Step& step : steps_) {
+  for (const Step& step : steps()) {
     const auto* M = std::get_if<Matrix3d>(&step);
     T = Matrix3d(T *
                  (M ? *M : turn(std::get<Turn>(step).axis, std::get<Turn>(step).angle.nominal())));
@@ -138,7 +140,7 @@ Matrix3d Rotation::nominal() const {
 
 std::vector<Value> Rotation::values() const {
   std::vector<Value> result;
-  for (const Step& step : steps_)
+  for (const Step& step : steps())
     if (const auto* t = std::get_if<Turn>(&step)) result.push_back(t->angle);
   return result;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <titop/graph/linalg/kinematics.hpp>
 #include <titop/graph/value.hpp>
@@ -17,6 +18,8 @@ namespace titop {
 ///     Rotation T_ba = Rotation::about({0, 0, 1}, pi / 2);
 ///     Rotation T_bc = T_ba * T_ac;            // only b<-a after a<-c, where the names are known
 ///     Rotation T_ab = T_ba.inverse();
+///
+/// Copies share what they hold.
 class Rotation {
  public:
   Rotation() = default;  ///< identity, no names
@@ -44,9 +47,9 @@ class Rotation {
   /// The same at the nominal values.
   Matrix3d nominal() const;
 
-  const std::string& to() const { return to_; }
-  const std::string& from() const { return from_; }
-  bool is_identity() const { return steps_.empty(); }
+  const std::string& to() const { return names().to; }
+  const std::string& from() const { return names().from; }
+  bool is_identity() const { return steps().empty(); }
   /// The values that its angles depend on.
   std::vector<Value> values() const;
 
@@ -56,14 +59,25 @@ class Rotation {
   };
   using Step = std::variant<Matrix3d, Turn>;
   /// The product, left to right; neighbouring matrices are merged.
-  const std::vector<Step>& steps() const { return steps_; }
+  const std::vector<Step>& steps() const { return held().steps; }
   /// The rotation of these steps, to the last bit (from a file). Throws not_a_rotation as `matrix`
   /// does, and repairs nothing.
   static Rotation of_steps(std::vector<Step> steps);
 
  private:
-  std::vector<Step> steps_;
-  std::string to_, from_;
+  struct Names {
+    std::string to, from;
+  };
+  struct Held {
+    std::vector<Step> steps = {};
+    std::shared_ptr<const Names> names = {};  ///< null: none, as of most
+  };
+  explicit Rotation(Held held) : held_(std::make_shared<const Held>(std::move(held))) {}
+  static std::shared_ptr<const Names> named_pair(std::string to, std::string from);
+  const Held& held() const;
+  const Names& names() const;
+
+  std::shared_ptr<const Held> held_;  ///< null: the identity, no names
 };
 
 }  // namespace titop

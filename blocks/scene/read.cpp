@@ -189,7 +189,7 @@ class Reader {
     if (s.channel < 0 && s.role != Signal::Role::input)
       p.at("of").refuse("a signal that can be driven: a channel's, or a port that goes in");
     if (p.has("part")) e.part = read_part(p.at("part"));
-    if (!e.part.whole() && e.part.rows.cols() != s.size)
+    if (!e.part.whole() && e.part.rows().cols() != s.size)
       p.at("part").refuse(fmt::format("rows of {} numbers", s.size));
     e.accumulate = p.has("add") && p.at("add").yes();
     if (e.accumulate && s.quantity != Quantity::force)

@@ -90,7 +90,7 @@ class Writer {
     return Json::array({node.name, ports[static_cast<std::size_t>(s.spec)].name});
   }
 
-  static Json part(const Part& p) { return {{"part", p.name}, {"rows", scene::rows(p.rows)}}; }
+  static Json part(const Part& p) { return {{"part", p.name()}, {"rows", scene::rows(p.rows())}}; }
 
   Json rotation(const Rotation& T) const {
     Json steps = Json::array();

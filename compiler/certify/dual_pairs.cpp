@@ -39,7 +39,7 @@ std::map<int, Weights> forces(const Graph& g, ParameterValues values) {
       const MatrixXd c = coefficient(g, t, values);
       const double sign = is_outward(g, target.channel) ? -1 : 1;
       add(result[t.signal], target.channel,
-          sign * (e.part.whole() ? c : MatrixXd(e.part.rows.transpose() * c)));
+          sign * (e.part.whole() ? c : MatrixXd(e.part.rows().transpose() * c)));
     }
   for (const auto& [signal, yes] : other) result.erase(signal);
   return result;

@@ -39,7 +39,7 @@ Unit unit_of(const Signal& s, int i) {
 Unit unit_of(const Signal& s, const Part& part, int row) {
   if (part.whole()) return unit_of(s, row);
   Eigen::Index largest = 0;
-  part.rows.row(row).cwiseAbs().maxCoeff(&largest);
+  part.rows().row(row).cwiseAbs().maxCoeff(&largest);
   return unit_of(s, static_cast<int>(largest));
 }
 
@@ -95,7 +95,7 @@ struct Filler {
   }
   void equation(int index) {
     const Equation& e = d.graph().equations[at(index)];
-    e.part.whole() ? put_identity(e.target) : put(e.part.rows, 1, e.target);
+    e.part.whole() ? put_identity(e.target) : put(e.part.rows(), 1, e.target);
     const int first = d.skeleton->joint.equation_coefficient[at(index)];
     for (std::size_t k = 0; k < e.terms.size(); ++k)
       put(*d.numbers.coefficients[at(first) + k], -1, e.terms[k].signal);

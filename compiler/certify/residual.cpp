@@ -226,14 +226,14 @@ struct Residual {
       for (const Term& t : q.terms) subtract(N, t, drive);
       return;
     }
-    const MatrixXd f = N ? MatrixXd(*N * q.part.rows.transpose()) : q.part.rows.transpose();
+    const MatrixXd f = N ? MatrixXd(*N * q.part.rows().transpose()) : q.part.rows().transpose();
     for (const Term& t : q.terms) subtract(&f, t, drive);
   }
 
   void accel(int channel, int e, const Drives& drive) {
     const Channel& c = w.channels[at(channel)];
     const Equation& q = w.equations[at(e)];
-    start(c.accel, q.part.whole() ? nullptr : &q.part.rows);
+    start(c.accel, q.part.whole() ? nullptr : &q.part.rows());
     for (const Term& t : q.terms) subtract(nullptr, t, drive);
     take(c.accel, [&] { return print(w, q); });
   }

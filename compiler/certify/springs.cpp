@@ -33,7 +33,7 @@ Gains gains(const Graph& g, ParameterValues values, Term::Of of) {
         if (m.of != of || m.gain.isZero(0)) continue;
         MatrixXd& sum = result[{force, m.channel}];
         if (sum.size() == 0) sum.setZero(g.channels[at(force)].size, m.gain.cols());
-        sum += sign * (e.part.whole() ? m.gain : MatrixXd(e.part.rows.transpose() * m.gain));
+        sum += sign * (e.part.whole() ? m.gain : MatrixXd(e.part.rows().transpose() * m.gain));
       }
   }
   return result;

@@ -115,7 +115,7 @@ class Connections {
         const Signal& s = g_.signals[at(t.signal)];
         if (s.channel < 0 || t.of == Term::Of::position || t.of == Term::Of::rate) continue;
         const VectorXd x = coefficient(g_, t, values_) * of(t, s.channel);
-        result += equation.part.whole() ? x : VectorXd(equation.part.rows.transpose() * x);
+        result += equation.part.whole() ? x : VectorXd(equation.part.rows().transpose() * x);
       }
     }
     return result;

@@ -99,7 +99,7 @@ Reading read(const Graph& g, const Term& term, const std::string& to, const std:
     } else if (const auto* m = std::get_if<Matrix>(&*f)) {
       put_matrix(r, *m, to, from);
     } else {
-      r.part += std::get<Part>(*f).name;
+      r.part += std::get<Part>(*f).name();
     }
   }
   return r;

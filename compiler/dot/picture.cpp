@@ -71,9 +71,9 @@ std::vector<Assignment> collect(const Graph& g, const std::vector<int>& outputs)
   std::map<std::pair<int, std::string>, std::size_t> found;
   for (const Equation& e : g.equations) {
     if (e.target < 0) continue;
-    const auto [place, is_new] = found.emplace(std::pair(e.target, e.part.name), all.size());
+    const auto [place, is_new] = found.emplace(std::pair(e.target, e.part.name()), all.size());
     if (is_new)
-      all.push_back({.target = e.target, .part = e.part.name, .terms = {}, .active = e.active});
+      all.push_back({.target = e.target, .part = e.part.name(), .terms = {}, .active = e.active});
     Assignment& a = all[place->second];
     a.active = a.active || e.active;
     a.terms.insert(a.terms.end(), e.terms.begin(), e.terms.end());

@@ -143,10 +143,10 @@ class Assembly {
   void subtract_forces(Block& rows, const Matrix& factor, std::span<const int> equations) {
     for (const int e : equations) {
       const Part& part = g_.equations[at(e)].part;
-      subtract(
-          rows,
-          part.whole() ? factor : factor * orthonormal_fractions(part.rows, part.name).transposed(),
-          g_.equations[at(e)].terms);
+      subtract(rows,
+               part.whole() ? factor
+                            : factor * orthonormal_fractions(part.rows(), part.name()).transposed(),
+               g_.equations[at(e)].terms);
     }
   }
 
@@ -163,7 +163,7 @@ class Assembly {
     for (const int e : drive.accel) {
       const Part& part = g_.equations[at(e)].part;
       const Matrix S = part.whole() ? Matrix::identity(channel.size)
-                                    : orthonormal_fractions(part.rows, part.name);
+                                    : orthonormal_fractions(part.rows(), part.name());
       Block rows(static_cast<std::size_t>(S.rows));
       add(rows, S, columns_.of_signal[at(channel.accel)]);
       subtract(rows, Matrix::identity(S.rows), g_.equations[at(e)].terms);

@@ -89,7 +89,7 @@ Matrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues v
     } else if (const auto* m = std::get_if<titop::Matrix>(&*f)) {
       result = fractions(*m->value) * result;
     } else if (const auto* p = std::get_if<Part>(&*f)) {
-      if (!p->whole()) result = orthonormal_fractions(p->rows, p->name) * result;
+      if (!p->whole()) result = orthonormal_fractions(p->rows(), p->name()) * result;
     } else if (const auto& T = std::get<Rotation>(*f); !T.is_identity()) {
       const Matrix turn =
           orthonormal_fractions(T.at(values), "the rotation in " + print(graph, term));

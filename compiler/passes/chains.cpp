@@ -172,8 +172,8 @@ MatrixXd orthonormal_rows(const MatrixXd& m) {
 /// The rows of an equation that `rows` keeps, as an equation.
 void keep_rows(Graph& g, Equation& e, const MatrixXd& rows) {
   const int size = g.signals[at(e.target)].size;
-  e.part = {e.part.whole() ? rows : MatrixXd(rows * e.part.rows), e.part.name + ".independent"};
-  if (e.part.rows.rows() == size && e.part.rows.isIdentity(0)) e.part = {};
+  e.part = {e.part.whole() ? rows : MatrixXd(rows * e.part.rows()), e.part.name() + ".independent"};
+  if (e.part.rows().rows() == size && e.part.rows().isIdentity(0)) e.part = {};
   for (Term& t : e.terms) {
     const auto& m = std::get<Matrix>(t.factors.front());
     const Pattern p = structure(g, t);
@@ -189,13 +189,13 @@ void release(Stage& stage, int equation, const MatrixXd& directions, Lowering& l
   Graph& g = stage.graph;
   const MatrixXd S = g.equations[at(equation)].part.whole()
                          ? MatrixXd::Identity(directions.cols(), directions.cols())
-                         : g.equations[at(equation)].part.rows;
+                         : g.equations[at(equation)].part.rows();
   const int channel = g.signals[at(g.equations[at(equation)].target)].channel;
   const MatrixXd kept = complement(directions, static_cast<int>(directions.cols()));
   Equation force{.target = g.channels[at(channel)].force,
                  .part = {directions * S, ".redundant"},
                  .where = g.equations[at(equation)].where};
-  Origin others{.of = Origin::Of::released, .index = channel, .times = force.part.rows};
+  Origin others{.of = Origin::Of::released, .index = channel, .times = force.part.rows()};
   if (directions.rows() == g.channels[at(channel)].size) force.part = {}, others.times = {};
   force.terms = lowering.written_out(others);
   if (kept.rows() == 0) {

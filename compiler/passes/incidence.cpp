@@ -24,7 +24,7 @@ std::vector<Row> rows_of(const Graph& g) {
     if (equation.active)
       rows.push_back(
           {-1, -1, e,
-           equation.part.whole() ? target.size : static_cast<int>(equation.part.rows.rows())});
+           equation.part.whole() ? target.size : static_cast<int>(equation.part.rows().rows())});
   }
   return rows;
 }
@@ -79,8 +79,9 @@ void visit_entries(const Graph& g, const Row& row, const std::vector<Declared>& 
     const Equation& e = g.equations[at(row.equation)];
     const Signal& t = g.signals[at(e.target)];
     if (is_unknown(t))
-      visit(e.target,
-            [&] { return e.part.whole() ? identity(t.size) : Pattern(e.part.rows.array() != 0); });
+      visit(e.target, [&] {
+        return e.part.whole() ? identity(t.size) : Pattern(e.part.rows().array() != 0);
+      });
     for (const Term& term : e.terms)
       if (const Signal& s = g.signals[at(term.signal)]; is_unknown(s))
         visit(term.signal, [&] { return structure(g, term); });

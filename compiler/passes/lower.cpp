@@ -25,11 +25,8 @@ struct Lowered {
 
   void equation(Origin origin, int target, Part part, const std::source_location& where) {
     std::vector<Term> list = terms(std::move(origin), where);
-    equations.push_back({.target = target,
-                         .part = std::move(part),
-                         .accumulate = false,
-                         .terms = std::move(list),
-                         .where = where});
+    equations.push_back(
+        {.target = target, .part = std::move(part), .terms = std::move(list), .where = where});
   }
 
   void channel(int index) {
@@ -113,12 +110,17 @@ Stage lower(Stage stage) {
   return stage;
 }
 
-std::vector<std::vector<Term>> lower_again(const Stage& stage, const std::vector<int>& origins,
-                                           ParameterValues values) {
+std::vector<std::vector<NumericTerm>> lower_again(const Stage& stage,
+                                                  const std::vector<int>& origins,
+                                                  ParameterValues values) {
   Lowering l(*stage.source, values, stage.drives, stage.motions);
   l.numbers_only = true;
-  std::vector<std::vector<Term>> result;
-  for (const int o : origins) result.push_back(merged(l.amount(stage.origins[at(o)])));
+  std::vector<std::vector<NumericTerm>> result(origins.size());
+  for (std::size_t i = 0; i < origins.size(); ++i) {
+    Amount sum = summed(l.amount(stage.origins[at(origins[i])]));
+    result[i].reserve(sum.size());
+    for (Summand& s : sum) result[i].push_back({s.signal, std::move(s.c)});
+  }
   return result;
 }
 

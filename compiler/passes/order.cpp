@@ -115,7 +115,7 @@ void set_aside(Stage& stage, const Arrows& needs, const Components& parts) {
   }
   for (const Output& o : g.outputs)
     for (const Term& t : o.terms) sinks.push_back(t.signal);
-  // A released joint's wrench is 0 by choice: what it would move is still to be judged (solve).
+  // A released joint's own wrench is 0 by choice: what it would move is still to be judged (solve).
   for (const Released& r : stage.released) sources.push_back(g.equations[at(r.equation)].target);
   if (g.inputs.empty()) sources.insert(sources.end(), states.begin(), states.end());
   if (g.outputs.empty()) sinks.insert(sinks.end(), states.begin(), states.end());

@@ -21,10 +21,17 @@ Stage check(Stage stage);
 /// O(terms).
 Stage lower(Stage stage);
 
+/// coefficient * signal.
+struct NumericTerm {
+  int signal = -1;
+  Eigen::MatrixXd coefficient = {};
+};
+
 /// The terms of these equations and outputs (by their places in Stage::origins) for other parameter
 /// values, in the order asked for. Throws as `lower` does. O(these terms).
-std::vector<std::vector<Term>> lower_again(const Stage& stage, const std::vector<int>& origins,
-                                           ParameterValues values);
+std::vector<std::vector<NumericTerm>> lower_again(const Stage& stage,
+                                                  const std::vector<int>& origins,
+                                                  ParameterValues values);
 
 /// Connected parts (ground not counted) without an output are set aside and listed; not so if the
 /// diagram has no outputs at all: then all states count as seen. O(terms).
@@ -37,9 +44,9 @@ Stage split(Stage stage);
 /// listed: outputs, and equations outside the chains, read 0 there in place of rounding. Throws
 /// kinematic_loop where the geometry does not close, and where a body on the chain does not say
 /// where its ports are. O(terms) where all chains are open; about linear in the loops of a ladder
-/// or a truss, n^1.5 in a planar grid of flexible bodies; at worst O(rows^2 columns), for connected
-/// sets of loops in which no body belongs to one alone and names that follow one another are far
-/// apart (compiler/passes/close).
+/// or a truss, n^1.5 in a planar grid of flexible bodies; at worst O(rows width columns), for
+/// connected sets of loops in which no body belongs to one alone: the width is that of the front
+/// which goes along them, whatever the names (compiler/passes/close/along.hpp).
 Stage chains(Stage stage);
 
 /// Every row has its unknown: maximum bipartite matching by whole signals from each channel's

@@ -26,7 +26,7 @@ void verify(const Stage& stage) {
     for (const Term& t : e.terms) {
       demand(valid(t.signal), "a term without signal");
       const int rows = e.part.whole() ? g.signals[static_cast<std::size_t>(e.target)].size
-                                      : static_cast<int>(e.part.rows.rows());
+                                      : static_cast<int>(e.part.rows().rows());
       if (rows_of(g, t) != rows)  // the text costs more than the check
         throw std::logic_error("titop, internal: a term of the wrong size in " + print(g, e));
     }

@@ -8,6 +8,7 @@
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/solve/scaling.hpp>
 #include <titop/compiler/solve/steps.hpp>
+#include <utility>
 
 namespace titop::solve {
 namespace {
@@ -56,14 +57,17 @@ struct Factors<T>::Work {
   std::vector<double> column = {};  ///< the factors that do so
   std::vector<int> units = {};
   Made* m = nullptr;
+  T* lu = nullptr;       ///< what made->lu shows
+  int* order = nullptr;  ///< what made->order shows
   int rows = 0, pivots = 0;
   std::ptrdiff_t n = 0;  ///< columns
 
-  void begin(const Front& front, Made& made) {
+  void begin(const Front& front, Lot& lot, Made& made) {
     m = &made, rows = front.row_count, pivots = front.pivot_count, n = front.columns();
-    made.lu.assign(at(rows) * static_cast<std::size_t>(n), T(0));
-    made.order.resize(at(rows));
-    std::iota(made.order.begin(), made.order.end(), 0);
+    lu = lot.entries.get() + (made.lu.data() - lot.entries.get());
+    order = lot.rows.get() + (made.order.data() - lot.rows.get());
+    std::fill_n(lu, made.lu.size(), T(0));
+    std::iota(order, order + rows, 0);
     keeps.assign(at(rows), 1);
   }
 
@@ -78,14 +82,13 @@ struct Factors<T>::Work {
     return units;
   }
 
-  T* row(int i) { return m->lu.data() + i * n; }
+  T* row(int i) { return lu + i * n; }
   double* bounds(int i) { return bound.data() + i * n; }
 
   /// Bounds of what has been assembled; returns its largest entry.
   double take_bounds() {
     bound.resize(m->lu.size());
-    const double largest =
-        sizes(static_cast<std::ptrdiff_t>(m->lu.size()), m->lu.data(), bound.data());
+    const double largest = sizes(static_cast<std::ptrdiff_t>(m->lu.size()), lu, bound.data());
     for (int i = 0; i < rows; ++i)
       if (keeps[at(i)] != 1)
         for (std::ptrdiff_t j = 0; j < n; ++j) bounds(i)[j] /= keeps[at(i)];
@@ -145,8 +148,7 @@ struct Factors<T>::Work {
   /// What rounding has left of the rows below k is 0.
   void clean(int k) {
     for (std::ptrdiff_t e = (k + 1) * n; e < static_cast<std::ptrdiff_t>(m->lu.size()); ++e)
-      if (T& x = m->lu[static_cast<std::size_t>(e)];
-          e % n > k && size_of(x) <= least * bound[static_cast<std::size_t>(e)])
+      if (T& x = lu[e]; e % n > k && size_of(x) <= least * bound[static_cast<std::size_t>(e)])
         x = T(0);
   }
 
@@ -155,7 +157,7 @@ struct Factors<T>::Work {
     std::swap_ranges(row(a), row(a) + n, row(b));
     std::swap_ranges(bounds(a), bounds(a) + n, bounds(b));
     std::swap(row_scale[at(a)], row_scale[at(b)]);
-    std::swap(m->order[at(a)], m->order[at(b)]);
+    std::swap(order[a], order[b]);
   }
 
   /// Takes pivots from column k up to `end`, in the columns up to `to`; returns how far it came.
@@ -166,7 +168,7 @@ struct Factors<T>::Work {
       m->singular = best < 0;
       if (m->singular) break;
       swap(k, best);
-      eliminate_below(k, to, rows, n, m->lu.data(), bound.data());
+      eliminate_below(k, to, rows, n, lu, bound.data());
       if (no_pivot == NoPivot::patch) clean(k);
     }
     return k;
@@ -181,7 +183,7 @@ struct Factors<T>::Work {
     for (int k = 0; k < pivots && !m->singular;) {
       const int first = k, end = std::min(k + kPanel, pivots);
       k = steps(first, end, end, no_pivot);
-      if (!m->singular) eliminate_right(first, end, rows, n, m->lu.data(), bound.data());
+      if (!m->singular) eliminate_right(first, end, rows, n, lu, bound.data());
     }
   }
 
@@ -204,8 +206,7 @@ struct Factors<T>::Work {
         m->keeps[at(i - pivots)] = share;
       }
     if (start > 0)  // the bounds have done their work
-      m->growth =
-          sizes(static_cast<std::ptrdiff_t>(m->lu.size()), m->lu.data(), bound.data()) / start;
+      m->growth = sizes(static_cast<std::ptrdiff_t>(m->lu.size()), lu, bound.data()) / start;
   }
 };
 
@@ -225,11 +226,37 @@ void Factors<T>::assemble(const Front& front, const Rows<T>& rows, Work& w) cons
   }
 }
 
+/// Room for these fronts.
 template <class T>
-void Factors<T>::make(int index, const Rows<T>& rows, Work& w, ColumnScale* found) {
-  const Front& front = plan_->fronts[at(index)];
-  auto made = std::make_shared<Made>();
-  w.begin(front, *made);
+std::shared_ptr<typename Factors<T>::Lot> Factors<T>::lot_of(std::span<const int> fronts) const {
+  auto lot = std::make_shared<Lot>();
+  std::size_t row_count = 0;
+  for (const int f : fronts) {
+    const Front& front = plan_->fronts[at(f)];
+    lot->size += front.entries();
+    row_count += at(front.row_count);
+  }
+  lot->entries = std::make_unique_for_overwrite<T[]>(lot->size);
+  lot->rows = std::make_unique_for_overwrite<int[]>(row_count);
+  lot->made.resize(fronts.size());
+  const T* entry = lot->entries.get();
+  const int* row = lot->rows.get();
+  for (std::size_t i = 0; i < fronts.size(); ++i) {
+    const Front& front = plan_->fronts[at(fronts[i])];
+    Made& m = lot->made[i];
+    m.front = fronts[i];
+    m.lu = {entry, front.entries()};
+    m.order = {row, at(front.row_count)};
+    entry += m.lu.size();
+    row += m.order.size();
+  }
+  return lot;
+}
+
+template <class T>
+void Factors<T>::make(Lot& lot, Made& made, const Rows<T>& rows, Work& w, ColumnScale* found) {
+  const Front& front = plan_->fronts[at(made.front)];
+  w.begin(front, lot, made);
   assemble(front, rows, w);
   const double start = w.take_bounds();
   if (found)
@@ -239,8 +266,55 @@ void Factors<T>::make(int index, const Rows<T>& rows, Work& w, ColumnScale* foun
   w.eliminate(no_pivot_);
   w.judge_finite();
   w.finish(start);
-  fronts_[at(index)] = std::move(made);
-  ++made_;
+}
+
+/// Up to the first that is singular.
+template <class T>
+void Factors<T>::make_all(std::span<const int> fronts, const Rows<T>& rows, ColumnScale* found) {
+  const std::shared_ptr<Lot> lot = lot_of(fronts);
+  lots_.push_back(lot);
+  Work work{least_};
+  made_ = 0;
+  for (Made& made : lot->made) {
+    make(*lot, made, rows, work, found);
+    fronts_[at(made.front)] = &made;
+    ++made_;
+    if (!made.singular) continue;
+    singular_ = made.front;
+    break;
+  }
+}
+
+/// What holds no front in use goes. Where the rest is more than twice what all fronts need, they
+/// move to a place of their own.
+template <class T>
+void Factors<T>::tidy() {
+  const auto in_use = [&](const Made& m) { return fronts_[at(m.front)] == &m; };
+  std::erase_if(lots_, [&](const auto& lot) { return std::ranges::none_of(lot->made, in_use); });
+  if (singular_ >= 0 || entries_held() <= 2 * plan_->entries) return;
+  std::vector<int> all(fronts_.size());
+  std::iota(all.begin(), all.end(), 0);
+  const std::shared_ptr<Lot> lot = lot_of(all);
+  T* entry = lot->entries.get();
+  int* row = lot->rows.get();
+  for (Made& made : lot->made) {
+    const Made& from = *fronts_[at(made.front)];
+    entry = std::ranges::copy(from.lu, entry).out;
+    row = std::ranges::copy(from.order, row).out;
+    const auto lu = std::exchange(made.lu, {});
+    const auto order = std::exchange(made.order, {});
+    made = from;
+    made.lu = lu, made.order = order;
+    fronts_[at(made.front)] = &made;
+  }
+  lots_ = {lot};
+}
+
+template <class T>
+std::size_t Factors<T>::entries_held() const {
+  std::size_t held = 0;
+  for (const auto& lot : lots_) held += lot->size;
+  return held;
 }
 
 template <class T>
@@ -248,16 +322,14 @@ Factors<T>::Factors(std::shared_ptr<const Plan> plan, const Rows<T>& rows,
                     std::shared_ptr<const ColumnScale> scale, NoPivot no_pivot, double least)
     : plan_(std::move(plan)),
       scale_(std::move(scale)),
-      fronts_(plan_->fronts.size()),
+      fronts_(plan_->fronts.size(), nullptr),
       no_pivot_(no_pivot),
       least_(std::max(least, kNothingLeft * Scalar<T>::epsilon())) {
   std::shared_ptr<ColumnScale> found;
   if (!scale_) scale_ = found = std::make_shared<ColumnScale>(at(plan_->columns));
-  Work work{least_};
-  for (int i = 0; i < static_cast<int>(fronts_.size()) && singular_ < 0; ++i) {
-    make(i, rows, work, found.get());
-    if (fronts_[at(i)]->singular) singular_ = i;
-  }
+  std::vector<int> all(fronts_.size());
+  std::iota(all.begin(), all.end(), 0);
+  make_all(all, rows, found.get());
 }
 
 template <class T>
@@ -265,19 +337,19 @@ Factors<T> Factors<T>::changed(const Rows<T>& rows, std::span<const int> row_gro
                                bool rescale) const {
   Factors result(*this);
   result.made_ = 0;
+  if (singular_ >= 0) return result;
   std::shared_ptr<ColumnScale> found;
   if (rescale) result.scale_ = found = std::make_shared<ColumnScale>(*scale_);
-  std::vector<char> todo(fronts_.size(), 0);
+  std::vector<char> is_todo(fronts_.size(), 0);
   for (const int r : row_groups)
-    for (int f = plan_->front_of_row[at(r)]; f >= 0 && !todo[at(f)];
+    for (int f = plan_->front_of_row[at(r)]; f >= 0 && !is_todo[at(f)];
          f = plan_->fronts[at(f)].parent)
-      todo[at(f)] = 1;
-  Work work{least_};
-  for (int f = 0; f < static_cast<int>(fronts_.size()) && result.singular_ < 0; ++f) {
-    if (!todo[at(f)]) continue;
-    result.make(f, rows, work, found.get());
-    if (result.fronts_[at(f)]->singular) result.singular_ = f;
-  }
+      is_todo[at(f)] = 1;
+  std::vector<int> todo;
+  for (int f = 0; f < static_cast<int>(fronts_.size()); ++f)
+    if (is_todo[at(f)]) todo.push_back(f);
+  result.make_all(todo, rows, found.get());
+  result.tidy();
   return result;
 }
 

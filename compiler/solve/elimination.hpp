@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <boost/container/small_vector.hpp>
 #include <complex>
 #include <cstdint>
 #include <memory>
@@ -66,7 +65,8 @@ using RowMatrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMaj
 using ColumnScale = std::vector<std::int16_t>;
 
 /// The factors: per front L, U and the permutation. Fronts are shared between factors that differ
-/// elsewhere.
+/// elsewhere; those that are made together share their memory, too, in the order in which they are
+/// visited. It is kept while one of them is in use, up to twice of what all fronts need.
 template <class T>
 class Factors {
  public:
@@ -78,7 +78,8 @@ class Factors {
           double least = 0);
 
   /// The factors where only these row groups have new coefficients: the fronts that they enter and
-  /// all above are made again, the others shared. O(those fronts) and one pointer per front.
+  /// all above are made again, the others shared. O(those fronts) and one pointer per front; now
+  /// and then (see above) all numbers are copied.
   /// `rescale`: they find their columns' scale anew, as a constructor would; one number per column.
   Factors changed(const Rows<T>& rows, std::span<const int> row_groups, bool rescale = false) const;
 
@@ -90,32 +91,47 @@ class Factors {
   const Plan& plan() const { return *plan_; }
   const std::shared_ptr<const ColumnScale>& scale() const { return scale_; }
   int fronts_made() const { return made_; }  ///< by the constructor or by changed()
+  /// Entries that its fronts' memory has: those in use (Plan::entries), and at most as many that
+  /// newer ones have replaced.
+  std::size_t entries_held() const;
   /// Where the matrix had no pivot (NoPivot::patch); at least as many as its rank lacks.
   std::vector<Patch> patches() const;
 
   /// One front's numbers.
   struct Made {
-    /// row_count x columns, row-major; rows left over at the bottom. The fronts of scalar diagrams
-    /// are many and tiny: they ask for no memory of their own.
-    boost::container::small_vector<T, 8> lu;
-    boost::container::small_vector<int, 4> order;  ///< which assembled row stands at place i
-    std::vector<double> keeps;  ///< per row left over what cancellation has left; none: 1 of all
+    int front = -1;
+    bool singular = false, finite = true;
+    std::span<const T> lu = {};  ///< row_count x columns, row-major; rows left over at the bottom
+    std::span<const int> order = {};  ///< which assembled row stands at place i
+    /// Per row left over what cancellation has left; none: 1 of all.
+    std::vector<double> keeps = {};
     double growth = 1, weakest = 1;
     int weakest_column = -1;
-    bool singular = false, finite = true;
-    std::vector<std::pair<int, double>> patched;  ///< column without pivot, what stands there now
+    std::vector<std::pair<int, double>> patched = {};  ///< column without pivot, what stands there
   };
   const Made& made(std::size_t front) const { return *fronts_[front]; }
 
  private:
   struct Work;
-  void make(int front, const Rows<T>& rows, Work& work, ColumnScale* found);
+  /// Fronts that are made together, and the memory of their numbers.
+  struct Lot {
+    std::vector<Made> made = {};
+    std::unique_ptr<T[]> entries;
+    std::unique_ptr<int[]> rows;
+    std::size_t size = 0;  ///< of `entries`
+  };
+
+  std::shared_ptr<Lot> lot_of(std::span<const int> fronts) const;
+  void make(Lot& lot, Made& made, const Rows<T>& rows, Work& work, ColumnScale* found);
+  void make_all(std::span<const int> fronts, const Rows<T>& rows, ColumnScale* found);
+  void tidy();
   void assemble(const Front& front, const Rows<T>& rows, Work& work) const;
   int original_row(int front, int place) const;
 
   std::shared_ptr<const Plan> plan_;
   std::shared_ptr<const ColumnScale> scale_;
-  std::vector<std::shared_ptr<const Made>> fronts_;
+  std::vector<const Made*> fronts_;               ///< null above a singular one
+  std::vector<std::shared_ptr<const Lot>> lots_;  ///< where they stand
   NoPivot no_pivot_ = NoPivot::stop;
   double least_ = 0;
   int made_ = 0;

@@ -47,7 +47,8 @@ struct Builder {
   void take_coefficients() {
     const auto take = [&](const std::vector<Term>& terms, std::vector<int>& first) {
       first.push_back(static_cast<int>(coefficients.size()));
-      for (const Term& t : terms) coefficients.push_back(coefficient_of(t));
+      for (const Term& t : terms)
+        coefficients.push_back(coefficient_of(*std::get<Matrix>(t.factors.front()).value));
     };
     for (const Equation& e : g.equations) take(e.terms, j.equation_coefficient);
     for (const Output& o : g.outputs) take(o.terms, j.output_coefficient);
@@ -113,13 +114,13 @@ struct Builder {
     if (!e.part.whole()) {
       target.of = Piece::Left::coefficient;
       target.left = static_cast<int>(coefficients.size());
-      coefficients.push_back(std::make_shared<const RowMatrix<double>>(e.part.rows));
+      coefficients.push_back(std::make_shared<const RowMatrix<double>>(e.part.rows()));
     }
     add(target, e.target);
     for (std::size_t k = 0; k < e.terms.size(); ++k)
       add({.of = Piece::Left::coefficient,
-           .left = j.equation_coefficient[at(index)] + static_cast<int>(k),
-           .sign = -1},
+           .sign = -1,
+           .left = j.equation_coefficient[at(index)] + static_cast<int>(k)},
           e.terms[k].signal);
   }
 
@@ -130,21 +131,21 @@ struct Builder {
     for (int i = n.first_signal; i < end_signal(g, node); ++i)
       if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input && u.active)
         add({.of = Piece::Left::direct,
+             .sign = -1,
              .left = node,
              .row = y.first,
              .rows = y.size,
              .col = u.first,
-             .cols = u.size,
-             .sign = -1},
+             .cols = u.size},
             i);
     if (n.state < 0 || !g.signals[at(n.state)].active) return;
     j.pieces.push_back({.of = Piece::Left::state,
+                        .sign = -1,
                         .left = node,
                         .row = y.first,
                         .rows = y.size,
                         .signal = n.state,
-                        .size = g.signals[at(n.state)].size,
-                        .sign = -1});
+                        .size = g.signals[at(n.state)].size});
   }
 
   void add_rows() {
@@ -207,7 +208,7 @@ struct Builder {
       add_variable(-1, size, like);
       sums.push_back(sum);
       top.push_back({.of = Piece::Left::one, .entry = sum, .size = size});
-      groups[k].push_back({.of = Piece::Left::one, .entry = sum, .size = size, .sign = -1});
+      groups[k].push_back({.of = Piece::Left::one, .sign = -1, .entry = sum, .size = size});
       std::vector<int> members(
           over.begin() + static_cast<std::ptrdiff_t>(k * kTogether),
           over.begin() + static_cast<std::ptrdiff_t>(std::min(over.size(), (k + 1) * kTogether)));
@@ -233,10 +234,9 @@ struct Builder {
 
 }  // namespace
 
-Coefficient coefficient_of(const Term& term) {
+Coefficient coefficient_of(const Eigen::MatrixXd& c) {
   static const auto plus = std::make_shared<const RowMatrix<double>>(RowMatrix<double>::Ones(1, 1)),
                     minus = std::make_shared<const RowMatrix<double>>(-*plus);
-  const Eigen::MatrixXd& c = *std::get<Matrix>(term.factors.front()).value;
   if (c.size() == 1 && std::abs(c(0, 0)) == 1) return c(0, 0) > 0 ? plus : minus;  // most scalars
   return std::make_shared<const RowMatrix<double>>(c);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <titop/compiler/solve/elimination.hpp>
 #include <titop/compiler/stage.hpp>
@@ -21,20 +22,20 @@ struct Numbers {
 
 /// sign * left * right * (variable, state or input).
 struct Piece {
-  enum class Left {
+  enum class Left : std::int8_t {
     one,          ///< identity
     direct,       ///< a block of the node's direct term: D, or Y(s)
     state,        ///< rows of the node's C; at some s it is part of Y(s) and does not count
     coefficient,  ///< coefficients[left]
   };
   Left of = Left::one;
+  std::int8_t sign = 1;
   int left = -1;                             ///< node, or index of a coefficient
   int row = 0, rows = 0, col = 0, cols = 0;  ///< the block of the node's matrix
   int right = -1;                            ///< coefficients[right]; -1: identity
   int entry = -1;                            ///< place in the row of the structure; -1: known
   int signal = -1;                           ///< what is multiplied; -1: a partial sum
   int size = 0;                              ///< its scalars
-  double sign = 1;
 };
 
 /// A signal in terms of variables, states and inputs.
@@ -73,7 +74,7 @@ struct Joint {
 /// coefficients of all terms to `coefficients`. O(terms) and the cost of the plan.
 Joint joint(const Stage& stage, std::vector<Coefficient>& coefficients);
 
-/// The coefficient of a lowered term, row-major.
-Coefficient coefficient_of(const Term& term);
+/// The same row-major; 1 and -1 are shared.
+Coefficient coefficient_of(const Eigen::MatrixXd& c);
 
 }  // namespace titop::solve

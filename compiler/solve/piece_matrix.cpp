@@ -8,13 +8,14 @@ Eigen::MatrixXd matrix_of(const Piece& p, const Numbers& numbers) {
   const Eigen::MatrixXd right = p.right < 0
                                     ? Eigen::MatrixXd(Eigen::MatrixXd::Identity(p.size, p.size))
                                     : Eigen::MatrixXd(*numbers.coefficients[at(p.right)]);
+  const double sign = p.sign;
   switch (p.of) {
-    case Piece::Left::one: return p.sign * right;
+    case Piece::Left::one: return sign * right;
     case Piece::Left::direct:
-      return p.sign * numbers.blocks[at(p.left)]->D.block(p.row, p.col, p.rows, p.cols) * right;
+      return sign * numbers.blocks[at(p.left)]->D.block(p.row, p.col, p.rows, p.cols) * right;
     case Piece::Left::state:
-      return p.sign * numbers.blocks[at(p.left)]->C.middleRows(p.row, p.rows) * right;
-    case Piece::Left::coefficient: return p.sign * *numbers.coefficients[at(p.left)] * right;
+      return sign * numbers.blocks[at(p.left)]->C.middleRows(p.row, p.rows) * right;
+    case Piece::Left::coefficient: return sign * *numbers.coefficients[at(p.left)] * right;
   }
   return {};
 }

@@ -253,6 +253,7 @@ void place(Plan& p) {
     f.first_carried = p.carried;
     f.first_column = p.columns;
     p.columns += f.columns();
+    p.entries += f.entries();
     p.unknowns += f.pivot_count;
     p.carried += std::max(0, f.left_over());
     int next = 0;

@@ -57,6 +57,9 @@ struct Front {
 
   int columns() const { return pivot_count + border_count; }
   int left_over() const { return row_count - pivot_count; }
+  std::size_t entries() const {
+    return static_cast<std::size_t>(row_count) * static_cast<std::size_t>(columns());
+  }
 };
 
 /// Fronts in postorder, children before parents, and where everything stands in them.
@@ -71,6 +74,7 @@ struct Plan {
   std::vector<int> entry_column;   ///< entry of the structure -> first column in that front
   std::vector<int> parent_column;  ///< parallel to `lists`, for borders: first column in the parent
   int unknowns = 0, carried = 0, columns = 0;
+  std::size_t entries = 0;  ///< of all fronts
 
   std::span<const int> list(Front::Range r) const {
     return {lists.data() + r.begin, static_cast<std::size_t>(r.count)};

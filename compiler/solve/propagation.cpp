@@ -29,14 +29,17 @@ Propagation::Propagation(const Factors<double>& factors, std::vector<double>& ro
     place_.push_back(p);
   }
   grow(formed_, total);
-  for (int i = 0; i < static_cast<int>(plan_.fronts.size()); ++i) form(i);
+}
+
+void Propagation::form() {
+  for (std::size_t i = 0; i < plan_.fronts.size(); ++i) form(i);
 }
 
 /// `carry` stands below `own` and comes of the same substitution.
-void Propagation::form(int index) {
-  const Front& f = plan_.fronts[at(index)];
-  const Place& p = place_[at(index)];
-  const double* const lu = factors_.made(at(index)).lu.data();
+void Propagation::form(std::size_t index) {
+  const Front& f = plan_.fronts[index];
+  const Place& p = place_[index];
+  const double* const lu = factors_.made(index).lu.data();
   const std::ptrdiff_t n = f.columns(), pivots = f.pivot_count;
   double* const own = formed_.data() + p.own;
   std::fill_n(own, f.row_count * p.by_pivots, 0.0);

@@ -11,8 +11,11 @@ namespace titop::solve {
 /// U^-1 L^-1 r - U^-1 (border of U) (border unknowns). O(unknowns x front size) per column.
 class Propagation {
  public:
-  /// `room`: where the products go; it must live as long, and is not cleared.
+  /// `room`: where the products go; it must live as long, and is not cleared. `form` comes next.
   Propagation(const Factors<double>& factors, std::vector<double>& room);
+
+  /// Forms the products of all fronts. O(sum of front sizes^3).
+  void form();
 
   /// What one solution needs; each thread has its own.
   struct Space {
@@ -35,7 +38,7 @@ class Propagation {
   void gather(const Front& front, std::ptrdiff_t m, Space& space) const;
   void forward(int front, std::ptrdiff_t m, Space& space) const;
   void add_border(int front, std::ptrdiff_t m, bool add, std::vector<double>& z) const;
-  void form(int front);
+  void form(std::size_t front);
 
   /// Where a front's matrices begin, row-major one after the other, rows padded to 8.
   struct Place {

@@ -141,7 +141,7 @@ TEST_CASE("lower: one numeric coefficient per term, one equation per driven part
       std::set<int> signals;
       for (const Term& t : e.terms) CHECK(signals.insert(t.signal).second);
       driven[at(e.target)] +=
-          e.part.whole() ? g.signals[at(e.target)].size : static_cast<int>(e.part.rows.rows());
+          e.part.whole() ? g.signals[at(e.target)].size : static_cast<int>(e.part.rows().rows());
     }
     for (const Output& o : g.outputs) CHECK(lowered(o.terms));
     for (const Channel& c : g.channels) CHECK(driven[at(c.accel)] + driven[at(c.force)] == c.size);

@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
 #include "sparse_system.hpp"
 
 /// The elimination against dense LU with full pivoting, and what it says of singular systems.
@@ -38,6 +40,37 @@ TEST_CASE("solver: solutions as by dense LU on trees, rings, stars, grids and fu
       CHECK(backward <= 1e-14);
       const MatrixXd exact = A.fullPivLu().solve(b);
       CHECK((x - exact).norm() <= 1e-14 * condition(A) * exact.norm());
+    }
+  }
+}
+
+TEST_CASE("solver: new coefficients row by row, a hundred times: the bits of fresh factors") {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    Rng rng(seed);
+    for (const Kind& kind : {Kind{"chain", chain(40), 40}, Kind{"tree", tree(40, rng), 40},
+                             Kind{"grid", grid(6, 6), 36}}) {
+      CAPTURE(seed);
+      CAPTURE(kind.name);
+      System s = random_system(kind.links, kind.n, rng, 2);
+      const Factors<double> first = factors_of(s.structure, s.entries);
+      const MatrixXd b = rng.matrix(s.size(), 1), x = solve<double>(first, b);
+      const auto plan = std::make_shared<const titop::solve::Plan>(first.plan());
+      Factors<double> now = first;
+      for (int step = 0; step < 100; ++step) {
+        const int row = rng.below(kind.n);
+        for (MatrixXd& block : s.entries[at(row)]) block *= 1 + 0.1 * rng.matrix(1, 1)(0, 0);
+        const EntryRows<double> rows(s.entries);
+        now = now.changed(rows, std::vector{row});
+        CHECK(now.fronts_made() >= 1);
+        CHECK(now.entries_held() >= plan->entries);
+        CHECK(now.entries_held() <= 2 * plan->entries);
+        const Factors<double> fresh(plan, rows, first.scale());
+        for (std::size_t f = 0; f < plan->fronts.size(); ++f) {
+          CHECK(std::ranges::equal(now.made(f).lu, fresh.made(f).lu));
+          CHECK(std::ranges::equal(now.made(f).order, fresh.made(f).order));
+        }
+      }
+      CHECK(solve<double>(first, b) == x);  // what others share is left alone
     }
   }
 }

@@ -38,7 +38,7 @@ void demand_lowered(const Stage& stage) {
     demand(!e.accumulate, "no += is left");
     demand(lowered(e.terms), "one coefficient per term in " + print(g, e));
     driven[at(e.target)] +=
-        e.part.whole() ? g.signals[at(e.target)].size : static_cast<int>(e.part.rows.rows());
+        e.part.whole() ? g.signals[at(e.target)].size : static_cast<int>(e.part.rows().rows());
   }
   for (const Output& o : g.outputs)
     demand(lowered(o.terms), "one coefficient per term in " + o.name);
@@ -110,9 +110,9 @@ struct Constraints {
       const bool motion = target.quantity == Quantity::acceleration && target.channel >= 0;
       if (!motion && (target.channel >= 0 || target.node < 0)) continue;
       if (!motion && !g.nodes[at(target.node)].lowered) continue;
-      MatrixXd row = MatrixXd::Zero(e.part.whole() ? target.size : e.part.rows.rows(), columns);
+      MatrixXd row = MatrixXd::Zero(e.part.whole() ? target.size : e.part.rows().rows(), columns);
       row.middleCols(column[at(e.target)], target.size) =
-          e.part.whole() ? MatrixXd::Identity(target.size, target.size) : e.part.rows;
+          e.part.whole() ? MatrixXd::Identity(target.size, target.size) : e.part.rows();
       for (const Term& t : e.terms)
         row.middleCols(column[at(t.signal)], g.signals[at(t.signal)].size) -=
             coefficient(g, t, stage.values);

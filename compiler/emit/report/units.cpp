@@ -85,7 +85,7 @@ class Natures {
     if (g_.signals[at(e.target)].size != 6)
       return p.rows() == 1 ? (*this)(e.target, 0) : Nature::unknown;
     if (e.part.whole()) return p.rows() == 6 ? of_line(p.col(k)) : Nature::unknown;
-    const Pattern rows = e.part.rows.array() != 0;
+    const Pattern rows = e.part.rows().array() != 0;
     if (rows.rows() != p.rows()) return Nature::unknown;
     Pattern line = Pattern::Constant(6, 1, false);
     for (Eigen::Index i = 0; i < p.rows(); ++i)
@@ -235,7 +235,7 @@ std::string drives(const Stage& stage, int input) {
   for (const Equation& e : g.equations)
     for (const Term& t : e.terms)
       if (e.target >= 0 && t.signal == g.inputs[at(input)].signal)
-        names.push_back(name_of(g, e.target) + e.part.name);
+        names.push_back(name_of(g, e.target) + e.part.name());
   std::sort(names.begin(), names.end(),
             [](const auto& a, const auto& b) { return natural_compare(a, b) < 0; });
   names.erase(std::unique(names.begin(), names.end()), names.end());

@@ -15,20 +15,20 @@ std::string added_at(const Graph& graph, int node) {
 /// Overlap of two driven parts of one channel.
 bool overlap(const Equation& a, const Equation& b) {
   if (a.part.whole() || b.part.whole()) return true;
-  return (a.part.rows * b.part.rows.transpose()).cwiseAbs().maxCoeff() > 1e-12;
+  return (a.part.rows() * b.part.rows().transpose()).cwiseAbs().maxCoeff() > 1e-12;
 }
 
 /// Two driven parts that share some of their directions, and not all of them.
 bool oblique(const Equation& a, const Equation& b) {
   if (a.part.whole() || b.part.whole()) return false;
-  const Eigen::MatrixXd &A = a.part.rows, &B = b.part.rows;
+  const Eigen::MatrixXd &A = a.part.rows(), &B = b.part.rows();
   const Eigen::MatrixXd left = B - B * A.transpose() * A;
   return left.rowwise().norm().minCoeff() > 1e-9;
 }
 
 /// The direction of b that is at right angles to a, where both are one: "(0, 0.6, 0.8)".
 std::string oblique_way_out(const Equation& a, const Equation& b) {
-  const Eigen::MatrixXd &A = a.part.rows, &B = b.part.rows;
+  const Eigen::MatrixXd &A = a.part.rows(), &B = b.part.rows();
   if (A.rows() != 1 || B.rows() != 1) return "drive parts that are at right angles to each other";
   const Eigen::RowVectorXd left = (B - B * A.transpose() * A).normalized();
   const Eigen::Index first =
@@ -65,7 +65,7 @@ void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
   bool clash = false;
   for (std::size_t i = 0; i < set.size(); ++i) {
     const Equation& a = g.equations[at(set[i])];
-    rows += a.part.whole() ? channel.size : static_cast<int>(a.part.rows.rows());
+    rows += a.part.whole() ? channel.size : static_cast<int>(a.part.rows().rows());
     for (std::size_t j = 0; j < i; ++j) {
       const Equation& b = g.equations[at(set[j])];
       if (!overlap(a, b)) continue;
@@ -74,7 +74,7 @@ void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
       if (oblique(b, a)) {
         c.add(Code::two_equations,
               fmt::format("{}{} and {}{} are both driven, and are not at right angles",
-                          name_of(g, b.target), b.part.name, name_of(g, a.target), a.part.name),
+                          name_of(g, b.target), b.part.name(), name_of(g, a.target), a.part.name()),
               {line(print(g, b), b.where), line(print(g, a), a.where)}, oblique_way_out(b, a));
         continue;
       }

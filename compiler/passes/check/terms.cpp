@@ -39,12 +39,12 @@ bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term,
             kind.frame == kNoFrame ? kNoFrame : kUnknownFrame};
   } else if (const auto* p = std::get_if<Part>(&factor)) {
     if (p->whole()) return true;
-    if (p->rows.cols() != kind.size) {
-      c.add(Code::size, fmt::format("{} is taken of a signal of size {}", p->name, kind.size),
+    if (p->rows().cols() != kind.size) {
+      c.add(Code::size, fmt::format("{} is taken of a signal of size {}", p->name(), kind.size),
             {place()}, ".linear and .angular belong to dual vectors of 6");
       return false;
     }
-    kind.size = static_cast<int>(p->rows.rows());
+    kind.size = static_cast<int>(p->rows().rows());
   } else if (const auto& T = std::get<Rotation>(factor); !T.is_identity() || !T.to().empty()) {
     if (kind.size != 3 && kind.size != 6 && !(T.is_identity() && kind.size == 1)) {
       c.add(Code::size, fmt::format("a rotation multiplies a signal of size {}", kind.size),
@@ -145,12 +145,13 @@ void check_terms(Checker& c, const RightSide& side, Kind expected) {
 
 void check_equation(Checker& c, const Equation& e) {
   const Signal& s = c.graph.signals[at(e.target)];
-  const Kind expected{e.part.whole() ? s.size : static_cast<int>(e.part.rows.rows()), s.quantity,
+  const Kind expected{e.part.whole() ? s.size : static_cast<int>(e.part.rows().rows()), s.quantity,
                       s.frame};
-  check_terms(c,
-              {e.terms, e.where, e.target, [&] { return name_of(c.graph, e.target) + e.part.name; },
-               [&] { return print(c.graph, e); }},
-              expected);
+  check_terms(
+      c,
+      {e.terms, e.where, e.target, [&] { return name_of(c.graph, e.target) + e.part.name(); },
+       [&] { return print(c.graph, e); }},
+      expected);
 }
 
 }  // namespace

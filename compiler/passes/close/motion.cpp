@@ -81,7 +81,7 @@ void Motion::add_ties(const Twins& twins, Ground ground) {
 Tie Motion::tie_of(const Equation& q, int index, const Twins& twins, Ground ground) const {
   const Signal& target = g_.signals[at(q.target)];
   Tie tie{.equation = index, .target = target.channel};
-  tie.S = q.part.whole() ? MatrixXd::Identity(target.size, target.size) : q.part.rows;
+  tie.S = q.part.whole() ? MatrixXd::Identity(target.size, target.size) : q.part.rows();
   const Twin twin = twins.of(q.terms);
   tie.points = twin.points;
   for (const auto* list : {&twin.rates, &twin.integrals, &twin.states, &twin.others})
@@ -279,8 +279,8 @@ MatrixXd Motion::less_angles(MatrixXd gap, const Form& form) {
 
 Closing Motion::closing(const Tie& tie) const {
   Closing result{.tie = &tie, .equations = {tie.equation}};
-  Sum sum;
   const MatrixXd minus = -MatrixXd::Identity(tie.S.rows(), tie.S.rows());
+  Sum sum;
   sum.meet(minus), sum.add(minus, tie.own);
   auto [there, back] = ways(tie);
   const bool meets = tie.points.size() <= 1 && there.to == back.to;

@@ -62,21 +62,33 @@ std::shared_ptr<const Pattern> kept(Pattern p) {
 
 }  // namespace
 
+Amount summed(Amount sum) {
+  if (sum.size() < 2) return sum;
+  std::sort(sum.begin(), sum.end(), less);
+  std::size_t last = 0;
+  for (std::size_t i = 1; i < sum.size(); ++i) {
+    Summand& total = sum[last];
+    if (sum[i].signal != total.signal) {
+      if (++last != i) sum[last] = std::move(sum[i]);
+      continue;
+    }
+    total.c += sum[i].c;
+    if (total.p.size() == 0 || sum[i].p.size() == 0)
+      total.p.resize(0, 0);
+    else
+      total.p = total.p.array() || sum[i].p.array();
+  }
+  sum.resize(last + 1);
+  return sum;
+}
+
 std::vector<Term> merged(Amount sum) {
-  if (sum.size() > 1) std::sort(sum.begin(), sum.end(), less);
+  sum = summed(std::move(sum));
   std::vector<Term> terms;
   terms.reserve(sum.size());
-  for (std::size_t i = 0; i < sum.size();) {
-    Summand total = std::move(sum[i]);
-    for (++i; i < sum.size() && sum[i].signal == total.signal; ++i) {
-      total.c += sum[i].c;
-      if (total.p.size() == 0 || sum[i].p.size() == 0)
-        total.p.resize(0, 0);
-      else
-        total.p = total.p.array() || sum[i].p.array();
-    }
-    Term term{.signal = total.signal};
-    term.factors.emplace_back(Matrix{kept(std::move(total.c)), kept(std::move(total.p))});
+  for (Summand& s : sum) {
+    Term term{.signal = s.signal};
+    term.factors.emplace_back(Matrix{kept(std::move(s.c)), kept(std::move(s.p))});
     terms.push_back(std::move(term));
   }
   return terms;
@@ -126,7 +138,7 @@ Amount Lowering::added(std::span<const int> equations) {
   for (const int e : equations) {
     const Part& part = g.equations[at(e)].part;
     Amount more = terms(g.equations[at(e)].terms);
-    append(sum, part.whole() ? std::move(more) : times(part.rows.transpose(), std::move(more)));
+    append(sum, part.whole() ? std::move(more) : times(part.rows().transpose(), std::move(more)));
   }
   return sum;
 }
@@ -212,8 +224,8 @@ bool Lowering::find_ties(const Step& here, std::vector<Step>& ties) {
   const int n = g.channels[at(here.channel)].size;
   for (const int e : drive[at(here.channel)].accel) {
     const Equation& equation = g.equations[at(e)];
-    const MatrixXd embed =
-        equation.part.whole() ? MatrixXd::Identity(n, n) : MatrixXd(equation.part.rows.transpose());
+    const MatrixXd embed = equation.part.whole() ? MatrixXd::Identity(n, n)
+                                                 : MatrixXd(equation.part.rows().transpose());
     for (const Term& t : equation.terms) {
       const Signal& s = g.signals[at(t.signal)];
       if (s.channel < 0 || s.quantity != Quantity::acceleration || t.of != Term::Of::signal)
@@ -236,7 +248,7 @@ std::optional<Lowering::Step> Lowering::through_body(Amount& sum, const Step& he
     if (level == Level::rate) Phi = Phi * node.block->dynamics(values)->A;
     sum.push_back({node.state, by.factor * Phi, product(by.declared, Pattern(Phi.array() != 0))});
   };
-  if (k) meet(node.block->values());
+  if (k) meet_all(*node.block);
   if (k && c.spec != k->reference) {
     const MatrixXd& tau = k->tau[at(c.spec)];
     add_deformation(c.spec, here, 1);
@@ -264,7 +276,7 @@ MatrixXd Lowering::coefficient_of(const Term& t) {
     if (const auto* k = std::get_if<Value>(&f))
       meet(*k);
     else if (const auto* T = std::get_if<Rotation>(&f))
-      meet(T->values());
+      meet_all(*T);
   return coefficient(g, t, values);
 }
 
@@ -281,7 +293,7 @@ Amount Lowering::force(int channel) {
 Amount Lowering::algebraic(int output) {
   const Signal& y = g.signals[at(output)];
   const Node& node = g.nodes[at(y.node)];
-  meet(node.block->values());
+  meet_all(*node.block);
   if (asked != y.node) at_hand = node.block->dynamics(values);
   asked = y.node;
   const auto d = at_hand;

@@ -16,7 +16,9 @@ struct Summand {
 };
 using Amount = std::vector<Summand>;
 
-/// One term per signal, in canonical order: the sum does not depend on how it was written.
+/// One summand per signal, in canonical order: the sum does not depend on how it was written.
+Amount summed(Amount sum);
+/// The same as terms.
 std::vector<Term> merged(Amount sum);
 /// m * sum.
 Amount times(const Eigen::MatrixXd& m, Amount sum);
@@ -56,8 +58,11 @@ struct Lowering {
   void meet(const Value& v) {
     if (v.is_parameter()) met.push_back(v.index());
   }
-  void meet(const std::vector<Value>& list) {
-    for (const Value& v : list) meet(v);
+  /// All values of a rotation or a block.
+  template <class Source>
+  void meet_all(const Source& source) {
+    if (numbers_only) return;
+    for (const Value& v : source.values()) meet(v);
   }
   Eigen::MatrixXd coefficient_of(const Term& t);
 

@@ -93,9 +93,9 @@ class Wiring {
       for (Index i = 0; i < size; ++i) rows.push_back(i);
       return rows;
     }
-    for (Index i = 0; i < e.part.rows.rows(); ++i) {
+    for (Index i = 0; i < e.part.rows().rows(); ++i) {
       Index j = 0;
-      if (e.part.rows.row(i).cwiseAbs().maxCoeff(&j) != 1 || e.part.rows.row(i).sum() != 1)
+      if (e.part.rows().row(i).cwiseAbs().maxCoeff(&j) != 1 || e.part.rows().row(i).sum() != 1)
         throw std::invalid_argument("a channel is inverted along an oblique direction");
       rows.push_back(j);
     }
@@ -111,12 +111,12 @@ class Wiring {
 
   void drive(const Equation& e) {
     const Signal& s = g_.signals[at(e.target)];
-    const MatrixXd right = sum(e.terms, e.part.whole() ? s.size : int(e.part.rows.rows()));
+    const MatrixXd right = sum(e.terms, e.part.whole() ? s.size : int(e.part.rows().rows()));
     if (s.role == Signal::Role::input) {
       // A force on a point whose acceleration is imposed drives nothing: what holds it takes it.
       if (is_swapped(s.node, s.first)) return;
       const MatrixXd P =
-          e.part.whole() ? MatrixXd::Identity(s.size, s.size) : MatrixXd(e.part.rows.transpose());
+          e.part.whole() ? MatrixXd::Identity(s.size, s.size) : MatrixXd(e.part.rows().transpose());
       wires_.middleRows(first_in_[at(s.node)] + s.first, s.size) += P * right;
     } else {
       const auto rows = unit_rows(e);
@@ -161,8 +161,8 @@ class Wiring {
       for (const Equation& e : g_.equations)
         if (e.target == t.signal && e.accumulate)
           rows -= (e.part.whole() ? MatrixXd::Identity(s.size, s.size)
-                                  : MatrixXd(e.part.rows.transpose())) *
-                  sum(e.terms, e.part.whole() ? s.size : int(e.part.rows.rows()));
+                                  : MatrixXd(e.part.rows().transpose())) *
+                  sum(e.terms, e.part.whole() ? s.size : int(e.part.rows().rows()));
     return rows;
   }
 
@@ -174,7 +174,7 @@ class Wiring {
     for (const Equation& e : g_.equations) {
       if (e.target != signal) continue;
       const MatrixXd P =
-          e.part.whole() ? MatrixXd::Identity(s.size, s.size) : MatrixXd(e.part.rows.transpose());
+          e.part.whole() ? MatrixXd::Identity(s.size, s.size) : MatrixXd(e.part.rows().transpose());
       all += P * sum(e.terms, static_cast<int>(P.cols()));
     }
     --depth_;
