@@ -33,8 +33,9 @@ struct FullCertificate {
 
   /// Over a grid s = (0.05 + j) w, w from a tenth of the lowest to ten times the highest pole:
   /// largest difference of transfers, per block of output and input (three translations or
-  /// rotations of a port together) over its largest value on the grid, or over 1e-5 of the terms
-  /// that cancel in it, as by symmetry (compiler/compare.hpp).
+  /// rotations of a port together) over its largest value on the grid, or over 1e-3 of the terms
+  /// that cancel in it, as by symmetry, and of what the model's own rounding makes of a block that
+  /// is nothing else (compiler/compare.hpp).
   struct Grid : Checked {
     int points = 0;
     double lowest = 0, highest = 0;  ///< w [rad/s]
@@ -60,6 +61,8 @@ struct FullCertificate {
   /// Of the inputs that are forces with an output that is the acceleration where they act: the
   /// smallest eigenvalue of the Hermitian part of G(s) / s, rows and columns scaled to diagonal 1,
   /// over the grid. Negative: energy comes out (a controller may do that; a structure may not).
+  /// The diagonal counts 64 units of rounding more, of the largest entry in its unit; where that is
+  /// not enough, also 1e-3 of the terms that cancel, as double against long double shows them.
   struct Passivity : Checked {
     int pairs = 0;
     double least = 0;

@@ -102,14 +102,14 @@ std::vector<MatrixXcd> transfers(const StateSpace& m,
 
 namespace {
 
-/// |(s I - A)^-1 B| and |C (s I - A)^-1|.
+/// |s I - A|, |(s I - A)^-1 B| and |C (s I - A)^-1|.
 struct Gain {
-  MatrixXd of_states, to_outputs;
+  MatrixXd size, of_states, to_outputs;
 };
 
 Gain gain(const StateSpace& m, std::complex<double> s) {
   const MatrixXcd K = s * MatrixXcd::Identity(m.A.rows(), m.A.rows()) - m.A;
-  return {linalg::solve(K, m.B.cast<std::complex<double>>()).z.cwiseAbs(),
+  return {K.cwiseAbs(), linalg::solve(K, m.B.cast<std::complex<double>>()).z.cwiseAbs(),
           linalg::solve(K.transpose(), m.C.transpose().cast<std::complex<double>>())
               .z.transpose()
               .cwiseAbs()};
@@ -122,8 +122,7 @@ MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& poi
   if (m.A.rows() == 0) return result;
   for (const std::complex<double> s : points) {
     const Gain by = gain(m, s);
-    const MatrixXd K = (s * MatrixXcd::Identity(m.A.rows(), m.A.rows()) - m.A).cwiseAbs(),
-                   right = K * by.of_states, sum = by.to_outputs * right;
+    const MatrixXd right = by.size * by.of_states, sum = by.to_outputs * right;
     if (sum.allFinite()) result = result.cwiseMax(m.D.cwiseAbs() + sum);
   }
   return result;
@@ -139,7 +138,7 @@ MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
                    sum = by.to_outputs * states + rounding.C * by.of_states;
     if (sum.allFinite()) result = result.cwiseMax(rounding.D + sum);
   }
-  return kTermsPerRounding * result;
+  return result / std::numeric_limits<double>::epsilon();
 }
 
 MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points) {

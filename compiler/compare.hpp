@@ -35,8 +35,8 @@ std::vector<Eigen::MatrixXcd> transfers(const StateSpace& m,
 Eigen::MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& points);
 
 /// The same of the model's own rounding, what it may have put into each entry of A, B, C and D
-/// (matrices of their sizes): kTermsPerRounding times |dD| + |W| |dB| + |dC| |X| + |W| |dA| |X|.
-/// O(points n^3).
+/// (matrices of their sizes): |dD| + |W| |dB| + |dC| |X| + |W| |dA| |X| over the rounding unit.
+/// These are sums of magnitudes: no luck has to be allowed for. O(points n^3).
 Eigen::MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
                                   const std::vector<std::complex<double>>& points);
 

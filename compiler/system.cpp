@@ -181,9 +181,10 @@ std::vector<MatrixXcd> System::frequency_response(std::span<const double> omega,
                                                   Precision precision) const {
   std::vector<MatrixXcd> result(omega.size());
   // A thread costs more to start than a few responses of a small system.
-  constexpr double kWorthIt = 100;  // unknowns, about 1 us each
+  constexpr double kWorthIt = 100;  // unknowns, about 1 us each in double
   const int unknowns = data_->skeleton->joint.plan->unknowns;
-  const bool few = threads == 0 && static_cast<double>(omega.size()) * unknowns < kWorthIt;
+  const bool quick = precision != Precision::extended && precision != Precision::digits50;
+  const bool few = threads == 0 && quick && static_cast<double>(omega.size()) * unknowns < kWorthIt;
   detail::parallel(omega.size(), few ? 1 : threads, [&] {
     return [&](std::size_t i) { result[i] = transfer({0, omega[i]}, precision); };
   });

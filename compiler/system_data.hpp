@@ -60,6 +60,7 @@ struct DenseError {
     int output = -1, input = -1;  ///< units of measure(); -1 where many share it
   };
   Worst beside_largest, where_small;
+  std::vector<std::complex<double>> not_tried = {};  ///< s where the factors have no digit
 };
 
 /// What `certify` finds.
@@ -148,7 +149,7 @@ Rounded without_rounding(const SystemData& data, StateSpace dense);
 
 /// See Certificate::dense_error. O(n^2) per s; O(n^3) for up to 100 states where it is large.
 DenseError dense_error(const SystemData& data, const StateSpace& dense);
-/// A warning for each of the two that is too large.
+/// A warning for each of the two that is too large, and where the model was not tried.
 void warn_of_lost_digits(const SystemData& data, const DenseError& error, std::vector<Note>& notes);
 
 /// Margins of these loops of the stage, others left as they are.

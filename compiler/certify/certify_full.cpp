@@ -74,15 +74,10 @@ std::vector<MatrixXcd> as_written(const Graph& g, const std::vector<double>& val
   return list;
 }
 
-/// A model, and what rounding may have put into each of its entries.
-struct Written {
-  const StateSpace &model, &rounding;
-};
-
-/// What differs is looked at again with what the model's rounding does.
-void check_dense(const System& system, const Written& before, const std::vector<Complex>& points,
-                 const std::vector<MatrixXcd>& factored, detail::Measure& measure,
-                 FullCertificate::Grid& grid) {
+/// What differs is looked at again with what the model's rounding does; `before`: `minimize`.
+void check_dense(const System& system, const detail::Rounded& before,
+                 const std::vector<Complex>& points, const std::vector<MatrixXcd>& factored,
+                 detail::Measure measure, FullCertificate::Grid& grid) {
   const std::vector<MatrixXcd> dense = detail::transfers(system.state_space(), points);
   detail::Difference found = detail::difference(dense, factored, measure, system, points);
   if (found.relative > detail::kClose) {
@@ -185,12 +180,12 @@ FullCertificate certify(const System& system, const Full& what) {
   FullCertificate c;
   const bool dense = system.order() <= what.dense_up_to;
   std::vector<double> omegas;
-  StateSpace model, rounding;  // before `minimize`
+  detail::Rounded before;  // `minimize`
   if (dense) {
     c.order = system.order_verdict();
-    system.write(model);
-    rounding = detail::rounding_of(*system.data_, model);
-    c.poles = full::check_poles(system, model, rounding.A, omegas);
+    system.write(before.model);
+    before.rounding = detail::rounding_of(*system.data_, before.model);
+    c.poles = full::check_poles(system, before.model, before.rounding.A, omegas);
   } else {
     c.poles.why_not = c.grid.why_not = fmt::format("{} states are more than {} (Full::dense_up_to)",
                                                    system.order(), what.dense_up_to);
@@ -208,8 +203,8 @@ FullCertificate certify(const System& system, const Full& what) {
     detail::Measure measure = detail::measure(*system.stage().source, {});
     if (dense) {
       measure.terms =
-          detail::terms(model, points).cwiseMax(detail::terms(system.state_space(), points));
-      check_dense(system, {model, rounding}, points, factored, measure, c.grid);
+          detail::terms(before.model, points).cwiseMax(detail::terms(system.state_space(), points));
+      check_dense(system, before, points, factored, measure, c.grid);
     }
     check_written(system, what, points, factored, measure, c.grid);
     check_pairs(system, points, factored, c);

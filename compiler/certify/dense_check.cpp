@@ -24,9 +24,12 @@ constexpr double kDoubted = 1e-9;  ///< what is above this is looked at again, a
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Rows of [xdot; y] that share a size, first and count: block by block, then unit by unit.
-std::vector<std::pair<Index, Index>> groups(const SystemData& d) {
-  std::vector<std::pair<Index, Index>> result;
+/// Rows of [xdot; y] that share a size, first and count.
+using Groups = std::vector<std::pair<Index, Index>>;
+
+/// Block by block, then unit by unit.
+Groups groups(const SystemData& d) {
+  Groups result;
   const std::vector<int>& kept = d.states.kept();
   for (const int i : d.layout().state_nodes) {
     const int begin = d.layout().state_first[at(i)],
@@ -65,8 +68,6 @@ Response by_factors(const SystemData& d, const solve::RowMatrix<double>& x,
           terms.cwiseMax(both(off.xdot(), off.outputs()).cwiseAbs())};
 }
 
-using Groups = std::vector<std::pair<Index, Index>>;
-
 /// Columns of [xdot; y]: states alone and inputs alone, whatever their units, neither hides the
 /// other.
 constexpr Index kAlone = 2;
@@ -78,11 +79,11 @@ MatrixXd product(const StateSpace& of, const MatrixXd& x, const MatrixXd& u) {
   return result;
 }
 
-/// The largest |off| over rounding, in units of the last place. Groups that are nothing but
-/// `noise`, where it is known, count beside it.
-double relative(const MatrixXd& off, const Response& r, const Groups& groups,
-                const MatrixXd& noise = {}) {
-  if (!off.allFinite() || !r.rounding.allFinite()) return kInfinity;
+/// The largest |off| over the terms whose rounding is known. Groups that are nothing but `noise`,
+/// where it is known, count beside it.
+double beside_terms(const MatrixXd& off, const Response& r, const Groups& groups,
+                    const MatrixXd& noise = {}) {
+  if (!off.allFinite() || !r.rounding.allFinite() || !noise.allFinite()) return kInfinity;
   double worst = 0;
   for (const auto& [first, count] : groups)
     for (Index j = 0; j < kAlone && count > 0; ++j) {
@@ -117,9 +118,9 @@ double dense_difference(const SystemData& d, const StateSpace& m) {
   };
   take(m.A, 0, 0, x), take(m.B, 0, 1, u), take(m.C, n, 0, x), take(m.D, n, 1, u);
   r.rounding = r.rounding.cwiseMax(of_model);
-  const double worst = relative(off, r, groups(d));
+  const double worst = beside_terms(off, r, groups(d));
   if (worst <= kDoubted || worst == kInfinity) return worst;
-  return relative(off, r, groups(d), product(rounding_of(d, m), x, u));
+  return beside_terms(off, r, groups(d), product(rounding_of(d, m), x, u));
 }
 
 namespace {
@@ -242,9 +243,10 @@ std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
 
 /// What the factors' states leave in the equations of the dense model, A x + B u - s x, carried to
 /// the outputs by the factors. Points where these have no digit (springs along directions that
-/// chains hold, far below all modes) say nothing of the model. Throws singular where none is left.
+/// chains hold, far below all modes) say nothing of the model: they go to `not_tried`. Throws
+/// singular where none is left.
 std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve::RowMatrix<T>& u,
-                           const Measure& units) {
+                           const Measure& units, std::vector<T>& not_tried) {
   std::vector<T> list;
   std::deque<Evaluation<T>> points;
   std::vector<solve::RowMatrix<T>> x;
@@ -253,6 +255,7 @@ std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve
       points.emplace_back(d, s, u);
     } catch (const Error& error) {
       if (!error.has(Code::singular)) throw;
+      not_tried.push_back(s);
       continue;
     }
     list.push_back(s);
@@ -338,14 +341,17 @@ DenseError dense_error(const SystemData& d, const StateSpace& m) {
   if (m.B.cols() == 0 || m.C.rows() == 0 || m.A.size() == 0) return {};
   const Measure units = measure(d.graph(), {});
   const solve::RowMatrix<T> u = tried_inputs(m, units.cols);
-  std::vector<Sample> samples = sample(d, m, u, units);
-  const DenseError estimate = worst_of(samples);
-  const double worst = std::max(estimate.beside_largest.error, estimate.where_small.error);
+  std::vector<T> not_tried;
+  std::vector<Sample> samples = sample(d, m, u, units, not_tried);
+  DenseError found = worst_of(samples);
+  const double worst = std::max(found.beside_largest.error, found.where_small.error);
   if (worst > kDoubted && m.order() <= kAnsweredUpTo) {
     for (Sample& p : samples) bound_by_answer(p, m, u, units.rows);
-    return by_input(worst_of(samples), static_cast<int>(units.cols.size()));
+    found = worst_of(samples);
   }
-  return by_input(estimate, static_cast<int>(units.cols.size()));
+  found = by_input(found, static_cast<int>(units.cols.size()));
+  found.not_tried = std::move(not_tried);
+  return found;
 }
 
 }  // namespace titop::detail

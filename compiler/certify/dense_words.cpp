@@ -124,6 +124,10 @@ std::string digits_of(const SystemData& d, const DenseError::Worst& w) {
   return text;
 }
 
+std::complex<double> lowest(const std::vector<std::complex<double>>& list) {
+  return *std::ranges::min_element(list, {}, [](const auto& s) { return std::abs(s); });
+}
+
 }  // namespace
 
 void warn_of_lost_digits(const SystemData& d, const DenseError& e, std::vector<Note>& notes) {
@@ -138,6 +142,12 @@ void warn_of_lost_digits(const SystemData& d, const DenseError& e, std::vector<N
   if (e.where_small.error > kLostWhereSmall &&
       e.where_small.error > kAnotherDigit * e.beside_largest.error)
     warn("at s = {0}, where outputs are small, A, B, C, D keep {1}", e.where_small);
+  if (!e.not_tried.empty())
+    notes.push_back(
+        {Note::Kind::warning, "dense",
+         fmt::format("the dense model is not tried at {} of the s where it is compared, "
+                     "the lowest |s| = {:.3g}: the factors have no digit there in double",
+                     e.not_tried.size(), std::abs(lowest(e.not_tried)))});
 }
 
 }  // namespace titop::detail

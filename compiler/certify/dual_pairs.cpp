@@ -8,9 +8,6 @@ namespace {
 
 using Eigen::MatrixXd;
 
-/// Of the largest of all: what finer arithmetic leaves of a 0, as of translations of what is held.
-/// Whatever the units, nothing else is so small.
-constexpr double kNothing = 1e-36;
 constexpr double kOfRounding = 1e-3;  ///< of the terms that cancel, as compiler/compare.cpp has it
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
@@ -123,12 +120,9 @@ DualTransfers dual_transfers(const DualPairs& pairs,
 }
 
 DualTransfers with_rounding(const System& system, const DualPairs& pairs, DualTransfers transfers) {
-  const MatrixXd terms = detail::terms(system, detail::some_of(transfers.points));
+  // At all points: rounding may show at one of them only.
+  const MatrixXd terms = detail::terms(system, transfers.points);
   detail::add_rounding(transfers.by, transfers.G, terms(pairs.out, pairs.in));
-  double largest = 0;
-  for (const Eigen::MatrixXcd& G : transfers.G)
-    largest = std::max(largest, G.cwiseAbs().maxCoeff());
-  transfers.by.terms = transfers.by.terms.cwiseMax(kNothing / kOfRounding * largest);
   return transfers;
 }
 

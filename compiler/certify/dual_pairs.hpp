@@ -45,8 +45,8 @@ DualTransfers dual_transfers(const DualPairs& pairs,
                              const std::vector<std::complex<double>>& points,
                              const std::vector<Eigen::MatrixXcd>& transfers);
 
-/// The same, so that blocks which are rounding and no more have a floor: by eight transfers in
-/// double and in long double, and 1e-36 of the largest entry of all, whatever the units. Slow.
+/// The same, so that blocks which are rounding and no more have a floor: by transfers in double and
+/// in long double at all points. Slow.
 DualTransfers with_rounding(const System& system, const DualPairs& pairs, DualTransfers transfers);
 
 }  // namespace titop::full

@@ -3,6 +3,7 @@
 #include <boost/container/small_vector.hpp>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <span>
 #include <titop/compiler/certify/residual.hpp>
 #include <titop/compiler/evaluate.hpp>
@@ -17,7 +18,8 @@ std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kPlain = 1e-12;  ///< rounding up to this needs no excuse
-/// Of the largest of its kind.
+/// Of the largest motion or wrench of its kind, where chains hold it at 0: fifty units of rounding,
+/// what a sum over a way round a chain of some tens of joints leaves.
 constexpr double kOfLargest = 1e-14;
 /// One sample of rounding may be small by luck, and says nothing of rounding in the coefficients.
 constexpr double kSamples = 1e4;
@@ -70,7 +72,8 @@ struct Balance {
     }
     for (std::size_t j = 0; j < x.value.size(); ++j) {
       const Row term = entry_of(x, j, shared);
-      if (term.magnitude == 0 && term.difference == 0) continue;  // not a number is neither
+      if (term.magnitude == 0 && term.difference == 0 && term.rounding == 0)
+        continue;  // not a number is neither
       for (std::size_t i = 0; i < rows(); ++i)
         add(i, term, factor * c(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)));
     }
@@ -132,7 +135,7 @@ struct Residual {
   const Signals& at_hand;
   const Graph& w = *d.skeleton->stage.source;
   Balance b = {};                      ///< of the present equation
-  std::array<double, 9> largest = {};  ///< see find_largest()
+  std::array<double, 4> largest = {};  ///< see find_largest()
   double worst = 0;
   std::string where = {};
 
@@ -167,27 +170,31 @@ struct Residual {
       if (const double off = b.row[i].off();
           off > kPlain * b.row[i].magnitude &&
           off > kLeftOfZero * size_around_signal(d, at_hand.unknowns, signal, b.entry(i)) &&
-          !(off <= kOfLargest * largest[kind(signal, b.entry(i))]))
+          !(off <= kOfLargest * size_of_kind(signal, b.entry(i))))
         return false;
     return true;
   }
 
-  /// Accelerations, forces and all else; of these translations, rotations and scalars.
-  std::size_t kind(int signal, Eigen::Index entry) const {
+  /// Translations and rotations of points, forces and torques there. Other signals share no unit.
+  std::optional<std::size_t> kind(int signal, Eigen::Index entry) const {
     const Signal& s = w.signals[at(signal)];
-    const bool on_channel = s.channel >= 0;
-    const std::size_t of = !on_channel ? 2 : w.channels[at(s.channel)].force == signal ? 1 : 0;
-    return 3 * of + (s.size == 6 ? at(entry / 3) : 2);
+    if (s.channel < 0 || unit(signal) != 3) return {};
+    const std::size_t of = w.channels[at(s.channel)].force == signal ? 1 : 0;
+    return 2 * of + at(entry / 3);
+  }
+  double size_of_kind(int signal, Eigen::Index entry) const {
+    const auto k = kind(signal, entry);
+    return k ? largest[*k] : 0;
   }
   /// Chains that are closed twice mix all that they hold: a motion or a wrench that they make 0 is
   /// rounding of the others, and so may be all that its equation has.
   void find_largest() {
     if (d.skeleton->stage.released.empty()) return;
-    for (int k = 0; k < static_cast<int>(w.signals.size()); ++k)
-      if (known(k))
-        for (std::size_t i = 0; const double x : of(k).value)
-          if (double& size = largest[kind(k, static_cast<Eigen::Index>(i++))]; std::abs(x) > size)
-            size = std::abs(x);
+    for (int signal = 0; signal < static_cast<int>(w.signals.size()); ++signal)
+      if (known(signal))
+        for (Eigen::Index i = 0; const double x : of(signal).value)
+          if (const auto k = kind(signal, i++); k && std::abs(x) > largest[*k])
+            largest[*k] = std::abs(x);
   }
 
   int unit(int signal) const { return entries_per_unit(w.signals[at(signal)]); }

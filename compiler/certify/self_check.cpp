@@ -125,6 +125,15 @@ RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>&
   return known;
 }
 
+/// What is above rounding is looked at again with a sample of the signals' own.
+template <class Rounding>
+WrittenResidual residual_of(const SystemData& d, Signals& signals, Rounding rounding) {
+  const WrittenResidual written = written_residual(d, signals);
+  if (written.worst <= kWarn) return written;
+  signals.rounding = rounding();
+  return written_residual(d, signals);
+}
+
 /// At one instant. False where there is none, or where the equations hold and yet digits may be
 /// lost.
 bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Certificate& c) {
@@ -134,11 +143,8 @@ bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Ce
   Signals signals{first_of_signals(d.graph())};
   signals.values = now.values(signals.first);
   signals.unknowns = now.unknowns();
-  WrittenResidual written = written_residual(d, signals);
-  if (written.worst > kWarn) {  // of what chains hold still only rounding may be left
-    signals.rounding = now.rounding().values(signals.first);
-    written = written_residual(d, signals);
-  }
+  WrittenResidual written =
+      residual_of(d, signals, [&] { return now.rounding().values(signals.first); });
   // Two formulas for one thing differ by more than rounding near a block's own real pole.
   if (const auto responses = check_responses(d, s);
       responses.worst > std::max(kWarn, written.worst))
@@ -157,11 +163,8 @@ void check_at_s(const SystemData& d, const RowMatrix<double>& u, double s, Check
   signals.values = point.values(signals.first);
   signals.unknowns = point.unknowns();
   signals.s = s;
-  WrittenResidual written = written_residual(d, signals);
-  if (written.worst > kWarn) {  // of what chains hold still only rounding may be left
-    signals.rounding = point.rounding_of_values(signals.first);
-    written = written_residual(d, signals);
-  }
+  const WrittenResidual written =
+      residual_of(d, signals, [&] { return point.rounding_of_values(signals.first); });
   check.certificate.residual = written.worst;
   check.certificate.residual_where = written.where;
   const auto losses = point.losses();
