@@ -1,0 +1,82 @@
+#include <algorithm>
+#include <numeric>
+#include <titop/compiler/solve/elimination.hpp>
+#include <titop/compiler/solve/scalar.hpp>
+#include <utility>
+
+/// Where the numbers of fronts stand.
+namespace titop::solve {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+}  // namespace
+
+/// Room for these fronts.
+template <class T>
+std::shared_ptr<typename Factors<T>::Lot> Factors<T>::lot_of(std::span<const int> fronts) const {
+  auto lot = std::make_shared<Lot>();
+  std::size_t row_count = 0;
+  for (const int f : fronts) {
+    const Front& front = plan_->fronts[at(f)];
+    lot->size += front.entries();
+    row_count += at(front.row_count);
+  }
+  lot->entries = std::make_unique_for_overwrite<T[]>(lot->size);
+  lot->rows = std::make_unique_for_overwrite<int[]>(row_count);
+  lot->made.resize(fronts.size());
+  const T* entry = lot->entries.get();
+  const int* row = lot->rows.get();
+  for (std::size_t i = 0; i < fronts.size(); ++i) {
+    const Front& front = plan_->fronts[at(fronts[i])];
+    Made& m = lot->made[i];
+    m.front = fronts[i];
+    m.lu = {entry, front.entries()};
+    m.order = {row, at(front.row_count)};
+    entry += m.lu.size();
+    row += m.order.size();
+  }
+  return lot;
+}
+
+/// What holds no front in use goes. Where the rest is more than twice what all fronts need, they
+/// move to a place of their own.
+template <class T>
+void Factors<T>::tidy() {
+  const auto in_use = [&](const Made& m) { return fronts_[at(m.front)] == &m; };
+  std::erase_if(lots_, [&](const auto& lot) { return std::ranges::none_of(lot->made, in_use); });
+  if (singular_ >= 0 || entries_held() <= 2 * plan_->entries) return;
+  std::vector<int> all(fronts_.size());
+  std::iota(all.begin(), all.end(), 0);
+  const std::shared_ptr<Lot> lot = lot_of(all);
+  T* entry = lot->entries.get();
+  int* row = lot->rows.get();
+  for (Made& made : lot->made) {
+    const Made& from = *fronts_[at(made.front)];
+    entry = std::ranges::copy(from.lu, entry).out;
+    row = std::ranges::copy(from.order, row).out;
+    const auto lu = std::exchange(made.lu, {});
+    const auto order = std::exchange(made.order, {});
+    made = from;
+    made.lu = lu, made.order = order;
+    fronts_[at(made.front)] = &made;
+  }
+  lots_ = {lot};
+}
+
+template <class T>
+std::size_t Factors<T>::entries_held() const {
+  std::size_t held = 0;
+  for (const auto& lot : lots_) held += lot->size;
+  return held;
+}
+
+#define TITOP_INSTANTIATE(T)                                                                \
+  template std::shared_ptr<Factors<T>::Lot> Factors<T>::lot_of(std::span<const int>) const; \
+  template void Factors<T>::tidy();                                                         \
+  template std::size_t Factors<T>::entries_held() const;
+TITOP_INSTANTIATE(double)
+TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
+#undef TITOP_INSTANTIATE
+
+}  // namespace titop::solve
