@@ -70,9 +70,10 @@ class Writer {
     constexpr std::size_t kFirst = 2;
     std::latch first(kFirst);
     const std::size_t tasks = kFirst + batches;
-    kept.rooms.resize(std::max(kept.rooms.size(), at(thread_count(threads(batches), tasks))));
+    const int count = thread_count(threads(batches), tasks);
+    kept.rooms.resize(std::max(kept.rooms.size(), at(count)));
     std::atomic<std::size_t> room{0};
-    parallel(tasks, threads(batches), [&] {
+    parallel(tasks, count, [&] {
       Room* const own = &kept.rooms[room++];
       return
           [this, &propagation, &kept, &first, most, own, cleared = false](std::size_t i) mutable {

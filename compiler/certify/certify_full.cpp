@@ -74,7 +74,8 @@ std::vector<MatrixXcd> as_written(const Graph& g, const std::vector<double>& val
   return list;
 }
 
-/// What differs is looked at again with what the model's rounding does; `before`: `minimize`.
+/// What differs is looked at again with what rounding does in the model as written (`before`
+/// `minimize`).
 void check_dense(const System& system, const detail::Rounded& before,
                  const std::vector<Complex>& points, const std::vector<MatrixXcd>& factored,
                  detail::Measure measure, FullCertificate::Grid& grid) {
@@ -180,7 +181,7 @@ FullCertificate certify(const System& system, const Full& what) {
   FullCertificate c;
   const bool dense = system.order() <= what.dense_up_to;
   std::vector<double> omegas;
-  detail::Rounded before;  // `minimize`
+  detail::Rounded before;  // as written, before `minimize`
   if (dense) {
     c.order = system.order_verdict();
     system.write(before.model);

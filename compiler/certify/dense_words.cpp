@@ -146,7 +146,8 @@ void warn_of_lost_digits(const SystemData& d, const DenseError& e, std::vector<N
     notes.push_back(
         {Note::Kind::warning, "dense",
          fmt::format("the dense model is not tried at {} of the s where it is compared, "
-                     "the lowest |s| = {:.3g}: the factors have no digit there in double",
+                     "the lowest |s| = {:.3g}: the factors have no digit there in double; "
+                     "transfer takes finer arithmetic",
                      e.not_tried.size(), std::abs(lowest(e.not_tried)))});
 }
 
