@@ -24,7 +24,7 @@ MatrixXcd driven(const FrameByHand& h, const Constraints& constraints, Complex s
   const by_hand::Structure& a = h.all.a;
   MatrixXcd given = MatrixXcd::Zero(a.M.rows(), 12), force = given;
   given.leftCols(6) =
-      constraints.motion<MatrixXcd>(MatrixXcd::Identity(h.held.rows(), 6)) / (s * s);
+      constraints.motion(MatrixXd::Identity(h.held.rows(), 6)).cast<Complex>() / (s * s);
   force.rightCols(6) = a.B.cast<Complex>();
   return s * s * (a.C * constrained_motion(a, constraints, s, force, given).q);
 }
@@ -45,7 +45,7 @@ TEST_CASE("random frames on a body that moves as an input says: as by M, D and K
       const Constraints constraints(by_hand.held);
       if (!constraints.clear) continue;
       const titop::System system =
-          titop::compile(FrameDiagram{.f = f, .driven = true}.build(), {.minimize_up_to = 0});
+          titop::compile(diagram_of({.frame = f, .driven = true}), {.minimize_up_to = 0});
       CHECK(system.order() <= 2 * constraints.motions().cols());
       const std::vector<Complex> s = points({2, 30, 400});
       std::vector<MatrixXcd> exact;

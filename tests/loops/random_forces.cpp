@@ -49,7 +49,7 @@ void compare(const Frame& f, int read, Counts& count) {
   const FrameByHand::JointRows& j = by_hand.joints[at(read)];
   const double off = open.cols() && j.count ? open.middleRows(j.first, j.count).norm() : 0;
   if (off > 1e-11 && off < 1e-3) return;
-  const Diagram d = FrameDiagram{f, read}.build();
+  const Diagram d = diagram_of({.frame = f, .read = read});
   try {
     const System system = compile(d, {.minimize_up_to = 0});
     CHECK(off < 1e-11);

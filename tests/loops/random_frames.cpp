@@ -38,7 +38,7 @@ void compare(const Frame& f, Counts& count) {
   if (!constraints.clear) return;
   const by_hand::Structure& whole = by_hand.all.a;
   const by_hand::Structure exact = constrained(whole, constraints);
-  const titop::Diagram d = FrameDiagram{f}.build();
+  const titop::Diagram d = diagram_of({f});
   const titop::System system = titop::compile(d, {.minimize_up_to = 0});
   count.unsure += !(system.certificate().residual <= 1e-9);
   const Index moving = exact.M.rows() - (f.on_ground() ? 0 : 6);
@@ -104,7 +104,7 @@ TEST_CASE("dense entries that are nothing but rounding are no fault") {
   for (const int seed : {523, 695}) {  // of 800, those that show it
     CAPTURE(seed);
     const Frame f = random_frame(seed, true, false);
-    const titop::System system = titop::compile(FrameDiagram{f}.build(), {.minimize_up_to = 0});
+    const titop::System system = titop::compile(diagram_of({f}), {.minimize_up_to = 0});
     const titop::FullCertificate c = titop::certify(system);
     CHECK(c.basic.dense_against_factors <= 1e-9);
     CHECK(c.grid.dense <= 1e-8);
