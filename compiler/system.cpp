@@ -17,11 +17,11 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 int System::order() const { return data_->states.order(); }
-const std::vector<std::string>& System::states() const { return data_->state_names(); }
-const std::vector<std::string>& System::inputs() const { return data_->layout().inputs; }
-const std::vector<std::string>& System::outputs() const { return data_->layout().outputs; }
-const Stage& System::stage() const { return data_->skeleton->stage; }
-const std::vector<Note>& System::notes() const { return data_->checked().notes; }
+const std::vector<std::string>& System::states() const& { return data_->state_names(); }
+const std::vector<std::string>& System::inputs() const& { return data_->layout().inputs; }
+const std::vector<std::string>& System::outputs() const& { return data_->layout().outputs; }
+const Stage& System::stage() const& { return data_->skeleton->stage; }
+const std::vector<Note>& System::notes() const& { return data_->checked().notes; }
 
 System::Rates System::apply(const VectorXd& x, const VectorXd& u) const {
   if (x.size() != order() || u.size() != static_cast<Eigen::Index>(inputs().size()))
@@ -201,7 +201,7 @@ MatrixXd System::static_gain() const {
   }
 }
 
-const StateSpace& System::state_space() const {
+const StateSpace& System::state_space() const& {
   std::call_once(data_->dense_once, [&] {
     const detail::SystemData& d = *data_;
     const Options& options = d.skeleton->options;
@@ -232,7 +232,7 @@ const StateSpace& System::state_space() const {
   return data_->dense;
 }
 
-const OrderVerdict& System::order_verdict() const {
+const OrderVerdict& System::order_verdict() const& {
   state_space();
   return data_->dense_order;
 }
@@ -289,7 +289,7 @@ std::vector<Note> System::dense_notes() const {
   return data_->dense_notes;
 }
 
-const std::vector<std::pair<std::string, double>>& System::seconds() const {
+const std::vector<std::pair<std::string, double>>& System::seconds() const& {
   return data_->seconds;
 }
 

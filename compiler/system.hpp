@@ -68,15 +68,20 @@ enum class Precision {
 using ParameterList = std::vector<std::pair<std::string, double>>;
 
 /// A compiled diagram: the elimination plan, the factors and the blocks' data. Const, cheap to
-/// copy, may be shared between threads. The dense model is written from it on demand.
+/// copy, may be shared between threads. The dense model is written from it on demand. References
+/// are good while the System lives; one that does not live on gives a copy, which stays: `const
+/// StateSpace& m = compile(d).state_space();`
 class System {
  public:
   explicit System(std::shared_ptr<const detail::SystemData> data) : data_(std::move(data)) {}
 
   int order() const;  ///< states, before `minimize`
-  const std::vector<std::string>& states() const;
-  const std::vector<std::string>& inputs() const;  ///< "u", or "U(1)" ... "U(6)"
-  const std::vector<std::string>& outputs() const;
+  const std::vector<std::string>& states() const&;
+  std::vector<std::string> states() const&& { return states(); }
+  const std::vector<std::string>& inputs() const&;  ///< "u", or "U(1)" ... "U(6)"
+  std::vector<std::string> inputs() const&& { return inputs(); }
+  const std::vector<std::string>& outputs() const&;
+  std::vector<std::string> outputs() const&& { return outputs(); }
 
   /// xdot and y of x and u, through the factors: O(bodies).
   struct Rates {
@@ -111,11 +116,13 @@ class System {
 
   /// The minimal dense model. The first call writes it (O(n^2) per output of it) and, up to
   /// Options::minimize_up_to states, minimizes it (O(n^3)); later calls return the same.
-  const StateSpace& state_space() const;
+  const StateSpace& state_space() const&;
+  StateSpace state_space() const&& { return state_space(); }
 
   /// How sure the order of state_space() is, what was removed and at what cost; writes the model
   /// where that has not been done.
-  const OrderVerdict& order_verdict() const;
+  const OrderVerdict& order_verdict() const&;
+  OrderVerdict order_verdict() const&& { return order_verdict(); }
 
   /// The dense model before `minimize`, into a model of the caller's, whose memory is used again
   /// where it fits: what a loop over parameters wants. O(n^2), on `threads` threads (0: all cores),
@@ -161,15 +168,18 @@ class System {
   /// an entry is not. A model of other values is found by dense_against_factors.
   Certificate certificate(const StateSpace& written) const;
   /// What the passes did: counts, inversions, what was removed, what was not checked.
-  const std::vector<Note>& notes() const;
+  const std::vector<Note>& notes() const&;
+  std::vector<Note> notes() const&& { return notes(); }
   /// The notes as text, one per line; after state_space() also what `minimize` did.
   std::string log() const;
   /// What writing and minimizing the dense model did; empty before state_space() was asked for.
   std::vector<Note> dense_notes() const;
   /// Seconds per pass, in their order. Not part of log(), which is the same on every machine.
-  const std::vector<std::pair<std::string, double>>& seconds() const;
+  const std::vector<std::pair<std::string, double>>& seconds() const&;
+  std::vector<std::pair<std::string, double>> seconds() const&& { return seconds(); }
   /// The graph after the passes (for diagrams: `to_dot(system.graph())`).
-  const Stage& stage() const;
+  const Stage& stage() const&;
+  Stage stage() const&& { return stage(); }
 
  private:
   friend FullCertificate certify(const System&, const Full&);

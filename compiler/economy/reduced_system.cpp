@@ -8,14 +8,14 @@ namespace titop {
 int ReducedSystem::order() const {
   return data_->states ? static_cast<int>(data_->states->order()) : state_space().order();
 }
-const std::vector<std::string>& ReducedSystem::inputs() const { return data_->full.inputs(); }
-const std::vector<std::string>& ReducedSystem::outputs() const { return data_->full.outputs(); }
-const System& ReducedSystem::full() const { return data_->full; }
-const Scene& ReducedSystem::scene() const { return data_->scene; }
-const std::vector<Note>& ReducedSystem::notes() const { return data_->notes; }
-const ErrorBound& ReducedSystem::bound() const { return data_->bound; }
-const std::vector<EconomyStep>& ReducedSystem::steps() const { return data_->steps; }
-const std::vector<KeptMode>& ReducedSystem::modes() const { return data_->modes; }
+const std::vector<std::string>& ReducedSystem::inputs() const& { return data_->full.inputs(); }
+const std::vector<std::string>& ReducedSystem::outputs() const& { return data_->full.outputs(); }
+const System& ReducedSystem::full() const& { return data_->full; }
+const Scene& ReducedSystem::scene() const& { return data_->scene; }
+const std::vector<Note>& ReducedSystem::notes() const& { return data_->notes; }
+const ErrorBound& ReducedSystem::bound() const& { return data_->bound; }
+const std::vector<EconomyStep>& ReducedSystem::steps() const& { return data_->steps; }
+const std::vector<KeptMode>& ReducedSystem::modes() const& { return data_->modes; }
 
 Eigen::MatrixXcd ReducedSystem::transfer(std::complex<double> s) const {
   if (data_->states) return data_->states->transfer(s);
@@ -28,7 +28,7 @@ Eigen::MatrixXcd ReducedSystem::transfer(std::complex<double> s) const {
   return H;
 }
 
-const std::vector<std::pair<std::string, double>>& ReducedSystem::seconds() const {
+const std::vector<std::pair<std::string, double>>& ReducedSystem::seconds() const& {
   return data_->seconds;
 }
 

@@ -71,17 +71,21 @@ struct ModalModel {
 };
 
 /// A small system that answers a scene, and how well. Inputs and outputs are those of the full
-/// system, in the same order: one can replace the other. Const, cheap to copy.
+/// system, in the same order: one can replace the other. Const, cheap to copy. References are good
+/// while it lives; one that does not live on gives a copy, as System does.
 class ReducedSystem {
  public:
   explicit ReducedSystem(std::shared_ptr<const detail::ReducedData> data)
       : data_(std::move(data)) {}
 
   int order() const;  ///< states of state_space()
-  const std::vector<std::string>& inputs() const;
-  const std::vector<std::string>& outputs() const;
+  const std::vector<std::string>& inputs() const&;
+  std::vector<std::string> inputs() const&& { return inputs(); }
+  const std::vector<std::string>& outputs() const&;
+  std::vector<std::string> outputs() const&& { return outputs(); }
   /// The full system with the scene's inputs and outputs.
-  const System& full() const;
+  const System& full() const&;
+  System full() const&& { return full(); }
 
   /// Outputs x inputs, O(order), O(order^3) where modes are coupled by damping. transfer(0), where
   /// there is one, is the full system's for modes of the whole and for balanced states whose rest
@@ -98,17 +102,23 @@ class ReducedSystem {
   ModalModel modal() const;
 
   /// The question, with the accuracy that was asked for.
-  const Scene& scene() const;
-  const ErrorBound& bound() const;
+  const Scene& scene() const&;
+  Scene scene() const&& { return scene(); }
+  const ErrorBound& bound() const&;
+  ErrorBound bound() const&& { return bound(); }
   /// Warnings: bodies whose own data (their highest mode) end below 1.5 times the band. No bound on
   /// the reduction sees what is not in them.
-  const std::vector<Note>& notes() const;
-  const std::vector<EconomyStep>& steps() const;
-  const std::vector<KeptMode>& modes() const;
+  const std::vector<Note>& notes() const&;
+  std::vector<Note> notes() const&& { return notes(); }
+  const std::vector<EconomyStep>& steps() const&;
+  std::vector<EconomyStep> steps() const&& { return steps(); }
+  const std::vector<KeptMode>& modes() const&;
+  std::vector<KeptMode> modes() const&& { return modes(); }
   /// Seconds of what was done, in the order in which it was, what was done again once each time:
   /// compile, bodies, modes or split, samples, balance, reduce. Not part of to_string, which is the
   /// same on every machine.
-  const std::vector<std::pair<std::string, double>>& seconds() const;
+  const std::vector<std::pair<std::string, double>>& seconds() const&;
+  std::vector<std::pair<std::string, double>> seconds() const&& { return seconds(); }
 
  private:
   std::shared_ptr<const detail::ReducedData> data_;

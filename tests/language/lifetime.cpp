@@ -1,0 +1,64 @@
+#include <doctest/doctest.h>
+
+#include <titop/titop.hpp>
+#include <type_traits>
+#include <utility>
+
+/// What a System says stays when the System does not: such lines are written everywhere.
+
+using namespace titop;
+
+namespace {
+
+Diagram one_mass() {
+  Diagram d{"one"};
+  auto u = d.input("u");
+  auto z = d.add("z", SpringMass{.mass = 2, .stiffness = 50});
+  ground(z);
+  z.child.force = u;
+  d.output("a") = z.child.accel;
+  return d;
+}
+
+Scene scene() {
+  return {.inputs = {"u"}, .outputs = {"a"}, .band_hz = {0, 10}, .damping_floor = 0.01};
+}
+
+}  // namespace
+
+#define STAYS(type, call)                                                           \
+  static_assert(!std::is_reference_v<decltype(std::declval<type>().call())>);       \
+  static_assert(!std::is_reference_v<decltype(std::declval<const type>().call())>); \
+  static_assert(std::is_reference_v<decltype(std::declval<const type&>().call())>)
+
+STAYS(System, states);
+STAYS(System, inputs);
+STAYS(System, outputs);
+STAYS(System, state_space);
+STAYS(System, order_verdict);
+STAYS(System, notes);
+STAYS(System, seconds);
+STAYS(System, stage);
+STAYS(ReducedSystem, inputs);
+STAYS(ReducedSystem, outputs);
+STAYS(ReducedSystem, full);
+STAYS(ReducedSystem, scene);
+STAYS(ReducedSystem, bound);
+STAYS(ReducedSystem, notes);
+STAYS(ReducedSystem, steps);
+STAYS(ReducedSystem, modes);
+STAYS(ReducedSystem, seconds);
+
+TEST_CASE("a model bound to a reference outlives the System that it is of") {
+  const StateSpace& m = compile(one_mass()).state_space();
+  CHECK(m.A.determinant() == doctest::Approx(25).epsilon(1e-14));  // k / m
+  CHECK(m.D(0, 0) == 0.5);
+  for (const std::string& name : compile(one_mass()).inputs()) CHECK(name == "u");
+  const Graph& graph = compile(one_mass()).stage().graph;
+  CHECK(graph.outputs.size() == 1);
+}
+
+TEST_CASE("a reduced system's full one outlives it") {
+  const System& full = compile(one_mass(), scene()).full();
+  CHECK(full.order() == 2);
+}
