@@ -4,6 +4,7 @@
 
 namespace loop_test {
 
+/// What to make of a frame.
 struct FrameScene {
   const Frame& frame;
   int read = -1;  ///< a joint that hangs a body: the wrench there of the body on what it hangs on
