@@ -18,11 +18,6 @@ using Complex = std::complex<double>;
 /// |a - b| / |b|.
 inline double relative(double a, double b) { return std::abs(a - b) / std::abs(b); }
 
-/// "To 1e-x" of blocks of a transfer: the largest difference in a 3 x 3 block, over all s, over the
-/// block's largest entry over all s; blocks that are zero by nature, against the geometric mean of
-/// the largest blocks of their row and column. Returns the worst block.
-double block_error(const std::vector<Eigen::MatrixXcd>& a, const std::vector<Eigen::MatrixXcd>& b);
-
 /// (14) at s, typed from the paper: rows xdd_C of each child, then F_A/P; columns F_C of each
 /// child, then xdd_P.
 Eigen::MatrixXcd modal_transfer(const titop::ModalData& d, Complex s);

@@ -3,6 +3,7 @@
 #include <titop/blocks/beam.hpp>
 #include <titop/blocks/fe/calculix.hpp>
 
+#include "../../examples/by_hand/by_hand.hpp"
 #include "dynamics.hpp"
 
 /// (14) with all modes is the structure itself: compared with M and K solved directly.
@@ -25,7 +26,7 @@ double worst(const ModalData& data, const fe::Mesh& mesh, const std::vector<std:
     modal.push_back(fe_test::modal_transfer(data, s));
     direct.push_back(fe_test::direct_transfer<long double>(mesh, "P", children, s, beta));
   }
-  return fe_test::block_error(modal, direct);
+  return by_hand::transfer_error(modal, direct, 3, 3);
 }
 
 std::vector<double> proportional(const ModalData& data, double beta) {

@@ -2,27 +2,6 @@
 
 namespace fe_test {
 
-double block_error(const std::vector<Eigen::MatrixXcd>& a, const std::vector<Eigen::MatrixXcd>& b) {
-  const Eigen::Index rows = b.front().rows() / 3, columns = b.front().cols() / 3;
-  Eigen::MatrixXd size = Eigen::MatrixXd::Zero(rows, columns), error = size;
-  for (std::size_t k = 0; k < b.size(); ++k)
-    for (Eigen::Index i = 0; i < rows; ++i)
-      for (Eigen::Index j = 0; j < columns; ++j) {
-        const auto block = b[k].block<3, 3>(3 * i, 3 * j);
-        size(i, j) = std::max(size(i, j), block.cwiseAbs().maxCoeff());
-        error(i, j) =
-            std::max(error(i, j), (a[k].block<3, 3>(3 * i, 3 * j) - block).cwiseAbs().maxCoeff());
-      }
-  double worst = 0;
-  for (Eigen::Index i = 0; i < rows; ++i)
-    for (Eigen::Index j = 0; j < columns; ++j) {
-      const double mean = std::sqrt(size.row(i).maxCoeff() * size.col(j).maxCoeff());
-      const double scale = size(i, j) > 1e-9 * mean ? size(i, j) : mean;
-      worst = std::max(worst, error(i, j) / scale);
-    }
-  return worst;
-}
-
 Eigen::MatrixXcd modal_transfer(const titop::ModalData& d, Complex s) {
   const Eigen::Index N = d.omega.size(), m = 6 * static_cast<Eigen::Index>(d.children.size());
   Eigen::MatrixXd B(N, m + 6), D = Eigen::MatrixXd::Zero(m + 6, m + 6);
