@@ -21,9 +21,8 @@ std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 /// Room for the solutions of one thread.
 struct Room {
   solve::Propagation::Space space;
-  std::vector<double> values;  ///< of the columns of a batch, one after the other
-  std::vector<int> rows;       ///< of a batch's right-hand sides
-  std::vector<double> rhs;
+  std::vector<double> values;        ///< of the columns of a batch, one after the other
+  std::vector<const double*> reads;  ///< rows of unknowns that a target reads
 };
 
 /// What a thread that writes models keeps from one to the next while it is small, for itself and
@@ -176,37 +175,40 @@ class Writer {
   void columns(const solve::Propagation& propagation, const double* coefficients, std::size_t batch,
                Room& room) {
     const Index m = w_->width(batch);
-    room.rows.clear();
-    room.rhs.clear();
+    propagation.begin(m, room.space);
     Index first = 0;
     for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i) {
-      act(w_->sources[i], first, m, room);
+      act(w_->sources[i], first, propagation, room.space);
       first += w_->sources[i].columns;
     }
-    propagation.solve(room.rows, room.rhs, m, room.space);
-    for (const Writing::Target& t : w_->targets)
-      for (const Writing::Part& p : t.parts)
-        solve::multiply_transposed(
-            t.padded, p.size, m, coefficients + p.coefficients, room.space.z.data() + p.first * m,
-            room.values.data() + place(t.row), values_, &p != t.parts.data());
+    propagation.solve(room.space);
+    for (const Writing::Target& t : w_->targets) read(t, coefficients, m, room);
     write_columns(batch, room.values.data());
   }
 
-  /// The source's right-hand sides, from column `first` of m.
-  void act(const Writing::Source& s, Index first, Index m, Room& room) const {
-    int last = -1;
+  /// The target's rows of all m columns.
+  void read(const Writing::Target& t, const double* coefficients, Index m, Room& room) const {
+    if (t.unknowns.empty()) return;
+    room.reads.clear();
+    for (const Writing::Range& r : t.unknowns)
+      for (Index i = r.first; i < r.first + r.size; ++i)
+        room.reads.push_back(room.space.z.data() + i * m);
+    solve::multiply_transposed(t.padded, static_cast<Index>(room.reads.size()), m,
+                               coefficients + t.coefficients, room.reads.data(),
+                               room.values.data() + place(t.row), values_);
+  }
+
+  /// The source's right-hand sides, from column `first` on.
+  void act(const Writing::Source& s, Index first, const solve::Propagation& propagation,
+           solve::Propagation::Space& space) const {
+    const Index m = space.m;
     for (const auto& [group, piece] : s.acts) {
       const solve::Piece& p = k_.joint.pieces[at(piece)];
-      const Index height = k_.joint.plan->structure.row_size[at(group)];
-      if (group != last) {
-        room.rows.push_back(group);
-        room.rhs.resize(room.rhs.size() + at(height * m), 0);
-      }
-      last = group;
-      double* const to = room.rhs.data() + (room.rhs.size() - at(height * m)) + first;
+      double* const to = propagation.rhs(group, space) + first;
       if (!s.modal) {
         Eigen::Map<RowMatrix<double>, 0, Eigen::OuterStride<>>(
-            to, height, s.columns, Eigen::OuterStride<>(m)) -= solve::matrix_of(p, d_.numbers);
+            to, k_.joint.plan->structure.row_size[at(group)], s.columns, Eigen::OuterStride<>(m)) -=
+            solve::matrix_of(p, d_.numbers);
         continue;
       }
       const MatrixXd& W = block(s.node).modal->W;

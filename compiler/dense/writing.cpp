@@ -104,7 +104,7 @@ struct Builder {
     }
   }
 
-  /// Those of a target stand in the order of the unknowns; neighbours are read as one.
+  /// Those of a target stand in the order of the unknowns.
   void place_coefficients(Writing::Target& t) {
     const solve::Plan& plan = *k.joint.plan;
     t.padded = (t.rows + 3) / 4 * 4;
@@ -114,15 +114,16 @@ struct Builder {
     std::sort(variables.begin(), variables.end(),
               [&](int a, int b) { return plan.first[at(a)] < plan.first[at(b)]; });
     variables.erase(std::unique(variables.begin(), variables.end()), variables.end());
+    t.coefficients = w.coefficients;
     std::vector<Index> place(variables.size());
     for (std::size_t i = 0; i < variables.size(); ++i) {
       const Index first = plan.first[at(variables[i])],
                   size = plan.structure.variable_size[at(variables[i])];
       place[i] = w.coefficients;
       w.coefficients += size * t.padded;
-      if (t.parts.empty() || t.parts.back().first + t.parts.back().size != first)
-        t.parts.push_back({first, 0, place[i]});
-      t.parts.back().size += size;
+      if (t.unknowns.empty() || t.unknowns.back().first + t.unknowns.back().size != first)
+        t.unknowns.push_back({first, 0});
+      t.unknowns.back().size += size;
     }
     for (Writing::Term& term : t.terms) {
       const int v = k.joint.variable_of[at(term.to)];

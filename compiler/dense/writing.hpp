@@ -39,9 +39,8 @@ struct Writing {
   };
 
   /// Unknowns that stand side by side.
-  struct Part {
+  struct Range {
     Eigen::Index first = 0, size = 0;
-    Eigen::Index coefficients = 0;  ///< where they begin: size x rows, padded
   };
 
   /// Rows of xdot or y: sum of coefficients times unknowns and of known terms.
@@ -51,7 +50,8 @@ struct Writing {
     Eigen::Index padded = 0;  ///< rows, up to a multiple of 4
     Eigen::Index still = 0;   ///< rows of the node above: coordinates move with their rates
     std::vector<Term> terms = {};
-    std::vector<Part> parts = {};
+    std::vector<Range> unknowns = {};
+    Eigen::Index coefficients = 0;  ///< where they begin: unknowns x rows, padded
   };
 
   std::vector<Source> sources;              ///< fronts ascend

@@ -1,34 +1,35 @@
-#include <cstring>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/products.hpp>
 #include <titop/graph/linalg/wide.hpp>
-#include <vector>
 
 namespace titop::solve {
 namespace {
 
-/// N entries in one register.
+/// N entries in one register; those of Loose may stand anywhere.
 template <int N>
 using Lanes __attribute__((vector_size(8 * N))) = double;
+template <class L>
+using Loose __attribute__((aligned(8), may_alias)) = L;
 
-/// Wherever it stands. (By reference: a vector returned by value has another ABI without AVX.)
+// By reference: a vector returned by value has another ABI without AVX. Not by memcpy: g++ 12 then
+// takes a register in and out of memory in between.
 template <class L>
 [[gnu::always_inline]] inline void load(L& to, const double* from) {
-  std::memcpy(&to, from, sizeof to);
+  to = *reinterpret_cast<const Loose<L>*>(from);
 }
 template <class L>
 [[gnu::always_inline]] inline void store(double* to, const L& from) {
-  std::memcpy(to, &from, sizeof from);
+  *reinterpret_cast<Loose<L>*>(to) = from;
 }
 
 struct Product {
   std::ptrdiff_t inner, m;
   const double* a;
   std::ptrdiff_t stride;
-  const double* x;
+  const double* const* x;
+  const double* const* from;  ///< of rows; none where the product is transposed
   double* y;
   std::ptrdiff_t y_stride;
-  bool add;
 };
 
 struct Substitution {
@@ -40,46 +41,41 @@ struct Substitution {
 };
 
 /// R rows from row i on, C registers of columns at a time: their sums stay in registers, and every
-/// entry of x that is loaded serves all rows.
+/// entry of x that is loaded serves all rows. (By value: what is stored could be the product's.)
 template <class L, int C, int R>
-[[gnu::always_inline]] inline void rows_of_product(const Product& p, std::ptrdiff_t i) {
+[[gnu::always_inline]] inline void rows_of_product(const Product p, std::ptrdiff_t i) {
   constexpr std::ptrdiff_t n = sizeof(L) / sizeof(double);
   constexpr std::size_t width = C, height = R;
+  const double* const a = p.a + i * p.stride;
+  double* const y = p.y + i * p.y_stride;
   for (std::ptrdiff_t j = 0; j < p.m; j += C * n) {
-    double* const y = p.y + i * p.y_stride + j;
     L sum[height][width];
     for (int r = 0; r < R; ++r)
-      for (int c = 0; c < C; ++c) {
-        sum[r][c] = L{};
-        if (p.add) load(sum[r][c], y + r * p.y_stride + c * n);
-      }
+      for (int c = 0; c < C; ++c) load(sum[r][c], p.from[i + r] + j + c * n);
     for (std::ptrdiff_t k = 0; k < p.inner; ++k) {
       L x[width];
-      for (int c = 0; c < C; ++c) load(x[c], p.x + k * p.m + j + c * n);
+      for (int c = 0; c < C; ++c) load(x[c], p.x[k] + j + c * n);
       for (int r = 0; r < R; ++r)
-        for (int c = 0; c < C; ++c) sum[r][c] += p.a[(i + r) * p.stride + k] * x[c];
+        for (int c = 0; c < C; ++c) sum[r][c] += a[r * p.stride + k] * x[c];
     }
     for (int r = 0; r < R; ++r)
-      for (int c = 0; c < C; ++c) store(y + r * p.y_stride + c * n, sum[r][c]);
+      for (int c = 0; c < C; ++c) store(y + r * p.y_stride + j + c * n, sum[r][c]);
   }
 }
 
 /// As many rows as L has entries, from row i on; eight columns from j on.
 template <class L>
-[[gnu::always_inline]] inline void transposed_tile(const Product& p, std::ptrdiff_t i,
+[[gnu::always_inline]] inline void transposed_tile(const Product p, std::ptrdiff_t i,
                                                    std::ptrdiff_t j) {
   constexpr int C = 8;
-  double* const y = p.y + j * p.y_stride + i;
-  L sum[C];
-  for (int c = 0; c < C; ++c) {
-    sum[c] = L{};
-    if (p.add) load(sum[c], y + c * p.y_stride);
-  }
+  L sum[C] = {};
   for (std::ptrdiff_t k = 0; k < p.inner; ++k) {
     L a;
     load(a, p.a + k * p.stride + i);
-    for (int c = 0; c < C; ++c) sum[c] += a * p.x[k * p.m + j + c];
+    const double* const x = p.x[k] + j;
+    for (int c = 0; c < C; ++c) sum[c] += a * x[c];
   }
+  double* const y = p.y + j * p.y_stride + i;
   for (int c = 0; c < C; ++c) store(y + c * p.y_stride, sum[c]);
 }
 
@@ -156,42 +152,39 @@ void substitution_2(const Substitution& s) { substitution<Lanes<2>>(s); }
 #endif
 
 struct Kernels {
-  int lanes;
   void (*product)(const Product&, std::ptrdiff_t rows);
   void (*transposed)(const Product&, std::ptrdiff_t rows);
   void (*substitution)(const Substitution&);
 };
 
-/// Those that this processor has, the widest first.
-std::vector<Kernels> kernels_here() {
-  std::vector<Kernels> list;
+/// The widest that this processor has, of at most so many lanes.
+Kernels kernels_here(int lanes) {
 #if defined(__x86_64__)
-  if (__builtin_cpu_supports("avx512f"))
-    list.push_back({8, product_8, transposed_8, substitution_8});
-  if (__builtin_cpu_supports("avx2")) list.push_back({4, product_4, transposed_4, substitution_4});
+  if (lanes >= 8 && __builtin_cpu_supports("avx512f"))
+    return {product_8, transposed_8, substitution_8};
+  if (lanes >= 4 && __builtin_cpu_supports("avx2"))
+    return {product_4, transposed_4, substitution_4};
 #endif
-  list.push_back({2, product_2, transposed_2, substitution_2});
-  return list;
+  return {product_2, transposed_2, substitution_2};
 }
 
-const Kernels& kernels(int at_most = 8) {
-  static const std::vector<Kernels> here = kernels_here();
-  for (const Kernels& k : here)
-    if (k.lanes <= at_most) return k;
-  return here.back();
+const Kernels& kernels(int lanes) {
+  static const Kernels widest = kernels_here(8), four = kernels_here(4), two = kernels_here(2);
+  return lanes >= 8 ? widest : lanes >= 4 ? four : two;
 }
 
 }  // namespace
 
 void multiply(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m, const double* a,
-              std::ptrdiff_t stride, const double* x, double* y, bool add, int lanes) {
-  kernels(lanes).product({inner, m, a, stride, x, y, m, add}, rows);
+              std::ptrdiff_t stride, const double* const* x, const double* const* from, double* y,
+              int lanes) {
+  kernels(lanes).product({inner, m, a, stride, x, from, y, m}, rows);
 }
 
 void multiply_transposed(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m,
-                         const double* at, const double* x, double* y, std::ptrdiff_t y_stride,
-                         bool add, int lanes) {
-  kernels(lanes).transposed({inner, m, at, rows, x, y, y_stride, add}, rows);
+                         const double* at, const double* const* x, double* y,
+                         std::ptrdiff_t y_stride, int lanes) {
+  kernels(lanes).transposed({inner, m, at, rows, x, nullptr, y, y_stride}, rows);
 }
 
 void substitute_lower(std::ptrdiff_t rows, std::ptrdiff_t pivots, std::ptrdiff_t m,

@@ -8,16 +8,18 @@
 /// that the processor has below it is taken.
 namespace titop::solve {
 
-/// y (rows x m) = a (rows x inner, `stride` apart) * x (inner x m), added to y or not, all
-/// row-major; m is a multiple of 8.
+/// y = from + a x: row i of y (rows x m, row-major) is from[i] plus the sum of a(i, k) x[k], where
+/// a is rows x inner, `stride` apart; m is a multiple of 8. Rows of x and `from` stand anywhere;
+/// from[i] may be row i of y.
 void multiply(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m, const double* a,
-              std::ptrdiff_t stride, const double* x, double* y, bool add, int lanes = 8);
+              std::ptrdiff_t stride, const double* const* x, const double* const* from, double* y,
+              int lanes = 8);
 
-/// The same transposed: y (m x rows, `y_stride` apart) = (a x)', added to y or not, where a stands
-/// as its transpose (inner x rows, row-major); rows is a multiple of 4, m of 8.
+/// The same transposed, from 0: y (m x rows, `y_stride` apart) = (a x)', where a stands as its
+/// transpose (inner x rows, row-major); rows is a multiple of 4, m of 8.
 void multiply_transposed(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m,
-                         const double* at, const double* x, double* y, std::ptrdiff_t y_stride,
-                         bool add, int lanes = 8);
+                         const double* at, const double* const* x, double* y,
+                         std::ptrdiff_t y_stride, int lanes = 8);
 
 /// Row by row, x (rows x m, row-major, m a multiple of 8) loses what the rows above bring with
 /// them: L^-1 x where L (rows x pivots, its diagonal 1) stands below the diagonal of lu, rows

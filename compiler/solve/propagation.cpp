@@ -55,7 +55,8 @@ void Propagation::form(std::size_t index) {
 }
 
 /// The rows of a front as they come: nullptr where nothing has reached them yet.
-void Propagation::gather(const Front& f, std::ptrdiff_t m, Space& space) const {
+void Propagation::gather(const Front& f, Space& space) const {
+  const std::ptrdiff_t m = space.m;
   space.come.assign(at(f.row_count), nullptr);
   std::size_t row = 0;
   for (const int r : plan_.list(f.rows)) {
@@ -76,95 +77,94 @@ void Propagation::gather(const Front& f, std::ptrdiff_t m, Space& space) const {
 }
 
 /// What the front's rows give to its unknowns and carry upwards.
-void Propagation::forward(int index, std::ptrdiff_t m, Space& space) const {
+void Propagation::forward(int index, Space& space) const {
+  const std::ptrdiff_t m = space.m;
   const Front& f = plan_.fronts[at(index)];
   const auto& order = factors_.made(at(index)).order;
-  gather(f, m, space);
+  const double* const zeros = space.zeros.data();
+  gather(f, space);
   bool any = false;
-  double* const r = space.pivot_rows.data();
-  for (std::ptrdiff_t i = 0; i < f.pivot_count; ++i) {
-    const double* from = space.come[at(order[at(i)])];
-    any = any || from;
-    from ? std::copy_n(from, m, r + i * m) : std::fill_n(r + i * m, m, 0.0);
+  space.with.clear();
+  for (const int place : order.first(at(f.pivot_count))) {
+    const double* const come = space.come[at(place)];
+    any = any || come;
+    space.with.push_back(come ? come : zeros);
+  }
+  space.from.clear();
+  for (const int place : order.subspan(at(f.pivot_count))) {
+    const double* const come = space.come[at(place)];
+    space.is_carried[at(f.first_carried) + space.from.size()] = any || come;
+    space.from.push_back(come ? come : zeros);
   }
   double* const top = space.z.data() + f.first_unknown * m;
   double* const rest = space.carried.data() + f.first_carried * m;
-  for (std::ptrdiff_t i = f.pivot_count; i < f.row_count; ++i) {
-    double* const to = rest + (i - f.pivot_count) * m;
-    const double* from = space.come[at(order[at(i)])];
-    from ? std::copy_n(from, m, to) : std::fill_n(to, m, 0.0);
-    space.is_carried[at(f.first_carried + i - f.pivot_count)] = any || from;
-  }
-  if (!any) {
-    std::fill_n(top, f.pivot_count * m, 0.0);
+  const Place& p = place_[at(index)];
+  const std::ptrdiff_t n = f.pivot_count, used = any ? n : 0;
+  multiply(f.left_over(), used, m, formed_.data() + p.carry, p.by_pivots, space.with.data(),
+           space.from.data(), rest);
+  if (n == 1 && any) {
+    // A division rounds once, a product with the inverse twice.
+    const double pivot = factors_.made(at(index)).lu.front();
+    for (std::ptrdiff_t j = 0; j < m; ++j) top[j] = space.with.front()[j] / pivot;
     return;
   }
-  const Place& p = place_[at(index)];
-  const std::ptrdiff_t n = f.pivot_count;
-  multiply(f.left_over(), n, m, formed_.data() + p.carry, p.by_pivots, r, rest, true);
-  if (n > 1) return multiply(n, n, m, formed_.data() + p.own, p.by_pivots, r, top, false);
-  // A division rounds once, a product with the inverse twice.
-  const double pivot = factors_.made(at(index)).lu.front();
-  for (std::ptrdiff_t j = 0; j < m; ++j) top[j] = r[j] / pivot;
+  space.from.assign(at(n), zeros);
+  multiply(n, used, m, formed_.data() + p.own, p.by_pivots, space.with.data(), space.from.data(),
+           top);
 }
 
 /// The front's unknowns from those of its border; `add`: something stands there already.
-void Propagation::add_border(int index, std::ptrdiff_t m, bool add, std::vector<double>& z) const {
+void Propagation::add_border(int index, bool add, Space& space) const {
+  const std::ptrdiff_t m = space.m;
   const Front& f = plan_.fronts[at(index)];
-  double* const top = z.data() + f.first_unknown * m;
-  if (!add && f.border_count == 0) std::fill_n(top, f.pivot_count * m, 0.0);
+  double* const top = space.z.data() + f.first_unknown * m;
+  space.with.clear();
+  for (const int v : plan_.list(f.border))
+    for (int i = 0; i < plan_.structure.variable_size[at(v)]; ++i)
+      space.with.push_back(space.z.data() + (plan_.first[at(v)] + i) * m);
+  space.from.clear();
+  for (std::ptrdiff_t i = 0; i < f.pivot_count; ++i)
+    space.from.push_back(add ? top + i * m : space.zeros.data());
   const Place& p = place_[at(index)];
-  const double* w = formed_.data() + p.border;
-  const auto border = plan_.list(f.border);
-  for (std::size_t b = 0; b < border.size();) {
-    const int first = plan_.first[at(border[b])];
-    int size = 0;  // of neighbours among the unknowns, taken together
-    for (; b < border.size() && plan_.first[at(border[b])] == first + size; ++b)
-      size += plan_.structure.variable_size[at(border[b])];
-    multiply(f.pivot_count, size, m, w, p.by_border, z.data() + first * m, top, add);
-    add = true;
-    w += size;
-  }
+  multiply(f.pivot_count, f.border_count, m, formed_.data() + p.border, p.by_border,
+           space.with.data(), space.from.data(), top);
 }
 
-void Propagation::activate(std::span<const int> row_groups, std::span<const double> rhs,
-                           std::ptrdiff_t m, Space& space) const {
-  space.is_active.resize(plan_.fronts.size(), 0);
-  space.is_set.resize(plan_.structure.row_size.size(), 0);
+void Propagation::begin(std::ptrdiff_t m, Space& space) const {
+  space.m = m;
+  grow(space.z, at(plan_.unknowns) * at(m));
+  grow(space.rows, at(plan_.unknowns) * at(m));
+  grow(space.carried, at(plan_.carried) * at(m));
+  space.zeros.assign(at(m), 0);
+  space.set.clear();
+  space.is_set.assign(plan_.structure.row_size.size(), 0);
+  space.is_active.assign(plan_.fronts.size(), 0);
   space.is_carried.resize(at(plan_.carried), 0);
+}
+
+double* Propagation::rhs(int row_group, Space& space) const {
+  double* const rows = space.rows.data() + plan_.row_first[at(row_group)] * space.m;
+  if (space.is_set[at(row_group)]) return rows;
+  space.is_set[at(row_group)] = 1;
+  space.set.push_back(row_group);
+  std::fill_n(rows, plan_.structure.row_size[at(row_group)] * space.m, 0.0);
+  return rows;
+}
+
+void Propagation::activate(Space& space) const {
   space.active.clear();
-  for (const int r : row_groups)
+  for (const int r : space.set)
     for (int f = plan_.front_of_row[at(r)]; f >= 0 && !space.is_active[at(f)];
          f = plan_.fronts[at(f)].parent)
       space.is_active[at(f)] = 1, space.active.push_back(f);
   std::sort(space.active.begin(), space.active.end());
-  const double* from = rhs.data();
-  for (const int r : row_groups) {
-    const std::ptrdiff_t count = plan_.structure.row_size[at(r)] * m;
-    double* const to = space.rows.data() + plan_.row_first[at(r)] * m;
-    if (space.is_set[at(r)])
-      for (std::ptrdiff_t i = 0; i < count; ++i) to[i] += from[i];
-    else
-      std::copy_n(from, count, to);
-    space.is_set[at(r)] = 1;
-    from += count;
-  }
 }
 
-void Propagation::solve(std::span<const int> row_groups, std::span<const double> rhs,
-                        std::ptrdiff_t m, Space& space) const {
-  grow(space.z, at(plan_.unknowns) * at(m));
-  grow(space.rows, at(plan_.unknowns) * at(m));
-  grow(space.carried, at(plan_.carried) * at(m));
-  activate(row_groups, rhs, m, space);
-  std::size_t most = 0;
-  for (const int f : space.active) most = std::max(most, at(plan_.fronts[at(f)].pivot_count));
-  grow(space.pivot_rows, most * at(m));
-  for (const int f : space.active) forward(f, m, space);
+void Propagation::solve(Space& space) const {
+  activate(space);
+  for (const int f : space.active) forward(f, space);
   for (int i = static_cast<int>(plan_.fronts.size()) - 1; i >= 0; --i)
-    add_border(i, m, space.is_active[at(i)], space.z);
-  for (const int f : space.active) space.is_active[at(f)] = 0;
-  for (const int r : row_groups) space.is_set[at(r)] = 0;
+    add_border(i, space.is_active[at(i)], space);
 }
 
 }  // namespace titop::solve

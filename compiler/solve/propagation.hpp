@@ -19,25 +19,31 @@ class Propagation {
 
   /// What one solution needs; each thread has its own.
   struct Space {
-    std::vector<double> z;         ///< the unknowns, in the order of Plan::first (unknowns x m)
-    std::vector<int> active = {};  ///< fronts of the present right-hand sides
-    std::vector<char> is_active = {};
-    std::vector<double> rows = {}, carried = {}, pivot_rows = {};
-    std::vector<char> is_set = {}, is_carried = {};  ///< where rows are not zero
-    std::vector<const double*> come = {};            ///< the rows of the present front
+    std::ptrdiff_t m = 0;                             ///< columns
+    std::vector<double> z = {};                       ///< the unknowns, in the order of Plan::first
+    std::vector<double> rows = {}, carried = {};      ///< right-hand sides, and what goes upwards
+    std::vector<double> zeros = {};                   ///< one row
+    std::vector<int> set = {}, active = {};           ///< row groups with right-hand sides; fronts
+    std::vector<char> is_set = {}, is_active = {};    ///< the same as flags
+    std::vector<char> is_carried = {};                ///< where rows are not zero
+    std::vector<const double*> come = {};             ///< the rows of the present front
+    std::vector<const double*> from = {}, with = {};  ///< rows of a product
   };
 
-  /// Right-hand sides of these row groups, m columns each (a multiple of 8; row-major, group after
-  /// group); the unknowns go to space.z.
-  void solve(std::span<const int> row_groups, std::span<const double> rhs, std::ptrdiff_t m,
-             Space& space) const;
+  /// The next solution has m columns, a multiple of 8, and no right-hand sides yet.
+  void begin(std::ptrdiff_t m, Space& space) const;
+
+  /// Right-hand sides of a row group (its rows x m, row-major), to add to: 0 at first.
+  double* rhs(int row_group, Space& space) const;
+
+  /// The unknowns (unknowns x m, row-major) go to space.z.
+  void solve(Space& space) const;
 
  private:
-  void activate(std::span<const int> row_groups, std::span<const double> rhs, std::ptrdiff_t m,
-                Space& space) const;
-  void gather(const Front& front, std::ptrdiff_t m, Space& space) const;
-  void forward(int front, std::ptrdiff_t m, Space& space) const;
-  void add_border(int front, std::ptrdiff_t m, bool add, std::vector<double>& z) const;
+  void activate(Space& space) const;
+  void gather(const Front& front, Space& space) const;
+  void forward(int front, Space& space) const;
+  void add_border(int front, bool add, Space& space) const;
   void form(std::size_t front);
 
   /// Where a front's matrices begin, row-major one after the other, rows padded to 8.

@@ -22,41 +22,50 @@ std::vector<double> numbers(Rng& rng, std::ptrdiff_t n) {
 
 TEST_CASE("multiply, and the same transposed: as plain loops, to the last bit, at every width") {
   Rng rng(5);
+  const auto at = [](std::ptrdiff_t i) { return static_cast<std::size_t>(i); };
   for (const std::ptrdiff_t rows : {4, 8, 12, 20})
     for (const std::ptrdiff_t inner : {0, 1, 6, 13})
-      for (const std::ptrdiff_t m : {8, 24, 48})
-        for (const bool add : {false, true}) {
-          const std::ptrdiff_t used = rows - (m == 24 ? 1 : 0);  // any number of rows
-          const auto a = numbers(rng, rows * (inner + 2)), x = numbers(rng, inner * m),
-                     start = numbers(rng, rows * m);
-          std::vector<double> plain = start, transposed(start.size()), at;
-          for (std::ptrdiff_t i = 0; i < rows; ++i)
-            for (std::ptrdiff_t j = 0; j < m; ++j) {
-              double sum = add ? start[static_cast<std::size_t>(i * m + j)] : 0;
-              for (std::ptrdiff_t k = 0; k < inner; ++k)
-                sum += a[static_cast<std::size_t>(i * (inner + 2) + k)] *
-                       x[static_cast<std::size_t>(k * m + j)];
-              if (i < used) plain[static_cast<std::size_t>(i * m + j)] = sum;
-              transposed[static_cast<std::size_t>(j * rows + i)] = sum;
+      for (const std::ptrdiff_t m : {8, 24, 48}) {
+        const std::ptrdiff_t used = rows - (m == 24 ? 1 : 0);  // any number of rows
+        const auto a = numbers(rng, rows * (inner + 2)), x = numbers(rng, 2 * inner * m),
+                   start = numbers(rng, rows * m);
+        std::vector<double> plain = start, transposed(start.size()), a_transposed;
+        std::vector<const double*> x_rows;  // some row or other between those that are read
+        for (std::ptrdiff_t k = 0; k < inner; ++k) x_rows.push_back(x.data() + (2 * k + k % 2) * m);
+        for (std::ptrdiff_t i = 0; i < rows; ++i)
+          for (std::ptrdiff_t j = 0; j < m; ++j) {
+            double sum = start[at(i * m + j)], from_zero = 0;
+            for (std::ptrdiff_t k = 0; k < inner; ++k) {
+              const double product = a[at(i * (inner + 2) + k)] * x_rows[at(k)][j];
+              sum += product, from_zero += product;
             }
-          for (std::ptrdiff_t k = 0; k < inner; ++k)
-            for (std::ptrdiff_t i = 0; i < rows; ++i)
-              at.push_back(a[static_cast<std::size_t>(i * (inner + 2) + k)]);
-          for (const int lanes : {8, 4, 2}) {
-            INFO(rows, " x ", inner, " x ", m, ", ", lanes, " lanes");
-            std::vector<double> y = start, yt(start.size());
-            for (std::ptrdiff_t i = 0; i < rows; ++i)
-              for (std::ptrdiff_t j = 0; j < m; ++j)
-                yt[static_cast<std::size_t>(j * rows + i)] =
-                    start[static_cast<std::size_t>(i * m + j)];
-            titop::solve::multiply(used, inner, m, a.data(), inner + 2, x.data(), y.data(), add,
-                                   lanes);
-            titop::solve::multiply_transposed(rows, inner, m, at.data(), x.data(), yt.data(), rows,
-                                              add, lanes);
-            CHECK(y == plain);
-            CHECK(yt == transposed);
+            if (i < used) plain[at(i * m + j)] = sum;
+            transposed[at(j * rows + i)] = from_zero;
           }
+        for (std::ptrdiff_t k = 0; k < inner; ++k)
+          for (std::ptrdiff_t i = 0; i < rows; ++i)
+            a_transposed.push_back(a[at(i * (inner + 2) + k)]);
+        for (const int lanes : {8, 4, 2}) {
+          INFO(rows, " x ", inner, " x ", m, ", ", lanes, " lanes");
+          std::vector<double> y = start, elsewhere = start, yt(start.size(), 7);
+          const auto rows_of = [&](const std::vector<double>& of) {
+            std::vector<const double*> list;
+            for (std::ptrdiff_t i = 0; i < used; ++i) list.push_back(of.data() + i * m);
+            return list;
+          };
+          const auto multiply = [&](const std::vector<double>& from, std::vector<double>& to) {
+            titop::solve::multiply(used, inner, m, a.data(), inner + 2, x_rows.data(),
+                                   rows_of(from).data(), to.data(), lanes);
+          };
+          multiply(y, y);
+          multiply(start, elsewhere);
+          titop::solve::multiply_transposed(rows, inner, m, a_transposed.data(), x_rows.data(),
+                                            yt.data(), rows, lanes);
+          CHECK(y == plain);
+          CHECK(elsewhere == plain);
+          CHECK(yt == transposed);
         }
+      }
 }
 
 TEST_CASE("substitutions: as plain loops, to the last bit, at every width") {
