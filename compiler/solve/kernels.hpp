@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <complex>
 #include <cstddef>
+#include <titop/compiler/solve/row_sums.hpp>
 #include <type_traits>
 
 /// The inner loops: y -= a x and its like over contiguous entries. Plain loops that a compiler
@@ -46,9 +48,45 @@ inline void subtract_rows(std::ptrdiff_t count, const T* l, const T* x, std::ptr
     y[0] = sum;
     return;
   }
-  for (std::ptrdiff_t k = 0; k < count; ++k)
-    if (l[k] != T(0)) subtract(m, l[k], x + k * m, y);
+  if constexpr (std::is_same_v<T, double> || std::is_same_v<T, std::complex<double>>)
+    subtract_sum(count, l, x, m, y);
+  else
+    for (std::ptrdiff_t k = 0; k < count; ++k)
+      if (l[k] != T(0)) subtract(m, l[k], x + k * m, y);
 }
+
+/// x / by, for one `by` and many x.
+template <class T>
+class Divisor {
+ public:
+  explicit Divisor(const T& by) : by_(by) {}
+  T operator()(const T& x) const { return x / by_; }
+
+ private:
+  T by_;
+};
+
+/// Complex numbers by Smith's formula [Smith 1962], to a few units of the last place of |x / by|:
+/// nothing is squared. The language's own also looks for infinities and takes several times as
+/// long.
+template <class T>
+  requires std::is_floating_point_v<T>
+class Divisor<std::complex<T>> {
+ public:
+  explicit Divisor(const std::complex<T>& by)
+      : by_re_(std::abs(by.real()) >= std::abs(by.imag())),
+        ratio_(by_re_ ? by.imag() / by.real() : by.real() / by.imag()),
+        whole_(by_re_ ? by.real() + by.imag() * ratio_ : by.real() * ratio_ + by.imag()) {}
+  std::complex<T> operator()(const std::complex<T>& x) const {
+    if (by_re_)
+      return {(x.real() + x.imag() * ratio_) / whole_, (x.imag() - x.real() * ratio_) / whole_};
+    return {(x.real() * ratio_ + x.imag()) / whole_, (x.imag() * ratio_ - x.real()) / whole_};
+  }
+
+ private:
+  bool by_re_;  ///< the larger part
+  T ratio_, whole_;
+};
 
 /// y += a x, n entries.
 inline void add(std::ptrdiff_t n, double a, const double* x, double* y) {

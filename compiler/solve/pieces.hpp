@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/numbers.hpp>
 #include <titop/compiler/solve/scalar.hpp>
@@ -7,7 +9,7 @@
 /// The matrices that pieces of rows are made of, and their products.
 namespace titop::solve {
 
-inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
+inline std::size_t at(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
 
 /// A rectangle of a matrix of scalars T, in either order of storage.
 template <class T>
@@ -47,10 +49,13 @@ void subtract_product(double sign, const View<L>& l, const T* x, std::ptrdiff_t 
     }
     return;
   }
+  constexpr std::ptrdiff_t kTogether = 16;
+  std::array<T, kTogether> a;
   for (std::ptrdiff_t i = 0; i < l.rows; ++i)
-    for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
-      const T a = times(lift<T>(l(i, k)), sign);
-      if (a != T(0)) subtract(m, a, x + k * m, to + i * m);
+    for (std::ptrdiff_t k = 0; k < l.cols; k += kTogether) {
+      const std::ptrdiff_t count = std::min(kTogether, l.cols - k);
+      for (std::ptrdiff_t j = 0; j < count; ++j) a[at(j)] = times(lift<T>(l(i, k + j)), sign);
+      subtract_rows(count, a.data(), x + k * m, m, to + i * m);
     }
 }
 

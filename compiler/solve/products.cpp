@@ -1,26 +1,9 @@
-#include <titop/compiler/solve/kernels.hpp>
+#include <titop/compiler/solve/lanes.hpp>
 #include <titop/compiler/solve/products.hpp>
 #include <titop/graph/linalg/wide.hpp>
 
 namespace titop::solve {
 namespace {
-
-/// N entries in one register; those of Loose may stand anywhere.
-template <int N>
-using Lanes __attribute__((vector_size(8 * N))) = double;
-template <class L>
-using Loose __attribute__((aligned(8), may_alias)) = L;
-
-// By reference: a vector returned by value has another ABI without AVX. Not by memcpy: g++ 12 then
-// takes a register in and out of memory in between.
-template <class L>
-[[gnu::always_inline]] inline void load(L& to, const double* from) {
-  to = *reinterpret_cast<const Loose<L>*>(from);
-}
-template <class L>
-[[gnu::always_inline]] inline void store(double* to, const L& from) {
-  *reinterpret_cast<Loose<L>*>(to) = from;
-}
 
 struct Product {
   std::ptrdiff_t inner, m;
@@ -44,7 +27,7 @@ struct Substitution {
 /// entry of x that is loaded serves all rows. (By value: what is stored could be the product's.)
 template <class L, int C, int R>
 [[gnu::always_inline]] inline void rows_of_product(const Product p, std::ptrdiff_t i) {
-  constexpr std::ptrdiff_t n = sizeof(L) / sizeof(double);
+  constexpr std::ptrdiff_t n = kLanes<L>;
   constexpr std::size_t width = C, height = R;
   const double* const a = p.a + i * p.stride;
   double* const y = p.y + i * p.y_stride;
@@ -99,7 +82,7 @@ template <class L>
 
 template <class L>
 [[gnu::always_inline]] inline void substitution(const Substitution& s) {
-  constexpr std::ptrdiff_t n = sizeof(L) / sizeof(double);
+  constexpr std::ptrdiff_t n = kLanes<L>;
   if (s.upper)
     for (std::ptrdiff_t r = s.pivots - 1; r >= 0; --r)
       for (std::ptrdiff_t j = 0; j < s.m; j += n) substitute_row<L>(s, r, r + 1, s.pivots, j, true);
@@ -120,7 +103,7 @@ template <class L, int C>
 /// `Rest`: for the last four rows, where L is longer.
 template <class L, class Rest>
 [[gnu::always_inline]] inline void transposed(const Product& p, std::ptrdiff_t rows) {
-  constexpr std::ptrdiff_t n = sizeof(L) / sizeof(double), rest = sizeof(Rest) / sizeof(double);
+  constexpr std::ptrdiff_t n = kLanes<L>, rest = kLanes<Rest>;
   for (std::ptrdiff_t j = 0; j < p.m; j += 8) {
     std::ptrdiff_t i = 0;
     for (; i + n <= rows; i += n) transposed_tile<L>(p, i, j);
@@ -128,7 +111,6 @@ template <class L, class Rest>
   }
 }
 
-// A register's width must be the processor's own: a compiler keeps sums of another width in memory.
 void product_2(const Product& p, std::ptrdiff_t rows) { product<Lanes<2>, 2>(p, rows); }
 void transposed_2(const Product& p, std::ptrdiff_t rows) {
   transposed<Lanes<2>, Lanes<2>>(p, rows);
@@ -157,20 +139,19 @@ struct Kernels {
   void (*substitution)(const Substitution&);
 };
 
-/// The widest that this processor has, of at most so many lanes.
-Kernels kernels_here(int lanes) {
+Kernels kernels_here(int at_most) {
 #if defined(__x86_64__)
-  if (lanes >= 8 && __builtin_cpu_supports("avx512f"))
-    return {product_8, transposed_8, substitution_8};
-  if (lanes >= 4 && __builtin_cpu_supports("avx2"))
-    return {product_4, transposed_4, substitution_4};
+  switch (lanes_here(at_most)) {
+    case 8: return {product_8, transposed_8, substitution_8};
+    case 4: return {product_4, transposed_4, substitution_4};
+  }
 #endif
   return {product_2, transposed_2, substitution_2};
 }
 
-const Kernels& kernels(int lanes) {
+const Kernels& kernels(int at_most) {
   static const Kernels widest = kernels_here(8), four = kernels_here(4), two = kernels_here(2);
-  return lanes >= 8 ? widest : lanes >= 4 ? four : two;
+  return at_most >= 8 ? widest : at_most >= 4 ? four : two;
 }
 
 }  // namespace

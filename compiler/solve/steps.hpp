@@ -32,12 +32,13 @@ template <class T, class Size>
                                                    std::ptrdiff_t rows, std::ptrdiff_t n, T* a,
                                                    double* bounds, Size size) {
   const T* from = a + k * n + k;
+  const Divisor<T> over(from[0]);
   const double* const bound = bounds + k * n + k + 1;
   const std::ptrdiff_t right = end - k - 1;
   for (std::ptrdiff_t i = k + 1; i < rows; ++i) {
     T* to = a + i * n + k;
     if (to[0] == T(0)) continue;
-    const T l = to[0] / from[0];
+    const T l = over(to[0]);
     to[0] = l;
     subtract(right, l, from + 1, to + 1);
     add(right, size(l), bound, bounds + i * n + k + 1);

@@ -93,7 +93,8 @@ void backward(const Plan& plan, const Front& f, const typename Factors<T>::Made&
       u += size;
     }
     if (i + 1 < f.pivot_count) subtract_rows(f.pivot_count - i - 1, row + i + 1, to + m, m, to);
-    for (std::ptrdiff_t j = 0; j < m; ++j) to[j] /= row[i];
+    const Divisor<T> over(row[i]);
+    for (std::ptrdiff_t j = 0; j < m; ++j) to[j] = over(to[j]);
   }
 }
 

@@ -53,7 +53,7 @@ void whole_steps(Front<T>& f, std::ptrdiff_t pivots) {
   for (std::ptrdiff_t k = 0; k < pivots; ++k)
     for (std::ptrdiff_t i = k + 1; i < f.rows; ++i) {
       if (f.at(i, k) == T(0)) continue;
-      const T l = f.at(i, k) /= f.at(k, k);
+      const T l = f.at(i, k) = titop::solve::Divisor<T>(f.at(k, k))(f.at(i, k));
       for (std::ptrdiff_t j = k + 1; j < f.n; ++j) {
         titop::solve::subtract(1, l, &f.at(k, j), &f.at(i, j));
         f.bound(i, j) += titop::solve::size_of(l) * f.bound(k, j);
