@@ -10,6 +10,7 @@
 #include <titop/compiler/ahead.hpp>
 #include <titop/compiler/compile_graph.hpp>
 #include <titop/compiler/dot.hpp>
+#include <titop/compiler/keep_memory.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/reduce/reduce.hpp>
 #include <titop/compiler/system_data.hpp>
@@ -147,6 +148,7 @@ System compile(const Diagram& diagram, const Options& options) {
 namespace detail {
 
 std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Options& options) {
+  keep_memory();
   const auto made = [&](double least) {
     auto data = run(as_written(graph), options, least);
     timed(*data, "certify", [&] { certify_now(*data); });
