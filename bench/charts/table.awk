@@ -190,8 +190,8 @@ function limit_table(   i, part) {
 END {
   print "# Measured\n"
   print "Written by `bench/run`, read in [README.md](README.md); in one run on " cpu ", " cores \
-    " cores, " when ", " compiler ", Octave " octave " with OpenBLAS. Each time is the best of some" \
-    " repetitions. titop starts from a built Diagram; the others get the scene as matrices, free of" \
+    " cores, " when ", " compiler ", Octave " octave " with OpenBLAS. Each time is that of the" \
+    " fastest run. titop starts from a built Diagram; the others get the scene as matrices, free of" \
     " charge: blocks, u = K y + E w, z = F y + G w, free channels inverted beforehand; of R and G," \
     " where chains close, mass, damping, stiffness and constraints of all bodies and joints."
   head("First compile, to the dense model in a warm buffer", "memset of A")
