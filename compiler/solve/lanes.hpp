@@ -5,11 +5,14 @@
 /// processor has is called.
 namespace titop::solve {
 
-/// N doubles in one register; those of Loose may stand anywhere.
+/// N doubles in one register.
 template <int N>
 using Lanes __attribute__((vector_size(8 * N))) = double;
+/// Such numbers wherever they stand. (A struct: clang drops the attributes of an alias template.)
 template <class L>
-using Loose __attribute__((aligned(8), may_alias)) = L;
+struct __attribute__((packed, may_alias)) Loose {
+  L lanes;
+};
 
 template <class L>
 constexpr int kLanes = static_cast<int>(sizeof(L) / sizeof(double));
@@ -18,11 +21,11 @@ constexpr int kLanes = static_cast<int>(sizeof(L) / sizeof(double));
 // takes a register in and out of memory in between.
 template <class L>
 [[gnu::always_inline]] inline void load(L& to, const double* from) {
-  to = *reinterpret_cast<const Loose<L>*>(from);
+  to = reinterpret_cast<const Loose<L>*>(from)->lanes;
 }
 template <class L>
 [[gnu::always_inline]] inline void store(double* to, const L& from) {
-  *reinterpret_cast<Loose<L>*>(to) = from;
+  reinterpret_cast<Loose<L>*>(to)->lanes = from;
 }
 
 /// The widest registers that this processor has, of at most so many lanes: 8, 4 or 2.
