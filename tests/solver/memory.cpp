@@ -23,6 +23,13 @@ Diagram chain(int n) {
   return d;
 }
 
+/// Other libraries and sanitizers have a way of their own with memory.
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+constexpr bool kKeeps = true;
+#else
+constexpr bool kKeeps = false;
+#endif
+
 long page_faults() {
   rusage usage{};
   REQUIRE(getrusage(RUSAGE_SELF, &usage) == 0);
@@ -31,8 +38,6 @@ long page_faults() {
 
 }  // namespace
 
-// Other libraries and sanitizers have a way of their own with memory.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
 TEST_CASE("memory: another s takes what the one before has freed") {
   const System system = compile(chain(1000), {.minimize_up_to = 0});
   const auto responses = [&](int count) {
@@ -42,6 +47,5 @@ TEST_CASE("memory: another s takes what the one before has freed") {
   const long before = page_faults();
   responses(50);
   // One transfer takes 100 pages and more.
-  CHECK(page_faults() - before <= 50);
+  if (kKeeps) CHECK(page_faults() - before <= 50);
 }
-#endif
