@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
+#include <optional>
 #include <string>
 #include <titop/titop.hpp>
 
