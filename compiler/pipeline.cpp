@@ -10,7 +10,7 @@
 #include <titop/compiler/ahead.hpp>
 #include <titop/compiler/compile_graph.hpp>
 #include <titop/compiler/dot.hpp>
-#include <titop/compiler/keep_memory.hpp>
+#include <titop/compiler/memory.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/reduce/reduce.hpp>
 #include <titop/compiler/system_data.hpp>

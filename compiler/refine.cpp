@@ -36,7 +36,7 @@ double Evaluation<T>::improve() {
 template <class T>
 solve::RowMatrix<T> Evaluation<T>::rounding_of(const solve::RowMatrix<double>& magnitudes) {
   SteadyRandom random;
-  solve::RowMatrix<T> result(magnitudes.rows(), magnitudes.cols());
+  auto result = solve::unwritten<T>(magnitudes.rows(), magnitudes.cols());
   for (Eigen::Index i = 0; i < result.rows(); ++i) {
     const double unit = random.unit() * solve::Scalar<T>::epsilon();
     for (Eigen::Index j = 0; j < result.cols(); ++j)
@@ -51,7 +51,7 @@ typename Evaluation<T>::Losses Evaluation<T>::losses() {
   solve::RowMatrix<double> magnitudes;
   const solve::RowMatrix<T> residual = rows_.residual(rhs_, unknowns_, &magnitudes);
   const auto m = residual.cols();
-  solve::RowMatrix<T> both(residual.rows(), 2 * m);
+  auto both = solve::unwritten<T>(residual.rows(), 2 * m);
   both << residual, rounding_of(magnitudes);
   const solve::RowMatrix<T> changes = factors_->solve(both);
   unknowns_ += changes.leftCols(m);

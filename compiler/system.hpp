@@ -191,7 +191,7 @@ class System {
 /// Compiles a diagram: check, lower, split, chains, match, order, close, solve, certify (see
 /// compiler/pipeline.cpp, which reads like this line). Throws Error with all mistakes of the first
 /// pass that finds any. Cost: linear in the number of bodies for trees. From the first compile on,
-/// glibc keeps up to 64 MB of freed memory in the process (see compiler/keep_memory.hpp).
+/// glibc keeps up to 64 MB of freed memory in the process (see compiler/memory.hpp).
 System compile(const Diagram& diagram, const Options& options = {});
 
 }  // namespace titop

@@ -63,8 +63,8 @@ struct Factors<T>::Work {
 
   void begin(const Front& front, Lot& lot, Made& made) {
     m = &made, rows = front.row_count, pivots = front.pivot_count, n = front.columns();
-    lu = lot.entries.get() + (made.lu.data() - lot.entries.get());
-    order = lot.rows.get() + (made.order.data() - lot.rows.get());
+    lu = lot.entries.data() + (made.lu.data() - lot.entries.data());
+    order = lot.rows.data() + (made.order.data() - lot.rows.data());
     std::fill_n(lu, made.lu.size(), T(0));
     std::iota(order, order + rows, 0);
     keeps.assign(at(rows), 1);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 #include <titop/compiler/solve/plan.hpp>
+#include <titop/compiler/solve/storage.hpp>
 #include <vector>
 
 /// Elimination along the junctions: a row-merging LU of a block-sparse square system, front by
@@ -53,10 +54,6 @@ struct Patch {
   int unknown = -1;  ///< scalar unknown, in the order of Plan::first
   double value = 1;  ///< of the size of its row and column
 };
-
-/// Row-major, so that the columns of a right-hand side stand side by side.
-template <class T>
-using RowMatrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// Powers of two that give the columns of each front the same size, one for all that share a unit:
 /// found once from real numbers, they serve every s and new values near the old ones
@@ -115,10 +112,9 @@ class Factors {
   struct Work;
   /// Fronts that are made together, and the memory of their numbers.
   struct Lot {
-    std::vector<Made> made = {};
-    std::unique_ptr<T[]> entries;
-    std::unique_ptr<int[]> rows;
-    std::size_t size = 0;  ///< of `entries`
+    std::vector<Made> made;
+    Storage<T> entries;
+    Storage<int> rows;
   };
 
   std::shared_ptr<Lot> lot_of(std::span<const int> fronts) const;

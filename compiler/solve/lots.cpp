@@ -15,18 +15,16 @@ std::size_t at(int i) { return static_cast<std::size_t>(i); }
 /// Room for these fronts.
 template <class T>
 std::shared_ptr<typename Factors<T>::Lot> Factors<T>::lot_of(std::span<const int> fronts) const {
-  auto lot = std::make_shared<Lot>();
-  std::size_t row_count = 0;
+  std::size_t entry_count = 0, row_count = 0;
   for (const int f : fronts) {
     const Front& front = plan_->fronts[at(f)];
-    lot->size += front.entries();
+    entry_count += front.entries();
     row_count += at(front.row_count);
   }
-  lot->entries = std::make_unique_for_overwrite<T[]>(lot->size);
-  lot->rows = std::make_unique_for_overwrite<int[]>(row_count);
-  lot->made.resize(fronts.size());
-  const T* entry = lot->entries.get();
-  const int* row = lot->rows.get();
+  const auto lot = std::make_shared<Lot>(std::vector<Made>(fronts.size()), Storage<T>(entry_count),
+                                         Storage<int>(row_count));
+  const T* entry = lot->entries.data();
+  const int* row = lot->rows.data();
   for (std::size_t i = 0; i < fronts.size(); ++i) {
     const Front& front = plan_->fronts[at(fronts[i])];
     Made& m = lot->made[i];
@@ -49,8 +47,8 @@ void Factors<T>::tidy() {
   std::vector<int> all(fronts_.size());
   std::iota(all.begin(), all.end(), 0);
   const std::shared_ptr<Lot> lot = lot_of(all);
-  T* entry = lot->entries.get();
-  int* row = lot->rows.get();
+  T* entry = lot->entries.data();
+  int* row = lot->rows.data();
   for (Made& made : lot->made) {
     const Made& from = *fronts_[at(made.front)];
     entry = std::ranges::copy(from.lu, entry).out;
@@ -67,7 +65,7 @@ void Factors<T>::tidy() {
 template <class T>
 std::size_t Factors<T>::entries_held() const {
   std::size_t held = 0;
-  for (const auto& lot : lots_) held += lot->size;
+  for (const auto& lot : lots_) held += lot->entries.size();
   return held;
 }
 

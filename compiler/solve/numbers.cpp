@@ -82,7 +82,8 @@ void JointRows<T>::add_state(const Piece& p, int r, T* to, std::ptrdiff_t stride
 template <class T>
 RowMatrix<T> JointRows<T>::rhs(const RowMatrix<T>& known, std::span<const int> first) const {
   const Plan& plan = *joint_.plan;
-  RowMatrix<T> result = RowMatrix<T>::Zero(plan.unknowns, known.cols());
+  auto result = unwritten<T>(plan.unknowns, known.cols());
+  result.setZero();
   for (int r = 0; r < static_cast<int>(joint_.rows.size()); ++r)
     for (const Piece& p : joint_.row(r))
       if (p.entry < 0)

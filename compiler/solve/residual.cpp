@@ -108,7 +108,8 @@ RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>&
   const auto sizes = [](const RowMatrix<T>& x) -> RowMatrix<double> {
     return x.unaryExpr([](const T& entry) { return size_of(entry); });
   };
-  RowMatrix<T> result = rhs;
+  auto result = unwritten<T>(rhs.rows(), m);
+  result = rhs;
   RowMatrix<double> x_sizes;
   if (magnitudes) *magnitudes = sizes(rhs), x_sizes = sizes(unknowns);
   std::vector<T> room;

@@ -116,7 +116,7 @@ template <class T>
 RowMatrix<T> Factors<T>::solve(const RowMatrix<T>& rhs) const {
   const Plan& plan = *plan_;
   const std::ptrdiff_t m = rhs.cols();
-  RowMatrix<T> z(plan.unknowns, m), carried(plan.carried, m);
+  auto z = unwritten<T>(plan.unknowns, m), carried = unwritten<T>(plan.carried, m);
   if (m == 1) {
     RowMatrix<T> rows(plan.unknowns, 1);  // of one front: never more
     const std::size_t count = fronts_.size();

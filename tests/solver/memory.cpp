@@ -1,11 +1,16 @@
 #include <doctest/doctest.h>
 #include <sys/resource.h>
 
+#include <complex>
+#include <cstdint>
+#include <fstream>
 #include <optional>
+#include <sstream>
 #include <string>
+#include <titop/compiler/solve/storage.hpp>
 #include <titop/titop.hpp>
 
-/// What is taken and freed at every s stays in the process.
+/// What is taken and freed at every s stays in the process; what is large comes in large pages.
 
 using namespace titop;
 
@@ -37,7 +42,42 @@ long page_faults() {
   return usage.ru_minflt;
 }
 
+/// What the kernel knows of the memory at an address (VmFlags of proc(5)); nothing where it does
+/// not say.
+std::string flags_of(const void* address) {
+  std::ifstream maps("/proc/self/smaps");
+  const auto place = reinterpret_cast<std::uintptr_t>(address);
+  bool here = false;
+  for (std::string line; std::getline(maps, line);) {
+    std::istringstream words(line);
+    std::uintptr_t first = 0, end = 0;
+    char dash = 0;
+    if (words >> std::hex >> first >> dash >> end && dash == '-')
+      here = first <= place && place < end;
+    if (here && line.starts_with("VmFlags:")) return line + " ";
+  }
+  return {};
+}
+
 }  // namespace
+
+TEST_CASE("memory: what is large comes in large pages, where the system has such") {
+  const bool has = std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled").good();
+  const auto large = [&](const void* address) {
+    const std::string flags = flags_of(address);
+    return flags.empty() || flags.find(" hg ") != std::string::npos;
+  };
+  constexpr std::size_t kCount = std::size_t{4} << 20;  // 64 MB
+  const solve::Storage<std::complex<double>> numbers(kCount);
+  const auto matrix = solve::unwritten<double>(kCount, 2);
+#if defined(__GLIBC__)
+  if (has) {
+    CHECK(large(numbers.data() + kCount / 2));
+    CHECK(large(matrix.data() + kCount));
+  }
+#endif
+  CHECK(numbers.size() == kCount);
+}
 
 TEST_CASE("memory: another s takes what the one before has freed") {
   const System system = compile(chain(1000), {.minimize_up_to = 0});

@@ -1,7 +1,10 @@
-#include <cstddef>
+#include <cstdint>
 #include <cstdlib>
 #include <mutex>
-#include <titop/compiler/keep_memory.hpp>
+#include <titop/compiler/memory.hpp>
+#if defined(__GLIBC__)
+#include <sys/mman.h>
+#endif
 
 namespace titop::detail {
 
@@ -17,6 +20,17 @@ void keep_memory() {
     void* volatile block = std::malloc(kJustBelow);  // volatile: else no block is taken
     std::free(block);
   });
+#endif
+}
+
+void take_large_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
+#if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
+  constexpr std::size_t kLarge = std::size_t{4} << 20, kPage = 4096;
+  if (bytes < kLarge) return;
+  const auto first = (reinterpret_cast<std::uintptr_t>(begin) + kPage - 1) / kPage * kPage;
+  const auto end = reinterpret_cast<std::uintptr_t>(begin) + bytes;
+  // Advice: where it is not taken, pages are small.
+  madvise(reinterpret_cast<void*>(first), (end - first) / kPage * kPage, MADV_HUGEPAGE);
 #endif
 }
 
