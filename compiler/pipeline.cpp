@@ -132,6 +132,21 @@ void certify_now(detail::SystemData& data) {
   data.checked();
 }
 
+/// All passes, and the certificate; once more where it says that double takes rounding for a pivot.
+/// `note` adds to the notes of what was made.
+template <class Begin, class Note>
+std::shared_ptr<const detail::SystemData> decided(Begin begin, const Options& options, Note note) {
+  const auto made = [&](double least) {
+    auto data = run(begin(), options, least);
+    note(*data);
+    timed(*data, "certify", [&] { certify_now(*data); });
+    return data;
+  };
+  auto data = made(0);
+  const double least = data->checked().least;
+  return least > 0 ? made(least) : data;
+}
+
 }  // namespace
 
 Stage as_written(const Graph& graph) {
@@ -149,25 +164,23 @@ namespace detail {
 
 std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Options& options) {
   keep_memory();
-  const auto made = [&](double least) {
-    auto data = run(as_written(graph), options, least);
-    timed(*data, "certify", [&] { certify_now(*data); });
-    return data;
-  };
-  auto data = made(0);
-  const double least = data->checked().least;
-  return least > 0 ? made(least) : data;
+  return decided([&] { return as_written(graph); }, options, [](SystemData&) {});
 }
 
-std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector<double>& values) {
-  Stage stage;
-  stage.source = old.stage.source;
-  stage.values = values;
-  stage.before = old.stage.dependents;
-  stage.motions = old.stage.motions;
+std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
+                                                const std::vector<double>& values,
+                                                const std::function<void(SystemData&)>& note) {
+  const auto begin = [&] {
+    Stage stage;
+    stage.source = old.stage.source;
+    stage.values = values;
+    stage.before = old.stage.dependents;
+    stage.motions = old.stage.motions;
+    return stage;
+  };
   Options options = old.options;
   options.dump_to.clear();
-  return run(std::move(stage), options);
+  return decided(begin, options, note);
 }
 
 }  // namespace detail

@@ -83,7 +83,8 @@ class System {
   const std::vector<std::string>& outputs() const&;
   std::vector<std::string> outputs() const&& { return outputs(); }
 
-  /// xdot and y of x and u, through the factors: O(bodies).
+  /// xdot and y of x (as states() lists them) and u (as inputs()), through the factors: O(bodies).
+  /// Throws size where x or u has another size.
   struct Rates {
     Eigen::VectorXd xdot, y;
   };
@@ -105,17 +106,20 @@ class System {
 
   /// transfer(j omega, precision) for each omega [rad/s], on `threads` threads (0: all cores, or
   /// one where a thread would cost more than it saves); the same to the last bit whatever their
-  /// number. O(bodies) per frequency.
+  /// number. O(bodies) per frequency. Throws what `transfer` throws: of several omega the first,
+  /// such as one on an undamped pole.
   std::vector<Eigen::MatrixXcd> frequency_response(
       std::span<const double> omega, int threads = 0,
       Precision precision = Precision::as_needed) const;
 
   /// transfer(0), real. Throws singular if the system has a pole at 0 (a free hinge, an
-  /// integrator).
+  /// integrator). Where a block has a pole at 0 that the system has not (a hinge held by a spring),
+  /// transfer(0) throws, and the gain is that of state_space(): its cost and its digits.
   Eigen::MatrixXd static_gain() const;
 
-  /// The minimal dense model. The first call writes it (O(n^2) per output of it) and, up to
-  /// Options::minimize_up_to states, minimizes it (O(n^3)); later calls return the same.
+  /// The dense model. The first call writes it, O(n^2), and, up to Options::minimize_up_to states,
+  /// minimizes it, O(n^3): log() says where it did not. Later calls return the same. Throws
+  /// not_finite where numbers overflow.
   const StateSpace& state_space() const&;
   StateSpace state_space() const&& { return state_space(); }
 
@@ -147,7 +151,8 @@ class System {
   /// found, that of all where pivots have lost half their digits (Certificate::plans_renewed counts
   /// both); the numbers are then those of a fresh compile, to rounding.
   /// Pivots are judged at once; the rest of the certificate, and the warnings that come of it, are
-  /// found when certificate(), notes(), log() or state_space() is first asked for: O(bodies).
+  /// found when certificate(), notes(), log() or state_space() is first asked for: O(bodies). Among
+  /// these is a loop that the new values make singular where no pivot shows it.
   /// `minimize` is no part of it: state_space() of the new system judges the new values, and may
   /// have another order (Options::minimize_up_to = 0 keeps all states at all values). Throws
   /// unknown_name (with the names there are), not_finite, what the blocks throw for values that
@@ -177,7 +182,7 @@ class System {
   /// Seconds per pass, in their order. Not part of log(), which is the same on every machine.
   const std::vector<std::pair<std::string, double>>& seconds() const&;
   std::vector<std::pair<std::string, double>> seconds() const&& { return seconds(); }
-  /// The graph after the passes (for diagrams: `to_dot(system.graph())`).
+  /// The graph after the passes (for diagrams: `to_dot(system.stage())`).
   const Stage& stage() const&;
   Stage stage() const&& { return stage(); }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -162,9 +163,11 @@ void worst_margin(const SystemData& data, std::span<const double> margins, Check
 /// more, of sums of them.
 void judge_internal_forces(Skeleton& skeleton, const SystemData& data);
 
-/// All passes once more for these values of the parameters. States that followed from the others
-/// still do, where that keeps the digits.
-std::shared_ptr<SystemData> compile_again(const Skeleton& old, const std::vector<double>& values);
+/// All passes and the certificate once more for these values of the parameters. States that
+/// followed from the others still do, where that keeps the digits. `note` adds to the notes.
+std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
+                                                const std::vector<double>& values,
+                                                const std::function<void(SystemData&)>& note);
 
 /// Potential energy x' E x / 2 of the model's states (order x order): of closed chains, whose
 /// independent coordinates share springs. Empty where a block does not say what it stores. O(n^3).

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/passes/passes.hpp>
+#include <titop/compiler/reduce/weak_pivot.hpp>
 #include <titop/compiler/system_data.hpp>
 
 /// New values of the parameters on the same plan: only what depends on them is made again.
@@ -200,17 +201,16 @@ std::string text_of(const Skeleton& k, const std::vector<int>& changed, Paramete
 
 /// All passes again; says so, and whether the states are others.
 System compiled_again(const SystemData& old, const std::vector<int>& changed,
-                      const std::vector<double>& values) {
-  auto d = compile_again(*old.skeleton, values);
-  d->plans_renewed = old.plans_renewed + 1;
-  d->notes.push_back({Note::Kind::info, "update",
-                      fmt::format("{}: closed chains or the equations' terms change, all compiled "
-                                  "again",
-                                  text_of(*old.skeleton, changed, values))});
-  if (d->state_names() != old.state_names())
-    d->notes.push_back({Note::Kind::warning, "update",
-                        "other states depend on the rest than before: the model's states differ"});
-  return System(std::move(d));
+                      const std::vector<double>& values, const char* why) {
+  return System(compile_again(*old.skeleton, values, [&](SystemData& d) {
+    d.plans_renewed = old.plans_renewed + 1;
+    d.notes.push_back(
+        {Note::Kind::info, "update",
+         fmt::format("{}: {}, all compiled again", text_of(*old.skeleton, changed, values), why)});
+    if (d.state_names() != old.state_names())
+      d.notes.push_back({Note::Kind::warning, "update",
+                         "other states depend on the rest than before: the model's states differ"});
+  }));
 }
 
 /// True where a value has moved so far that the scaling found for another one may not serve.
@@ -265,14 +265,18 @@ System System::update(const ParameterList& list) const {
   d->numbers = data_->numbers;
   d->states = data_->states;
   const std::vector<int> changed = set_values(k.stage.graph, list, d->numbers.parameters);
+  const auto again = [&](const char* why) {
+    return compiled_again(*data_, changed, d->numbers.parameters, why);
+  };
+  constexpr const char* kOtherTerms = "closed chains or the equations' terms change";
   if (k.before_reduce || moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))
-    return compiled_again(*data_, changed, d->numbers.parameters);
+    return again(kOtherTerms);
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
   if (!remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers))
-    return compiled_again(*data_, changed, d->numbers.parameters);
+    return again(kOtherTerms);
   refactor(*data_, changed, *d);
-  if (d->factors->health().singular)  // it may reduce: a mass of 0
-    return compiled_again(*data_, changed, d->numbers.parameters);
+  const solve::Health health = d->factors->health();
+  if (health.singular) return again("a pivot is 0");  // it may reduce: a mass of 0
   d->notes = data_->notes;
   std::erase_if(d->notes, [](const Note& n) { return n.pass == "update"; });
   d->notes.push_back(
@@ -284,6 +288,11 @@ System System::update(const ParameterList& list) const {
   d->changed_loops.insert(d->changed_loops.end(), data_->changed_loops.begin(),
                           data_->changed_loops.end());
   sort_unique(d->changed_loops);
+  // What was as weak before has been looked at then.
+  constexpr double kWeaker = 0.1;
+  if (health.weakest < std::min(kFewDigits, kWeaker * data_->scaled_health.weakest) &&
+      d->checked().least > 0)
+    return again("a pivot has no digit left");
   return System(std::move(d));
 }
 

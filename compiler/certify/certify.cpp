@@ -12,8 +12,6 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-constexpr double kFewDigits = 1e-7;  ///< distance from singular at which 9 digits are left
-
 /// "about 2 digits are": what a loop keeps at this distance from singular.
 std::string digits_at(double distance) {
   const double digits = std::max(0.0, std::round(std::log10(distance / 1.1e-16)));

@@ -15,7 +15,6 @@ using solve::Complex50;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-constexpr double kFewDigits = 1e-7;  ///< of its terms: half of the digits are left
 constexpr double kMostProducts = 1e7;
 
 /// Below it an entry counts as nothing where 50 digits have found that something is: some hundred

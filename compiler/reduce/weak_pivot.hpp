@@ -4,6 +4,9 @@
 
 namespace titop::detail {
 
+/// Of its terms, that a pivot keeps: half of the digits are left, and there is a doubt.
+constexpr double kFewDigits = 1e-7;
+
 /// Whether the joint system is singular, or has no digit left in double, although double has found
 /// a pivot everywhere: a pivot is judged by what cancels in its own front, and what has cancelled
 /// in an entry further down may stand out as one. A loop's margin says so, or 50 digits. Returns

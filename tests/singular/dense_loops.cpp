@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <optional>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 
@@ -17,18 +18,23 @@ using Eigen::MatrixXd;
 
 namespace {
 
-/// out = in, in = (1 - L) out + u: L out = u.
-Diagram diagram(const MatrixXd& L) {
+/// out = in, in = (1 - L) out + u: L out = u. `nominal`: instead of the first such weight that is
+/// not 0, a parameter "w" of this value.
+Diagram diagram(const MatrixXd& L, std::optional<double> nominal = {}) {
   const auto n = static_cast<int>(L.rows());
   Diagram d{"dense"};
   auto u = d.input("u", n);
+  std::optional<Value> parameter;
+  if (nominal) parameter = d.param("w", *nominal);
   std::vector<Gain::Handle> g;
   for (int i = 0; i < n; ++i) g.push_back(d.add(fmt::format("g{}", i), Gain{.gain = 1}));
   for (int i = 0; i < n; ++i) {
     Expr sum = MatrixXd(MatrixXd::Identity(n, n).row(i)) * u;
     for (int j = 0; j < n; ++j)
-      if (const double w = (i == j) - L(i, j); w != 0)
-        sum = sum + w * g[static_cast<std::size_t>(j)].out;
+      if (const double w = (i == j) - L(i, j); w != 0) {
+        sum = sum + parameter.value_or(w) * g[static_cast<std::size_t>(j)].out;
+        parameter.reset();
+      }
     g[static_cast<std::size_t>(i)].in = sum;
   }
   for (int i = 0; i < n; ++i) d.output(fmt::format("y{}", i)) = g[static_cast<std::size_t>(i)].out;
@@ -82,6 +88,36 @@ TEST_CASE("1000 exactly singular loops, dense or nearly: every one is refused") 
     refused += e.has(Code::ill_posed);
   }
   CHECK(refused == 1000);
+}
+
+TEST_CASE("300 loops that a new value makes exactly singular: refused, or said in the log") {
+  int regular = 0, refused = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    CAPTURE(seed);
+    const MatrixXd L = made_singular(seed % 2 ? full(seed) : sparse(seed), seed + 7);
+    double w = 0;
+    for (Eigen::Index k = 0; k < L.size() && w == 0; ++k) {
+      const Eigen::Index i = k / L.cols(), j = k % L.cols();
+      w = (i == j) - L(i, j);
+    }
+    std::optional<System> before;
+    try {
+      before = compile(diagram(L, w + 0.3));
+    } catch (const Error&) {
+      continue;  // this weight alone does not make it regular
+    }
+    ++regular;
+    try {
+      const System now = before->update({{"w", w}});
+      // Pivots are judged at once, margins when somebody asks.
+      CHECK(now.log().find("no digit is left") != std::string::npos);
+    } catch (const Error& e) {
+      CHECK(e.has(Code::ill_posed));
+      ++refused;
+    }
+  }
+  CHECK(regular >= 100);
+  CHECK(refused >= 0.95 * regular);
 }
 
 TEST_CASE("500 regular ones: none is refused, and the answer is that of L") {
