@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <titop/compiler/response.hpp>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
@@ -21,14 +23,23 @@ solve::Response<T> response_in_double(const Block& block, const T& s, ParameterV
     return {lifted<T>(r.X), lifted<T>(r.Y)};
 }
 
+template <class T>
+Error pole_of(const Block& block, const T& at_s) {
+  const std::complex<double> s = solve::Scalar<T>::round(at_s);
+  return {Code::singular,
+          fmt::format("a {} has a pole at s = {}{:+}j", block.type(), s.real(), s.imag()),
+          "evaluate beside the pole"};
+}
+
 /// Y = rigid + W' diag(s^2 / d) W, d = s^2 + damping s + stiffness.
 template <class T>
-solve::Response<T> modal_response(const Modal& m, const T& s) {
+solve::Response<T> modal_response(const Block& block, const Modal& m, const T& s) {
   const auto n = m.W.rows();
   const Dense<T> W = lifted<T>(m.W);
   solve::Response<T> r{Dense<T>(2 * n, W.cols()), lifted<T>(m.rigid)};
   for (Index i = 0; i < n; ++i) {
     const T d = s * s + lift<T>(m.damping(i)) * s + lift<T>(m.stiffness(i));
+    if (d == T(0)) throw pole_of(block, s);
     for (Index j = 0; j < W.cols(); ++j) {
       r.X(i, j) = W(i, j) / d;
       r.X(n + i, j) = s * r.X(i, j);
@@ -39,8 +50,10 @@ solve::Response<T> modal_response(const Modal& m, const T& s) {
 }
 
 template <class T>
-solve::Response<T> general_response(const Dynamics& d, const T& s) {
-  solve::Response<T> r{Resolvent<T>(d, s).times(lifted<T>(d.B)), lifted<T>(d.D)};
+solve::Response<T> general_response(const Block& block, const Dynamics& d, const T& s) {
+  const Resolvent<T> resolvent(d, s);
+  if (resolvent.singular()) throw pole_of(block, s);
+  solve::Response<T> r{resolvent.times(lifted<T>(d.B)), lifted<T>(d.D)};
   for (Index i = 0; i < r.Y.rows(); ++i)
     for (Index j = 0; j < r.Y.cols(); ++j)
       for (Index k = 0; k < r.X.rows(); ++k) r.Y(i, j) += lift<T>(d.C(i, k)) * r.X(k, j);
@@ -86,6 +99,13 @@ Resolvent<T>::Resolvent(const Dynamics& dynamics, const T& s)
 }
 
 template <class T>
+bool Resolvent<T>::singular() const {
+  for (Index k = 0; k < n_ && !modal_; ++k)
+    if (lu_[at(k + k * n_)] == T(0)) return true;
+  return false;
+}
+
+template <class T>
 Dense<T> Resolvent<T>::times(Dense<T> r) const {
   apply(r.cols(), r.data());
   return r;
@@ -123,7 +143,7 @@ template <class T>
 solve::Response<T> response(const Block& block, const Dynamics& d, const T& s,
                             ParameterValues parameters) {
   if (solve::Scalar<T>::epsilon() > 1e-16) return response_in_double(block, s, parameters);
-  return d.modal ? modal_response(*d.modal, s) : general_response(d, s);
+  return d.modal ? modal_response(block, *d.modal, s) : general_response(block, d, s);
 }
 
 #define TITOP_INSTANTIATE(T)   \

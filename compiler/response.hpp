@@ -14,6 +14,9 @@ class Resolvent {
   /// the block at s gives numbers that are not finite.
   Resolvent(const Dynamics& dynamics, const T& s);
 
+  /// Whether that LU has a pivot of 0. With modes false.
+  bool singular() const;
+
   /// (s - A)^-1 r, states x columns: O(states) per column with modes, else O(states^2).
   solve::Dense<T> times(solve::Dense<T> r) const;
   /// The same in place, r column-major.
@@ -31,7 +34,7 @@ class Resolvent {
 };
 
 /// X = (s - A)^-1 B and Y = C X + D: in double and below by the block's own formula, which cancels
-/// least, in finer arithmetic from its matrices.
+/// least, in finer arithmetic from its matrices. Throws singular where s is a pole of the block.
 template <class T>
 solve::Response<T> response(const Block& block, const Dynamics& dynamics, const T& s,
                             ParameterValues parameters);

@@ -35,8 +35,17 @@ struct Assembly {
     F = MatrixXcd::Zero(unknowns + outputs, inputs);
   }
 
+  /// So many rows more; throws where they are more than the unknowns.
+  void need(Eigen::Index rows) const {
+    if (row + rows > E.rows())
+      throw Error(Code::two_equations,
+                  fmt::format("{}: more equations than its {} unknowns", graph.name, unknowns),
+                  "compile it: the message names the port that is driven twice");
+  }
+
   /// row += factor * signal
   void add(const MatrixXcd& factor, int signal) {
+    need(factor.rows());
     const Signal& sig = graph.signals[at(signal)];
     if (sig.role == Signal::Role::external)
       F.block(row, column[at(signal)], factor.rows(), sig.size) -= factor;
@@ -47,6 +56,11 @@ struct Assembly {
   /// row -= factor * (sum of terms)
   void subtract(const MatrixXcd& factor, const std::vector<Term>& terms) {
     for (const Term& t : terms) {
+      if (rows_of(graph, t) != factor.cols())
+        throw Error(Code::size,
+                    fmt::format("{}: a term with {} has another size than its equation", graph.name,
+                                name_of(graph, t.signal)),
+                    "compile it: the message names the port");
       const MatrixXcd c = factor * coefficient(graph, t, values);
       add(t.of == Term::Of::position ? MatrixXcd(-c / (s * s))
           : t.of == Term::Of::rate   ? MatrixXcd(-c / s)
@@ -115,6 +129,7 @@ void add_channel(Assembly& a, const Channel& channel, const Drive& drive) {
 
 /// signal (or output) = sum of its terms
 void add_definition(Assembly& a, int column, int size, const std::vector<Term>& terms) {
+  a.need(size);
   a.E.block(a.row, column, size, size).setIdentity();
   a.subtract(MatrixXd::Identity(size, size), terms);
   a.row += size;
@@ -167,6 +182,7 @@ MatrixXd terms(const Graph& graph, const std::vector<std::complex<double>>& poin
     const Assembly a = assembled(graph, s, values);
     const MatrixXcd z = linalg::solve(a.E, a.F).z,
                     back = linalg::solve(a.E.reverse(), a.F.colwise().reverse()).z;
+    if (z.size() == 0 || back.size() == 0) continue;  // no unique solution
     const MatrixXcd off = z.bottomRows(a.outputs) - back.colwise().reverse().bottomRows(a.outputs);
     if (result.size() == 0) result = MatrixXd::Zero(off.rows(), off.cols());
     if (off.allFinite()) result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());

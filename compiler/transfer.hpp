@@ -20,7 +20,8 @@ namespace titop {
 /// @param values  parameter values; nominal ones if empty.
 /// @returns       outputs x inputs, in the graph's order.
 /// @throws Error  singular, if the equations do not determine the outputs at s; no_equation, if
-///                they are too few; mistakes in names and parameters that the graph has noted.
+///                they are too few, two_equations, if they are too many; size, if terms do not fit;
+///                mistakes in names and parameters that the graph has noted.
 /// Cost O(n^3) in the number of signals: for tests and small graphs.
 Eigen::MatrixXcd transfer(const Graph& graph, std::complex<double> s, ParameterValues values = {});
 

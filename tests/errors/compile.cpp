@@ -163,6 +163,58 @@ TEST_CASE("singular: at a pole") {
   CHECK(says(error_of([&] { return system.static_gain(); }), Code::singular, {"pole", "s = 0"}));
   CHECK(says(error_of([&] { return system.state_space().transfer(0); }), Code::singular, {"pole"}));
   CHECK(says(error_of([&] { return transfer(d.graph(), 0); }), Code::singular, {"s = 0"}));
+  for (const Precision p : {Precision::single, Precision::standard, Precision::refined,
+                            Precision::twofold, Precision::extended, Precision::digits50}) {
+    CAPTURE(static_cast<int>(p));
+    CHECK(says(error_of([&] { return system.transfer(0, p); }), Code::singular, {"pole"}));
+  }
+}
+
+TEST_CASE("singular: at a pole of a block without modes, in any precision") {
+  Diagram d{"pole"};
+  auto K = d.add("K", Lti{.A = Eigen::MatrixXd{{-2, 1}, {0, -3}},
+                          .B = Eigen::MatrixXd{{0}, {1}},
+                          .C = Eigen::MatrixXd{{1, 0}}});
+  K.in = d.input("u");
+  d.output("y") = K.out;
+  const System system = compile(d);
+  for (const Precision p : {Precision::single, Precision::standard, Precision::refined,
+                            Precision::twofold, Precision::extended, Precision::digits50}) {
+    CAPTURE(static_cast<int>(p));
+    CHECK(says(error_of([&] { return system.transfer(-3, p); }), Code::singular, {"pole"}));
+    CHECK(std::abs(system.transfer(-1, p)(0, 0) - 0.5) <= 1e-6);  // 1 / ((s + 2) (s + 3))
+  }
+}
+
+TEST_CASE("transfer of a graph that compile would refuse: refused, too") {
+  const auto twice = [](auto write) {
+    Diagram d{"twice"};
+    auto u = d.input("u");
+    write(d, u);
+    return error_of([&] { return transfer(d.graph(), 1.0); });
+  };
+  CHECK(says(twice([](Diagram& d, const InputRef& u) {
+               auto g = d.add("g", Gain{.gain = 1});
+               g.in = u;
+               g.in = u;
+               d.output("y") = g.out;
+             }),
+             Code::two_equations, {"more equations than its 2 unknowns"}));
+  CHECK(says(twice([](Diagram& d, const InputRef& u) {
+               auto body = d.add("b", RigidBody{.mass = 1, .inertia = Matrix3d::Identity()});
+               ground(body);
+               ground(body);
+               d.output("y", 6) = body.parent.force;
+               d.output("z") = u;
+             }),
+             Code::two_equations, {"more equations"}));
+  CHECK(says(twice([](Diagram& d, const InputRef& u) {
+               auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 3});
+               ground(z);
+               z.child.force = u;
+               d.output("y", 3) = z.stretch;
+             }),
+             Code::size, {"z.stretch"}));
 }
 
 TEST_CASE("no false alarm: chains without loops, whatever their gains") {
