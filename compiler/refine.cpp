@@ -134,8 +134,10 @@ double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) c
       // A block that is 0 by symmetry is nothing but rounding: it counts beside its neighbours.
       const double beside = std::sqrt(size.row(i).maxCoeff()) * std::sqrt(size.col(j).maxCoeff());
       const bool noise = size(i, j) <= 1e3 * off(i, j);
-      if (off(i, j) > kUnderflow)
-        worst = std::max(worst, off(i, j) / (noise ? beside : size(i, j)));
+      if (off(i, j) <= kUnderflow) continue;
+      // Where all are 0 there is nothing to compare with: no digit is known.
+      const double of = noise ? beside : size(i, j);
+      worst = std::max(worst, of > 0 ? off(i, j) / of : 1);
     }
   return worst;
 }
@@ -218,7 +220,8 @@ void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
     refinement_error_ = leads || std::isinf(now) ? std::max(now, rounding) : 1;
     if (std::isinf(now) || (step > 0 && !leads)) return;
     // What the next step would change: this step's change, smaller by as much again.
-    const bool settled = now <= kSettled && now * (now / before) <= solve::Scalar<T>::epsilon();
+    const bool settled =
+        now == 0 || (now <= kSettled && now * (now / before) <= solve::Scalar<T>::epsilon());
     if (leads && (settled || (step > 0 && !(now <= kShrinks * before)))) return;
     before = now;
   }

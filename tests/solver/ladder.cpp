@@ -290,6 +290,29 @@ TEST_CASE("precision: refinement is not taken in by steps that are small since t
   CHECK(all.as_needed.right >= 1100);
 }
 
+// k x = u, y = k x - u: nothing is left, and nothing to compare a change of it with.
+TEST_CASE("precision: an output that cancels altogether is 0, or has no 12 digits") {
+  for (int k = 2; k <= 200; ++k) {
+    CAPTURE(k);
+    Diagram d{"nothing"};
+    const auto u = d.input("u");
+    auto x = d.add("x", Gain{.gain = 1});
+    x.in = u - (k - 1.0) * x.out;
+    d.output("y") = double(k) * x.out - u;
+    const System system = compile(d);
+    CHECK(std::abs(system.transfer(1)(0, 0)) <= 1e-15);
+    for (const Precision p : {Precision::refined, Precision::twofold}) {
+      std::complex<double> y = 0;
+      try {
+        y = system.transfer(1, p)(0, 0);
+      } catch (const Error& e) {
+        CHECK(e.has(Code::singular));
+      }
+      CHECK(std::abs(y) <= 1e-15);
+    }
+  }
+}
+
 TEST_CASE("precision: what a precision refuses names another one") {
   const auto error = [](const Diagram& d, std::complex<double> s, Precision precision) {
     return titop_test::error_of([&] { compile(d).transfer(s, precision); });
