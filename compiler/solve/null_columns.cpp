@@ -44,7 +44,7 @@ class Column {
     const std::vector<Kept> rows = assembled(f);
     std::vector<Kept> b(rows.size());
     for (std::size_t i = 0; i < b.size(); ++i) b[i] = rows[at(made.order[i])];
-    const int n = f.columns();
+    const std::ptrdiff_t n = f.columns();
     for (int i = 0; i < f.row_count; ++i) {
       for (int k = 0; k < std::min(i, f.pivot_count); ++k)
         pass(b[at(k)], made.lu[at(i * n + k)], b[at(i)]);
@@ -58,7 +58,7 @@ class Column {
   void downward(std::size_t index) {
     const Front& f = plan_.fronts[index];
     const double* lu = f_.made(index).lu.data();
-    const int n = f.columns();
+    const std::ptrdiff_t n = f.columns();
     for (int i = f.pivot_count - 1; i >= 0; --i) {
       Kept& own = z_[at(f.first_unknown + i)];
       int column = f.pivot_count;

@@ -28,7 +28,7 @@ class Transposed {
   void upward(std::size_t index) {
     const Front& f = plan_.fronts[index];
     const double* lu = f_.made(index).lu.data();
-    const int n = f.columns();
+    const std::ptrdiff_t n = f.columns();
     for (int k = 0; k < f.pivot_count; ++k) {
       Kept& own = c_[at(f.first_unknown + k)];
       const double pivot = lu[k * n + k];
@@ -46,7 +46,7 @@ class Transposed {
   void downward(std::size_t index) {
     const Front& f = plan_.fronts[index];
     const Factors<double>::Made& made = f_.made(index);
-    const int n = f.columns();
+    const std::ptrdiff_t n = f.columns();
     std::vector<Kept> b(at(f.row_count));
     for (int i = 0; i < f.pivot_count; ++i) b[at(i)] = c_[at(f.first_unknown + i)];
     for (int i = f.pivot_count; i < f.row_count; ++i)

@@ -12,7 +12,9 @@
 namespace titop::solve {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using Index = std::ptrdiff_t;
+
+std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Exponents of two, in sixteenths: whole numbers, whose sums and largest a compiler may take in
 /// any order, and every machine gets the same.
@@ -23,8 +25,8 @@ constexpr int kRounding = -691;    ///< 1e-13
 /// log2 of n magnitudes to within 0.09, from the bits: exponents are all that scaling needs. The
 /// upper half of a double holds them; subnormal numbers count as 2^-1023 or a little more, and as 0
 /// below 2e-314.
-TITOP_PART void exponents_of(int n, const double* x, int* __restrict e) {
-  for (int k = 0; k < n; ++k) {
+TITOP_PART void exponents_of(Index n, const double* x, int* __restrict e) {
+  for (Index k = 0; k < n; ++k) {
     const auto bits = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(x[k]));
     const int upper = static_cast<int>(bits >> 32);
     e[k] = upper > 0 && upper < 0x7ff00000 ? (upper >> 16) - 1023 * kOne : kNone;
@@ -59,10 +61,10 @@ TITOP_PART int sum_of(const Lanes& lanes) {
 /// many. Unit u of row i is at i * width + u.
 struct Exponents {
   std::span<const int> units;
-  int rows, columns;
-  int count = static_cast<int>(units.size()) - 1;
-  int width = (count + kLanes - 1) / kLanes * kLanes;  ///< units with their padding
-  int deep = 0;                                        ///< columns of the largest unit
+  Index rows, columns;
+  Index count = static_cast<Index>(units.size()) - 1;
+  Index width = (count + kLanes - 1) / kLanes * kLanes;  ///< units with their padding
+  Index deep = 0;                                        ///< columns of the largest unit
   boost::container::small_vector<int, 2048> buffer;
   int* e = nullptr;       ///< of the entries: the first column of all units, the second ...
   int* top = nullptr;     ///< per row and unit: the largest,
@@ -75,34 +77,34 @@ struct Exponents {
 
   Exponents(int m, std::span<const int> of_units)
       : units(of_units), rows(m), columns(units.back()) {
-    for (int u = 0; u < count; ++u) deep = std::max(deep, units[at(u + 1)] - units[at(u)]);
-    const int size = m * width;
-    const int longer = std::max(m, width);
-    buffer.resize(at((deep + 3) * size + m + width + 2 * longer + columns),
+    for (Index u = 0; u < count; ++u) deep = std::max(deep, Index{units[at(u + 1)]} - units[at(u)]);
+    const Index size = rows * width;
+    const Index longer = std::max(rows, width);
+    buffer.resize(at((deep + 3) * size + rows + width + 2 * longer + columns),
                   boost::container::default_init);
     e = buffer.data();
     top = e + deep * size, total = top + size, number = total + size;
-    r = number + size, c = r + m, a = c + width, b = a + longer, line = b + longer;
+    r = number + size, c = r + rows, a = c + width, b = a + longer, line = b + longer;
   }
   Exponents(const Exponents&) = delete;  // the pointers are into its own buffer
   Exponents& operator=(const Exponents&) = delete;
 };
 
 TITOP_PART void take(const Exponents& x, const double* magnitudes) {
-  const int size = x.rows * x.width;
+  const Index size = x.rows * x.width;
   std::fill_n(x.e, x.deep * size, kNone);
   std::fill(x.r, x.a, 0);
-  for (int i = 0; i < x.rows; ++i) {
+  for (Index i = 0; i < x.rows; ++i) {
     exponents_of(x.columns, magnitudes + i * x.columns, x.line);
     int* to = x.e + i * x.width;
-    for (int u = 0; u < x.count; ++u, ++to)
-      for (int j = x.units[at(u)], k = 0; j < x.units[at(u + 1)]; ++j, ++k)
+    for (Index u = 0; u < x.count; ++u, ++to)
+      for (Index j = x.units[at(u)], k = 0; j < x.units[at(u + 1)]; ++j, ++k)
         to[k * size] = x.line[j];
   }
-  for (int i = 0; i < size; i += kLanes) {
+  for (Index i = 0; i < size; i += kLanes) {
     Lanes top, entry;
     load(top, x.e + i);
-    for (int k = 1; k < x.deep; ++k) {
+    for (Index k = 1; k < x.deep; ++k) {
       load(entry, x.e + k * size + i);
       top = top > entry ? top : entry;
     }
@@ -111,15 +113,15 @@ TITOP_PART void take(const Exponents& x, const double* magnitudes) {
 }
 
 /// exponent -= half of what the largest sum with it is, where there is any.
-TITOP_PART void take_half(int n, const int* __restrict largest, int* __restrict exponent) {
-  for (int i = 0; i < n; ++i) exponent[i] -= largest[i] > kNone / 2 ? largest[i] / 2 : 0;
+TITOP_PART void take_half(Index n, const int* __restrict largest, int* __restrict exponent) {
+  for (Index i = 0; i < n; ++i) exponent[i] -= largest[i] > kNone / 2 ? largest[i] / 2 : 0;
 }
 
 /// Half way towards a largest entry of 1 in every row and column.
 TITOP_PART void towards_one(const Exponents& x, int* of_rows, int* of_units) {
-  for (int i = 0; i < x.rows; ++i) {
+  for (Index i = 0; i < x.rows; ++i) {
     Lanes top = Lanes{} + kNone, entry, c;
-    for (int u = 0; u < x.width; u += kLanes) {
+    for (Index u = 0; u < x.width; u += kLanes) {
       load(entry, x.top + i * x.width + u);
       load(c, x.c + u);
       entry += c;
@@ -127,10 +129,10 @@ TITOP_PART void towards_one(const Exponents& x, int* of_rows, int* of_units) {
     }
     of_rows[i] = largest_of(top) + x.r[i];
   }
-  for (int u = 0; u < x.width; u += kLanes) {
+  for (Index u = 0; u < x.width; u += kLanes) {
     Lanes top = Lanes{} + kNone, entry, c;
     load(c, x.c + u);
-    for (int i = 0; i < x.rows; ++i) {
+    for (Index i = 0; i < x.rows; ++i) {
       load(entry, x.top + i * x.width + u);
       entry += x.r[i];
       top = top > entry ? top : entry;
@@ -143,12 +145,12 @@ TITOP_PART void towards_one(const Exponents& x, int* of_rows, int* of_units) {
 
 /// Counts the entries that are not rounding beside the others.
 TITOP_PART void count_entries(const Exponents& x) {
-  const int size = x.rows * x.width;
-  for (int i = 0; i < x.rows; ++i)
-    for (int u = 0; u < x.width; u += kLanes) {
+  const Index size = x.rows * x.width;
+  for (Index i = 0; i < x.rows; ++i)
+    for (Index u = 0; u < x.width; u += kLanes) {
       Lanes c, entry, total{}, number{};
       load(c, x.c + u);
-      for (int k = 0; k < x.deep; ++k) {
+      for (Index k = 0; k < x.deep; ++k) {
         load(entry, x.e + k * size + i * x.width + u);
         const Lanes counts = (entry + c >= kRounding - x.r[i]) & (entry > kNone / 2);  // 0 or -1
         total += entry & counts;
@@ -161,9 +163,9 @@ TITOP_PART void count_entries(const Exponents& x) {
 
 /// to = -total / number, where there is any. By way of doubles, of which processors divide many at
 /// once: the quotient of two ints, cut to a whole number, is the same.
-TITOP_PART void take_means(int n, const int* __restrict total, const int* __restrict number,
+TITOP_PART void take_means(Index n, const int* __restrict total, const int* __restrict number,
                            int* __restrict to) {
-  for (int i = 0; i < n; ++i) {
+  for (Index i = 0; i < n; ++i) {
     const int mean = static_cast<int>(-static_cast<double>(total[i]) / std::max(number[i], 1));
     to[i] = number[i] > 0 ? mean : to[i];
   }
@@ -171,9 +173,9 @@ TITOP_PART void take_means(int n, const int* __restrict total, const int* __rest
 
 /// Rows, then columns, to a mean of 0.
 TITOP_PART void centre(const Exponents& x, int* totals, int* numbers) {
-  for (int i = 0; i < x.rows; ++i) {
+  for (Index i = 0; i < x.rows; ++i) {
     Lanes row_total{}, row_number{}, total, number, c;
-    for (int u = 0; u < x.width; u += kLanes) {
+    for (Index u = 0; u < x.width; u += kLanes) {
       load(total, x.total + i * x.width + u);
       load(number, x.number + i * x.width + u);
       load(c, x.c + u);
@@ -184,9 +186,9 @@ TITOP_PART void centre(const Exponents& x, int* totals, int* numbers) {
     numbers[i] = sum_of(row_number);
   }
   take_means(x.rows, totals, numbers, x.r);
-  for (int u = 0; u < x.width; u += kLanes) {
+  for (Index u = 0; u < x.width; u += kLanes) {
     Lanes unit_total{}, unit_number{}, total, number;
-    for (int i = 0; i < x.rows; ++i) {
+    for (Index i = 0; i < x.rows; ++i) {
       load(total, x.total + i * x.width + u);
       load(number, x.number + i * x.width + u);
       unit_total += total + number * x.r[i];
@@ -211,7 +213,7 @@ void column_scale(const double* magnitudes, int rows, std::span<const int> units
                   std::int16_t* exponents) {
   Exponents x(rows, units);
   balance(x, magnitudes);
-  for (int u = 0; u < x.count; ++u) {
+  for (Index u = 0; u < x.count; ++u) {
     const int rounded = (x.c[u] + (x.c[u] < 0 ? -kOne : kOne) / 2) / kOne;
     std::fill(exponents + units[at(u)], exponents + units[at(u + 1)],
               static_cast<std::int16_t>(std::clamp(rounded, -1000, 1000)));

@@ -33,7 +33,7 @@ struct Forward {
     rows.resize(assembled.size() * static_cast<std::size_t>(m));
     for (int i = 0; i < f.row_count; ++i)
       std::copy_n(assembled[at(made.order[at(i)])], m, rows.data() + i * m);
-    const int n = f.columns();
+    const std::ptrdiff_t n = f.columns();
     for (int i = 1; i < f.row_count; ++i)
       subtract_rows(std::min(i, f.pivot_count), made.lu.data() + i * n, rows.data(), m,
                     rows.data() + i * m);
@@ -84,7 +84,7 @@ void backward(const Plan& plan, const Front& f, const typename Factors<T>::Made&
   T* const pivots = z + f.first_unknown * m;
   for (int i = f.pivot_count - 1; i >= 0; --i) {
     T* to = pivots + i * m;
-    const T* row = made.lu.data() + i * f.columns();
+    const T* row = made.lu.data() + std::ptrdiff_t{i} * f.columns();
     const T* u = row + f.pivot_count;
     for (const int v : plan.list(f.border)) {
       const int size = plan.structure.variable_size[at(v)];
