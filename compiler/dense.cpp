@@ -30,13 +30,20 @@ struct Room {
 struct Kept {
   std::vector<double> coefficients, products;  ///< all threads read them
   std::vector<Room> rooms;
+
+  bool is_large() const {
+    constexpr std::size_t kKeep = 1 << 17;  // numbers: 1 MB each
+    const auto large = [](const std::vector<double>& v) { return v.size() > kKeep; };
+    return large(coefficients) || large(products) || rooms.size() > 8 ||
+           std::any_of(rooms.begin(), rooms.end(), [&](const Room& room) {
+             return large(room.values) || large(room.space.z) || large(room.space.carried);
+           });
+  }
 };
 Kept& kept_by_thread() {
   static thread_local Kept kept;
   return kept;
 }
-constexpr std::size_t kKeep = 1 << 17;  ///< numbers: 1 MB each
-constexpr std::size_t kKeepRooms = 8;
 
 /// Whoever waits goes on, even if this task has thrown: its numbers are not used then.
 struct Done {
@@ -86,8 +93,7 @@ class Writer {
             i == 0 ? propagation.form() : find_coefficients(kept.coefficients.data());
           };
     });
-    const bool large = std::max(kept.products.size(), kept.rooms.front().space.z.size()) > kKeep;
-    if (large || kept.rooms.size() > kKeepRooms) kept = {};
+    if (kept.is_large()) kept = {};
     add_known();
     for (const int i : d_.layout().state_nodes) add_own(i);
   }
