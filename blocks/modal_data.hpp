@@ -11,7 +11,8 @@ namespace titop {
 struct ModalChild {
   std::string name;
   Vector3d PC = Vector3d::Zero();  ///< vector from P to C in the body's frame [m]
-  Eigen::MatrixXd Phi_C;  ///< 6 x N: the modes' displacements and rotations at C [1/sqrt(kg)]
+  Eigen::MatrixXd Phi_C;  ///< 6 x N: the modes' displacements at C [1/sqrt(kg)], below them their
+                          ///< rotations [rad/(m sqrt(kg))]
 };
 
 /// Clamped-free modal data of a flexible body, mass-normalised: [Alazard 2015] eqs (9) to (14).

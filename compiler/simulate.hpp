@@ -9,7 +9,9 @@
 namespace titop {
 
 /// The inputs over time: what a step needs are their values at its two ends, from inside. Between
-/// them every method takes them as linear, so that steps, samples and ramps are taken exactly.
+/// them every method takes them as linear, so that steps, samples and ramps are taken exactly. A
+/// vector u has the order of System::inputs(), an empty one stands for 0; matrices are inputs x
+/// samples.
 class Excitation {
  public:
   /// u(begin), u(end) of the step from begin to end [s], both from inside.
@@ -54,8 +56,8 @@ struct Simulation {
   double step = 0;   ///< [s]
   double until = 0;  ///< [s]: a whole number of steps
   Stepper stepper = Stepper::automatic;
-  Eigen::VectorXd x0 = {};  ///< states at time 0, in the order of System::states(); none: 0
-  bool keep_states = false;
+  Eigen::VectorXd x0 = {};   ///< states at time 0, in the order of System::states(); none: 0
+  bool keep_states = false;  ///< Trajectory::x at all times
 };
 
 /// What comes out, a column per time.

@@ -34,8 +34,10 @@ class OutputRef {
 /// What the user describes: blocks, equations on their ports, inputs, outputs, parameters.
 ///
 /// It owns its graph, moves, and does not copy (`clone()` does); handles and ports point into it.
-/// Mistakes in names and equations are noted and come out together in `compile`; only data that
-/// make no block at all (a negative mass) are refused at once, by `add`, with the node's name.
+/// Mistakes in names and equations are noted and come out together in `compile`. Refused at once
+/// are data that make no block at all (a negative mass), by `add`, with the node's name, and what
+/// cannot be written down: a part that is not there, a signal of another diagram, rotations whose
+/// frames do not follow each other.
 /// Inputs, outputs and states of the model follow the order in which they are declared here.
 class Diagram {
  public:

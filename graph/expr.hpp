@@ -12,7 +12,7 @@ namespace titop {
 /// parameter, a `Rotation` or a matrix make new ones. Nothing is checked here: sizes, quantities
 /// and frames are checked by the compiler, all together, where both sides can be shown.
 ///
-///  - `-x`, `T_ba * x` and `x.linear` keep the quantity of x (T_ba also changes the frame);
+///  - `-x`, `T_ba * x` and a part of x keep the quantity of x (T_ba also changes the frame);
 ///  - `3.0 * x`, `k * x`, `x / 2.0`, `M * x` give a plain signal: gains carry units.
 class Expr {
  public:

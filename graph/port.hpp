@@ -136,7 +136,8 @@ class Port<6, K> : public PortBase<6, K> {
   Port<3, K> linear, angular;
 };
 
-/// A signal of a block that can only be read: nothing can be assigned to it.
+/// A signal of a block that can only be read: nothing can be assigned to it. Its parts are
+/// `.linear()`, `.angular()` and, of three components, `.along(r)`: `p.rate.linear().along(r)`.
 class Reading : public detail::SignalRef {
  public:
   using SignalRef::SignalRef;

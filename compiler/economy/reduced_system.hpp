@@ -127,12 +127,12 @@ class ReducedSystem {
 /// What was left out, what is kept, and the bound.
 std::string to_string(const ReducedSystem& system);
 
-/// A small model that answers this question (design.md: "no more than the scene needs"). The
-/// diagram is compiled for the scene's inputs and outputs alone; what symmetric bodies cannot show
-/// goes exactly; the rest becomes modes of the band and static-like vectors of the modes above it,
-/// with the second-order structure kept. The result is checked against the full factored system,
-/// and grows until the bound is below the accuracy. Symmetric are bodies added from one and the
-/// same body object (two that are merely equal are not compared), and not those in closed chains.
+/// A small model that answers this question: no more than the scene needs. The diagram is compiled
+/// for the scene's inputs and outputs alone; what symmetric bodies cannot show goes exactly; the
+/// rest becomes modes of the band and static-like vectors of the modes above it, with the
+/// second-order structure kept. The result is checked against the full factored system, and grows
+/// until the bound is below the accuracy. Symmetric are bodies added from one and the same body
+/// object (two that are merely equal are not compared), and not those in closed chains.
 ///
 /// Where the scene is no passive structure (controllers and filters in the loop, dashpots without
 /// springs; a note says which state), states take the place of M, D, K. Integrals, poles on the

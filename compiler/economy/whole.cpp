@@ -22,7 +22,7 @@ constexpr double kLeak = 3e-9;   ///< the same where chains close, and coordinat
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Modes in coordinates scaled to stiffness 1: P y = mu K y with P = M scaled, largest mu first, so
-/// that the low modes keep their digits (design.md, economy: the inverse problem).
+/// that the low modes keep their digits.
 struct Scaled {
   VectorXd lambda;  ///< ascending, without those that rounding hides
   MatrixXd y;       ///< y'Ky = 1, one mode per column

@@ -4,8 +4,8 @@
 
 namespace titop {
 
-/// out = gain * in, all plain signals of the same size. `lower` makes it a coefficient.
-/// A gain inside an equation, `k * x`, is the same thing without a name.
+/// out = gain * in, all plain signals of the same size, 1 or more (`add` throws size). `lower`
+/// makes it a coefficient. A gain inside an equation, `k * x`, is the same thing without a name.
 struct Gain {
   Value gain = 1;  ///< [unit of out / unit of in]
   int size = 1;
@@ -20,14 +20,16 @@ struct Gain {
 };
 BlockPtr as_block(const Gain& spec);
 
-/// out = matrix * in, `matrix` rows x columns; a gain between vectors.
+/// out = matrix * in, `matrix` rows x columns, neither 0 (`add` throws size); a gain between
+/// vectors.
 struct MatrixGain {
   Eigen::MatrixXd matrix;
   using Handle = Gain::Handle;
 };
 BlockPtr as_block(const MatrixGain& spec);
 
-/// out = +-in1 +-in2 ..., one sign per input: Sum{.signs = "+-"}. Ports in1, in2, ...
+/// out = +-in1 +-in2 ..., one sign per input: Sum{.signs = "+-"}. Ports in1, in2, ... `add` throws
+/// bad_value for other signs, size for none of them and for a size below 1.
 struct Sum {
   std::string signs = "++";
   int size = 1;
@@ -37,7 +39,7 @@ struct Sum {
         : out(graph, detail::port_signal(*graph, node, "out")), graph_(graph), node_(node) {}
     Handle(const Handle&) = default;
     Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
-    /// Input number i, counted from 1.
+    /// Input number i, counted from 1. Throws unknown_name.
     Port<0, Kind::plain> in(int i) const;
     Reading out;
 

@@ -28,6 +28,7 @@ BlockPtr as_block(const Lti& spec);
 
 /// out = integral of in, `size` scalars, 0 at the start; one state per scalar.
 /// On an acceleration it gives a velocity, on a velocity a position: that is what `out` counts as.
+/// `add` throws size for a size below 1.
 struct Integrator {
   int size = 1;
   using Handle = Lti::Handle;
