@@ -269,6 +269,7 @@ System System::update(const ParameterList& list) const {
     return compiled_again(*data_, changed, d->numbers.parameters, why);
   };
   constexpr const char* kOtherTerms = "closed chains or the equations' terms change";
+  constexpr const char* kNoDigit = "a pivot has no digit left";
   if (k.before_reduce || moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))
     return again(kOtherTerms);
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
@@ -276,7 +277,7 @@ System System::update(const ParameterList& list) const {
     return again(kOtherTerms);
   refactor(*data_, changed, *d);
   const solve::Health health = d->factors->health();
-  if (health.singular) return again("a pivot is 0");  // it may reduce: a mass of 0
+  if (health.singular) return again(kNoDigit);  // it may reduce: a mass of 0
   d->notes = data_->notes;
   std::erase_if(d->notes, [](const Note& n) { return n.pass == "update"; });
   d->notes.push_back(
@@ -288,11 +289,11 @@ System System::update(const ParameterList& list) const {
   d->changed_loops.insert(d->changed_loops.end(), data_->changed_loops.begin(),
                           data_->changed_loops.end());
   sort_unique(d->changed_loops);
-  // What was as weak before has been looked at then.
+  // What was about as weak before (within a digit) has been looked at then.
   constexpr double kWeaker = 0.1;
   if (health.weakest < std::min(kFewDigits, kWeaker * data_->scaled_health.weakest) &&
       d->checked().least > 0)
-    return again("a pivot has no digit left");
+    return again(kNoDigit);
   return System(std::move(d));
 }
 

@@ -4,7 +4,8 @@
 
 namespace titop::detail {
 
-/// Of its terms, that a pivot keeps: half of the digits are left, and there is a doubt.
+/// What a pivot keeps of its terms, or a loop's distance from singular, at which about half of the
+/// digits are left: below it there is a doubt.
 constexpr double kFewDigits = 1e-7;
 
 /// Whether the joint system is singular, or has no digit left in double, although double has found

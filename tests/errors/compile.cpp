@@ -152,6 +152,9 @@ TEST_CASE("kinematic-loop: a chain that does not meet, by how much and along whi
               "C.child(\"C1\")", "D.parent", "rotations around the chain"}));
 }
 
+constexpr Precision kPrecisions[] = {Precision::single,  Precision::standard, Precision::refined,
+                                     Precision::twofold, Precision::extended, Precision::digits50};
+
 TEST_CASE("singular: at a pole") {
   Diagram d{"pole"};
   auto u = d.input("u");
@@ -163,8 +166,7 @@ TEST_CASE("singular: at a pole") {
   CHECK(says(error_of([&] { return system.static_gain(); }), Code::singular, {"pole", "s = 0"}));
   CHECK(says(error_of([&] { return system.state_space().transfer(0); }), Code::singular, {"pole"}));
   CHECK(says(error_of([&] { return transfer(d.graph(), 0); }), Code::singular, {"s = 0"}));
-  for (const Precision p : {Precision::single, Precision::standard, Precision::refined,
-                            Precision::twofold, Precision::extended, Precision::digits50}) {
+  for (const Precision p : kPrecisions) {
     CAPTURE(static_cast<int>(p));
     CHECK(says(error_of([&] { return system.transfer(0, p); }), Code::singular, {"pole"}));
   }
@@ -178,8 +180,7 @@ TEST_CASE("singular: at a pole of a block without modes, in any precision") {
   K.in = d.input("u");
   d.output("y") = K.out;
   const System system = compile(d);
-  for (const Precision p : {Precision::single, Precision::standard, Precision::refined,
-                            Precision::twofold, Precision::extended, Precision::digits50}) {
+  for (const Precision p : kPrecisions) {
     CAPTURE(static_cast<int>(p));
     CHECK(says(error_of([&] { return system.transfer(-3, p); }), Code::singular, {"pole"}));
     CHECK(std::abs(system.transfer(-1, p)(0, 0) - 0.5) <= 1e-6);  // 1 / ((s + 2) (s + 3))
@@ -187,20 +188,20 @@ TEST_CASE("singular: at a pole of a block without modes, in any precision") {
 }
 
 TEST_CASE("transfer of a graph that compile would refuse: refused, too") {
-  const auto twice = [](auto write) {
-    Diagram d{"twice"};
+  const auto refusal = [](auto write) {
+    Diagram d{"wrong"};
     auto u = d.input("u");
     write(d, u);
     return error_of([&] { return transfer(d.graph(), 1.0); });
   };
-  CHECK(says(twice([](Diagram& d, const InputRef& u) {
+  CHECK(says(refusal([](Diagram& d, const InputRef& u) {
                auto g = d.add("g", Gain{.gain = 1});
                g.in = u;
                g.in = u;
                d.output("y") = g.out;
              }),
              Code::two_equations, {"more equations than its 2 unknowns"}));
-  CHECK(says(twice([](Diagram& d, const InputRef& u) {
+  CHECK(says(refusal([](Diagram& d, const InputRef& u) {
                auto body = d.add("b", RigidBody{.mass = 1, .inertia = Matrix3d::Identity()});
                ground(body);
                ground(body);
@@ -208,7 +209,7 @@ TEST_CASE("transfer of a graph that compile would refuse: refused, too") {
                d.output("z") = u;
              }),
              Code::two_equations, {"more equations"}));
-  CHECK(says(twice([](Diagram& d, const InputRef& u) {
+  CHECK(says(refusal([](Diagram& d, const InputRef& u) {
                auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 3});
                ground(z);
                z.child.force = u;
