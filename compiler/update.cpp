@@ -148,21 +148,21 @@ void remake_blocks(const Skeleton& k, const std::vector<int>& nodes, solve::Numb
 /// False where the new values bring in or leave out a term: the plan does not serve any more.
 bool remake_coefficients(const Skeleton& k, const std::vector<int>& origins, solve::Numbers& n) {
   if (origins.empty()) return true;
-  const auto terms = passes::lower_again(k.stage, origins, n.parameters);
-  const std::size_t equations = k.stage.graph.equations.size();
-  for (std::size_t i = 0; i < origins.size(); ++i) {
-    const std::size_t o = at(origins[i]);
+  const Graph& g = k.stage.graph;
+  const auto take = [&](int origin, std::span<const passes::NumericTerm> terms) {
+    const std::size_t o = at(origin), equations = g.equations.size();
+    const bool output = o >= equations;
+    const auto& made = output ? g.outputs[o - equations].terms : g.equations[o].terms;
     const int first =
-        o < equations ? k.joint.equation_coefficient[o] : k.joint.output_coefficient[o - equations];
-    const auto& made = o < equations ? k.stage.graph.equations[o].terms
-                                     : k.stage.graph.outputs[o - equations].terms;
-    if (made.size() != terms[i].size()) return false;
+        output ? k.joint.output_coefficient[o - equations] : k.joint.equation_coefficient[o];
+    if (made.size() != terms.size()) return false;
     for (std::size_t t = 0; t < made.size(); ++t) {
-      if (made[t].signal != terms[i][t].signal) return false;
-      n.coefficients[at(first) + t] = solve::coefficient_of(terms[i][t].coefficient);
+      if (made[t].signal != terms[t].signal) return false;
+      n.coefficients[at(first) + t] = solve::coefficient_of(terms[t].coefficient);
     }
-  }
-  return true;
+    return true;
+  };
+  return passes::lower_again(k.stage, origins, n.parameters, take);
 }
 
 /// True if new values change what pass `close` looked at: the kinematics of a block, or equations

@@ -110,18 +110,17 @@ Stage lower(Stage stage) {
   return stage;
 }
 
-std::vector<std::vector<NumericTerm>> lower_again(const Stage& stage,
-                                                  const std::vector<int>& origins,
-                                                  ParameterValues values) {
+bool lower_again(const Stage& stage, const std::vector<int>& origins, ParameterValues values,
+                 const std::function<bool(int, std::span<const NumericTerm>)>& take) {
   Lowering l(*stage.source, values, stage.drives, stage.motions);
   l.numbers_only = true;
-  std::vector<std::vector<NumericTerm>> result(origins.size());
-  for (std::size_t i = 0; i < origins.size(); ++i) {
-    Amount sum = summed(l.amount(stage.origins[at(origins[i])]));
-    result[i].reserve(sum.size());
-    for (Summand& s : sum) result[i].push_back({s.signal, std::move(s.c)});
-  }
-  return result;
+  std::vector<NumericTerm> terms;
+  return std::all_of(origins.begin(), origins.end(), [&](int origin) {
+    terms.clear();
+    for (Summand& s : summed(l.amount(stage.origins[at(origin)])))
+      terms.push_back({s.signal, std::move(s.c)});
+    return take(origin, terms);
+  });
 }
 
 }  // namespace titop::passes

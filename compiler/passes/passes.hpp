@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <span>
 #include <titop/compiler/stage.hpp>
 
 /// The passes before numbers, in their order, from as_written(graph) on. Each is a pure function:
@@ -27,11 +29,11 @@ struct NumericTerm {
   Eigen::MatrixXd coefficient = {};
 };
 
-/// The terms of these equations and outputs (by their places in Stage::origins) for other parameter
-/// values, in the order asked for. Throws as `lower` does. O(these terms).
-std::vector<std::vector<NumericTerm>> lower_again(const Stage& stage,
-                                                  const std::vector<int>& origins,
-                                                  ParameterValues values);
+/// Calls take(origin, terms) with the terms of each of these equations and outputs (by their places
+/// in Stage::origins) for other parameter values; ends early where that is false, and says so.
+/// Throws as `lower` does. O(these terms).
+bool lower_again(const Stage& stage, const std::vector<int>& origins, ParameterValues values,
+                 const std::function<bool(int, std::span<const NumericTerm>)>& take);
 
 /// Connected parts (ground not counted) without an output are set aside and listed; not so if the
 /// diagram has no outputs at all: then all states count as seen. O(terms).

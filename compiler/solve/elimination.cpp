@@ -23,7 +23,11 @@ void add_child(const Plan& plan, const Front& child, const typename Factors<T>::
     const T* from = made.lu.data() + i * columns + child.pivot_count;
     for (int k = child.border.begin; k < child.border.begin + child.border.count; ++k) {
       const int size = plan.structure.variable_size[at(plan.lists[at(k)])];
-      std::copy(from, from + size, at_row + plan.parent_column[at(k)]);
+      T* const to = at_row + plan.parent_column[at(k)];
+      if (size == 6)  // most of them: no call
+        std::copy_n(from, 6, to);
+      else
+        std::copy_n(from, size, to);
       from += size;
     }
   }
@@ -99,7 +103,7 @@ struct Factors<T>::Work {
     for (std::ptrdiff_t j = 0; j < n; ++j)
       column[static_cast<std::size_t>(j)] = power_of_two(exponents[j]);
     row_scale.resize(at(rows));
-    for (int i = 0; i < rows; ++i) row_scale[at(i)] = largest_product(n, bounds(i), column.data());
+    largest_products(rows, n, bound.data(), column.data(), row_scale.data());
   }
 
   /// The pivot of a column is the row where it stands out most against the row's own size: the

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
+#include <titop/compiler/solve/lanes.hpp>
 #include <titop/compiler/solve/pieces.hpp>
+#include <titop/graph/linalg/wide.hpp>
 
 namespace titop::solve {
 namespace {
@@ -25,9 +27,27 @@ void add_product_of(double sign, const View<L>& l, const double* r, T* to, std::
   }
 }
 
+/// The same of six columns, as most are, in wide vectors.
+TITOP_WIDE void add_product_of_six(double sign, const View<double>& l, const double* r, double* to,
+                                   std::ptrdiff_t stride) {
+  for (std::ptrdiff_t i = 0; i < l.rows; ++i, to += stride) {
+    Lanes<4> four, x;
+    Lanes<2> two, z;
+    load(four, to), load(two, to + 4);
+    for (std::ptrdiff_t k = 0; k < l.cols; ++k) {
+      const double a = l(i, k) * sign;
+      load(x, r + k * 6), load(z, r + k * 6 + 4);
+      four += a * x, two += a * z;
+    }
+    store(to, four), store(to + 4, two);
+  }
+}
+
 template <class T, class L>
 void add_product(double sign, const View<L>& l, const RowMatrix<double>& r, T* to,
                  std::ptrdiff_t stride) {
+  if constexpr (std::is_same_v<T, double> && std::is_same_v<L, double>)
+    if (r.cols() == 6) return add_product_of_six(sign, l, r.data(), to, stride);
   if (r.cols() == 6) return add_product_of<6>(sign, l, r.data(), to, stride);
   if (r.cols() == 1) return add_product_of<1>(sign, l, r.data(), to, stride);
   for (std::ptrdiff_t i = 0; i < l.rows; ++i)

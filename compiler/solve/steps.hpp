@@ -103,14 +103,15 @@ void eliminate_right(std::ptrdiff_t k, std::ptrdiff_t end, std::ptrdiff_t rows, 
 /// Sizes of n entries; returns the largest.
 template <class T>
 double sizes(std::ptrdiff_t n, const T* a, double* size) {
-  for (std::ptrdiff_t j = 0; j < n; ++j) size[j] = size_of(a[j]);
-  return largest_of(n, [size](std::ptrdiff_t j) { return size[j]; });
+  return largest_of(n, [a, size](std::ptrdiff_t j) { return size[j] = size_of(a[j]); });
 }
 double sizes(std::ptrdiff_t n, const double* a, double* size);
 double sizes(std::ptrdiff_t n, const std::complex<double>* a, double* size);
 
-/// The largest of a[j], and of a[j] b[j]; none is negative.
+/// The largest of a[j]; none is negative.
 double largest(std::ptrdiff_t n, const double* a);
-double largest_product(std::ptrdiff_t n, const double* a, const double* b);
+/// The same of a(i, j) b[j], row by row; a is rows x n.
+void largest_products(std::ptrdiff_t rows, std::ptrdiff_t n, const double* a, const double* b,
+                      double* largest);
 
 }  // namespace titop::solve

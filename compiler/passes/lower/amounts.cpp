@@ -29,6 +29,10 @@ Pattern product(const MatrixXd& m, const Pattern& p) {
 }
 
 void append(Amount& sum, Amount more) {
+  if (sum.empty()) {
+    sum = std::move(more);
+    return;
+  }
   for (Summand& t : more) sum.push_back(std::move(t));
 }
 
