@@ -71,6 +71,13 @@ Interface body_interface(const std::vector<std::string>& children, int modes) {
   return face;
 }
 
+namespace {
+
+/// A mass matrix is symmetric; rounding of its data, or of what it was computed from, is not.
+Matrix6 symmetric(const Matrix6& D_P) { return (D_P + D_P.transpose()) / 2; }
+
+}  // namespace
+
 MatrixXd rigid_part(const std::vector<Vector3d>& PC, const Matrix6& D_P) {
   const auto n = static_cast<Eigen::Index>(6 * PC.size());
   MatrixXd D = MatrixXd::Zero(n + 6, n + 6);
@@ -80,7 +87,7 @@ MatrixXd rigid_part(const std::vector<Vector3d>& PC, const Matrix6& D_P) {
     D.block<6, 6>(row, n) = tau_CP;
     D.block<6, 6>(n, row) = tau_CP.transpose();
   }
-  D.bottomRightCorner<6, 6>() = -D_P;
+  D.bottomRightCorner<6, 6>() = -symmetric(D_P);
   return D;
 }
 
@@ -109,7 +116,7 @@ std::vector<Gains> rigid_gains(const std::vector<Vector3d>& PC, const Matrix6& D
     result.push_back({i, n, tau(-PC[static_cast<std::size_t>(i / 6)])});
   for (int i = 0; i < n; i += 6)
     result.push_back({n, i, tau(-PC[static_cast<std::size_t>(i / 6)]).transpose()});
-  result.push_back({n, n, -D_P});
+  result.push_back({n, n, -symmetric(D_P)});
   return result;
 }
 

@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <atomic>
 #include <latch>
-#include <titop/compiler/dense/writing.hpp>
+#include <titop/compiler/dense/kept.hpp>
+#include <titop/compiler/dense/terms.hpp>
 #include <titop/compiler/parallel.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
 #include <titop/compiler/solve/products.hpp>
@@ -18,31 +19,17 @@ using solve::RowMatrix;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Room for the solutions of one thread.
-struct Room {
-  solve::Propagation::Space space;
-  std::vector<double> values;        ///< of the columns of a batch, one after the other
-  std::vector<const double*> reads;  ///< rows of unknowns that a target reads
+/// Rows of the model one below the other, and where they begin among those of a batch.
+struct Run {
+  Index row = 0, size = 0, from = 0;
 };
-
-/// What a thread that writes models keeps from one to the next while it is small, for itself and
-/// for those that it starts: fresh memory would cost as much as the work.
-struct Kept {
-  std::vector<double> coefficients, products;  ///< all threads read them
-  std::vector<Room> rooms;
-
-  bool is_large() const {
-    constexpr std::size_t kKeep = 1 << 17;  // numbers: 1 MB each
-    const auto large = [](const std::vector<double>& v) { return v.size() > kKeep; };
-    return large(coefficients) || large(products) || rooms.size() > 8 ||
-           std::any_of(rooms.begin(), rooms.end(), [&](const Room& room) {
-             return large(room.values) || large(room.space.z) || large(room.space.carried);
-           });
-  }
-};
-Kept& kept_by_thread() {
-  static thread_local Kept kept;
-  return kept;
+/// The next run; it goes on with the last one where both do.
+void add_run(std::vector<Run>& runs, const Run& next) {
+  if (!runs.empty() && runs.back().row + runs.back().size == next.row &&
+      runs.back().from + runs.back().size == next.from)
+    runs.back().size += next.size;
+  else
+    runs.push_back(next);
 }
 
 /// Whoever waits goes on, even if this task has thrown: its numbers are not used then.
@@ -56,51 +43,53 @@ class Writer {
   Writer(const SystemData& d, StateSpace& m, int threads)
       : d_(d),
         k_(*d.skeleton),
-        g_(d.graph()),
         m_(m),
         w_(writing_of(d)),
+        half_(w_->reciprocity && w_->reciprocity->holds(d.numbers)),
         states_(d.layout().order()),
-        first_output_((states_ + kPad + 7) / 8 * 8),
-        values_(first_output_ + static_cast<Index>(d.layout().outputs.size()) + kPad),
+        first_output_((states_ + 7) / 8 * 8),
+        values_(first_output_ + static_cast<Index>(d.layout().outputs.size())),
         threads_(threads) {}
 
   void write() {
-    shape();
+    resize();
     Kept& kept = kept_by_thread();
     solve::Propagation propagation(*d_.factors, kept.products);
     const std::size_t batches = w_->batches.size() - 1;
     Index most = 0;
     for (std::size_t i = 0; i < batches; ++i) most = std::max(most, w_->width(i));
     kept.coefficients.assign(at(w_->coefficients), 0);
-    // What batches read are tasks, too: these are taken first, and all others wait for them.
-    constexpr std::size_t kFirst = 2;
+    // What batches read are tasks, too: these are taken first, and all others wait for them. Only
+    // the last may throw.
+    constexpr std::size_t kFirst = 4;
     std::latch first(kFirst);
+    const auto prepare = [&](std::size_t i) {
+      const Done done{first};
+      switch (i) {
+        case 0: return propagation.form(0, 2);
+        case 1: return propagation.form(1, 2);
+        case 2: return find_coefficients(d_, *w_, kept.coefficients.data());
+        default: return name();
+      }
+    };
     const std::size_t tasks = kFirst + batches;
     const int count = thread_count(threads(batches), tasks);
     kept.rooms.resize(std::max(kept.rooms.size(), at(count)));
     std::atomic<std::size_t> room{0};
     parallel(tasks, count, [&] {
-      Room* const own = &kept.rooms[room++];
-      return
-          [this, &propagation, &kept, &first, most, own, cleared = false](std::size_t i) mutable {
-            if (i >= kFirst) {
-              if (!cleared) own->values.assign(at(values_ * most), 0);
-              cleared = true;
-              first.wait();
-              return columns(propagation, kept.coefficients.data(), i - kFirst, *own);
-            }
-            const Done done{first};
-            i == 0 ? propagation.form() : find_coefficients(kept.coefficients.data());
-          };
+      Room& own = kept.rooms[room++];
+      return [this, &propagation, &kept, &first, &prepare, &own, most](std::size_t i) {
+        if (i < kFirst) return prepare(i);
+        own.clear_for(w_, at(values_ * most));
+        first.wait();
+        columns(propagation, kept.coefficients.data(), i - kFirst, own);
+      };
     });
     if (kept.is_large()) kept = {};
-    add_known();
-    for (const int i : d_.layout().state_nodes) add_own(i);
+    add_known(d_, *w_, m_);
   }
 
  private:
-  static constexpr Index kPad = 3;  ///< what Target::padded may add
-
   /// A thread costs more to start than a small model to write.
   int threads(std::size_t batches) const {
     constexpr double kWorthIt = 1.5e5;  // entries of the solutions, about 2 ns each
@@ -109,75 +98,28 @@ class Writer {
     return entries < kWorthIt ? 1 : threads_;
   }
 
-  void shape() {
+  void resize() {
     const auto inputs = static_cast<Index>(d_.layout().inputs.size());
     const auto outputs = static_cast<Index>(d_.layout().outputs.size());
     m_.A.resize(states_, states_);
     m_.B.resize(states_, inputs);
     m_.C.resize(outputs, states_);
     m_.D.resize(outputs, inputs);
+  }
+  void name() {
     m_.states = d_.layout().states;
     m_.inputs = d_.layout().inputs;
     m_.outputs = d_.layout().outputs;
   }
 
   const Dynamics& block(int node) const { return *d_.numbers.blocks[at(node)]; }
-  const RowMatrix<double>& coefficient(int i) const { return *d_.numbers.coefficients[at(i)]; }
-
-  // --- targets ---------------------------------------------------------------------------------
-
-  /// to += factor * what it is multiplied by.
-  template <class Factor, class To>
-  void add_product(const Factor& factor, int times, To to) const {
-    if (times < 0)
-      to += factor;
-    else
-      to += factor.lazyProduct(coefficient(times));
-  }
-  template <class To>
-  void add_term(const Writing::Target& t, const Writing::Term& term, To to) const {
-    if (term.node >= 0)
-      add_product(block(term.node).B.block(t.still, term.column, t.rows, term.size), term.times,
-                  to);
-    else
-      add_product(coefficient(term.coefficient), term.times, to);
-  }
-  Index size(const Writing::Term& term) const {
-    return term.times < 0 ? term.size : coefficient(term.times).cols();
-  }
-
-  /// `to`: zeros.
-  void find_coefficients(double* to) const {
-    for (const Writing::Target& t : w_->targets)
-      for (const Writing::Term& term : t.terms)
-        if (!term.known)
-          add_term(t, term,
-                   Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>(to + term.to, t.rows, size(term),
-                                                                 Eigen::OuterStride<>(t.padded)));
-  }
-
-  void add_known() {
-    for (const Writing::Target& t : w_->targets) {
-      const bool state = t.row < states_;
-      const Index row = state ? t.row : t.row - states_;
-      for (const Writing::Term& term : t.terms) {
-        if (!term.known) continue;
-        const bool of_state = term.to < states_;
-        MatrixXd& to = of_state ? (state ? m_.A : m_.C) : (state ? m_.B : m_.D);
-        add_term(t, term,
-                 to.block(row, of_state ? term.to : term.to - states_, t.rows, size(term)));
-      }
-    }
-  }
 
   // --- columns ---------------------------------------------------------------------------------
 
   /// Place of a row of [xdot; y] among the values of a column.
   Index place(Index row) const { return row < states_ ? row : first_output_ + row - states_; }
 
-  /// Solves for the sources of a batch and writes their columns. Values stand as in the model; what
-  /// no target has is 0 and stays so. A target's padding is 0, too, where it does not end in the
-  /// rows of the next, which writes them later.
+  /// Solves for the sources of a batch and writes their columns. Values stand as in the model.
   void columns(const solve::Propagation& propagation, const double* coefficients, std::size_t batch,
                Room& room) {
     const Index m = w_->width(batch);
@@ -187,9 +129,17 @@ class Writer {
       act(w_->sources[i], first, propagation, room.space);
       first += w_->sources[i].columns;
     }
-    propagation.solve(room.space);
-    for (const Writing::Target& t : w_->targets) read(t, coefficients, m, room);
+    propagation.solve(room.space, half_ ? w_->lowest[batch] : 0, w_->always);
+    for (const Writing::Target& t : w_->targets)
+      if (reads(t, batch)) read(t, coefficients, m, room);
     write_columns(batch, room.values.data());
+    if (half_) write_rows(batch, room);
+  }
+
+  /// False where other batches give what the target would read.
+  bool reads(const Writing::Target& t, std::size_t batch) const {
+    return !half_ || t.source < 0 || !w_->has_counterparts(batch) ||
+           at(t.source) >= w_->batches[batch];
   }
 
   /// The target's rows of all m columns.
@@ -199,8 +149,8 @@ class Writer {
     for (const Writing::Range& r : t.unknowns)
       for (Index i = r.first; i < r.first + r.size; ++i)
         room.reads.push_back(room.space.z.data() + i * m);
-    solve::multiply_transposed(t.padded, static_cast<Index>(room.reads.size()), m,
-                               coefficients + t.coefficients, room.reads.data(),
+    solve::multiply_transposed(t.rows, static_cast<Index>(room.reads.size()), m,
+                               coefficients + t.coefficients, t.padded, room.reads.data(),
                                room.values.data() + place(t.row), values_);
   }
 
@@ -223,10 +173,21 @@ class Writer {
     }
   }
 
+  /// Rows of xdot that targets of this batch have.
+  std::vector<Run> rows_of(std::size_t batch) const {
+    std::vector<Run> runs;
+    for (const Writing::Target& t : w_->targets)
+      if (t.row < states_ && reads(t, batch))
+        add_run(runs, {t.row - t.still, t.rows + t.still, t.row - t.still});
+    return runs;
+  }
+
   /// The columns of these sources from the values of their solutions.
   void write_columns(std::size_t batch, const double* values) {
+    const std::vector<Run> runs = rows_of(batch);
     const auto write = [&](MatrixXd& state, MatrixXd& output, Index column, double factor) {
-      solve::scale(state.rows(), factor, values, state.data() + column * state.rows());
+      for (const Run& r : runs)
+        solve::scale(r.size, factor, values + r.from, state.data() + column * state.rows() + r.row);
       solve::scale(output.rows(), factor, values + first_output_,
                    output.data() + column * output.rows());
     };
@@ -242,33 +203,75 @@ class Writer {
         } else {
           write(m_.B, m_.D, s.first - states_ + j, 1);
         }
+      if (s.node >= 0) add_own(s);
+    }
+  }
+
+  /// What later targets read of these sources is what these sources' targets read of theirs.
+  void write_rows(std::size_t batch, Room& room) {
+    std::vector<Run> runs;
+    Index width = 0;
+    for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i) {
+      const Writing::Source& s = w_->sources[i];
+      if (!s.modal) continue;
+      add_run(runs, {s.first, 2 * s.columns, width});
+      width += 2 * s.columns;
+    }
+    room.across.clear();
+    for (const Writing::Target& t : w_->targets) {
+      if (t.source < 0 || at(t.source) < w_->batches[batch + 1]) continue;
+      gather(t, batch, width, room);
+      const Writing::Source& s = w_->sources[at(t.source)];
+      const Modal& modal = *block(s.node).modal;
+      for (Index j = 0; j < t.rows; ++j)
+        for (const Run& r : runs) {
+          const double* const from = room.across.data() + j * width + r.from;
+          double* const to = m_.A.data() + (s.first + j) * states_ + r.row;
+          solve::scale(r.size, -modal.stiffness(j), from, to);
+          solve::scale(r.size, -modal.damping(j), from, to + s.columns * states_);
+        }
+    }
+  }
+
+  /// The target's rows of the batch's modal columns, each as the column of A that it is. Rows of
+  /// coordinates are 0 and stay so.
+  void gather(const Writing::Target& t, std::size_t batch, Index width, Room& room) const {
+    if (room.across.size() < at(t.rows * width)) room.across.resize(at(t.rows * width), 0);
+    const double* from = room.values.data() + place(t.row);
+    double* to = room.across.data();
+    for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i) {
+      const Writing::Source& s = w_->sources[i];
+      if (s.modal) {
+        solve::transpose(s.columns, t.rows, from, values_, to + s.columns, width);
+        to += 2 * s.columns;
+      }
+      from += s.columns * values_;
     }
   }
 
   /// The block's own A: what it does with all its inputs at 0.
-  void add_own(int node) {
-    const Index first = d_.layout().state_first[at(node)];
-    const Dynamics& b = block(node);
+  void add_own(const Writing::Source& s) {
+    const Dynamics& b = block(s.node);
     if (!b.modal) {
-      m_.A.block(first, first, b.A.rows(), b.A.cols()) += b.A;
+      m_.A.block(s.first, s.first, b.A.rows(), b.A.cols()) += b.A;
       return;
     }
     const Index n = b.modal->W.rows();
     for (Index i = 0; i < n; ++i) {
-      m_.A(first + i, first + n + i) = 1;
-      m_.A(first + n + i, first + i) -= b.modal->stiffness(i);
-      m_.A(first + n + i, first + n + i) -= b.modal->damping(i);
+      m_.A(s.first + i, s.first + n + i) = 1;
+      m_.A(s.first + n + i, s.first + i) -= b.modal->stiffness(i);
+      m_.A(s.first + n + i, s.first + n + i) -= b.modal->damping(i);
     }
   }
 
   const SystemData& d_;
   const Skeleton& k_;
-  const Graph& g_;
   StateSpace& m_;
   std::shared_ptr<const Writing> w_;
+  bool half_;  ///< half of a symmetric matrix is enough
   Index states_;
   Index first_output_;  ///< of a column's values
-  Index values_;        ///< per column: [xdot; y], each with room for padding
+  Index values_;        ///< per column: [xdot; y]
   int threads_;
 };
 

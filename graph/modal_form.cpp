@@ -22,7 +22,12 @@ std::shared_ptr<const Dynamics> modal_dynamics(Modal m) {
   d->C.rightCols(n) = m.W.transpose() * (-m.damping).asDiagonal();
   d->D = m.rigid;
   if (n == 0) return d;
-  d->D += m.W.transpose() * m.W;
+  for (Index i = 0; i < inputs; ++i)  // as symmetric as `rigid`, to the last bit
+    for (Index j = 0; j <= i; ++j) {
+      const double both = m.W.col(i).dot(m.W.col(j));
+      d->D(i, j) += both;
+      if (j < i) d->D(j, i) += both;
+    }
   d->modal = std::make_shared<const Modal>(std::move(m));
   return d;
 }

@@ -5,7 +5,8 @@
 /// What follows from a body's modes.
 namespace titop {
 
-/// A, B, C, D of the states [eta; etad], with the modal form itself. O(modes^2 + modes inputs^2).
+/// A, B, C, D of the states [eta; etad], with the modal form itself. D is as symmetric as `rigid`.
+/// O(modes^2 + modes inputs^2).
 std::shared_ptr<const Dynamics> modal_dynamics(Modal modal);
 
 /// The body alone at s, O(modes inputs^2). Throws singular, with the mode and this type of block,

@@ -2,6 +2,8 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <optional>
+#include <titop/compiler/dense/reciprocity.hpp>
 #include <utility>
 #include <vector>
 
@@ -14,6 +16,10 @@ struct SystemData;
 /// and B answers one state or input that acts on some rows of the joint system (a source); every
 /// row of xdot and y reads some unknowns (a target). A body with N modes acts through its N modal
 /// forces, not its 2 N states: half the columns.
+///
+/// Where modes answer each other's forces symmetrically (Reciprocity), the sources of a batch are
+/// solved for the targets of these and later ones only. What earlier ones would read is what they
+/// have given already: it is written into the rows of this batch, not its columns.
 struct Writing {
   static constexpr Eigen::Index kBatch = 48;  ///< columns at a time
 
@@ -52,16 +58,24 @@ struct Writing {
     std::vector<Term> terms = {};
     std::vector<Range> unknowns = {};
     Eigen::Index coefficients = 0;  ///< where they begin: unknowns x rows, padded
+    int source = -1;                ///< of the same modes; -1: it reads what all sources do
   };
 
-  std::vector<Source> sources;              ///< fronts ascend
-  std::vector<Target> targets;              ///< rows ascend
-  std::vector<std::size_t> batches;         ///< first sources, and the end
+  std::vector<Source> sources;       ///< fronts ascend from batch to batch; with `reciprocity`
+                                     ///< modal ones come last
+  std::vector<Target> targets;       ///< rows ascend
+  std::vector<std::size_t> batches;  ///< first sources, and the end
+  std::optional<Reciprocity> reciprocity;
+  std::vector<int> lowest;   ///< per batch: the first front that its sources, and targets of these
+                             ///< and later ones, need; 0 where all are needed
+  std::vector<char> always;  ///< per front: do targets that read all sources need it?
   std::vector<std::pair<int, bool>> modal;  ///< nodes with states: by their modes?
   Eigen::Index coefficients = 0;            ///< of all targets
 
   /// False where blocks have got or lost their modal form.
   bool fits(const SystemData& data) const;
+  /// True for batches of modal sources alone, with `reciprocity`.
+  bool has_counterparts(std::size_t batch) const { return sources[batches[batch]].modal; }
   /// Columns of a batch, up to a multiple of 8: no sum depends on their number.
   Eigen::Index width(std::size_t batch) const;
 };

@@ -10,10 +10,11 @@
 #include <vector>
 
 /// Elimination along the junctions: a row-merging LU of a block-sparse square system, front by
-/// front as the plan says. No symmetry is made use of: controllers and exchanged channels have
+/// front as the plan says. No symmetry is made use of here: controllers and exchanged channels have
 /// none, and a pivot that is chosen by its size keeps digits that a symmetric order, fixed
-/// beforehand, would not. Instantiated for double, and for complex numbers of float, double, long
-/// double, double-double and 50 digits.
+/// beforehand, would not. (The dense model is written by half of it: dense/reciprocity.hpp.)
+/// Instantiated for double, and for complex numbers of float, double, long double, double-double
+/// and 50 digits.
 namespace titop::solve {
 
 /// Where the coefficients come from.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <titop/compiler/solve/lanes.hpp>
 #include <titop/compiler/solve/products.hpp>
 #include <titop/graph/linalg/wide.hpp>
@@ -10,7 +11,7 @@ struct Product {
   const double* a;
   std::ptrdiff_t stride;
   const double* const* x;
-  const double* const* from;  ///< of rows; none where the product is transposed
+  const double* const* from;  ///< of rows; none: from 0
   double* y;
   std::ptrdiff_t y_stride;
 };
@@ -32,9 +33,10 @@ template <class L, int C, int R>
   const double* const a = p.a + i * p.stride;
   double* const y = p.y + i * p.y_stride;
   for (std::ptrdiff_t j = 0; j < p.m; j += C * n) {
-    L sum[height][width];
-    for (int r = 0; r < R; ++r)
-      for (int c = 0; c < C; ++c) load(sum[r][c], p.from[i + r] + j + c * n);
+    L sum[height][width] = {};
+    if (p.from)
+      for (int r = 0; r < R; ++r)
+        for (int c = 0; c < C; ++c) load(sum[r][c], p.from[i + r] + j + c * n);
     for (std::ptrdiff_t k = 0; k < p.inner; ++k) {
       L x[width];
       for (int c = 0; c < C; ++c) load(x[c], p.x[k] + j + c * n);
@@ -46,10 +48,21 @@ template <class L, int C, int R>
   }
 }
 
-/// As many rows as L has entries, from row i on; eight columns from j on.
+/// The first `count` entries of a register, at most three. (A place that is not a constant would
+/// take the register through memory.)
+template <class L>
+[[gnu::always_inline]] inline void store_first(double* to, const L& from, std::ptrdiff_t count) {
+  if constexpr (kLanes<L> >= 4)
+    if (count >= 2) store(to, Lanes<2>{from[0], from[1]});
+  if constexpr (kLanes<L> >= 4)
+    if (count == 3) to[2] = from[2];
+  if (count == 1) to[0] = from[0];
+}
+
+/// `count` rows from row i on, at most as many as L has entries; eight columns from j on.
 template <class L>
 [[gnu::always_inline]] inline void transposed_tile(const Product p, std::ptrdiff_t i,
-                                                   std::ptrdiff_t j) {
+                                                   std::ptrdiff_t j, std::ptrdiff_t count) {
   constexpr int C = 8;
   L sum[C] = {};
   for (std::ptrdiff_t k = 0; k < p.inner; ++k) {
@@ -59,7 +72,10 @@ template <class L>
     for (int c = 0; c < C; ++c) sum[c] += a * x[c];
   }
   double* const y = p.y + j * p.y_stride + i;
-  for (int c = 0; c < C; ++c) store(y + c * p.y_stride, sum[c]);
+  if (count >= kLanes<L>)
+    for (int c = 0; c < C; ++c) store(y + c * p.y_stride, sum[c]);
+  else
+    for (int c = 0; c < C; ++c) store_first(y + c * p.y_stride, sum[c], count);
 }
 
 /// One row of a substitution, a register of columns from j on: sums stay there.
@@ -106,8 +122,8 @@ template <class L, class Rest>
   constexpr std::ptrdiff_t n = kLanes<L>, rest = kLanes<Rest>;
   for (std::ptrdiff_t j = 0; j < p.m; j += 8) {
     std::ptrdiff_t i = 0;
-    for (; i + n <= rows; i += n) transposed_tile<L>(p, i, j);
-    for (; i < rows; i += rest) transposed_tile<Rest>(p, i, j);
+    for (; i + n <= rows; i += n) transposed_tile<L>(p, i, j, n);
+    for (; i < rows; i += rest) transposed_tile<Rest>(p, i, j, rows - i);
   }
 }
 
@@ -163,9 +179,9 @@ void multiply(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m, const
 }
 
 void multiply_transposed(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m,
-                         const double* at, const double* const* x, double* y,
+                         const double* at, std::ptrdiff_t stride, const double* const* x, double* y,
                          std::ptrdiff_t y_stride, int lanes) {
-  kernels(lanes).transposed({inner, m, at, rows, x, nullptr, y, y_stride}, rows);
+  kernels(lanes).transposed({inner, m, at, stride, x, nullptr, y, y_stride}, rows);
 }
 
 void substitute_lower(std::ptrdiff_t rows, std::ptrdiff_t pivots, std::ptrdiff_t m,
@@ -176,6 +192,45 @@ void substitute_lower(std::ptrdiff_t rows, std::ptrdiff_t pivots, std::ptrdiff_t
 void substitute_upper(std::ptrdiff_t pivots, std::ptrdiff_t m, const double* lu,
                       std::ptrdiff_t stride, double* x, int lanes) {
   kernels(lanes).substitution({true, pivots, pivots, m, lu, stride, x});
+}
+
+namespace {
+
+using Four = Lanes<4>;
+
+/// Four rows of four columns.
+[[gnu::always_inline]] inline void transpose_tile(const double* x, std::ptrdiff_t x_stride,
+                                                  double* y, std::ptrdiff_t y_stride) {
+  Four a, b, c, d;
+  load(a, x), load(b, x + x_stride), load(c, x + 2 * x_stride), load(d, x + 3 * x_stride);
+  const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6),
+             ba = __builtin_shufflevector(a, b, 1, 5, 3, 7),
+             cd = __builtin_shufflevector(c, d, 0, 4, 2, 6),
+             dc = __builtin_shufflevector(c, d, 1, 5, 3, 7);
+  const Four first = __builtin_shufflevector(ab, cd, 0, 1, 4, 5),
+             second = __builtin_shufflevector(ba, dc, 0, 1, 4, 5),
+             third = __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
+             fourth = __builtin_shufflevector(ba, dc, 2, 3, 6, 7);
+  store(y, first), store(y + y_stride, second), store(y + 2 * y_stride, third),
+      store(y + 3 * y_stride, fourth);
+}
+
+}  // namespace
+
+/// By tiles; the last ones reach back where rows or columns are no multiple of four.
+TITOP_WIDE void transpose(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
+                          std::ptrdiff_t x_stride, double* y, std::ptrdiff_t y_stride) {
+  constexpr std::ptrdiff_t n = 4;
+  if (rows < n || columns < n) {
+    for (std::ptrdiff_t i = 0; i < rows; ++i)
+      for (std::ptrdiff_t j = 0; j < columns; ++j) y[j * y_stride + i] = x[i * x_stride + j];
+    return;
+  }
+  for (std::ptrdiff_t i = 0; i < rows; i += n)
+    for (std::ptrdiff_t j = 0; j < columns; j += n) {
+      const std::ptrdiff_t r = std::min(i, rows - n), c = std::min(j, columns - n);
+      transpose_tile(x + r * x_stride + c, x_stride, y + c * y_stride + r, y_stride);
+    }
 }
 
 TITOP_WIDE void scale(std::ptrdiff_t n, double factor, const double* x, double* y) {

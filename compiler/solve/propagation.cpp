@@ -22,36 +22,53 @@ Propagation::Propagation(const Factors<double>& factors, std::vector<double>& ro
   std::size_t total = 0;
   place_.reserve(plan_.fronts.size());
   for (const Front& f : plan_.fronts) {
-    Place p{padded(f.pivot_count), padded(f.border_count), total, 0, 0};
-    p.carry = p.own + at(f.pivot_count * p.by_pivots);
-    p.border = p.carry + at(f.left_over() * p.by_pivots);
-    total = p.border + at(f.pivot_count * p.by_border);
+    Place p{padded(f.pivot_count), padded(f.border_count + f.pivot_count), total};
+    p.unknowns = p.lower + at(f.row_count * p.by_pivots);
+    total = p.unknowns + at(f.pivot_count * p.by_all);
     place_.push_back(p);
   }
   grow(formed_, total);
+  column_.resize(at(plan_.unknowns));
 }
 
-void Propagation::form() {
-  for (std::size_t i = 0; i < plan_.fronts.size(); ++i) form(i);
+void Propagation::form(int k, int parts) {
+  const std::size_t fronts = plan_.fronts.size(), end = fronts * at(k + 1) / at(parts);
+  for (std::size_t i = fronts * at(k) / at(parts); i < end; ++i) form_front(i);
 }
 
-/// `carry` stands below `own` and comes of the same substitution.
-void Propagation::form(std::size_t index) {
+/// Columns of L^-1 for the pivots' rows: those that children left over come first. Above the front
+/// of a right-hand side the others are 0.
+void Propagation::order_columns(std::size_t index) {
+  const Front& f = plan_.fronts[index];
+  int entered = 0, next = 0;
+  for (const int r : plan_.list(f.rows)) entered += plan_.structure.row_size[at(r)];
+  const auto rows = factors_.made(index).order.first(at(f.pivot_count));
+  int* const column = column_.data() + f.first_unknown;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (rows[k] >= entered) column[k] = next++;
+  place_[index].carried = next;
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (rows[k] < entered) column[k] = next++;
+}
+
+void Propagation::form_front(std::size_t index) {
+  order_columns(index);
   const Front& f = plan_.fronts[index];
   const Place& p = place_[index];
   const double* const lu = factors_.made(index).lu.data();
-  const std::ptrdiff_t n = f.columns(), pivots = f.pivot_count;
-  double* const own = formed_.data() + p.own;
-  std::fill_n(own, f.row_count * p.by_pivots, 0.0);
-  for (std::ptrdiff_t r = 0; r < pivots; ++r) own[r * p.by_pivots + r] = 1;
-  substitute_lower(f.row_count, pivots, p.by_pivots, lu, n, own);
-  substitute_upper(pivots, p.by_pivots, lu, n, own);
-  double* const border = formed_.data() + p.border;
-  std::fill_n(border, pivots * p.by_border, 0.0);
-  for (std::ptrdiff_t r = 0; r < pivots; ++r)
-    for (std::ptrdiff_t j = 0; j < f.border_count; ++j)
-      border[r * p.by_border + j] = -lu[r * n + pivots + j];
-  substitute_upper(pivots, p.by_border, lu, n, border);
+  const std::ptrdiff_t n = f.columns(), pivots = f.pivot_count, border = f.border_count;
+  const int* const column = column_.data() + f.first_unknown;
+  double* const lower = formed_.data() + p.lower;
+  std::fill_n(lower, f.row_count * p.by_pivots, 0.0);
+  for (std::ptrdiff_t r = 0; r < pivots; ++r) lower[r * p.by_pivots + column[r]] = 1;
+  substitute_lower(f.row_count, pivots, p.by_pivots, lu, n, lower);
+  double* row = formed_.data() + p.unknowns;
+  for (std::ptrdiff_t r = 0; r < pivots; ++r, row += p.by_all) {
+    for (std::ptrdiff_t j = 0; j < border; ++j) row[j] = -lu[r * n + pivots + j];
+    std::copy_n(lower + r * p.by_pivots, pivots, row + border);
+    std::fill(row + n, row + p.by_all, 0.0);
+  }
+  substitute_upper(pivots, p.by_all, lu, n, formed_.data() + p.unknowns);
 }
 
 /// The rows of a front as they come: nullptr where nothing has reached them yet.
@@ -76,58 +93,57 @@ void Propagation::gather(const Front& f, Space& space) const {
   }
 }
 
-/// What the front's rows give to its unknowns and carry upwards.
+/// What the front's rows carry upwards. Those of its pivots are kept for the way back.
 void Propagation::forward(int index, Space& space) const {
   const std::ptrdiff_t m = space.m;
   const Front& f = plan_.fronts[at(index)];
+  const Place& p = place_[at(index)];
   const auto& order = factors_.made(at(index)).order;
+  const int* const column = column_.data() + f.first_unknown;
   const double* const zeros = space.zeros.data();
+  const double** const with = space.pivots.data() + f.first_unknown;
   gather(f, space);
-  bool any = false;
-  space.with.clear();
-  for (const int place : order.first(at(f.pivot_count))) {
-    const double* const come = space.come[at(place)];
-    any = any || come;
-    space.with.push_back(come ? come : zeros);
+  int used = 0;
+  for (int k = 0; k < f.pivot_count; ++k) {
+    const double* const come = space.come[at(order[at(k)])];
+    if (come) used = std::max(used, column[k] < p.carried ? p.carried : f.pivot_count);
+    with[column[k]] = come ? come : zeros;
   }
+  space.used[at(index)] = used;
   space.from.clear();
   for (const int place : order.subspan(at(f.pivot_count))) {
     const double* const come = space.come[at(place)];
-    space.is_carried[at(f.first_carried) + space.from.size()] = any || come;
+    space.is_carried[at(f.first_carried) + space.from.size()] = used > 0 || come;
     space.from.push_back(come ? come : zeros);
   }
-  double* const top = space.z.data() + f.first_unknown * m;
-  double* const rest = space.carried.data() + f.first_carried * m;
-  const Place& p = place_[at(index)];
-  const std::ptrdiff_t n = f.pivot_count, used = any ? n : 0;
-  multiply(f.left_over(), used, m, formed_.data() + p.carry, p.by_pivots, space.with.data(),
-           space.from.data(), rest);
-  if (n == 1 && any) {
-    // A division rounds once, a product with the inverse twice.
-    const double pivot = factors_.made(at(index)).lu.front();
-    for (std::ptrdiff_t j = 0; j < m; ++j) top[j] = space.with.front()[j] / pivot;
-    return;
-  }
-  space.from.assign(at(n), zeros);
-  multiply(n, used, m, formed_.data() + p.own, p.by_pivots, space.with.data(), space.from.data(),
-           top);
+  multiply(f.left_over(), used, m, formed_.data() + p.lower + at(f.pivot_count * p.by_pivots),
+           p.by_pivots, with, space.from.data(), space.carried.data() + f.first_carried * m);
 }
 
-/// The front's unknowns from those of its border; `add`: something stands there already.
-void Propagation::add_border(int index, bool add, Space& space) const {
+/// The front's unknowns from those of its border and, where it is active, its own rows.
+void Propagation::back(int index, Space& space) const {
   const std::ptrdiff_t m = space.m;
   const Front& f = plan_.fronts[at(index)];
+  const Place& p = place_[at(index)];
   double* const top = space.z.data() + f.first_unknown * m;
   space.with.clear();
   for (const int v : plan_.list(f.border))
     for (int i = 0; i < plan_.structure.variable_size[at(v)]; ++i)
       space.with.push_back(space.z.data() + (plan_.first[at(v)] + i) * m);
-  space.from.clear();
-  for (std::ptrdiff_t i = 0; i < f.pivot_count; ++i)
-    space.from.push_back(add ? top + i * m : space.zeros.data());
-  const Place& p = place_[at(index)];
-  multiply(f.pivot_count, f.border_count, m, formed_.data() + p.border, p.by_border,
-           space.with.data(), space.from.data(), top);
+  const double* const* from = nullptr;
+  if (const int used = space.is_active[at(index)] ? space.used[at(index)] : 0; used > 0) {
+    const double* const* const own = space.pivots.data() + f.first_unknown;
+    if (f.pivot_count == 1) {  // a division rounds once, a product with the inverse twice
+      const double pivot = factors_.made(at(index)).lu.front();
+      for (std::ptrdiff_t j = 0; j < m; ++j) top[j] = own[0][j] / pivot;
+      space.from.assign(1, top);
+      from = space.from.data();
+    } else {
+      space.with.insert(space.with.end(), own, own + used);
+    }
+  }
+  multiply(f.pivot_count, static_cast<std::ptrdiff_t>(space.with.size()), m,
+           formed_.data() + p.unknowns, p.by_all, space.with.data(), from, top);
 }
 
 void Propagation::begin(std::ptrdiff_t m, Space& space) const {
@@ -140,6 +156,8 @@ void Propagation::begin(std::ptrdiff_t m, Space& space) const {
   space.is_set.assign(plan_.structure.row_size.size(), 0);
   space.is_active.assign(plan_.fronts.size(), 0);
   space.is_carried.resize(at(plan_.carried), 0);
+  space.pivots.resize(at(plan_.unknowns));
+  space.used.resize(plan_.fronts.size());
 }
 
 double* Propagation::rhs(int row_group, Space& space) const {
@@ -160,11 +178,11 @@ void Propagation::activate(Space& space) const {
   std::sort(space.active.begin(), space.active.end());
 }
 
-void Propagation::solve(Space& space) const {
+void Propagation::solve(Space& space, int lowest, std::span<const char> also) const {
   activate(space);
   for (const int f : space.active) forward(f, space);
   for (int i = static_cast<int>(plan_.fronts.size()) - 1; i >= 0; --i)
-    add_border(i, space.is_active[at(i)], space);
+    if (i >= lowest || also[at(i)]) back(i, space);
 }
 
 }  // namespace titop::solve

@@ -14,8 +14,8 @@ class Propagation {
   /// `room`: where the products go; it must live as long, and is not cleared. `form` comes next.
   Propagation(const Factors<double>& factors, std::vector<double>& room);
 
-  /// Forms the products of all fronts. O(sum of front sizes^3).
-  void form();
+  /// Forms the products of all fronts, here the k-th of `parts` parts. O(sum of front sizes^3).
+  void form(int k = 0, int parts = 1);
 
   /// What one solution needs; each thread has its own.
   struct Space {
@@ -28,6 +28,8 @@ class Propagation {
     std::vector<char> is_carried = {};                ///< where rows are not zero
     std::vector<const double*> come = {};             ///< the rows of the present front
     std::vector<const double*> from = {}, with = {};  ///< rows of a product
+    std::vector<const double*> pivots = {};           ///< rows of the pivots of active fronts
+    std::vector<int> used = {};                       ///< per front: those that are not 0
   };
 
   /// The next solution has m columns, a multiple of 8, and no right-hand sides yet.
@@ -36,27 +38,30 @@ class Propagation {
   /// Right-hand sides of a row group (its rows x m, row-major), to add to: 0 at first.
   double* rhs(int row_group, Space& space) const;
 
-  /// The unknowns (unknowns x m, row-major) go to space.z.
-  void solve(Space& space) const;
+  /// The unknowns (unknowns x m, row-major) go to space.z. Of fronts below `lowest` (none of which
+  /// has right-hand sides) only those that are `also` needed, with all that their borders need.
+  void solve(Space& space, int lowest = 0, std::span<const char> also = {}) const;
 
  private:
   void activate(Space& space) const;
   void gather(const Front& front, Space& space) const;
   void forward(int front, Space& space) const;
-  void add_border(int front, bool add, Space& space) const;
-  void form(std::size_t front);
+  void back(int front, Space& space) const;
+  void order_columns(std::size_t front);
+  void form_front(std::size_t front);
 
-  /// Where a front's matrices begin, row-major one after the other, rows padded to 8.
+  /// Where a front's matrices begin, row-major, rows padded to 8.
   struct Place {
-    std::ptrdiff_t by_pivots = 0, by_border = 0;  ///< from row to row
-    std::size_t own = 0;                          ///< U^-1 L^-1: pivots x pivots
-    std::size_t carry = 0;                        ///< -L' L^-1: rows left over x pivots
-    std::size_t border = 0;                       ///< -U^-1 (border of U): pivots x border
+    std::ptrdiff_t by_pivots = 0, by_all = 0;  ///< from row to row
+    std::size_t lower = 0;                     ///< L^-1, and below it -L' L^-1: rows x pivots
+    std::size_t unknowns = 0;  ///< -U^-1 (border of U), and beside it U^-1 L^-1: pivots x both
+    int carried = 0;           ///< pivots' rows that came from children: the first columns
   };
 
   const Factors<double>& factors_;
   const Plan& plan_;
   std::vector<Place> place_;
+  std::vector<int> column_;  ///< pivot -> column of L^-1
   std::vector<double>& formed_;
 };
 

@@ -25,29 +25,31 @@ TEST_CASE("multiply, and the same transposed: as plain loops, to the last bit, a
   const auto at = [](std::ptrdiff_t i) { return static_cast<std::size_t>(i); };
   for (const std::ptrdiff_t rows : {4, 8, 12, 20})
     for (const std::ptrdiff_t inner : {0, 1, 6, 13})
-      for (const std::ptrdiff_t m : {8, 24, 48}) {
-        const std::ptrdiff_t used = rows - (m == 24 ? 1 : 0);  // any number of rows
+      for (const std::ptrdiff_t m : {8, 24, 40, 48}) {
+        const std::ptrdiff_t used = rows - (m == 48 ? 0 : m / 8 % 4);  // any number of rows
         const auto a = numbers(rng, rows * (inner + 2)), x = numbers(rng, 2 * inner * m),
                    start = numbers(rng, rows * m);
-        std::vector<double> plain = start, transposed(start.size()), a_transposed;
+        std::vector<double> plain = start, from_zero = start, transposed(start.size(), 7),
+                            a_transposed;
         std::vector<const double*> x_rows;  // some row or other between those that are read
         for (std::ptrdiff_t k = 0; k < inner; ++k) x_rows.push_back(x.data() + (2 * k + k % 2) * m);
         for (std::ptrdiff_t i = 0; i < rows; ++i)
           for (std::ptrdiff_t j = 0; j < m; ++j) {
-            double sum = start[at(i * m + j)], from_zero = 0;
+            double sum = start[at(i * m + j)], sum_from_zero = 0;
             for (std::ptrdiff_t k = 0; k < inner; ++k) {
               const double product = a[at(i * (inner + 2) + k)] * x_rows[at(k)][j];
-              sum += product, from_zero += product;
+              sum += product, sum_from_zero += product;
             }
-            if (i < used) plain[at(i * m + j)] = sum;
-            transposed[at(j * rows + i)] = from_zero;
+            if (i >= used) continue;
+            plain[at(i * m + j)] = sum;
+            from_zero[at(i * m + j)] = transposed[at(j * rows + i)] = sum_from_zero;
           }
         for (std::ptrdiff_t k = 0; k < inner; ++k)
           for (std::ptrdiff_t i = 0; i < rows; ++i)
             a_transposed.push_back(a[at(i * (inner + 2) + k)]);
         for (const int lanes : {8, 4, 2}) {
           INFO(rows, " x ", inner, " x ", m, ", ", lanes, " lanes");
-          std::vector<double> y = start, elsewhere = start, yt(start.size(), 7);
+          std::vector<double> y = start, elsewhere = start, none = start, yt(start.size(), 7);
           const auto rows_of = [&](const std::vector<double>& of) {
             std::vector<const double*> list;
             for (std::ptrdiff_t i = 0; i < used; ++i) list.push_back(of.data() + i * m);
@@ -59,13 +61,33 @@ TEST_CASE("multiply, and the same transposed: as plain loops, to the last bit, a
           };
           multiply(y, y);
           multiply(start, elsewhere);
-          titop::solve::multiply_transposed(rows, inner, m, a_transposed.data(), x_rows.data(),
-                                            yt.data(), rows, lanes);
+          titop::solve::multiply(used, inner, m, a.data(), inner + 2, x_rows.data(), nullptr,
+                                 none.data(), lanes);
+          titop::solve::multiply_transposed(used, inner, m, a_transposed.data(), rows,
+                                            x_rows.data(), yt.data(), rows, lanes);
           CHECK(y == plain);
           CHECK(elsewhere == plain);
+          CHECK(none == from_zero);
           CHECK(yt == transposed);
         }
       }
+}
+
+TEST_CASE("transpose: every entry in its place, and nothing beside") {
+  Rng rng(9);
+  const auto at = [](std::ptrdiff_t i) { return static_cast<std::size_t>(i); };
+  for (const std::ptrdiff_t rows : {1, 3, 4, 6, 9})
+    for (const std::ptrdiff_t columns : {1, 2, 4, 6, 11}) {
+      INFO(rows, " x ", columns);
+      const std::ptrdiff_t x_stride = columns + 3, y_stride = rows + 2;
+      const auto x = numbers(rng, rows * x_stride);
+      std::vector<double> y(at(columns * y_stride), 7), plain = y;
+      for (std::ptrdiff_t i = 0; i < rows; ++i)
+        for (std::ptrdiff_t j = 0; j < columns; ++j)
+          plain[at(j * y_stride + i)] = x[at(i * x_stride + j)];
+      titop::solve::transpose(rows, columns, x.data(), x_stride, y.data(), y_stride);
+      CHECK(y == plain);
+    }
 }
 
 TEST_CASE("substitutions: as plain loops, to the last bit, at every width") {

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <titop/compiler/dense/writing.hpp>
+#include <titop/compiler/solve/propagation.hpp>
+#include <vector>
+
+namespace titop::detail {
+
+/// Room for the solutions of one thread.
+struct Room {
+  solve::Propagation::Space space;
+  std::vector<double> values;         ///< of the columns of a batch, one after the other
+  std::vector<const double*> reads;   ///< rows of unknowns that a target reads
+  std::vector<double> across;         ///< columns of later targets, in the rows of the batch
+  std::shared_ptr<const Writing> of;  ///< what `values` belong to
+
+  /// Values that no target has are 0, and stay so from model to model.
+  void clear_for(const std::shared_ptr<const Writing>& writing, std::size_t size);
+};
+
+/// What a thread that writes models keeps from one to the next while it is small, for itself and
+/// for those that it starts: fresh memory would cost as much as the work.
+struct Kept {
+  std::vector<double> coefficients, products;  ///< all threads read them
+  std::vector<Room> rooms;
+
+  bool is_large() const;
+};
+Kept& kept_by_thread();
+
+}  // namespace titop::detail

@@ -1,0 +1,64 @@
+#include <titop/compiler/dense/terms.hpp>
+#include <titop/compiler/system_data.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Target = Writing::Target;
+using Term = Writing::Term;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+const solve::RowMatrix<double>& coefficient(const SystemData& d, int i) {
+  return *d.numbers.coefficients[at(i)];
+}
+
+/// to += factor * what it is multiplied by.
+template <class Factor, class To>
+void add_product(const SystemData& d, const Factor& factor, int times, To to) {
+  if (times < 0)
+    to += factor;
+  else
+    to += factor.lazyProduct(coefficient(d, times));
+}
+
+template <class To>
+void add_term(const SystemData& d, const Target& t, const Term& term, To to) {
+  if (term.node < 0) return add_product(d, coefficient(d, term.coefficient), term.times, to);
+  const MatrixXd& B = d.numbers.blocks[at(term.node)]->B;
+  add_product(d, B.block(t.still, term.column, t.rows, term.size), term.times, to);
+}
+
+Index size(const SystemData& d, const Term& term) {
+  return term.times < 0 ? term.size : coefficient(d, term.times).cols();
+}
+
+}  // namespace
+
+void find_coefficients(const SystemData& d, const Writing& writing, double* to) {
+  for (const Target& t : writing.targets)
+    for (const Term& term : t.terms)
+      if (!term.known)
+        add_term(d, t, term,
+                 Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>(to + term.to, t.rows, size(d, term),
+                                                               Eigen::OuterStride<>(t.padded)));
+}
+
+void add_known(const SystemData& d, const Writing& writing, StateSpace& model) {
+  const Index states = d.layout().order();
+  for (const Target& t : writing.targets) {
+    const bool state = t.row < states;
+    const Index row = state ? t.row : t.row - states;
+    for (const Term& term : t.terms) {
+      if (!term.known) continue;
+      const bool of_state = term.to < states;
+      MatrixXd& to = of_state ? (state ? model.A : model.C) : (state ? model.B : model.D);
+      add_term(d, t, term,
+               to.block(row, of_state ? term.to : term.to - states, t.rows, size(d, term)));
+    }
+  }
+}
+
+}  // namespace titop::detail
