@@ -3,6 +3,7 @@
 #include <cmath>
 #include <titop/blocks/specified.hpp>
 #include <titop/blocks/spring_mass.hpp>
+#include <titop/graph/pole.hpp>
 
 namespace titop {
 namespace {
@@ -55,10 +56,7 @@ class SpringMassBlock : public Block, public Specified<SpringMass> {
     const double m = spec_.mass.at(values), k = spec_.stiffness.at(values);
     const double c = spec_.damping.at(values), m0 = spec_.parent_mass.at(values);
     const std::complex<double> spring = k + c * s, inertia = m * s * s, den = inertia + spring;
-    if (den == 0.0)
-      throw Error(Code::singular,
-                  fmt::format("a SpringMass has a pole at s = {}{:+}j", s.real(), s.imag()),
-                  "evaluate beside the pole");
+    if (den == 0.0) throw pole_at(s, "a SpringMass");
     Response r{Eigen::MatrixXcd(2, 2), Eigen::MatrixXcd(3, 2)};
     r.X << 1.0 / den, -m / den, s / den, -m * s / den;
     r.Y << s * s / den, spring / den, spring / den, -m0 - m * spring / den, 1.0 / den, -m / den;

@@ -3,6 +3,7 @@
 #include <titop/compiler/response.hpp>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/pole.hpp>
 
 namespace titop::detail {
 namespace {
@@ -25,10 +26,7 @@ solve::Response<T> response_in_double(const Block& block, const T& s, ParameterV
 
 template <class T>
 Error pole_of(const Block& block, const T& at_s) {
-  const std::complex<double> s = solve::Scalar<T>::round(at_s);
-  return {Code::singular,
-          fmt::format("a {} has a pole at s = {}{:+}j", block.type(), s.real(), s.imag()),
-          "evaluate beside the pole"};
+  return pole_at(solve::Scalar<T>::round(at_s), fmt::format("a {}", block.type()));
 }
 
 /// Y = rigid + W' diag(s^2 / d) W, d = s^2 + damping s + stiffness.

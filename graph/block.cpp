@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <titop/graph/block.hpp>
-#include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/pole.hpp>
 
 namespace titop {
 
@@ -64,10 +64,7 @@ Block::Response Block::response(std::complex<double> s, ParameterValues values) 
     return {Eigen::MatrixXcd(0, d->B.cols()), d->dense_direct().cast<std::complex<double>>()};
   const Eigen::MatrixXcd E = s * Eigen::MatrixXcd::Identity(n, n) - d->A;
   const linalg::Solution x = linalg::solve(E, d->B.cast<std::complex<double>>());
-  if (!(x.rcond > 0) || !x.z.allFinite())
-    throw Error(Code::singular,
-                fmt::format("a {} has a pole at s = {}{:+}j", type(), s.real(), s.imag()),
-                "evaluate beside the pole");
+  if (!(x.rcond > 0) || !x.z.allFinite()) throw pole_at(s, fmt::format("a {}", type()));
   return {x.z, d->C * x.z + d->D};
 }
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include <titop/graph/error.hpp>
 #include <titop/graph/modal_form.hpp>
+#include <titop/graph/pole.hpp>
 
 namespace titop {
 
@@ -39,11 +39,7 @@ Block::Response modal_response(const Modal& m, std::complex<double> s, std::stri
   Eigen::VectorXcd stiff(n), inert(n);
   for (Index i = 0; i < n; ++i) {
     const std::complex<double> den = s * s + m.damping(i) * s + m.stiffness(i);
-    if (den == 0.0)
-      throw Error(
-          Code::singular,
-          fmt::format("mode {} of a {} has a pole at s = {}{:+}j", i + 1, type, s.real(), s.imag()),
-          "evaluate beside the pole");
+    if (den == 0.0) throw pole_at(s, fmt::format("mode {} of a {}", i + 1, type));
     stiff(i) = 1.0 / den;
     inert(i) = s * s / den;
   }

@@ -4,6 +4,7 @@
 #include <titop/compiler/economy/reduced_data.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/pole.hpp>
 
 /// The forms that a reduced system can be had in.
 namespace titop {
@@ -116,10 +117,7 @@ MatrixXcd SecondOrderModel::transfer(Complex s) const {
   const MatrixXcd S = s * s * M.cast<Complex>() + s * D.cast<Complex>() + K.cast<Complex>();
   if (S.rows() == 0) return direct.cast<Complex>();
   const auto solved = linalg::solve(S, B.cast<Complex>());
-  if (!(solved.rcond > 0) || !solved.z.allFinite())
-    throw Error(Code::singular,
-                fmt::format("the reduced structure has a pole at s = {}{:+}j", s.real(), s.imag()),
-                "evaluate beside the pole");
+  if (!(solved.rcond > 0) || !solved.z.allFinite()) throw pole_at(s, "the reduced structure");
   return direct.cast<Complex>() + c * solved.z;
 }
 
@@ -153,11 +151,7 @@ MatrixXcd ModalModel::transfer(Complex s) const {
   for (std::size_t k = 0; k < A.size(); ++k) {
     const Eigen::Matrix2d& a = A[k];
     const Complex det = (s - a(0, 0)) * (s - a(1, 1)) - a(0, 1) * a(1, 0);
-    if (det == 0.0)
-      throw Error(Code::singular,
-                  fmt::format("mode {} of the reduced system has a pole at s = {}{:+}j", k + 1,
-                              s.real(), s.imag()),
-                  "evaluate beside the pole");
+    if (det == 0.0) throw pole_at(s, fmt::format("mode {} of the reduced system", k + 1));
     Eigen::Matrix2cd inverse;
     inverse << s - a(1, 1), a(0, 1), a(1, 0), s - a(0, 0);
     const auto i = 2 * static_cast<Index>(k);

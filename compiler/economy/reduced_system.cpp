@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <titop/compiler/economy/reduced_data.hpp>
+#include <titop/graph/pole.hpp>
 
 namespace titop {
 
@@ -20,11 +21,7 @@ const std::vector<KeptMode>& ReducedSystem::modes() const& { return data_->modes
 Eigen::MatrixXcd ReducedSystem::transfer(std::complex<double> s) const {
   if (data_->states) return data_->states->transfer(s);
   Eigen::MatrixXcd H = data_->small.transfer(s);
-  if (!H.allFinite())
-    throw Error(Code::singular,
-                fmt::format("{}, reduced, has a pole at s = {}{:+}j", full().stage().graph.name,
-                            s.real(), s.imag()),
-                "evaluate beside the pole");
+  if (!H.allFinite()) throw pole_at(s, fmt::format("{}, reduced,", full().stage().graph.name));
   return H;
 }
 

@@ -9,6 +9,7 @@
 #include <titop/compiler/economy/states.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/pole.hpp>
 
 namespace titop::detail {
 namespace {
@@ -113,10 +114,7 @@ MatrixXcd transfer(const Part& p, Complex s) {
   MatrixXcd S = -p.A.cast<Complex>();
   S.diagonal().array() += s;
   const Eigen::PartialPivLU<MatrixXcd> lu(S);
-  if ((lu.matrixLU().diagonal().array() == 0.0).any())
-    throw Error(Code::singular,
-                fmt::format("the reduced system has a pole at s = {}{:+}j", s.real(), s.imag()),
-                "evaluate beside the pole");
+  if ((lu.matrixLU().diagonal().array() == 0.0).any()) throw pole_at(s, "the reduced system");
   return p.C * MatrixXcd(lu.solve(MatrixXcd(p.B.cast<Complex>())));
 }
 
