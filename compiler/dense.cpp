@@ -45,7 +45,7 @@ class Writer {
         k_(*d.skeleton),
         m_(m),
         w_(writing_of(d)),
-        half_(w_->reciprocity && w_->reciprocity->holds(d.numbers)),
+        half_(w_->batches.size() > 2 && w_->reciprocity && w_->reciprocity->holds(d.numbers)),
         states_(d.layout().order()),
         first_output_((states_ + 7) / 8 * 8),
         values_(first_output_ + static_cast<Index>(d.layout().outputs.size())),
@@ -268,7 +268,7 @@ class Writer {
   const Skeleton& k_;
   StateSpace& m_;
   std::shared_ptr<const Writing> w_;
-  bool half_;  ///< half of a symmetric matrix is enough
+  bool half_;  ///< half of a symmetric matrix is enough; a single batch has no other half
   Index states_;
   Index first_output_;  ///< of a column's values
   Index values_;        ///< per column: [xdot; y]

@@ -41,7 +41,10 @@ struct Finder {
     // A port of a block without channels acts on none by itself.
     if (to.channel < 0) return outside || g.nodes[at(to.node)].block->interface().channels.empty();
     if (!e.part.whole()) return false;
-    if (!e.of_block) said[at(to.channel)] = e.target, is_outside[at(to.channel)] = outside;
+    if (!e.of_block) {
+      if (said[at(to.channel)] >= 0) return false;
+      said[at(to.channel)] = e.target, is_outside[at(to.channel)] = outside;
+    }
     for (std::size_t t = 0; t < e.terms.size(); ++t)
       if (counts(e.terms[t]) && !take(index, static_cast<int>(t))) return false;
     return true;

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <functional>
 #include <span>
 #include <titop/compiler/dense/writing.hpp>
 #include <titop/compiler/system_data.hpp>
@@ -53,10 +54,10 @@ struct Builder {
     std::stable_sort(
         w.sources.begin(), w.sources.end(),
         [](const Writing::Source& a, const Writing::Source& b) { return a.front < b.front; });
-    w.reciprocity = reciprocity_of(d);
+    const auto is_modal = [](const Writing::Source& s) { return s.modal; };
+    if (std::ranges::any_of(w.sources, is_modal)) w.reciprocity = reciprocity_of(d);
     if (w.reciprocity)
-      std::stable_partition(w.sources.begin(), w.sources.end(),
-                            [](const Writing::Source& s) { return !s.modal; });
+      std::stable_partition(w.sources.begin(), w.sources.end(), std::not_fn(is_modal));
   }
 
   void find_batches() {
