@@ -1,8 +1,11 @@
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <latch>
 #include <titop/compiler/dense/kept.hpp>
+#include <titop/compiler/dense/runs.hpp>
 #include <titop/compiler/dense/terms.hpp>
+#include <titop/compiler/dense/uneven.hpp>
 #include <titop/compiler/parallel.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
 #include <titop/compiler/solve/products.hpp>
@@ -19,19 +22,6 @@ using solve::RowMatrix;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Rows of the model one below the other, and where they begin among those of a batch.
-struct Run {
-  Index row = 0, size = 0, from = 0;
-};
-/// The next run; it goes on with the last one where both do.
-void add_run(std::vector<Run>& runs, const Run& next) {
-  if (!runs.empty() && runs.back().row + runs.back().size == next.row &&
-      runs.back().from + runs.back().size == next.from)
-    runs.back().size += next.size;
-  else
-    runs.push_back(next);
-}
-
 /// Whoever waits goes on, even if this task has thrown: its numbers are not used then.
 struct Done {
   std::latch& latch;
@@ -45,7 +35,7 @@ class Writer {
         k_(*d.skeleton),
         m_(m),
         w_(writing_of(d)),
-        half_(w_->batches.size() > 2 && w_->reciprocity && w_->reciprocity->holds(d.numbers)),
+        half_(w_->reciprocity && w_->reciprocity->holds(d.numbers)),
         states_(d.layout().order()),
         first_output_((states_ + 7) / 8 * 8),
         values_(first_output_ + static_cast<Index>(d.layout().outputs.size())),
@@ -60,7 +50,7 @@ class Writer {
     for (std::size_t i = 0; i < batches; ++i) most = std::max(most, w_->width(i));
     kept.coefficients.assign(at(w_->coefficients), 0);
     // What batches read are tasks, too: these are taken first, and all others wait for them. Only
-    // the last may throw.
+    // the last may throw: tasks behind one that throws are not begun, and all would wait for them.
     constexpr std::size_t kFirst = 4;
     std::latch first(kFirst);
     const auto prepare = [&](std::size_t i) {
@@ -75,14 +65,23 @@ class Writer {
     const std::size_t tasks = kFirst + batches;
     const int count = thread_count(threads(batches), tasks);
     kept.rooms.resize(std::max(kept.rooms.size(), at(count)));
-    std::atomic<std::size_t> room{0};
+    std::vector<OwnTerms> own(batches);
+    const auto write = [&](std::size_t batch, bool half, Room& room) {
+      room.clear_for(w_, at(values_ * most));
+      first.wait();
+      own[batch] = columns(propagation, kept.coefficients.data(), batch, half, room);
+    };
+    std::atomic<std::size_t> next{0};
     parallel(tasks, count, [&] {
-      Room& own = kept.rooms[room++];
-      return [this, &propagation, &kept, &first, &prepare, &own, most](std::size_t i) {
-        if (i < kFirst) return prepare(i);
-        own.clear_for(w_, at(values_ * most));
-        first.wait();
-        columns(propagation, kept.coefficients.data(), i - kFirst, own);
+      return [this, &prepare, &write, &room = kept.rooms[next++]](std::size_t i) {
+        i < kFirst ? prepare(i) : write(i - kFirst, half_, room);
+      };
+    });
+    const auto uneven = half_ ? uneven_batches(*w_, own) : std::vector<std::size_t>();
+    next = 0;
+    parallel(uneven.size(), count, [&] {
+      return [&uneven, &write, &room = kept.rooms[next++]](std::size_t i) {
+        write(uneven[i], false, room);
       };
     });
     if (kept.is_large()) kept = {};
@@ -119,9 +118,11 @@ class Writer {
   /// Place of a row of [xdot; y] among the values of a column.
   Index place(Index row) const { return row < states_ ? row : first_output_ + row - states_; }
 
-  /// Solves for the sources of a batch and writes their columns. Values stand as in the model.
-  void columns(const solve::Propagation& propagation, const double* coefficients, std::size_t batch,
-               Room& room) {
+  /// Solves for the sources of a batch and writes their columns. Values stand as in the model; of
+  /// rows that are not read they are those of another batch. Returns how much the modes of the
+  /// sources are accelerated by forces of their own.
+  OwnTerms columns(const solve::Propagation& propagation, const double* coefficients,
+                   std::size_t batch, bool half, Room& room) {
     const Index m = w_->width(batch);
     propagation.begin(m, room.space);
     Index first = 0;
@@ -129,16 +130,17 @@ class Writer {
       act(w_->sources[i], first, propagation, room.space);
       first += w_->sources[i].columns;
     }
-    propagation.solve(room.space, half_ ? w_->lowest[batch] : 0, w_->always);
+    propagation.solve(room.space, half ? w_->lowest[batch] : 0, w_->always);
     for (const Writing::Target& t : w_->targets)
-      if (reads(t, batch)) read(t, coefficients, m, room);
-    write_columns(batch, room.values.data());
-    if (half_) write_rows(batch, room);
+      if (reads(t, batch, half)) read(t, coefficients, m, room);
+    write_columns(batch, half, room.values.data());
+    if (half) write_rows(batch, room);
+    return own_terms(batch, room.values.data());
   }
 
   /// False where other batches give what the target would read.
-  bool reads(const Writing::Target& t, std::size_t batch) const {
-    return !half_ || t.source < 0 || !w_->has_counterparts(batch) ||
+  bool reads(const Writing::Target& t, std::size_t batch, bool half) const {
+    return !half || t.source < 0 || !w_->has_counterparts(batch) ||
            at(t.source) >= w_->batches[batch];
   }
 
@@ -174,17 +176,17 @@ class Writer {
   }
 
   /// Rows of xdot that targets of this batch have.
-  std::vector<Run> rows_of(std::size_t batch) const {
+  std::vector<Run> rows_of(std::size_t batch, bool half) const {
     std::vector<Run> runs;
     for (const Writing::Target& t : w_->targets)
-      if (t.row < states_ && reads(t, batch))
+      if (t.row < states_ && reads(t, batch, half))
         add_run(runs, {t.row - t.still, t.rows + t.still, t.row - t.still});
     return runs;
   }
 
   /// The columns of these sources from the values of their solutions.
-  void write_columns(std::size_t batch, const double* values) {
-    const std::vector<Run> runs = rows_of(batch);
+  void write_columns(std::size_t batch, bool half, const double* values) {
+    const std::vector<Run> runs = rows_of(batch, half);
     const auto write = [&](MatrixXd& state, MatrixXd& output, Index column, double factor) {
       for (const Run& r : runs)
         solve::scale(r.size, factor, values + r.from, state.data() + column * state.rows() + r.row);
@@ -249,6 +251,16 @@ class Writer {
     }
   }
 
+  OwnTerms own_terms(std::size_t batch, const double* values) const {
+    OwnTerms result;
+    for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i) {
+      const Writing::Source& s = w_->sources[i];
+      for (Index j = 0; j < s.columns; ++j, values += values_)
+        if (s.modal) result.take(std::abs(1 + values[place(s.first + s.columns + j)]));
+    }
+    return result;
+  }
+
   /// The block's own A: what it does with all its inputs at 0.
   void add_own(const Writing::Source& s) {
     const Dynamics& b = block(s.node);
@@ -268,7 +280,7 @@ class Writer {
   const Skeleton& k_;
   StateSpace& m_;
   std::shared_ptr<const Writing> w_;
-  bool half_;  ///< half of a symmetric matrix is enough; a single batch has no other half
+  bool half_;  ///< half of a symmetric matrix is enough
   Index states_;
   Index first_output_;  ///< of a column's values
   Index values_;        ///< per column: [xdot; y]

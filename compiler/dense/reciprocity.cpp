@@ -27,7 +27,7 @@ struct Finder {
   bool counts(const Term& t) const {
     return signal(t.signal).active && signal(t.signal).role != Signal::Role::external;
   }
-  bool gives(int channel) const {
+  bool says_output(int channel) const {
     return said[at(channel)] >= 0 && signal(said[at(channel)]).role == Signal::Role::output;
   }
 
@@ -60,11 +60,12 @@ struct Finder {
     return (e.of_block ? rows : wires).emplace(std::pair(to.channel, from.channel), link).second;
   }
 
-  /// The states do not move what the channel takes.
+  /// What the channel takes is 0, or inputs alone say what it is. (What nobody sees is inactive,
+  /// too, and moves.)
   bool rests(int channel) const {
     const Channel& c = g.channels[at(channel)];
     const int taken = c.takes == Takes::force ? c.force : c.accel;
-    return !signal(taken).active || (said[at(channel)] == taken && is_outside[at(channel)]);
+    return signal(taken).at_rest || (said[at(channel)] == taken && is_outside[at(channel)]);
   }
 
   bool pair(const Links& links, bool between, Reciprocity& result) const {
@@ -77,8 +78,8 @@ struct Finder {
       }
       const auto back = links.find({from, to});
       if (back == links.end()) return false;
-      // A wire that says what a block gives takes from it what acts there: against the motion.
-      const int sign = between && gives(to) != gives(from) ? -1 : 1;
+      // Who says what a block gives exchanges cause and effect: the sign changes.
+      const int sign = between && says_output(to) != says_output(from) ? -1 : 1;
       if (to <= from) result.pairs.push_back({link.coefficient, back->second.coefficient, sign});
     }
     return true;

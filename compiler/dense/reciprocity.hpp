@@ -19,8 +19,9 @@ struct Reciprocity {
     int a = -1, b = -1;
     int sign = 1;
   };
-  std::vector<Pair> pairs;                  ///< of terms between channels
-  std::vector<std::pair<int, int>> blocks;  ///< node, size: so are the first rows and columns of D
+  std::vector<Pair> pairs;  ///< of terms between channels
+  std::vector<std::pair<int, int>>
+      blocks;  ///< node, size: D's first rows and columns are symmetric
 
   /// To the last bit. O(blocks and terms).
   bool holds(const solve::Numbers& numbers) const;

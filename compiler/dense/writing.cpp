@@ -55,7 +55,10 @@ struct Builder {
         w.sources.begin(), w.sources.end(),
         [](const Writing::Source& a, const Writing::Source& b) { return a.front < b.front; });
     const auto is_modal = [](const Writing::Source& s) { return s.modal; };
-    if (std::ranges::any_of(w.sources, is_modal)) w.reciprocity = reciprocity_of(d);
+    Index columns = 0;
+    for (const Writing::Source& s : w.sources) columns += s.columns;
+    if (columns > Writing::kBatch && std::ranges::any_of(w.sources, is_modal))
+      w.reciprocity = reciprocity_of(d);
     if (w.reciprocity)
       std::stable_partition(w.sources.begin(), w.sources.end(), std::not_fn(is_modal));
   }

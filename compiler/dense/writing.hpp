@@ -58,14 +58,15 @@ struct Writing {
     std::vector<Term> terms = {};
     std::vector<Range> unknowns = {};
     Eigen::Index coefficients = 0;  ///< where they begin: unknowns x rows, padded
-    int source = -1;                ///< of the same modes; -1: it reads what all sources do
+    int source = -1;  ///< of the same modes: their columns have what it would read of earlier
+                      ///< batches; -1: it reads in every batch
   };
 
   std::vector<Source> sources;       ///< fronts ascend from batch to batch; with `reciprocity`
                                      ///< modal ones come last
   std::vector<Target> targets;       ///< rows ascend
   std::vector<std::size_t> batches;  ///< first sources, and the end
-  std::optional<Reciprocity> reciprocity;
+  std::optional<Reciprocity> reciprocity;  ///< none where one batch is all
   std::vector<int> lowest;   ///< per batch: the first front that its sources, and targets of these
                              ///< and later ones, need; 0 where all are needed
   std::vector<char> always;  ///< per front: do targets that read all sources need it?

@@ -29,7 +29,7 @@ class Propagation {
     std::vector<const double*> come = {};             ///< the rows of the present front
     std::vector<const double*> from = {}, with = {};  ///< rows of a product
     std::vector<const double*> pivots = {};           ///< rows of the pivots of active fronts
-    std::vector<int> used = {};                       ///< per front: those that are not 0
+    std::vector<int> used = {};  ///< per front: how many of its `pivots` may not be 0
   };
 
   /// The next solution has m columns, a multiple of 8, and no right-hand sides yet.
