@@ -52,10 +52,10 @@ template <class L, int C, int R>
 /// take the register through memory.)
 template <class L>
 [[gnu::always_inline]] inline void store_first(double* to, const L& from, std::ptrdiff_t count) {
-  if constexpr (kLanes<L> >= 4)
+  if constexpr (kLanes<L> >= 4) {
     if (count >= 2) store(to, Lanes<2>{from[0], from[1]});
-  if constexpr (kLanes<L> >= 4)
     if (count == 3) to[2] = from[2];
+  }
   if (count == 1) to[0] = from[0];
 }
 
