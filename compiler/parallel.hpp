@@ -4,10 +4,9 @@
 #include <atomic>
 #include <cstddef>
 #include <exception>
-#include <functional>
 #include <optional>
-#include <system_error>
 #include <thread>
+#include <titop/compiler/workers.hpp>
 #include <vector>
 
 namespace titop::detail {
@@ -42,18 +41,7 @@ void parallel(std::size_t count, int threads, Make make) {
       }
     }
   };
-  // Every thread starts the next one before it sets to work, while tasks wait: on a machine of many
-  // cores no more are started than come in time to share the work.
-  const int most = thread_count(threads, count);
-  const std::function<void(int)> run = [&](int started) {
-    std::jthread following;
-    try {
-      if (started < most && next + 1 < end) following = std::jthread(std::cref(run), started + 1);
-    } catch (const std::system_error&) {  // there is no other: these do all of it
-    }
-    work();
-  };
-  run(1);
+  work_together(thread_count(threads, count) - 1, work, [&] { return next + 1 < end; });
   for (const std::exception_ptr& e : failed)
     if (e) std::rethrow_exception(e);
 }

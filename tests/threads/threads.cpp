@@ -1,10 +1,16 @@
 #include <doctest/doctest.h>
+#include <pthread.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <csignal>
 #include <functional>
+#include <latch>
+#include <set>
 #include <thread>
 #include <titop/compiler/parallel.hpp>
 #include <titop/titop.hpp>
@@ -95,6 +101,66 @@ TEST_CASE("threads: what a task, or the making of one, throws comes out when all
     };
     CHECK_THROWS_WITH(detail::parallel(40, threads, task), "20");
   }
+}
+
+TEST_CASE("threads: the second thread is there from call to call, and takes no signals") {
+  const auto main = std::this_thread::get_id();
+  std::set<std::thread::id> others;
+  int most = 0;
+  for (int call = 0; call < 20; ++call) {
+    std::latch both(2);
+    detail::parallel(2, 2, [&] {
+      return [&](std::size_t) {
+        both.arrive_and_wait();  // so that there are two
+        if (std::this_thread::get_id() == main) return;
+        static thread_local int calls = 0;
+        most = std::max(most, ++calls);
+        others.insert(std::this_thread::get_id());
+        sigset_t blocked;
+        pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
+        CHECK(sigismember(&blocked, SIGINT) == 1);
+      };
+    });
+  }
+  CHECK(others.size() < 20);
+  CHECK(most > 1);
+  sigset_t blocked;
+  pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
+  CHECK(sigismember(&blocked, SIGINT) == 0);
+}
+
+TEST_CASE("threads: tasks may have tasks of their own, on many threads of the caller's") {
+  std::array<std::atomic<int>, 3> done{};
+  std::vector<std::jthread> callers;
+  for (std::atomic<int>& count : done)
+    callers.emplace_back([&count] {
+      detail::parallel(5, 3, [&] {
+        return [&](std::size_t) {
+          detail::parallel(7, 2, [&] { return [&](std::size_t) { ++count; }; });
+        };
+      });
+    });
+  callers.clear();
+  for (const std::atomic<int>& count : done) CHECK(count == 35);
+}
+
+TEST_CASE("threads: a child process has none and does all by itself") {
+  std::atomic<int> done = 0;
+  const auto run = [&] {
+    done = 0;
+    detail::parallel(40, 3, [&] { return [&](std::size_t) { ++done; }; });
+  };
+  run();
+  const pid_t child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    alarm(30);  // it must not wait for ever
+    run();
+    _exit(done == 40 ? 0 : 1);
+  }
+  int status = -1;
+  CHECK(waitpid(child, &status, 0) == child);
+  CHECK(status == 0);
 }
 
 namespace {

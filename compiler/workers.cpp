@@ -1,0 +1,103 @@
+#include <pthread.h>
+
+#include <algorithm>
+#include <condition_variable>
+#include <csignal>
+#include <deque>
+#include <mutex>
+#include <system_error>
+#include <thread>
+#include <titop/compiler/workers.hpp>
+
+namespace titop::detail {
+namespace {
+
+struct Call {
+  const std::function<void()>& work;
+  const std::function<bool()>& more;
+  int left;         ///< workers that may still be called
+  int running = 0;  ///< workers that have begun
+  std::condition_variable ended = {};
+};
+
+class Workers {
+ public:
+  void run(Call& call) {
+    {
+      const std::scoped_lock lock(mutex_);
+      most_ = std::max(most_, call.left);
+    }
+    call_next(call);
+    call.work();
+    std::unique_lock lock(mutex_);
+    std::erase(called_, &call);
+    call.ended.wait(lock, [&] { return call.running == 0; });
+  }
+
+ private:
+  void call_next(Call& call) {
+    if (!call.more()) return;
+    {
+      const std::scoped_lock lock(mutex_);
+      if (call.left == 0) return;
+      --call.left;
+      called_.push_back(&call);
+      if (asleep_ < called_.size() && started_ < most_) return start();
+    }
+    wake_.notify_one();
+  }
+
+  /// Signals are for the threads that the program knows of.
+  void start() {
+    sigset_t all, before;
+    sigfillset(&all);
+    pthread_sigmask(SIG_SETMASK, &all, &before);
+    try {
+      std::thread([this] { serve(); }).detach();
+      ++started_;
+    } catch (const std::system_error&) {  // there is no other: those that there are do all of it
+    }
+    pthread_sigmask(SIG_SETMASK, &before, nullptr);
+  }
+
+  /// From the end of a call to the next the lock is held or given up by going to sleep: between
+  /// calls it is free, and a child of fork() finds it so.
+  void serve() {
+    for (std::unique_lock lock(mutex_);;) {
+      ++asleep_;
+      wake_.wait(lock, [this] { return !called_.empty(); });
+      --asleep_;
+      Call& call = *called_.front();
+      called_.pop_front();
+      ++call.running;
+      lock.unlock();
+      call_next(call);
+      call.work();
+      lock.lock();
+      if (--call.running == 0) call.ended.notify_one();
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::deque<Call*> called_;
+  std::size_t asleep_ = 0;
+  int started_ = 0, most_ = 0;
+};
+
+/// Never destroyed: a thread that ends the process must not wait for the others' work.
+Workers& workers() {
+  static Workers& all = *new Workers;
+  return all;
+}
+
+}  // namespace
+
+void work_together(int others, const std::function<void()>& work,
+                   const std::function<bool()>& more) {
+  if (others <= 0) return work();
+  Call call{work, more, others};
+  workers().run(call);
+}
+
+}  // namespace titop::detail
