@@ -74,8 +74,15 @@ void by_panels(Front<T>& f, std::ptrdiff_t pivots, std::ptrdiff_t panel) {
 template <class T>
 void compare() {
   Rng rng(11);
-  for (const auto& [rows, columns, pivots] :
-       {std::tuple(7, 9, 7), {20, 31, 16}, {45, 83, 40}, {40, 40, 40}, {5, 70, 1}})
+  for (const auto& [rows, columns, pivots] : {std::tuple(7, 9, 7),
+                                              {20, 31, 16},
+                                              {45, 83, 40},
+                                              {40, 40, 40},
+                                              {5, 70, 1},
+                                              {3, 3, 3},
+                                              {3, 4, 3},
+                                              {4, 3, 2},
+                                              {12, 18, 6}})
     for (const int panel : {1, 6, 32}) {
       INFO(rows, " x ", columns, ", ", pivots, " pivots by ", panel);
       Front<T> one(rows, columns, rng), other = one;
