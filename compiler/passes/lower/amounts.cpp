@@ -290,7 +290,8 @@ Amount Lowering::force(int channel) {
   const Drive& d = drive[at(channel)];
   Amount sum = added(d.force);
   append(sum, added(d.added));
-  return d.all_free() ? sum : times(d.some, std::move(sum));
+  if (d.all_free()) return sum;  // (a conditional operator would copy it)
+  return times(d.some, std::move(sum));
 }
 
 /// out = D in.
@@ -330,7 +331,8 @@ Amount Lowering::all_rows(const Origin& o) {
 
 Amount Lowering::amount(const Origin& origin) {
   Amount sum = all_rows(origin);
-  return origin.times.size() ? times(origin.times, std::move(sum)) : sum;
+  if (origin.times.size() == 0) return sum;
+  return times(origin.times, std::move(sum));
 }
 
 std::vector<Term> Lowering::written_out(Origin& origin) {
