@@ -89,9 +89,9 @@ class Writer {
   }
 
  private:
-  /// A thread costs more to start than a small model to write.
+  /// To wake a thread and wait for it takes longer than to write a small model.
   int threads(std::size_t batches) const {
-    constexpr double kWorthIt = 1.5e5;  // entries of the solutions, about 2 ns each
+    constexpr double kWorthIt = 5e4;  // entries of the solutions, about 2 ns each
     const double entries =
         static_cast<double>(batches * std::size_t{Writing::kBatch}) * k_.joint.plan->unknowns;
     return entries < kWorthIt ? 1 : threads_;

@@ -16,7 +16,7 @@ struct SweepOptions {
 /// system.update(points[i]) for every i, each handed to visit(i, updated) on one of the threads:
 /// `visit` must only touch what belongs to i. What it sees does not depend on the number of
 /// threads, to the last bit. Of several errors that of the first point is thrown, with the point's
-/// number.
+/// number. Threads but the caller's are kept for later calls, with their thread_local objects.
 ///
 ///     std::vector<double> hz(points.size());
 ///     sweep(s, points, [&](std::size_t i, const System& at) { hz[i] = at.poles()[0].hertz; });

@@ -68,9 +68,10 @@ enum class Precision {
 using ParameterList = std::vector<std::pair<std::string, double>>;
 
 /// A compiled diagram: the elimination plan, the factors and the blocks' data. Const, cheap to
-/// copy, may be shared between threads. The dense model is written from it on demand. References
-/// are good while the System lives; one that does not live on gives a copy, which stays: `const
-/// StateSpace& m = compile(d).state_space();`
+/// copy, may be shared between threads. (Those that it works with itself are kept, asleep, for
+/// later calls, and take no signals; a child of fork() goes on without them.) The dense model is
+/// written from it on demand. References are good while the System lives; one that does not live on
+/// gives a copy, which stays: `const StateSpace& m = compile(d).state_space();`
 class System {
  public:
   explicit System(std::shared_ptr<const detail::SystemData> data) : data_(std::move(data)) {}
