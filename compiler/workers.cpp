@@ -60,8 +60,6 @@ class Workers {
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }
 
-  /// From the end of a call to the next the lock is held or given up by going to sleep: between
-  /// calls it is free, and a child of fork() finds it so.
   void serve() {
     for (std::unique_lock lock(mutex_);;) {
       ++asleep_;
@@ -85,9 +83,15 @@ class Workers {
   int started_ = 0, most_ = 0;
 };
 
+/// In a child of fork() the others are not there, and whoever signals to them may wait for ever.
+bool is_child = false;
+
 /// Never destroyed: a thread that ends the process must not wait for the others' work.
 Workers& workers() {
-  static Workers& all = *new Workers;
+  static Workers& all = []() -> Workers& {
+    pthread_atfork(nullptr, nullptr, [] { is_child = true; });
+    return *new Workers;
+  }();
   return all;
 }
 
@@ -95,7 +99,7 @@ Workers& workers() {
 
 void work_together(int others, const std::function<void()>& work,
                    const std::function<bool()>& more) {
-  if (others <= 0) return work();
+  if (others <= 0 || is_child) return work();
   Call call{work, more, others};
   workers().run(call);
 }
