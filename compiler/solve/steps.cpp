@@ -19,7 +19,8 @@ template <int V>
 }
 
 /// to += factor * from. In the columns before those that count (at the end of the row above where
-/// a row has few) 0 is added.
+/// a row has few) 0 is added: they stay as they are, but for a factor that is not finite, and then
+/// bounds are not either and the front counts as singular.
 template <int V>
 [[gnu::always_inline]] inline void add_registers(double factor, const Four* from, double* to) {
   for (int v = 0; v < V; ++v) {
