@@ -3,7 +3,6 @@
 #include <cmath>
 #include <latch>
 #include <titop/compiler/dense/kept.hpp>
-#include <titop/compiler/dense/runs.hpp>
 #include <titop/compiler/dense/terms.hpp>
 #include <titop/compiler/dense/uneven.hpp>
 #include <titop/compiler/parallel.hpp>
@@ -37,8 +36,7 @@ class Writer {
         w_(writing_of(d)),
         half_(w_->reciprocity && w_->reciprocity->holds(d.numbers)),
         states_(d.layout().order()),
-        first_output_((states_ + 7) / 8 * 8),
-        values_(first_output_ + static_cast<Index>(d.layout().outputs.size())),
+        rows_(states_ + static_cast<Index>(d.layout().outputs.size())),
         threads_(threads) {}
 
   void write() {
@@ -46,8 +44,7 @@ class Writer {
     Kept& kept = kept_by_thread();
     solve::Propagation propagation(*d_.factors, kept.products);
     const std::size_t batches = w_->batches.size() - 1;
-    Index most = 0;
-    for (std::size_t i = 0; i < batches; ++i) most = std::max(most, w_->width(i));
+    for (std::size_t i = 0; i < batches; ++i) width_ = std::max(width_, w_->width(i));
     kept.coefficients.assign(at(w_->coefficients), 0);
     // What batches read are tasks, too: these are taken first, and all others wait for them. Only
     // the last may throw: tasks behind one that throws are not begun, and all would wait for them.
@@ -67,7 +64,7 @@ class Writer {
     kept.rooms.resize(std::max(kept.rooms.size(), at(count)));
     std::vector<OwnTerms> own(batches);
     const auto write = [&](std::size_t batch, bool half, Room& room) {
-      room.clear_for(w_, at(values_ * most));
+      room.clear_for(w_, at(rows_ * width_));
       first.wait();
       own[batch] = columns(propagation, kept.coefficients.data(), batch, half, room);
     };
@@ -115,12 +112,9 @@ class Writer {
 
   // --- columns ---------------------------------------------------------------------------------
 
-  /// Place of a row of [xdot; y] among the values of a column.
-  Index place(Index row) const { return row < states_ ? row : first_output_ + row - states_; }
-
-  /// Solves for the sources of a batch and writes their columns. Values stand as in the model; of
-  /// rows that are not read they are those of another batch. Returns how much the modes of the
-  /// sources are accelerated by forces of their own.
+  /// Solves for the sources of a batch and writes their columns. The values of [xdot; y] stand row
+  /// by row; of rows that are not read they are those of another batch. Returns how much the modes
+  /// of the sources are accelerated by forces of their own.
   OwnTerms columns(const solve::Propagation& propagation, const double* coefficients,
                    std::size_t batch, bool half, Room& room) {
     const Index m = w_->width(batch);
@@ -133,8 +127,8 @@ class Writer {
     propagation.solve(room.space, half ? w_->lowest[batch] : 0, w_->always);
     for (const Writing::Target& t : w_->targets)
       if (reads(t, batch, half)) read(t, coefficients, m, room);
-    write_columns(batch, half, room.values.data());
-    if (half) write_rows(batch, room);
+    write_columns(batch, half, room);
+    if (half) write_rows(batch, room.values.data());
     return own_terms(batch, room.values.data());
   }
 
@@ -151,9 +145,8 @@ class Writer {
     for (const Writing::Range& r : t.unknowns)
       for (Index i = r.first; i < r.first + r.size; ++i)
         room.reads.push_back(room.space.z.data() + i * m);
-    solve::multiply_transposed(t.rows, static_cast<Index>(room.reads.size()), m,
-                               coefficients + t.coefficients, t.padded, room.reads.data(),
-                               room.values.data() + place(t.row), values_);
+    solve::multiply(t.rows, t.inner, m, coefficients + t.coefficients, t.inner, room.reads.data(),
+                    nullptr, room.values.data() + t.row * width_, width_);
   }
 
   /// The source's right-hand sides, from column `first` on.
@@ -176,78 +169,60 @@ class Writer {
   }
 
   /// Rows of xdot that targets of this batch have.
-  std::vector<Run> rows_of(std::size_t batch, bool half) const {
-    std::vector<Run> runs;
+  std::vector<Writing::Range> rows_of(std::size_t batch, bool half) const {
+    std::vector<Writing::Range> rows;
     for (const Writing::Target& t : w_->targets)
       if (t.row < states_ && reads(t, batch, half))
-        add_run(runs, {t.row - t.still, t.rows + t.still, t.row - t.still});
-    return runs;
+        Writing::add_range(rows, {t.row - t.still, t.rows + t.still});
+    return rows;
   }
 
   /// The columns of these sources from the values of their solutions.
-  void write_columns(std::size_t batch, bool half, const double* values) {
-    const std::vector<Run> runs = rows_of(batch, half);
-    const auto write = [&](MatrixXd& state, MatrixXd& output, Index column, double factor) {
-      for (const Run& r : runs)
-        solve::scale(r.size, factor, values + r.from, state.data() + column * state.rows() + r.row);
-      solve::scale(output.rows(), factor, values + first_output_,
-                   output.data() + column * output.rows());
-    };
+  void write_columns(std::size_t batch, bool half, Room& room) {
+    room.state.clear(), room.output.clear();
     for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i) {
       const Writing::Source& s = w_->sources[i];
-      const Modal* const modal = s.modal ? block(s.node).modal.get() : nullptr;
-      for (Index j = 0; j < s.columns; ++j, values += values_)
-        if (modal) {
-          write(m_.A, m_.C, s.first + j, -modal->stiffness(j));
-          write(m_.A, m_.C, s.first + s.columns + j, -modal->damping(j));
-        } else if (s.node >= 0) {
-          write(m_.A, m_.C, s.first + j, 1);
-        } else {
-          write(m_.B, m_.D, s.first - states_ + j, 1);
-        }
-      if (s.node >= 0) add_own(s);
+      for (Index j = 0; j < s.columns; ++j) {
+        MatrixXd &state = s.node < 0 ? m_.B : m_.A, &output = s.node < 0 ? m_.D : m_.C;
+        const Index column = (s.node < 0 ? s.first - states_ : s.first) + j;
+        room.state.push_back(column_of(state, column, s, j));
+        room.output.push_back(column_of(output, column, s, j));
+      }
     }
+    const auto count = static_cast<Index>(room.state.size());
+    const double* const values = room.values.data();
+    for (const Writing::Range& r : rows_of(batch, half))
+      solve::scale_transposed(r.size, count, values + r.first * width_, width_, room.state.data(),
+                              r.first);
+    solve::scale_transposed(rows_ - states_, count, values + states_ * width_, width_,
+                            room.output.data(), 0);
+    for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i)
+      if (w_->sources[i].node >= 0) add_own(w_->sources[i]);
+  }
+
+  /// Where the answer to the j-th force or state of a source goes. A modal force is one of the
+  /// mode's coordinate and of its rate.
+  solve::Column column_of(MatrixXd& matrix, Index column, const Writing::Source& s, Index j) const {
+    double* const first = matrix.data() + column * matrix.rows();
+    if (!s.modal) return {first};
+    const Modal& modal = *block(s.node).modal;
+    return {first, -modal.stiffness(j), first + s.columns * matrix.rows(), -modal.damping(j)};
   }
 
   /// What later targets read of these sources is what these sources' targets read of theirs.
-  void write_rows(std::size_t batch, Room& room) {
-    std::vector<Run> runs;
-    Index width = 0;
-    for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i) {
-      const Writing::Source& s = w_->sources[i];
-      if (!s.modal) continue;
-      add_run(runs, {s.first, 2 * s.columns, width});
-      width += 2 * s.columns;
-    }
-    room.across.clear();
+  void write_rows(std::size_t batch, const double* values) {
+    std::vector<solve::Place> places;
+    for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i)
+      if (const Writing::Source& s = w_->sources[i]; s.modal)
+        places.push_back({s.first, s.columns});
+      else
+        values += s.columns;  // these stand first
     for (const Writing::Target& t : w_->targets) {
       if (t.source < 0 || at(t.source) < w_->batches[batch + 1]) continue;
-      gather(t, batch, width, room);
       const Writing::Source& s = w_->sources[at(t.source)];
-      const Modal& modal = *block(s.node).modal;
       for (Index j = 0; j < t.rows; ++j)
-        for (const Run& r : runs) {
-          const double* const from = room.across.data() + j * width + r.from;
-          double* const to = m_.A.data() + (s.first + j) * states_ + r.row;
-          solve::scale(r.size, -modal.stiffness(j), from, to);
-          solve::scale(r.size, -modal.damping(j), from, to + s.columns * states_);
-        }
-    }
-  }
-
-  /// The target's rows of the batch's modal columns, each as the column of A that it is. Rows of
-  /// coordinates are 0 and stay so.
-  void gather(const Writing::Target& t, std::size_t batch, Index width, Room& room) const {
-    if (room.across.size() < at(t.rows * width)) room.across.resize(at(t.rows * width), 0);
-    const double* from = room.values.data() + place(t.row);
-    double* to = room.across.data();
-    for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i) {
-      const Writing::Source& s = w_->sources[i];
-      if (s.modal) {
-        solve::transpose(s.columns, t.rows, from, values_, to + s.columns, width);
-        to += 2 * s.columns;
-      }
-      from += s.columns * values_;
+        solve::scale_rates(places, values + (t.row + j) * width_,
+                           column_of(m_.A, s.first + j, s, j));
     }
   }
 
@@ -255,8 +230,8 @@ class Writer {
     OwnTerms result;
     for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i) {
       const Writing::Source& s = w_->sources[i];
-      for (Index j = 0; j < s.columns; ++j, values += values_)
-        if (s.modal) result.take(std::abs(1 + values[place(s.first + s.columns + j)]));
+      for (Index j = 0; j < s.columns; ++j, ++values)
+        if (s.modal) result.take(std::abs(1 + values[(s.first + s.columns + j) * width_]));
     }
     return result;
   }
@@ -282,8 +257,8 @@ class Writer {
   std::shared_ptr<const Writing> w_;
   bool half_;  ///< half of a symmetric matrix is enough
   Index states_;
-  Index first_output_;  ///< of a column's values
-  Index values_;        ///< per column: [xdot; y]
+  Index rows_;       ///< of [xdot; y]
+  Index width_ = 0;  ///< columns of the widest batch: from row to row of values
   int threads_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <titop/compiler/dense/writing.hpp>
+#include <titop/compiler/solve/products.hpp>
 #include <titop/compiler/solve/propagation.hpp>
 #include <vector>
 
@@ -10,9 +11,10 @@ namespace titop::detail {
 /// Room for the solutions of one thread.
 struct Room {
   solve::Propagation::Space space;
-  std::vector<double> values;         ///< of the columns of a batch, one after the other
+  std::vector<double> values;         ///< of the columns of a batch, row by row
   std::vector<const double*> reads;   ///< rows of unknowns that a target reads
-  std::vector<double> across;         ///< columns of later targets, in the rows of the batch
+  std::vector<solve::Column> state,   ///< where the columns of a batch go in A or B,
+      output;                         ///< and in C or D
   std::shared_ptr<const Writing> of;  ///< what `values` belong to
 
   /// Values that no target has are 0, and stay so from model to model.

@@ -42,8 +42,9 @@ void find_coefficients(const SystemData& d, const Writing& writing, double* to) 
     for (const Term& term : t.terms)
       if (!term.known)
         add_term(d, t, term,
-                 Eigen::Map<MatrixXd, 0, Eigen::OuterStride<>>(to + term.to, t.rows, size(d, term),
-                                                               Eigen::OuterStride<>(t.padded)));
+                 Eigen::Map<solve::RowMatrix<double>, 0, Eigen::OuterStride<>>(
+                     to + t.coefficients + term.to, t.rows, size(d, term),
+                     Eigen::OuterStride<>(t.inner)));
 }
 
 void add_known(const SystemData& d, const Writing& writing, StateSpace& model) {

@@ -164,24 +164,22 @@ struct Builder {
   /// Those of a target stand in the order of the unknowns.
   void place_coefficients(Writing::Target& t) {
     const solve::Plan& plan = *k.joint.plan;
-    t.padded = (t.rows + 3) / 4 * 4;
     std::vector<int> variables;
     for (const Writing::Term& term : t.terms)
       if (!term.known) variables.push_back(k.joint.variable_of[at(term.to)]);
     std::sort(variables.begin(), variables.end(),
               [&](int a, int b) { return plan.first[at(a)] < plan.first[at(b)]; });
     variables.erase(std::unique(variables.begin(), variables.end()), variables.end());
-    t.coefficients = w.coefficients;
     std::vector<Index> place(variables.size());
     for (std::size_t i = 0; i < variables.size(); ++i) {
       const Index first = plan.first[at(variables[i])],
                   size = plan.structure.variable_size[at(variables[i])];
-      place[i] = w.coefficients;
-      w.coefficients += size * t.padded;
-      if (t.unknowns.empty() || t.unknowns.back().first + t.unknowns.back().size != first)
-        t.unknowns.push_back({first, 0});
-      t.unknowns.back().size += size;
+      place[i] = t.inner;
+      t.inner += size;
+      Writing::add_range(t.unknowns, {first, size});
     }
+    t.coefficients = w.coefficients;
+    w.coefficients += t.rows * t.inner;
     for (Writing::Term& term : t.terms) {
       const int v = k.joint.variable_of[at(term.to)];
       const auto found = std::find(variables.begin(), variables.end(), v);
@@ -199,6 +197,13 @@ Writing::Writing(const SystemData& data) {
   builder.find_targets();
   builder.find_needs();
   for (const int i : data.layout().state_nodes) modal.emplace_back(i, builder.modes(i) > 0);
+}
+
+void Writing::add_range(std::vector<Range>& ranges, const Range& next) {
+  if (!ranges.empty() && ranges.back().first + ranges.back().size == next.first)
+    ranges.back().size += next.size;
+  else
+    ranges.push_back(next);
 }
 
 bool Writing::fits(const SystemData& data) const {

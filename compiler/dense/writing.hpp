@@ -41,23 +41,25 @@ struct Writing {
     Eigen::Index column = 0, size = 0;
     int times = -1;  ///< a coefficient; -1: identity
     bool known = false;
-    Eigen::Index to = 0;  ///< column in [x; u], or where its coefficients begin
+    Eigen::Index to = 0;  ///< column in [x; u], or first column among the coefficients
   };
 
-  /// Unknowns that stand side by side.
+  /// Unknowns or rows that stand side by side.
   struct Range {
     Eigen::Index first = 0, size = 0;
   };
+  /// The next range; where it goes on with the last one, both are one.
+  static void add_range(std::vector<Range>& ranges, const Range& next);
 
   /// Rows of xdot or y: sum of coefficients times unknowns and of known terms.
   struct Target {
     Eigen::Index row = 0;  ///< first row of [xdot; y]
     Eigen::Index rows = 0;
-    Eigen::Index padded = 0;  ///< rows, up to a multiple of 4
-    Eigen::Index still = 0;   ///< rows of the node above: coordinates move with their rates
+    Eigen::Index inner = 0;  ///< unknowns that it reads
+    Eigen::Index still = 0;  ///< rows of the node above: coordinates move with their rates
     std::vector<Term> terms = {};
     std::vector<Range> unknowns = {};
-    Eigen::Index coefficients = 0;  ///< where they begin: unknowns x rows, padded
+    Eigen::Index coefficients = 0;  ///< where they begin: rows x inner, row-major
     int source = -1;  ///< of the same modes: their columns have what it would read of earlier
                       ///< batches; -1: it reads in every batch
   };

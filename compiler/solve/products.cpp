@@ -48,36 +48,6 @@ template <class L, int C, int R>
   }
 }
 
-/// The first `count` entries of a register, at most three. (A place that is not a constant would
-/// take the register through memory.)
-template <class L>
-[[gnu::always_inline]] inline void store_first(double* to, const L& from, std::ptrdiff_t count) {
-  if constexpr (kLanes<L> >= 4) {
-    if (count >= 2) store(to, Lanes<2>{from[0], from[1]});
-    if (count == 3) to[2] = from[2];
-  }
-  if (count == 1) to[0] = from[0];
-}
-
-/// `count` rows from row i on, at most as many as L has entries; eight columns from j on.
-template <class L>
-[[gnu::always_inline]] inline void transposed_tile(const Product p, std::ptrdiff_t i,
-                                                   std::ptrdiff_t j, std::ptrdiff_t count) {
-  constexpr int C = 8;
-  L sum[C] = {};
-  for (std::ptrdiff_t k = 0; k < p.inner; ++k) {
-    L a;
-    load(a, p.a + k * p.stride + i);
-    const double* const x = p.x[k] + j;
-    for (int c = 0; c < C; ++c) sum[c] += a * x[c];
-  }
-  double* const y = p.y + j * p.y_stride + i;
-  if (count >= kLanes<L>)
-    for (int c = 0; c < C; ++c) store(y + c * p.y_stride, sum[c]);
-  else
-    for (int c = 0; c < C; ++c) store_first(y + c * p.y_stride, sum[c], count);
-}
-
 /// One row of a substitution, a register of columns from j on: sums stay there.
 template <class L>
 [[gnu::always_inline]] inline void substitute_row(const Substitution& s, std::ptrdiff_t r,
@@ -116,21 +86,7 @@ template <class L, int C>
   for (; i < rows; ++i) rows_of_product<L, C, 1>(p, i);
 }
 
-/// `Rest`: for the last four rows, where L is longer.
-template <class L, class Rest>
-[[gnu::always_inline]] inline void transposed(const Product& p, std::ptrdiff_t rows) {
-  constexpr std::ptrdiff_t n = kLanes<L>, rest = kLanes<Rest>;
-  for (std::ptrdiff_t j = 0; j < p.m; j += 8) {
-    std::ptrdiff_t i = 0;
-    for (; i + n <= rows; i += n) transposed_tile<L>(p, i, j, n);
-    for (; i < rows; i += rest) transposed_tile<Rest>(p, i, j, rows - i);
-  }
-}
-
 void product_2(const Product& p, std::ptrdiff_t rows) { product<Lanes<2>, 2>(p, rows); }
-void transposed_2(const Product& p, std::ptrdiff_t rows) {
-  transposed<Lanes<2>, Lanes<2>>(p, rows);
-}
 void substitution_2(const Substitution& s) { substitution<Lanes<2>>(s); }
 #if defined(__x86_64__)
 [[gnu::target("avx2")]] void substitution_4(const Substitution& s) { substitution<Lanes<4>>(s); }
@@ -138,31 +94,24 @@ void substitution_2(const Substitution& s) { substitution<Lanes<2>>(s); }
 [[gnu::target("avx2")]] void product_4(const Product& p, std::ptrdiff_t rows) {
   product<Lanes<4>, 2>(p, rows);
 }
-[[gnu::target("avx2")]] void transposed_4(const Product& p, std::ptrdiff_t rows) {
-  transposed<Lanes<4>, Lanes<4>>(p, rows);
-}
 [[gnu::target("avx512f")]] void product_8(const Product& p, std::ptrdiff_t rows) {
   product<Lanes<8>, 1>(p, rows);
-}
-[[gnu::target("avx512f")]] void transposed_8(const Product& p, std::ptrdiff_t rows) {
-  transposed<Lanes<8>, Lanes<4>>(p, rows);
 }
 #endif
 
 struct Kernels {
   void (*product)(const Product&, std::ptrdiff_t rows);
-  void (*transposed)(const Product&, std::ptrdiff_t rows);
   void (*substitution)(const Substitution&);
 };
 
 Kernels kernels_here(int at_most) {
 #if defined(__x86_64__)
   switch (lanes_here(at_most)) {
-    case 8: return {product_8, transposed_8, substitution_8};
-    case 4: return {product_4, transposed_4, substitution_4};
+    case 8: return {product_8, substitution_8};
+    case 4: return {product_4, substitution_4};
   }
 #endif
-  return {product_2, transposed_2, substitution_2};
+  return {product_2, substitution_2};
 }
 
 const Kernels& kernels(int at_most) {
@@ -174,14 +123,8 @@ const Kernels& kernels(int at_most) {
 
 void multiply(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m, const double* a,
               std::ptrdiff_t stride, const double* const* x, const double* const* from, double* y,
-              int lanes) {
-  kernels(lanes).product({inner, m, a, stride, x, from, y, m}, rows);
-}
-
-void multiply_transposed(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m,
-                         const double* at, std::ptrdiff_t stride, const double* const* x, double* y,
-                         std::ptrdiff_t y_stride, int lanes) {
-  kernels(lanes).transposed({inner, m, at, stride, x, nullptr, y, y_stride}, rows);
+              std::ptrdiff_t y_stride, int lanes) {
+  kernels(lanes).product({inner, m, a, stride, x, from, y, y_stride}, rows);
 }
 
 void substitute_lower(std::ptrdiff_t rows, std::ptrdiff_t pivots, std::ptrdiff_t m,
@@ -198,43 +141,75 @@ namespace {
 
 using Four = Lanes<4>;
 
-/// Four rows of four columns.
-[[gnu::always_inline]] inline void transpose_tile(const double* x, std::ptrdiff_t x_stride,
-                                                  double* y, std::ptrdiff_t y_stride) {
+/// A register of x's entries to both of its columns.
+[[gnu::always_inline]] inline void store_both(const Four& entries, const Column& c,
+                                              std::ptrdiff_t i) {
+  store(c.first + i, c.by * entries + 0.0);
+  if (c.second) store(c.second + i, c.by_second * entries + 0.0);
+}
+
+/// Four rows of four columns, to row i on.
+[[gnu::always_inline]] inline void scale_tile(const double* x, std::ptrdiff_t stride,
+                                              const Column* to, std::ptrdiff_t i) {
   Four a, b, c, d;
-  load(a, x), load(b, x + x_stride), load(c, x + 2 * x_stride), load(d, x + 3 * x_stride);
+  load(a, x), load(b, x + stride), load(c, x + 2 * stride), load(d, x + 3 * stride);
   const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6),
              ba = __builtin_shufflevector(a, b, 1, 5, 3, 7),
              cd = __builtin_shufflevector(c, d, 0, 4, 2, 6),
              dc = __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  const Four first = __builtin_shufflevector(ab, cd, 0, 1, 4, 5),
-             second = __builtin_shufflevector(ba, dc, 0, 1, 4, 5),
-             third = __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
-             fourth = __builtin_shufflevector(ba, dc, 2, 3, 6, 7);
-  store(y, first), store(y + y_stride, second), store(y + 2 * y_stride, third),
-      store(y + 3 * y_stride, fourth);
+  store_both(__builtin_shufflevector(ab, cd, 0, 1, 4, 5), to[0], i);
+  store_both(__builtin_shufflevector(ba, dc, 0, 1, 4, 5), to[1], i);
+  store_both(__builtin_shufflevector(ab, cd, 2, 3, 6, 7), to[2], i);
+  store_both(__builtin_shufflevector(ba, dc, 2, 3, 6, 7), to[3], i);
 }
 
 }  // namespace
 
-/// By tiles; the last ones reach back where rows or columns are no multiple of four.
-TITOP_WIDE void transpose(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
-                          std::ptrdiff_t x_stride, double* y, std::ptrdiff_t y_stride) {
+/// By tiles; the last ones reach back where rows or columns are no multiple of four. Eight columns
+/// at a time: what is loaded from a row is a line of memory.
+TITOP_WIDE void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
+                                 std::ptrdiff_t stride, const Column* to, std::ptrdiff_t first) {
   constexpr std::ptrdiff_t n = 4;
   if (rows < n || columns < n) {
-    for (std::ptrdiff_t i = 0; i < rows; ++i)
-      for (std::ptrdiff_t j = 0; j < columns; ++j) y[j * y_stride + i] = x[i * x_stride + j];
+    for (std::ptrdiff_t j = 0; j < columns; ++j)
+      for (std::ptrdiff_t i = 0; i < rows; ++i) {
+        const double entry = x[i * stride + j];
+        to[j].first[first + i] = to[j].by * entry + 0.0;
+        if (to[j].second) to[j].second[first + i] = to[j].by_second * entry + 0.0;
+      }
     return;
   }
-  for (std::ptrdiff_t i = 0; i < rows; i += n)
-    for (std::ptrdiff_t j = 0; j < columns; j += n) {
-      const std::ptrdiff_t r = std::min(i, rows - n), c = std::min(j, columns - n);
-      transpose_tile(x + r * x_stride + c, x_stride, y + c * y_stride + r, y_stride);
+  for (std::ptrdiff_t j = 0; j < columns; j += 2 * n)
+    for (std::ptrdiff_t i = 0; i < rows; i += n) {
+      const std::ptrdiff_t r = std::min(i, rows - n);
+      for (std::ptrdiff_t k = j; k < std::min(j + 2 * n, columns); k += n) {
+        const std::ptrdiff_t c = std::min(k, columns - n);
+        scale_tile(x + r * stride + c, stride, to + c, first + r);
+      }
     }
 }
 
-TITOP_WIDE void scale(std::ptrdiff_t n, double factor, const double* x, double* y) {
-  for (std::ptrdiff_t i = 0; i < n; ++i) y[i] = factor * x[i] + 0.0;
+TITOP_WIDE void scale_rates(std::span<const Place> places, const double* x, const Column& to) {
+  constexpr std::ptrdiff_t n = 4;
+  for (const Place& p : places) {
+    if (p.size < n) {
+      for (std::ptrdiff_t j = 0; j < p.size; ++j) {
+        to.first[p.first + j] = to.second[p.first + j] = 0;
+        to.first[p.first + p.size + j] = to.by * x[j] + 0.0;
+        to.second[p.first + p.size + j] = to.by_second * x[j] + 0.0;
+      }
+    } else {
+      for (std::ptrdiff_t j = 0; j < p.size; j += n) {
+        const std::ptrdiff_t c = std::min(j, p.size - n);
+        Four entries;
+        load(entries, x + c);
+        store(to.first + p.first + c, Four{});
+        store(to.second + p.first + c, Four{});
+        store_both(entries, to, p.first + p.size + c);
+      }
+    }
+    x += p.size;
+  }
 }
 
 }  // namespace titop::solve

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 /// The products that the dense model is written with. In all of them the sum over `inner` runs in
 /// order, whatever the number of columns: the same bits however the columns are batched, and on
@@ -8,23 +9,12 @@
 /// that the processor has below it is taken.
 namespace titop::solve {
 
-/// y = from + a x: row i of y (rows x m, row-major) is from[i] plus the sum of a(i, k) x[k], where
-/// a is rows x inner, `stride` apart; m is a multiple of 8. Rows of x and `from` stand anywhere;
-/// from[i] may be row i of y. No `from`: from 0.
+/// y = from + a x: row i of y (rows x m, row-major, `y_stride` apart) is from[i] plus the sum of
+/// a(i, k) x[k], where a is rows x inner, `stride` apart; m is a multiple of 8. Rows of x and
+/// `from` stand anywhere; from[i] may be row i of y. No `from`: from 0.
 void multiply(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m, const double* a,
               std::ptrdiff_t stride, const double* const* x, const double* const* from, double* y,
-              int lanes = 8);
-
-/// The same transposed, from 0: y (m x rows, `y_stride` apart) = (a x)', where a stands as its
-/// transpose (inner x rows, row-major, `stride` apart: rows up to a multiple of 4, of which the
-/// last ones do not count); m is a multiple of 8.
-void multiply_transposed(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m,
-                         const double* at, std::ptrdiff_t stride, const double* const* x, double* y,
-                         std::ptrdiff_t y_stride, int lanes = 8);
-
-/// y = x': x is rows x columns, y columns x rows, both row-major with these strides.
-void transpose(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
-               std::ptrdiff_t x_stride, double* y, std::ptrdiff_t y_stride);
+              std::ptrdiff_t y_stride, int lanes = 8);
 
 /// Row by row, x (rows x m, row-major, m a multiple of 8) loses what the rows above bring with
 /// them: L^-1 x where L (rows x pivots, its diagonal 1) stands below the diagonal of lu, rows
@@ -36,7 +26,26 @@ void substitute_lower(std::ptrdiff_t rows, std::ptrdiff_t pivots, std::ptrdiff_t
 void substitute_upper(std::ptrdiff_t pivots, std::ptrdiff_t m, const double* lu,
                       std::ptrdiff_t stride, double* x, int lanes = 8);
 
-/// y = factor * x, n entries. No -0 is written.
-void scale(std::ptrdiff_t n, double factor, const double* x, double* y);
+/// Where multiples of a column go: first = by * x, and second = by_second * x if there is one. No
+/// -0 is written.
+struct Column {
+  double* first = nullptr;
+  double by = 1;
+  double* second = nullptr;
+  double by_second = 0;
+};
+
+/// Multiples of the columns of x (rows x columns, row-major, `stride` apart) go to the rows of `to`
+/// from `first` on; they stand in the order of x.
+void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
+                      std::ptrdiff_t stride, const Column* to, std::ptrdiff_t first);
+
+/// Where a body's coordinates begin, and how many they are; their rates come next.
+struct Place {
+  std::ptrdiff_t first = 0, size = 0;
+};
+/// Multiples of the entries of x, one place after the other, go to the rates of both columns; the
+/// coordinates there become 0.
+void scale_rates(std::span<const Place> places, const double* x, const Column& to);
 
 }  // namespace titop::solve

@@ -117,7 +117,7 @@ void Propagation::forward(int index, Space& space) const {
     space.from.push_back(come ? come : zeros);
   }
   multiply(f.left_over(), used, m, formed_.data() + p.lower + at(f.pivot_count * p.by_pivots),
-           p.by_pivots, with, space.from.data(), space.carried.data() + f.first_carried * m);
+           p.by_pivots, with, space.from.data(), space.carried.data() + f.first_carried * m, m);
 }
 
 /// The front's unknowns from those of its border and, where it is active, its own rows.
@@ -143,7 +143,7 @@ void Propagation::back(int index, Space& space) const {
     }
   }
   multiply(f.pivot_count, static_cast<std::ptrdiff_t>(space.with.size()), m,
-           formed_.data() + p.unknowns, p.by_all, space.with.data(), from, top);
+           formed_.data() + p.unknowns, p.by_all, space.with.data(), from, top, m);
 }
 
 void Propagation::begin(std::ptrdiff_t m, Space& space) const {

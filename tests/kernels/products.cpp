@@ -1,6 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <titop/compiler/solve/products.hpp>
 #include <vector>
 
@@ -20,74 +21,97 @@ std::vector<double> numbers(Rng& rng, std::ptrdiff_t n) {
 
 }  // namespace
 
-TEST_CASE("multiply, and the same transposed: as plain loops, to the last bit, at every width") {
+TEST_CASE("multiply: as plain loops, to the last bit, at every width") {
   Rng rng(5);
   const auto at = [](std::ptrdiff_t i) { return static_cast<std::size_t>(i); };
-  for (const std::ptrdiff_t rows : {4, 8, 12, 20})
+  for (const std::ptrdiff_t rows : {1, 4, 8, 11, 12, 20})
     for (const std::ptrdiff_t inner : {0, 1, 6, 13})
       for (const std::ptrdiff_t m : {8, 24, 40, 48}) {
-        const std::ptrdiff_t used = rows - (m == 48 ? 0 : m / 8 % 4);  // any number of rows
+        const std::ptrdiff_t y_stride = m + 3 * (inner % 2);
         const auto a = numbers(rng, rows * (inner + 2)), x = numbers(rng, 2 * inner * m),
-                   start = numbers(rng, rows * m);
-        std::vector<double> plain = start, from_zero = start, transposed(start.size(), 7),
-                            a_transposed;
+                   start = numbers(rng, rows * y_stride);
+        std::vector<double> plain = start, from_zero = start;
         std::vector<const double*> x_rows;  // some row or other between those that are read
         for (std::ptrdiff_t k = 0; k < inner; ++k) x_rows.push_back(x.data() + (2 * k + k % 2) * m);
         for (std::ptrdiff_t i = 0; i < rows; ++i)
           for (std::ptrdiff_t j = 0; j < m; ++j) {
-            double sum = start[at(i * m + j)], sum_from_zero = 0;
+            double sum = start[at(i * y_stride + j)], sum_from_zero = 0;
             for (std::ptrdiff_t k = 0; k < inner; ++k) {
               const double product = a[at(i * (inner + 2) + k)] * x_rows[at(k)][j];
               sum += product, sum_from_zero += product;
             }
-            if (i >= used) continue;
-            plain[at(i * m + j)] = sum;
-            from_zero[at(i * m + j)] = transposed[at(j * rows + i)] = sum_from_zero;
+            plain[at(i * y_stride + j)] = sum;
+            from_zero[at(i * y_stride + j)] = sum_from_zero;
           }
-        for (std::ptrdiff_t k = 0; k < inner; ++k)
-          for (std::ptrdiff_t i = 0; i < rows; ++i)
-            a_transposed.push_back(a[at(i * (inner + 2) + k)]);
         for (const int lanes : {8, 4, 2}) {
           INFO(rows, " x ", inner, " x ", m, ", ", lanes, " lanes");
-          std::vector<double> y = start, elsewhere = start, none = start, yt(start.size(), 7);
+          std::vector<double> y = start, elsewhere = start, none = start;
           const auto rows_of = [&](const std::vector<double>& of) {
             std::vector<const double*> list;
-            for (std::ptrdiff_t i = 0; i < used; ++i) list.push_back(of.data() + i * m);
+            for (std::ptrdiff_t i = 0; i < rows; ++i) list.push_back(of.data() + i * y_stride);
             return list;
           };
           const auto multiply = [&](const std::vector<double>& from, std::vector<double>& to) {
-            titop::solve::multiply(used, inner, m, a.data(), inner + 2, x_rows.data(),
-                                   rows_of(from).data(), to.data(), lanes);
+            titop::solve::multiply(rows, inner, m, a.data(), inner + 2, x_rows.data(),
+                                   rows_of(from).data(), to.data(), y_stride, lanes);
           };
           multiply(y, y);
           multiply(start, elsewhere);
-          titop::solve::multiply(used, inner, m, a.data(), inner + 2, x_rows.data(), nullptr,
-                                 none.data(), lanes);
-          titop::solve::multiply_transposed(used, inner, m, a_transposed.data(), rows,
-                                            x_rows.data(), yt.data(), rows, lanes);
+          titop::solve::multiply(rows, inner, m, a.data(), inner + 2, x_rows.data(), nullptr,
+                                 none.data(), y_stride, lanes);
           CHECK(y == plain);
           CHECK(elsewhere == plain);
           CHECK(none == from_zero);
-          CHECK(yt == transposed);
         }
       }
 }
 
-TEST_CASE("transpose: every entry in its place, and nothing beside") {
+TEST_CASE("scale_transposed: every entry in its place, once or twice, and nothing beside") {
   Rng rng(9);
   const auto at = [](std::ptrdiff_t i) { return static_cast<std::size_t>(i); };
-  for (const std::ptrdiff_t rows : {1, 3, 4, 6, 9})
-    for (const std::ptrdiff_t columns : {1, 2, 4, 6, 11}) {
+  for (const std::ptrdiff_t rows : {0, 1, 3, 4, 6, 9})
+    for (const std::ptrdiff_t columns : {1, 2, 4, 6, 11, 16}) {
       INFO(rows, " x ", columns);
-      const std::ptrdiff_t x_stride = columns + 3, y_stride = rows + 2;
-      const auto x = numbers(rng, rows * x_stride);
-      std::vector<double> y(at(columns * y_stride), 7), plain = y;
-      for (std::ptrdiff_t i = 0; i < rows; ++i)
-        for (std::ptrdiff_t j = 0; j < columns; ++j)
-          plain[at(j * y_stride + i)] = x[at(i * x_stride + j)];
-      titop::solve::transpose(rows, columns, x.data(), x_stride, y.data(), y_stride);
+      const std::ptrdiff_t stride = columns + 3, first = 2, column = first + rows + 1;
+      auto x = numbers(rng, rows * stride);
+      if (rows > 0) x[0] = -0.0;
+      std::vector<double> y(at(2 * columns * column), 7), plain = y;
+      std::vector<titop::solve::Column> to;
+      for (std::ptrdiff_t j = 0; j < columns; ++j) {
+        double* const twice = j % 3 == 0 ? nullptr : y.data() + (2 * j + 1) * column;
+        to.push_back({y.data() + 2 * j * column, rng.between(0, 1), twice, rng.between(-1, 0)});
+        for (std::ptrdiff_t i = 0; i < rows; ++i) {
+          const double entry = x[at(i * stride + j)];
+          plain[at(2 * j * column + first + i)] = to.back().by * entry;
+          if (twice) plain[at((2 * j + 1) * column + first + i)] = to.back().by_second * entry;
+        }
+      }
+      titop::solve::scale_transposed(rows, columns, x.data(), stride, to.data(), first);
       CHECK(y == plain);
+      if (rows > 0) CHECK_FALSE(std::signbit(y[at(first)]));
     }
+}
+
+TEST_CASE("scale_rates: rates, zeros for coordinates, and nothing beside") {
+  Rng rng(11);
+  const auto at = [](std::ptrdiff_t i) { return static_cast<std::size_t>(i); };
+  const std::vector<titop::solve::Place> places{{40, 6}, {1, 1},   {4, 4},
+                                                {60, 3}, {14, 11}, {36, 2}};
+  const std::ptrdiff_t entries = 6 + 1 + 4 + 3 + 11 + 2;
+  auto x = numbers(rng, entries);
+  x[0] = -0.0;
+  std::vector<double> first(70, 7), second = first, plain_first = first, plain_second = first;
+  std::ptrdiff_t next = 0;
+  for (const auto& p : places)
+    for (std::ptrdiff_t j = 0; j < p.size; ++j, ++next) {
+      plain_first[at(p.first + j)] = plain_second[at(p.first + j)] = 0;
+      plain_first[at(p.first + p.size + j)] = 0.3 * x[at(next)];
+      plain_second[at(p.first + p.size + j)] = -0.7 * x[at(next)];
+    }
+  titop::solve::scale_rates(places, x.data(), {first.data(), 0.3, second.data(), -0.7});
+  CHECK(first == plain_first);
+  CHECK(second == plain_second);
+  CHECK_FALSE(std::signbit(first[46]));
 }
 
 TEST_CASE("substitutions: as plain loops, to the last bit, at every width") {
