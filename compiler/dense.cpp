@@ -222,7 +222,7 @@ class Writer {
       const Writing::Source& s = w_->sources[at(t.source)];
       for (Index j = 0; j < t.rows; ++j)
         solve::scale_rates(places, values + (t.row + j) * width_,
-                           column_of(m_.A, s.first + j, s, j));
+                           column_of(m_.A, s.first + j, s, j), j + 1 < t.rows ? states_ : 0);
     }
   }
 

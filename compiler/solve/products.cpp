@@ -165,8 +165,7 @@ using Four = Lanes<4>;
 
 }  // namespace
 
-/// By tiles; the last ones reach back where rows or columns are no multiple of four. Eight columns
-/// at a time: what is loaded from a row is a line of memory.
+/// By tiles; the last ones reach back where rows or columns are no multiple of four.
 TITOP_WIDE void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
                                  std::ptrdiff_t stride, const Column* to, std::ptrdiff_t first) {
   constexpr std::ptrdiff_t n = 4;
@@ -179,19 +178,21 @@ TITOP_WIDE void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, co
       }
     return;
   }
-  for (std::ptrdiff_t j = 0; j < columns; j += 2 * n)
+  for (std::ptrdiff_t j = 0; j < columns; j += n) {
+    const std::ptrdiff_t c = std::min(j, columns - n);
     for (std::ptrdiff_t i = 0; i < rows; i += n) {
       const std::ptrdiff_t r = std::min(i, rows - n);
-      for (std::ptrdiff_t k = j; k < std::min(j + 2 * n, columns); k += n) {
-        const std::ptrdiff_t c = std::min(k, columns - n);
-        scale_tile(x + r * stride + c, stride, to + c, first + r);
-      }
+      scale_tile(x + r * stride + c, stride, to + c, first + r);
     }
+  }
 }
 
-TITOP_WIDE void scale_rates(std::span<const Place> places, const double* x, const Column& to) {
-  constexpr std::ptrdiff_t n = 4;
+TITOP_WIDE void scale_rates(std::span<const Place> places, const double* x, const Column& to,
+                            std::ptrdiff_t next) {
+  constexpr std::ptrdiff_t n = 4, line = 8;
   for (const Place& p : places) {
+    for (std::ptrdiff_t j = next + p.first; next > 0 && j < next + p.first + 2 * p.size; j += line)
+      __builtin_prefetch(to.first + j, 1), __builtin_prefetch(to.second + j, 1);
     if (p.size < n) {
       for (std::ptrdiff_t j = 0; j < p.size; ++j) {
         to.first[p.first + j] = to.second[p.first + j] = 0;

@@ -45,7 +45,8 @@ struct Place {
   std::ptrdiff_t first = 0, size = 0;
 };
 /// Multiples of the entries of x, one place after the other, go to the rates of both columns; the
-/// coordinates there become 0.
-void scale_rates(std::span<const Place> places, const double* x, const Column& to);
+/// coordinates there become 0. `next`: so far on, the next call writes; memory is asked for that.
+void scale_rates(std::span<const Place> places, const double* x, const Column& to,
+                 std::ptrdiff_t next = 0);
 
 }  // namespace titop::solve

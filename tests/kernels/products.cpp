@@ -100,7 +100,8 @@ TEST_CASE("scale_rates: rates, zeros for coordinates, and nothing beside") {
   const std::ptrdiff_t entries = 6 + 1 + 4 + 3 + 11 + 2;
   auto x = numbers(rng, entries);
   x[0] = -0.0;
-  std::vector<double> first(70, 7), second = first, plain_first = first, plain_second = first;
+  std::vector<double> first(70, 7), second = first,  // from 70 on, memory is only asked for
+      plain_first = first, plain_second = first;
   std::ptrdiff_t next = 0;
   for (const auto& p : places)
     for (std::ptrdiff_t j = 0; j < p.size; ++j, ++next) {
@@ -108,7 +109,7 @@ TEST_CASE("scale_rates: rates, zeros for coordinates, and nothing beside") {
       plain_first[at(p.first + p.size + j)] = 0.3 * x[at(next)];
       plain_second[at(p.first + p.size + j)] = -0.7 * x[at(next)];
     }
-  titop::solve::scale_rates(places, x.data(), {first.data(), 0.3, second.data(), -0.7});
+  titop::solve::scale_rates(places, x.data(), {first.data(), 0.3, second.data(), -0.7}, 35);
   CHECK(first == plain_first);
   CHECK(second == plain_second);
   CHECK_FALSE(std::signbit(first[46]));
