@@ -180,12 +180,7 @@ MatrixXcd System::transfer(std::complex<double> s, Precision precision) const {
 std::vector<MatrixXcd> System::frequency_response(std::span<const double> omega, int threads,
                                                   Precision precision) const {
   std::vector<MatrixXcd> result(omega.size());
-  // To wake a thread and wait for it takes longer than a few responses of a small system.
-  constexpr double kWorthIt = 100;  // unknowns, about 1 us each in double
-  const int unknowns = data_->skeleton->joint.plan->unknowns;
-  const bool quick = precision != Precision::extended && precision != Precision::digits50;
-  const bool few = threads == 0 && quick && static_cast<double>(omega.size()) * unknowns < kWorthIt;
-  detail::parallel(omega.size(), few ? 1 : threads, [&] {
+  detail::parallel(omega.size(), threads, [&] {
     return [&](std::size_t i) { result[i] = transfer({0, omega[i]}, precision); };
   });
   return result;

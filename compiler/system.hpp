@@ -105,10 +105,9 @@ class System {
   Eigen::MatrixXcd transfer(std::complex<double> s,
                             Precision precision = Precision::as_needed) const;
 
-  /// transfer(j omega, precision) for each omega [rad/s], on `threads` threads (0: all cores, or
-  /// one where a thread would cost more than it saves); the same to the last bit whatever their
-  /// number. O(bodies) per frequency. Throws what `transfer` throws: of several omega the first,
-  /// such as one on an undamped pole.
+  /// transfer(j omega, precision) for each omega [rad/s], on `threads` threads (0: all cores);
+  /// the same to the last bit whatever their number. O(bodies) per frequency. Throws what
+  /// `transfer` throws: of several omega the first, such as one on an undamped pole.
   std::vector<Eigen::MatrixXcd> frequency_response(
       std::span<const double> omega, int threads = 0,
       Precision precision = Precision::as_needed) const;

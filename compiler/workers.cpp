@@ -1,9 +1,9 @@
 #include <pthread.h>
 
 #include <algorithm>
+#include <boost/intrusive/list.hpp>
 #include <condition_variable>
 #include <csignal>
-#include <deque>
 #include <mutex>
 #include <system_error>
 #include <thread>
@@ -12,7 +12,12 @@
 namespace titop::detail {
 namespace {
 
-struct Call {
+/// One that waits for a worker stands in a list: there at most once, as who takes it out puts it in
+/// again. (It brings its own link: no memory is asked for, which there might not be.)
+struct Call : boost::intrusive::list_base_hook<> {
+  Call(const std::function<void()>& to_do, const std::function<bool()>& is_more, int others)
+      : work(to_do), more(is_more), left(others) {}
+
   const std::function<void()>& work;
   const std::function<bool()>& more;
   int left;         ///< workers that may still be called
@@ -30,7 +35,7 @@ class Workers {
     call_next(call);
     call.work();
     std::unique_lock lock(mutex_);
-    std::erase(called_, &call);
+    if (call.is_linked()) called_.erase(called_.iterator_to(call));
     call.ended.wait(lock, [&] { return call.running == 0; });
   }
 
@@ -41,7 +46,7 @@ class Workers {
       const std::scoped_lock lock(mutex_);
       if (call.left == 0) return;
       --call.left;
-      called_.push_back(&call);
+      called_.push_back(call);
       if (asleep_ < called_.size() && started_ < most_) return start();
     }
     wake_.notify_one();
@@ -65,7 +70,7 @@ class Workers {
       ++asleep_;
       wake_.wait(lock, [this] { return !called_.empty(); });
       --asleep_;
-      Call& call = *called_.front();
+      Call& call = called_.front();
       called_.pop_front();
       ++call.running;
       lock.unlock();
@@ -78,7 +83,7 @@ class Workers {
 
   std::mutex mutex_;
   std::condition_variable wake_;
-  std::deque<Call*> called_;
+  boost::intrusive::list<Call> called_;
   std::size_t asleep_ = 0;
   int started_ = 0, most_ = 0;
 };
@@ -100,7 +105,7 @@ Workers& workers() {
 void work_together(int others, const std::function<void()>& work,
                    const std::function<bool()>& more) {
   if (others <= 0 || is_child) return work();
-  Call call{work, more, others};
+  Call call(work, more, others);
   workers().run(call);
 }
 

@@ -112,9 +112,11 @@ struct Sweep {
   }
 };
 
+/// `threads`: 0 for all cores.
+template <int threads>
 Prepared titop_recompile(Case c, int n) {
   const auto sweep = std::make_shared<Sweep>(c, n);
-  return {[=] { sweep->next().write(sweep->model); },
+  return {[=] { sweep->next().write(sweep->model, threads); },
           [=] {
             StateSpace fresh;
             compiled(sweep->at(sweep->p)).write(fresh);
@@ -243,7 +245,8 @@ std::vector<Method> methods() {
     list.push_back(method("compile", c, "dense LU", sizes, dense_compile));
     list.push_back(method("compile", c, "sparse LU", sizes, sparse_compile));
     list.push_back(method("compile", c, "memset of A", sizes, memset_of_A));
-    list.push_back(method("recompile", c, "titop", sizes, titop_recompile));
+    list.push_back(method("recompile", c, "titop", sizes, titop_recompile<0>));
+    list.push_back(method("recompile", c, "titop on one core", sizes, titop_recompile<1>));
     list.push_back(method("recompile", c, "sparse LU", sizes, sparse_recompile));
     list.push_back(method("minimize", c, "titop", sizes, by_effect));
     const auto& long_sizes = scalar ? many : bodies;
