@@ -202,7 +202,8 @@ class Writer {
 
   /// Where the answer to the j-th force or state of a source goes. A modal force is one of the
   /// mode's coordinate and of its rate.
-  solve::Column column_of(MatrixXd& matrix, Index column, const Writing::Source& s, Index j) const {
+  solve::Destination column_of(MatrixXd& matrix, Index column, const Writing::Source& s,
+                               Index j) const {
     double* const first = matrix.data() + column * matrix.rows();
     if (!s.modal) return {first};
     const Modal& modal = *block(s.node).modal;
@@ -211,17 +212,17 @@ class Writer {
 
   /// What later targets read of these sources is what these sources' targets read of theirs.
   void write_rows(std::size_t batch, const double* values) {
-    std::vector<solve::Place> places;
+    std::vector<solve::Modes> bodies;
     for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i)
       if (const Writing::Source& s = w_->sources[i]; s.modal)
-        places.push_back({s.first, s.columns});
+        bodies.push_back({s.first, s.columns});
       else
         values += s.columns;  // these stand first
     for (const Writing::Target& t : w_->targets) {
       if (t.source < 0 || at(t.source) < w_->batches[batch + 1]) continue;
       const Writing::Source& s = w_->sources[at(t.source)];
       for (Index j = 0; j < t.rows; ++j)
-        solve::scale_rates(places, values + (t.row + j) * width_,
+        solve::scale_rates(bodies, values + (t.row + j) * width_,
                            column_of(m_.A, s.first + j, s, j), j + 1 < t.rows ? states_ : 0);
     }
   }

@@ -35,6 +35,7 @@ class Workers {
     call_next(call);
     call.work();
     std::unique_lock lock(mutex_);
+    call.left = 0;  // a worker on its way to call another finds that it is late
     if (call.is_linked()) called_.erase(called_.iterator_to(call));
     call.ended.wait(lock, [&] { return call.running == 0; });
   }
@@ -52,10 +53,11 @@ class Workers {
     wake_.notify_one();
   }
 
-  /// Signals are for the threads that the program knows of.
+  /// Signals are for the threads that the program knows of, but for those of a thread's own faults.
   void start() {
     sigset_t all, before;
     sigfillset(&all);
+    for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) sigdelset(&all, fault);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     try {
       std::thread([this] { serve(); }).detach();

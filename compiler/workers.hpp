@@ -10,8 +10,9 @@ namespace titop::detail {
 /// throw. From any thread, also within work() of another call.
 ///
 /// The others are kept, asleep, for the next call: to start a thread and to end it takes as long as
-/// writing a small model. There are never more than the largest `others` so far; where none is
-/// free or can be started, there are fewer, or this thread alone, as in a child of fork().
+/// writing a small model. There are never more than the largest `others` so far, for all calls
+/// together; where none is free or can be started, there are fewer, or this thread alone, as in a
+/// child of fork().
 void work_together(int others, const std::function<void()>& work,
                    const std::function<bool()>& more);
 

@@ -63,7 +63,9 @@ struct Reference {
 
 // --- titop ------------------------------------------------------------------------------------
 
-Prepared titop_compile(Case c, int n, int threads) {
+/// `threads`: 0 for all cores.
+template <int threads>
+Prepared titop_compile(Case c, int n) {
   struct Data {
     Diagram diagram;
     StateSpace model;
@@ -76,9 +78,6 @@ Prepared titop_compile(Case c, int n, int threads) {
             return difference(probe(data->model), probe(system));
           }};
 }
-
-Prepared on_all_cores(Case c, int n) { return titop_compile(c, n, 0); }
-Prepared on_one_core(Case c, int n) { return titop_compile(c, n, 1); }
 
 Prepared titop_factor(Case c, int n) {
   struct Data {
@@ -112,7 +111,6 @@ struct Sweep {
   }
 };
 
-/// `threads`: 0 for all cores.
 template <int threads>
 Prepared titop_recompile(Case c, int n) {
   const auto sweep = std::make_shared<Sweep>(c, n);
@@ -240,8 +238,8 @@ std::vector<Method> methods() {
   for (const Case c : {Case::D, Case::F, Case::K, Case::A, Case::BL, Case::C}) {
     const bool scalar = c == Case::A || c == Case::BL || c == Case::C;
     const auto& sizes = scalar ? masses : bodies;
-    list.push_back(method("compile", c, "titop", sizes, on_all_cores));
-    list.push_back(method("compile", c, "titop on one core", sizes, on_one_core));
+    list.push_back(method("compile", c, "titop", sizes, titop_compile<0>));
+    list.push_back(method("compile", c, "titop on one core", sizes, titop_compile<1>));
     list.push_back(method("compile", c, "dense LU", sizes, dense_compile));
     list.push_back(method("compile", c, "sparse LU", sizes, sparse_compile));
     list.push_back(method("compile", c, "memset of A", sizes, memset_of_A));

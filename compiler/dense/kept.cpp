@@ -10,12 +10,16 @@ void Room::clear_for(const std::shared_ptr<const Writing>& writing, std::size_t 
 }
 
 bool Kept::is_large() const {
-  constexpr std::size_t kKeep = 1 << 17;  // numbers: 1 MB each
-  const auto large = [](const std::vector<double>& v) { return v.size() > kKeep; };
-  return large(coefficients) || large(products) || rooms.size() > 8 ||
-         std::any_of(rooms.begin(), rooms.end(), [&](const Room& room) {
-           return large(room.values) || large(room.space.z) || large(room.space.carried);
-         });
+  constexpr std::size_t kOne = 1 << 17, kAll = 1 << 22;  // numbers: 1 MB each, 32 MB together
+  std::size_t most = 0, all = 0;
+  const auto take = [&](const std::vector<double>& v) {
+    most = std::max(most, v.size()), all += v.size();
+  };
+  take(coefficients), take(products);
+  for (const Room& room : rooms)
+    for (const auto* v : {&room.values, &room.space.z, &room.space.rows, &room.space.carried})
+      take(*v);
+  return most > kOne || all > kAll;
 }
 
 Kept& kept_by_thread() {

@@ -11,18 +11,18 @@ namespace titop::detail {
 /// Room for the solutions of one thread.
 struct Room {
   solve::Propagation::Space space;
-  std::vector<double> values;         ///< of the columns of a batch, row by row
-  std::vector<const double*> reads;   ///< rows of unknowns that a target reads
-  std::vector<solve::Column> state,   ///< where the columns of a batch go in A or B,
-      output;                         ///< and in C or D
-  std::shared_ptr<const Writing> of;  ///< what `values` belong to
+  std::vector<double> values;             ///< of the columns of a batch, row by row
+  std::vector<const double*> reads;       ///< rows of unknowns that a target reads
+  std::vector<solve::Destination> state,  ///< where the columns of a batch go in A or B,
+      output;                             ///< and in C or D
+  std::shared_ptr<const Writing> of;      ///< what `values` belong to
 
   /// Values that no target has are 0, and stay so from model to model.
   void clear_for(const std::shared_ptr<const Writing>& writing, std::size_t size);
 };
 
 /// What a thread that writes models keeps from one to the next while it is small, for itself and
-/// for those that it starts: fresh memory would cost as much as the work.
+/// for those that work with it: fresh memory would cost as much as the work.
 struct Kept {
   std::vector<double> coefficients, products;  ///< all threads read them
   std::vector<Room> rooms;

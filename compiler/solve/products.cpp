@@ -142,7 +142,7 @@ namespace {
 using Four = Lanes<4>;
 
 /// A register of x's entries to both of its columns.
-[[gnu::always_inline]] inline void store_both(const Four& entries, const Column& c,
+[[gnu::always_inline]] inline void store_both(const Four& entries, const Destination& c,
                                               std::ptrdiff_t i) {
   store(c.first + i, c.by * entries + 0.0);
   if (c.second) store(c.second + i, c.by_second * entries + 0.0);
@@ -150,7 +150,7 @@ using Four = Lanes<4>;
 
 /// Four rows of four columns, to row i on.
 [[gnu::always_inline]] inline void scale_tile(const double* x, std::ptrdiff_t stride,
-                                              const Column* to, std::ptrdiff_t i) {
+                                              const Destination* to, std::ptrdiff_t i) {
   Four a, b, c, d;
   load(a, x), load(b, x + stride), load(c, x + 2 * stride), load(d, x + 3 * stride);
   const Four ab = __builtin_shufflevector(a, b, 0, 4, 2, 6),
@@ -167,7 +167,8 @@ using Four = Lanes<4>;
 
 /// By tiles; the last ones reach back where rows or columns are no multiple of four.
 TITOP_WIDE void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
-                                 std::ptrdiff_t stride, const Column* to, std::ptrdiff_t first) {
+                                 std::ptrdiff_t stride, const Destination* to,
+                                 std::ptrdiff_t first) {
   constexpr std::ptrdiff_t n = 4;
   if (rows < n || columns < n) {
     for (std::ptrdiff_t j = 0; j < columns; ++j)
@@ -187,10 +188,10 @@ TITOP_WIDE void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, co
   }
 }
 
-TITOP_WIDE void scale_rates(std::span<const Place> places, const double* x, const Column& to,
+TITOP_WIDE void scale_rates(std::span<const Modes> bodies, const double* x, const Destination& to,
                             std::ptrdiff_t next) {
   constexpr std::ptrdiff_t n = 4, line = 8;
-  for (const Place& p : places) {
+  for (const Modes& p : bodies) {
     for (std::ptrdiff_t j = next + p.first; next > 0 && j < next + p.first + 2 * p.size; j += line)
       __builtin_prefetch(to.first + j, 1), __builtin_prefetch(to.second + j, 1);
     if (p.size < n) {

@@ -26,9 +26,9 @@ void substitute_lower(std::ptrdiff_t rows, std::ptrdiff_t pivots, std::ptrdiff_t
 void substitute_upper(std::ptrdiff_t pivots, std::ptrdiff_t m, const double* lu,
                       std::ptrdiff_t stride, double* x, int lanes = 8);
 
-/// Where multiples of a column go: first = by * x, and second = by_second * x if there is one. No
+/// Where multiples of a column x go: first = by * x, and second = by_second * x if there is one. No
 /// -0 is written.
-struct Column {
+struct Destination {
   double* first = nullptr;
   double by = 1;
   double* second = nullptr;
@@ -38,15 +38,16 @@ struct Column {
 /// Multiples of the columns of x (rows x columns, row-major, `stride` apart) go to the rows of `to`
 /// from `first` on; they stand in the order of x.
 void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
-                      std::ptrdiff_t stride, const Column* to, std::ptrdiff_t first);
+                      std::ptrdiff_t stride, const Destination* to, std::ptrdiff_t first);
 
-/// Where a body's coordinates begin, and how many they are; their rates come next.
-struct Place {
+/// Where a body's modal coordinates begin, and how many they are; their rates come next.
+struct Modes {
   std::ptrdiff_t first = 0, size = 0;
 };
-/// Multiples of the entries of x, one place after the other, go to the rates of both columns; the
-/// coordinates there become 0. `next`: so far on, the next call writes; memory is asked for that.
-void scale_rates(std::span<const Place> places, const double* x, const Column& to,
+/// Multiples of the entries of x, one body's after the other's, go to the rates of `to`, which has
+/// both columns; the coordinates there become 0. `next`: so many numbers behind these columns are
+/// those of the next call; they are prefetched.
+void scale_rates(std::span<const Modes> bodies, const double* x, const Destination& to,
                  std::ptrdiff_t next = 0);
 
 }  // namespace titop::solve

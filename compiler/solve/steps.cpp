@@ -12,15 +12,16 @@ using Four = Lanes<4>;
 template <int V>
 [[gnu::always_inline]] inline void load_behind(const double* row, std::ptrdiff_t k,
                                                std::ptrdiff_t end, Four* to) {
-  const std::ptrdiff_t first = end - 4 * V;  // k at most, where there is nothing before a row
+  // Below 0 at a front's beginning, where `behind` does not read.
+  const std::ptrdiff_t first = end - 4 * V;
   const auto behind = [&](std::ptrdiff_t j) { return j > k ? row[j] : 0; };
   to[0] = Four{behind(first), behind(first + 1), behind(first + 2), behind(first + 3)};
   for (int v = 1; v < V; ++v) load(to[v], row + first + 4 * v);
 }
 
 /// to += factor * from. In the columns before those that count (at the end of the row above where
-/// a row has few) 0 is added: they stay as they are, but for a factor that is not finite, and then
-/// bounds are not either and the front counts as singular.
+/// a row has few) 0 is added: they stay as they are, but for the sign of a zero, and for a factor
+/// that is not finite; then bounds are not either and the front counts as singular.
 template <int V>
 [[gnu::always_inline]] inline void add_registers(double factor, const Four* from, double* to) {
   for (int v = 0; v < V; ++v) {

@@ -76,7 +76,7 @@ TEST_CASE("scale_transposed: every entry in its place, once or twice, and nothin
       auto x = numbers(rng, rows * stride);
       if (rows > 0) x[0] = -0.0;
       std::vector<double> y(at(2 * columns * column), 7), plain = y;
-      std::vector<titop::solve::Column> to;
+      std::vector<titop::solve::Destination> to;
       for (std::ptrdiff_t j = 0; j < columns; ++j) {
         double* const twice = j % 3 == 0 ? nullptr : y.data() + (2 * j + 1) * column;
         to.push_back({y.data() + 2 * j * column, rng.between(0, 1), twice, rng.between(-1, 0)});
@@ -95,7 +95,7 @@ TEST_CASE("scale_transposed: every entry in its place, once or twice, and nothin
 TEST_CASE("scale_rates: rates, zeros for coordinates, and nothing beside") {
   Rng rng(11);
   const auto at = [](std::ptrdiff_t i) { return static_cast<std::size_t>(i); };
-  const std::vector<titop::solve::Place> places{{40, 6}, {1, 1},   {4, 4},
+  const std::vector<titop::solve::Modes> bodies{{40, 6}, {1, 1},   {4, 4},
                                                 {60, 3}, {14, 11}, {36, 2}};
   const std::ptrdiff_t entries = 6 + 1 + 4 + 3 + 11 + 2;
   auto x = numbers(rng, entries);
@@ -103,13 +103,13 @@ TEST_CASE("scale_rates: rates, zeros for coordinates, and nothing beside") {
   std::vector<double> first(70, 7), second = first,  // from 70 on, memory is only asked for
       plain_first = first, plain_second = first;
   std::ptrdiff_t next = 0;
-  for (const auto& p : places)
+  for (const auto& p : bodies)
     for (std::ptrdiff_t j = 0; j < p.size; ++j, ++next) {
       plain_first[at(p.first + j)] = plain_second[at(p.first + j)] = 0;
       plain_first[at(p.first + p.size + j)] = 0.3 * x[at(next)];
       plain_second[at(p.first + p.size + j)] = -0.7 * x[at(next)];
     }
-  titop::solve::scale_rates(places, x.data(), {first.data(), 0.3, second.data(), -0.7}, 35);
+  titop::solve::scale_rates(bodies, x.data(), {first.data(), 0.3, second.data(), -0.7}, 35);
   CHECK(first == plain_first);
   CHECK(second == plain_second);
   CHECK_FALSE(std::signbit(first[46]));
