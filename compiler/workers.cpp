@@ -4,8 +4,8 @@
 #include <boost/intrusive/list.hpp>
 #include <condition_variable>
 #include <csignal>
+#include <exception>
 #include <mutex>
-#include <system_error>
 #include <thread>
 #include <titop/compiler/workers.hpp>
 
@@ -57,12 +57,13 @@ class Workers {
   void start() {
     sigset_t all, before;
     sigfillset(&all);
-    for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL}) sigdelset(&all, fault);
+    for (const int fault : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGTRAP, SIGSYS})
+      sigdelset(&all, fault);
     pthread_sigmask(SIG_SETMASK, &all, &before);
     try {
       std::thread([this] { serve(); }).detach();
       ++started_;
-    } catch (const std::system_error&) {  // there is no other: those that there are do all of it
+    } catch (const std::exception&) {  // no thread, no memory: those that there are do all of it
     }
     pthread_sigmask(SIG_SETMASK, &before, nullptr);
   }

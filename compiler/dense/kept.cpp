@@ -13,7 +13,7 @@ bool Kept::is_large() const {
   constexpr std::size_t kOne = 1 << 17, kAll = 1 << 22;  // numbers: 1 MB each, 32 MB together
   std::size_t most = 0, all = 0;
   const auto take = [&](const std::vector<double>& v) {
-    most = std::max(most, v.size()), all += v.size();
+    most = std::max(most, v.capacity()), all += v.capacity();
   };
   take(coefficients), take(products);
   for (const Room& room : rooms)

@@ -77,7 +77,8 @@ double difference_to_matrices(const System& s, const Eigen::VectorXd& x0) {
                  return Eigen::VectorXd::Constant(1, std::sin(time));
                }),
                {.step = h, .until = 40 * h, .stepper = Stepper::midpoint, .x0 = x0});
-  return (t.x - x).norm() / x.norm();
+  const Eigen::VectorXd y = m.C * x + m.D * std::sin(40 * h);
+  return std::max((t.x - x).norm() / x.norm(), (t.y.col(t.y.cols() - 1) - y).norm() / y.norm());
 }
 
 /// A force on the point without mass between two springs: the model's states are those of the
