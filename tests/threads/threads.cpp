@@ -9,28 +9,13 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
-#include <cstdlib>
 #include <functional>
 #include <latch>
-#include <new>
 #include <thread>
 #include <titop/compiler/parallel.hpp>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"
-
-namespace {
-thread_local bool no_memory = false;
-}
-
-// (Inlined, g++ takes malloc and delete for a pair that does not match.)
-[[gnu::noinline]] void* operator new(std::size_t size) {
-  void* const result = no_memory ? nullptr : std::malloc(size);
-  if (!result) throw std::bad_alloc();
-  return result;
-}
-[[gnu::noinline]] void operator delete(void* p) noexcept { std::free(p); }
-[[gnu::noinline]] void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 /// Sweeps, and what many threads may ask of one System: the same to the last bit, however many.
 
@@ -49,24 +34,6 @@ Diagram one_mass() {
 }
 
 }  // namespace
-
-// Before there is any thread.
-TEST_CASE("threads: where there is no memory for one, the caller does all by itself") {
-  const std::function<void()> nothing = [] {};
-  const std::function<bool()> over = [] { return false; };
-  detail::work_together(1, nothing, over);  // makes what all calls share
-  int done = 0, asked = 0;
-  const std::function<void()> work = [&] { ++done; };
-  const std::function<bool()> more = [&] { return ++asked > 0; };
-  no_memory = true;
-  detail::work_together(2, work, more);
-  no_memory = false;
-  CHECK(done == 1);
-  CHECK(asked == 1);
-  sigset_t blocked;
-  pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
-  CHECK(sigismember(&blocked, SIGINT) == 0);
-}
 
 TEST_CASE("sweep: the frequency of one mass is sqrt(k/m), with any number of threads") {
   const System system = compile(one_mass());
