@@ -22,7 +22,8 @@ struct Room {
 };
 
 /// What a thread that writes models keeps from one to the next while it is small, for itself and
-/// for those that work with it: fresh memory would cost as much as the work. 32 MB at most.
+/// for those that work with it: fresh memory would cost as much as the work. At most 32 MB of
+/// numbers from call to call; a call that throws leaves what it has to the next.
 struct Kept {
   std::vector<double> coefficients, products;  ///< all threads read them
   std::vector<Room> rooms;
