@@ -7,8 +7,8 @@
 #include <new>
 #include <titop/compiler/workers.hpp>
 
-/// A thread that there is no memory for. (Not beside the tests of threads: clang's thread sanitizer
-/// brings an operator new of its own. In this program nothing else has threads.)
+/// A thread that there is no memory for. (A program of its own: clang's thread sanitizer, under
+/// which the tests of threads and of kernels run, brings its own operator new.)
 
 namespace {
 thread_local bool no_memory = false;
