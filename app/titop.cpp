@@ -205,7 +205,20 @@ constexpr Command kCommands[] = {{"check", 2, done<check>},     {"compile", 2, d
                                  {"certify", 2, certify_scene}, {"draw", 3, done<draw>},
                                  {"report", 2, done<report>},   {"export", 3, done<export_model>}};
 
+bool asks_for_help(const std::vector<std::string>& all) {
+  const auto typed = [&](const char* word) {
+    return std::find(all.begin(), all.end(), word) != all.end();
+  };
+  return typed("--help") || typed("-h") || (!all.empty() && all[0] == "help");
+}
+
+std::string usage() { return fmt::format("{}{}", kUsage, generate::kUsage); }
+
 int run(const std::vector<std::string>& all) {
+  if (asks_for_help(all)) {
+    std::fputs(usage().c_str(), stdout);
+    return 0;
+  }
   if (!all.empty() && all[0] == "generate") {
     generate_scene({all.begin() + 1, all.end()});
     return 0;
@@ -226,7 +239,7 @@ int run(const std::vector<std::string>& all) {
 int main(int argc, char** argv) try {
   return run({argv + 1, argv + argc});
 } catch (const Misuse& misuse) {
-  std::fputs(fmt::format("titop: {}\n{}{}", misuse.what, kUsage, generate::kUsage).c_str(), stderr);
+  std::fputs(fmt::format("titop: {}\n{}", misuse.what, usage()).c_str(), stderr);
   return 2;
 } catch (const std::exception& error) {
   std::fputs(fmt::format("{}\n", error.what()).c_str(), stderr);

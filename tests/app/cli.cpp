@@ -157,6 +157,18 @@ TEST_CASE("a scene that is refused: exit code 1 and the error on stderr") {
   CHECK(has(r.err, "error[no-equation]: z.parent"));
 }
 
+TEST_CASE("who asks for help gets the usage on stdout") {
+  const Shell shell;
+  for (const char* words : {"--help", "-h", "help", "certify --help", "generate --help"}) {
+    INFO(words);
+    const Run r = shell.titop(words);
+    CHECK(r.code == 0);
+    CHECK(has(r.out, "usage:"));
+    CHECK(has(r.out, "titop generate SCENE.json"));
+    CHECK(r.err.empty());
+  }
+}
+
 TEST_CASE("what is not understood: exit code 2 and the usage on stderr") {
   const Shell shell;
   for (const char* words :
