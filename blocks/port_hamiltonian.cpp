@@ -4,6 +4,7 @@
 namespace titop {
 
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 namespace {
 
@@ -18,6 +19,14 @@ void set_structure(PortHamiltonian& s, const MatrixXd& damping) {
 }
 
 }  // namespace
+
+double PortHamiltonian::energy(const VectorXd& x) const { return 0.5 * x.dot(Q * x); }
+
+double PortHamiltonian::supplied(const VectorXd& x, const VectorXd& u) const {
+  return (Q * x).dot(G * u);
+}
+
+double PortHamiltonian::dissipated(const VectorXd& x) const { return (Q * x).dot(R * (Q * x)); }
 
 StateSpace PortHamiltonian::state_space() const {
   const auto n = N.cols();
@@ -46,7 +55,7 @@ PortHamiltonian port_hamiltonian(const FlexibleBody& body) {
   const auto n = d.omega.size();
   const MatrixXd W = modal_input(d);
   PortHamiltonian s;
-  Eigen::VectorXd stiffness = Eigen::VectorXd::Ones(2 * n);
+  VectorXd stiffness = VectorXd::Ones(2 * n);
   stiffness.head(n) = d.omega.cwiseAbs2();
   s.Q = stiffness.asDiagonal();
   set_structure(s, (2 * d.xi.cwiseProduct(d.omega)).asDiagonal());

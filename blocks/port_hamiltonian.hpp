@@ -21,12 +21,10 @@ struct PortHamiltonian {
   Eigen::MatrixXd N;  ///< outputs x n
   Eigen::MatrixXd P;  ///< outputs x inputs
 
-  double energy(const Eigen::VectorXd& x) const { return 0.5 * x.dot(Q * x); }  ///< H [J]
+  double energy(const Eigen::VectorXd& x) const;  ///< H [J]
   /// dH/dt = supplied power - dissipated power [W].
-  double supplied(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const {
-    return (Q * x).dot(G * u);
-  }
-  double dissipated(const Eigen::VectorXd& x) const { return (Q * x).dot(R * (Q * x)); }
+  double supplied(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const;
+  double dissipated(const Eigen::VectorXd& x) const;
   /// A, B, C, D of the same system in the coordinates x, without names.
   StateSpace state_space() const;
 };
