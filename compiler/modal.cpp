@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <titop/compiler/modal.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/graded.hpp>
@@ -121,28 +122,28 @@ void set_blocks(Pole& pole, const StateSpace& model, const VectorXd& share) {
                    [](const auto& a, const auto& b) { return a.second > b.second; });
 }
 
+/// Poles of yddot + z ydot + w2 y = 0: a pair, or two real ones, the slow one by their product.
+std::vector<Pole> roots(double w2, double z) {
+  const double half = z / 2, omega = std::sqrt(std::max(w2, 0.0));
+  const double root2 = w2 > 0 ? (half - omega) * (half + omega) : half * half - w2;
+  if (root2 < 0) return {make_pole({-half, std::sqrt(-root2)}, true)};
+  const double fast = -(half + std::copysign(std::sqrt(root2), half));
+  return {make_pole(fast != 0 ? w2 / fast : 0, false), make_pole(fast, false)};
+}
+
 /// Poles of yddot + Z ydot + S y = 0 where Z is diagonal in the modes of S; false if it is not.
 bool proportional_poles(const StateSpace& model, const SecondOrder& form, std::vector<Pole>& out) {
-  const SymmetricModes modes = eigh_graded(form.S).modes;
-  const MatrixXd Z = modes.V.transpose() * form.Z * modes.V;
-  const double size = Z.cwiseAbs().maxCoeff();
-  const MatrixXd off = Z - MatrixXd(Z.diagonal().asDiagonal());
-  if (size > 0 && off.cwiseAbs().maxCoeff() > 1e-13 * size) return false;
-  const double largest = modes.lambda.size() ? modes.lambda.cwiseAbs().maxCoeff() : 0;
-  for (Eigen::Index k = 0; k < modes.lambda.size(); ++k) {
-    // What is negative by rounding is a rigid motion.
-    const double w2 = std::abs(modes.lambda(k)) <= 1e-13 * largest ? 0 : modes.lambda(k);
-    const double half = Z(k, k) / 2;
-    const std::complex<double> root = std::sqrt(std::complex<double>(half * half - w2, 0));
+  const GradedModes all = eigh_graded(form.S);
+  const std::optional<VectorXd> Z = diagonal_in(all, form.Z);
+  if (!Z) return false;
+  const auto& [lambda, V] = all.modes;
+  for (Eigen::Index k = 0; k < lambda.size(); ++k) {
     VectorXd share = VectorXd::Zero(model.A.rows());
-    for (Eigen::Index i = 0; i < modes.V.rows(); ++i)
-      share(form.q[static_cast<std::size_t>(i)]) = modes.V(i, k) * modes.V(i, k);
-    const bool pair = root.imag() != 0;
-    for (const double sign : {1.0, -1.0}) {
-      Pole p = make_pole(-half + sign * root, pair);
-      if (size == 0 && pair) p = make_pole({0, sign * std::sqrt(w2)}, true);
+    for (Eigen::Index i = 0; i < V.rows(); ++i)
+      share(form.q[static_cast<std::size_t>(i)]) = V(i, k) * V(i, k);
+    for (Pole& p : roots(lambda(k), (*Z)(k))) {
       set_blocks(p, model, share);
-      if (sign > 0 || !pair) out.push_back(std::move(p));
+      out.push_back(std::move(p));
     }
   }
   return true;

@@ -16,13 +16,16 @@ constexpr double kAsymmetry = 1e-9;  ///< of what must be symmetric, over its di
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-void find_clusters(const VectorXd& lambda, double resolution, ModeSet& m) {
+void find_clusters(const GradedModes& e, double resolution, ModeSet& m) {
+  const VectorXd& lambda = e.modes.lambda;
   m.cluster.assign(at(lambda.size()), 0);
-  const double largest = lambda.size() ? lambda.cwiseAbs().maxCoeff() : 0;
+  const double all_alike = 100 * kEps * lambda.cwiseAbs().maxCoeff();
   // A frequency that differs by 2 * resolution differs by 4 * resolution in its square.
   const double same = std::max(kSameFrequency, 4 * resolution);
   for (Index i = 1; i < lambda.size(); ++i) {
-    const double noise = 100 * kEps * largest + same * std::abs(lambda(i));
+    const double size = std::abs(lambda(i));
+    const double rounding = e.graded ? std::min(all_alike, 4 * e.relative * size) : all_alike;
+    const double noise = rounding + same * size;
     m.cluster[at(i)] = m.cluster[at(i - 1)] + (lambda(i) - lambda(i - 1) > noise ? 1 : 0);
   }
 }
@@ -85,19 +88,19 @@ void turn_clusters(const Ports& p, const ModeSet& m, MatrixXd& Q) {
 }
 
 /// How far modes are apart, and what rounding mixes: graded matrices keep small ones cleaner.
-void find_mixing(const VectorXd& lambda, ModeSet& m) {
+void find_mixing(const GradedModes& e, ModeSet& m) {
+  const VectorXd& lambda = e.modes.lambda;
   const Index n = lambda.size();
-  const double largest = n ? m.lambda.maxCoeff() : 0, smallest = n ? m.lambda.minCoeff() : 0;
+  const double all_alike = std::sqrt(static_cast<double>(n)) * kEps * m.lambda.maxCoeff();
   m.distance.resize(n, n);
   m.mixing.resize(n, n);
   for (Index j = 0; j < n; ++j)
     for (Index i = 0; i < n; ++i) {
       const double gap = std::abs(lambda(i) - lambda(j));
       m.distance(i, j) = gap;
-      const double backward = largest / gap;
-      const double graded = smallest > 0 ? m.lambda(i) * m.lambda(j) / (smallest * gap) : backward;
-      const double noise = std::sqrt(static_cast<double>(n)) * kEps;
-      m.mixing(i, j) = gap > 0 ? std::min(1.0, noise * std::min(backward, graded)) : 1;
+      const double graded = e.relative * std::sqrt(m.lambda(i) * m.lambda(j));
+      const double rounding = e.graded ? std::min(all_alike, graded) : all_alike;
+      m.mixing(i, j) = gap > 0 ? std::min(1.0, rounding / gap) : 1;
     }
 }
 
@@ -106,7 +109,7 @@ void find_rigid(const Ports& p, const MatrixXd& Q, ModeSet& m) {
   const Index n = m.size();
   std::vector<Index> rigid;
   for (Index j = 0; j < n; ++j)
-    if (m.lambda(j) <= 1e-13 * m.lambda.maxCoeff()) rigid.push_back(j);
+    if (m.lambda(j) == 0) rigid.push_back(j);
   m.apart.assign(at(n), "");
   m.needed.assign(at(n), 0);
   if (rigid.empty()) return;
@@ -128,15 +131,12 @@ std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolut
   if (!form) return std::nullopt;
   const Ports p = ports(model, s);
   if (p.bq.size() && p.bq.cwiseAbs().maxCoeff() > 0) return std::nullopt;
-  const SymmetricModes e = eigh_graded(form->S).modes;
-  const MatrixXd Z = e.V.transpose() * form->Z * e.V;
-  const MatrixXd off = Z - MatrixXd(Z.diagonal().asDiagonal());
-  if (off.size() && off.cwiseAbs().maxCoeff() > 1e-12 * std::max(Z.cwiseAbs().maxCoeff(), 1e-300))
-    return std::nullopt;
-  s.Q = e.V;
+  const GradedModes e = eigh_graded(form->S);
+  if (!diagonal_in(e, form->Z)) return std::nullopt;
+  s.Q = e.modes.V;
   ModeSet& m = s.modes;
-  find_clusters(e.lambda, resolution, m);
-  m.lambda = e.lambda.cwiseAbs();
+  find_clusters(e, resolution, m);
+  m.lambda = e.modes.lambda.cwiseAbs();
   const Parts parts = find_parts(form->S, s.Q.cwiseAbs(), m);
   keep_to_parts(parts, s.Q);
   turn_clusters(p, m, s.Q);
@@ -146,7 +146,7 @@ std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolut
   const MatrixXd pq = s.Q.transpose() * p.cq, pv = m.omega.asDiagonal() * s.Q.transpose() * p.cv;
   m.c = (pq.array().square() + pv.array().square()).sqrt();
   balance_sides(parts, m);
-  find_mixing(e.lambda, m);
+  find_mixing(e, m);
   find_rigid(p, s.Q, m);
   return s;
 }

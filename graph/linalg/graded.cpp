@@ -1,37 +1,107 @@
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/graded.hpp>
+#include <vector>
 
 namespace titop {
+namespace {
 
-GradedModes eigh_graded(const Eigen::MatrixXd& S) {
-  const auto n = static_cast<int>(S.rows());
-  if (n == 0 || n > 400 || !S.allFinite()) return {eigh(S), false};
-  std::vector<int> order(static_cast<std::size_t>(n));
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kRigid = 1e-13;  ///< of a diagonal entry, of lambda_max: what is below is rounding
+
+/// L with S = L L', rows in their places, columns by falling pivots. `least` is the least pivot
+/// over its diagonal entry of S. Empty where that is only rounding: a rigid motion.
+MatrixXd pivoted_cholesky(const MatrixXd& S, double& least) {
+  const Eigen::LDLT<MatrixXd> ldl(S);
+  const VectorXd d = ldl.vectorD(), diagonal = ldl.transpositionsP() * VectorXd(S.diagonal());
+  least = ldl.info() == Eigen::Success ? (d.array() / diagonal.array()).minCoeff() : 0;
+  if (!(least > kRigid) || !(diagonal.minCoeff() > 0)) return {};
+  const MatrixXd L = ldl.matrixL();
+  return ldl.transpositionsP().transpose() * MatrixXd(L * d.cwiseSqrt().asDiagonal());
+}
+
+/// What is left of the orthogonality of two columns: nothing but rounding of their product (fine),
+/// an angle below rounding (good), or more. A small column beside a large one is orthogonal to it
+/// long before its share of it has digits.
+enum class Angle { fine, good, open };
+
+/// Turns two columns towards that; says where they were.
+Angle turn(MatrixXd& L, Index i, Index j) {
+  const double a = L.col(i).squaredNorm(), b = L.col(j).squaredNorm(), c = L.col(i).dot(L.col(j));
+  const double tolerance = std::sqrt(static_cast<double>(L.rows())) * kEps;
+  if (std::abs(c) <= tolerance * L.col(i).cwiseAbs().dot(L.col(j).cwiseAbs())) return Angle::fine;
+  const double z = (b - a) / (2 * c);
+  const double t = std::copysign(1.0, z) / (std::abs(z) + std::hypot(1.0, z));
+  const double cosine = 1 / std::hypot(1.0, t);
+  L.applyOnTheRight(i, j, Eigen::JacobiRotation<double>(cosine, cosine * t));
+  return std::abs(c) <= tolerance * std::sqrt(a) * std::sqrt(b) ? Angle::good : Angle::open;
+}
+
+/// L V = U diag(sigma), V made of rotations of two columns each. Leaves U diag(sigma) in L; false
+/// where that does not come to an end. From where all angles are good, at most four sweeps more.
+bool orthogonalize(MatrixXd& L) {
+  for (int sweep = 0, good = 0; sweep < 40 && good < 4; ++sweep) {
+    Angle worst = Angle::fine;
+    for (Index i = 0; i + 1 < L.cols(); ++i)
+      for (Index j = i + 1; j < L.cols(); ++j) worst = std::max(worst, turn(L, i, j));
+    if (worst == Angle::fine) return true;
+    good = worst == Angle::good ? good + 1 : 0;
+    if (good == 4) return true;
+  }
+  return false;
+}
+
+GradedModes all_alike(const MatrixXd& S) {
+  GradedModes result{eigh(S), false, std::numeric_limits<double>::infinity()};
+  VectorXd& lambda = result.modes.lambda;
+  const double largest = lambda.size() ? lambda.cwiseAbs().maxCoeff() : 0;
+  lambda = (lambda.array().abs() <= kRigid * largest).select(0, lambda);
+  return result;
+}
+
+}  // namespace
+
+GradedModes eigh_graded(const MatrixXd& S) {
+  const Index n = S.rows();
+  if (n == 0 || n > 400 || !S.allFinite()) return all_alike(S);
+  double least = 0;
+  MatrixXd L = pivoted_cholesky(S, least);
+  if (L.size() == 0 || !orthogonalize(L)) return all_alike(S);
+  const VectorXd lambda = L.colwise().squaredNorm();
+  std::vector<Index> order(static_cast<std::size_t>(n));
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return S(a, a) > S(b, b); });
-  const Eigen::LLT<Eigen::MatrixXd> cholesky(S(order, order));
-  const Eigen::MatrixXd L = cholesky.matrixL();
-  // A pivot that is only rounding of its own diagonal means a rigid motion.
-  for (int i = 0; i < n && cholesky.info() == Eigen::Success; ++i)
-    if (!(L(i, i) * L(i, i) >
-          1e-13 * S(order[static_cast<std::size_t>(i)], order[static_cast<std::size_t>(i)])))
-      return {eigh(S), false};
-  if (cholesky.info() != Eigen::Success) return {eigh(S), false};
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(L, Eigen::ComputeFullU);
-  GradedModes result;
-  result.graded = true;
-  result.modes.lambda = svd.singularValues().cwiseAbs2().reverse();
-  result.modes.V.resize(n, n);
-  for (int i = 0; i < n; ++i)
-    result.modes.V.row(order[static_cast<std::size_t>(i)]) = svd.matrixU().row(i).reverse();
-  for (int k = 0; k < n; ++k) {
-    Eigen::Index largest = 0;
-    result.modes.V.col(k).cwiseAbs().maxCoeff(&largest);
-    if (result.modes.V(largest, k) < 0) result.modes.V.col(k) *= -1;
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return lambda(a) < lambda(b); });
+  GradedModes result{
+      {lambda(order), L(Eigen::all, order)}, true, static_cast<double>(n) * kEps / least};
+  for (Index k = 0; k < n; ++k) {
+    auto v = result.modes.V.col(k);
+    v.normalize();
+    Index largest = 0;
+    v.cwiseAbs().maxCoeff(&largest);
+    if (v(largest) < 0) v *= -1;
   }
   return result;
+}
+
+std::optional<VectorXd> diagonal_in(const GradedModes& of, const MatrixXd& Z) {
+  const MatrixXd& V = of.modes.V;
+  const MatrixXd in = V.transpose() * Z * V;
+  const double size = in.size() ? in.cwiseAbs().maxCoeff() : 0;
+  const MatrixXd terms = V.cwiseAbs().transpose() * Z.cwiseAbs() * V.cwiseAbs();
+  for (Index j = 0; j < in.cols(); ++j)
+    for (Index i = 0; i < in.rows(); ++i)
+      if (i != j && !(std::abs(in(i, j)) <= (of.graded ? 1e-12 * terms(i, j) : 1e-13 * size)))
+        return std::nullopt;
+  return VectorXd(
+      (in.diagonal().array().abs() <= 1e-13 * terms.diagonal().array()).select(0, in.diagonal()));
 }
 
 }  // namespace titop

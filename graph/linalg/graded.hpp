@@ -1,19 +1,29 @@
 #pragma once
 
+#include <optional>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop {
 
 /// eigh for matrices graded as stiffness is, S = D G D with D diagonal over many decades and G well
 /// conditioned: EVERY eigenvalue comes out to about eps * cond(G) of itself and vectors as sharp,
-/// where eigh(S) gives all of them to eps * lambda_max only. Pivoted Cholesky S = L L' and the
-/// singular vectors of L by Jacobi rotations [Demmel, Veselic 1992, "Jacobi's method is more
-/// accurate than QR"]. Where S is not positive definite in double (rigid motions), or beyond 400
-/// rows (Jacobi costs about 10 n^3 per sweep), it is eigh(S); `graded` says which it was.
+/// where eigh(S) gives all of them to eps * lambda_max only. Pivoted Cholesky S = L L' and Jacobi
+/// rotations of the columns of L, until they are orthogonal [Demmel, Veselic 1992, "Jacobi's method
+/// is more accurate than QR"]. Where a pivot is below 1e-13 of its diagonal entry (rigid motions),
+/// or beyond 400 rows (a sweep costs 3 n^3, of some six), it is eigh(S), and what is within 1e-13
+/// lambda_max of 0 is 0 exactly. Throws as eigh.
 struct GradedModes {
   SymmetricModes modes;
   bool graded = false;
+  double relative = 0;  ///< eigenvalues are off by some such part of themselves: n eps over the
+                        ///< least pivot by its diagonal entry; infinite where not graded
 };
 GradedModes eigh_graded(const Eigen::MatrixXd& S);
+
+/// The diagonal of V'ZV (damping of each mode), or none where Z couples the modes: an entry beside
+/// the diagonal above 1e-12 of the terms that it is a sum of; of modes that are not graded, above
+/// 1e-13 of the largest entry. What is below 1e-13 of its own terms (a rigid motion's) is 0.
+/// O(n^3).
+std::optional<Eigen::VectorXd> diagonal_in(const GradedModes& of, const Eigen::MatrixXd& Z);
 
 }  // namespace titop

@@ -61,19 +61,16 @@ struct Modes {
 std::optional<Modes> proportional_modes(const MatrixXd& A) {
   const SecondOrder second = second_order(A);
   if (!second.found) return std::nullopt;
-  const SymmetricModes sym = eigh_graded(second.S).modes;
-  const MatrixXd Z = sym.V.transpose() * second.Z * sym.V;
-  const double size = Z.cwiseAbs().maxCoeff();
-  const MatrixXd off = Z - MatrixXd(Z.diagonal().asDiagonal());
-  if (size > 0 && off.cwiseAbs().maxCoeff() > 1e-13 * size) return std::nullopt;
+  const GradedModes all = eigh_graded(second.S);
+  const std::optional<Eigen::VectorXd> Z = diagonal_in(all, second.Z);
+  if (!Z) return std::nullopt;
+  const SymmetricModes& sym = all.modes;
   const Index n = A.rows(), count = sym.lambda.size();
-  const double largest = count > 0 ? sym.lambda.cwiseAbs().maxCoeff() : 0;
   Modes modes{MatrixXl::Zero(n, n), MatrixXl::Zero(n, n), MatrixXl::Zero(n, n)};
   for (Index k = 0; k < count; ++k) {
     modes.A(2 * k, 2 * k + 1) = 1;
-    // What is smaller is rounding of a rigid motion, as in `poles`.
-    if (std::abs(sym.lambda(k)) > 1e-13 * largest) modes.A(2 * k + 1, 2 * k) = -sym.lambda(k);
-    modes.A(2 * k + 1, 2 * k + 1) = -Z(k, k);
+    modes.A(2 * k + 1, 2 * k) = -sym.lambda(k);
+    modes.A(2 * k + 1, 2 * k + 1) = -(*Z)(k);
     for (Index i = 0; i < count; ++i) {
       const Index rows[] = {second.q[static_cast<std::size_t>(i)],
                             second.qdot[static_cast<std::size_t>(i)]};
