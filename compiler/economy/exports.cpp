@@ -117,7 +117,8 @@ MatrixXcd SecondOrderModel::transfer(Complex s) const {
   const MatrixXcd S = s * s * M.cast<Complex>() + s * D.cast<Complex>() + K.cast<Complex>();
   if (S.rows() == 0) return direct.cast<Complex>();
   const auto solved = linalg::solve(S, B.cast<Complex>());
-  if (!(solved.rcond > 0) || !solved.z.allFinite()) throw pole_at(s, "the reduced structure");
+  if (!(solved.rcond > 0) || !solved.z.allFinite() || (s == 0.0 && solved.moved > 0.1))
+    throw pole_at(s, "the reduced structure");
   return direct.cast<Complex>() + c * solved.z;
 }
 

@@ -39,15 +39,20 @@ struct Scaling {
 }  // namespace
 
 Solution solve(const MatrixXcd& E, const MatrixXcd& F) {
-  if (E.rows() == 0) return {MatrixXcd(0, F.cols()), 1};
+  if (E.rows() == 0) return {MatrixXcd(0, F.cols()), 1, 0};
   const Scaling scale(E.cwiseAbs());
   const MatrixXcd S = scale.rows.asDiagonal() * E * scale.cols.asDiagonal();
   const MatrixXcd R = scale.rows.asDiagonal() * F;
   const Eigen::PartialPivLU<MatrixXcd> lu(S);
-  if ((lu.matrixLU().diagonal().array() == 0.0).any()) return {MatrixXcd(), 0};
+  if ((lu.matrixLU().diagonal().array() == 0.0).any()) return {MatrixXcd(), 0, 0};
   MatrixXcd z = lu.solve(R);
-  z += lu.solve(R - S * z);
-  return {scale.cols.asDiagonal() * z, lu.rcond()};
+  const MatrixXcd more = lu.solve(R - S * z);
+  z += more;
+  double moved = 0;
+  for (Eigen::Index j = 0; j < z.cols(); ++j)
+    if (const double size = z.col(j).norm(); size > 0)
+      moved = std::max(moved, more.col(j).norm() / size);
+  return {scale.cols.asDiagonal() * z, lu.rcond(), moved};
 }
 
 Inverse inverse(const MatrixXd& M) {

@@ -11,6 +11,7 @@ namespace titop::linalg {
 struct Solution {
   Eigen::MatrixXcd z;
   double rcond = 0;  ///< reciprocal condition number of the equilibrated E (1-norm estimate)
+  double moved = 0;  ///< largest part of a column of z, equilibrated, that the refinement changed
 };
 
 /// Solves E z = F (n x n, n x m): rows and columns scaled by powers of two, LU with partial
