@@ -54,7 +54,8 @@ struct FullCertificate {
     int measured = 0;  ///< the others (at 0, multiple) rounding of A alone moves by 1e-8 or more
     double error = 0;
     std::complex<double> where;
-    int right = 0;  ///< poles right of the axis by more than 1e-9 |s| and ten times their error
+    int right = 0;  ///< poles right of the axis by more than 1e-9 |s| and ten times their error; of
+                    ///< those not measured, by more than ten times what rounding of A may move them
     std::complex<double> rightmost;  ///< largest Re(s) / |s|
   } poles;
 

@@ -239,7 +239,9 @@ std::string to_string(const FullCertificate::Poles& p) {
                                  p.measured, p.error);
   if (p.measured < p.count)
     text += fmt::format(", {} at 0 or ill-conditioned and not measured", p.count - p.measured);
-  return text + (p.right == 0 ? "; none right of the axis\n"
+  const char* none = p.measured < p.count ? "; none of those measured right of the axis\n"
+                                          : "; none right of the axis\n";
+  return text + (p.right == 0 ? none
                               : fmt::format("; {} right of the axis, the worst {}\n", p.right,
                                             at_s(p.rightmost)));
 }

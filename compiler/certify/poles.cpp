@@ -25,14 +25,7 @@ VectorXcd times(const System& system, const VectorXcd& v) {
   return result;
 }
 
-/// Below this a pole may be one at 0 that rounding has moved: integrators leave a row or a column
-/// of zeros, and the eigenvalues of a chain of them lie on a circle of the size of a root of
-/// rounding.
-double smeared_zero(const Eigen::MatrixXd& A, const VectorXcd& values) {
-  for (Index i = 0; i < A.rows(); ++i)
-    if (A.col(i).isZero(0) || A.row(i).isZero(0)) return 1e-5 * values.cwiseAbs().maxCoeff();
-  return 0;
-}
+double lean(std::complex<double> s) { return s.real() / std::abs(s); }
 
 }  // namespace
 
@@ -42,7 +35,6 @@ FullCertificate::Poles check_poles(const System& system, const StateSpace& model
   p.done = true;
   p.count = model.order();
   const linalg::Eigensystem e = linalg::eigensystem(model.A);
-  const double smeared = smeared_zero(model.A, e.values);
   const double norm = (e.scale.cwiseInverse().asDiagonal() * model.A * e.scale.asDiagonal()).norm();
   const VectorXd left = (e.W * e.scale.asDiagonal()).rowwise().norm(),
                  right = (e.scale.cwiseInverse().asDiagonal() * e.V).colwise().norm();
@@ -50,9 +42,15 @@ FullCertificate::Poles check_poles(const System& system, const StateSpace& model
     const std::complex<double> s = e.values(k);
     const double size = std::abs(s);
     const double moved = (e.W.row(k).cwiseAbs() * rounding * e.V.col(k).cwiseAbs())(0);
-    if (size <= smeared || !(kEps * norm * left(k) * right(k) + moved <= kMeasurable * size))
+    const double rounded = kEps * norm * left(k) * right(k) + moved;
+    if (rounded <= 0.1 * size) omegas.push_back(size);
+    if (!(rounded <= kMeasurable * size)) {
+      if (s.real() > 10 * rounded) {  // not measured, but where it is not in doubt
+        ++p.right;
+        if (p.rightmost == 0.0 || lean(s) > lean(p.rightmost)) p.rightmost = s;
+      }
       continue;
-    omegas.push_back(size);
+    }
     const int both = s.imag() != 0 ? 2 : 1;
     if (s.imag() < 0) continue;
     const VectorXcd off = times(system, e.V.col(k)) - s * e.V.col(k);
@@ -60,8 +58,7 @@ FullCertificate::Poles check_poles(const System& system, const StateSpace& model
     p.measured += both;
     if (error > p.error) p.error = error, p.where = s;
     if (s.real() > std::max(1e-9, 10 * error) * size) p.right += both;
-    if (p.rightmost == 0.0 || s.real() / size > p.rightmost.real() / std::abs(p.rightmost))
-      p.rightmost = s;
+    if (p.rightmost == 0.0 || lean(s) > lean(p.rightmost)) p.rightmost = s;
   }
   std::sort(omegas.begin(), omegas.end());
   return p;

@@ -256,3 +256,27 @@ TEST_CASE("100 random graphs: no fault, most orders decided") {
   CHECK(passive >= 5);
   CHECK(exact >= 15);
 }
+
+TEST_CASE("a slow or a double pole right of the axis is not passed over") {
+  const auto poles = [](const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
+                        const Eigen::MatrixXd& C) {
+    Diagram d{"unstable"};
+    auto K = d.add("K", Lti{.A = A, .B = B, .C = C});
+    K.in = d.input("u");
+    d.output("y") = K.out;
+    return certify(compile(d), {.points = 6});
+  };
+  // Beside an integrator, six decades below the fastest: simple, and exact.
+  const FullCertificate slow =
+      poles((Eigen::MatrixXd(3, 3) << 1e-3, 0, 0, 0, -1e3, 0, 1, 0, 0).finished(),
+            Eigen::Vector3d(1, 1, 0), Eigen::RowVector3d(0, 1, 1));
+  CHECK(slow.poles.right == 1);
+  CHECK(slow.poles.measured == 1);  // rounding moves it by 2e-7 of itself
+  CHECK(std::abs(slow.poles.rightmost - 1e-3) <= 1e-15);
+  CHECK(slow.grid.lowest <= 1e-3);
+  // A defective one is not measured; neither is it said to be none.
+  const FullCertificate twice = poles((Eigen::Matrix2d() << 1, 1, 0, 1).finished(),
+                                      Eigen::Vector2d(0, 1), Eigen::RowVector2d(1, 0));
+  CHECK(twice.poles.measured == 0);
+  CHECK(to_string(twice).find("none right of the axis") == std::string::npos);
+}

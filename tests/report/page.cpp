@@ -324,3 +324,42 @@ TEST_CASE("write_report writes it, and says where it cannot") {
       error_of([&] { write_report(system, folder.path / "none" / "r.html", kNoDiagrams); });
   CHECK(says(error, Code::bad_file, {"none/r.html"}));
 }
+
+TEST_CASE("a free chain of hinges is not called unstable where rounding moves its poles at 0") {
+  // Three discs on one axis, springs between them; a damper between the first two spreads the
+  // common motion over states that do not come apart.
+  for (int k = 1; k <= 12; ++k) {
+    CAPTURE(k);
+    Diagram d{"discs"};
+    auto u = d.input("u");
+    std::vector<Lti::Handle> disc;
+    const double inertia[] = {1, 4.9 * k, 0.7 + k / 7.0};
+    for (int i = 0; i < 3; ++i)
+      disc.push_back(
+          d.add("disc" + std::to_string(i), Lti{.A = (Eigen::Matrix2d() << 0, 1, 0, 0).finished(),
+                                                .B = Eigen::Vector2d(0, 1 / inertia[i]),
+                                                .C = Eigen::Matrix2d::Identity(),
+                                                .D = Eigen::MatrixXd::Zero(2, 1)}));
+    const Eigen::RowVector2d spring(49, 0), damped(49, 0.3 * k);
+    disc[0].in = damped * disc[1].out - damped * disc[0].out + u;
+    disc[1].in =
+        damped * disc[0].out - damped * disc[1].out + spring * disc[2].out - spring * disc[1].out;
+    disc[2].in = spring * disc[1].out - spring * disc[2].out;
+    d.output("angle") = Eigen::RowVector2d(1, 0) * disc[2].out;
+    const System s = compile(d);
+    const std::string page = report_html(s, {.diagrams = false});
+    CHECK(page.find("<b>Unstable</b>") == std::string::npos);
+    CHECK_THROWS_AS(s.static_gain(), Error);
+  }
+}
+
+TEST_CASE("a response that settles to the last digit is drawn") {
+  Diagram d{"hardly"};
+  auto K = d.add("K", Lti{.A = -Eigen::MatrixXd::Ones(1, 1),
+                          .B = Eigen::MatrixXd::Ones(1, 1),
+                          .C = Eigen::MatrixXd::Constant(1, 1, 3e-16),
+                          .D = Eigen::MatrixXd::Ones(1, 1)});
+  K.in = d.input("u");
+  d.output("y") = K.out;
+  CHECK(report_html(compile(d), {.diagrams = false}).find("</html>") != std::string::npos);
+}

@@ -153,3 +153,13 @@ TEST_CASE("units follow from what is driven and read") {
                      "N m",   "N m",  "N m",   "rad/s²", "rad/s²", "rad/s²", "rad",
                      "rad/s", "m",    "m/s",   "rad",    "",       ""});
 }
+
+TEST_CASE("a curve that varies in its last digits is a constant") {
+  const double one = std::nextafter(1.0, 2.0);
+  const std::string text = report::figure(one_curve({0, 1, 2}, {1, one, one}));
+  CHECK(text.find("NaN") == std::string::npos);
+  CHECK(between(text, "class=\"tick\"", "</text>").size() < 40);
+  const report::Ticks far = report::linear_ticks(1 - 1e-11, 1 + 1e-11);
+  CHECK(far.at.size() >= 3);
+  CHECK(far.at.size() <= 7);
+}

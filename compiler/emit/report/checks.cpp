@@ -106,10 +106,12 @@ void add_full(std::vector<Item>& items, const FullCertificate& f) {
                                        f.poles.measured, f.poles.count)),
          judged(f.poles.error, 1e-6)});
   if (f.poles.done)
-    items.push_back({"poles right of the imaginary axis", fmt::format("{}", f.poles.right),
-                     f.poles.right == 0 ? "None grows: at 0, on the axis, or left of it."
-                                        : fmt::format("The model is unstable; rightmost at {}.",
-                                                      place(f.poles.rightmost))});
+    items.push_back(
+        {"poles right of the imaginary axis", fmt::format("{}", f.poles.right),
+         f.poles.right == 0
+             ? fmt::format("None{} grows: at 0, on the axis, or left of it.",
+                           f.poles.measured < f.poles.count ? " that was measured" : "")
+             : fmt::format("The model is unstable; rightmost at {}.", place(f.poles.rightmost))});
   else
     add_not_done(items, "poles", f.poles.why_not);
   if (f.passivity.done)
@@ -181,13 +183,16 @@ std::string tiles(const Subject& s) {
          "</div>\n";
 }
 
-/// At 0, on the axis, right of it.
+/// At 0, on the axis, right of it. A double pole at 0 moves by the root of rounding.
 std::string stability(const Subject& s) {
-  int zero = 0, axis = 0, right = 0;
+  int zero = 0, near = 0, axis = 0, right = 0;
+  const double fastest = s.poles.empty() ? 0 : s.poles.back().omega;
   for (const Pole& p : s.poles) {
     const int n = p.pair ? 2 : 1;
     if (p.omega == 0)
       zero += n;
+    else if (p.omega <= 1e-7 * fastest && p.s.real() > 0)
+      near += n;
     else if (p.s.real() > 1e-9 * p.omega)
       right += n;
     else if (p.s.real() >= -1e-12 * p.omega)
@@ -196,9 +201,12 @@ std::string stability(const Subject& s) {
   if (right > 0)
     return verdict("bad", fmt::format("<b>Unstable</b>: {} right of the imaginary axis.",
                                       count(static_cast<std::size_t>(right), "pole")));
+  zero += near;
   std::string text = zero + axis == 0 ? "<b>Stable</b>: all poles lie left of the imaginary axis."
                                       : "<b>No pole</b> lies right of the imaginary axis";
   if (zero > 0) text += fmt::format("; {} at 0 (free motion, integrators)", zero);
+  if (near > 0)
+    text += fmt::format("; {} of them by rounding only, within 1e-7 of the fastest pole", near);
   if (axis > 0) text += fmt::format("; {} on the axis (undamped)", axis);
   return verdict("good", zero + axis == 0 ? text : text + ".");
 }

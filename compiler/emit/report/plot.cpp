@@ -52,7 +52,8 @@ class Scale {
  private:
   void linear_range() {
     if (!std::isfinite(low_) || !std::isfinite(high_)) low_ = 0, high_ = 1;  // nothing to show
-    if (!(high_ > low_)) {
+    // What varies in its last digits is a constant.
+    if (!(high_ - low_ > 1e-12 * std::max(std::abs(low_), std::abs(high_)))) {
       const double pad = low_ == 0 ? 1 : 0.5 * std::abs(low_);
       low_ -= pad, high_ += pad;
     }
@@ -237,8 +238,9 @@ Ticks linear_ticks(double low, double high, bool degrees) {
       for (const double k : {1.0, 2.0, 2.5, 5.0})
         if (number(t.step) > kMost) t.step = k * unit;
   }
-  for (double k = std::ceil(low / t.step - 1e-9); k <= high / t.step + 1e-9; ++k)
-    t.at.push_back(k * t.step);
+  const double first = std::ceil(low / t.step - 1e-9);
+  for (int k = 0, count = static_cast<int>(number(t.step)); k < count; ++k)
+    t.at.push_back((first + k) * t.step);
   return t;
 }
 
