@@ -234,7 +234,7 @@ Split assemble(const StateSpace& m, const Peeled& p, const Core& core) {
   s.poles.assign(p.sinks.size() + p.sources.size(), 0);
   for (Index i = 0; i < core.order(); ++i)
     if (const Complex at = core.pole(i); at.imag() >= 0)
-      s.poles.push_back(std::abs(at) > kNothing * core.norm() ? at : 0);
+      s.poles.push_back(i < core.kept && std::abs(at) <= kNothing * core.norm() ? 0 : at);
   return s;
 }
 

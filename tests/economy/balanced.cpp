@@ -272,3 +272,23 @@ TEST_CASE("a balanced model is dense and modal, and says why it is no second-ord
       if (name == "law" || name == "delay") share = std::max(share, part);
   CHECK(share > 0.2);
 }
+
+TEST_CASE("a slow lag beside a fast one counts where the band begins at 0") {
+  Diagram d{"drift"};
+  auto u = d.input("u");
+  auto slow = d.add("slow", lag(0.9, 1e-5)), fast = d.add("fast", lag(1, 1e6));
+  slow.in = u, fast.in = u;
+  d.output("y") = slow.out + fast.out;
+  for (const BoundKind kind : {BoundKind::estimate, BoundKind::theorem})
+    for (const double accuracy : {2e-2, 0.3}) {
+      CAPTURE(accuracy);
+      const ReducedSystem r =
+          compile(d, {.band_hz = {0, 100}, .accuracy = accuracy, .bound = kind});
+      const auto exact = [](Complex s) { return 0.9e-5 / (s + 1e-5) + 1e6 / (s + 1e6); };
+      double worst = 0;
+      for (double w = 1e-9; w <= 628; w *= 1.3)
+        worst = std::max(worst, std::abs(r.transfer({0, w})(0, 0) - exact({0, w})));
+      CHECK(worst <= r.bound().worst * r.bound().peak(0, 0));
+      CHECK(r.bound().worst <= accuracy);
+    }
+}
