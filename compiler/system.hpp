@@ -183,7 +183,8 @@ class System {
   /// Seconds per pass, in their order. Not part of log(), which is the same on every machine.
   const std::vector<std::pair<std::string, double>>& seconds() const&;
   std::vector<std::pair<std::string, double>> seconds() const&& { return seconds(); }
-  /// The graph after the passes (for diagrams: `to_dot(system.stage())`).
+  /// The graph after the passes (for diagrams: `to_dot(system.stage())`). Its values and
+  /// coefficients are those of the last compile: an `update` on the same plan leaves them.
   const Stage& stage() const&;
   Stage stage() const&& { return stage(); }
 

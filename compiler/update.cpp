@@ -270,9 +270,9 @@ System System::update(const ParameterList& list) const {
   };
   constexpr const char* kOtherTerms = "closed chains or the equations' terms change";
   constexpr const char* kNoDigit = "a pivot has no digit left";
+  remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
   if (k.before_reduce || moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))
     return again(kOtherTerms);
-  remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
   if (!remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers))
     return again(kOtherTerms);
   refactor(*data_, changed, *d);

@@ -100,6 +100,7 @@ Stage lower(Stage stage) {
   for (int o = 0; o < static_cast<int>(g.outputs.size()); ++o)
     g.outputs[at(o)].terms = out.terms({Origin::Of::output, o}, g.outputs[at(o)].where);
   if (!l.mistakes.empty()) throw Error(std::move(l.mistakes));
+  if (!l.missing.empty()) throw std::logic_error("a motion without an Integrator");
   g.equations = std::move(out.equations);
   stage.origins = std::move(out.origins);
   stage.graph = std::move(g);
@@ -119,7 +120,7 @@ bool lower_again(const Stage& stage, const std::vector<int>& origins, ParameterV
     terms.clear();
     for (Summand& s : summed(l.amount(stage.origins[at(origin)])))
       terms.push_back({s.signal, std::move(s.c)});
-    return take(origin, terms);
+    return l.missing.empty() && take(origin, terms);
   });
 }
 

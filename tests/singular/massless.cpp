@@ -253,6 +253,10 @@ TEST_CASE("update from a mass to none and back: the states that can stay keep th
   CHECK(light.order() == 2);
   CHECK(error(light, 0, 30) <= 1e-13);
   CHECK(light.log().find("other states depend on the rest than before") != std::string::npos);
+  CHECK(says(error_of([&] {
+               light.update({{"m0", -1.0}});
+             }),
+             Code::bad_inertia, {"z1 with the new values"}));
   // 60 is stiffer than 50: by itself the other spring would follow. The states stay.
   const System stiffer = light.update({{"k", 60.0}});
   CHECK(stiffer.states() == light.states());

@@ -4,6 +4,8 @@
 #include <titop/compiler/passes/lower/rigid_motions.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/nodes/lti.hpp>
+#include <unordered_map>
+#include <utility>
 
 namespace titop::passes {
 namespace {
@@ -19,6 +21,13 @@ std::string name_of(const Graph& g, const RigidMotion& m) {
                                                                   : "";
   return channel_name(g, g.signals[at(m.signal)].channel) + "." + half +
          (m.twice ? "position" : "rate");
+}
+
+/// This name, longer where a node has it.
+std::string free_name(const Graph& g, std::string name) {
+  while (std::any_of(g.nodes.begin(), g.nodes.end(), [&](const Node& n) { return n.name == name; }))
+    name += '_';
+  return name;
 }
 
 /// Integrators of the acceleration, once or twice, as a user would write them.
@@ -46,7 +55,8 @@ void add_integrators(Graph& g, const std::set<RigidMotion>& missing,
       const int size = g.signals[at(m.signal)].size;
       const bool half = m.half != RigidMotion::Half::whole;
       const Node& owner = g.nodes[at(g.signals[at(m.signal)].node)];
-      m.node = add_node(g, name_of(g, m), as_block(Integrator{half ? 3 : size}), owner.where);
+      m.node = add_node(g, free_name(g, name_of(g, m)), as_block(Integrator{half ? 3 : size}),
+                        owner.where);
       Term from{.signal = m.signal};
       if (twice) {
         from.signal = g.nodes[at(find(m, false))].first_signal + 1;
@@ -58,6 +68,25 @@ void add_integrators(Graph& g, const std::set<RigidMotion>& missing,
       g.equations.push_back({.target = g.nodes[at(m.node)].first_signal, .terms = {from}});
       motions.push_back(m);
     }
+}
+
+/// The order of by_name again; what the stage knows by number follows.
+void sort_by_name(Graph& g, Stage& stage) {
+  const Graph old = std::exchange(g, by_name(g));
+  std::unordered_map<std::string_view, int> now;  // names of nodes are their own
+  for (int n = 0; n < static_cast<int>(g.nodes.size()); ++n) now[g.nodes[at(n)].name] = n;
+  const auto move = [&](int& node) { node = now.at(old.nodes[at(node)].name); };
+  for (RigidMotion& m : stage.motions) {
+    move(m.node);
+    int owner = old.signals[at(m.signal)].node;
+    const int offset = m.signal - old.nodes[at(owner)].first_signal;
+    move(owner);
+    m.signal = g.nodes[at(owner)].first_signal + offset;
+  }
+  for (Dependent& d : stage.before) {
+    move(d.node);
+    for (Dependent::Share& s : d.of) move(s.node);
+  }
 }
 
 bool asks_for_motion(const std::vector<Term>& terms) {
@@ -90,20 +119,10 @@ void add_rigid_motions(Stage& stage, Graph& g) {
   }
   if (missing.empty()) return;
   add_integrators(g, missing, stage.motions);
-  // In the order of by_name again; the motions follow by theirs.
-  std::vector<std::pair<std::string, std::string>> names;
-  for (const RigidMotion& m : stage.motions)
-    names.emplace_back(titop::name_of(g, m.signal), g.nodes[at(m.node)].name);
-  g = by_name(std::move(g));
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    RigidMotion& m = stage.motions[i];
-    for (int n = 0; n < static_cast<int>(g.nodes.size()); ++n)
-      if (g.nodes[at(n)].name == names[i].second) m.node = n;
-    for (const Channel& c : g.channels)
-      if (titop::name_of(g, c.accel) == names[i].first) m.signal = c.accel;
-  }
+  sort_by_name(g, stage);
   std::string list;
-  for (std::size_t i = 0; i < names.size(); ++i) list += (i ? ", " : "") + names[i].second;
+  for (const RigidMotion& m : stage.motions)
+    list += (list.empty() ? "" : ", ") + g.nodes[at(m.node)].name;
   stage.notes.push_back(
       {Note::Kind::info, "lower", "motions that no other state holds are integrated: " + list});
 }
