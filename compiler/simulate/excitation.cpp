@@ -10,6 +10,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
+namespace {
+constexpr double kRounding = 1e-15;  ///< of a time that is a number of steps
+}
+
 Excitation Excitation::none() {
   return Excitation([](double, double) { return Ends{}; });
 }
@@ -32,7 +36,7 @@ Excitation Excitation::held(MatrixXd samples, double period) {
                 "give a positive period");
   return Excitation([samples = std::move(samples), period](double begin, double end) {
     // From inside the step: a step that crosses a sample is refused.
-    const double from = begin / period, to = end / period, slack = 1e-9 * std::max(1.0, to);
+    const double from = begin / period, to = end / period, slack = 1e-9 + kRounding * to;
     const auto first = static_cast<Index>(std::floor(from + slack));
     if (to - static_cast<double>(first) > 1 + slack)
       throw Error(
@@ -86,7 +90,7 @@ Excitation Excitation::recorded(std::vector<double> times, MatrixXd samples) {
                   "give finite times that ascend");
   return Excitation(
       [times = std::move(times), samples = std::move(samples)](double begin, double end) {
-        const double slack = 1e-9 * (end - begin);
+        const double slack = 1e-9 * (end - begin) + kRounding * std::abs(end);
         refuse_jumps(times, begin, end, slack);
         return Ends{at_time(times, samples, begin, slack, true),
                     at_time(times, samples, end, slack, false)};

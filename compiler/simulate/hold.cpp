@@ -94,6 +94,10 @@ void check_step(double h) {
 Hold hold(const MatrixXd& A, const MatrixXd& B, double h) {
   check_step(h);
   const Index n = A.rows();
+  if (A.cols() != n || B.rows() != n)
+    throw Error(Code::size,
+                fmt::format("hold: A is {} x {}, B {} x {}", n, A.cols(), B.rows(), B.cols()),
+                "A is square, and B has as many rows");
   const MatrixXd all = n <= kMostInLongDouble
                            ? MatrixXd(increments<long double>(A, B, h).cast<double>())
                            : increments<double>(A, B, h);

@@ -14,8 +14,8 @@ struct Hold {
 
 /// Scaling and squaring of exp(A h) - I on the balanced matrix, in long double up to 128 states and
 /// in double beyond; rounded once. Entries are off by some 2^k ulp of that precision beside 1, 2^k
-/// about the largest |pole| h. Throws bad_value unless h is positive and finite. O((n + nu)^3
-/// log(|A| h)).
+/// about the largest |pole| h. Throws bad_value unless h is positive and finite, size unless A is n
+/// x n and B n x nu. O((n + nu)^3 log(|A| h)).
 Hold hold(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double h);
 
 /// Outputs at t = 0, h, 2 h, ... from x(0) = 0 for inputs held over each step (columns of `inputs`,

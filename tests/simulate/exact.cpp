@@ -75,6 +75,30 @@ TEST_CASE("exact: ramps, samples and records are taken as they are") {
           jump) <= 1e-13);
 }
 
+TEST_CASE("exact: a record may jump where a step ends, however many steps there have been") {
+  Eigen::MatrixXd record(1, 4);
+  record << 1, 1, 3, 3;
+  // Products of a step and a number of steps miss such a time by their rounding.
+  for (const double h : {1e-4, 0.3, 7e-7})
+    for (const int steps : {3, 15001000, 99999997, 900000001}) {
+      const double jump = std::nextafter(steps * h, 0.0);
+      for (const double time : {jump, steps * h, std::nextafter(steps * h, HUGE_VAL)}) {
+        const Excitation u = Excitation::recorded({0, time, time, 2e9}, record);
+        CHECK(u((steps - 1) * h, steps * h).second(0) == 1);
+        CHECK(u(steps * h, (steps + 1) * h).first(0) == 3);
+      }
+    }
+}
+
+TEST_CASE("exact: a sample belongs to its own period, however many there have been") {
+  Eigen::MatrixXd samples = Eigen::MatrixXd::Zero(1, 2);
+  samples << 1, 3;
+  const Excitation u = Excitation::held(samples, 1e8);
+  CHECK(u(0, 1e8).second(0) == 1);
+  CHECK(u(1e8, 1.5e8).first(0) == 3);
+  CHECK_THROWS_AS(Excitation::held(samples, 1)(1e9 - 0.25, 1e9 + 0.25), Error);
+}
+
 TEST_CASE("exact: six masses between two walls move as their modes; the tied stretch follows") {
   const std::vector<double> m{1.3, 0.7, 1.9, 0.5, 1.1, 0.9}, k{61, 97, 55, 83, 71, 66};
   Diagram d{"between walls"};
