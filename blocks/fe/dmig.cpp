@@ -79,8 +79,12 @@ int significant_digits(std::string_view text) {
   return count;
 }
 
-/// Decimal digits that the entries carry: as printed, but no more than their precision has.
-int digits_of(const Found& found) { return std::min(found.type == 1 ? 7 : 15, found.digits); }
+/// Decimal digits that the entries carry: as printed, but no more than their precision has. No
+/// program prints less than five: shorter numbers ("2.", "1.+6") are typed, and mean what they say.
+int digits_of(const Found& found) {
+  const int most = found.type == 1 ? 7 : 15;
+  return found.digits < 5 ? most : std::min(most, found.digits);
+}
 
 /// All cards called DMIG, with their continuations.
 std::vector<Card> cards_in(const TextFile& file, FileMistakes& mistakes) {

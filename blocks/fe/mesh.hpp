@@ -94,10 +94,11 @@ struct ModeOptions {
 /// cut like other high modes, and residual vectors hold their static part.
 ///
 /// Throws what `check` and `interface_rows` throw; `duplicate_name` for a child named twice;
-/// `bad_modes` where K clamped at the parent is not definite (a mechanism: names a degree of
-/// freedom), M not semidefinite, or all modes are asked and a child has a massless degree of
-/// freedom; `bad_value` for more modes than there are; `size` for a wrong number of damping ratios.
-/// Cost about 20 n^3.
+/// `bad_modes` where K resists rigid motion by more than 1e-6 of its terms (or 100 units of the
+/// last of its digits; `rigid_stiffness`): data of a held structure, or positions in another unit;
+/// where K clamped at the parent is not definite (a mechanism: names a degree of freedom), M not
+/// semidefinite, or all modes are asked and a child has a massless degree of freedom; `bad_value`
+/// for more modes than there are; `size` for a wrong number of damping ratios. Cost about 20 n^3.
 ModalData modal_data(const Mesh& mesh, const std::string& parent,
                      const std::vector<std::string>& children, const ModeOptions& options = {});
 

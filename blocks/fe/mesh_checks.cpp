@@ -56,13 +56,9 @@ std::string print(const char* source, const MassProperties& m) {
 
 }  // namespace
 
-MeshReport mesh_report(const Mesh& mesh) {
-  check(mesh);
-  MeshReport report;
+RigidStiffness rigid_stiffness(const Mesh& mesh) {
   const MatrixXd R = rigid_motions(mesh, Vector3d::Zero());
-  report.mass = mass_properties(R.transpose() * (mesh.M * R));
-  report.geometry = from_geometry(mesh);
-  if (mesh.K.size() == 0) return report;
+  RigidStiffness result;
   const MatrixXd KR = (mesh.K * R).cwiseAbs();
   const double largest = mesh.K.cwiseAbs().maxCoeff();
   // An entry that symmetry makes zero is as exact as the largest one K(i, j) could be,
@@ -70,11 +66,25 @@ MeshReport mesh_report(const Mesh& mesh) {
   const VectorXd root = mesh.K.diagonal().cwiseAbs().cwiseSqrt();
   const MatrixXd pattern = (mesh.K.array() != 0).cast<double>();
   const MatrixXd terms = root.asDiagonal() * pattern * root.asDiagonal() * R.cwiseAbs();
-  if (largest > 0) report.KR = KR.maxCoeff() / largest;
+  if (largest > 0) result.of_largest = KR.maxCoeff() / largest;
   Index row = 0, column = 0;
-  report.KR_terms =
+  result.of_terms =
       (terms.array() > 0).select(KR.cwiseQuotient(terms), 0.0).maxCoeff(&row, &column);
-  report.KR_worst = dof_name(mesh, row);
+  result.worst = dof_name(mesh, row);
+  return result;
+}
+
+MeshReport mesh_report(const Mesh& mesh) {
+  check(mesh);
+  MeshReport report;
+  const MatrixXd R = rigid_motions(mesh, Vector3d::Zero());
+  report.mass = mass_properties(R.transpose() * (mesh.M * R));
+  report.geometry = from_geometry(mesh);
+  if (mesh.K.size() == 0) return report;
+  RigidStiffness held = rigid_stiffness(mesh);
+  report.KR = held.of_largest;
+  report.KR_terms = held.of_terms;
+  report.KR_worst = std::move(held.worst);
   return report;
 }
 

@@ -23,6 +23,14 @@ struct MeshReport {
   std::string KR_worst;  ///< degree of freedom of that entry
 };
 
+/// How far K resists rigid motion, which it must not: KR, KR_terms and KR_worst of the report.
+struct RigidStiffness {
+  double of_largest = 0, of_terms = 0;
+  std::string worst;
+};
+/// K must not be empty. Cost 12 n^2.
+RigidStiffness rigid_stiffness(const Mesh& mesh);
+
 /// Checks the mesh (throws what `check` throws) and weighs it. Cost 12 n^2.
 MeshReport mesh_report(const Mesh& mesh);
 

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 #include <titop/blocks/fe/mesh.hpp>
+#include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
@@ -17,6 +18,21 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
+
+/// What K resists a rigid motion by beside its digits is no structure's own.
+void require_free(const Mesh& mesh) {
+  const RigidStiffness held = rigid_stiffness(mesh);
+  const double noise = std::max(1e-6, 100 * std::pow(10, -mesh.digits));
+  if (held.of_terms <= noise) return;
+  throw Error(
+      Code::bad_modes,
+      fmt::format("the stiffness of mesh {} resists rigid motion: at {}, {:.1e} of its terms",
+                  mesh.name, held.worst, held.of_terms),
+      fmt::format("supports (*BOUNDARY, SPC, springs to ground) are in the data: take them out, "
+                  "the scene holds the body; or positions have another unit than the "
+                  "matrices, or a grid its own frame. Rounding of {} digits makes {:.0e}",
+                  mesh.digits, noise));
+}
 
 /// A mesh clamped at its parent. f: all rows but the parent's.
 struct Clamped {
@@ -261,6 +277,7 @@ ModalData modal_data(const Mesh& mesh, const std::string& parent,
   require_distinct(mesh, options.residual);
   const Clamped c = clamp(mesh, parent);
   SymmetricModes modes = clamped_modes(c, children, options.kept);
+  require_free(mesh);  // after what would be said of a mechanism
   const Index kept = modes.lambda.size();
   if (!options.residual.empty()) add_residual(c, parent, options, modes);
 

@@ -149,6 +149,10 @@ TEST_CASE("digits: of the shorter matrix, without leading zeros, at most 7 in si
   CHECK(read(replaced(two, "K       0       6       2", "K       0       6       1")).digits == 7);
 }
 
+TEST_CASE("digits: numbers typed by hand are as exact as their type, not rounded to one digit") {
+  CHECK(read(kSmall).digits == 7);  // "4.0", "2.0"
+}
+
 TEST_CASE("broken DMIG files are refused with line and field") {
   refused(replaced(kSmall, "-1.5 ", "-1,5 "), "m.pch:4: found '-1,5', expected a finite number");
   refused(replaced(kSmall, "+       9       3", "+       9       7"),

@@ -8,6 +8,7 @@
 #include <titop/titop.hpp>
 
 #include "dynamics.hpp"
+#include "support/mistakes.hpp"
 
 using namespace titop;
 using Eigen::Index;
@@ -82,6 +83,37 @@ TEST_CASE("superelement: mass about the origin, and no stiffness against rigid m
   auto unturned = grids();
   unturned[1].frame = {};
   CHECK(fe::mesh_report(fe::to_mesh(matrices(), unturned)).KR_terms > 1e-3);
+}
+
+TEST_CASE("data of a held structure, in two units, or without a grid's own frame are refused") {
+  const auto refused = [](const fe::Mesh& mesh) {
+    return titop_test::error_of([&] { fe::modal_data(mesh, "G3", {"G11"}); });
+  };
+  const fe::Mesh good = fe::to_mesh(matrices(), grids());
+  CHECK(refused(good).mistakes().empty());
+  fe::Mesh sprung = good;  // a spring to ground
+  sprung.K(7, 7) *= 1 + 1e-4;
+  CHECK(titop_test::says(refused(sprung), Code::bad_modes,
+                         {"the stiffness of mesh outboard resists rigid motion: at G11",
+                          "*BOUNDARY", "the scene holds the body"}));
+  fe::Mesh metres = good;
+  for (fe::Point& p : metres.points) p.position /= 1000;
+  CHECK(titop_test::says(refused(metres), Code::bad_modes, {"resists rigid motion"}));
+  auto unturned = grids();
+  unturned[1].frame = {};
+  CHECK(titop_test::says(refused(fe::to_mesh(matrices(), unturned)), Code::bad_modes,
+                         {"resists rigid motion", "a grid its own frame"}));
+  // Clamped: what is left of the rows when one grid is held.
+  std::vector<Index> rest;
+  fe::Mesh clamped = good;
+  clamped.dofs.clear();
+  for (Index i = 0; i < good.M.rows(); ++i)
+    if (good.dofs[static_cast<std::size_t>(i)].point != good.dofs[18].point) {
+      rest.push_back(i);
+      clamped.dofs.push_back(good.dofs[static_cast<std::size_t>(i)]);
+    }
+  clamped.M = good.M(rest, rest), clamped.K = good.K(rest, rest);
+  CHECK(titop_test::says(refused(clamped), Code::bad_modes, {"resists rigid motion"}));
 }
 
 TEST_CASE("superelement held at its four grids has its fixed-interface modes") {
