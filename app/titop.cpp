@@ -10,6 +10,8 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <string_view>
+#include <system_error>
 #include <titop/blocks/scene/scene.hpp>
 #include <titop/titop.hpp>
 #include <vector>
@@ -57,7 +59,8 @@ struct Arguments {
   std::vector<double> band;  ///< LOW HIGH
   double until = 0;
   double sample_time = 0;
-  std::vector<double> omega;  ///< LOW HIGH COUNT
+  std::vector<double> omega;       ///< LOW HIGH COUNT
+  std::vector<std::string> given;  ///< options, as typed
   int minimize_up_to = Options{}.minimize_up_to;
 };
 
@@ -74,9 +77,10 @@ double number(const std::string& text) {
   return value;
 }
 
-int fold(double count) {
-  if (!(count >= 0) || count > 1e6) throw Misuse{"--fold needs a COUNT from 0 to 1000000"};
-  return static_cast<int>(count);
+int count(const char* option, double number, int most) {
+  if (!(number >= 0) || number > most)
+    throw Misuse{fmt::format("{} needs a number from 0 to {}", option, most)};
+  return static_cast<int>(number);
 }
 
 Arguments parse(const std::vector<std::string>& all) {
@@ -87,12 +91,13 @@ Arguments parse(const std::vector<std::string>& all) {
       return all[i];
     };
     const auto next = [&] { return number(word()); };
+    if (all[i] == "-o" || all[i].starts_with("--")) a.given.push_back(all[i]);
     if (all[i] == "--compiled") {
       a.compiled = true;
     } else if (all[i] == "--no-diagrams") {
       a.diagrams = false;
     } else if (all[i] == "--fold") {
-      a.fold = fold(next());
+      a.fold = count("--fold", next(), 1000000);
     } else if (all[i] == "-o") {
       a.to = word();
     } else if (all[i] == "--band") {
@@ -103,10 +108,10 @@ Arguments parse(const std::vector<std::string>& all) {
     } else if (all[i] == "--sample-time") {
       a.sample_time = next();
     } else if (all[i] == "--minimize-up-to") {
-      a.minimize_up_to = static_cast<int>(next());
+      a.minimize_up_to = count("--minimize-up-to", next(), 1000000);
     } else if (all[i] == "--omega") {
       for (int k = 0; k < 3; ++k) a.omega.push_back(next());
-    } else if (all[i].rfind("--", 0) == 0) {
+    } else if (all[i].starts_with("--")) {
       throw Misuse{fmt::format("there is no option {}", all[i])};
     } else {
       a.words.push_back(all[i]);
@@ -157,7 +162,8 @@ void report(const Arguments& a) {
   ReportOptions options{.diagrams = a.diagrams, .until = a.until};
   if (a.fold >= 0) options.fold = a.fold;
   if (!a.band.empty()) options.band_hz = {a.band[0], a.band[1]};
-  const fs::path file = a.to.empty() ? fs::path(a.words[1]).stem() += ".html" : fs::path(a.to);
+  const fs::path file =
+      a.to.empty() ? fs::path(a.words[1]).replace_extension(".html") : fs::path(a.to);
   write_report(compiled(a), file, options);
 }
 
@@ -194,16 +200,43 @@ struct Command {
   const char* name;
   std::size_t words;             ///< with its own
   int (*run)(const Arguments&);  ///< exit code
+  std::string_view options;      ///< that it takes, each between blanks
 };
+constexpr std::string_view kModel = " --minimize-up-to ",
+                           kHeader = " --minimize-up-to --sample-time ",
+                           kResponse = " --minimize-up-to --omega ";
+
+/// An option that does nothing here is meant for something; a scene is not written over.
+void check_words(const Command& command, const Arguments& a) {
+  if (a.words.size() != command.words)
+    throw Misuse{fmt::format("{} takes {} files", command.name, command.words - 1)};
+  std::string_view options = command.options;
+  const std::string kind = a.words.size() > 2 ? fs::path(a.words[2]).extension().string() : "";
+  if (std::string_view(command.name) == "export")
+    options = kind == ".hpp" ? kHeader : kind == ".csv" ? kResponse : kModel;
+  for (const std::string& option : a.given)
+    if (options.find(" " + option + " ") == std::string_view::npos)
+      throw Misuse{fmt::format("{}{} does nothing with {}", command.name,
+                               kind.empty() ? "" : " to a file " + kind, option)};
+  std::vector<std::string> written(a.words.begin() + 2, a.words.end());
+  if (!a.to.empty()) written.push_back(a.to);
+  for (const std::string& to : written)
+    if (std::error_code none; fs::equivalent(to, a.words[1], none))
+      throw Misuse{fmt::format("{} is the scene itself", to)};
+}
 
 template <void (*F)(const Arguments&)>
 int done(const Arguments& a) {
   F(a);
   return 0;
 }
-constexpr Command kCommands[] = {{"check", 2, done<check>},     {"compile", 2, done<show>},
-                                 {"certify", 2, certify_scene}, {"draw", 3, done<draw>},
-                                 {"report", 2, done<report>},   {"export", 3, done<export_model>}};
+constexpr Command kCommands[] = {
+    {"check", 2, done<check>, kModel},
+    {"compile", 2, done<show>, kModel},
+    {"certify", 2, certify_scene, " --minimize-up-to -o "},
+    {"draw", 3, done<draw>, " --compiled --fold --minimize-up-to "},
+    {"report", 2, done<report>, " --fold -o --band --until --no-diagrams --minimize-up-to "},
+    {"export", 3, done<export_model>, kModel}};
 
 bool asks_for_help(const std::vector<std::string>& all) {
   const auto typed = [&](const char* word) {
@@ -227,8 +260,7 @@ int run(const std::vector<std::string>& all) {
   if (a.words.empty()) throw Misuse{"what is to be done?"};
   for (const Command& command : kCommands) {
     if (a.words[0] != command.name) continue;
-    if (a.words.size() != command.words)
-      throw Misuse{fmt::format("{} takes {} files", command.name, command.words - 1)};
+    check_words(command, a);
     return command.run(a);
   }
   throw Misuse{fmt::format("there is no command {}", a.words[0])};

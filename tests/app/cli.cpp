@@ -108,6 +108,10 @@ TEST_CASE("report writes a page beside, or where it is told to") {
   r = shell.titop("report masses.json --no-diagrams --band 10 1");
   CHECK(r.code == 1);
   CHECK(has(r.err, "error[bad-value]"));
+  CHECK(shell.folder.run("mkdir there && mv masses.json there") == 0);
+  CHECK(shell.titop("report there/masses.json --no-diagrams").code == 0);
+  CHECK(has(shell.folder.read("there/masses.html"), "<title>five masses</title>"));
+  CHECK(shell.folder.run("mv there/masses.json .") == 0);
   if (std::system("dot -V >/dev/null 2>&1") != 0) return;
   CHECK(shell.titop("report masses.json --fold 3").code == 0);
   CHECK(has(shell.folder.read("masses.html"), "▤"));
@@ -171,17 +175,40 @@ TEST_CASE("who asks for help gets the usage on stdout") {
 
 TEST_CASE("what is not understood: exit code 2 and the usage on stderr") {
   const Shell shell;
-  for (const char* words :
-       {"", "fly masses.json", "check", "check masses.json more", "check --fast masses.json",
-        "export masses.json m.txt", "export masses.json g.csv",
-        "export masses.json g.csv --omega 1 x 3", "export masses.json g.csv --omega 3 1 3",
-        "export masses.json m.hpp --sample-time", "report", "report masses.json -o",
-        "report masses.json --band 1", "report masses.json --band 1 2 --band 1 2",
-        "draw --fold -1 masses.json a.dot", "certify", "certify masses.json c.json"}) {
+  for (const char* words : {"",
+                            "fly masses.json",
+                            "check",
+                            "check masses.json more",
+                            "check --fast masses.json",
+                            "export masses.json m.txt",
+                            "export masses.json g.csv",
+                            "export masses.json g.csv --omega 1 x 3",
+                            "export masses.json g.csv --omega 3 1 3",
+                            "export masses.json m.hpp --sample-time",
+                            "report",
+                            "report masses.json -o",
+                            "report masses.json --band 1",
+                            "report masses.json --band 1 2 --band 1 2",
+                            "draw --fold -1 masses.json a.dot",
+                            "certify",
+                            "certify masses.json c.json",
+                            "export masses.json m.m --sample-time 0.01",
+                            "export masses.json m.hpp --omega 1 10 3",
+                            "compile masses.json -o log.txt",
+                            "check masses.json --omega 1 10 3",
+                            "draw masses.json a.dot --band 1 2",
+                            "check masses.json --minimize-up-to 1e10",
+                            "export masses.json masses.json",
+                            "draw masses.json ./masses.json",
+                            "certify masses.json -o masses.json",
+                            "report masses.json -o masses.json"}) {
     INFO(words);
     const Run r = shell.titop(words);
     CHECK(r.code == 2);
     CHECK(has(r.err, "usage:"));
     CHECK(r.out.empty());
   }
+  CHECK(has(shell.titop("export masses.json m.py --sample-time 0.01").err,
+            "export to a file .py does nothing with --sample-time"));
+  CHECK(shell.titop("check masses.json").code == 0);  // no scene is written over
 }
