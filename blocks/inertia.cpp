@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <titop/blocks/inertia.hpp>
+#include <titop/graph/error.hpp>
 
 namespace titop {
 namespace {
@@ -17,6 +20,12 @@ Matrix3d matrix_of(const Entries& entries, Number number) {
 }
 
 }  // namespace
+
+void Inertia::check_size(Eigen::Index rows, Eigen::Index cols) {
+  if (rows != 3 || cols != 3)
+    throw Error(Code::size, fmt::format("an inertia of {} x {}", rows, cols),
+                "give a 3 x 3 matrix, or {xx, yy, zz, xy, xz, yz}");
+}
 
 Inertia::Inertia(Value xx, Value yy, Value zz, Value xy, Value xz, Value yz) {
   const Entries entries{xx, yy, zz, xy, xz, yz};

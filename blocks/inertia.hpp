@@ -20,8 +20,12 @@ namespace titop {
 /// it has parameters.
 class Inertia {
  public:
+  /// Throws size for a matrix that is not 3 x 3.
   template <class M>
-  Inertia(const Eigen::EigenBase<M>& matrix) : matrix_(matrix.derived()) {}
+  Inertia(const Eigen::EigenBase<M>& matrix) {
+    check_size(matrix.rows(), matrix.cols());
+    matrix_ = matrix.derived();
+  }
   Inertia(Value xx, Value yy, Value zz, Value xy = 0, Value xz = 0, Value yz = 0);
 
   Matrix3d at(ParameterValues values) const;
@@ -31,6 +35,8 @@ class Inertia {
   std::vector<Value> values() const;
 
  private:
+  static void check_size(Eigen::Index rows, Eigen::Index cols);
+
   Matrix3d matrix_;
   std::shared_ptr<const std::array<Value, 6>> entries_;  ///< only with parameters
 };

@@ -38,7 +38,7 @@ int Diagram::add_block(std::string name, const std::function<BlockPtr()>& make,
     throw Error(std::move(mistakes));
   }
   for (const Value& v : block->values())
-    if (v.is_parameter() && v.owner() != graph_.get())
+    if (v.is_parameter() && !detail::belongs_to(v, *graph_))
       note(*graph_, Code::unknown_name,
            fmt::format("{} takes a parameter of another diagram", name),
            "make the parameter with param(...) of this diagram", at);

@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <titop/graph/mount.hpp>
 
 namespace titop::detail {
@@ -40,6 +43,25 @@ void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, S
   // `sign` is right between a child point as site and, for a weld, another child point.
   const bool turned = is_parent(site_force) != (sign < 0 && is_parent(child_force));
   Writer(site_force).set(Rhs(wrench, at), /*accumulate=*/true, turned ? -sign : sign);
+}
+
+Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::string& joint,
+                  const std::source_location& at) {
+  if (T_ba.to().empty() && T_ba.from().empty()) return T_ba;
+  const std::string body = frame_of(body_accel);
+  const auto is_it = [&](const Node& node) { return node.name == T_ba.from(); };
+  Graph* graph = body_accel.graph();
+  // A name that no block has is no frame's: nothing to compare, as in other equations.
+  if (graph && T_ba.from() != body && T_ba.from() != joint &&
+      std::any_of(graph->nodes.begin(), graph->nodes.end(), is_it))
+    graph->mistakes.push_back(
+        {Code::frame,
+         fmt::format("{} takes a rotation from {} to {}, and what it holds is {}", joint,
+                     T_ba.from(), T_ba.to().empty() ? "a frame without a name" : T_ba.to(),
+                     body.empty() ? "without a frame" : body),
+         {"written at " + to_string(at)},
+         "give the rotation of the body that hangs there, or none of the names"});
+  return T_ba.named(T_ba.to(), joint);
 }
 
 void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location& at) {

@@ -43,12 +43,17 @@ void mount(const Handle& body, const DualPort<1>& site,
 }
 
 namespace detail {
+/// The rotation to a body, whose parent's acceleration this is, as one to the joint of this name
+/// that the body hangs on, in the body's frame. Where it is named after another block a mistake is
+/// noted.
+Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::string& joint,
+                  const std::source_location& at);
+
 /// Hangs `body` on `site` through the joint of this name, in whose frame the body is.
 template <class Joint, class Handle>
 void mount_through(const Joint& joint, const std::string& name, const Handle& body,
                    const DualPort<6>& site, const Rotation& T_ba, const std::source_location& at) {
-  const bool named = !T_ba.to().empty() || !T_ba.from().empty();
-  mount(joint, site, named ? T_ba.named(T_ba.to(), name) : T_ba, at);
+  mount(joint, site, to_joint(T_ba, body.parent.accel, name, at), at);
   mount(body, joint.child, {}, at);
 }
 }  // namespace detail

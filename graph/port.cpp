@@ -106,10 +106,14 @@ int find_child(const Graph& graph, int node, std::string_view name) {
              : -1;
 }
 
+bool belongs_to(const Value& v, const Graph& graph) {
+  return v.owner() == &graph && v.index() < static_cast<int>(graph.parameters.size());
+}
+
 void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms,
                              const std::source_location& at) {
   const auto look_at = [&](const Value& v) {
-    if (!v.is_parameter() || v.owner() == &graph) return;
+    if (!v.is_parameter() || belongs_to(v, graph)) return;
     graph.mistakes.push_back(
         {Code::unknown_name,
          fmt::format("a parameter of another diagram, nominally {}, is used", v.parameter()),

@@ -237,6 +237,8 @@ int port_signal(const Graph& graph, int node, std::string_view name);
 int find_channel(const Graph& graph, int node, std::string_view name);
 /// The same among its child channels only.
 int find_child(const Graph& graph, int node, std::string_view name);
+/// True for a parameter (not a number) that this graph has.
+bool belongs_to(const Value& parameter, const Graph& graph);
 /// Notes the mistake "parameter of another diagram" for every such parameter in these terms.
 void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms,
                              const std::source_location& at);

@@ -21,8 +21,8 @@ class Value {
  public:
   constexpr Value(double number = 0) : number_(number) {}
   Value(const Param& p) : Value(1, p) {}
-  Value(double scale, const Param& p)
-      : number_(p.nominal), scale_(scale), index_(p.index), owner_(p.owner) {}
+  /// Throws unknown_name for a Param that no diagram has made.
+  Value(double scale, const Param& p);
 
   /// The number for these parameter values. O(1).
   double at(ParameterValues values) const {

@@ -131,7 +131,10 @@ class Reader {
 
   static Part read_part(const Place& p) {
     p.only({"part", "rows"});
-    return {p.at("rows").matrix(-1, -1), p.at("part").text()};
+    const Eigen::MatrixXd rows = p.at("rows").matrix(-1, -1);
+    if (rows.rows() == 0 || !(rows * rows.transpose()).isIdentity(1e-9))
+      p.at("rows").refuse("orthonormal rows, at least one");
+    return {rows, p.at("part").text()};
   }
 
   Rotation read_rotation(const Place& p) const {

@@ -88,10 +88,9 @@ Reading read(const Graph& g, const Term& term, const std::string& to, const std:
   if (std::abs(term.sign) != 1) put_gain(r, std::abs(term.sign));
   for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f) {
     if (const auto* k = std::get_if<Value>(&*f)) {
-      if (k->is_parameter() && at(k->index()) < g.parameters.size())
-        r.put(g.parameters[at(k->index())].name);
-      else
-        put_gain(r, k->nominal());
+      const bool named = k->is_parameter() && at(k->index()) < g.parameters.size();
+      if (named) r.put(g.parameters[at(k->index())].name);
+      put_gain(r, named ? k->scale() : k->nominal());
     } else if (const auto* T = std::get_if<Rotation>(&*f)) {
       if (T->is_identity()) continue;
       r.put(arrow(T->to(), T->from()));

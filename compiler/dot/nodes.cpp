@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <set>
 #include <titop/compiler/dot/picture.hpp>
 #include <titop/compiler/dot/text.hpp>
@@ -24,8 +25,12 @@ std::string coefficient_text(const Picture& p, int signal) {
       !knows_parameters(p.stage, block))
     return {};
   const auto values = block.values();
-  if (values.size() == 1 && face.inputs.size() == 1 && values[0].is_parameter())
-    return " × " + p.graph.parameters[at(values[0].index())].name;
+  if (values.size() == 1 && face.inputs.size() == 1 && values[0].is_parameter()) {
+    const double scale = values[0].scale();
+    return fmt::format(" × {}{}{}", scale < 0 ? "−" : "",
+                       std::abs(scale) == 1 ? "" : fmt::format("{:.4g} ", std::abs(scale)),
+                       p.graph.parameters[at(values[0].index())].name);
+  }
   const auto dynamics = block.dynamics(p.stage.values);
   const auto D = dynamics->D.middleCols(u.first, u.size);
   if (D.rows() != D.cols() || !D.isDiagonal(0) || (D.diagonal().array() != D(0, 0)).any())

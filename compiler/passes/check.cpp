@@ -25,6 +25,23 @@ void check_names(Checker& c, const List& list, std::string_view what) {
   }
 }
 
+/// "W(3)" is the third scalar of W, and may be a name of its own only where W has no third.
+template <class List>
+void check_scalar_names(Checker& c, const List& list, std::string_view what) {
+  std::unordered_map<std::string_view, const std::source_location*> declared;
+  for (const auto& item : list) declared.emplace(item.name, &item.where);
+  for (const auto& item : list)
+    for (int i = 1; item.size > 1 && i <= item.size; ++i) {
+      const auto found = declared.find(fmt::format("{}({})", item.name, i));
+      if (found != declared.end())
+        c.add(Code::duplicate_name,
+              fmt::format("{} {} has the name of a scalar of {}", what, found->first, item.name),
+              {fmt::format("{} is at {}", found->first, to_string(*found->second)),
+               fmt::format("{} is at {}", item.name, to_string(item.where))},
+              "names come out with the model: give each its own");
+    }
+}
+
 }  // namespace
 
 Stage check(Stage stage) {
@@ -33,6 +50,8 @@ Stage check(Stage stage) {
   check_names(c, g.nodes, "node");
   check_names(c, g.inputs, "input");
   check_names(c, g.outputs, "output");
+  check_scalar_names(c, g.inputs, "input");
+  check_scalar_names(c, g.outputs, "output");
   check_names(c, g.parameters, "parameter");
   check_equations(c);
   check_drives(c);

@@ -60,6 +60,8 @@ Port<0, Kind::plain> Sum::Handle::in(int i) const {
 }
 
 BlockPtr as_block(const Sum& spec) {
+  if (spec.size < 1 || spec.signs.empty())
+    throw Error(Code::size, "a Sum without inputs", "give it a size and at least one sign");
   Interface face{{}, {}, {{"out", spec.size}}, {}};
   Eigen::MatrixXd D(spec.size, 0);
   for (std::size_t i = 0; i < spec.signs.size(); ++i) {
@@ -71,8 +73,6 @@ BlockPtr as_block(const Sum& spec) {
     D.rightCols(spec.size) =
         (spec.signs[i] == '+' ? 1.0 : -1.0) * Eigen::MatrixXd::Identity(spec.size, spec.size);
   }
-  if (spec.size < 1 || spec.signs.empty())
-    throw Error(Code::size, "a Sum without inputs", "give it a size and at least one sign");
   return std::make_shared<Algebraic>("Sum", std::move(face), std::move(D));
 }
 

@@ -52,7 +52,8 @@ BlockPtr as_block(const Lti& spec) {
   const auto nu = m.D.size() ? m.D.cols() : m.B.cols();
   const auto ny = m.D.size() ? m.D.rows() : m.C.rows();
   if (m.D.size() == 0) m.D = MatrixXd::Zero(ny, nu);
-  if (n == 0) m.B.resize(0, nu), m.C.resize(ny, 0), m.A.resize(0, 0);
+  if (n == 0 && m.B.size() == 0 && m.C.size() == 0) m.B.resize(0, nu), m.C.resize(ny, 0);
+  if (n == 0) m.A.resize(0, 0);
   if (m.A.cols() != n || m.B.rows() != n || m.B.cols() != nu || m.C.rows() != ny ||
       m.C.cols() != n || nu == 0 || ny == 0)
     throw Error(Code::size,

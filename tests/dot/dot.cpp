@@ -149,6 +149,22 @@ TEST_CASE("sizes, frames, rotations and gains stand on the wires") {
   }
 }
 
+TEST_CASE("a parameter keeps its sign and its factor in a drawing") {
+  Diagram d{"gains"};
+  auto k = d.param("k", 3.0);
+  auto z = d.add("z", SpringMass{});
+  auto g = d.add("g", Gain{.gain = -2.0 * k});
+  ground(z);
+  g.in = z.child.rate;
+  z.child.force = -k * z.stretch + g.out;
+  d.output("y") = 0.5 * k * z.stretch;
+  const std::string text = to_dot(d);
+  CHECK(has(lines_with(text, "\"gain z.child.force 2\" [shape=box"), "label=\"k\""));
+  CHECK(has(lines_with(text, "\"gain z.child.force 2\" ->"), "headlabel=\"−\""));
+  CHECK(has(lines_with(text, "\"gain output y\" [shape=box"), "label=\"0.5 k\""));
+  CHECK(has(block(text, "g"), " × −2 k"));
+}
+
 TEST_CASE("text of any origin is quoted") {
   CHECK(dot::quoted("a\"b\\") == "\"a\\\"b\\\\\"");
   CHECK(dot::quoted("&lt;") == "\"&amp;lt;\"");

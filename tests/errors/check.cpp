@@ -134,6 +134,14 @@ TEST_CASE("size: declarations and matrices of nodes") {
                          .B = Eigen::MatrixXd::Zero(3, 1),
                          .C = Eigen::MatrixXd::Zero(1, 2)}),
              Code::size, {"X: Lti: A is 2x2, B 3x1, C 1x2", "A must be n x n"}));
+  // A forgotten A is not a gain of D.
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
+  CHECK(says(refused(Lti{.B = one, .C = one, .D = one}), Code::size, {"X: Lti: A is 0x0, B 1x1"}));
+  CHECK(says(refused(Sum{.signs = "+", .size = -1}), Code::size, {"X: a Sum without inputs"}));
+  CHECK(says(error_of([] { RigidBody{.inertia = Eigen::MatrixXd::Identity(6, 6)}; }), Code::size,
+             {"an inertia of 6 x 6"}));
+  CHECK(says(error_of([] { RigidBody{.inertia = Eigen::MatrixXd::Ones(3, 1)}; }), Code::size,
+             {"an inertia of 3 x 1", "3 x 3"}));
 }
 
 TEST_CASE("size: the part of a signal that has no parts") {
@@ -185,6 +193,43 @@ TEST_CASE("duplicate-name: nodes, inputs, outputs, parameters, points of a body"
   CHECK(says(refused(RigidBody{.children = {{"C1"}, {"C1"}}}), Code::duplicate_name,
              {"X: a second point is called \"C1\""}));
   CHECK(says(refused(RigidBody{.children = {{"parent"}}}), Code::duplicate_name, {"parent"}));
+}
+
+TEST_CASE("duplicate-name: W(3) is the third scalar of W") {
+  Diagram d{"scene"};
+  auto z = d.add("z", SpringMass{});
+  ground(z);
+  const auto vector = next_line();
+  auto W = d.input("W", 3);
+  const auto scalar = next_line();
+  auto other = d.input("W(3)");
+  d.input("W(4)"), d.input("W(1"), d.input("V(1)");
+  z.child.force = other + Eigen::RowVector3d(1, 2, 3) * W;
+  d.output("y(1)") = z.stretch;
+  const Error e = compile_error(d);
+  CHECK(e.mistakes().size() == 1);
+  CHECK(says(e, Code::duplicate_name,
+             {"input W(3) has the name of a scalar of W", vector, scalar, "give each its own"}));
+  Diagram out{"scene"};
+  auto b = out.add("b", brick());
+  b.parent.force = -out.input("W", 6);
+  out.output("a", 6) = b.parent.accel;
+  out.output("a(6)") = b.parent.about({0, 0, 1}).accel;
+  CHECK(says(compile_error(out), Code::duplicate_name,
+             {"output a(6) has the name of a scalar of a"}));
+}
+
+TEST_CASE("unknown-name: a parameter that no diagram has made") {
+  struct {
+    Param k, c;
+  } p;
+  Diagram d{"scene"};
+  p.k = d.param("k", 10.0);
+  CHECK(says(error_of([&] { d.add("z", SpringMass{.stiffness = p.k, .damping = p.c}); }),
+             Code::unknown_name, {"a parameter that no diagram has made", "d.param("}));
+  auto z = d.add("z", SpringMass{.stiffness = p.k});
+  CHECK(says(error_of([&] { z.child.force = -p.c * z.stretch; }), Code::unknown_name,
+             {"that no diagram has made"}));
 }
 
 TEST_CASE("not-finite: parameters, gains, matrices, blocks") {

@@ -91,6 +91,36 @@ TEST_CASE("frames: a named rotation the wrong way round is refused") {
   CHECK(says(compile_error(d), Code::frame, {"meets a signal in frame B", line}));
 }
 
+TEST_CASE("frames: through a joint, too, a rotation is that of the body that hangs there") {
+  const Rotation T = Rotation::about({0, 0, 1}, 0.3);
+  const auto scene = [&](const Rotation& T_ba, int joint) {
+    Diagram d{"hub and wing"};
+    auto hub = d.add("hub", brick()), wing = d.add("wing", brick({}));
+    release(d.add("other wing", brick({})));
+    hub.parent.force = -d.input("W", 6);
+    if (joint == 0) hinge(d, "drive", wing, hub.child, T_ba, {0, 1, 0}).torque = 0;
+    if (joint == 1) slide(d, "drive", wing, hub.child, T_ba, {0, 1, 0}).force = 0;
+    if (joint == 2) mount(wing, hub.child, T_ba);
+    if (joint == 3) {
+      bushing(d, "drive", wing.parent, hub.child, T_ba, {.stiffness = {1, 1, 1, 1, 1, 1}});
+      release(wing);
+    }
+    d.output("a", 6) = wing.parent.accel;
+    return compile_error(d);
+  };
+  for (const int joint : {0, 1, 2, 3}) {
+    CAPTURE(joint);
+    CHECK(scene(T, joint).mistakes().empty());
+    CHECK(scene(T.named("hub", "wing"), joint).mistakes().empty());
+    CHECK(scene(T.named("hub", "other wing"), joint).has(Code::frame));
+    CHECK(scene(T.named("wing", "hub"), joint).has(Code::frame));
+    if (joint != 2)
+      CHECK(says(scene(T.named("hub", "other wing"), joint), Code::frame,
+                 {"drive takes a rotation from other wing to hub, and what it holds is wing",
+                  "signals.cpp:"}));
+  }
+}
+
 TEST_CASE("frames: bodies mixed without a rotation are refused, in equations and in outputs") {
   Diagram d{"mixed"};
   auto B = d.add("B", brick()), A = d.add("A", brick());

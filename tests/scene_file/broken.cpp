@@ -72,6 +72,21 @@ TEST_CASE("broken scenes are refused with their place") {
   refused("[0.25]", "[[1]]", "equations[1].terms[0].factors[0]: found [1], expected a number or");
 }
 
+TEST_CASE("parts of a signal are orthonormal rows") {
+  const std::string guide = R"({"format": "titop scene 1", "name": "guide", "parameters": [],
+"bodies": {}, "blocks": [{"name": "g", "type": "Gain", "gain": 1, "size": 1}],
+"inputs": [{"name": "u", "size": 2}],
+"equations": [{"of": ["g", "in"], "terms": [{"signal": ["u"], "factors": [
+  {"part": "along", "rows": [[0.6, 0.8]]}]}]}],
+"outputs": [{"name": "a", "size": 1, "terms": [{"signal": ["g", "out"]}]}]})";
+  const Eigen::MatrixXcd one = compile(parse_scene(guide)).transfer(1.0);
+  CHECK(std::abs(one(0, 0) - 0.6) + std::abs(one(0, 1) - 0.8) <= 1e-15);
+  for (const char* rows : {"[[3, 4]]", "[]", "[[0.6, 0.8], [0.6, 0.8]]", "[[1e-3, 0]]"})
+    titop_test::check_refused(
+        [&] { parse_scene(replaced(guide, "[[0.6, 0.8]]", rows), "guide.json"); },
+        "expected orthonormal rows, at least one");
+}
+
 TEST_CASE("what a program may have written by mistake") {
   refused("\"damping\": 0", "\"damping\": 1e999", "cart.json: a number is too large for a double");
   refused("{\"name\": \"u\", \"size\": 1}", "{\"name\": \"u\", \"size\": 5000}",
