@@ -52,7 +52,7 @@ Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::
   const auto is_it = [&](const Node& node) { return node.name == T_ba.from(); };
   Graph* graph = body_accel.graph();
   // A name that no block has is no frame's: nothing to compare, as in other equations.
-  if (graph && T_ba.from() != body && T_ba.from() != joint &&
+  if (graph && !T_ba.from().empty() && T_ba.from() != body && T_ba.from() != joint &&
       std::any_of(graph->nodes.begin(), graph->nodes.end(), is_it))
     graph->mistakes.push_back(
         {Code::frame,

@@ -5,6 +5,7 @@
 #include <titop/graph/drives.hpp>
 #include <titop/graph/nodes/lti.hpp>
 #include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
 namespace titop::passes {
@@ -24,9 +25,8 @@ std::string name_of(const Graph& g, const RigidMotion& m) {
 }
 
 /// This name, longer where a node has it.
-std::string free_name(const Graph& g, std::string name) {
-  while (std::any_of(g.nodes.begin(), g.nodes.end(), [&](const Node& n) { return n.name == name; }))
-    name += '_';
+std::string free_name(std::unordered_set<std::string>& taken, std::string name) {
+  while (!taken.insert(name).second) name += '_';
   return name;
 }
 
@@ -42,6 +42,8 @@ void add_integrators(Graph& g, const std::set<RigidMotion>& missing,
       });
       if (!there) all.insert(m);
     }
+  std::unordered_set<std::string> taken;
+  for (const Node& n : g.nodes) taken.insert(n.name);
   const auto find = [&](const RigidMotion& m, bool twice) {
     return std::find_if(motions.begin(), motions.end(),
                         [&](const RigidMotion& o) {
@@ -55,7 +57,7 @@ void add_integrators(Graph& g, const std::set<RigidMotion>& missing,
       const int size = g.signals[at(m.signal)].size;
       const bool half = m.half != RigidMotion::Half::whole;
       const Node& owner = g.nodes[at(g.signals[at(m.signal)].node)];
-      m.node = add_node(g, free_name(g, name_of(g, m)), as_block(Integrator{half ? 3 : size}),
+      m.node = add_node(g, free_name(taken, name_of(g, m)), as_block(Integrator{half ? 3 : size}),
                         owner.where);
       Term from{.signal = m.signal};
       if (twice) {
