@@ -38,6 +38,9 @@ FullCertificate::Poles check_poles(const System& system, const StateSpace& model
   const double norm = (e.scale.cwiseInverse().asDiagonal() * model.A * e.scale.asDiagonal()).norm();
   const VectorXd left = (e.W * e.scale.asDiagonal()).rowwise().norm(),
                  right = (e.scale.cwiseInverse().asDiagonal() * e.V).colwise().norm();
+  const auto keep_rightmost = [&](std::complex<double> s) {
+    if (p.rightmost == 0.0 || lean(s) > lean(p.rightmost)) p.rightmost = s;
+  };
   for (Index k = 0; k < e.values.size(); ++k) {
     const std::complex<double> s = e.values(k);
     const double size = std::abs(s);
@@ -47,7 +50,7 @@ FullCertificate::Poles check_poles(const System& system, const StateSpace& model
     if (!(rounded <= kMeasurable * size)) {
       if (s.real() > 10 * rounded) {  // not measured, but where it is not in doubt
         ++p.right;
-        if (p.rightmost == 0.0 || lean(s) > lean(p.rightmost)) p.rightmost = s;
+        keep_rightmost(s);
       }
       continue;
     }
@@ -58,7 +61,7 @@ FullCertificate::Poles check_poles(const System& system, const StateSpace& model
     p.measured += both;
     if (error > p.error) p.error = error, p.where = s;
     if (s.real() > std::max(1e-9, 10 * error) * size) p.right += both;
-    if (p.rightmost == 0.0 || lean(s) > lean(p.rightmost)) p.rightmost = s;
+    keep_rightmost(s);
   }
   std::sort(omegas.begin(), omegas.end());
   return p;

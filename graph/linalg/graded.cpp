@@ -47,7 +47,7 @@ Angle turn(MatrixXd& L, Index i, Index j) {
 /// L V = U diag(sigma), V made of rotations of two columns each. Leaves U diag(sigma) in L; false
 /// where that does not come to an end. From where all angles are good, at most four sweeps more.
 bool orthogonalize(MatrixXd& L) {
-  for (int sweep = 0, good = 0; sweep < 40 && good < 4; ++sweep) {
+  for (int sweep = 0, good = 0; sweep < 40; ++sweep) {
     Angle worst = Angle::fine;
     for (Index i = 0; i + 1 < L.cols(); ++i)
       for (Index j = i + 1; j < L.cols(); ++j) worst = std::max(worst, turn(L, i, j));

@@ -114,7 +114,7 @@ TEST_CASE("graded: every eigenvalue and every shape has its digits, over any dec
 TEST_CASE("graded: one number, equal numbers, and a shape's sign") {
   const GradedModes one = eigh_graded(MatrixXd::Constant(1, 1, 3e-7));
   CHECK(one.graded);
-  CHECK(one.modes.lambda(0) == doctest::Approx(3e-7).epsilon(1e-15));
+  CHECK(std::abs(one.modes.lambda(0) / 3e-7 - 1) <= 1e-15);
   CHECK(one.modes.V(0, 0) == 1);
   const GradedModes equal = eigh_graded(VectorXd(Eigen::Vector3d(4, 1e-20, 4)).asDiagonal());
   CHECK(equal.graded);
@@ -136,7 +136,7 @@ TEST_CASE("graded: rigid motions, indefinite matrices and large ones are said to
   indefinite << 1, 2, 2, 1;
   const GradedModes two = eigh_graded(indefinite);
   CHECK(!two.graded);
-  CHECK(two.modes.lambda(0) == doctest::Approx(-1).epsilon(1e-14));
+  CHECK(std::abs(two.modes.lambda(0) / -1 - 1) <= 1e-14);
   const GradedModes many = eigh_graded(MatrixXd::Identity(401, 401));
   CHECK(!many.graded);
   CHECK(many.modes.lambda == VectorXd::Ones(401));
