@@ -160,6 +160,7 @@ class Measured {
 std::optional<ReducedSystem> reduced(const Diagram& d, const Scene& scene) try {
   return compile(d, scene);
 } catch (const Error& refusal) {
+  if (!refusal.has(Code::bad_value)) throw;
   fmt::print(stderr, "{}\n", refusal.what());
   return std::nullopt;
 }
