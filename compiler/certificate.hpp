@@ -13,12 +13,13 @@ struct Certificate {
   /// instant, by the very factors that the model is written from (what the input does not move at
   /// once is moved by inputs of size 1), or at one real s: with positions or rates in the
   /// equations, states that follow from others, in a reduced (singular) scene, or where digits may
-  /// be lost. Beside an instant also the responses at s of the first four blocks of each type
-  /// against their A, B, C, D. Rounding is about 1e-16 times the length of a row. What is above
-  /// 1e-9 is looked at again: 1e4 times a sample of the signals' rounding is taken from the
-  /// difference first, and what chains that hold something twice make 0 may be 1e-14 of the largest
-  /// translation, rotation, force or torque of all points. So a number above 1e-9 is what rounding
-  /// does not explain.
+  /// be lost. Beside an instant also the responses at s of the first two blocks of each type
+  /// against their A, B, C, D. Negative where nothing moves: without inputs, where there is no
+  /// instant or digits may be lost there. Rounding is about 1e-16 times the length of a row. What
+  /// is above 1e-9 is looked at again: 1e4 times a sample of the signals' rounding is taken from
+  /// the difference first, and what chains that hold something twice make 0 may be 1e-14 of the
+  /// largest translation, rotation, force or torque of all points. So a number above 1e-9 is what
+  /// rounding does not explain.
   double residual = 0;
   std::string residual_where;  ///< the equation or block that has it
   /// That real s [rad/s]; at an instant the states are about those that single blocks have there.
@@ -40,8 +41,8 @@ struct Certificate {
   /// all units of inputs and outputs; in other units of states and time other numbers are written,
   /// and round differently. Above 1e-9 and up to 100 states it is at most 30 times what the model's
   /// own answers are off by, as the residual itself can round where a point has hardly any mass.
-  /// Negative where no dense model has been written. Above 1e-9 the log warns, and names output and
-  /// input (up to eight units).
+  /// Negative where no dense model has been written, and where one has no states, no inputs or no
+  /// outputs. Above 1e-9 the log warns, and names output and input (up to eight units).
   double dense_error = -1;
   std::complex<double> dense_error_s;  ///< where it is largest
   /// The same over the size of the output at that same s: an acceleration falls with s^2 far below

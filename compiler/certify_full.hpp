@@ -13,7 +13,7 @@ class System;
 
 /// What to check beside the default certificate, and how much of it.
 struct Full {
-  int points = 24;          ///< of the grid in s
+  int points = 24;          ///< of the grid in s; 0: none
   int dense_up_to = 2000;   ///< states; larger models are not written, and that is said
   int written_up_to = 300;  ///< scalar signals; larger diagrams are not solved as written
   /// For the order without rounding.
@@ -46,24 +46,29 @@ struct FullCertificate {
     std::complex<double> written_s;
   } grid;
 
-  /// Poles of the dense model before `minimize`. The error of a pole s with left and right vectors
-  /// w, v is |w (A_factored v - s v)| / |w v|, over |s|: what the factors say of it, to first
-  /// order.
+  /// Poles of the dense model before `minimize`; where states are not in it, which the structure
+  /// alone sets aside as moved by no input or seen by no output, `why_not` says so. The error of a
+  /// pole s with left and right vectors w, v is |w (A_factored v - s v)| / |w v|, over |s|: what
+  /// the factors say of it, to first order.
   struct Poles : Checked {
     int count = 0;
-    int measured = 0;  ///< the others (at 0, multiple) rounding of A alone moves by 1e-8 or more
+    int measured = 0;  ///< the others (multiple, or at 0 beside others that are not) rounding of A
+                       ///< alone moves by 1e-8 or more
     double error = 0;
     std::complex<double> where;
     int right = 0;  ///< poles right of the axis by more than 1e-9 |s| and ten times their error; of
                     ///< those not measured, by more than ten times what rounding of A may move them
+    int hidden = 0;  ///< of those right, no input moves or no output sees: they are taken out by
+                     ///< `minimize`, and the system grows all the same
     std::complex<double> rightmost;  ///< largest Re(s) / |s|
   } poles;
 
   /// Of the inputs that are forces with an output that is the acceleration where they act: the
   /// smallest eigenvalue of the Hermitian part of G(s) / s, rows and columns scaled to diagonal 1,
   /// over the grid. Negative: energy comes out (a controller may do that; a structure may not).
-  /// The diagonal counts 64 units of rounding more, of the largest entry in its unit; where that is
-  /// not enough, also 1e-3 of the terms that cancel, as double against long double shows them.
+  /// A force that moves another's point and not its own counts as -1. The diagonal counts 64 units
+  /// of rounding more, of the largest entry in its unit; where that is not enough, also 1e-3 of the
+  /// terms that cancel, as double against long double shows them.
   struct Passivity : Checked {
     int pairs = 0;
     double least = 0;
@@ -102,8 +107,10 @@ struct FullCertificate {
   ExactOrder exact;  ///< independent of all passes, where the diagram is small
 
   /// What does not hold, in words; empty if all that was checked does: equations, transfers and
-  /// dense model to 1e-8, poles to 1e-6, a structure passive to 1e-9 and reciprocal to 1e-8, the
-  /// exact order inside the verdict's interval, and nothing that the order step had to put back.
+  /// dense model to 1e-8, poles to 1e-6, a structure passive to 1e-9 and reciprocal to 1e-8,
+  /// without poles right of the axis (but where one-way blocks that read it have states and are no
+  /// mere integrators), the exact order inside the verdict's interval, and nothing that the order
+  /// step had to put back.
   std::vector<std::string> faults;
   bool holds() const { return faults.empty(); }
 };

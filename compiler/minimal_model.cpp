@@ -31,12 +31,14 @@ int exact_order_of(const SystemData& d, int states) {
 constexpr double kCertain = 1e-6;
 constexpr double kMoving = 1e-9;  ///< of an entry: what changes less with s may be rounding
 
-/// The self-check says that digits are lost, of equations, pivots, loops or outputs.
-bool digits_are_lost(const SystemData& d) {
+/// What the self-check says of lost digits, of equations, pivots, loops or outputs; null: nothing.
+const char* digits_lost(const SystemData& d) {
   const std::vector<Note>& notes = d.checked().notes;
-  return std::any_of(notes.begin(), notes.end(), [](const Note& n) {
-    return n.pass == "certify" && n.kind == Note::Kind::warning;
-  });
+  if (std::any_of(notes.begin(), notes.end(), [](const Note& n) {
+        return n.pass == "certify" && n.kind == Note::Kind::warning;
+      }))
+    return "digits are lost (see certify)";
+  return d.checked().rounding_alone ? "rounding is all that some output has" : nullptr;
 }
 
 /// The model with those inputs and outputs alone whose dynamics are not rounding: in some entry,
@@ -77,7 +79,8 @@ constexpr double kFewDigits = 1e-3;
 void doubt_lost_digits(const System& system, const SystemData& d, const StateSpace& dense,
                        MinimizeOptions options, OrderVerdict& v) {
   if (v.exact || v.lowest == 0 || dense.inputs.empty() || dense.outputs.empty()) return;
-  if (!digits_are_lost(d)) return;
+  const char* const lost = digits_lost(d);
+  if (!lost) return;
   options.resolution = std::max(options.resolution, kCertain);
   int certain = 0;
   try {
@@ -90,8 +93,35 @@ void doubt_lost_digits(const System& system, const SystemData& d, const StateSpa
   v.lowest = certain;
   d.dense_notes.push_back(
       {Note::Kind::warning, "minimize",
-       fmt::format("digits are lost (see certify): of {} states, {} are certainly needed", v.order,
-                   certain)});
+       fmt::format("{}: of {} states, {} are certainly needed", lost, v.order, certain)});
+}
+
+/// What the transfer loses where modes leave, at any of the points by itself: beside its rigid
+/// motion far below, what a free structure has lost near its modes would not show.
+struct Change {
+  double by_modes = 0;  ///< beside the terms of both models: no rounding is as large
+  double in_all = 0;    ///< beside those of the model as written: the minimal one may cancel more
+};
+
+Change change(const System& system, const SystemData& d, const StateSpace& dense,
+              const Minimized& m) {
+  constexpr double kAnotherDigit = 10;
+  Change worst;
+  for (const std::complex<double> s : modes::near_modes(m.order.removed, pick_s(d))) {
+    const std::vector<std::complex<double>> here{s};
+    const std::vector<MatrixXcd> exact{system.transfer(s)}, minimal = transfers(m.model, here);
+    const MatrixXd as_written = terms(dense, here);
+    const auto off = [&](const std::vector<MatrixXcd>& G, const MatrixXd& terms_there) {
+      Measure by = measure(*d.skeleton->stage.source, terms_there);
+      return difference(G, exact, by, system, here).relative;
+    };
+    worst.by_modes =
+        std::max(worst.by_modes, off(minimal, as_written.cwiseMax(terms(m.model, here))));
+    const double lost = off(minimal, as_written);
+    if (lost > worst.in_all && lost > kAnotherDigit * off(transfers(dense, here), as_written))
+      worst.in_all = lost;
+  }
+  return worst;
 }
 
 }  // namespace
@@ -109,17 +139,14 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
     m.order.highest = dense.order();
   if (!m.notes.empty()) m.notes.front() = to_string(m.order);
   const bool removed = !m.order.removed.empty();
+  double lost = 0;
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
-    std::vector<MatrixXcd> before;
-    const std::vector<std::complex<double>> points = modes::near_modes(m.order.removed, pick_s(d));
-    for (const std::complex<double> s : points) before.push_back(system.transfer(s));
-    const std::vector<MatrixXcd> after = transfers(m.model, points);
-    Measure by =
-        measure(*d.skeleton->stage.source, terms(dense, points).cwiseMax(terms(m.model, points)));
-    m.order.change = difference(after, before, by, system, points).relative;
+    const Change by = change(system, d, dense, m);
+    m.order.change = by.by_modes;
     m.notes.front() = to_string(m.order);
+    lost = by.in_all;
   }
-  if (modes::put_back(dense, resolution, m)) {
+  if (modes::put_back(dense, resolution, lost, m)) {
     d.dense_notes.push_back(
         {Note::Kind::warning, "minimize", fmt::format("{}: {}", m.notes.back(), m.notes.front())});
     d.dense_order = std::move(m.order);

@@ -204,7 +204,7 @@ Minimized modes::minimize_unmeasured(const StateSpace& model, const MinimizeOpti
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options) {
   Minimized result = modes::minimize_unmeasured(model, options);
   modes::measure_change(model, result);
-  modes::put_back(model, options.resolution, result);
+  modes::put_back(model, options.resolution, 0, result);
   return result;
 }
 

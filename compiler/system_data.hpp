@@ -69,6 +69,7 @@ struct Check {
   Certificate certificate;
   std::vector<Note> notes;  ///< all of the system, its own at the end
   double lost = 0;  ///< of the outputs, by rounding, in double; 0 where it was not asked for
+  bool rounding_alone = false;  ///< is all that some output has, as far as was asked for
   int loop_without_digit = -1;  ///< of the stage, by its margin, or without one in double
   double least = 0;             ///< see least_pivot
 };

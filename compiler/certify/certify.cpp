@@ -70,20 +70,32 @@ Check certify(const SystemData& d) {
 
 namespace titop {
 
+namespace {
+
+std::string words_of_residual(const Certificate& c) {
+  if (c.residual < 0) return "equations as written not checked: without inputs nothing moves\n";
+  return fmt::format("equations as written hold to {:.1e} {} s = {:.3g}{}\n", c.residual,
+                     c.at_instant ? "at an instant, states as of single blocks at" : "at", c.s,
+                     c.residual_where.empty() ? "" : " (worst: " + c.residual_where + ")");
+}
+
+std::string words_of_dense(const Certificate& c) {
+  if (c.dense_against_factors < 0) return "dense model not written yet\n";
+  std::string text =
+      fmt::format("dense model agrees with the factors to {:.1e}", c.dense_against_factors);
+  if (c.dense_error >= 0)
+    text += fmt::format(
+        "; its rounding changes the outputs by {:.1e} of their largest at s = {:.3g}{:+.3g}j, by "
+        "{:.1e} of what they are at s = {:.3g}{:+.3g}j",
+        c.dense_error, c.dense_error_s.real(), c.dense_error_s.imag(), c.dense_error_where_small,
+        c.dense_error_where_small_s.real(), c.dense_error_where_small_s.imag());
+  return text + "\n";
+}
+
+}  // namespace
+
 std::string to_string(const Certificate& c) {
-  std::string text;
-  text += fmt::format("equations as written hold to {:.1e} {} s = {:.3g}{}\n", c.residual,
-                      c.at_instant ? "at an instant, states as of single blocks at" : "at", c.s,
-                      c.residual_where.empty() ? "" : " (worst: " + c.residual_where + ")");
-  text += c.dense_against_factors < 0
-              ? std::string("dense model not written yet\n")
-              : fmt::format(
-                    "dense model agrees with the factors to {:.1e}; its rounding changes the "
-                    "outputs by {:.1e} of their largest at s = {:.3g}{:+.3g}j, by {:.1e} of what "
-                    "they are at s = {:.3g}{:+.3g}j\n",
-                    c.dense_against_factors, c.dense_error, c.dense_error_s.real(),
-                    c.dense_error_s.imag(), c.dense_error_where_small,
-                    c.dense_error_where_small_s.real(), c.dense_error_where_small_s.imag());
+  std::string text = words_of_residual(c) + words_of_dense(c);
   text += fmt::format("weakest pivot keeps {:.1e} of its terms{}, growth {:.3g}\n", c.weakest_pivot,
                       c.weakest_where.empty() ? "" : " (" + c.weakest_where + ")", c.pivot_growth);
   text +=

@@ -134,6 +134,18 @@ void check_pairs(const System& system, const std::vector<Complex>& points,
   check();
 }
 
+/// States that the dense model has not even before `minimize`; empty if there are none.
+std::string what_is_set_aside(const Graph& g) {
+  int states = 0;
+  for (const Signal& s : g.signals)
+    if (s.role == Signal::Role::state && !s.active) states += s.size;
+  return states == 0 ? ""
+                     : fmt::format(
+                           "{} state{} that no input moves or no output sees, as the "
+                           "structure shows (the log names the blocks)",
+                           states, states == 1 ? "" : "s");
+}
+
 /// States that left as nothing but rounding may be there in the last bits of the data. That is no
 /// fault of the model, but no order that double precision has decided either.
 void reach_up_to(const ExactOrder& exact, OrderVerdict& v) {
@@ -143,7 +155,7 @@ void reach_up_to(const ExactOrder& exact, OrderVerdict& v) {
     v.highest = std::max(v.highest, exact.order);
 }
 
-void list_faults(FullCertificate& c) {
+void list_faults(const Graph& source, FullCertificate& c) {
   const auto fault = [&c](double value, double allowed, const std::string& text) {
     if (!(value <= allowed)) c.faults.push_back(fmt::format("{} {:.1e}", text, value));
   };
@@ -158,7 +170,7 @@ void list_faults(FullCertificate& c) {
   fault(c.poles.error, kPoleHolds, "poles of the dense model differ from the factors' by");
   if (c.passivity.structure) {
     fault(-c.passivity.least, full::kPassive, "energy comes out of a structure:");
-    if (c.poles.right > 0)
+    if (c.poles.right > 0 && full::has_poles_of_bodies_only(source))
       c.faults.push_back(
           fmt::format("{} poles of a structure lie right of the axis, the worst by "
                       "{:.1e} of its size",
@@ -186,7 +198,11 @@ FullCertificate certify(const System& system, const Full& what) {
     c.order = system.order_verdict();
     system.write(before.model);
     before.rounding = detail::rounding_of(*system.data_, before.model);
-    c.poles = full::check_poles(system, before.model, before.rounding.A, omegas);
+    full::FoundPoles found = full::check_poles(system, before.model, before.rounding.A);
+    omegas = std::move(found.omegas);
+    c.poles = std::move(found.poles);
+    c.poles.hidden = full::count_hidden(found.right, system.state_space());
+    c.poles.why_not = what_is_set_aside(system.stage().graph);
   } else {
     c.poles.why_not = c.grid.why_not = fmt::format("{} states are more than {} (Full::dense_up_to)",
                                                    system.order(), what.dense_up_to);
@@ -196,7 +212,8 @@ FullCertificate certify(const System& system, const Full& what) {
   c.exact = exact::order_of_stage(system.stage(), system.order(), what.exact, values_of(system));
   reach_up_to(c.exact, c.order);
   set_range(omegas, c.grid);
-  c.grid.points = system.inputs().empty() || system.outputs().empty() ? 0 : what.points;
+  const bool transfers = !system.inputs().empty() && !system.outputs().empty();
+  c.grid.points = transfers ? std::max(what.points, 0) : 0;
   if (c.grid.points > 0) {
     const std::vector<Complex> points = grid_of(c.grid);
     std::vector<MatrixXcd> factored;
@@ -211,9 +228,10 @@ FullCertificate certify(const System& system, const Full& what) {
     check_pairs(system, points, factored, c);
   } else {
     c.grid.why_not = c.passivity.why_not = c.reciprocity.why_not =
-        "without inputs, or without outputs, nothing transfers";
+        transfers ? "no grid is asked for (Full::points)"
+                  : "without inputs, or without outputs, nothing transfers";
   }
-  list_faults(c);
+  list_faults(*system.stage().source, c);
   return c;
 }
 
@@ -239,11 +257,19 @@ std::string to_string(const FullCertificate::Poles& p) {
                                  p.measured, p.error);
   if (p.measured < p.count)
     text += fmt::format(", {} at 0 or ill-conditioned and not measured", p.count - p.measured);
-  const char* none = p.measured < p.count ? "; none of those measured right of the axis\n"
-                                          : "; none right of the axis\n";
-  return text + (p.right == 0 ? none
-                              : fmt::format("; {} right of the axis, the worst {}\n", p.right,
-                                            at_s(p.rightmost)));
+  if (p.right > 0)
+    text += fmt::format("; {} right of the axis, the worst {}", p.right, at_s(p.rightmost));
+  else
+    text += p.measured < p.count ? "; none of those measured right of the axis"
+                                 : "; none right of the axis";
+  if (!p.why_not.empty()) text += "; not counted: " + p.why_not;
+  if (p.hidden > 0)
+    text += fmt::format(
+        "\nWARNING: {} right of the axis and in no transfer: no input moves {}, or no "
+        "output sees {}",
+        p.hidden == 1 ? "one pole is" : fmt::format("{} poles are", p.hidden),
+        p.hidden == 1 ? "it" : "them", p.hidden == 1 ? "it" : "them");
+  return text + "\n";
 }
 
 std::string to_string(const FullCertificate::Passivity& p) {

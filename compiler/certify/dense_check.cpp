@@ -338,7 +338,7 @@ DenseError by_input(DenseError e, int units) {
 }  // namespace
 
 DenseError dense_error(const SystemData& d, const StateSpace& m) {
-  if (m.B.cols() == 0 || m.C.rows() == 0 || m.A.size() == 0) return {};
+  if (m.B.cols() == 0 || m.C.rows() == 0 || m.A.size() == 0) return {{-1}, {-1}};
   const Measure units = measure(d.graph(), {});
   const solve::RowMatrix<T> u = tried_inputs(m, units.cols);
   std::vector<T> not_tried;

@@ -13,32 +13,36 @@ using solve::RowMatrix;
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-/// Some entries of one unit, how far they are off, and what stands around each of them.
+/// Share that is lost of some entries of one unit: how far they are off, and what stands around
+/// each of them.
 template <class Around>
-bool lost(std::span<const double> value, std::span<const double> off, Around around) {
+double lost(std::span<const double> value, std::span<const double> off, Around around) {
   double largest = 0, change = 0;
   for (const double v : value) largest = std::max(largest, std::abs(v));
   for (const double v : off) change = std::abs(v) <= change ? change : std::abs(v);  // NaN too
-  if (change <= kWarn * largest || change <= kUnderflow) return false;
+  if (change <= kWarn * largest || change <= kUnderflow) return 0;
   for (std::size_t i = 0; i < value.size(); ++i)  // 0 but for rounding?
-    if (!(std::max(std::abs(value[i]), std::abs(off[i])) <= kLeftOfZero * around(i))) return true;
-  return false;
+    if (!(std::max(std::abs(value[i]), std::abs(off[i])) <= kLeftOfZero * around(i)))
+      return change < largest ? change / largest : 1;
+  return 0;
 }
 
-/// The same for all entries of a signal or an output, of which `unit` neighbours share one.
+/// The largest of all entries of a signal or an output, of which `unit` neighbours share one.
 template <class Around>
-bool any_lost(std::span<const double> value, std::span<const double> off, std::size_t unit,
-              Around around) {
+double most_lost(std::span<const double> value, std::span<const double> off, std::size_t unit,
+                 Around around) {
+  double worst = 0;
   for (std::size_t first = 0; first < value.size(); first += unit)
-    if (lost(value.subspan(first, unit), off.subspan(first, unit),
-             [&](std::size_t i) { return around(static_cast<Eigen::Index>(first + i)); }))
-      return true;
-  return false;
+    worst = std::max(
+        worst, lost(value.subspan(first, unit), off.subspan(first, unit),
+                    [&](std::size_t i) { return around(static_cast<Eigen::Index>(first + i)); }));
+  return worst;
 }
 
 /// Digits may be lost of an input of a block with states.
 bool moves_in_doubt(const SystemData& d, const Signals& signals, const Instant& change) {
   const Graph& g = d.graph();
+  Surroundings around(d, signals.unknowns);
   boost::container::small_vector<double, 6> off;
   for (std::size_t i = 0; i < g.nodes.size(); ++i)
     for (int k = g.nodes[i].first_signal; d.layout().state_first[i] >= 0 && k < g.nodes[i].state;
@@ -49,17 +53,15 @@ bool moves_in_doubt(const SystemData& d, const Signals& signals, const Instant& 
       off.assign(value.size(), 0);
       change.add_value(k, off.data());
       if (value.size() == 1 && std::abs(off[0]) <= kWarn * std::abs(value[0])) continue;  // as most
-      if (any_lost(value, {off.data(), off.size()}, at(entries_per_unit(in)),
-                   [&](Eigen::Index entry) {
-                     return size_around_signal(d, signals.unknowns, k, entry);
-                   }))
+      if (most_lost(value, {off.data(), off.size()}, at(entries_per_unit(in)),
+                    [&](Eigen::Index entry) { return around.size(k, entry); }) > 0)
         return true;
     }
   return false;
 }
 
 /// What stands around a row of output o: of the signals that it is a sum of.
-double size_around_output(const SystemData& d, const Instant& now, std::size_t o,
+double size_around_output(const SystemData& d, Surroundings& around, std::size_t o,
                           Eigen::Index row) {
   const std::vector<Term>& terms = d.graph().outputs[o].terms;
   double sum = 0;
@@ -67,29 +69,31 @@ double size_around_output(const SystemData& d, const Instant& now, std::size_t o
     const RowMatrix<double>& c =
         *d.numbers.coefficients[at(d.skeleton->joint.output_coefficient[o]) + k];
     for (Eigen::Index j = 0; j < c.cols(); ++j)
-      if (c(row, j) != 0)
-        sum += std::abs(c(row, j)) * size_around_signal(d, now.unknowns(), terms[k].signal, j);
+      if (c(row, j) != 0) sum += std::abs(c(row, j)) * around.size(terms[k].signal, j);
   }
   return sum;
 }
 
-bool outputs_in_doubt(const SystemData& d, const Instant& now, const Instant& change) {
-  const RowMatrix<double> y = now.outputs(), off = change.outputs();
+}  // namespace
+
+double lost_of_outputs(const SystemData& d, const RowMatrix<double>& unknowns,
+                       const RowMatrix<double>& y, const RowMatrix<double>& off) {
+  Surroundings around(d, unknowns);
+  double worst = 0;
   for (std::size_t o = 0; o < d.graph().outputs.size(); ++o) {
     const int first = d.layout().output_first[o];
     const std::size_t size = at(d.graph().outputs[o].size);
-    if (any_lost({y.data() + first, size}, {off.data() + first, size}, size == 6 ? 3 : 1,
-                 [&](Eigen::Index row) { return size_around_output(d, now, o, row); }))
-      return true;
+    worst = std::max(
+        worst, most_lost({y.data() + first, size}, {off.data() + first, size}, size == 6 ? 3 : 1,
+                         [&](Eigen::Index row) { return size_around_output(d, around, o, row); }));
   }
-  return false;
+  return worst;
 }
-
-}  // namespace
 
 bool digits_in_doubt(const SystemData& d, const Instant& now, const Signals& signals) {
   const Instant change = now.doubt();
-  return moves_in_doubt(d, signals, change) || outputs_in_doubt(d, now, change);
+  return moves_in_doubt(d, signals, change) ||
+         lost_of_outputs(d, now.unknowns(), now.outputs(), change.outputs()) > 0;
 }
 
 }  // namespace titop::detail

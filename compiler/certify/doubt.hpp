@@ -10,4 +10,10 @@ namespace titop::detail {
 /// more solution, O(bodies).
 bool digits_in_doubt(const SystemData& d, const Instant& now, const Signals& signals);
 
+/// Largest share of an output, one column, that these differences are, where it is more than kWarn
+/// and more than what rounding leaves of a 0; else 0. O(outputs), O(bodies) where one stands out.
+double lost_of_outputs(const SystemData& d, const solve::RowMatrix<double>& unknowns,
+                       const solve::RowMatrix<double>& outputs,
+                       const solve::RowMatrix<double>& off);
+
 }  // namespace titop::detail

@@ -8,33 +8,43 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
 
 /// Of the largest entry that shares its units: less is rounding, along an axis that something
 /// holds.
 constexpr double kOfUnit = 64 * 2.2e-16;
 
-/// What rounding may make of each diagonal entry of G / s.
-Eigen::VectorXd floors(const DualTransfers& t, std::size_t point) {
+/// What rounding may make of each entry of G / s.
+MatrixXd floors(const DualTransfers& t, std::size_t point) {
   const double s = std::abs(t.points[point]);
-  Eigen::VectorXd result(t.G[point].rows());
-  Index first = 0;
-  for (const Index n : t.by.rows) {
-    const double largest = t.G[point].block(first, first, n, n).cwiseAbs().maxCoeff();
-    const double rounding = std::max(t.floor(first, first, n, n), kOfUnit * largest);
-    result.segment(first, n).setConstant(rounding / s);
-    first += n;
+  MatrixXd result(t.G[point].rows(), t.G[point].cols());
+  for (Index row = 0; const Index n : t.by.rows) {
+    for (Index column = 0; const Index m : t.by.cols) {
+      const double largest = t.G[point].block(row, column, n, m).cwiseAbs().maxCoeff();
+      const double rounding = std::max(t.floor(row, column, n, m), kOfUnit * largest);
+      result.block(row, column, n, m).setConstant(rounding / s);
+      column += m;
+    }
+    row += n;
   }
   return result;
 }
 
+/// No force moves axis i, and a force along it moves nothing: both but for rounding.
+bool is_held(const MatrixXcd& H, const MatrixXd& floor, Index i) {
+  return H(i, i) == 0.0 && (H.row(i).cwiseAbs().array() <= floor.row(i).array()).all() &&
+         (H.col(i).cwiseAbs().array() <= floor.col(i).array()).all();
+}
+
 /// Smallest eigenvalue of H + H' with its diagonal, which rounding may have made smaller by
 /// `floor`, scaled to 1.
-double least(const MatrixXcd& H, const Eigen::VectorXd& floor) {
+double least(const MatrixXcd& H, const MatrixXd& floor) {
   if (!H.allFinite()) return -1;
-  const Eigen::VectorXd diagonal = H.diagonal().real() + floor;
+  const Eigen::VectorXd diagonal = H.diagonal().real() + floor.diagonal();
   std::vector<Index> moving;
   for (Index i = 0; i < H.rows(); ++i) {
-    if (H(i, i) == 0.0) continue;  // held
+    if (is_held(H, floor, i)) continue;
+    if (H(i, i) == 0.0 && diagonal(i) == 0) return -1;  // moved by others alone
     if (!(diagonal(i) > 0)) return diagonal(i) / std::abs(H(i, i));
     moving.push_back(i);
   }

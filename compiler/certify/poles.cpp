@@ -15,6 +15,8 @@ using Eigen::VectorXd;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// A pole that rounding of A may move by more than this, of its size, says nothing about the model.
 constexpr double kMeasurable = 1e-8;
+/// Of its size: a pole of the minimal model is one of the whole, but for the rounding of both.
+constexpr double kSamePole = 1e-6;
 
 /// A v through the factors.
 VectorXcd times(const System& system, const VectorXcd& v) {
@@ -29,9 +31,10 @@ double lean(std::complex<double> s) { return s.real() / std::abs(s); }
 
 }  // namespace
 
-FullCertificate::Poles check_poles(const System& system, const StateSpace& model,
-                                   const Eigen::MatrixXd& rounding, std::vector<double>& omegas) {
-  FullCertificate::Poles p;
+FoundPoles check_poles(const System& system, const StateSpace& model,
+                       const Eigen::MatrixXd& rounding) {
+  FoundPoles found;
+  FullCertificate::Poles& p = found.poles;
   p.done = true;
   p.count = model.order();
   const linalg::Eigensystem e = linalg::eigensystem(model.A);
@@ -39,6 +42,7 @@ FullCertificate::Poles check_poles(const System& system, const StateSpace& model
   const VectorXd left = (e.W * e.scale.asDiagonal()).rowwise().norm(),
                  right = (e.scale.cwiseInverse().asDiagonal() * e.V).colwise().norm();
   const auto keep_rightmost = [&](std::complex<double> s) {
+    if (s == 0.0) return;  // neither left nor right
     if (p.rightmost == 0.0 || lean(s) > lean(p.rightmost)) p.rightmost = s;
   };
   for (Index k = 0; k < e.values.size(); ++k) {
@@ -46,10 +50,10 @@ FullCertificate::Poles check_poles(const System& system, const StateSpace& model
     const double size = std::abs(s);
     const double moved = (e.W.row(k).cwiseAbs() * rounding * e.V.col(k).cwiseAbs())(0);
     const double rounded = kEps * norm * left(k) * right(k) + moved;
-    if (rounded <= 0.1 * size) omegas.push_back(size);
+    if (size > 0 && rounded <= 0.1 * size) found.omegas.push_back(size);
     if (!(rounded <= kMeasurable * size)) {
       if (s.real() > 10 * rounded) {  // not measured, but where it is not in doubt
-        ++p.right;
+        found.right.push_back({s, rounded});
         keep_rightmost(s);
       }
       continue;
@@ -57,14 +61,37 @@ FullCertificate::Poles check_poles(const System& system, const StateSpace& model
     const int both = s.imag() != 0 ? 2 : 1;
     if (s.imag() < 0) continue;
     const VectorXcd off = times(system, e.V.col(k)) - s * e.V.col(k);
-    const double error = std::abs((e.W.row(k) * off)(0)) / size;
+    const double change = std::abs((e.W.row(k) * off)(0));
+    const double error = change == 0 ? 0 : change / size;  // 0 to the last bit where A is 0
     p.measured += both;
     if (error > p.error) p.error = error, p.where = s;
-    if (s.real() > std::max(1e-9, 10 * error) * size) p.right += both;
+    if (s.real() > std::max(1e-9, 10 * error) * size) {
+      found.right.push_back({s, rounded});
+      if (both == 2) found.right.push_back({std::conj(s), rounded});
+    }
     keep_rightmost(s);
   }
-  std::sort(omegas.begin(), omegas.end());
-  return p;
+  p.right = static_cast<int>(found.right.size());
+  std::sort(found.omegas.begin(), found.omegas.end());
+  return found;
+}
+
+int count_hidden(const std::vector<FoundPoles::Right>& right, const StateSpace& minimal) {
+  if (right.empty()) return 0;
+  const VectorXcd values = linalg::eigenvalues(minimal.A);
+  std::vector<std::complex<double>> shown(values.begin(), values.end());
+  int hidden = 0;
+  for (const FoundPoles::Right& pole : right) {
+    const double apart = std::max(kSamePole * std::abs(pole.s), pole.rounding);
+    const auto same = std::find_if(shown.begin(), shown.end(), [&](std::complex<double> s) {
+      return std::abs(s - pole.s) <= apart;
+    });
+    if (same == shown.end())
+      ++hidden;
+    else
+      shown.erase(same);
+  }
+  return hidden;
 }
 
 }  // namespace titop::full

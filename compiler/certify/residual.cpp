@@ -134,6 +134,7 @@ struct Residual {
   const SystemData& d;
   const Signals& at_hand;
   const Graph& w = *d.skeleton->stage.source;
+  Surroundings around{d, at_hand.unknowns};
   Balance b = {};                      ///< of the present equation
   std::array<double, 4> largest = {};  ///< see find_largest()
   double worst = 0;
@@ -165,11 +166,11 @@ struct Residual {
     if (r > kPlain && off < kInfinity && signal >= 0 && only_rounding(signal)) return;
     worst = r, where = name();
   }
-  bool only_rounding(int signal) const {
+  bool only_rounding(int signal) {
     for (std::size_t i = 0; i < b.rows(); ++i)
       if (const double off = b.row[i].off();
           off > kPlain * b.row[i].magnitude &&
-          off > kLeftOfZero * size_around_signal(d, at_hand.unknowns, signal, b.entry(i)) &&
+          off > kLeftOfZero * around.size(signal, b.entry(i)) &&
           !(off <= kOfLargest * size_of_kind(signal, b.entry(i))))
         return false;
     return true;
@@ -340,40 +341,58 @@ WrittenResidual written_residual(const SystemData& d, const Signals& signals) {
   return {r.worst, r.where};
 }
 
-double size_around(const SystemData& d, const solve::RowMatrix<double>& unknowns, int variable,
-                   Eigen::Index entry) {
-  const solve::Plan& plan = *d.skeleton->as_written().plan;
-  const solve::ColumnScale& scale = *d.scale();
-  const auto front = std::prev(
-      std::upper_bound(plan.fronts.begin(), plan.fronts.end(), plan.first[at(variable)],
-                       [](int place, const solve::Front& f) { return place < f.first_unknown; }));
-  double largest = 0;
-  int column = front->first_column, own = 0;
-  for (const auto range : {front->pivots, front->border})
-    for (const int other : plan.list(range))
-      for (int i = 0; i < plan.structure.variable_size[at(other)]; ++i, ++column) {
-        if (other == variable && i == entry) own = scale[at(column)];
-        largest = std::max(
-            largest, std::ldexp(std::abs(unknowns(plan.first[at(other)] + i)), -scale[at(column)]));
-      }
-  return std::ldexp(largest, own);
+double Surroundings::of_front(const solve::Front& front) const {
+  const solve::Plan& plan = *d_.skeleton->as_written().plan;
+  const solve::ColumnScale& scale = *d_.scale();
+  double own = 0, passed_on = 0;
+  bool stands_out = front.parent < 0;
+  int column = front.first_column;
+  const auto take = [&](int variable, int in_parent) {
+    for (int i = 0; i < plan.structure.variable_size[at(variable)]; ++i, ++column) {
+      const double x = std::abs(unknowns_(plan.first[at(variable)] + i));
+      own = std::max(own, std::ldexp(x, -scale[at(column)]));
+      if (in_parent < 0) continue;
+      const double there =
+          std::ldexp(sizes_[at(front.parent)], scale[at(in_parent + i)]);  // in its own unit
+      stands_out = stands_out || x > kLeftOfZero * there;
+      passed_on = std::max(passed_on, std::ldexp(there, -scale[at(column)]));
+    }
+  };
+  for (const int v : plan.list(front.pivots)) take(v, -1);
+  for (int k = front.border.begin; k < front.border.begin + front.border.count; ++k)
+    take(plan.lists[at(k)],
+         front.parent < 0 ? -1
+                          : plan.fronts[at(front.parent)].first_column + plan.parent_column[at(k)]);
+  return stands_out ? own : std::max(own, passed_on);
 }
 
-double size_around_signal(const SystemData& d, const solve::RowMatrix<double>& unknowns, int signal,
-                          Eigen::Index entry) {
-  const solve::Joint& joint = d.skeleton->as_written();
+double Surroundings::of_variable(int variable, Eigen::Index entry) {
+  const solve::Plan& plan = *d_.skeleton->as_written().plan;
+  if (sizes_.empty()) {
+    sizes_.resize(plan.fronts.size());
+    for (std::size_t f = sizes_.size(); f-- > 0;) sizes_[f] = of_front(plan.fronts[f]);
+  }
+  const int unknown = plan.first[at(variable)] + static_cast<int>(entry);
+  const auto front = std::prev(
+      std::upper_bound(plan.fronts.begin(), plan.fronts.end(), unknown,
+                       [](int place, const solve::Front& f) { return place < f.first_unknown; }));
+  const int column = front->first_column + unknown - front->first_unknown;
+  return std::ldexp(sizes_[at(front - plan.fronts.begin())], (*d_.scale())[at(column)]);
+}
+
+double Surroundings::size(int signal, Eigen::Index entry) {
+  const solve::Joint& joint = d_.skeleton->as_written();
   double result = 0;
   for (const solve::Meaning& m : joint.meaning(signal)) {
     const int v = joint.variable_of[at(m.signal)];
     if (v < 0) continue;
     if (m.coefficient < 0) {
-      result = std::max(result, size_around(d, unknowns, v, entry));
+      result = std::max(result, of_variable(v, entry));
       continue;
     }
-    const solve::RowMatrix<double>& c = *d.numbers.coefficients[at(m.coefficient)];
+    const solve::RowMatrix<double>& c = *d_.numbers.coefficients[at(m.coefficient)];
     for (Eigen::Index j = 0; j < c.cols(); ++j)
-      if (c(entry, j) != 0)
-        result = std::max(result, std::abs(c(entry, j)) * size_around(d, unknowns, v, j));
+      if (c(entry, j) != 0) result = std::max(result, std::abs(c(entry, j)) * of_variable(v, j));
   }
   return result;
 }

@@ -32,17 +32,31 @@ struct WrittenResidual {
 /// the largest of its kind where chains are closed twice. What is not finite counts as 1. O(terms).
 WrittenResidual written_residual(const SystemData& d, const Signals& signals);
 
-/// What rounding leaves of a 0, beside size_around(): some hundred units of the last place, for it
-/// comes from sums over a front.
+/// What rounding leaves of a 0, beside its Surroundings: some hundred units of the last place, for
+/// it comes from sums over a front.
 inline constexpr double kLeftOfZero = 1e-13;
 
-/// Size of the neighbours of an entry of an unknown in its front of the elimination, in the entry's
-/// own unit (both by the scaling of the front's columns). Of the joint system as written. O(front).
-double size_around(const SystemData& d, const solve::RowMatrix<double>& unknowns, int variable,
-                   Eigen::Index entry);
+/// What stands around an unknown in the elimination, in the unknown's own unit (both by the scaling
+/// of the fronts' columns): the largest of its front; where all that the front has in common with
+/// its parent is left of a 0 there, as behind a gain of 0, so may the whole front be, and the
+/// parent's size counts. Of the joint system as written.
+class Surroundings {
+ public:
+  /// One column of unknowns, which must live as long.
+  Surroundings(const SystemData& data, const solve::RowMatrix<double>& unknowns)
+      : d_(data), unknowns_(unknowns) {}
 
-/// The same of an entry of a signal that unknowns stand for; 0 of a known one.
-double size_around_signal(const SystemData& d, const solve::RowMatrix<double>& unknowns, int signal,
-                          Eigen::Index entry);
+  /// Around an entry of a signal that unknowns stand for; 0 of a known one. O(1), once O(unknowns).
+  double size(int signal, Eigen::Index entry);
+
+ private:
+  double of_variable(int variable, Eigen::Index entry);
+  /// Once that of its parent is known.
+  double of_front(const solve::Front& front) const;
+
+  const SystemData& d_;
+  const solve::RowMatrix<double>& unknowns_;
+  std::vector<double> sizes_ = {};  ///< per front, in the scale of its columns
+};
 
 }  // namespace titop::detail

@@ -137,7 +137,7 @@ WrittenResidual residual_of(const SystemData& d, Signals& signals, Rounding roun
 /// At one instant. False where there is none, or where the equations hold and yet digits may be
 /// lost.
 bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Certificate& c) {
-  if (!has_instants(d)) return false;
+  if (!has_instants(d) || d.layout().order() + u.size() == 0) return false;
   const Instant now(d, known_at_instant(d, u, s));
   if (!now.unknowns().allFinite()) return false;
   Signals signals{first_of_signals(d.graph())};
@@ -156,6 +156,20 @@ bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Ce
   return true;
 }
 
+/// Share of the outputs that double loses. One that is 0 by cancellation, which has no size to
+/// measure it by, has lost nothing: rounding is all that it has.
+void find_lost(const SystemData& d, Evaluation<double>& point, Check& check) {
+  const RowMatrix<double> before = point.outputs();
+  const auto losses = point.losses();
+  check.lost = std::max(losses.change, losses.rounding);
+  if (check.lost <= kWarn) return;
+  const RowMatrix<double> y = point.outputs();
+  const double told = std::max(lost_of_outputs(d, point.unknowns(), y, y - before),
+                               lost_of_outputs(d, point.unknowns(), y, point.rounding()));
+  check.rounding_alone = told < check.lost;
+  check.lost = std::min(check.lost, told);
+}
+
 /// At one real s: what holds for every real s holds for every s, at half the arithmetic.
 void check_at_s(const SystemData& d, const RowMatrix<double>& u, double s, Check& check) {
   Evaluation<double> point(d, s, u);
@@ -167,8 +181,7 @@ void check_at_s(const SystemData& d, const RowMatrix<double>& u, double s, Check
       residual_of(d, signals, [&] { return point.rounding_of_values(signals.first); });
   check.certificate.residual = written.worst;
   check.certificate.residual_where = written.where;
-  const auto losses = point.losses();
-  check.lost = std::max(losses.change, losses.rounding);
+  find_lost(d, point, check);
   if (const double lost = check.lost; lost > kWarn)
     check.notes.push_back(
         {Note::Kind::warning, "certify",
@@ -186,8 +199,11 @@ void self_check(const SystemData& d, Check& check) try {
   // Not |pick_s| itself, where a block by itself may have a pole.
   const double s = kRealShare * std::abs(pick_s(d));
   certificate.s = s;
-  if (u.size() == 0) return;  // nothing moves
-  if (!check_instant(d, u, s, certificate)) check_at_s(d, u, s, check);
+  if (check_instant(d, u, s, certificate)) return;
+  if (u.size() > 0)
+    check_at_s(d, u, s, check);
+  else
+    certificate.residual = -1;  // at s nothing moves
 } catch (const Error& error) {
   if (!error.has(Code::singular)) throw;
   check.certificate.residual = 1;

@@ -15,6 +15,7 @@ namespace titop::detail {
 /// of, against A, B, C, D, for the first two of each type. With positions or rates in the
 /// equations, states that follow from others or a reduced scene, and where digits may be lost, at
 /// one real s: all is then a function of the input alone, but a second elimination is needed.
+/// Without inputs nothing moves there: not checked.
 void self_check(const SystemData& data, Check& check);
 
 }  // namespace titop::detail

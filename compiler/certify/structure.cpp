@@ -161,4 +161,23 @@ std::string why_no_structure(const Graph& g, ParameterValues values) {
   return taken_for_nothing(g, all);
 }
 
+bool has_poles_of_bodies_only(const Graph& g) {
+  const auto is_body = [&](int node) {
+    return !g.nodes[at(node)].block->interface().channels.empty();
+  };
+  for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i)
+    if (g.nodes[at(i)].state >= 0 && !is_body(i) && g.nodes[at(i)].block->type() != "Integrator")
+      return false;
+  for (const Equation& e : g.equations) {
+    if (const Node& node = g.nodes[at(g.signals[at(e.target)].node)];
+        node.block->type() != "Integrator")
+      continue;
+    for (const Term& t : e.terms)
+      if (const Signal& s = g.signals[at(t.signal)];
+          s.role != Signal::Role::external && !is_body(s.node))
+        return false;  // a loop of integrators may have any poles
+  }
+  return true;
+}
+
 }  // namespace titop::full

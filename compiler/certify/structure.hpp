@@ -14,4 +14,8 @@ namespace titop::full {
 /// between them.
 std::string why_no_structure(const Graph& graph, ParameterValues values);
 
+/// Whether all poles of a structure are those of its bodies, or at 0: one-way blocks, which only
+/// read it, have no states, but for integrators of what bodies and inputs give.
+bool has_poles_of_bodies_only(const Graph& graph);
+
 }  // namespace titop::full

@@ -40,7 +40,7 @@ Json poles(const std::vector<Pole>& list) {
 }
 
 Json certificate(const Certificate& c) {
-  return {{"residual", c.residual},
+  return {{"residual", found(c.residual)},
           {"residual_where", c.residual_where},
           {"s", c.s},
           {"at_instant", c.at_instant},
@@ -99,6 +99,7 @@ Json poles(const FullCertificate::Poles& p) {
                         {"error", where(measured, p.error)},
                         {"where", where(measured, complex(p.where))},
                         {"right", where(p.done, p.right)},
+                        {"hidden", where(p.done, p.hidden)},
                         {"rightmost", where(p.done && p.count > 0, complex(p.rightmost))}});
 }
 

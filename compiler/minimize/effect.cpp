@@ -67,13 +67,18 @@ void measure_change(const StateSpace& whole, Minimized& m) {
   m.notes.front() = to_string(m.order);
 }
 
-bool put_back(const StateSpace& whole, double resolution, Minimized& m) {
-  const double change = m.order.change;
-  if (!(change > std::max(kUnchanged, 10 * resolution))) return false;
+bool put_back(const StateSpace& whole, double resolution, double lost, Minimized& m) {
+  const double change = m.order.change, allowed = std::max(kUnchanged, 10 * resolution);
+  if (!(change > allowed) && !(lost > allowed)) return false;
   m.model = whole;
   m.order = back_to(whole.order(), std::max(kUnchanged, resolution), std::move(m.order));
-  m.notes = {to_string(m.order),
-             fmt::format("nothing was removed, since that changes the transfer by {:.1e}", change)};
+  m.notes = {
+      to_string(m.order),
+      change > allowed
+          ? fmt::format("nothing was removed, since that changes the transfer by {:.1e}", change)
+          : fmt::format("nothing was removed: the smaller model cancels more, and keeps "
+                        "{:.0f} digits of the transfer",
+                        std::max(0.0, -std::log10(lost)))};
   return true;
 }
 

@@ -22,7 +22,9 @@ void measure_change(const StateSpace& whole, Minimized& m);
 /// stays after all: true, with the verdict and then the reason as notes. A mode of visibility v
 /// changes the transfer by up to 10 v at the points of `near_modes`: where some that were judged
 /// not to matter did more, no lower end of the order is certain, and the verdict keeps the change
-/// that was measured, although nothing is removed: the full certificate calls it a fault.
-bool put_back(const StateSpace& whole, double resolution, Minimized& m);
+/// that was measured, although nothing is removed: the full certificate calls it a fault. `lost` is
+/// what the smaller model gets wrong, also by cancelling more than `whole` does (nearly equal poles
+/// whose modes are nearly parallel): as much as that is reason enough for all to stay.
+bool put_back(const StateSpace& whole, double resolution, double lost, Minimized& m);
 
 }  // namespace titop::modes

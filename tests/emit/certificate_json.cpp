@@ -52,6 +52,7 @@ void check_poles(const Json& item, const FullCertificate::Poles& p) {
   check_number(item.at("error"), p.done && p.measured > 0, p.error);
   check_complex(item.at("where"), p.done && p.measured > 0, p.where);
   check_number(item.at("right"), p.done, p.right);
+  check_number(item.at("hidden"), p.done, p.hidden);
   check_complex(item.at("rightmost"), p.done && p.count > 0, p.rightmost);
 }
 
@@ -117,7 +118,7 @@ void check_same(const FullCertificate& c) {
   CHECK(all.at("format") == "titop certificate 1");
   CHECK(all.at("holds") == c.holds());
   CHECK(all.at("faults").get<std::vector<std::string>>() == c.faults);
-  CHECK(all.at("basic").at("residual") == c.basic.residual);
+  check_number(all.at("basic").at("residual"), c.basic.residual >= 0, c.basic.residual);
   check_number(all.at("basic").at("dense_error"), c.basic.dense_error >= 0, c.basic.dense_error);
   CHECK(all.at("basic").at("weakest_where") == c.basic.weakest_where);
   check_grid(all.at("grid"), c.grid);

@@ -1,0 +1,62 @@
+#include <doctest/doctest.h>
+
+#include <titop/titop.hpp>
+
+/// A smaller model may be right in exact arithmetic, and cancel more in double.
+
+using namespace titop;
+
+namespace {
+
+/// Free masses of 1 and `mass`, joined by dampers, and a grounded one that hears of them by `gain`.
+Diagram nearly_equal_poles(double mass, double gain) {
+  Diagram d{"nearly_equal_poles"};
+  auto u = d.input("u");
+  auto a = d.add("a", SpringMass{.mass = 1, .stiffness = 0, .damping = 1, .parent_mass = 1});
+  auto b = d.add("b", SpringMass{.mass = 1, .stiffness = 0, .damping = 1, .parent_mass = mass});
+  auto c = d.add("c", SpringMass{.mass = 1, .stiffness = 1});
+  a.parent.force = -u;
+  mount(b, a.child);
+  ground(c);
+  c.child.force = gain * b.child.rate;
+  a.child.force += 1.0 * c.stretch;
+  d.output("x") = a.child.position;
+  return d;
+}
+
+/// Against 32 digits, at each of these points by itself.
+double worst_error(const System& system, const StateSpace& model) {
+  double worst = 0;
+  for (const std::complex<double> s :
+       {std::complex<double>(0.01, 0.02), {0.1, 0.2}, {0.3, 0.7}, {0.05, 1}, {0.5, 3}, {1, 10}}) {
+    const std::complex<double> exact = system.transfer(s, Precision::twofold)(0, 0);
+    worst = std::max(worst, std::abs(model.transfer(s)(0, 0) - exact) / std::abs(exact));
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE("states stay where the model without them has lost the transfer's digits") {
+  for (const double mass : {26000.0, 1000.0})
+    for (const double gain : {1e-5, 1e-4, 1e-3}) {
+      const System system = compile(nearly_equal_poles(mass, gain));
+      CAPTURE(mass);
+      CAPTURE(gain);
+      CHECK(worst_error(system, system.state_space()) <= 1e-9);
+      CHECK(system.state_space().order() == 8);
+      CHECK(system.log().find("nothing was removed: the smaller model cancels more") !=
+            std::string::npos);
+      CHECK(system.order_verdict().removed.empty());
+      CHECK_FALSE(system.order_verdict().decided());
+      CHECK(certify(system).holds());
+    }
+}
+
+TEST_CASE("states leave where that costs no digits") {
+  const System system = compile(nearly_equal_poles(2, 0.1));
+  StateSpace written;
+  system.write(written);
+  CHECK(system.state_space().order() < written.order());
+  CHECK(worst_error(system, system.state_space()) <= 1e-9);
+}
