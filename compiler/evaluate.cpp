@@ -2,6 +2,7 @@
 
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/pole.hpp>
 
 namespace titop::detail {
 namespace {
@@ -17,6 +18,29 @@ std::vector<char> nodes_in_use(const Skeleton& k) {
     if (row.active && row.node >= 0) used[at(row.node)] = 1;
   for (const int i : k.layout.state_nodes) used[at(i)] = 1;
   return used;
+}
+
+/// What a node's block by itself is refused with: which node's, and the way out.
+Error named(const Error& error, const Node& node) {
+  std::vector<Mistake> mistakes = error.mistakes();
+  for (Mistake& m : mistakes) {
+    m.message = fmt::format("{}: {}", node.name, m.message);
+    if (m.code == Code::singular)
+      m.hint =
+          "evaluate beside it; where the system has no pole, System::state_space().transfer(s) has "
+          "a value there";
+  }
+  return Error(std::move(mistakes));
+}
+
+template <class T>
+solve::Response<T> response_of(const Node& node, const Dynamics& dynamics, const T& s,
+                               ParameterValues parameters) {
+  try {
+    return response(*node.block, dynamics, s, parameters);
+  } catch (const Error& error) {
+    throw named(error, node);
+  }
 }
 
 }  // namespace
@@ -42,6 +66,7 @@ Error not_refined(const SystemData& data, std::complex<double> s, double error) 
 template <class T>
 solve::Matrices<T> Evaluation<T>::respond(const T& s) {
   const Graph& g = data_.graph();
+  check_finite(solve::Scalar<T>::round(s), g.name);
   const std::vector<char> used = nodes_in_use(*data_.skeleton);
   of_node_.assign(g.nodes.size(), nullptr);
   solve::Matrices<T> m;
@@ -52,7 +77,7 @@ solve::Matrices<T> Evaluation<T>::respond(const T& s) {
     const Block& block = *g.nodes[at(i)].block;
     const Dynamics& dynamics = *data_.numbers.blocks[at(i)];
     const auto [found, added] = responses_.try_emplace({&block, &dynamics});
-    if (added) found->second = response(block, dynamics, s, data_.numbers.parameters);
+    if (added) found->second = response_of(g.nodes[at(i)], dynamics, s, data_.numbers.parameters);
     of_node_[at(i)] = &found->second;
     m.direct[at(i)] = &found->second.Y;
     m.states[at(i)] = &found->second.X;

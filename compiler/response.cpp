@@ -1,9 +1,31 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <titop/compiler/response.hpp>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/pole.hpp>
+
+namespace titop::solve {
+
+/// Of blocks by themselves only, where fewer digits cancel.
+using Complex100 = boost::multiprecision::cpp_complex_100;
+
+template <>
+struct Scalar<Complex100> {
+  static double epsilon() { return 1e-100; }
+  static double size(const Complex100& x) {
+    return static_cast<double>(abs(x.real()) + abs(x.imag()));
+  }
+  static Complex100 from(double x) { return Complex100(x); }
+  static std::complex<double> round(const Complex100& x) {
+    return {static_cast<double>(x.real()), static_cast<double>(x.imag())};
+  }
+};
+
+}  // namespace titop::solve
 
 namespace titop::detail {
 namespace {
@@ -47,14 +69,109 @@ solve::Response<T> modal_response(const Block& block, const Modal& m, const T& s
   return r;
 }
 
+/// What cancels in an entry of X or Y may be so many times the entry, per state: magnitudes add up,
+/// rounding does not, and this much of it is that of any LU.
+constexpr double kTerms = 100;
+
+/// The precision that is taken where one leaves too few digits; void: there is none.
 template <class T>
-solve::Response<T> general_response(const Block& block, const Dynamics& d, const T& s) {
+struct Finer {
+  using type = void;
+};
+template <>
+struct Finer<std::complex<long double>> {
+  using type = std::complex<solve::DoubleDouble>;
+};
+template <>
+struct Finer<std::complex<solve::DoubleDouble>> {
+  using type = solve::Complex100;
+};
+template <>
+struct Finer<solve::Complex50> {
+  using type = solve::Complex100;
+};
+
+template <class To, class From>
+To real_as(const From& x) {
+  if constexpr (std::is_same_v<To, solve::DoubleDouble>) {
+    const double high = static_cast<double>(x);
+    return To(high) + To(static_cast<double>(From(x - From(high))));
+  } else if constexpr (std::is_same_v<From, solve::DoubleDouble>) {
+    const double high = static_cast<double>(x);
+    return To(high) + To(static_cast<double>(x - From(high)));
+  } else {
+    return static_cast<To>(x);
+  }
+}
+
+/// z in another precision.
+template <class To, class From>
+To as(const From& z) {
+  using Real = std::decay_t<decltype(std::declval<const To&>().real())>;
+  using Part = std::decay_t<decltype(z.real())>;
+  return To(real_as<Real>(Part(z.real())), real_as<Real>(Part(z.imag())));
+}
+
+template <class To, class From>
+Dense<To> as(const Dense<From>& m) {
+  return m.unaryExpr([](const From& z) -> To { return as<To>(z); });
+}
+
+template <class T>
+Eigen::MatrixXd sizes(const Dense<T>& m) {
+  return m.unaryExpr([](const T& x) -> double { return solve::size_of(x); });
+}
+
+/// The largest of terms / size, entry by entry; a 0 without terms is one. Infinite where a number
+/// is none.
+double largest_ratio(const Eigen::MatrixXd& terms, const Eigen::MatrixXd& size) {
+  double result = 0;
+  for (Index i = 0; i < size.size(); ++i) {
+    if (terms(i) == 0) continue;
+    const double ratio = terms(i) / size(i);
+    if (std::isnan(ratio)) return HUGE_VAL;
+    result = std::max(result, ratio);
+  }
+  return result;
+}
+
+/// What the entries of X and Y are sums of, over the entries, at most; with K = s - A these are
+/// |K^-1| |K| |X| and |D| + |C| |X| + |C K^-1| |K| |X|, whatever the units of states and ports.
+/// Infinite where double cannot tell.
+template <class T>
+double cancels(const Dynamics& d, const T& s, const solve::Response<T>& r) {
+  using Eigen::MatrixXcd;
+  using Eigen::MatrixXd;
+  const auto n = d.A.rows();
+  const MatrixXcd one = MatrixXcd::Identity(n, n), K = solve::Scalar<T>::round(s) * one - d.A;
+  const MatrixXcd inverse = linalg::solve(K, one).z;
+  if (inverse.size() == 0 || !inverse.allFinite()) return HUGE_VAL;
+  const MatrixXd X = sizes(r.X), Y = sizes(r.Y);
+  if (!X.allFinite() || !Y.allFinite()) return HUGE_VAL;
+  const MatrixXd right = K.cwiseAbs() * X, of_states = inverse.cwiseAbs() * right;
+  const MatrixXd of_outputs =
+      d.D.cwiseAbs() + d.C.cwiseAbs() * X + (d.C * inverse).cwiseAbs() * right;
+  return std::max(largest_ratio(of_states, X), largest_ratio(of_outputs, Y));
+}
+
+/// From the matrices, each entry right to `enough`. C X + D cancels, the more the lower s is below
+/// the block's own frequencies: what T then has too few digits for is found in a finer precision.
+/// (Of 100 digits none are too few: 1e-88 of its terms is 0, as a notch at its frequency.)
+template <class T>
+solve::Response<T> general_response(const Block& block, const Dynamics& d, const T& s,
+                                    double enough) {
   const Resolvent<T> resolvent(d, s);
   if (resolvent.singular()) throw pole_of(block, s);
   solve::Response<T> r{resolvent.times(lifted<T>(d.B)), lifted<T>(d.D)};
   for (Index i = 0; i < r.Y.rows(); ++i)
     for (Index j = 0; j < r.Y.cols(); ++j)
       for (Index k = 0; k < r.X.rows(); ++k) r.Y(i, j) += lift<T>(d.C(i, k)) * r.X(k, j);
+  using More = typename Finer<T>::type;
+  if constexpr (!std::is_void_v<More>)
+    if (d.A.rows() > 0 && !(cancels(d, s, r) * solve::Scalar<T>::epsilon() <= enough)) {
+      const solve::Response<More> finer = general_response(block, d, as<More>(s), enough);
+      return {as<T>(finer.X), as<T>(finer.Y)};
+    }
   return r;
 }
 
@@ -141,7 +258,9 @@ template <class T>
 solve::Response<T> response(const Block& block, const Dynamics& d, const T& s,
                             ParameterValues parameters) {
   if (solve::Scalar<T>::epsilon() > 1e-16) return response_in_double(block, s, parameters);
-  return d.modal ? modal_response(block, *d.modal, s) : general_response(block, d, s);
+  if (d.modal) return modal_response(block, *d.modal, s);
+  const double states = static_cast<double>(d.A.rows());
+  return general_response(block, d, s, kTerms * states * solve::Scalar<T>::epsilon());
 }
 
 #define TITOP_INSTANTIATE(T)   \

@@ -1,8 +1,16 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <titop/graph/pole.hpp>
 
 namespace titop {
+
+void check_finite(std::complex<double> s, std::string_view what) {
+  if (std::isfinite(s.real()) && std::isfinite(s.imag())) return;
+  throw Error(Code::not_finite,
+              fmt::format("{} at s = {}{:+}j: that is no number", what, s.real(), s.imag()),
+              "give a finite s, a finite omega");
+}
 
 Error pole_at(std::complex<double> s, std::string_view what) {
   return {Code::singular, fmt::format("{} has a pole at s = {}{:+}j", what, s.real(), s.imag()),

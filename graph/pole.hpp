@@ -6,6 +6,9 @@
 
 namespace titop {
 
+/// Throws not_finite where s is not. `what` is asked for a value there: "demo", "the model".
+void check_finite(std::complex<double> s, std::string_view what);
+
 /// singular: at s there is no response. `what`: "a SpringMass", "mode 2 of a FlexibleBody".
 Error pole_at(std::complex<double> s, std::string_view what);
 

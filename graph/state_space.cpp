@@ -1,19 +1,35 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/pole.hpp>
 #include <titop/graph/state_space.hpp>
 
 namespace titop {
+namespace {
+
+/// Of A, its entries scaled: below it rounding decides whether A is singular, as it may have been
+/// off by some units of the last place wherever A was written. (A spring of 1e-12 beside one of 1
+/// has 1e-12, the static bending of a row of 20 beams 4e-13.)
+constexpr double kSingular = 10 * std::numeric_limits<double>::epsilon();
+/// Where one step of refinement changes the solution by more, it has no digit.
+constexpr double kNoDigit = 0.1;
+
+/// At 0, where poles are exactly, what rounding has left of one may pass for a pivot. (At another s
+/// it may as well be all there is: two dozen integrators in a row.)
+bool pole_at_zero(const linalg::Solution& x) { return x.rcond < kSingular || x.moved > kNoDigit; }
+
+}  // namespace
 
 Eigen::MatrixXcd StateSpace::transfer(std::complex<double> s) const {
+  check_finite(s, "the model");
   const auto n = A.rows();
   if (n == 0) return D.cast<std::complex<double>>();
   const linalg::Solution x =
       linalg::solve(s * Eigen::MatrixXcd::Identity(n, n) - A, B.cast<std::complex<double>>());
-  // At 0, where poles are exactly, rounding may pass for a pivot: the solution has no digit then.
-  if (!(x.rcond > 0) || !x.z.allFinite() || (s == 0.0 && x.moved > 0.1))
+  if (!(x.rcond > 0) || !x.z.allFinite() || (s == 0.0 && pole_at_zero(x)))
     throw Error(Code::singular, fmt::format("s = {}{:+}j is a pole", s.real(), s.imag()),
                 "evaluate beside it");
   return C * x.z + D;
