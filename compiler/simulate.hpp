@@ -43,7 +43,8 @@ class Excitation {
 
 /// How a step is taken. Cost per step of n states, b bodies; error per unit of time of steps h.
 enum class Stepper {
-  automatic,  ///< exact up to 200 states, midpoint beyond
+  automatic,  ///< exact up to 600 states; beyond, midpoint at half the step, compared with midpoint
+              ///< at the step, three times the cost of one of them: Trajectory::error
   exact,      ///< matrix exponential, once O(n^3), then O(n^2): no error but rounding for inputs
               ///< that are linear in every step, at any step
   midpoint,   ///< implicit midpoint rule through the factors, O(b), h^2: stable at any step, keeps
@@ -58,6 +59,9 @@ struct Simulation {
   Stepper stepper = Stepper::automatic;
   Eigen::VectorXd x0 = {};   ///< states at time 0, in the order of System::states(); none: 0
   bool keep_states = false;  ///< Trajectory::x at all times
+  /// Of the automatic choice: the largest Trajectory::error that is not refused. Infinite where
+  /// outputs are asked for that no motion has reached yet (far down a row): they have no digit.
+  double accuracy = 0.01;
 };
 
 /// What comes out, a column per time.
@@ -67,12 +71,17 @@ struct Trajectory {
                              ///< time: just before)
   Eigen::MatrixXd x;         ///< states x times, or their last column alone
   Stepper stepper = Stepper::exact;  ///< the one that was taken
+  /// Per output: the largest change from steps of twice the size (these are h^2 methods: about
+  /// three times the error), relative to the output's largest value. 0 of the exact stepper; empty
+  /// where another was asked for, which is not tried twice.
+  Eigen::VectorXd error;
   std::vector<std::string> states, outputs;
 };
 
 /// The response of the system (its states, before `minimize`: x0 keeps its meaning) from x0 to
 /// `excitation`. Throws bad_value for steps that are not positive or do not divide `until`, and for
-/// an rk4 step beyond the limit of stability, which it names; size for x0 or inputs of another
+/// an rk4 step beyond the limit of stability, which it names, and where the automatic choice is off
+/// by more than Simulation::accuracy, with the output; size for x0 or inputs of another
 /// size; not_finite where the response overflows (an unstable system), with the time.
 ///
 /// Sources: [Hairer, Lubich, Wanner 2006] IV.2 (midpoint), [Van Loan 1978] (exponential).

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
+#include <titop/compiler/evaluate.hpp>
+#include <titop/compiler/instant.hpp>
 #include <titop/compiler/simulate.hpp>
 #include <titop/compiler/simulate/steppers.hpp>
 
@@ -21,8 +24,7 @@ const char* to_string(Stepper stepper) {
 
 namespace {
 
-constexpr int kExactUpTo =
-    200;  ///< states: beyond, a dense step costs more than one by the factors
+constexpr int kExactUpTo = 600;  ///< states: a second or so for the exponential
 
 /// Number of steps; throws where `step` and `until` make no sense together.
 Index steps_of(const Simulation& s) {
@@ -77,37 +79,106 @@ std::unique_ptr<detail::StepRule> rule_of(const System& system, const detail::Sy
   }
 }
 
+/// States on their way, some steps of the rule in each step that is asked for.
+struct Motion {
+  std::unique_ptr<detail::StepRule> rule;
+  int per_step;
+  VectorXd x;
+
+  void step(const VectorXd& u0, const VectorXd& u1) {
+    for (int i = 0; i < per_step; ++i) {
+      const auto at = [&](int k) { return VectorXd(u0 + (u1 - u0) * k / per_step); };
+      x = per_step == 1 ? rule->step(x, u0, u1) : rule->step(x, at(i), at(i + 1));
+    }
+  }
+};
+
+/// Outputs against those of steps of twice the size.
+struct Halved {
+  Motion twice;
+  VectorXd off, size;
+
+  /// What symmetry makes 0 is rounding, and has no digit to lose: an output counts as a million
+  /// times its rounding at least.
+  void compare(const detail::SystemData& d, const VectorXd& x, const VectorXd& y,
+               const VectorXd& u) {
+    constexpr double kOfRounding = 1e6;
+    const auto instant = [&](const VectorXd& states) {
+      const VectorXd all = d.states.expanded(states, u);
+      solve::RowMatrix<double> known(all.size() + u.size(), 1);
+      known << all, u;
+      return detail::Instant(d, std::move(known));
+    };
+    const VectorXd rounding = instant(x).rounding().outputs().cwiseAbs();
+    off = off.cwiseMax((instant(twice.x).outputs() - y).cwiseAbs());
+    size = size.cwiseMax(y.cwiseAbs()).cwiseMax(kOfRounding * rounding);
+  }
+  VectorXd relative() const {
+    return (off.array() > detail::kUnderflow).select(off.cwiseQuotient(size), 0);
+  }
+};
+
+void refuse_inaccurate(const System& system, const Simulation& s, const VectorXd& error) {
+  if (error.size() == 0) return;
+  Index worst = 0;
+  if (error.maxCoeff(&worst) <= s.accuracy) return;
+  throw Error(
+      Code::bad_value,
+      fmt::format("half of the step of {} s changes output {} by {:.1e} of its largest value",
+                  s.step, system.outputs()[static_cast<std::size_t>(worst)], error(worst)),
+      fmt::format("take smaller steps; Stepper::exact is right at any step, once for {0} x {0} x "
+                  "{0} operations; or say by Simulation::accuracy, or Stepper::midpoint, that it "
+                  "is good enough",
+                  system.order()));
+}
+
+void refuse_overflow(const System& system, double time) {
+  throw Error(Code::not_finite,
+              fmt::format("the response of {} overflows at {} s", system.stage().graph.name, time),
+              "look at its poles: it is unstable; stop earlier");
+}
+
+Stepper chosen(const System& system, Stepper asked) {
+  if (asked != Stepper::automatic) return asked;
+  return system.order() <= kExactUpTo ? Stepper::exact : Stepper::midpoint;
+}
+
 }  // namespace
 
 Trajectory simulate(const System& system, const Excitation& excitation, const Simulation& s) {
   const Index steps = steps_of(s);
-  VectorXd x = start_of(system, s.x0);
   Trajectory result;
-  result.stepper = s.stepper != Stepper::automatic ? s.stepper
-                   : system.order() <= kExactUpTo  ? Stepper::exact
-                                                   : Stepper::midpoint;
+  result.stepper = chosen(system, s.stepper);
   result.states = system.states();
   result.outputs = system.outputs();
-  result.y.resize(static_cast<Index>(result.outputs.size()), steps + 1);
-  result.x.resize(x.size(), s.keep_states ? steps + 1 : 1);
-  const auto rule = rule_of(system, *system.data_, result.stepper, s.step);
+  const auto outputs = static_cast<Index>(result.outputs.size());
+  result.y.resize(outputs, steps + 1);
+  const bool halved = result.stepper != s.stepper && result.stepper != Stepper::exact;
+  const auto rule = [&](double h) { return rule_of(system, *system.data_, result.stepper, h); };
+  const VectorXd x0 = start_of(system, s.x0), none = VectorXd::Zero(outputs);
+  Motion motion{rule(halved ? s.step / 2 : s.step), halved ? 2 : 1, x0};
+  std::optional<Halved> other;
+  if (halved) other = Halved{{rule(s.step), 1, x0}, none, none};
+  result.x.resize(x0.size(), s.keep_states ? steps + 1 : 1);
   VectorXd last = inputs_of(system, excitation, 0, s.step).first;
   for (Index k = 0;; ++k) {
     const double now = static_cast<double>(k) * s.step;
     Excitation::Ends u{last, {}};
     if (k < steps) u = inputs_of(system, excitation, now, static_cast<double>(k + 1) * s.step);
     result.time.push_back(now);
-    result.y.col(k) = system.apply(x, u.first).y;
-    result.x.col(s.keep_states ? k : 0) = x;
-    if (!x.allFinite() || !result.y.col(k).allFinite())
-      throw Error(
-          Code::not_finite,
-          fmt::format("the response of {} overflows at {} s", system.stage().graph.name, now),
-          "look at its poles: it is unstable; stop earlier");
-    if (k == steps) return result;
-    x = rule->step(x, u.first, u.second);
+    result.y.col(k) = system.apply(motion.x, u.first).y;
+    result.x.col(s.keep_states ? k : 0) = motion.x;
+    if (!motion.x.allFinite() || !result.y.col(k).allFinite()) refuse_overflow(system, now);
+    if (other) other->compare(*system.data_, motion.x, result.y.col(k), u.first);
+    if (k == steps) break;
+    motion.step(u.first, u.second);
+    if (other) other->twice.step(u.first, u.second);
     last = u.second;
   }
+  if (result.stepper == Stepper::exact) result.error = none;
+  if (other) result.error = other->relative();
+  if (other) refuse_inaccurate(system, s, result.error);
+  return result;
 }
 
 }  // namespace titop

@@ -94,7 +94,7 @@ TEST_CASE("energy of the demo's satellite, undamped, over 1,000,000 steps") {
   }
 }
 
-TEST_CASE("energy of 1000 masses in a row over 10,000 steps, by the stepper that is chosen") {
+TEST_CASE("energy of 1000 masses in a row over 10,000 steps, by the midpoint rule") {
   std::vector<double> mass(1000), stiffness(1000);
   for (std::size_t i = 0; i < 1000; ++i) {
     mass[i] = 1 + 0.3 * static_cast<double>(i % 3);
@@ -103,10 +103,8 @@ TEST_CASE("energy of 1000 masses in a row over 10,000 steps, by the stepper that
   const System s = compile(simulate_test::row_of_masses(mass, stiffness));
   Eigen::VectorXd x = Eigen::VectorXd::Zero(2000);
   for (int i = 0; i < 1000; ++i) x(2 * i) = i % 2 ? -0.1 : 0.1;
-  CHECK(simulate(s, Excitation::none(), {.step = 0.05, .until = 0.05, .x0 = x}).stepper ==
-        Stepper::midpoint);
   const auto energy = [&](const Eigen::VectorXd& at) {
     return simulate_test::energy(mass, stiffness, at);
   };
-  CHECK(drift(s, Stepper::automatic, 0.05, x, 10000, energy) <= bound(10000, 2000));
+  CHECK(drift(s, Stepper::midpoint, 0.05, x, 10000, energy) <= bound(10000, 2000));
 }
