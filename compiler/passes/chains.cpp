@@ -6,10 +6,12 @@
 #include <titop/compiler/passes/close/along.hpp>
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/close/redundant.hpp>
+#include <titop/compiler/passes/close/second_order.hpp>
 #include <titop/compiler/passes/close/still.hpp>
 #include <titop/compiler/passes/lower/amounts.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/passes/union_find.hpp>
+#include <titop/compiler/some_names.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <utility>
@@ -225,12 +227,37 @@ std::string direction_names(const MatrixXd& directions) {
   return " (" + text + ")";
 }
 
+/// Chains in a singular posture have to first order what leads nowhere.
+void warn_of_stops(Stage& stage, const Component& c, const Factors& factors,
+                   const std::vector<const Closing*>& in_order) {
+  constexpr double kStops = 1e-6;  // rounding leaves 1e-15, a singular posture some tenths
+  std::vector<const Closing*> closings;
+  std::vector<std::string> names;
+  for (const int l : c.lines) {
+    closings.push_back(in_order[at(l)]);
+    names.push_back(
+        name_of(stage.graph, stage.graph.equations[at(in_order[at(l)]->tie->equation)].target));
+  }
+  const double part = stopped(c, factors, closings, stage.graph);
+  if (part > kStops)
+    stage.notes.push_back(
+        {Note::Kind::warning, "chains",
+         fmt::format("the chain closed by {} is in a singular posture: motions that its equations "
+                     "allow to first order do not go on ({:.1e} of their second order is left), "
+                     "and the model has them all; take a posture beside it, or lock a joint",
+                     detail::some_names(names), part)});
+}
+
 /// Returns what the chains hold altogether.
 AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
   AtRest held;
   std::optional<Lowering> lowering;  // few chains are closed twice
   std::vector<Line> lines;
-  for (const int c : along(closings)) lines.push_back(line_of(closings[at(c)]));
+  std::vector<const Closing*> in_order;
+  for (const int c : along(closings)) {
+    in_order.push_back(&closings[at(c)]);
+    lines.push_back(line_of(closings[at(c)]));
+  }
   const Coordinates coordinates(stage.graph, stage.values);
   // Whatever moves at all counts, prescribed motions too: they must agree with what is said twice.
   const auto classify = [&](const Scalar& s) -> std::optional<closing::Meaning> {
@@ -241,6 +268,9 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
   for (Component& c : components(lines, classify)) {
     const Factors factors = scale(c.relations);
     const Redundancy found = redundancy(c.relations);
+    if (std::ranges::any_of(found.blocks,
+                            [](const Redundant& r) { return r.directions.rows() > 0; }))
+      warn_of_stops(stage, c, factors, in_order);
     for (std::size_t i = 0; i < c.lines.size(); ++i) {
       const Line& line = lines[at(c.lines[i])];
       const auto rows = static_cast<Index>(line.unit.size());

@@ -1,0 +1,92 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <titop/titop.hpp>
+
+/// A singular posture is told from one where chains are closed twice and still move.
+
+using namespace titop;
+
+namespace {
+
+struct FourBar {
+  double crank, coupler, rocker;     ///< lengths [m]
+  double crank_angle, rocker_angle;  ///< from x [rad]
+  Vector3d base;                     ///< of the rocker
+};
+
+/// In the plane z = 0 from the origin; the coupler stands along x. Springs on the crank.
+Diagram diagram(const FourBar& f) {
+  Diagram d{"four_bar"};
+  const Vector3d z(0, 0, 1);
+  auto base = d.add("base", RigidBody{.children = {{"A"}, {"D", f.base}}});
+  ground(base);
+  const auto link = [&](const char* name, double length, double mass) {
+    return d.add(name, RigidBody{.mass = mass,
+                                 .inertia = {0.1, 0.1, 0.1},
+                                 .PA = {length / 2, 0, 0},
+                                 .children = {{"C", {length, 0, 0}}}});
+  };
+  auto crank = link("crank", f.crank, 2), coupler = link("coupler", f.coupler, 3),
+       rocker = link("rocker", f.rocker, 2);
+  auto a = hinge(d, "a", crank, base.child("A"), Rotation::about(z, f.crank_angle), z);
+  a.torque = 5 * a.angle - d.input("u");
+  hinge(d, "b", coupler, crank.child, Rotation::about(z, -f.crank_angle), z).torque = 0;
+  auto c = hinge(d, "c", rocker, base.child("D"), Rotation::about(z, f.rocker_angle), z);
+  c.torque = 0;
+  auto end = d.add("end", Hinge{z});
+  mount(end, rocker.child, Rotation::about(z, -f.rocker_angle));
+  weld(coupler.child, end.child);
+  end.torque = 0;
+  d.output("crank") = a.angle;
+  d.output("rocker") = c.angle;
+  return d;
+}
+
+FourBar parallelogram(double angle) { return {0.3, 1, 0.3, angle, angle, {1, 0, 0}}; }
+
+bool warns(const FourBar& f) {
+  return compile(diagram(f)).log().find("is in a singular posture: motions that its equations") !=
+         std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a four-bar linkage folded flat: the log says that it has what leads nowhere") {
+  CHECK(warns(parallelogram(0)));
+  CHECK(warns(parallelogram(1e-12)));
+  // Both angles by themselves, to first order: parallel or against each other from there.
+  CHECK(compile(diagram(parallelogram(0))).order() == 4);
+}
+
+TEST_CASE("elsewhere it is closed twice out of its plane, and moves: no warning") {
+  for (const double angle : {1e-3, 0.1, 0.7, 2.0}) {
+    CAPTURE(angle);
+    CHECK_FALSE(warns(parallelogram(angle)));
+    CHECK(compile(diagram(parallelogram(angle))).order() == 2);
+  }
+  // Crank and coupler in one line stop the rocker, not the crank: a dead point is not singular.
+  CHECK_FALSE(warns({0.3, 0.5, 0.6, 0, std::numbers::pi / 2, {0.8, -0.6, 0}}));
+}
+
+TEST_CASE("a door on two hinges in one line, held off that line: no warning") {
+  Diagram d{"door"};
+  const Vector3d z(0, 0, 1);
+  auto base = d.add("base", RigidBody{.children = {{"A"}, {"D", {0.5, 0, 1}}}});
+  ground(base);
+  auto door = d.add(
+      "door",
+      RigidBody{.mass = 20, .inertia = {9, 5, 4}, .PA = {0.4, 0, 0.5}, .children = {{"C", z}}});
+  auto arm =
+      d.add("arm", RigidBody{.mass = 1, .inertia = {1, 1, 1}, .children = {{"C", {0.5, 0, 0}}}});
+  auto lower = hinge(d, "lower", door, base.child("A"), Rotation(), z);
+  lower.torque = d.input("u");
+  hinge(d, "upper", arm, door.child, Rotation(), z).torque = 0;
+  weld(arm.child, base.child("D"));
+  d.output("angle") = lower.angle;
+  const System system = compile(d);
+  CHECK(system.order() == 2);
+  CHECK(system.log().find("5 of 6 closing equations are redundant") != std::string::npos);
+  CHECK(system.log().find("singular posture") == std::string::npos);
+}
