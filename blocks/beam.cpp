@@ -111,6 +111,12 @@ void check(const Beam& beam) {
                                     beam.material.nu ? "both" : "neither"),
                         {},
                         "give one of them: either follows from the other and E"});
+  else if (const auto nu = beam.material.nu; nu && !(*nu > -1 && *nu <= 0.5))
+    mistakes.push_back(
+        {Code::bad_value,
+         fmt::format("material.nu of the beam is {}, not above -1 and up to 0.5", *nu),
+         {},
+         "Poisson's ratio is a fraction, 0.33 of aluminium"});
   else
     positive(shear_modulus(beam.material), "shear modulus");
   if (!mistakes.empty()) throw Error(std::move(mistakes));

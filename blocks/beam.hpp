@@ -30,7 +30,7 @@ Section tube(double outer_diameter, double inner_diameter);
 /// Isotropic, linear elastic.
 struct Material {
   double E = 0;                   ///< Young's modulus [Pa]
-  std::optional<double> nu = {};  ///< Poisson's ratio; gives G = E / (2 (1 + nu))
+  std::optional<double> nu = {};  ///< Poisson's ratio, -1 < nu <= 0.5; G = E / (2 (1 + nu))
   std::optional<double> G = {};   ///< shear modulus [Pa]; give either nu or G
   double rho = 0;                 ///< density [kg/m^3]
 };
@@ -49,7 +49,7 @@ struct Beam {
 };
 
 /// Throws `bad_value`, all together, for what is not positive and finite, fewer than one element, a
-/// Poisson's ratio of -1 or less, and a material with both or neither of nu and G.
+/// Poisson's ratio of -1 or less or above 0.5, and a material with both or neither of nu and G.
 void check(const Beam& beam);
 
 /// Free mesh of elements + 1 points "0", "1", ... along x, six degrees of freedom each, and the

@@ -7,6 +7,7 @@
 #include <titop/blocks/modal_checks.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/modal_form.hpp>
+#include <type_traits>
 
 namespace titop {
 
@@ -74,33 +75,114 @@ Modes modes_of(const FlexibleBody::Spec& spec, Number number) {
 
 double nominal_of(const Value& value) { return value.nominal(); }
 
+std::string entry(int i, int j) {
+  return fmt::format("({}, {})", component_name(i), component_name(j));
+}
+
+void require_finite(const MatrixXd& m, const std::string& name) {
+  for (Eigen::Index i = 0; i < m.rows(); ++i)
+    for (Eigen::Index j = 0; j < m.cols(); ++j)
+      if (!std::isfinite(m(i, j)))
+        throw Error(Code::not_finite,
+                    fmt::format("{} of the modal data has {} in row {}, column {}", name, m(i, j),
+                                i + 1, j + 1),
+                    "give finite numbers");
+}
+
+/// Modes of a structure with much damping in proportion to stiffness are above 1 where they are
+/// fast, or where they are slow with damping in proportion to mass; but some of them do oscillate.
+constexpr double kMostDamped = 1;
+
 void check_values(const ModalData& d) {
-  bool finite = d.omega.allFinite() && d.xi.allFinite() && d.L_P.allFinite() && d.D_P.allFinite();
-  for (const ModalChild& c : d.children) finite = finite && c.Phi_C.allFinite() && c.PC.allFinite();
-  if (!finite)
-    throw Error(Code::not_finite, "the modal data have entries that are not finite",
-                "check omega, xi, L_P, D_P and Phi_C");
+  if (!(d.digits > 0) || !std::isfinite(d.digits))
+    throw Error(Code::bad_value, fmt::format("the modal data have {} digits", d.digits),
+                "digits is how many decimal digits the numbers carry: 15 for doubles, 7 or so for "
+                "those of a text file");
   check_modes({d.omega, d.xi});
+  require_finite(d.L_P, "L_P");
+  require_finite(d.D_P, "D_P");
+  for (const ModalChild& c : d.children) {
+    require_finite(c.PC, "PC of " + c.name);
+    require_finite(c.Phi_C, "Phi_C of " + c.name);
+  }
+  if (d.xi.size() > 0 && d.xi.minCoeff() > kMostDamped)
+    throw Error(Code::bad_modes,
+                fmt::format("no mode oscillates: the least damping ratio is {}", d.xi.minCoeff()),
+                "xi is a fraction of critical damping, not percent: 0.005 for 0.5 %");
+}
+
+void check_entries(const Matrix6& D_P) {
+  Eigen::Index i = 0, j = 0;
+  const double off = (D_P - D_P.transpose()).cwiseAbs().maxCoeff(&i, &j);
+  const int row = static_cast<int>(std::min(i, j)), column = static_cast<int>(std::max(i, j));
+  if (off > 1e-9 * D_P.cwiseAbs().maxCoeff())
+    throw Error(
+        Code::bad_inertia,
+        fmt::format("D_P is not symmetric, by {:.2g}: {:.6g} at {}, {:.6g} at {}", off,
+                    D_P(row, column), entry(row, column), D_P(column, row), entry(column, row)),
+        "give the full symmetric 6 x 6 mass matrix about P");
+  for (int k = 0; k < 6; ++k)
+    if (D_P(k, k) < 0)
+      throw Error(Code::bad_inertia, fmt::format("D_P has {} at {}", D_P(k, k), component_name(k)),
+                  "masses and inertias about P must be 0 or more");
+}
+
+/// Finite-element models leave out some of the mass that turns, and put some of the rest a little
+/// beside where it is: a hundredth is seen. What is further from every rigid body has another
+/// cause.
+constexpr double kRigidMisfit = 0.05;
+
+Matrix6 rotations_first(const Matrix6& D_P) {
+  Matrix6 swapped;
+  swapped << D_P.bottomRightCorner<3, 3>(), D_P.bottomLeftCorner<3, 3>(),
+      D_P.topRightCorner<3, 3>(), D_P.topLeftCorner<3, 3>();
+  return swapped;
+}
+
+/// Refuses a mass matrix that no rigid body has.
+void check_rigid(const ModalData& d) {
+  const MassProperties p = mass_properties(d.D_P);
+  const double noise = std::max(kRigidMisfit, residual_mass(d).noise);
+  if (p.misfit <= noise) return;
+  const Matrix6 rigid = rigid_mass(p.mass.mean(), p.inertia, -p.centre);
+  Eigen::Index i = 0, j = 0;
+  (d.D_P - rigid).cwiseAbs().maxCoeff(&i, &j);
+  throw Error(
+      Code::bad_inertia,
+      fmt::format("D_P is not the mass matrix of a rigid body, by {:.2g} of it: it has {:.6g} at "
+                  "{}, a body of {:.6g} kg around ({:.4g}, {:.4g}, {:.4g}) has {:.6g}",
+                  p.misfit, d.D_P(i, j), entry(static_cast<int>(i), static_cast<int>(j)),
+                  p.mass.mean(), p.centre.x() + 0.0, p.centre.y() + 0.0, p.centre.z() + 0.0,
+                  rigid(i, j)),  // + 0.0: no -0
+      mass_properties(rotations_first(d.D_P)).misfit <= noise
+          ? "its rotations come first: D_P, L_P and Phi_C have x, y, z, rx, ry, rz"
+          : "the masses along x, y and z are the same, the products with the centre of mass turn "
+            "sign from one corner to the other; look at the order and the units");
 }
 
 void check_mass(const ModalData& d) {
-  const double off = (d.D_P - d.D_P.transpose()).cwiseAbs().maxCoeff();
-  if (off > 1e-9 * d.D_P.cwiseAbs().maxCoeff())
-    throw Error(Code::bad_inertia, fmt::format("D_P is not symmetric, by {:.2g}", off),
-                "give the full symmetric 6 x 6 mass matrix about P");
-  for (int i = 0; i < 6; ++i)
-    if (d.D_P(i, i) < 0)
-      throw Error(Code::bad_inertia,
-                  fmt::format("D_P has {} at {}", d.D_P(i, i), component_name(i)),
-                  "masses and inertias about P must be 0 or more");
+  check_entries(d.D_P);
+  check_rigid(d);
   const ResidualMass r = residual_mass(d);
-  if (r.verdict == Definiteness::indefinite)
-    throw Error(
-        Code::bad_modes,
-        fmt::format("the modes carry more mass than there is: D_P - L_P' L_P is negative in {}, "
-                    "by {:.2g} of D_P there (noise of the data: {:.1g})",
-                    component_name(r.component), -r.smallest, r.noise),
-        "check units and signs of L_P against D_P, or ModalData::digits");
+  if (r.verdict != Definiteness::indefinite) return;
+  ModalData whole;
+  whole.L_P.resize(0, 6);
+  whole.D_P = d.D_P;
+  whole.digits = d.digits;
+  const ResidualMass all = residual_mass(whole);
+  if (all.verdict == Definiteness::indefinite)
+    throw Error(Code::bad_inertia,
+                fmt::format("D_P is negative in {}, by {:.2g} of its entry there (noise of the "
+                            "data: {:.1g})",
+                            component_name(all.component), -all.smallest, all.noise),
+                "the inertia in D_P is about P: that about the centre of mass and what the mass "
+                "there adds");
+  throw Error(
+      Code::bad_modes,
+      fmt::format("the modes carry more mass than there is: D_P - L_P' L_P is negative in {}, "
+                  "by {:.2g} of D_P there (noise of the data: {:.1g})",
+                  component_name(r.component), -r.smallest, r.noise),
+      "check units and signs of L_P against D_P, or ModalData::digits");
 }
 
 /// What bodies of the same data share, whatever the values of their modes.
@@ -209,6 +291,20 @@ ModalData without_modes(const RigidBody& body) {
   return d;
 }
 
+/// What make() makes; what is wrong with its data is told with the line that makes a body of them.
+/// In a scene file there is none, and the reader tells the place.
+template <class Make>
+std::invoke_result_t<Make> told_at(const std::source_location& at, Make make) {
+  try {
+    return make();
+  } catch (const Error& error) {
+    if (at.line() == 0) throw;
+    std::vector<Mistake> mistakes = error.mistakes();
+    for (Mistake& m : mistakes) m.details.push_back("the body was made at " + to_string(at));
+    throw Error(std::move(mistakes));
+  }
+}
+
 }  // namespace
 
 MatrixXd modal_input(const ModalData& d) {
@@ -220,13 +316,15 @@ MatrixXd modal_input(const ModalData& d) {
   return W;
 }
 
-FlexibleBody::FlexibleBody(ModalData given) {
-  auto data = std::make_shared<const ModalData>(std::move(given));
-  check_shapes(*data);
-  check_values(*data);
-  check_mass(*data);
-  spec_ = std::make_shared<const Spec>(Spec{data});
-  block_ = std::make_shared<const FlexibleBodyBlock>(spec_, shapes_of(*data));
+FlexibleBody::FlexibleBody(ModalData given, std::source_location at) {
+  const auto data = std::make_shared<const ModalData>(std::move(given));
+  told_at(at, [&] {
+    check_shapes(*data);
+    check_values(*data);
+    check_mass(*data);
+    spec_ = std::make_shared<const Spec>(Spec{data});
+    block_ = std::make_shared<const FlexibleBodyBlock>(spec_, shapes_of(*data));
+  });
 }
 
 FlexibleBody::FlexibleBody(const FlexibleBody& body, const ModeValues& values) {
@@ -238,8 +336,10 @@ FlexibleBody::FlexibleBody(const FlexibleBody& body, const ModeValues& values) {
       spec_, static_cast<const FlexibleBodyBlock&>(*body.block_).shapes());
 }
 
-FlexibleBody::FlexibleBody(const Beam& beam) : FlexibleBody(modal_data(beam)) {}
-FlexibleBody::FlexibleBody(const RigidBody& body) : FlexibleBody(without_modes(body)) {}
+FlexibleBody::FlexibleBody(const Beam& beam, std::source_location at)
+    : FlexibleBody(told_at(at, [&] { return modal_data(beam); }), at) {}
+FlexibleBody::FlexibleBody(const RigidBody& body, std::source_location at)
+    : FlexibleBody(told_at(at, [&] { return without_modes(body); }), at) {}
 
 ModalData FlexibleBody::nominal() const {
   Modes m = modes_of(*spec_, nominal_of);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <source_location>
 #include <titop/blocks/beam.hpp>
 #include <titop/blocks/modal_data.hpp>
 #include <titop/blocks/rigid_body.hpp>
@@ -27,10 +28,12 @@ struct ModeValues {
 /// P -D_P0 with the residual mass D_P0 = D_P - L_P' L_P. States: eta1 ... etaN [m sqrt(kg)], then
 /// their rates. Frame: the node's own. No child: the clamped-free appendage of Fig. 15.
 ///
-/// The data are checked once, when it is made, and then shared by all nodes that use it. Throws
-/// bad_modes (shapes, omega <= 0, xi < 0, D_P0 negative beyond the data's digits, with the degree
-/// of freedom), bad_inertia (D_P not symmetric or with a negative mass), not_finite,
-/// duplicate_name. Cost of a compile: O(N (6 + 6 children)); of its transfer at s: the same.
+/// The data are checked once, when it is made, and then shared by all nodes that use it. Throws,
+/// with the line that makes it, bad_modes (shapes, omega <= 0, xi < 0 or all above 1, D_P0 negative
+/// beyond the data's digits, with the degree of freedom), bad_inertia (D_P not symmetric, negative,
+/// or further from every rigid body's than the data's digits and a twentieth), bad_value (digits),
+/// not_finite, duplicate_name. Cost of a compile: O(N (6 + 6 children)); of its transfer at s: the
+/// same.
 ///
 ///     FlexibleBody{boom, {.omega = {{1, w1}, {3, 2.0 * w1}}, .xi = {{1, z}}}}
 ///
@@ -41,9 +44,11 @@ struct ModeValues {
 /// omegas times one parameter, sqrt(E / E0); of another density or length it has other shapes too.
 class FlexibleBody {
  public:
-  FlexibleBody(ModalData data);
-  FlexibleBody(const Beam& beam);       ///< through modal_data(beam)
-  FlexibleBody(const RigidBody& body);  ///< no modes; parameters at their nominal values
+  FlexibleBody(ModalData data, std::source_location at = std::source_location::current());
+  /// Through modal_data(beam).
+  FlexibleBody(const Beam& beam, std::source_location at = std::source_location::current());
+  /// No modes; parameters at their nominal values.
+  FlexibleBody(const RigidBody& body, std::source_location at = std::source_location::current());
   /// Values that `body` has already stay where these are silent.
   FlexibleBody(const FlexibleBody& body, const ModeValues& values);
 

@@ -24,7 +24,7 @@ struct ModalData {
   Eigen::MatrixXd L_P;               ///< N x 6, participation factors at P [sqrt(kg), sqrt(kg) m]
   Matrix6 D_P = Matrix6::Zero();     ///< rigid mass matrix about P [kg, kg m, kg m^2]
   std::vector<ModalChild> children;  ///< the child points, none for an appendage
-  double digits = 15;                ///< decimal digits that the data carry
+  double digits = 15;                ///< decimal digits that the data carry, > 0
 };
 
 }  // namespace titop

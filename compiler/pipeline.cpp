@@ -89,6 +89,11 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d, double least) {
   d.factors =
       std::make_unique<const solve::Factors<double>>(k.joint.plan, detail::real_rows(k, d.numbers));
   k.dependents = detail::find_dependents(k.stage, k.joint);
+  for (std::size_t i = 0; i < k.dependents.size(); ++i)
+    if (k.dependents[i].nodes.empty() && k.dependents[i].origins.empty())
+      k.stage.notes.push_back(
+          {Note::Kind::info, "solve",
+           fmt::format("parameter {}: nothing depends on it", k.stage.graph.parameters[i].name)});
   if (d.factors->health().singular || least > 0) detail::reduce(k, d, least);
   detail::judge_internal_forces(k, d);
   k.stage.notes.push_back({Note::Kind::info, "solve",
@@ -156,7 +161,25 @@ Stage as_written(const Graph& graph) {
   return stage;
 }
 
+namespace {
+
+void check_options(const Options& o) {
+  const auto require = [](bool right, const char* name, double value, const char* range) {
+    if (!right)
+      throw Error(Code::bad_value, fmt::format("Options::{} is {}", name, value),
+                  fmt::format("give it {}", range));
+  };
+  require(o.minimize_up_to >= 0, "minimize_up_to", o.minimize_up_to,
+          "a number of states; 0: never");
+  require(o.exact_up_to >= 0, "exact_up_to", o.exact_up_to, "a number of states; 0: never");
+  require(o.resolution >= 0 && o.resolution < 1, "resolution", o.resolution,
+          "a fraction from 0 to below 1: a relative bandwidth");
+}
+
+}  // namespace
+
 System compile(const Diagram& diagram, const Options& options) {
+  check_options(options);
   return System(detail::compile_graph(diagram.graph(), options));
 }
 

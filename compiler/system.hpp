@@ -39,8 +39,8 @@ struct Options {
   int minimize_up_to = 100;
   /// Folder for one Graphviz file per pass (00-diagram.dot, 01-check.dot, ...); empty: none.
   std::string dump_to = {};
-  /// Merge what differs by less than this (relative half-bandwidth) when minimizing; 0: only what
-  /// rounding cannot tell from nothing.
+  /// Merge what differs by less than this (relative half-bandwidth, below 1) when minimizing; 0:
+  /// only what rounding cannot tell from nothing.
   double resolution = 0;
   InternalForces internal_forces = InternalForces::refuse;
   /// Up to this many states the minimal order is found in exact arithmetic as well, where the data
@@ -156,8 +156,8 @@ class System {
   /// less than 1e-7 of its terms, and a tenth of what it kept before, all of it is found at once.
   /// `minimize` is no part of it: state_space() of the new system judges the new values, and may
   /// have another order (Options::minimize_up_to = 0 keeps all states at all values). Throws
-  /// unknown_name (with the names there are), not_finite, what the blocks throw for values that
-  /// make no block (bad_inertia, bad_value), improper and ill_posed.
+  /// unknown_name (with the names there are), duplicate_name (one set twice), not_finite, what the
+  /// blocks throw for values that make no block (bad_inertia, bad_value), improper and ill_posed.
   ///
   /// Where new values change how a closed chain moves, or bring a term in or leave one out, all
   /// passes run again, at the cost of `compile` and with its throws; the log says so, and warns if
@@ -197,8 +197,9 @@ class System {
 
 /// Compiles a diagram: check, lower, split, chains, match, order, close, solve, certify (see
 /// compiler/pipeline.cpp, which reads like this line). Throws Error with all mistakes of the first
-/// pass that finds any. Cost: linear in the number of bodies for trees. From the first compile on,
-/// glibc keeps up to 64 MB of freed memory in the process (see compiler/memory.hpp).
+/// pass that finds any, bad_value for options out of their range. Cost: linear in the number of
+/// bodies for trees. From the first compile on, glibc keeps up to 64 MB of freed memory in the
+/// process (see compiler/memory.hpp).
 System compile(const Diagram& diagram, const Options& options = {});
 
 }  // namespace titop

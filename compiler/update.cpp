@@ -5,6 +5,7 @@
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/reduce/weak_pivot.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <unordered_set>
 
 /// New values of the parameters on the same plan: only what depends on them is made again.
 namespace titop {
@@ -90,7 +91,16 @@ std::vector<int> set_values(const Graph& g, const ParameterList& list,
                             std::vector<double>& values) {
   std::vector<Mistake> mistakes;
   std::vector<int> changed;
+  std::unordered_set<std::string_view> seen;
   for (const auto& [name, value] : list) {
+    if (!seen.insert(name).second) {
+      mistakes.push_back(
+          {Code::duplicate_name,
+           fmt::format("parameter {} is set twice, the second time to {}", name, value),
+           {},
+           "keep one of the two values"});
+      continue;
+    }
     const auto found = std::find_if(g.parameters.begin(), g.parameters.end(),
                                     [&](const Parameter& p) { return p.name == name; });
     if (found == g.parameters.end()) {
@@ -136,6 +146,8 @@ void remake_blocks(const Skeleton& k, const std::vector<int>& nodes, solve::Numb
     const Node& node = k.stage.graph.nodes[at(i)];
     try {
       n.blocks[at(i)] = node.block->dynamics(n.parameters);
+      if (auto mistakes = mistakes_of(*node.block, *n.blocks[at(i)]); !mistakes.empty())
+        throw Error(std::move(mistakes));
     } catch (const Error& error) {
       std::vector<Mistake> mistakes = error.mistakes();
       for (Mistake& m : mistakes)

@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <titop/graph/block.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/pole.hpp>
+#include <unordered_set>
 
 namespace titop {
 
@@ -77,6 +79,85 @@ Pattern Block::moved_by() const { return Pattern::Constant(1, interface().input_
 Pattern Block::seen_by() const { return Pattern::Constant(interface().output_size(), 1, true); }
 
 std::optional<Block::Cause> Block::why_singular(int, ParameterValues) const { return std::nullopt; }
+
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+/// Notes what is wrong with the matrices of one block.
+class Inspection {
+ public:
+  explicit Inspection(const Block& block) : block_(block) {}
+
+  /// False where the matrix has another size.
+  bool sized(const MatrixXd& m, const char* name, Index rows, Index columns) {
+    if (m.rows() == rows && m.cols() == columns) return true;
+    mistakes.push_back({Code::size,
+                        fmt::format("{} of this {} is {} x {}, not {} x {}", name, block_.type(),
+                                    m.rows(), m.cols(), rows, columns),
+                        {},
+                        "its interface() has so many states, inputs and outputs: all of u and y, "
+                        "channel by channel and port by port"});
+    return false;
+  }
+
+  void finite(const MatrixXd& m, const char* name) {
+    if (m.sum() * 0 == 0 || m.allFinite()) return;  // fast: what is not finite stays in a sum
+    for (Index i = 0; i < m.rows(); ++i)
+      for (Index j = 0; j < m.cols(); ++j)
+        if (!std::isfinite(m(i, j))) {
+          mistakes.push_back({Code::not_finite,
+                              fmt::format("{}({}, {}) of this {} is {}, counted from 0", name, i, j,
+                                          block_.type(), m(i, j)),
+                              {},
+                              "look at the numbers that its dynamics() takes"});
+          return;
+        }
+  }
+
+  void whole(const MatrixXd& m, const char* name, Index rows, Index columns) {
+    if (sized(m, name, rows, columns)) finite(m, name);
+  }
+
+  std::vector<Mistake> mistakes;
+
+ private:
+  const Block& block_;
+};
+
+}  // namespace
+
+std::vector<Mistake> mistakes_of(const Interface& interface, std::string_view type) {
+  std::vector<Mistake> mistakes;
+  std::unordered_set<std::string_view> seen;
+  for (const std::string& state : interface.states)
+    if (!seen.insert(state).second)
+      mistakes.push_back({Code::duplicate_name,
+                          fmt::format("two states of this {} are called {}", type, state),
+                          {},
+                          "give every state in its interface() a name of its own"});
+  return mistakes;
+}
+
+std::vector<Mistake> mistakes_of(const Block& block, const Dynamics& d) {
+  const Index n = static_cast<Index>(block.interface().states.size());
+  const Index nu = block.interface().input_size(), ny = block.interface().output_size();
+  Inspection look(block);
+  if (d.modal) {  // A is as sparse as its modes say: their numbers are all that there are
+    look.sized(d.A, "A", n, n), look.sized(d.B, "B", n, nu);
+    look.sized(d.C, "C", ny, n), look.sized(d.D, "D", ny, nu);
+    look.whole(d.modal->W, "W", n / 2, nu);
+    look.whole(d.modal->rigid, "rigid", ny, nu);
+    look.whole(d.modal->stiffness, "stiffness", n / 2, 1);
+    look.whole(d.modal->damping, "damping", n / 2, 1);
+    return std::move(look.mistakes);
+  }
+  look.whole(d.A, "A", n, n), look.whole(d.B, "B", n, nu), look.whole(d.C, "C", ny, n);
+  if (d.sparse.empty()) look.whole(d.D, "D", ny, nu);
+  for (const Gains& g : d.sparse) look.finite(g.gain, "a block of D");
+  return std::move(look.mistakes);
+}
 
 std::string_view to_string(Quantity quantity) {
   switch (quantity) {

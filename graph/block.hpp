@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <titop/graph/error.hpp>
 #include <titop/graph/value.hpp>
 #include <vector>
 
@@ -147,6 +148,13 @@ class Block {
 };
 
 using BlockPtr = std::shared_ptr<const Block>;
+
+/// Two states of one name (duplicate_name), which an own block may have. Empty where none are.
+std::vector<Mistake> mistakes_of(const Interface& interface, std::string_view type);
+/// What an own block may have got wrong in its matrices, as "B of this Rotor is 3 x 0, not 3 x 6":
+/// sizes other than those of its interface (size), entries that are not finite (not_finite). Empty
+/// where nothing is. `compile` asks both, `update` this one. O(entries).
+std::vector<Mistake> mistakes_of(const Block& block, const Dynamics& dynamics);
 
 std::string_view to_string(Quantity quantity);
 

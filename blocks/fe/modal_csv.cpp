@@ -54,11 +54,13 @@ class Reader {
               fmt::format("{} once: line {} has it", word, at->second));
   }
 
-  /// So many numbers behind the first `skip` fields; empty where they are not there.
-  std::vector<double> numbers(int line, const Fields& fields, std::size_t skip, std::size_t count) {
+  /// So many numbers behind the first `skip` fields; empty where they are not there. `what`: all
+  /// that stands behind the keyword.
+  std::vector<double> numbers(int line, const Fields& fields, std::size_t skip, std::size_t count,
+                              const std::string& what) {
     if (fields.size() != skip + count) {
-      mistake(line, fmt::format("{} fields", fields.size()),
-              fmt::format("{} behind {}", skip + count - 1, fields[0]));
+      mistake(line, fmt::format("{} fields behind {}", fields.size() - 1, fields[0]),
+              fmt::format("{}: {}", skip + count - 1, what));
       return {};
     }
     std::vector<double> values(count);
@@ -75,7 +77,7 @@ class Reader {
     const std::string_view word = fields[0];
     if (word == "units" || word == "digits" || word == "at P") require_first(line, word);
     if (word == "units") return read_units(line, fields);
-    if (word == "digits") return read_one(line, fields, data_.digits);
+    if (word == "digits") return read_digits(line, fields);
     if (word == "at P") return read_one(line, fields, at_P_);
     if (word == "D_P") return read_D_P(line, fields);
     if (word == "child") return read_child(line, fields);
@@ -85,7 +87,7 @@ class Reader {
   }
 
   void read_units(int line, const Fields& fields) {
-    const auto values = numbers(line, fields, 1, 3);
+    const auto values = numbers(line, fields, 1, 3, "units of length, mass and time");
     if (values.empty()) return;
     units_ = {values[0], values[1], values[2]};
     for (const double v : values)
@@ -93,14 +95,20 @@ class Reader {
   }
 
   void read_one(int line, const Fields& fields, double& value) {
-    const auto values = numbers(line, fields, 1, 1);
+    const auto values = numbers(line, fields, 1, 1, "a number");
     if (values.empty()) return;
     if (values[0] < 0) return mistake(line, fmt::format("{}", values[0]), "a number of 0 or more");
     value = values[0];
   }
 
+  void read_digits(int line, const Fields& fields) {
+    read_one(line, fields, data_.digits);
+    if (data_.digits == 0)
+      mistake(line, "0", "a number of digits above 0: how many the data carry");
+  }
+
   void read_D_P(int line, const Fields& fields) {
-    const auto values = numbers(line, fields, 1, 6);
+    const auto values = numbers(line, fields, 1, 6, "one row of the mass matrix about P");
     if (++D_P_rows_ > 6 || values.empty()) return;
     for (std::size_t i = 0; i < 6; ++i)
       data_.D_P(D_P_rows_ - 1, static_cast<Eigen::Index>(i)) = values[i];
@@ -109,7 +117,7 @@ class Reader {
   void read_child(int line, const Fields& fields) {
     if (!modes_.empty()) return mistake(line, "a child behind a mode", "children before modes");
     if (fields.size() < 2 || fields[1].empty()) return mistake(line, "no name", "the child's name");
-    const auto values = numbers(line, fields, 2, 3);
+    const auto values = numbers(line, fields, 2, 3, "its name and x, y, z from P");
     if (values.empty()) return;
     require_first(line, fmt::format("child {}", fields[1]));
     data_.children.push_back(
@@ -117,12 +125,15 @@ class Reader {
   }
 
   void read_mode(int line, const Fields& fields) {
-    auto values = numbers(line, fields, 1, 8 + 6 * data_.children.size());
+    auto values = numbers(
+        line, fields, 1, 8 + 6 * data_.children.size(),
+        fmt::format("omega, damping ratio, 6 of L_P, 6 of Phi for each child ({} before this line)",
+                    data_.children.size()));
     if (!values.empty()) modes_.push_back(std::move(values));
   }
 
   void read_modal_mass(int line, const Fields& fields) {
-    const auto values = numbers(line, fields, 1, 1);
+    const auto values = numbers(line, fields, 1, 1, "a number");
     if (values.empty()) return;
     if (modes_.empty() || !(values[0] > 0))
       return mistake(line, fmt::format("a modal mass of {}", values[0]),

@@ -81,9 +81,11 @@ BlockPtr read_rigid_body(const Place& p, const ReadValue& value, const FindBody&
                  .inertia = read_inertia(p.at("inertia"), value),
                  .PA = p.at("PA").vector(3)};
   const Place children = p.at("children");
-  for (std::size_t i = 0; i < children.size(); ++i)
-    spec.children.push_back(
-        {children.item(i).at("name").text(), children.item(i).at("PC").vector(3)});
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    const Place c = children.item(i);
+    c.only({"name", "PC"});
+    spec.children.push_back({c.at("name").text(), c.at("PC").vector(3)});
+  }
   return as_block(spec);
 }
 
@@ -137,6 +139,7 @@ std::vector<Axis> read_axes(const Place& p) {
   const Place list = p.at("axes");
   for (std::size_t i = 0; i < list.size(); ++i) {
     const Place axis = list.item(i);
+    axis.only({"kind", "direction", "name"});
     const std::string kind = axis.at("kind").text();
     if (kind != "about" && kind != "along") axis.at("kind").refuse("about or along");
     axes.push_back({kind == "about" ? Axis::Kind::revolute : Axis::Kind::prismatic,
@@ -312,10 +315,11 @@ FlexibleBody read_body(const Place& p) {
   const Place children = p.at("children");
   for (std::size_t i = 0; i < children.size(); ++i) {
     const Place c = children.item(i);
+    c.only({"name", "PC", "Phi_C"});
     data.children.push_back(
         {c.at("name").text(), c.at("PC").vector(3), c.at("Phi_C").matrix(6, n)});
   }
-  return data;
+  return {data, std::source_location{}};
 }
 
 }  // namespace titop::scene

@@ -95,6 +95,7 @@ int Place::integer() const {
 
 int Place::signal_size() const {
   const int size = integer();
+  if (size < 1) refuse("a size of 1 or more");
   if (size > kMostScalars) refuse(fmt::format("a size up to {}", kMostScalars));
   return size;
 }

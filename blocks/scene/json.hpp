@@ -35,7 +35,7 @@ class Place {
 
   double number() const;
   int integer() const;
-  int signal_size() const;  ///< an integer up to kMostScalars
+  int signal_size() const;  ///< an integer from 1 to kMostScalars
   bool yes() const;
   std::string text() const;
   Eigen::VectorXd vector(Eigen::Index size = -1) const;                   ///< -1: any size

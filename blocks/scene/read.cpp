@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <cmath>
 #include <map>
+#include <set>
 #include <titop/blocks/fe/text_file.hpp>
 #include <titop/blocks/scene/blocks.hpp>
 #include <titop/blocks/scene/json.hpp>
@@ -13,6 +15,9 @@ using scene::Json;
 using scene::Place;
 
 namespace {
+
+/// What is read has no source line; later messages tell its place in the file.
+constexpr std::source_location kRead = {};
 
 /// A block that is made already.
 struct Ready {
@@ -64,7 +69,7 @@ class Reader {
     p.only({"name", "value"});
     const std::string name = p.at("name").text();
     if (parameters_.contains(name)) p.at("name").refuse("a name that no parameter before has");
-    parameters_[name] = diagram.param(name, p.at("value").number());
+    parameters_[name] = diagram.param(name, p.at("value").number(), kRead);
   }
 
   Value read_value(const Place& p) const {
@@ -85,8 +90,8 @@ class Reader {
       return at->second;
     };
     const auto value = [&](const Place& place) { return read_value(place); };
-    const Ready::Handle handle =
-        diagram.add(name, Ready{named(p, name, [&] { return scene::read_block(p, value, body); })});
+    const Ready ready{named(p, name, [&] { return scene::read_block(p, value, body); })};
+    const Ready::Handle handle = diagram.add(name, ready, kRead);
     graph_ = handle.graph;
     nodes_[name] = handle.node;
   }
@@ -95,7 +100,7 @@ class Reader {
     p.only({"name", "size"});
     const std::string name = p.at("name").text();
     if (inputs_.contains(name)) p.at("name").refuse("a name that no input before has");
-    const InputRef input = diagram.input(name, p.at("size").signal_size());
+    const InputRef input = diagram.input(name, p.at("size").signal_size(), kRead);
     graph_ = input.graph();
     inputs_[name] = input.signal();
   }
@@ -178,6 +183,7 @@ class Reader {
       if (term.of != Term::Of::signal && s.channel < 0)
         p.at("read").refuse("nothing: only channels have reactions, positions and rates");
       if (p.has("sign")) term.sign = p.at("sign").number();
+      if (std::abs(term.sign) != 1) p.at("sign").refuse("1 or -1; other numbers are factors");
       if (p.has("factors"))
         each(p.at("factors"), [&](const Place& f) { term.factors.push_back(read_factor(f)); });
       terms.push_back(std::move(term));
@@ -203,9 +209,9 @@ class Reader {
 
   void read_output(const Place& p) {
     p.only({"name", "size", "terms"});
-    const OutputRef output = diagram.output(p.at("name").text(), p.at("size").signal_size());
+    const OutputRef output = diagram.output(p.at("name").text(), p.at("size").signal_size(), kRead);
     if (!p.has("terms")) return;
-    output = 0;
+    output = Rhs(Expr{}, kRead);
     if (p.at("terms").size() == 0) return;
     if (!graph_) p.at("terms").refuse("none, in a scene without blocks and inputs");
     graph_->outputs.back().terms = read_terms(p.at("terms"));
@@ -217,12 +223,60 @@ class Reader {
   std::map<std::string, int> nodes_, inputs_;
 };
 
+/// Refuses an object in which a key stands twice: the parser would drop one of the two values.
+class KeysOnce {
+ public:
+  explicit KeysOnce(std::string file) : file_(std::move(file)) {}
+
+  bool operator()(int, Json::parse_event_t event, Json& parsed) {
+    using Event = Json::parse_event_t;
+    if (event == Event::object_start || event == Event::array_start) {
+      next();
+      open_.push_back({.list = event == Event::array_start});
+    } else if (event == Event::object_end || event == Event::array_end) {
+      open_.pop_back();
+    } else if (event == Event::value) {
+      next();
+    } else if (open_.back().key = parsed.get<std::string>();
+               !open_.back().keys.insert(open_.back().key).second) {
+      throw Error(Code::bad_file, fmt::format("{}: {}: the key is given twice", file_, path()),
+                  "keep one of them");
+    }
+    return true;
+  }
+
+ private:
+  struct Level {
+    bool list = false;
+    std::ptrdiff_t item = -1;
+    std::string key = {};
+    std::set<std::string> keys = {};
+  };
+
+  void next() {
+    if (!open_.empty()) ++open_.back().item;
+  }
+
+  std::string path() const {
+    std::string path;
+    for (const Level& l : open_)
+      path += l.list ? fmt::format("[{}]", l.item) : (path.empty() ? "" : ".") + l.key;
+    return path;
+  }
+
+  std::string file_;
+  std::vector<Level> open_;
+};
+
 }  // namespace
 
 Diagram parse_scene(std::string_view json, const std::string& file) {
   Json all;
   try {
-    all = Json::parse(json);
+    KeysOnce keys(file);
+    all = Json::parse(json, [&](int depth, Json::parse_event_t event, Json& parsed) {
+      return keys(depth, event, parsed);
+    });
   } catch (const Json::parse_error& error) {
     throw Error(Code::bad_file, fmt::format("{}: no JSON text at byte {}", file, error.byte),
                 "look at it with a JSON program such as jq, which shows the place");

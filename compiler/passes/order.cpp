@@ -102,6 +102,18 @@ Components components(const Graph& g, const Arrows& needs) {
   return result;
 }
 
+/// An input that nothing reads may be a line that was forgotten.
+void note_unread(Stage& stage, const Arrows& readers) {
+  const Graph& g = stage.graph;
+  std::vector<char> shown(g.signals.size(), 0);
+  for (const Output& o : g.outputs)
+    for (const Term& t : o.terms) shown[at(t.signal)] = 1;
+  for (const Input& input : g.inputs)
+    if (readers.from(input.signal).empty() && !shown[at(input.signal)])
+      stage.notes.push_back(
+          {Note::Kind::info, "order", fmt::format("input {}: nothing reads it", input.name)});
+}
+
 /// Signals that an input (or, without inputs, any state) moves, and that an output (or any state)
 /// sees; the rest is set aside. But loops that are seen stay: that what no input moves rests is
 /// only so if they have one solution.
@@ -119,7 +131,9 @@ void set_aside(Stage& stage, const Arrows& needs, const Components& parts) {
   for (const Released& r : stage.released) sources.push_back(g.equations[at(r.equation)].target);
   if (g.inputs.empty()) sources.insert(sources.end(), states.begin(), states.end());
   if (g.outputs.empty()) sinks.insert(sinks.end(), states.begin(), states.end());
-  const std::vector<char> moved = reach(needs.reversed(), sources), seen = reach(needs, sinks);
+  const Arrows readers = needs.reversed();
+  note_unread(stage, readers);
+  const std::vector<char> moved = reach(readers, sources), seen = reach(needs, sinks);
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
     Signal& sig = g.signals[at(s)];
     if (sig.role == Signal::Role::external || !sig.active || (moved[at(s)] && seen[at(s)]))

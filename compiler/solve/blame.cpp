@@ -39,10 +39,19 @@ int direct_rank(const Graph& g, const Channel& c, const Dynamics& m) {
   return static_cast<int>(lu.rank());
 }
 
-std::string written(const Graph& g, int signal) {
-  for (const Equation& e : g.equations)
-    if (e.target == signal) return fmt::format("{:<50} {}", print(g, e), to_string(e.where));
-  return name_of(g, signal);
+/// What drives the signal as the user wrote it; what a pass made of it where they wrote nothing.
+std::vector<std::string> written(const Stage& stage, int signal) {
+  std::vector<std::string> lines;
+  for (const Graph* g : {&*stage.source, &stage.graph}) {
+    for (const Equation& written_so : g->equations) {
+      if (written_so.target != signal) continue;
+      Equation e = written_so;
+      if (e.terms.empty()) e.accumulate = false;  // a joint adds 0 to what nothing drives
+      lines.push_back(fmt::format("{:<50} {}", print(*g, e), to_string(e.where)));
+    }
+    if (!lines.empty()) return lines;
+  }
+  return {name_of(stage.graph, signal)};
 }
 
 Mistake improper(const Stage& stage, const Channel& c, int rank) {
@@ -54,7 +63,7 @@ Mistake improper(const Stage& stage, const Channel& c, int rank) {
   Mistake m{Code::improper, {}, {}, {}};
   m.message = fmt::format("{} is imposed, and {} would need derivatives of it", name_of(g, driven),
                           name_of(g, other));
-  m.details.push_back(written(g, driven));
+  m.details = written(stage, driven);
   if (const auto cause = node.block->why_singular(c.spec, stage.values)) {
     m.details.push_back(fmt::format("{} {}", node.name, cause->why));
     m.hint = cause->way_out;
@@ -88,9 +97,18 @@ std::vector<std::string> equations_around(const Stage& stage, const std::vector<
       equations.insert(e);
   }
   std::vector<std::string> result;
-  for (const int e : equations)
-    if (result.size() < 6) result.push_back(written(g, g.equations[at(e)].target));
-  if (equations.size() > 6) result.push_back(fmt::format("and {} more", equations.size() - 6));
+  std::set<int> targets;
+  for (const int e : equations) {
+    const int target = g.equations[at(e)].target;
+    if (!targets.insert(target).second) continue;
+    const std::vector<std::string> lines = written(stage, target);
+    result.insert(result.end(), lines.begin(), lines.end());
+  }
+  constexpr std::size_t kMost = 6;
+  if (result.size() <= kMost) return result;
+  const std::size_t more = result.size() - kMost;
+  result.resize(kMost);
+  result.push_back(fmt::format("and {} more", more));
   return result;
 }
 
@@ -114,8 +132,8 @@ Mistake massless(const Stage& stage, const std::vector<int>& rows) {
     const Channel& c = g.channels[at(channel)];
     const auto cause = g.nodes[at(c.node)].block->why_singular(c.spec, stage.values);
     if (!cause) continue;
-    m.details = {written(g, c.takes == Takes::force ? c.accel : c.force),
-                 fmt::format("{} {}", g.nodes[at(c.node)].name, cause->why)};
+    m.details = written(stage, c.takes == Takes::force ? c.accel : c.force);
+    m.details.push_back(fmt::format("{} {}", g.nodes[at(c.node)].name, cause->why));
     m.hint = cause->way_out;
     return m;
   }

@@ -257,6 +257,13 @@ TEST_CASE("a beam that cannot be is refused, all mistakes at once") {
         "  give one of them: either follows from the other and E");
   beam.material.nu.reset();
   CHECK(message_of([&] { beam_mesh(beam); }) == "no error");
+  for (const double nu : {33.0, 0.7, -1.0, std::nan("")}) {
+    Beam percent = plank(2);
+    percent.material.nu = nu;
+    CHECK(message_of([&] {
+            beam_mesh(percent);
+          }).find("error[bad-value]: material.nu of the beam") == 0);
+  }
   beam.elements = 0;
   CHECK(message_of([&] { beam_mesh(beam); }).find("elements of the beam is 0") !=
         std::string::npos);

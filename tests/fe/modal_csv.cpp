@@ -202,8 +202,13 @@ TEST_CASE("what could not be read again is not written") {
 
 TEST_CASE("broken modal data are refused with line and field") {
   refused(replaced(kSmall, "mode, 3", "mode, x"), "m.csv:11: found 'x' as field 2");
-  refused(replaced(kSmall, "mode, 3,", "mode, 3, 1,"),
-          "m.csv:11: found 16 fields, expected 14 behind mode");
+  refused(
+      replaced(kSmall, "mode, 3,", "mode, 3, 1,"),
+      "m.csv:11: found 15 fields behind mode, expected 14: omega, damping ratio, 6 of L_P, 6 of "
+      "Phi for each child (1 before this line)");
+  refused(replaced(kSmall, "mode, 3,", "mode,"),
+          "m.csv:11: found 13 fields behind mode, expected 14");
+  refused("digits, 0\n" + kSmall, "m.csv:1: found 0, expected a number of digits above 0");
   refused(replaced(kSmall, "modal mass, 16", "modal mass, 0"), "m.csv:13: found a modal mass of 0");
   refused(replaced(kSmall, "D_P, 2, 0, 0, 0, 0, 0\n", ""),
           "m.csv: found 5 lines D_P, expected six");

@@ -72,6 +72,42 @@ TEST_CASE("broken scenes are refused with their place") {
   refused("[0.25]", "[[1]]", "equations[1].terms[0].factors[0]: found [1], expected a number or");
 }
 
+TEST_CASE("what a reader would drop without a word is refused with its place") {
+  for (const char* sign : {"0", "-3", "0.5"})
+    refused("\"sign\": -1", std::string("\"sign\": ") + sign, "equations[0].terms[0].sign: found ");
+  refused("\"mass\": 1", "\"mass\": 800, \"mass\": 9",
+          "error[bad-file]: cart.json: blocks[0].mass: the key is given twice");
+  refused("{\"of\": [\"K\"", "{\"terms\": [], \"of\": [\"K\"",
+          "cart.json: equations[2].terms: the key is given twice");
+  refused("\"bodies\": {}", "\"bodies\": {\"a\": [[], [0, {\"b\": 1, \"b\": 2}]]}",
+          "cart.json: bodies.a[1][1].b: the key is given twice");
+  refused("\"size\": 1}]", "\"size\": 0}]", "inputs[0].size: found 0, expected a size of 1");
+  const auto child = [](const std::string& more) {
+    return R"("blocks": [{"name": "A", "type": "RigidBody", "mass": 1, "PA": [0, 0, 0],
+      "inertia": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+      "children": [{"name": "C", "PC": [1, 0, 0])" +
+           more + "}]}, ";
+  };
+  parse_scene(replaced(kGood, "\"blocks\": [", child("")));
+  refused("\"blocks\": [", child(", \"CP\": [0, 0, 0]"), "blocks[0].children[0]: found");
+  refused("\"blocks\": [", R"("blocks": [{"name": "J", "type": "Joint", "axes":
+      [{"kind": "about", "direction": [0, 0, 1], "name": "", "angle": 1}]}, )",
+          "expected no \"angle\" among kind, direction, name");
+}
+
+TEST_CASE("mistakes of a scene's equations are told with their place in the file") {
+  const auto said = [](const std::string& what, const std::string& with) {
+    return titop_test::message_of([&] { compile(parse_scene(replaced(kGood, what, with))); });
+  };
+  const std::string text = said("[\"K\", \"in\"]", "[\"z\", \"child\", \"accel\"]");
+  INFO(text);
+  CHECK(text.find("equations[2] of the scene file") != std::string::npos);
+  CHECK(text.find("K was added at blocks[1] of the scene file") != std::string::npos);
+  CHECK(text.find(".cpp") == std::string::npos);
+  CHECK(said(", \"terms\": [{\"signal\": [\"z\", \"parent\", \"accel\"]}]}", "}")
+            .find("outputs[0] of the scene file") != std::string::npos);
+}
+
 TEST_CASE("parts of a signal are orthonormal rows") {
   const std::string guide = R"({"format": "titop scene 1", "name": "guide", "parameters": [],
 "bodies": {}, "blocks": [{"name": "g", "type": "Gain", "gain": 1, "size": 1}],
@@ -138,6 +174,8 @@ TEST_CASE("numbers that make no block are refused with the block's name") {
       "D_P": [[1, 0, 0, 0, 0, 0], [0, 1, 0, 0, 0, 0], [0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0],
               [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]], "children": []}})";
   refused("\"bodies\": {}", body, "cart.json: bodies.wing, wing: the modes carry more mass");
+  refused("\"bodies\": {}", replaced(body, "\"digits\": 15", "\"digits\": 0"),
+          "error[bad-value]: cart.json: bodies.wing, wing: the modal data have 0 digits");
   try {
     parse_scene(replaced(kGood, "\"mass\": 1", "\"mass\": -1"));
     FAIL("not refused");

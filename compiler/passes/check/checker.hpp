@@ -9,6 +9,28 @@
 /// that a user sees all of them at once.
 namespace titop::passes {
 
+/// Where something of the diagram was written: its source line, or its place in the scene file that
+/// it was read from, whose lists stand in the same order.
+struct Written {
+  const std::source_location& where;
+  const char* list;  ///< "equations"
+  std::ptrdiff_t index;
+
+  std::string text() const {
+    return where.line() > 0 ? to_string(where)
+                            : fmt::format("{}[{}] of the scene file", list, index);
+  }
+};
+
+/// Of an item of this list.
+template <class List>
+Written written(const List& list, const char* name, const typename List::value_type& item) {
+  return {item.where, name, &item - list.data()};
+}
+inline Written written(const Graph& g, const Equation& e) {
+  return written(g.equations, "equations", e);
+}
+
 struct Checker {
   const Graph& graph;
   std::vector<Mistake> mistakes;
@@ -32,8 +54,12 @@ struct Checker {
   }
 };
 
-inline std::string line(const std::string& text, const std::source_location& where) {
-  return fmt::format("{:<50} {}", text, to_string(where));
+inline std::string line(const std::string& text, const Written& where) {
+  return fmt::format("{:<50} {}", text, where.text());
+}
+
+inline std::string added_at(const Graph& graph, const Node& node) {
+  return fmt::format("{} was added at {}", node.name, written(graph.nodes, "blocks", node).text());
 }
 
 /// Sizes, quantities and frames of the terms on right-hand sides (terms.cpp).

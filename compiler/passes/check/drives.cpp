@@ -7,11 +7,6 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-std::string added_at(const Graph& graph, int node) {
-  const Node& n = graph.nodes[at(node)];
-  return fmt::format("{} was added at {}", n.name, to_string(n.where));
-}
-
 /// Overlap of two driven parts of one channel.
 bool overlap(const Equation& a, const Equation& b) {
   if (a.part.whole() || b.part.whole()) return true;
@@ -75,14 +70,15 @@ void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
         c.add(Code::two_equations,
               fmt::format("{}{} and {}{} are both driven, and are not at right angles",
                           name_of(g, b.target), b.part.name(), name_of(g, a.target), a.part.name()),
-              {line(print(g, b), b.where), line(print(g, a), a.where)}, oblique_way_out(b, a));
+              {line(print(g, b), written(g, b)), line(print(g, a), written(g, a))},
+              oblique_way_out(b, a));
         continue;
       }
       c.add(Code::two_equations,
             same ? fmt::format("{} is driven twice", name_of(g, a.target))
                  : fmt::format("{} is driven on both sides, acceleration and force",
                                channel_name(g, index)),
-            {line(print(g, b), b.where), line(print(g, a), a.where)},
+            {line(print(g, b), written(g, b)), line(print(g, a), written(g, a))},
             same ? "keep one of them; to add a force write += instead of ="
                  : "keep one of them; the other side can be read");
     }
@@ -93,8 +89,8 @@ void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
         rows == 0 ? name_of(g, channel.accel)
                   : fmt::format("{} ({} of {} degrees of freedom)", name_of(g, channel.accel),
                                 channel.size - rows, channel.size);
-    c.add(Code::no_equation, fmt::format("{} is not driven", what), {added_at(g, channel.node)},
-          free_way_out(g, channel));
+    c.add(Code::no_equation, fmt::format("{} is not driven", what),
+          {added_at(g, g.nodes[at(channel.node)])}, free_way_out(g, channel));
   }
 }
 
@@ -137,7 +133,7 @@ void check_added(Checker& c, const Channel& channel, const Drive& drive) {
         fmt::format("what is added to {} goes nowhere: its acceleration is driven, and the whole "
                     "force is passed on",
                     name_of(g, channel.force)),
-        {line(print(g, a), a.where), line(print(g, b), b.where)},
+        {line(print(g, a), written(g, a)), line(print(g, b), written(g, b))},
         "pass on the port's reaction, the force less what is added, as mount does; or add to the "
         "force of the point that it moves with");
 }
@@ -152,7 +148,7 @@ void check_one_way(Checker& c) {
     if (first >= 0) {
       const Equation& b = g.equations[at(first)];
       c.add(Code::two_equations, fmt::format("{} is driven twice", name_of(g, e.target)),
-            {line(print(g, b), b.where), line(print(g, e), e.where)},
+            {line(print(g, b), written(g, b)), line(print(g, e), written(g, e))},
             "keep one of them, or write their sum");
     }
     first = static_cast<int>(i);
@@ -161,7 +157,7 @@ void check_one_way(Checker& c) {
     const Signal& sig = g.signals[at(s)];
     if (sig.role == Signal::Role::input && sig.channel < 0 && driver[at(s)] < 0)
       c.add(Code::no_equation, fmt::format("{} is not driven", name_of(g, s)),
-            {added_at(g, sig.node)},
+            {added_at(g, g.nodes[at(sig.node)])},
             fmt::format("write {} = ..., or {} = 0", name_of(g, s), name_of(g, s)));
   }
 }

@@ -15,9 +15,13 @@ struct Kind {
   int frame = kNoFrame;
 };
 
+/// Two nodes of one name are told of by their names: nobody can tell their frames apart.
+bool same_frame(const Checker& c, int a, int b) {
+  return a == b || c.graph.nodes[at(a)].name == c.graph.nodes[at(b)].name;
+}
+
 /// One factor of a term; false where the term makes no sense from here on.
-bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term,
-           const std::source_location& where) {
+bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term, const Written& where) {
   const auto place = [&] { return line(print(c.graph, term), where); };
   if (const auto* k = std::get_if<Value>(&factor)) {
     kind.quantity = Quantity::plain;
@@ -52,7 +56,7 @@ bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term,
       return false;
     }
     const int from = c.find_node(T.from()), to = c.find_node(T.to());
-    if (kind.frame >= 0 && from >= 0 && from != kind.frame) {
+    if (kind.frame >= 0 && from >= 0 && !same_frame(c, from, kind.frame)) {
       c.add(Code::frame,
             fmt::format("the rotation {}<-{} meets a signal in {}", T.to(), T.from(),
                         frame_name(c.graph, kind.frame)),
@@ -64,7 +68,7 @@ bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term,
 }
 
 /// Kind of a term; size -1 where it makes no sense (already noted).
-Kind describe(Checker& c, const Term& term, const std::source_location& where) {
+Kind describe(Checker& c, const Term& term, const Written& where) {
   if (term.signal < 0) return {-1};
   const Signal& s = c.graph.signals[at(term.signal)];
   Kind kind{s.size, s.quantity, s.frame};
@@ -90,7 +94,7 @@ std::string frame_hint(const Checker& c, int target, const Term& term) {
 /// only mistakes ask for it.
 struct RightSide {
   const std::vector<Term>& terms;
-  const std::source_location& where;
+  Written where;
   int target = -1;  ///< signal; -1: an output
   std::function<std::string()> name, text;
 };
@@ -126,12 +130,12 @@ void check_terms(Checker& c, const RightSide& side, Kind expected) {
     if (kind.frame == kUnknownFrame) {
       c.notes.push_back({Note::Kind::unchecked, "check",
                          fmt::format("{}: the frame of {} is unknown ({})", side.name(),
-                                     print(c.graph, term), to_string(side.where))});
+                                     print(c.graph, term), side.where.text())});
     } else if (kind.frame != kNoFrame) {
       if (expected.frame == kNoFrame && adopts_frame) {
         expected.frame = kind.frame;
         from = &term;
-      } else if (expected.frame >= 0 && kind.frame != expected.frame) {
+      } else if (expected.frame >= 0 && !same_frame(c, kind.frame, expected.frame)) {
         c.add(
             Code::frame,
             fmt::format("{} is in {}, its equation is in {}", adopts_frame ? origin() : side.name(),
@@ -147,11 +151,11 @@ void check_equation(Checker& c, const Equation& e) {
   const Signal& s = c.graph.signals[at(e.target)];
   const Kind expected{e.part.whole() ? s.size : static_cast<int>(e.part.rows().rows()), s.quantity,
                       s.frame};
-  check_terms(
-      c,
-      {e.terms, e.where, e.target, [&] { return name_of(c.graph, e.target) + e.part.name(); },
-       [&] { return print(c.graph, e); }},
-      expected);
+  check_terms(c,
+              {e.terms, written(c.graph, e), e.target,
+               [&] { return name_of(c.graph, e.target) + e.part.name(); },
+               [&] { return print(c.graph, e); }},
+              expected);
 }
 
 }  // namespace
@@ -162,9 +166,10 @@ void check_equations(Checker& c) {
 
 void check_outputs(Checker& c) {
   for (const Output& o : c.graph.outputs) {
+    const Written where = written(c.graph.outputs, "outputs", o);
     if (!o.set) {
       c.add(Code::no_equation, fmt::format("output {} is not set", o.name),
-            {"it was declared at " + to_string(o.where)},
+            {"it was declared at " + where.text()},
             fmt::format("write d.output(\"{}\") = ...", o.name));
       continue;
     }
@@ -174,7 +179,7 @@ void check_outputs(Checker& c) {
         if (o.terms[i].signal >= 0) all += (i ? " + " : "") + print(c.graph, o.terms[i]);
       return all;
     };
-    check_terms(c, {o.terms, o.where, -1, [&] { return "output " + o.name; }, text},
+    check_terms(c, {o.terms, where, -1, [&] { return "output " + o.name; }, text},
                 {o.size, Quantity::plain, kNoFrame});
   }
 }
