@@ -111,12 +111,13 @@ Json answer(const Plan& plan, std::uint64_t seed) {
 
 Generated generate(const Options& options) {
   for (Options o = options; o.seed < options.seed + 100 * kNextSeed; o.seed += kNextSeed) {
-    const Plan plan = draw(o);
     try {
+      const Plan plan = draw(o);
       if (o.mistake.empty()) return {scene(plan), answer(plan, o.seed)};
       Spoilt spoilt = spoil(scene(plan), o.mistake);
       return {std::move(spoilt.scene), std::move(spoilt.answer)};
-    } catch (const std::domain_error&) {  // no solution, or no place for the mistake: another one
+    } catch (const std::domain_error&) {    // no solution, or no place for the mistake: another one
+    } catch (const std::overflow_error&) {  // its ratios outgrow 64 bits: another one
     }
   }
   throw std::invalid_argument("none of 100 scenes of this kind can be had; ask for another kind");

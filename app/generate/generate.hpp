@@ -30,7 +30,8 @@ struct Options {
 
 using Json = nlohmann::ordered_json;
 
-/// The same seed gives the same scene on every machine.
+/// The same seed gives the same scene on every machine. Throws std::overflow_error where its ratios
+/// outgrow 64 bits.
 Plan draw(const Options& options);
 
 /// The scene file. Rows of lists stand on one line each.
@@ -54,8 +55,9 @@ Spoilt spoil(Json scene, const std::string& code);
 struct Generated {
   Json scene, answer;
 };
-/// Draws with this seed, and with others after it where the scene has no answer, or no place for
-/// the mistake. Throws std::invalid_argument where a hundred have none.
+/// Draws with this seed, and with others after it where the scene has no answer, numbers too long
+/// for a Ratio, or no place for the mistake. Throws std::invalid_argument where a hundred have
+/// none.
 Generated generate(const Options& options);
 std::string test_source(const Generated& generated, const std::string& scene_file);
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <string>
+#include <titop/compiler/emit/global_names.hpp>
 #include <titop/compiler/emit/identifier.hpp>
 
 namespace titop::emit {
@@ -33,36 +34,6 @@ constexpr std::string_view kMacros =
     "FLT_RADIX SIG_DFL SIG_ERR SIG_IGN SIGABRT SIGFPE SIGILL SIGINT SIGSEGV SIGTERM M_E M_LOG2E "
     "M_LOG10E M_LN2 M_LN10 M_PI M_PI_2 M_PI_4 M_1_PI M_2_PI M_2_SQRTPI M_SQRT2 M_SQRT1_2 ";
 
-/// Functions with a sister for float (f behind) and one for long double (l).
-constexpr std::string_view kMath =
-    " acos acosh asin asinh atan atan2 atanh cbrt ceil copysign cos cosh erf erfc exp exp2 expm1 "
-    "fabs fdim floor fma fmax fmin fmod frexp hypot ilogb ldexp lgamma llrint llround log log10 "
-    "log1p log2 logb lrint lround modf nan nearbyint nextafter nexttoward pow remainder remquo "
-    "rint round scalbln scalbn sin sinh sqrt tan tanh tgamma trunc ";
-
-/// What else the C library and the headers of POSIX that the C++ library includes declare, and the
-/// namespaces of those who may be in the same program.
-constexpr std::string_view kGlobal =
-    " abort abs access acct alarm asctime atexit atof atoi atol atoll bcmp bcopy bsearch bzero "
-    "calloc chdir chown clearerr clock close confstr crypt ctime difftime div double_t drand48 dup "
-    "dup2 environ erand48 exit fclose feof ferror fflush ffs fgetc fgetpos fgets fileno float_t "
-    "fopen fork fprintf fputc fputs fpos_t fread free freopen fscanf fseek fsetpos ftell fwrite "
-    "gamma getc getchar getenv gethostname getopt getpid gets getw gmtime imaxabs imaxdiv index "
-    "isalnum isalpha isatty isblank iscntrl isdigit isgraph islower isprint ispunct isspace "
-    "isupper "
-    "isxdigit j0 j1 jn jrand48 kill killpg labs ldiv link llabs lldiv localeconv localtime lockf "
-    "lrand48 lseek malloc max_align_t mblen mbstowcs mbtowc memchr memcmp memcpy memmove memset "
-    "mktime mrand48 nice nullptr_t pause pclose perror pipe popen pread printf ptrdiff_t putc "
-    "putchar putenv puts putw pwrite qsort quick_exit raise rand random read readlink realloc "
-    "remove rename rewind rindex rmdir sbrk scanf setbuf setenv setlocale setvbuf sigaction signal "
-    "significand sigpause size_t sleep snprintf sprintf srand srandom sscanf stime strcat strchr "
-    "strcmp strcoll strcpy strcspn strdup strerror strftime strlen strncat strncmp strncpy strpbrk "
-    "strrchr strsep strspn strstr strtod strtof strtok strtol strtold strtoll strtoul strtoull "
-    "strxfrm swab symlink sync syscall sysconf system time time_t timer_t timezone tm tmpfile "
-    "tmpnam "
-    "tolower toupper truncate tzname tzset ungetc unlink usleep valloc vfork vfprintf vprintf "
-    "vsprintf wait wcstombs wctomb write y0 y1 yn daylight drem doctest titop ";
-
 constexpr std::string_view kMatlab =
     " break case catch classdef continue else elseif end for function global if otherwise parfor "
     "persistent return spmd switch try while do until unwind_protect unwind_protect_cleanup "
@@ -86,6 +57,25 @@ bool contains(std::string_view words, std::string_view word) {
   return words.find(" " + std::string(word) + " ") != std::string_view::npos;
 }
 
+/// True if the text begins with a word of the list.
+bool begins_with_one(std::string_view words, std::string_view text) {
+  for (std::size_t i = 1; i <= text.size(); ++i)
+    if (contains(words, text.substr(0, i))) return true;
+  return false;
+}
+
+/// fopen64 of fopen, strtof32_l of strtof; of functions for double also sinf, sinl.
+bool is_variant(std::string_view text) {
+  for (const std::string_view ending :
+       {"64", "_l", "_r", "_unlocked", "f32", "f64", "f128", "f32x", "f64x", "f", "l"}) {
+    if (!text.ends_with(ending)) continue;
+    const std::string_view stem = text.substr(0, text.size() - ending.size());
+    if (contains(kMath, stem) || contains(kMacros, stem)) return true;
+    if (ending != "f" && ending != "l" && contains(kGlobal, stem)) return true;
+  }
+  return false;
+}
+
 bool is_letter_or_digit(char c) {
   return c == '_' || (static_cast<unsigned char>(c) < 0x80 && std::isalnum(c));
 }
@@ -107,9 +97,8 @@ bool is_identifier(std::string_view text, Language language) {
 }
 
 bool is_namespace(std::string_view text) {
-  if (!is_identifier(text) || contains(kGlobal, text) || contains(kMath, text)) return false;
-  const bool sister = text.back() == 'f' || text.back() == 'l';
-  return !sister || !contains(kMath, text.substr(0, text.size() - 1));
+  return is_identifier(text) && !contains(kGlobal, text) && !contains(kMath, text) &&
+         !is_variant(text) && !begins_with_one(kFamilies, text);
 }
 
 }  // namespace titop::emit

@@ -22,8 +22,8 @@ function(titop_generate_model name)
   if(NOT arg_SAMPLE_TIME)
     set(arg_SAMPLE_TIME 0)
   endif()
-  # It becomes C++, where 1/100 would be 0.
-  if(NOT arg_SAMPLE_TIME MATCHES "^([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][-+]?[0-9]+)?$")
+  # It becomes C++, where 1/100 would be 0 and 010 eight.
+  if(NOT arg_SAMPLE_TIME MATCHES "^((0|[1-9][0-9]*)(\\.[0-9]*)?|\\.[0-9]+)([eE][-+]?[0-9]+)?$")
     message(FATAL_ERROR "titop_generate_model(${name}): SAMPLE_TIME ${arg_SAMPLE_TIME} is no "
                         "number: give seconds, such as 0.01")
   endif()

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstdio>
 #include <fstream>
 #include <iterator>
 #include <system_error>
@@ -21,12 +23,37 @@ bool put(const std::filesystem::path& path, const std::string& content) {
   return static_cast<bool>(file);
 }
 
+/// A new, empty file beside this one: NAME.part, or NAME.part2 ... where that is somebody's.
+std::filesystem::path new_beside(const std::filesystem::path& path) {
+  constexpr int most = 100;
+  for (int i = 1; i <= most; ++i) {
+    std::filesystem::path beside = path;
+    beside += i == 1 ? ".part" : fmt::format(".part{}", i);
+    if (std::FILE* made = std::fopen(beside.c_str(), "wx")) {  // x: fails where there is one
+      std::fclose(made);
+      return beside;
+    }
+    if (errno != EEXIST) break;
+  }
+  return {};
+}
+
+/// What a link leads to, over as many as there are; the path itself if it is none.
+std::filesystem::path target_of(std::filesystem::path path) {
+  constexpr int most = 40;  // as the system: more go round in a circle
+  std::error_code error;
+  for (int i = 0; i < most && std::filesystem::is_symlink(path, error); ++i)
+    path = path.parent_path() / std::filesystem::read_symlink(path, error);
+  return path;
+}
+
 }  // namespace
 
 void write_file(const std::filesystem::path& path, const std::string& content) {
   constexpr const char* hint = "check that the folder exists and may be written to";
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::none) refuse(path, hint);  // links in a circle
   if (std::filesystem::is_directory(status)) refuse(path, "it is a folder: name a file in it");
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
     if (!put(path, content)) refuse(path, hint);  // a pipe or a device has no place beside it
@@ -35,10 +62,10 @@ void write_file(const std::filesystem::path& path, const std::string& content) {
   std::ifstream old(path, std::ios::binary);
   if (old && std::string(std::istreambuf_iterator<char>(old), {}) == content) return;
   old.close();
-  std::filesystem::path beside = path;
-  beside += ".part";
+  const std::filesystem::path target = target_of(path), beside = new_beside(target);
+  if (beside.empty()) refuse(path, hint);
   const bool whole = put(beside, content);
-  if (whole) std::filesystem::rename(beside, path, error);
+  if (whole) std::filesystem::rename(beside, target, error);
   if (whole && !error) return;
   std::error_code ignored;
   std::filesystem::remove(beside, ignored);

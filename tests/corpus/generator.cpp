@@ -55,3 +55,21 @@ TEST_CASE("what is not understood: exit code 2; what cannot be written: 1") {
   }
   CHECK(generate(folder, "none/a.json") == 1);
 }
+
+TEST_CASE("a scene whose numbers outgrow their ratios is drawn anew") {
+  const Folder folder;
+  CHECK(generate(folder,
+                 "a.json --seed 24 --family spatial --shape chain --bodies 100 --loops 1 "
+                 "--no-controllers --mistake duplicate-name") == 0);
+  CHECK(folder.read("a.answer.json").find("duplicate-name") != std::string::npos);
+}
+
+TEST_CASE("the written test: a file name with a quote, the order of more than 100 states") {
+  const Folder folder;
+  CHECK(generate(folder, "'q\"x.json'") == 0);
+  const std::string test = folder.read("q\"x_test.cpp");
+  CHECK(test.find("TEST_CASE(\"q\\\"x.json\")") != std::string::npos);
+  CHECK(test.find("read_scene(\"q\\\"x.json\")") != std::string::npos);
+  CHECK(test.find("read_scene(\"q\"x.json\")") == std::string::npos);
+  CHECK(test.find(".minimize_up_to = 1000000") != std::string::npos);
+}

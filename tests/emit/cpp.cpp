@@ -56,6 +56,19 @@ TEST_CASE("each language has its own words") {
   using emit::Language;
   for (const char* name : {"A", "B", "C", "D", "poles", "link2", "sink", "sinful", "model"})
     CHECK(emit::is_namespace(name));
+  for (const char* name : {"selected", "strut", "sigma", "timer", "model_t", "SAT_1", "EARTH"})
+    CHECK(emit::is_namespace(name));
+  // Declared by what generated tests include: functions, types, macros, and their variants.
+  for (const char* name :
+       {"select",         "finite",        "clone",     "FILE",        "timex",    "uint",
+        "ushort",         "sincos",        "exp10",     "exp10f",      "getline",  "realpath",
+        "canonicalize",   "canonicalizel", "fmul",      "fadd",        "fsub",     "fdiv",
+        "f32addf64",      "timespec",      "timeval",   "sinf128",     "strtod_l", "fopen64",
+        "getc_unlocked",  "asctime_r",     "pthread_t", "sched_yield", "SIGHUP",   "EIO",
+        "CLOCK_REALTIME", "M_PIl"}) {
+    CAPTURE(name);
+    CHECK(!emit::is_namespace(name));
+  }
   // Keywords of C++ are names elsewhere, and the other way round.
   for (const char* name : {"int", "class", "linux", "NULL"}) {
     CHECK(!emit::is_identifier(name));
@@ -179,6 +192,40 @@ TEST_CASE("an output is silent where all points say so, not one") {
   const emit::Points points = emit::response_points(system, system.poles());
   CHECK(points.silent_outputs == std::vector<Eigen::Index>{1});
   CHECK(points.silent_inputs.empty());
+}
+
+TEST_CASE("what A alone has no static gain for: no check of it, and the rest stands") {
+  // y = (1 / s + 0.3 / s^2) u as A^2 = 0. In double the elimination of A meets a pivot that is
+  // exactly 0.
+  Diagram d{"nilpotent"};
+  auto K = d.add("K", Lti{.A = Eigen::Matrix2d{{0.3, -0.9}, {0.1, -0.3}},
+                          .B = Eigen::Vector2d(1, 0),
+                          .C = Eigen::RowVector2d(1, 0)});
+  K.in = d.input("u");
+  d.output("y") = K.out;
+  const CppModel model = generate_cpp(compile(d), {.name = "nilpotent", .sample_time = 0.1});
+  CHECK(model.test.find("TEST_CASE(\"nilpotent: transfer\")") != std::string::npos);
+  CHECK(model.test.find("TEST_CASE(\"nilpotent: static gain\")") == std::string::npos);
+
+  emit::Form form;
+  form.A = MatrixXd::Zero(2, 2), form.A(0, 1) = 1;
+  form.B = MatrixXd::Ones(2, 1), form.C = MatrixXd::Ones(1, 2), form.D = MatrixXd::Zero(1, 1);
+  emit::Points points;
+  points.s = {1.0};
+  points.exact = {MatrixXcd::Constant(1, 1, 3)};  // 1/s + 1/s + 1/s^2
+  CHECK(emit::response_error(form, points) <= 1e-15);
+  CHECK(emit::static_error(form, MatrixXd::Ones(1, 1), points) == HUGE_VAL);
+}
+
+TEST_CASE("what is 0 by nature at rest is not compared with its own rounding there") {
+  emit::Points points;
+  points.s = {1.0};
+  points.exact = {MatrixXcd::Ones(2, 3)};
+  points.silent_inputs = {2};
+  const MatrixXd gain{{1, 1e-17, 1}, {1e-16, 1e-20, 0}};
+  const emit::Points rest = emit::at_rest(points, gain);
+  CHECK(rest.silent_outputs == std::vector<Eigen::Index>{1});
+  CHECK(rest.silent_inputs == std::vector<Eigen::Index>{2, 1});
 }
 
 TEST_CASE("what cannot be a name or a time is refused, all together") {

@@ -34,8 +34,39 @@ TEST_CASE("a folder, or a folder that is not there, is no file to write: bad_fil
 
 TEST_CASE("where the new file cannot be written whole, the old one stays") {
   const Folder folder;
-  emit::write_file(folder.path / "a.txt", "old");
-  std::filesystem::create_directory(folder.path / "a.txt.part");  // in its way
-  CHECK_THROWS_AS(emit::write_file(folder.path / "a.txt", "new"), Error);
-  CHECK(folder.read("a.txt") == "old");
+  const std::string longest(255, 'a');  // no name is left for the file beside it
+  folder.write(longest, "old");
+  CHECK_THROWS_AS(emit::write_file(folder.path / longest, "new"), Error);
+  CHECK(folder.read(longest) == "old");
+}
+
+TEST_CASE("a file called NAME.part is not written over") {
+  const Folder folder;
+  folder.write("a.txt", "old");
+  folder.write("a.txt.part", "notes");
+  std::filesystem::create_directory(folder.path / "a.txt.part2");
+  emit::write_file(folder.path / "a.txt", "new");
+  CHECK(folder.read("a.txt") == "new");
+  CHECK(folder.read("a.txt.part") == "notes");
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path), {}) == 3);
+}
+
+TEST_CASE("a link stays, and what it leads to is written") {
+  const Folder folder;
+  namespace fs = std::filesystem;
+  fs::create_directory(folder.path / "sub");
+  folder.write("sub/real", "old");
+  fs::create_symlink("real", folder.path / "sub" / "near");
+  fs::create_symlink("sub/near", folder.path / "far");
+  emit::write_file(folder.path / "far", "new");
+  CHECK(fs::is_symlink(folder.path / "far"));
+  CHECK(fs::is_symlink(folder.path / "sub" / "near"));
+  CHECK(!fs::is_symlink(folder.path / "sub" / "real"));
+  CHECK(folder.read("sub/real") == "new");
+  fs::create_symlink("sub/none", folder.path / "to come");
+  emit::write_file(folder.path / "to come", "new");
+  CHECK(folder.read("sub/none") == "new");
+  fs::create_symlink("circle", folder.path / "circle");
+  CHECK_THROWS_AS(emit::write_file(folder.path / "circle", "x"), Error);
+  CHECK(fs::is_symlink(folder.path / "circle"));
 }

@@ -1,6 +1,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <titop/compiler/emit/cpp/form.hpp>
 #include <titop/compiler/simulate/hold.hpp>
@@ -20,27 +21,15 @@ bool contains(const std::vector<Index>& list, Index i) {
   return std::find(list.begin(), list.end(), i) != list.end();
 }
 
-/// Worst entry of C (s - A)^-1 B + D against `exact`, see response_error.
-double difference(const Form& form, std::complex<double> s, const MatrixXcd& exact,
-                  const Points& points) {
+/// Of C (s - A)^-1 B + D. HUGE_VAL where s - A is singular in double.
+double difference_at(const Form& form, std::complex<double> s, const MatrixXcd& exact,
+                     const Points& points) {
   const Index n = form.A.rows();
-  MatrixXcd X(n, form.B.cols());
+  linalg::Solution solution{.z = MatrixXcd(n, form.B.cols()), .rcond = 1};
   if (n > 0)
-    X = linalg::solve(s * MatrixXcd::Identity(n, n) - form.A, form.B.cast<std::complex<double>>())
-            .z;
-  const MatrixXcd G = form.C * X + form.D;
-  const MatrixXd terms = form.C.cwiseAbs() * X.cwiseAbs() + form.D.cwiseAbs();
-  double worst = 0;
-  for (Index i = 0; i < exact.rows(); ++i)
-    for (Index j = 0; j < exact.cols(); ++j) {
-      if (contains(points.silent_outputs, i) || contains(points.silent_inputs, j)) continue;
-      const double off = std::abs(G(i, j) - exact(i, j));
-      const double size = std::max(std::sqrt(exact.row(i).cwiseAbs().maxCoeff()) *
-                                       std::sqrt(exact.col(j).cwiseAbs().maxCoeff()),
-                                   1e-6 * terms(i, j));
-      if (!(off <= 0)) worst = std::max(worst, std::isfinite(off) ? off / size : HUGE_VAL);
-    }
-  return worst;
+    solution =
+        linalg::solve(s * MatrixXcd::Identity(n, n) - form.A, form.B.cast<std::complex<double>>());
+  return solution.rcond > 0 ? difference(form, solution.z, exact, points).worst : HUGE_VAL;
 }
 
 /// Rows of nothing, and rows in which `off` is no smaller than the thousandth part of `exact`.
@@ -167,6 +156,33 @@ void find_silent(const System& system, Points& points) {
 
 }  // namespace
 
+Difference difference(const Form& form, const MatrixXcd& X, const MatrixXcd& exact,
+                      const Points& points) {
+  constexpr double kTermRounding = 10 * std::numeric_limits<double>::epsilon();
+  const MatrixXcd G = form.C * X + form.D;
+  const MatrixXd terms = form.C.cwiseAbs() * X.cwiseAbs() + form.D.cwiseAbs();
+  Difference d;
+  for (Index i = 0; i < exact.rows(); ++i)
+    for (Index j = 0; j < exact.cols(); ++j) {
+      if (contains(points.silent_outputs, i) || contains(points.silent_inputs, j)) continue;
+      const double off = std::abs(G(i, j) - exact(i, j));
+      const double size = std::max(std::sqrt(exact.row(i).cwiseAbs().maxCoeff()) *
+                                       std::sqrt(exact.col(j).cwiseAbs().maxCoeff()),
+                                   1e-6 * terms(i, j));
+      if (!(off <= 0)) d.worst = std::max(d.worst, std::isfinite(off) ? off / size : HUGE_VAL);
+      if (size > 0) d.rounding = std::max(d.rounding, kTermRounding * terms(i, j) / size);
+    }
+  return d;
+}
+
+double worst_output(const Eigen::VectorXd& off, const Eigen::VectorXd& size, const Points& points) {
+  double worst = 0;
+  for (Index i = 0; i < off.size(); ++i)
+    if (!(off(i) <= 0) && !contains(points.silent_outputs, i))
+      worst = std::max(worst, std::isfinite(off(i)) ? off(i) / size(i) : HUGE_VAL);
+  return worst;
+}
+
 Points response_points(const System& system, const std::vector<Pole>& poles) {
   double low = HUGE_VAL, high = 0;
   for (const Pole& p : poles)
@@ -186,12 +202,24 @@ Points response_points(const System& system, const std::vector<Pole>& poles) {
 double response_error(const Form& form, const Points& points) {
   double worst = 0;
   for (std::size_t i = 0; i < points.s.size(); ++i)
-    worst = std::max(worst, difference(form, points.s[i], points.exact[i], points));
+    worst = std::max(worst, difference_at(form, points.s[i], points.exact[i], points));
   return worst;
 }
 
+Points at_rest(const Points& points, const MatrixXd& static_gain) {
+  // So much smaller than beside the slowest pole that it is the rounding of a 0.
+  constexpr double kNothing = 1e-10;
+  Points rest{{}, {}, points.silent_outputs, points.silent_inputs};
+  const MatrixXd now = static_gain.cwiseAbs(), slow = points.exact[0].cwiseAbs();
+  for (Index i = 0; i < now.rows(); ++i)
+    if (now.row(i).maxCoeff() < kNothing * slow.row(i).maxCoeff()) rest.silent_outputs.push_back(i);
+  for (Index j = 0; j < now.cols(); ++j)
+    if (now.col(j).maxCoeff() < kNothing * slow.col(j).maxCoeff()) rest.silent_inputs.push_back(j);
+  return rest;
+}
+
 double static_error(const Form& form, const MatrixXd& exact, const Points& points) {
-  return difference(form, 0, exact.cast<std::complex<double>>(), points);
+  return difference_at(form, 0, exact.cast<std::complex<double>>(), at_rest(points, exact));
 }
 
 double step_error(const Form& form, const MatrixXd& inputs, const MatrixXd& exact,
@@ -204,11 +232,7 @@ double step_error(const Form& form, const MatrixXd& inputs, const MatrixXd& exac
     size = size.cwiseMax(form.C.cwiseAbs() * x.cwiseAbs() + form.D.cwiseAbs() * u.cwiseAbs());
     x = (form.A_h * x + form.B_h * u).eval();
   }
-  double worst = 0;
-  for (Index i = 0; i < off.size(); ++i)
-    if (!(off(i) <= 0) && !contains(points.silent_outputs, i))
-      worst = std::max(worst, std::isfinite(off(i)) ? off(i) / size(i) : HUGE_VAL);
-  return worst;
+  return worst_output(off, size, points);
 }
 
 MatrixXd trajectory_inputs(Index inputs, Index steps) {

@@ -37,18 +37,32 @@ struct Points {
 /// them is also evaluated in 50 digits; all, where a row or a column is lost in rounding there.
 Points response_points(const System& system, const std::vector<Pole>& poles);
 
-/// Largest difference of C (s - A)^-1 B + D to the exact transfers, over all points but the silent:
-/// each entry
-/// relative to the geometric mean of the largest entries of its row and column there, or to 1e-6 of
-/// the terms that cancel in it, |C| |X| + |D|, where that is more (what is zero by symmetry).
+/// C X + D against the exact transfer at one point, without the silent. Each entry is relative to
+/// the geometric mean of the largest entries of its row and column, or to 1e-6 of the terms that
+/// cancel in it, |C| |X| + |D|, where that is more (what is zero by symmetry).
+struct Difference {
+  double worst = 0;
+  double rounding = 0;  ///< what rounding of the terms alone may make of it on another machine
+};
+Difference difference(const Form& form, const Eigen::MatrixXcd& X, const Eigen::MatrixXcd& exact,
+                      const Points& points);
+
+/// The worst difference of C (s - A)^-1 B + D over all points; HUGE_VAL where s - A is singular in
+/// double.
 double response_error(const Form& form, const Points& points);
-/// The same at s = 0.
+/// The points' silent outputs and inputs, and those that are 0 by nature at rest, such as rates.
+Points at_rest(const Points& points, const Eigen::MatrixXd& static_gain);
+
+/// The difference at s = 0, without what is silent at rest.
 double static_error(const Form& form, const Eigen::MatrixXd& exact, const Points& points);
 
 /// The same for a trajectory: largest difference of y(k) from x(0) = 0 to `exact` (ny x steps),
 /// each output relative to the largest |C| |x| + |D| |u| that it had.
 double step_error(const Form& form, const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& exact,
                   const Points& points);
+
+/// Worst `off` relative to `size`, by outputs, without the silent.
+double worst_output(const Eigen::VectorXd& off, const Eigen::VectorXd& size, const Points& points);
 
 /// Inputs of the trajectory, nu x steps: numbers from -1 to 1 without rounding.
 Eigen::MatrixXd trajectory_inputs(Eigen::Index inputs, Eigen::Index steps);

@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <Eigen/LU>
+#include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/emit/cpp/test.hpp>
@@ -10,9 +12,13 @@
 namespace titop::emit {
 
 using Eigen::Index;
+using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 namespace {
+
+using Complex = std::complex<double>;
 
 /// Ten times what was measured, but never so wide that a wrong sixth digit passes.
 std::string tolerance(double least, double measured) {
@@ -21,6 +27,9 @@ std::string tolerance(double least, double measured) {
 
 /// Instead of a check that double does not carry.
 std::string omitted(const char* what, double measured) {
+  if (!std::isfinite(measured))
+    return fmt::format("\n// {}: not checked. In double the matrices do not give it at all.\n",
+                       what);
   return fmt::format(
       "\n// {}: not checked. The matrices give it within {:.1e} only, too wide for a proof.\n",
       what, measured);
@@ -29,7 +38,7 @@ std::string omitted(const char* what, double measured) {
 std::string pair(double re, double im) { return fmt::format("{{{}, {}}}", number(re), number(im)); }
 
 /// Complex values by columns, as an initializer.
-std::string values(const Eigen::MatrixXcd& G) {
+std::string values(const MatrixXcd& G) {
   std::vector<std::string> items;
   for (Index j = 0; j < G.cols(); ++j)
     for (Index i = 0; i < G.rows(); ++i) items.push_back(pair(G(i, j).real(), G(i, j).imag()));
@@ -42,19 +51,70 @@ std::string indices(const std::vector<Index>& list) {
   return emit::list(items, 6);
 }
 
-std::string transfer_checks(const Points& points) {
-  // A file of some megabytes is still compiled in seconds.
+/// s - A as the test factors it (kHead).
+struct Resolvent {
+  explicit Resolvent(const MatrixXd& A, Complex s)
+      : R(s * MatrixXcd::Identity(A.rows(), A.rows()) - A),
+        scale(R.cwiseAbs().rowwise().maxCoeff().cwiseInverse().cast<Complex>()),
+        lu(scale.asDiagonal() * R) {}
+  MatrixXcd solve(const MatrixXcd& b) const { return lu.solve(scale.asDiagonal() * b); }
+  MatrixXcd refined(const MatrixXcd& b) const {
+    const MatrixXcd x = solve(b);
+    return x + solve(b - R * x);
+  }
+
+  MatrixXcd R;
+  Eigen::VectorXcd scale;
+  Eigen::PartialPivLU<MatrixXcd> lu;
+};
+
+/// What the test finds at s, where it solves without the model's equilibration.
+Difference tested_difference(const Form& form, Complex s, const MatrixXcd& exact,
+                             const Points& points) {
+  const MatrixXcd B = form.B.cast<Complex>();
+  return difference(form, form.A.rows() > 0 ? Resolvent(form.A, s).refined(B) : B, exact, points);
+}
+
+/// Which points the test compares: a file of some megabytes is still compiled in seconds.
+std::vector<std::size_t> compared(const Points& points) {
   const auto entries = static_cast<std::size_t>(points.exact[0].size());
   const std::size_t count = std::clamp<std::size_t>(40000 / entries, 2, points.s.size());
-  std::string text;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t k = i * (points.s.size() - 1) / (count - 1);
-    text += fmt::format(
+  std::vector<std::size_t> chosen;
+  for (std::size_t i = 0; i < count; ++i) chosen.push_back(i * (points.s.size() - 1) / (count - 1));
+  return chosen;
+}
+
+std::string transfer_test(const Naming& names, const Form& form, const Points& points) {
+  Difference worst{form.error, 1e-11};
+  std::string checks;
+  for (const std::size_t k : compared(points)) {
+    const Difference here = tested_difference(form, points.s[k], points.exact[k], points);
+    worst.worst = std::max(worst.worst, here.worst);
+    worst.rounding = std::max(worst.rounding, here.rounding);
+    checks += fmt::format(
         "  {{\n    static const double expected[][2] = {};\n"
         "    CHECK(transfer_error({}, expected) <= tolerance);\n  }}\n",
         values(points.exact[k]), pair(points.s[k].real(), points.s[k].imag()));
   }
-  return text;
+  const std::string shared = filled(kResponse, {{"SILENT_OUTPUTS", indices(points.silent_outputs)},
+                                                {"SILENT_INPUTS", indices(points.silent_inputs)}});
+  if (!is_provable(worst.worst)) return shared + omitted("transfer", worst.worst);
+  return shared + filled(kTransfer, {{"NAME", names.name},
+                                     {"TOLERANCE", tolerance(worst.rounding, worst.worst)},
+                                     {"CHECKS", checks}});
+}
+
+std::string static_gain_test(const Naming& names, const Form& form, const Expected& expected) {
+  const MatrixXcd exact = expected.static_gain->cast<Complex>();
+  const Points rest = at_rest(expected.points, *expected.static_gain);
+  const Difference here = tested_difference(form, 0, exact, rest);
+  const double worst = std::max(form.static_error, here.worst);
+  if (!is_provable(worst)) return omitted("static gain", worst);
+  return filled(kStaticGain, {{"NAME", names.name},
+                              {"VALUES", values(exact)},
+                              {"SILENT_OUTPUTS", indices(rest.silent_outputs)},
+                              {"SILENT_INPUTS", indices(rest.silent_inputs)},
+                              {"TOLERANCE", tolerance(std::max(1e-11, here.rounding), worst)}});
 }
 
 /// Poles other than 0, so many of them that the test takes seconds.
@@ -71,18 +131,14 @@ std::vector<std::size_t> poles_to_find(const std::vector<Pole>& poles, Index n) 
 }
 
 /// Distance of the eigenvalue of A that the test's search (kPoles) finds next to p, relative.
-double pole_error(const MatrixXd& A, std::complex<double> p) {
-  using Complex = std::complex<double>;
-  const Index n = A.rows();
+double pole_error(const MatrixXd& A, Complex p) {
   const Complex shift = p + 1e-10 * std::abs(p) * Complex(0.6, 0.8);
-  const Eigen::MatrixXcd R = shift * Eigen::MatrixXcd::Identity(n, n) - A;
-  const Eigen::VectorXcd scale = R.cwiseAbs().rowwise().maxCoeff().cwiseInverse().cast<Complex>();
-  const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(scale.asDiagonal() * R);
-  Eigen::VectorXcd x(n);
-  for (Index i = 0; i < n; ++i) x(i) = 1 + 0.1 * static_cast<double>(i * i % 7);
+  const Resolvent resolvent(A, shift);
+  Eigen::VectorXcd x(A.rows());
+  for (Index i = 0; i < x.size(); ++i) x(i) = 1 + 0.1 * static_cast<double>(i * i % 7);
   Complex found;
   for (int step = 0; step < 6; ++step) {
-    const Eigen::VectorXcd y = lu.solve(scale.asDiagonal() * x);
+    const Eigen::VectorXcd y = resolvent.solve(x);
     Index at = 0;
     y.cwiseAbs().maxCoeff(&at);
     found = shift - x(at) / y(at);
@@ -125,18 +181,48 @@ std::string trajectory_test(const Naming& names, const Form& form, const MatrixX
                               {"TOLERANCE", tolerance(1e-11, form.step_error)}});
 }
 
+/// What the test's Taylor series (kTaylor) differ from `step` by.
+double series_error(const Form& form, const Expected& expected, double h, double parts) {
+  const Eigen::SparseMatrix<double> A = form.A.sparseView();
+  const auto by_series = [&](VectorXd x, const VectorXd& u) {
+    for (double part = 0; part < parts; ++part) {
+      VectorXd term = A * x + form.B * u;
+      for (int power = 1; power <= 24; ++power) {
+        term *= h / parts / power;
+        x += term;
+        term = (A * term).eval();
+      }
+    }
+    return x;
+  };
+  const MatrixXd C = form.C.cwiseAbs();
+  VectorXd x = VectorXd::Zero(form.A.rows()), size = VectorXd::Zero(C.rows()), off = size;
+  for (Index k = 0; k < expected.inputs.cols(); ++k) {
+    const VectorXd u = expected.inputs.col(k), before = x;
+    x = form.A_h * before + form.B_h * u;
+    size = size.cwiseMax(C * x.cwiseAbs());
+    if (k + 3 < expected.inputs.cols()) continue;
+    off = off.cwiseMax((form.C * x - form.C * by_series(before, u)).cwiseAbs());
+  }
+  return worst_output(off, size, expected.points);
+}
+
 /// Only said where the series would take more than some seconds.
-std::string taylor_test(const Naming& names, const Form& form, const std::vector<Pole>& poles) {
+std::string taylor_test(const Naming& names, const Form& form, const Expected& expected) {
+  constexpr const char* what = "step against derivative";
   double fastest = 0;
-  for (const Pole& p : poles) fastest = std::max(fastest, p.omega);
+  for (const Pole& p : expected.poles) fastest = std::max(fastest, p.omega);
   const double parts = std::max(1.0, std::ceil(fastest * names.sample_time));
   const double cost = 72 * parts * static_cast<double>(products(form));
   if (cost > 1e9)
-    return fmt::format(
-        "\n// step against derivative: not checked, it would take {:.0e} multiplications.\n", cost);
+    return fmt::format("\n// {}: not checked, it would take {:.0e} multiplications.\n", what, cost);
+  const double error = series_error(form, expected, names.sample_time, parts);
+  if (!is_provable(error)) return omitted(what, error);
   return filled(kTaylor, {{"NAME", names.name},
                           {"NY", std::to_string(names.outputs.size())},
-                          {"SUBSTEPS", fmt::format("{:.0f}", parts)}});
+                          {"STEPS", std::to_string(expected.inputs.cols())},
+                          {"SUBSTEPS", fmt::format("{:.0f}", parts)},
+                          {"TOLERANCE", tolerance(1e-8, error)}});
 }
 
 }  // namespace
@@ -149,25 +235,14 @@ std::string test_text(const Naming& names, const Form& form, const Expected& exp
                                     {"NU", std::to_string(names.inputs.size())},
                                     {"NY", std::to_string(names.outputs.size())}});
   const bool responds = !names.inputs.empty() && !names.outputs.empty();
-  if (responds)
-    text += filled(kTransfer, {{"NAME", names.name},
-                               {"TOLERANCE", tolerance(1e-11, form.error)},
-                               {"SILENT_OUTPUTS", indices(expected.points.silent_outputs)},
-                               {"SILENT_INPUTS", indices(expected.points.silent_inputs)},
-                               {"CHECKS", transfer_checks(expected.points)}});
+  if (responds) text += transfer_test(names, form, expected.points);
   if (!names.states.empty()) text += pole_test(names, form, expected.poles);
-  if (responds && expected.static_gain && !is_provable(form.static_error))
-    text += omitted("static gain", form.static_error);
-  else if (responds && expected.static_gain)
-    text +=
-        filled(kStaticGain, {{"NAME", names.name},
-                             {"VALUES", values(expected.static_gain->cast<std::complex<double>>())},
-                             {"TOLERANCE", tolerance(1e-11, form.static_error)}});
+  if (responds && expected.static_gain) text += static_gain_test(names, form, expected);
   if (names.sample_time > 0 && responds && !is_provable(form.step_error)) {
     text += omitted("trajectory, and step against derivative", form.step_error);
   } else if (names.sample_time > 0 && responds) {
     text += trajectory_test(names, form, expected.outputs);
-    text += taylor_test(names, form, expected.poles);
+    text += taylor_test(names, form, expected);
   }
   return text + filled(kEnd, {{"NAME", names.name}});
 }
