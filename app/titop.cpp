@@ -59,7 +59,7 @@ struct Arguments {
   std::vector<double> band;  ///< LOW HIGH
   double until = 0;
   double sample_time = 0;
-  std::vector<double> omega;       ///< LOW HIGH COUNT
+  std::vector<double> omega;       ///< all frequencies
   std::vector<std::string> given;  ///< options, as typed
   int minimize_up_to = Options{}.minimize_up_to;
 };
@@ -69,52 +69,76 @@ struct Misuse {
   std::string what;
 };
 
-double number(const std::string& text) {
+constexpr int kMost = 1'000'000;  ///< of what is counted
+
+double number(const std::string& option, const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-    throw Misuse{fmt::format("'{}' is no number", text)};
+    throw Misuse{fmt::format("{}: '{}' is no number", option, text)};
   return value;
 }
 
-int count(const char* option, double number, int most) {
-  if (!(number >= 0) || number > most)
-    throw Misuse{fmt::format("{} needs a number from 0 to {}", option, most)};
-  return static_cast<int>(number);
+double seconds(const std::string& option, double value) {
+  if (!(value > 0)) throw Misuse{option + " needs a time above 0"};
+  return value;
+}
+
+int count(const std::string& option, double value, int least = 0) {
+  if (!(value >= least) || value > kMost || value != std::floor(value))
+    throw Misuse{fmt::format("{} needs a whole number from {} to {}", option, least, kMost)};
+  return static_cast<int>(value);
+}
+
+/// From `low` to `high`, both exactly; no quotient of the two, which may overflow.
+std::vector<double> logarithmic(double low, double high, int count) {
+  std::vector<double> list;
+  for (int i = 0; i < count; ++i) {
+    const double part = count == 1 ? 0 : double(i) / (count - 1);
+    list.push_back(std::clamp(std::pow(low, 1 - part) * std::pow(high, part), low, high));
+  }
+  return list;
 }
 
 Arguments parse(const std::vector<std::string>& all) {
   Arguments a;
   for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string& option = all[i];
     const auto word = [&]() -> const std::string& {
-      if (++i == all.size()) throw Misuse{fmt::format("{} needs more", all[i - 1])};
+      if (++i == all.size()) throw Misuse{fmt::format("{} needs more", option)};
       return all[i];
     };
-    const auto next = [&] { return number(word()); };
-    if (all[i] == "-o" || all[i].starts_with("--")) a.given.push_back(all[i]);
-    if (all[i] == "--compiled") {
+    const auto next = [&] { return number(option, word()); };
+    if (option == "-o" || option.starts_with("--")) {
+      if (std::find(a.given.begin(), a.given.end(), option) != a.given.end())
+        throw Misuse{fmt::format("{} is there twice", option)};
+      a.given.push_back(option);
+    }
+    if (option == "--compiled") {
       a.compiled = true;
-    } else if (all[i] == "--no-diagrams") {
+    } else if (option == "--no-diagrams") {
       a.diagrams = false;
-    } else if (all[i] == "--fold") {
-      a.fold = count("--fold", next(), 1000000);
-    } else if (all[i] == "-o") {
+    } else if (option == "--fold") {
+      a.fold = count(option, next());
+    } else if (option == "-o") {
       a.to = word();
-    } else if (all[i] == "--band") {
-      if (!a.band.empty()) throw Misuse{"--band is there twice"};
-      for (int k = 0; k < 2; ++k) a.band.push_back(next());
-    } else if (all[i] == "--until") {
-      a.until = next();
-    } else if (all[i] == "--sample-time") {
-      a.sample_time = next();
-    } else if (all[i] == "--minimize-up-to") {
-      a.minimize_up_to = count("--minimize-up-to", next(), 1000000);
-    } else if (all[i] == "--omega") {
-      for (int k = 0; k < 3; ++k) a.omega.push_back(next());
-    } else if (all[i].starts_with("--")) {
-      throw Misuse{fmt::format("there is no option {}", all[i])};
+    } else if (option == "--band") {
+      a.band = {next(), next()};
+      if (!(a.band[0] > 0 && a.band[1] > a.band[0])) throw Misuse{"--band needs 0 < LOW < HIGH"};
+    } else if (option == "--until") {
+      a.until = seconds(option, next());
+    } else if (option == "--sample-time") {
+      a.sample_time = seconds(option, next());
+    } else if (option == "--minimize-up-to") {
+      a.minimize_up_to = count(option, next());
+    } else if (option == "--omega") {
+      const double low = next(), high = next();
+      if (!(low > 0 && high >= low)) throw Misuse{"--omega needs 0 < LOW <= HIGH"};
+      a.omega = logarithmic(low, high, count("COUNT of --omega", next(), 1));
+    } else if (option.starts_with("--")) {
+      throw Misuse{fmt::format("there is no option {}", option)};
     } else {
-      a.words.push_back(all[i]);
+      a.words.push_back(option);
     }
   }
   return a;
@@ -162,27 +186,14 @@ void report(const Arguments& a) {
   ReportOptions options{.diagrams = a.diagrams, .until = a.until};
   if (a.fold >= 0) options.fold = a.fold;
   if (!a.band.empty()) options.band_hz = {a.band[0], a.band[1]};
-  const fs::path file =
-      a.to.empty() ? fs::path(a.words[1]).replace_extension(".html") : fs::path(a.to);
-  write_report(compiled(a), file, options);
-}
-
-std::vector<double> omega(const Arguments& a) {
-  if (a.omega.size() != 3) throw Misuse{"a .csv needs --omega LOW HIGH COUNT, once"};
-  const double low = a.omega[0], high = a.omega[1];
-  const int count = static_cast<int>(a.omega[2]);
-  if (!(low > 0) || !(high >= low) || count < 1 || a.omega[2] > 1e6)
-    throw Misuse{"--omega needs 0 < LOW <= HIGH and a COUNT from 1 to 1000000"};
-  std::vector<double> list;
-  for (int i = 0; i < count; ++i)
-    list.push_back(count == 1 ? low : low * std::pow(high / low, double(i) / (count - 1)));
-  return list;
+  write_report(compiled(a), a.to, options);
 }
 
 void export_model(const Arguments& a) {
   const fs::path file = a.words[2], folder = file.parent_path();
   const std::string name = file.stem().string(), kind = file.extension().string();
-  if (kind == ".csv") return write_csv(compiled(a), omega(a), file);
+  if (kind == ".csv" && a.omega.empty()) throw Misuse{"a .csv needs --omega LOW HIGH COUNT"};
+  if (kind == ".csv") return write_csv(compiled(a), a.omega, file);
   if (kind == ".json") return write_json(compiled(a), file);
   if (kind == ".m") return write_matlab(compiled(a).state_space(), file);
   if (kind == ".py") return write_numpy(compiled(a).state_space(), folder, name);
@@ -222,7 +233,7 @@ void check_words(const Command& command, const Arguments& a) {
   if (!a.to.empty()) written.push_back(a.to);
   for (const std::string& to : written)
     if (std::error_code none; fs::equivalent(to, a.words[1], none))
-      throw Misuse{fmt::format("{} is the scene itself", to)};
+      throw Misuse{fmt::format("{} is the scene itself: write to another file", to)};
 }
 
 template <void (*F)(const Arguments&)>
@@ -256,10 +267,12 @@ int run(const std::vector<std::string>& all) {
     generate_scene({all.begin() + 1, all.end()});
     return 0;
   }
-  const Arguments a = parse(all);
+  Arguments a = parse(all);
   if (a.words.empty()) throw Misuse{"what is to be done?"};
   for (const Command& command : kCommands) {
     if (a.words[0] != command.name) continue;
+    if (a.words[0] == "report" && a.words.size() == 2 && a.to.empty())
+      a.to = fs::path(a.words[1]).replace_extension(".html").string();
     check_words(command, a);
     return command.run(a);
   }
@@ -269,9 +282,14 @@ int run(const std::vector<std::string>& all) {
 }  // namespace
 
 int main(int argc, char** argv) try {
-  return run({argv + 1, argv + argc});
+  const int code = run({argv + 1, argv + argc});
+  if (std::fflush(stdout) != 0 || std::ferror(stdout))
+    throw Error(Code::bad_file, "standard output: not all could be written",
+                "check that its disk is not full and that its reader stays to the end");
+  return code;
 } catch (const Misuse& misuse) {
-  std::fputs(fmt::format("titop: {}\n{}", misuse.what, usage()).c_str(), stderr);
+  std::fputs(fmt::format("titop: {}\ntitop --help says what there is\n", misuse.what).c_str(),
+             stderr);
   return 2;
 } catch (const std::exception& error) {
   std::fputs(fmt::format("{}\n", error.what()).c_str(), stderr);

@@ -23,8 +23,10 @@ std::string draw_legend(const Picture& p) {
       std::any_of(g.signals.begin(), g.signals.end(), [](const Signal& s) { return !s.active; });
   if (removed) words.push_back("grey, dashed: set aside");
   if (!p.fold.boxes.empty()) words.push_back("▤ folded: many blocks, ×n: so many wires");
-  return fmt::format("<BR/><B>{}</B><BR/>{}", html(g.name),
-                     font(fmt::format("{}", fmt::join(words, " &#160; &#160; ")), 9, colour::soft));
+  const std::string name = fmt::format("<BR/><B>{}</B>", html(g.name));
+  if (words.empty()) return name;  // Graphviz refuses empty elements
+  return name + "<BR/>" +
+         font(fmt::format("{}", fmt::join(words, " &#160; &#160; ")), 9, colour::soft);
 }
 
 }  // namespace titop::dot

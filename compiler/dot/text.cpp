@@ -6,33 +6,21 @@
 namespace titop::dot {
 namespace {
 
-constexpr std::string_view kUnprintable = "\xEF\xBF\xBD";  // U+FFFD
+constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
 
-/// Length of the valid UTF-8 character at the front of `text`, 0 if there is none.
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned char b = byte(0);
-  const std::size_t n = b < 0x80                ? 1
-                        : b >= 0xC2 && b < 0xE0 ? 2
-                        : b >= 0xE0 && b < 0xF0 ? 3
-                        : b >= 0xF0 && b < 0xF5 ? 4
-                                                : 0;
-  if (n == 0 || n > text.size()) return 0;
-  for (std::size_t i = 1; i < n; ++i)
-    if ((byte(i) & 0xC0) != 0x80) return 0;
-  if (n == 1) return b >= 0x20 && b != 0x7F ? 1 : 0;
-  const unsigned char c = byte(1);  // overlong forms, surrogates, beyond U+10FFFF
-  if ((b == 0xE0 && c < 0xA0) || (b == 0xED && c > 0x9F)) return 0;
-  if ((b == 0xF0 && c < 0x90) || (b == 0xF4 && c > 0x8F)) return 0;
-  if ((b == 0xC2 && c < 0xA0) || (b == 0xEF && c == 0xBF && byte(2) >= 0xBE)) return 0;
-  return n;
+/// Control characters (the C1 ones, too) and U+FFFE, U+FFFF, which no SVG may hold.
+bool is_unprintable(std::string_view c) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(c[i]); };
+  if (c.size() == 1) return byte(0) < 0x20 || byte(0) == 0x7F;
+  return (byte(0) == 0xC2 && byte(1) < 0xA0) ||
+         (byte(0) == 0xEF && byte(1) == 0xBF && byte(2) >= 0xBE);
 }
 
 template <class Put>
 void each_character(std::string_view text, Put put) {
   while (!text.empty()) {
     const std::size_t n = utf8_length(text);
-    put(n == 0 ? kUnprintable : text.substr(0, n));
+    put(n == 0 || is_unprintable(text.substr(0, n)) ? kReplacement : text.substr(0, n));
     text.remove_prefix(n == 0 ? 1 : n);
   }
 }
@@ -58,6 +46,24 @@ std::string escaped(std::string_view text, bool in_html) {
 }
 
 }  // namespace
+
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned char b = byte(0);
+  const std::size_t n = b < 0x80                ? 1
+                        : b >= 0xC2 && b < 0xE0 ? 2
+                        : b >= 0xE0 && b < 0xF0 ? 3
+                        : b >= 0xF0 && b < 0xF5 ? 4
+                                                : 0;
+  if (n == 0 || n > text.size()) return 0;
+  for (std::size_t i = 1; i < n; ++i)
+    if ((byte(i) & 0xC0) != 0x80) return 0;
+  if (n == 1) return 1;
+  const unsigned char c = byte(1);  // overlong forms, surrogates, beyond U+10FFFF
+  if ((b == 0xE0 && c < 0xA0) || (b == 0xED && c > 0x9F)) return 0;
+  if ((b == 0xF0 && c < 0x90) || (b == 0xF4 && c > 0x8F)) return 0;
+  return n;
+}
 
 std::string clean(std::string_view text) {
   std::string out;

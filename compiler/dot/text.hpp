@@ -6,6 +6,8 @@
 /// Text of any origin in Graphviz files.
 namespace titop::dot {
 
+/// Bytes of the UTF-8 character that `text`, not empty, begins with; 0 if it begins with none.
+std::size_t utf8_length(std::string_view text);
 /// `text` as it stands in a label: broken UTF-8 and control characters become U+FFFD.
 std::string clean(std::string_view text);
 /// A quoted Graphviz string that shows `text`, whatever is in it.

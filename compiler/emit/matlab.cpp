@@ -9,12 +9,14 @@ namespace titop {
 
 namespace {
 
-/// Single quotes: no escapes are read in them by either program.
+/// Single quotes: no escapes are read in them by either program, and control characters are blanks,
+/// since a line or the file ends at some of them.
 std::string quoted(const std::string& name) {
   std::string text = "'";
   for (const char c : name) {
     if (c == '\'') text += '\'';
-    text += c == '\n' || c == '\r' ? ' ' : c;
+    const auto byte = static_cast<unsigned char>(c);
+    text += byte < 0x20 || byte == 0x7f ? ' ' : c;
   }
   return text + "'";
 }

@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <cstring>
+#include <titop/compiler/dot/text.hpp>
 #include <titop/compiler/emit/cpp/text.hpp>
 #include <titop/compiler/emit/files.hpp>
 #include <titop/compiler/emit/identifier.hpp>
@@ -29,14 +30,19 @@ std::string npy(const Eigen::MatrixXd& M) {
   return text;
 }
 
+/// Python refuses files that are not UTF-8 throughout: bytes that are none are escaped, as control
+/// characters are.
 std::string quoted(const std::string& name) {
   std::string text = "\"";
-  for (const char c : name) {
+  for (std::string_view rest = name; !rest.empty();) {
+    const std::size_t n = dot::utf8_length(rest);
+    const char c = rest.front();
     if (c == '"' || c == '\\') text += '\\';
-    if (static_cast<unsigned char>(c) < 0x20)
+    if (n == 0 || (n == 1 && static_cast<unsigned char>(c) < 0x20))
       text += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
     else
-      text += c;
+      text += rest.substr(0, n);
+    rest.remove_prefix(n == 0 ? 1 : n);
   }
   return text + "\"";
 }

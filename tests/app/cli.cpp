@@ -1,6 +1,10 @@
 // The command line: what it prints, what it writes, its exit codes.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
 #include <titop/blocks/scene/scene.hpp>
 #include <titop/titop.hpp>
 
@@ -105,9 +109,6 @@ TEST_CASE("report writes a page beside, or where it is told to") {
   CHECK(r.code == 0);
   CHECK(r.out.empty());
   CHECK(has(shell.folder.read("my report.html"), "</html>"));
-  r = shell.titop("report masses.json --no-diagrams --band 10 1");
-  CHECK(r.code == 1);
-  CHECK(has(r.err, "error[bad-value]"));
   CHECK(shell.folder.run("mkdir there && mv masses.json there") == 0);
   CHECK(shell.titop("report there/masses.json --no-diagrams").code == 0);
   CHECK(has(shell.folder.read("there/masses.html"), "<title>five masses</title>"));
@@ -144,6 +145,31 @@ TEST_CASE("export writes by the file's ending") {
   CHECK(shell.folder.read("g.csv") == shell.folder.read("expected.csv"));
 }
 
+TEST_CASE("frequencies over any range, both ends exactly") {
+  const Shell shell;
+  CHECK(shell.titop("export masses.json g.csv --omega 1e-200 1e120 3").code == 0);
+  std::istringstream lines(shell.folder.read("g.csv"));
+  std::string line;
+  std::vector<double> omega;  // the first column
+  std::getline(lines, line);
+  while (std::getline(lines, line)) omega.push_back(std::stod(line));
+  REQUIRE(omega.size() == 3);
+  CHECK(omega.front() == 1e-200);
+  CHECK(std::abs(omega[1] / 1e-40 - 1) <= 1e-13);  // a root of 1e320, which is no double
+  CHECK(omega.back() == 1e120);
+}
+
+TEST_CASE("what cannot be printed is an error") {
+  const Shell shell;
+  if (!std::filesystem::exists("/dev/full")) return;
+  for (const char* words : {"compile masses.json", "check masses.json", "--help"}) {
+    INFO(words);
+    const std::string command = std::string("'" TITOP_PROGRAM "' ") + words + " >/dev/full 2>err";
+    CHECK(shell.folder.run(command) == 1);
+    CHECK(has(shell.folder.read("err"), "error[bad-file]: standard output"));
+  }
+}
+
 TEST_CASE("a scene that is refused: exit code 1 and the error on stderr") {
   const Shell shell;
   shell.folder.write("broken.json", "{\"format\": 1}");
@@ -173,8 +199,10 @@ TEST_CASE("who asks for help gets the usage on stdout") {
   }
 }
 
-TEST_CASE("what is not understood: exit code 2 and the usage on stderr") {
+TEST_CASE("what is not understood: exit code 2, and one line on stderr that says what") {
   const Shell shell;
+  const std::string scene = shell.folder.read("masses.json");
+  shell.folder.write("masses.html", scene);  // a scene whose report would stand in its place
   for (const char* words : {"",
                             "fly masses.json",
                             "check",
@@ -201,13 +229,31 @@ TEST_CASE("what is not understood: exit code 2 and the usage on stderr") {
                             "export masses.json masses.json",
                             "draw masses.json ./masses.json",
                             "certify masses.json -o masses.json",
-                            "report masses.json -o masses.json"}) {
+                            "report masses.json -o masses.json",
+                            "report masses.json --band 0 0",
+                            "report masses.json --band 10 1",
+                            "report masses.json --until 0",
+                            "export masses.json m.hpp --sample-time 0",
+                            "draw --fold 2.7 masses.json a.dot",
+                            "check masses.json --minimize-up-to 1.5",
+                            "export masses.json g.csv --omega 1 10 2.9",
+                            "export masses.json g.csv --omega 1 10 0",
+                            "export masses.json g.csv --omega 1 10 1e300",
+                            "export masses.json g.csv --omega 0 10 3",
+                            "export masses.json g.csv --omega 1 10 3 --omega 1 10 3",
+                            "report masses.html --no-diagrams"}) {
     INFO(words);
     const Run r = shell.titop(words);
     CHECK(r.code == 2);
-    CHECK(has(r.err, "usage:"));
+    CHECK(r.err.rfind("titop: ", 0) == 0);
+    CHECK(std::count(r.err.begin(), r.err.end(), '\n') == 2);
+    CHECK(has(r.err, "\ntitop --help "));
     CHECK(r.out.empty());
   }
+  CHECK(shell.folder.read("masses.html") == scene);
+  CHECK(has(shell.titop("report masses.json --band 1").err, "--band needs more"));
+  CHECK(
+      has(shell.titop("export masses.json g.csv --omega 1 x 3").err, "--omega: 'x' is no number"));
   CHECK(has(shell.titop("export masses.json m.py --sample-time 0.01").err,
             "export to a file .py does nothing with --sample-time"));
   CHECK(shell.titop("check masses.json").code == 0);  // no scene is written over

@@ -77,6 +77,22 @@ TEST_CASE("Graphviz reads every stage of every scene") {
   }
 }
 
+TEST_CASE("Graphviz reads diagrams that need no legend") {
+  if (graphviz_is_missing()) return;
+  const Folder folder;
+  Diagram empty{"empty"}, gain{"gain"};
+  auto K = gain.add("K", Gain{.gain = 3});
+  K.in = gain.input("u");
+  gain.output("y") = K.out;
+  for (const Diagram* d : {&empty, &gain}) {
+    const fs::path file = folder.path / "plain.dot";
+    std::ofstream(file) << to_dot(*d);
+    INFO(d->name());
+    CHECK(complaints(file) == "");
+    CHECK(read(file).find("<B>" + d->name() + "</B>") != std::string::npos);
+  }
+}
+
 TEST_CASE("Graphviz reads names of every kind") {
   if (graphviz_is_missing()) return;
   const Folder folder;

@@ -3,8 +3,11 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
+#include <titop/compiler/emit/report/html.hpp>
 #include <titop/compiler/emit/report/plot.hpp>
 #include <titop/compiler/emit/report/program.hpp>
+#include <titop/compiler/emit/report/sweep.hpp>
 #include <titop/compiler/emit/report/units.hpp>
 #include <titop/titop.hpp>
 
@@ -92,6 +95,45 @@ TEST_CASE("axes carry units, and a power of ten where numbers are small") {
   plot.labels = {"<a> & \"b\""};
   figure = report::figure(plot);
   CHECK(has(figure, "&lt;a&gt; &amp; &quot;b&quot;"));
+}
+
+TEST_CASE("numbers: powers of ten only where they are small or large, never C's notation") {
+  CHECK(report::number(8000, 2) == "8000");
+  CHECK(report::number(1234.5, 3) == "1234");  // half to even
+  CHECK(report::number(-800, 2) == "-800");
+  CHECK(report::number(99.7, 2) == "100");
+  CHECK(report::number(123.456) == "123.5");
+  CHECK(report::number(12345.67) == "12345.7");
+  CHECK(report::number(999999.7) == "1000000");
+  CHECK(report::number(1.25e-5, 3) == "1.25·10⁻⁵");
+  CHECK(report::number(-3e16, 2) == "-3·10¹⁶");
+  CHECK(report::number(0) == "0");
+}
+
+TEST_CASE("frequencies stay in the band, and are closer at the poles in it") {
+  for (const double damping : {0.0, 0.05, 0.095, 0.1}) {
+    CAPTURE(damping);
+    Diagram d{"one"};
+    auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 100, .damping = 20 * damping});
+    ground(z);
+    z.child.force = d.input("u");
+    d.output("x") = z.stretch;
+    const System system = compile(d);
+    const double hertz = 10 / (2 * std::numbers::pi);  // of the mode
+    for (const auto& [low, high] :
+         {std::pair(0.0, 0.0), {1.0, 2.0}, {1.59, 1.6}, {1e-150, 1e150}}) {
+      CAPTURE(high);
+      const ReportOptions options{.band_hz = {low, high}};
+      const report::Sweep sweep = report::sweep(report::subject(system, options));
+      const double lowest = low > 0 ? low : hertz / 10, highest = high > 0 ? high : 4 * hertz;
+      REQUIRE(sweep.hertz.size() >= 500);
+      CHECK(std::abs(sweep.hertz.front() / lowest - 1) <= 1e-14);
+      CHECK(std::abs(sweep.hertz.back() / highest - 1) <= 1e-14);
+      CHECK(sweep.hertz.size() > 500);
+      for (std::size_t i = 1; i < sweep.hertz.size(); ++i)
+        CHECK(sweep.hertz[i] > sweep.hertz[i - 1]);
+    }
+  }
 }
 
 TEST_CASE("programs get their words and their input as they are") {

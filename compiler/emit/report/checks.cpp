@@ -24,17 +24,24 @@ std::string place(std::complex<double> s) {
 
 Mark judged(double value, double limit) { return value <= limit ? Mark::good : Mark::bad; }
 
+void add_not_done(std::vector<Item>& items, const char* what, const std::string& why_not) {
+  items.push_back({what, "not checked", why_not});
+}
+
 void add_basic(std::vector<Item>& items, const Certificate& c) {
-  items.push_back(
-      {"every equation, as it was written", number(c.residual, 2),
-       fmt::format(
-           "With a random input {} s = {:.3g} rad/s, all signals as the compiled system gives "
-           "them: the largest difference of the two sides of an equation or of a block's rows, "
-           "over the sum of the magnitudes of their terms. Rounding alone leaves about 10⁻¹⁶ per "
-           "term.{}",
-           c.at_instant ? "and states as single blocks would have at" : "at", c.s,
-           c.residual_where.empty() ? "" : " Worst: " + c.residual_where + "."),
-       judged(c.residual, kHolds)});
+  if (c.residual < 0)
+    add_not_done(items, "every equation, as it was written", "Without inputs nothing moves.");
+  else
+    items.push_back(
+        {"every equation, as it was written", number(c.residual, 2),
+         fmt::format(
+             "With a random input {} s = {:.3g} rad/s, all signals as the compiled system gives "
+             "them: the largest difference of the two sides of an equation or of a block's rows, "
+             "over the sum of the magnitudes of their terms. Rounding alone leaves about 10⁻¹⁶ per "
+             "term.{}",
+             c.at_instant ? "and states as single blocks would have at" : "at", c.s,
+             c.residual_where.empty() ? "" : " Worst: " + c.residual_where + "."),
+         judged(c.residual, kHolds)});
   if (c.dense_against_factors >= 0)
     items.push_back(
         {"A, B, C, D against the factored system", number(c.dense_against_factors, 2),
@@ -62,10 +69,6 @@ void add_basic(std::vector<Item>& items, const Certificate& c) {
            "solution{}.{}",
            c.margin_where.empty() ? "" : "; here at " + c.margin_where,
            c.margin_is_exact ? "" : " Loops too large for it are judged by their pivots.")});
-}
-
-void add_not_done(std::vector<Item>& items, const char* what, const std::string& why_not) {
-  items.push_back({what, "not checked", why_not});
 }
 
 void add_reciprocity(std::vector<Item>& items, const FullCertificate::Reciprocity& r) {
@@ -183,32 +186,100 @@ std::string tiles(const Subject& s) {
          "</div>\n";
 }
 
-/// At 0, on the axis, right of it. A double pole at 0 moves by the root of rounding.
-std::string stability(const Subject& s) {
-  int zero = 0, near = 0, axis = 0, right = 0;
-  const double fastest = s.poles.empty() ? 0 : s.poles.back().omega;
-  for (const Pole& p : s.poles) {
+/// Slower than this, of the fastest pole, a pole may be one at 0: a double one moves by the root of
+/// rounding, 1.5e-8, and by more where it is ill-conditioned.
+constexpr double kNearZero = 1e-7;
+/// One by itself moves by rounding of A alone.
+constexpr double kAtZero = 1e-14;
+
+/// How many poles of the model that is shown lie where.
+struct Places {
+  int zero = 0;
+  int near = 0;  ///< right of the axis, but not far from 0
+  int axis = 0, right = 0;
+};
+
+Places places(const std::vector<Pole>& poles) {
+  Places found;
+  const double fastest = poles.empty() ? 0 : poles.back().omega;
+  for (const Pole& p : poles) {
     const int n = p.pair ? 2 : 1;
-    if (p.omega == 0)
-      zero += n;
-    else if (p.omega <= 1e-7 * fastest && p.s.real() > 0)
-      near += n;
+    if (p.omega <= kAtZero * fastest)
+      found.zero += n;
+    else if (p.omega <= kNearZero * fastest && p.s.real() > 0)
+      found.near += n;
     else if (p.s.real() > 1e-9 * p.omega)
-      right += n;
+      found.right += n;
     else if (p.s.real() >= -1e-12 * p.omega)
-      axis += n;
+      found.axis += n;
   }
-  if (right > 0)
-    return verdict("bad", fmt::format("<b>Unstable</b>: {} right of the imaginary axis.",
-                                      count(static_cast<std::size_t>(right), "pole")));
-  zero += near;
-  std::string text = zero + axis == 0 ? "<b>Stable</b>: all poles lie left of the imaginary axis."
-                                      : "<b>No pole</b> lies right of the imaginary axis";
+  return found;
+}
+
+std::size_t set_aside(const Graph& g) {
+  std::size_t states = 0;
+  for (const Signal& x : g.signals)
+    if (x.role == Signal::Role::state && !x.active) states += static_cast<std::size_t>(x.size);
+  return states;
+}
+
+std::string poles(int n) { return count(static_cast<std::size_t>(n), "pole"); }
+
+/// A model without what no transfer shows may be stable where the scene is not.
+std::string unstable(const Places& shown, int right) {
+  const int hidden = right - shown.right - shown.near;
+  std::string text = fmt::format("<b>Unstable</b>: {} right of the imaginary axis", poles(right));
+  if (hidden > 0)
+    text += fmt::format(
+        "; {} no input moves or no output sees, so that the minimal model and all responses of "
+        "this page leave {} out",
+        hidden == right ? (hidden == 1 ? "this one" : "these") : fmt::format("{} of them", hidden),
+        hidden == 1 ? "it" : "them");
+  return verdict("bad", text + ".");
+}
+
+/// By the poles of all states, where the certificate holds them, else by those of the minimal
+/// model.
+std::string stability(const Subject& s, const FullCertificate* full) {
+  const Places p = places(s.poles);
+  const FullCertificate::Poles* all = full && full->poles.done ? &full->poles : nullptr;
+  const int right = all ? all->right : p.right;
+  if (right > 0) return unstable(p, right);
+  // A pole by itself has all its digits; those at 0 that are several have not.
+  const bool several = all && all->count - all->measured >= 2;
+  if (p.right > 0 || (p.near > 0 && !several))
+    return verdict(
+        "open",
+        fmt::format("<b>Undecided</b>: {} right of the imaginary axis, {}: rounding, or "
+                    "unstable.{}",
+                    poles(p.right + p.near),
+                    all ? "by no more than rounding may move poles" : "within 1e-7 of the fastest",
+                    all ? "" : " The full certificate may tell (titop certify)."));
+  const bool unseen = !all && !s.system.order_verdict().removed.empty();
+  const int zero = p.zero + p.near;
+  std::string text =
+      unseen ? "<b>No pole</b> of the minimal model lies right of the imaginary axis; those of the "
+               "modes that were taken out were not looked at"
+      : zero + p.axis > 0 ? "<b>No pole</b> lies right of the imaginary axis"
+                          : "<b>Stable</b>: all poles lie left of the imaginary axis";
   if (zero > 0) text += fmt::format("; {} at 0 (free motion, integrators)", zero);
-  if (near > 0)
-    text += fmt::format("; {} of them by rounding only, within 1e-7 of the fastest pole", near);
-  if (axis > 0) text += fmt::format("; {} on the axis (undamped)", axis);
-  return verdict("good", zero + axis == 0 ? text : text + ".");
+  if (p.near > 0)
+    text += fmt::format("; {} of them by rounding only, within 1e-7 of the fastest pole", p.near);
+  if (p.axis > 0) text += fmt::format("; {} on the axis (undamped)", p.axis);
+  if (const std::size_t aside = set_aside(s.system.stage().graph); aside > 0)
+    text += fmt::format(
+        "; not looked at: {} that the structure left out (see <a href=\"#order\">Order</a>)",
+        count(aside, "state"));
+  return verdict(unseen ? "open" : "good", text + ".");
+}
+
+std::string what_holds(const Certificate& c, const FullCertificate* full) {
+  std::vector<std::string> list;
+  if (c.residual >= 0)
+    list.push_back("every equation of the diagram, as it was written, to " + number(c.residual, 2));
+  if (full && full->poles.done) list.push_back("poles");
+  if (full && full->grid.done) list.push_back("dense model and transfers over a grid");
+  return list.empty() ? "" : fmt::format(": {}", fmt::join(list, "; "));
 }
 
 bool basic_holds(const Certificate& c) {
@@ -281,17 +352,13 @@ std::string order_section(const Subject& s, const FullCertificate* full) {
 std::string summary(const Subject& s, const FullCertificate* full) {
   const Certificate c = s.system.certificate();
   const OrderVerdict& v = order_of(s, full);
-  std::string text = tiles(s) + "<ul class=\"verdicts\">\n" + stability(s);
+  std::string text = tiles(s) + "<ul class=\"verdicts\">\n" + stability(s, full);
   if (full && !full->holds()) {
     for (const std::string& fault : full->faults) text += verdict("bad", escaped(fault));
   } else if (!basic_holds(c)) {
     text += verdict("bad", "A check does not hold: see the certificate.");
   } else {
-    text +=
-        verdict("good", fmt::format("<b>All checks hold</b>: every equation of the diagram, as it "
-                                    "was written, to {}{}.",
-                                    number(c.residual, 2),
-                                    full ? "; poles, dense model and transfers over a grid" : ""));
+    text += verdict("good", "<b>All checks hold</b>" + what_holds(c, full) + ".");
   }
   text += verdict(v.decided() ? "good" : "open", as_range(v));
   for (const auto& notes : {s.system.notes(), s.system.dense_notes()})

@@ -27,10 +27,12 @@ std::string attribute(const std::string& tag, const std::string& name) {
   return tag.substr(from, tag.find('"', from) - from);
 }
 
-[[noreturn]] void refuse(const std::string& message, std::vector<std::string> details) {
-  throw Error(Code::bad_file, message,
-              "install Graphviz (Debian package graphviz), or leave the diagrams out "
-              "(ReportOptions::diagrams = false, titop report --no-diagrams)",
+[[noreturn]] void refuse(const std::string& why, const std::string& hint,
+                         std::vector<std::string> details = {}) {
+  throw Error(Code::bad_file, "the diagram cannot be drawn: " + why,
+              hint +
+                  "leave the diagrams out (ReportOptions::diagrams = false, titop report "
+                  "--no-diagrams)",
               std::move(details));
 }
 
@@ -38,10 +40,12 @@ std::string attribute(const std::string& tag, const std::string& name) {
 
 std::string drawing(const std::string& dot_text, const std::string& what) {
   const Finished dot = run({"dot", "-Tsvg", "-Gbgcolor=transparent"}, dot_text);
-  if (!dot.found) refuse("the diagram cannot be drawn: the program dot is not there", {});
+  if (!dot.found)
+    refuse("the program dot is not there", "install Graphviz (Debian package graphviz), or ");
   const std::size_t start = dot.out.find("<svg"), end = dot.out.find('>', start);
   if (dot.code != 0 || end == std::string::npos || dot.out.rfind("</svg>") == std::string::npos)
-    refuse(fmt::format("the diagram cannot be drawn: dot ends with {}", dot.code),
+    refuse(fmt::format("dot ends with {}", dot.code),
+           "this Graphviz may be broken, or too old (dot -V says which it is): take another, or ",
            {dot.err.substr(0, dot.err.find('\n'))});
   const std::string tag = dot.out.substr(start, end - start);
   std::string body = dot.out.substr(end + 1, dot.out.rfind("</svg>") - end - 1);

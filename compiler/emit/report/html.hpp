@@ -30,8 +30,12 @@ inline std::string row(const std::vector<std::string>& cells,
   return text + "</tr>\n";
 }
 
-/// A number for a table: 4 digits, "1.2·10⁻⁵" where it is small or large.
+/// A number for a table or a sentence: 4 digits, "1.2·10⁻⁵" where it is small or large. Plain text,
+/// that is HTML as well.
 std::string number(double x, int digits = 4);
+
+/// "10⁻³"
+std::string power_of_ten(int exponent);
 
 /// "1 state", "2 states".
 inline std::string count(std::size_t n, const char* what) {

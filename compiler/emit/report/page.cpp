@@ -55,7 +55,6 @@ td { padding: 4px 12px 4px 0; border-bottom: 1px solid var(--rule); vertical-ali
 .n + td, .n + th { padding-left: 16px; }
 .name { font-family: "DejaVu Sans Mono", "Liberation Mono", Menlo, Consolas, monospace; font-size: 12.5px; }
 .fit { white-space: nowrap; }
-sup { line-height: 0; font-size: 75%; }
 .wide { min-width: 220px; }
 span.good, td.good { color: var(--good); } span.bad, td.bad { color: var(--bad); }
 .share { display: inline-block; margin: 0 14px 0 0; white-space: nowrap; }
@@ -131,15 +130,24 @@ std::string page(const std::string& title, const std::string& body) {
       dot::html(title), kStyle, body);
 }
 
+std::string power_of_ten(int exponent) {
+  constexpr const char* digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
+  std::string text = exponent < 0 ? "10⁻" : "10";
+  for (const char c : std::to_string(std::abs(exponent))) text += digits[c - '0'];
+  return text;
+}
+
 std::string number(double x, int digits) {
   if (x == 0) return "0";
   if (!std::isfinite(x)) return fmt::format("{}", x);
   const double size = std::abs(x);
-  if (size >= 1e-3 && size < 1e6)
-    return fmt::format("{:.{}g}", x, size >= 1e4 ? std::max(digits, 6) : digits);
+  if (size >= 1e-3 && size < 1e6) {
+    const std::string text = fmt::format("{:.{}g}", x, size >= 1e4 ? std::max(digits, 6) : digits);
+    return text.find('e') == std::string::npos ? text : fmt::format("{:.0f}", x);
+  }
   const int exponent = static_cast<int>(std::floor(std::log10(size)));
   std::string mantissa = fmt::format("{:.{}g}", x / std::pow(10.0, exponent), std::min(digits, 3));
-  return fmt::format("{}·10<sup>{}{}</sup>", mantissa, exponent < 0 ? "−" : "", std::abs(exponent));
+  return mantissa + "·" + power_of_ten(exponent);
 }
 
 }  // namespace titop::report

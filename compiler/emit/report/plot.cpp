@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/dot/text.hpp>
+#include <titop/compiler/emit/report/html.hpp>
 #include <titop/compiler/emit/report/plot.hpp>
 
 namespace titop::report {
@@ -10,14 +11,6 @@ namespace {
 
 constexpr double kWidth = 520, kLeft = 66, kRight = 14, kTop = 8, kGap = 12, kBottom = 40;
 constexpr double kInner = kWidth - kLeft - kRight;
-
-/// "10⁻³"
-std::string power_of_ten(int exponent) {
-  constexpr const char* digits[] = {"⁰", "¹", "²", "³", "⁴", "⁵", "⁶", "⁷", "⁸", "⁹"};
-  std::string text = exponent < 0 ? "10⁻" : "10";
-  for (const char c : std::to_string(std::abs(exponent))) text += digits[c - '0'];
-  return text;
-}
 
 struct Tick {
   double value = 0;

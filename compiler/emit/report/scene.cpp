@@ -106,8 +106,18 @@ std::string scene_section(const Subject& s) {
 }
 
 std::string poles_section(const Subject& s) {
-  if (s.poles.empty()) return "<p>The model has no states: outputs follow inputs at once.</p>\n";
+  int gone = 0;
+  for (const JudgedMode& m : s.system.order_verdict().removed) gone += m.states;
+  const std::string left_out =
+      gone == 0 ? ""
+                : fmt::format(
+                      "<p>The model is without {} that no transfer shows (see <a "
+                      "href=\"#order\">Order</a>): their poles are not listed here.</p>\n",
+                      count(static_cast<std::size_t>(gone), "state"));
+  if (s.poles.empty())
+    return "<p>The model has no states: outputs follow inputs at once.</p>\n" + left_out;
   std::string text =
+      left_out +
       "<p>One line per pole, or per pair of conjugate poles; slow ones first. Participation "
       "factors "
       "are summed over the states of each block, down to 5 %.</p>\n<div class=\"table\"><table "

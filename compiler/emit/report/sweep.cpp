@@ -22,7 +22,13 @@ std::vector<double> grid(const Subject& s) {
   const auto [low, high] = band(s);
   std::vector<double> list;
   constexpr int points = 500;
-  for (int i = 0; i < points; ++i) list.push_back(low * std::pow(high / low, i / (points - 1.0)));
+  for (int i = 0; i < points; ++i) {
+    const double part = i / (points - 1.0);
+    list.push_back(std::clamp(std::pow(low, 1 - part) * std::pow(high, part), low, high));
+  }
+  const auto add = [&list, lowest = low, highest = high](double omega) {
+    if (omega >= lowest && omega <= highest) list.push_back(omega);
+  };
   std::size_t refined = 0;
   for (const Pole& p : s.poles) {
     if (!p.pair || p.damping > 0.1 || p.omega < low || p.omega > high || ++refined > 150) continue;
@@ -30,7 +36,7 @@ std::vector<double> grid(const Subject& s) {
     for (const double k : {0.0, 0.3, 0.7, 1.0, 1.5, 2.5, 5.0, 10.0})
       for (const double sign : {-1.0, 1.0})
         if (k > 0 || (sign > 0 && std::abs(p.damping) > 1e-6))
-          list.push_back(p.omega * (1 + sign * k * width));
+          add(p.omega * (1 + sign * k * width));
   }
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
