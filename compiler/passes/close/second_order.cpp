@@ -1,6 +1,7 @@
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
+#include <Eigen/QR>
 #include <algorithm>
+#include <cmath>
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/passes/close/second_order.hpp>
 
@@ -14,7 +15,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-constexpr std::size_t kMostChains = 40;
+constexpr std::size_t kMostChains = 20;  ///< a millisecond or two
 constexpr int kMotions = 3;
 
 /// Of small motions (translation of a point that stays, rotation).
@@ -93,6 +94,16 @@ MatrixXd dense(const Component& c) {
   return result;
 }
 
+/// Orthonormal columns: what those of m do not span.
+MatrixXd left_out(const MatrixXd& m) {
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(m);
+  Index rank = 0;
+  while (rank < std::min(m.rows(), m.cols()) && std::abs(qr.matrixR()(rank, rank)) > kRankTolerance)
+    ++rank;
+  const MatrixXd Q = qr.householderQ();
+  return Q.rightCols(m.rows() - rank);
+}
+
 }  // namespace
 
 double stopped(const Component& scaled, const Factors& factors,
@@ -103,11 +114,9 @@ double stopped(const Component& scaled, const Factors& factors,
     chains.push_back(joints(scaled, *c, graph));
     if (chains.back().empty()) return -1;
   }
-  Eigen::JacobiSVD<MatrixXd> svd(dense(scaled), Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Index rank = 0;
-  while (rank < svd.singularValues().size() && svd.singularValues()(rank) > kRankTolerance) ++rank;
-  const MatrixXd outside = svd.matrixU().rightCols(svd.matrixU().cols() - rank),
-                 left = svd.matrixV().rightCols(svd.matrixV().cols() - rank);
+  if (scaled.scalars.empty()) return 0;
+  const MatrixXd relations = dense(scaled);
+  const MatrixXd outside = left_out(relations), left = left_out(relations.transpose());
   if (outside.cols() == 0 || left.cols() == 0) return 0;
   detail::SteadyRandom random;
   double worst = 0;

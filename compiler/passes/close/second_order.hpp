@@ -14,7 +14,7 @@ namespace titop::passes::closing {
 /// brackets outside the span, over the sum of the brackets' sizes: 0 but for rounding where chains
 /// are closed twice and still move (a linkage in a plane), about 1 at a singular posture. 0 where
 /// nothing is redundant. -1, not tried: closing equations of fewer than six rows, or through what
-/// is prescribed or free as a whole; more than 40 chains that share joints.
+/// is prescribed or free as a whole; more than 20 chains that share joints.
 /// Source: [Mueller 2002], mobility of higher order. O((rows + columns)^3).
 ///
 /// `closings`: those of the component's lines, in this order; `scaled`, by `factors`.
