@@ -73,6 +73,12 @@ inline std::vector<std::string> between(const std::string& text, const std::stri
   return found;
 }
 
+/// The page's section with this id; "" where there is none, or more than one.
+inline std::string section(const std::string& page, const std::string& id) {
+  const auto found = between(page, "<section id=\"" + id + "\">", "</section>");
+  return found.size() == 1 ? found.front() : "";
+}
+
 inline std::size_t count(const std::string& text, const std::string& part) {
   std::size_t n = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;

@@ -1,0 +1,85 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <titop/titop.hpp>
+
+#include "support/mistakes.hpp"
+
+// Modal data and beams that no body has: each entry, and the line that makes the body.
+
+using namespace titop;
+using namespace titop_test;
+
+TEST_CASE("bad-inertia: a D_P that no body has") {
+  // 40 kg around (0, 3, 0): an appendage without modes, by hand.
+  ModalData data;
+  data.L_P.resize(0, 6);
+  data.D_P = rigid_mass(40, Vector3d(120, 10, 130).asDiagonal(), {0, -3, 0});
+  const auto refused_with = [&](auto change) {
+    ModalData d = data;
+    change(d);
+    return error_of([&] { FlexibleBody{d}; });
+  };
+  CHECK(refused_with([](ModalData&) {}).mistakes().empty());
+  CHECK(says(
+      refused_with([](ModalData& d) { d.D_P(0, 0) = 50; }), Code::bad_inertia,
+      {"D_P is not the mass matrix of a rigid body", "it has 50 at (x, x)", "a body of 43.3"}));
+  CHECK(says(refused_with([](ModalData& d) {
+               Matrix6 swapped;
+               swapped << d.D_P.bottomRightCorner<3, 3>(), d.D_P.bottomLeftCorner<3, 3>(),
+                   d.D_P.topRightCorner<3, 3>(), d.D_P.topLeftCorner<3, 3>();
+               d.D_P = swapped;
+             }),
+             Code::bad_inertia, {"not the mass matrix", "its rotations come first"}));
+  CHECK(says(refused_with([](ModalData& d) { d.D_P(0, 5) = 3; }), Code::bad_inertia,
+             {"D_P is not symmetric", "3 at (x, rz)", "-120 at (rz, x)"}));
+  // The inertia about the centre of mass in place of that about P, 360 kg m^2 more: not the modes'
+  // fault, as there are none.
+  CHECK(says(refused_with([](ModalData& d) {
+               d.D_P.bottomRightCorner<3, 3>() = Vector3d(120, 10, 130).asDiagonal();
+             }),
+             Code::bad_inertia, {"D_P is negative in", "the inertia in D_P is about P"}));
+  // Data of two digits may be off by a tenth: nothing to say about a twentieth.
+  CHECK(refused_with([](ModalData& d) { d.D_P(0, 0) = 42, d.digits = 2; }).mistakes().empty());
+}
+
+TEST_CASE("numbers of modal data that make no sense") {
+  ModalData data;
+  data.omega = Eigen::Vector2d(3, 7);
+  data.xi = Eigen::Vector2d(0.01, 0.01);
+  data.L_P = Eigen::MatrixXd::Zero(2, 6);
+  data.D_P = rigid_mass(5, Matrix3d::Identity(), Vector3d::Zero());
+  data.children.push_back({"C1", {0, 0, 0}, Eigen::MatrixXd::Zero(6, 2)});
+  const auto refused_with = [&](auto change) {
+    ModalData d = data;
+    change(d);
+    return error_of([&] { FlexibleBody{d}; });
+  };
+  CHECK(refused_with([](ModalData&) {}).mistakes().empty());
+  for (const double digits : {0.0, -1.0, std::nan(""), HUGE_VAL})
+    CHECK(says(refused_with([&](ModalData& d) { d.digits = digits; }), Code::bad_value,
+               {"the modal data have", "digits"}));
+  // Percent. Some modes above 1 are what damping in proportion to stiffness makes of fast ones.
+  CHECK(says(refused_with([](ModalData& d) { d.xi = Eigen::Vector2d(50, 40); }), Code::bad_modes,
+             {"least damping ratio is 40", "not percent"}));
+  CHECK(refused_with([](ModalData& d) { d.xi(1) = 3; }).mistakes().empty());
+  CHECK(says(refused_with([](ModalData& d) { d.L_P(1, 2) = std::nan(""); }), Code::not_finite,
+             {"L_P of the modal data has nan in row 2, column 3"}));
+  CHECK(says(refused_with([](ModalData& d) { d.children[0].Phi_C(5, 0) = HUGE_VAL; }),
+             Code::not_finite, {"Phi_C of C1 of the modal data has inf in row 6, column 1"}));
+}
+
+TEST_CASE("mistakes of modal data and beams are told with the line that makes the body") {
+  ModalData data;
+  data.L_P.resize(0, 6);
+  data.D_P = -Matrix6::Identity();
+  const auto body = next_line();
+  const Error by_data = error_of([&] { FlexibleBody{data}; });
+  CHECK(says(by_data, Code::bad_inertia, {"D_P has -1 at x", "the body was made at " + body}));
+  const auto beam = next_line();
+  const Error by_beam = error_of([&] { FlexibleBody{Beam{}}; });
+  CHECK(says(by_beam, Code::bad_value, {"length of the beam", "the body was made at " + beam}));
+  const auto rigid = next_line();
+  const Error by_rigid = error_of([&] { FlexibleBody{RigidBody{.mass = -1}}; });
+  CHECK(says(by_rigid, Code::bad_inertia, {"the mass is -1", "the body was made at " + rigid}));
+}
