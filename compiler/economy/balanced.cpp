@@ -13,10 +13,15 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
+using Eigen::VectorXd;
 
 constexpr double kSilent = 1e-11;    ///< of the peaks: a pole that nobody moves or nobody sees
 constexpr double kUnstable = 1e-6;   ///< growth over |s| that is no rounding
 constexpr double kDistinct = 1e-10;  ///< relative gap of singular values that may be cut through
+constexpr double kClear = 1.1;       ///< times the target: an error of one sample that tells
+constexpr double kDigits = 1e-11;    ///< of the peaks: what a factorisation without pivots may lose
+/// Of the lowest pole: samples begin below it (Band::start is half of it) if the band begins at 0.
+constexpr double kFromZero = 2e-6;
 
 /// Rows and columns `list` of a part.
 Part select(const Part& p, const std::vector<Index>& list) {
@@ -24,17 +29,47 @@ Part select(const Part& p, const std::vector<Index>& list) {
           p.right(Eigen::all, list)};
 }
 
-/// Largest share of any pair's peak that a part has on the samples.
-double effect(const Part& p, const Samples& samples) {
-  double worst = 0;
-  for (const Complex& s : samples.s)
-    worst = std::max(worst, transfer(p, s).cwiseAbs().cwiseQuotient(samples.peak).maxCoeff());
-  return worst;
+/// Lowest modulus of a pole that is not 0, or the band's end if that is lower.
+double lowest(const Split& split, const Samples& samples) {
+  double first = samples.omega.size() > 1 ? samples.omega.back() : 1;
+  for (const Complex& p : split.poles)
+    if (p != 0.0) first = std::min(first, std::abs(p));
+  return first;
 }
 
-/// The same part in blocks per pole, without those on the axis that no input moves or no output
-/// sees; as it is where poles are too close to defective.
-Part without_silent(const Part& p, const Samples& samples) {
+/// Tells whether no input moves or no output sees what is kept.
+///
+/// Of a pole that counts as 0 (`Split::poles`) rounding leaves a residue, and a pole beside 0, and
+/// the lower the sample the more of the transfer they seem to be. Where the band begins at 0 a pole
+/// at 0 can only be hidden, for else there is no gain: it is judged at the lowest frequency where
+/// anything moves.
+class Judge {
+ public:
+  Judge(const Split& split, const Samples& samples)
+      : lowest_(lowest(split, samples)), samples_(samples) {}
+  bool is_silent(const Part& p) const {
+    const bool is_zero = p.A.cwiseAbs().maxCoeff() < 0.5 * lowest_;  // none of the others
+    if (is_zero && samples_.omega.front() <= kFromZero * lowest_)
+      return size(p, lowest_) <= kSilent;
+    if (p.A.trace() > kUnstable * p.A.norm()) return false;
+    double worst = 0;
+    for (const Complex& s : samples_.s) worst = std::max(worst, size(p, s));
+    return worst <= kSilent;
+  }
+
+ private:
+  /// Largest share of any pair's peak.
+  double size(const Part& p, Complex s) const {
+    return transfer(p, s).cwiseAbs().cwiseQuotient(samples_.peak).maxCoeff();
+  }
+  double lowest_;
+  const Samples& samples_;
+};
+
+/// The kept part in blocks per pole, without those on the axis that are silent; as it is where
+/// poles are too close to defective.
+Part without_silent(const Split& split, const Samples& samples) {
+  const Part& p = split.kept;
   if (p.order() == 0) return p;
   RealModes modes;
   try {
@@ -45,33 +80,59 @@ Part without_silent(const Part& p, const Samples& samples) {
   const MatrixXd inverse = modes.T.inverse();
   Part blocks{MatrixXd::Zero(p.order(), p.order()), inverse * p.B, p.C * modes.T, inverse * p.left,
               p.right * modes.T};
+  const Judge judge(split, samples);
   std::vector<Index> stay;
-  const auto judge = [&](const std::vector<Index>& list, const MatrixXd& A) {
+  const auto add = [&](const std::vector<Index>& list, const MatrixXd& A) {
     blocks.A(list, list) = A;
-    const bool grows = A.trace() > kUnstable * A.norm();
-    if (grows || !(effect(select(blocks, list), samples) <= kSilent))
-      stay.insert(stay.end(), list.begin(), list.end());
+    if (!judge.is_silent(select(blocks, list))) stay.insert(stay.end(), list.begin(), list.end());
   };
   Index first = 0;
   for (const Eigen::Matrix2d& A : modes.A) {
-    judge({first, first + 1}, A);
+    if (A.isDiagonal(0)) {
+      add({first}, A.topLeftCorner<1, 1>());
+      add({first + 1}, A.bottomRightCorner<1, 1>());
+    } else {
+      add({first, first + 1}, A);
+    }
     first += 2;
   }
-  for (const double pole : modes.single) judge({first}, MatrixXd::Constant(1, 1, pole));
+  for (const double pole : modes.single) add({first}, MatrixXd::Constant(1, 1, pole));
   return select(blocks, stay);
 }
 
-bool is_stable(const MatrixXd& A) {
-  return A.size() == 0 || linalg::eigenvalues(A).real().maxCoeff() < 0;
+/// L U = S in place, L with diagonal 1, without pivots: the leading blocks of L and U are factors
+/// of the leading blocks of S.
+void factor(Eigen::Ref<MatrixXcd> S) {
+  const Index n = S.rows(), half = n / 2;
+  if (n < 2) return;
+  if (n <= 16) {
+    for (Index k = 0; k + 1 < n; ++k) {
+      const Index rest = n - k - 1;
+      S.col(k).tail(rest) /= S(k, k);
+      S.bottomRightCorner(rest, rest).noalias() -= S.col(k).tail(rest) * S.row(k).tail(rest);
+    }
+    return;
+  }
+  factor(S.topLeftCorner(half, half));
+  auto right = S.topRightCorner(half, n - half);
+  auto below = S.bottomLeftCorner(n - half, half);
+  const auto corner = S.topLeftCorner(half, half);
+  corner.triangularView<Eigen::UnitLower>().solveInPlace(right);
+  corner.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(below);
+  S.bottomRightCorner(n - half, n - half).noalias() -= below * right;
+  factor(S.bottomRightCorner(n - half, n - half));
+}
+
+bool is_stable(const States::Piece& p) {
+  if (p.part.order() == 0) return true;
+  const Eigen::VectorXcd poles = p.pole.size() ? p.pole : linalg::eigenvalues(p.part.A);
+  return poles.real().maxCoeff() < 0;
 }
 
 }  // namespace
 
 Balanced::Balanced(const StateSpace& model, const Split& split, const Samples& samples, double high)
-    : split_(split),
-      kept_(piece(without_silent(split_.kept, samples))),
-      D_(model.D),
-      samples_(samples) {
+    : split_(split), kept_(piece(without_silent(split_, samples))), D_(model.D), samples_(samples) {
   const States whole{{piece(split_.integrals), kept_}, D_, {}};
   for (std::size_t k = 0; k < samples.s.size(); ++k)
     rest_.push_back(samples.H[k] - whole.transfer(samples.s[k]));
@@ -79,6 +140,9 @@ Balanced::Balanced(const StateSpace& model, const Split& split, const Samples& s
   sizes_ = {in.cwiseInverse().transpose(), out};
   balancings_[0] = balance(split_, sizes_);
   if (high > 0) balancings_[1] = balance(split_, sizes_, high);
+  for (const bool weighted : {false, true})
+    for (VectorXd& seen : seen_[weighted ? 1 : 0])
+      if (const auto& b = balancings_[weighted ? 1 : 0]) seen.setZero(b->sigma.size() + 1);
 }
 
 int Balanced::unstable() const {
@@ -89,21 +153,56 @@ int Balanced::unstable() const {
 }
 
 double Balanced::error(const Choice& choice, double limit) const {
-  const Balancing& b = balancing(choice);
-  const Cut c = cut(b, choice.order, choice.truncated);
+  Cut c = cut(balancing(choice), choice.order, choice.truncated);
   if (!c.part.A.allFinite() || !c.D.allFinite()) return HUGE_VAL;
+  const States model{{piece(std::move(c.part))}, std::move(c.D), {}};
   double largest = 0;
-  for (std::size_t i = 0; i < rest_.size(); ++i) {
-    const std::size_t k = (i + worst_) % rest_.size();
-    const MatrixXcd off = rest_[k] - transfer(c.part, samples_.s[k]) - c.D.cast<Complex>();
+  std::size_t worst = 0;
+  for (std::size_t k = 0; k < rest_.size(); ++k) {
+    const MatrixXcd off = rest_[k] - model.transfer(samples_.s[k]);
     const double here = off.cwiseAbs().cwiseQuotient(samples_.peak).maxCoeff();
-    if (here > limit || !std::isfinite(here)) {
-      worst_ = k;
-      return HUGE_VAL;
-    }
-    largest = std::max(largest, here);
+    if (!(here <= largest)) largest = here, worst = k;
+    if (!std::isfinite(here)) return HUGE_VAL;
+    // Without eigenvectors every sample costs as much as all the others with them.
+    if (here > limit && model.pieces.front().pole.size() == 0) break;
   }
-  return is_stable(c.part.A) ? largest : HUGE_VAL;
+  if (largest > limit) learn(choice, worst);
+  return largest <= limit && is_stable(model.pieces.front()) ? largest : HUGE_VAL;
+}
+
+bool Balanced::fails(const Choice& c, double target) const {
+  return seen_[c.weighted ? 1 : 0][c.truncated ? 1 : 0](c.order) > kClear * target + kDigits;
+}
+
+/// Truncated, C_r (s - A_r)^-1 B_r is a sum over the first r columns of C U^-1 and rows of L^-1 B,
+/// with L U = s - A. At rest it is D - C A^-1 B - s C_r' (1 - s A_r')^-1 B_r' with A' = A^-1,
+/// B' = A^-1 B, C' = C A^-1 [Liu, Anderson 1989]: the same. No pivot of either can be 0 right of
+/// the axis, where leading blocks of balanced matrices have no poles.
+void Balanced::learn(const Choice& c, std::size_t k) const {
+  const Balancing& b = balancing(c);
+  const Complex s = samples_.s[k];
+  MatrixXcd S = -b.A.cast<Complex>(), B = b.B.cast<Complex>(), C = b.C.cast<Complex>(),
+            H = rest_[k];
+  if (c.truncated) {
+    S.diagonal().array() += s;
+  } else {
+    const Eigen::PartialPivLU<MatrixXd> lu(b.A);
+    const MatrixXd inverse = lu.inverse();
+    H += C * (inverse * b.B);
+    B = -s * (inverse * b.B);
+    C = C * inverse;
+    S = -s * inverse;
+    S.diagonal().array() += 1;
+  }
+  factor(S);
+  S.triangularView<Eigen::UnitLower>().solveInPlace(B);
+  S.triangularView<Eigen::Upper>().solveInPlace<Eigen::OnTheRight>(C);
+  VectorXd& seen = seen_[c.weighted ? 1 : 0][c.truncated ? 1 : 0];
+  for (Index r = 0; r < seen.size(); ++r) {
+    const double here = H.cwiseAbs().cwiseQuotient(samples_.peak).maxCoeff();
+    if (here > seen(r) && std::isfinite(here)) seen(r) = here;
+    if (r < b.A.rows()) H -= C.col(r) * B.row(r);
+  }
 }
 
 std::optional<Balanced::Choice> Balanced::find(Index from, double target) const {
@@ -112,14 +211,13 @@ std::optional<Balanced::Choice> Balanced::find(Index from, double target) const 
     bool any = false;
     for (const bool weighted : {false, true}) {
       if (!balancings_[weighted ? 1 : 0]) continue;
-      const Eigen::VectorXd& sigma = balancings_[weighted ? 1 : 0]->sigma;
+      const VectorXd& sigma = balancings_[weighted ? 1 : 0]->sigma;
       if (r > sigma.size()) continue;
       any = true;
       if (r > 0 && r < sigma.size() && sigma(r) > (1 - kDistinct) * sigma(r - 1)) continue;
       for (const bool truncated : {true, false}) {
         Choice c{r, weighted, truncated, 0};
-        c.error = error(c, std::min(target, best.error));
-        if (c.error < best.error) best = c;
+        if (!fails(c, target) && (c.error = error(c, target)) < best.error) best = c;
       }
       if (best.error <= target) return best;
     }

@@ -17,6 +17,9 @@ namespace titop::detail {
 /// out what the band does not show, but has no bound beforehand; and cut by truncation or with the
 /// others at rest. The cut of less error on the samples counts, low-passes where nothing else does.
 /// An order does as soon as one model does, so that more accuracy never gives a smaller order.
+///
+/// One factorisation gives the errors of all orders at one sample (`learn`): a model that fails is
+/// looked at where it fails most, and all orders that fail there as clearly are passed over.
 class Balanced {
  public:
   /// `split` and `samples` must live as long. O(60 n^3).
@@ -45,7 +48,12 @@ class Balanced {
 
  private:
   const Balancing& balancing(const Choice& c) const { return *balancings_[c.weighted ? 1 : 0]; }
+  /// On the samples; HUGE_VAL if it is more than the limit, or the model not stable.
   double error(const Choice& choice, double limit) const;
+  /// True if what was learnt tells that the error is clearly above this.
+  bool fails(const Choice& choice, double target) const;
+  /// Notes the errors of all orders of this kind of cut on this sample. O(5 n^3).
+  void learn(const Choice& choice, std::size_t sample) const;
 
   const Split& split_;
   States::Piece kept_;
@@ -54,7 +62,8 @@ class Balanced {
   std::vector<Eigen::MatrixXcd> rest_;  ///< of the samples, without what is kept
   PortSizes sizes_;
   std::optional<Balancing> balancings_[2];
-  mutable std::size_t worst_ = 0;  ///< sample where the last model failed: looked at first
+  /// By weighted, truncated, order: an error on some sample, 0 where none is known.
+  mutable Eigen::VectorXd seen_[2][2];
 };
 
 }  // namespace titop::detail

@@ -13,8 +13,8 @@ constexpr double kPhase = 1;
 using TransferOf = std::function<Eigen::MatrixXcd(std::complex<double>)>;
 
 /// Beside the factored system, per pair relative to its own peak, where the two can differ most:
-/// on the phase grid of the poles of both; and what rounding adds. Cost: the full system's
-/// transfers at these points, which `samples` counts.
+/// on the phase grid of the poles of both; and what rounding adds, but to pairs that are 0 in both.
+/// Cost: the full system's transfers at these points, which `samples` counts.
 ErrorBound error_bound(const System& full, const Scene& scene, const Band& band,
                        const Spectrum& spectrum, const std::vector<std::complex<double>>& poles,
                        const TransferOf& transfer);

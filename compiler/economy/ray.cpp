@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <titop/compiler/economy/phase_grid.hpp>
 #include <titop/compiler/economy/ray.hpp>
@@ -14,8 +15,23 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kNothing = 1e-10;  ///< of what its row and column have: a pair of rounding only
-constexpr int kFar = 10;            ///< poles in s^2 that stand for all beyond twice the band
+constexpr double kNothing = 1e-10;    ///< of what its row and column have: a pair of rounding only
+constexpr double kNearlyZero = 1e-6;  ///< of what it would be otherwise: a pair that is nothing
+constexpr double kRounding = 1e-12;   ///< of the full system's transfer
+constexpr double kCancelled = 5e-14;  ///< of terms that cancel: some 200 units of the last place
+constexpr double kPoleUnits = 2;      ///< units of the last place of a pole
+constexpr int kFar = 10;              ///< poles in s^2 that stand for all beyond twice the band
+constexpr double kEqual = 1e-12;      ///< relative distance of poles that are one
+
+bool equal(Complex p, Complex q) { return std::abs(p - q) <= kEqual * std::abs(q); }
+
+/// Is this pole the last two already? Modes of one frequency and one damping, however many, are one
+/// simple pole of the transfer; the second one stands for what they differ by where they count as
+/// equal.
+bool counted(const std::vector<Complex>& poles, Complex p) {
+  const std::size_t n = poles.size();
+  return n >= 2 && equal(p, poles[n - 1]) && equal(p, poles[n - 2]);
+}
 
 /// Poles of the whole; where its modes couple and `couple` was not called: without that.
 std::vector<Complex> poles_of(const Whole& w) {
@@ -24,6 +40,7 @@ std::vector<Complex> poles_of(const Whole& w) {
   for (Index j = 0; j < w.order(); ++j) {
     const double half = w.damping(j) / 2;
     const Complex root = std::sqrt(Complex(half * half - w.lambda(j), 0));
+    if (w.proportional && root.imag() > 0 && counted(result, -half + root)) continue;
     result.push_back(-half + root);
     if (root.imag() == 0 && w.Z.size() > 0) result.push_back(-half - root);
   }
@@ -35,27 +52,58 @@ std::vector<Complex> merged(std::vector<Complex> poles, const std::vector<Comple
   const std::size_t own = poles.size();
   for (const Complex& p : more)
     if (std::none_of(poles.begin(), poles.begin() + static_cast<std::ptrdiff_t>(own),
-                     [&](const Complex& q) { return std::abs(p - q) <= 1e-12 * std::abs(q); }))
+                     [&](const Complex& q) { return equal(p, q); }))
       poles.push_back(p);
   return poles;
+}
+
+/// What outputs read of the modes: a q'' + v q' + q q.
+struct Reading {
+  MatrixXd a, v, q;
+};
+
+/// Positions as positions, not as static gain and accelerations: of a mode far below the band these
+/// are each as large as its static part, and cancel.
+Reading as_meant(const Whole& w) {
+  Reading r{w.ca, w.cv, w.cq};
+  const Index n = w.elastic();
+  for (Index i = 0; i < r.a.rows(); ++i) {
+    if (!w.is_position[static_cast<std::size_t>(i)]) continue;
+    if (w.Z.size() > 0) r.v.row(i) -= w.ca.row(i) * w.Z;
+    r.q.row(i).head(n) -= w.ca.row(i).head(n).cwiseProduct(w.lambda.head(n).transpose());
+    r.a.row(i).setZero();
+  }
+  return r;
 }
 
 /// What every pair would be at s if output and input saw all modes alike: norms of what the output
 /// reads and the input drives, each mode weighed by its response [Cauchy, Schwarz]. Units cancel
 /// against the pair's own.
-MatrixXd alike(const Whole& w, Complex s) {
-  MatrixXd out = MatrixXd::Zero(w.ca.rows(), 1), in = MatrixXd::Zero(1, w.b.cols());
+MatrixXd alike(const Whole& w, const Reading& r, Complex s) {
+  MatrixXd out = MatrixXd::Zero(r.a.rows(), 1), in = MatrixXd::Zero(1, w.b.cols());
   for (Index j = 0; j < w.order(); ++j) {
     if (w.lambda(j) == 0 && s == 0.0) continue;
     const double weight = 1 / std::abs(s * (s + w.damping(j)) + w.lambda(j));
     for (Index i = 0; i < out.size(); ++i)
-      out(i) += weight * std::norm(s * (s * w.ca(i, j) + w.cv(i, j)) + w.cq(i, j));
+      out(i) += weight * std::norm(s * (s * r.a(i, j) + r.v(i, j)) + r.q(i, j));
     // What symmetry silences: as it was read of the motions that have gone, with its static part.
     for (Index i = 0; i < out.size(); ++i)
       out(i) += weight * w.lambda(j) * std::norm(w.silent(i, 0) + s * w.silent(i, 1));
     for (Index m = 0; m < in.size(); ++m) in(m) += weight * w.b(j, m) * w.b(j, m);
   }
   return out.cwiseSqrt() * in.cwiseSqrt();
+}
+
+/// Sum of the sizes of what the modes add to every pair at s, outputs as they are written.
+MatrixXd terms(const Whole& w, const MatrixXd& driven, Complex s) {
+  MatrixXd read(w.ca.rows(), w.order());
+  for (Index j = 0; j < w.order(); ++j) {
+    const bool rests = w.lambda(j) == 0 && s == 0.0;
+    const double weight = rests ? 0 : 1 / std::abs(s * (s + w.damping(j)) + w.lambda(j));
+    for (Index i = 0; i < read.rows(); ++i)
+      read(i, j) = weight * std::abs(s * (s * w.ca(i, j) + w.cv(i, j)) + w.cq(i, j));
+  }
+  return read * driven;
 }
 
 [[noreturn]] void refuse_integral(const System& system, const char* what, Index output,
@@ -129,12 +177,15 @@ Spectrum::Spectrum(const Whole& w)
     : poles(poles_of(w)),
       far(static_cast<int>(w.far)),
       squared(w.Z.size() == 0 && w.cv.isZero(0)),
-      alike([&w](Complex s) { return detail::alike(w, s); }) {}
+      sizes([&w, reading = as_meant(w), driven = MatrixXd(w.b.cwiseAbs())](Complex s) {
+        return Sizes{alike(w, reading, s), terms(w, driven, s)};
+      }) {}
 
 Spectrum::Spectrum(const StateSpace& model, const Split& split)
-    : poles(split.poles),
-      by_peaks(true),
-      alike([&](Complex s) { return terms(model, split, s); }) {}
+    : poles(split.poles), by_peaks(true), sizes([&](Complex s) {
+        const MatrixXd size = detail::terms(model, split, s);
+        return Sizes{size, size};
+      }) {}
 
 std::vector<double> sample_points(const Scene& scene, const Band& band, const Spectrum& w,
                                   const std::vector<Complex>& small, double step) {
@@ -175,6 +226,20 @@ std::pair<Eigen::VectorXd, Eigen::RowVectorXd> port_sizes(const MatrixXd& peak) 
   return {out, in};
 }
 
+namespace {
+
+/// Where no mode is left to say what a pair might be (rigid bodies only): what its row and column
+/// have. Those of 0 count as 1: nothing gets there.
+MatrixXd with_floor(MatrixXd peak) {
+  const auto [out, in] = port_sizes(peak);
+  const Eigen::VectorXd row = (peak.rowwise().maxCoeff().array() > 0).cast<double>();
+  const Eigen::RowVectorXd column = (peak.colwise().maxCoeff().array() > 0).cast<double>();
+  peak = peak.cwiseMax(kNothing * out.cwiseProduct(row) * in.cwiseProduct(column));
+  return (peak.array() > 0).select(peak, 1);
+}
+
+}  // namespace
+
 Samples sample(const System& system, const Scene& scene, const Spectrum& w,
                std::vector<double> omega) {
   Samples result;
@@ -183,27 +248,40 @@ Samples sample(const System& system, const Scene& scene, const Spectrum& w,
   for (const double omega_k : result.omega) result.s.push_back(on_ray(scene, omega_k));
   parallel(result.s.size(), 0,
            [&] { return [&](std::size_t i) { result.H[i] = transfer(system, result.s[i]); }; });
-  result.peak = result.alike = MatrixXd::Zero(static_cast<Index>(system.outputs().size()),
-                                              static_cast<Index>(system.inputs().size()));
+  const auto outputs = static_cast<Index>(system.outputs().size()),
+             inputs = static_cast<Index>(system.inputs().size());
+  MatrixXd meant = MatrixXd::Zero(outputs, inputs);
+  result.peak = result.alike = meant;
   for (std::size_t k = 0; k < result.s.size(); ++k) {
+    const Sizes here = w.sizes(result.s[k]);
     result.peak = result.peak.cwiseMax(result.H[k].cwiseAbs());
-    result.alike = result.alike.cwiseMax(w.alike(result.s[k]));
+    meant = meant.cwiseMax(here.alike);
+    result.alike = result.alike.cwiseMax(here.terms);
   }
   if (w.by_peaks) {
-    const auto [out, in] = port_sizes(result.peak.cwiseMax(1e-6 * result.alike));
-    result.alike = result.alike.cwiseMax(out * in);
+    const auto [out, in] = port_sizes(result.peak.cwiseMax(kNearlyZero * meant));
+    meant = meant.cwiseMax(out * in);
   }
-  result.peak = result.peak.cwiseMax(1e-6 * result.alike);
-  // Where no mode is left to say what a pair might be (rigid bodies only): its row and column.
-  const Eigen::VectorXd row = result.peak.rowwise().maxCoeff().cwiseSqrt();
-  const Eigen::RowVectorXd column = result.peak.colwise().maxCoeff().cwiseSqrt();
-  result.peak = result.peak.cwiseMax(kNothing * row * column);
-  result.peak = (result.peak.array() > 0).select(result.peak, 1);  // nothing gets there
+  result.alike = result.alike.cwiseMax(meant);
+  result.peak = with_floor(result.peak.cwiseMax(kNearlyZero * meant));
   return result;
 }
 
-MatrixXd rounding(const Samples& samples) {
-  return (5e-14 * samples.alike.cwiseQuotient(samples.peak)).array() + 1e-12;
+double nearest_pole(const Scene& scene, const Band& band, const Spectrum& w) {
+  const Complex turn = std::conj(on_ray(scene, 1));
+  const double low = std::max(band.low, band.start), high = std::max(low, band.high);
+  double nearest = 1;
+  for (const Complex& p : w.poles) {
+    const Complex x = p * turn;
+    if (p != 0.0)
+      nearest = std::min(nearest, std::abs(x - std::clamp(x.real(), low, high)) / std::abs(x));
+  }
+  return nearest;
+}
+
+MatrixXd rounding(const Samples& samples, double nearest) {
+  const double resonance = kPoleUnits * std::numeric_limits<double>::epsilon() / nearest;
+  return (kCancelled * samples.alike.cwiseQuotient(samples.peak)).array() + kRounding + resonance;
 }
 
 }  // namespace titop::detail

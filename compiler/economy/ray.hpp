@@ -23,14 +23,19 @@ Band band_of(const System& system, const Scene& scene, const Whole& whole);
 Band band_of(const System& system, const Scene& scene,
              const std::vector<std::complex<double>>& poles, const Part& integrals);
 
+/// How large the pairs of a model are at one s, whatever cancels: outputs x inputs.
+struct Sizes {
+  Eigen::MatrixXd alike;  ///< what every pair would be if output and input saw all modes alike
+  Eigen::MatrixXd terms;  ///< sizes of what the model adds up, as it is written: rounding is of it
+};
+
 /// What sampling has to know of a model.
 struct Spectrum {
   std::vector<std::complex<double>> poles;  ///< [rad/s], those of pairs with Im >= 0
   int far = 0;                              ///< more poles in s^2, far above
   bool squared = false;                     ///< the transfer is rational in s^2
   bool by_peaks = false;                    ///< pairs that are 0 are compared with others, too
-  /// Outputs x inputs at s: what every pair would be if output and input saw all modes alike.
-  std::function<Eigen::MatrixXd(std::complex<double>)> alike;
+  std::function<Sizes(std::complex<double>)> sizes;
 
   Spectrum(const Whole& whole);  // NOLINT: a whole is one; it must live as long
   Spectrum(const StateSpace& model, const Split& split);  ///< likewise
@@ -45,9 +50,14 @@ std::vector<double> sample_points(const Scene& scene, const Band& band, const Sp
 Samples sample(const System& system, const Scene& scene, const Spectrum& whole,
                std::vector<double> omega);
 
+/// Smallest distance of a pole from the band on the ray, over its modulus; 1 at most. On an
+/// undamped resonance it is the damping floor.
+double nearest_pole(const Scene& scene, const Band& band, const Spectrum& whole);
+
 /// What rounding may do to the error of each pair there, relative to its peak: 1e-12 of the
-/// transfer itself (System::transfer), and some units of what would be there without cancellation.
-Eigen::MatrixXd rounding(const Samples& samples);
+/// transfer itself (System::transfer), some units of what would be there without cancellation, and
+/// of what a pole this near makes of its own last digit.
+Eigen::MatrixXd rounding(const Samples& samples, double nearest);
 
 /// Sizes of outputs and of inputs with |H(i, j)| <= out(i) in(j), near to that for some pair of
 /// every row and every column: found by scaling rows and columns by the roots of their largest

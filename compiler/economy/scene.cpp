@@ -8,6 +8,8 @@
 namespace titop::detail {
 namespace {
 
+constexpr double kLeastAccuracy = 2e-12;  ///< twice what rounding alone is allowed in a bound
+
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// What a scene chose: an input or output, and one of its scalars or all (-1).
@@ -122,9 +124,9 @@ void check(const Scene& scene) {
   if (!std::isfinite(lo) || !std::isfinite(hi) || lo < 0 || hi < lo)
     refuse(fmt::format("the scene's band is {} to {} Hz", lo, hi),
            "give Scene{.band_hz = {lower, upper}} with 0 <= lower <= upper");
-  if (!(scene.accuracy >= 1e-12 && scene.accuracy <= 1))
+  if (!(scene.accuracy >= kLeastAccuracy && scene.accuracy <= 1))
     refuse(fmt::format("the scene's accuracy is {}", scene.accuracy),
-           "give a relative error between 1e-12 and 1");
+           fmt::format("give a relative error between {:.0e} and 1", kLeastAccuracy));
   if (!(scene.damping_floor >= 1e-6 && scene.damping_floor <= 0.5))
     refuse(fmt::format("the scene's damping floor is {}", scene.damping_floor),
            "give a damping ratio between 1e-6 and 0.5");

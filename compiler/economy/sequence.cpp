@@ -66,6 +66,11 @@ Sequence::Sequence(const Whole& whole, const Samples& samples, double high)
     : whole_(whole), samples_(samples), collocated_(collocated(whole)) {
   const Index n = whole.elastic();
   while (inside_ < n && whole.lambda(inside_) <= high * high) ++inside_;
+  // Above a mode its residual at infinite frequency is nearer to it than its static part: by
+  // lambda / |s|^2; damped beyond critical it has a second pole, at about its damping coefficient.
+  const double low = samples.omega.front();
+  for (Index j = 0; j < n; ++j)
+    below_.push_back(whole.lambda(j) < low * low && whole.damping(j) < low);
   is_kept_.assign(at(n), 0);
   W_.resize(n, 0);
   worst_ = evaluate();
@@ -74,7 +79,17 @@ Sequence::Sequence(const Whole& whole, const Samples& samples, double high)
 
 Small Sequence::model(std::size_t step) const {
   const Step& s = steps_[step];
-  return project(whole_, {kept_.begin(), kept_.begin() + s.kept}, W_.leftCols(s.columns));
+  return small({kept_.begin(), kept_.begin() + s.kept}, W_.leftCols(s.columns));
+}
+
+/// The projection, and of the modes below the band that are not kept what they are far above them.
+Small Sequence::small(const std::vector<Index>& kept, const MatrixXd& W) const {
+  Small result = project(whole_, kept, W);
+  std::vector<char> left_out = below_;
+  for (const Index j : kept) left_out[at(j)] = 0;
+  for (Index j = 0; j < inside_; ++j)
+    if (left_out[at(j)]) result.D0 += whole_.ca.col(j) * whole_.b.row(j);
+  return result;
 }
 
 void Sequence::note(const Worst& worst) {
@@ -82,7 +97,7 @@ void Sequence::note(const Worst& worst) {
 }
 
 Sequence::Worst Sequence::evaluate() {
-  model_ = project(whole_, kept_, W_);
+  model_ = small(kept_, W_);
   error_.resize(samples_.s.size());
   Worst worst;
   for (std::size_t k = 0; k < samples_.s.size(); ++k) {
@@ -126,8 +141,9 @@ bool Sequence::keep_one(const Worst& worst, double least) {
   for (Index j = 0; j < inside_; ++j) {
     if (is_kept_[at(j)]) continue;
     const Complex c = s * (s * whole_.ca(worst.output, j) + whole_.cv(worst.output, j));
-    const Complex term =
-        c * whole_.b(j, worst.input) / (s * (s + whole_.damping(j)) + whole_.lambda(j));
+    const double residual = below_[at(j)] ? whole_.ca(worst.output, j) : 0;  // what is left of it
+    const Complex term = (c / (s * (s + whole_.damping(j)) + whole_.lambda(j)) - residual) *
+                         whole_.b(j, worst.input);
     sum += term;
     if (std::abs(term) > largest) largest = std::abs(term), best = j;
   }

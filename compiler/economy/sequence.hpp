@@ -11,7 +11,8 @@ struct Samples {
   std::vector<std::complex<double>> s;  ///< on the ray
   std::vector<Eigen::MatrixXcd> H;      ///< outputs x inputs
   Eigen::MatrixXd peak;                 ///< outputs x inputs, with the floor of pairs that are 0
-  Eigen::MatrixXd alike;  ///< what would be there if ports saw all modes alike: rounding is of that
+  Eigen::MatrixXd alike;  ///< what would be there if ports saw all modes alike, or the terms that
+                          ///< cancel, where these are more: rounding is of that
 };
 
 /// H - Hr on one sample. Throws not_finite, with the frequency, where either is not.
@@ -32,6 +33,9 @@ Eigen::MatrixXd errors(const Samples& full, const Small& small);
 /// (Lambda - omega^2)^-1 b of the modes above the band to that input and, where outputs do not read
 /// what the inputs drive, the same for that output as the next step: often the first will do. W is
 /// 0 on the band's modes: nothing that comes in can have a pole in the band that the whole has not.
+///
+/// A mode that is left out keeps what it is beside the band: its static part where it moves in the
+/// band or above it, what it tends to at infinite frequency where it moves below.
 class Sequence {
  public:
   /// `high`: upper end of the band [rad/s].
@@ -57,6 +61,7 @@ class Sequence {
   Worst evaluate();
   bool stalled() const;
 
+  Small small(const std::vector<Eigen::Index>& kept, const Eigen::MatrixXd& W) const;
   bool extend(const Worst& worst);
   bool keep_one(const Worst& worst, double least);
   bool add_columns(const Worst& worst);
@@ -66,7 +71,8 @@ class Sequence {
 
   const Whole& whole_;
   const Samples& samples_;
-  Eigen::Index inside_ = 0;  ///< elastic modes in the band
+  Eigen::Index inside_ = 0;  ///< elastic modes in the band or below it
+  std::vector<char> below_;  ///< mode by mode: its poles lie below the band
   bool collocated_ = false;
   std::vector<Eigen::Index> kept_;
   std::vector<char> is_kept_;

@@ -188,26 +188,35 @@ void project(Coordinates& c, const MatrixXd& S, const std::vector<Index>& first)
   silence(c, old);
 }
 
-/// Tries one exchange; true if coordinates went.
+bool same_sizes(const MatrixXd& F, const std::vector<Index>& to) {
+  for (Index m = 0; m < F.cols(); ++m)
+    for (Index i = 0; i < F.rows(); ++i)
+      if (!(std::abs(std::abs(F(i, m)) - std::abs(F(to[at(i)], m))) <= kRounding)) return false;
+  return true;
+}
+
+bool same_diagonal(const MatrixXd& X, const std::vector<Index>& to) {
+  for (Index i = 0; i < X.rows(); ++i)
+    if (std::abs(X(i, i) - X(to[at(i)], to[at(i)])) > kRounding * X(i, i)) return false;
+  return true;
+}
+
+/// Tries one exchange; true if coordinates went. What no signs can make a symmetry is told in O(n).
 bool try_exchange(Coordinates& c, const std::vector<Index>& to) {
   const Index n = c.n_elastic;
+  if (!same_diagonal(c.K, to) || !same_diagonal(c.G, to) || !same_diagonal(c.D, to)) return false;
   const VectorXd d = c.G.diagonal().cwiseSqrt().cwiseInverse();
-  const MatrixXd G = d.asDiagonal() * c.G * d.asDiagonal();
   const MatrixXd B = unit_columns(d.asDiagonal() * c.B.topRows(n));
   const VectorXd k = c.K.diagonal().cwiseSqrt().cwiseInverse();
   const MatrixXd read = unit_columns(k.asDiagonal() * c.C_q.leftCols(n).transpose());
   const MatrixXd rates = unit_columns(k.asDiagonal() * c.C_v.leftCols(n).transpose());
   MatrixXd C(n, read.cols() + rates.cols());
   C << read, rates;
-  for (Index i = 0; i < n; ++i) {
-    const Index j = to[at(i)];
-    if (std::abs(c.K(i, i) - c.K(j, j)) > kRounding * c.K(i, i)) return false;
-    if (std::abs(c.G(i, i) - c.G(j, j)) > kRounding * c.G(i, i)) return false;
-    if (c.D.size() > 0 && std::abs(c.D(i, i) - c.D(j, j)) > kRounding * c.D(i, i)) return false;
-  }
   for (const bool driven : {true, false}) {
     if (!driven && c.size() > n) return false;  // loose motions are read from all others
     const MatrixXd& F = driven ? B : C;
+    if (!same_sizes(F, to)) continue;
+    const MatrixXd G = d.asDiagonal() * c.G * d.asDiagonal();
     const VectorXd sign = find_signs(G, F, to);
     if (!same_rows(F, sign, to) || !same(G, sign, to)) continue;
     std::vector<Index> first;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <titop/compiler/economy/whole.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -30,6 +31,20 @@ struct Scaled {
   VectorXd d;       ///< sqrt of the diagonal of K
 };
 
+/// Columns mu, y of P y = mu K y, ascending. The softest coordinates, where P is largest, come
+/// first: in this order the eigensolver leaves small entries their own digits [Wilkinson, Reinsch
+/// 1971, Handbook, II/2], and a soft spring under a stiff structure costs the latter nothing.
+SymmetricModes soft_first(const MatrixXd& P, const MatrixXd& K) {
+  std::vector<Index> order(at(P.rows()));
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&](Index i, Index j) { return P(i, i) > P(j, j); });
+  const MatrixXd sorted = P(order, order);
+  const SymmetricModes m = K.size() == 0 ? eigh(sorted) : eigh(sorted, K(order, order));
+  SymmetricModes result{m.lambda, MatrixXd(m.V.rows(), m.V.cols())};
+  result.V(order, Eigen::all) = m.V;
+  return result;
+}
+
 Scaled modes(const Coordinates& c) {
   Scaled s;
   const Index n = c.n_elastic;
@@ -37,17 +52,13 @@ Scaled modes(const Coordinates& c) {
   const VectorXd inverse = s.d.cwiseInverse();
   const MatrixXd P =
       solve_definite(s.d.asDiagonal() * c.G * s.d.asDiagonal(), MatrixXd(MatrixXd::Identity(n, n)));
-  SymmetricModes m;
-  if (c.diagonal) {
-    m = eigh(P);
-  } else {
-    s.K = inverse.asDiagonal() * c.K * inverse.asDiagonal();
-    m = eigh(P, s.K);
-  }
-  const double least =
-      static_cast<double>(n) * std::numeric_limits<double>::epsilon() * m.lambda(n - 1);
+  if (!c.diagonal) s.K = inverse.asDiagonal() * c.K * inverse.asDiagonal();
+  const SymmetricModes m = soft_first(P, s.K);
+  // Entries of P are right to eps of their row's and column's diagonal: so is mu for what moves.
+  const VectorXd noise = static_cast<double>(n) * std::numeric_limits<double>::epsilon() *
+                         m.V.cwiseAbs2().transpose() * P.diagonal();
   Index count = 0;
-  while (count < n && m.lambda(n - 1 - count) > least) ++count;
+  while (count < n && m.lambda(n - 1 - count) > noise(n - 1 - count)) ++count;
   if (count == 0)
     throw Error(Code::not_finite, fmt::format("no mode of {} is finite", c.names.front()),
                 "look for stiffnesses and masses that are far too large or too small");
@@ -231,14 +242,23 @@ std::vector<char> positions_read(const Graph& g) {
   for (const Output& o : g.outputs) declared.push_back(&o);
   std::sort(declared.begin(), declared.end(),
             [](const Output* a, const Output* b) { return a->declared < b->declared; });
+  const auto signal = [&](const Term& t) -> const Signal& { return g.signals[at(t.signal)]; };
+  const auto is = [&](const Term& t, Term::Of of, Quantity quantity) {
+    return t.of == of || (t.of == Term::Of::signal && signal(t).quantity == quantity);
+  };
+  const auto position = [&](const Term& t) {
+    return is(t, Term::Of::position, Quantity::position);
+  };
+  const auto beside = [&](const Term& t) {
+    return is(t, Term::Of::rate, Quantity::velocity) ||
+           (t.of == Term::Of::signal && signal(t).role == Signal::Role::external);
+  };
   std::vector<char> result;
-  for (const Output* o : declared) {
-    const bool position = std::all_of(o->terms.begin(), o->terms.end(), [&](const Term& t) {
-      return t.of == Term::Of::position ||
-             (t.of == Term::Of::signal && g.signals[at(t.signal)].quantity == Quantity::position);
-    });
-    result.insert(result.end(), at(o->size), position && !o->terms.empty());
-  }
+  for (const Output* o : declared)
+    result.insert(result.end(), at(o->size),
+                  std::any_of(o->terms.begin(), o->terms.end(), position) &&
+                      std::all_of(o->terms.begin(), o->terms.end(),
+                                  [&](const Term& t) { return position(t) || beside(t); }));
   return result;
 }
 

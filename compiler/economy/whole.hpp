@@ -40,10 +40,10 @@ struct Whole {
 };
 
 /// Modes of these coordinates; of the clusters of equal frequency those that inputs and outputs
-/// tell apart. Modes so far above the first one that rounding hides them (mu = 1 / lambda below
-/// n eps times the largest mu) have their static part only. D0 is what the factored system's
-/// transfer leaves at one real s beside the modes, so that it also holds what they miss. Throws
-/// what `coordinates` throws. O(n^3).
+/// tell apart. Modes so far above the first ones that rounding hides them (mu = 1 / lambda below
+/// n eps of what their coordinates would have by themselves) have their static part only. D0 is
+/// what the factored system's transfer leaves at one real s beside the modes, so that it also holds
+/// what they miss. Throws what `coordinates` throws. O(n^3).
 Whole whole(const System& system, const Coordinates& c, std::vector<char> is_position);
 
 /// Finds `poles` where damping couples the modes: one eigenproblem of twice their number, O(8 n^3).
@@ -53,7 +53,8 @@ void couple(Whole& whole);
 /// sum 1; motions without stiffness belong to their own block. O(n^2 columns).
 Eigen::MatrixXd participation(const Whole& whole, const Eigen::MatrixXd& V);
 
-/// Which outputs of a graph are positions (all their terms are), scalar by scalar, as declared.
+/// Which outputs of a graph are positions (beside them only rates and inputs), scalar by scalar, as
+/// declared.
 std::vector<char> positions_read(const Graph& graph);
 
 }  // namespace titop::detail

@@ -313,7 +313,7 @@ TEST_CASE("wrong scenes are refused by name") {
   CHECK(says(refused({.outputs = {"a(7)"}, .band_hz = {0, 9}}), Code::unknown_name, {"a(7)"}));
   const Diagram damped = frame(slim_beam(5, 0.005));
   const Error error = error_of([&] {
-    compile(damped, titop::Scene{.band_hz = {0, 30}, .accuracy = 1e-12});
+    compile(damped, titop::Scene{.band_hz = {0, 30}, .accuracy = 2e-12});
   });
   CHECK(says(error, Code::bad_value, {"cannot be met", "coordinates, from U("}));
 }
