@@ -31,23 +31,25 @@ struct Certificate {
   /// Negative where no dense model has been written.
   double dense_against_factors = -1;
   /// What writing the dense model down costs: the largest change of an output that its rounding
-  /// makes, over the largest size of that output, at s far below, at and above the blocks'
-  /// frequencies, at and below the slowest mode that the outputs show, but where the factors
-  /// themselves have no digit (the log says so then) (residual of the factors'
-  /// states in the dense model, carried to the outputs by the factors). By inputs of one unit:
-  /// random ones, three translations or rotations of a port together; from the ninth unit on some
-  /// share a column. Outputs likewise; what is 0 but for rounding, or 1e-14 of what stands in its
-  /// row and column (what turned frames leave of a 0), counts beside its neighbours. The same in
-  /// all units of inputs and outputs; in other units of states and time other numbers are written,
-  /// and round differently. Above 1e-9 and up to 100 states it is at most 30 times what the model's
-  /// own answers are off by, as the residual itself can round where a point has hardly any mass.
-  /// Negative where no dense model has been written, and where one has no states, no inputs or no
-  /// outputs. Above 1e-9 the log warns, and names output and input (up to eight units).
+  /// makes, over the largest size of that output, at s from the slowest mode that the outputs show
+  /// (or, where that is not to be seen, from far below the blocks' frequencies) to above the
+  /// blocks' frequencies, but where the factors themselves have no digit (the log says so then)
+  /// (residual of the factors' states in the dense model, carried to the outputs by the factors).
+  /// By inputs of one unit: random ones, three translations or rotations of a port together; from
+  /// the ninth unit on some share a column. Outputs likewise; what is 0 but for rounding, or 1e-14
+  /// of what stands in its row and column (what turned frames leave of a 0), counts beside its
+  /// neighbours. The same in all units of inputs and outputs; in other units of states and time
+  /// other numbers are written, and round differently. Above 1e-9 and up to 100 states it is at
+  /// most 30 times what the model's own answers are off by, as the residual itself can round where
+  /// a point has hardly any mass. Negative where no dense model has been written, and where one has
+  /// no states, no inputs or no outputs. Above 1e-9 the log warns, and names output and input (up
+  /// to eight units).
   double dense_error = -1;
   std::complex<double> dense_error_s;  ///< where it is largest
-  /// The same over the size of the output at that same s: an acceleration falls with s^2 far below
-  /// the modes, and the digits that A, B, C, D give it there with it. It grows towards lower s than
-  /// those tried. Above 1e-6 the log warns of it, too, where it costs another digit.
+  /// The same over the size of the output at that same s, far below the slowest mode, too: there an
+  /// acceleration may fall with s^2, and what free motion keeps of its digits in A, B, C, D with
+  /// it. It grows towards lower s than those tried. Above 1e-6 the log warns of it, too, where it
+  /// costs another digit.
   double dense_error_where_small = -1;
   std::complex<double> dense_error_where_small_s;  ///< where it is largest
   /// Smallest pivot over the sum of magnitudes that formed it: 1 no cancellation, 1e-16 nothing

@@ -33,15 +33,16 @@ struct FullCertificate {
 
   /// Over a grid s = (0.05 + j) w, w from a tenth of the lowest to ten times the highest pole:
   /// largest difference of transfers, per block of output and input (three translations or
-  /// rotations of a port together) over its largest value on the grid, or over 1e-3 of the terms
-  /// that cancel in it, as by symmetry, and of what the model's own rounding makes of a block that
-  /// is nothing else (compiler/compare.hpp).
+  /// rotations of a port together) over its largest value on the grid. Only a block that may be
+  /// nothing but rounding, as by symmetry, is measured by 1e-3 of the terms that cancel in it
+  /// (compiler/compare.hpp).
   struct Grid : Checked {
     int points = 0;
     double lowest = 0, highest = 0;  ///< w [rad/s]
     double dense = -1;               ///< the minimal dense model against the factors
     std::complex<double> dense_s;
-    /// `transfer` of the diagram as written against the factors; -1: too large, or closed twice.
+    /// `transfer` of the diagram as written against the factors, over those terms in all blocks
+    /// where they are more, for it rounds by itself; -1: too large, or closed twice.
     double written = -1;
     std::complex<double> written_s;
   } grid;
@@ -65,10 +66,11 @@ struct FullCertificate {
 
   /// Of the inputs that are forces with an output that is the acceleration where they act: the
   /// smallest eigenvalue of the Hermitian part of G(s) / s, rows and columns scaled to diagonal 1,
-  /// over the grid. Negative: energy comes out (a controller may do that; a structure may not).
-  /// A force that moves another's point and not its own counts as -1. The diagonal counts 64 units
-  /// of rounding more, of the largest entry in its unit; where that is not enough, also 1e-3 of the
-  /// terms that cancel, as double against long double shows them.
+  /// over the grid and around the poles right of the axis that a transfer shows. Negative: energy
+  /// comes out (a controller may do that; a structure may not). A force that moves another's point
+  /// and not its own counts as -1. The diagonal counts 64 units of rounding more, of the largest
+  /// entry in its unit; where that is not enough, also 1e-3 of the terms that cancel, as double
+  /// against long double shows them.
   struct Passivity : Checked {
     int pairs = 0;
     double least = 0;
@@ -79,11 +81,11 @@ struct FullCertificate {
   } passivity;
 
   /// Of the same pairs, scalar by scalar: how far G_ij, the acceleration where force i acts by
-  /// force j, is from G_ji (reciprocity of Maxwell and Betti). Largest over the grid of |G_ij -
-  /// G_ji| over sqrt(|G_ii| |G_jj|), or over |G_ij| or |G_ji| where one is larger (at a held point
-  /// G_ii is 0), at the same s; three translations or rotations of a port share their size. The
-  /// same in all units of the forces. What is 0 but for rounding counts over 1e-3 of the terms that
-  /// cancel. Inputs that are no such forces are 0 here: a motion imposed by one is held.
+  /// force j, is from G_ji (reciprocity of Maxwell and Betti). Largest over the same points of
+  /// |G_ij - G_ji| over sqrt(|G_ii| |G_jj|), or over |G_ij| or |G_ji| where one is larger (at a
+  /// held point G_ii is 0), at the same s; three translations or rotations of a port share their
+  /// size. The same in all units of the forces. What is 0 but for rounding counts over 1e-3 of the
+  /// terms that cancel. Inputs that are no such forces are 0 here: a motion imposed by one is held.
   ///
   /// All bodies and joints of the library are reciprocal: their masses, stiffnesses and dampings
   /// are symmetric (to 1e-9, or refused when they are added), modes are damped one by one, and none
@@ -106,11 +108,12 @@ struct FullCertificate {
   OrderVerdict order;
   ExactOrder exact;  ///< independent of all passes, where the diagram is small
 
-  /// What does not hold, in words; empty if all that was checked does: equations, transfers and
-  /// dense model to 1e-8, poles to 1e-6, a structure passive to 1e-9 and reciprocal to 1e-8,
-  /// without poles right of the axis (but where one-way blocks that read it have states and are no
-  /// mere integrators), the exact order inside the verdict's interval, and nothing that the order
-  /// step had to put back.
+  /// What does not hold, in words; empty if all that was checked does: equations and transfers as
+  /// written to 1e-8, entries of the dense model too, what rounding them costs (basic.dense_error,
+  /// grid.dense) to 3e-7, as generated C++ asks for, poles to 1e-6, a structure passive to 1e-9 and
+  /// reciprocal to 1e-8, without poles right of the axis (but where one-way blocks that read it
+  /// have states and are no mere integrators), the exact order inside the verdict's interval, and
+  /// nothing that the order step had to put back.
   std::vector<std::string> faults;
   bool holds() const { return faults.empty(); }
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <titop/compiler/certify/faults.hpp>
 #include <titop/compiler/certify/passivity.hpp>
 #include <titop/compiler/certify/poles.hpp>
 #include <titop/compiler/certify/reciprocity.hpp>
@@ -13,6 +14,7 @@
 #include <titop/compiler/system.hpp>
 #include <titop/compiler/system_data.hpp>
 #include <titop/compiler/transfer.hpp>
+#include <utility>
 
 namespace titop {
 namespace {
@@ -20,10 +22,6 @@ namespace {
 using Complex = std::complex<double>;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
-
-constexpr double kHolds = 1e-8;      ///< equations, transfers, dense model
-constexpr double kPoleHolds = 1e-6;  ///< to first order only
-constexpr double kReciprocal = 1e-8;
 
 /// s = (0.05 + j) w, w from a tenth of the lowest to ten times the highest, evenly in log w.
 std::vector<Complex> grid_of(const FullCertificate::Grid& grid) {
@@ -74,12 +72,16 @@ std::vector<MatrixXcd> as_written(const Graph& g, const std::vector<double>& val
   return list;
 }
 
-/// What differs is looked at again with what rounding does in the model as written (`before`
-/// `minimize`).
+/// Each block over its own size: what writing the model costs is what is looked for. Only blocks
+/// that may be nothing but rounding, as those that are 0 by symmetry, count over the terms that
+/// cancel in them: the measure's, and, where something differs, those of the elimination and what
+/// rounding does in the model as written (`before` `minimize`).
 void check_dense(const System& system, const detail::Rounded& before,
                  const std::vector<Complex>& points, const std::vector<MatrixXcd>& factored,
                  detail::Measure measure, FullCertificate::Grid& grid) {
   const std::vector<MatrixXcd> dense = detail::transfers(system.state_space(), points);
+  const MatrixXd terms = std::exchange(measure.terms, {});
+  detail::add_rounding(measure, factored, terms);
   detail::Difference found = detail::difference(dense, factored, measure, system, points);
   if (found.relative > detail::kClose) {
     detail::add_rounding(
@@ -92,6 +94,8 @@ void check_dense(const System& system, const detail::Rounded& before,
   grid.dense_s = points[found.point];
 }
 
+/// Solved all at once in double, the equations lose digits of their own, which says nothing of the
+/// model: all blocks count over the measure's terms where these are more.
 void check_written(const System& system, const Full& what, const std::vector<Complex>& points,
                    const std::vector<MatrixXcd>& factored, detail::Measure measure,
                    FullCertificate::Grid& grid) {
@@ -115,13 +119,18 @@ void check_written(const System& system, const Full& what, const std::vector<Com
   }
 }
 
-/// What forces and the accelerations where they act say of each other. What does not hold is
-/// looked at again with what rounding does.
-void check_pairs(const System& system, const std::vector<Complex>& points,
-                 const std::vector<MatrixXcd>& factored, FullCertificate& c) {
+/// What forces and the accelerations where they act say of each other, over the grid and around the
+/// poles that grow and are shown. What does not hold is looked at again with what rounding does.
+void check_pairs(const System& system, std::vector<Complex> points, std::vector<MatrixXcd> factored,
+                 const std::vector<full::FoundPoles::Right>& growing, FullCertificate& c) {
   const Graph& g = *system.stage().source;
   const std::vector<double> values = values_of(system);
   const full::DualPairs pairs = full::dual_pairs(g, values);
+  if (pairs.count > 0)
+    for (const Complex s : full::around(growing)) {
+      points.push_back(s);
+      factored.push_back(system.transfer(s));
+    }
   const std::string no_structure = full::why_no_structure(g, values);
   full::DualTransfers transfers = full::dual_transfers(pairs, points, factored);
   const auto check = [&] {
@@ -155,19 +164,24 @@ void reach_up_to(const ExactOrder& exact, OrderVerdict& v) {
     v.highest = std::max(v.highest, exact.order);
 }
 
+/// Adds a fault to the list where a value is more than allowed, or no number.
+void judge(std::vector<std::string>& faults, double value, double allowed, const std::string& text,
+           const std::string& more = "") {
+  if (!(value <= allowed)) faults.push_back(fmt::format("{} {:.1e}{}", text, value, more));
+}
+
 void list_faults(const Graph& source, FullCertificate& c) {
+  c.faults = full::basic_faults(c.basic, c.grid.dense);
   const auto fault = [&c](double value, double allowed, const std::string& text) {
-    if (!(value <= allowed)) c.faults.push_back(fmt::format("{} {:.1e}", text, value));
+    judge(c.faults, value, allowed, text);
   };
-  fault(c.basic.residual, kHolds, "equations as written hold only to");
-  fault(c.basic.dense_against_factors, kHolds, "the dense model differs from the factors by");
-  fault(c.grid.dense, kHolds, "the transfer of the dense model differs from the factors' by");
-  fault(c.grid.written, kHolds, "the transfer differs from that of the equations as written by");
+  fault(c.grid.written, full::kHolds,
+        "the transfer differs from that of the equations as written by");
   if (c.order.removed.empty() && c.order.change > 0)  // put back (compiler/minimal_model.cpp)
     c.faults.push_back(
         fmt::format("modes judged to do nothing change the transfer by {:.1e} when they leave",
                     c.order.change));
-  fault(c.poles.error, kPoleHolds, "poles of the dense model differ from the factors' by");
+  fault(c.poles.error, full::kPoleHolds, "poles of the dense model differ from the factors' by");
   if (c.passivity.structure) {
     fault(-c.passivity.least, full::kPassive, "energy comes out of a structure:");
     if (c.poles.right > 0 && full::has_poles_of_bodies_only(source))
@@ -177,7 +191,7 @@ void list_faults(const Graph& source, FullCertificate& c) {
                       c.poles.right, c.poles.rightmost.real() / std::abs(c.poles.rightmost)));
   }
   if (const auto& r = c.reciprocity; r.structure)
-    fault(r.asymmetry, kReciprocal,
+    fault(r.asymmetry, full::kReciprocal,
           fmt::format("forces {} and {} on a structure do not move each other alike (reciprocity), "
                       "by",
                       r.first, r.second));
@@ -189,10 +203,28 @@ void list_faults(const Graph& source, FullCertificate& c) {
 
 }  // namespace
 
+std::vector<std::string> full::basic_faults(const Certificate& c, double dense) {
+  const std::string way_out =
+      "; System::transfer and apply keep the digits, and so do simulate by Stepper::midpoint and a "
+      "model of the band that matters, compile(d, Scene{.band_hz = {low, high}})";
+  std::vector<std::string> faults;
+  judge(faults, c.residual, kHolds, "equations as written hold only to");
+  judge(faults, c.dense_against_factors, kHolds, "the dense model differs from the factors by");
+  judge(faults, c.dense_error, kDenseHolds,
+        fmt::format("written as A, B, C, D the model loses digits: at s = {:.3g}{:+.3g}j outputs "
+                    "change, beside their largest, by",
+                    c.dense_error_s.real(), c.dense_error_s.imag()),
+        way_out);
+  judge(faults, dense, kDenseHolds, "the transfer of the dense model differs from the factors' by",
+        c.dense_error > kDenseHolds ? "" : way_out);
+  return faults;
+}
+
 FullCertificate certify(const System& system, const Full& what) {
   FullCertificate c;
   const bool dense = system.order() <= what.dense_up_to;
   std::vector<double> omegas;
+  std::vector<full::FoundPoles::Right> growing;
   detail::Rounded before;  // as written, before `minimize`
   if (dense) {
     c.order = system.order_verdict();
@@ -201,7 +233,8 @@ FullCertificate certify(const System& system, const Full& what) {
     full::FoundPoles found = full::check_poles(system, before.model, before.rounding.A);
     omegas = std::move(found.omegas);
     c.poles = std::move(found.poles);
-    c.poles.hidden = full::count_hidden(found.right, system.state_space());
+    growing = full::shown(found.right, system.state_space());
+    c.poles.hidden = c.poles.right - static_cast<int>(growing.size());
     c.poles.why_not = what_is_set_aside(system.stage().graph);
   } else {
     c.poles.why_not = c.grid.why_not = fmt::format("{} states are more than {} (Full::dense_up_to)",
@@ -225,7 +258,7 @@ FullCertificate certify(const System& system, const Full& what) {
       check_dense(system, before, points, factored, measure, c.grid);
     }
     check_written(system, what, points, factored, measure, c.grid);
-    check_pairs(system, points, factored, c);
+    check_pairs(system, points, factored, growing, c);
   } else {
     c.grid.why_not = c.passivity.why_not = c.reciprocity.why_not =
         transfers ? "no grid is asked for (Full::points)"
@@ -275,15 +308,16 @@ std::string to_string(const FullCertificate::Poles& p) {
 std::string to_string(const FullCertificate::Passivity& p) {
   if (!p.done) return "passivity not checked: " + p.why_not + "\n";
   return fmt::format(
-      "{} pairs of a force and the acceleration where it acts: {} at all points "
-      "(least {:.1e} of 1, {})\n",
-      p.pairs, p.least >= -full::kPassive ? "passive" : "not passive", p.least, at_s(p.where));
+      "{} pairs of a force and the acceleration where it acts: {} (least {:.1e} of 1, {})\n",
+      p.pairs, p.least >= -full::kPassive ? "passive at all points" : "not passive", p.least,
+      at_s(p.where));
 }
 
 std::string to_string(const FullCertificate::Reciprocity& r) {
   if (!r.done) return "reciprocity not checked: " + r.why_not + "\n";
-  std::string text = fmt::format("{} forces: {}", r.forces,
-                                 r.asymmetry <= kReciprocal ? "reciprocal" : "not reciprocal");
+  std::string text =
+      fmt::format("{} forces: {}", r.forces,
+                  r.asymmetry <= full::kReciprocal ? "reciprocal" : "not reciprocal");
   if (r.asymmetry > 0)
     text += fmt::format(" (what {} and {} do where the other acts differs by {:.1e}, {})", r.first,
                         r.second, r.asymmetry, at_s(r.where));

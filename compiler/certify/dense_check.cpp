@@ -2,6 +2,7 @@
 #include <cmath>
 #include <deque>
 #include <limits>
+#include <optional>
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/evaluate.hpp>
@@ -132,6 +133,8 @@ constexpr Index kColumns = 8;  ///< inputs are tried one by one up to this many
 /// digits in the factors, but stands for none.
 constexpr double kOfNeighbours = 1e-14;
 
+constexpr double kBelow = 0.5;  ///< of the slowest mode that shows, known to a decade
+
 /// Largest entries of the outputs of one unit, column by column.
 MatrixXd by_unit(const solve::RowMatrix<T>& y, const std::vector<int>& units) {
   MatrixXd result(std::ssize(units), y.cols());
@@ -155,10 +158,10 @@ bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers)
 }
 
 /// About the slowest mode that the outputs show, from s downwards: a row of slow bodies bends more
-/// slowly than any of them by itself. s itself where that is not to be seen: an output is rounding,
-/// or the factors have no digits so far below. O(bodies) per decade.
-T slowest_shown(const SystemData& d, const T s, const solve::RowMatrix<T>& u,
-                const std::vector<int>& units) {
+/// slowly than any of them by itself. None where that is not to be seen: an output is rounding, or
+/// the factors have no digits so far below. O(bodies) per decade.
+std::optional<T> slowest_shown(const SystemData& d, const T s, const solve::RowMatrix<T>& u,
+                               const std::vector<int>& units) {
   constexpr int kDecades = 10;  // below them double has no digits of what is slow
   try {
     T at = s;
@@ -171,25 +174,32 @@ T slowest_shown(const SystemData& d, const T s, const solve::RowMatrix<T>& u,
     }
   } catch (const Error&) {
   }
-  return s;
+  return {};
 }
 
-/// Where the dense model is tried: far below, at and above the blocks' frequencies; below the
-/// slowest of them, and at and below the slowest mode that shows, where those are lower still.
-std::vector<T> tried(const SystemData& d, const solve::RowMatrix<T>& u,
-                     const std::vector<int>& units) {
+/// Where the dense model is tried, and below which |s| no mode shows; 0: not known.
+struct Tried {
+  std::vector<T> s;
+  double slowest = 0;
+};
+
+/// Far below, at and above the blocks' frequencies; below the slowest of them, and at and below the
+/// slowest mode that shows, where those are lower still. That is looked for below all blocks: two
+/// that are far apart have decades without a mode between them.
+Tried tried(const SystemData& d, const solve::RowMatrix<T>& u, const std::vector<int>& units) {
   const T s = pick_s(d);
-  std::vector<T> result = {1e-4 * s, 1e-2 * s, s, 1e2 * s};
-  double slowest = kInfinity;
+  Tried result{{1e-4 * s, 1e-2 * s, s, 1e2 * s}};
+  double slowest = std::abs(s);
   for (const int i : d.layout().state_nodes)
     if (const double w = frequency_of(d.numbers.blocks[at(i)]->A); w > 0)
       slowest = std::min(slowest, w);
-  if (slowest < 1e-2 * std::abs(s)) result.push_back(1e-2 * slowest / std::abs(s) * s);
-  const T shown = slowest_shown(d, s, u, units);
-  if (std::abs(shown) < 2e-2 * std::abs(s)) {
-    result.push_back(shown);
-    result.push_back(1e-2 * shown);
-  }
+  const T of_blocks = slowest / std::abs(s) * s;
+  if (slowest < 1e-2 * std::abs(s)) result.s.push_back(1e-2 * of_blocks);
+  const std::optional<T> shown = slowest_shown(d, of_blocks, u, units);
+  if (!shown) return result;
+  result.slowest = std::abs(*shown);
+  if (result.slowest < 0.5 * std::abs(s)) result.s.push_back(*shown);
+  if (result.slowest < 2e-2 * std::abs(s)) result.s.push_back(1e-2 * *shown);
   return result;
 }
 
@@ -220,6 +230,7 @@ struct Sizes {
 /// How far the dense model is off at one s.
 struct Sample {
   T s;
+  bool below;             ///< all modes that show
   solve::RowMatrix<T> y;  ///< by the factors
   Sizes sizes;
   MatrixXd off;
@@ -247,10 +258,11 @@ std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
 /// singular where none is left.
 std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve::RowMatrix<T>& u,
                            const Measure& units, std::vector<T>& not_tried) {
+  const Tried where = tried(d, u, units.rows);
   std::vector<T> list;
   std::deque<Evaluation<T>> points;
   std::vector<solve::RowMatrix<T>> x;
-  for (const T s : tried(d, u, units.rows)) {
+  for (const T s : where.s) {
     try {
       points.emplace_back(d, s, u);
     } catch (const Error& error) {
@@ -270,6 +282,7 @@ std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve
     const solve::RowMatrix<T> change = points[i].forced(d.states.expanded(left));
     const auto& y = points[i].outputs();
     result.push_back({list[i],
+                      std::abs(list[i]) < kBelow * where.slowest,
                       y,
                       {by_unit(y, units.rows), by_unit(points[i].rounding(), units.rows)},
                       by_unit(change, units.rows)});
@@ -311,18 +324,24 @@ DenseError::Worst relative(const MatrixXd& off, const Sizes& sizes, double of_ne
   return worst;
 }
 
+/// Below all modes that show an output of free motion grows, or falls, with a power of s without
+/// end, and what the dense model loses there with it: that counts where outputs are small.
 DenseError worst_of(const std::vector<Sample>& samples) {
   DenseError worst;
-  Sizes largest = samples.front().sizes;
-  for (const Sample& p : samples) {
-    largest.value = largest.value.cwiseMax(p.sizes.value);
-    largest.rounding = largest.rounding.cwiseMax(p.sizes.rounding);
-  }
+  Sizes largest{MatrixXd::Zero(samples.front().off.rows(), samples.front().off.cols()),
+                MatrixXd::Zero(samples.front().off.rows(), samples.front().off.cols())};
+  const bool all = std::ranges::all_of(samples, &Sample::below);
+  const auto counts = [all](const Sample& p) { return all || !p.below; };
+  for (const Sample& p : samples)
+    if (counts(p)) {
+      largest.value = largest.value.cwiseMax(p.sizes.value);
+      largest.rounding = largest.rounding.cwiseMax(p.sizes.rounding);
+    }
   const auto keep = [](const DenseError::Worst& found, T s, DenseError::Worst& so_far) {
     if (found.error > so_far.error) so_far = found, so_far.s = s;
   };
   for (const Sample& p : samples) {
-    keep(relative(p.off, largest, kOfNeighbours), p.s, worst.beside_largest);
+    if (counts(p)) keep(relative(p.off, largest, kOfNeighbours), p.s, worst.beside_largest);
     keep(relative(p.off, p.sizes, 0), p.s, worst.where_small);
   }
   return worst;

@@ -141,7 +141,8 @@ void warn_of_lost_digits(const SystemData& d, const DenseError& e, std::vector<N
     warn("written as A, B, C, D the model keeps {1} at s = {0}", e.beside_largest);
   if (e.where_small.error > kLostWhereSmall &&
       e.where_small.error > kAnotherDigit * e.beside_largest.error)
-    warn("at s = {0}, where outputs are small, A, B, C, D keep {1}", e.where_small);
+    warn("at s = {0}, below the modes or where outputs are small, A, B, C, D keep {1}",
+         e.where_small);
   if (!e.not_tried.empty())
     notes.push_back(
         {Note::Kind::warning, "dense",

@@ -76,22 +76,36 @@ FoundPoles check_poles(const System& system, const StateSpace& model,
   return found;
 }
 
-int count_hidden(const std::vector<FoundPoles::Right>& right, const StateSpace& minimal) {
-  if (right.empty()) return 0;
+std::vector<FoundPoles::Right> shown(const std::vector<FoundPoles::Right>& right,
+                                     const StateSpace& minimal) {
+  if (right.empty()) return {};
   const VectorXcd values = linalg::eigenvalues(minimal.A);
-  std::vector<std::complex<double>> shown(values.begin(), values.end());
-  int hidden = 0;
+  std::vector<std::complex<double>> all(values.begin(), values.end());
+  std::vector<FoundPoles::Right> result;
   for (const FoundPoles::Right& pole : right) {
     const double apart = std::max(kSamePole * std::abs(pole.s), pole.rounding);
-    const auto same = std::find_if(shown.begin(), shown.end(), [&](std::complex<double> s) {
+    const auto same = std::find_if(all.begin(), all.end(), [&](std::complex<double> s) {
       return std::abs(s - pole.s) <= apart;
     });
-    if (same == shown.end())
-      ++hidden;
-    else
-      shown.erase(same);
+    if (same == all.end()) continue;
+    result.push_back(pole);
+    all.erase(same);
   }
-  return hidden;
+  return result;
+}
+
+std::vector<std::complex<double>> around(const std::vector<FoundPoles::Right>& growing) {
+  constexpr int kPoles = 8;  // one that gives energy is enough
+  const std::complex<double> directions[] = {1, {0, 1}, -1, {0, -1}};
+  std::vector<std::complex<double>> points;
+  int taken = 0;
+  for (const FoundPoles::Right& pole : growing) {
+    if (pole.s.imag() < 0 || ++taken > kPoles) continue;
+    for (const double radius : {0.1, 1e-3})
+      for (const std::complex<double> direction : directions)
+        points.push_back(pole.s + radius * pole.s.real() * direction);
+  }
+  return points;
 }
 
 }  // namespace titop::full

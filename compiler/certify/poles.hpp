@@ -23,7 +23,14 @@ struct FoundPoles {
 FoundPoles check_poles(const System& system, const StateSpace& model,
                        const Eigen::MatrixXd& rounding);
 
-/// How many of these poles are none of the minimal model. O(n^3) where there are any.
-int count_hidden(const std::vector<FoundPoles::Right>& right, const StateSpace& minimal);
+/// Those of these poles that are the minimal model's, too: a transfer shows them. O(n^3) where
+/// there are any.
+std::vector<FoundPoles::Right> shown(const std::vector<FoundPoles::Right>& right,
+                                     const StateSpace& minimal);
+
+/// Points right of the axis on circles about these poles, of a tenth and a thousandth of their
+/// distance from it. What is passive has no pole there: around one G / s takes all directions, that
+/// of giving energy, too.
+std::vector<std::complex<double>> around(const std::vector<FoundPoles::Right>& growing);
 
 }  // namespace titop::full

@@ -156,16 +156,79 @@ bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Ce
   return true;
 }
 
-/// Share of the outputs that double loses. One that is 0 by cancellation, which has no size to
-/// measure it by, has lost nothing: rounding is all that it has.
-void find_lost(const SystemData& d, Evaluation<double>& point, Check& check) {
+/// What stands around the states of all blocks at a real s (see Surroundings).
+class AroundStates {
+ public:
+  AroundStates(const SystemData& d, const Evaluation<double>& point, double s)
+      : d_(d), point_(point), s_(s), around_(d, point.unknowns()) {}
+
+  /// Row by row, of the states that output o is a sum of.
+  Eigen::VectorXd of_output(std::size_t o) {
+    const Output& output = d_.graph().outputs[o];
+    const int first = d_.skeleton->joint.output_coefficient[o];
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(output.size);
+    for (std::size_t k = 0; k < output.terms.size(); ++k)
+      if (const int x = output.terms[k].signal; d_.graph().signals[at(x)].role == Role::state)
+        sum += d_.numbers.coefficients[at(first) + k]->cwiseAbs() * of_states(x);
+    return sum;
+  }
+
+ private:
+  using Role = Signal::Role;
+
+  /// What their block makes of what stands around its inputs; no less than they are.
+  const Eigen::VectorXd& of_states(int states) {
+    const auto [found, added] = sizes_.try_emplace(states);
+    if (!added) return found->second;
+    const int i = d_.graph().signals[at(states)].node;
+    const Node& node = d_.graph().nodes[at(i)];
+    const Dynamics& m = *d_.numbers.blocks[at(i)];
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(m.B.cols());
+    for (int k = node.first_signal; k < node.state; ++k)
+      if (const Signal& in = d_.graph().signals[at(k)]; in.role == Role::input && in.active)
+        for (Eigen::Index j = 0; j < in.size; ++j) u(in.first + j) = around_.size(k, j);
+    const auto X = response<double>(*node.block, m, s_, d_.numbers.parameters).X;
+    found->second = (X.cwiseAbs() * u).cwiseMax(point_.value(states).col(0).cwiseAbs());
+    return found->second;
+  }
+
+  const SystemData& d_;
+  const Evaluation<double>& point_;
+  double s_;
+  Surroundings around_;
+  std::map<int, Eigen::VectorXd> sizes_ = {};
+};
+
+/// These differences of the outputs, less those of what is 0 because states cancel: how a body
+/// turns is a sum of angles.
+RowMatrix<double> without_zeros(const SystemData& d, AroundStates& around,
+                                const RowMatrix<double>& y, RowMatrix<double> off) {
+  for (std::size_t o = 0; o < d.graph().outputs.size(); ++o) {
+    const int size = d.graph().outputs[o].size, unit = size == 6 ? 3 : 1;
+    for (int i = 0; i < size; i += unit) {
+      auto part = off.middleRows(d.layout().output_first[o] + i, unit);
+      const double value = y.middleRows(d.layout().output_first[o] + i, unit).cwiseAbs().maxCoeff();
+      if ((part.array().abs() <= kWarn * value).all()) continue;
+      const double zero = kLeftOfZero * around.of_output(o).segment(i, unit).maxCoeff();
+      if (value <= zero && (part.array().abs() <= zero).all()) part.setZero();
+    }
+  }
+  return off;
+}
+
+/// Share of the outputs that double loses at a real s. One that is 0 by cancellation, which has no
+/// size to measure it by, has lost nothing: rounding is all that it has.
+void find_lost(const SystemData& d, Evaluation<double>& point, double s, Check& check) {
   const RowMatrix<double> before = point.outputs();
   const auto losses = point.losses();
   check.lost = std::max(losses.change, losses.rounding);
   if (check.lost <= kWarn) return;
   const RowMatrix<double> y = point.outputs();
-  const double told = std::max(lost_of_outputs(d, point.unknowns(), y, y - before),
-                               lost_of_outputs(d, point.unknowns(), y, point.rounding()));
+  AroundStates around(d, point, s);
+  const auto lost = [&](const RowMatrix<double>& off) {
+    return lost_of_outputs(d, point.unknowns(), y, without_zeros(d, around, y, off));
+  };
+  const double told = std::max(lost(y - before), lost(point.rounding()));
   check.rounding_alone = told < check.lost;
   check.lost = std::min(check.lost, told);
 }
@@ -181,7 +244,7 @@ void check_at_s(const SystemData& d, const RowMatrix<double>& u, double s, Check
       residual_of(d, signals, [&] { return point.rounding_of_values(signals.first); });
   check.certificate.residual = written.worst;
   check.certificate.residual_where = written.where;
-  find_lost(d, point, check);
+  find_lost(d, point, s, check);
   if (const double lost = check.lost; lost > kWarn)
     check.notes.push_back(
         {Note::Kind::warning, "certify",

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <titop/compiler/certify/faults.hpp>
 #include <titop/compiler/emit/report/html.hpp>
 #include <titop/compiler/emit/report/subject.hpp>
 
 namespace titop::report {
 namespace {
 
-constexpr double kHolds = 1e-8;  ///< as FullCertificate::faults judges
+using full::kHolds;
 
 enum class Mark { good, bad, none };
 
@@ -55,7 +56,7 @@ void add_basic(std::vector<Item>& items, const Certificate& c) {
                                  "its size at the same s: {}, found at {}.",
                                  place(c.dense_error_s), number(c.dense_error_where_small, 2),
                                  place(c.dense_error_where_small_s)),
-                     judged(c.dense_error, kHolds)});
+                     judged(c.dense_error, full::kDenseHolds)});
   items.push_back({"weakest pivot", number(c.weakest_pivot, 2),
                    fmt::format("What is left of the terms that formed it{}: 1 is no cancellation, "
                                "10⁻¹⁶ is nothing left. The same in all units.",
@@ -80,22 +81,26 @@ void add_reciprocity(std::vector<Item>& items, const FullCertificate::Reciprocit
                    count(static_cast<std::size_t>(r.forces), "force"),
                    r.first.empty() ? "" : fmt::format("; {} and {}", r.first, r.second),
                    r.structure ? "" : "; nothing asks for it: " + r.why_no_structure),
-       r.structure ? judged(r.asymmetry, kHolds) : Mark::none});
+       r.structure ? judged(r.asymmetry, full::kReciprocal) : Mark::none});
 }
 
 void add_full(std::vector<Item>& items, const FullCertificate& f) {
   if (f.grid.done) {
     const std::string over = fmt::format(
-        "Largest difference of transfers at {} points between "
-        "{:.3g} and {:.3g} rad/s, over the largest of that output "
-        "and input.",
+        "Largest difference of transfers at {} points between {:.3g} and {:.3g} rad/s, by output "
+        "and input over the largest there (three translations or rotations of a port together)",
         f.grid.points, f.grid.lowest, f.grid.highest);
     if (f.grid.dense >= 0)
-      items.push_back({"minimal A, B, C, D against the factored system over a grid",
-                       number(f.grid.dense, 2), over, judged(f.grid.dense, kHolds)});
+      items.push_back(
+          {"minimal A, B, C, D against the factored system over a grid", number(f.grid.dense, 2),
+           over + "; what may be nothing but rounding, as by symmetry, over 10⁻³ of the "
+                  "terms that cancel in it.",
+           judged(f.grid.dense, full::kDenseHolds)});
     if (f.grid.written >= 0)
       items.push_back({"the equations as written, solved all at once, against the factored system",
-                       number(f.grid.written, 2), over, judged(f.grid.written, kHolds)});
+                       number(f.grid.written, 2),
+                       over + ", or over 10⁻³ of the terms that cancel in it.",
+                       judged(f.grid.written, kHolds)});
   } else {
     add_not_done(items, "transfers over a grid", f.grid.why_not);
   }
@@ -107,7 +112,7 @@ void add_full(std::vector<Item>& items, const FullCertificate& f) {
                          ? ""
                          : fmt::format("; {} of {}, the others rounding of A alone moves too far",
                                        f.poles.measured, f.poles.count)),
-         judged(f.poles.error, 1e-6)});
+         judged(f.poles.error, full::kPoleHolds)});
   if (f.poles.done)
     items.push_back(
         {"poles right of the imaginary axis", fmt::format("{}", f.poles.right),
@@ -118,13 +123,15 @@ void add_full(std::vector<Item>& items, const FullCertificate& f) {
   else
     add_not_done(items, "poles", f.poles.why_not);
   if (f.passivity.done)
-    items.push_back({"passivity", number(f.passivity.least, 3),
-                     fmt::format("Smallest eigenvalue of the Hermitian part of G(s)/s over {} "
-                                 "of force and acceleration at one point, scaled: not negative for "
-                                 "what gives no energy{}.",
-                                 count(static_cast<std::size_t>(f.passivity.pairs), "pair"),
-                                 f.passivity.structure ? "" : "; a controller may give some"),
-                     f.passivity.structure ? judged(-f.passivity.least, 1e-9) : Mark::none});
+    items.push_back(
+        {"passivity", number(f.passivity.least, 3),
+         fmt::format("Smallest eigenvalue of the Hermitian part of G(s)/s over {} "
+                     "of force and acceleration at one point, scaled: not negative for "
+                     "what gives no energy{}. Found at {}.",
+                     count(static_cast<std::size_t>(f.passivity.pairs), "pair"),
+                     f.passivity.structure ? "" : "; a controller may give some",
+                     place(f.passivity.where)),
+         f.passivity.structure ? judged(-f.passivity.least, full::kPassive) : Mark::none});
   else
     add_not_done(items, "passivity", f.passivity.why_not);
   add_reciprocity(items, f.reciprocity);
@@ -282,10 +289,6 @@ std::string what_holds(const Certificate& c, const FullCertificate* full) {
   return list.empty() ? "" : fmt::format(": {}", fmt::join(list, "; "));
 }
 
-bool basic_holds(const Certificate& c) {
-  return c.residual <= kHolds && c.dense_against_factors <= kHolds && c.dense_error <= kHolds;
-}
-
 }  // namespace
 
 std::string certificate_section(const Subject& s, const FullCertificate* full) {
@@ -353,13 +356,9 @@ std::string summary(const Subject& s, const FullCertificate* full) {
   const Certificate c = s.system.certificate();
   const OrderVerdict& v = order_of(s, full);
   std::string text = tiles(s) + "<ul class=\"verdicts\">\n" + stability(s, full);
-  if (full && !full->holds()) {
-    for (const std::string& fault : full->faults) text += verdict("bad", escaped(fault));
-  } else if (!basic_holds(c)) {
-    text += verdict("bad", "A check does not hold: see the certificate.");
-  } else {
-    text += verdict("good", "<b>All checks hold</b>" + what_holds(c, full) + ".");
-  }
+  const std::vector<std::string> faults = full ? full->faults : full::basic_faults(c);
+  for (const std::string& fault : faults) text += verdict("bad", escaped(fault));
+  if (faults.empty()) text += verdict("good", "<b>All checks hold</b>" + what_holds(c, full) + ".");
   text += verdict(v.decided() ? "good" : "open", as_range(v));
   for (const auto& notes : {s.system.notes(), s.system.dense_notes()})
     for (const Note& n : notes)
