@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <titop/compiler/ahead.hpp>
 #include <titop/compiler/passes/close/along.hpp>
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/close/redundant.hpp>
+#include <titop/compiler/passes/close/reflections.hpp>
 #include <titop/compiler/passes/close/second_order.hpp>
 #include <titop/compiler/passes/close/still.hpp>
 #include <titop/compiler/passes/lower/amounts.hpp>
@@ -185,15 +187,40 @@ void keep_rows(Graph& g, Equation& e, const MatrixXd& rows) {
   }
 }
 
+/// Of an equation whose rows say in k directions what follows from others.
+struct Split {
+  MatrixXd directions;  ///< orthonormal rows
+  MatrixXd kept;        ///< unit rows: with what follows they say all that the equation says
+};
+
+/// From directions among scaled rows. Kept are rows as they stand (those of the largest pivots go):
+/// combinations across the directions would mix translations with rotations, and in a mechanism of
+/// a millimetre what is small beside the others would be rounding. So with the directions: what is
+/// rounding among scaled rows goes before the factors make it large.
+Split split(const MatrixXd& scaled, const Eigen::VectorXd& factors) {
+  const auto n = scaled.cols();
+  std::vector<int> left(static_cast<std::size_t>(n));
+  std::iota(left.begin(), left.end(), 0);
+  Reflections r(scaled);
+  r.take(left, 0);
+  std::erase_if(left, [&](int row) { return r.taken(row); });
+  MatrixXd directions =
+      r.matrix()(Eigen::all, r.pivots()).eval().triangularView<Eigen::Upper>().solve(r.matrix());
+  directions = (directions.array().abs() < kUnit).select(0.0, directions);
+  directions(Eigen::all, r.pivots()).setIdentity();
+  return {orthonormal_rows(directions * factors.asDiagonal()),
+          MatrixXd(MatrixXd::Identity(n, n))(left, Eigen::all)};
+}
+
 /// In these directions (rows, in the space of the equation's rows) the joint lets go: it passes
-/// nothing on, and the wrench at its point is what others add there.
-void release(Stage& stage, int equation, const MatrixXd& directions, Lowering& lowering) {
+/// nothing on, and the wrench at its point is what others add there. The equation keeps these rows.
+void release(Stage& stage, int equation, const Split& parts, Lowering& lowering) {
   Graph& g = stage.graph;
+  const auto& [directions, kept] = parts;
   const MatrixXd S = g.equations[at(equation)].part.whole()
                          ? MatrixXd::Identity(directions.cols(), directions.cols())
                          : g.equations[at(equation)].part.rows();
   const int channel = g.signals[at(g.equations[at(equation)].target)].channel;
-  const MatrixXd kept = complement(directions, static_cast<int>(directions.cols()));
   Equation force{.target = g.channels[at(channel)].force,
                  .part = {directions * S, ".redundant"},
                  .where = g.equations[at(equation)].where};
@@ -286,18 +313,18 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
                          name, rows - r.directions.rows(), rows, r.weakest, r.dropped,
                          kRankTolerance)});
       if (r.directions.rows() == 0) continue;
-      const MatrixXd directions = orthonormal_rows(r.directions * factors.row[i].asDiagonal());
+      const Split parts = split(r.directions, factors.row[i]);
       stage.notes.push_back(
           {Note::Kind::info, "chains",
            fmt::format("{}: {} of {} closing equations are redundant{}; internal forces there are "
                        "not determined",
-                       name, directions.rows(), rows, direction_names(directions))});
+                       name, r.directions.rows(), rows, direction_names(parts.directions))});
       if (!lowering)
         lowering.emplace(
             *stage.source, stage.values,
             stage.drives ? stage.drives : std::make_shared<const Drives>(*stage.source),
             stage.motions);
-      release(stage, line.equation, directions, *lowering);
+      release(stage, line.equation, parts, *lowering);
     }
     for (const int j : found.held)
       if (c.scalars[at(j)].column.kind != Column::Kind::prescribed) held.insert(c.scalars[at(j)]);

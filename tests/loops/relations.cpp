@@ -127,6 +127,33 @@ Relations strip(Rng& rng, int count) {
 
 }  // namespace
 
+TEST_CASE("scaled relations: the same whatever rows and columns are measured in, and balanced") {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    Relations r = loops(rng);
+    for (std::size_t b = 0; b < r.blocks.size(); ++b)
+      for (std::size_t i = 0; i < r.unit[b].size(); ++i)
+        r.unit[b][i] = static_cast<int>(2 * b + i % 2);
+    for (double& w : r.weight) w = rng.below(3) == 0 ? w : 0;
+    Relations other = r;
+    std::vector<double> of_unit(2 * r.blocks.size()), of_column(r.role.size());
+    for (auto* list : {&of_unit, &of_column})
+      for (double& x : *list) x = std::ldexp(1, rng.below(60) - 30);
+    for (std::size_t b = 0; b < r.blocks.size(); ++b)
+      for (Index i = 0; i < r.blocks[b].M.rows(); ++i)
+        for (Index j = 0; j < r.blocks[b].M.cols(); ++j)
+          other.blocks[b].M(i, j) *=
+              of_unit[at(r.unit[b][at(i)])] * of_column[at(r.blocks[b].columns[at(j)])];
+    for (Index c = 0; c < width(r); ++c) other.weight(c) /= of_column[at(c)];
+    scale(r), scale(other);
+    const MatrixXd M = dense(r, r.blocks.size());
+    CHECK((dense(other, r.blocks.size()) - M).norm() <= 1e-12 * M.norm());
+    for (Index c = 0; c < width(r); ++c)
+      if (r.weight(c) == 0 && M.col(c).norm() > 0) CHECK(std::abs(M.col(c).norm() - 1) <= 1e-12);
+  }
+}
+
 TEST_CASE("redundant directions and held columns: as singular values of all relations say") {
   int repeated = 0, held = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {

@@ -42,10 +42,16 @@ struct Factors {
   std::vector<Eigen::VectorXd> row;  ///< per block
   Eigen::VectorXd column;
 };
-/// Scales the relations so that units do not matter: columns in units of energy (eta by 1/omega:
-/// soft modes become dependent), one factor for the translations or rotations of a closing
-/// equation, taken before any elimination (afterwards noise would become 1), all other columns to
-/// largest entry 1. O(entries).
+/// Scales the relations into a balance: the squares of every free column sum to 1, and those of
+/// every unit (rows of one number: the translations or rotations of a closing equation) to what it
+/// has if each of its free columns is spread evenly over the units where it counts, and 1 for its
+/// columns that store energy. These keep their weight (eta by 1/omega: soft modes become
+/// dependent). A balance with these sums exists and is the only one [Sinkhorn, Knopp 1967]: it
+/// depends neither on units of measurement (they are factors themselves), nor on the frame (three
+/// rows count by their norm), nor on the order of chains. For a chain of hinges it finds the length
+/// that levers are measured by, from all joints together; where a lever is tiny, its joint's
+/// translations do not count, and no row depends on it. Taken before any elimination (afterwards
+/// noise would become 1). O(entries) per sweep; few are needed, from a start nearly in balance.
 Factors scale(Relations& relations);
 
 /// z_dependent = sum of factor * z, for coordinates and integrals; in turn: what stands on the

@@ -6,113 +6,189 @@ namespace titop::passes::closing {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXd;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// Factors for rows (those of one number together) and for columns, each from what has its factor
-/// already, so that none depends on units: columns that store energy begin; then come, in turn, the
-/// rows that they reach, the columns that these reach, and so on.
+/// A lever of less than this beside the longest of its chain makes its joint's column a rotation:
+/// what such a lever is to the last digit must not say how the joint counts.
+constexpr double kLever = 1e-3;
+
+/// Sweeps end when they change no factor by more: ranks are decided between digits, not within one.
+constexpr double kSettled = 1.02;
+constexpr int kMostSweeps = 100;
+
+/// The rows of one unit in one column: the norm of what stands there.
+struct Entry {
+  int unit = 0, column = 0;
+  double size = 0;
+  bool counts = true;  ///< no tiny lever
+};
+
+/// Units are rows of one number. A start goes from what has its factor to what it reaches, so that
+/// units of measurement leave no trace; sweeps then balance all of it, and leave none of where the
+/// start began.
 struct Scaling {
   Relations& r;
-  Factors f;
-  std::vector<char> column_done = std::vector<char>(r.role.size(), 0);
+  std::vector<Entry> entries = {};
+  std::vector<std::vector<int>> of_unit = {}, of_column;  ///< entries
+  std::vector<double> row = {}, column;                   ///< factors; 0: none yet
+  std::vector<double> share = {};                         ///< per unit: its square sum, balanced
+  std::vector<char> fixed;                                ///< per column: it has a weight
 
-  struct Row {
-    int block = 0;
-    Index row = 0;
-  };
-  std::vector<std::vector<Row>> rows_of = {};  ///< by number
-  std::vector<char> unit_done = {};
-  std::vector<std::vector<int>> units_of = {};  ///< per column: numbers of the rows that reach it
+  explicit Scaling(Relations& relations)
+      : r(relations), of_column(r.role.size()), column(r.role.size(), 0), fixed(r.role.size(), 0) {
+    for (std::size_t j = 0; j < column.size(); ++j)
+      if (const double w = r.weight(static_cast<Index>(j)); w > 0) column[j] = w, fixed[j] = 1;
+    for (std::size_t b = 0; b < r.blocks.size(); ++b) list(b);
+    find_shares();
+  }
 
-  explicit Scaling(Relations& relations) : r(relations) {
-    f.column = Eigen::VectorXd::Ones(static_cast<Index>(r.role.size()));
-    units_of.resize(r.role.size());
-    for (std::size_t b = 0; b < r.blocks.size(); ++b) {
-      f.row.push_back(Eigen::VectorXd::Ones(r.blocks[b].M.rows()));
-      for (Index i = 0; i < r.blocks[b].M.rows(); ++i) list(static_cast<int>(b), i);
+  void list(std::size_t b) {
+    const RowBlock& block = r.blocks[b];
+    std::vector<int> units = r.unit[b];
+    std::sort(units.begin(), units.end());
+    units.erase(std::unique(units.begin(), units.end()), units.end());
+    MatrixXd sizes = MatrixXd::Zero(std::ssize(units), block.M.cols());
+    for (Index i = 0; i < block.M.rows(); ++i) {
+      const auto u = std::lower_bound(units.begin(), units.end(), r.unit[b][at(i)]);
+      sizes.row(u - units.begin()) += block.M.row(i).cwiseAbs2();
     }
-    unit_done.assign(rows_of.size(), 0);
+    sizes = sizes.cwiseSqrt();
+    if (!units.empty() && at(units.back()) >= of_unit.size()) of_unit.resize(at(units.back()) + 1);
+    const MatrixXd longest = longest_levers(sizes, block.columns);
+    for (Index u = 0; u < sizes.rows(); ++u)
+      for (Index k = 0; k < sizes.cols(); ++k)
+        if (sizes(u, k) > 0) {
+          const int unit = units[at(u)], j = block.columns[at(k)];
+          of_unit[at(unit)].push_back(static_cast<int>(entries.size()));
+          of_column[at(j)].push_back(static_cast<int>(entries.size()));
+          const bool tiny =
+              (sizes(u, k) < kLever * longest.row(u).transpose().array() * sizes.col(k).array())
+                  .any();
+          entries.push_back({unit, j, sizes(u, k), !tiny});
+        }
   }
-  void list(int b, Index i) {
-    const RowBlock& block = r.blocks[at(b)];
-    const int unit = r.unit[at(b)][at(i)];
-    if (at(unit) >= rows_of.size()) rows_of.resize(at(unit) + 1);
-    rows_of[at(unit)].push_back({b, i});
-    for (std::size_t k = 0; k < block.columns.size(); ++k)
-      if (auto& units = units_of[at(block.columns[k])];
-          block.M(i, static_cast<Index>(k)) != 0 && (units.empty() || units.back() != unit))
-        units.push_back(unit);
+
+  /// Per two units of a block the largest that free columns have in the one over the other: no
+  /// matter how columns are measured, and rows are for all of them alike.
+  MatrixXd longest_levers(const MatrixXd& sizes, const std::vector<int>& columns) const {
+    MatrixXd longest = MatrixXd::Zero(sizes.rows(), sizes.rows());
+    for (Index k = 0; k < sizes.cols(); ++k)
+      for (Index u = 0; u < sizes.rows() && fixed[at(columns[at(k)])] == 0; ++u)
+        for (Index v = 0; v < sizes.rows(); ++v)
+          if (u != v && sizes(u, k) > 0 && sizes(v, k) > 0)
+            longest(u, v) = std::max(longest(u, v), sizes(u, k) / sizes(v, k));
+    return longest;
   }
-  double entry(const Row& row, std::size_t k) const {  // scaled as far as that is known
-    const RowBlock& block = r.blocks[at(row.block)];
-    return std::abs(block.M(row.row, static_cast<Index>(k))) * f.column(block.columns[k]) *
-           f.row[at(row.block)](row.row);
+
+  /// Every column is spread evenly over the units where it counts: so a balance exists, and there
+  /// is one only. Columns of fixed size count for one, all of a unit together.
+  void find_shares() {
+    row.assign(of_unit.size(), 0);
+    share.assign(of_unit.size(), 0);
+    std::vector<char> has_fixed(of_unit.size(), 0);
+    for (std::size_t j = 0; j < column.size(); ++j) {
+      const auto counting = std::count_if(of_column[j].begin(), of_column[j].end(),
+                                          [&](int e) { return entries[at(e)].counts; });
+      for (const int e : of_column[j]) {
+        Entry& entry = entries[at(e)];
+        if (counting == 0) entry.counts = true;  // between long and short levers
+        if (!entry.counts) continue;
+        if (fixed[j] != 0)
+          has_fixed[at(entry.unit)] = 1;
+        else
+          share[at(entry.unit)] +=
+              1 / static_cast<double>(counting > 0 ? counting : std::ssize(of_column[j]));
+      }
+    }
+    for (std::size_t u = 0; u < share.size(); ++u) share[u] += has_fixed[u];
   }
-  /// Rows of this number by their largest entry, in columns that are done or in all; their columns.
-  bool scale_rows(int unit, bool all, std::vector<int>& reached) {
+
+  double scaled(const Entry& e) const { return e.size * row[at(e.unit)] * column[at(e.column)]; }
+
+  /// By its largest entry in columns that have a factor, or in all; the columns that it reaches.
+  bool start_unit(int unit, bool all, std::vector<int>& reached) {
+    if (row[at(unit)] != 0) return false;
     double largest = 0;
-    if (unit_done[at(unit)]) return false;
-    for (const Row& row : rows_of[at(unit)])
-      for (std::size_t k = 0; k < r.blocks[at(row.block)].columns.size(); ++k)
-        if (all || column_done[at(r.blocks[at(row.block)].columns[k])])
-          largest = std::max(largest, entry(row, k));
-    if (largest == 0) return false;
-    unit_done[at(unit)] = 1;
-    for (const Row& row : rows_of[at(unit)]) {
-      f.row[at(row.block)](row.row) = 1 / largest;
-      const RowBlock& block = r.blocks[at(row.block)];
-      for (std::size_t k = 0; k < block.columns.size(); ++k)
-        if (block.M(row.row, static_cast<Index>(k)) != 0 && !column_done[at(block.columns[k])])
-          reached.push_back(block.columns[k]);
+    for (const int e : of_unit[at(unit)]) {
+      if (!all && !entries[at(e)].counts) continue;
+      const double factor = column[at(entries[at(e)].column)];
+      largest = std::max(largest, entries[at(e)].size * (all && factor == 0 ? 1 : factor));
     }
+    if (largest == 0) return false;
+    row[at(unit)] = 1 / largest;
+    for (const int e : of_unit[at(unit)])
+      if (entries[at(e)].counts && column[at(entries[at(e)].column)] == 0)
+        reached.push_back(entries[at(e)].column);
     return true;
   }
-  /// Columns by their largest entry in rows that are done; numbers of the other rows there.
-  std::vector<int> scale_columns(std::vector<int> reached) {
+  /// By their largest entries in units that have a factor; the other units there.
+  std::vector<int> start_columns(std::vector<int> reached) {
     std::sort(reached.begin(), reached.end());
     reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
     std::vector<int> units;
     for (const int j : reached) {
       double largest = 0;
-      for (const int unit : units_of[at(j)])
-        if (unit_done[at(unit)])
-          for (const Row& row : rows_of[at(unit)]) {
-            const std::vector<int>& columns = r.blocks[at(row.block)].columns;
-            const auto place = std::lower_bound(columns.begin(), columns.end(), j);
-            if (place != columns.end() && *place == j)
-              largest = std::max(largest, entry(row, at(place - columns.begin())));
-          }
-      if (largest > 0) f.column(j) = 1 / largest;
-      if (largest > 0) finish(j, units);
+      for (const int e : of_column[at(j)])
+        if (entries[at(e)].counts)
+          largest = std::max(largest, entries[at(e)].size * row[at(entries[at(e)].unit)]);
+      column[at(j)] = 1 / largest;
+      add_units(j, units);
     }
     return units;
   }
-  void finish(int j, std::vector<int>& units) {
-    column_done[at(j)] = 1;
-    for (const int unit : units_of[at(j)])
-      if (!unit_done[at(unit)]) units.push_back(unit);
+  void add_units(int j, std::vector<int>& units) const {
+    for (const int e : of_column[at(j)])
+      if (entries[at(e)].counts && row[at(entries[at(e)].unit)] == 0)
+        units.push_back(entries[at(e)].unit);
   }
   void spread(std::vector<int> units) {
     while (!units.empty()) {
       std::sort(units.begin(), units.end());
       units.erase(std::unique(units.begin(), units.end()), units.end());
       std::vector<int> reached;
-      for (const int unit : units) scale_rows(unit, false, reached);
-      units = scale_columns(std::move(reached));
+      for (const int unit : units) start_unit(unit, false, reached);
+      units = start_columns(std::move(reached));
     }
   }
-  void run() {
+  void start() {
     std::vector<int> units;
-    for (Index j = 0; j < r.weight.size(); ++j)
-      if (r.weight(j) > 0) f.column(j) = r.weight(j), finish(static_cast<int>(j), units);
+    for (std::size_t j = 0; j < fixed.size(); ++j)
+      if (fixed[j] != 0) add_units(static_cast<int>(j), units);
     spread(std::move(units));
-    for (std::size_t u = 0; u < rows_of.size(); ++u)  // what no energy reaches
-      if (std::vector<int> reached; scale_rows(static_cast<int>(u), true, reached))
-        spread(scale_columns(std::move(reached)));
-    for (std::size_t b = 0; b < r.blocks.size(); ++b)
-      r.blocks[b].M =
-          f.row[b].asDiagonal() * r.blocks[b].M * f.column(r.blocks[b].columns).asDiagonal();
+    for (std::size_t u = 0; u < row.size(); ++u)  // what no energy reaches
+      if (std::vector<int> reached; start_unit(static_cast<int>(u), true, reached))
+        spread(start_columns(std::move(reached)));
+    for (auto* factors : {&row, &column})
+      std::replace(factors->begin(), factors->end(), 0.0, 1.0);  // nothing stands there
+  }
+
+  /// Every unit to its share, then every free column to 1. Returns the largest change.
+  double sweep() {
+    double change = 1;
+    const auto correct = [&](double& factor, double by) {
+      factor *= by;
+      change = std::max({change, by, 1 / by});
+    };
+    std::vector<double> sum(row.size(), 0);
+    for (const Entry& e : entries) sum[at(e.unit)] += scaled(e) * scaled(e);
+    for (std::size_t u = 0; u < sum.size(); ++u)
+      if (share[u] > 0) correct(row[u], std::sqrt(share[u] / sum[u]));
+    sum.assign(column.size(), 0);
+    for (const Entry& e : entries) sum[at(e.column)] += scaled(e) * scaled(e);
+    for (std::size_t j = 0; j < sum.size(); ++j)
+      if (fixed[j] == 0 && sum[j] > 0) correct(column[j], 1 / std::sqrt(sum[j]));
+    return change;
+  }
+
+  Factors factors() const {
+    Factors f{{}, Eigen::Map<const Eigen::VectorXd>(column.data(), std::ssize(column))};
+    for (std::size_t b = 0; b < r.blocks.size(); ++b) {
+      f.row.emplace_back(r.blocks[b].M.rows());
+      for (Index i = 0; i < f.row.back().size(); ++i) f.row.back()(i) = row[at(r.unit[b][at(i)])];
+    }
+    return f;
   }
 };
 
@@ -120,8 +196,14 @@ struct Scaling {
 
 Factors scale(Relations& relations) {
   Scaling scaling(relations);
-  scaling.run();
-  return std::move(scaling.f);
+  scaling.start();
+  for (int k = 0; k < kMostSweeps && scaling.sweep() > kSettled; ++k) continue;
+  Factors f = scaling.factors();
+  for (std::size_t b = 0; b < relations.blocks.size(); ++b) {
+    RowBlock& block = relations.blocks[b];
+    block.M = f.row[b].asDiagonal() * block.M * f.column(block.columns).asDiagonal();
+  }
+  return f;
 }
 
 }  // namespace titop::passes::closing

@@ -94,15 +94,33 @@ MatrixXd dense(const Component& c) {
   return result;
 }
 
-/// Orthonormal columns: what those of m do not span.
-MatrixXd left_out(const MatrixXd& m) {
-  const Eigen::ColPivHouseholderQR<MatrixXd> qr(m);
-  Index rank = 0;
-  while (rank < std::min(m.rows(), m.cols()) && std::abs(qr.matrixR()(rank, rank)) > kRankTolerance)
-    ++rank;
-  const MatrixXd Q = qr.householderQ();
-  return Q.rightCols(m.rows() - rank);
-}
+/// The span of the columns of m, and what is orthogonal to it. As reflectors one after the other: a
+/// basis written out would have as many numbers as m has rows, squared.
+class Span {
+ public:
+  explicit Span(const MatrixXd& m) : qr_(m) {
+    while (rank_ < std::min(m.rows(), m.cols()) &&
+           std::abs(qr_.matrixR()(rank_, rank_)) > kRankTolerance)
+      ++rank_;
+  }
+  /// Dimensions outside the span.
+  Index left_out() const { return qr_.rows() - rank_; }
+  /// A vector outside the span, by its coordinates there.
+  VectorXd outside(const VectorXd& coordinates) const {
+    VectorXd x = VectorXd::Zero(qr_.rows());
+    x.tail(left_out()) = coordinates;
+    return qr_.householderQ() * x;
+  }
+  /// The length of what lies outside the span.
+  double outside_of(const VectorXd& x) const {
+    const VectorXd along = qr_.householderQ().transpose() * x;
+    return along.tail(left_out()).norm();
+  }
+
+ private:
+  Eigen::ColPivHouseholderQR<MatrixXd> qr_;
+  Index rank_ = 0;
+};
 
 }  // namespace
 
@@ -116,21 +134,21 @@ double stopped(const Component& scaled, const Factors& factors,
   }
   if (scaled.scalars.empty()) return 0;
   const MatrixXd relations = dense(scaled);
-  const MatrixXd outside = left_out(relations), left = left_out(relations.transpose());
-  if (outside.cols() == 0 || left.cols() == 0) return 0;
+  const Span reached(relations), held(relations.transpose());
+  if (reached.left_out() == 0 || held.left_out() == 0) return 0;
   detail::SteadyRandom random;
   double worst = 0;
   for (int k = 0; k < kMotions; ++k) {
-    VectorXd by(left.cols());
+    VectorXd by(held.left_out());
     for (double& x : by) x = random.next();
-    const VectorXd motion = factors.column.cwiseProduct(left * by);
-    VectorXd sum(outside.rows()), size(outside.rows());
+    const VectorXd motion = factors.column.cwiseProduct(held.outside(by));
+    VectorXd sum(relations.rows()), size(relations.rows());
     for (std::size_t c = 0; c < chains.size(); ++c) {
       const Brackets b = brackets(chains[c], motion);
       sum.segment<6>(6 * static_cast<Index>(c)) = factors.row[c].cwiseProduct(b.sum);
       size.segment<6>(6 * static_cast<Index>(c)) = factors.row[c].cwiseProduct(b.size);
     }
-    if (size.norm() > 0) worst = std::max(worst, (outside.transpose() * sum).norm() / size.norm());
+    if (size.norm() > 0) worst = std::max(worst, reached.outside_of(sum) / size.norm());
   }
   return worst;
 }

@@ -15,7 +15,8 @@ namespace titop::passes::closing {
 /// are closed twice and still move (a linkage in a plane), about 1 at a singular posture. 0 where
 /// nothing is redundant. -1, not tried: closing equations of fewer than six rows, or through what
 /// is prescribed or free as a whole; more than 20 chains that share joints.
-/// Source: [Mueller 2002], mobility of higher order. O((rows + columns)^3).
+/// Source: [Mueller 2002], mobility of higher order. O(rows^2 columns) of the component's matrix:
+/// linear in the length of a chain.
 ///
 /// `closings`: those of the component's lines, in this order; `scaled`, by `factors`.
 double stopped(const Component& scaled, const Factors& factors,
