@@ -14,7 +14,8 @@ namespace titop {
 /// samples.
 class Excitation {
  public:
-  /// u(begin), u(end) of the step from begin to end [s], both from inside.
+  /// u(begin), u(end) of the step from begin to end [s], both from inside. The automatic choice may
+  /// go through all steps a second time: the same step must give the same.
   using Ends = std::pair<Eigen::VectorXd, Eigen::VectorXd>;
   using Over = std::function<Ends(double begin, double end)>;
 
@@ -43,10 +44,11 @@ class Excitation {
 
 /// How a step is taken. Cost per step of n states, b bodies; error per unit of time of steps h.
 enum class Stepper {
-  automatic,  ///< exact up to 600 states; beyond, midpoint at half the step, compared with midpoint
-              ///< at the step, three times the cost of one of them: Trajectory::error
-  exact,      ///< matrix exponential, once O(n^3), then O(n^2): no error but rounding for inputs
-              ///< that are linear in every step, at any step
+  automatic,  ///< exact up to 600 states; beyond, and where A and B have lost the digits of slow
+              ///< motion, midpoint at half the step, compared with midpoint at the step, three
+              ///< times the cost of one of them: Trajectory::error
+  exact,      ///< matrix exponential, once O(n^3), then O(n^2): for inputs that are linear in every
+              ///< step no error at any step but rounding, that of writing A and B included
   midpoint,   ///< implicit midpoint rule through the factors, O(b), h^2: stable at any step, keeps
               ///< the energy of what is undamped; high modes stay bounded, but turn too slowly
   rk4         ///< classic Runge-Kutta, O(b), h^4: refuses steps beyond its limit of stability
@@ -59,7 +61,8 @@ struct Simulation {
   Stepper stepper = Stepper::automatic;
   Eigen::VectorXd x0 = {};   ///< states at time 0, in the order of System::states(); none: 0
   bool keep_states = false;  ///< Trajectory::x at all times
-  /// Of the automatic choice: the largest Trajectory::error that is not refused. Infinite where
+  /// Of the automatic choice: the largest Trajectory::error that is not refused, and of the exact
+  /// step not left for midpoint. Infinite where
   /// outputs are asked for that no motion has reached yet (far down a row): they have no digit.
   double accuracy = 0.01;
 };
@@ -71,9 +74,13 @@ struct Trajectory {
                              ///< time: just before)
   Eigen::MatrixXd x;         ///< states x times, or their last column alone
   Stepper stepper = Stepper::exact;  ///< the one that was taken
-  /// Per output: the largest change from steps of twice the size (these are h^2 methods: about
-  /// three times the error), relative to the output's largest value. 0 of the exact stepper; empty
-  /// where another was asked for, which is not tried twice.
+  /// Per output, relative to its largest value, or to a millionth of that of the largest output of
+  /// its kind (positions, velocities, accelerations, forces), where that is more: what symmetry
+  /// makes 0 has no digits. Of the automatic choice's midpoint: the largest change from steps of
+  /// twice the size (an h^2 method: about three times the error). Of the exact stepper: what
+  /// rounding A and B has done by then, as far as their xdot differs from the factors' (looked at
+  /// up to a thousand times), carried on by the same steps: its order of magnitude. Empty where
+  /// midpoint or rk4 was asked for, which is not tried twice.
   Eigen::VectorXd error;
   std::vector<std::string> states, outputs;
 };

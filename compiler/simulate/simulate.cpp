@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <map>
+#include <memory>
 #include <optional>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/instant.hpp>
@@ -70,66 +72,168 @@ Excitation::Ends inputs_of(const System& system, const Excitation& excitation, d
   return ends;
 }
 
-std::unique_ptr<detail::StepRule> rule_of(const System& system, const detail::SystemData& data,
-                                          Stepper stepper, double h) {
-  switch (stepper) {
-    case Stepper::rk4: return detail::rk4_rule(system, h);
-    case Stepper::midpoint: return detail::midpoint_rule(data, h);
-    default: return detail::exact_rule(system, h);
-  }
+/// One time: states, inputs, and what the factors make of them.
+struct Now {
+  Index step;
+  bool last;
+  const VectorXd &x, &u, &y, &xdot;
+};
+
+Quantity kind_of(const Graph& g, const Output& o) {
+  if (o.terms.empty()) return Quantity::plain;
+  const Term& t = o.terms.front();
+  return t.of == Term::Of::position ? Quantity::position
+         : t.of == Term::Of::rate   ? Quantity::velocity
+                                    : g.signals[static_cast<std::size_t>(t.signal)].quantity;
 }
 
-/// States on their way, some steps of the rule in each step that is asked for.
-struct Motion {
-  std::unique_ptr<detail::StepRule> rule;
-  int per_step;
-  VectorXd x;
+/// Largest values of outputs, and how far they are off.
+class Sizes {
+ public:
+  explicit Sizes(const detail::SystemData& d)
+      : d_(d), off_(VectorXd::Zero(std::ssize(d.layout().outputs))), size_(off_) {}
 
-  void step(const VectorXd& u0, const VectorXd& u1) {
-    for (int i = 0; i < per_step; ++i) {
-      const auto at = [&](int k) { return VectorXd(u0 + (u1 - u0) * k / per_step); };
-      x = per_step == 1 ? rule->step(x, u0, u1) : rule->step(x, at(i), at(i + 1));
-    }
-  }
-};
-
-/// Outputs against those of steps of twice the size.
-struct Halved {
-  Motion twice;
-  VectorXd off, size;
-
+  void add(const VectorXd& y) { size_ = size_.cwiseMax(y.cwiseAbs()); }
   /// What symmetry makes 0 is rounding, and has no digit to lose: an output counts as a million
   /// times its rounding at least.
-  void compare(const detail::SystemData& d, const VectorXd& x, const VectorXd& y,
-               const VectorXd& u) {
+  void add_off(const Now& now, const VectorXd& off) {
     constexpr double kOfRounding = 1e6;
-    const auto instant = [&](const VectorXd& states) {
-      const VectorXd all = d.states.expanded(states, u);
-      solve::RowMatrix<double> known(all.size() + u.size(), 1);
-      known << all, u;
-      return detail::Instant(d, std::move(known));
-    };
-    const VectorXd rounding = instant(x).rounding().outputs().cwiseAbs();
-    off = off.cwiseMax((instant(twice.x).outputs() - y).cwiseAbs());
-    size = size.cwiseMax(y.cwiseAbs()).cwiseMax(kOfRounding * rounding);
+    const VectorXd rounding = instant(now.x, now.u).rounding().outputs().cwiseAbs();
+    off_ = off_.cwiseMax(off.array().isFinite().select(off.cwiseAbs(), HUGE_VAL).matrix());
+    size_ = size_.cwiseMax(kOfRounding * rounding);
   }
+  VectorXd outputs(const VectorXd& x, const VectorXd& u) const { return instant(x, u).outputs(); }
+
+  /// Where the states themselves are rounding, so are outputs that symmetry makes 0: they count as
+  /// a millionth of the largest of their kind at least.
   VectorXd relative() const {
-    return (off.array() > detail::kUnderflow).select(off.cwiseQuotient(size), 0);
+    constexpr double kOfKind = 1e-6;
+    const std::vector<Output>& outputs = d_.graph().outputs;
+    std::map<Quantity, double> largest;
+    const auto rows = [&](std::size_t o) {
+      return Eigen::seqN(d_.layout().output_first[o], outputs[o].size);
+    };
+    for (std::size_t o = 0; o < outputs.size(); ++o) {
+      double& of_kind = largest[kind_of(d_.graph(), outputs[o])];
+      of_kind = std::max(of_kind, size_(rows(o)).maxCoeff());
+    }
+    VectorXd size = size_;
+    for (std::size_t o = 0; o < outputs.size(); ++o)
+      size(rows(o)) =
+          size(rows(o)).cwiseMax(kOfKind * largest[kind_of(d_.graph(), outputs[o])]).eval();
+    return (off_.array() > detail::kUnderflow).select(off_.cwiseQuotient(size), 0);
   }
+
+ private:
+  detail::Instant instant(const VectorXd& states, const VectorXd& u) const {
+    const VectorXd all = d_.states.expanded(states, u);
+    solve::RowMatrix<double> known(all.size() + u.size(), 1);
+    known << all, u;
+    return detail::Instant(d_, std::move(known));
+  }
+
+  const detail::SystemData& d_;
+  VectorXd off_, size_;
 };
 
-void refuse_inaccurate(const System& system, const Simulation& s, const VectorXd& error) {
+/// States on their way.
+class Motion {
+ public:
+  virtual ~Motion() = default;
+  /// What there is to learn from this time; called once before each step and after the last.
+  virtual void look(const Now&) {}
+  virtual VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) = 0;
+  /// See Trajectory::error.
+  virtual VectorXd error() const { return {}; }
+};
+
+/// A rule that was asked for.
+class Asked : public Motion {
+ public:
+  explicit Asked(std::unique_ptr<detail::StepRule> rule) : rule_(std::move(rule)) {}
+  VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) override {
+    return rule_->step(x, u0, u1);
+  }
+
+ private:
+  std::unique_ptr<detail::StepRule> rule_;
+};
+
+/// Exact steps of the dense model. What A and B lose in being written down shows where their xdot
+/// differs from the factors', and goes on with the motion.
+class Exact : public Motion {
+ public:
+  Exact(const System& system, const detail::SystemData& d, double h, Index steps)
+      : rule_(system, h),
+        sizes_(d),
+        every_(std::max<Index>(1, (steps + kLooks - 1) / kLooks)),
+        weight_(static_cast<double>(every_)),
+        off_(VectorXd::Zero(system.order())) {}
+  void look(const Now& now) override {
+    sizes_.add(now.y);
+    if (now.step % every_ != 0 && !now.last) return;
+    sizes_.add_off(now, sizes_.outputs(off_, VectorXd::Zero(now.u.size())));
+    off_ += weight_ * rule_.of(rule_.xdot(now.x, now.u) - now.xdot);
+  }
+  VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) override {
+    return rule_.step(x, u0, u1, off_);
+  }
+  VectorXd error() const override { return sizes_.relative(); }
+
+ private:
+  static constexpr Index kLooks = 1000;  ///< in one motion: a look costs as much as some steps
+  detail::ExactRule rule_;
+  Sizes sizes_;
+  Index every_;
+  double weight_;
+  VectorXd off_;
+};
+
+/// Midpoint at half the step, against that at the step.
+class Halved : public Motion {
+ public:
+  Halved(const detail::SystemData& d, double h, VectorXd x0)
+      : half_(detail::midpoint_rule(d, h / 2)),
+        whole_(detail::midpoint_rule(d, h)),
+        other_(std::move(x0)),
+        sizes_(d) {}
+  void look(const Now& now) override {
+    sizes_.add(now.y);
+    sizes_.add_off(now, sizes_.outputs(other_, now.u) - now.y);
+  }
+  VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) override {
+    other_ = whole_->step(other_, u0, u1);
+    const VectorXd u = (u0 + u1) / 2;
+    return half_->step(half_->step(x, u0, u), u, u1);
+  }
+  VectorXd error() const override { return sizes_.relative(); }
+
+ private:
+  std::unique_ptr<detail::StepRule> half_, whole_;
+  VectorXd other_;
+  Sizes sizes_;
+};
+
+/// `exact`: by how much the exact step was off; negative where it was not tried.
+void refuse_inaccurate(const System& system, const Simulation& s, const VectorXd& error,
+                       double exact) {
   if (error.size() == 0) return;
   Index worst = 0;
   if (error.maxCoeff(&worst) <= s.accuracy) return;
+  const std::string of_exact =
+      exact >= 0
+          ? fmt::format("Stepper::exact is off by {:.1e}, as A and B have few digits here", exact)
+          : fmt::format(
+                "Stepper::exact is right at any step, once for {0} x {0} x {0} "
+                "operations",
+                system.order());
   throw Error(
       Code::bad_value,
       fmt::format("half of the step of {} s changes output {} by {:.1e} of its largest value",
                   s.step, system.outputs()[static_cast<std::size_t>(worst)], error(worst)),
-      fmt::format("take smaller steps; Stepper::exact is right at any step, once for {0} x {0} x "
-                  "{0} operations; or say by Simulation::accuracy, or Stepper::midpoint, that it "
-                  "is good enough",
-                  system.order()));
+      fmt::format("take smaller steps; {}; or say by Simulation::accuracy, or Stepper::midpoint, "
+                  "that it is good enough",
+                  of_exact));
 }
 
 void refuse_overflow(const System& system, double time) {
@@ -138,47 +242,74 @@ void refuse_overflow(const System& system, double time) {
               "look at its poles: it is unstable; stop earlier");
 }
 
-Stepper chosen(const System& system, Stepper asked) {
-  if (asked != Stepper::automatic) return asked;
-  return system.order() <= kExactUpTo ? Stepper::exact : Stepper::midpoint;
+std::unique_ptr<Motion> motion_of(const System& system, const detail::SystemData& d,
+                                  const Simulation& s, Stepper stepper, Index steps,
+                                  const VectorXd& x0) {
+  switch (stepper) {
+    case Stepper::rk4: return std::make_unique<Asked>(detail::rk4_rule(system, s.step));
+    case Stepper::midpoint:
+      if (s.stepper == Stepper::midpoint)
+        return std::make_unique<Asked>(detail::midpoint_rule(d, s.step));
+      return std::make_unique<Halved>(d, s.step, x0);
+    default: return std::make_unique<Exact>(system, d, s.step, steps);
+  }
 }
 
-}  // namespace
-
-Trajectory simulate(const System& system, const Excitation& excitation, const Simulation& s) {
-  const Index steps = steps_of(s);
+Trajectory move(const System& system, const Excitation& excitation, const Simulation& s,
+                Stepper stepper, Motion& motion, VectorXd x, Index steps) {
   Trajectory result;
-  result.stepper = chosen(system, s.stepper);
+  result.stepper = stepper;
   result.states = system.states();
   result.outputs = system.outputs();
-  const auto outputs = static_cast<Index>(result.outputs.size());
-  result.y.resize(outputs, steps + 1);
-  const bool halved = result.stepper != s.stepper && result.stepper != Stepper::exact;
-  const auto rule = [&](double h) { return rule_of(system, *system.data_, result.stepper, h); };
-  const VectorXd x0 = start_of(system, s.x0), none = VectorXd::Zero(outputs);
-  Motion motion{rule(halved ? s.step / 2 : s.step), halved ? 2 : 1, x0};
-  std::optional<Halved> other;
-  if (halved) other = Halved{{rule(s.step), 1, x0}, none, none};
-  result.x.resize(x0.size(), s.keep_states ? steps + 1 : 1);
+  result.y.resize(std::ssize(result.outputs), steps + 1);
+  result.x.resize(x.size(), s.keep_states ? steps + 1 : 1);
   VectorXd last = inputs_of(system, excitation, 0, s.step).first;
   for (Index k = 0;; ++k) {
     const double now = static_cast<double>(k) * s.step;
     Excitation::Ends u{last, {}};
     if (k < steps) u = inputs_of(system, excitation, now, static_cast<double>(k + 1) * s.step);
     result.time.push_back(now);
-    result.y.col(k) = system.apply(motion.x, u.first).y;
-    result.x.col(s.keep_states ? k : 0) = motion.x;
-    if (!motion.x.allFinite() || !result.y.col(k).allFinite()) refuse_overflow(system, now);
-    if (other) other->compare(*system.data_, motion.x, result.y.col(k), u.first);
+    const auto [xdot, y] = system.apply(x, u.first);
+    result.y.col(k) = y;
+    result.x.col(s.keep_states ? k : 0) = x;
+    if (!x.allFinite() || !y.allFinite()) refuse_overflow(system, now);
+    motion.look({k, k == steps, x, u.first, y, xdot});
     if (k == steps) break;
-    motion.step(u.first, u.second);
-    if (other) other->twice.step(u.first, u.second);
+    x = motion.step(x, u.first, u.second);
     last = u.second;
   }
-  if (result.stepper == Stepper::exact) result.error = none;
-  if (other) result.error = other->relative();
-  if (other) refuse_inaccurate(system, s, result.error);
+  result.error = motion.error();
   return result;
+}
+
+}  // namespace
+
+Trajectory simulate(const System& system, const Excitation& excitation, const Simulation& s) {
+  const Index steps = steps_of(s);
+  const VectorXd x0 = start_of(system, s.x0);
+  const auto by = [&](Stepper stepper) {
+    const auto motion = motion_of(system, *system.data_, s, stepper, steps, x0);
+    return move(system, excitation, s, stepper, *motion, x0, steps);
+  };
+  if (s.stepper != Stepper::automatic) return by(s.stepper);
+  double exact = -1;
+  std::optional<Error> overflow;
+  if (system.order() <= kExactUpTo) try {
+      Trajectory t = by(Stepper::exact);
+      exact = t.error.size() > 0 ? t.error.maxCoeff() : 0;
+      if (exact <= s.accuracy) return t;
+    } catch (const Error& error) {  // what A and B have lost may grow where the system does not
+      if (!error.has(Code::not_finite)) throw;
+      overflow = error;
+    }
+  try {
+    Trajectory halved = by(Stepper::midpoint);
+    refuse_inaccurate(system, s, halved.error, exact);
+    return halved;
+  } catch (const Error&) {
+    if (overflow) throw *overflow;  // nothing contradicts it
+    throw;
+  }
 }
 
 }  // namespace titop

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <titop/compiler/system.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 /// One step of each method. For the compiler's own files only.
 namespace titop::detail {
@@ -15,7 +16,25 @@ class StepRule {
 };
 
 /// x1 = Phi x + G0 u0 + G1 (u1 - u0), from one exponential of order n + 2 m.
-std::unique_ptr<StepRule> exact_rule(const System& system, double h);
+class ExactRule : public StepRule {
+ public:
+  ExactRule(const System& system, double h);
+  Eigen::VectorXd step(const Eigen::VectorXd& x, const Eigen::VectorXd& u0,
+                       const Eigen::VectorXd& u1) const override;
+  /// The same, and where the free motion from `other` goes: once through memory for both.
+  Eigen::VectorXd step(const Eigen::VectorXd& x, const Eigen::VectorXd& u0,
+                       const Eigen::VectorXd& u1, Eigen::VectorXd& other) const;
+  /// A x + B u by the dense matrices that the steps are made of.
+  Eigen::VectorXd xdot(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const;
+  /// What an xdot that is off by this does in one step: h (1 - h A / 2)^-1 of it, so that modes
+  /// much faster than the step count as they would, by 2 / omega.
+  Eigen::VectorXd of(const Eigen::VectorXd& xdot) const;
+
+ private:
+  double h_;
+  Eigen::MatrixXd A_, B_, Phi_, G0_, G1_;
+  Eigen::PartialPivLU<Eigen::MatrixXd> of_;
+};
 /// x1 = 2 x_m - x with (2 / h - A) x_m = (2 / h) x + B (u0 + u1) / 2, by the factors at s = 2 / h.
 std::unique_ptr<StepRule> midpoint_rule(const SystemData& data, double h);
 std::unique_ptr<StepRule> rk4_rule(const System& system, double h);
