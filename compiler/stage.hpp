@@ -16,7 +16,7 @@ struct Note {
     inverted,   ///< a channel that is driven on the side that its block gives by default
     removed,    ///< what cannot matter and is left out
     unchecked,  ///< accepted without a check: frames behind a nameless rotation or a matrix
-    warning,    ///< digits are lost; the model says how many
+    warning,    ///< digits are lost, and how many; or what is written is rarely meant
   };
   Kind kind = Kind::info;
   std::string pass;

@@ -22,7 +22,7 @@ class SignalRef {
   Expr expr() const;
   Graph* graph() const { return graph_; }
   int signal() const { return signal_; }
-  const Part& part() const { return part_; }
+  const titop::Part& part() const { return part_; }
 
   SignalRef linear() const;
   SignalRef angular() const;
@@ -39,7 +39,7 @@ class SignalRef {
   /// that has none or several; noted where it is used, with that line.
   int signal_ = -1;
   Term::Of of_ = Term::Of::signal;
-  Part part_;
+  titop::Part part_;
 };
 
 template <class>
@@ -167,7 +167,8 @@ class DualPort {
         position(graph, accel_signal, Term::Of::position),
         rate(graph, accel_signal, Term::Of::rate) {}
   DualPort(const DualPort&) = default;
-  /// `a.parent = b.child` would look like an equation and be none: write mount(a, b.child).
+  /// `a.parent = b.child` would look like an equation and be none: write mount(a, b.child). To walk
+  /// along a chain keep the points in a list: `sites.push_back(panel.child)`.
   DualPort& operator=(const DualPort&) = delete;
 
   Port<N, Kind::accel> accel;  ///< [m/s^2; rad/s^2]

@@ -4,6 +4,7 @@
 #include <Eigen/SVD>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <titop/graph/error.hpp>
 #include <titop/graph/rotation.hpp>
 
@@ -26,7 +27,8 @@ Rotation Rotation::about(const Vector3d& axis, Value angle) {
                 fmt::format("no rotation about the axis ({}, {}, {}) by {}", axis.x(), axis.y(),
                             axis.z(), angle.nominal()),
                 "give a finite axis other than 0 and a finite angle [rad]");
-  if (angle.is_parameter()) return Rotation(Held{{Turn{axis / length, angle}}});
+  if (angle.is_parameter() || std::abs(angle.nominal()) > 2 * std::numbers::pi)
+    return Rotation(Held{{Turn{axis / length, angle}}});
   return Rotation(Held{{turn(axis / length, angle.nominal())}});
 }
 

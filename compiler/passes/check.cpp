@@ -14,7 +14,7 @@ void check_names(Checker& c, const List& list, std::string_view what, const char
   seen.reserve(list.size());
   for (const auto& item : list) {
     if (item.name.empty()) {
-      c.add(Code::duplicate_name, fmt::format("a {} has no name", what),
+      c.add(Code::duplicate_name, fmt::format("one {} has no name", what),
             {"written at " + place(item)}, "give it a name of its own");
       continue;
     }
@@ -79,6 +79,8 @@ Stage check(Stage stage) {
   check_outputs(c);
   if (c.mistakes.empty()) check_blocks(c, stage.values);  // parameters have values that serve
   if (!c.mistakes.empty()) throw Error(std::move(c.mistakes));
+  note_rarely_meant(c, stage.values);
+  note_stiff_points(c, stage.values);
   stage.notes.insert(stage.notes.end(), c.notes.begin(), c.notes.end());
   return stage;
 }

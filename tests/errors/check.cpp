@@ -189,7 +189,7 @@ TEST_CASE("duplicate-name: nodes, inputs, outputs, parameters, points of a body"
   CHECK(says(e, Code::duplicate_name, {"two inputs are called u", third}));
   CHECK(says(e, Code::duplicate_name, {"two outputs are called y", fourth}));
   CHECK(says(e, Code::duplicate_name, {"two parameters are called k", fifth}));
-  CHECK(says(e, Code::duplicate_name, {"a input has no name", sixth}));
+  CHECK(says(e, Code::duplicate_name, {"one input has no name", sixth}));
   CHECK(says(refused(RigidBody{.children = {{"C1"}, {"C1"}}}), Code::duplicate_name,
              {"X: a second point is called \"C1\""}));
   CHECK(says(refused(RigidBody{.children = {{"parent"}}}), Code::duplicate_name, {"parent"}));

@@ -1,8 +1,10 @@
 #include <doctest/doctest.h>
 
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "support/close.hpp"
 
@@ -63,4 +65,29 @@ TEST_CASE("a model bound to a reference outlives the System that it is of") {
 TEST_CASE("a reduced system's full one outlives it") {
   const System& full = compile(one_mass(), scene()).full();
   CHECK(full.order() == 2);
+}
+
+TEST_CASE("points along a chain are kept in a list: ports are no names to assign") {
+  static_assert(!std::is_copy_assignable_v<DualPort<6>>);
+  const RigidBody link{.mass = 2, .PA = {0.5, 0, 0}, .children = {{"C", {1, 0, 0}}}};
+  const auto chain = [&](bool by_list) {
+    Diagram d{"chain"};
+    auto hub = d.add("hub", RigidBody{.mass = 9, .children = {{"L", {0, 1, 0}}}});
+    hub.parent.force = -d.input("W", 6);
+    auto a = d.add("a", link), b = d.add("b", link);
+    if (by_list) {
+      std::vector<DualPort<6>> sites{hub.child("L")};
+      for (const BodyHandle& body : {a, b}) {
+        mount(body, sites.back());
+        sites.push_back(body.child);
+      }
+      d.output("tip", 6) = sites.back().accel;
+    } else {
+      mount(a, hub.child("L"));
+      mount(b, a.child);
+      d.output("tip", 6) = b.child.accel;
+    }
+    return compile(d).static_gain();
+  };
+  CHECK(chain(true) == chain(false));
 }

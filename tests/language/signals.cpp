@@ -186,6 +186,38 @@ TEST_CASE("quantities: a gain makes a plain signal; without one they must agree"
   CHECK(says(e, Code::quantity, {"y.child.accel is of kind acceleration", second}));
 }
 
+TEST_CASE("quantities: translations and rotations, forces and torques must agree, too") {
+  Diagram good{"halves"};
+  auto W = good.input("W", 6);
+  auto h = good.add("hub", brick());
+  h.parent.force.linear = -W.linear() + W.angular();  // a plain signal may be anything
+  h.parent.force.angular = 2.0 * h.child.accel.linear;
+  good.output("lever", 3) = h.parent.rate.linear() + 0.5 * h.parent.rate.angular();
+  CHECK_NOTHROW(compile(good));
+
+  Diagram bad{"mixed halves"};
+  auto B = bad.add("B", brick()), A = bad.add("A", brick());
+  const Rotation T = kTurn.named("B", "A");
+  mount(A, B.child, T);
+  const auto first = next_line();
+  B.parent.force.linear = T * A.child.force.angular;
+  B.parent.force.angular = -(T * A.child.force.angular);
+  const auto second = next_line();
+  bad.output("x", 3) = B.parent.accel.linear + B.parent.accel.angular;
+  const Reading p = B.parent.position;
+  const Vector3d x = Vector3d::UnitX();
+  const auto third = next_line();
+  bad.output("y") = p.angular().along(x) - p.linear().along(x);
+  const Error e = compile_error(bad);
+  CHECK(e.mistakes().size() == 3);
+  CHECK(says(e, Code::quantity,
+             {"B.parent.force.linear is linear, T(B<-A) * A.child(\"C1\").force.angular is angular",
+              first, "half"}));
+  CHECK(says(e, Code::quantity,
+             {"B.parent.accel.linear is linear, B.parent.accel.angular is angular", second}));
+  CHECK(says(e, Code::quantity, {"B.parent.position.angular.along(1, 0, 0) is angular", third}));
+}
+
 TEST_CASE("sizes: both sides are shown") {
   Diagram d{"sizes"};
   auto u = d.input("u", 3);

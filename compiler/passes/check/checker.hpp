@@ -69,4 +69,12 @@ void check_outputs(Checker& c);
 /// Every direction of a channel and every one-way port is driven once (drives.cpp).
 void check_drives(Checker& c);
 
+/// Warnings of what is right and rarely meant (rarely_meant.cpp): springs and dampers that drive
+/// away, inputs without outputs, rotations by more than a turn. Of a diagram without mistakes.
+void note_rarely_meant(Checker& c, ParameterValues values);
+
+/// Child points that the modes of their body leave rigid in some directions, where another body is
+/// fixed to them: its loads would bend what the modes that were left out bend (stiff_points.cpp).
+void note_stiff_points(Checker& c, ParameterValues values);
+
 }  // namespace titop::passes

@@ -8,12 +8,27 @@ namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
+/// Of a dual vector: translations and forces, or rotations and torques.
+enum class Half { any, linear, angular };
+
 /// What a term is, after its factors.
 struct Kind {
   int size = 0;
   Quantity quantity = Quantity::plain;
   int frame = kNoFrame;
+  Half half = Half::any;  ///< any: of all else, and where it is not known
 };
+
+/// Of a signal of which this part is taken. A joint's axis does not say what it is.
+Half half_of(const Part& part, Quantity quantity) {
+  const Eigen::MatrixXd& rows = part.rows();
+  if (quantity == Quantity::plain || rows.cols() != 6) return Half::any;
+  return rows.rightCols<3>().isZero(0)  ? Half::linear
+         : rows.leftCols<3>().isZero(0) ? Half::angular
+                                        : Half::any;
+}
+
+const char* word(Half half) { return half == Half::linear ? "linear" : "angular"; }
 
 /// Two nodes of one name are told of by their names: nobody can tell their frames apart.
 bool same_frame(const Checker& c, int a, int b) {
@@ -25,6 +40,7 @@ bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term, const
   const auto place = [&] { return line(print(c.graph, term), where); };
   if (const auto* k = std::get_if<Value>(&factor)) {
     kind.quantity = Quantity::plain;
+    kind.half = Half::any;
     if (!std::isfinite(k->nominal()))
       c.add(Code::not_finite, fmt::format("a gain is {}", k->nominal()), {place()},
             "give a finite gain");
@@ -48,6 +64,7 @@ bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term, const
             {place()}, ".linear and .angular belong to dual vectors of 6");
       return false;
     }
+    if (kind.size == 6) kind.half = half_of(*p, kind.quantity);
     kind.size = static_cast<int>(p->rows().rows());
   } else if (const auto& T = std::get<Rotation>(factor); !T.is_identity() || !T.to().empty()) {
     if (kind.size != 3 && kind.size != 6 && !(T.is_identity() && kind.size == 1)) {
@@ -120,12 +137,23 @@ void check_terms(Checker& c, const RightSide& side, Kind expected) {
     }
     if (expected.quantity == Quantity::plain && kind.quantity != Quantity::plain) {
       expected.quantity = kind.quantity;
+      expected.half = kind.half;
       from = &term;
     } else if (kind.quantity != Quantity::plain && kind.quantity != expected.quantity) {
       c.add(Code::quantity,
             fmt::format("{} is of kind {}, {} of kind {}", origin(), to_string(expected.quantity),
                         print(c.graph, term), to_string(kind.quantity)),
             {place()}, "a gain with units in front, as k * signal, makes it a plain signal");
+    } else if (expected.half == Half::any && kind.half != Half::any) {
+      expected.half = kind.half;
+      from = &term;
+    } else if (kind.half != Half::any && kind.half != expected.half) {
+      c.add(Code::quantity,
+            fmt::format("{} is {}, {} is {}", origin(), word(expected.half), print(c.graph, term),
+                        word(kind.half)),
+            {place()},
+            "take the same half of both; a gain with units in front, as r * signal, makes it a "
+            "plain signal");
     }
     if (kind.frame == kUnknownFrame) {
       c.notes.push_back({Note::Kind::unchecked, "check",
@@ -150,7 +178,7 @@ void check_terms(Checker& c, const RightSide& side, Kind expected) {
 void check_equation(Checker& c, const Equation& e) {
   const Signal& s = c.graph.signals[at(e.target)];
   const Kind expected{e.part.whole() ? s.size : static_cast<int>(e.part.rows().rows()), s.quantity,
-                      s.frame};
+                      s.frame, half_of(e.part, s.quantity)};
   check_terms(c,
               {e.terms, written(c.graph, e), e.target,
                [&] { return name_of(c.graph, e.target) + e.part.name(); },

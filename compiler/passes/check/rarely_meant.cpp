@@ -1,0 +1,131 @@
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <titop/compiler/certify/dual_pairs.hpp>
+#include <titop/compiler/certify/springs.hpp>
+#include <titop/compiler/passes/check/checker.hpp>
+
+namespace titop::passes {
+namespace {
+
+using Eigen::MatrixXd;
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// How the force of a channel follows its own position and rate: directly, not through other blocks
+/// and not through other points. In the signs of work: springs and dampers are positive.
+struct OwnGains {
+  MatrixXd position, rate;           ///< empty: none
+  std::vector<const Equation*> all;  ///< that say so
+  std::string spring, damper;        ///< the names of what they follow
+};
+
+/// A reading of this channel: its own port's, or its joint's angle.
+bool may_be_of(const Graph& g, const Term& t, int channel) {
+  const Signal& s = g.signals[at(t.signal)];
+  if (t.of == Term::Of::position || t.of == Term::Of::rate) return s.channel == channel;
+  return s.role == Signal::Role::output && s.channel < 0 && s.node == g.channels[at(channel)].node;
+}
+
+std::map<int, OwnGains> own_gains(const Graph& g, ParameterValues values) {
+  std::map<int, OwnGains> result;
+  for (const Equation& e : g.equations) {
+    const int channel = g.signals[at(e.target)].channel;
+    if (channel < 0 || g.channels[at(channel)].force != e.target) continue;
+    for (const Term& t : e.terms) {
+      if (!may_be_of(g, t, channel)) continue;
+      for (const full::OfMotion& m : full::of_motions(g, t, values)) {
+        if (m.channel != channel || m.gain.isZero(0)) continue;
+        OwnGains& own = result[channel];
+        const bool spring = m.of == Term::Of::position;
+        MatrixXd& sum = spring ? own.position : own.rate;
+        const MatrixXd gain =
+            e.part.whole() ? m.gain : MatrixXd(e.part.rows().transpose() * m.gain);
+        if (sum.size() == 0) sum.setZero(gain.rows(), gain.cols());
+        sum += full::is_outward(g, channel) ? gain : MatrixXd(-gain);
+        (spring ? own.spring : own.damper) = print(g, Term{t.signal, t.of, 1, {}});
+        if (own.all.empty() || own.all.back() != &e) own.all.push_back(&e);
+      }
+    }
+  }
+  return result;
+}
+
+/// Whether it pushes away along one of the axes that the equation drives, beyond what rotations
+/// leave of a 0 among three translations or rotations.
+bool negative(const MatrixXd& gain, const Equation& e) {
+  constexpr double kRounding = 1e-12;
+  if (gain.size() == 0) return false;
+  const MatrixXd& rows = e.part.rows();
+  const MatrixXd along = e.part.whole() ? gain : MatrixXd(rows * gain * rows.transpose());
+  const Eigen::Index half = along.rows() == 6 ? 3 : along.rows();
+  for (Eigen::Index first = 0; first < along.rows(); first += half) {
+    const auto own = along.block(first, first, half, half);
+    if (own.diagonal().minCoeff() < -kRounding * own.cwiseAbs().maxCoeff()) return true;
+  }
+  return false;
+}
+
+/// A spring that pushes away is everybody's first mistake of sign, and what some do mean.
+void note_negative_springs(Checker& c, ParameterValues values) {
+  for (const auto& [channel, own] : own_gains(c.graph, values)) {
+    const char sign = full::is_outward(c.graph, channel) ? '+' : '-';
+    for (const Equation* e : own.all) {
+      std::string right;
+      if (negative(own.position, *e))
+        right = fmt::format("a spring is {} k * {}", sign, own.spring);
+      if (negative(own.rate, *e))
+        right +=
+            fmt::format("{}a damper is {} c * {}", right.empty() ? "" : ", ", sign, own.damper);
+      if (right.empty()) continue;
+      c.notes.push_back({Note::Kind::warning, "check",
+                         fmt::format("{} drives away from rest: {} ({}); all is well where that "
+                                     "is meant",
+                                     print(c.graph, *e), right, written(c.graph, *e).text())});
+    }
+  }
+}
+
+void note_no_outputs(Checker& c) {
+  if (c.graph.inputs.empty() || !c.graph.outputs.empty()) return;
+  c.notes.push_back({Note::Kind::warning, "check",
+                     "there are inputs and no output: nothing can be read of the model; write "
+                     "d.output(\"x\") = ..., of size 6 d.output(\"a\", 6) = ..."});
+}
+
+/// Angles by more than a turn are degrees: one note for each of them.
+void note_degrees(Checker& c, ParameterValues values) {
+  constexpr double kTurn = 2 * std::numbers::pi * (1 + 1e-9);  // a whole turn may be rounded up
+  std::map<double, std::string> seen;
+  const auto look = [&](const std::vector<Term>& terms, const auto& where) {
+    for (const Term& t : terms)
+      for (const Factor& f : t.factors)
+        if (const auto* T = std::get_if<Rotation>(&f))
+          for (const Value& angle : T->values())
+            if (const double size = std::abs(angle.at(values)); size > kTurn)
+              seen.emplace(size, where());
+  };
+  for (const Equation& e : c.graph.equations)
+    look(e.terms, [&] { return name_of(c.graph, e.target) + ", " + written(c.graph, e).text(); });
+  for (const Output& o : c.graph.outputs)
+    look(o.terms, [&] {
+      return fmt::format("output {}, {}", o.name, written(c.graph.outputs, "outputs", o).text());
+    });
+  for (const auto& [angle, where] : seen)
+    c.notes.push_back(
+        {Note::Kind::warning, "check",
+         fmt::format("a rotation by {0:.6g} rad is more than a turn ({1}): angles are "
+                     "in radians, {0:.6g} degrees are {2:.6g} rad",
+                     angle, where, angle * std::numbers::pi / 180)});
+}
+
+}  // namespace
+
+void note_rarely_meant(Checker& c, ParameterValues values) {
+  note_negative_springs(c, values);
+  note_no_outputs(c);
+  note_degrees(c, values);
+}
+
+}  // namespace titop::passes

@@ -1,0 +1,158 @@
+#include <doctest/doctest.h>
+
+#include <numbers>
+#include <titop/blocks/scene/scene.hpp>
+#include <titop/titop.hpp>
+
+/// What is right and rarely meant is warned of, and compiled: springs of the wrong sign, inputs
+/// without outputs, degrees for radians.
+
+using namespace titop;
+
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// The warnings of the pass `check`.
+std::vector<std::string> warnings(const Diagram& d) {
+  std::vector<std::string> result;
+  for (const Note& n : compile(d).notes())
+    if (n.kind == Note::Kind::warning && n.pass == "check") result.push_back(n.text);
+  return result;
+}
+
+bool has(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// A wing on a hinge of a free hub; `drive` gives the hinge's torque.
+template <class Drive>
+std::vector<std::string> warnings_of(Drive drive, const Rotation& T = {}) {
+  Diagram d{"hub and wing"};
+  auto W = d.input("W", 6);
+  auto hub = d.add("hub", RigidBody{.mass = 40, .children = {{"C", {0, 1, 0}}}});
+  auto wing = d.add("wing", RigidBody{.mass = 3, .PA = {0.5, 0, 0}, .children = {{"tip"}}});
+  hub.parent.force = -W;
+  auto h = hinge(d, "h", wing, hub.child, T, {0, 0, 1});
+  drive(d, hub, wing, h);
+  d.output("a", 6) = hub.parent.accel;
+  return warnings(d);
+}
+
+}  // namespace
+
+TEST_CASE("a spring or damper that drives its joint away is warned of") {
+  const auto torque = [](double k, double c) {
+    return warnings_of([=](Diagram& d, auto&, auto&, auto& h) {
+      h.torque = k * h.angle + c * h.rate - d.input("u");
+    });
+  };
+  CHECK(torque(900, 0.5).empty());
+  CHECK(torque(0, 0).empty());
+  const auto both = torque(-900, -0.5);
+  REQUIRE(both.size() == 1);
+  CHECK(has(both[0], "h.torque = -900 * h.angle - 0.5 * h.rate - u drives away from rest"));
+  CHECK(has(both[0], "a spring is + k * h.angle, a damper is + c * h.rate"));
+  CHECK(has(both[0], "rarely_meant.cpp:"));
+  const auto spring = torque(-900, 0.5), damper = torque(900, -0.5);
+  REQUIRE((spring.size() == 1 && damper.size() == 1));
+  CHECK((has(spring[0], "a spring is +") && !has(spring[0], "damper")));
+  CHECK((has(damper[0], "a damper is +") && !has(damper[0], "a spring")));
+}
+
+TEST_CASE("what counts is the sum of what acts on one's own angle, directly") {
+  CHECK(warnings_of([](Diagram& d, auto&, auto&, auto& h) {  // a law, whose signs are its own
+          auto law = d.add("law", Gain{.gain = -900.0});
+          law.in = h.angle;
+          h.torque = law.out;
+        })
+            .empty());
+  CHECK(warnings_of([](Diagram&, auto&, auto&, auto& h) {  // 900 - 200 holds
+          h.torque = 900.0 * h.angle - 200.0 * h.angle;
+        })
+            .empty());
+  CHECK(warnings_of([](Diagram& d, auto&, auto&, auto& h) {
+          h.torque = d.param("k", -2.0) * h.angle;
+        }).size() == 1);
+}
+
+TEST_CASE("at a child point the force acts on the body: a spring there has the other sign") {
+  const auto tip = [](double k) {
+    return warnings_of([=](Diagram&, auto&, auto& wing, auto& h) {
+      h.torque = 0;
+      wing.child.force.linear = k * wing.child.position.linear();
+    });
+  };
+  CHECK(tip(-50).empty());
+  const auto wrong = tip(50);
+  REQUIRE(wrong.size() == 1);
+  CHECK(has(wrong[0], "a spring is - k * wing.child(\"tip\").position"));
+}
+
+TEST_CASE("on six degrees of freedom the axes that are driven count, one by one") {
+  const auto attitude = [](const Matrix3d& K) {
+    return warnings_of([=](Diagram&, auto& hub, auto&, auto& h) {
+      h.torque = 0;
+      hub.parent.force.angular += K * hub.parent.position.angular();
+    });
+  };
+  Matrix3d gyroscopic = Matrix3d::Zero();
+  gyroscopic << 0, -3, 1, 3, 0, 2, -1, -2, 0;
+  CHECK(attitude(4 * Matrix3d::Identity() + gyroscopic).empty());
+  CHECK(attitude(gyroscopic).empty());
+  CHECK(attitude(Vector3d(4, 4, -1).asDiagonal()).size() == 1);
+  // Another direction than the one that is read: no gain on the force's own.
+  CHECK(warnings_of([](Diagram&, auto& hub, auto&, auto& h) {
+          h.torque = 0;
+          hub.parent.force.angular.along({1, 1, 0}) +=
+              3.0 * hub.parent.position.angular().along({1, -1, 0});
+        }).empty());
+}
+
+TEST_CASE("inputs and no output: the log says how to write one") {
+  Diagram d{"forgotten"};
+  auto z = d.add("z", SpringMass{.mass = 2, .stiffness = 3});
+  ground(z);
+  CHECK(warnings(d).empty());  // no inputs: poles may be all that is asked for
+  z.child.force = d.input("u");
+  const auto none = warnings(d);
+  REQUIRE(none.size() == 1);
+  CHECK(has(none[0], "d.output("));
+  d.output("x") = z.stretch;
+  CHECK(warnings(d).empty());
+}
+
+TEST_CASE("a rotation by more than a turn is told once, and is that rotation all the same") {
+  const auto turned = [](const Value& angle) {
+    return warnings_of([](Diagram&, auto&, auto&, auto& h) { h.torque = 0; },
+                       Rotation::about({1, 2, 2}, 0.4) * Rotation::about({0, 0, 3}, angle));
+  };
+  CHECK(turned(kPi / 2).empty());
+  CHECK(turned(-2 * kPi).empty());
+  const auto ninety = turned(-90);
+  REQUIRE(ninety.size() == 1);
+  CHECK(has(ninety[0], "a rotation by 90 rad is more than a turn (h.parent.accel, "));
+  CHECK(has(ninety[0], "90 degrees are 1.5708 rad"));
+  CHECK(has(ninety[0], "rarely_meant.cpp:"));
+
+  const double c = std::cos(90.0), s = std::sin(90.0);
+  Matrix3d T;
+  T << c, -s, 0, s, c, 0, 0, 0, 1;
+  CHECK((Rotation::about({0, 0, 3}, 90).nominal() - T).cwiseAbs().maxCoeff() <= 1e-15);
+}
+
+TEST_CASE("a scene file keeps what the warnings are about") {
+  Diagram d{"file"};
+  auto body = d.add("body", RigidBody{.mass = 2}), other = d.add("other", RigidBody{.mass = 3});
+  auto hub = d.add("hub", RigidBody{.mass = 9, .children = {{"A"}, {"B"}}});
+  hub.parent.force = 5.0 * hub.parent.position - d.input("W", 6);
+  mount(body, hub.child("A"), Rotation::about({0, 1, 0}, 30));
+  hinge(d, "h", other, hub.child("B"), {}, {0, 0, 1}).torque = 0;
+  d.output("a", 6) = body.parent.accel;
+  const std::string json = scene_json(d);
+  const Diagram again = parse_scene(json);
+  CHECK(scene_json(again) == json);
+  const auto said = warnings(again);
+  REQUIRE(said.size() == 1);
+  CHECK(has(said[0], "a rotation by 30 rad is more than a turn (body.parent.accel, equations["));
+}
