@@ -7,12 +7,13 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <system_error>
 #include <titop/blocks/scene/scene.hpp>
+#include <titop/compiler/emit/report/program.hpp>
+#include <titop/compiler/emit/write_file.hpp>
 #include <titop/titop.hpp>
 #include <vector>
 
@@ -27,8 +28,9 @@ constexpr const char* kUsage = R"(usage:
   titop check SCENE.json                 compiles, says how many states, inputs and outputs
   titop compile SCENE.json               log, poles and certificate
   titop certify SCENE.json               the full certificate; as JSON, too, with -o
-  titop draw SCENE.json FILE.dot         the diagram for Graphviz (dot -Tsvg FILE.dot)
-  titop draw --compiled SCENE.json FILE.dot    the same after all passes
+  titop draw SCENE.json FILE             the diagram: FILE.dot, text for Graphviz; drawn by it:
+                                         FILE.svg, FILE.png, FILE.pdf
+  titop draw --compiled SCENE.json FILE  the same after all passes
   titop report SCENE.json                one HTML page for reading and printing: SCENE.html, or -o
   titop export SCENE.json FILE           the model; what is written follows from FILE:
       NAME.hpp     C++17 header, and beside it NAME_test.cpp that proves it
@@ -144,6 +146,10 @@ Arguments parse(const std::vector<std::string>& all) {
   return a;
 }
 
+Misuse unknown_ending(const Arguments& a) {
+  return {fmt::format("'{}' ends in none of the known ways", a.words[2])};
+}
+
 System compiled(const Arguments& a) {
   return compile(read_scene(a.words[1]), {.minimize_up_to = a.minimize_up_to});
 }
@@ -170,16 +176,29 @@ int certify_scene(const Arguments& a) {
   return certificate.holds() ? 0 : 3;
 }
 
+/// By Graphviz, whose name of a format is the file's ending.
+std::string drawn(const std::string& text, const std::string& file, const std::string& format) {
+  const report::Finished dot = report::run({"dot", "-T" + format}, text);
+  if (dot.found && dot.code == 0) return dot.out;
+  const std::string why =
+      dot.found ? fmt::format("dot ends with {}", dot.code) : "the program dot is not there";
+  throw Error(
+      Code::bad_file, fmt::format("{}: cannot be drawn: {}", file, why),
+      fmt::format("install Graphviz (Debian package graphviz), or write a FILE.dot and draw "
+                  "it where there is one: dot -T{0} FILE.dot -o FILE.{0}",
+                  format),
+      dot.err.empty() ? std::vector<std::string>{}
+                      : std::vector{dot.err.substr(0, dot.err.find('\n'))});
+}
+
 void draw(const Arguments& a) {
+  const std::string kind = fs::path(a.words[2]).extension().string();
+  const bool picture = kind == ".svg" || kind == ".png" || kind == ".pdf";
+  if (!picture && !kind.empty() && kind != ".dot" && kind != ".gv") throw unknown_ending(a);
   const DotOptions options{.fold = std::max(a.fold, 0)};
   const std::string text =
       a.compiled ? to_dot(compiled(a).stage(), options) : to_dot(read_scene(a.words[1]), options);
-  std::ofstream file(a.words[2], std::ios::binary);
-  file << text;
-  file.flush();
-  if (!file)
-    throw Error(Code::bad_file, fmt::format("{}: cannot be written", a.words[2]),
-                "check that the folder exists and may be written to");
+  emit::write_file(a.words[2], picture ? drawn(text, a.words[2], kind.substr(1)) : text);
 }
 
 void report(const Arguments& a) {
@@ -189,16 +208,31 @@ void report(const Arguments& a) {
   write_report(compiled(a), a.to, options);
 }
 
+constexpr const char* kKeepDigits =
+    "  frequency responses keep the digits (titop export SCENE.json FILE.csv), in C++ also\n"
+    "  System::transfer, apply and simulate; for the band that matters there may be a small model\n"
+    "  that keeps them: compile(d, Scene{.band_hz = {LOW, HIGH}})\n";
+
+/// Who exports sees no log.
+void warn_of_lost_digits(const System& system) {
+  const std::vector<std::string> warnings = dense_warnings(system);
+  std::string text;
+  for (const std::string& w : warnings) text += fmt::format("warning: {}\n", w);
+  if (!warnings.empty()) std::fputs((text + kKeepDigits).c_str(), stderr);
+}
+
 void export_model(const Arguments& a) {
   const fs::path file = a.words[2], folder = file.parent_path();
   const std::string name = file.stem().string(), kind = file.extension().string();
   if (kind == ".csv" && a.omega.empty()) throw Misuse{"a .csv needs --omega LOW HIGH COUNT"};
-  if (kind == ".csv") return write_csv(compiled(a), a.omega, file);
-  if (kind == ".json") return write_json(compiled(a), file);
-  if (kind == ".m") return write_matlab(compiled(a).state_space(), file);
-  if (kind == ".py") return write_numpy(compiled(a).state_space(), folder, name);
-  if (kind != ".hpp") throw Misuse{fmt::format("'{}' ends in none of the known ways", a.words[2])};
-  write(generate_cpp(compiled(a), {.name = name, .sample_time = a.sample_time}), folder);
+  if (kind == ".csv") return write_csv(compiled(a), a.omega, file);  // by the factors
+  if (kind != ".json" && kind != ".m" && kind != ".py" && kind != ".hpp") throw unknown_ending(a);
+  const System system = compiled(a);
+  warn_of_lost_digits(system);
+  if (kind == ".json") return write_json(system, file);
+  if (kind == ".m") return write_matlab(system, file);
+  if (kind == ".py") return write_numpy(system, folder, name);
+  write(generate_cpp(system, {.name = name, .sample_time = a.sample_time}), folder);
 }
 
 void generate_scene(const std::vector<std::string>& words) try {

@@ -110,16 +110,21 @@ Json answer(const Plan& plan, std::uint64_t seed) {
 }
 
 Generated generate(const Options& options) {
+  std::string lacked;
   for (Options o = options; o.seed < options.seed + 100 * kNextSeed; o.seed += kNextSeed) {
     try {
       const Plan plan = draw(o);
       if (o.mistake.empty()) return {scene(plan), answer(plan, o.seed)};
       Spoilt spoilt = spoil(scene(plan), o.mistake);
       return {std::move(spoilt.scene), std::move(spoilt.answer)};
-    } catch (const std::domain_error&) {    // no solution, or no place for the mistake: another one
+    } catch (const std::domain_error& e) {  // no solution, or no place for the mistake: another one
+      if (!o.mistake.empty()) lacked = e.what();
     } catch (const std::overflow_error&) {  // its ratios outgrow 64 bits: another one
     }
   }
+  if (!lacked.empty())
+    throw std::invalid_argument("none of 100 scenes has a place for the mistake '" +
+                                options.mistake + "': " + lacked);
   throw std::invalid_argument("none of 100 scenes of this kind can be had; ask for another kind");
 }
 

@@ -97,6 +97,8 @@ void command(const std::vector<std::string>& all) {
       throw std::invalid_argument(fmt::format("there is no option {}", word));
     files.emplace_back(word);
   }
+  const bool family_given = std::find(all.begin(), all.end(), "--family") != all.end();
+  if (!family_given && needs_space(options.mistake)) options.family = Family::spatial;
   if (files.size() != 1 || files[0].extension() != ".json")
     throw std::invalid_argument("generate takes one file, SCENE.json");
   const Generated g = generate(options);

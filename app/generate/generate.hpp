@@ -45,11 +45,14 @@ Json answer(const Plan& plan, std::uint64_t seed);
 
 /// Plants a mistake of this code into the scene; the answer is {"refused": {"code", "names"}}: what
 /// the message must name. Throws std::invalid_argument for a code that cannot be planted,
-/// std::domain_error for a scene that has no place for it.
+/// std::domain_error for a scene that has no place for it, with what it would take.
 struct Spoilt {
   Json scene, answer;
 };
 Spoilt spoil(Json scene, const std::string& code);
+
+/// Spring-masses have no place for this mistake: they have neither frames nor modes.
+bool needs_space(const std::string& code);
 
 /// The scene, its answer, and the source of a doctest program (needs titop) that compares them.
 struct Generated {
@@ -57,7 +60,7 @@ struct Generated {
 };
 /// Draws with this seed, and with others after it where the scene has no answer, numbers too long
 /// for a Ratio, or no place for the mistake. Throws std::invalid_argument where a hundred have
-/// none.
+/// none, with what the last of them lacked.
 Generated generate(const Options& options);
 std::string test_source(const Generated& generated, const std::string& scene_file);
 

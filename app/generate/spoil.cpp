@@ -5,7 +5,7 @@
 #include "generate/generate.hpp"
 
 /// One mistake, planted into a scene that was right. What the message must name follows from where
-/// it was planted.
+/// it was planted. What a scene lacks for it is said with the option that brings it.
 namespace titop::generate {
 namespace {
 
@@ -21,15 +21,17 @@ Json& mounting(Json& scene) {
         !e["terms"].empty() && e["terms"][0]["signal"].size() == 3)
       return e;
   }
-  throw std::domain_error("nothing is mounted in this scene");
+  throw std::domain_error("nothing is mounted; take more --bodies");
 }
 std::string mounted(Json& scene) { return mounting(scene)["of"][0]; }
 
-Json& block(Json& scene, const std::string& type) {
+Json& spring_mass(Json& scene) {
   for (Json& b : scene["blocks"])
-    if (b["type"] == type) return b;
-  throw std::domain_error("no " + type + " in this scene");
+    if (b["type"] == "SpringMass") return b;
+  throw std::domain_error("there is no SpringMass; take --family scalar");
 }
+
+constexpr const char* kNotTurned = "nothing is turned; take --family spatial and more --bodies";
 
 /// Adds lists of blocks, inputs, equations, outputs.
 void add(Json& scene, const Json& more) {
@@ -73,7 +75,7 @@ Names frame(Json& scene) {
     return {"frame " + e["of"][0].get<std::string>(),
             "frame " + e["terms"][0]["signal"][0].get<std::string>()};
   }
-  throw std::domain_error("nothing is turned in this scene");
+  throw std::domain_error(kNotTurned);
 }
 
 Names structure(Json& scene) {
@@ -136,13 +138,14 @@ Names kinematic_loop(Json& scene) {
 
 Names bad_inertia(Json& scene) {
   Json& b = scene["blocks"][0];
-  if (!b.contains("mass")) throw std::domain_error("the first block has modes");
+  if (!b.contains("mass")) throw std::domain_error("the first body has modes; take another --seed");
   b["mass"] = -1;
   return {b["name"]};
 }
 
 Names bad_modes(Json& scene) {
-  if (scene["bodies"].empty()) throw std::domain_error("no modes in this scene");
+  if (scene["bodies"].empty())
+    throw std::domain_error("nothing has modes; take --family spatial and more --bodies");
   const std::string name = scene["bodies"].items().begin().key();
   Json& L = scene["bodies"][name]["L_P"];
   L[0][0] = 1000;  // the mode moves more than the body weighs
@@ -150,7 +153,7 @@ Names bad_modes(Json& scene) {
 }
 
 Names bad_value(Json& scene) {
-  Json& b = block(scene, "SpringMass");
+  Json& b = spring_mass(scene);
   b["stiffness"] = -4;
   return {b["name"]};
 }
@@ -158,7 +161,7 @@ Names bad_value(Json& scene) {
 Names not_a_rotation(Json& scene) {
   Json& e = mounting(scene);
   if (!e["terms"][0].contains("factors") || !e["terms"][0]["factors"][0].contains("rotation"))
-    throw std::domain_error("nothing is turned in this scene");
+    throw std::domain_error(kNotTurned);
   e["terms"][0]["factors"][0]["rotation"] = parse("[[[1, 0.001, 0], [0, 1, 0], [0, 0, 1]]]");
   return {"0.001"};
 }
@@ -182,6 +185,10 @@ Names bad_file(Json& scene) {
 }
 
 }  // namespace
+
+bool needs_space(const std::string& code) {
+  return code == "frame" || code == "not-a-rotation" || code == "bad-modes";
+}
 
 Spoilt spoil(Json scene, const std::string& code) {
   static const std::map<std::string, std::function<Names(Json&)>> kMistakes = {

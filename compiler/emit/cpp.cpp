@@ -98,8 +98,9 @@ void refuse_few_digits(const Form& form, const std::string& name) {
   if (emit::is_provable(form.error)) return;
   throw Error(Code::bad_value,
               fmt::format("written as A, B, C, D the model {} is off by {:.1e}", name, form.error),
-              "System::transfer and apply keep the digits; scale masses that are far apart, or "
-              "leave out what they do not see");
+              "System::transfer, apply and simulate keep the digits; or ask for the band that "
+              "matters, compile(d, Scene{.band_hz = {low, high}}): that model is small, its bound "
+              "says how good it is, and as an Lti of another diagram it becomes C++");
 }
 
 }  // namespace

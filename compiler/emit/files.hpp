@@ -5,10 +5,15 @@
 #include <string>
 #include <titop/compiler/certify_full.hpp>
 #include <titop/compiler/system.hpp>
+#include <vector>
 
 /// Models as files for other programs. Numbers are written so that they read back to the last bit.
 /// All throw bad_file where a file cannot be written.
 namespace titop {
+
+/// What the log warns of System::state_space(): the digits that A, B, C, D lose, which `transfer`,
+/// `apply` and `simulate` keep. Empty where they lose none that count.
+std::vector<std::string> dense_warnings(const System& system);
 
 /// A MATLAB/Octave function: the file's name without .m must be an identifier (bad_value)
 /// of MATLAB and Octave.
@@ -19,11 +24,16 @@ namespace titop {
 /// m.states, m.inputs, m.outputs are cell arrays of the names; index (m.inputs, "tau_m") by
 /// find (strcmp (m.inputs, "tau_m")). O(n^2).
 void write_matlab(const StateSpace& model, const std::filesystem::path& file);
+/// Its state_space(), with its `dense_warnings` as comments at the head.
+void write_matlab(const System& system, const std::filesystem::path& file);
 
 /// A Python module and its arrays: FOLDER/NAME.py, NAME_A.npy, NAME_B.npy, NAME_C.npy, NAME_D.npy.
 /// NAME must be an identifier (bad_value), and no module that numpy imports. `import NAME` gives A,
 /// B, C, D, states, inputs, outputs, transfer(s) and poles(). O(n^2).
 void write_numpy(const StateSpace& model, const std::filesystem::path& folder,
+                 const std::string& name);
+/// Its state_space(), with its `dense_warnings` as comments at the head.
+void write_numpy(const System& system, const std::filesystem::path& folder,
                  const std::string& name);
 
 /// Frequency response as comma-separated values: a column rad_per_s, then for every output and
@@ -35,8 +45,8 @@ void write_csv(const System& system, std::span<const double> omega,
 /// The whole model and what is known about it as one JSON object: "format" ("titop model 1"),
 /// "name", "states", "inputs", "outputs", "A", "B", "C", "D" (lists of rows), "poles",
 /// "certificate" (the fields of `Certificate`; null where a number is not finite or was not found)
-/// and "notes" (pass, kind, text). Keys keep this order, so that the text is stable. O(n^3) for the
-/// poles.
+/// and "notes" (those of System::log: pass, kind, text). Keys keep this order, so that the text is
+/// stable. O(n^3) for the poles.
 std::string model_json(const System& system);
 void write_json(const System& system, const std::filesystem::path& file);
 

@@ -60,11 +60,13 @@ Json certificate(const Certificate& c) {
           {"plans_renewed", c.plans_renewed}};
 }
 
-Json notes(const std::vector<Note>& list) {
+/// As the log has them.
+Json notes(const System& system) {
   Json result = Json::array();
-  for (const Note& n : list)
-    result.push_back(
-        {{"pass", n.pass}, {"kind", std::string(to_string(n.kind))}, {"text", n.text}});
+  for (const auto& list : {system.notes(), system.dense_notes()})
+    for (const Note& n : list)
+      result.push_back(
+          {{"pass", n.pass}, {"kind", std::string(to_string(n.kind))}, {"text", n.text}});
   return result;
 }
 
@@ -175,7 +177,7 @@ std::string model_json(const System& system) {
                      {"D", rows(m.D)},
                      {"poles", poles(system.poles())},
                      {"certificate", certificate(system.certificate())},
-                     {"notes", notes(system.notes())}};
+                     {"notes", notes(system)}};
   return text_of(json);
 }
 

@@ -9,14 +9,19 @@ namespace titop {
 
 namespace {
 
-/// Single quotes: no escapes are read in them by either program, and control characters are blanks,
-/// since a line or the file ends at some of them.
+/// Control characters are blanks, since a line or the file ends at some of them.
+std::string on_one_line(std::string text) {
+  for (char& c : text)
+    if (const auto byte = static_cast<unsigned char>(c); byte < 0x20 || byte == 0x7f) c = ' ';
+  return text;
+}
+
+/// Single quotes: no escapes are read in them by either program.
 std::string quoted(const std::string& name) {
   std::string text = "'";
-  for (const char c : name) {
+  for (const char c : on_one_line(name)) {
     if (c == '\'') text += '\'';
-    const auto byte = static_cast<unsigned char>(c);
-    text += byte < 0x20 || byte == 0x7f ? ' ' : c;
+    text += c;
   }
   return text + "'";
 }
@@ -38,22 +43,33 @@ std::string matrix(const char* field, const Eigen::MatrixXd& M) {
   return text + "  ];\n";
 }
 
-}  // namespace
-
-void write_matlab(const StateSpace& model, const std::filesystem::path& file) {
+void write(const StateSpace& model, const std::vector<std::string>& warnings,
+           const std::filesystem::path& file) {
   const std::string name = file.stem().string();
   if (!emit::is_identifier(name, emit::Language::matlab) || file.extension() != ".m")
     throw Error(
         Code::bad_value, fmt::format("{} cannot be a MATLAB function", file.string()),
         "give a path whose last part is an identifier, no keyword, and .m, such as satellite.m");
-  emit::write_file(
-      file, fmt::format("function m = {} ()\n"
-                        "  % Written by titop: xdot = A x + B u, y = C x + D u, with names.\n"
-                        "  m.n = {};\n",
-                        name, model.order()) +
-                names("states", model.states) + names("inputs", model.inputs) +
-                names("outputs", model.outputs) + matrix("A", model.A) + matrix("B", model.B) +
-                matrix("C", model.C) + matrix("D", model.D) + "end\n");
+  std::string head = fmt::format(
+      "function m = {} ()\n"
+      "  % Written by titop: xdot = A x + B u, y = C x + D u, with names.\n",
+      name);
+  for (const std::string& text : warnings) head += "  % Warning: " + on_one_line(text) + "\n";
+  emit::write_file(file, head + fmt::format("  m.n = {};\n", model.order()) +
+                             names("states", model.states) + names("inputs", model.inputs) +
+                             names("outputs", model.outputs) + matrix("A", model.A) +
+                             matrix("B", model.B) + matrix("C", model.C) + matrix("D", model.D) +
+                             "end\n");
+}
+
+}  // namespace
+
+void write_matlab(const StateSpace& model, const std::filesystem::path& file) {
+  write(model, {}, file);
+}
+
+void write_matlab(const System& system, const std::filesystem::path& file) {
+  write(system.state_space(), dense_warnings(system), file);
 }
 
 }  // namespace titop

@@ -32,8 +32,8 @@ std::string npy(const Eigen::MatrixXd& M) {
 
 /// Python refuses files that are not UTF-8 throughout: bytes that are none are escaped, as control
 /// characters are.
-std::string quoted(const std::string& name) {
-  std::string text = "\"";
+std::string escaped(const std::string& name) {
+  std::string text;
   for (std::string_view rest = name; !rest.empty();) {
     const std::size_t n = dot::utf8_length(rest);
     const char c = rest.front();
@@ -44,17 +44,17 @@ std::string quoted(const std::string& name) {
       text += rest.substr(0, n);
     rest.remove_prefix(n == 0 ? 1 : n);
   }
-  return text + "\"";
+  return text;
 }
 
 std::string names(const char* variable, const std::vector<std::string>& list) {
   std::string text = fmt::format("{} = [\n", variable);
-  for (const std::string& name : list) text += "    " + quoted(name) + ",\n";
+  for (const std::string& name : list) text += "    \"" + escaped(name) + "\",\n";
   return text + "]\n";
 }
 
 const char* const kModule = R"("""Written by titop: xdot = A x + B u, y = C x + D u, with names."""
-
+@WARNINGS@
 import pathlib
 
 import numpy as np
@@ -73,10 +73,8 @@ def poles():
     return np.linalg.eigvals(A)
 )";
 
-}  // namespace
-
-void write_numpy(const StateSpace& model, const std::filesystem::path& folder,
-                 const std::string& name) {
+void write(const StateSpace& model, const std::vector<std::string>& warnings,
+           const std::filesystem::path& folder, const std::string& name) {
   if (!emit::is_identifier(name, emit::Language::python))
     throw Error(Code::bad_value, fmt::format("\"{}\" cannot be the name of a Python module", name),
                 "give an identifier that is no keyword and no module that numpy imports, such as "
@@ -85,11 +83,26 @@ void write_numpy(const StateSpace& model, const std::filesystem::path& folder,
       {'A', &model.A}, {'B', &model.B}, {'C', &model.C}, {'D', &model.D}};
   for (const auto& [letter, matrix] : matrices)
     emit::write_file(folder / fmt::format("{}_{}.npy", name, letter), npy(*matrix));
+  std::string comments;
+  for (const std::string& text : warnings) comments += "# Warning: " + escaped(text) + "\n";
   emit::write_file(folder / (name + ".py"),
                    emit::filled(kModule, {{"NAME", name},
+                                          {"WARNINGS", comments},
                                           {"NAMES", names("states", model.states) +
                                                         names("inputs", model.inputs) +
                                                         names("outputs", model.outputs)}}));
+}
+
+}  // namespace
+
+void write_numpy(const StateSpace& model, const std::filesystem::path& folder,
+                 const std::string& name) {
+  write(model, {}, folder, name);
+}
+
+void write_numpy(const System& system, const std::filesystem::path& folder,
+                 const std::string& name) {
+  write(system.state_space(), dense_warnings(system), folder, name);
 }
 
 }  // namespace titop

@@ -8,35 +8,22 @@
 #include <titop/blocks/scene/scene.hpp>
 #include <titop/titop.hpp>
 
+#include "app/shell.hpp"
 #include "support/five_masses.hpp"
-#include "support/folder.hpp"
 
 using namespace titop;
 using namespace titop_test;
+using app_test::has;
+using app_test::Run;
 
 namespace {
 
-struct Run {
-  int code = 0;
-  std::string out, err;
-};
-
-class Shell {
+/// With the five masses in it.
+class Shell : public app_test::Shell {
  public:
   Shell() { write_scene(diagram(), folder.path / "masses.json"); }
   static Diagram diagram() { return five_masses_scene({1, 2, 3, 4, 5}, {10, 26, 33, 20, 95}); }
-
-  Run titop(const std::string& words) const {
-    const std::string command = "'" TITOP_PROGRAM "' " + words + " >out 2>err; echo $? >code";
-    REQUIRE(folder.run(command) == 0);
-    return {std::stoi(folder.read("code")), folder.read("out"), folder.read("err")};
-  }
-  Folder folder;
 };
-
-bool has(const std::string& text, const std::string& words) {
-  return text.find(words) != std::string::npos;
-}
 
 }  // namespace
 
@@ -62,11 +49,11 @@ TEST_CASE("certify: as text and as JSON; exit code 3 where something does not ho
   CHECK(c.holds());
   CHECK(r.out == to_string(c));
   CHECK(shell.folder.read("c.json") == certificate_json(c));
-  // A loop at 1e-10 from singular: its gain is only known to six digits.
+  // A loop at 1e-12 from singular: its gain is only known to four digits.
   Diagram d{"ring"};
   auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 4});
   ground(z);
-  auto K = d.add("K", Gain{.gain = (1 - 1e-10) / 0.7}), G = d.add("G", Gain{.gain = 0.7});
+  auto K = d.add("K", Gain{.gain = (1 - 1e-12) / 0.7}), G = d.add("G", Gain{.gain = 0.7});
   auto u = d.input("u");
   K.in = G.out;
   G.in = K.out + u + z.stretch;
@@ -98,6 +85,31 @@ TEST_CASE("draw folds large diagrams on request") {
   CHECK(has(shell.folder.read("a.dot"), "▤"));
   CHECK(shell.titop("draw --compiled masses.json b.dot --fold 3").code == 0);
   CHECK(shell.folder.read("b.dot") == to_dot(compile(Shell::diagram()).stage(), {.fold = 3}));
+}
+
+TEST_CASE("draw makes pictures by Graphviz, text for it, and nothing else") {
+  const Shell shell;
+  CHECK(shell.titop("draw masses.json a.gv").code == 0);
+  CHECK(shell.folder.read("a.gv") == to_dot(Shell::diagram()));
+  CHECK(shell.titop("draw masses.json diagram").code == 0);
+  CHECK(shell.folder.read("diagram") == to_dot(Shell::diagram()));
+  const Run r = shell.titop("draw masses.json a.jpg");
+  CHECK(r.code == 2);
+  CHECK(has(r.err, "'a.jpg' ends in none of the known ways"));
+  CHECK(!std::filesystem::exists(shell.folder.path / "a.jpg"));
+  const std::string without = "PATH=/nowhere '" TITOP_PROGRAM "' draw masses.json none.svg 2>err";
+  CHECK(shell.folder.run(without) == 1);
+  CHECK(has(shell.folder.read("err"), "none.svg: cannot be drawn: the program dot is not there"));
+  CHECK(has(shell.folder.read("err"), "dot -Tsvg FILE.dot -o FILE.svg"));
+  CHECK(!std::filesystem::exists(shell.folder.path / "none.svg"));
+  if (std::system("dot -V >/dev/null 2>&1") != 0) return;
+  CHECK(shell.titop("draw masses.json a.svg").code == 0);
+  CHECK(has(shell.folder.read("a.svg"), "</svg>"));
+  CHECK(has(shell.folder.read("a.svg"), ">z3</text>"));
+  CHECK(shell.titop("draw --compiled masses.json a.png").code == 0);
+  CHECK(shell.folder.read("a.png").rfind("\x89PNG", 0) == 0);
+  CHECK(shell.titop("draw masses.json a.pdf --fold 3").code == 0);
+  CHECK(shell.folder.read("a.pdf").rfind("%PDF", 0) == 0);
 }
 
 TEST_CASE("report writes a page beside, or where it is told to") {
@@ -143,6 +155,47 @@ TEST_CASE("export writes by the file's ending") {
   const std::vector<double> omega = {1, 10, 100};
   write_csv(system, omega, shell.folder.path / "expected.csv");
   CHECK(shell.folder.read("g.csv") == shell.folder.read("expected.csv"));
+}
+
+TEST_CASE("export says on stderr what A, B, C, D lose, and where the digits are") {
+  const Shell shell;
+  Diagram d{"uneven"};  // every other mass 1e9 times as heavy as its neighbours
+  const auto u = d.input("u");
+  auto last = d.add("z0", SpringMass{.mass = 1, .stiffness = 100, .parent_mass = 0.5});
+  ground(last);
+  last.child.force += u;
+  for (int i = 1; i < 10; ++i) {
+    auto next =
+        d.add("z" + std::to_string(i),
+              SpringMass{.mass = i % 2 ? 1e9 : 1.0, .stiffness = 100.0 + i, .parent_mass = 0.5});
+    mount(next, last.child);
+    last = next;
+  }
+  d.output("a") = last.child.accel;
+  write_scene(d, shell.folder.path / "uneven.json");
+  const System system = compile(d);
+  const std::vector<std::string> warnings = dense_warnings(system);
+  REQUIRE(!warnings.empty());
+  for (const char* file : {"m.m", "m.py", "m_model.json", "m.hpp"}) {
+    CAPTURE(file);
+    const Run r = shell.titop(std::string("export uneven.json ") + file);
+    for (const std::string& text : warnings) CHECK(has(r.err, "warning: " + text + "\n"));
+    CHECK(has(r.err, "export SCENE.json FILE.csv"));
+    CHECK(has(r.err, "compile(d, Scene{.band_hz"));
+    CHECK(r.out.empty());
+  }
+  CHECK(has(shell.folder.read("m.m"), "% Warning: " + warnings[0]));
+  CHECK(has(shell.folder.read("m.py"), "# Warning: " + warnings[0]));
+  CHECK(has(shell.folder.read("m_model.json"), warnings[0]));
+  CHECK(shell.titop("export uneven.json g.csv --omega 1.5 150 3").err == "");
+  Diagram even{"even"};
+  auto z = even.add("z", SpringMass{.mass = 1, .stiffness = 4});
+  ground(z);
+  z.child.force += even.input("u");
+  even.output("x") = z.stretch;
+  write_scene(even, shell.folder.path / "even.json");
+  for (const char* file : {"m.m", "m.py", "m.json", "m.hpp"})
+    CHECK(shell.titop(std::string("export even.json ") + file).err == "");
 }
 
 TEST_CASE("frequencies over any range, both ends exactly") {
@@ -235,6 +288,7 @@ TEST_CASE("what is not understood: exit code 2, and one line on stderr that says
                             "report masses.json --until 0",
                             "export masses.json m.hpp --sample-time 0",
                             "draw --fold 2.7 masses.json a.dot",
+                            "draw masses.json a.txt",
                             "check masses.json --minimize-up-to 1.5",
                             "export masses.json g.csv --omega 1 10 2.9",
                             "export masses.json g.csv --omega 1 10 0",

@@ -6,6 +6,7 @@
 #include <titop/compiler/emit/report/drawing.hpp>
 #include <titop/compiler/emit/report/html.hpp>
 #include <titop/compiler/emit/report/subject.hpp>
+#include <titop/compiler/emit/report/written.hpp>
 
 namespace titop::report {
 namespace {
@@ -70,7 +71,8 @@ std::string blocks(const Graph& g) {
   return text + "</tbody></table></div>\n";
 }
 
-std::string diagram(const Subject& s, const Stage& stage, const char* title, const char* caption) {
+std::string diagram(const Subject& s, const Stage& stage, const char* title,
+                    const std::string& caption) {
   const std::string dot_text = to_dot(stage, {.fold = s.options.fold});
   const std::string svg =
       drawing(dot_text, fmt::format("diagram of {}, {}", stage.now().name, title));
@@ -81,28 +83,33 @@ std::string diagram(const Subject& s, const Stage& stage, const char* title, con
       title, large ? " large" : "", svg, caption);
 }
 
-std::string diagrams(const Subject& s) {
+std::string diagrams(const Subject& s, const Graph& g) {
   if (!s.options.diagrams) return {};
   const Stage& after = s.system.stage();
-  Stage before = as_written(*after.source);
+  Stage before = as_written(g);
   before.values = after.values;
+  const std::string added =
+      after.motions.empty()
+          ? ""
+          : " Integrators were added: they hold motions that no other state holds.";
   return diagram(s, before, "As written",
                  "Filled arrows carry accelerations, open ones forces or wrenches; thick lines are "
                  "vectors, with their size and frame.") +
          diagram(s, after, "After the passes",
                  "Coloured: algebraic loops, numbered; dark heads: inverted channels; grey and "
-                 "dashed: set aside, since it cannot matter.");
+                 "dashed: set aside, since it cannot matter." +
+                     added);
 }
 
 }  // namespace
 
 std::string scene_section(const Subject& s) {
-  const Graph& g = *s.system.stage().source;
+  const Graph g = written(s.system.stage());
   return blocks(g) + "<h3>Inputs</h3>\n" +
          ports(g.inputs, s.inputs, "input", [&](int i) { return drives(s.system.stage(), i); }) +
          "<h3>Outputs</h3>\n" +
          ports(g.outputs, s.outputs, "output", [&](int i) { return reads(s.system.stage(), i); }) +
-         diagrams(s);
+         diagrams(s, g);
 }
 
 std::string poles_section(const Subject& s) {

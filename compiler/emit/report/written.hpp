@@ -1,0 +1,11 @@
+#pragma once
+
+#include <titop/compiler/stage.hpp>
+
+namespace titop::report {
+
+/// The diagram as the user wrote it: without the Integrators that `lower` has added for motions
+/// that no state holds. O(graph).
+Graph written(const Stage& stage);
+
+}  // namespace titop::report
