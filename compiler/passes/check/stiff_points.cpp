@@ -41,9 +41,9 @@ class StiffPoints {
     if (c.takes != Takes::force) return 0;
     const auto [known, is_new] = still_.try_emplace({block(c), c.spec}, 0);
     if (!is_new) return known->second;
-    const auto d = block(c)->dynamics(values_);
-    if (d->modal && d->modal->W.rows() > 0)
-      known->second = still_directions(d->modal->W.middleCols<6>(g_.signals[at(c.force)].first));
+    if (block(c) != last_) last_ = block(c), modes_ = last_->dynamics(values_)->modal;
+    if (modes_ && modes_->W.rows() > 0)
+      known->second = still_directions(modes_->W.middleCols<6>(g_.signals[at(c.force)].first));
     return known->second;
   }
 
@@ -76,6 +76,8 @@ class StiffPoints {
   ParameterValues values_;
   std::map<std::pair<const Block*, int>, int> still_;
   std::map<int, bool> has_mass_;
+  const Block* last_ = nullptr;  ///< whose modes these are: a hub has many points
+  std::shared_ptr<const Modal> modes_;
 };
 
 /// The point whose whole motion this equation gives to another point's; -1 where it is none.
