@@ -62,8 +62,8 @@ struct Simulation {
   Eigen::VectorXd x0 = {};   ///< states at time 0, in the order of System::states(); none: 0
   bool keep_states = false;  ///< Trajectory::x at all times
   /// Of the automatic choice: the largest Trajectory::error that is not refused, and of the exact
-  /// step not left for midpoint. Infinite where
-  /// outputs are asked for that no motion has reached yet (far down a row): they have no digit.
+  /// step not left for midpoint. Infinite where outputs are asked for that no motion has reached
+  /// yet (far down a row): they have no digit.
   double accuracy = 0.01;
 };
 

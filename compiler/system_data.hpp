@@ -161,7 +161,7 @@ void worst_margin(const SystemData& data, std::span<const double> margins, Check
 /// What is released in a closed chain (Stage::released) leaves internal forces undetermined: throws
 /// kinematic_loop for every output and controller that reads one, or notes them as minimal-norm
 /// where Options::internal_forces says so. One solution per released direction; 32 where these are
-/// more, of sums of them.
+/// more, of sums of them; up to eight steps of refinement where something is found.
 void judge_internal_forces(Skeleton& skeleton, const SystemData& data);
 
 /// All passes and the certificate once more for these values of the parameters. States that

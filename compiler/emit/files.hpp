@@ -12,7 +12,8 @@
 namespace titop {
 
 /// What the log warns of System::state_space(): the digits that A, B, C, D lose, which `transfer`,
-/// `apply` and `simulate` keep. Empty where they lose none that count.
+/// `apply` and `simulate` keep. Empty where they lose none that count. Throws and costs what
+/// state_space() does where it has not been asked for yet.
 std::vector<std::string> dense_warnings(const System& system);
 
 /// A MATLAB/Octave function: the file's name without .m must be an identifier (bad_value)

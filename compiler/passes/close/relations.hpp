@@ -46,10 +46,11 @@ struct Factors {
 /// every unit (rows of one number: the translations or rotations of a closing equation) to what it
 /// has if each of its free columns is spread evenly over the units where it counts, and 1 for its
 /// columns that store energy. These keep their weight (eta by 1/omega: soft modes become
-/// dependent). A balance with these sums exists and is the only one [Sinkhorn, Knopp 1967]: it
-/// depends neither on units of measurement (they are factors themselves), nor on the frame (three
-/// rows count by their norm), nor on the order of chains. For a chain of hinges it finds the length
-/// that levers are measured by, from all joints together; where a lever is tiny, its joint's
+/// dependent). Where every column counts in each block that it is in, a balance with these sums
+/// exists and is the only one [Sinkhorn, Knopp 1967], reached here to 2 % per factor: it depends
+/// neither on units of measurement (they are factors themselves), nor on the frame (three rows
+/// count by their norm), nor on the order of chains. For a chain of hinges it finds the length that
+/// levers are measured by, from all joints together; where a lever is tiny, its joint's
 /// translations do not count, and no row depends on it. Taken before any elimination (afterwards
 /// noise would become 1). O(entries) per sweep; few are needed, from a start nearly in balance.
 Factors scale(Relations& relations);
