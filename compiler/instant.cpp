@@ -113,6 +113,19 @@ Instant Instant::doubt(int sample) const {
   return off_by(std::move(left), magnitudes, sample);
 }
 
+Instant Instant::doubt_of_vectors(int sample) const {
+  RowMatrix<double> lengths = unknowns_.cwiseAbs(), magnitudes;
+  const solve::Plan& plan = *data_.skeleton->joint.plan;
+  for (std::size_t v = 0; v < plan.first.size(); ++v)
+    for (int i = 0, n = plan.structure.variable_unit[v]; i < plan.structure.variable_size[v];
+         i += n) {
+      auto part = lengths.middleRows(plan.first[v] + i, n);
+      part.rowwise() = part.colwise().maxCoeff().eval();
+    }
+  rows_.residual(rhs_, lengths, &magnitudes);
+  return off_by(rows_.residual(rhs_, unknowns_, nullptr), magnitudes, sample);
+}
+
 Instant Instant::rounding() const {
   RowMatrix<double> magnitudes;
   rows_.residual(rhs_, unknowns_, &magnitudes);

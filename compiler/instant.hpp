@@ -37,6 +37,9 @@ class Instant {
   /// if every equation is off by what it does not hold to, and by about one unit of the last place
   /// of its terms, up or down in a random order, fixed for each `sample`. One more solution.
   Instant doubt(int sample = 0) const;
+  /// The same where every translation and rotation is right to its length and no better: what a
+  /// frame turns by a right angle, to rounding, may be off by that in any direction.
+  Instant doubt_of_vectors(int sample) const;
   /// The same of rounding alone, whether the equations hold or not.
   Instant rounding() const;
 

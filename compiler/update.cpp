@@ -280,10 +280,14 @@ System System::update(const ParameterList& list) const {
   const auto again = [&](const char* why) {
     return compiled_again(*data_, changed, d->numbers.parameters, why);
   };
+  constexpr const char* kSingular =
+      "the equations as written are singular, as where a point has no mass";
   constexpr const char* kOtherTerms = "closed chains or the equations' terms change";
   constexpr const char* kNoDigit = "a pivot has no digit left";
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
-  if (k.before_reduce || moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))
+  // What was reduced was found from all rows and all numbers.
+  if (k.before_reduce) return again(kSingular);
+  if (moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))
     return again(kOtherTerms);
   if (!remake_coefficients(k, united(k, changed, &Dependents::origins), d->numbers))
     return again(kOtherTerms);

@@ -70,73 +70,79 @@ Followers::Followers(const Skeleton& k, const SystemData& d)
         for (const auto& [independent, factor] : found->second.of)
           of[independent] += s.factor * factor;
     }
-    of_state_[layout_.state_first[at(dep.node)] + dep.state].of = std::move(of);
+    const int own = layout_.state_first[at(dep.node)] + dep.state;
+    for (const auto& [independent, factor] : of) read_by_[independent].insert(own);
+    of_state_[own].of = std::move(of);
   }
 }
 
 /// Writes a constraint in independent states.
 void Followers::substitute(Hidden& c) const {
-  KeptRow g(c.g.size());
+  std::map<int, Kept> g;
   std::vector<KeptRow> h;
   for (std::size_t j = 0; j < c.h.size(); ++j) grown(h, j, inputs_).add(1, c.h[j]);
-  for (Index i = 0; i < c.g.size(); ++i) {
-    if (c.g(i) == 0) continue;
-    const auto found = of_state_.find(static_cast<int>(i));
+  for (const auto& [i, share] : c.g) {
+    const auto found = of_state_.find(i);
     if (found == of_state_.end()) {
-      g.entries[at(i)].add(c.g(i), std::abs(c.g(i)));
+      g[i].add(share, std::abs(share));
       continue;
     }
     for (const auto& [of, factor] : found->second.of)
-      g.entries[at(of)].add(c.g(i) * factor, std::abs(c.g(i) * factor));
+      g[of].add(share * factor, std::abs(share * factor));
     for (std::size_t j = 0; j < found->second.by.size(); ++j)
-      grown(h, j, inputs_).add(c.g(i), found->second.by[j]);
+      grown(h, j, inputs_).add(share, found->second.by[j]);
   }
-  c.g = g.cleaned();
+  c.g.clear();
+  for (const auto& [i, sum] : g)
+    if (const double value = sum.cleaned(); value != 0) c.g.emplace_back(i, value);
   c.h.clear();
   for (const KeptRow& row : h) c.h.push_back(row.cleaned());
 }
 
 int Followers::choose(const Hidden& c) const {
   // Rates first, then coordinates that store energy, then the others.
-  const auto tier = [&](Index i) { return is_rate_[at(i)] ? 0 : weight_(i) > 0 ? 1 : 2; };
+  const auto tier = [&](int i) { return is_rate_[at(i)] ? 0 : weight_(i) > 0 ? 1 : 2; };
   int best_tier = 3;
-  for (Index i = 0; i < c.g.size(); ++i)
-    if (c.g(i) != 0) best_tier = std::min(best_tier, tier(i));
+  for (const auto& [i, share] : c.g) best_tier = std::min(best_tier, tier(i));
   double largest = 0, largest_before = 0;
   int best = -1, best_before = -1;
-  for (Index i = 0; i < c.g.size(); ++i) {
-    if (c.g(i) == 0 || tier(i) != best_tier) continue;
-    const double size = std::abs(c.g(i)) * (weight_(i) > 0 ? weight_(i) : 1);
-    if (size > kTie * largest) largest = size, best = static_cast<int>(i);
-    if (before_[at(i)] && size > kTie * largest_before)
-      largest_before = size, best_before = static_cast<int>(i);
+  for (const auto& [i, share] : c.g) {
+    if (tier(i) != best_tier) continue;
+    const double size = std::abs(share) * (weight_(i) > 0 ? weight_(i) : 1);
+    if (size > kTie * largest) largest = size, best = i;
+    if (before_[at(i)] && size > kTie * largest_before) largest_before = size, best_before = i;
   }
   return largest_before >= kKeeps * largest ? best_before : best;
 }
 
 void Followers::follow(int state, const Hidden& c) {
+  const auto own =
+      std::find_if(c.g.begin(), c.g.end(), [&](const auto& entry) { return entry.first == state; });
   Follower f;
-  for (Index i = 0; i < c.g.size(); ++i)
-    if (c.g(i) != 0 && i != state) f.of[static_cast<int>(i)] = -c.g(i) / c.g(state);
-  for (const RowVectorXd& h : c.h) f.by.push_back(h / -c.g(state));
-  for (auto& [other, old] : of_state_) {
-    const auto found = old.of.find(state);
-    if (found == old.of.end()) continue;
-    const double factor = found->second;
-    old.of.erase(found);
-    for (const auto& [of, share] : f.of) {
-      Kept sum{old.of[of], std::abs(old.of[of])};
-      sum.add(factor * share, std::abs(factor * share));
-      if ((old.of[of] = sum.cleaned()) == 0) old.of.erase(of);
-    }
-    std::vector<KeptRow> by;
-    for (std::size_t j = 0; j < old.by.size(); ++j) grown(by, j, inputs_).add(1, old.by[j]);
-    for (std::size_t j = 0; j < f.by.size(); ++j) grown(by, j, inputs_).add(factor, f.by[j]);
-    old.by.clear();
-    for (const KeptRow& row : by) old.by.push_back(row.cleaned());
-  }
+  for (const auto& [i, share] : c.g)
+    if (i != state) f.of[i] = -share / own->second, read_by_[i].insert(state);
+  for (const RowVectorXd& h : c.h) f.by.push_back(h / -own->second);
+  if (const auto readers = read_by_.extract(state))
+    for (const int other : readers.mapped()) follow_through(other, state, f);
   of_state_[state] = std::move(f);
   added_.push_back(state);
+}
+
+/// Writes another follower, which has a share of this one, in what this one follows from.
+void Followers::follow_through(int other, int state, const Follower& f) {
+  Follower& old = of_state_[other];
+  const double factor = old.of.extract(state).mapped();
+  for (const auto& [of, share] : f.of) {
+    Kept sum{old.of[of], std::abs(old.of[of])};
+    sum.add(factor * share, std::abs(factor * share));
+    read_by_[of].insert(other);
+    if ((old.of[of] = sum.cleaned()) == 0) old.of.erase(of), read_by_[of].erase(other);
+  }
+  std::vector<KeptRow> by;
+  for (std::size_t j = 0; j < old.by.size(); ++j) grown(by, j, inputs_).add(1, old.by[j]);
+  for (std::size_t j = 0; j < f.by.size(); ++j) grown(by, j, inputs_).add(factor, f.by[j]);
+  old.by.clear();
+  for (const KeptRow& row : by) old.by.push_back(row.cleaned());
 }
 
 std::vector<Hidden> Followers::add(std::vector<Hidden> constraints) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <map>
+#include <set>
 #include <titop/compiler/solve/null_rows.hpp>
 #include <titop/compiler/system_data.hpp>
 
@@ -8,7 +10,7 @@ namespace titop::detail {
 
 /// g x + h[0] u + h[1] udot + ... = 0, over the states of all blocks.
 struct Hidden {
-  Eigen::RowVectorXd g;
+  solve::SparseRow g;
   std::vector<Eigen::RowVectorXd> h;
   int row = -1;  ///< a scalar row of the joint system in the combination y that leaves
                  ///< it, and in no other
@@ -41,10 +43,12 @@ class Followers {
   void substitute(Hidden& c) const;
   int choose(const Hidden& c) const;
   void follow(int state, const Hidden& c);
+  void follow_through(int other, int state, const Follower& f);
 
   const Layout& layout_;
   Eigen::Index inputs_;
   std::map<int, Follower> of_state_;
+  std::map<int, std::set<int>> read_by_;  ///< per independent state: the followers with a share
   std::vector<int> added_;
   std::vector<int> node_, first_;       ///< per state
   std::vector<char> is_rate_, before_;  ///< per state

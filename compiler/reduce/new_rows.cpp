@@ -16,12 +16,17 @@ std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 
-std::pair<int, int> group_of(const Joint& joint, int scalar_row) {
-  const auto& first = joint.plan->row_first;
-  int r = 0;
-  for (int i = 0; i < static_cast<int>(first.size()); ++i)
-    if (first[at(i)] <= scalar_row && first[at(i)] >= first[at(r)]) r = i;
-  return {r, scalar_row - first[at(r)]};
+RowGroups::RowGroups(const solve::Plan& plan) : of_(at(plan.unknowns)) {
+  for (int r = 0; r < static_cast<int>(plan.row_first.size()); ++r)
+    for (int i = 0; i < plan.structure.row_size[at(r)]; ++i)
+      of_[at(plan.row_first[at(r)] + i)] = {r, i};
+}
+
+NewRows::NewRows(const Skeleton& k, SystemData& d)
+    : k_(k), d_(d), old_(k.joint), groups_(*old_.plan), node_of_(at(d.layout().order())) {
+  for (const int i : d.layout().state_nodes)
+    std::fill_n(node_of_.begin() + d.layout().state_first[at(i)], d.numbers.blocks[at(i)]->A.rows(),
+                i);
 }
 
 Joint NewRows::joint() {
@@ -57,11 +62,11 @@ void NewRows::rewrite(int r, const Group& group, std::vector<Piece>& pieces,
                       std::vector<int>& over) {
   const int size = old_.plan->structure.row_size[at(r)];
   const auto place = [&](int row) {
-    return VectorXd(VectorXd::Unit(size, group_of(old_, row).second));
+    return VectorXd(VectorXd::Unit(size, groups_.of(row).second));
   };
   MatrixXd mask = MatrixXd::Identity(size, size);
-  for (const Hidden* c : group.derivatives) mask.row(group_of(old_, c->row).second).setZero();
-  for (const Held* h : group.held) mask.row(group_of(old_, h->row).second).setZero();
+  for (const Hidden* c : group.derivatives) mask.row(groups_.of(c->row).second).setZero();
+  for (const Held* h : group.held) mask.row(groups_.of(h->row).second).setZero();
   std::vector<Piece> result;
   for (const Piece& p : pieces) put(result, p, mask * solve::matrix_of(p, d_.numbers));
   for (const Hidden* c : group.derivatives) differentiate(*c, place(c->row), result, over);
@@ -84,10 +89,15 @@ void NewRows::put(std::vector<Piece>& to, Piece p, const MatrixXd& matrix) {
 void NewRows::differentiate(const Hidden& c, const VectorXd& place, std::vector<Piece>& to,
                             std::vector<int>& over) {
   const Graph& g = k_.stage.graph;
-  for (const int i : d_.layout().state_nodes) {
+  std::map<int, RowVectorXd> of_node;
+  for (const auto& [state, factor] : c.g) {
+    const int i = node_of_[at(state)];
+    RowVectorXd& own = of_node[i];
+    if (own.size() == 0) own.setZero(d_.numbers.blocks[at(i)]->A.rows());
+    own(state - d_.layout().state_first[at(i)]) = factor;
+  }
+  for (const auto& [i, own] : of_node) {
     const Dynamics& m = *d_.numbers.blocks[at(i)];
-    const RowVectorXd own = c.g.segment(d_.layout().state_first[at(i)], m.A.rows());
-    if (own.isZero(0)) continue;
     const Node& node = g.nodes[at(i)];
     put(to, {.signal = node.state}, place * solve::product(own, m.A));
     for (int s = node.first_signal; s < node.state; ++s)

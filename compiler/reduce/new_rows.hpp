@@ -5,13 +5,20 @@
 
 namespace titop::detail {
 
-/// Row group of a scalar row of a joint system, and the row's place in it.
-std::pair<int, int> group_of(const solve::Joint& joint, int scalar_row);
+/// Row groups of the scalar rows of a joint system, and the rows' places in them. O(rows) once.
+class RowGroups {
+ public:
+  explicit RowGroups(const solve::Plan& plan);
+  std::pair<int, int> of(int scalar_row) const { return of_[static_cast<std::size_t>(scalar_row)]; }
+
+ private:
+  std::vector<std::pair<int, int>> of_;
+};
 
 /// New equations in place of some scalar rows of the joint system of a skeleton.
 class NewRows {
  public:
-  NewRows(const Skeleton& k, SystemData& d) : k_(k), d_(d), old_(k.joint) {}
+  NewRows(const Skeleton& k, SystemData& d);
 
   /// The derivative of the constraint, g x' = -h u' - ... with x' = A x + B u block by block, in
   /// place of its row (without its right-hand side by u'). It is kept by reference.
@@ -27,7 +34,7 @@ class NewRows {
     std::vector<const Hidden*> derivatives = {};
     std::vector<const Held*> held = {};
   };
-  Group& of_group(int row) { return by_group_[group_of(old_, row).first]; }
+  Group& of_group(int row) { return by_group_[groups_.of(row).first]; }
 
   void rewrite(int r, const Group& group, std::vector<solve::Piece>& pieces,
                std::vector<int>& over);
@@ -40,6 +47,8 @@ class NewRows {
   const Skeleton& k_;
   SystemData& d_;
   const solve::Joint& old_;
+  RowGroups groups_;
+  std::vector<int> node_of_;  ///< per state
   std::map<int, Group> by_group_;
 };
 

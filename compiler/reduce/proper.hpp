@@ -15,7 +15,8 @@ struct Derivatives {
 
 /// Shifts the states of the model by multiples of inputs and their derivatives so that only inputs
 /// themselves are left in it (StateMap::set_inputs, noted). Throws improper where a derivative
-/// still reaches an output. O(bodies) per input and derivative.
+/// still reaches an output, by more than rounding may have made of nothing: its share of the output
+/// at some s does not matter. O(bodies) per input and derivative.
 void make_proper(Skeleton& k, SystemData& d, const Derivatives& derivatives);
 
 }  // namespace titop::detail

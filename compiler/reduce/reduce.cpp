@@ -79,13 +79,14 @@ class Reducer {
               "not looked for there; give one of these bodies a mass, or hold it"});
     const Undetermined motions = undetermined(k_, d_, rows);
     if (motions.held.empty()) refuse(rest, motions.lines);
+    const RowGroups groups(*k_.joint.plan);
     for (const int row : rows)
-      if (hides_states(row))
+      if (hides_states(groups.of(row).first))
         refuse(rest, motions.lines,
                {"it cannot be taken as 0: a sum of many terms stands between it and a block's "
                 "states"});
     for (const int row : rows)  // held, and undetermined all the same: no digit is left
-      if (!held_.insert(group_of(k_.joint, row)).second)
+      if (!held_.insert(groups.of(row)).second)
         refuse(rest, motions.lines, {"taken as 0 it is undetermined all the same"});
     for (const std::string& line : motions.lines)
       k_.stage.notes.push_back(
@@ -98,8 +99,8 @@ class Reducer {
 
   /// At some s a held row's group is written anew with the block's C, and C X(s) must find the
   /// block's inputs in it: not where partial sums of a long row stand for them.
-  bool hides_states(int row) const {
-    const auto pieces = k_.joint.row(group_of(k_.joint, row).first);
+  bool hides_states(int group) const {
+    const auto pieces = k_.joint.row(group);
     const auto is_state = [](const Piece& p) { return p.of == Piece::Left::state; };
     const auto is_sum = [](const Piece& p) { return p.signal < 0; };
     return std::any_of(pieces.begin(), pieces.end(), is_state) &&
@@ -166,40 +167,55 @@ class Reducer {
 
   std::vector<Hidden> constraints() const {
     const solve::NullRows null = solve::null_rows(*d_.factors);
+    const RowGroups groups(*k_.joint.plan);
     std::vector<Hidden> result;
-    for (Index i = 0; i < null.y.rows(); ++i) {
-      Hidden c = constraint(null.y.row(i));
-      c.row = null.own[at(i)];
-      result.push_back(std::move(c));
+    for (std::size_t i = 0; i < null.y.size(); ++i) {
+      result.push_back(constraint(null.y[i], groups));
+      result.back().row = null.own[i];
     }
     return result;
   }
 
   /// y times the known sides of all rows.
-  Hidden constraint(const RowVectorXd& y) const {
-    const Index states = d_.layout().order();
-    const auto inputs = static_cast<Index>(d_.layout().inputs.size());
-    std::vector<solve::Kept> sum(at(states + inputs));
-    std::vector<int> rows;
-    for (int r = 0; r < static_cast<int>(k_.joint.rows.size()); ++r) {
-      const RowVectorXd own =
-          y.segment(k_.joint.plan->row_first[at(r)], k_.joint.plan->structure.row_size[at(r)]);
-      if (own.isZero(0)) continue;
-      rows.push_back(k_.joint.rows[at(r)]);
+  Hidden constraint(const solve::SparseRow& y, const RowGroups& groups) const {
+    const auto states = static_cast<int>(d_.layout().order());
+    std::map<int, RowVectorXd> of_group;
+    for (const auto& [row, value] : y) {
+      const auto [r, place] = groups.of(row);
+      RowVectorXd& own = of_group[r];
+      if (own.size() == 0) own.setZero(k_.joint.plan->structure.row_size[at(r)]);
+      own(place) = value;
+    }
+    Hidden c{{}, {RowVectorXd::Zero(std::ssize(d_.layout().inputs))}};
+    std::map<int, solve::Kept> sum;  // by place in [x; u]
+    for (const auto& [r, own] : of_group) {
+      c.rows.push_back(k_.joint.rows[at(r)]);
       for (const Piece& p : k_.joint.row(r)) {
         if (p.entry >= 0) continue;
         const MatrixXd m = solve::matrix_of(p, d_.numbers);
         const RowVectorXd value = own * m, size = own.cwiseAbs() * m.cwiseAbs();
         const int first = d_.layout().known_first[at(p.signal)];
-        for (Index i = 0; i < value.size(); ++i) sum[at(first + i)].add(value(i), size(i));
+        for (int i = 0; i < value.size(); ++i) sum[first + i].add(value(i), size(i));
       }
     }
-    Hidden c{RowVectorXd(states), {RowVectorXd(inputs)}};
-    for (Index i = 0; i < states; ++i) c.g(i) = sum[at(i)].cleaned();
-    for (Index i = 0; i < inputs; ++i) c.h[0](i) = sum[at(states + i)].cleaned();
-    for (const RowMatrix<double>& f : forcing_) c.h.push_back(solve::product(-y, f));
-    c.rows = std::move(rows);
+    for (const auto& [i, known] : sum)
+      if (const double value = known.cleaned(); i >= states)
+        c.h[0](i - states) = value;
+      else if (value != 0)
+        c.g.emplace_back(i, value);
+    for (const RowMatrix<double>& f : forcing_) c.h.push_back(by_forcing(y, f));
     return c;
+  }
+
+  /// -y f
+  static RowVectorXd by_forcing(const solve::SparseRow& y, const RowMatrix<double>& f) {
+    RowVectorXd factors(std::ssize(y));
+    MatrixXd rows(std::ssize(y), f.cols());
+    for (std::size_t i = 0; i < y.size(); ++i) {
+      factors(static_cast<Index>(i)) = -y[i].second;
+      rows.row(static_cast<Index>(i)) = f.row(y[i].first);
+    }
+    return solve::product(factors, rows);
   }
 
   /// Right-hand sides by u', u'' ...: those of the old rows, in the new order, and the new ones.
@@ -207,8 +223,9 @@ class Reducer {
     const auto inputs = static_cast<Index>(d_.layout().inputs.size());
     std::vector<RowMatrix<double>> moved(forcing_.size(),
                                          RowMatrix<double>::Zero(joint.plan->unknowns, inputs));
+    const RowGroups groups(*k_.joint.plan);
     const auto place = [&](int row) {
-      const auto [r, offset] = group_of(k_.joint, row);
+      const auto [r, offset] = groups.of(row);
       return joint.plan->row_first[at(r)] + offset;
     };
     for (std::size_t j = 0; j < forcing_.size(); ++j)

@@ -22,7 +22,8 @@ namespace titop::detail {
 /// equations as written, undetermined motions at 0, in k.before_reduce. Throws improper (input,
 /// output, number of derivatives and the equation that makes it), or what solve::blame says where a
 /// constraint repeats or contradicts what is known (with what depends on the motion that is left
-/// undetermined), not_finite. O(bodies) per missing pivot.
+/// undetermined), not_finite. O(bodies) per derivative that is taken, and for each missing pivot
+/// what its constraint reaches: of a point without mass its neighbours.
 void reduce(Skeleton& k, SystemData& d, double least);
 
 }  // namespace titop::detail

@@ -25,9 +25,12 @@ void add(KeptMatrix& to, Index first, const C& c, const Block& value, const Bloc
 }
 
 /// What only rounding has left is 0.
+void clean(KeptMatrix& m, Index column) {
+  for (Index i = 0; i < m.value.rows(); ++i) m.set(i, column, solve::settled(m.at(i, column)));
+}
+
 KeptMatrix cleaned(KeptMatrix m) {
-  for (Index j = 0; j < m.value.cols(); ++j)
-    for (Index i = 0; i < m.value.rows(); ++i) m.set(i, j, solve::settled(m.at(i, j)));
+  for (Index j = 0; j < m.value.cols(); ++j) clean(m, j);
   return m;
 }
 
@@ -95,9 +98,17 @@ KeptMatrix watched_rows(KeptMatrix rates, const StateMarks& watched) {
 
 /// The combinations of the motions z by which nothing of this is moved.
 KeptMatrix unseen(const KeptMatrix& z, const KeptMatrix& seen) {
-  const MatrixXd by = solve::left_null(seen.transposed()).y.transpose();
-  KeptMatrix result;
-  result.value = z.value * by, result.size = z.size * by.cwiseAbs();
+  solve::SparseRows by_motion(at(seen.value.cols()));
+  for (Index j = 0; j < seen.value.cols(); ++j)
+    for (Index i = 0; i < seen.value.rows(); ++i)
+      if (seen.size(i, j) != 0) by_motion[at(j)][static_cast<int>(i)] = seen.at(i, j);
+  const std::vector<solve::SparseRow> by = solve::left_null(std::move(by_motion)).y;
+  KeptMatrix result(z.value.rows(), std::ssize(by));
+  for (Index k = 0; k < result.value.cols(); ++k)
+    for (const auto& [j, factor] : by[at(k)]) {
+      result.value.col(k) += factor * z.value.col(j);
+      result.size.col(k) += std::abs(factor) * z.size.col(j);
+    }
   return cleaned(std::move(result));
 }
 
@@ -171,11 +182,12 @@ void take_out(KeptMatrix& z, Index column, const Place& p, const Motions& motion
   const KeptMatrix v = motions.value(p.signal, z);
   const RowVectorXd along = p.direction * v.value;
   for (Index j = column + 1; j < z.value.cols(); ++j) {
+    if (along(j) == 0) continue;
     const double share = along(j) / along(column);
     z.value.col(j) -= share * z.value.col(column);
     z.size.col(j) += std::abs(share) * z.size.col(column);
+    clean(z, j);
   }
-  z = cleaned(std::move(z));
 }
 
 // --- words --------------------------------------------------------------------------------------

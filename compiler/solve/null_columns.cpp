@@ -89,33 +89,35 @@ class Column {
 // z at unknown i: z = Z q, Z the solutions for one patch each, and (I - Z at these unknowns) q = 0.
 KeptMatrix null_columns(const Factors<double>& patched) {
   const std::vector<Patch> patches = patched.patches();
-  const auto m = static_cast<Index>(patches.size());
-  const Index n = patched.plan().unknowns;
-  KeptMatrix Z(n, m), M(m, m);
+  const auto m = static_cast<int>(patches.size());
+  std::vector<int> patch_at(at(patched.plan().unknowns), -1);
+  for (int i = 0; i < m; ++i) patch_at[at(patches[at(i)].unknown)] = i;
+  std::vector<std::vector<std::pair<int, Kept>>> Z(at(m));
+  SparseRows M(at(m));  // transposed
   Column column(patched);
-  for (Index i = 0; i < m; ++i) {
-    const std::vector<Kept>& z = column.solve(patches[at(i)].row, patches[at(i)].value);
-    for (Index r = 0; r < n; ++r) Z.set(r, i, z[at(r)]);
+  for (int j = 0; j < m; ++j) {
+    const std::vector<Kept>& z = column.solve(patches[at(j)].row, patches[at(j)].value);
+    std::map<int, Kept> row{{j, {1, 1}}};
+    for (int r = 0; r < patched.plan().unknowns; ++r) {
+      const Kept& k = z[at(r)];
+      if (k.size == 0) continue;
+      Z[at(j)].emplace_back(r, k);
+      if (const int i = patch_at[at(r)]; i >= 0) row[i].add(-k.value, k.size);
+    }
+    for (const auto& [i, k] : row)
+      if (const double value = k.cleaned(); value != 0) M[at(j)][i] = {value, std::abs(value)};
   }
-  for (Index i = 0; i < m; ++i)
-    for (Index j = 0; j < m; ++j) {
-      const Kept z = Z.at(patches[at(i)].unknown, j);
-      Kept k{-z.value, z.size};
-      if (i == j) k.add(1, 1);
-      M.set(j, i, {k.cleaned(), std::abs(k.cleaned())});  // transposed
-    }
   const NullRows small = left_null(std::move(M));
-  KeptMatrix result(n, small.y.rows());
-  for (Index k = 0; k < small.y.rows(); ++k) {
-    for (Index r = 0; r < n; ++r) {
-      Kept sum;
-      for (Index i = 0; i < m; ++i)
-        sum.add(small.y(k, i) * Z.value(r, i), std::abs(small.y(k, i)) * Z.size(r, i));
-      result.set(r, k, settled(sum));
-    }
+  KeptMatrix result(patched.plan().unknowns, std::ssize(small.y));
+  for (Index k = 0; k < result.value.cols(); ++k) {
+    std::map<int, Kept> sums;
+    for (const auto& [j, factor] : small.y[at(k)])
+      for (const auto& [r, z] : Z[at(j)]) sums[r].add(factor * z.value, std::abs(factor) * z.size);
     // At the patched unknowns z is q itself.
-    for (Index i = 0; i < m; ++i)
-      result.set(patches[at(i)].unknown, k, {small.y(k, i), std::abs(small.y(k, i))});
+    std::erase_if(sums, [&](const auto& entry) { return patch_at[at(entry.first)] >= 0; });
+    for (const auto& [j, factor] : small.y[at(k)])
+      result.set(patches[at(j)].unknown, k, {factor, std::abs(factor)});
+    for (const auto& [r, sum] : sums) result.set(r, k, settled(sum));
   }
   return result;
 }

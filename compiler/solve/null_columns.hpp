@@ -4,10 +4,24 @@
 
 namespace titop::solve {
 
+/// Many sums, as columns.
+struct KeptMatrix {
+  Eigen::MatrixXd value, size;
+
+  KeptMatrix() = default;
+  KeptMatrix(Eigen::Index rows, Eigen::Index columns)
+      : value(Eigen::MatrixXd::Zero(rows, columns)), size(value) {}
+  Kept at(Eigen::Index i, Eigen::Index j) const { return {value(i, j), size(i, j)}; }
+  void set(Eigen::Index i, Eigen::Index j, const Kept& k) {
+    value(i, j) = k.value, size(i, j) = k.size;
+  }
+};
+
 /// Columns z (unknowns x k, in the order of Plan::first) with L z = 0, k the rank that L lacks: the
 /// counterpart of `null_rows` for the same factors. Every z has 1 in an unknown of its own, where
 /// the other ones have 0. Entries that cancel are exactly 0; `size` says what the others were made
-/// of, for sums of them. O(fronts) per pair of patches.
+/// of, for sums of them. O(fronts) per patch, and what null_rows says of patches that depend on
+/// each other.
 KeptMatrix null_columns(const Factors<double>& patched);
 
 }  // namespace titop::solve

@@ -1,33 +1,51 @@
+#include <algorithm>
+#include <optional>
+#include <set>
 #include <titop/compiler/solve/null_rows.hpp>
+#include <utility>
 
 namespace titop::solve {
 namespace {
 
-using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::RowVectorXd;
+std::size_t at(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-/// x L = c, front by front: first U transposed from the leaves to the root, then L transposed back.
+/// Rows x with x L = c for factors of L, where c has one entry: first U transposed from its front
+/// towards the root, then L transposed back. Fronts where all is 0 are left out: a junction's
+/// dependence costs its neighbours, not the whole scene.
 class Transposed {
  public:
-  explicit Transposed(const Factors<double>& factors) : f_(factors), plan_(factors.plan()) {}
+  explicit Transposed(const Factors<double>& factors)
+      : f_(factors),
+        plan_(factors.plan()),
+        front_of_(at(plan_.unknowns)),
+        c_(at(plan_.unknowns)),
+        carried_(at(plan_.carried)) {
+    for (int f = 0; f < static_cast<int>(plan_.fronts.size()); ++f)
+      std::fill_n(front_of_.begin() + plan_.fronts[at(f)].first_unknown,
+                  plan_.fronts[at(f)].pivot_count, f);
+  }
 
-  RowVectorXd solve(const RowVectorXd& c) {
-    c_.resize(at(c.size()));
-    for (Index i = 0; i < c.size(); ++i) c_[at(i)] = {c(i), std::abs(c(i))};
-    carried_.assign(at(plan_.carried), {});
-    x_ = RowVectorXd::Zero(c.size());
-    for (std::size_t f = 0; f < plan_.fronts.size(); ++f) upward(f);
-    for (std::size_t f = plan_.fronts.size(); f-- > 0;) downward(f);
+  SparseRow solve(int unknown, double value) {
+    c_[at(unknown)] = {value, std::abs(value)};
+    std::set<int> fronts{front_of_[at(unknown)]};
+    for (auto f = fronts.begin(); f != fronts.end(); ++f) upward(*f, fronts);
+    x_.clear();
+    for (; !fronts.empty(); ++fronts_) {
+      const int last = *fronts.rbegin();
+      fronts.erase(last);
+      downward(last, fronts);
+    }
+    std::sort(x_.begin(), x_.end());
     return x_;
   }
 
+  std::size_t fronts() const { return fronts_; }
+
  private:
-  void upward(std::size_t index) {
-    const Front& f = plan_.fronts[index];
-    const double* lu = f_.made(index).lu.data();
+  /// `fronts`: those further up where something stands now are added.
+  void upward(int index, std::set<int>& fronts) {
+    const Front& f = plan_.fronts[at(index)];
+    const double* lu = f_.made(at(index)).lu.data();
     const std::ptrdiff_t n = f.columns();
     for (int k = 0; k < f.pivot_count; ++k) {
       Kept& own = c_[at(f.first_unknown + k)];
@@ -41,16 +59,23 @@ class Transposed {
         for (int i = 0; i < plan_.structure.variable_size[at(v)]; ++i, ++column)
           pass(own, lu[k * n + column], c_[at(plan_.first[at(v)] + i)]);
     }
+    for (const int v : plan_.list(f.border))
+      for (int i = 0; i < plan_.structure.variable_size[at(v)]; ++i)
+        if (const int unknown = plan_.first[at(v)] + i; c_[at(unknown)].size != 0)
+          fronts.insert(front_of_[at(unknown)]);
   }
 
-  void downward(std::size_t index) {
-    const Front& f = plan_.fronts[index];
-    const Factors<double>::Made& made = f_.made(index);
+  /// What it reads is 0 again afterwards. `fronts`: children where something stands now are added.
+  void downward(int index, std::set<int>& fronts) {
+    const Front& f = plan_.fronts[at(index)];
+    const Factors<double>::Made& made = f_.made(at(index));
     const std::ptrdiff_t n = f.columns();
     std::vector<Kept> b(at(f.row_count));
-    for (int i = 0; i < f.pivot_count; ++i) b[at(i)] = c_[at(f.first_unknown + i)];
-    for (int i = f.pivot_count; i < f.row_count; ++i)
-      b[at(i)] = carried_[at(f.first_carried + i - f.pivot_count)];
+    for (int i = 0; i < f.row_count; ++i)
+      b[at(i)] =
+          std::exchange(i < f.pivot_count ? c_[at(f.first_unknown + i)]
+                                          : carried_[at(f.first_carried + i - f.pivot_count)],
+                        {});
     for (int k = f.pivot_count - 1; k >= 0; --k) {
       for (int i = k + 1; i < f.row_count; ++i) pass(b[at(i)], made.lu[at(i * n + k)], b[at(k)]);
       b[at(k)] = settled(b[at(k)]);
@@ -60,11 +85,14 @@ class Transposed {
     int place = 0;
     for (const int r : plan_.list(f.rows))
       for (int i = 0; i < plan_.structure.row_size[at(r)]; ++i)
-        x_(plan_.row_first[at(r)] + i) = assembled[at(place++)].value;
+        if (const double x = assembled[at(place++)].value; x != 0)
+          x_.emplace_back(plan_.row_first[at(r)] + i, x);
     for (const int c : plan_.list(f.children)) {
       const Front& child = plan_.fronts[at(c)];
-      for (int i = 0; i < child.left_over(); ++i)
-        carried_[at(child.first_carried + i)] = assembled[at(place++)];
+      for (int i = 0; i < child.left_over(); ++i) {
+        const Kept& k = carried_[at(child.first_carried + i)] = assembled[at(place++)];
+        if (k.size != 0) fronts.insert(c);
+      }
     }
   }
 
@@ -74,108 +102,116 @@ class Transposed {
 
   const Factors<double>& f_;
   const Plan& plan_;
-  std::vector<Kept> c_, carried_;
-  RowVectorXd x_;
+  std::vector<int> front_of_;      ///< per unknown
+  std::vector<Kept> c_, carried_;  ///< 0 between solutions
+  SparseRow x_;
+  std::size_t fronts_ = 0;
 };
 
 /// p M = 0 by row operations.
-struct LeftNull {
-  MatrixXd M, size;
-  std::vector<int> rows = {}, columns = {};  ///< not pivots yet
-
-  explicit LeftNull(KeptMatrix m) : M(std::move(m.value)), size(std::move(m.size)) {
-    for (int i = 0; i < M.rows(); ++i) rows.push_back(i);
-    for (int j = 0; j < M.cols(); ++j) columns.push_back(j);
+class LeftNull {
+ public:
+  explicit LeftNull(SparseRows m) : M_(std::move(m)) {
+    for (int i = 0; i < static_cast<int>(M_.size()); ++i)
+      rows_.push_back(i), by_.push_back({{i, 1.0}});
   }
 
   NullRows solve() {
-    const Index n = M.rows();
-    MatrixXd by = MatrixXd::Identity(n, n);  // row operations so far: M now = by * M before
-    for (;;) {
-      const auto [r, c] = pivot();
-      if (r == rows.end()) break;
-      const int row = *r, column = *c;
-      rows.erase(r), columns.erase(c);
-      for (const int i : rows) {
-        const double l = M(i, column) / M(row, column);
-        if (l == 0) continue;
-        for (const int j : columns) {
-          Kept k{M(i, j), size(i, j)};
-          k.add(-l * M(row, j), std::abs(l) * size(row, j));
-          M(i, j) = k.cleaned(), size(i, j) = k.size;
-        }
-        by.row(i) -= l * by.row(row);
-      }
-    }
+    while (const auto found = pivot()) take_out(found->first, found->second);
     NullRows result;
-    result.y.resize(static_cast<Index>(rows.size()), n);
-    for (std::size_t k = 0; k < rows.size(); ++k)
-      result.y.row(static_cast<Index>(k)) = by.row(rows[k]);
-    result.own.assign(rows.begin(), rows.end());
+    for (const int r : rows_) {
+      result.y.emplace_back();
+      for (const auto& [i, value] : by_[at(r)])
+        if (value != 0) result.y.back().emplace_back(i, value);
+    }
+    result.own = std::move(rows_);
     return result;
   }
 
-  std::pair<std::vector<int>::iterator, std::vector<int>::iterator> pivot() {
-    std::pair best{rows.end(), columns.end()};
+ private:
+  /// Row and column of what has lost least.
+  std::optional<std::pair<int, int>> pivot() const {
+    std::optional<std::pair<int, int>> best;
     double score = 0;
-    for (auto r = rows.begin(); r != rows.end(); ++r)
-      for (auto c = columns.begin(); c != columns.end(); ++c) {
-        if (M(*r, *c) == 0) continue;
+    for (const int r : rows_)
+      for (const auto& [c, k] : M_[at(r)]) {
+        if (k.value == 0) continue;
         // The diagonal is a pure number; the others have their rows' and columns' units.
-        const double share = std::abs(M(*r, *c)) / size(*r, *c) * (*r == *c ? 2 : 1);
+        const double share = std::abs(k.value) / k.size * (r == c ? 2 : 1);
         if (share > score) score = share, best = {r, c};
       }
     return best;
   }
+
+  void take_out(int row, int column) {
+    std::erase(rows_, row);
+    const Kept own = M_[at(row)].at(column);
+    M_[at(row)].erase(column);
+    for (const int i : rows_) {
+      const auto found = M_[at(i)].find(column);
+      if (found == M_[at(i)].end()) continue;
+      const double l = found->second.value / own.value;
+      M_[at(i)].erase(found);
+      if (l == 0) continue;
+      for (const auto& [j, k] : M_[at(row)]) {
+        Kept& sum = M_[at(i)][j];
+        sum.add(-l * k.value, std::abs(l) * k.size);
+        sum.value = sum.cleaned();
+      }
+      for (const auto& [j, value] : by_[at(row)]) by_[at(i)][j] -= l * value;
+    }
+  }
+
+  SparseRows M_;
+  std::vector<int> rows_;                  ///< not pivots yet
+  std::vector<std::map<int, double>> by_;  ///< row operations so far: M now = by * M before
 };
+
+/// p' Y; what cancels is 0.
+SparseRow combined(const SparseRow& p, const std::vector<SparseRow>& Y) {
+  std::map<int, Kept> sums;
+  for (const auto& [i, factor] : p)
+    for (const auto& [place, value] : Y[at(i)])
+      sums[place].add(factor * value, std::abs(factor * value));
+  SparseRow result;
+  for (const auto& [place, sum] : sums)
+    if (const double value = sum.cleaned(); value != 0) result.emplace_back(place, value);
+  return result;
+}
 
 }  // namespace
 
-KeptMatrix KeptMatrix::transposed() const {
-  KeptMatrix t;
-  t.value = value.transpose(), t.size = size.transpose();
-  return t;
-}
-
-NullRows left_null(KeptMatrix M) { return LeftNull(std::move(M)).solve(); }
-
-RowVectorXd solve_transposed(const Factors<double>& factors, const RowVectorXd& c) {
-  return Transposed(factors).solve(c);
-}
+NullRows left_null(SparseRows M) { return LeftNull(std::move(M)).solve(); }
 
 // L = F - sum of value_i e_row_i e_unknown_i', F what the factors are of. y L = 0 is y F = p' Q
 // with p = y at the patched rows: y = p' Y, Y = Q F^-1, and p' (I - Y at these rows) = 0.
 NullRows null_rows(const Factors<double>& patched) {
   const std::vector<Patch> patches = patched.patches();
-  const auto m = static_cast<Index>(patches.size());
-  const Index n = patched.plan().unknowns;
-  MatrixXd Y(m, n);
-  KeptMatrix M(m, m);
+  const auto m = static_cast<int>(patches.size());
+  std::vector<int> patch_at(at(patched.plan().unknowns), -1);
+  for (int i = 0; i < m; ++i) patch_at[at(patches[at(i)].row)] = i;
+  std::vector<SparseRow> Y;
+  SparseRows M(at(m));
   Transposed transposed(patched);
-  for (Index i = 0; i < m; ++i) {
-    const Patch& p = patches[at(i)];
-    Y.row(i) = transposed.solve(p.value * RowVectorXd::Unit(n, p.unknown));
+  for (int i = 0; i < m; ++i) {
+    Y.push_back(transposed.solve(patches[at(i)].unknown, patches[at(i)].value));
+    std::map<int, Kept> row{{i, {1, 1}}};
+    for (const auto& [place, y] : Y.back())
+      if (const int j = patch_at[at(place)]; j >= 0) row[j].add(-y, std::abs(y));
+    for (const auto& [j, k] : row)
+      if (const double value = k.cleaned(); value != 0) M[at(i)][j] = {value, std::abs(value)};
   }
-  for (Index i = 0; i < m; ++i)
-    for (Index j = 0; j < m; ++j) {
-      Kept k;
-      k.add(-Y(i, patches[at(j)].row), std::abs(Y(i, patches[at(j)].row)));
-      if (i == j) k.add(1, 1);
-      M.set(i, j, {k.cleaned(), std::abs(k.cleaned())});
-    }
-  NullRows small = left_null(std::move(M));
-  NullRows result{MatrixXd::Zero(small.y.rows(), n), {}};
-  for (Index k = 0; k < small.y.rows(); ++k) {
-    for (Index r = 0; r < n; ++r) {
-      Kept sum;
-      for (Index i = 0; i < m; ++i)
-        sum.add(small.y(k, i) * Y(i, r), std::abs(small.y(k, i) * Y(i, r)));
-      result.y(k, r) = sum.cleaned();
-    }
+  NullRows result = left_null(std::move(M));
+  result.fronts = transposed.fronts();
+  for (SparseRow& y : result.y) {
+    const SparseRow p = std::move(y);
+    y = combined(p, Y);
     // At the patched rows y is p itself.
-    for (Index i = 0; i < m; ++i) result.y(k, patches[at(i)].row) = small.y(k, i);
-    result.own.push_back(patches[at(small.own[at(k)])].row);
+    std::erase_if(y, [&](const auto& entry) { return patch_at[at(entry.first)] >= 0; });
+    for (const auto& [i, value] : p) y.emplace_back(patches[at(i)].row, value);
+    std::sort(y.begin(), y.end());
   }
+  for (int& own : result.own) own = patches[at(own)].row;
   return result;
 }
 

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cmath>
+#include <map>
 #include <titop/compiler/solve/elimination.hpp>
+#include <utility>
+#include <vector>
 
 namespace titop::solve {
 
@@ -24,36 +27,27 @@ inline Kept settled(const Kept& k) {
   return {value, std::abs(value) > 1e-4 * k.size ? std::abs(value) : k.size};
 }
 
-/// Many of them.
-struct KeptMatrix {
-  Eigen::MatrixXd value, size;
+/// Places and values of what is not 0, ascending.
+using SparseRow = std::vector<std::pair<int, double>>;
 
-  KeptMatrix() = default;
-  KeptMatrix(Eigen::Index rows, Eigen::Index columns)
-      : value(Eigen::MatrixXd::Zero(rows, columns)), size(value) {}
-  Kept at(Eigen::Index i, Eigen::Index j) const { return {value(i, j), size(i, j)}; }
-  void set(Eigen::Index i, Eigen::Index j, const Kept& k) {
-    value(i, j) = k.value, size(i, j) = k.size;
-  }
-  KeptMatrix transposed() const;
-};
+/// Rows by their entries; what is not there is 0.
+using SparseRows = std::vector<std::map<int, Kept>>;
 
-/// Rows y (k x scalar rows, in the order of Plan::row_first) with y L = 0, k the rank that L lacks,
-/// from factors with patches in place of its missing pivots. Every y is one minimal dependence
-/// among rows: it has 1 in a row of its own (`own`), where the other ones have 0. Entries that
-/// cancel are exactly 0. O(fronts) per patch.
+/// Rows y (places: scalar rows, in the order of Plan::row_first) with y L = 0, as many as the rank
+/// that L lacks, from factors with patches in place of its missing pivots. Every y is one minimal
+/// dependence among rows: it has 1 in a row of its own (`own`), where the other ones have 0.
+/// Entries that cancel are exactly 0. For each patch O(fronts that its dependence reaches), which
+/// are few for a junction without mass; then O(k^2 entries) for k patches that depend on each
+/// other.
 struct NullRows {
-  Eigen::MatrixXd y;
+  std::vector<SparseRow> y;
   std::vector<int> own;
+  std::size_t fronts = 0;  ///< visited, all patches together
 };
 NullRows null_rows(const Factors<double>& patched);
 
 /// Rows p with p M = 0, each with 1 in a place of its own where the other ones have 0: elimination
-/// with the pivot that has lost least, whatever the units. O(rows^2 columns).
-NullRows left_null(KeptMatrix M);
-
-/// x L = c for factors of L (c over the unknowns in the order of Plan::first; x over the scalar
-/// rows), entries that cancel set to 0. O(fronts).
-Eigen::RowVectorXd solve_transposed(const Factors<double>& factors, const Eigen::RowVectorXd& c);
+/// with the pivot that has lost least, whatever the units. O(entries of M) per pivot.
+NullRows left_null(SparseRows M);
 
 }  // namespace titop::solve
