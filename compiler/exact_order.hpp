@@ -17,9 +17,9 @@ struct ExactOrder {
 };
 
 struct ExactOptions {
-  int states = 40;      ///< larger problems are refused: cost grows as states^3 digits
+  int states = 40;      ///< larger problems are refused: the cost is that of `exact_order`
   int unknowns = 2000;  ///< scalar port signals and states of a diagram: likewise
-  int bits = 200'000;   ///< and so are those whose numbers outgrow this
+  int bits = 200'000;   ///< and so are those whose numbers outgrow this: what bounds the time
 };
 
 /// Minimal order of what the graph's equations say (those that `transfer(graph, s)` solves), in
@@ -34,8 +34,11 @@ struct ExactOptions {
 /// independent one. Not decided either: a diagram without inputs or without outputs; equations that
 /// do not determine the outputs without derivatives; more states, unknowns or bits than the options
 /// say. Throws nothing of its own but the mistakes that the graph has noted; what blocks throw for
-/// bad values passes through. Cost: milliseconds for whole numbers, even with a hundred states;
-/// states^3 products of numbers that grow otherwise.
+/// bad values passes through. Cost: milliseconds for whole numbers, even with a hundred states.
+/// Where n states all act on one another by numbers of 53 bits, integers grow to about 80 n^2 bits
+/// and the time as n^7: 2 s for 16 states, 7 s for 20, half a minute for 24, and half an hour, by
+/// that rate, for 40. `bits` = 20'000 refuses those of more than 16 such states, mostly within a
+/// minute.
 ExactOrder exact_order(const Graph& graph, const ExactOptions& options = {},
                        ParameterValues values = {});
 

@@ -159,6 +159,29 @@ StateSpace fitting(const StateSpace& rounding, const StateSpace& model) {
           model.states, model.inputs, model.outputs};
 }
 
+/// Modes are taken out by the names of states, and a model without names of ports has none.
+void refuse_sizes(const StateSpace& m) {
+  std::vector<Mistake> mistakes;
+  const Eigen::Index n = std::ssize(m.states), nu = std::ssize(m.inputs),
+                     ny = std::ssize(m.outputs);
+  const auto compare = [&](const char* what, const Eigen::MatrixXd& entries, Eigen::Index rows,
+                           Eigen::Index columns) {
+    if (entries.rows() == rows && entries.cols() == columns) return;
+    mistakes.push_back(
+        {Code::size,
+         fmt::format("minimize: {} of the model is {} x {}, by its names it is {} x {}", what,
+                     entries.rows(), entries.cols(), rows, columns),
+         {},
+         "name every state, input and output of the model; A is n x n, B n x nu, "
+         "C ny x n, D ny x nu"});
+  };
+  compare("A", m.A, n, n);
+  compare("B", m.B, n, nu);
+  compare("C", m.C, ny, n);
+  compare("D", m.D, ny, nu);
+  if (!mistakes.empty()) throw Error(std::move(mistakes));
+}
+
 }  // namespace
 
 std::string to_string(const OrderVerdict& v) {
@@ -184,6 +207,7 @@ std::string to_string(const OrderVerdict& v) {
 }
 
 Minimized modes::minimize_unmeasured(const StateSpace& model, const MinimizeOptions& given) {
+  refuse_sizes(model);
   if (!model.A.allFinite() || !model.B.allFinite() || !model.C.allFinite() || !model.D.allFinite())
     throw Error(Code::not_finite, "minimize: entries of the model are not finite",
                 "look for overflow in the data");

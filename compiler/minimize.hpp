@@ -96,7 +96,8 @@ struct Minimized {
 /// (32 times the largest of four samples of rounding). With `exact_order` the least visible modes
 /// leave until the order is that one. The transfer is measured before and after, near the modes
 /// that left: if it has changed by more than 1e-8 and ten times the resolution, the whole model is
-/// the result, and the notes say so. Cost O(n^3). Throws not_finite for entries that are not.
+/// the result, and the notes say so. Cost O(n^3). Throws not_finite for entries that are not, and
+/// size for matrices that do not fit each other or the names of states, inputs and outputs.
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options = {});
 
 }  // namespace titop

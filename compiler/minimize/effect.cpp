@@ -5,6 +5,7 @@
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/minimize/effect.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/error.hpp>
 
 namespace titop::modes {
 namespace {
@@ -24,6 +25,20 @@ OrderVerdict back_to(int order, double judged, OrderVerdict v) {
   else if (!v.exact)
     v.lowest = 0;  // the modes that stayed were judged in the same way
   return v;
+}
+
+/// Of the transfer; 1 where a model has none.
+double change(const StateSpace& whole, const StateSpace& part,
+              const std::vector<std::complex<double>>& points) try {
+  const std::vector<MatrixXcd> before = detail::transfers(whole, points),
+                               after = detail::transfers(part, points);
+  const detail::Measure by{std::vector<int>(whole.outputs.size(), 1),
+                           std::vector<int>(whole.inputs.size(), 1),
+                           detail::terms(whole, points).cwiseMax(detail::terms(part, points))};
+  return detail::difference(after, before, by).relative;
+} catch (const Error& error) {
+  if (!error.has(Code::singular)) throw;
+  return 1;
 }
 
 }  // namespace
@@ -58,12 +73,7 @@ void measure_change(const StateSpace& whole, Minimized& m) {
   const double frequency = detail::frequency_of(whole.A),
                w = frequency > 0 && std::isfinite(frequency) ? frequency : 1;
   const auto points = near_modes(m.order.removed, {0.37 * w, 0.93 * w});
-  const std::vector<MatrixXcd> before = detail::transfers(whole, points),
-                               after = detail::transfers(m.model, points);
-  const detail::Measure by{std::vector<int>(whole.outputs.size(), 1),
-                           std::vector<int>(whole.inputs.size(), 1),
-                           detail::terms(whole, points).cwiseMax(detail::terms(m.model, points))};
-  m.order.change = detail::difference(after, before, by).relative;
+  m.order.change = change(whole, m.model, points);
   m.notes.front() = to_string(m.order);
 }
 

@@ -10,6 +10,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
+constexpr double kSingular = 1e-15;  ///< rcond of a matrix with a pole at 0, but for rounding
+
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 MatrixXd above(const MatrixXd& a, const MatrixXd& b) {
@@ -42,11 +44,17 @@ StateSpace without_integrators(const StateSpace& model, const Integrated& states
   StateSpace rest;
   rest.A = model.A(states.rest, states.rest);
   rest.B = model.B(states.rest, Eigen::all);
-  rest.C = above(model.C(Eigen::all, states.rest), model.A(states.integrators, states.rest));
-  rest.D = above(model.D, model.B(states.integrators, Eigen::all));
   for (const int i : states.rest) rest.states.push_back(model.states[at(i)]);
   rest.inputs = model.inputs;
   rest.outputs = model.outputs;
+  MatrixXd C = model.C(Eigen::all, states.rest), D = model.D;
+  if (model.outputs.empty()) {  // all states count, and not only what integrators take
+    C = MatrixXd::Identity(rest.A.rows(), rest.A.cols());
+    D = MatrixXd::Zero(rest.A.rows(), model.B.cols());
+    rest.outputs = rest.states;
+  }
+  rest.C = above(C, model.A(states.integrators, states.rest));
+  rest.D = above(D, model.B(states.integrators, Eigen::all));
   for (const int i : states.integrators) rest.outputs.push_back(model.states[at(i)] + "_rate");
   return rest;
 }
@@ -95,6 +103,7 @@ std::optional<Decoupled> decouple(const StateSpace& model, const Integrated& sta
   MatrixXd A = model.A(rest, rest);
   const Eigen::VectorXd scale = linalg::balance_parts(A);
   const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd(A.transpose()));
+  if (!(lu.rcond() > kSingular)) return std::nullopt;
   const auto divided = [&](const MatrixXd& Y) {
     const MatrixXd right = Y.transpose();
     return MatrixXd(MatrixXd(lu.solve(right)).transpose());

@@ -15,7 +15,8 @@ struct Integrated {
 /// A state is an integrator if it acts on nothing, or on integrators alone. O(n^2) per integrator.
 Integrated find_integrators(const StateSpace& model);
 
-/// The rest by itself. What goes into the integrators are outputs, after the model's own.
+/// The rest by itself. What goes into the integrators are outputs, after the model's own; where it
+/// has none, after all states of the rest.
 StateSpace without_integrators(const StateSpace& model, const Integrated& states);
 
 /// `rest`, perhaps with fewer states than it had, with the integrators of the model again.
