@@ -93,6 +93,7 @@ SecondOrder second_order(const MatrixXd& A) {
       if (off > 0) result.asymmetry = std::max(result.asymmetry, scale > 0 ? off / scale : 1);
     }
   result.S = (S + S.transpose()) / 2;
+  result.skew = (S - S.transpose()) / 2;
   result.found = result.asymmetry <= 1e-9;
   return result;
 }
@@ -131,11 +132,12 @@ std::vector<Pole> roots(double w2, double z) {
   return {make_pole(fast != 0 ? w2 / fast : 0, false), make_pole(fast, false)};
 }
 
-/// Poles of yddot + Z ydot + S y = 0 where Z is diagonal in the modes of S; false if it is not.
+/// Poles of yddot + Z ydot + S y = 0 where Z is diagonal in the modes of S; false if it is not, or
+/// if they show that S is not symmetric.
 bool proportional_poles(const StateSpace& model, const SecondOrder& form, std::vector<Pole>& out) {
   const GradedModes all = eigh_graded(form.S);
   const std::optional<VectorXd> Z = diagonal_in(all, form.Z);
-  if (!Z) return false;
+  if (!Z || !symmetric_in(all, form.S, form.skew)) return false;
   const auto& [lambda, V] = all.modes;
   for (Eigen::Index k = 0; k < lambda.size(); ++k) {
     VectorXd share = VectorXd::Zero(model.A.rows());

@@ -37,7 +37,8 @@ struct SecondOrder {
   Eigen::VectorXd d;         ///< scaling
   Eigen::MatrixXd S;         ///< symmetric positive semidefinite: yddot = -S y - Z ydot
   Eigen::MatrixXd Z;         ///< same scaling
-  double asymmetry = 0;      ///< of S, relative to its largest entry, before it was averaged
+  Eigen::MatrixXd skew;      ///< what S lost: the antisymmetric part, to be small in its modes, too
+  double asymmetry = 0;      ///< largest |S_ij - S_ji| over sqrt(S_ii S_jj) before; up to 1e-9
 };
 SecondOrder second_order(const Eigen::MatrixXd& A);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <titop/compiler/minimize/clusters.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/graded.hpp>
@@ -13,20 +14,63 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kAsymmetry = 1e-9;  ///< of what must be symmetric, over its diagonal
+constexpr double kNoTerm = 1e-12;    ///< of the terms of a sum: what is left is rounding
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-void find_clusters(const GradedModes& e, double resolution, ModeSet& m) {
+struct Range {
+  Index first, count;
+};
+
+/// Modes, by rising lambda, whose frequencies are equal but for rounding and this part of lambda.
+std::vector<Range> equal_frequencies(const GradedModes& e, double same) {
   const VectorXd& lambda = e.modes.lambda;
-  m.cluster.assign(at(lambda.size()), 0);
   const double all_alike = 100 * kEps * lambda.cwiseAbs().maxCoeff();
-  // A frequency that differs by 2 * resolution differs by 4 * resolution in its square.
-  const double same = std::max(kSameFrequency, 4 * resolution);
-  for (Index i = 1; i < lambda.size(); ++i) {
+  std::vector<Range> result;
+  for (Index i = 0; i < lambda.size(); ++i) {
     const double size = std::abs(lambda(i));
     const double rounding = e.graded ? std::min(all_alike, 4 * e.relative * size) : all_alike;
-    const double noise = rounding + same * size;
-    m.cluster[at(i)] = m.cluster[at(i - 1)] + (lambda(i) - lambda(i - 1) > noise ? 1 : 0);
+    if (i == 0 || lambda(i) - lambda(i - 1) > rounding + same * size)
+      result.push_back({i, 1});
+    else
+      ++result.back().count;
+  }
+  return result;
+}
+
+/// Any vectors will do for modes of one frequency: those in which damping does not couple them.
+const GradedModes& turn_by_damping(const MatrixXd& Z, GradedModes& e) {
+  for (const auto& [first, count] : equal_frequencies(e, kSameFrequency)) {
+    if (count == 1) continue;
+    auto V = e.modes.V.middleCols(first, count);
+    const MatrixXd in = V.transpose() * Z * V;
+    const double size = in.cwiseAbs().maxCoeff(),
+                 skew = (in - in.transpose()).cwiseAbs().maxCoeff();
+    if (skew <= kAsymmetry * size) V = (V * eigh((in + in.transpose()) / 2).V).eval();
+  }
+  return e;
+}
+
+/// Modes of one frequency are counted as equal if their damping is, too. Sorts those of one
+/// frequency by their damping z.
+void find_clusters(GradedModes& e, VectorXd& z, double resolution, ModeSet& m) {
+  VectorXd& lambda = e.modes.lambda;
+  const Index n = lambda.size();
+  // A frequency that differs by 2 * resolution differs by 4 * resolution in its square.
+  const double same = std::max(kSameFrequency, 4 * resolution);
+  m.cluster.assign(at(n), 0);
+  for (const auto& [first, count] : equal_frequencies(e, same)) {
+    std::vector<Index> order(at(count));
+    std::iota(order.begin(), order.end(), first);
+    std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return z(a) < z(b); });
+    e.modes.V.middleCols(first, count) = e.modes.V(Eigen::all, order).eval();
+    lambda.segment(first, count) = lambda(order).eval();
+    z.segment(first, count) = z(order).eval();
+    const double apart = same * std::max(std::sqrt(std::abs(lambda(first))),
+                                         z.segment(first, count).cwiseAbs().maxCoeff());
+    for (Index i = first; i < first + count; ++i)
+      if (i > 0)
+        m.cluster[at(i)] = m.cluster[at(i - 1)] + (i == first || z(i) - z(i - 1) > apart ? 1 : 0);
   }
 }
 
@@ -42,9 +86,9 @@ Ports ports(const StateSpace& model, const Symmetric& s) {
           (model.C(Eigen::all, s.qdot) * s.D).transpose()};
 }
 
-/// S and Z of yddot = -S y - Z ydot, both symmetric (Z only where it is diagonal in the modes).
+/// yddot = -(S + skew) y - Z ydot: S is symmetric, Z where it is diagonal in the modes.
 struct Springs {
-  MatrixXd S, Z;
+  MatrixXd S, skew, Z;
 };
 
 /// By the energy E = L L' of the positions: y = L' q.
@@ -58,7 +102,8 @@ std::optional<Springs> by_energy(const StateSpace& model, const MatrixXd& energy
   for (Index i = 0; i < S.rows(); ++i)
     for (Index j = 0; j < i; ++j)
       if (!(std::abs(S(i, j) - S(j, i)) <= kAsymmetry * size(i) * size(j))) return std::nullopt;
-  return Springs{(S + S.transpose()) / 2, -s.D_inverse * model.A(s.qdot, s.qdot) * s.D};
+  return Springs{(S + S.transpose()) / 2, (S - S.transpose()) / 2,
+                 -s.D_inverse * model.A(s.qdot, s.qdot) * s.D};
 }
 
 std::optional<Springs> springs(const StateSpace& model, const MatrixXd& energy, Symmetric& s) {
@@ -69,7 +114,7 @@ std::optional<Springs> springs(const StateSpace& model, const MatrixXd& energy, 
   if (!form.found) return std::nullopt;
   s.D = form.d.asDiagonal();
   s.D_inverse = form.d.cwiseInverse().asDiagonal();
-  return Springs{std::move(form.S), std::move(form.Z)};
+  return Springs{std::move(form.S), std::move(form.skew), std::move(form.Z)};
 }
 
 void turn_clusters(const Ports& p, const ModeSet& m, MatrixXd& Q) {
@@ -87,8 +132,36 @@ void turn_clusters(const Ports& p, const ModeSet& m, MatrixXd& Q) {
   }
 }
 
-/// How far modes are apart, and what rounding mixes: graded matrices keep small ones cleaner.
-void find_mixing(const GradedModes& e, ModeSet& m) {
+/// Of entries of Q'c, what is more than the rounding of their terms.
+MatrixXd clear(const MatrixXd& Q, const MatrixXd& c) {
+  const MatrixXd in = Q.transpose() * c, terms = Q.cwiseAbs().transpose() * c.cwiseAbs();
+  return (in.array().abs() <= kNoTerm * terms.array()).select(0, in);
+}
+
+/// An output that reads positions and rates, C = cq + s cv at each pole s, where that is more than
+/// a factor to real vectors: one of the two poles of an overdamped mode may be left out, or a
+/// motion with a phase between modes of one frequency.
+bool mixes_levels(const GradedModes& e, const VectorXd& z, const Ports& p, const ModeSet& m) {
+  const MatrixXd q = clear(e.modes.V, p.cq), v = clear(e.modes.V, p.cv);
+  const Index n = z.size();
+  for (Index first = 0, last; first < n; first = last) {
+    for (last = first + 1; last < n && m.cluster[at(last)] == m.cluster[at(first)];) ++last;
+    const double lambda = e.modes.lambda(first);
+    const bool real = z(first) * z(first) >= 4 * lambda;
+    for (Index k = 0; k < q.cols() && lambda != 0; ++k) {
+      const VectorXd a = q.col(k).segment(first, last - first),
+                     b = v.col(k).segment(first, last - first);
+      const double size = a.norm() * b.norm();
+      const double across = (a * b.transpose() - b * a.transpose()).norm();
+      if (size > 0 && (real || across > kClearRank * size)) return true;
+    }
+  }
+  return false;
+}
+
+/// How far modes are apart (damping z counts as what it does to the pole), and what rounding mixes:
+/// graded matrices keep small ones cleaner.
+void find_mixing(const GradedModes& e, const VectorXd& z, ModeSet& m) {
   const VectorXd& lambda = e.modes.lambda;
   const Index n = lambda.size();
   const double all_alike = std::sqrt(static_cast<double>(n)) * kEps * m.lambda.maxCoeff();
@@ -96,7 +169,8 @@ void find_mixing(const GradedModes& e, ModeSet& m) {
   m.mixing.resize(n, n);
   for (Index j = 0; j < n; ++j)
     for (Index i = 0; i < n; ++i) {
-      const double gap = std::abs(lambda(i) - lambda(j));
+      const double omega = std::sqrt(std::max(m.lambda(i), m.lambda(j)));
+      const double gap = std::hypot(lambda(i) - lambda(j), omega * (z(i) - z(j)));
       m.distance(i, j) = gap;
       const double graded = e.relative * std::sqrt(m.lambda(i) * m.lambda(j));
       const double rounding = e.graded ? std::min(all_alike, graded) : all_alike;
@@ -131,11 +205,14 @@ std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolut
   if (!form) return std::nullopt;
   const Ports p = ports(model, s);
   if (p.bq.size() && p.bq.cwiseAbs().maxCoeff() > 0) return std::nullopt;
-  const GradedModes e = eigh_graded(form->S);
-  if (!diagonal_in(e, form->Z)) return std::nullopt;
-  s.Q = e.modes.V;
+  GradedModes e = eigh_graded(form->S);
+  std::optional<VectorXd> z = diagonal_in(e, form->Z);
+  if (!z) z = diagonal_in(turn_by_damping(form->Z, e), form->Z);
+  if (!z || !symmetric_in(e, form->S, form->skew)) return std::nullopt;
   ModeSet& m = s.modes;
-  find_clusters(e, resolution, m);
+  find_clusters(e, *z, resolution, m);
+  if (mixes_levels(e, *z, p, m)) return std::nullopt;
+  s.Q = e.modes.V;
   m.lambda = e.modes.lambda.cwiseAbs();
   const Parts parts = find_parts(form->S, s.Q.cwiseAbs(), m);
   keep_to_parts(parts, s.Q);
@@ -146,7 +223,7 @@ std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolut
   const MatrixXd pq = s.Q.transpose() * p.cq, pv = m.omega.asDiagonal() * s.Q.transpose() * p.cv;
   m.c = (pq.array().square() + pv.array().square()).sqrt();
   balance_sides(parts, m);
-  find_mixing(e, m);
+  find_mixing(e, *z, m);
   find_rigid(p, s.Q, m);
   return s;
 }

@@ -104,4 +104,16 @@ std::optional<VectorXd> diagonal_in(const GradedModes& of, const MatrixXd& Z) {
       (in.diagonal().array().abs() <= 1e-13 * terms.diagonal().array()).select(0, in.diagonal()));
 }
 
+bool symmetric_in(const GradedModes& of, const MatrixXd& S, const MatrixXd& skew) {
+  const auto& [lambda, V] = of.modes;
+  const MatrixXd in = V.transpose() * skew * V;
+  const MatrixXd terms = V.cwiseAbs().transpose() * S.cwiseAbs() * V.cwiseAbs();
+  for (Index j = 0; j < in.cols(); ++j)
+    for (Index i = 0; i < in.rows(); ++i) {
+      const double own = std::sqrt(std::abs(lambda(i))) * std::sqrt(std::abs(lambda(j)));
+      if (!(std::abs(in(i, j)) <= std::max(1e-12 * terms(i, j), 1e-9 * own))) return false;
+    }
+  return true;
+}
+
 }  // namespace titop

@@ -160,3 +160,17 @@ TEST_CASE("graded: damping that couples slow modes is not lost beside that of a 
   for (Index k = 0; k < 8; ++k)
     CHECK(std::abs((*damping)(k) / (1e-3 * modes.modes.lambda(k)) - 1) <= 1e-12);
 }
+
+TEST_CASE("graded: an antisymmetric part counts by what it does to the modes") {
+  MatrixXd S = MatrixXd::Zero(3, 3), skew = MatrixXd::Zero(3, 3);
+  S << 2e18, -1e9, 0, -1e9, 1, 0, 0, 0, 1;  // 2 k / m, k / m, k for m = 1e-18, k = 1; and another
+  const GradedModes e = eigh_graded(S);
+  CHECK(symmetric_in(e, S, skew));
+  skew(0, 1) = 1e-7, skew(1, 0) = -1e-7;  // rounding of 1e9
+  CHECK(symmetric_in(e, S, skew));
+  skew.setZero();
+  skew(1, 2) = 1e-10, skew(2, 1) = -1e-10;
+  CHECK(symmetric_in(e, S, skew));
+  skew(1, 2) = 1e-3, skew(2, 1) = -1e-3;
+  CHECK(!symmetric_in(e, S, skew));
+}

@@ -1,7 +1,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <complex>
+#include <string>
 #include <titop/titop.hpp>
+#include <vector>
 
 /// Slow poles beside fast ones: against closed forms.
 
@@ -121,4 +124,58 @@ TEST_CASE("minimal: slow modes beside a fast one all stay, and one that nobody s
   const std::complex<double> s{0.1, 1.3};
   const auto one = [&](double mass, double k) { return 1.0 / (mass * s * s + k); };
   CHECK(std::abs(m.transfer(s)(0, 0) / (one(1, 1) + one(1, 4) + one(1e-3, 1e11)) - 1.0) <= 1e-13);
+}
+
+namespace {
+
+/// Two equal rows wall - a - b. What the last of one stretches pushes the last of the other, with
+/// opposite signs: no spring does that.
+Diagram whirl(double light, double stiffness, double heavy, double push) {
+  Diagram d{"whirl"};
+  auto u = d.input("u");
+  std::vector<decltype(d.add("", SpringMass{}))> a, b;
+  for (const char* row : {"1", "2"}) {
+    a.push_back(d.add("a" + std::string(row), SpringMass{.mass = light, .stiffness = stiffness}));
+    b.push_back(d.add("b" + std::string(row), SpringMass{.mass = heavy, .stiffness = stiffness}));
+    ground(a.back());
+    mount(b.back(), a.back().child);
+  }
+  b[0].child.force = push * a[1].stretch + push * b[1].stretch + u;
+  b[1].child.force = -push * a[0].stretch - push * b[0].stretch;
+  d.output("x") = a[0].stretch + b[0].stretch;
+  return d;
+}
+
+/// x1 + j x2 is one row under -j push x: (m L + 2 k)(M L + k + j push) = k^2, its slow L = s^2.
+std::complex<long double> slow_pole(long double m, long double k, long double M, long double push) {
+  using Long = std::complex<long double>;
+  const Long b = (m * Long(k, push) + 2 * k * M) / (2 * m * M),
+             c = (2 * k * Long(k, push) - k * k) / (m * M);
+  return std::sqrt(c / (-b - std::sqrt(b * b - c)));
+}
+
+}  // namespace
+
+TEST_CASE("poles: feedback that decides on a slow mode is not lost beside a fast one") {
+  struct {
+    double m, k, M, push;
+  } const rows[] = {{1e-9, 1, 1, 0.1}, {1e-3, 1000, 100, 0.01}, {1e-5, 1000, 10, 0.05}};
+  for (const auto& [m, k, M, push] : rows) {
+    CAPTURE(m);
+    const System s = compile(whirl(m, k, M, push));
+    const auto right = slow_pole(m, k, M, push);
+    const auto poles = s.poles();
+    REQUIRE(poles.size() >= 2);
+    for (int i : {0, 1}) {
+      const Pole& p = poles[static_cast<std::size_t>(i)];
+      CHECK(off(std::abs(p.s.real()), std::abs(right.real())) <= 1e-3);  // eps k / m
+      CHECK(off(p.omega, std::abs(right)) <= 1e-6);
+    }
+    CHECK((poles[0].s.real() < 0) != (poles[1].s.real() < 0));
+    // Where the resonance of an undamped mode would be far off.
+    const auto beside = std::abs(right) + 2 * std::abs(right.real());
+    const std::complex<double> at(0, static_cast<double>(beside));
+    const auto exact = s.transfer(at, Precision::digits50);
+    CHECK(std::abs(s.state_space().transfer(at)(0, 0) / exact(0, 0) - 1.0) <= 1e-3);
+  }
 }
