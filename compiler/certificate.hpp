@@ -33,7 +33,8 @@ struct Certificate {
   /// What writing the dense model down costs: the largest change of an output that its rounding
   /// makes, over the largest size of that output, at s from the slowest mode that the outputs show
   /// (or, where that is not to be seen, from far below the blocks' frequencies) to above the
-  /// blocks' frequencies, but where the factors themselves have no digit (the log says so then)
+  /// blocks' frequencies and those of the assembly (by products of two entries of A), but where the
+  /// factors themselves have no digit, at all or of that output (the log says so then)
   /// (residual of the factors' states in the dense model, carried to the outputs by the factors).
   /// By inputs of one unit: random ones, three translations or rotations of a port together; from
   /// the ninth unit on some share a column. Outputs likewise; what is 0 but for rounding, or 1e-14
@@ -41,9 +42,9 @@ struct Certificate {
   /// neighbours. The same in all units of inputs and outputs; in other units of states and time
   /// other numbers are written, and round differently. Above 1e-9 and up to 100 states it is at
   /// most 30 times what the model's own answers are off by, as the residual itself can round where
-  /// a point has hardly any mass. Negative where no dense model has been written, and where one has
-  /// no states, no inputs or no outputs. Above 1e-9 the log warns, and names output and input (up
-  /// to eight units).
+  /// a point has hardly any mass. Negative where no dense model has been written, where one has no
+  /// states, no inputs or no outputs, and where the factors have no digit anywhere. Above 1e-9 the
+  /// log warns, and names output and input (up to eight units).
   double dense_error = -1;
   std::complex<double> dense_error_s;  ///< where it is largest
   /// The same over the size of the output at that same s, far below the slowest mode, too: there an

@@ -19,6 +19,8 @@ constexpr double kNoise = 1e3;       ///< times one sample of rounding: what may
 constexpr double kFinest = 1e-18;
 /// Of its neighbours: the terms of a 0 that one order of sums hits exactly and another to 1e-17.
 constexpr double kHitBy = 1e-3;
+/// Of its neighbours: more rounding than that is no 0 that double misses, but digits lost.
+constexpr double kOfNothing = 1e-6;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
@@ -128,6 +130,14 @@ MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& poi
   return result;
 }
 
+MatrixXd of_nothing(const MatrixXd& terms, const std::vector<MatrixXcd>& exact) {
+  const MatrixXd size = largest(exact);
+  const MatrixXd around = size.rowwise().maxCoeff().cwiseSqrt() *
+                          Eigen::RowVectorXd(size.colwise().maxCoeff().cwiseSqrt());
+  const double limit = kOfNothing / std::numeric_limits<double>::epsilon();
+  return (around.array() == 0 || terms.array() <= limit * around.array()).select(terms, 0);
+}
+
 MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
                            const std::vector<std::complex<double>>& points) {
   MatrixXd result = rounding.D;
@@ -138,7 +148,7 @@ MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
                    sum = by.to_outputs * states + rounding.C * by.of_states;
     if (sum.allFinite()) result = result.cwiseMax(rounding.D + sum);
   }
-  return result / std::numeric_limits<double>::epsilon();
+  return of_nothing(result / std::numeric_limits<double>::epsilon(), transfers(m, points));
 }
 
 MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points) {

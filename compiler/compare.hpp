@@ -34,9 +34,16 @@ std::vector<Eigen::MatrixXcd> transfers(const StateSpace& m,
 /// O(points n^3).
 Eigen::MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& points);
 
-/// The same of the model's own rounding, what it may have put into each entry of A, B, C and D
-/// (matrices of their sizes): |dD| + |W| |dB| + |dC| |X| + |W| |dA| |X| over the rounding unit.
-/// These are sums of magnitudes: no luck has to be allowed for. O(points n^3).
+/// Of these terms, those whose rounding is below 1e-6 of what stands in the row and column of
+/// `exact` (their geometric mean), and all where nothing stands there; else 0. What rounds more is
+/// no 0 beside others: such a model has lost digits everywhere, and an entry of it may be anything.
+Eigen::MatrixXd of_nothing(const Eigen::MatrixXd& terms,
+                           const std::vector<Eigen::MatrixXcd>& exact);
+
+/// The same as `terms` of the model's own rounding, what it may have put into each entry of A, B, C
+/// and D (matrices of their sizes): |dD| + |W| |dB| + |dC| |X| + |W| |dA| |X| over the rounding
+/// unit. These are sums of magnitudes: no luck has to be allowed for. 0 as in `of_nothing`, beside
+/// the model's own transfers. O(points n^3).
 Eigen::MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
                                   const std::vector<std::complex<double>>& points);
 

@@ -21,6 +21,15 @@ Error not_refined(const SystemData& data, std::complex<double> s, double error);
 /// as much.
 constexpr double kRoundings = 4;
 
+/// Every input by itself.
+template <class T>
+solve::RowMatrix<T> unit_inputs(const SystemData& data) {
+  const auto m = static_cast<Eigen::Index>(data.layout().inputs.size());
+  solve::RowMatrix<T> u = solve::RowMatrix<T>::Zero(m, m);
+  for (Eigen::Index i = 0; i < m; ++i) u(i, i) = T(1);
+  return u;
+}
+
 /// A compiled diagram at one s, driven by its external inputs: every signal on demand. T is a
 /// complex scalar of any precision, or double for a real s at less than half the cost; blocks that
 /// are the same object are evaluated once.
@@ -57,8 +66,10 @@ class Evaluation {
   /// With `coarse`: about the error of the outputs, from above: their change by the last step of
   /// refinement. 1 where a step did not shrink some unknown's error, infinite where numbers have
   /// overflown. Measured per block of the transfer (a port by a port, dual vectors in halves), over
-  /// the block's largest entry; where the change is more than 1e-3 of that, as of a 0 that rounding
-  /// has left, over the geometric mean of the largest entries of the block's row and column.
+  /// the block's largest entry; where the change is more than 1e-3 of that and finer arithmetic
+  /// says that it is what rounding has left of a 0 (SystemData::zero_blocks), over the geometric
+  /// mean of the largest entries of the block's row and column. (At a real s in double, and where
+  /// columns are not one per input, all that is so small is taken for such a 0.)
   double refinement_error() const { return refinement_error_; }
   /// One step of refinement, residual and all in T: what the elimination itself has lost (growth
   /// that no single pivot shows) is mended by it. Returns the change of the outputs, measured as

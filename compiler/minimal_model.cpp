@@ -100,28 +100,58 @@ void doubt_lost_digits(const System& system, const SystemData& d, const StateSpa
 /// motion far below, what a free structure has lost near its modes would not show.
 struct Change {
   double by_modes = 0;  ///< beside the terms of both models: no rounding is as large
-  double in_all = 0;    ///< beside those of the model as written: the minimal one may cancel more
+  double in_all = 0;    ///< beside itself, or where it is a 0 beside those of the model as written
+  std::vector<std::complex<double>> tried, left_out;  ///< where the factors have digits, and not
 };
+
+/// Beside the modes that left and at the assembly's frequencies: a block that is slow by itself may
+/// lead where rigid bodies have no digit left.
+std::vector<std::complex<double>> points_of_change(const SystemData& d, const StateSpace& dense,
+                                                   const Minimized& m) {
+  std::vector<std::complex<double>> points = modes::near_modes(m.order.removed, pick_s(d));
+  for (const double omega : frequencies_of(dense.A)) points.push_back(off_axis(omega));
+  return points;
+}
 
 Change change(const System& system, const SystemData& d, const StateSpace& dense,
               const Minimized& m) {
   constexpr double kAnotherDigit = 10;
   Change worst;
-  for (const std::complex<double> s : modes::near_modes(m.order.removed, pick_s(d))) {
+  for (const std::complex<double> s : points_of_change(d, dense, m)) {
+    const std::optional<MatrixXcd> G = transfer_if_any(system, s);
+    (G ? worst.tried : worst.left_out).push_back(s);
+    if (!G) continue;
     const std::vector<std::complex<double>> here{s};
-    const std::vector<MatrixXcd> exact{system.transfer(s)}, minimal = transfers(m.model, here);
+    const std::vector<MatrixXcd> exact{*G}, minimal = transfers(m.model, here);
     const MatrixXd as_written = terms(dense, here);
-    const auto off = [&](const std::vector<MatrixXcd>& G, const MatrixXd& terms_there) {
+    const auto off = [&](const std::vector<MatrixXcd>& of, const MatrixXd& terms_there) {
       Measure by = measure(*d.skeleton->stage.source, terms_there);
-      return difference(G, exact, by, system, here).relative;
+      return difference(of, exact, by, system, here).relative;
     };
     worst.by_modes =
         std::max(worst.by_modes, off(minimal, as_written.cwiseMax(terms(m.model, here))));
-    const double lost = off(minimal, as_written);
-    if (lost > worst.in_all && lost > kAnotherDigit * off(transfers(dense, here), as_written))
+    const auto digits = [&](const std::vector<MatrixXcd>& of) {
+      Measure by = measure(*d.skeleton->stage.source, {});
+      add_rounding(by, exact, of_nothing(as_written, exact));
+      return difference(of, exact, by, system, here).relative;
+    };
+    const double lost = digits(minimal);
+    if (lost > worst.in_all && lost > kAnotherDigit * digits(transfers(dense, here)))
       worst.in_all = lost;
   }
   return worst;
+}
+
+/// Where the change was not measured; where it was not at all, nothing may leave.
+void say_left_out(const SystemData& d, const Change& by) {
+  if (by.left_out.empty()) return;
+  const auto smaller = [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); };
+  d.dense_notes.push_back(
+      {Note::Kind::unchecked, "minimize",
+       fmt::format("the change of the transfer is measured at {} of {} points: at the others, the "
+                   "lowest |s| = {:.3g}, the factors have no digit",
+                   by.tried.size(), by.tried.size() + by.left_out.size(),
+                   std::abs(*std::min_element(by.left_out.begin(), by.left_out.end(), smaller)))});
 }
 
 }  // namespace
@@ -144,7 +174,8 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
     const Change by = change(system, d, dense, m);
     m.order.change = by.by_modes;
     m.notes.front() = to_string(m.order);
-    lost = by.in_all;
+    lost = by.tried.empty() ? 1 : by.in_all;  // nothing leaves on trust
+    say_left_out(d, by);
   }
   if (modes::put_back(dense, resolution, lost, m)) {
     d.dense_notes.push_back(

@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <type_traits>
 
 /// Of an evaluation: how good it is, and how it becomes better. The rest is in evaluate.cpp.
 namespace titop::detail {
@@ -23,6 +25,11 @@ constexpr double kShrinks = 0.25;
 /// If the first step changes no block of the unknowns by more, that steps shrink is plain by then;
 /// else a second step has to show it.
 constexpr double kPlain = 1e-9;
+/// Times what rounding may have changed: what is below may be nothing else.
+constexpr double kNoise = 1e3;
+/// Of what stands in the same row and column: what turned frames leave of a 0, cos(pi / 2) = 6e-17.
+/// More digits see it, the data do not stand for it.
+constexpr double kOfFrames = 1e-15;
 
 }  // namespace
 
@@ -107,34 +114,80 @@ Eigen::MatrixXd block_sizes(const Matrix& m, const std::vector<Eigen::Index>& ro
   return result;
 }
 
+template <class T>
+Eigen::MatrixXcd rounded(const solve::RowMatrix<T>& m) {
+  return m.unaryExpr([](const T& x) -> std::complex<double> { return solve::Scalar<T>::round(x); });
+}
+
+std::vector<Eigen::Index> groups_of_outputs(const SystemData& d) {
+  return groups(d.graph().outputs, d.layout().output_first, 0, std::ssize(d.layout().outputs));
+}
+
+std::vector<Eigen::Index> groups_of_inputs(const SystemData& d) {
+  return groups(d.graph().inputs, d.layout().input_first, 0, std::ssize(d.layout().inputs));
+}
+
+/// Blocks that are nothing beside those of other outputs by the same input, and of other inputs
+/// to the same output. (Where all of a row is small, that is its unit, or what it is.)
+Eigen::MatrixX<bool> left_by_frames(const Eigen::MatrixXd& size) {
+  const Eigen::ArrayXXd row = size.rowwise().maxCoeff().replicate(1, size.cols()).array(),
+                        col = size.colwise().maxCoeff().replicate(size.rows(), 1).array();
+  return size.array() <= kOfFrames * row.sqrt() * col.sqrt() &&
+         size.array() <= std::sqrt(kOfFrames) * row.min(col);
+}
+
+/// Blocks that are nothing but the rounding of T, or that of frames; none said where T has no digit
+/// of any.
+template <class T>
+std::optional<Eigen::MatrixX<bool>> zeros_in(const SystemData& d) {
+  try {
+    const Evaluation<T> point(d, solve::Scalar<T>::from(pick_s(d)), unit_inputs<T>(d));
+    const auto rows = groups_of_outputs(d), cols = groups_of_inputs(d);
+    const Eigen::MatrixXd size = block_sizes(rounded<T>(point.outputs()), rows, cols),
+                          off = block_sizes(rounded<T>(point.rounding()), rows, cols);
+    const Eigen::MatrixX<bool> zeros = !(size.array() > kNoise * off.array());
+    if (!zeros.all()) return zeros.array() || left_by_frames(size).array();
+  } catch (const Error&) {  // no pivot, or numbers that T has not
+  }
+  return {};
+}
+
 }  // namespace
+
+const Eigen::MatrixX<bool>& SystemData::zero_blocks() const {
+  std::call_once(zeros_once, [&] {
+    auto found = zeros_in<std::complex<solve::DoubleDouble>>(*this);
+    if (!found) found = zeros_in<solve::Complex50>(*this);
+    const auto n = [](const auto& list) { return static_cast<Eigen::Index>(list.size()) - 1; };
+    zeros = found ? std::move(*found)
+                  : Eigen::MatrixX<bool>::Constant(n(groups_of_outputs(*this)),
+                                                   n(groups_of_inputs(*this)), true);
+  });
+  return zeros;
+}
 
 template <class T>
 std::vector<Eigen::Index> Evaluation<T>::groups_of_columns() const {
   if (u_.cols() != u_.rows()) return {0, u_.cols()};  // not one column per input
-  return groups(data_.graph().inputs, data_.layout().input_first, 0, u_.cols());
+  return groups_of_inputs(data_);
 }
 
 template <class T>
 double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) const {
-  const auto rounded = [](const solve::RowMatrix<T>& m) {
-    return Eigen::MatrixXcd(
-        m.unaryExpr([](const T& x) -> std::complex<double> { return solve::Scalar<T>::round(x); }));
-  };
   const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), u_.cols());
-  const Eigen::MatrixXcd y = rounded(outputs());
-  const Eigen::MatrixXcd change = rounded(outputs_of(unknowns, none, nullptr));
+  const Eigen::MatrixXcd y = rounded<T>(outputs());
+  const Eigen::MatrixXcd change = rounded<T>(outputs_of(unknowns, none, nullptr));
   if (!y.allFinite() || !change.allFinite()) return std::numeric_limits<double>::infinity();
-  const auto rows = groups(data_.graph().outputs, data_.layout().output_first, 0, y.rows());
-  const auto cols = groups_of_columns();
+  const auto rows = groups_of_outputs(data_), cols = groups_of_columns();
+  const bool known = !std::is_same_v<T, double> && u_.cols() == u_.rows();
   const Eigen::MatrixXd size = block_sizes(y, rows, cols), off = block_sizes(change, rows, cols);
   double worst = 0;
   for (Eigen::Index i = 0; i < size.rows(); ++i)
     for (Eigen::Index j = 0; j < size.cols(); ++j) {
       // A block that is 0 by symmetry is nothing but rounding: it counts beside its neighbours.
       const double beside = std::sqrt(size.row(i).maxCoeff()) * std::sqrt(size.col(j).maxCoeff());
-      const bool noise = size(i, j) <= 1e3 * off(i, j);
       if (off(i, j) <= kUnderflow) continue;
+      const bool noise = size(i, j) <= kNoise * off(i, j) && (!known || data_.zero_blocks()(i, j));
       // Where all are 0 there is nothing to compare with: no digit is known.
       const double of = noise ? beside : size(i, j);
       worst = std::max(worst, of > 0 ? off(i, j) / of : 1);

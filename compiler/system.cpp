@@ -45,13 +45,7 @@ MatrixXcd rounded(const solve::RowMatrix<T>& m) {
   return m.unaryExpr([](const T& x) -> Double { return solve::Scalar<T>::round(x); });
 }
 
-template <class T>
-solve::RowMatrix<T> unit_inputs(const detail::SystemData& d) {
-  const auto m = static_cast<Eigen::Index>(d.layout().inputs.size());
-  solve::RowMatrix<T> u = solve::RowMatrix<T>::Zero(m, m);
-  for (Eigen::Index i = 0; i < m; ++i) u(i, i) = T(1);
-  return u;
-}
+using detail::unit_inputs;
 
 template <class T>
 MatrixXcd transfer_in(const detail::SystemData& d, Double s) {
@@ -175,6 +169,15 @@ MatrixXcd System::transfer(std::complex<double> s, Precision precision) const {
     refuse_overflow(
         fmt::format("the transfer of {} at s = {}{:+}j", data_->graph().name, s.real(), s.imag()));
   return G;
+}
+
+std::optional<MatrixXcd> detail::transfer_if_any(const System& system, Double s) {
+  try {
+    return system.transfer(s);
+  } catch (const Error& error) {
+    if (!error.has(Code::singular) && !error.has(Code::not_finite)) throw;
+    return {};
+  }
 }
 
 std::vector<MatrixXcd> System::frequency_response(std::span<const double> omega, int threads,

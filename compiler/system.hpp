@@ -61,7 +61,8 @@ enum class Precision {
   digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower: an oracle
   as_needed  ///< double, and finer where the weakest pivot has lost more than four digits: refined
              ///< or twofold if that settles, else 50 digits; where double has no pivot at all
-             ///< though s is no pole, as in wide grids, long double or 50 digits
+             ///< though s is no pole, as in wide grids, long double or 50 digits, unless the last
+             ///< place of the data decides all digits, as far below all modes of a closed chain
 };
 
 /// Values of parameters by name: {{"k1", 12.0}, {"angle", 0.3}}.
@@ -161,7 +162,8 @@ class System {
   ///
   /// Where new values change how a closed chain moves, or bring a term in or leave one out, all
   /// passes run again, at the cost of `compile` and with its throws; the log says so, and warns if
-  /// other states are kept than before.
+  /// other states are kept than before. So does every update of a scene whose equations as written
+  /// are singular, such as one with a point without mass (its log has notes of pass `reduce`).
   System update(const ParameterList& values) const;
 
   /// All parameters and their values here, in the order of their making.

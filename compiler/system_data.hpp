@@ -101,11 +101,19 @@ struct SystemData {
   mutable OrderVerdict dense_order;
   mutable std::atomic<bool> dense_ready = false;  ///< all of the above may be read
 
+  mutable std::once_flag zeros_once;
+  mutable Eigen::MatrixX<bool> zeros;
+
   const Graph& graph() const { return skeleton->stage.graph; }
   const Layout& layout() const { return skeleton->layout; }
   const std::vector<std::string>& state_names() const { return states.names(layout().states); }
   /// The certificate: found by `compile`; of an updated system when it is first asked for.
   const Check& checked() const;
+  /// Blocks of the transfer, units of outputs x units of inputs, that are 0 by symmetry: 32 digits
+  /// (or 50, where these have none) see nothing but their own rounding there, or less than 1e-15 of
+  /// the row's and the column's other blocks, as turned frames leave of a 0. Found once, at pick_s,
+  /// when rounding in double first leaves a doubt: the cost of some ten evaluations in double.
+  const Eigen::MatrixX<bool>& zero_blocks() const;
   const std::shared_ptr<const solve::ColumnScale>& scale() const {
     return scale_as_written ? scale_as_written : factors->scale();
   }
@@ -126,8 +134,19 @@ Rates rates(const SystemData& data, const solve::RowMatrix<double>& known,
 /// units of its states, and in units of 1 / time. 0 where A says nothing of it. O(n^2) as a rule.
 double frequency_of(const Eigen::MatrixXd& A);
 
-/// A frequency inside the blocks' own range, off the axis so that no pole is near. O(bodies).
+/// Of an assembly by its written A, where rigid bodies between springs have no frequency by
+/// themselves: the mean (in its logarithm) over the states and the largest, each of a state by the
+/// product of two entries. Empty where A says nothing. O(n^2).
+std::vector<double> frequencies_of(const Eigen::MatrixXd& A);
+
+/// An s of about this modulus, so far off the axis that no pole is near.
+std::complex<double> off_axis(double omega);
+
+/// A frequency inside the blocks' own range, off the axis. O(bodies).
 std::complex<double> pick_s(const SystemData& data);
+
+/// The transfer where it has one: none at a pole, where no digit is left, or where it overflows.
+std::optional<Eigen::MatrixXcd> transfer_if_any(const System& system, std::complex<double> s);
 
 /// The dense model before `minimize`, into buffers that are resized only if they do not fit.
 void write_dense(const SystemData& data, StateSpace& model, int threads);
@@ -146,7 +165,8 @@ struct Rounded {
 StateSpace rounding_of(const SystemData& data, const StateSpace& dense);
 /// The dense model with 0 for every entry that is nothing but rounding: not above some 30 times
 /// what the factors say that rounding makes of 0 there. What does not act on something else then
-/// does not, in any units. O(bodies * order), for models that `minimize` judges.
+/// does not, in any units. As it is where that costs the transfer digits. O(bodies * order), for
+/// models that `minimize` judges.
 Rounded without_rounding(const SystemData& data, StateSpace dense);
 
 /// See Certificate::dense_error. O(n^2) per s; O(n^3) for up to 100 states where it is large.

@@ -20,6 +20,8 @@ using Eigen::VectorXd;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Of its neighbours, as in compare.cpp: the terms of a 0 that one order of sums hits.
+constexpr double kHitBy = 1e-3;
 constexpr double kNoise = 1e3;     ///< times rounding: what may be nothing else
 constexpr double kDoubted = 1e-9;  ///< what is above this is looked at again, at some cost
 
@@ -85,6 +87,10 @@ MatrixXd product(const StateSpace& of, const MatrixXd& x, const MatrixXd& u) {
 double beside_terms(const MatrixXd& off, const Response& r, const Groups& groups,
                     const MatrixXd& noise = {}) {
   if (!off.allFinite() || !r.rounding.allFinite() || !noise.allFinite()) return kInfinity;
+  const auto around = [&r](Index first, Index count, Index j) {
+    return std::sqrt(r.value.middleRows(first, count).cwiseAbs().maxCoeff()) *
+           std::sqrt(r.value.col(j).cwiseAbs().maxCoeff());
+  };
   double worst = 0;
   for (const auto& [first, count] : groups)
     for (Index j = 0; j < kAlone && count > 0; ++j) {
@@ -94,6 +100,8 @@ double beside_terms(const MatrixXd& off, const Response& r, const Groups& groups
       double size = largest(r.rounding);
       if (noise.size() > 0 && largest(r.value) <= kNoise * largest(noise))
         size = std::max(size, largest(noise));
+      if (largest(r.value) == 0)  // hit to the last bit, as another order of sums may not
+        size = std::max(size, kEpsilon * kHitBy * around(first, count, j));
       if (size > 0) worst = std::max(worst, kEpsilon * (largest(off) / size));
     }
   return worst;
@@ -183,12 +191,25 @@ struct Tried {
   double slowest = 0;
 };
 
-/// Far below, at and above the blocks' frequencies; below the slowest of them, and at and below the
-/// slowest mode that shows, where those are lower still. That is looked for below all blocks: two
-/// that are far apart have decades without a mode between them.
-Tried tried(const SystemData& d, const solve::RowMatrix<T>& u, const std::vector<int>& units) {
+/// At the assembly's own frequencies as well, where nothing is tried near them.
+void add_frequencies(const MatrixXd& A, std::vector<T>& list) {
+  constexpr double kNear = 3;  // what an s of such a lean still sees
+  for (const double w : frequencies_of(A)) {
+    const auto near = [w](const T s) {
+      return std::abs(s) <= kNear * w && w <= kNear * std::abs(s);
+    };
+    if (std::ranges::none_of(list, near)) list.push_back(off_axis(w));
+  }
+}
+
+/// Far below, at and above the blocks' frequencies, and at the assembly's; below the slowest of the
+/// blocks', and at and below the slowest mode that shows, where those are lower still. That is
+/// looked for below all blocks: two that are far apart have decades without a mode between them.
+Tried tried(const SystemData& d, const MatrixXd& A, const solve::RowMatrix<T>& u,
+            const std::vector<int>& units) {
   const T s = pick_s(d);
   Tried result{{1e-4 * s, 1e-2 * s, s, 1e2 * s}};
+  add_frequencies(A, result.s);
   double slowest = std::abs(s);
   for (const int i : d.layout().state_nodes)
     if (const double w = frequency_of(d.numbers.blocks[at(i)]->A); w > 0)
@@ -254,11 +275,10 @@ std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
 
 /// What the factors' states leave in the equations of the dense model, A x + B u - s x, carried to
 /// the outputs by the factors. Points where these have no digit (springs along directions that
-/// chains hold, far below all modes) say nothing of the model: they go to `not_tried`. Throws
-/// singular where none is left.
+/// chains hold, far below all modes) say nothing of the model: they go to `not_tried`.
 std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve::RowMatrix<T>& u,
                            const Measure& units, std::vector<T>& not_tried) {
-  const Tried where = tried(d, u, units.rows);
+  const Tried where = tried(d, m.A, u, units.rows);
   std::vector<T> list;
   std::deque<Evaluation<T>> points;
   std::vector<solve::RowMatrix<T>> x;
@@ -273,7 +293,7 @@ std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve
     list.push_back(s);
     x.push_back(d.states.model_states(points.back().states(), u, s));
   }
-  if (list.empty()) throw no_digit_left(d, pick_s(d));
+  if (list.empty()) return {};
   const std::vector<solve::RowMatrix<T>> Ax = moved(m.A, x);
   std::vector<Sample> result;
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -288,6 +308,24 @@ std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve
                       by_unit(change, units.rows)});
   }
   return result;
+}
+
+constexpr double kDigit = 10;  ///< times its rounding: what has a digit
+
+/// An output that the factors have digits of at some s says nothing where they have none, as far
+/// below the modes of closed chains: it does not count there, and the s is said.
+void leave_out_lost(std::vector<Sample>& samples, std::vector<T>& not_tried) {
+  const auto known = [](const Sample& p) {
+    return Eigen::ArrayXX<bool>(p.sizes.value.array() > kDigit * p.sizes.rounding.array());
+  };
+  Eigen::ArrayXX<bool> anywhere = known(samples.front());
+  for (const Sample& p : samples) anywhere = anywhere || known(p);
+  for (Sample& p : samples) {
+    const Eigen::ArrayXX<bool> lost = anywhere && !known(p);
+    if (!lost.any()) continue;
+    for (MatrixXd* m : {&p.off, &p.sizes.value, &p.sizes.rounding}) *m = lost.select(0, *m);
+    if (!p.below) not_tried.push_back(p.s);
+  }
 }
 
 constexpr Index kAnsweredUpTo = 100;  ///< states
@@ -362,6 +400,8 @@ DenseError dense_error(const SystemData& d, const StateSpace& m) {
   const solve::RowMatrix<T> u = tried_inputs(m, units.cols);
   std::vector<T> not_tried;
   std::vector<Sample> samples = sample(d, m, u, units, not_tried);
+  if (samples.empty()) return {{-1}, {-1}, std::move(not_tried)};
+  leave_out_lost(samples, not_tried);
   DenseError found = worst_of(samples);
   const double worst = std::max(found.beside_largest.error, found.where_small.error);
   if (worst > kDoubted && m.order() <= kAnsweredUpTo) {

@@ -143,13 +143,15 @@ void warn_of_lost_digits(const SystemData& d, const DenseError& e, std::vector<N
       e.where_small.error > kAnotherDigit * e.beside_largest.error)
     warn("at s = {0}, below the modes or where outputs are small, A, B, C, D keep {1}",
          e.where_small);
-  if (!e.not_tried.empty())
-    notes.push_back(
-        {Note::Kind::warning, "dense",
-         fmt::format("the dense model is not tried at {} of the s where it is compared, "
-                     "the lowest |s| = {:.3g}: the factors have no digit there in double; "
-                     "transfer takes finer arithmetic",
-                     e.not_tried.size(), std::abs(lowest(e.not_tried)))});
+  if (e.not_tried.empty()) return;
+  const bool none = e.beside_largest.error < 0;
+  notes.push_back(
+      {none ? Note::Kind::unchecked : Note::Kind::warning, "dense",
+       fmt::format("the dense model is not tried at {} of the s where it is compared, or "
+                   "not in all outputs, the lowest |s| = {:.3g}: the factors have no "
+                   "digit there in double; transfer takes finer arithmetic",
+                   none ? "any" : std::to_string(e.not_tried.size()),
+                   std::abs(lowest(e.not_tried)))});
 }
 
 }  // namespace titop::detail

@@ -37,6 +37,23 @@ double frequency_of(const MatrixXd& A) {
   return size > 0 && std::isfinite(size) ? by_longer_ways(A, size) : 0;
 }
 
+std::complex<double> off_axis(double omega) { return {0.37 * omega, 0.93 * omega}; }
+
+std::vector<double> frequencies_of(const MatrixXd& A) {
+  // What rounding leaves of a 0, between a position and its rate, is a round trip of 1e-8.
+  constexpr double kRounding = 1e-6;
+  const double fastest = frequency_of(A);
+  if (!(fastest > 0) || !std::isfinite(fastest)) return {};
+  double log_sum = 0;
+  int count = 0;
+  for (Index j = 0; j < A.cols(); ++j) {
+    const double w = std::sqrt((A.col(j).array() * A.row(j).transpose().array()).abs().maxCoeff());
+    if (w > kRounding * fastest) log_sum += std::log(w), ++count;
+  }
+  if (count == 0) return {fastest};
+  return {std::exp(log_sum / count), fastest};
+}
+
 std::complex<double> pick_s(const SystemData& d) {
   double log_sum = 0;
   int count = 0;
@@ -45,8 +62,7 @@ std::complex<double> pick_s(const SystemData& d) {
     if (w > 0 && std::isfinite(w)) log_sum += std::log(w), ++count;
     if (count >= 64) break;
   }
-  const double w = count ? std::exp(log_sum / count) : 1;
-  return {0.37 * w, 0.93 * w};
+  return off_axis(count ? std::exp(log_sum / count) : 1);
 }
 
 }  // namespace titop::detail

@@ -1,4 +1,8 @@
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <optional>
+#include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/instant.hpp>
 #include <titop/compiler/minimize/sampled.hpp>
 
@@ -7,6 +11,7 @@ namespace titop::detail {
 
 namespace {
 
+using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using solve::RowMatrix;
 
@@ -50,6 +55,87 @@ StateSpace rounding_of(const SystemData& d, const StateSpace& dense) {
   return rounding(d, dense, one_by_one(d, dense));
 }
 
+namespace {
+
+StateSpace cleared(const StateSpace& m, const StateSpace& rounding) {
+  StateSpace result = m;
+  result.A = modes::cleared(m.A, rounding.A);
+  result.B = modes::cleared(m.B, rounding.B);
+  result.C = modes::cleared(m.C, rounding.C);
+  result.D = modes::cleared(m.D, rounding.D);
+  return result;
+}
+
+/// From the slowest block by itself to the assembly's fastest, each about once.
+std::vector<std::complex<double>> points_of(const SystemData& d, const MatrixXd& A) {
+  constexpr double kNear = 3;  // what an s of such a lean still sees
+  std::vector<double> omegas = frequencies_of(A);
+  omegas.push_back(std::abs(pick_s(d)));
+  double slowest = omegas.back();
+  for (const int i : d.layout().state_nodes)
+    if (const double w = frequency_of(d.numbers.blocks[static_cast<std::size_t>(i)]->A); w > 0)
+      slowest = std::min(slowest, w);
+  omegas.push_back(slowest);
+  std::sort(omegas.begin(), omegas.end());
+  std::vector<std::complex<double>> points;
+  for (const double w : omegas)
+    if (points.empty() || w > kNear * std::abs(points.back())) points.push_back(off_axis(w));
+  return points;
+}
+
+std::optional<MatrixXcd> transfer_of(const StateSpace& m, std::complex<double> s) {
+  try {
+    return m.transfer(s);
+  } catch (const Error& error) {
+    if (!error.has(Code::singular)) throw;
+    return {};
+  }
+}
+
+/// The factors' transfer, and how far another model may be from it: each entry may lose a digit of
+/// what the model as written keeps, or what no one misses, or what is rounding in the factors.
+struct Reference {
+  MatrixXcd G;
+  MatrixXd allowed;
+};
+std::optional<Reference> reference(const SystemData& d, const StateSpace& written,
+                                   std::complex<double> s) {
+  constexpr double kAnotherDigit = 10, kUnmissed = 1e-8;
+  constexpr double kNoise = 1e3;         // times a sample of rounding: what may be nothing else
+  constexpr double kNeighbours = 1e-15;  // of those in row and column: what is left of a 0
+  using T = std::complex<double>;
+  const Eigen::Index inputs = written.B.cols();
+  try {
+    const Evaluation<T> point(d, s, RowMatrix<T>::Identity(inputs, inputs));
+    MatrixXcd G = point.outputs();
+    const MatrixXd size = G.cwiseAbs();
+    const MatrixXd around = size.rowwise().maxCoeff().cwiseSqrt() *
+                            Eigen::RowVectorXd(size.colwise().maxCoeff().cwiseSqrt());
+    MatrixXd allowed = kAnotherDigit * (written.transfer(s) - G).cwiseAbs() + kUnmissed * size +
+                       kNeighbours * around + kNoise * point.rounding().cwiseAbs();
+    if (!allowed.allFinite()) return {};
+    return Reference{std::move(G), std::move(allowed)};
+  } catch (const Error& error) {
+    if (!error.has(Code::singular) && !error.has(Code::not_finite)) throw;
+    return {};  // no digit is left there: other points must do
+  }
+}
+
+/// An entry of which rounding may be a third can lead all the same: 1 / (1 - g) of a loop where g
+/// is all but 1. Without it another system would be judged.
+bool keeps_transfer(const SystemData& d, const StateSpace& written, const StateSpace& without) {
+  if (written.inputs.empty() || written.outputs.empty()) return true;
+  for (const std::complex<double> s : points_of(d, written.A)) {
+    const std::optional<Reference> there = reference(d, written, s);
+    if (!there) continue;
+    const std::optional<MatrixXcd> G = transfer_of(without, s);
+    if (!G || !((*G - there->G).cwiseAbs().array() <= there->allowed.array()).all()) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 Rounded without_rounding(const SystemData& d, StateSpace m) {
   const Instant now = one_by_one(d, m);
   StateSpace r = rounding(d, m, now);
@@ -59,10 +145,7 @@ Rounded without_rounding(const SystemData& d, StateSpace m) {
   add_written(r.B, xdot.rightCols(inputs), m.B);
   add_written(r.C, y.leftCols(n), m.C);
   add_written(r.D, y.rightCols(inputs), m.D);
-  m.A = modes::cleared(m.A, r.A);
-  m.B = modes::cleared(m.B, r.B);
-  m.C = modes::cleared(m.C, r.C);
-  m.D = modes::cleared(m.D, r.D);
+  if (StateSpace without = cleared(m, r); keeps_transfer(d, m, without)) m = std::move(without);
   return {std::move(m), std::move(r)};
 }
 
