@@ -170,14 +170,18 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
   if (!m.notes.empty()) m.notes.front() = to_string(m.order);
   const bool removed = !m.order.removed.empty();
   double lost = 0;
+  bool untried = false;
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
     const Change by = change(system, d, dense, m);
     m.order.change = by.by_modes;
     m.notes.front() = to_string(m.order);
-    lost = by.tried.empty() ? 1 : by.in_all;  // nothing leaves on trust
+    untried = by.tried.empty();
+    lost = untried ? 1 : by.in_all;  // nothing leaves on trust
     say_left_out(d, by);
   }
   if (modes::put_back(dense, resolution, lost, m)) {
+    if (untried)
+      m.notes.back() = "nothing was removed: where it would show, the factors have no digit";
     d.dense_notes.push_back(
         {Note::Kind::warning, "minimize", fmt::format("{}: {}", m.notes.back(), m.notes.front())});
     d.dense_order = std::move(m.order);

@@ -70,9 +70,10 @@ struct Minimized {
 ///
 /// Without it the transfer changes by at most v_j / zeta_j of what the others do there. A mode is
 /// dropped if its v lies below ten times its own rounding bound or 1e-17, and both below 1e-9, or
-/// if v lies below the resolution; in doubt it stays. Modes of equal frequency and damping are turned
-/// among themselves first, so that what no input moves stands alone. A mode that no input moves becomes a
-/// relation between states, one that no output sees likewise: the rest keep name and meaning.
+/// if v lies below the resolution; in doubt it stays. Modes of equal frequency and damping are
+/// turned among themselves first, so that what no input moves stands alone. A mode that no input
+/// moves becomes a relation between states, one that no output sees likewise: the rest keep name
+/// and meaning.
 ///
 /// Undamped or proportionally damped models are treated as symmetric eigenproblems (l = omega^2),
 /// those of closed chains with the help of their energy,
@@ -93,11 +94,12 @@ struct Minimized {
 /// it is. Modes are vectors of one size in the states' own units (linalg::balance_parts): in other
 /// units of the model the verdict is the same but for what rounding decides, and that counts as
 /// undecided. `System::state_space` first sets entries to 0 that its factors cannot tell from 0
-/// (32 times the largest of four samples of rounding), unless that costs the transfer digits. With `exact_order` the least visible modes
-/// leave until the order is that one. The transfer is measured before and after, near the modes
-/// that left: if it has changed by more than 1e-8 and ten times the resolution, the whole model is
-/// the result, and the notes say so. Cost O(n^3). Throws not_finite for entries that are not, and
-/// size for matrices that do not fit each other or the names of states, inputs and outputs.
+/// (32 times the largest of four samples of rounding), unless that costs the transfer digits. With
+/// `exact_order` the least visible modes leave until the order is that one. The transfer is
+/// measured before and after, near the modes that left: if it has changed by more than 1e-8 and ten
+/// times the resolution, the whole model is the result, and the notes say so. Cost O(n^3). Throws
+/// not_finite for entries that are not, and size for matrices that do not fit each other or the
+/// names of states, inputs and outputs.
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options = {});
 
 }  // namespace titop

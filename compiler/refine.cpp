@@ -30,6 +30,8 @@ constexpr double kNoise = 1e3;
 /// Of what stands in the same row and column: what turned frames leave of a 0, cos(pi / 2) = 6e-17.
 /// More digits see it, the data do not stand for it.
 constexpr double kOfFrames = 1e-15;
+/// Likewise what sums over many bodies leave of a 0: no reason to ask more digits.
+constexpr double kOfSums = 1e-13;
 
 }  // namespace
 
@@ -128,12 +130,13 @@ std::vector<Eigen::Index> groups_of_inputs(const SystemData& d) {
 }
 
 /// Blocks that are nothing beside those of other outputs by the same input, and of other inputs
-/// to the same output. (Where all of a row is small, that is its unit, or what it is.)
-Eigen::MatrixX<bool> left_by_frames(const Eigen::MatrixXd& size) {
+/// to the same output: `limit` of both. (Where all of a row is small, that is its unit, or what it
+/// is.)
+Eigen::MatrixX<bool> nothing_beside(const Eigen::MatrixXd& size, double limit) {
   const Eigen::ArrayXXd row = size.rowwise().maxCoeff().replicate(1, size.cols()).array(),
                         col = size.colwise().maxCoeff().replicate(size.rows(), 1).array();
-  return size.array() <= kOfFrames * row.sqrt() * col.sqrt() &&
-         size.array() <= std::sqrt(kOfFrames) * row.min(col);
+  return size.array() <= limit * row.sqrt() * col.sqrt() &&
+         size.array() <= std::sqrt(limit) * row.min(col);
 }
 
 /// Blocks that are nothing but the rounding of T, or that of frames; none said where T has no digit
@@ -146,7 +149,7 @@ std::optional<Eigen::MatrixX<bool>> zeros_in(const SystemData& d) {
     const Eigen::MatrixXd size = block_sizes(rounded<T>(point.outputs()), rows, cols),
                           off = block_sizes(rounded<T>(point.rounding()), rows, cols);
     const Eigen::MatrixX<bool> zeros = !(size.array() > kNoise * off.array());
-    if (!zeros.all()) return zeros.array() || left_by_frames(size).array();
+    if (!zeros.all()) return zeros.array() || nothing_beside(size, kOfFrames).array();
   } catch (const Error&) {  // no pivot, or numbers that T has not
   }
   return {};
@@ -181,13 +184,15 @@ double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) c
   const auto rows = groups_of_outputs(data_), cols = groups_of_columns();
   const bool known = !std::is_same_v<T, double> && u_.cols() == u_.rows();
   const Eigen::MatrixXd size = block_sizes(y, rows, cols), off = block_sizes(change, rows, cols);
+  const Eigen::MatrixX<bool> nothing = nothing_beside(size + off, kOfSums);
   double worst = 0;
   for (Eigen::Index i = 0; i < size.rows(); ++i)
     for (Eigen::Index j = 0; j < size.cols(); ++j) {
       // A block that is 0 by symmetry is nothing but rounding: it counts beside its neighbours.
       const double beside = std::sqrt(size.row(i).maxCoeff()) * std::sqrt(size.col(j).maxCoeff());
       if (off(i, j) <= kUnderflow) continue;
-      const bool noise = size(i, j) <= kNoise * off(i, j) && (!known || data_.zero_blocks()(i, j));
+      const bool noise = size(i, j) <= kNoise * off(i, j) &&
+                         (!known || nothing(i, j) || data_.zero_blocks()(i, j));
       // Where all are 0 there is nothing to compare with: no digit is known.
       const double of = noise ? beside : size(i, j);
       worst = std::max(worst, of > 0 ? off(i, j) / of : 1);

@@ -165,8 +165,8 @@ struct Rounded {
 StateSpace rounding_of(const SystemData& data, const StateSpace& dense);
 /// The dense model with 0 for every entry that is nothing but rounding: not above some 30 times
 /// what the factors say that rounding makes of 0 there. What does not act on something else then
-/// does not, in any units. As it is where that costs the transfer digits. O(bodies * order), for
-/// models that `minimize` judges.
+/// does not, in any units. As it is where that costs the transfer digits. O(bodies * order), and
+/// where entries become 0 some transfers of a dense model; for models that `minimize` judges.
 Rounded without_rounding(const SystemData& data, StateSpace dense);
 
 /// See Certificate::dense_error. O(n^2) per s; O(n^3) for up to 100 states where it is large.

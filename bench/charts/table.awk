@@ -239,8 +239,8 @@ END {
   }
 
   print "\n## Growth, a process per point\n"
-  print "Times and bytes at the largest size. Aim: slopes of at most 1.1. The first compile has fresh memory " \
-    "at every size; to compile again, small scenes have memory that the process holds and in part the " \
+  print "Times and bytes at the largest size. Aim: slopes of at most 1.1. The first compile (but for one of ten " \
+    "bodies) has fresh memory; to compile again, small scenes have memory that the process holds and in part the " \
     "processor's caches.\n"
   print "| case | bodies | Diagram | first compile | slope | again | slope | transfer | one changed | slope of memory | bytes per body | peak per body |"
   print "|---|---|---|---|---|---|---|---|---|---|---|---|"

@@ -202,7 +202,7 @@ Apart take_apart(const MatrixXd& balanced, const Parts& parts, const ModeSet& m,
   return result;
 }
 
-/// First order again, of all modes together that stand apart: O(apart^2 ports) for each of the
+/// First order again, of all modes together that stand apart: O(n apart ports) for each of the
 /// others.
 void find_apart(const StateSpace& model, const linalg::Eigensystem& e, const Apart& apart,
                 const VectorXd& left, const VectorXd& right, double size, ModeSet& m) {
@@ -274,9 +274,10 @@ void turn_cluster(const StateSpace& model, const Parts& parts, const std::vector
   e.W(members, Eigen::all) = (U.adjoint() * e.W(members, Eigen::all)).eval();
 }
 
-/// Clusters that are judged; of a pair of them, one and its conjugate.
-void turn_clusters(const StateSpace& model, const Parts& parts, const ModeSet& m,
+/// Clusters that are judged; of a pair of them, one and its conjugate. False where there is none.
+bool turn_clusters(const StateSpace& model, const Parts& parts, const ModeSet& m,
                    linalg::Eigensystem& e) {
+  bool any = false;
   for (const std::vector<Index>& members : clusters(m)) {
     const auto all = [&](const auto& holds) {
       return std::all_of(members.begin(), members.end(), holds);
@@ -286,12 +287,14 @@ void turn_clusters(const StateSpace& model, const Parts& parts, const ModeSet& m
                upper = all([&](Index j) { return e.values(j).imag() > 0; });
     if (members.size() < 2 || !judged || !(real || upper)) continue;
     turn_cluster(model, parts, members, m, e);
+    any = true;
     for (const Index j : members) {
       if (real) continue;
       e.V.col(j + 1) = e.V.col(j).conjugate();
       e.W.row(j + 1) = e.W.row(j).conjugate();
     }
   }
+  return any;
 }
 
 /// Poles at 0 are needed if [A, B] and [A', C'] have full rank. A, B, C: balanced.
@@ -332,8 +335,7 @@ General general_modes(const StateSpace& model, double resolution) {
   set_apart(conditions(e, m), size, m);
   const Apart apart = take_apart(balanced, parts, m, e);
   measure(model, e, apart, size, m);
-  turn_clusters(model, parts, m, e);
-  measure(model, e, apart, size, m);
+  if (turn_clusters(model, parts, m, e)) measure(model, e, apart, size, m);
   balance_sides(parts, m);
   find_needed(balanced, e.scale.cwiseInverse().asDiagonal() * model.B,
               model.C * e.scale.asDiagonal(), m);

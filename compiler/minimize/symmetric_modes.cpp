@@ -66,11 +66,12 @@ void find_clusters(GradedModes& e, VectorXd& z, double resolution, ModeSet& m) {
     e.modes.V.middleCols(first, count) = e.modes.V(Eigen::all, order).eval();
     lambda.segment(first, count) = lambda(order).eval();
     z.segment(first, count) = z(order).eval();
-    const double apart = same * std::max(std::sqrt(std::abs(lambda(first))),
-                                         z.segment(first, count).cwiseAbs().maxCoeff());
-    for (Index i = first; i < first + count; ++i)
-      if (i > 0)
-        m.cluster[at(i)] = m.cluster[at(i - 1)] + (i == first || z(i) - z(i - 1) > apart ? 1 : 0);
+    for (Index i = std::max<Index>(first, 1); i < first + count; ++i) {
+      const double own =
+          std::max({std::sqrt(std::abs(lambda(i))), std::abs(z(i - 1)), std::abs(z(i))});
+      const bool apart = i == first || z(i) - z(i - 1) > same * own;
+      m.cluster[at(i)] = m.cluster[at(i - 1)] + (apart ? 1 : 0);
+    }
   }
 }
 
@@ -147,8 +148,9 @@ bool mixes_levels(const GradedModes& e, const VectorXd& z, const Ports& p, const
   for (Index first = 0, last; first < n; first = last) {
     for (last = first + 1; last < n && m.cluster[at(last)] == m.cluster[at(first)];) ++last;
     const double lambda = e.modes.lambda(first);
-    const bool real = z(first) * z(first) >= 4 * lambda;
-    for (Index k = 0; k < q.cols() && lambda != 0; ++k) {
+    const bool rigid = lambda == 0 && z(first) == 0;
+    const bool real = z(first) * z(first) >= 4 * lambda * (1 - kSameFrequency);
+    for (Index k = 0; k < q.cols() && !rigid; ++k) {
       const VectorXd a = q.col(k).segment(first, last - first),
                      b = v.col(k).segment(first, last - first);
       const double size = a.norm() * b.norm();
@@ -157,6 +159,23 @@ bool mixes_levels(const GradedModes& e, const VectorXd& z, const Ports& p, const
     }
   }
   return false;
+}
+
+/// Two modes that are not equal have a real pole in common.
+bool shares_a_pole(const VectorXd& lambda, const VectorXd& z, const ModeSet& m) {
+  std::vector<std::pair<double, int>> poles;  // and its cluster
+  for (Index i = 0; i < z.size(); ++i) {
+    const double root2 = z(i) * z(i) - 4 * lambda(i);
+    if (lambda(i) == 0 || root2 < 0) continue;
+    const double fast = (z(i) + std::copysign(std::sqrt(root2), z(i))) / 2;
+    poles.emplace_back(fast, m.cluster[at(i)]);
+    poles.emplace_back(lambda(i) / fast, m.cluster[at(i)]);
+  }
+  std::sort(poles.begin(), poles.end());
+  return std::adjacent_find(poles.begin(), poles.end(), [](const auto& a, const auto& b) {
+           return a.second != b.second &&
+                  std::abs(b.first - a.first) <= kSameFrequency * std::abs(b.first);
+         }) != poles.end();
 }
 
 /// How far modes are apart (damping z counts as what it does to the pole), and what rounding mixes:
@@ -211,7 +230,7 @@ std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolut
   if (!z || !symmetric_in(e, form->S, form->skew)) return std::nullopt;
   ModeSet& m = s.modes;
   find_clusters(e, *z, resolution, m);
-  if (mixes_levels(e, *z, p, m)) return std::nullopt;
+  if (mixes_levels(e, *z, p, m) || shares_a_pole(e.modes.lambda, *z, m)) return std::nullopt;
   s.Q = e.modes.V;
   m.lambda = e.modes.lambda.cwiseAbs();
   const Parts parts = find_parts(form->S, s.Q.cwiseAbs(), m);

@@ -75,6 +75,26 @@ TEST_CASE("minimal: a little damping beside none is seen at the resonance") {
   CHECK(s.state_space().order() == 4);
 }
 
+TEST_CASE("minimal: strong damping beside them does not make two modes one") {
+  const std::vector<SpringMass> four = {{.mass = 1, .stiffness = 4},
+                                        {.mass = 1, .stiffness = 4, .damping = 4e-9},
+                                        {.mass = 1, .stiffness = 4, .damping = 20},
+                                        {.mass = 50, .stiffness = 0.5}};
+  const System s = compile(side_by_side(four));
+  CHECK(s.state_space().order() == 8);
+  const Complex at(0, 2 + 1e-9);
+  const Complex right =
+      gain(4, 0, at) + gain(4, 4e-9, at) + gain(4, 20, at) + 1.0 / (50.0 * at * at + 0.5);
+  CHECK(std::abs(s.state_space().transfer(at)(0, 0) / right - 1.0) <= 1e-5);
+}
+
+TEST_CASE("minimal: two overdamped modes with one pole in common") {
+  // 1 / ((s + 1)(s + 2)) + 1 / ((s + 1)(s + 3))
+  check_order(compile(side_by_side({{.mass = 1, .stiffness = 2, .damping = 3},
+                                    {.mass = 1, .stiffness = 3, .damping = 4}})),
+              3);
+}
+
 TEST_CASE("minimal: equal wings of different damping on a hub") {
   // The wings mix in the modes of the springs alone: only damping tells which is which.
   Diagram d{"wings"};

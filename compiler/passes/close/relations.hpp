@@ -42,12 +42,15 @@ struct Factors {
   std::vector<Eigen::VectorXd> row;  ///< per block
   Eigen::VectorXd column;
 };
-/// Scales the relations into a balance, which is geometry alone: the squares of every column sum to
-/// 1, and those of every unit (rows of one number: the translations or rotations of a closing
-/// equation) to what it has if each of its columns is spread evenly over the units where it counts.
-/// Of what counts there is one such balance and no other [Sinkhorn, Knopp 1967], reached here to 2
-/// % per factor: it depends neither on units of measurement (they are factors themselves), nor on
-/// the frame (three rows count by their norm), nor on the order of chains, nor on how stiff
+/// Scales the relations into a balance, which is geometry alone: the squares of every free column
+/// sum to 1, and those of every unit (rows of one number: the translations or rotations of a
+/// closing equation) to what it has if each of its free columns is spread evenly over the units
+/// where it counts, and 1 for its columns that store energy. These stay as they are, shapes of unit
+/// modal mass or deflections, however stiff: a mode that hardly moves the chain (an entry of
+/// rounding, at a node of its shape) must not look like one that does. Of what counts there is one
+/// such balance and no other [Sinkhorn, Knopp 1967], which sweeps approach until none changes a
+/// factor by 2 %, a hundred at most: it depends neither on units of rows and free columns (they are
+/// factors themselves), nor on the frame (three rows count by their norm), nor on how stiff
 /// anything is. For a chain of hinges it finds the length that levers are measured by, from all
 /// joints together; where a lever is tiny, its joint's translations do not count, and no row
 /// depends on it. Taken before any elimination (afterwards noise would become 1). O(entries) per
@@ -63,7 +66,7 @@ struct Independent {
     std::vector<std::pair<int, double>> of = {};  ///< column, factor
   };
   std::vector<Follows> follow = {};
-  double weakest = 1;  ///< smallest pivot that was taken
+  double weakest = 1;  ///< smallest pivot that decided on a rank
   double dropped = 0;  ///< largest that was not
   bool doubtful() const { return weakest < kNarrow || dropped > kNothing; }
 };

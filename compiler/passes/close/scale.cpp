@@ -35,9 +35,12 @@ struct Scaling {
   std::vector<std::vector<int>> of_unit = {}, of_column;  ///< entries
   std::vector<double> row = {}, column;                   ///< factors; 0: none yet
   std::vector<double> share = {};                         ///< per unit: its square sum, balanced
+  std::vector<char> fixed;                                ///< per column: it stores energy
 
   explicit Scaling(Relations& relations)
-      : r(relations), of_column(r.role.size()), column(r.role.size(), 0) {
+      : r(relations), of_column(r.role.size()), column(r.role.size(), 0), fixed(r.role.size(), 0) {
+    for (std::size_t j = 0; j < column.size(); ++j)
+      if (r.weight(static_cast<Index>(j)) > 0) column[j] = 1, fixed[j] = 1;
     for (std::size_t b = 0; b < r.blocks.size(); ++b) list(b);
     find_shares();
   }
@@ -104,16 +107,22 @@ struct Scaling {
   }
 
   /// Every column is spread evenly over the units where it counts: so a balance of what counts
-  /// exists, and there is one only.
+  /// exists, and there is one only. Columns of fixed size count for one, all of a unit together.
   void find_shares() {
     row.assign(of_unit.size(), 0);
     share.assign(of_unit.size(), 0);
-    for (const std::vector<int>& list : of_column) {
+    std::vector<char> has_fixed(of_unit.size(), 0);
+    for (std::size_t j = 0; j < of_column.size(); ++j) {
+      const std::vector<int>& list = of_column[j];
       const auto counts = [&](int e) { return entries[at(e)].counts; };
       const auto counting = static_cast<double>(std::ranges::count_if(list, counts));
       for (const int e : list)
-        if (counts(e)) share[at(entries[at(e)].unit)] += 1 / counting;
+        if (counts(e) && fixed[j] != 0)
+          has_fixed[at(entries[at(e)].unit)] = 1;
+        else if (counts(e))
+          share[at(entries[at(e)].unit)] += 1 / counting;
     }
+    for (std::size_t u = 0; u < share.size(); ++u) share[u] += has_fixed[u];
   }
 
   double scaled(const Entry& e) const { return e.size * row[at(e.unit)] * column[at(e.column)]; }
@@ -147,11 +156,14 @@ struct Scaling {
         if (entries[at(e)].counts)
           largest = std::max(largest, entries[at(e)].size * row[at(entries[at(e)].unit)]);
       column[at(j)] = 1 / largest;
-      for (const int e : of_column[at(j)])
-        if (entries[at(e)].counts && row[at(entries[at(e)].unit)] == 0)
-          units.push_back(entries[at(e)].unit);
+      add_units(j, units);
     }
     return units;
+  }
+  void add_units(int j, std::vector<int>& units) const {
+    for (const int e : of_column[at(j)])
+      if (entries[at(e)].counts && row[at(entries[at(e)].unit)] == 0)
+        units.push_back(entries[at(e)].unit);
   }
   void spread(std::vector<int> units) {
     while (!units.empty()) {
@@ -163,7 +175,11 @@ struct Scaling {
     }
   }
   void start() {
-    for (std::size_t u = 0; u < row.size(); ++u)
+    std::vector<int> units;
+    for (std::size_t j = 0; j < fixed.size(); ++j)
+      if (fixed[j] != 0) add_units(static_cast<int>(j), units);
+    spread(std::move(units));
+    for (std::size_t u = 0; u < row.size(); ++u)  // what no energy reaches
       if (std::vector<int> reached; start_unit(static_cast<int>(u), true, reached))
         spread(start_columns(std::move(reached)));
     for (auto* factors : {&row, &column})
@@ -186,16 +202,16 @@ struct Scaling {
     for (const Entry& e : entries)
       if (e.counts) sum[at(e.column)] += scaled(e) * scaled(e);
     for (std::size_t j = 0; j < sum.size(); ++j)
-      if (sum[j] > 0) correct(column[j], 1 / std::sqrt(sum[j]));
+      if (fixed[j] == 0 && sum[j] > 0) correct(column[j], 1 / std::sqrt(sum[j]));
     return change;
   }
 
-  /// Columns to 1 with what does not count.
+  /// Free columns to 1 with what does not count.
   void finish() {
     std::vector<double> sum(column.size(), 0);
     for (const Entry& e : entries) sum[at(e.column)] += scaled(e) * scaled(e);
     for (std::size_t j = 0; j < sum.size(); ++j)
-      if (sum[j] > 0) column[j] /= std::sqrt(sum[j]);
+      if (fixed[j] == 0 && sum[j] > 0) column[j] /= std::sqrt(sum[j]);
   }
 
   Factors factors() const {
