@@ -133,6 +133,7 @@ std::vector<Eigen::Index> groups_of_inputs(const SystemData& d) {
 /// to the same output: `limit` of both. (Where all of a row is small, that is its unit, or what it
 /// is.)
 Eigen::MatrixX<bool> nothing_beside(const Eigen::MatrixXd& size, double limit) {
+  if (size.size() == 0) return Eigen::MatrixX<bool>(size.rows(), size.cols());
   const Eigen::ArrayXXd row = size.rowwise().maxCoeff().replicate(1, size.cols()).array(),
                         col = size.colwise().maxCoeff().replicate(size.rows(), 1).array();
   return size.array() <= limit * row.sqrt() * col.sqrt() &&

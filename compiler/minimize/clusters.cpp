@@ -12,14 +12,12 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-constexpr double kClearly = 1e4;   ///< times rounding: not made by it
 constexpr double kOneMode = 1e-6;  ///< of a vector's largest entry: no rounding in another part
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
-/// `nothing`: by the largest singular value of b, the one below which a direction takes no part.
-template <class Matrix, class Nothing>
-Matrix turned(const Matrix& b, const Matrix& c, const Nothing& nothing) {
+template <class Matrix>
+Matrix turned(const Matrix& b, const Matrix& c) {
   const Index k = b.rows();
   Matrix result = Matrix::Identity(k, k);
   Index reached = k;
@@ -28,7 +26,7 @@ Matrix turned(const Matrix& b, const Matrix& c, const Nothing& nothing) {
     result = svd.matrixU();
     const Eigen::VectorXd sigma = svd.singularValues();
     reached = 0;
-    while (reached < sigma.size() && sigma(reached) > nothing(sigma(0))) ++reached;
+    while (reached < sigma.size() && sigma(reached) > kNoPart * sigma(0)) ++reached;
   }
   if (c.cols() > 0 && reached > 1) {
     const Matrix seen = result.leftCols(reached).adjoint() * c;
@@ -40,44 +38,12 @@ Matrix turned(const Matrix& b, const Matrix& c, const Nothing& nothing) {
 
 }  // namespace
 
-MatrixXd turn(const MatrixXd& b, const MatrixXd& c) {
-  return turned(b, c, [](double largest) { return kNoPart * largest; });
-}
-
-namespace {
-
-/// By the largest singular value: below it, a part may be rounding, or a verdict would doubt it.
-auto rounding_of(double rounding) {
-  return [=](double largest) {
-    return std::min(kClearly * rounding, std::max(kNoPart * largest, 10 * rounding));
-  };
-}
-
-}  // namespace
-
-MatrixXcd turn(const MatrixXcd& b, const MatrixXcd& c, double rounding) {
-  return turned(b, c, rounding_of(rounding));
-}
-MatrixXcd turn(const MatrixXd& b, const MatrixXd& c, double rounding) {
-  return turned(b, c, rounding_of(rounding)).cast<std::complex<double>>();
-}
+MatrixXd turn(const MatrixXd& b, const MatrixXd& c) { return turned(b, c); }
+MatrixXcd turn(const MatrixXcd& b, const MatrixXcd& c) { return turned(b, c); }
 
 bool Parts::one() const {
   return std::adjacent_find(of_mode.begin(), of_mode.end(), std::not_equal_to<>()) == of_mode.end();
 }
-
-namespace {
-
-/// Whether every part has as many modes as states. (As many modes as states in all: of first
-/// order.)
-bool fits(Parts parts) {
-  if (parts.of_mode.size() != parts.of_state.size()) return true;
-  std::sort(parts.of_mode.begin(), parts.of_mode.end());
-  std::sort(parts.of_state.begin(), parts.of_state.end());
-  return parts.of_mode == parts.of_state;
-}
-
-}  // namespace
 
 Parts find_parts(const MatrixXd& A, const MatrixXd& vectors, const ModeSet& m) {
   Parts parts;
@@ -101,7 +67,6 @@ Parts find_parts(const MatrixXd& A, const MatrixXd& vectors, const ModeSet& m) {
       if (m.cluster[at(i)] == m.cluster[at(j)])
         join(part[at(state[at(i)])], part[at(state[at(j)])]);
   for (const Index i : state) parts.of_mode.push_back(part[at(i)]);
-  if (!fits(parts)) parts.of_state.assign(at(A.rows()), 0), parts.of_mode.assign(at(m.size()), 0);
   return parts;
 }
 

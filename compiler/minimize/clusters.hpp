@@ -22,14 +22,10 @@ Matrix unit_columns(Matrix m) {
 }
 
 /// Turns k modes of one frequency among themselves: first those that no input moves go to the end,
-/// then, among the others, those that no output sees. b: k x inputs, c: k x outputs, each port of
-/// weight one in all modes. Returns the k x k unitary matrix whose columns are the new modes.
-/// `rounding`: what it may have put into b; as much as makes a verdict doubtful takes no part.
-/// O(k^2 ports).
+/// then, among the others, those that no output sees. b: k x inputs, c: k x outputs, each column of
+/// weight one. Returns the k x k unitary matrix whose columns are the new modes. O(k^2 ports).
 Eigen::MatrixXd turn(const Eigen::MatrixXd& b, const Eigen::MatrixXd& c);
-Eigen::MatrixXcd turn(const Eigen::MatrixXcd& b, const Eigen::MatrixXcd& c, double rounding);
-/// Of real poles: vectors stay real.
-Eigen::MatrixXcd turn(const Eigen::MatrixXd& b, const Eigen::MatrixXd& c, double rounding);
+Eigen::MatrixXcd turn(const Eigen::MatrixXcd& b, const Eigen::MatrixXcd& c);
 
 /// Parts of a model that share no state, by number.
 struct Parts {

@@ -148,9 +148,8 @@ bool mixes_levels(const GradedModes& e, const VectorXd& z, const Ports& p, const
   for (Index first = 0, last; first < n; first = last) {
     for (last = first + 1; last < n && m.cluster[at(last)] == m.cluster[at(first)];) ++last;
     const double lambda = e.modes.lambda(first);
-    const bool rigid = lambda == 0 && z(first) == 0;
     const bool real = z(first) * z(first) >= 4 * lambda * (1 - kSameFrequency);
-    for (Index k = 0; k < q.cols() && !rigid; ++k) {
+    for (Index k = 0; k < q.cols() && lambda != 0; ++k) {
       const VectorXd a = q.col(k).segment(first, last - first),
                      b = v.col(k).segment(first, last - first);
       const double size = a.norm() * b.norm();
