@@ -90,6 +90,7 @@ function head(title, floor) {
 function slope(scene, column,   i, n, x, y, a, b, c, d) {
   for (i = 1; i <= points[scene]; ++i) {
     if (bodies[scene, i] < 1000 && bodies[scene, points[scene]] > 1000) continue
+    if (column == "again" && again[scene, i] == "") continue
     x = log(bodies[scene, i])
     y = log(column == "compile" ? compiled[scene, i] : column == "again" ? again[scene, i] : bytes[scene, i])
     ++n; a += x; b += y; c += x * x; d += x * y

@@ -72,7 +72,7 @@ void measure_change(const StateSpace& whole, Minimized& m) {
   if (m.order.removed.empty() || whole.inputs.empty() || whole.outputs.empty()) return;
   const double frequency = detail::frequency_of(whole.A),
                w = frequency > 0 && std::isfinite(frequency) ? frequency : 1;
-  const auto points = near_modes(m.order.removed, {0.37 * w, 0.93 * w});
+  const auto points = near_modes(m.order.removed, detail::off_axis(w));
   m.order.change = change(whole, m.model, points);
   m.notes.front() = to_string(m.order);
 }

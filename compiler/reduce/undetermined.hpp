@@ -31,7 +31,8 @@ struct Undetermined {
 /// The motions of the singular joint system k.joint, from its factors d.factors with patches:
 /// columns z with L z = 0 that move no state of any block and reach no output, to rounding (sums
 /// are 0 below solve::kCancelled of their terms). `rows`: scalar rows, independent of one another,
-/// that follow from the others, with their known sides. O(bodies) per pair of patches.
+/// that follow from the others, with their known sides. O(bodies) in time and memory per such
+/// motion, their square in pairs.
 Undetermined undetermined(const Skeleton& k, const SystemData& d, const std::vector<int>& rows);
 
 }  // namespace titop::detail
