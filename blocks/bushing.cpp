@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-const Interface& face() {
+const Interface& bushing_face() {
   static const Interface shared{
       {{"child", 6, Takes::accel}, {"parent", 6, Takes::accel}},
       {},
@@ -31,8 +31,9 @@ void check_matrix(const Matrix6& m, std::string_view what) {
   Vector6 size = Vector6::Zero();
   for (int i = 0; i < 6; ++i) {
     if (m(i, i) < 0)
-      refuse(fmt::format("{} on axis {}", m(i, i), face().states[static_cast<std::size_t>(i)]),
-             "springs and dampers must be 0 or more");
+      refuse(
+          fmt::format("{} on axis {}", m(i, i), bushing_face().states[static_cast<std::size_t>(i)]),
+          "springs and dampers must be 0 or more");
     size(i) = std::sqrt(m(i, i));
   }
   Matrix6 scaled = Matrix6::Zero();
@@ -61,7 +62,7 @@ class BushingBlock : public Block, public Specified<Bushing> {
   explicit BushingBlock(const Bushing& spec) : spec_(spec) {}
   const Bushing& spec() const override { return spec_; }
   std::string_view type() const override { return "Bushing"; }
-  const Interface& interface() const override { return face(); }
+  const Interface& interface() const override { return bushing_face(); }
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
     const Matrix6 K = spec_.stiffness.at(values), C = spec_.damping.at(values);
     check_matrix(K, "stiffness");

@@ -4,14 +4,14 @@
 #include <titop/blocks/joint_block.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 Interface face_of(const std::vector<AxisNames>& names) {
   Interface face{{{"child", 6, Takes::force}, {"parent", 6, Takes::accel}}, {}, {}, {}};

@@ -7,6 +7,7 @@
 #include <titop/blocks/posture.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop {
 namespace {
@@ -14,9 +15,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using linalg::at;
 using std::numbers::pi;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 bool turns(const LoopStep& step) { return step.joint.kind == Axis::Kind::revolute; }
 

@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::MatrixXd;
 
-const Interface& face() {
+const Interface& spring_face() {
   static const Interface shared{{{"child", 1, Takes::force}, {"parent", 1, Takes::accel}},
                                 {},
                                 {{"stretch", 1, Quantity::position}},
@@ -37,7 +37,7 @@ class SpringMassBlock : public Block, public Specified<SpringMass> {
   explicit SpringMassBlock(const SpringMass& spec) : spec_(spec) {}
   const SpringMass& spec() const override { return spec_; }
   std::string_view type() const override { return "SpringMass"; }
-  const Interface& interface() const override { return face(); }
+  const Interface& interface() const override { return spring_face(); }
 
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
     const double m = spec_.mass.at(values), k = spec_.stiffness.at(values);

@@ -4,6 +4,7 @@
 #include <titop/compiler/declared.hpp>
 #include <titop/compiler/system.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
@@ -13,16 +14,13 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
 constexpr double kCancelled = 1e-3;  ///< of the terms
-constexpr double kNoise = 1e3;       ///< times one sample of rounding: what may be nothing else
 /// Of its neighbours: 32 digits may leave 1e-26 of a 0, which is then 1e-8 of this, as much as is
 /// allowed; double leaves 1e-17.
 constexpr double kFinest = 1e-18;
-/// Of its neighbours: the terms of a 0 that one order of sums hits exactly and another to 1e-17.
-constexpr double kHitBy = 1e-3;
 /// Of its neighbours: more rounding than that is no 0 that double misses, but digits lost.
 constexpr double kOfNothing = 1e-6;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// The largest entry of every block, blocks x blocks.
 MatrixXd by_block(const MatrixXd& m, const Measure& by) {

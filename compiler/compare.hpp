@@ -13,6 +13,12 @@ class System;
 
 namespace titop::detail {
 
+/// Times rounding: what is below may be nothing else.
+inline constexpr double kNoise = 1e3;
+/// Of an entry's neighbours: the terms of a 0 that one order of sums hits exactly and another to
+/// 1e-17.
+inline constexpr double kHitBy = 1e-3;
+
 /// How two transfers are compared. Three translations (or rotations) of one port share their unit:
 /// such blocks of 3 x 3, and scalars by themselves, have one size.
 struct Measure {

@@ -10,6 +10,7 @@
 #include <titop/compiler/solve/products.hpp>
 #include <titop/compiler/solve/propagation.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 /// The dense model from the factors: what `Writing` says, in numbers.
 namespace titop::detail {
@@ -17,9 +18,8 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using linalg::at;
 using solve::RowMatrix;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Whoever waits goes on, even if this task has thrown: its numbers are not used then.
 struct Done {

@@ -1,6 +1,7 @@
 #include <titop/compiler/descriptor.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop {
 namespace {
@@ -10,8 +11,7 @@ using detail::SystemData;
 using solve::Piece;
 using solve::RowMatrix;
 using Triplets = std::vector<Eigen::Triplet<double>>;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 struct Builder {
   const SystemData& d;

@@ -2,12 +2,13 @@
 
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/pole.hpp>
 
 namespace titop::detail {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 using solve::lifted;
 

@@ -2,11 +2,12 @@
 #include <titop/compiler/instant.hpp>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 using solve::RowMatrix;
 

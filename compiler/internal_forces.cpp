@@ -4,17 +4,17 @@
 #include <cmath>
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 /// Closed chains that hold more than once: which internal forces the motion does not determine.
 namespace titop::detail {
 namespace {
 
+using linalg::at;
 using solve::RowMatrix;
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-constexpr double kMoves = 1e-7;   ///< of what could cancel in a sum; rounding gives 1e-12
-constexpr double kNoise = 1e-10;  ///< of the largest internal force: zero
+constexpr double kMoves = 1e-7;  ///< of what could cancel in a sum; rounding gives 1e-12
+constexpr double kZero = 1e-10;  ///< of the largest internal force: zero
 
 /// Rounding moves light bodies a little, and through them a heavy one: its mass times that may be
 /// much beside the forces, in double. A step of refinement takes a share of it away that is about
@@ -102,8 +102,8 @@ class SelfStress {
       const RowMatrix<double> v = value(share.signal);
       total += share.c * v;
       size += moves * (share.c.cwiseAbs() * v.cwiseAbs());
-      size.colwise() += kNoise * largest_ * share.c.cwiseAbs().rowwise().sum();
-      if (first < 0 && v.size() > 0 && v.cwiseAbs().maxCoeff() > kNoise * largest_)
+      size.colwise() += kZero * largest_ * share.c.cwiseAbs().rowwise().sum();
+      if (first < 0 && v.size() > 0 && v.cwiseAbs().maxCoeff() > kZero * largest_)
         first = share.signal;
     }
     return (total.cwiseAbs().array() > size.array()).any() ? first : -1;
@@ -119,7 +119,7 @@ class SelfStress {
   std::size_t directions_ = 0;
 };
 
-struct Judge {
+struct ForceJudge {
   const Skeleton& k;
   const SystemData& d;
   const SelfStress& stress;
@@ -235,7 +235,7 @@ void judge_internal_forces(Skeleton& k, const SystemData& d) {
   if (k.stage.released.empty()) return;
   SelfStress stress(k, d);
   if (stress.empty()) return;
-  Judge judge{k, d, stress};
+  ForceJudge judge{k, d, stress};
   for (int i = 0; judge.finds() && i < kRefinements; ++i) {
     stress.refine();
     judge.mistakes.clear(), judge.notes.clear();

@@ -5,11 +5,12 @@
 #include <titop/compiler/ahead.hpp>
 #include <titop/compiler/declared.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// "u", or "U(1)" ... "U(6)".
 void add_names(std::vector<std::string>& names, const std::string& name, int size) {

@@ -5,6 +5,7 @@
 #include <titop/compiler/exact/of_stage.hpp>
 #include <titop/compiler/minimize/effect.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 /// The dense model of a system, minimized: nothing is removed on trust.
 namespace titop::detail {
@@ -12,8 +13,7 @@ namespace {
 
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// The minimal order where exact arithmetic is asked for and has found it; -1: not.
 int exact_order_of(const SystemData& d, int states) {

@@ -3,11 +3,12 @@
 #include <numeric>
 #include <titop/compiler/name_order.hpp>
 #include <titop/graph/graph.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// False where the names do not tell everything apart.
 bool order_of(const std::vector<std::string>& names, Eigen::Index count, std::vector<int>& order) {

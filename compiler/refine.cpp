@@ -3,15 +3,17 @@
 #include <limits>
 #include <optional>
 #include <titop/compiler/certify/steady_random.hpp>
+#include <titop/compiler/compare.hpp>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <type_traits>
 
 /// Of an evaluation: how good it is, and how it becomes better. The rest is in evaluate.cpp.
 namespace titop::detail {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 using solve::lifted;
 
@@ -25,8 +27,6 @@ constexpr double kShrinks = 0.25;
 /// If the first step changes no block of the unknowns by more, that steps shrink is plain by then;
 /// else a second step has to show it.
 constexpr double kPlain = 1e-9;
-/// Times what rounding may have changed: what is below may be nothing else.
-constexpr double kNoise = 1e3;
 /// Of what stands in the same row and column: what turned frames leave of a 0, cos(pi / 2) = 6e-17.
 /// More digits see it, the data do not stand for it.
 constexpr double kOfFrames = 1e-15;

@@ -6,6 +6,7 @@
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/pole.hpp>
 
 namespace titop::solve {
@@ -31,11 +32,10 @@ namespace titop::detail {
 namespace {
 
 using Eigen::Index;
+using linalg::at;
 using solve::Dense;
 using solve::lift;
 using solve::lifted;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 template <class T>
 solve::Response<T> response_in_double(const Block& block, const T& s, ParameterValues parameters) {

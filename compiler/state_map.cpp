@@ -1,13 +1,13 @@
 #include <titop/compiler/state_map.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 constexpr double kRounding = 64 * 2.220446049250313e-16;
 

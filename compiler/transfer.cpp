@@ -4,14 +4,14 @@
 #include <titop/compiler/transfer.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop {
 namespace {
 
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// All equations as E z = F u: one column of E per scalar signal, then one per scalar output.
 struct Assembly {

@@ -5,6 +5,7 @@
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/reduce/weak_pivot.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <unordered_set>
 
 /// New values of the parameters on the same plan: only what depends on them is made again.
@@ -12,7 +13,7 @@ namespace titop {
 namespace detail {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 void sort_unique(std::vector<int>& list) {
   std::sort(list.begin(), list.end());

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <numeric>
 #include <titop/graph/drives.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop {
 
@@ -27,7 +28,7 @@ MatrixXd complement(const MatrixXd& S, int n) {
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// In which list an equation stands: three of each channel. -1: in none.
 int list_of(const Graph& graph, const Equation& e) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <titop/graph/linalg/index.hpp>
 #include <vector>
 
 #include "methods/at_s.hpp"
@@ -8,7 +9,7 @@
 /// What the methods of at_s.hpp share. For their own files only.
 namespace titop_bench {
 
-inline std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 /// Where a block's states, inputs and outputs begin.
 struct Places {

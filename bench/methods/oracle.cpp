@@ -1,6 +1,7 @@
 #include "oracle.hpp"
 
 #include <stdexcept>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 #include <vector>
 
@@ -16,8 +17,7 @@ namespace {
 
 using Number = Digits150;
 using Rows = Table<Number>;
-
-std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 /// The block from its inputs to its outputs: rigid + W' s^2 / (s^2 + damping s + stiffness) W.
 Rows modal_response(const titop::Modal& m, const Number& s) {

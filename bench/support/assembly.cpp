@@ -1,6 +1,7 @@
 #include "support/assembly.hpp"
 
 #include <stdexcept>
+#include <titop/graph/linalg/index.hpp>
 
 #include "support/triplets.hpp"
 
@@ -9,8 +10,7 @@ namespace {
 
 using Eigen::MatrixXd;
 using titop::Signal;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 titop::Modal modal_of(const titop::Node& node, const std::vector<double>& values) {
   const auto d = node.block->dynamics(values);

@@ -8,6 +8,7 @@
 #include <optional>
 #include <random>
 #include <stdexcept>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop_bench {
 
@@ -22,7 +23,7 @@ namespace {
 
 constexpr std::array kNames{"A", "BL", "C", "D", "F", "K", "T", "CB", "R", "G"};
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 class Random {
  public:

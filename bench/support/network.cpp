@@ -5,6 +5,7 @@
 #include <numeric>
 #include <stdexcept>
 #include <titop/graph/invert.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 #include "support/triplets.hpp"
 
@@ -17,8 +18,7 @@ using titop::StateSpace;
 namespace {
 
 using Pairs = std::vector<std::pair<int, int>>;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 class Export {
  public:

@@ -19,7 +19,7 @@ struct Field {
 };
 
 /// A card without its name: fields 2 to 9, then those of its continuations.
-struct Card {
+struct DmigCard {
   std::vector<Field> fields;
   int line = 0;
 };
@@ -41,7 +41,7 @@ bool is_continuation(std::string_view text) {
   return !text.empty() && std::string_view("*+ ,\t").find(text[0]) != std::string_view::npos;
 }
 
-void add_fields(Card& card, const TextLine& line, bool wide) {
+void add_fields(DmigCard& card, const TextLine& line, bool wide) {
   const std::size_t width = wide ? 16 : 8, count = wide ? 4 : 8;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t at = 8 + i * width;
@@ -87,8 +87,8 @@ int digits_of(const Found& found) {
 }
 
 /// All cards called DMIG, with their continuations.
-std::vector<Card> cards_in(const TextFile& file, FileMistakes& mistakes) {
-  std::vector<Card> cards;
+std::vector<DmigCard> cards_in(const TextFile& file, FileMistakes& mistakes) {
+  std::vector<DmigCard> cards;
   bool open = false;
   for (const TextLine& line : lines_of(file)) {
     if (line.text.empty() || line.text[0] == '$') continue;
@@ -110,11 +110,11 @@ std::vector<Card> cards_in(const TextFile& file, FileMistakes& mistakes) {
   return cards;
 }
 
-class Reader {
+class DmigReader {
  public:
-  explicit Reader(const TextFile& file) : file_(file) {
+  explicit DmigReader(const TextFile& file) : file_(file) {
     require_line_end(file, mistakes_);
-    for (const Card& card : cards_in(file, mistakes_)) read(card);
+    for (const DmigCard& card : cards_in(file, mistakes_)) read(card);
     mistakes_.finish();
   }
 
@@ -125,7 +125,7 @@ class Reader {
     mistakes_.add(bad_line(file_, field.line, fmt::format("'{}'", field.text), expected));
   }
 
-  void read(const Card& card) {
+  void read(const DmigCard& card) {
     const std::string name(card.fields[0].text);
     int column = 0;
     if (!parse(card.fields[1].text, column))
@@ -138,7 +138,7 @@ class Reader {
     if (at->second.form == 1 || at->second.form == 6) read_column(card, at->second);
   }
 
-  void read_header(const Card& card, const std::string& name) {
+  void read_header(const DmigCard& card, const std::string& name) {
     Found& found = matrices[name];
     if (!parse(card.fields[2].text, found.form)) mistake(card.fields[2], "a form: 1, 6, 2 or 9");
     if (!parse(card.fields[3].text, found.type)) mistake(card.fields[3], "a type from 1 to 4");
@@ -158,7 +158,7 @@ class Reader {
   }
 
   /// Rows come in fours: grid, component, real and imaginary part.
-  void read_column(const Card& card, Found& found) {
+  void read_column(const DmigCard& card, Found& found) {
     GridDof column;
     if (!read_dof(card.fields[1], card.fields[2], column)) return;
     for (std::size_t i = 4; i + 3 < card.fields.size(); i += 4) {
@@ -193,7 +193,7 @@ class Reader {
   FileMistakes mistakes_;
 };
 
-const Found& chosen(const TextFile& file, const Reader& reader, const std::string& name) {
+const Found& chosen(const TextFile& file, const DmigReader& reader, const std::string& name) {
   const auto at = reader.matrices.find(name);
   if (at == reader.matrices.end()) {
     std::string all;
@@ -230,7 +230,7 @@ Eigen::MatrixXd filled(const Found& found, const std::map<GridDof, Eigen::Index>
 GridMatrices read_dmig(const std::filesystem::path& path, const std::string& stiffness,
                        const std::string& mass) {
   const TextFile file = read_text(path);
-  const Reader reader(file);
+  const DmigReader reader(file);
   const Found &K = chosen(file, reader, stiffness), &M = chosen(file, reader, mass);
   std::map<GridDof, Eigen::Index> row;
   for (const Found* found : {&K, &M})

@@ -12,9 +12,9 @@ namespace {
 
 using Fields = std::vector<std::string_view>;
 
-class Reader {
+class ModalReader {
  public:
-  explicit Reader(const TextFile& file) : file_(file) {
+  explicit ModalReader(const TextFile& file) : file_(file) {
     for (const TextLine& line : lines_of(file)) {
       const std::string_view text = trim(line.text.substr(0, line.text.find('#')));
       if (!text.empty()) read(line.number, comma_fields(text));
@@ -156,7 +156,7 @@ class Reader {
 
 ModalData read_modal_csv(const std::filesystem::path& path) {
   const TextFile file = read_text(path);
-  return Reader(file).data();
+  return ModalReader(file).data();
 }
 
 namespace {

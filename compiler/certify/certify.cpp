@@ -6,11 +6,12 @@
 #include <titop/compiler/certify/self_check.hpp>
 #include <titop/compiler/reduce/weak_pivot.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// "about 2 digits are": what a loop keeps at this distance from singular.
 std::string digits_at(double distance) {

@@ -9,6 +9,7 @@
 #include <titop/compiler/instant.hpp>
 #include <titop/compiler/system_data.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 /// The dense model against the factors that it was written from.
 namespace titop::detail {
@@ -20,12 +21,9 @@ using Eigen::VectorXd;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Of its neighbours, as in compare.cpp: the terms of a 0 that one order of sums hits.
-constexpr double kHitBy = 1e-3;
-constexpr double kNoise = 1e3;     ///< times rounding: what may be nothing else
 constexpr double kDoubted = 1e-9;  ///< what is above this is looked at again, at some cost
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Rows of [xdot; y] that share a size, first and count.
 using Groups = std::vector<std::pair<Index, Index>>;

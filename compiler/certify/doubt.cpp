@@ -5,13 +5,13 @@
 #include <titop/compiler/certify/doubt.hpp>
 #include <titop/compiler/certify/residual.hpp>
 #include <titop/compiler/evaluate.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
+using linalg::at;
 using solve::RowMatrix;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Share that is lost of some entries of one unit: how far they are off, and what stands around
 /// each of them.

@@ -2,6 +2,7 @@
 #include <map>
 #include <titop/compiler/certify/dual_pairs.hpp>
 #include <titop/compiler/declared.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::full {
 namespace {
@@ -10,7 +11,7 @@ using Eigen::MatrixXd;
 
 constexpr double kOfRounding = 1e-3;  ///< of the terms that cancel, as compiler/compare.cpp has it
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Per channel: how a wrench there follows from an input, or how an output follows from its motion.
 using Weights = std::map<int, MatrixXd>;

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 /// Where in s a system is tried.
 namespace titop::detail {
@@ -7,8 +8,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Of a block whose states act on themselves through others only: the shortest such round trips,
 /// of up to kLongest steps.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/skeel.hpp>
 #include <utility>
 
@@ -13,8 +14,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 constexpr int kExactUpTo = 120;  ///< unknowns; above it a dense inverse per loop costs too much
 
@@ -111,14 +111,14 @@ struct Filler {
 };
 
 /// Room for one loop after the other.
-struct Room {
+struct LoopRoom {
   MatrixXd L = {};
   std::vector<int> column = {};  ///< of every signal, -1 between loops
 };
 
 /// Loop matrix of one strong component: its rows and unknowns of the equations, dense. False where
 /// rows and unknowns do not match.
-bool take_loop_matrix(const SystemData& d, const Loop& loop, Room& room) {
+bool take_loop_matrix(const SystemData& d, const Loop& loop, LoopRoom& room) {
   room.L.setZero(loop.unknowns, loop.unknowns);
   int columns = 0;
   for (const int s : loop.signals)
@@ -155,7 +155,7 @@ void to_own_units(const SystemData& d, const Loop& loop, MatrixXd& L) {
 
 /// rho(|L^-1| |L|); 1 for a single unknown, 0 where it is not found: of large loops, and where L
 /// has no inverse in double.
-double margin(const SystemData& d, const Loop& loop, Room& room) {
+double margin(const SystemData& d, const Loop& loop, LoopRoom& room) {
   if (loop.unknowns == 1) return 1;
   if (loop.unknowns > kExactUpTo || !take_loop_matrix(d, loop, room)) return 0;
   return linalg::skeel_radius(room.L, [&](MatrixXd& M) { to_own_units(d, loop, M); });
@@ -166,7 +166,7 @@ double margin(const SystemData& d, const Loop& loop, Room& room) {
 void find_margins(const SystemData& d, std::span<const int> loops, std::vector<double>& margins) {
   const std::vector<Loop>& all = d.skeleton->stage.loops;
   margins.resize(all.size(), 0);
-  Room room;
+  LoopRoom room;
   room.column.assign(d.graph().signals.size(), -1);
   for (const int i : loops) margins[at(i)] = margin(d, all[at(i)], room);
 }

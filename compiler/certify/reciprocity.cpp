@@ -5,6 +5,7 @@
 #include <set>
 #include <titop/compiler/certify/reciprocity.hpp>
 #include <titop/compiler/system.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::full {
 namespace {
@@ -16,7 +17,7 @@ using Eigen::MatrixXd;
 
 constexpr double kByItself = 1e-12;  ///< of a block's response: rounding and no more
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Where square matrices are least symmetric.
 struct Asymmetry {

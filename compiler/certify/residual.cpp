@@ -8,15 +8,15 @@
 #include <titop/compiler/certify/residual.hpp>
 #include <titop/compiler/evaluate.hpp>
 #include <titop/graph/drives.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
 using Eigen::MatrixXd;
+using linalg::at;
 
-std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNotFinite = std::numeric_limits<double>::infinity();
 constexpr double kPlain = 1e-12;  ///< rounding up to this needs no excuse
 /// Of the largest motion or wrench of its kind, where chains hold it at 0: fifty units of rounding,
 /// what a sum over a way round a chain of some tens of joints leaves.
@@ -103,14 +103,14 @@ struct Balance {
   double largest() const {
     double size = 0;
     for (const Row& r : row) {
-      if (!std::isfinite(r.difference)) return kInfinity;
+      if (!std::isfinite(r.difference)) return kNotFinite;
       size = std::max(size, r.off());
     }
     return size;
   }
   /// Largest share of the rows of one unit; 1 where something is not finite.
   double relative() const {
-    if (largest() == kInfinity) return 1;
+    if (largest() == kNotFinite) return 1;
     if (rows() == 1) return row[0].off() == 0 ? 0 : row[0].off() / row[0].magnitude;
     double worst = 0;
     for (std::size_t i = 0; i < rows();) {
@@ -163,7 +163,7 @@ struct Residual {
     if (r <= worst) return;
     const double off = b.largest();
     if (off < kUnderflow) return;
-    if (r > kPlain && off < kInfinity && signal >= 0 && only_rounding(signal)) return;
+    if (r > kPlain && off < kNotFinite && signal >= 0 && only_rounding(signal)) return;
     worst = r, where = name();
   }
   bool only_rounding(int signal) {

@@ -13,12 +13,13 @@
 #include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/instant.hpp>
 #include <titop/compiler/solve/kernels.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 
 namespace titop::detail {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 using solve::RowMatrix;
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <titop/compiler/certify/dual_pairs.hpp>
 #include <titop/compiler/certify/springs.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 #include <utility>
 
@@ -17,7 +18,7 @@ using Eigen::MatrixXd;
 
 constexpr double kRounding = 1e-12;  ///< of the axes' sizes
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// By channels, force and motion: the wrench that works against the structure.
 using Gains = std::map<std::pair<int, int>, MatrixXd>;

@@ -7,6 +7,7 @@
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/certify/structure.hpp>
 #include <titop/graph/drives.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::full {
 namespace {
@@ -16,7 +17,7 @@ using Vectors = std::vector<VectorXd>;  ///< one per channel
 
 constexpr double kNoWork = 1e-12;  ///< of the sum of magnitudes: rounding of rotations
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// What makes an equation of a channel more than a connection of bodies, springs and dampers; empty
 /// if nothing does.

@@ -2,13 +2,13 @@
 #include <map>
 #include <titop/compiler/dense/reciprocity.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
 using Eigen::Index;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// A term between channels: what it reads, and its coefficient.
 struct Link {

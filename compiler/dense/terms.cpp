@@ -1,5 +1,6 @@
 #include <titop/compiler/dense/terms.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
@@ -8,8 +9,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Target = Writing::Target;
 using Term = Writing::Term;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 const solve::RowMatrix<double>& coefficient(const SystemData& d, int i) {
   return *d.numbers.coefficients[at(i)];

@@ -3,14 +3,14 @@
 #include <span>
 #include <titop/compiler/dense/writing.hpp>
 #include <titop/compiler/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
 using Eigen::Index;
+using linalg::at;
 using solve::Piece;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 struct Builder {
   Writing& w;

@@ -4,12 +4,13 @@
 #include <map>
 #include <titop/compiler/dot/picture.hpp>
 #include <titop/compiler/dot/text.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <tuple>
 
 namespace titop::dot {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// "SpringMass ×40, Hinge ×2": the most frequent first.
 std::string types(const Graph& g, const Fold::Box& box) {

@@ -2,11 +2,12 @@
 #include <numeric>
 #include <queue>
 #include <titop/compiler/dot/fold.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::dot {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// The blocks as a forest: each hangs on the one whose acceleration drives it (a mounted body on
 /// its parent); what nothing moves hangs on the first block, by name, that it reads.

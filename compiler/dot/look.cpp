@@ -3,13 +3,13 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <titop/compiler/dot/picture.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::dot {
 namespace {
 
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// A term as a sign, a gain, and words, read from the signal's side.
 struct Reading {

@@ -4,11 +4,12 @@
 #include <set>
 #include <titop/compiler/dot/picture.hpp>
 #include <titop/compiler/dot/text.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::dot {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 bool knows_parameters(const Stage& stage, const Block& block) {
   for (const Value& v : block.values())

@@ -6,11 +6,12 @@
 #include <set>
 #include <titop/compiler/dot/picture.hpp>
 #include <titop/compiler/dot/text.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::dot {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 template <class List>
 std::vector<int> by_name(const List& list) {

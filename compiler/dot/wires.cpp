@@ -2,11 +2,12 @@
 
 #include <titop/compiler/dot/picture.hpp>
 #include <titop/compiler/dot/text.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::dot {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 std::string head_shape(const Wire& w) {
   if (!w.arrow) return "none";

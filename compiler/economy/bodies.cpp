@@ -8,6 +8,7 @@
 #include <titop/compiler/economy/remove_signals.hpp>
 #include <titop/compiler/economy/small.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/modal_form.hpp>
 
 namespace titop::detail {
@@ -17,10 +18,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kEqual = 1e-9;   ///< relative gap of frequencies that count as one
-constexpr double kInSpan = 1e-7;  ///< what vectors of other ports leave of one that they hold
+constexpr double kOneFrequency = 1e-9;  ///< relative gap of frequencies that count as one
+constexpr double kInSpan = 1e-7;        ///< what vectors of other ports leave of one that they hold
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// A body in fewer coordinates: eta = V eta_r.
 class FewerModes final : public Block {
@@ -116,7 +117,7 @@ std::vector<Group> groups(const std::vector<Shared>& bodies) {
     std::stable_sort(order.begin(), order.end(), [&](Index i, Index j) { return k(i) < k(j); });
     for (std::size_t i = 0; i < order.size(); ++i) {
       const Index j = order[i];
-      if (i == 0 || k(j) - k(order[i - 1]) > 2 * kEqual * k(j)) list.push_back({b, {}, 0});
+      if (i == 0 || k(j) - k(order[i - 1]) > 2 * kOneFrequency * k(j)) list.push_back({b, {}, 0});
       list.back().modes.push_back(j);
       list.back().effect += bodies[b].corrected(j);
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <titop/compiler/economy/coordinates.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop::detail {
@@ -18,7 +19,7 @@ constexpr const char* kWayOut =
     "take controllers and filters out of the scene (their signals become inputs and outputs), or "
     "give a spring its own joint";
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 [[noreturn]] void refuse(const std::string& message, std::vector<std::string> details = {}) {
   throw NoStructure(Code::bad_value, message, kWayOut, std::move(details));

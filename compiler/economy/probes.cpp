@@ -7,6 +7,7 @@
 #include <titop/compiler/compile_graph.hpp>
 #include <titop/compiler/economy/probes.hpp>
 #include <titop/compiler/parallel.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kDamping = 0.05;    ///< of the ray that modes are judged on
 constexpr double kLowest = 1e-2;     ///< of the band's upper end: below it vectors are exact
 constexpr double kSmallPair = 1e-6;  ///< pairs this far below their row and column are nothing
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 std::shared_ptr<const Modal> modes_of(const Graph& g, int node, ParameterValues values) {
   const Block& block = *g.nodes[at(node)].block;

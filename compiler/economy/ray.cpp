@@ -15,15 +15,15 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kNothing = 1e-10;    ///< of what its row and column have: a pair of rounding only
-constexpr double kNearlyZero = 1e-6;  ///< of what it would be otherwise: a pair that is nothing
-constexpr double kRounding = 1e-12;   ///< of the full system's transfer
-constexpr double kCancelled = 5e-14;  ///< of terms that cancel: some 200 units of the last place
-constexpr double kPoleUnits = 2;      ///< units of the last place of a pole
-constexpr int kFar = 10;              ///< poles in s^2 that stand for all beyond twice the band
-constexpr double kEqual = 1e-12;      ///< relative distance of poles that are one
+constexpr double kNoPair = 1e-10;      ///< of what its row and column have: a pair of rounding only
+constexpr double kNearlyZero = 1e-6;   ///< of what it would be otherwise: a pair that is nothing
+constexpr double kOfTransfer = 1e-12;  ///< of the full system's transfer
+constexpr double kCancelled = 5e-14;   ///< of terms that cancel: some 200 units of the last place
+constexpr double kPoleUnits = 2;       ///< units of the last place of a pole
+constexpr int kFar = 10;               ///< poles in s^2 that stand for all beyond twice the band
+constexpr double kOnePole = 1e-12;     ///< relative distance of poles that are one
 
-bool equal(Complex p, Complex q) { return std::abs(p - q) <= kEqual * std::abs(q); }
+bool equal(Complex p, Complex q) { return std::abs(p - q) <= kOnePole * std::abs(q); }
 
 /// Is this pole the last two already? Modes of one frequency and one damping, however many, are one
 /// simple pole of the transfer; the second one stands for what they differ by where they count as
@@ -234,7 +234,7 @@ MatrixXd with_floor(MatrixXd peak) {
   const auto [out, in] = port_sizes(peak);
   const Eigen::VectorXd row = (peak.rowwise().maxCoeff().array() > 0).cast<double>();
   const Eigen::RowVectorXd column = (peak.colwise().maxCoeff().array() > 0).cast<double>();
-  peak = peak.cwiseMax(kNothing * out.cwiseProduct(row) * in.cwiseProduct(column));
+  peak = peak.cwiseMax(kNoPair * out.cwiseProduct(row) * in.cwiseProduct(column));
   return (peak.array() > 0).select(peak, 1);
 }
 
@@ -281,7 +281,7 @@ double nearest_pole(const Scene& scene, const Band& band, const Spectrum& w) {
 
 MatrixXd rounding(const Samples& samples, double nearest) {
   const double resonance = kPoleUnits * std::numeric_limits<double>::epsilon() / nearest;
-  return (kCancelled * samples.alike.cwiseQuotient(samples.peak)).array() + kRounding + resonance;
+  return (kCancelled * samples.alike.cwiseQuotient(samples.peak)).array() + kOfTransfer + resonance;
 }
 
 }  // namespace titop::detail

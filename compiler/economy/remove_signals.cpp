@@ -1,9 +1,10 @@
 #include <titop/compiler/economy/remove_signals.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 }  // namespace
 

@@ -4,13 +4,14 @@
 #include <cmath>
 #include <titop/compiler/economy/remove_signals.hpp>
 #include <titop/compiler/economy/scene.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
 constexpr double kLeastAccuracy = 2e-12;  ///< twice what rounding alone is allowed in a bound
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// What a scene chose: an input or output, and one of its scalars or all (-1).
 struct Choice {

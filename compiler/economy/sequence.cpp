@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <titop/compiler/economy/sequence.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 
 namespace titop::detail {
@@ -15,10 +16,10 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kInSpan = 1e-7;  ///< what is left of a column that the others hold already
-constexpr double kTie = 1e-6;     ///< errors that count as equal: the first goes, whatever rounding
+constexpr double kDependent = 1e-7;  ///< what is left of a column that the others hold already
+constexpr double kTie = 1e-6;  ///< errors that count as equal: the first goes, whatever rounding
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// What an output reads of the elastic modes: positions, accelerations, or rates.
 VectorXd reading(const Whole& w, Index output) {
@@ -162,7 +163,7 @@ bool Sequence::add(VectorXd column) {
   for (int twice = 0; twice < 2; ++twice) {
     column -= W_ * (W_.transpose() * column);
     const double left = column.norm();
-    if (left < kInSpan) return false;
+    if (left < kDependent) return false;
     column /= left;
   }
   W_.conservativeResize(Eigen::NoChange, W_.cols() + 1);

@@ -18,10 +18,10 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRounding = 1e4;   ///< units of the last place of |A| that a real part may be
+constexpr double kRealPart = 1e4;   ///< units of the last place of |A| that a real part may be
 constexpr double kTogether = 1e6;   ///< size of what goes over from part to part
 constexpr double kAllAlike = 1e-3;  ///< weight of what states might do that do not
-constexpr double kNothing = 1e-10;  ///< |s| over |A| of a pole that may be 0
+constexpr double kAtRest = 1e-10;   ///< |s| over |A| of a pole that may be 0
 
 /// States by the pattern of A: those nothing depends on, the core, those that depend on nothing;
 /// in an order that makes A block upper triangular with strict triangles at both ends.
@@ -77,7 +77,7 @@ class Core {
   Complex pole(Index i) const { return schur_.T(i, i); }
   double norm() const { return A_.size() ? A_.norm() : 0; }
   bool has_zero() const {
-    return order() > 0 && schur_.T.diagonal().cwiseAbs().minCoeff() <= kNothing * norm();
+    return order() > 0 && schur_.T.diagonal().cwiseAbs().minCoeff() <= kAtRest * norm();
   }
   /// Tells kept and stable apart.
   void divide() {
@@ -96,7 +96,7 @@ class Core {
  private:
   bool is_kept(Index i, double ratio) const {
     const double least =
-        ratio / kUndamped * kRounding * std::numeric_limits<double>::epsilon() * norm();
+        ratio / kUndamped * kRealPart * std::numeric_limits<double>::epsilon() * norm();
     return -pole(i).real() <= std::max(ratio * std::abs(pole(i)), least);
   }
   bool try_divide(double ratio) {
@@ -234,7 +234,7 @@ Split assemble(const StateSpace& m, const Peeled& p, const Core& core) {
   s.poles.assign(p.sinks.size() + p.sources.size(), 0);
   for (Index i = 0; i < core.order(); ++i)
     if (const Complex at = core.pole(i); at.imag() >= 0)
-      s.poles.push_back(i < core.kept && std::abs(at) <= kNothing * core.norm() ? 0 : at);
+      s.poles.push_back(i < core.kept && std::abs(at) <= kAtRest * core.norm() ? 0 : at);
   return s;
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <titop/compiler/economy/twins.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
@@ -14,9 +15,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRounding = 1e-10;  ///< of an entry, on the scale of its row and column
+constexpr double kAlike = 1e-10;  ///< of an entry, on the scale of its row and column
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// node -> channel by channel (index in the block's interface) the nodes at its equations.
 using Neighbours = std::vector<std::map<int, std::set<int>>>;
@@ -104,7 +105,7 @@ VectorXd find_signs(const MatrixXd& X, const MatrixXd& F, const std::vector<Inde
 bool same(const MatrixXd& X, const VectorXd& sign, const std::vector<Index>& to) {
   for (Index i = 0; i < X.rows(); ++i)
     for (Index j = 0; j <= i; ++j)
-      if (!(std::abs(X(i, j) - sign(i) * sign(j) * X(to[at(i)], to[at(j)])) <= kRounding))
+      if (!(std::abs(X(i, j) - sign(i) * sign(j) * X(to[at(i)], to[at(j)])) <= kAlike))
         return false;
   return true;
 }
@@ -112,7 +113,7 @@ bool same(const MatrixXd& X, const VectorXd& sign, const std::vector<Index>& to)
 bool same_rows(const MatrixXd& F, const VectorXd& sign, const std::vector<Index>& to) {
   for (Index i = 0; i < F.rows(); ++i)
     for (Index m = 0; m < F.cols(); ++m)
-      if (!(std::abs(F(i, m) - sign(i) * F(to[at(i)], m)) <= kRounding)) return false;
+      if (!(std::abs(F(i, m) - sign(i) * F(to[at(i)], m)) <= kAlike)) return false;
   return true;
 }
 
@@ -151,7 +152,7 @@ void silence(Coordinates& c, const Coordinates& before) {
                  v_left = row_sizes(c.C_v, c.K.diagonal());
   const Index loose = c.size() - c.n_elastic;
   for (Index i = 0; i < q.size(); ++i) {
-    if (q(i) + v(i) == 0 || q_left(i) > kRounding * q(i) || v_left(i) > kRounding * v(i)) continue;
+    if (q(i) + v(i) == 0 || q_left(i) > kAlike * q(i) || v_left(i) > kAlike * v(i)) continue;
     if (!c.C_q.row(i).tail(loose).isZero(0) || !c.C_v.row(i).tail(loose).isZero(0)) continue;
     c.C_q.row(i).setZero();
     c.C_v.row(i).setZero();
@@ -191,13 +192,13 @@ void project(Coordinates& c, const MatrixXd& S, const std::vector<Index>& first)
 bool same_sizes(const MatrixXd& F, const std::vector<Index>& to) {
   for (Index m = 0; m < F.cols(); ++m)
     for (Index i = 0; i < F.rows(); ++i)
-      if (!(std::abs(std::abs(F(i, m)) - std::abs(F(to[at(i)], m))) <= kRounding)) return false;
+      if (!(std::abs(std::abs(F(i, m)) - std::abs(F(to[at(i)], m))) <= kAlike)) return false;
   return true;
 }
 
 bool same_diagonal(const MatrixXd& X, const std::vector<Index>& to) {
   for (Index i = 0; i < X.rows(); ++i)
-    if (std::abs(X(i, i) - X(to[at(i)], to[at(i)])) > kRounding * X(i, i)) return false;
+    if (std::abs(X(i, i) - X(to[at(i)], to[at(i)])) > kAlike * X(i, i)) return false;
   return true;
 }
 

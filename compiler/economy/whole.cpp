@@ -7,6 +7,7 @@
 #include <titop/compiler/economy/whole.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop::detail {
@@ -20,7 +21,7 @@ constexpr double kEqual = 1e-9;  ///< relative gap of frequencies that count as 
 constexpr double kSeen = 1e-12;  ///< of what a port sees of all modes: less is rounding
 constexpr double kLeak = 3e-9;   ///< the same where chains close, and coordinates depend on others
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Modes in coordinates scaled to stiffness 1: P y = mu K y with P = M scaled, largest mu first, so
 /// that the low modes keep their digits.

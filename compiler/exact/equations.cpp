@@ -3,13 +3,13 @@
 #include <titop/compiler/exact/equations.hpp>
 #include <titop/compiler/exact/fractions.hpp>
 #include <titop/graph/drives.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::exact {
 namespace {
 
 using Eigen::Index;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// All equations as rows over these columns, in this order: port signals; rates of all states and
 /// outputs, which are wanted; states and inputs, which are known.

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <titop/compiler/minimize/clusters.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::modes {
 namespace {
@@ -14,7 +15,7 @@ using Eigen::MatrixXd;
 
 constexpr double kOneMode = 1e-6;  ///< of a vector's largest entry: no rounding in another part
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 template <class Matrix>
 Matrix turned(const Matrix& b, const Matrix& c) {

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/minimize/clusters.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 /// Models of any other kind: eigenvalues with left and right vectors.
 namespace titop::modes {
@@ -10,8 +11,7 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Where the vectors of some poles are hardly a basis, as of a Jordan block, W = V^-1 loses digits
 /// of all the others: simple poles get their left vectors from A' itself.

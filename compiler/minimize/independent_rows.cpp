@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/minimize/independent_rows.hpp>
+#include <titop/compiler/minimize/sampled.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 
 namespace titop::modes {
@@ -10,7 +11,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRounding = 32;     ///< times the largest of a few samples of it
 constexpr double kClearly = 1e4;     ///< times rounding: not made by it
 constexpr double kFewDigits = 1e-9;  ///< of a row: where rounding is more, nothing leaves
 constexpr double kOfNoise = 1e12;    ///< times rounding: what it counts for where rows are scaled

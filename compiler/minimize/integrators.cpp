@@ -3,6 +3,7 @@
 #include <titop/compiler/minimize/integrators.hpp>
 #include <titop/graph/linalg/balance.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::modes {
 namespace {
@@ -12,7 +13,7 @@ using Eigen::MatrixXd;
 
 constexpr double kSingular = 1e-15;  ///< rcond of a matrix with a pole at 0, but for rounding
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 MatrixXd above(const MatrixXd& a, const MatrixXd& b) {
   MatrixXd both(a.rows() + b.rows(), a.cols());

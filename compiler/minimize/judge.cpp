@@ -3,6 +3,7 @@
 #include <limits>
 #include <numeric>
 #include <titop/compiler/minimize/judge.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::modes {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kNarrow = 1e-14;
 constexpr double kDoubtful = 1e-9;  ///< above it a mode always stays
 constexpr double kFarOff = 1e-6;    ///< above it not even exact arithmetic makes a mode leave
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// What all modes do near the frequency of mode j, per port: sqrt(sum rows_i^2 w_i).
 VectorXd background(const MatrixXd& rows, const ModeSet& m, Index j) {

@@ -3,6 +3,7 @@
 #include <titop/compiler/minimize/independent_rows.hpp>
 #include <titop/compiler/minimize/needless.hpp>
 #include <titop/compiler/minimize/take_out.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::modes {
 namespace {
@@ -12,7 +13,7 @@ using Eigen::MatrixXd;
 
 constexpr double kHides = 1e-11;  ///< of a row: what more rounding than that may hide counts
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// [B, N B, ...] up to the last power of N.
 MatrixXd driven(const MatrixXd& N, const MatrixXd& B, int powers) {
@@ -60,9 +61,9 @@ std::optional<Apart> apart(const Sampled& s, const Integrated& states) {
 }
 
 /// The integrators that leave: where they stand among the integrators, and as states of the model.
-struct Leaving {
+struct LeavingIntegrators {
   std::vector<int> rows, states;
-  Leaving(const IndependentRows& independent, const Integrated& of) {
+  LeavingIntegrators(const IndependentRows& independent, const Integrated& of) {
     for (const IndependentRows::Row& out : independent.out) {
       rows.push_back(out.row);
       states.push_back(of.integrators[at(out.row)]);
@@ -110,7 +111,7 @@ bool take_out_undriven(Sampled& s, const Integrated& states, Needless& n) {
   const IndependentRows rows = moved(s.model, *d, states);
   report(rows, "no input moves it", n);
   if (rows.out.empty()) return true;
-  const Leaving leaving(rows, states);
+  const LeavingIntegrators leaving(rows, states);
   const MatrixXd& T = rows.T;
   const auto by_rest = [&](const Decoupled& part) {
     return MatrixXd(part.X(leaving.rows, Eigen::all) - T * part.X(rows.keep, Eigen::all));
@@ -144,7 +145,7 @@ void take_out_unseen(Sampled& s, const Integrated& states, Needless& n) {
   const IndependentRows rows = independent_rows(O, rounding, any, levels(part(s.model)));
   report(rows, "no output sees it", n);
   if (rows.out.empty()) return;
-  const Leaving leaving(rows, states);
+  const LeavingIntegrators leaving(rows, states);
   const MatrixXd P =
       on_others(rows.T, pick(states.integrators, rows.keep), s.model.A.rows(), leaving.states)
           .transpose();

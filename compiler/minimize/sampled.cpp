@@ -10,7 +10,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr int kSamples = 4;
-constexpr double kRounding = 32;  ///< times the largest sample
 
 }  // namespace
 

@@ -7,6 +7,9 @@
 /// files.
 namespace titop::modes {
 
+/// Times the largest of a few samples of rounding: what is below may be nothing else.
+inline constexpr double kRounding = 32;
+
 /// A model, and as it might be as well: rounding of the given sizes added to its entries.
 struct Sampled {
   StateSpace model;
@@ -25,7 +28,7 @@ Eigen::MatrixXd rounding_of(const std::vector<Sample>& samples, const Eigen::Mat
   return most;
 }
 
-/// 0 for what lies below 32 times this rounding.
+/// 0 for what lies below kRounding times this rounding.
 Eigen::MatrixXd cleared(const Eigen::MatrixXd& value, const Eigen::MatrixXd& rounding);
 
 /// Entries of the model that rounding alone may have made become 0.

@@ -4,6 +4,7 @@
 #include <titop/compiler/minimize/clusters.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/graded.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 /// Undamped and proportionally damped models.
 namespace titop::modes {
@@ -16,7 +17,7 @@ using Eigen::VectorXd;
 constexpr double kAsymmetry = 1e-9;  ///< of what must be symmetric, over its diagonal
 constexpr double kNoTerm = 1e-12;    ///< of the terms of a sum: what is left is rounding
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 struct Range {
   Index first, count;

@@ -5,6 +5,7 @@
 #include <titop/compiler/minimize/take_out.hpp>
 #include <titop/compiler/some_names.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::modes {
 namespace {
@@ -17,7 +18,7 @@ using Eigen::VectorXd;
 constexpr double kSmallShare = 1e-4;  ///< of a mode that rounding puts into another, at most
 constexpr double kNoise = 1e-14;  ///< of the fastest mode: what rounding may do to a model's matrix
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Columns that stand best for the rows of W (k x n): pivoted QR.
 std::vector<int> pivots(const MatrixXd& W) {
@@ -52,15 +53,15 @@ std::string list(const std::vector<int>& out, const std::vector<std::string>& na
 }
 
 /// Modes that leave a model by one of their sides.
-struct Side {
+struct LeavingModes {
   MatrixXd W;  ///< rows: of x, the modes' coordinates but for a factor
   MatrixXd V;  ///< columns: their motions
 };
 
 /// What leaves a model: relations `undriven.W` x = 0 that hold for all that inputs can do, and
 /// motions `unseen.V` that show in no output. `scale`: units of the states.
-struct Leaving {
-  Side undriven, unseen;
+struct LeavingSides {
+  LeavingModes undriven, unseen;
   VectorXd scale;
   double noise;
 };
@@ -77,21 +78,21 @@ MatrixXd cleared_product(const MatrixXd& left, const MatrixXd& right, const Vect
 
 /// B -= V (W V)^-1 W B. What inputs do to modes that leave would be put into those that stay: then
 /// the transfer would change in proportion to it, and not to that times what outputs see.
-void drive_no_more(const Leaving& l, MatrixXd& B) {
+void drive_no_more(const LeavingSides& l, MatrixXd& B) {
   const auto& [W, V] = l.undriven;
   const MatrixXd driven = cleared_product(W, B, l.scale, l.noise);
   if (!driven.isZero(0)) B -= V * MatrixXd(W * V).partialPivLu().solve(driven);
 }
 
 /// C -= C V (W V)^-1 W, likewise.
-void see_no_more(const Leaving& l, MatrixXd& C) {
+void see_no_more(const LeavingSides& l, MatrixXd& C) {
   const auto& [W, V] = l.unseen;
   const MatrixXd seen = cleared_product(C, V, l.scale, l.noise);
   if (!seen.isZero(0)) C -= seen * MatrixXd(MatrixXd(W * V).partialPivLu().solve(W));
 }
 
 /// `dependent`: the states that follow, where the caller knows better than W alone.
-void remove(StateSpace& m, Leaving l, const std::vector<int>& dependent,
+void remove(StateSpace& m, LeavingSides l, const std::vector<int>& dependent,
             std::vector<std::string>& notes) {
   if (const MatrixXd& W = l.undriven.W; W.rows() > 0) {
     const std::vector<int> keep = others(m.A.rows(), dependent);
@@ -99,7 +100,7 @@ void remove(StateSpace& m, Leaving l, const std::vector<int>& dependent,
     const MatrixXd T = solve_for(W, dependent, keep, l.scale, l.noise);
     drive_no_more(l, m.B);
     take_out_dependent(m, dependent, T);
-    Side& next = l.unseen;
+    LeavingModes& next = l.unseen;
     next.W = (next.W(Eigen::all, keep) + next.W(Eigen::all, dependent) * T).eval();
     next.V = next.V(keep, Eigen::all).eval();
     l.scale = l.scale(keep).eval();
@@ -248,10 +249,10 @@ void take_out(const Symmetric& s, const std::vector<Verdict>& verdicts, StateSpa
   };
   // Energy weight: soft coordinates are chosen to depend on the others.
   const VectorXd weight = s.D_inverse.colwise().norm().cwiseInverse();
-  Leaving l{{levels(left), levels(motions(unreachable).transpose()).transpose()},
-            {levels(coordinates(unseen)), levels(right.transpose()).transpose()},
-            VectorXd(states),
-            64 * kEps};
+  LeavingSides l{{levels(left), levels(motions(unreachable).transpose()).transpose()},
+                 {levels(coordinates(unseen)), levels(right.transpose()).transpose()},
+                 VectorXd(states),
+                 64 * kEps};
   for (std::size_t i = 0; i < s.q.size(); ++i)
     l.scale(s.q[i]) = l.scale(s.qdot[i]) = weight(static_cast<Index>(i));
   const std::vector<int> dependent =
@@ -290,10 +291,10 @@ void take_out(const General& g, const std::vector<Verdict>& verdicts, StateSpace
                                   g.e.W * model.B, unreachable),
                  right = relations(V, (V * scale.cwiseInverse().asDiagonal()).rowwise().norm(),
                                    (model.C * g.e.V).transpose(), unseen);
-  Leaving l{{left, real_rows(V(unreachable, Eigen::all), unreachable).transpose()},
-            {real_rows(g.e.W(unseen, Eigen::all), unseen), right.transpose()},
-            scale,
-            1e-12};
+  LeavingSides l{{left, real_rows(V(unreachable, Eigen::all), unreachable).transpose()},
+                 {real_rows(g.e.W(unseen, Eigen::all), unseen), right.transpose()},
+                 scale,
+                 1e-12};
   const std::vector<int> dependent =
       left.rows() == 0 ? std::vector<int>{} : pivots(left * scale.asDiagonal());
   remove(model, std::move(l), dependent, notes);

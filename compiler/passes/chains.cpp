@@ -16,6 +16,7 @@
 #include <titop/compiler/some_names.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 
 namespace titop::passes {
@@ -24,8 +25,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using namespace closing;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 constexpr double kGap = 1e-6;       ///< a loop that is open by more does not close
 constexpr double kExactGap = 1e-9;  ///< by more it is noted

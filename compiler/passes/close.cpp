@@ -6,14 +6,14 @@
 #include <titop/compiler/passes/close/integrals.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/some_names.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
 using Eigen::Index;
 using namespace closing;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// One of the two levels on which chains close.
 enum class Level { position, velocity };

@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <titop/compiler/ahead.hpp>
 #include <titop/compiler/passes/incidence.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 }  // namespace
 

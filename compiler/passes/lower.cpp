@@ -5,11 +5,12 @@
 #include <titop/compiler/passes/lower/by_name.hpp>
 #include <titop/compiler/passes/lower/rigid_motions.hpp>
 #include <titop/compiler/passes/passes.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// The lowered equations, one after the other, each with its origin.
 struct Lowered {

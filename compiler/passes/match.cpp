@@ -1,11 +1,12 @@
 #include <titop/compiler/passes/matching.hpp>
 #include <titop/compiler/passes/passes.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 
 namespace titop::passes {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Coarse to fine. What is only determined through states (a massless point between springs) has a
 /// singular state space at first, which `reduce` makes regular.

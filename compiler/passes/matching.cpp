@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <titop/compiler/passes/matching.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 bool fits(const Incidence& inc, int row, int col) {
   return inc.row_size[at(row)] == inc.col_size[at(col)];

@@ -7,11 +7,12 @@
 #include <titop/compiler/passes/arrows.hpp>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/compiler/passes/passes.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// signal -> signals that its row needs; states need the inputs that move them.
 Arrows dependencies(const Stage& stage) {

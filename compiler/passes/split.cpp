@@ -2,11 +2,12 @@
 
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/passes/union_find.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Connected parts of the signals: a block joins its own, an equation joins what it mentions.
 UnionFind connect(const Graph& g) {

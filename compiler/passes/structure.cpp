@@ -6,12 +6,13 @@
 #include <titop/compiler/passes/matching.hpp>
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/compiler/some_names.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 /// The structurally singular part, in the user's words.
 namespace titop::passes {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Rows that alternating paths reach from the free rows: more equations than unknowns.
 std::vector<char> too_many(const Incidence& inc, const Matching& m) {

@@ -1,5 +1,6 @@
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/reduce/hidden.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
@@ -7,9 +8,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
+using linalg::at;
 using solve::Kept;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double kKeeps = 1e-3;    ///< of the largest: a choice made before may cost three digits
 constexpr double kTie = 1 + 1e-9;  ///< less is rounding: the first is taken

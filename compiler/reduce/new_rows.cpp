@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <titop/compiler/reduce/new_rows.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
@@ -8,11 +9,10 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
+using linalg::at;
 using solve::Joint;
 using solve::Piece;
 using solve::RowMatrix;
-
-std::size_t at(Eigen::Index i) { return static_cast<std::size_t>(i); }
 
 }  // namespace
 

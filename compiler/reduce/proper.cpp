@@ -7,15 +7,15 @@
 #include <titop/compiler/reduce/proper.hpp>
 #include <titop/compiler/solve/blame.hpp>
 #include <titop/compiler/some_names.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using linalg::at;
 using solve::RowMatrix;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 

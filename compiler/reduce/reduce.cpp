@@ -10,6 +10,7 @@
 #include <titop/compiler/solve/blame.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
 #include <titop/compiler/some_names.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
@@ -17,11 +18,10 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
+using linalg::at;
 using solve::Joint;
 using solve::Piece;
 using solve::RowMatrix;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 class Reducer {
  public:

@@ -1,13 +1,13 @@
 #include <titop/compiler/reduce/watched.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Who reads which state.
 struct Readers {

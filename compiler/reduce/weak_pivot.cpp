@@ -7,13 +7,13 @@
 #include <titop/compiler/solve/null_rows.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/some_names.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
 namespace {
 
+using linalg::at;
 using solve::Complex50;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 constexpr double kMostProducts = 1e7;
 

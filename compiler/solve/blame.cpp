@@ -4,11 +4,12 @@
 #include <set>
 #include <titop/compiler/solve/blame.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::solve {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Declared: may the channel's output depend on its input at once?
 bool has_direct(const Graph& g, const Channel& c, const Dynamics& m) {

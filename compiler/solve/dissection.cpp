@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <titop/compiler/solve/dissection.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::solve {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 constexpr std::size_t kFew = 24;  ///< parts that are not cut any further
 

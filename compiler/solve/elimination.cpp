@@ -8,11 +8,12 @@
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/solve/scaling.hpp>
 #include <titop/compiler/solve/steps.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::solve {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Adds the rows that a child front left over; their `keeps` go along.
 template <class T>

@@ -2,11 +2,12 @@
 #include <cmath>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/compiler/solve/joint.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::solve {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 using passes::is_unknown;
 

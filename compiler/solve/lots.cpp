@@ -2,13 +2,14 @@
 #include <numeric>
 #include <titop/compiler/solve/elimination.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 
 /// Where the numbers of fronts stand.
 namespace titop::solve {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 }  // namespace
 

@@ -1,11 +1,11 @@
 #include <titop/compiler/solve/null_columns.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::solve {
 namespace {
 
 using Eigen::Index;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// F z = value e_row, front by front: L from the leaves to the root, then U back (substitution.cpp
 /// with the size of what every number was made of).

@@ -2,12 +2,13 @@
 #include <optional>
 #include <set>
 #include <titop/compiler/solve/null_rows.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 
 namespace titop::solve {
 namespace {
 
-std::size_t at(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Rows x with x L = c for factors of L, where c has one entry: first U transposed from its front
 /// towards the root, then L transposed back. Fronts where all is 0 are left out: a junction's

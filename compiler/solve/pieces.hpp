@@ -5,11 +5,12 @@
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/numbers.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 /// The matrices that pieces of rows are made of, and their products.
 namespace titop::solve {
 
-inline std::size_t at(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// A rectangle of a matrix of scalars T, in either order of storage.
 template <class T>

@@ -4,12 +4,13 @@
 #include <map>
 #include <titop/compiler/solve/dissection.hpp>
 #include <titop/compiler/solve/plan.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <tuple>
 
 namespace titop::solve {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Live row sets: original row groups first, then the rows that fronts leave over. A variable's
 /// list of sets may hold dead ones; `live` counts the others. Every front replaces at least one set

@@ -1,12 +1,12 @@
 #include <algorithm>
 #include <titop/compiler/solve/products.hpp>
 #include <titop/compiler/solve/propagation.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::solve {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-std::size_t at(std::ptrdiff_t i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 std::ptrdiff_t padded(std::ptrdiff_t columns) { return (columns + 7) / 8 * 8; }
 

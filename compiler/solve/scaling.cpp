@@ -6,6 +6,7 @@
 #include <numeric>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scaling.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/wide.hpp>
 #define TITOP_PART [[gnu::always_inline]] inline
 
@@ -13,8 +14,7 @@ namespace titop::solve {
 namespace {
 
 using Index = std::ptrdiff_t;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Exponents of two, in sixteenths: whole numbers, whose sums and largest a compiler may take in
 /// any order, and every machine gets the same.

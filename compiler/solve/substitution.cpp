@@ -1,13 +1,14 @@
 #include <titop/compiler/solve/elimination.hpp>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 /// Solving with the factors: leaf to root with the right-hand sides, root to leaf with the
 /// unknowns.
 namespace titop::solve {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// The rows of a front, as they were assembled, then permuted and reduced by L. The first
 /// pivot_count rows stay, the rest is carried to the parent.

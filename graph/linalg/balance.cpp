@@ -4,6 +4,7 @@
 #include <cmath>
 #include <titop/graph/linalg/balance.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <vector>
 
 namespace titop::linalg {
@@ -12,8 +13,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 /// Wanted: t(row) - t(col) = log2, or a number below by the same for all.
 struct Ratio {

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <titop/compiler/compare.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/titop.hpp>
 
 #include "support/random_scene.hpp"
@@ -27,7 +28,7 @@ namespace {
 const std::vector<Complex> kPoints = {{0.05, 0.7}, {0.2, 3}, {0.5, 9}, {2, 40}};
 const Measure kScalars{std::vector<int>(4, 1), std::vector<int>(4, 1)};
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 double unit(Rng& random) { return std::pow(10, random.below(19) - 9); }
 VectorXd units(Rng& random) {
   return VectorXd::NullaryExpr(4, [&] { return unit(random); });

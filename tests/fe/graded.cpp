@@ -4,6 +4,7 @@
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <cmath>
 #include <titop/graph/linalg/graded.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 #include "support/rng.hpp"
 
@@ -19,8 +20,7 @@ namespace {
 using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>,
                                            boost::multiprecision::et_off>;
 using Matrix100 = std::vector<std::vector<Real>>;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 Matrix100 exactly(const MatrixXd& S) {
   Matrix100 m(at(S.rows()), std::vector<Real>(at(S.rows())));

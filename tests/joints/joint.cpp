@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <titop/graph/linalg/index.hpp>
+
 #include "hub_and_boom.hpp"
 #include "support/close.hpp"
 #include "support/mistakes.hpp"
@@ -17,7 +19,7 @@ namespace {
 
 const Vector3d kR = Vector3d(2, -1, 2) / 3;  // a unit vector
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 MatrixXd columns(std::initializer_list<Vector6> list) {
   MatrixXd S(6, static_cast<Index>(list.size()));

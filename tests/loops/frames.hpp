@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 #include "assembly.hpp"
 
@@ -14,8 +15,7 @@ namespace loop_test {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 inline constexpr int kGround = -1;
 inline constexpr double kDamping = 0.01;  ///< of every sprung axis: c / k [s]

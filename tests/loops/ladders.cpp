@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <titop/compiler/passes/passes.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 #include "assembly.hpp"
 #include "stages.hpp"
@@ -18,7 +19,7 @@ using namespace titop;
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 struct Shape {
   int along = 2, across = 2;

@@ -6,6 +6,7 @@
 #include <titop/compiler/passes/close/redundant.hpp>
 #include <titop/compiler/passes/close/relations.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 #include "support/rng.hpp"
 
@@ -19,7 +20,7 @@ using titop_test::Rng;
 
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 Index width(const Relations& r) { return static_cast<Index>(r.role.size()); }
 

@@ -2,6 +2,7 @@
 
 #include <complex>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/titop.hpp>
 
 #include "support/rng.hpp"
@@ -19,7 +20,7 @@ using titop_test::Rng;
 
 namespace {
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 /// Hinges in a ring, links between them, the first and the last hinge on the ground. A force acts
 /// on the link in the middle, the first one's acceleration is seen.

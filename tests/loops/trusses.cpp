@@ -6,6 +6,7 @@
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/close/redundant.hpp>
 #include <titop/compiler/passes/passes.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 #include "assembly.hpp"
 #include "stages.hpp"
@@ -20,7 +21,7 @@ using namespace titop;
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 /// Of the bars: one bay after the other; all rails, then rungs, then braces; or in no order.
 enum class Names { along, by_kind, scrambled };

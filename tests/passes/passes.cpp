@@ -6,6 +6,7 @@
 #include <titop/compiler/dot.hpp>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/compiler/passes/passes.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 #include "support/close.hpp"
 #include "support/small_scenes.hpp"
@@ -16,7 +17,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 const std::vector<Complex> kPoints{{0.3, 1.7}, {-0.4, 6.1}, {0.1, 0.05}, {2, 40}};
 

@@ -3,6 +3,7 @@
 
 #include <set>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"
@@ -18,7 +19,7 @@ using Eigen::MatrixXd;
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 /// out_i = gain_i in_i, in_i = sum of weight_ij out_j + u_i: L = I - diag(gain) W.
 struct GainNetwork {

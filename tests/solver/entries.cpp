@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <titop/compiler/system.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/mount.hpp>
 
 #include "oracle.hpp"
@@ -17,7 +18,7 @@ using titop_test::Rng;
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 /// Springs on springs; `split`: half of the masses are split between child and parent side.
 struct Tree {

@@ -4,6 +4,7 @@
 #include <string>
 #include <titop/compiler/solve/elimination.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <vector>
 
 #include "support/rng.hpp"
@@ -58,7 +59,7 @@ Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> solve(const titop::solve::Facto
   return x;
 }
 
-inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 /// Pairs of groups that see each other; group i also sees itself.
 using Links = std::vector<std::pair<int, int>>;

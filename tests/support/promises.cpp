@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 
 namespace titop_test {
@@ -13,7 +14,7 @@ using namespace titop;
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 void demand(bool holds, const std::string& what) {
   if (!holds) throw std::logic_error("promise broken: " + what);

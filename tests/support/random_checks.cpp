@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/transfer.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 #include "support/promises.hpp"
 #include "support/transfer_error.hpp"
@@ -16,7 +17,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 /// First row of each item in the declared order.
 template <class List>

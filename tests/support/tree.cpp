@@ -4,11 +4,12 @@
 #include <numbers>
 #include <stdexcept>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop_test {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 }  // namespace
 

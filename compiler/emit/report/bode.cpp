@@ -2,19 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <titop/compiler/emit/report/figures.hpp>
 #include <titop/compiler/emit/report/plot.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::report {
 namespace {
 
 using Eigen::MatrixXcd;
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 std::vector<double> magnitude(const Sweep& w, const Pair& p) {
   std::vector<double> y;

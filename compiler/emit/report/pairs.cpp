@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <titop/compiler/emit/report/pairs.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::report {
 namespace {
@@ -11,8 +12,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Largest magnitudes over the sweep, outputs x inputs.
 MatrixXd peaks(const Subject& s, const Sweep& w) {

@@ -7,11 +7,12 @@
 #include <titop/compiler/emit/report/html.hpp>
 #include <titop/compiler/emit/report/subject.hpp>
 #include <titop/compiler/emit/report/written.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::report {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 constexpr std::size_t kRows = 60;  ///< of a table; more are counted
 

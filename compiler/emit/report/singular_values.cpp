@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <titop/compiler/emit/report/figures.hpp>
 #include <titop/compiler/emit/report/plot.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
@@ -14,8 +13,6 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Rows (or columns) of one unit, which may be added as vectors.
 struct Alike {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <titop/compiler/emit/report/figures.hpp>
 #include <titop/compiler/emit/report/plot.hpp>
 #include <titop/compiler/simulate.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::report {
 namespace {
@@ -14,10 +14,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
-
-constexpr double kTwoPi = 2 * std::numbers::pi;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// The next 1, 2 or 5 times a power of ten.
 double round_up(double t) {

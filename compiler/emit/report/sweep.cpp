@@ -1,12 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <titop/compiler/emit/report/sweep.hpp>
 
 namespace titop::report {
 namespace {
-
-constexpr double kTwoPi = 2 * std::numbers::pi;
 
 /// Lowest and highest frequency shown [rad/s].
 std::pair<double, double> band(const Subject& s) {

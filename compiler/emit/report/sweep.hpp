@@ -1,9 +1,15 @@
 #pragma once
 
+#include <limits>
+#include <numbers>
 #include <titop/compiler/emit/report/subject.hpp>
 #include <vector>
 
 namespace titop::report {
+
+inline constexpr double kTwoPi = 2 * std::numbers::pi;
+/// What no curve shows.
+inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Poles beside 0, from slow to fast [rad/s].
 std::vector<Pole> moving(const std::vector<Pole>& poles);

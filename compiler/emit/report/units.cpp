@@ -7,11 +7,12 @@
 #include <optional>
 #include <titop/compiler/declared.hpp>
 #include <titop/compiler/emit/report/units.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::report {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Along or about an axis.
 enum class Nature { unknown, linear, angular };

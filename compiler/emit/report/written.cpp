@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <titop/compiler/economy/remove_signals.hpp>
 #include <titop/compiler/emit/report/written.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::report {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Takes these nodes, which have no channels and no signals any more; the others move up.
 void remove_nodes(Graph& g, const std::vector<char>& gone) {

@@ -1,11 +1,12 @@
 #include <algorithm>
 #include <titop/compiler/passes/check/checker.hpp>
 #include <titop/graph/drives.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Overlap of two driven parts of one channel.
 bool overlap(const Equation& a, const Equation& b) {

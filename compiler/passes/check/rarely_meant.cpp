@@ -5,13 +5,13 @@
 #include <titop/compiler/certify/dual_pairs.hpp>
 #include <titop/compiler/certify/springs.hpp>
 #include <titop/compiler/passes/check/checker.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// How the force of a channel follows its own position and rate: directly, not through other blocks
 /// and not through other points. In the signs of work: springs and dampers are positive.

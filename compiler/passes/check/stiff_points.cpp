@@ -3,6 +3,7 @@
 #include <titop/compiler/passes/check/checker.hpp>
 #include <titop/compiler/some_names.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 
 namespace titop::passes {
@@ -10,8 +11,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Rank of six rows in all units: below this fraction of its neighbours nothing moves, to the
 /// digits of a text file.

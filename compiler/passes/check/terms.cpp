@@ -2,11 +2,12 @@
 #include <cmath>
 #include <functional>
 #include <titop/compiler/passes/check/checker.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Of a dual vector: translations and forces, or rotations and torques.
 enum class Half { any, linear, angular };

@@ -1,13 +1,14 @@
 #include <deque>
 #include <set>
 #include <titop/compiler/passes/close/along.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <unordered_map>
 #include <utility>
 
 namespace titop::passes::closing {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 using Lists = std::vector<std::vector<int>>;
 

@@ -5,6 +5,7 @@
 #include <titop/compiler/passes/close/relations.hpp>
 #include <titop/compiler/passes/close/uses.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes::closing {
 namespace {
@@ -12,8 +13,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Role = Relations::Role;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Of the best pivot, to be taken before all are known: what follows is then at most about ten
 /// times what it follows from, in units of energy, and costs the model no more than a digit.

@@ -1,14 +1,14 @@
 #include <titop/compiler/passes/close/integrals.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes::closing {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using linalg::at;
 
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-
-struct Finder {
+struct IntegralFinder {
   const Graph& g;
   const Motion& motion;
   const Twins& twins;
@@ -88,7 +88,7 @@ struct Finder {
 
 std::vector<Integral> integrals(const Graph& g, const Motion& motion, const Twins& twins,
                                 const Coordinates& coordinates, ParameterValues values) {
-  Finder finder{g, motion, twins, coordinates, values};
+  IntegralFinder finder{g, motion, twins, coordinates, values};
   std::vector<Integral> result;
   for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
     const Node& node = g.nodes[at(i)];

@@ -3,13 +3,13 @@
 #include <set>
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/union_find.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes::closing {
 namespace {
 
 using Eigen::Index;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Per line its group: lines that share a column have the same.
 std::vector<int> groups(const std::vector<Line>& lines) {

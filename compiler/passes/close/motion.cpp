@@ -5,6 +5,7 @@
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 
 namespace titop::passes::closing {
@@ -12,8 +13,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 bool has_orthonormal_rows(const MatrixXd& m) {
   return m.rows() <= m.cols() &&

@@ -7,6 +7,7 @@
 #include <titop/compiler/passes/close/uses.hpp>
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes::closing {
 namespace {
@@ -15,8 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 constexpr double kRounding = 64 * 2.2e-16;  ///< per column of an orthonormal basis
 constexpr int kFewColumns = 6;              ///< fewer count as so many
@@ -65,7 +65,7 @@ MatrixXd over(const std::vector<int>& columns, const RowBlock& rows) {
   return result;
 }
 
-struct Finder {
+struct RedundancyFinder {
   std::vector<RowBlock> blocks;
   std::vector<MatrixXd> directions = {};  ///< per block: the rows left, in its own rows
   Uses uses;
@@ -75,7 +75,7 @@ struct Finder {
   std::vector<int> part_of;  ///< per column: the part that has it as its own, -1: none
   Redundancy result = {};
 
-  explicit Finder(const Relations& r)
+  explicit RedundancyFinder(const Relations& r)
       : blocks(r.blocks),
         uses(static_cast<int>(r.role.size())),
         queued(blocks.size(), 0),
@@ -274,7 +274,7 @@ struct Finder {
 }  // namespace
 
 Redundancy redundancy(const Relations& scaled) {
-  Finder finder(scaled);
+  RedundancyFinder finder(scaled);
   finder.run();
   return std::move(finder.result);
 }

@@ -1,14 +1,14 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/passes/close/relations.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes::closing {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// A lever of less than this beside the longest of its chain makes its joint's column a rotation:
 /// what such a lever is to the last digit must not say how the joint counts.

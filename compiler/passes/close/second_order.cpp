@@ -4,6 +4,7 @@
 #include <cmath>
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/passes/close/second_order.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes::closing {
 namespace {
@@ -12,8 +13,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 constexpr std::size_t kMostChains = 20;  ///< a millisecond or two
 constexpr int kMotions = 3;

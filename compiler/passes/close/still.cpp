@@ -2,12 +2,13 @@
 #include <iterator>
 #include <titop/compiler/passes/close/still.hpp>
 #include <titop/compiler/some_names.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 
 namespace titop::passes::closing {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Scalar points that hang on others, and that nothing else ties, close no chain, though their
 /// equations are no edges of the tree either.

@@ -1,10 +1,11 @@
 #include <algorithm>
 #include <titop/compiler/passes/close/twin.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes::closing {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 void put(std::map<int, Eigen::MatrixXd>& to, int key, const Eigen::MatrixXd& matrix) {
   const auto [place, added] = to.try_emplace(key, matrix);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <titop/compiler/passes/close/motion.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <unordered_map>
 #include <utility>
 
@@ -7,7 +8,7 @@
 namespace titop::passes::closing {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 constexpr int kTreeWays = 16;  ///< what a search for a shorter way may cost, in the tree's
 constexpr int kNear = 40;      ///< a way of fewer edges is looked for first: a bay of a ladder

@@ -1,10 +1,11 @@
 #include <titop/compiler/passes/arrows.hpp>
 #include <titop/compiler/passes/lower/along_trees.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// Nodes by their places in some order, and what the equations tie them to.
 struct Couplings {

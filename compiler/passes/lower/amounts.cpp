@@ -4,13 +4,13 @@
 #include <cmath>
 #include <titop/compiler/passes/lower/amounts.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 bool less(const Summand& a, const Summand& b) {
   if (a.signal != b.signal) return a.signal < b.signal;

@@ -2,11 +2,12 @@
 #include <numeric>
 #include <titop/compiler/passes/lower/along_trees.hpp>
 #include <titop/compiler/passes/lower/by_name.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 template <class List>
 std::vector<int> sorted_by_name(const List& list) {

@@ -3,6 +3,7 @@
 #include <titop/compiler/passes/lower/by_name.hpp>
 #include <titop/compiler/passes/lower/rigid_motions.hpp>
 #include <titop/graph/drives.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/nodes/lti.hpp>
 #include <unordered_map>
 #include <unordered_set>
@@ -12,8 +13,7 @@ namespace titop::passes {
 namespace {
 
 using Eigen::MatrixXd;
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using linalg::at;
 
 /// "hub.parent.angular_rate"
 std::string name_of(const Graph& g, const RigidMotion& m) {

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <map>
 #include <stdexcept>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/titop.hpp>
 
 using namespace titop;
@@ -16,7 +17,7 @@ using Eigen::MatrixXd;
 
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
+using titop::linalg::at;
 
 std::string octave(const MatrixXd& M) {
   if (M.size() == 0) return fmt::format("zeros({},{})", M.rows(), M.cols());
