@@ -53,7 +53,8 @@ build() {
   local preset=$1 targets=()
   shift
   (($# == 0)) || targets=(--target "$@")
-  logged "build/$preset-configure.log" cmake --preset "$preset" -DTITOP_CI="${TITOP_CI:-OFF}"
+  logged "build/$preset-configure.log" cmake --preset "$preset" -DTITOP_CI="${TITOP_CI:-OFF}" \
+    ${TITOP_WERROR:+"-DTITOP_WERROR=$TITOP_WERROR"}
   local ninja=(cmake --build --preset "$preset" -j "${JOBS:-$(nproc)}" "${targets[@]}" -- -k 0)
   if [[ -t 1 ]]; then
     "${ninja[@]}"

@@ -29,8 +29,15 @@ Diagram chain(int n) {
   return d;
 }
 
-/// Other libraries and sanitizers have a way of their own with memory.
-#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+/// Other libraries and sanitizers have a way of their own with memory; clang says so differently.
+#if defined(__SANITIZE_ADDRESS__)
+#define SANITIZED
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define SANITIZED
+#endif
+#endif
+#if defined(__GLIBC__) && !defined(SANITIZED)
 constexpr bool kKeeps = true;
 #else
 constexpr bool kKeeps = false;
