@@ -141,6 +141,8 @@ TEST_CASE("scaled relations: the same whatever rows and columns are measured in,
     std::vector<double> of_unit(2 * r.blocks.size()), of_column(r.role.size());
     for (auto* list : {&of_unit, &of_column})
       for (double& x : *list) x = std::ldexp(1, rng.below(60) - 30);
+    for (Index c = 0; c < width(r); ++c)
+      if (r.weight(c) > 0) of_column[at(c)] = 1;  // energy says what these are measured in
     for (std::size_t b = 0; b < r.blocks.size(); ++b)
       for (Index i = 0; i < r.blocks[b].M.rows(); ++i)
         for (Index j = 0; j < r.blocks[b].M.cols(); ++j)
@@ -153,6 +155,78 @@ TEST_CASE("scaled relations: the same whatever rows and columns are measured in,
     for (Index c = 0; c < width(r); ++c)
       if (r.weight(c) == 0 && M.col(c).norm() > 0) CHECK(std::abs(M.col(c).norm() - 1) <= 1e-12);
   }
+}
+
+TEST_CASE("scaled relations: no spring, stiff or soft, has a say") {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    CAPTURE(seed);
+    Rng rng(seed);
+    Relations r = loops(rng);
+    Relations other = r;
+    for (double& w : other.weight) w *= std::ldexp(1, rng.below(200) - 100);
+    scale(r), scale(other);
+    CHECK(dense(other, r.blocks.size()) == dense(r, r.blocks.size()));
+  }
+}
+
+TEST_CASE("scaled relations are in balance, and a tiny lever, to its last digit, leaves it there") {
+  const int hinges = 7, tiny = 2;  // one of these at the closing point itself
+  std::vector<double> lengths;
+  for (const double lever : {0.0, 1e-15, 1e-12, 1e-9, 1e-6}) {
+    CAPTURE(lever);
+    Rng rng(3);
+    Relations r{.role = std::vector(at(hinges), Relations::Role::coordinate),
+                .weight = Eigen::VectorXd::Zero(hinges)};
+    RowBlock block{{0, 1, 2, 3, 4, 5, 6}, MatrixXd(6, hinges)};
+    for (Index j = 0; j < hinges; ++j) {
+      const MatrixXd cross = rng.matrix(3, 1), axis = rng.matrix(3, 1);
+      block.M.col(j) << cross * (j == 0 ? 0 : j < tiny ? lever : 1), axis;
+    }
+    r.blocks.push_back(block);
+    r.unit.push_back({0, 0, 0, 1, 1, 1});
+    const Factors f = scale(r);
+    const MatrixXd& M = r.blocks[0].M;
+    // Half of every column with a lever for the translations; 2 % per factor.
+    const double translations = (hinges - tiny) / 2.0, rotations = hinges - translations;
+    CHECK(std::abs(M.topRows(3).squaredNorm() / translations - 1) <= 0.05);
+    CHECK(std::abs(M.bottomRows(3).squaredNorm() / rotations - 1) <= 0.05);
+    lengths.push_back(f.row[0](3) / f.row[0](0));
+    CHECK(std::abs(lengths.back() / lengths.front() - 1) <= 1e-6);
+  }
+}
+
+TEST_CASE("what follows is decided by geometry, which of it by what is soft") {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed)
+    for (const double near : {0.0, 1e-14, 1e-7, 1e-6, 1.0}) {
+      CAPTURE(seed);
+      CAPTURE(near);
+      Rng rng(seed);
+      const Index rows = 2 + rng.below(3), columns = rows + 4;
+      MatrixXd M = rng.matrix(rows, columns), of_others = rng.matrix(1, rows - 1);
+      for (auto* m : {&M, &of_others})
+        for (double& x : m->reshaped()) x += std::copysign(0.5, x);
+      // The last row says what the others say, but for so much.
+      if (near < 1) M.bottomRows(1) = of_others * M.topRows(rows - 1) + near * M.bottomRows(1);
+      Relations r{.role = std::vector(at(columns), Relations::Role::coordinate),
+                  .weight = Eigen::VectorXd(columns)};
+      RowBlock block{{}, M};
+      for (Index c = 0; c < columns; ++c) {
+        block.columns.push_back(static_cast<int>(c));
+        r.weight(c) = std::ldexp(1, rng.below(80) - 40);
+      }
+      r.blocks.push_back(block);
+      r.unit.push_back({});
+      for (Index i = 0; i < rows; ++i) r.unit.back().push_back(static_cast<int>(i));
+      const Independent found = independent(r);
+      const Index rank = near < 1e-9 ? rows - 1 : rows;
+      CHECK(static_cast<Index>(found.follow.size()) == rank);
+      CHECK(found.doubtful() == (near == 1e-7 || near == 1e-6));
+      // In units of energy what follows is no more than what it follows from, but for pivots that
+      // are not worth a thousandth.
+      for (const auto& f : found.follow)
+        for (const auto& [c, factor] : f.of)
+          CHECK(std::abs(factor) * r.weight(c) <= 1e4 * r.weight(f.dependent));
+    }
 }
 
 TEST_CASE("redundant directions and held columns: as singular values of all relations say") {
@@ -196,7 +270,9 @@ TEST_CASE("followers: as many as the rank says, and right in every motion that i
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     CAPTURE(seed);
     Rng rng(seed);
-    const Relations r = loops(rng);
+    Relations r = loops(rng);
+    if (seed % 2 == 0)  // stiff beside soft
+      for (double& w : r.weight) w *= std::ldexp(1, rng.below(80) - 40);
     const Independent found = independent(r);
     const MatrixXd R = dense(r, r.blocks.size()), N = null_space(R);
     std::vector<Index> unknowns;

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <array>
 #include <deque>
+#include <numeric>
 #include <queue>
 #include <titop/compiler/passes/close/reflections.hpp>
 #include <titop/compiler/passes/close/relations.hpp>
@@ -29,6 +31,7 @@ struct PivotRows {
 
 struct Fronts {
   std::vector<Role> role;
+  Eigen::VectorXd soft;         ///< per column: what a pivot is worth
   std::vector<char> preferred;  ///< per column
   std::vector<RowBlock> fronts;
   Uses uses;
@@ -38,8 +41,9 @@ struct Fronts {
   std::vector<PivotRows> pivot_rows = {};
   Independent result = {};
 
-  Fronts(Relations r, const std::vector<int>& wanted)
+  Fronts(Relations r, Eigen::VectorXd worth, const std::vector<int>& wanted)
       : role(std::move(r.role)),
+        soft(std::move(worth)),
         preferred(role.size(), 0),
         fronts(std::move(r.blocks)),
         uses(static_cast<int>(role.size())),
@@ -95,24 +99,41 @@ struct Fronts {
     return places;
   }
 
-  void take_coordinates(const RowBlock& front, bool last, Reflections& e) {
+  /// Returns the weakest pivot that decided on a rank.
+  double take_coordinates(const RowBlock& front, bool last, Reflections& e) {
     const auto is = [&](Role r) { return [this, r](int c) { return role[at(c)] == r; }; };
-    e.take(own(front, [&](int c) { return preferred[at(c)] != 0 && role[at(c)] != Role::unknown; }),
-           kGoodPivot);
-    e.take(own(front, is(Role::integral)), kGoodPivot);
+    const auto known =
+        own(front, [&](int c) { return preferred[at(c)] != 0 && role[at(c)] != Role::unknown; });
+    const auto integrals = own(front, is(Role::integral));
     const auto all = own(front, [&](int c) { return role[at(c)] != Role::unknown; });
-    std::vector<int> rivals;
-    if (!last) {
-      for (std::size_t i = 0; i < front.columns.size(); ++i) rivals.push_back(static_cast<int>(i));
-      if (!shared_preferred(front).empty()) return;  // rows may wait for these: see take_beside
+    if (last) return take_last(front, {known, integrals, all}, e);
+    e.take(known, kGoodPivot);
+    e.take(integrals, kGoodPivot);
+    // Rows may wait for what is preferred: see take_beside.
+    if (shared_preferred(front).empty()) {
+      std::vector<int> rivals(front.columns.size());
+      std::iota(rivals.begin(), rivals.end(), 0);
+      e.take(all, kGoodPivot, {soft(front.columns), kShare, std::move(rivals)});
     }
-    const double left = e.take(all, last ? kRankTolerance : kGoodPivot, last ? 0 : kShare, rivals);
-    if (last) result.dropped = std::max(result.dropped, left);
+    return e.weakest();
+  }
+
+  /// How many follow is geometry, and decided by the largest pivots of all (the last of `choices`);
+  /// which ones, by the order of the choices and by what is soft.
+  double take_last(const RowBlock& front, const std::array<std::vector<int>, 3>& choices,
+                   Reflections& e) {
+    Reflections rank = e;
+    result.dropped = std::max(result.dropped, rank.take(choices.back(), kRankTolerance));
+    Reflections::Choice choice{soft(front.columns)};
+    for (choice.most = e.done() + 1; choice.most <= rank.done(); ++choice.most) {
+      const double least = kGoodPivot * e.largest(choices.back());
+      for (const std::vector<int>& columns : choices) e.take(columns, least, choice);
+    }
+    return rank.weakest();
   }
 
   /// Keeps the rows in which e has its pivots, from `first`.
   void keep(const RowBlock& front, const Reflections& e, Index first = 0) {
-    result.weakest = std::min(result.weakest, e.weakest());
     const Index count = e.done() - first;
     if (count == 0) return;
     PivotRows rows;
@@ -136,11 +157,13 @@ struct Fronts {
     for (int i = 0; i < static_cast<int>(front.columns.size()); ++i)
       if (!e.taken(i)) (uses.alone(front.columns[at(i)]) ? alone : shared).push_back(i);
     Reflections waiting(std::move(rows));
-    waiting.take(shared_preferred(front), 0, kGoodPivot, alone);
-    waiting.take(shared, 0, 1 / kShare, alone);
+    const Eigen::VectorXd worth = soft(front.columns);
+    waiting.take(shared_preferred(front), kRankTolerance, {worth, kGoodPivot, alone});
+    waiting.take(shared, kRankTolerance, {worth, 1 / kShare, alone});
     const Index wait = waiting.done();
     Reflections o(waiting.matrix().bottomRows(waiting.matrix().rows() - wait));
-    o.take(alone, kGoodPivot);
+    o.take(alone, kGoodPivot, {worth});
+    result.weakest = std::min(result.weakest, o.weakest());
     keep(front, o);
     MatrixXd left(waiting.matrix().rows() - o.done(), waiting.matrix().cols());
     left << waiting.matrix().topRows(wait), o.matrix().bottomRows(left.rows() - wait);
@@ -183,7 +206,8 @@ struct Fronts {
     Reflections e(front.M);
     const bool no_unknowns = take_unknowns(front, last, e);
     const Index first = e.done();
-    if (no_unknowns) take_coordinates(front, last, e);
+    result.weakest =
+        std::min(result.weakest, no_unknowns ? take_coordinates(front, last, e) : e.weakest());
     keep(front, e, first);
     if (last)
       shrink(f, MatrixXd(0, front.M.cols()), no_unknowns);
@@ -287,13 +311,22 @@ struct Fronts {
   }
 };
 
+/// In units of energy, beside the softest; what stores none is as soft.
+Eigen::VectorXd softness(const Relations& scaled, const Factors& factors) {
+  Eigen::VectorXd result = scaled.weight.cwiseQuotient(factors.column);
+  const double softest = result.size() == 0 ? 0 : result.maxCoeff();
+  for (double& x : result) x = x > 0 ? x / softest : 1;
+  return result;
+}
+
 }  // namespace
 
 Independent independent(Relations relations, const std::vector<int>& preferred) {
-  const Eigen::VectorXd factor = scale(relations).column;
-  Fronts fronts(std::move(relations), preferred);
+  const Factors factors = scale(relations);
+  Eigen::VectorXd soft = softness(relations, factors);
+  Fronts fronts(std::move(relations), std::move(soft), preferred);
   fronts.run();
-  fronts.write_followers(factor);
+  fronts.write_followers(factors.column);
   return std::move(fronts.result);
 }
 

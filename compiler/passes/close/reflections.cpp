@@ -18,17 +18,22 @@ double Reflections::largest(const std::vector<int>& columns) const {
   return result;
 }
 
-double Reflections::take(const std::vector<int>& columns, double least, double share,
-                         const std::vector<int>& rivals) {
-  while (done() < M_.rows()) {
-    const double best = largest(columns);
-    if (!(best > least && best > share * largest(rivals))) return best;
-    for (const int c : columns)
-      if (!taken(c) && norm(c) >= kEqual * best) {
-        reflect(c);
-        break;
-      }
-    weakest_ = std::min(weakest_, best);
+double Reflections::take(const std::vector<int>& columns, double least, const Choice& choice) {
+  const auto worth = [&](int c, double above) {
+    const double size = taken(c) ? 0 : norm(c);
+    return !(size > above) ? 0 : choice.worth.size() == 0 ? size : size * choice.worth(c);
+  };
+  std::vector<double> own(columns.size());
+  while (done() < std::min(M_.rows(), choice.most)) {
+    double best = 0, rival = 0;
+    for (std::size_t i = 0; i < own.size(); ++i)
+      best = std::max(best, own[i] = worth(columns[i], least));
+    for (const int c : choice.rivals) rival = std::max(rival, worth(c, 0));
+    if (!(best > choice.share * rival)) return largest(columns);
+    const auto first = std::ranges::find_if(own, [&](double w) { return w >= kEqual * best; });
+    const int pivot = columns[static_cast<std::size_t>(first - own.begin())];
+    weakest_ = std::min(weakest_, norm(pivot));
+    reflect(pivot);
   }
   return 0;
 }

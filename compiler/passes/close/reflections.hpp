@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <limits>
 #include <vector>
 
 namespace titop::passes::closing {
@@ -18,16 +19,25 @@ class Reflections {
   bool taken(int column) const { return taken_[static_cast<std::size_t>(column)]; }
   /// Of a column, in the rows without a pivot.
   double norm(int column) const { return M_.col(column).tail(M_.rows() - done()).norm(); }
-  /// Takes pivots among these columns while they are above `least` and above `share` times the
-  /// largest of `rivals`, the largest first; of equals the first: no choice by rounding. Returns
-  /// the largest that is left. O(rows columns) per pivot.
-  double take(const std::vector<int>& columns, double least, double share = 0,
-              const std::vector<int>& rivals = {});
+  /// The largest norm among these columns, of those without a pivot.
+  double largest(const std::vector<int>& columns) const;
+
+  /// What makes a pivot a better one.
+  struct Choice {
+    Eigen::VectorXd worth = {};  ///< per column: norms are multiplied by it; empty: all 1
+    double share = 0;            ///< a pivot is worth more than this times the best of `rivals`
+    std::vector<int> rivals = {};
+    Eigen::Index most = std::numeric_limits<Eigen::Index>::max();  ///< pivots, with those before
+  };
+  /// Takes pivots among these columns, of norms above `least`: the one that is worth most first, of
+  /// equals the first: no choice by rounding. Returns the largest norm that is left; 0 where no row
+  /// is. O(rows columns) per pivot.
+  double take(const std::vector<int>& columns, double least, const Choice& choice);
+  double take(const std::vector<int>& columns, double least) { return take(columns, least, {}); }
   /// The smallest pivot.
   double weakest() const { return weakest_; }
 
  private:
-  double largest(const std::vector<int>& columns) const;
   void reflect(int column);
 
   Eigen::MatrixXd M_;

@@ -42,17 +42,19 @@ struct Factors {
   std::vector<Eigen::VectorXd> row;  ///< per block
   Eigen::VectorXd column;
 };
-/// Scales the relations into a balance: the squares of every free column sum to 1, and those of
-/// every unit (rows of one number: the translations or rotations of a closing equation) to what it
-/// has if each of its free columns is spread evenly over the units where it counts, and 1 for its
-/// columns that store energy. These keep their weight (eta by 1/omega: soft modes become
-/// dependent). Where every column counts in each block that it is in, a balance with these sums
-/// exists and is the only one [Sinkhorn, Knopp 1967], reached here to 2 % per factor: it depends
-/// neither on units of measurement (they are factors themselves), nor on the frame (three rows
-/// count by their norm), nor on the order of chains. For a chain of hinges it finds the length that
-/// levers are measured by, from all joints together; where a lever is tiny, its joint's
-/// translations do not count, and no row depends on it. Taken before any elimination (afterwards
-/// noise would become 1). O(entries) per sweep; few are needed, from a start nearly in balance.
+/// Scales the relations into a balance, which is geometry alone: the squares of every free column
+/// sum to 1, and those of every unit (rows of one number: the translations or rotations of a
+/// closing equation) to what it has if each of its free columns is spread evenly over the units
+/// where it counts, and 1 for its columns that store energy. These stay as they are, shapes of unit
+/// modal mass or deflections, however stiff: a mode that hardly moves the chain (an entry of
+/// rounding, at a node of its shape) must not look like one that does. Of what counts there is one
+/// such balance and no other [Sinkhorn, Knopp 1967], which sweeps approach until none changes a
+/// factor by 2 %, a hundred at most: it depends neither on units of rows and free columns (they are
+/// factors themselves), nor on the frame (three rows count by their norm), nor on how stiff
+/// anything is. For a chain of hinges it finds the length that levers are measured by, from all
+/// joints together; where a lever is tiny, its joint's translations do not count, and no row
+/// depends on it. Taken before any elimination (afterwards noise would become 1). O(entries) per
+/// sweep; few are needed, from a start nearly in balance.
 Factors scale(Relations& relations);
 
 /// z_dependent = sum of factor * z, for coordinates and integrals; in turn: what stands on the
@@ -64,7 +66,7 @@ struct Independent {
     std::vector<std::pair<int, double>> of = {};  ///< column, factor
   };
   std::vector<Follows> follow = {};
-  double weakest = 1;  ///< smallest pivot that was taken
+  double weakest = 1;  ///< smallest pivot that decided on a rank
   double dropped = 0;  ///< largest that was not
   bool doubtful() const { return weakest < kNarrow || dropped > kNothing; }
 };
@@ -72,10 +74,12 @@ struct Independent {
 /// Householder elimination with column pivoting, block by block: what is read in one block only is
 /// eliminated there, the blocks that are left merge two by two, the smallest first. In each block
 /// unknowns come first, then `preferred` columns (rows wait for one that other blocks have too) and
-/// integrals while their pivots keep 1e-3, then all coordinates; until the last block only by
-/// pivots that are as good as others'. Ties go to the first column. O(columns) where every chain
-/// has a body of its own, about columns^1.5 for planar grids of chains; O(rows^2 columns) of blocks
-/// that merge without leaving anything behind.
+/// integrals while their pivots keep 1e-3 (in the last block, of the best there), then all
+/// coordinates; until the last block only by pivots that are as good as others'. Whether there is a
+/// pivot is decided on the balance, which of those there are is taken in units of energy (eta by
+/// 1/omega): soft modes become dependent, whatever stands beside them. Ties go to the first column.
+/// O(columns) where every chain has a body of its own, about columns^1.5 for planar grids of
+/// chains; O(rows^2 columns) of blocks that merge without leaving anything behind.
 Independent independent(Relations relations, const std::vector<int>& preferred = {});
 
 }  // namespace titop::passes::closing

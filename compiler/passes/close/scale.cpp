@@ -10,9 +10,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// A lever of less than this beside the longest of its chain makes its joint's column a rotation:
-/// what such a lever is to the last digit must not say how the joint counts.
-constexpr double kLever = 1e-3;
+/// A lever of less than this beside those of its chain makes its joint's column a rotation, and one
+/// that is longer by as much a translation: what such a lever is to the last digit must not say how
+/// the joint counts.
+constexpr double kLever = 1e-5;
 
 /// Sweeps end when they change no factor by more: ranks are decided between digits, not within one.
 constexpr double kSettled = 1.02;
@@ -22,7 +23,7 @@ constexpr int kMostSweeps = 100;
 struct Entry {
   int unit = 0, column = 0;
   double size = 0;
-  bool counts = true;  ///< no tiny lever
+  bool counts = true;  ///< it is no tiny lever, nor beside a very long one
 };
 
 /// Units are rows of one number. A start goes from what has its factor to what it reaches, so that
@@ -34,12 +35,12 @@ struct Scaling {
   std::vector<std::vector<int>> of_unit = {}, of_column;  ///< entries
   std::vector<double> row = {}, column;                   ///< factors; 0: none yet
   std::vector<double> share = {};                         ///< per unit: its square sum, balanced
-  std::vector<char> fixed;                                ///< per column: it has a weight
+  std::vector<char> fixed;                                ///< per column: it stores energy
 
   explicit Scaling(Relations& relations)
       : r(relations), of_column(r.role.size()), column(r.role.size(), 0), fixed(r.role.size(), 0) {
     for (std::size_t j = 0; j < column.size(); ++j)
-      if (const double w = r.weight(static_cast<Index>(j)); w > 0) column[j] = w, fixed[j] = 1;
+      if (r.weight(static_cast<Index>(j)) > 0) column[j] = 1, fixed[j] = 1;
     for (std::size_t b = 0; b < r.blocks.size(); ++b) list(b);
     find_shares();
   }
@@ -56,66 +57,87 @@ struct Scaling {
     }
     sizes = sizes.cwiseSqrt();
     if (!units.empty() && at(units.back()) >= of_unit.size()) of_unit.resize(at(units.back()) + 1);
-    const MatrixXd longest = longest_levers(sizes, block.columns);
+    const MatrixXd tiny = kLever * levers(sizes, block.columns);
+    for (Index k = 0; k < sizes.cols(); ++k) {
+      const Counts counts = counting(sizes.col(k), tiny);
+      for (Index u = 0; u < sizes.rows(); ++u) {
+        if (sizes(u, k) == 0) continue;
+        const int unit = units[at(u)], j = block.columns[at(k)];
+        of_unit[at(unit)].push_back(static_cast<int>(entries.size()));
+        of_column[at(j)].push_back(static_cast<int>(entries.size()));
+        entries.push_back({unit, j, sizes(u, k), counts(u)});
+      }
+    }
+  }
+
+  /// Of one column, per unit of a block: in one of them it counts.
+  using Counts = Eigen::Array<bool, Eigen::Dynamic, 1>;
+  static Counts counting(const Eigen::ArrayXd& sizes, const MatrixXd& tiny) {
+    Counts result(sizes.size());
+    for (Index u = 0; u < sizes.size(); ++u)
+      result(u) = sizes(u) > 0 && (sizes(u) >= tiny.row(u).transpose().array() * sizes).all();
+    return result.any() ? result : Counts(sizes > 0);  // three units, each tiny beside another
+  }
+
+  /// Per two units of a block how long its levers are, the one over the other: the longest of a
+  /// joint, or the middle one of those that store energy (of some modes it is rounding), if that is
+  /// longer. No matter how columns are measured, and rows are for all of them alike.
+  MatrixXd levers(const MatrixXd& sizes, const std::vector<int>& columns) const {
+    MatrixXd result = MatrixXd::Zero(sizes.rows(), sizes.rows());
     for (Index u = 0; u < sizes.rows(); ++u)
-      for (Index k = 0; k < sizes.cols(); ++k)
-        if (sizes(u, k) > 0) {
-          const int unit = units[at(u)], j = block.columns[at(k)];
-          of_unit[at(unit)].push_back(static_cast<int>(entries.size()));
-          of_column[at(j)].push_back(static_cast<int>(entries.size()));
-          const bool tiny =
-              (sizes(u, k) < kLever * longest.row(u).transpose().array() * sizes.col(k).array())
-                  .any();
-          entries.push_back({unit, j, sizes(u, k), !tiny});
+      for (Index v = u + 1; v < sizes.rows(); ++v) {
+        double longest = 0;
+        std::vector<double> of_energy;
+        for (Index k = 0; k < sizes.cols(); ++k) {
+          if (sizes(u, k) == 0 || sizes(v, k) == 0) continue;
+          const double lever = sizes(u, k) / sizes(v, k);
+          if (r.weight(columns[at(k)]) > 0)
+            of_energy.push_back(lever);
+          else
+            longest = std::max(longest, lever);
         }
+        if (!of_energy.empty()) {
+          const auto middle = of_energy.begin() + std::ssize(of_energy) / 2;
+          std::nth_element(of_energy.begin(), middle, of_energy.end());
+          longest = std::max(longest, *middle);
+        }
+        if (longest > 0) result(u, v) = longest, result(v, u) = 1 / longest;
+      }
+    return result;
   }
 
-  /// Per two units of a block the largest that free columns have in the one over the other: no
-  /// matter how columns are measured, and rows are for all of them alike.
-  MatrixXd longest_levers(const MatrixXd& sizes, const std::vector<int>& columns) const {
-    MatrixXd longest = MatrixXd::Zero(sizes.rows(), sizes.rows());
-    for (Index k = 0; k < sizes.cols(); ++k)
-      for (Index u = 0; u < sizes.rows() && fixed[at(columns[at(k)])] == 0; ++u)
-        for (Index v = 0; v < sizes.rows(); ++v)
-          if (u != v && sizes(u, k) > 0 && sizes(v, k) > 0)
-            longest(u, v) = std::max(longest(u, v), sizes(u, k) / sizes(v, k));
-    return longest;
-  }
-
-  /// Every column is spread evenly over the units where it counts: so a balance exists, and there
-  /// is one only. Columns of fixed size count for one, all of a unit together.
+  /// Every column is spread evenly over the units where it counts: so a balance of what counts
+  /// exists, and there is one only. Columns of fixed size count for one, all of a unit together.
   void find_shares() {
     row.assign(of_unit.size(), 0);
     share.assign(of_unit.size(), 0);
     std::vector<char> has_fixed(of_unit.size(), 0);
-    for (std::size_t j = 0; j < column.size(); ++j) {
-      const auto counting = std::count_if(of_column[j].begin(), of_column[j].end(),
-                                          [&](int e) { return entries[at(e)].counts; });
-      for (const int e : of_column[j]) {
-        Entry& entry = entries[at(e)];
-        if (counting == 0) entry.counts = true;  // between long and short levers
-        if (!entry.counts) continue;
-        if (fixed[j] != 0)
-          has_fixed[at(entry.unit)] = 1;
-        else
-          share[at(entry.unit)] +=
-              1 / static_cast<double>(counting > 0 ? counting : std::ssize(of_column[j]));
-      }
+    for (std::size_t j = 0; j < of_column.size(); ++j) {
+      const std::vector<int>& list = of_column[j];
+      const auto counts = [&](int e) { return entries[at(e)].counts; };
+      const auto counting = static_cast<double>(std::ranges::count_if(list, counts));
+      for (const int e : list)
+        if (counts(e) && fixed[j] != 0)
+          has_fixed[at(entries[at(e)].unit)] = 1;
+        else if (counts(e))
+          share[at(entries[at(e)].unit)] += 1 / counting;
     }
     for (std::size_t u = 0; u < share.size(); ++u) share[u] += has_fixed[u];
   }
 
   double scaled(const Entry& e) const { return e.size * row[at(e.unit)] * column[at(e.column)]; }
 
-  /// By its largest entry in columns that have a factor, or in all; the columns that it reaches.
-  bool start_unit(int unit, bool all, std::vector<int>& reached) {
+  /// By its largest entry in columns that have a factor; the columns that it reaches. A first unit
+  /// takes what does not count too, and has any factor where no column has one.
+  bool start_unit(int unit, bool first, std::vector<int>& reached) {
     if (row[at(unit)] != 0) return false;
-    double largest = 0;
+    double largest = 0, size = 0;
     for (const int e : of_unit[at(unit)]) {
-      if (!all && !entries[at(e)].counts) continue;
-      const double factor = column[at(entries[at(e)].column)];
-      largest = std::max(largest, entries[at(e)].size * (all && factor == 0 ? 1 : factor));
+      size = std::max(size, entries[at(e)].size);
+      if (first || entries[at(e)].counts)
+        largest = std::max(largest, entries[at(e)].size * column[at(entries[at(e)].column)]);
     }
+    if (first && largest == 0) largest = size;
     if (largest == 0) return false;
     row[at(unit)] = 1 / largest;
     for (const int e : of_unit[at(unit)])
@@ -172,14 +194,24 @@ struct Scaling {
       change = std::max({change, by, 1 / by});
     };
     std::vector<double> sum(row.size(), 0);
-    for (const Entry& e : entries) sum[at(e.unit)] += scaled(e) * scaled(e);
+    for (const Entry& e : entries)
+      if (e.counts) sum[at(e.unit)] += scaled(e) * scaled(e);
     for (std::size_t u = 0; u < sum.size(); ++u)
       if (share[u] > 0) correct(row[u], std::sqrt(share[u] / sum[u]));
     sum.assign(column.size(), 0);
-    for (const Entry& e : entries) sum[at(e.column)] += scaled(e) * scaled(e);
+    for (const Entry& e : entries)
+      if (e.counts) sum[at(e.column)] += scaled(e) * scaled(e);
     for (std::size_t j = 0; j < sum.size(); ++j)
       if (fixed[j] == 0 && sum[j] > 0) correct(column[j], 1 / std::sqrt(sum[j]));
     return change;
+  }
+
+  /// Free columns to 1 with what does not count.
+  void finish() {
+    std::vector<double> sum(column.size(), 0);
+    for (const Entry& e : entries) sum[at(e.column)] += scaled(e) * scaled(e);
+    for (std::size_t j = 0; j < sum.size(); ++j)
+      if (fixed[j] == 0 && sum[j] > 0) column[j] /= std::sqrt(sum[j]);
   }
 
   Factors factors() const {
@@ -198,6 +230,7 @@ Factors scale(Relations& relations) {
   Scaling scaling(relations);
   scaling.start();
   for (int k = 0; k < kMostSweeps && scaling.sweep() > kSettled; ++k) continue;
+  scaling.finish();
   Factors f = scaling.factors();
   for (std::size_t b = 0; b < relations.blocks.size(); ++b) {
     RowBlock& block = relations.blocks[b];
