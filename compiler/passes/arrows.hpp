@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <span>
+#include <titop/graph/linalg/index.hpp>
 #include <utility>
 #include <vector>
 
@@ -14,10 +15,10 @@ class Arrows {
   /// O(pairs + count), but for the arrows of one that come in disorder.
   Arrows(const std::vector<std::pair<int, int>>& pairs, std::size_t count)
       : Arrows(count + 1, pairs.size()) {
-    for (const auto& [from, to] : pairs) ++begin_[at(from) + 1];
+    for (const auto& [from, to] : pairs) ++begin_[linalg::at(from) + 1];
     std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
     std::vector<int> next(begin_.begin(), begin_.end() - 1);
-    for (const auto& [from, to] : pairs) to_[at(next[at(from)]++)] = to;
+    for (const auto& [from, to] : pairs) to_[linalg::at(next[linalg::at(from)]++)] = to;
     int end = 0;
     for (std::size_t i = 0; i < count; ++i) {
       const auto first = to_.begin() + begin_[i], last = to_.begin() + next[i];
@@ -26,17 +27,17 @@ class Arrows {
       end = static_cast<int>(std::unique_copy(first, last, to_.begin() + end) - to_.begin());
     }
     begin_[count] = end;
-    to_.resize(at(end));
+    to_.resize(linalg::at(end));
   }
 
   /// All of them the other way round. O(arrows + count).
   Arrows reversed() const {
     Arrows result(begin_.size(), to_.size());
-    for (const int t : to_) ++result.begin_[at(t) + 1];
+    for (const int t : to_) ++result.begin_[linalg::at(t) + 1];
     std::partial_sum(result.begin_.begin(), result.begin_.end(), result.begin_.begin());
     std::vector<int> next(result.begin_.begin(), result.begin_.end() - 1);
     for (int i = 0; i < count(); ++i)
-      for (const int t : from(i)) result.to_[at(next[at(t)]++)] = i;
+      for (const int t : from(i)) result.to_[linalg::at(next[linalg::at(t)]++)] = i;
     return result;
   }
 
@@ -49,7 +50,6 @@ class Arrows {
 
  private:
   Arrows(std::size_t begins, std::size_t arrows) : begin_(begins, 0), to_(arrows) {}
-  static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
   std::vector<int> begin_, to_;
 };
