@@ -129,7 +129,7 @@ MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
     plain.emplace(d, s, unit_inputs<Double>(d));
   } catch (const Error& error) {
     if (!error.has(Code::singular)) throw;
-    auto G = transfer_without_pivot<Extended>(d, s);
+    auto G = transfer_without_pivot<Twofold>(d, s);
     if (!G) G = transfer_without_pivot<solve::Complex50>(d, s);
     if (!G) throw;
     return *G;
@@ -145,11 +145,9 @@ namespace {
 
 MatrixXcd transfer_with(const detail::SystemData& d, Double s, Precision precision) {
   switch (precision) {
-    case Precision::single: return transfer_in<std::complex<float>>(d, s);
     case Precision::standard: return standard_transfer(d, s);
     case Precision::refined: return refined_transfer<Extended>(d, s);
     case Precision::twofold: return refined_transfer<Twofold>(d, s);
-    case Precision::extended: return transfer_in<Extended>(d, s);
     case Precision::digits50: return transfer_in<solve::Complex50>(d, s);
     case Precision::as_needed: return transfer_as_needed(d, s);
   }

@@ -52,17 +52,15 @@ struct Options {
 /// With what arithmetic a transfer is found, coarse to fine. All run through the same elimination
 /// on the same plan; blocks are evaluated with it too, from data that are doubles.
 enum class Precision {
-  single,    ///< float: 7 digits; blocks in double
   standard,  ///< double: 16 digits; one step of refinement mends what the elimination loses
   refined,   ///< factors in double, blocks and residuals in long double: refined until the outputs
              ///< settle, or refused; see System::transfer
   twofold,   ///< the same in double-double: 32 digits, on any machine
-  extended,  ///< long double: 19 digits on x86
-  digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower: an oracle
+  digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower
   as_needed  ///< double, and finer where the weakest pivot has lost more than four digits: refined
              ///< or twofold if that settles, else 50 digits; where double has no pivot at all
-             ///< though s is no pole, as in wide grids, long double or 50 digits, unless the last
-             ///< place of the data decides all digits, as far below all modes of a closed chain
+             ///< though s is no pole, as in wide grids, double-double or 50 digits, unless the
+             ///< last place of the data decides all digits, far below all modes of a closed chain
 };
 
 /// Values of parameters by name: {{"k1", 12.0}, {"angle", 0.3}}.
@@ -101,8 +99,8 @@ class System {
   /// not one digit for some unknown, or the rounding of long double costs more, they do not lead
   /// there. That is judged by estimates: of how steps of refinement shrink, in all unknowns, and of
   /// rounding. Where numbers leave the range that DoubleDouble has, `twofold` throws not_finite.
-  /// The way out of all that is `as_needed`, or `digits50`. `single`, `standard` and `extended`
-  /// refuse only a pivot without a digit: what many pivots lose together they do not see.
+  /// The way out of all that is `as_needed`, or `digits50`. `standard` refuses only a pivot without
+  /// a digit: what many pivots lose together it does not see.
   Eigen::MatrixXcd transfer(std::complex<double> s,
                             Precision precision = Precision::as_needed) const;
 

@@ -60,11 +60,9 @@ void add_library(std::vector<Entry>& list, const System& system) {
   const auto add = [&](const char* name, Precision p) {
     list.push_back({"titop", name, [&system, p](Complex s) { return system.transfer(s, p); }});
   };
-  add("float", Precision::single);
   add("double", Precision::standard);
   add("refined", Precision::refined);
   add("twofold", Precision::twofold);
-  add("long double", Precision::extended);
   add("50 digits", Precision::digits50);
   add("as needed", Precision::as_needed);
 }
@@ -122,7 +120,7 @@ void row(const char* task, Case c, int n, const char* method, const char* precis
   std::fflush(stdout);
 }
 
-/// Whether the library's own lines, but for float, are as exact as promised.
+/// Whether the library's own lines are as exact as promised.
 bool transfers(Case c, int n, bool quick) {
   const Diagram diagram = scene(c, n);
   const System system = compile(diagram, {.minimize_up_to = 0});
@@ -187,7 +185,6 @@ void responses(Case c, int n) {
     response(c, n, "titop", name, exact,
              [&, p] { return all([&](Complex s) { return system.transfer(s, p); }); });
   };
-  factored("float", Precision::single);
   factored("double", Precision::standard);
   factored("refined", Precision::refined);
   factored("twofold", Precision::twofold);

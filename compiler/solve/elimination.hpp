@@ -13,8 +13,8 @@
 /// front as the plan says. No symmetry is made use of here: controllers and exchanged channels have
 /// none, and a pivot that is chosen by its size keeps digits that a symmetric order, fixed
 /// beforehand, would not. (The dense model is written by half of it: dense/reciprocity.hpp.)
-/// Instantiated for double, and for complex numbers of float, double, long double, double-double
-/// and 50 digits.
+/// Instantiated for double, and for complex numbers of double, long double, double-double and
+/// 50 digits.
 namespace titop::solve {
 
 /// Where the coefficients come from.

@@ -14,7 +14,6 @@ using Complex50 = boost::multiprecision::cpp_complex_50;
 
 /// Calls X(T) for every scalar that one s is evaluated with.
 #define TITOP_COMPLEX_SCALARS(X)                \
-  X(std::complex<float>)                        \
   X(std::complex<double>)                       \
   X(std::complex<long double>)                  \
   X(std::complex<::titop::solve::DoubleDouble>) \

@@ -152,8 +152,8 @@ TEST_CASE("kinematic-loop: a chain that does not meet, by how much and along whi
               "C.child(\"C1\")", "D.parent", "rotations around the chain"}));
 }
 
-constexpr Precision kPrecisions[] = {Precision::single,  Precision::standard, Precision::refined,
-                                     Precision::twofold, Precision::extended, Precision::digits50};
+constexpr Precision kPrecisions[] = {Precision::standard, Precision::refined, Precision::twofold,
+                                     Precision::digits50};
 
 TEST_CASE("singular: at a pole") {
   Diagram d{"pole"};

@@ -14,8 +14,7 @@ using namespace solver_test;
 
 namespace {
 
-constexpr Precision kFine[] = {Precision::refined, Precision::twofold, Precision::extended,
-                               Precision::digits50};
+constexpr Precision kFine[] = {Precision::refined, Precision::twofold, Precision::digits50};
 
 double off(std::complex<double> found, const Complex& exact) {
   const Complex error = (Complex(found) - exact) / exact;
