@@ -9,7 +9,7 @@
 namespace titop {
 
 /// What kind of mistake it is. The printed names (`to_string`) are a stable interface: scripts may
-/// look for them. README.md has the table of all codes with causes and cures.
+/// look for them. docs/errors.md has the table of all codes with causes and cures.
 enum class Code {
   no_equation,     ///< a channel is driven by nobody
   two_equations,   ///< a port is set twice, or both sides of a channel are

@@ -46,11 +46,11 @@ TEST_CASE("the printed names of the codes are a stable interface") {
   for (std::size_t i = 0; i < names.size(); ++i) CHECK(to_string(static_cast<Code>(i)) == names[i]);
   CHECK(to_string(static_cast<Code>(names.size())) == "unknown");  // none is left out here
 
-  std::ifstream file(TITOP_SOURCE_DIR "/README.md");
-  const std::string readme{std::istreambuf_iterator<char>(file), {}};
+  std::ifstream file(TITOP_SOURCE_DIR "/docs/errors.md");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
   for (const std::string& name : names) {
-    INFO(name, " in the README's table");
-    CHECK(readme.find("\n| `" + name + "` | ") != std::string::npos);
+    INFO(name, " in the table of docs/errors.md");
+    CHECK(page.find("\n| `" + name + "` | ") != std::string::npos);
   }
 }
 
