@@ -230,10 +230,10 @@ template <class T>
 void Resolvent<T>::apply(Index columns, T* r) const {
   if (modal_) return apply_modes(columns, r);
   const T* const lu = lu_.data();
-  for (Index k = 0; k < n_; ++k) {
+  // L stands in the last order of the rows: all of them change places first.
+  for (Index k = 0; k < n_; ++k)
     if (row_[at(k)] != k) swap_rows(n_, columns, r, k, row_[at(k)]);
-    reduce(n_, lu, k, columns, r);
-  }
+  for (Index k = 0; k < n_; ++k) reduce(n_, lu, k, columns, r);
   for (T* x = r; x != r + columns * n_; x += n_)
     for (Index k = n_; k-- > 0;) {
       x[k] /= lu[k + k * n_];
