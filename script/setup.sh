@@ -1,4 +1,4 @@
-# Sourced by script/test, script/demo and .ci/run: Debian packages, quiet builds with a log.
+# Sourced by script/test, script/demo, script/nightly and .ci/run: Debian packages, quiet builds with a log.
 # shellcheck shell=bash disable=SC2034
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -50,7 +50,7 @@ logged() {
 # build PRESET [TARGET...]: configures and builds. On a terminal ninja's own line shows progress;
 # elsewhere the output goes to a log, which is shown where the build fails.
 build() {
-  local preset=$1 targets=()
+  local preset=$1 targets=() begin=$SECONDS
   shift
   (($# == 0)) || targets=(--target "$@")
   logged "build/$preset-configure.log" cmake --preset "$preset" -DTITOP_CI="${TITOP_CI:-OFF}" \
@@ -61,5 +61,6 @@ build() {
   else
     echo "building build/$preset (a few minutes the first time; build/$preset-build.log grows)"
     logged "build/$preset-build.log" "${ninja[@]}"
+    echo "built build/$preset in $((SECONDS - begin)) s"
   fi
 }
