@@ -137,15 +137,17 @@ double largest_ratio(const Eigen::MatrixXd& terms, const Eigen::MatrixXd& size) 
 
 /// What the entries of X and Y are sums of, over the entries, at most; with K = s - A these are
 /// |K^-1| |K| |X| and |D| + |C| |X| + |C K^-1| |K| |X|, whatever the units of states and ports.
-/// Infinite where double cannot tell.
+/// Infinite where double cannot tell: where it has less than two digits of K^-1.
 template <class T>
 double cancels(const Dynamics& d, const T& s, const solve::Response<T>& r) {
   using Eigen::MatrixXcd;
   using Eigen::MatrixXd;
   const auto n = d.A.rows();
   const MatrixXcd one = MatrixXcd::Identity(n, n), K = solve::Scalar<T>::round(s) * one - d.A;
-  const MatrixXcd inverse = linalg::solve(K, one).z;
-  if (inverse.size() == 0 || !inverse.allFinite()) return HUGE_VAL;
+  const linalg::Solution solution = linalg::solve(K, one);
+  const MatrixXcd& inverse = solution.z;
+  const double two_digits = 100 * static_cast<double>(n) * solve::Scalar<double>::epsilon();
+  if (!(solution.rcond > two_digits) || !inverse.allFinite()) return HUGE_VAL;
   const MatrixXd X = sizes(r.X), Y = sizes(r.Y);
   if (!X.allFinite() || !Y.allFinite()) return HUGE_VAL;
   const MatrixXd right = K.cwiseAbs() * X, of_states = inverse.cwiseAbs() * right;

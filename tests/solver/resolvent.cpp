@@ -3,6 +3,8 @@
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"
+#include "support/dense_truth.hpp"
+#include "support/random_lti.hpp"
 
 /// Blocks without modal form: (s - A)^-1 of three and more states, with pivots in other rows.
 namespace {
@@ -53,4 +55,102 @@ TEST_CASE("A companion matrix with a loop that leaves an integrator") {
     CHECK(relative(system.transfer(s, p)(0, 0), y) <= 1e-12);
   // 1 - 0.02 / p leaves 2e-4 of 1 at this s.
   CHECK(relative(system.transfer(s, Precision::standard)(0, 0), y) <= 1e-11);
+}
+
+namespace {
+
+using titop_test::DenseTruth;
+using titop_test::LtiKind;
+using titop_test::Rng;
+
+/// Alone, behind a loop around itself, in a ring with another, or in a loop through a matrix.
+titop::Diagram random_place(Rng& rng, LtiKind kind, int states, int place) {
+  const int m = 1 + rng.below(3), outputs = place == 0 ? 1 + rng.below(3) : m;
+  titop::Diagram d("random");
+  const auto u = d.input("u", m);
+  const auto K = d.add("K", titop_test::random_lti(rng, kind, states, m, outputs));
+  if (place == 0) {
+    K.in = u;
+  } else if (place == 1) {
+    K.in = u + K.out;
+  } else if (place == 2) {
+    const LtiKind other = titop_test::kLtiKinds[rng.below(6)];
+    const auto L = d.add("L", titop_test::random_lti(rng, other, 1 + rng.below(6), m, m));
+    K.in = u - L.out;
+    L.in = K.out;
+  } else {
+    const auto G = d.add("G", titop::MatrixGain{rng.matrix(m, outputs)});
+    G.in = K.out;
+    K.in = u + G.out;
+  }
+  d.output("y", outputs) = K.out;
+  return d;
+}
+
+/// The largest difference over the largest entry: one port by one port.
+double port_error(const Eigen::MatrixXcd& y, const DenseTruth& truth) {
+  if (!y.allFinite()) return HUGE_VAL;
+  return (y - truth.transfer).cwiseAbs().maxCoeff() / truth.transfer.cwiseAbs().maxCoeff();
+}
+
+/// What is right of y by the rounding of every entry of the equations: in double.
+double error_of_terms(const Eigen::MatrixXcd& y, const DenseTruth& truth) {
+  if (!y.allFinite()) return HUGE_VAL;
+  return (y - truth.transfer).cwiseAbs().cwiseQuotient(truth.terms).maxCoeff();
+}
+
+}  // namespace
+
+TEST_CASE("0 to 12 states of every kind, in and out of loops, in every precision") {
+  const Complex points[] = {0.9, {0, 3}, {0.3, 2}, {0, 1e3}, {-0.5, 0.25}};
+  int tried = 0;
+  for (int n = 0; n <= 12; ++n)
+    for (const LtiKind kind : titop_test::kLtiKinds)
+      for (int place = 0; place < 4; ++place) {
+        CAPTURE(n);
+        CAPTURE(static_cast<int>(kind));
+        CAPTURE(place);
+        Rng rng(static_cast<std::uint64_t>(1000 * n + 10 * static_cast<int>(kind) + place));
+        const titop::Diagram d = random_place(rng, kind, n, place);
+        const titop::System system = titop::compile(d, {.minimize_up_to = 0});
+        CHECK(system.certificate().residual <= 1e-9);
+        const Complex s = points[rng.below(5)];
+        const DenseTruth truth = titop_test::dense_truth(d.graph(), s);
+        for (const Precision p : {Precision::refined, Precision::twofold, Precision::digits50})
+          CHECK(port_error(system.transfer(s, p), truth) <= 1e-12);
+        for (const Precision p : {Precision::standard, Precision::as_needed})
+          CHECK(error_of_terms(system.transfer(s, p), truth) <= 1e-12);
+        ++tried;
+      }
+  CHECK(tried == 13 * 6 * 4);
+}
+
+TEST_CASE("Far below all poles but those at 0: right or refused") {
+  const Complex s(0, 1e-5);
+  int right = 0, refused = 0;
+  for (int n = 1; n <= 12; ++n)
+    for (const LtiKind kind : {LtiKind::integrators, LtiKind::singular})
+      for (int place = 0; place < 4; ++place) {
+        CAPTURE(n);
+        CAPTURE(static_cast<int>(kind));
+        CAPTURE(place);
+        Rng rng(static_cast<std::uint64_t>(7000 + 100 * n + 10 * static_cast<int>(kind) + place));
+        const titop::Diagram d = random_place(rng, kind, n, place);
+        const titop::System system = titop::compile(d, {.minimize_up_to = 0});
+        const DenseTruth truth = titop_test::dense_truth(d.graph(), s);
+        CHECK(port_error(system.transfer(s, Precision::digits50), truth) <= 1e-12);
+        for (const Precision p : {Precision::refined, Precision::twofold}) {
+          Eigen::MatrixXcd y;
+          try {
+            y = system.transfer(s, p);
+          } catch (const titop::Error& error) {
+            CHECK(error.has(titop::Code::singular));
+            ++refused;
+            continue;
+          }
+          CHECK(port_error(y, truth) <= 1e-12);
+          ++right;
+        }
+      }
+  CHECK(right > 4 * refused);
 }
