@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/converged.hpp>
 #include <titop/graph/linalg/dense.hpp>
-#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/wide.hpp>
 
 namespace titop::linalg {
@@ -83,7 +83,7 @@ Eigen::VectorXcd eigenvalues(const MatrixXd& A) {
   for (const std::vector<int>& part : parts(A)) {
     MatrixXd balanced = A(part, part);
     balance(balanced);
-    const Eigen::EigenSolver<MatrixXd> solver(balanced, /*computeEigenvectors=*/false);
+    const auto solver = converged<Eigen::EigenSolver<MatrixXd>>(balanced, /*vectors=*/false).solver;
     check(A, solver.info());
     result.segment(first, balanced.rows()) = solver.eigenvalues();
     first += balanced.rows();
@@ -96,11 +96,12 @@ Eigensystem eigensystem(const MatrixXd& A, VectorXd (*balancing)(MatrixXd&)) {
   check(A, Eigen::Success);
   MatrixXd balanced = A;
   const VectorXd d = balancing(balanced);
-  const Eigen::EigenSolver<MatrixXd> solver(balanced);
+  const auto [solver, order] = converged<Eigen::EigenSolver<MatrixXd>>(balanced, /*vectors=*/true);
   check(A, solver.info());
   Eigensystem result;
   result.values = solver.eigenvalues();
-  const MatrixXcd V = solver.eigenvectors();
+  MatrixXcd V(A.rows(), A.cols());
+  V(order, Eigen::all) = solver.eigenvectors();
   const Eigen::PartialPivLU<MatrixXcd> lu(V);
   result.rcond_V = lu.rcond();
   result.scale = d;

@@ -1,7 +1,7 @@
 #include <Eigen/Jacobi>
 #include <cmath>
 #include <titop/graph/error.hpp>
-#include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/converged.hpp>
 #include <titop/graph/linalg/schur.hpp>
 
 namespace titop::linalg {
@@ -49,11 +49,12 @@ Schur schur(const MatrixXd& A) {
   if (!A.allFinite())
     throw Error(Code::not_finite, "the Schur form of a matrix with entries that are not finite",
                 "look for overflow in the data");
-  const Eigen::RealSchur<MatrixXd> real(A);
+  const auto [real, order] = converged<Eigen::RealSchur<MatrixXd>>(A, /*vectors=*/true);
   if (real.info() != Eigen::Success)
     throw Error(Code::singular, "the eigenvalue iteration did not converge",
                 "look for entries that differ by more than 1e15");
-  Schur s{real.matrixT().cast<Complex>(), real.matrixU().cast<Complex>()};
+  Schur s{real.matrixT().cast<Complex>(), MatrixXcd(A.rows(), A.cols())};
+  s.Q(order, Eigen::all) = real.matrixU().cast<Complex>();
   for (Index j = A.rows() - 2; j >= 0; --j)
     if (s.T(j + 1, j) != 0.0) split_block(s, j);
   return s;
