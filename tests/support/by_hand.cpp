@@ -1,2 +1,0 @@
-// What the examples check with, once more for the tests.
-#include "../../examples/by_hand/by_hand.cpp"
