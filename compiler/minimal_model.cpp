@@ -71,7 +71,7 @@ StateSpace with_certain_ports(const System& system, const SystemData& d, const S
 }
 
 /// Of entries that keep fewer digits, rounding may be all that is left of a mode's.
-constexpr double kFewDigits = 1e-3;
+constexpr double kUnclearDigits = 1e-3;
 
 /// Every port is judged against its own size, so one that is nothing but rounding would count as
 /// moved and seen. Where digits are lost, only what the others show is certain: part of the inputs
@@ -165,7 +165,7 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
                                 .rounding = rounding};
   Minimized m = modes::minimize_unmeasured(judged, options);
   doubt_lost_digits(system, d, judged, options, m.order);
-  if (d.dense_error.beside_largest.error > kFewDigits && !m.order.exact)
+  if (d.dense_error.beside_largest.error > kUnclearDigits && !m.order.exact)
     m.order.highest = dense.order();
   if (!m.notes.empty()) m.notes.front() = to_string(m.order);
   const bool removed = !m.order.removed.empty();

@@ -47,7 +47,7 @@ std::string escaped(const std::string& name) {
   return text;
 }
 
-std::string names(const char* variable, const std::vector<std::string>& list) {
+std::string list_of_names(const char* variable, const std::vector<std::string>& list) {
   std::string text = fmt::format("{} = [\n", variable);
   for (const std::string& name : list) text += "    \"" + escaped(name) + "\",\n";
   return text + "]\n";
@@ -88,9 +88,9 @@ void write(const StateSpace& model, const std::vector<std::string>& warnings,
   emit::write_file(folder / (name + ".py"),
                    emit::filled(kModule, {{"NAME", name},
                                           {"WARNINGS", comments},
-                                          {"NAMES", names("states", model.states) +
-                                                        names("inputs", model.inputs) +
-                                                        names("outputs", model.outputs)}}));
+                                          {"NAMES", list_of_names("states", model.states) +
+                                                        list_of_names("inputs", model.inputs) +
+                                                        list_of_names("outputs", model.outputs)}}));
 }
 
 }  // namespace

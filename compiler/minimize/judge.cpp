@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numeric>
+#include <titop/compiler/minimize/clusters.hpp>
 #include <titop/compiler/minimize/judge.hpp>
 #include <titop/graph/linalg/index.hpp>
 
@@ -12,7 +12,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// Far narrower than the spacing of doubles at a pole: by effect nothing, but no proof of a 0.
 constexpr double kNothing = 1e-17;
 /// Rounding's part of a mode that nobody misses: above it, what looks like nothing may be

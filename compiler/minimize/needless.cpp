@@ -131,7 +131,7 @@ bool take_out_undriven(Sampled& s, const Integrated& states, Needless& n) {
 }
 
 /// States that outputs see only together with others, or not at all.
-void take_out_unseen(Sampled& s, const Integrated& states, Needless& n) {
+void leave_out_unseen(Sampled& s, const Integrated& states, Needless& n) {
   const auto part = [&](const StateSpace& m) {
     return MatrixXd(m.A(states.integrators, states.integrators).transpose());
   };
@@ -180,7 +180,7 @@ std::optional<Needless> take_out_needless(Sampled& s) {
     if (!take_out_undriven(s, states, n)) return std::nullopt;
     states = find_integrators(s.model);
   }
-  if (!s.model.outputs.empty() && !states.integrators.empty()) take_out_unseen(s, states, n);
+  if (!s.model.outputs.empty() && !states.integrators.empty()) leave_out_unseen(s, states, n);
   return n;
 }
 

@@ -101,7 +101,7 @@ std::string way(const Motion& motion, const Closing& c) {
   return text;
 }
 
-struct Checker {
+struct ChainChecker {
   const Graph& g;
   const Motion& motion;
   const Coordinates& coordinates;
@@ -348,11 +348,11 @@ std::vector<Closing> closings_of(const Graph& g, const Motion& motion) {
 void check_chains(Stage& stage, const Twins& twins, const Motion& motion,
                   const std::vector<Closing>& closings) {
   const Coordinates coordinates(stage.graph, stage.values);
-  Checker blocks{stage.graph, motion, coordinates};
+  ChainChecker blocks{stage.graph, motion, coordinates};
   for (const Closing& c : closings) blocks.check_blocks(c);
   if (!blocks.mistakes.empty()) throw Error(std::move(blocks.mistakes));
   const Motion geometry(stage.graph, stage.values, twins, Ground::last);
-  Checker gaps{stage.graph, geometry, coordinates};
+  ChainChecker gaps{stage.graph, geometry, coordinates};
   for (const Closing& c : closings_of(stage.graph, geometry)) gaps.check_gap(c);
   if (!gaps.mistakes.empty()) throw Error(std::move(gaps.mistakes));
   stage.notes.insert(stage.notes.end(), gaps.notes.begin(), gaps.notes.end());
