@@ -186,7 +186,7 @@ class Assembly {
       add(rows, c, t.signal, by);
       if (t.of != Term::Of::reaction) continue;
       for (const Equation& e : g_.equations)  // a reaction is the force without what is added to it
-        if (e.target == t.signal && e.accumulate && !e.of_block) subtract_equation(rows, -c, e);
+        if (e.target == t.signal && e.accumulate && !e.of_block) subtract_equation(rows, c, e);
     }
   }
   void subtract_equation(const std::vector<Row>& rows, const MatrixXd& factor, const Equation& e) {

@@ -12,7 +12,9 @@ struct Draft {
   Rng rng;
   Scene scene;
   int names = 0;
-  bool has_inputs = true, has_outputs = true;  ///< of the assembly that is being drawn
+  bool has_inputs = true, has_outputs = true;     ///< of the assembly that is being drawn
+  std::vector<std::string> springs, bodies;       ///< drawn so far
+  std::map<std::string, int> controller_outputs;  ///< of 3 to 12 states
 
   explicit Draft(const SceneOptions& o) : options(o), rng(o.seed) {}
 
@@ -57,6 +59,9 @@ std::string draw_filter(Draft& d, Dim in, Dim out, double gain, double direct);
 std::string draw_spring(Draft& d, bool free);
 /// Forces, controllers and outputs on a spring-mass that hangs in a scene.
 void use_spring(Draft& d, const std::string& z);
+
+/// Controllers of 3 to 12 states (random_lti.hpp) around all that has been drawn.
+void draw_controllers(Draft& d, int count);
 
 void draw_scalar(Draft& d, int count);
 void draw_spatial(Draft& d, int count, bool with_springs);

@@ -19,6 +19,7 @@ std::string draw_spring(Draft& d, bool free) {
                                                      .damping = c * M / t,
                                                      .parent_mass = m0 * M}));
   });
+  d.springs.push_back(name);
   return name;
 }
 

@@ -140,6 +140,8 @@ Scene random_scene(const SceneOptions& options) {
     else
       draw_spatial(d, count, options.family == Family::mixed);
   }
+  d.has_inputs = !no_inputs, d.has_outputs = !no_outputs;
+  draw_controllers(d, options.large_controllers);
   return std::move(d.scene);
 }
 

@@ -47,9 +47,11 @@ struct SceneOptions {
   int bodies = 6;      ///< of the largest assembly
   int assemblies = 1;  ///< parts that hang together through nothing
   Damping damping = Damping::some;
-  bool controllers = true;  ///< Lti, Gain, Sum and MatrixGain between outputs and forces
-  bool incomplete = false;  ///< parts without inputs or outputs, now and then a whole diagram
-  bool prescribed = true;   ///< accelerations as inputs
+  bool controllers = true;    ///< Lti, Gain, Sum and MatrixGain between outputs and forces
+  bool incomplete = false;    ///< parts without inputs or outputs, now and then a whole diagram
+  bool prescribed = true;     ///< accelerations as inputs
+  int large_controllers = 0;  ///< dense Lti of 3 to 12 states, several inputs and outputs, of every
+                              ///< kind of random_lti.hpp, in and out of loops; drawn last
 };
 
 /// The family, shape and sizes that belong to this seed; `larger` for the long tests.

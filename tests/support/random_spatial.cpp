@@ -54,6 +54,7 @@ Scene::Step rigid_step(Rng& rng, const Body& body) {
 
 Body draw_body(Draft& d, int children) {
   Body body{d.fresh("b"), {}, 0};
+  d.bodies.push_back(body.name);
   for (int i = 1; i <= children; ++i) body.sites.push_back(fmt::format("C{}", i));
   body.sites.push_back("T");
   const int kind = d.rng.below(5);
