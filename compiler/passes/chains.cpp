@@ -5,6 +5,7 @@
 #include <optional>
 #include <titop/compiler/ahead.hpp>
 #include <titop/compiler/passes/close/along.hpp>
+#include <titop/compiler/passes/close/gap.hpp>
 #include <titop/compiler/passes/close/lines.hpp>
 #include <titop/compiler/passes/close/redundant.hpp>
 #include <titop/compiler/passes/close/reflections.hpp>
@@ -27,8 +28,7 @@ using Eigen::MatrixXd;
 using namespace closing;
 using linalg::at;
 
-constexpr double kGap = 1e-6;       ///< a loop that is open by more does not close
-constexpr double kExactGap = 1e-9;  ///< by more it is noted
+constexpr double kGap = 1e-6;  ///< a loop that is open by more does not close
 constexpr double kUnit =
     1e-12;  ///< rounding of a few products: a direction is an axis, or has none of it
 

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <deque>
 #include <numeric>
+#include <titop/compiler/passes/close/common_rotation.hpp>
+#include <titop/compiler/passes/close/gap.hpp>
 #include <titop/compiler/passes/close/motion.hpp>
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/drives.hpp>
@@ -76,6 +78,26 @@ void Motion::add_ties(const Twins& twins, Ground ground) {
     ties_.push_back(tie_of(q, e, twins, ground));
   }
   std::sort(ties_.begin(), ties_.end(), [](const Tie& a, const Tie& b) { return a.turn < b.turn; });
+  find_rotations();
+}
+
+/// Of all ties between the same two points together.
+void Motion::find_rotations() {
+  std::map<std::pair<int, int>, std::vector<Tie*>> between;
+  for (Tie& tie : ties_)
+    if (tie.S.cols() == 6 && tie.points.size() == 1 && tie.points.begin()->second.cols() == 6)
+      between[{tie.target, tie.points.begin()->first}].push_back(&tie);
+  for (const auto& [points, ties] : between) {
+    MatrixXd S(0, 6), c(0, 6);
+    for (const Tie* tie : ties) {
+      S.conservativeResize(S.rows() + tie->S.rows(), 6);
+      S.bottomRows(tie->S.rows()) = tie->S;
+      c.conservativeResize(S.rows(), 6);
+      c.bottomRows(tie->S.rows()) = tie->points.begin()->second;
+    }
+    const auto rotation = common_rotation(S, c);
+    for (Tie* tie : ties) tie->rotation = rotation;
+  }
 }
 
 Tie Motion::tie_of(const Equation& q, int index, const Twins& twins, Ground ground) const {
@@ -106,17 +128,22 @@ std::optional<Motion::Edge> Motion::edge_of(const Tie& tie) const {
   const auto& [point, c] = *tie.points.begin();
   e.from = point;
   if (c.cols() != tie.S.cols()) return std::nullopt;  // a scalar point beside one of six
-  e.rigid = has_orthonormal_rows(c);
-  if (!e.rigid && (c.rows() != c.cols() || free.rows() > 0 || !(linalg::inverse(c).rcond > 1e-3)))
+  const bool six = c.cols() == 6, orthonormal = has_orthonormal_rows(c);
+  e.rigid = six ? tie.rotation.has_value() : orthonormal;
+  if (!orthonormal &&
+      (c.rows() != c.cols() || free.rows() > 0 || !(linalg::inverse(c).rcond > 1e-3)))
     return std::nullopt;
-  // What the joint leaves free is counted from the other side: any completion of c will do.
+  // What the joint leaves free is counted from the other side: any completion of c will do. One
+  // that moves both points as one body leaves no gap.
   e.R = tie.S.transpose() * c;
-  if (free.rows() > 0) {
-    if (c.rows() == 3 && c.cols() == 6 && c.rightCols(3).isZero(0) && tie.S.rightCols(3).isZero(0))
-      e.R.bottomRightCorner(3, 3) =
-          tie.S.leftCols(3).transpose() * c.leftCols(3);  // the same rotation for both halves
-    else
-      e.R += free.transpose() * complement(c, static_cast<int>(c.cols()));
+  if (free.rows() == 0) return e;
+  if (six && tie.rotation) {
+    const Matrix3d& Q = *tie.rotation;
+    MatrixXd turned(free.rows(), 6);
+    turned << free.leftCols(3) * Q, free.rightCols(3) * Q;
+    e.R += free.transpose() * turned;
+  } else {
+    e.R += free.transpose() * complement(c, static_cast<int>(c.cols()));
   }
   return e;
 }
@@ -125,7 +152,7 @@ Motion::Edge Motion::reversed(const Edge& e) const {
   Edge r = e;
   r.to = e.from, r.from = e.to;
   r.R = linalg::inverse(e.R).matrix;
-  Sum own;
+  Sum own(units_of_rows(MatrixXd::Identity(r.R.rows(), r.R.rows())));
   own.meet(r.R), own.add(-r.R, e.own);
   r.own = own.cleaned();
   return r;
@@ -232,10 +259,10 @@ void Motion::add_root(Sum& sum, const MatrixXd& factor, int root) const {
 }
 
 Form Motion::position(int channel) const {
-  Sum sum;
   const int size = g_.channels[at(channel)].size;
-  add_root(sum, walk(sum, MatrixXd::Identity(size, size), up_from(channel, -1)),
-           root_[at(channel)]);
+  const MatrixXd all = MatrixXd::Identity(size, size);
+  Sum sum(units_of_rows(all));
+  add_root(sum, walk(sum, all, up_from(channel, -1)), root_[at(channel)]);
   return sum.cleaned();
 }
 
@@ -257,30 +284,17 @@ std::vector<char> Motion::at_rest(const std::function<bool(const Column&, int)>&
   return result;
 }
 
-MatrixXd Motion::less_angles(MatrixXd gap, const Form& form) {
-  MatrixXd free(gap.rows(), 0);
-  for (const auto& [column, matrix] : form)
-    if (column.kind == Column::Kind::angle) {
-      free.conservativeResize(gap.rows(), free.cols() + matrix.cols());
-      free.rightCols(matrix.cols()) = matrix;
-    }
-  MatrixXd basis(0, gap.rows());
-  for (Index j = 0; j < free.cols(); ++j) {
-    Eigen::RowVectorXd v = free.col(j).transpose();
-    const double size = v.norm();
-    for (int twice = 0; twice < 2; ++twice) v -= (v * basis.transpose()) * basis;
-    if (!(v.norm() > 1e-9 * size)) continue;
-    basis.conservativeResize(basis.rows() + 1, gap.rows());
-    basis.bottomRows(1) = v.normalized();
-  }
-  gap -= basis.transpose() * (basis * gap);
-  return gap;
+void Motion::add_gap(Sum& sum, const MatrixXd& gap, int point, Closing& closing) const {
+  const Way up = up_from(point, -1);
+  add_root(sum, walk(sum, gap, up), root_[at(point)]);
+  for (const Edge& e : up.edges)
+    if (e.equation >= 0) closing.equations.push_back(e.equation);
 }
 
 Closing Motion::closing(const Tie& tie) const {
   Closing result{.tie = &tie, .equations = {tie.equation}};
   const MatrixXd minus = -MatrixXd::Identity(tie.S.rows(), tie.S.rows());
-  Sum sum;
+  Sum sum(units_of_rows(tie.S));
   sum.meet(minus), sum.add(minus, tie.own);
   auto [there, back] = ways(tie);
   const bool meets = tie.points.size() <= 1 && there.to == back.to;
@@ -316,7 +330,12 @@ Closing Motion::closing(const Tie& tie) const {
     if (!to_ground) gap += at_meeting;
   }
   result.form = sum.cleaned();
-  if (!to_ground) result.gap = sum.relative(less_angles(std::move(gap), result.form));
+  if (to_ground) return result;
+  const Gap found = gap_of(gap, result.form, units_of_rows(tie.S), sum.lever());
+  result.gap = found.off;
+  if (found.taken.size() == 0) return result;
+  add_gap(sum, found.taken, there.to, result);
+  result.form = sum.cleaned();
   return result;
 }
 

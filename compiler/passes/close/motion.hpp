@@ -7,6 +7,7 @@
 #include <titop/compiler/passes/close/sum.hpp>
 #include <titop/compiler/passes/close/twin.hpp>
 #include <titop/compiler/stage.hpp>
+#include <titop/graph/linalg/kinematics.hpp>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -19,10 +20,12 @@ struct Tie {
   Eigen::MatrixXd S = {};                      ///< rows x size, orthonormal rows
   std::map<int, Eigen::MatrixXd> points = {};  ///< channel -> rows x size
   Form own = {};                               ///< prescribed columns
-  bool closes = false;                         ///< no edge of the tree: it closes a chain
-  bool late = false;                           ///< from the ground, and that comes last
-  int turn = 0;                                ///< when the spanning forest comes to it
-  int length = 0;                              ///< edges of the tree's way round, if it closes one
+  /// How its one point is turned, by all ties of the target to it; none: no rotation, or no point.
+  std::optional<Matrix3d> rotation = {};
+  bool closes = false;  ///< no edge of the tree: it closes a chain
+  bool late = false;    ///< from the ground, and that comes last
+  int turn = 0;         ///< when the spanning forest comes to it
+  int length = 0;       ///< edges of the tree's way round, if it closes one
 
   /// A tie that closes a chain may go through those of lower rank.
   using Rank = std::tuple<bool, int, int>;
@@ -30,11 +33,12 @@ struct Tie {
 };
 
 /// A closing equation: form + gap * (position of the meeting point) = 0, where `gap` is 0 if the
-/// geometry closes.
+/// geometry closes. Ties that leave translations free do not say where their points are: what such
+/// a lever arm makes of the gap is in the form.
 struct Closing {
   const Tie* tie = nullptr;
   Form form = {};
-  double gap = 0;                   ///< relative; 0 where the meeting point is the ground
+  double gap = 0;  ///< relative to 1, or to the longest lever; 0 where the ground is met
   std::vector<int> chain = {};      ///< points on the way round, for messages
   std::vector<int> equations = {};  ///< ties on the way round, this one too
 };
@@ -88,6 +92,7 @@ class Motion {
   void add_body(int node, ParameterValues values);
   void add_ties(const Twins& twins, Ground ground);
   Tie tie_of(const Equation& equation, int index, const Twins& twins, Ground ground) const;
+  void find_rotations();
   std::optional<Edge> edge_of(const Tie& tie) const;
   Edge reversed(const Edge& edge) const;
   /// From one point to another, or to the root (`to` -1): each edge leads on from the one before.
@@ -122,9 +127,9 @@ class Motion {
   std::pair<Way, Way> ways(const Tie& tie) const;
   /// sum += factor * x_point, along the way; what multiplies its end.
   Eigen::MatrixXd walk(Sum& sum, Eigen::MatrixXd factor, const Way& way) const;
-  /// What a free angle on the way can take up is no gap.
-  static Eigen::MatrixXd less_angles(Eigen::MatrixXd gap, const Form& form);
   void add_root(Sum& sum, const Eigen::MatrixXd& factor, int root) const;
+  /// sum += gap * x_point, from the root of its assembly.
+  void add_gap(Sum& sum, const Eigen::MatrixXd& gap, int point, Closing& closing) const;
 
   const Graph& g_;
   int ground_;

@@ -1,12 +1,14 @@
 #include <algorithm>
 #include <limits>
 #include <titop/compiler/passes/close/sum.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes::closing {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
+using linalg::at;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kUnits = 32;     ///< of rounding in a product of any two matrices of six
@@ -17,18 +19,25 @@ std::size_t half(Index i, Index count) { return count == 6 && i >= 3 ? 1 : 0; }
 
 }  // namespace
 
+std::vector<int> units_of_rows(const MatrixXd& S) {
+  std::vector<int> units;
+  for (Index i = 0; i < S.rows(); ++i)
+    units.push_back(S.cols() == 6 && S.row(i).head(3).isZero(0) ? 1 : 0);
+  return units;
+}
+
 void Sum::meet(const MatrixXd& factor) {
   ++factors_;
   for (Index j = 0; j < factor.cols(); ++j)
     for (Index i = 0; i < factor.rows(); ++i) {
-      auto& most = most_[half(i, factor.rows())];
+      auto& most = most_[at(units_[at(i)])];
       const double size = std::abs(factor(i, j));
       most[half(j, factor.cols())] = std::max(most[half(j, factor.cols())], size);
       if (factor.cols() != 6) {
         most[1] = std::max(most[1], size);
         continue;
       }
-      double& of_six = most_of_six_[half(i, factor.rows())][half(j, 6)];
+      double& of_six = of_six_[at(units_[at(i)])][half(j, 6)];
       of_six = std::max(of_six, size);
     }
 }
@@ -45,22 +54,12 @@ void Sum::add(const MatrixXd& factor, const Form& own) {
         s = std::max(s, std::abs(matrix(k, j)));
       }
       for (Index i = 0; i < factor.rows(); ++i) {
-        const auto& most = most_[half(i, factor.rows())];
+        const auto& most = most_[at(units_[at(i)])];
         rounding(i, j) = units * (most[0] * size[0] + most[1] * size[1]);
       }
     }
     closing::add(rounding_, column, rounding);
   }
-}
-
-double Sum::relative(const MatrixXd& gap) const {
-  const Largest& most = gap.cols() == 6 ? most_of_six_ : most_;
-  double worst = 0;
-  for (Index j = 0; j < gap.cols(); ++j)
-    for (Index i = 0; i < gap.rows(); ++i)
-      if (const double off = std::abs(gap(i, j)); off > 0)
-        worst = std::max(worst, off / most[half(i, gap.rows())][half(j, gap.cols())]);
-  return worst;
 }
 
 Form Sum::cleaned() const {

@@ -2,30 +2,37 @@
 
 #include <array>
 #include <titop/compiler/passes/close/form.hpp>
+#include <utility>
+#include <vector>
 
 namespace titop::passes::closing {
+
+/// Of rows among the six of a point (or its one): 0 for a translation, 1 for a rotation.
+std::vector<int> units_of_rows(const Eigen::MatrixXd& S);
 
 /// A form that is added up along the ways round a chain, with the rounding that is in its entries.
 /// Rows are scaled by what they have: a row of which rounding alone is left, because a chain says
 /// nothing there, would say that something does not move.
 class Sum {
  public:
+  /// `units`: per row 0 for a translation, 1 for a rotation.
+  explicit Sum(std::vector<int> units) : units_(std::move(units)) {}
   /// A factor that is met on a way: products with it, and with those after it, round in proportion.
-  /// Translations and rotations, where there are six rows or columns, have each their own unit.
+  /// Translations and rotations have each their own unit, where there are six columns.
   void meet(const Eigen::MatrixXd& factor);
   /// += factor * own; the factor has been met.
   void add(const Eigen::MatrixXd& factor, const Form& own);
-  /// Largest entry of `gap` (same rows) over the largest met there, of factors with as many
-  /// columns: others are in other units.
-  double relative(const Eigen::MatrixXd& gap) const;
+  /// The longest lever met: of a rotation in a translation [m]; 0: none.
+  double lever() const { return of_six_[0][1]; }
 
   /// Entries below their rounding are 0; columns of nothing else are left out.
   Form cleaned() const;
 
  private:
+  std::vector<int> units_;
   Form form_, rounding_;
   using Largest = std::array<std::array<double, 2>, 2>;  ///< of rows, of columns
-  Largest most_ = {}, most_of_six_ = {};  ///< of all factors; of those with six columns
+  Largest most_ = {}, of_six_ = {};  ///< of all factors; of those with six columns
   double factors_ = 0;
 };
 
