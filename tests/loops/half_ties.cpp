@@ -1,0 +1,92 @@
+#include "../support/half_ties.hpp"
+
+#include <doctest/doctest.h>
+
+/// Ties of three of six: the same transfer by all roads.
+
+using namespace half_ties;
+using namespace titop;
+
+namespace {
+
+MatrixXcd of_matrices(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C, const MatrixXd& D,
+                      std::complex<double> s) {
+  const MatrixXcd Z = s * MatrixXd::Identity(A.rows(), A.rows()) - A;
+  MatrixXcd H = D.cast<std::complex<double>>();
+  if (A.rows() > 0) H += C * Z.partialPivLu().solve(MatrixXcd(B.cast<std::complex<double>>()));
+  return H;
+}
+
+MatrixXcd by_apply(const System& system, std::complex<double> s) {
+  const Index n = system.order();
+  const auto m = static_cast<Index>(system.inputs().size());
+  const auto p = static_cast<Index>(system.outputs().size());
+  MatrixXd all(n + p, n + m);
+  for (Index j = 0; j < n + m; ++j) {
+    const VectorXd known = VectorXd::Unit(n + m, j);
+    const auto [xdot, y] = system.apply(known.head(n), known.tail(m));
+    all.col(j) << xdot, y;
+  }
+  return of_matrices(all.topLeftCorner(n, n), all.topRightCorner(n, m), all.bottomLeftCorner(p, n),
+                     all.bottomRightCorner(p, m), s);
+}
+
+/// Of what is not 0.
+double error(const MatrixXcd& a, const MatrixXcd& exact) {
+  const double size = exact.size() ? exact.cwiseAbs().maxCoeff() : 0;
+  return (a - exact).cwiseAbs().maxCoeff() / (size > 1e-12 ? size : 1);
+}
+
+}  // namespace
+
+TEST_CASE("a body turned by another, and held at a point beside: velocity = omega x lever") {
+  const Rotation I = Rotation::about({0, 0, 1}, 0.0);
+  Diagram d{"turned"};
+  auto T = d.input("T");
+  auto a = d.add("a", RigidBody{.children = {{"e", {1, 0, 0}}, {"k", {0, 1, 0}}}});
+  auto b = d.add("b", RigidBody{.children = {{"k", {0, 0, 0}}}});
+  a.parent.accel.linear = 0;
+  release(a);
+  b.parent.accel.angular = I * a.child("e").accel.angular;
+  a.child("e").force.angular += I * b.parent.reaction.angular();
+  release(b);
+  weld(b.child("k"), a.child("k"), I);
+  b.child("k").force.angular.along({0, 0, 1}) += T;
+  d.output("rate", 6) = b.parent.rate;
+  const System system = compile(d);
+  // Two inertias of 1 and a mass of 1 at a distance of 1 about z: a torque of 1 for a second turns
+  // them by 1/3 rad/s, and b at (0, 1, 0) goes by (0, 0, 1/3) x (0, 1, 0).
+  VectorXd exact(6);
+  exact << -1. / 3, 0, 0, 0, 0, 1. / 3;
+  const std::complex<double> s(0.7, 1.1);
+  const MatrixXcd H = exact.cast<std::complex<double>>() / s;
+  const StateSpace& m = system.state_space();
+  CHECK(error(system.transfer(s), H) <= 1e-12);
+  CHECK(error(of_matrices(m.A, m.B, m.C, m.D, s), H) <= 1e-12);
+  CHECK(error(by_apply(system, s), H) <= 1e-12);
+  const Trajectory t = simulate(system, Excitation::step(VectorXd::Ones(1)),
+                                {.step = 0.01, .until = 1, .stepper = Stepper::rk4});
+  CHECK((t.y.rightCols(1) - exact).cwiseAbs().maxCoeff() <= 1e-12);
+}
+
+TEST_CASE("ties of any directions, at one to three places of a loop: maximal coordinates") {
+  Rng rng(46);
+  int judged = 0;
+  for (int i = 0; i < 60; ++i) {
+    CAPTURE(i);
+    const Sketch sketch = draw(rng, i % 2 == 1);
+    const Oracle o = oracle(sketch);
+    if (o.gap < 1e-4) continue;  // near singular
+    ++judged;
+    const System system = compile(diagram(sketch));
+    const StateSpace& m = system.state_space();
+    for (const std::complex<double> s : {std::complex<double>(0.3, 1.3), {0.5, 6}}) {
+      const MatrixXcd H = o.rate(s);
+      CHECK(error(system.transfer(s), H) <= 1e-8);
+      CHECK(error(of_matrices(m.A, m.B, m.C, m.D, s), H) <= 1e-8);
+      CHECK(error(by_apply(system, s), H) <= 1e-8);
+    }
+    CHECK(system.certificate().residual <= 1e-9);
+  }
+  CHECK(judged >= 55);
+}

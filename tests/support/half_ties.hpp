@@ -1,0 +1,82 @@
+#pragma once
+
+// Rigid and flexible bodies, tied by any of the six directions of their points, in turned frames:
+// as a diagram, and in maximal coordinates (all bodies' motions and modes, and one row for every
+// direction that is tied), which shares nothing with the library but the numbers.
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <complex>
+#include <string>
+#include <titop/graph/linalg/eigen.hpp>
+#include <titop/titop.hpp>
+#include <vector>
+
+#include "rng.hpp"
+
+namespace half_ties {
+
+using Eigen::Index;
+using Eigen::Matrix3d;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using titop_test::Rng;
+
+/// At its place in the world: components of its frame to those of the world, parent point.
+struct Body {
+  Matrix3d turn = Matrix3d::Identity();
+  Vector3d place = Vector3d::Zero();
+  titop::Matrix6 D_P = titop::Matrix6::Zero();
+  double mass = 1;
+  Matrix3d inertia = Matrix3d::Identity();
+  Vector3d PA = Vector3d::Zero();
+  VectorXd omega = {};
+  MatrixXd L_P = {};
+  std::vector<titop::ModalChild> points = {};
+
+  Index modes() const { return omega.size(); }
+};
+
+/// The directions of `mask` (three translations, three rotations, in the target's frame) of a
+/// target's point are those of a source's. Point -1: the parent; source -1: the ground.
+struct HalfTie {
+  int target = 0, target_point = -1, source = -1, source_point = -1, mask = 63;
+  bool by_halves = false;  ///< three directions are one equation
+
+  bool ties(int direction) const { return (mask >> direction & 1) != 0; }
+};
+
+struct Sketch {
+  std::vector<Body> bodies;
+  std::vector<HalfTie> ties;
+  int load = 0, load_point = 0, seen = 0, seen_point = 0;
+};
+
+inline const Body& body(const Sketch& s, int i) { return s.bodies[static_cast<std::size_t>(i)]; }
+inline Body& body(Sketch& s, int i) { return s.bodies[static_cast<std::size_t>(i)]; }
+
+/// Components of the source's frame to those of the target's.
+inline Matrix3d turn(const Sketch& s, const HalfTie& t) {
+  return body(s, t.target).turn.transpose() * body(s, t.source).turn;
+}
+
+/// A tree of two to five bodies, closed once or twice; ties of any directions at any place.
+Sketch draw(Rng& rng, bool flexible);
+/// Output: the rate of a point, six; input: a wrench on another.
+titop::Diagram diagram(const Sketch& sketch);
+
+/// All motions that the ties allow, by an orthonormal basis.
+struct Oracle {
+  MatrixXd M, K, B, C;
+  double gap = 1;  ///< smallest singular value of the ties that counts, over the largest
+
+  MatrixXcd rate(std::complex<double> s) const {
+    const MatrixXcd Z = s * s * M + K;
+    return s * (C * Z.partialPivLu().solve(MatrixXcd(B.cast<std::complex<double>>())));
+  }
+};
+Oracle oracle(const Sketch& sketch);
+
+}  // namespace half_ties
