@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <titop/graph/port.hpp>
 
@@ -79,17 +80,35 @@ SignalRef SignalRef::along(const Vector3d& r) const {
   return component;
 }
 
+namespace {
+
+/// Position of the port of this name, -1 if there is none. Ports in1, in2, ... (Sum) mostly stand
+/// at their number: all of them are found in linear time.
+int find_port(const std::vector<PortSpec>& ports, std::string_view name) {
+  std::size_t number = 0;
+  const std::size_t digits = name.find_first_of("123456789");
+  if (digits != std::string_view::npos)
+    std::from_chars(name.data() + digits, name.data() + name.size(), number);
+  if (number > 0 && number <= ports.size() && ports[number - 1].name == name)
+    return static_cast<int>(number) - 1;
+  const auto at =
+      std::find_if(ports.begin(), ports.end(), [&](const PortSpec& p) { return p.name == name; });
+  return at == ports.end() ? -1 : static_cast<int>(at - ports.begin());
+}
+
+}  // namespace
+
 int port_signal(const Graph& graph, int node, std::string_view name) {
   const Node& n = graph.nodes[static_cast<std::size_t>(node)];
   const Interface& face = n.block->interface();
+  int first = n.first_signal + 2 * static_cast<int>(face.channels.size());
+  for (const auto* ports : {&face.inputs, &face.outputs}) {
+    if (const int port = find_port(*ports, name); port >= 0) return first + port;
+    first += static_cast<int>(ports->size());
+  }
   std::string names;
-  int signal = n.first_signal + 2 * static_cast<int>(face.channels.size());
   for (const auto* ports : {&face.inputs, &face.outputs})
-    for (const PortSpec& p : *ports) {
-      if (p.name == name) return signal;
-      names += (names.empty() ? "" : ", ") + p.name;
-      ++signal;
-    }
+    for (const PortSpec& p : *ports) names += (names.empty() ? "" : ", ") + p.name;
   throw Error(Code::unknown_name, fmt::format("{}.{} does not exist", n.name, name),
               fmt::format("the one-way ports of this {} are: {}", n.block->type(), names));
 }

@@ -223,26 +223,32 @@ class Reader {
   std::map<std::string, int> nodes_, inputs_;
 };
 
-/// Refuses an object in which a key stands twice: the parser would drop one of the two values.
-class KeysOnce {
+/// Refuses an object in which a key stands twice: the parser would drop one of the two values. It
+/// reads the text by itself: a parser with a callback looks at all items of a list after each.
+class KeysOnce : public nlohmann::json_sax<Json> {
  public:
   explicit KeysOnce(std::string file) : file_(std::move(file)) {}
 
-  bool operator()(int, Json::parse_event_t event, Json& parsed) {
-    using Event = Json::parse_event_t;
-    if (event == Event::object_start || event == Event::array_start) {
-      next();
-      open_.push_back({.list = event == Event::array_start});
-    } else if (event == Event::object_end || event == Event::array_end) {
-      open_.pop_back();
-    } else if (event == Event::value) {
-      next();
-    } else if (open_.back().key = parsed.get<std::string>();
-               !open_.back().keys.insert(open_.back().key).second) {
-      throw Error(Code::bad_file, fmt::format("{}: {}: the key is given twice", file_, path()),
-                  "keep one of them");
-    }
-    return true;
+  bool start_object(std::size_t) override { return open(false); }
+  bool start_array(std::size_t) override { return open(true); }
+  bool end_object() override { return close(); }
+  bool end_array() override { return close(); }
+  bool null() override { return next(); }
+  bool boolean(bool) override { return next(); }
+  bool number_integer(std::int64_t) override { return next(); }
+  bool number_unsigned(std::uint64_t) override { return next(); }
+  bool number_float(double, const std::string&) override { return next(); }
+  bool string(std::string&) override { return next(); }
+  bool binary(Json::binary_t&) override { return next(); }
+  bool key(std::string& name) override {
+    open_.back().key = name;
+    if (open_.back().keys.insert(name).second) return true;
+    throw Error(Code::bad_file, fmt::format("{}: {}: the key is given twice", file_, path()),
+                "keep one of them");
+  }
+  /// Json::parse says it.
+  bool parse_error(std::size_t, const std::string&, const Json::exception&) override {
+    return false;
   }
 
  private:
@@ -253,8 +259,18 @@ class KeysOnce {
     std::set<std::string> keys = {};
   };
 
-  void next() {
+  bool next() {
     if (!open_.empty()) ++open_.back().item;
+    return true;
+  }
+  bool open(bool list) {
+    next();
+    open_.push_back({.list = list});
+    return true;
+  }
+  bool close() {
+    open_.pop_back();
+    return true;
   }
 
   std::string path() const {
@@ -274,9 +290,8 @@ Diagram parse_scene(std::string_view json, const std::string& file) {
   Json all;
   try {
     KeysOnce keys(file);
-    all = Json::parse(json, [&](int depth, Json::parse_event_t event, Json& parsed) {
-      return keys(depth, event, parsed);
-    });
+    Json::sax_parse(json, &keys);
+    all = Json::parse(json);
   } catch (const Json::parse_error& error) {
     throw Error(Code::bad_file, fmt::format("{}: no JSON text at byte {}", file, error.byte),
                 "look at it with a JSON program such as jq, which shows the place");

@@ -63,14 +63,13 @@ BlockPtr as_block(const Sum& spec) {
   if (spec.size < 1 || spec.signs.empty())
     throw Error(Code::size, "a Sum without inputs", "give it a size and at least one sign");
   Interface face{{}, {}, {{"out", spec.size}}, {}};
-  Eigen::MatrixXd D(spec.size, 0);
+  Eigen::MatrixXd D(spec.size, spec.size * static_cast<Eigen::Index>(spec.signs.size()));
   for (std::size_t i = 0; i < spec.signs.size(); ++i) {
     if (spec.signs[i] != '+' && spec.signs[i] != '-')
       throw Error(Code::bad_value, fmt::format("Sum: sign '{}' is not + or -", spec.signs[i]),
                   "write one + or - per input, as Sum{.signs = \"+-\"}");
     face.inputs.push_back({fmt::format("in{}", i + 1), spec.size});
-    D.conservativeResize(spec.size, D.cols() + spec.size);
-    D.rightCols(spec.size) =
+    D.middleCols(static_cast<Eigen::Index>(i) * spec.size, spec.size) =
         (spec.signs[i] == '+' ? 1.0 : -1.0) * Eigen::MatrixXd::Identity(spec.size, spec.size);
   }
   return std::make_shared<Algebraic>("Sum", std::move(face), std::move(D));
