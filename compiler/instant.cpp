@@ -1,5 +1,7 @@
 #include <titop/compiler/certify/steady_random.hpp>
+#include <titop/compiler/evaluate.hpp>
 #include <titop/compiler/instant.hpp>
+#include <titop/compiler/solve/backward_error.hpp>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -30,7 +32,11 @@ Instant::Instant(const SystemData& data, RowMatrix<double> known, const RowMatri
       known_(std::move(known)),
       rhs_(rows_.rhs(known_, data.layout().known_first)) {
   if (more.size() > 0) rhs_ += more;
-  unknowns_ = data.factors->solve(rhs_);
+  solve::Solution<double> solution = solve::settled(rows_, *data.factors, rhs_);
+  if (!(solution.backward_error <=
+        solve::backward_error_of_rounding(data.factors->plan(), solve::Scalar<double>::epsilon())))
+    throw not_satisfied(data, "at an instant", solution.backward_error);
+  unknowns_ = std::move(solution.unknowns);
 }
 
 void Instant::add_value(int signal, double* to) const {

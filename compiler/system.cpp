@@ -53,9 +53,14 @@ MatrixXcd transfer_in(const detail::SystemData& d, Double s) {
       detail::Evaluation<T>(d, solve::Scalar<T>::from(s), unit_inputs<T>(d)).outputs());
 }
 
+/// A change of the outputs by as much leaves them no digit.
+constexpr double kNoDigit = 0.1;
+
+/// Refused where a step of refinement changes all digits of the outputs, or the equations do not
+/// hold to rounding after it.
 MatrixXcd standard_transfer(const detail::SystemData& d, Double s) {
   detail::Evaluation<Double> point(d, s, unit_inputs<Double>(d));
-  point.improve();
+  if (!(point.improve() <= kNoDigit) || !point.holds()) throw detail::no_digit_left(d, s);
   return rounded<Double>(point.outputs());
 }
 
@@ -107,13 +112,12 @@ MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
 /// of the data decides all digits of the outputs, as at a pole.
 template <class T>
 std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Double s) {
-  constexpr double kNoDigit = 0.1;  // of the outputs, by the last place of the data
   try {
     detail::Evaluation<T> point(d, solve::Scalar<T>::from(s), unit_inputs<T>(d));
     const auto losses = point.losses();
     const double in_double =
         losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
-    if (lost_by(point, losses) <= kEnough && in_double <= kNoDigit)
+    if (lost_by(point, losses) <= kEnough && in_double <= kNoDigit && point.holds())
       return rounded<T>(point.outputs());
   } catch (const Error&) {  // a pole of a block, or no pivot here either
   }
@@ -135,7 +139,7 @@ MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
     return *G;
   }
   const double lost = lost_by(*plain, plain->losses());
-  if (lost <= kEnough) return rounded<Double>(plain->outputs());
+  if (lost <= kEnough && plain->holds()) return rounded<Double>(plain->outputs());
   return finer_transfer(d, s, *plain, lost);
 }
 

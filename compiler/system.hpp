@@ -84,7 +84,7 @@ class System {
   std::vector<std::string> outputs() const&& { return outputs(); }
 
   /// xdot and y of x (as states() lists them) and u (as inputs()), through the factors: O(bodies).
-  /// Throws size where x or u has another size.
+  /// Throws size where x or u has another size, singular where the equations do not hold to rounding.
   struct Rates {
     Eigen::VectorXd xdot, y;
   };
@@ -99,8 +99,10 @@ class System {
   /// not one digit for some unknown, or the rounding of long double costs more, they do not lead
   /// there. That is judged by estimates: of how steps of refinement shrink, in all unknowns, and of
   /// rounding. Where numbers leave the range that DoubleDouble has, `twofold` throws not_finite.
-  /// The way out of all that is `as_needed`, or `digits50`. `standard` refuses only a pivot without
-  /// a digit: what many pivots lose together it does not see.
+  /// The way out of all that is `as_needed`, or `digits50`. `standard` refuses a pivot without a
+  /// digit and outputs that a step of refinement changes by a tenth; how far the data's last place
+  /// moves them it does not say. In every precision each equation holds to rounding, row by row
+  /// (compiler/solve/backward_error.hpp), or singular is thrown.
   Eigen::MatrixXcd transfer(std::complex<double> s,
                             Precision precision = Precision::as_needed) const;
 

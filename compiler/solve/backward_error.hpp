@@ -1,0 +1,39 @@
+#pragma once
+
+#include <titop/compiler/solve/numbers.hpp>
+
+/// What every solution is held against, in every precision: not how the elimination went, but
+/// whether each equation holds.
+namespace titop::solve {
+
+/// The largest share of its terms that a row is off by, |rhs - rows x| over |rhs| + |rows| |x|:
+/// the least relative change of single entries and right-hand sides that makes x exact [Oettli,
+/// Prager 1964]. The three rows of a translation, rotation, force or torque count together; columns
+/// by themselves. Infinite where a number is not finite. What is below 1e-290 has no digits to
+/// keep.
+template <class T>
+double backward_error(const Plan& plan, const RowMatrix<T>& residual,
+                      const RowMatrix<double>& magnitudes);
+
+/// What rounding alone may leave of it: 8 (k + 8) units of rounding, k scalars in the longest row.
+/// A row of k products, each of up to three factors, is found to (k + 4) units of its terms, and
+/// the solution itself, once refined in the same arithmetic, is off by as much again [Skeel 1980;
+/// N. J. Higham, Accuracy and Stability of Numerical Algorithms, 3.1 and 12.1]; a complex product
+/// has up to 2 sqrt(2) units. Factors that have grown leave 0.8 to 0.99, whatever the precision.
+double backward_error_of_rounding(const Plan& plan, double epsilon);
+
+/// A solution, and its backward error.
+template <class T>
+struct Solution {
+  RowMatrix<T> unknowns;
+  double backward_error = 0;
+};
+
+/// Solves, and refines in the same arithmetic while the backward error is more than rounding leaves
+/// and becomes half of what it was, five times at most (as LAPACK's xGERFS does). Nobody must use a
+/// solution whose backward error is more than backward_error_of_rounding. O(front sizes^2) and the
+/// rows once, per column.
+template <class T>
+Solution<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const RowMatrix<T>& rhs);
+
+}  // namespace titop::solve
