@@ -84,7 +84,8 @@ class System {
   std::vector<std::string> outputs() const&& { return outputs(); }
 
   /// xdot and y of x (as states() lists them) and u (as inputs()), through the factors: O(bodies).
-  /// Throws size where x or u has another size, singular where the equations do not hold to rounding.
+  /// Throws size where x or u has another size, singular where the equations do not hold to
+  /// rounding.
   struct Rates {
     Eigen::VectorXd xdot, y;
   };
