@@ -1,0 +1,57 @@
+#pragma once
+
+#include "support/rng.hpp"
+#include "wild/oracle/scene.hpp"
+
+/// Random scenes, small and mean. The same seed gives the same scene on every machine.
+namespace wild {
+
+using titop_test::Rng;
+
+Scene draw_row(Rng& rng);         ///< spring-masses on each other, lossless to very lossy
+Scene draw_tree(Rng& rng);        ///< bodies with and without modes, joints
+Scene draw_loop(Rng& rng);        ///< the same, closed
+Scene draw_half_ties(Rng& rng);   ///< bodies tied along some axes only, at one to three places
+Scene draw_controller(Rng& rng);  ///< Lti blocks of 3 to 12 states, alone and around mechanics
+
+/// A scene in the making, with the pose of every node.
+class Draft {
+ public:
+  explicit Draft(Rng& r) : rng(r) {}
+
+  Rng& rng;
+  Scene scene;
+
+  int add(Node node, const Matrix3d& R = Matrix3d::Identity(),
+          const Vector3d& p = Vector3d::Zero());
+  /// Factor spread evenly over octaves.
+  double factor(int low, int high) { return rng.octaves(low, high); }
+  Vector3d unit();
+  Matrix3d rotation();
+  /// A body, rigid or with modes, hanging nowhere yet.
+  Node body();
+  /// A new site of a body at a place of its own, or at a given global one.
+  Point site(int node);
+  Point site_at(int node, const Vector3d& global);
+  Vector3d place(const Point& point) const;
+  const Matrix3d& frame(int node) const { return R_[static_cast<std::size_t>(node)]; }
+  /// Ties a to b along all axes.
+  void mount(const Point& a, const Point& b);
+  /// A joint at `b`, in a new frame; returns its node.
+  int joint(const Point& b, const std::vector<Axis>& axes);
+  std::vector<Axis> some_axes();
+  void mechanism(int node, int axis);
+  int input(int size);
+  void load(const Point& at);
+  void base(int node);
+  void tree(int bodies);
+  void outputs(int count);
+  Reading any_motion();
+  Node controller(int states, int ins, int outs);
+
+ private:
+  std::vector<Matrix3d> R_;
+  std::vector<Vector3d> p_;
+};
+
+}  // namespace wild

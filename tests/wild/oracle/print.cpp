@@ -1,0 +1,277 @@
+#include "wild/oracle/print.hpp"
+
+#include <cmath>
+#include <iomanip>
+#include <sstream>
+
+namespace wild {
+
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+class Printer {
+ public:
+  explicit Printer(const Scene& scene) : scene_(scene) { out_ << std::setprecision(17); }
+
+  std::string all() {
+    for (const Node& n : scene_.nodes) node(n);
+    for (const Tie& t : scene_.ties) tie(t);
+    for (const Mechanism& m : scene_.mechanisms) {
+      out_ << name({m.node, -1}) << ".q" << m.axis + 1 << (m.moves ? ".accel = " : ".force = ");
+      if (!m.moves) out_ << m.k << " q + " << m.c << " qd + ";
+      sum(m.more);
+      out_ << "\n";
+    }
+    for (const Load& l : scene_.loads) {
+      out_ << "wrench on " << name(l.at) << half(l.half) << " = ";
+      sum(l.sum);
+      out_ << "\n";
+    }
+    for (const Reading& r : scene_.outputs) {
+      out_ << "output ";
+      reading(r);
+      out_ << "\n";
+    }
+    return out_.str();
+  }
+
+ private:
+  std::string name(const Point& p) {
+    if (p.node < 0) return "ground";
+    const Node& n = scene_.nodes[at(p.node)];
+    if (n.kind == Node::Kind::lti) return n.name;
+    if (p.site < 0) return n.name + ".parent";
+    return n.name + (n.kind == Node::Kind::body ? ".C" + std::to_string(p.site + 1) : ".child");
+  }
+  static std::string half(int h) { return h == 0 ? "" : h == 1 ? ".linear" : ".angular"; }
+  void matrix(const std::string& what, const MatrixXd& m) {
+    out_ << " " << what << " [";
+    for (Eigen::Index i = 0; i < m.rows(); ++i) {
+      for (Eigen::Index j = 0; j < m.cols(); ++j) out_ << (j ? " " : i ? "; " : "") << m(i, j);
+    }
+    out_ << "]";
+  }
+
+  void node(const Node& n) {
+    out_ << n.name << ":";
+    if (n.kind == Node::Kind::mass)
+      out_ << " SpringMass mass " << n.m << " stiffness " << n.k << " damping " << n.c
+           << " parent_mass " << n.m0;
+    if (n.kind == Node::Kind::body && n.omega.size() == 0) {
+      out_ << " RigidBody mass " << n.mass;
+      matrix("inertia", n.inertia);
+      matrix("PA", n.PA.transpose());
+    }
+    if (n.kind == Node::Kind::body && n.omega.size() > 0) {
+      out_ << " FlexibleBody";
+      matrix("omega", n.omega.transpose());
+      matrix("xi", n.xi.transpose());
+      matrix("L_P", n.L_P);
+      matrix("D_P", n.D_P);
+    }
+    for (std::size_t i = 0; i < n.sites.size(); ++i) {
+      out_ << "\n    C" << i + 1;
+      matrix("PC", n.sites[i].PC.transpose());
+      if (n.omega.size() > 0) matrix("Phi", n.sites[i].Phi);
+    }
+    if (n.kind == Node::Kind::joint) {
+      out_ << " Joint";
+      for (const Axis& a : n.axes) matrix(a.turns ? "about" : "along", a.r.transpose());
+    }
+    if (n.kind == Node::Kind::lti) {
+      out_ << " Lti";
+      matrix("A", n.A);
+      matrix("B", n.B);
+      matrix("C", n.C);
+      matrix("D", n.D);
+      out_ << " in = ";
+      sum(n.in);
+    }
+    out_ << "\n";
+  }
+
+  void tie(const Tie& t) {
+    out_ << name(t.a) << half(t.of == Tie::Of::linear ? 1 : t.of == Tie::Of::angular ? 2 : 0);
+    for (const Axis& a : t.axes) matrix(a.turns ? "about" : "along", a.r.transpose());
+    out_ << " moves as ";
+    if (t.input >= 0)
+      out_ << "accel u" << t.input + 1;
+    else
+      out_ << name(t.b);
+    if (t.b.node >= 0 && !one_axis(scene_, t.a)) matrix("T", t.T);
+    out_ << "\n";
+  }
+
+  void sum(const Sum& s) {
+    if (s.empty()) out_ << "0";
+    for (std::size_t i = 0; i < s.size(); ++i) {
+      if (i > 0) out_ << " +";
+      matrix("", s[i].gain);
+      out_ << " * ";
+      reading(s[i].of);
+    }
+  }
+
+  void reading(const Reading& r) {
+    constexpr const char* names[] = {"u",    "accel",    "rate",  "position", "reaction", "accel",
+                                     "rate", "position", "force", "stretch",  "out"};
+    if (r.what == Reading::What::input) {
+      out_ << "u" << r.axis + 1 << " (size " << scene_.inputs[at(r.axis)] << ")";
+      return;
+    }
+    out_ << name(r.at) << ".";
+    if (r.what >= Reading::What::axis_accel && r.what <= Reading::What::axis_force)
+      out_ << "q" << r.axis + 1 << ".";
+    out_ << names[static_cast<std::size_t>(r.what)] << half(r.half);
+  }
+
+  const Scene& scene_;
+  std::ostringstream out_;
+};
+
+/// Without node i and all that mentions it.
+Scene without(const Scene& scene, int i) {
+  Scene s = scene;
+  const auto gone = [&](const Reading& r) {
+    return r.what != Reading::What::input && r.at.node == i;
+  };
+  const auto sum = [&](Sum& shares) {
+    std::erase_if(shares, [&](const Share& share) { return gone(share.of); });
+  };
+  s.nodes.erase(s.nodes.begin() + i);
+  std::erase_if(s.ties, [&](const Tie& t) { return t.a.node == i || t.b.node == i; });
+  std::erase_if(s.mechanisms, [&](const Mechanism& m) { return m.node == i; });
+  std::erase_if(s.loads, [&](const Load& l) { return l.at.node == i; });
+  std::erase_if(s.outputs, gone);
+  const auto down = [&](int& node) { node -= node > i; };
+  const auto renumber = [&](Sum& shares) {
+    sum(shares);
+    for (Share& share : shares) down(share.of.at.node);
+  };
+  for (Node& n : s.nodes) renumber(n.in);
+  for (Tie& t : s.ties) down(t.a.node), down(t.b.node);
+  for (Mechanism& m : s.mechanisms) down(m.node), renumber(m.more);
+  for (Load& l : s.loads) down(l.at.node), renumber(l.sum);
+  std::erase_if(s.loads, [](const Load& l) { return l.sum.empty(); });
+  for (Reading& r : s.outputs) down(r.at.node);
+  return s;
+}
+
+/// To one digit, or 1, or 0.
+double rounder(double x, int level) {
+  if (x == 0) return 0;
+  if (level == 0) {
+    const double unit = std::pow(10, std::floor(std::log10(std::abs(x))));
+    return std::round(x / unit) * unit;
+  }
+  return level == 1 ? (x > 0 ? 1 : -1) : 0;
+}
+
+template <class Visit>
+void numbers(Scene& s, const Visit& visit) {
+  const auto all = [&](auto& m) {
+    for (Eigen::Index i = 0; i < m.size(); ++i) visit(m.data()[i]);
+  };
+  for (Node& n : s.nodes) {
+    if (n.kind == Node::Kind::mass)
+      for (double* x : {&n.m, &n.k, &n.c, &n.m0}) visit(*x);
+    if (n.kind == Node::Kind::body && n.omega.size() == 0) {
+      visit(n.mass);
+      all(n.PA);
+    }
+    for (VectorXd* v : {&n.omega, &n.xi}) all(*v);
+    for (MatrixXd* m : {&n.A, &n.B, &n.C, &n.D}) all(*m);
+    for (Share& share : n.in) all(share.gain);
+    for (Site& site : n.sites) all(site.Phi), all(site.PC);
+  }
+  for (Mechanism& m : s.mechanisms) visit(m.k), visit(m.c);
+}
+
+/// Without state i of node n.
+void drop_state(Node& n, Eigen::Index i) {
+  const auto rows = [&](MatrixXd& m) {
+    MatrixXd less(m.rows() - 1, m.cols());
+    less << m.topRows(i), m.bottomRows(m.rows() - 1 - i);
+    m = less;
+  };
+  const auto cols = [&](MatrixXd& m) {
+    MatrixXd t = m.transpose();
+    rows(t);
+    m = t.transpose();
+  };
+  rows(n.A), cols(n.A), rows(n.B), cols(n.C);
+}
+
+void drop_mode(Node& n) {
+  const Eigen::Index modes = n.omega.size() - 1;
+  if (modes < 1) return;
+  n.omega.conservativeResize(modes);
+  n.xi.conservativeResize(modes);
+  n.L_P = n.L_P.topRows(modes).eval();
+  for (Site& site : n.sites) site.Phi = site.Phi.leftCols(modes).eval();
+}
+
+}  // namespace
+
+std::string print(const Scene& scene) { return Printer(scene).all(); }
+
+Scene shrink(Scene scene, const std::function<bool(const Scene&)>& fails, int tries) {
+  const auto accept = [&](const Scene& less) {
+    if (less.outputs.empty() || tries-- <= 0 || !fails(less)) return false;
+    scene = less;
+    return true;
+  };
+  for (bool again = true; again && tries > 0;) {
+    again = false;
+    for (int i = static_cast<int>(scene.nodes.size()) - 1; i >= 0; --i)
+      again |= accept(without(scene, i));
+    const auto each = [&](auto list) {
+      for (int i = static_cast<int>((scene.*list).size()) - 1; i >= 0; --i) {
+        Scene less = scene;
+        (less.*list).erase((less.*list).begin() + i);
+        again |= accept(less);
+      }
+    };
+    each(&Scene::outputs);
+    each(&Scene::loads);
+    each(&Scene::mechanisms);
+    each(&Scene::ties);
+    for (std::size_t n = 0; n < scene.nodes.size(); ++n) {
+      for (int k = static_cast<int>(scene.nodes[n].in.size()) - 1; k >= 0; --k) {
+        Scene less = scene;
+        less.nodes[n].in.erase(less.nodes[n].in.begin() + k);
+        if (!less.nodes[n].in.empty()) again |= accept(less);
+      }
+      for (Eigen::Index k = scene.nodes[n].A.rows() - 1; k >= 0 && scene.nodes[n].A.rows() > 1;
+           --k) {
+        Scene less = scene;
+        drop_state(less.nodes[n], k);
+        again |= accept(less);
+      }
+      while (scene.nodes[n].omega.size() > 1) {
+        Scene less = scene;
+        drop_mode(less.nodes[n]);
+        if (!accept(less)) break;
+        again = true;
+      }
+    }
+  }
+  int count = 0;
+  numbers(scene, [&](double&) { ++count; });
+  for (int level = 2; level >= 0; --level)
+    for (int i = 0; i < count; ++i) {
+      Scene less = scene;
+      int k = 0;
+      bool changed = false;
+      numbers(less, [&](double& x) {
+        if (k++ != i) return;
+        changed = x != rounder(x, level);
+        x = rounder(x, level);
+      });
+      if (changed) accept(less);
+    }
+  return scene;
+}
+
+}  // namespace wild

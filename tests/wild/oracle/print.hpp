@@ -1,0 +1,16 @@
+#pragma once
+
+#include <functional>
+
+#include "wild/oracle/scene.hpp"
+
+namespace wild {
+
+/// The scene in words and numbers, to be read by a person.
+std::string print(const Scene& scene);
+
+/// The smallest scene found that still fails: parts leave and numbers become round as long as
+/// `fails` says so, at most `tries` times asked.
+Scene shrink(Scene scene, const std::function<bool(const Scene&)>& fails, int tries);
+
+}  // namespace wild

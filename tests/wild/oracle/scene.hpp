@@ -1,0 +1,133 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+/// A scene as plain data, before anybody writes equations of it: the generator makes it, the oracle
+/// (oracle.hpp) reads it as M, D, K and constraints, the writer (parts/write.hpp) as a diagram.
+/// Nothing in this folder includes a header of the library.
+namespace wild {
+
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+/// A point of a node: its parent point (site -1), or one of its sites. Node -1: the ground.
+struct Point {
+  int node = -1, site = -1;
+  bool operator==(const Point&) const = default;
+};
+
+struct Axis {
+  bool turns = false;
+  Vector3d r = Vector3d::UnitX();  ///< a unit vector
+};
+
+/// A signal that can be read.
+struct Reading {
+  enum class What {
+    input,          ///< number `axis`, all of it
+    accel,          ///< of point `at`
+    rate,           ///< of point `at`
+    position,       ///< of point `at`
+    reaction,       ///< of point `at`: what its ties make of the wrench
+    axis_accel,     ///< of axis `axis` of the joint at.node
+    axis_rate,      ///< likewise
+    axis_position,  ///< likewise
+    axis_force,     ///< likewise
+    stretch,        ///< of the spring-mass at.node
+    out             ///< of the controller at.node
+  };
+  What what = What::input;
+  Point at = {};
+  int axis = 0;
+  int half = 0;  ///< of six: 0 all, 1 the linear, 2 the angular three
+};
+
+/// Sum of gain * signal.
+struct Share {
+  Reading of;
+  MatrixXd gain;
+};
+using Sum = std::vector<Share>;
+
+struct Site {
+  Vector3d PC = Vector3d::Zero();
+  MatrixXd Phi;  ///< 6 x modes
+};
+
+struct Node {
+  enum class Kind { mass, body, joint, lti };
+  Kind kind = Kind::body;
+  std::string name = {};
+
+  double m = 1, k = 1, c = 0, m0 = 0;  ///< mass: a spring-mass, its site 0 is on m
+
+  double mass = 1;  ///< body
+  Matrix3d inertia = Matrix3d::Identity();
+  Vector3d PA = Vector3d::Zero();
+  VectorXd omega, xi;       ///< no modes: a rigid body of these mass, inertia, PA
+  MatrixXd L_P;             ///< modes x 6
+  Matrix6d D_P;             ///< of a body with modes
+  std::vector<Site> sites;  ///< body
+
+  std::vector<Axis> axes;  ///< joint: its site 0 is where the body hangs
+
+  MatrixXd A, B, C, D;  ///< lti
+  Sum in;               ///< lti
+};
+
+/// Point a moves as b does (b of the ground: does not move, or as an input says), along some axes
+/// of a's frame, and the wrench goes back.
+struct Tie {
+  enum class Of { all, linear, angular, axes };
+  Point a, b;
+  Matrix3d T = Matrix3d::Identity();  ///< a's components to b's
+  Of of = Of::all;
+  std::vector<Axis> axes = {};  ///< of Of::axes
+  int input = -1;               ///< b the ground: the acceleration, one entry per axis
+};
+
+/// What acts on an axis of a joint: force = k q + c qd + more, or acceleration = more.
+struct Mechanism {
+  int node = 0, axis = 0;
+  bool moves = false;
+  double k = 0, c = 0;
+  Sum more = {};
+};
+
+/// A wrench on the body at a point.
+struct Load {
+  Point at;
+  int half = 0;
+  Sum sum;
+};
+
+struct Scene {
+  std::vector<Node> nodes;
+  std::vector<Tie> ties;
+  std::vector<Mechanism> mechanisms;
+  std::vector<Load> loads;
+  std::vector<int> inputs;  ///< sizes
+  std::vector<Reading> outputs;
+  double omega = 1;  ///< a frequency that is typical of it [rad/s]
+};
+
+bool one_axis(const Scene& scene, const Point& point);
+int size_of(const Scene& scene, const Reading& reading);
+int size_of(const Scene& scene, const Tie& tie);
+/// Rows of the tied axes in a's frame, (linear; angular): size x 6, or 1 x 1 of one axis.
+MatrixXd rows_of(const Scene& scene, const Tie& tie);
+
+/// Whether any chain closes, through the ground too.
+bool closes(const Scene& scene);
+
+/// Sizes of the blocks in which a transfer is judged: at most three each.
+std::vector<int> output_blocks(const Scene& scene);
+std::vector<int> input_blocks(const Scene& scene);
+
+}  // namespace wild

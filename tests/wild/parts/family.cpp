@@ -1,0 +1,89 @@
+#include "wild/parts/family.hpp"
+
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "wild/oracle/print.hpp"
+#include "wild/parts/judge.hpp"
+
+namespace wild {
+
+namespace {
+
+constexpr int kFamilies = 5;
+constexpr int kEveryOther = 10;  ///< one of so many scenes is simulated as well
+
+int number(const char* variable, int otherwise) {
+  const char* text = std::getenv(variable);
+  return text ? std::atoi(text) : otherwise;
+}
+
+Scene scene_of(const Family& family, int seed) {
+  Rng rng(static_cast<std::uint64_t>(seed) * 1000003u + 7u);
+  return family.draw(rng);
+}
+
+Judgement judge_seed(const Scene& scene, int seed) {
+  return judge(scene, static_cast<unsigned>(seed), seed % kEveryOther == 0);
+}
+
+bool fails(Verdict v) { return v == Verdict::wrong_in_silence || v == Verdict::refused_falsely; }
+
+/// A smaller scene with the same failure, and by no less than a thousand times what is allowed.
+std::string smallest(const Family& family, int seed) {
+  const Scene scene = scene_of(family, seed);
+  const Judgement first = judge_seed(scene, seed);
+  const auto same = [&](const Scene& less) {
+    try {
+      const Judgement j = judge_seed(less, seed);
+      return j.verdict == first.verdict && j.road == first.road &&
+             j.error >= std::min(first.error, 1e3) &&
+             j.text.substr(0, 6) == first.text.substr(0, 6);
+    } catch (const std::exception&) {
+      return false;
+    }
+  };
+  const Scene less = shrink(scene, same, 600);
+  const Judgement j = judge_seed(less, seed);
+  std::string text = fmt::format("{} seed {}: {}, {}: {}\n", family.name, seed,
+                                 to_string(j.verdict), j.road, j.text);
+  for (const Complex& s : j.s) text += fmt::format("s = {} {:+}j\n", s.real(), s.imag());
+  return text + print(less);
+}
+
+}  // namespace
+
+void demand_right(const Family& family) {
+  const bool waits = !family.pending.empty() && number("TITOP_WILD_PENDING", 0) == 0;
+  const int count = std::max(1, number("TITOP_WILD_SCENES", 500) / kFamilies);
+  std::map<std::string, int> counts;
+  std::map<std::string, int> refusals;
+  std::vector<int> failing;
+  int right = 0;
+  for (int seed = 0; seed < (waits ? 0 : count); ++seed) {
+    const Judgement j = judge_seed(scene_of(family, seed), seed);
+    ++counts[std::string(to_string(j.verdict))];
+    right += j.verdict == Verdict::right;
+    if (j.verdict == Verdict::refused_rightly || j.verdict == Verdict::refused_falsely)
+      ++refusals[j.text.substr(0, j.text.find(':'))];
+    if (fails(j.verdict)) failing.push_back(seed);
+  }
+  if (waits) {
+    MESSAGE(family.name << " waits: " << family.pending);
+    return;
+  }
+  std::string summary = fmt::format("{}: {} scenes", family.name, count);
+  for (const auto& [verdict, n] : counts) summary += fmt::format(", {} {}", n, verdict);
+  for (const auto& [code, n] : refusals) summary += fmt::format(", {} by {}", n, code);
+  MESSAGE(summary);
+  std::string list;
+  for (const int seed : failing) list += fmt::format(" {}", seed);
+  if (!failing.empty()) MESSAGE("failing seeds:" << list << "\n" << smallest(family, failing[0]));
+  CHECK(failing.empty());
+  CHECK(2 * right >= count);
+}
+
+}  // namespace wild

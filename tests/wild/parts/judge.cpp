@@ -1,0 +1,329 @@
+#include "wild/parts/judge.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/LU>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <titop/titop.hpp>
+
+#include "support/rng.hpp"
+#include "wild/parts/write.hpp"
+
+namespace wild {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using titop::Error;
+using titop::System;
+
+std::string_view to_string(Verdict verdict) {
+  constexpr std::string_view names[] = {"right",          "refused rightly",  "refused falsely",
+                                        "wrong but said", "wrong in silence", "not judged"};
+  return names[static_cast<std::size_t>(verdict)];
+}
+
+std::vector<Complex> points_of(const Scene& scene, unsigned seed) {
+  titop_test::Rng rng(seed);
+  std::vector<Complex> s;
+  for (int i = 0; i < 3; ++i) {
+    const double size = scene.omega * std::exp2(rng.between(-2, 2));
+    const double angle = i == 0 ? std::numbers::pi / 2 : rng.between(-1.5, 1.5);
+    s.push_back(i == 0 ? Complex(0, size) : std::polar(size, angle));
+  }
+  return s;
+}
+
+namespace {
+
+constexpr double kRight = 1e-8;     ///< what is asked, of a block of the transfer
+constexpr double kData = 1e-15;     ///< the change of data that is tried
+constexpr double kRounding = 100;   ///< errors worth so many such changes are the scene's own
+constexpr double kNothing = 1e-13;  ///< a block that rounding alone fills
+
+struct Blocks {
+  MatrixXd size, allowed;
+  std::vector<int> rows, cols;
+};
+
+/// Largest entry of |a - b| per block, over all points.
+MatrixXd largest(const std::vector<MatrixXcd>& a, const std::vector<MatrixXcd>* b,
+                 const std::vector<int>& rows, const std::vector<int>& cols) {
+  MatrixXd size = MatrixXd::Zero(static_cast<Index>(rows.size()), static_cast<Index>(cols.size()));
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const MatrixXcd off = b ? MatrixXcd(a[k] - (*b)[k]) : a[k];
+    for (Index i = 0, r = 0; i < size.rows(); r += rows[static_cast<std::size_t>(i++)])
+      for (Index j = 0, c = 0; j < size.cols(); c += cols[static_cast<std::size_t>(j++)]) {
+        const double entry =
+            off.block(r, c, rows[static_cast<std::size_t>(i)], cols[static_cast<std::size_t>(j)])
+                .cwiseAbs()
+                .maxCoeff();
+        size(i, j) = entry <= size(i, j) ? size(i, j) : entry;  // nan stays
+      }
+  }
+  return size;
+}
+
+/// What is allowed per block: 1e-8 of it, or what the data's last digits make of it; blocks that
+/// are zero by nature against their row and column.
+Blocks blocks_of(const Scene& scene, const std::vector<MatrixXcd>& exact, const MatrixXd& moved) {
+  Blocks b{.size = {}, .allowed = {}, .rows = output_blocks(scene), .cols = input_blocks(scene)};
+  b.size = largest(exact, nullptr, b.rows, b.cols);
+  b.allowed = b.size;
+  // Rounding moves by as much as it is.
+  const MatrixXd real = (moved.array() < 1e-2 * b.size.array()).select(b.size, 0.0);
+  const double all = real.maxCoeff();
+  for (Index i = 0; i < b.size.rows(); ++i)
+    for (Index j = 0; j < b.size.cols(); ++j) {
+      const auto or_all = [&](double x) { return x > 0 ? x : all > 0 ? all : 1; };
+      const double mean =
+          std::sqrt(or_all(real.row(i).maxCoeff())) * std::sqrt(or_all(real.col(j).maxCoeff()));
+      const bool zero = b.size(i, j) < kNothing * mean && real(i, j) == 0;
+      b.allowed(i, j) = std::max(kRight * (zero ? mean : b.size(i, j)), kRounding * moved(i, j));
+    }
+  return b;
+}
+
+/// What the default certificate and the log say that would make a user doubt.
+std::string said(const System& system) {
+  std::string text;
+  for (const auto& notes : {system.notes(), system.dense_notes()})
+    for (const titop::Note& note : notes)
+      if (note.kind == titop::Note::Kind::warning) text += note.pass + ": " + note.text + "; ";
+  const titop::Certificate c = system.certificate();
+  if (!(c.residual <= 1e-8)) text += fmt::format("residual {:.1e}; ", c.residual);
+  if (!(c.dense_against_factors <= 1e-8))
+    text += fmt::format("dense against factors {:.1e}; ", c.dense_against_factors);
+  if (!(c.dense_error <= 1e-9)) text += fmt::format("dense error {:.1e}; ", c.dense_error);
+  return text;
+}
+
+using WideC = std::complex<long double>;
+using Wide = Eigen::Matrix<WideC, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// A transfer, and what the last digits of the matrices that it comes from make of it.
+struct Got {
+  std::vector<MatrixXcd> H;
+  std::vector<MatrixXcd> rounding = {};
+};
+
+/// |C (s - A)^-1| (|A| |x| + |B|) + |C| |x| + |D| with x = (s - A)^-1 B, times kData: no model
+/// written as A, B, C, D in double is better.
+Got of_model(const titop::StateSpace& m, const std::vector<Complex>& s) {
+  Got got;
+  const Index n = m.A.rows();
+  for (const Complex& point : s) {
+    Wide P = -m.A.cast<WideC>();
+    P.diagonal().array() += WideC(point);
+    Wide x(n, m.B.cols()), left(m.C.rows(), n);
+    if (n > 0) {
+      x = P.partialPivLu().solve(Wide(m.B.cast<WideC>()));
+      P.transposeInPlace();
+      left = P.partialPivLu().solve(Wide(m.C.transpose().cast<WideC>())).transpose();
+    }
+    got.H.push_back((m.C.cast<WideC>() * x + m.D.cast<WideC>()).cast<Complex>());
+    const MatrixXd size = x.cwiseAbs().cast<double>(), weight = left.cwiseAbs().cast<double>();
+    const MatrixXd bound =
+        weight * (m.A.cwiseAbs() * size + m.B.cwiseAbs()) + m.C.cwiseAbs() * size + m.D.cwiseAbs();
+    got.rounding.push_back((kData * bound).cast<Complex>());
+  }
+  return got;
+}
+
+/// A, B, C, D column by column through the factors.
+titop::StateSpace through_apply(const System& system) {
+  const Index n = system.order(), nu = static_cast<Index>(system.inputs().size());
+  const auto ny = static_cast<Index>(system.outputs().size());
+  titop::StateSpace m;
+  m.A.resize(n, n), m.B.resize(n, nu), m.C.resize(ny, n), m.D.resize(ny, nu);
+  for (Index j = 0; j < n + nu; ++j) {
+    VectorXd x = VectorXd::Zero(n), u = VectorXd::Zero(nu);
+    (j < n ? x(j) : u(j - n)) = 1;
+    const System::Rates r = system.apply(x, u);
+    (j < n ? m.A.col(j) : m.B.col(j - n)) = r.xdot;
+    (j < n ? m.C.col(j) : m.D.col(j - n)) = r.y;
+  }
+  return m;
+}
+
+/// Positions and rates in a row are sums of stretches, and of what the base does: 1e-12 of the
+/// largest term is allowed where these cancel. The largest position of any mass, per column.
+MatrixXd largest_position(Scene scene, const std::vector<Complex>& s) {
+  scene.outputs.clear();
+  for (int i = 0; i < static_cast<int>(scene.nodes.size()); ++i)
+    for (const int site : {-1, 0})
+      if (one_axis(scene, {i, site}))
+        scene.outputs.push_back({.what = Reading::What::position, .at = {i, site}});
+  if (scene.outputs.empty())
+    return MatrixXd::Zero(1, static_cast<Index>(input_blocks(scene).size()));
+  const MatrixXd all =
+      largest(truth(scene, s).H, nullptr, output_blocks(scene), input_blocks(scene));
+  return all.colwise().maxCoeff();
+}
+
+/// What that allows, blocks as those of the transfer.
+MatrixXd cancelled(const Scene& scene, const std::vector<Complex>& s) {
+  const MatrixXd position = largest_position(scene, s);
+  double fastest = 0;
+  for (const Complex& point : s) fastest = std::max(fastest, std::abs(point));
+  std::vector<double> factor;
+  for (const Reading& r : scene.outputs) {
+    const double f = r.what == Reading::What::position ? 1
+                     : r.what == Reading::What::rate   ? fastest
+                                                       : 0;
+    Scene one = scene;
+    one.outputs = {r};
+    factor.insert(factor.end(), output_blocks(one).size(), f);
+  }
+  MatrixXd allowed(static_cast<Index>(factor.size()), position.cols());
+  for (Index i = 0; i < allowed.rows(); ++i)
+    allowed.row(i) = 1e-12 * factor[static_cast<std::size_t>(i)] * position.row(0);
+  return allowed;
+}
+
+struct Road {
+  std::string name;
+  std::function<Got()> transfer;
+};
+
+std::string codes(const Error& e) {
+  std::string text;
+  for (const titop::Mistake& m : e.mistakes())
+    text += fmt::format("{}: {}; ", titop::to_string(m.code), m.message);
+  return text;
+}
+
+/// Does the transfer grow with s, so that it needs derivatives of inputs?
+bool improper(const Scene& scene) {
+  double fastest = scene.omega;
+  for (const Node& n : scene.nodes) {
+    if (n.omega.size() > 0) fastest = std::max(fastest, n.omega.maxCoeff());
+    if (n.A.size() > 0) fastest = std::max(fastest, n.A.cwiseAbs().maxCoeff());
+    fastest = std::max({fastest, std::sqrt(n.k / n.m), n.c / n.m});
+  }
+  const Truth t =
+      truth(scene, {Complex(fastest * 1e6, fastest * 1e6), Complex(fastest * 1e8, fastest * 1e8)});
+  if (t.H.empty()) return false;
+  return ((t.H[1].cwiseAbs() - 10 * t.H[0].cwiseAbs()).array() > 1e-12 * t.H[1].norm()).any();
+}
+
+void refuse(Judgement& j, const Scene& scene, const Error& e, const std::string& road) {
+  j.road = road;
+  j.text = codes(e);
+  const bool rightly = e.has(titop::Code::improper) && improper(scene);
+  j.verdict = rightly ? Verdict::refused_rightly : Verdict::refused_falsely;
+}
+
+/// Steps by `simulate` against the inverse Laplace transform, in allowed errors.
+double time_error(const Scene& scene, const System& system, double fastest) {
+  const double t = 4 / fastest;
+  const auto nu = static_cast<Index>(system.inputs().size());
+  const VectorXd exact = step_response(scene, 0, t);
+  const titop::Trajectory run =
+      titop::simulate(system, titop::Excitation::step(VectorXd::Unit(nu, 0)),
+                      {.step = t / 8, .until = t, .stepper = titop::Stepper::exact});
+  const VectorXd last = run.y.col(run.y.cols() - 1);
+  double worst = 0;
+  Index row = 0;
+  for (const int size : output_blocks(scene)) {
+    const auto block = exact.segment(row, size);
+    if (block.allFinite() && block.cwiseAbs().maxCoeff() > 1e-9 * exact.cwiseAbs().maxCoeff())
+      worst = std::max(worst, (last.segment(row, size) - block).cwiseAbs().maxCoeff() /
+                                  block.cwiseAbs().maxCoeff());
+    row += size;
+  }
+  return worst / 1e-7;
+}
+
+}  // namespace
+
+Judgement judge(const Scene& scene, unsigned seed, bool with_time) {
+  Judgement j;
+  j.s = points_of(scene, seed);
+  const Truth exact = truth(scene, j.s);
+  const auto rows = output_blocks(scene), cols = input_blocks(scene);
+  Blocks b;
+  if (exact.none.empty()) {
+    MatrixXd moved;
+    for (unsigned k = 1; k <= 1; ++k) {
+      const Truth off = truth(disturbed(scene, kData, seed + k), j.s);
+      const MatrixXd one = off.H.empty()
+                               ? MatrixXd::Constant(static_cast<Index>(rows.size()),
+                                                    static_cast<Index>(cols.size()), HUGE_VAL)
+                               : largest(off.H, &exact.H, rows, cols);
+      moved = k == 1 ? one : MatrixXd(moved.cwiseMax(one));
+    }
+    b = blocks_of(scene, exact.H, moved);
+    j.text = fmt::format("allowed {:.1e} of the largest", b.allowed.maxCoeff() / b.size.maxCoeff());
+    if (!(b.allowed.array() <= 1e-4 * b.size.maxCoeff()).all() || !(b.size.maxCoeff() > 0)) {
+      j.verdict = Verdict::not_judged;
+      return j;
+    }
+  }
+  std::optional<System> system;
+  try {
+    system.emplace(titop::compile(diagram_of(scene)));
+  } catch (const Error& e) {
+    refuse(j, scene, e, "compile");
+    if (!exact.none.empty()) j.verdict = Verdict::refused_rightly;
+    return j;
+  }
+  if (!exact.none.empty()) {
+    j.verdict = Verdict::not_judged;
+    j.text = exact.none;
+    return j;
+  }
+  const std::vector<Road> roads = {{"transfer",
+                                    [&] {
+                                      Got got;
+                                      for (const Complex& s : j.s)
+                                        got.H.push_back(system->transfer(s));
+                                      return got;
+                                    }},
+                                   {"apply", [&] { return of_model(through_apply(*system), j.s); }},
+                                   {"dense", [&] { return of_model(system->state_space(), j.s); }}};
+  std::string at_road;
+  for (const Road& road : roads) {
+    try {
+      const Got got = road.transfer();
+      const MatrixXd error = largest(got.H, &exact.H, b.rows, b.cols);
+      MatrixXd allowed = b.allowed;
+      if (!got.rounding.empty()) allowed += largest(got.rounding, nullptr, b.rows, b.cols);
+      if ((error.array() > allowed.array()).any()) allowed += cancelled(scene, j.s);
+      for (Index r = 0; r < error.rows(); ++r)
+        for (Index c = 0; c < error.cols(); ++c) {
+          if (error(r, c) <= j.error * allowed(r, c)) continue;
+          j.error = error(r, c) / allowed(r, c);
+          j.road = road.name;
+          at_road = fmt::format("block ({}, {}): off by {:.2e} of {:.2e}, allowed {:.1e}", r, c,
+                                error(r, c), b.size(r, c), allowed(r, c));
+        }
+    } catch (const Error& e) {
+      refuse(j, scene, e, road.name);
+      return j;
+    }
+    if (!(j.error <= 1)) break;
+  }
+  if (j.error <= 1 && with_time && !scene.inputs.empty()) {
+    try {
+      const double fastest =
+          std::max(system->state_space().A.size() > 0
+                       ? system->state_space().A.eigenvalues().cwiseAbs().maxCoeff()
+                       : 1.0,
+                   1e-3);
+      const double e = time_error(scene, *system, fastest);
+      if (e > 1) j.error = e, j.road = "simulate", at_road = fmt::format("off by {:.1e}", e * 1e-7);
+    } catch (const Error& e) {
+      refuse(j, scene, e, "simulate");
+      return j;
+    }
+  }
+  if (j.error <= 1) return j;
+  const std::string doubt = said(*system);
+  j.verdict = doubt.empty() ? Verdict::wrong_in_silence : Verdict::wrong_but_said;
+  j.text = at_road + (doubt.empty() ? "" : "; said: " + doubt);
+  return j;
+}
+
+}  // namespace wild

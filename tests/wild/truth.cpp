@@ -1,0 +1,133 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "wild/oracle/draw.hpp"
+#include "wild/oracle/oracle.hpp"
+
+using namespace wild;
+
+namespace {
+
+using What = Reading::What;
+
+double off(Complex got, Complex right) { return std::abs(got - right) / std::abs(right); }
+
+Share share_of_input(int input) {
+  return {{.what = What::input, .axis = input}, MatrixXd::Identity(1, 1)};
+}
+
+Scene one_lti(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C, bool fed_back) {
+  Scene s;
+  Node n;
+  n.kind = Node::Kind::lti;
+  n.A = A, n.B = B, n.C = C, n.D = MatrixXd::Zero(1, 1);
+  n.in = {share_of_input(0)};
+  if (fed_back) n.in.push_back({{.what = What::out, .at = {0, -1}}, MatrixXd::Identity(1, 1)});
+  s.nodes = {n};
+  s.inputs = {1};
+  s.outputs = {{.what = What::out, .at = {0, -1}}};
+  return s;
+}
+
+/// n spring-masses of 1 kg, 10 N/m, 20 N s/m on a wall, a force on the tip.
+Scene lossy_row(int n) {
+  Scene s;
+  for (int i = 0; i < n; ++i) {
+    Node node;
+    node.kind = Node::Kind::mass;
+    node.m = 1, node.k = 10, node.c = 20;
+    s.nodes.push_back(node);
+    s.ties.push_back({.a = {i, -1}, .b = i == 0 ? Point{} : Point{i - 1, 0}});
+  }
+  s.inputs = {1};
+  s.loads = {{{n - 1, 0}, 0, {share_of_input(0)}}};
+  s.outputs = {{.what = What::position, .at = {n - 1, 0}}, {.what = What::reaction, .at = {0, -1}}};
+  return s;
+}
+
+/// The same by its recursion from the wall, in ratios: exact to rounding, as nothing cancels.
+std::pair<Complex, Complex> lossy_row_by_recursion(int n, Complex s) {
+  const Complex z = 10.0 + 20.0 * s;
+  Complex seen = z, force = z;  // what the first mass feels; wall force per position of mass 1
+  Complex wall = force;
+  for (int i = 1; i < n; ++i) {
+    const Complex below = s * s + seen;     // force on mass i per its position
+    const Complex ratio = z / (z + below);  // position of mass i per that of mass i + 1
+    wall *= ratio;
+    seen = z * below / (z + below);
+  }
+  const Complex x = 1.0 / (s * s + seen);
+  return {x, wall * x};
+}
+
+}  // namespace
+
+TEST_CASE("the oracle knows controllers by hand") {
+  MatrixXd A(3, 3), B = MatrixXd::Zero(3, 1), C(1, 3);
+  A << -1, 0, 0, -1, 0, 0, 0, -4, 0;
+  B(0) = 1;
+  C << 0, 0, 1;
+  for (const Digits digits : {Digits::wide, Digits::fifty})
+    CHECK(off(truth(one_lti(A, B, C, false), {1.0}, digits).H[0](0, 0), 2) <= 1e-15);
+  // G = 0.02 / (s^3 + 2.2 s^2 + 0.41 s + 0.02), closed by +1: G / (1 - G).
+  A << -2.2, -0.41, -0.02, 1, 0, 0, 0, 1, 0;
+  C << 0, 0, 0.02;
+  const Complex s(0, 1e-5), closed = 0.02 / (s * (s * (s + 2.2) + 0.41));
+  CHECK(off(truth(one_lti(A, B, C, true), {s}).H[0](0, 0), closed) <= 1e-9);
+}
+
+TEST_CASE("the oracle knows lossy rows by recursion from the wall") {
+  for (const int n : {1, 2, 10, 60})
+    for (const Complex s : {Complex(0, 8), Complex(0, 15.93), Complex(0.3, 0.2)}) {
+      const auto [x, wall] = lossy_row_by_recursion(n, s);
+      for (const Digits digits : {Digits::wide, Digits::fifty}) {
+        if (digits == Digits::fifty && n > 10) continue;
+        const Truth t = truth(lossy_row(n), {s}, digits);
+        CHECK(off(t.H[0](0, 0), x) <= 1e-13);
+        CHECK(off(t.H[0](1, 0), wall) <= 1e-12);
+      }
+    }
+  // x'' + 20 x' + 10 x = 1.
+  const double w = std::sqrt(90.0), p = -10 + w, q = -10 - w, t = 0.3;
+  const double x = 1 / (p * q) + std::exp(p * t) / (p * (p - q)) + std::exp(q * t) / (q * (q - p));
+  const VectorXd y = step_response(lossy_row(1), 0, t);
+  CHECK(std::abs(y(0) - x) <= 1e-9 * std::abs(x));
+}
+
+TEST_CASE("the oracle knows a body tied by its rotation to another that is pinned") {
+  // Velocity of b is omega x (0, 1, 0), omega about z by a unit torque on both: inertia 1 + (1 +
+  // 1).
+  Scene s;
+  Node a, b;
+  a.sites = {{Vector3d(1, 0, 0), MatrixXd(6, 0)}, {Vector3d(0, 1, 0), MatrixXd(6, 0)}};
+  b.sites = {{Vector3d::Zero(), MatrixXd(6, 0)}};
+  s.nodes = {a, b};
+  s.ties = {{.a = {0, -1}, .b = {}, .of = Tie::Of::linear},
+            {.a = {1, -1}, .b = {0, 0}, .of = Tie::Of::angular},
+            {.a = {1, 0}, .b = {0, 1}, .of = Tie::Of::linear}};
+  s.inputs = {1};
+  s.loads = {{{1, 0}, 2, {{{.what = What::input}, Vector3d::UnitZ()}}}};
+  s.outputs = {{.what = What::rate, .at = {1, -1}}};
+  const Truth t = truth(s, {1.0});
+  CHECK((t.H[0].real() - (VectorXd(6) << -1, 0, 0, 0, 0, 1).finished() / 3).norm() <= 1e-15);
+}
+
+TEST_CASE("64 bits of mantissa and 50 digits agree on all families") {
+  const auto families = {draw_row, draw_tree, draw_loop, draw_half_ties, draw_controller};
+  int compared = 0;
+  for (const auto draw : families)
+    for (std::uint64_t seed = 0; compared < 1000 && seed < 12; ++seed) {
+      Rng rng(seed);
+      const Scene scene = draw(rng);
+      if (scene.nodes.size() > 5) continue;
+      const std::vector<Complex> s = {Complex(0.3, 1) * scene.omega};
+      const Truth wide = truth(scene, s), fine = truth(scene, s, Digits::fifty);
+      if (!wide.none.empty()) continue;
+      const double size = fine.H[0].cwiseAbs().maxCoeff();
+      if (size < 1e-60) continue;  // 0: no input reaches an output, but rounding of 50 digits
+      CHECK((wide.H[0] - fine.H[0]).cwiseAbs().maxCoeff() <= 1e-12 * size);
+      ++compared;
+    }
+  CHECK(compared >= 20);
+}
