@@ -71,8 +71,8 @@ Blocks blocks_of(const Scene& scene, const std::vector<MatrixXcd>& exact, const 
   Blocks b{.size = {}, .allowed = {}, .rows = output_blocks(scene), .cols = input_blocks(scene)};
   b.size = largest(exact, nullptr, b.rows, b.cols);
   b.allowed = b.size;
-  // Rounding moves by as much as it is.
-  const MatrixXd real = (moved.array() < 1e-2 * b.size.array()).select(b.size, 0.0);
+  // Rounding moves by about as much as it is: one sample says so within a factor of 1e4.
+  const MatrixXd real = (moved.array() < 1e-4 * b.size.array()).select(b.size, 0.0);
   const double all = real.maxCoeff();
   for (Index i = 0; i < b.size.rows(); ++i)
     for (Index j = 0; j < b.size.cols(); ++j) {
