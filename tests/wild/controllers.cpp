@@ -3,7 +3,5 @@
 #include "wild/parts/family.hpp"
 
 TEST_CASE("wild controllers alone and around mechanics are right") {
-  wild::demand_right({.name = "controllers",
-                      .draw = wild::draw_controller,
-                      .pending = "issue 46, 1: resolvent of Lti"});
+  wild::demand_right({.name = "controllers", .draw = wild::draw_controller});
 }
