@@ -103,7 +103,7 @@ struct Kinematics {
 using Pattern = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// What a diagram is made of. Derive from it, return it from `as_block(spec)`, and `Diagram::add`
-/// takes your spec (docs/architecture.md: "How to add a block"). Blocks are immutable and shared between nodes.
+/// takes your spec (docs/architecture.md). Blocks are immutable and shared between nodes.
 class Block {
  public:
   virtual ~Block() = default;

@@ -127,7 +127,7 @@ struct ChainChecker {
                     fmt::format("{} closes a chain through {}, which does not say where its ports "
                                 "are",
                                 target(c), g.nodes[at(node)].name),
-                    "give its block kinematics() (docs/architecture.md: how to add a block), or open one joint");
+                    "give its block kinematics() (docs/architecture.md), or open one joint");
     for (const auto& [column, matrix] : c.form)
       if (column.kind == Column::Kind::states)
         for (Index j = 0; j < matrix.cols(); ++j)
