@@ -5,10 +5,13 @@
 #include <titop/graph/linalg/dense.hpp>
 
 namespace titop::detail {
+namespace {
 
 using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXd;
+
+}  // namespace
 
 RealModes real_modes(const MatrixXd& A, const char* instead) {
   const linalg::Eigensystem e = linalg::eigensystem(A);
