@@ -54,16 +54,6 @@ Error no_digit_left(const SystemData& data, std::complex<double> s) {
           "evaluate beside it, or with Precision::digits50"};
 }
 
-Error not_satisfied(const SystemData& data, const std::string& where, double off) {
-  return {
-      Code::singular,
-      fmt::format("{} {}: no digit is left in this precision, the equations hold only to {:.1g} "
-                  "of their terms",
-                  data.graph().name, where, off),
-      "take Precision::as_needed or Precision::digits50 for transfers; or look for gains or "
-      "masses that are very far apart there"};
-}
-
 Error not_refined(const SystemData& data, std::complex<double> s, double error) {
   const std::string place =
       fmt::format("{} at s = {}{:+}j: ", data.graph().name, s.real(), s.imag());
@@ -111,7 +101,6 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
   rhs_ = rows_.rhs(u_, first_);
   if (coarse) {
     refine(*coarse);
-    if (!holds()) refinement_error_ = std::max(refinement_error_, 1.0);
     return;
   }
   factors_ = std::make_unique<const solve::Factors<T>>(data.skeleton->as_written().plan, rows_,
@@ -125,18 +114,7 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
           "take an s of smaller or larger modulus, or other units");
     throw no_digit_left(data, z);
   }
-  unknowns_ = settled(rhs_);
-}
-
-template <class T>
-solve::RowMatrix<T> Evaluation<T>::settled(const solve::RowMatrix<T>& rhs) const {
-  solve::Solution<T> solution = solve::settled(rows_, *factors_, rhs);
-  const double enough =
-      solve::backward_error_of_rounding(factors_->plan(), solve::Scalar<T>::epsilon());
-  if (solution.backward_error <= enough) return std::move(solution.unknowns);
-  const std::complex<double> z = solve::Scalar<T>::round(s_);
-  throw not_satisfied(data_, fmt::format("at s = {}{:+}j", z.real(), z.imag()),
-                      solution.backward_error);
+  unknowns_ = solve::settled(rows_, *factors_, rhs_);
 }
 
 template <class T>
@@ -241,7 +219,8 @@ template <class T>
 solve::RowMatrix<T> Evaluation<T>::unknowns_of(const solve::RowMatrix<T>& own) const {
   std::vector<const Eigen::MatrixXd*> output;
   for (const auto& block : data_.numbers.blocks) output.push_back(&block->C);
-  return settled(rows_.rhs_of_states(own, data_.layout().known_first, output));
+  return solve::settled(rows_, *factors_,
+                        rows_.rhs_of_states(own, data_.layout().known_first, output));
 }
 
 template <class T>

@@ -14,10 +14,6 @@ inline constexpr double kUnderflow = 1e-290;
 /// What an evaluation at s is refused with, if s is a pole or as good as one.
 Error no_digit_left(const SystemData& data, std::complex<double> s);
 
-/// What a solution is refused with whose equations do not hold to rounding: `off` is its backward
-/// error (solve/backward_error.hpp).
-Error not_satisfied(const SystemData& data, const std::string& where, double off);
-
 /// What Evaluation::refinement_error() is refused with, where it is too much.
 Error not_refined(const SystemData& data, std::complex<double> s, double error);
 
@@ -40,11 +36,11 @@ solve::RowMatrix<T> unit_inputs(const SystemData& data) {
 template <class T>
 class Evaluation {
  public:
-  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block, or if the
-  /// equations do not hold to the rounding of T, after refinement (solve/backward_error.hpp). With
+  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block. The solution
+  /// is refined in T (solve/backward_error.hpp). With
   /// `coarse`, the same s and u in double, its factors serve: iterative refinement,
   /// blocks and residuals in T, until the outputs have settled or their changes shrink no more:
-  /// see refinement_error(), which is 1 where the equations do not hold to the rounding of double.
+  /// see refinement_error().
   Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
              const Evaluation<std::complex<double>>* coarse = nullptr);
 
@@ -80,9 +76,6 @@ class Evaluation {
   /// that no single pivot shows) is mended by it. Returns the change of the outputs, measured as
   /// above.
   double improve();
-  /// False where the equations do not hold to the rounding of T (of double, with `coarse`): another
-  /// residual.
-  bool holds() const;
   /// What double (or another T) may cost.
   struct Losses {
     double change = 0;    ///< improve()
@@ -125,12 +118,10 @@ class Evaluation {
   const Resolvent<T>& resolvent(int node) const;
   /// (s - A)^-1 r of every block by itself.
   solve::RowMatrix<T> own_response(const solve::RowMatrix<T>& r) const;
-  /// What these do to the interface unknowns; throws as the constructor does.
+  /// Interface unknowns under these states.
   solve::RowMatrix<T> unknowns_of(const solve::RowMatrix<T>& own) const;
 
   solve::Matrices<T> respond(const T& s);
-  /// Unknowns for these right-hand sides; throws where the equations do not hold.
-  solve::RowMatrix<T> settled(const solve::RowMatrix<T>& rhs) const;
 
   const SystemData& data_;
   T s_;

@@ -5,7 +5,6 @@
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/evaluate.hpp>
-#include <titop/compiler/solve/backward_error.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <type_traits>
@@ -41,16 +40,6 @@ double Evaluation<T>::improve() {
   const solve::RowMatrix<T> correction = factors_->solve(rows_.residual(rhs_, unknowns_));
   unknowns_ += correction;
   return relative_to_outputs(correction);
-}
-
-template <class T>
-bool Evaluation<T>::holds() const {
-  const solve::Plan& plan = *data_.skeleton->as_written().plan;
-  solve::RowMatrix<double> magnitudes;
-  const solve::RowMatrix<T> residual = rows_.residual(rhs_, unknowns_, &magnitudes);
-  const double epsilon = factors_ ? solve::Scalar<T>::epsilon() : solve::Scalar<double>::epsilon();
-  return solve::backward_error(plan, residual, magnitudes) <=
-         solve::backward_error_of_rounding(plan, epsilon);
 }
 
 template <class T>
@@ -298,7 +287,6 @@ void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
 
 #define TITOP_INSTANTIATE(T)                                                                  \
   template double Evaluation<T>::improve();                                                   \
-  template bool Evaluation<T>::holds() const;                                                 \
   template Evaluation<T>::Losses Evaluation<T>::losses();                                     \
   template solve::RowMatrix<T> Evaluation<T>::rounding() const;                               \
   template solve::RowMatrix<T> Evaluation<T>::rounding_of_values(std::span<const int>) const; \

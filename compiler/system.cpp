@@ -47,20 +47,13 @@ MatrixXcd rounded(const solve::RowMatrix<T>& m) {
 
 using detail::unit_inputs;
 
-template <class T>
-MatrixXcd transfer_in(const detail::SystemData& d, Double s) {
-  return rounded<T>(
-      detail::Evaluation<T>(d, solve::Scalar<T>::from(s), unit_inputs<T>(d)).outputs());
-}
-
 /// A change of the outputs by as much leaves them no digit.
 constexpr double kNoDigit = 0.1;
 
-/// Refused where a step of refinement changes all digits of the outputs, or the equations do not
-/// hold to rounding after it.
+/// Refused where a step of refinement changes all digits of the outputs.
 MatrixXcd standard_transfer(const detail::SystemData& d, Double s) {
   detail::Evaluation<Double> point(d, s, unit_inputs<Double>(d));
-  if (!(point.improve() <= kNoDigit) || !point.holds()) throw detail::no_digit_left(d, s);
+  if (!(point.improve() <= kNoDigit)) throw detail::no_digit_left(d, s);
   return rounded<Double>(point.outputs());
 }
 
@@ -94,6 +87,15 @@ double lost_by(detail::Evaluation<T>& e, const typename detail::Evaluation<T>::L
                    detail::kRoundings * losses.rounding, left});
 }
 
+/// In 50 digits; refused where these do not suffice.
+MatrixXcd digits50_transfer(const detail::SystemData& d, Double s) {
+  detail::Evaluation<solve::Complex50> point(d, solve::Scalar<solve::Complex50>::from(s),
+                                             unit_inputs<solve::Complex50>(d));
+  const auto losses = point.losses();
+  if (!(lost_by(point, losses) <= kEnough)) throw detail::no_digit_left(d, s);
+  return rounded<solve::Complex50>(point.outputs());
+}
+
 /// Finer than double, where double costs `lost`: refined if its own rounding (2000 times finer)
 /// leaves enough and it settles, else refined in double-double if that settles, else 50 digits.
 MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
@@ -105,7 +107,7 @@ MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
   }
   const auto twice = refined<Twofold>(d, s, plain);
   if (twice.refinement_error() <= kEnough) return rounded<Twofold>(twice.outputs());
-  return transfer_in<solve::Complex50>(d, s);
+  return digits50_transfer(d, s);
 }
 
 /// In T, where double has no pivot; none where T has too few digits for it, or where the last place
@@ -117,7 +119,7 @@ std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Dou
     const auto losses = point.losses();
     const double in_double =
         losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
-    if (lost_by(point, losses) <= kEnough && in_double <= kNoDigit && point.holds())
+    if (lost_by(point, losses) <= kEnough && in_double <= kNoDigit)
       return rounded<T>(point.outputs());
   } catch (const Error&) {  // a pole of a block, or no pivot here either
   }
@@ -139,7 +141,7 @@ MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
     return *G;
   }
   const double lost = lost_by(*plain, plain->losses());
-  if (lost <= kEnough && plain->holds()) return rounded<Double>(plain->outputs());
+  if (lost <= kEnough) return rounded<Double>(plain->outputs());
   return finer_transfer(d, s, *plain, lost);
 }
 
@@ -152,7 +154,7 @@ MatrixXcd transfer_with(const detail::SystemData& d, Double s, Precision precisi
     case Precision::standard: return standard_transfer(d, s);
     case Precision::refined: return refined_transfer<Extended>(d, s);
     case Precision::twofold: return refined_transfer<Twofold>(d, s);
-    case Precision::digits50: return transfer_in<solve::Complex50>(d, s);
+    case Precision::digits50: return digits50_transfer(d, s);
     case Precision::as_needed: return transfer_as_needed(d, s);
   }
   return {};

@@ -84,8 +84,8 @@ class System {
   std::vector<std::string> outputs() const&& { return outputs(); }
 
   /// xdot and y of x (as states() lists them) and u (as inputs()), through the factors: O(bodies).
-  /// Throws size where x or u has another size, singular where the equations do not hold to
-  /// rounding.
+  /// The solution is refined row by row (compiler/solve/backward_error.hpp). Throws size where x or
+  /// u has another size.
   struct Rates {
     Eigen::VectorXd xdot, y;
   };
@@ -102,8 +102,8 @@ class System {
   /// rounding. Where numbers leave the range that DoubleDouble has, `twofold` throws not_finite.
   /// The way out of all that is `as_needed`, or `digits50`. `standard` refuses a pivot without a
   /// digit and outputs that a step of refinement changes by a tenth; how far the data's last place
-  /// moves them it does not say. In every precision each equation holds to rounding, row by row
-  /// (compiler/solve/backward_error.hpp), or singular is thrown.
+  /// moves them it does not say. In every precision the solution is refined row by row
+  /// (compiler/solve/backward_error.hpp), and 50 digits are judged by the outputs like all others.
   Eigen::MatrixXcd transfer(std::complex<double> s,
                             Precision precision = Precision::as_needed) const;
 

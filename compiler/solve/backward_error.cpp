@@ -51,24 +51,24 @@ double backward_error_of_rounding(const Plan& plan, double epsilon) {
 }
 
 template <class T>
-Solution<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const RowMatrix<T>& rhs) {
+RowMatrix<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const RowMatrix<T>& rhs) {
   const Plan& plan = factors.plan();
   const double enough = backward_error_of_rounding(plan, Scalar<T>::epsilon());
-  Solution<T> result{factors.solve(rhs)};
+  RowMatrix<T> result = factors.solve(rhs);
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0;; ++step) {
     RowMatrix<double> magnitudes;
-    const RowMatrix<T> residual = rows.residual(rhs, result.unknowns, &magnitudes);
-    const double now = result.backward_error = backward_error(plan, residual, magnitudes);
+    const RowMatrix<T> residual = rows.residual(rhs, result, &magnitudes);
+    const double now = backward_error(plan, residual, magnitudes);
     if (now <= enough || !(2 * now <= before) || step == kSteps) return result;
     before = now;
-    result.unknowns += factors.solve(residual);
+    result += factors.solve(residual);
   }
 }
 
 #define TITOP_INSTANTIATE(T)                                                                  \
   template double backward_error(const Plan&, const RowMatrix<T>&, const RowMatrix<double>&); \
-  template Solution<T> settled(const JointRows<T>&, const Factors<T>&, const RowMatrix<T>&);
+  template RowMatrix<T> settled(const JointRows<T>&, const Factors<T>&, const RowMatrix<T>&);
 TITOP_INSTANTIATE(double)
 TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
 #undef TITOP_INSTANTIATE

@@ -2,8 +2,7 @@
 
 #include <titop/compiler/solve/numbers.hpp>
 
-/// What every solution is held against, in every precision: not how the elimination went, but
-/// whether each equation holds.
+/// Refinement of every solution, in every precision, by the componentwise backward error.
 namespace titop::solve {
 
 /// The largest share of its terms that a row is off by, |rhs - rows x| over |rhs| + |rows| |x|:
@@ -22,18 +21,12 @@ double backward_error(const Plan& plan, const RowMatrix<T>& residual,
 /// has up to 2 sqrt(2) units. Factors that have grown leave 0.8 to 0.99, whatever the precision.
 double backward_error_of_rounding(const Plan& plan, double epsilon);
 
-/// A solution, and its backward error.
-template <class T>
-struct Solution {
-  RowMatrix<T> unknowns;
-  double backward_error = 0;
-};
-
 /// Solves, and refines in the same arithmetic while the backward error is more than rounding leaves
-/// and becomes half of what it was, five times at most (as LAPACK's xGERFS does). Nobody must use a
-/// solution whose backward error is more than backward_error_of_rounding. O(front sizes^2) and the
-/// rows once, per column.
+/// and becomes half of its last value, five times at most (as LAPACK's xGERFS does). The backward
+/// error alone refuses nothing: rows between unknowns that are 0 but for rounding, as at points
+/// that closed chains hold, are off by all of their terms. Callers judge the outputs
+/// (Evaluation::losses). O(front sizes^2) and the rows once, per column.
 template <class T>
-Solution<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const RowMatrix<T>& rhs);
+RowMatrix<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const RowMatrix<T>& rhs);
 
 }  // namespace titop::solve
