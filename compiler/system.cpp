@@ -48,12 +48,12 @@ MatrixXcd rounded(const solve::RowMatrix<T>& m) {
 using detail::unit_inputs;
 
 /// A change of the outputs by as much leaves them no digit.
-constexpr double kNoDigit = 0.1;
+constexpr double kAllDigits = 0.1;
 
 /// Refused where a step of refinement changes all digits of the outputs.
 MatrixXcd standard_transfer(const detail::SystemData& d, Double s) {
   detail::Evaluation<Double> point(d, s, unit_inputs<Double>(d));
-  if (!(point.improve() <= kNoDigit)) throw detail::no_digit_left(d, s);
+  if (!(point.improve() <= kAllDigits)) throw detail::no_digit_left(d, s);
   return rounded<Double>(point.outputs());
 }
 
@@ -119,7 +119,7 @@ std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Dou
     const auto losses = point.losses();
     const double in_double =
         losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
-    if (lost_by(point, losses) <= kEnough && in_double <= kNoDigit)
+    if (lost_by(point, losses) <= kEnough && in_double <= kAllDigits)
       return rounded<T>(point.outputs());
   } catch (const Error&) {  // a pole of a block, or no pivot here either
   }
