@@ -36,8 +36,7 @@ solve::RowMatrix<T> unit_inputs(const SystemData& data) {
 template <class T>
 class Evaluation {
  public:
-  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block. The solution
-  /// is refined in T (solve/backward_error.hpp). With
+  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block. With
   /// `coarse`, the same s and u in double, its factors serve: iterative refinement,
   /// blocks and residuals in T, until the outputs have settled or their changes shrink no more:
   /// see refinement_error().
@@ -118,7 +117,7 @@ class Evaluation {
   const Resolvent<T>& resolvent(int node) const;
   /// (s - A)^-1 r of every block by itself.
   solve::RowMatrix<T> own_response(const solve::RowMatrix<T>& r) const;
-  /// Interface unknowns under these states.
+  /// What these do to the interface unknowns.
   solve::RowMatrix<T> unknowns_of(const solve::RowMatrix<T>& own) const;
 
   solve::Matrices<T> respond(const T& s);

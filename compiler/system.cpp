@@ -47,13 +47,15 @@ MatrixXcd rounded(const solve::RowMatrix<T>& m) {
 
 using detail::unit_inputs;
 
-/// A change of the outputs by as much leaves them no digit.
-constexpr double kAllDigits = 0.1;
+template <class T>
+MatrixXcd transfer_in(const detail::SystemData& d, Double s) {
+  return rounded<T>(
+      detail::Evaluation<T>(d, solve::Scalar<T>::from(s), unit_inputs<T>(d)).outputs());
+}
 
-/// Refused where a step of refinement changes all digits of the outputs.
 MatrixXcd standard_transfer(const detail::SystemData& d, Double s) {
   detail::Evaluation<Double> point(d, s, unit_inputs<Double>(d));
-  if (!(point.improve() <= kAllDigits)) throw detail::no_digit_left(d, s);
+  point.improve();
   return rounded<Double>(point.outputs());
 }
 
@@ -87,17 +89,6 @@ double lost_by(detail::Evaluation<T>& e, const typename detail::Evaluation<T>::L
                    detail::kRoundings * losses.rounding, left});
 }
 
-/// In 50 digits; refused where these do not suffice.
-MatrixXcd digits50_transfer(const detail::SystemData& d, Double s) {
-  detail::Evaluation<solve::Complex50> point(d, solve::Scalar<solve::Complex50>::from(s),
-                                             unit_inputs<solve::Complex50>(d));
-  const auto losses = point.losses();
-  const double lost = lost_by(point, losses);
-  MatrixXcd G = rounded<solve::Complex50>(point.outputs());
-  if (G.allFinite() && !(lost <= kEnough)) throw detail::no_digit_left(d, s);
-  return G;  // the caller refuses an overflow
-}
-
 /// Finer than double, where double costs `lost`: refined if its own rounding (2000 times finer)
 /// leaves enough and it settles, else refined in double-double if that settles, else 50 digits.
 MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
@@ -109,19 +100,20 @@ MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
   }
   const auto twice = refined<Twofold>(d, s, plain);
   if (twice.refinement_error() <= kEnough) return rounded<Twofold>(twice.outputs());
-  return digits50_transfer(d, s);
+  return transfer_in<solve::Complex50>(d, s);
 }
 
 /// In T, where double has no pivot; none where T has too few digits for it, or where the last place
 /// of the data decides all digits of the outputs, as at a pole.
 template <class T>
 std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Double s) {
+  constexpr double kNoDigit = 0.1;  // of the outputs, by the last place of the data
   try {
     detail::Evaluation<T> point(d, solve::Scalar<T>::from(s), unit_inputs<T>(d));
     const auto losses = point.losses();
     const double in_double =
         losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
-    if (lost_by(point, losses) <= kEnough && in_double <= kAllDigits)
+    if (lost_by(point, losses) <= kEnough && in_double <= kNoDigit)
       return rounded<T>(point.outputs());
   } catch (const Error&) {  // a pole of a block, or no pivot here either
   }
@@ -156,7 +148,7 @@ MatrixXcd transfer_with(const detail::SystemData& d, Double s, Precision precisi
     case Precision::standard: return standard_transfer(d, s);
     case Precision::refined: return refined_transfer<Extended>(d, s);
     case Precision::twofold: return refined_transfer<Twofold>(d, s);
-    case Precision::digits50: return digits50_transfer(d, s);
+    case Precision::digits50: return transfer_in<solve::Complex50>(d, s);
     case Precision::as_needed: return transfer_as_needed(d, s);
   }
   return {};

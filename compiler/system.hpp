@@ -84,8 +84,7 @@ class System {
   std::vector<std::string> outputs() const&& { return outputs(); }
 
   /// xdot and y of x (as states() lists them) and u (as inputs()), through the factors: O(bodies).
-  /// The solution is refined row by row (compiler/solve/backward_error.hpp). Throws size where x or
-  /// u has another size.
+  /// Throws size where x or u has another size.
   struct Rates {
     Eigen::VectorXd xdot, y;
   };
@@ -100,10 +99,8 @@ class System {
   /// not one digit for some unknown, or the rounding of long double costs more, they do not lead
   /// there. That is judged by estimates: of how steps of refinement shrink, in all unknowns, and of
   /// rounding. Where numbers leave the range that DoubleDouble has, `twofold` throws not_finite.
-  /// The way out of all that is `as_needed`, or `digits50`. `standard` refuses a pivot without a
-  /// digit and outputs that a step of refinement changes by a tenth; how far the data's last place
-  /// moves them it does not say. In every precision the solution is refined row by row
-  /// (compiler/solve/backward_error.hpp), and 50 digits are judged by the outputs like all others.
+  /// The way out of all that is `as_needed`, or `digits50`. `standard` refuses only a pivot without
+  /// a digit: what many pivots lose together it does not see.
   Eigen::MatrixXcd transfer(std::complex<double> s,
                             Precision precision = Precision::as_needed) const;
 

@@ -198,10 +198,8 @@ TEST_CASE("precision: refinement in 32 digits gives all of double, or says that 
                   right, lost_in_double, refused, refused_here));
   CHECK(right >= 15);
   CHECK(lost_in_double >= 15);
-  // Where 32 digits do not lead there from the factors in double, a step of refinement in double
-  // shows that these have none: it is not for `standard` to answer there.
-  CHECK(refused >= 20);
-  CHECK(refused_here <= refused / 20);
+  CHECK(refused > refused_here);  // some where double has no pivot, more where it has a wrong one
+  CHECK(refused_here >= 20);
 }
 
 namespace {
