@@ -154,7 +154,7 @@ MatrixXd terms(const System& system, const std::vector<std::complex<double>>& po
                                    static_cast<Index>(system.inputs().size()));
   for (const std::complex<double> s : points) try {
       const MatrixXcd off =
-          system.transfer(s, Precision::standard) - system.transfer(s, Precision::digits50);
+          system.transfer(s, Precision::standard) - system.transfer(s, Precision::extended);
       result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());
     } catch (const Error&) {
       // No digit is left there in one of the two: other points must do.

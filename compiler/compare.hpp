@@ -57,7 +57,7 @@ Eigen::MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& roundin
 inline constexpr double kTermsPerRounding = 100 / std::numeric_limits<double>::epsilon();
 
 /// The same of what cancels inside the elimination, seen by its rounding: kTermsPerRounding times
-/// double against 50 digits at these points. Slow.
+/// double against long double at these points. Slow.
 Eigen::MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points);
 
 /// The same of `transfer(graph, s, values)` (compiler/transfer.hpp): all equations against all in

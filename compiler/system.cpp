@@ -148,6 +148,7 @@ MatrixXcd transfer_with(const detail::SystemData& d, Double s, Precision precisi
     case Precision::standard: return standard_transfer(d, s);
     case Precision::refined: return refined_transfer<Extended>(d, s);
     case Precision::twofold: return refined_transfer<Twofold>(d, s);
+    case Precision::extended: return transfer_in<Extended>(d, s);
     case Precision::digits50: return transfer_in<solve::Complex50>(d, s);
     case Precision::as_needed: return transfer_as_needed(d, s);
   }

@@ -56,6 +56,7 @@ enum class Precision {
   refined,   ///< factors in double, blocks and residuals in long double: refined until the outputs
              ///< settle, or refused; see System::transfer
   twofold,   ///< the same in double-double: 32 digits, on any machine
+  extended,  ///< long double: 19 digits on x86
   digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower
   as_needed  ///< double, and finer where the weakest pivot has lost more than four digits: refined
              ///< or twofold if that settles, else 50 digits; where double has no pivot at all
