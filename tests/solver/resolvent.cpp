@@ -93,7 +93,7 @@ double port_error(const Eigen::MatrixXcd& y, const DenseTruth& truth) {
   return (y - truth.transfer).cwiseAbs().maxCoeff() / truth.transfer.cwiseAbs().maxCoeff();
 }
 
-/// What is right of y by the rounding of every entry of the equations: in double.
+/// Error of y by the rounding of every entry of the equations: in double.
 double error_of_terms(const Eigen::MatrixXcd& y, const DenseTruth& truth) {
   if (!y.allFinite()) return HUGE_VAL;
   return (y - truth.transfer).cwiseAbs().cwiseQuotient(truth.terms).maxCoeff();

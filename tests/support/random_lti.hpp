@@ -6,7 +6,7 @@
 
 namespace titop_test {
 
-/// What the matrices of a controller may look like: what elimination of s - A must cope with.
+/// Kinds of controller matrices that elimination of s - A must handle.
 enum class LtiKind {
   dense,        ///< all entries of one size
   scaled,       ///< the same in states of other units, up to 2^20 apart from 1

@@ -7,7 +7,7 @@ namespace titop::passes::closing {
 
 constexpr double kExactGap = 1e-9;  ///< a gap that is larger is not rounding
 
-/// What is left of the way round a chain, as a matrix times the position of its meeting point. 0 if
+/// Gap of the way round a chain, as a matrix times the position of its meeting point. 0 if
 /// the geometry closes, but where ties leave translations free: these do not say how far apart
 /// their points are, and the ways do not have the lever arm.
 struct Gap {

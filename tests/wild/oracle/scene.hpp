@@ -92,7 +92,7 @@ struct Tie {
   int input = -1;               ///< b the ground: the acceleration, one entry per axis
 };
 
-/// What acts on an axis of a joint: force = k q + c qd + more, or acceleration = more.
+/// Law of an axis of a joint: force = k q + c qd + more, or acceleration = more.
 struct Mechanism {
   int node = 0, axis = 0;
   bool moves = false;
