@@ -31,6 +31,7 @@ Motion::Motion(const Graph& graph, ParameterValues values, const Twins& twins, G
   add_ties(twins, ground);
   std::vector<Tie> whole;
   for (const Released& r : released) whole.push_back(tie_of(r.whole, r.closing, twins, ground));
+  find_rotations(whole);
   plant(std::move(whole));
 }
 
@@ -78,25 +79,25 @@ void Motion::add_ties(const Twins& twins, Ground ground) {
     ties_.push_back(tie_of(q, e, twins, ground));
   }
   std::sort(ties_.begin(), ties_.end(), [](const Tie& a, const Tie& b) { return a.turn < b.turn; });
-  find_rotations();
+  find_rotations(ties_);
 }
 
 /// Of all ties between the same two points together.
-void Motion::find_rotations() {
+void Motion::find_rotations(std::vector<Tie>& ties) {
   std::map<std::pair<int, int>, std::vector<Tie*>> between;
-  for (Tie& tie : ties_)
+  for (Tie& tie : ties)
     if (tie.S.cols() == 6 && tie.points.size() == 1 && tie.points.begin()->second.cols() == 6)
       between[{tie.target, tie.points.begin()->first}].push_back(&tie);
-  for (const auto& [points, ties] : between) {
+  for (const auto& [points, together] : between) {
     MatrixXd S(0, 6), c(0, 6);
-    for (const Tie* tie : ties) {
+    for (const Tie* tie : together) {
       S.conservativeResize(S.rows() + tie->S.rows(), 6);
       S.bottomRows(tie->S.rows()) = tie->S;
       c.conservativeResize(S.rows(), 6);
       c.bottomRows(tie->S.rows()) = tie->points.begin()->second;
     }
     const auto rotation = common_rotation(S, c);
-    for (Tie* tie : ties) tie->rotation = rotation;
+    for (Tie* tie : together) tie->rotation = rotation;
   }
 }
 

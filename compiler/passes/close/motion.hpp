@@ -92,7 +92,7 @@ class Motion {
   void add_body(int node, ParameterValues values);
   void add_ties(const Twins& twins, Ground ground);
   Tie tie_of(const Equation& equation, int index, const Twins& twins, Ground ground) const;
-  void find_rotations();
+  static void find_rotations(std::vector<Tie>& ties);
   std::optional<Edge> edge_of(const Tie& tie) const;
   Edge reversed(const Edge& edge) const;
   /// From one point to another, or to the root (`to` -1): each edge leads on from the one before.
