@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
+#include <stdexcept>
 
 #include "support/rng.hpp"
 #include "wild/oracle/equations.hpp"
@@ -70,12 +71,15 @@ Eigen::Matrix<C, Eigen::Dynamic, Eigen::Dynamic> at_s(const std::array<Equations
   return sum;
 }
 
-/// Both with pivots of a column's largest size; most of the entries are 0.
+/// Both with pivots of a column's largest size; most of the entries are 0. Throws
+/// std::domain_error if a sparse pivot is exactly 0: s is a pole.
 template <class Matrix>
 auto factored(const Matrix& P) {
   if constexpr (std::is_same_v<typename Matrix::Scalar, WideComplex>) {
     const Eigen::SparseMatrix<WideComplex> sparse = P.sparseView(WideComplex(0), 0);
-    return std::make_unique<Eigen::SparseLU<Eigen::SparseMatrix<WideComplex>>>(sparse);
+    auto lu = std::make_unique<Eigen::SparseLU<Eigen::SparseMatrix<WideComplex>>>(sparse);
+    if (lu->info() != Eigen::Success) throw std::domain_error("the equations are singular");
+    return lu;
   } else {
     return std::make_unique<Eigen::PartialPivLU<Matrix>>(P);
   }
@@ -149,7 +153,8 @@ Scene disturbed(const Scene& scene, double relative, unsigned seed) {
     for (MatrixXd* m : {&n.A, &n.B, &n.C, &n.D}) all(*m);
     sum(n.in);
   }
-  for (Tie& t : d.ties) all(t.T);
+  for (Tie& t : d.ties)  // a rotation's entries have the digits of its largest
+    for (Index i = 0; i < t.T.size(); ++i) t.T.data()[i] += relative * rng.between(-1, 1);
   for (Mechanism& m : d.mechanisms) {
     number(m.k);
     number(m.c);
