@@ -343,7 +343,7 @@ WrittenResidual written_residual(const SystemData& d, const Signals& signals) {
 
 double Surroundings::of_front(const solve::Front& front) const {
   const solve::Plan& plan = *d_.skeleton->as_written().plan;
-  const solve::ColumnScale& scale = *d_.scale();
+  const std::vector<std::int16_t>& scale = d_.scale()->in_fronts;
   double own = 0, passed_on = 0;
   bool stands_out = front.parent < 0;
   int column = front.first_column;
@@ -377,7 +377,7 @@ double Surroundings::of_variable(int variable, Eigen::Index entry) {
       std::upper_bound(plan.fronts.begin(), plan.fronts.end(), unknown,
                        [](int place, const solve::Front& f) { return place < f.first_unknown; }));
   const int column = front->first_column + unknown - front->first_unknown;
-  return std::ldexp(sizes_[at(front - plan.fronts.begin())], (*d_.scale())[at(column)]);
+  return std::ldexp(sizes_[at(front - plan.fronts.begin())], d_.scale()->in_fronts[at(column)]);
 }
 
 double Surroundings::size(int signal, Eigen::Index entry) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <titop/compiler/solve/elimination.hpp>
+#include <titop/compiler/solve/equilibration.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/solve/scaling.hpp>
 #include <titop/compiler/solve/steps.hpp>
@@ -53,12 +54,16 @@ double power_of_two(std::int16_t e) {
 /// not pass for a good one further up.
 template <class T>
 struct Factors<T>::Work {
-  double least;                    ///< of its terms, that a pivot has to keep
-  std::vector<double> bound = {};  ///< as Made::lu
-  std::vector<double> keeps = {};  ///< per row
+  double least;                          ///< of its terms, that a pivot has to keep
+  std::vector<double> column_size = {};  ///< of the entries where a pivot is looked for
+  std::vector<double> bound = {};        ///< as Made::lu
+  std::vector<double> keeps = {};        ///< per row
   std::vector<double> row_scale =
       {};                           ///< per row: its size, the columns having been given the same
   std::vector<double> column = {};  ///< the factors that do so
+  std::vector<double> common = {};  ///< per column: its factor in all fronts
+  /// Per row: the least size that it has had, by `common`; 0: it is new.
+  std::vector<double> least_size = {};
   std::vector<int> units = {};
   Made* m = nullptr;
   T* lu = nullptr;       ///< what made->lu shows
@@ -73,6 +78,7 @@ struct Factors<T>::Work {
     std::fill_n(lu, made.lu.size(), T(0));
     std::iota(order, order + rows, 0);
     keeps.assign(at(rows), 1);
+    least_size.assign(at(rows), 0);
   }
 
   /// First columns of what shares a unit, and the end.
@@ -89,32 +95,54 @@ struct Factors<T>::Work {
   T* row(int i) { return lu + i * n; }
   double* bounds(int i) { return bound.data() + i * n; }
 
-  /// Bounds of what has been assembled; returns its largest entry.
-  double take_bounds() {
+  void take_common(const Plan& plan, const Front& front, const ColumnScale& scale) {
+    common.clear();
+    const auto take = [&](int first, int count) {
+      for (int i = 0; i < count; ++i)
+        common.push_back(power_of_two(scale.of_unknowns[at(first + i)]));
+    };
+    take(front.first_unknown, front.pivot_count);
+    for (const int v : plan.list(front.border))
+      take(plan.first[at(v)], plan.structure.variable_size[at(v)]);
+  }
+
+  /// Bounds of what has been assembled, and sizes of its rows.
+  void take_bounds() {
     bound.resize(m->lu.size());
-    const double largest = sizes(static_cast<std::ptrdiff_t>(m->lu.size()), lu, bound.data());
+    sizes(static_cast<std::ptrdiff_t>(m->lu.size()), lu, bound.data());
+    row_scale.resize(at(rows));
+    largest_products(rows, n, bound.data(), common.data(), row_scale.data());
+    for (int i = 0; i < rows; ++i)
+      if (double& least_of_row = least_size[at(i)];
+          least_of_row == 0 || row_scale[at(i)] < least_of_row)
+        least_of_row = row_scale[at(i)];
     for (int i = 0; i < rows; ++i)
       if (keeps[at(i)] != 1)
         for (std::ptrdiff_t j = 0; j < n; ++j) bounds(i)[j] /= keeps[at(i)];
-    return largest;
   }
 
   void scale_rows(const std::int16_t* exponents) {
     column.resize(static_cast<std::size_t>(n));
     for (std::ptrdiff_t j = 0; j < n; ++j)
       column[static_cast<std::size_t>(j)] = power_of_two(exponents[j]);
-    row_scale.resize(at(rows));
     largest_products(rows, n, bound.data(), column.data(), row_scale.data());
   }
 
-  /// The pivot of a column is the row where it stands out most against the row's own size: the
-  /// choice depends neither on the rows' units nor on the columns'. -1 if no digit is left.
+  /// The pivot of a column is the row where it stands out most against the row's own size, among
+  /// those that make no row grow (kThreshold): the choice depends neither on the rows' units nor on
+  /// the columns'. -1 if no digit is left.
   int pivot(int k) {
     int best = -1;
-    double best_score = 0, left = 0;
+    double best_score = 0, left = 0, most = 0;
+    column_size.resize(at(rows));
     for (int i = k; i < rows; ++i) {  // divisions only where something is larger than before
-      const double size = size_of(row(i)[k]), from = bounds(i)[k], scale = row_scale[at(i)];
-      if (scale > 0 && size > best_score * scale) best_score = size / scale, best = i;
+      const double size = column_size[at(i)] = size_of(row(i)[k]);
+      if (least_size[at(i)] > 0 && size > most * least_size[at(i)]) most = size / least_size[at(i)];
+    }
+    for (int i = k; i < rows; ++i) {
+      const double size = column_size[at(i)], from = bounds(i)[k], scale = row_scale[at(i)];
+      if (scale > 0 && size > best_score * scale && size >= kThreshold * most * least_size[at(i)])
+        best_score = size / scale, best = i;
       // What a column keeps after cancellation, over all its rows: invariant under any scaling.
       if (from > 0 && size > left * from) left = size / from;
     }
@@ -161,6 +189,7 @@ struct Factors<T>::Work {
     std::swap_ranges(row(a), row(a) + n, row(b));
     std::swap_ranges(bounds(a), bounds(a) + n, bounds(b));
     std::swap(row_scale[at(a)], row_scale[at(b)]);
+    std::swap(least_size[at(a)], least_size[at(b)]);
     std::swap(order[a], order[b]);
   }
 
@@ -202,15 +231,22 @@ struct Factors<T>::Work {
     return share == 0 ? 1 : share;
   }
 
-  /// Made::keeps, which stays empty where nothing has cancelled.
-  void finish(double start) {
+  /// Made::keeps, which stays empty where nothing has cancelled; what rows have grown.
+  void finish(double* carried) {
     for (int i = pivots; i < rows; ++i)
       if (const double share = kept(i); share != 1) {
         m->keeps.resize(at(rows - pivots), 1);
         m->keeps[at(i - pivots)] = share;
       }
-    if (start > 0)  // the bounds have done their work
-      m->growth = sizes(static_cast<std::ptrdiff_t>(m->lu.size()), lu, bound.data()) / start;
+    sizes(static_cast<std::ptrdiff_t>(m->lu.size()), lu, bound.data());  // their work is done
+    for (int i = 0; i < rows; ++i) {
+      const std::ptrdiff_t j = std::min(i, pivots);
+      double now = 0;
+      largest_products(1, n - j, bounds(i) + j, common.data() + j, &now);
+      if (now > m->growth * least_size[at(i)] && least_size[at(i)] > 0)
+        m->growth = now / least_size[at(i)];
+    }
+    std::copy(least_size.begin() + pivots, least_size.end(), carried);
   }
 };
 
@@ -226,6 +262,7 @@ void Factors<T>::assemble(const Front& front, const Rows<T>& rows, Work& w) cons
     const Made& made = *fronts_[at(c)];
     add_child<T>(*plan_, child, made, w.row(row), w.n);
     std::copy(made.keeps.begin(), made.keeps.end(), w.keeps.begin() + row);
+    std::ranges::copy(made.least_size, w.least_size.begin() + row);
     row += child.left_over();
   }
 }
@@ -235,14 +272,15 @@ void Factors<T>::make(Lot& lot, Made& made, const Rows<T>& rows, Work& w, Column
   const Front& front = plan_->fronts[at(made.front)];
   w.begin(front, lot, made);
   assemble(front, rows, w);
-  const double start = w.take_bounds();
+  w.take_common(*plan_, front, *scale_);
+  w.take_bounds();
   if (found)
     column_scale(w.bound.data(), front.row_count, w.units_of(*plan_, front),
-                 found->data() + front.first_column);
-  w.scale_rows(scale_->data() + front.first_column);
+                 found->in_fronts.data() + front.first_column);
+  w.scale_rows(scale_->in_fronts.data() + front.first_column);
   w.eliminate(no_pivot_);
   w.judge_finite();
-  w.finish(start);
+  w.finish(lot.sizes.data() + (made.least_size.data() - lot.sizes.data()));
 }
 
 /// Up to the first that is singular.
@@ -271,7 +309,9 @@ Factors<T>::Factors(std::shared_ptr<const Plan> plan, const Rows<T>& rows,
       no_pivot_(no_pivot),
       least_(std::max(least, kNothingLeft * Scalar<T>::epsilon())) {
   std::shared_ptr<ColumnScale> found;
-  if (!scale_) scale_ = found = std::make_shared<ColumnScale>(at(plan_->columns));
+  if (!scale_)
+    scale_ = found = std::make_shared<ColumnScale>(std::vector<std::int16_t>(at(plan_->columns)),
+                                                   equilibration(*plan_, rows));
   std::vector<int> all(fronts_.size());
   std::iota(all.begin(), all.end(), 0);
   make_all(all, rows, found.get());

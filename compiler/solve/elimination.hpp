@@ -29,7 +29,8 @@ class Rows {
 
 /// How the numbers went.
 struct Health {
-  double growth = 1;   ///< largest entry met in a front over the largest at its start
+  double growth = 1;   ///< largest size of a row met anywhere over the least that it had before,
+                       ///< from front to front along the tree, in one scale of the unknowns
   double weakest = 1;  ///< smallest pivot over the sum of magnitudes that formed its row entry:
                        ///< 1 no cancellation, 1e-16 nothing left; invariant under units
   int weakest_variable = -1;
@@ -56,11 +57,22 @@ struct Patch {
   double value = 1;  ///< of the size of its row and column
 };
 
-/// Powers of two that give the columns of each front the same size, one for all that share a unit:
-/// found once from real numbers, they serve every s and new values near the old ones
-/// (Factors::changed finds them anew where asked to).
-/// Front after front (Front::first_column), within -1000 ... 1000.
-using ColumnScale = std::vector<std::int16_t>;
+/// Powers of two that give columns the same size, one for all that share a unit: found once from
+/// real numbers, they serve every s and new values near the old ones. Within -1000 ... 1000.
+struct ColumnScale {
+  /// Each front by itself, front after front (Front::first_column): which pivot stands out.
+  /// Factors::changed finds them anew where asked to.
+  std::vector<std::int16_t> in_fronts;
+  /// Per unknown, in the order of Plan::first (solve/equilibration.hpp): the same in all fronts, so
+  /// that a row's size means the same all the way up. What a row has grown is measured by it.
+  std::vector<std::int16_t> of_unknowns;
+};
+
+/// A pivot must not be smaller than this share of the largest entry of its column, each beside the
+/// size that its row had before: no row grows by more than a factor 1 + 1 / kThreshold of that per
+/// pivot, however the fronts follow one another (threshold pivoting: I. S. Duff, A. M. Erisman,
+/// J. K. Reid, Direct Methods for Sparse Matrices, 5.4, where 0.1 is what they recommend).
+constexpr double kThreshold = 0.1;
 
 /// The factors: per front L, U and the permutation. Fronts are shared between factors that differ
 /// elsewhere; those that are made together share their memory, too, in the order in which they are
@@ -101,6 +113,8 @@ class Factors {
     bool singular = false, finite = true;
     std::span<const T> lu = {};  ///< row_count x columns, row-major; rows left over at the bottom
     std::span<const int> order = {};  ///< which assembled row stands at place i
+    /// Per row left over: the least size that it has had, by ColumnScale::of_unknowns.
+    std::span<const double> least_size = {};
     /// Per row left over what cancellation has left; none: 1 of all.
     std::vector<double> keeps = {};
     double growth = 1, weakest = 1;
@@ -116,6 +130,7 @@ class Factors {
     std::vector<Made> made;
     Storage<T> entries;
     Storage<int> rows;
+    Storage<double> sizes;
   };
 
   std::shared_ptr<Lot> lot_of(std::span<const int> fronts) const;

@@ -16,24 +16,28 @@ using linalg::at;
 /// Room for these fronts.
 template <class T>
 std::shared_ptr<typename Factors<T>::Lot> Factors<T>::lot_of(std::span<const int> fronts) const {
-  std::size_t entry_count = 0, row_count = 0;
+  std::size_t entry_count = 0, row_count = 0, carried = 0;
   for (const int f : fronts) {
     const Front& front = plan_->fronts[at(f)];
     entry_count += front.entries();
     row_count += at(front.row_count);
+    carried += at(front.left_over());
   }
   const auto lot = std::make_shared<Lot>(std::vector<Made>(fronts.size()), Storage<T>(entry_count),
-                                         Storage<int>(row_count));
+                                         Storage<int>(row_count), Storage<double>(carried));
   const T* entry = lot->entries.data();
   const int* row = lot->rows.data();
+  const double* size = lot->sizes.data();
   for (std::size_t i = 0; i < fronts.size(); ++i) {
     const Front& front = plan_->fronts[at(fronts[i])];
     Made& m = lot->made[i];
     m.front = fronts[i];
     m.lu = {entry, front.entries()};
     m.order = {row, at(front.row_count)};
+    m.least_size = {size, at(front.left_over())};
     entry += m.lu.size();
     row += m.order.size();
+    size += m.least_size.size();
   }
   return lot;
 }
@@ -50,14 +54,17 @@ void Factors<T>::tidy() {
   const std::shared_ptr<Lot> lot = lot_of(all);
   T* entry = lot->entries.data();
   int* row = lot->rows.data();
+  double* size = lot->sizes.data();
   for (Made& made : lot->made) {
     const Made& from = *fronts_[at(made.front)];
     entry = std::ranges::copy(from.lu, entry).out;
     row = std::ranges::copy(from.order, row).out;
+    size = std::ranges::copy(from.least_size, size).out;
     const auto lu = std::exchange(made.lu, {});
     const auto order = std::exchange(made.order, {});
+    const auto least_size = std::exchange(made.least_size, {});
     made = from;
-    made.lu = lu, made.order = order;
+    made.lu = lu, made.order = order, made.least_size = least_size;
     fronts_[at(made.front)] = &made;
   }
   lots_ = {lot};

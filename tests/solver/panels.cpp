@@ -96,19 +96,29 @@ void compare() {
 }
 
 /// A textbook's elimination by rows, whole steps, with pivots: the row where the column stands out
-/// most against the row's own size at the start, its columns given the same size by `column`.
+/// most against the row's own size at the start, its columns given the same size by `column`, among
+/// those where it is at least a tenth of the largest by the sizes that rows have at the start by
+/// `common`.
 struct Textbook {
   MatrixXd lu;
   std::vector<int> order;      ///< which row of the start stands at each place
-  double growth = 1;           ///< the largest entry that is left over the largest at the start
+  double growth = 1;           ///< of rows beside their size at the start, by `common`
   int inside = 0, across = 0;  ///< swaps within 32 rows that are one panel, and beyond
 
-  Textbook(const MatrixXd& a, int pivots, const Eigen::VectorXd& column) : lu(a) {
+  Textbook(const MatrixXd& a, int pivots, const Eigen::VectorXd& column,
+           const Eigen::VectorXd& common)
+      : lu(a) {
     const int rows = static_cast<int>(a.rows());
-    std::vector<double> size;
+    std::vector<double> size, start;
+    const auto by_common = [&](int i, int first) {
+      const auto count = a.cols() - first;
+      return (lu.row(i).tail(count).transpose().cwiseAbs().cwiseProduct(common.tail(count)))
+          .maxCoeff();
+    };
     for (int i = 0; i < rows; ++i) {
       order.push_back(i);
       size.push_back(0);
+      start.push_back(by_common(i, 0));
       for (int j = 0; j < a.cols(); ++j)
         size.back() = std::max(size.back(), std::abs(a(i, j)) * column(j));
     }
@@ -116,13 +126,19 @@ struct Textbook {
       return std::abs(lu(i, k)) / size[solver_test::at(i)];
     };
     for (int k = 0; k < pivots; ++k) {
-      int best = k;
-      for (int i = k + 1; i < rows; ++i)
-        if (stands_out(i, k) > stands_out(best, k)) best = i;
+      double most = 0;
+      for (int i = k; i < rows; ++i)
+        most = std::max(most, std::abs(lu(i, k)) / start[solver_test::at(i)]);
+      int best = -1;
+      for (int i = k; i < rows; ++i)
+        if (std::abs(lu(i, k)) >= 0.1 * most * start[solver_test::at(i)] &&
+            (best < 0 || stands_out(i, k) > stands_out(best, k)))
+          best = i;
       inside += best > k && best / 32 == k / 32;
       across += best / 32 > k / 32;
       lu.row(k).swap(lu.row(best));
       std::swap(size[solver_test::at(k)], size[solver_test::at(best)]);
+      std::swap(start[solver_test::at(k)], start[solver_test::at(best)]);
       std::swap(order[solver_test::at(k)], order[solver_test::at(best)]);
       for (int i = k + 1; i < rows; ++i) {
         if (lu(i, k) == 0) continue;
@@ -131,7 +147,8 @@ struct Textbook {
         lu(i, k) = l;
       }
     }
-    growth = lu.cwiseAbs().maxCoeff() / a.cwiseAbs().maxCoeff();
+    for (int i = 0; i < rows; ++i)
+      growth = std::max(growth, by_common(i, std::min(i, pivots)) / start[solver_test::at(i)]);
   }
 };
 
@@ -177,12 +194,17 @@ void compare_factors(int rows, int columns, int pivots, Rng& rng) {
   // The columns' sizes are given: how the solver finds them is a matter of scaling.cpp.
   auto scale = std::make_shared<titop::solve::ColumnScale>();
   for (int j = 0; j < plan->columns; ++j)
-    scale->push_back(static_cast<std::int16_t>(rng.below(5) - 2));
-  Eigen::VectorXd column(columns);
-  for (int j = 0; j < columns; ++j)
-    column(j) = std::ldexp(1.0, (*scale)[solver_test::at(f.first_column + j)]);
+    scale->in_fronts.push_back(static_cast<std::int16_t>(rng.below(5) - 2));
+  for (int j = 0; j < plan->unknowns; ++j)
+    scale->of_unknowns.push_back(static_cast<std::int16_t>(rng.below(5) - 2));
+  Eigen::VectorXd column(columns), common(columns);
+  for (int j = 0; j < columns; ++j) {
+    const int unknown = j < pivots ? f.first_unknown + j : plan->first[1] + j - pivots;
+    column(j) = std::ldexp(1.0, scale->in_fronts[solver_test::at(f.first_column + j)]);
+    common(j) = std::ldexp(1.0, scale->of_unknowns[solver_test::at(unknown)]);
+  }
 
-  const Textbook exact(a, pivots, column);
+  const Textbook exact(a, pivots, column, common);
   CHECK(exact.inside > 0);
   CHECK(exact.across > 0);
   const titop::solve::Factors<double> factors(plan, solver_test::EntryRows<double>(entries), scale);

@@ -62,7 +62,7 @@ void add_basic(std::vector<Item>& items, const Certificate& c) {
                                "10⁻¹⁶ is nothing left. The same in all units.",
                                c.weakest_where.empty() ? "" : ", at " + c.weakest_where)});
   items.push_back({"growth of the entries", number(c.pivot_growth, 3),
-                   "The largest number met in the elimination over the largest at its start."});
+                   "The largest size of a row over the least that it had before, all along the tree."});
   items.push_back(
       {"margin of the algebraic loops", number(c.margin, 3),
        fmt::format(
