@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <titop/compiler/evaluate.hpp>
+#include <titop/compiler/solve/backward_error.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/pole.hpp>
@@ -113,7 +114,7 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
           "take an s of smaller or larger modulus, or other units");
     throw no_digit_left(data, z);
   }
-  unknowns_ = factors_->solve(rhs_);
+  unknowns_ = solve::settled(rows_, *factors_, rhs_);
 }
 
 template <class T>
@@ -218,7 +219,8 @@ template <class T>
 solve::RowMatrix<T> Evaluation<T>::unknowns_of(const solve::RowMatrix<T>& own) const {
   std::vector<const Eigen::MatrixXd*> output;
   for (const auto& block : data_.numbers.blocks) output.push_back(&block->C);
-  return factors_->solve(rows_.rhs_of_states(own, data_.layout().known_first, output));
+  return solve::settled(rows_, *factors_,
+                        rows_.rhs_of_states(own, data_.layout().known_first, output));
 }
 
 template <class T>

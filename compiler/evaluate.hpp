@@ -36,7 +36,8 @@ solve::RowMatrix<T> unit_inputs(const SystemData& data) {
 template <class T>
 class Evaluation {
  public:
-  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block. With
+  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block. The solution
+  /// is refined in T (solve/backward_error.hpp). With
   /// `coarse`, the same s and u in double, its factors serve: iterative refinement,
   /// blocks and residuals in T, until the outputs have settled or their changes shrink no more:
   /// see refinement_error().

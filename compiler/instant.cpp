@@ -1,5 +1,6 @@
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/instant.hpp>
+#include <titop/compiler/solve/backward_error.hpp>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -30,7 +31,7 @@ Instant::Instant(const SystemData& data, RowMatrix<double> known, const RowMatri
       known_(std::move(known)),
       rhs_(rows_.rhs(known_, data.layout().known_first)) {
   if (more.size() > 0) rhs_ += more;
-  unknowns_ = data.factors->solve(rhs_);
+  unknowns_ = solve::settled(rows_, *data.factors, rhs_);
 }
 
 void Instant::add_value(int signal, double* to) const {
