@@ -190,6 +190,7 @@ struct Shapes {
   std::vector<Vector3d> PC;
   Interface face;
   MatrixXd W, rigid;
+  DataDigits digits;
 };
 
 std::shared_ptr<const Shapes> shapes_of(const ModalData& data) {
@@ -202,10 +203,14 @@ std::shared_ptr<const Shapes> shapes_of(const ModalData& data) {
   s->face = body_interface(names, static_cast<int>(data.omega.size()));
   s->W = modal_input(data);
   s->rigid = rigid_part(s->PC, data.D_P);
+  s->digits = data_digits(data);
   return s;
 }
 
-class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec> {
+constexpr const char* kKeepMore =
+    "keep more modes or residual vectors there, or lock only the other degrees of freedom";
+
+class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, public FromData {
  public:
   FlexibleBodyBlock(std::shared_ptr<const FlexibleBody::Spec> spec,
                     std::shared_ptr<const Shapes> shapes)
@@ -245,6 +250,21 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec> {
     if (const auto d = dynamics(values); d->modal) return modal_response(*d->modal, s, type());
     return modal_response({shapes_->W, shapes_->rigid, {}, {}}, s, type());
   }
+  const DataDigits& digits() const override { return shapes_->digits; }
+  Cause beyond_digits(int channel, const VectorXd& direction, double left) const override {
+    const std::string where = combination(direction);
+    const auto c = static_cast<std::size_t>(channel);
+    if (c == spec_->data->children.size())
+      return {fmt::format("has no residual mass in {}: of D_P its modes leave {:.1e} there, the "
+                          "noise of the data is {:.0e}",
+                          where, left, shapes_->digits.mass),
+              fmt::format("keep fewer modes, add the mass at P, or impose the motion of P in {}",
+                          where)};
+    return {fmt::format("has modes that do not move {} in {}: by {:.1e} of its other motions, the "
+                        "noise of the data is {:.0e}",
+                        spec_->data->children[c].name, where, left, shapes_->digits.shapes),
+            kKeepMore};
+  }
   std::optional<Cause> why_singular(int channel, ParameterValues) const override {
     const ModalData& data = *spec_->data;
     if (channel == static_cast<int>(data.children.size())) {
@@ -259,10 +279,9 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec> {
     const ChildRank rank = child_rank(data, c);
     std::string blocked;
     for (const std::string& b : rank.blocked) blocked += (blocked.empty() ? "" : ", ") + b;
-    return Cause{
-        fmt::format("has modes that do not move {} in {} (rank {} of 6)", c.name,
-                    blocked.empty() ? "every direction" : blocked, rank.rank),
-        "keep more modes or residual vectors there, or lock only the other degrees of freedom"};
+    return Cause{fmt::format("has modes that do not move {} in {} (rank {} of 6)", c.name,
+                             blocked.empty() ? "every direction" : blocked, rank.rank),
+                 kKeepMore};
   }
 
  private:

@@ -27,19 +27,24 @@ double noise_of(const ModalData& data) { return 10 * std::pow(10, -data.digits);
 /// entry; what is smaller than this is no motion that anything could be driven by.
 double shape_noise(const ModalData& data) { return std::max(noise_of(data), 1e-11); }
 
-/// Rows that are zero beside the others of their kind; rotations also beside the translations, by
-/// the distance from P.
-std::array<bool, 6> resting_rows(const ModalData& data, const ModalChild& child) {
-  const double noise = shape_noise(data);
+/// How large its rows are: as the others of their kind; rotations also as the translations, by the
+/// distance from P.
+Vector6 row_sizes(const ModalChild& child) {
   const Vector6 norms = child.Phi_C.rowwise().norm();
   const double translation = norms.head<3>().maxCoeff(), rotation = norms.tail<3>().maxCoeff();
   const double length = child.PC.norm();
+  Vector6 sizes;
+  sizes.head<3>().setConstant(std::max(translation, rotation * length));
+  sizes.tail<3>().setConstant(std::max(rotation, length > 0 ? translation / length : 0.0));
+  return sizes;
+}
+
+/// Rows that are zero beside the others.
+std::array<bool, 6> resting_rows(const ModalData& data, const ModalChild& child) {
+  const double noise = shape_noise(data);
+  const Vector6 norms = child.Phi_C.rowwise().norm(), sizes = row_sizes(child);
   std::array<bool, 6> resting{};
-  for (int i = 0; i < 6; ++i) {
-    const double size = i < 3 ? std::max(translation, rotation * length)
-                              : std::max(rotation, length > 0 ? translation / length : 0.0);
-    resting[static_cast<std::size_t>(i)] = !(norms(i) > noise * size);
-  }
+  for (int i = 0; i < 6; ++i) resting[static_cast<std::size_t>(i)] = !(norms(i) > noise * sizes(i));
   return resting;
 }
 
@@ -57,7 +62,14 @@ MatrixXd readable(MatrixXd W) {
   return W;
 }
 
-/// "y - 0.5 rz": first coefficient 1, small ones left out.
+}  // namespace
+
+const char* component_name(int component) {
+  static constexpr std::array<const char*, 6> names = {"x", "y", "z", "rx", "ry", "rz"};
+  return names.at(static_cast<std::size_t>(component));
+}
+
+/// First coefficient 1, small ones left out.
 std::string combination(const Vector6& w) {
   const double largest = w.cwiseAbs().maxCoeff();
   std::string text;
@@ -71,13 +83,6 @@ std::string combination(const Vector6& w) {
     text += one ? component_name(i) : fmt::format("{:.3g} {}", std::abs(c), component_name(i));
   }
   return text;
-}
-
-}  // namespace
-
-const char* component_name(int component) {
-  static constexpr std::array<const char*, 6> names = {"x", "y", "z", "rx", "ry", "rz"};
-  return names.at(static_cast<std::size_t>(component));
 }
 
 MassProperties mass_properties(const Matrix6& D_P) {
@@ -143,6 +148,19 @@ ChildRank child_rank(const ModalData& data, const ModalChild& child) {
     w(moving) = still.col(k).cwiseQuotient(norms);
     result.blocked.push_back(combination(w));
   }
+  return result;
+}
+
+DataDigits data_digits(const ModalData& data) {
+  const auto ports = static_cast<Index>(data.children.size()) + 1;
+  DataDigits result{VectorXd::Zero(6 * ports), shape_noise(data), noise_of(data)};
+  for (Index c = 0; c + 1 < ports; ++c) {
+    const ModalChild& child = data.children[static_cast<std::size_t>(c)];
+    const Vector6 sizes = row_sizes(child);
+    for (int i = 0; i < 6; ++i)
+      if (!child.Phi_C.row(i).isZero(0)) result.size(6 * c + i) = sizes(i);
+  }
+  result.size.tail<6>() = data.D_P.diagonal().cwiseSqrt();
   return result;
 }
 

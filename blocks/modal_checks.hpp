@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <string>
 #include <titop/blocks/modal_data.hpp>
+#include <titop/graph/data_digits.hpp>
 #include <titop/graph/linalg/kinematics.hpp>
 #include <vector>
 
@@ -46,6 +47,12 @@ struct ChildRank {
   std::vector<std::string> blocked;  ///< "rx", or a combination "y - 0.5 rz" that does not move
 };
 ChildRank child_rank(const ModalData& data, const ModalChild& child);
+/// "rx", or a combination "y - 0.5 rz".
+std::string combination(const Vector6& w);
+
+/// What `compile` judges scenes by: sizes of ports as above, D_P's fractions by `data.digits`,
+/// those of shapes 1e-11 at least, the rounding of an eigenproblem.
+DataDigits data_digits(const ModalData& data);
 
 /// fraction(k, j) = L_P(k, j)^2 / D_P(j, j): what part of the rigid mass moves with mode k when P
 /// is accelerated along component j. Zero where D_P(j, j) is.

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <titop/compiler/ahead.hpp>
 #include <titop/compiler/compile_graph.hpp>
+#include <titop/compiler/data_digits.hpp>
 #include <titop/compiler/dot.hpp>
 #include <titop/compiler/memory.hpp>
 #include <titop/compiler/passes/passes.hpp>
@@ -96,6 +97,8 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d, double least) {
            fmt::format("parameter {}: nothing depends on it", k.stage.graph.parameters[i].name)});
   if (d.factors->health().singular || least > 0) detail::reduce(k, d, least);
   detail::judge_internal_forces(k, d);
+  const std::vector<Note> digits = detail::judge_data_digits(d);
+  k.stage.notes.insert(k.stage.notes.end(), digits.begin(), digits.end());
   k.stage.notes.push_back({Note::Kind::info, "solve",
                            fmt::format("{} unknowns in {} fronts", k.joint.plan->unknowns,
                                        k.joint.plan->fronts.size())});

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <titop/compiler/data_digits.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/reduce/weak_pivot.hpp>
 #include <titop/compiler/system_data.hpp>
@@ -296,7 +297,9 @@ System System::update(const ParameterList& list) const {
   const solve::Health health = d->factors->health();
   if (health.singular) return again(kNoDigit);  // it may reduce: a mass of 0
   d->notes = data_->notes;
-  std::erase_if(d->notes, [](const Note& n) { return n.pass == "update"; });
+  std::erase_if(d->notes, [](const Note& n) { return n.pass == "update" || n.pass == "digits"; });
+  const std::vector<Note> digits = judge_data_digits(*d);
+  d->notes.insert(d->notes.end(), digits.begin(), digits.end());
   d->notes.push_back(
       {Note::Kind::info, "update",
        fmt::format("{}: {} of {} fronts made again", text_of(k, changed, d->numbers.parameters),
