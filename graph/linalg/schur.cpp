@@ -30,6 +30,8 @@ void split_block(Schur& s, Index j) {
   Rotation g;
   g.makeGivens(lambda - d, c);
   turn(s, j, g);
+  s.T(j, j) = lambda;
+  s.T(j + 1, j + 1) = (a + d) / 2.0 - root;
 }
 
 /// Exchanges the eigenvalues at j and j + 1.
