@@ -122,6 +122,7 @@ MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& poi
   if (m.A.rows() == 0) return result;
   for (const std::complex<double> s : points) {
     const Gain by = gain(m, s);
+    if (by.of_states.size() == 0 || by.to_outputs.size() == 0) continue;  // a pole, or no ports
     const MatrixXd right = by.size * by.of_states, sum = by.to_outputs * right;
     if (sum.allFinite()) result = result.cwiseMax(m.D.cwiseAbs() + sum);
   }

@@ -31,7 +31,7 @@ std::string describe(const std::vector<JudgedMode>& modes) {
 
 /// Judges, takes out and reports for either kind of modes.
 template <class Modes>
-void minimize_by(const Modes& modes, const MinimizeOptions& options, Minimized& r) {
+void minimize_by(Modes modes, const MinimizeOptions& options, Minimized& r) {
   const int order = r.model.order();
   std::vector<modes::Verdict> verdicts = modes::judge(modes.modes, options.resolution);
   bool agrees = true;
@@ -56,8 +56,8 @@ Minimized minimize_as_it_stands(const StateSpace& model, const MinimizeOptions& 
   result.order.judged = true;
   result.order.order = result.order.lowest = result.order.highest = model.order();
   if (model.order() == 0 || (model.inputs.empty() && model.outputs.empty())) return result;
-  if (const auto s = modes::symmetric_modes(model, options.resolution, options.energy))
-    minimize_by(*s, options, result);
+  if (auto s = modes::symmetric_modes(model, options.resolution, options.energy))
+    minimize_by(std::move(*s), options, result);
   else
     minimize_by(modes::general_modes(model, options.resolution), options, result);
   return result;

@@ -77,8 +77,11 @@ struct Minimized {
 ///
 /// Undamped or proportionally damped models are treated as symmetric eigenproblems (l = omega^2),
 /// those of closed chains with the help of their energy,
-/// the others by the eigenvalues of A (l = s) and the condition numbers of these; poles at 0 and
-/// ill-conditioned ones stay, with all that share their pole. Integrators that act on nothing else,
+/// the others by the eigenvalues of A (l = s). Poles that are one but for rounding, those at 0
+/// (2e-7 of A's norm) and those of a condition number above 1e6 have no vectors to go by: with all
+/// that share their pole they are split off as a small model (linalg/spectral.hpp), whose
+/// controllability and observability staircases say how many of its states count
+/// (minimize/staircase.hpp). Integrators that act on nothing else,
 /// of positions and rates that outputs read, are taken apart, and both parts judged by themselves:
 /// zdot = N z + B u is what no mode moves of them, and the ranks of [B, N B, ...] and [C; C N; ...]
 /// say which of them follow from other states (a position that these hold already) and which no
@@ -87,8 +90,7 @@ struct Minimized {
 ///  - upwards, dropped modes above their own rounding bound, which are there, however little they
 ///    do, and those whose bound is above 1e-14, where something might hide;
 ///  - downwards, kept modes below 1e-9 within 1e4 of their bound, and any within ten times their
-///    bound; integrators within 1e4 of their rounding; ill-conditioned poles; other poles at 0
-///    where the ranks of inputs and outputs there do not show that they are needed.
+///    bound; integrators and states of such small models within 1e4 of their rounding.
 /// A decided order is that of all data which rounding tells from those given: what lies below its
 /// own bound (two frequencies one ulp apart) counts as nothing, and only exact arithmetic says if
 /// it is. Modes are vectors of one size in the states' own units (linalg::balance_parts): in other

@@ -95,6 +95,24 @@ std::string reason(const Verdict& v, bool hardly) {
   return hardly ? "outputs hardly see it" : "no output sees it";
 }
 
+constexpr double kHides = 1e-11;  ///< of a size: what more rounding than that may hide counts
+
+/// Adds a cluster that is judged as a whole to the verdict.
+void add_whole(const WholeCluster& c, OrderVerdict& r) {
+  const MinimalPart& p = c.part;
+  const auto report = [&](int states, std::string why) {
+    return JudgedMode{c.omega, states, p.visibility, p.bound, std::move(why)};
+  };
+  if (const int k = c.unreachable(); k > 0) r.removed.push_back(report(k, "no input moves it"));
+  if (const int k = c.unseen(); k > 0) r.removed.push_back(report(k, "no output sees it"));
+  const int left = c.states() - c.leaving(), fewer = left - static_cast<int>(p.lowest);
+  r.order -= c.leaving();
+  if (c.leaving() > 0) r.to_more = std::max(r.to_more, p.visibility);
+  if (p.bound > kHides) r.highest += c.leaving();
+  r.lowest -= fewer;
+  if (fewer > 0) r.undecided.push_back(report(fewer, c.name));
+}
+
 }  // namespace
 
 std::vector<Verdict> judge(const ModeSet& m, double resolution) {
@@ -103,7 +121,14 @@ std::vector<Verdict> judge(const ModeSet& m, double resolution) {
   return verdicts;
 }
 
-bool drop_down_to(int exact, int order, const ModeSet& m, std::vector<Verdict>& verdicts) {
+bool drop_down_to(int exact, int order, ModeSet& m, std::vector<Verdict>& verdicts) {
+  for (WholeCluster& c : m.wholes) {
+    if (order - c.leaving() < exact) {
+      c.part.unreachable.resize(c.states(), 0);
+      c.part.unseen.resize(c.states(), 0);
+    }
+    order -= c.leaving();
+  }
   std::vector<std::size_t> weakest(verdicts.size());
   std::iota(weakest.begin(), weakest.end(), 0);
   std::stable_sort(weakest.begin(), weakest.end(), [&](std::size_t a, std::size_t b) {
@@ -150,8 +175,11 @@ OrderVerdict sum_up(const std::vector<Verdict>& verdicts, const ModeSet& m, int 
       r.undecided.push_back(report(m.apart[j].empty() ? reason(v, true) : m.apart[j]));
     }
   }
-  r.lowest = r.order - fewer;
-  r.highest = r.order + more;
+  r.lowest = -fewer;
+  r.highest = more;
+  for (const WholeCluster& c : m.wholes) add_whole(c, r);
+  r.lowest += r.order;
+  r.highest += r.order;
   return r;
 }
 

@@ -18,8 +18,9 @@ std::vector<Verdict> judge(const ModeSet& modes, double resolution);
 
 /// The least visible modes are dropped, and no others, until `order` states have become `exact`;
 /// never one of visibility above 1e-6. False if that does not come out: then only those that are
-/// dropped already, so far as `exact` allows.
-bool drop_down_to(int exact, int order, const ModeSet& modes, std::vector<Verdict>& verdicts);
+/// dropped already, so far as `exact` allows. Clusters that are judged as a whole give what they
+/// have found, or, where that would be too much, nothing.
+bool drop_down_to(int exact, int order, ModeSet& modes, std::vector<Verdict>& verdicts);
 
 /// What the verdicts come to, for a model of `order` states.
 OrderVerdict sum_up(const std::vector<Verdict>& verdicts, const ModeSet& modes, int order);

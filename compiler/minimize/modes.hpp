@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <titop/compiler/minimize/staircase.hpp>
 #include <titop/compiler/modal.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/state_space.hpp>
@@ -11,13 +12,27 @@
 /// files.
 namespace titop::modes {
 
+/// Poles that are judged as a whole: multiple ones, those at 0, ill-conditioned ones.
+struct WholeCluster {
+  double omega;  ///< mean |s| [rad/s]
+  MinimalPart part;
+  Eigen::MatrixXd V, W;  ///< n x k, k x n: A V = V A_own, W V = 1
+  std::string name = {};
+
+  int states() const { return static_cast<int>(V.cols()); }
+  int unreachable() const { return static_cast<int>(part.unreachable.cols()); }
+  int unseen() const { return static_cast<int>(part.unseen.cols()); }
+  int leaving() const { return unreachable() + unseen(); }
+};
+
 /// Sizes of what drives each mode and of what it shows.
 struct ModeSet {
   Eigen::VectorXd lambda;    ///< of each mode: omega^2, or |s|
   Eigen::VectorXd omega;     ///< |s| [rad/s]
   Eigen::MatrixXd b, c;      ///< modes x nu, modes x ny: magnitudes
   std::vector<int> cluster;  ///< modes of one frequency share a number
-  std::vector<int> states;   ///< of each mode; 0: the conjugate partner counts for it
+  std::vector<int> states;   ///< of each mode; 0: the conjugate partner counts for it,
+                             ///< or its cluster
   Eigen::MatrixXd distance;  ///< |lambda_i - lambda_j|
   /// e_ij: how much of mode i's drive rounding may put into that of mode j; shown by outputs, how
   /// much of mode j into mode i.
@@ -27,6 +42,7 @@ struct ModeSet {
   Eigen::MatrixXd b_apart, c_apart;
   std::vector<std::string> apart;  ///< why it is not judged: pole at 0, ill-conditioned; or ""
   std::vector<char> needed;        ///< not judged, and yet known to be part of a minimal model
+  std::vector<WholeCluster> wholes;
 
   Eigen::Index size() const { return lambda.size(); }
 };

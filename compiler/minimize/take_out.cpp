@@ -173,6 +173,16 @@ std::vector<Index> staying(const ModeSet& m, const std::vector<Index>& leave) {
   return result;
 }
 
+/// What leaves of a cluster: orthonormal columns in its own coordinates.
+void add(const MatrixXd& part, const WholeCluster& c, LeavingModes& to) {
+  const Index before = to.W.rows(), k = part.cols();
+  if (k == 0) return;
+  to.W.conservativeResize(before + k, c.W.cols());
+  to.W.bottomRows(k) = part.transpose() * c.W;
+  to.V.conservativeResize(c.V.rows(), before + k);
+  to.V.rightCols(k) = c.V * part;
+}
+
 /// Position and velocity level of the same relations (rows).
 MatrixXd on_both(const MatrixXd& half, const Symmetric& s, Index states) {
   const Index k = half.rows();
@@ -295,8 +305,13 @@ void take_out(const General& g, const std::vector<Verdict>& verdicts, StateSpace
                  {real_rows(g.e.W(unseen, Eigen::all), unseen), right.transpose()},
                  scale,
                  1e-12};
+  for (const WholeCluster& c : g.modes.wholes) {
+    add(c.part.unreachable, c, l.undriven);
+    add(c.part.unseen, c, l.unseen);
+  }
+  const MatrixXd& relations_now = l.undriven.W;
   const std::vector<int> dependent =
-      left.rows() == 0 ? std::vector<int>{} : pivots(left * scale.asDiagonal());
+      relations_now.rows() == 0 ? std::vector<int>{} : pivots(relations_now * scale.asDiagonal());
   remove(model, std::move(l), dependent, notes);
 }
 

@@ -99,10 +99,9 @@ TEST_CASE("a pole of order k many times over: k + 1 exactly; in double what is c
     const Minimized r = minimize(system.state_space());
     CHECK(r.order.lowest <= k + 1);
     CHECK(r.order.highest >= k + 1);
-    if (k <= 2) CHECK((r.order.decided() && r.model.order() == k + 1));
-    if (k <= 2) continue;
+    if (k <= 4) CHECK((r.order.decided() && r.model.order() == k + 1));
+    if (k <= 4) continue;
     CHECK(!r.order.decided());
     CHECK(to_string(r.order).find("undecided between") != std::string::npos);
-    CHECK(to_string(r.order).find("ill-conditioned") != std::string::npos);
   }
 }
