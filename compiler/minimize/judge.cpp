@@ -95,8 +95,6 @@ std::string reason(const Verdict& v, bool hardly) {
   return hardly ? "outputs hardly see it" : "no output sees it";
 }
 
-constexpr double kHides = 1e-11;  ///< of a size: what more rounding than that may hide counts
-
 /// Adds a cluster that is judged as a whole to the verdict.
 void add_whole(const WholeCluster& c, OrderVerdict& r) {
   const MinimalPart& p = c.part;

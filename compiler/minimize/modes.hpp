@@ -12,6 +12,9 @@
 /// files.
 namespace titop::modes {
 
+/// Relative rounding of a row or of a cluster above which it may hide an entry that counts.
+inline constexpr double kHides = 1e-11;
+
 /// Poles that are judged as a whole: multiple ones, those at 0, ill-conditioned ones.
 struct WholeCluster {
   double omega;  ///< mean |s| [rad/s]

@@ -11,8 +11,6 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kHides = 1e-11;  ///< of a row: what more rounding than that may hide counts
-
 using linalg::at;
 
 /// [B, N B, ...] up to the last power of N.
