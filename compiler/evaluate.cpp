@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <titop/compiler/evaluate.hpp>
-#include <titop/compiler/solve/backward_error.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/pole.hpp>
@@ -88,8 +87,7 @@ solve::Matrices<T> Evaluation<T>::respond(const T& s) {
 }
 
 template <class T>
-Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
-                          const Evaluation<std::complex<double>>* coarse)
+Evaluation<T>::Evaluation(Driven, const SystemData& data, const T& s, const solve::RowMatrix<T>& u)
     : data_(data),
       s_(s),
       u_(u),
@@ -99,10 +97,19 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
   for (const Input& i : data.graph().inputs)
     first_[at(i.signal)] = data.layout().known_first[at(i.signal)] - states;
   rhs_ = rows_.rhs(u_, first_);
-  if (coarse) {
-    refine(*coarse);
-    return;
-  }
+}
+
+template <class T>
+Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
+                          const Evaluation<std::complex<double>>& coarse)
+    : Evaluation(Driven(), data, s, u) {
+  refine(coarse);
+}
+
+template <class T>
+Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
+                          solve::Solution solution)
+    : Evaluation(Driven(), data, s, u) {
   factors_ = std::make_unique<const solve::Factors<T>>(data.skeleton->as_written().plan, rows_,
                                                        data.scale());
   if (const solve::Health h = factors_->health(); h.singular) {
@@ -114,7 +121,8 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
           "take an s of smaller or larger modulus, or other units");
     throw no_digit_left(data, z);
   }
-  unknowns_ = solve::settled(rows_, *factors_, rhs_);
+  unknowns_ = solution == solve::Solution::once ? factors_->solve(rhs_)
+                                                : solve::settled(rows_, *factors_, rhs_);
 }
 
 template <class T>
@@ -219,8 +227,7 @@ template <class T>
 solve::RowMatrix<T> Evaluation<T>::unknowns_of(const solve::RowMatrix<T>& own) const {
   std::vector<const Eigen::MatrixXd*> output;
   for (const auto& block : data_.numbers.blocks) output.push_back(&block->C);
-  return solve::settled(rows_, *factors_,
-                        rows_.rhs_of_states(own, data_.layout().known_first, output));
+  return factors_->solve(rows_.rhs_of_states(own, data_.layout().known_first, output));
 }
 
 template <class T>

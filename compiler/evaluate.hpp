@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <titop/compiler/response.hpp>
+#include <titop/compiler/solve/backward_error.hpp>
 #include <titop/compiler/system_data.hpp>
 
 namespace titop::detail {
@@ -36,13 +37,14 @@ solve::RowMatrix<T> unit_inputs(const SystemData& data) {
 template <class T>
 class Evaluation {
  public:
-  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block. The solution
-  /// is refined in T (solve/backward_error.hpp). With
-  /// `coarse`, the same s and u in double, its factors serve: iterative refinement,
-  /// blocks and residuals in T, until the outputs have settled or their changes shrink no more:
-  /// see refinement_error().
+  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block.
   Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
-             const Evaluation<std::complex<double>>* coarse = nullptr);
+             solve::Solution solution = solve::Solution::once);
+  /// `coarse`: the same s and u in double, whose factors serve. Iterative refinement, blocks and
+  /// residuals in T, until the outputs have settled or their changes shrink no more: see
+  /// refinement_error().
+  Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
+             const Evaluation<std::complex<double>>& coarse);
 
   /// signal size x columns.
   solve::RowMatrix<T> value(int signal) const;
@@ -93,6 +95,8 @@ class Evaluation {
   double weakest_pivot() const { return factors_->health().weakest; }
 
  private:
+  struct Driven {};  ///< rows and right-hand sides alone
+  Evaluation(Driven, const SystemData& data, const T& s, const solve::RowMatrix<T>& u);
   /// Outputs from unknowns; the states' own parts are added where they are given.
   solve::RowMatrix<T> outputs_of(const solve::RowMatrix<T>& unknowns,
                                  const solve::RowMatrix<T>& inputs,

@@ -1,6 +1,5 @@
 #include <titop/compiler/certify/steady_random.hpp>
 #include <titop/compiler/instant.hpp>
-#include <titop/compiler/solve/backward_error.hpp>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -9,8 +8,8 @@ namespace titop::detail {
 namespace {
 
 using linalg::at;
-
 using solve::RowMatrix;
+using solve::Solution;
 
 }  // namespace
 
@@ -25,13 +24,15 @@ solve::JointRows<double> real_rows(const Skeleton& k, const solve::Numbers& numb
   return {k.stage.graph, k.joint, numbers.coefficients, std::move(m)};
 }
 
-Instant::Instant(const SystemData& data, RowMatrix<double> known, const RowMatrix<double>& more)
+Instant::Instant(const SystemData& data, RowMatrix<double> known, const RowMatrix<double>& more,
+                 Solution solution)
     : data_(data),
       rows_(real_rows(*data.skeleton, data.numbers)),
       known_(std::move(known)),
       rhs_(rows_.rhs(known_, data.layout().known_first)) {
   if (more.size() > 0) rhs_ += more;
-  unknowns_ = solve::settled(rows_, *data.factors, rhs_);
+  unknowns_ = solution == Solution::once ? data.factors->solve(rhs_)
+                                         : solve::settled(rows_, *data.factors, rhs_);
 }
 
 void Instant::add_value(int signal, double* to) const {
@@ -147,7 +148,7 @@ Instant Instant::off_by(RowMatrix<double> off, const RowMatrix<double>& magnitud
 }
 
 Rates rates(const SystemData& d, const RowMatrix<double>& known, const RowMatrix<double>& more) {
-  const Instant now(d, known, more);
+  const Instant now(d, known, more, Solution::settled);
   return {now.xdot(), now.outputs()};
 }
 

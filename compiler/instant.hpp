@@ -1,6 +1,6 @@
 #pragma once
 
-#include <titop/compiler/solve/numbers.hpp>
+#include <titop/compiler/solve/backward_error.hpp>
 #include <titop/compiler/system_data.hpp>
 
 namespace titop::detail {
@@ -12,7 +12,8 @@ class Instant {
   /// known: [x; u] with the states of all blocks, column by column. `more`: added to the right-hand
   /// sides of the joint system, where it is not empty.
   Instant(const SystemData& data, solve::RowMatrix<double> known,
-          const solve::RowMatrix<double>& more = {});
+          const solve::RowMatrix<double>& more = {},
+          solve::Solution solution = solve::Solution::once);
 
   /// Of the joint system, in the order of Plan::first.
   const solve::RowMatrix<double>& unknowns() const { return unknowns_; }

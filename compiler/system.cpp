@@ -48,9 +48,9 @@ MatrixXcd rounded(const solve::RowMatrix<T>& m) {
 using detail::unit_inputs;
 
 template <class T>
-MatrixXcd transfer_in(const detail::SystemData& d, Double s) {
+MatrixXcd transfer_in(const detail::SystemData& d, Double s, solve::Solution solution) {
   return rounded<T>(
-      detail::Evaluation<T>(d, solve::Scalar<T>::from(s), unit_inputs<T>(d)).outputs());
+      detail::Evaluation<T>(d, solve::Scalar<T>::from(s), unit_inputs<T>(d), solution).outputs());
 }
 
 MatrixXcd standard_transfer(const detail::SystemData& d, Double s) {
@@ -63,7 +63,7 @@ MatrixXcd standard_transfer(const detail::SystemData& d, Double s) {
 template <class T>
 detail::Evaluation<T> refined(const detail::SystemData& d, Double s,
                               const detail::Evaluation<Double>& coarse) {
-  return {d, solve::Scalar<T>::from(s), unit_inputs<T>(d), &coarse};
+  return {d, solve::Scalar<T>::from(s), unit_inputs<T>(d), coarse};
 }
 
 /// An error of the outputs by more asks for a finer precision, or is refused.
@@ -100,7 +100,7 @@ MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
   }
   const auto twice = refined<Twofold>(d, s, plain);
   if (twice.refinement_error() <= kEnough) return rounded<Twofold>(twice.outputs());
-  return transfer_in<solve::Complex50>(d, s);
+  return transfer_in<solve::Complex50>(d, s, solve::Solution::settled);
 }
 
 /// In T, where double has no pivot; none where T has too few digits for it, or where the last place
@@ -109,7 +109,8 @@ template <class T>
 std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Double s) {
   constexpr double kNoDigit = 0.1;  // of the outputs, by the last place of the data
   try {
-    detail::Evaluation<T> point(d, solve::Scalar<T>::from(s), unit_inputs<T>(d));
+    detail::Evaluation<T> point(d, solve::Scalar<T>::from(s), unit_inputs<T>(d),
+                                solve::Solution::settled);
     const auto losses = point.losses();
     const double in_double =
         losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
@@ -126,7 +127,7 @@ std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Dou
 MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
   std::optional<detail::Evaluation<Double>> plain;
   try {
-    plain.emplace(d, s, unit_inputs<Double>(d));
+    plain.emplace(d, s, unit_inputs<Double>(d), solve::Solution::settled);
   } catch (const Error& error) {
     if (!error.has(Code::singular)) throw;
     auto G = transfer_without_pivot<Twofold>(d, s);
@@ -148,8 +149,8 @@ MatrixXcd transfer_with(const detail::SystemData& d, Double s, Precision precisi
     case Precision::standard: return standard_transfer(d, s);
     case Precision::refined: return refined_transfer<Extended>(d, s);
     case Precision::twofold: return refined_transfer<Twofold>(d, s);
-    case Precision::extended: return transfer_in<Extended>(d, s);
-    case Precision::digits50: return transfer_in<solve::Complex50>(d, s);
+    case Precision::extended: return transfer_in<Extended>(d, s, solve::Solution::once);
+    case Precision::digits50: return transfer_in<solve::Complex50>(d, s, solve::Solution::settled);
     case Precision::as_needed: return transfer_as_needed(d, s);
   }
   return {};

@@ -21,6 +21,9 @@ double backward_error(const Plan& plan, const RowMatrix<T>& residual,
 /// has up to 2 sqrt(2) units. Factors that have grown leave 0.8 to 0.99, whatever the precision.
 double backward_error_of_rounding(const Plan& plan, double epsilon);
 
+/// How a solution is found: as the factors give it, for those who measure their losses; or refined.
+enum class Solution { once, settled };
+
 /// Solves, and refines in the same arithmetic while the backward error is more than rounding leaves
 /// and becomes half of its last value, five times at most (as LAPACK's xGERFS does). The backward
 /// error alone refuses nothing: rows between unknowns that are 0 but for rounding, as at points
