@@ -85,7 +85,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Notes what is wrong with the matrices of one block.
+/// Collects the mistakes in the matrices of one block.
 class Inspection {
  public:
   explicit Inspection(const Block& block) : block_(block) {}
@@ -103,7 +103,7 @@ class Inspection {
   }
 
   void finite(const MatrixXd& m, const char* name) {
-    if (m.sum() * 0 == 0 || m.allFinite()) return;  // fast: what is not finite stays in a sum
+    if (m.sum() * 0 == 0 || m.allFinite()) return;  // fast: a non-finite term stays in a sum
     for (Index i = 0; i < m.rows(); ++i)
       for (Index j = 0; j < m.cols(); ++j)
         if (!std::isfinite(m(i, j))) {

@@ -31,14 +31,14 @@ class OutputRef {
   int index_;
 };
 
-/// What the user describes: blocks, equations on their ports, inputs, outputs, parameters.
+/// The user's description: blocks, equations on their ports, inputs, outputs, parameters.
 ///
-/// It owns its graph, moves, and does not copy (`clone()` does); handles and ports point into it.
-/// Mistakes in names and equations are noted and come out together in `compile`. Refused at once
-/// are data that make no block at all (a negative mass), by `add`, with the node's name, and what
-/// cannot be written down: a part that is not there, a signal of another diagram, rotations whose
-/// frames do not follow each other.
-/// Inputs, outputs and states of the model follow the order in which they are declared here.
+/// It owns its graph and can be moved, not copied (`clone()` copies); handles and ports point into
+/// it. Mistakes in names and equations are collected and thrown together by `compile`. Two kinds
+/// are thrown at once: invalid data of a block (a negative mass), by `add`, with the node's name;
+/// and expressions without meaning: a part that does not exist, a signal of another diagram, a
+/// product of rotations whose inner frames differ. Inputs, outputs and states of the model are in
+/// the order of their declaration here.
 class Diagram {
  public:
   explicit Diagram(std::string name);
@@ -57,7 +57,8 @@ class Diagram {
     return {graph_.get(), node};
   }
 
-  /// External input: `size` plain scalars that take the quantity and frame of what they drive.
+  /// External input: `size` plain scalars; quantity and frame are those of the signals that it
+  /// drives.
   InputRef input(std::string name, int size = 1,
                  std::source_location at = std::source_location::current());
 

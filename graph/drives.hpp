@@ -21,7 +21,7 @@ struct Drive {
   }
 };
 
-/// The drives of all channels, by what the user wrote (not by rows of blocks). O(equations).
+/// The drives of all channels, from the user's equations (not from the blocks' rows). O(equations).
 class Drives {
  public:
   explicit Drives(const Graph& graph);

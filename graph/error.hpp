@@ -8,8 +8,8 @@
 
 namespace titop {
 
-/// What kind of mistake it is. The printed names (`to_string`) are a stable interface: scripts may
-/// look for them. docs/errors.md has the table of all codes with causes and cures.
+/// Kind of a mistake. The printed names (`to_string`) are a stable interface: scripts may match
+/// them. docs/errors.md has the table of all codes with causes and cures.
 enum class Code {
   no_equation,     ///< a channel is driven by nobody
   two_equations,   ///< a port is set twice, or both sides of a channel are
@@ -27,7 +27,7 @@ enum class Code {
                    ///< through a block without kinematics, or whose internal forces are asked for
   bad_inertia,     ///< no rigid body has this inertia
   bad_modes,       ///< modal data that contradict themselves
-  bad_file,        ///< a file that cannot be read as what it should be
+  bad_file,        ///< a file that does not contain the expected data
   bad_value,       ///< a number outside its range
   singular,        ///< a matrix that must be inverted is singular, or s is a pole
 };
@@ -35,12 +35,12 @@ enum class Code {
 /// "no-equation", "two-equations", ...
 std::string_view to_string(Code code);
 
-/// One mistake: what is wrong, where, both sides, and the way out.
+/// One mistake: description, place, both sides of the equation, and the way out.
 struct Mistake {
   Code code;
-  std::string message;               ///< one line: the block, the port, what is wrong
+  std::string message;               ///< one line: the block, the port, the mistake
   std::vector<std::string> details;  ///< further lines: both sides, where they were written
-  std::string hint;                  ///< the way out: what to write instead
+  std::string hint;                  ///< the way out: the text to write instead
 };
 
 /// "examples/fig17.cpp:21"; the last two parts of the path only.

@@ -129,7 +129,7 @@ Pattern structure(const Graph& graph, const Term& term) {
 
 namespace {
 
-/// k where the matrix is k times the identity (what `lower` makes of a number), not-a-number else.
+/// k if the matrix is k times the identity (`lower` makes such a matrix of a number), else NaN.
 double multiple_of_identity(const MatrixXd& m) {
   if (m.rows() != m.cols() || m.size() == 0) return std::nan("");
   const double k = m(0, 0);

@@ -20,8 +20,7 @@ namespace titop {
 constexpr int kNoFrame = -1;       ///< scalars and plain signals: nothing to check
 constexpr int kUnknownFrame = -2;  ///< a nameless rotation or a matrix made it: listed in the log
 
-/// Which part of a signal: all of it, or the span of some orthonormal rows. Copies share what they
-/// hold.
+/// A part of a signal: all of it, or the span of orthonormal rows. Copies share their data.
 class Part {
  public:
   Part() = default;  ///< all of it

@@ -2,7 +2,7 @@
 
 #include <titop/graph/block.hpp>
 
-/// What follows from a body's modes.
+/// Matrices derived from a body's modes.
 namespace titop {
 
 /// A, B, C, D of the states [eta; etad], with the modal form itself. D is as symmetric as `rigid`.

@@ -18,8 +18,8 @@ struct Writer : SignalRef {
   using SignalRef::set;
 };
 
-/// The force of a body's parent point is what the body does to the outside; everywhere else it is
-/// what is done to the point.
+/// The force of a body's parent port acts from the body on its surroundings; that of every other
+/// port acts on the body.
 bool is_parent(const SignalRef& s) {
   if (!s.graph() || s.signal() < 0) return false;
   const Graph& g = *s.graph();

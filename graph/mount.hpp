@@ -23,7 +23,8 @@ void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location
 /// Fixes `body` (frame a, at its parent point P) to the child point `site` of another body (frame
 /// b): same motion there, wrench back. T_ba: components in frame a to components in frame b.
 ///     body.parent.accel = T_ba^-1 * site.accel;   site.force += T_ba * body.parent.reaction;
-/// What the user adds to body.parent.force acts on the body, from outside: `+= -U` is a wrench U.
+/// A wrench that the user adds to body.parent.force acts from outside on the body: `+= -U` is a
+/// wrench U.
 template <class Handle>
   requires HasParent<Handle, 6>
 void mount(const Handle& body, const DualPort<6>& site, const Rotation& T_ba = {},
@@ -34,7 +35,7 @@ void mount(const Handle& body, const DualPort<6>& site, const Rotation& T_ba = {
 /// The same on a single axis: body.parent.accel = site.accel; site.force += body.parent.reaction.
 /// The site may be one axis of a point with six degrees of freedom: `mount(z,
 /// hub.child("C").along(r))` hangs a spring-mass on it that moves along r, `.about(r)` one that
-/// turns about r (then with an inertia [kg m^2] for a mass). What it weighs is felt along r only.
+/// turns about r (then with an inertia [kg m^2] for a mass). Its weight is felt along r only.
 template <class Handle>
   requires HasParent<Handle, 1>
 void mount(const Handle& body, const DualPort<1>& site,
@@ -59,7 +60,7 @@ void mount_through(const Joint& joint, const std::string& name, const Handle& bo
 }  // namespace detail
 
 /// Joins two child points, `point` of a body (frame a) and `site` of another (frame b): same
-/// motion, opposite wrenches. What closes a chain: the bodies hang on something already.
+/// motion, opposite wrenches. Use it to close a chain: both bodies are mounted already.
 ///     point.accel = T_ba^-1 * site.accel;   site.force += -(T_ba * point.reaction);
 inline void weld(const DualPort<6>& point, const DualPort<6>& site, const Rotation& T_ba = {},
                  std::source_location at = std::source_location::current()) {
@@ -84,8 +85,8 @@ void ground(const Handle& body, std::source_location at = std::source_location::
   ground(body.parent, at);
 }
 
-/// Leaves free what is not driven at this point: the wrench there is what `+=` adds, 0 if nothing.
-/// After `b.parent.accel.linear = 0; release(b);` the body is pinned at P.
+/// Leaves the undriven directions of this point free: the wrench there is the sum of the terms
+/// added by `+=`, else 0. After `b.parent.accel.linear = 0; release(b);` the body is pinned at P.
 template <int N>
 void release(const DualPort<N>& point, std::source_location at = std::source_location::current()) {
   detail::drive_by_zero(point.force, /*accumulate=*/true, at);

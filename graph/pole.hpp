@@ -6,7 +6,7 @@
 
 namespace titop {
 
-/// Throws not_finite where s is not. `what` is asked for a value there: "demo", "the model".
+/// Throws not_finite if s is not finite. `what`: the evaluated object, "demo" or "the model".
 void check_finite(std::complex<double> s, std::string_view what);
 
 /// singular: at s there is no response. `what`: "a SpringMass", "mode 2 of a FlexibleBody".

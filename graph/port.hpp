@@ -4,7 +4,7 @@
 #include <string_view>
 #include <titop/graph/expr.hpp>
 
-/// Ports: what the user writes equations on. They point into their diagram, which must outlive
+/// Ports: the signals in the user's equations. They point into their diagram, which must outlive
 /// them; copying one rebinds nothing: `=` between two ports is always an equation.
 namespace titop {
 
@@ -173,13 +173,13 @@ class DualPort {
 
   Port<N, Kind::accel> accel;  ///< [m/s^2; rad/s^2]
   Port<N, Kind::force> force;  ///< [N; N m]
-  /// Force less what was added by `+=`: what a support that imposes the motion does by itself.
+  /// Force without the terms added by `+=`: the support force alone, where the motion is imposed.
   Reading reaction;
   /// Displacement from rest [m; rad], small, in the body's frame; the rotation is a rotation
-  /// vector. Where the states determine it (a chain to the ground) it costs nothing. Motions that
-  /// they do not hold, rigid ones and prescribed ones, get their integrators, for the linear and
-  /// the angular half, once for all points that move along: one per degree of freedom for a rate,
-  /// two for a position, 0 at the start.
+  /// vector. If the states determine it (a chain to the ground), it adds no state. For rigid and
+  /// prescribed motions, which the states do not determine, integrators are added, separately for
+  /// the linear and the angular half, once for all points that move together: one per degree of
+  /// freedom for a rate, two for a position, initial value 0.
   Reading position;
   Reading rate;  ///< velocity [m/s; rad/s], likewise
 

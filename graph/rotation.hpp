@@ -19,7 +19,7 @@ namespace titop {
 ///     Rotation T_bc = T_ba * T_ac;            // only b<-a after a<-c, where the names are known
 ///     Rotation T_ab = T_ba.inverse();
 ///
-/// Copies share what they hold.
+/// Copies share their data.
 class Rotation {
  public:
   Rotation() = default;  ///< identity, no names
@@ -30,8 +30,8 @@ class Rotation {
   /// so that a right angle is one. Throws not_a_rotation.
   static Rotation about(const Vector3d& axis, Value angle);
 
-  /// From its matrix. Throws not_a_rotation unless |T'T - I| <= 1e-9 and det T > 0; what is off
-  /// below that (digits of a file) is removed by the nearest rotation (polar decomposition).
+  /// From its matrix. Throws not_a_rotation unless |T'T - I| <= 1e-9 and det T > 0; a smaller
+  /// deviation (rounded digits of a file) is removed: nearest rotation by polar decomposition.
   static Rotation matrix(const Matrix3d& T);
 
   /// The same with frame names: `T.named("B", "A1")` takes components in A1 to components in B.

@@ -17,8 +17,8 @@ constexpr double kSingular = 10 * std::numeric_limits<double>::epsilon();
 /// Where one step of refinement changes the solution by more, it has no digit.
 constexpr double kNoDigit = 0.1;
 
-/// At 0, where poles are exactly, what rounding has left of one may pass for a pivot. (At another s
-/// it may as well be all there is: two dozen integrators in a row.)
+/// At s = 0, where many systems have exact poles, a pivot at rounding level counts as a pole. (At
+/// another s a pivot that small may be correct: two dozen integrators in a row.)
 bool pole_at_zero(const linalg::Solution& x) { return x.rcond < kSingular || x.moved > kNoDigit; }
 
 }  // namespace

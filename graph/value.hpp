@@ -28,9 +28,9 @@ class Value {
   double at(ParameterValues values) const {
     return index_ < 0 ? number_ : scale_ * values[static_cast<std::size_t>(index_)];
   }
-  /// The number given by the user, or what the parameter's nominal value makes of it.
+  /// The number given by the user, or the value at the parameter's nominal value.
   double nominal() const { return scale_ * number_; }
-  /// In front of the parameter: `-k` has -1, `2 * k` has 2.
+  /// Factor of the parameter: `-k` has -1, `2 * k` has 2.
   double scale() const { return scale_; }
   /// The parameter's own nominal value.
   double parameter() const { return number_; }

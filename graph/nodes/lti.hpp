@@ -4,9 +4,9 @@
 
 namespace titop {
 
-/// A controller or filter: xdot = A x + B in, out = C x + D in; plain signals without frames.
-/// Shapes are checked (code size), entries too (not_finite), when it is added. With A = 0, B = C =
-/// 1 and D = 0 it is an Integrator: what bodies hold already adds no states.
+/// A controller or filter: xdot = A x + B in, out = C x + D in; plain signals without frames. `add`
+/// checks shapes (code size) and entries (not_finite). With A = 0, B = C = 1 and D = 0 it is an
+/// Integrator; an integral that is already a state of a body adds no state.
 ///
 ///     auto K = d.add("K", Lti{.A = a, .B = b, .C = c, .D = Eigen::MatrixXd::Zero(1, 1)});
 ///     K.in = h.rate;   h.torque = K.out;
@@ -27,7 +27,7 @@ struct Lti {
 BlockPtr as_block(const Lti& spec);
 
 /// out = integral of in, `size` scalars, 0 at the start; one state per scalar.
-/// On an acceleration it gives a velocity, on a velocity a position: that is what `out` counts as.
+/// Integrates an acceleration to a velocity and a velocity to a position: `out` has that quantity.
 /// `add` throws size for a size below 1.
 struct Integrator {
   int size = 1;
