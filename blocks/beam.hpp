@@ -48,8 +48,9 @@ struct Beam {
   fe::ModeOptions modes = {};  ///< which modes are kept, residual vectors ("C", "P"), damping
 };
 
-/// Throws `bad_value`, all together, for what is not positive and finite, fewer than one element, a
-/// Poisson's ratio of -1 or less or above 0.5, and a material with both or neither of nu and G.
+/// Throws `bad_value`, all mistakes together: values that are not positive and finite, fewer than
+/// one element, a Poisson's ratio of -1 or less or above 0.5, a material with both or neither of nu
+/// and G.
 void check(const Beam& beam);
 
 /// Free mesh of elements + 1 points "0", "1", ... along x, six degrees of freedom each, and the

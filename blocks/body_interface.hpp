@@ -6,7 +6,7 @@
 #include <titop/graph/linalg/kinematics.hpp>
 #include <vector>
 
-/// What rigid and flexible bodies share: their ports, rigid direct terms and positions.
+/// Common to rigid and flexible bodies: ports, rigid direct terms and positions.
 namespace titop {
 
 /// Children in this order, then "parent"; states eta1 ... etaN, then their rates. Throws

@@ -52,7 +52,7 @@ void check_modes(const Modes& m) {
   }
 }
 
-/// The numbers of all modes with these in their place; number(value) is what a value stands for.
+/// The numbers of all modes with these values in place; number(value) converts a value.
 template <class Number>
 VectorXd replaced(VectorXd numbers, const std::map<int, Value>& values, Number number) {
   for (const auto& [mode, value] : values) {
@@ -127,9 +127,9 @@ void check_entries(const Matrix6& D_P) {
                   "masses and inertias about P must be 0 or more");
 }
 
-/// Finite-element models leave out some of the mass that turns, and put some of the rest a little
-/// beside where it is: a hundredth is seen. What is further from every rigid body has another
-/// cause.
+/// Relative deviation of D_P from a rigid body's mass matrix. Finite-element models neglect some
+/// rotary inertia and lump masses beside their place: about 0.01 is usual. A larger deviation than
+/// this is a mistake.
 constexpr double kRigidMisfit = 0.05;
 
 Matrix6 rotations_first(const Matrix6& D_P) {
@@ -185,7 +185,7 @@ void check_mass(const ModalData& d) {
       "check units and signs of L_P against D_P, or ModalData::digits");
 }
 
-/// What bodies of the same data share, whatever the values of their modes.
+/// Common to bodies of the same data, independent of the values of their modes.
 struct Shapes {
   std::vector<Vector3d> PC;
   Interface face;
@@ -221,7 +221,7 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   const std::shared_ptr<const Shapes>& shapes() const { return shapes_; }
   std::string_view type() const override { return "FlexibleBody"; }
   const Interface& interface() const override { return shapes_->face; }
-  /// All nodes of one body ask for the same: what was made last is kept, and shared.
+  /// All nodes of one body share the last result, which is cached.
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
     if (spec_->values.empty()) return made_;
     Modes m = modes_at(values);
@@ -310,8 +310,8 @@ ModalData without_modes(const RigidBody& body) {
   return d;
 }
 
-/// What make() makes; what is wrong with its data is told with the line that makes a body of them.
-/// In a scene file there is none, and the reader tells the place.
+/// Returns make(); adds the source line that creates the body to its mistakes. A body of a scene
+/// file has no source line: the reader adds its place.
 template <class Make>
 std::invoke_result_t<Make> told_at(const std::source_location& at, Make make) {
   try {
@@ -369,7 +369,7 @@ ModalData FlexibleBody::nominal() const {
 }
 
 BlockPtr as_block(const FlexibleBody& body) {
-  if (!body.spec().values.empty()) modes_of(body.spec(), nominal_of);  // refuses what is no body
+  if (!body.spec().values.empty()) modes_of(body.spec(), nominal_of);  // throws for invalid values
   return body.block();
 }
 

@@ -54,7 +54,7 @@ class FlexibleBody {
   /// Values that `body` has already stay where these are silent.
   FlexibleBody(const FlexibleBody& body, const ModeValues& values);
 
-  /// What its block is made from.
+  /// Data from which its block is made.
   struct Spec {
     std::shared_ptr<const ModalData> data;
     ModeValues values = {};

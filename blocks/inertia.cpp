@@ -9,7 +9,7 @@ namespace {
 
 using Entries = std::array<Value, 6>;
 
-/// The symmetric matrix of these entries; number(value) is what a value stands for.
+/// The symmetric matrix of these entries; number(value) converts a value.
 template <class Number>
 Matrix3d matrix_of(const Entries& entries, Number number) {
   const auto& [xx, yy, zz, xy, xz, yz] = entries;

@@ -6,15 +6,15 @@
 
 namespace titop {
 
-/// Joint that leaves any of the six degrees of freedom free, Hinge and Slide in one: a massless
+/// Joint with any of the six degrees of freedom free; Hinge and Slide are special cases: a massless
 /// block in the frame of the body that it carries, with the relative motion S q,
 ///
 ///     xdd_C = xdd_P + S qdd,   F_P = F_C,   Q = S' F_C
 ///
-/// one column of S per axis: [0; r] for about(r), [r; 0] for along(r). What is no axis is locked.
-/// The axes need not be orthogonal, but independent. States: the axes' positions q, then their
-/// rates; small motions about the posture given by the mounting rotation, in which C and P coincide
-/// (see Slide).
+/// one column of S per axis: [0; r] for about(r), [r; 0] for along(r). All other directions are
+/// locked. The axes must be independent, not necessarily orthogonal. States: the axes' positions q,
+/// then their rates; small motions about the posture given by the mounting rotation, in which C and
+/// P coincide (see Slide).
 ///
 /// Each axis is a port of its own by its name ("axis1", "axis2" ... where it has none). Signs as
 /// with Hinge and Slide: Q is the force or torque of the body ON its parent, so

@@ -23,8 +23,8 @@ Vector6 unit_scale(const Matrix6& D) {
 
 double noise_of(const ModalData& data) { return 10 * std::pow(10, -data.digits); }
 
-/// Shapes also carry the rounding of the eigenproblem they come from, some 1e-14 of their largest
-/// entry; what is smaller than this is no motion that anything could be driven by.
+/// Mode shapes also have the rounding error of their eigenproblem, about 1e-14 of the largest
+/// entry; entries below this bound count as zero motion.
 double shape_noise(const ModalData& data) { return std::max(noise_of(data), 1e-11); }
 
 /// How large its rows are: as the others of their kind; rotations also as the translations, by the

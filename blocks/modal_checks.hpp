@@ -7,8 +7,8 @@
 #include <titop/graph/linalg/kinematics.hpp>
 #include <vector>
 
-/// How good modal data are: what to look at before trusting a model made from them. Nothing here
-/// throws or changes anything; all measures but plain masses are independent of units.
+/// Quality of modal data, to be checked before a model is made from them. No function here throws
+/// or changes data; all measures but plain masses are independent of units.
 namespace titop {
 
 /// A 6 x 6 mass matrix read as that of a rigid body.
@@ -16,8 +16,8 @@ struct MassProperties {
   Vector3d mass = Vector3d::Zero();     ///< seen along x, y, z: three times the same [kg]
   Vector3d centre = Vector3d::Zero();   ///< centre of mass from P [m]
   Matrix3d inertia = Matrix3d::Zero();  ///< about the centre of mass [kg m^2]
-  double misfit = 0;  ///< largest |D_P - rigid_mass(...)| relative to sqrt(D_ii D_jj): 0 if D_P is
-                      ///< a rigid body's; what FE programs leave out shows here
+  double misfit = 0;  ///< largest |D_P - rigid_mass(...)| relative to sqrt(D_ii D_jj): 0 for a
+                      ///< rigid body; mass neglected by FE programs appears here
 };
 MassProperties mass_properties(const Matrix6& D_P);
 
@@ -54,11 +54,11 @@ std::string combination(const Vector6& w);
 /// those of shapes 1e-11 at least, the rounding of an eigenproblem.
 DataDigits data_digits(const ModalData& data);
 
-/// fraction(k, j) = L_P(k, j)^2 / D_P(j, j): what part of the rigid mass moves with mode k when P
-/// is accelerated along component j. Zero where D_P(j, j) is.
+/// fraction(k, j) = L_P(k, j)^2 / D_P(j, j): fraction of the rigid mass that moves with mode k if P
+/// is accelerated along component j. Zero if D_P(j, j) is.
 struct EffectiveMass {
   Eigen::MatrixXd fraction;         ///< N x 6
-  Vector6 total = Vector6::Zero();  ///< their sums; 1 - total is left to D_P0
+  Vector6 total = Vector6::Zero();  ///< their sums; 1 - total remains in D_P0
 };
 EffectiveMass effective_mass(const ModalData& data);
 

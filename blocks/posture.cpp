@@ -30,7 +30,7 @@ struct Loop {
   std::vector<Vector3d> axis = {};  ///< unit vectors
   std::vector<Matrix3d> turn = {};
   std::vector<Index> unknown = {};
-  double size = 0;  ///< [m], what translations are measured with
+  double size = 0;  ///< [m], length by which translations are scaled
 
   explicit Loop(const std::vector<LoopStep>& list) : steps(list) {
     for (std::size_t i = 0; i < list.size(); ++i) {

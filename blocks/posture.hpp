@@ -5,8 +5,8 @@
 #include <titop/graph/rotation.hpp>
 #include <vector>
 
-/// The posture of a mechanism: the angles and travels at which its links close a loop. They are
-/// what hinges, slides and mounts of a scene need as their mounting rotations.
+/// The posture of a mechanism: the angles and travels at which its links close a loop; they are the
+/// mounting rotations of the scene's hinges, slides and mounts.
 namespace titop {
 
 /// A joint of a loop, and the link that follows it.
@@ -25,9 +25,9 @@ struct Posture {
   /// `turn` of that.
   std::vector<Rotation> T_ba;
   /// From the end of the link before to the joint's other side, in the frame of the link before
-  /// [m]: what a slide is drawn out; 0 for a revolute joint.
+  /// [m]: the travel of a slide; 0 for a revolute joint.
   std::vector<Vector3d> offset;
-  double gap = 0, gap_angle = 0;  ///< what is left open [m], [rad]
+  double gap = 0, gap_angle = 0;  ///< remaining misclosure [m], [rad]
 };
 
 struct PostureOptions {
@@ -37,7 +37,7 @@ struct PostureOptions {
 };
 
 /// Closes a loop, planar or spatial: finds the values that are not given so that joint, link,
-/// joint, link ... ends where it began, in place and in orientation.
+/// joint, link ... ends where it began, in position and in orientation.
 ///
 ///     // four-bar: crank 0.3 m at 40 degrees, coupler, rocker, and the frame as the last link
 ///     const Vector3d z(0, 0, 1);
@@ -47,14 +47,14 @@ struct PostureOptions {
 ///                                {.joint = about(z), .link = {-1.0, 0, 0}}});
 ///     hinge(d, "B", coupler, crank.child, p.T_ba[1], z);
 ///
-/// Levenberg-Marquardt on the pose of the end, from the guesses. Of several postures it finds the
-/// one they lead to, angles within pi of them; where they lead nowhere, other starts are tried,
-/// ever farther away, always the same ones. O(iterations * joints^3): 50 microseconds for a
-/// four-bar from a fair guess, a hundred times that before it is refused.
+/// Levenberg-Marquardt on the pose of the end, from the guesses. Of several postures it returns the
+/// one to which the guesses converge, angles within pi of them; if they do not converge, it tries
+/// other starts, at increasing distance, always the same ones. O(iterations * joints^3): 50
+/// microseconds for a four-bar from a fair guess, a hundred times that before it is refused.
 ///
-/// Throws kinematic_loop if it cannot be closed (by how far, at best), singular if it is closed but
-/// can still move with what is given (which joints), bad_value for an empty loop or an axis without
-/// direction, not_finite.
+/// Throws kinematic_loop if the loop cannot be closed (with the smallest gap), singular if it is
+/// closed but can still move with the given values (which joints), bad_value for an empty loop or
+/// an axis without direction, not_finite.
 Posture posture(const std::vector<LoopStep>& loop, const PostureOptions& options = {});
 
 }  // namespace titop

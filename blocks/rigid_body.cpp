@@ -73,7 +73,7 @@ Interface body_interface(const std::vector<std::string>& children, int modes) {
 
 namespace {
 
-/// A mass matrix is symmetric; rounding of its data, or of what it was computed from, is not.
+/// A mass matrix is symmetric; rounding of its data may not be.
 Matrix6 symmetric(const Matrix6& D_P) { return (D_P + D_P.transpose()) / 2; }
 
 }  // namespace

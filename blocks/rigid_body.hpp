@@ -29,11 +29,11 @@ struct BodyHandle {
 ///     F_P   = sum over C of tau_CP' F_C - D_P xdd_P
 ///
 /// No states. Port order: children in the order given, then the parent. Frame: the node's own.
-/// Mass and inertia may be parameters. Refused (bad_inertia, not_finite) when it is added, and by
-/// `update` for new values: a negative mass, an inertia that is not
-/// symmetric, not positive, or that breaks the triangle inequality; (duplicate_name) two child
-/// points of one name. A mass or inertia of 0 is allowed: a massless link; what it does when freed
-/// is undetermined, and refused (improper) where an output or another block depends on it.
+/// Mass and inertia may be parameters. `add`, and `update` for new values, throw bad_inertia or
+/// not_finite for a negative mass and for an inertia that is not symmetric, not positive, or
+/// violates the triangle inequality; `add` throws duplicate_name for two child points of one name.
+/// A mass or inertia of 0 is allowed: a massless link; its motion when freed is undetermined, and
+/// `compile` throws improper if an output or another block depends on it.
 struct RigidBody {
   Value mass = 1;                          ///< [kg]
   Inertia inertia = Matrix3d::Identity();  ///< about the centre of mass A [kg m^2]

@@ -31,7 +31,7 @@ struct CalculixInterface {
   int node = 0;
 };
 
-/// What is read of a deck.
+/// Data read from a deck.
 struct CalculixDeck {
   struct RigidBody {
     int ref_node = 0;
@@ -42,20 +42,21 @@ struct CalculixDeck {
   std::vector<RigidBody> rigid_bodies;
 };
 
-/// Node positions and rigid bodies of a deck. Of all its keywords these two are needed; what would
-/// change them without being read here (`*INCLUDE`, parameters of `*NODE` other than NSET, a rigid
-/// body without REF NODE or ROT NODE) is refused. Throws `bad_file` with file and line for each
-/// mistake: not a node number, not a number, a coordinate missing, two positions for one node.
+/// Node positions and rigid bodies of a deck; all other keywords are ignored. Throws `bad_file`,
+/// with file and line of each mistake, for input that would change positions or rigid bodies but is
+/// not supported (`*INCLUDE`, parameters of `*NODE` other than NSET, a rigid body without REF NODE
+/// or ROT NODE), and for a bad node number, a bad number, a missing coordinate, two positions of
+/// one node.
 CalculixDeck read_calculix_deck(const std::filesystem::path& path);
 
 /// The free mesh: one point per node with degrees of freedom, named by its number; a rigid body is
 /// one point, named by its reference node, with displacements and rotations at that node's
-/// position. Nodes that depend on a rigid body have no row and are no points. M and K carry 14
+/// position. Nodes that depend on a rigid body have no row and are no points. M and K have 14
 /// digits.
 ///
-/// Throws `bad_file`, all mistakes of a file together, each with file, line, what was found and
-/// what was expected: not a number, not finite, too few or many columns, an index outside the rows
-/// of .dof, an entry given twice with different values, a row without diagonal entry (a truncated
+/// Throws `bad_file`, all mistakes of a file together, each with file, line, the text found and the
+/// text expected: not a number, not finite, too few or many columns, an index outside the rows of
+/// .dof, an entry given twice with different values, a row without diagonal entry (a truncated
 /// file, or fewer rows than .dof has), a label twice, a label without a node in the deck, an empty
 /// file, a last line without line end. Throws `unknown_name` for an interface that is not a point.
 /// Files with CR LF are read. Dense: 16 n^2 bytes for n rows.

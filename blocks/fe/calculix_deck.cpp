@@ -5,7 +5,7 @@
 #include <titop/blocks/fe/calculix.hpp>
 #include <titop/blocks/fe/text_file.hpp>
 
-/// read_calculix_deck: what the rows of the matrices mean.
+/// read_calculix_deck: node and degree of freedom of the matrices' rows.
 namespace titop::fe {
 
 namespace {

@@ -29,7 +29,7 @@ struct Entry {
   int line = 0;
 };
 
-/// What the file says about one name.
+/// The data in the file under one name.
 struct Found {
   int form = 0, type = 0;
   int digits = 0;  ///< of its longest number
@@ -79,8 +79,8 @@ int significant_digits(std::string_view text) {
   return count;
 }
 
-/// Decimal digits that the entries carry: as printed, but no more than their precision has. No
-/// program prints less than five: shorter numbers ("2.", "1.+6") are typed, and mean what they say.
+/// Decimal digits of the entries: as printed, at most those of their precision. No program prints
+/// fewer than five: shorter numbers ("2.", "1.+6") were typed by hand and are taken as exact.
 int digits_of(const Found& found) {
   const int most = found.type == 1 ? 7 : 15;
   return found.digits < 5 ? most : std::min(most, found.digits);

@@ -24,8 +24,8 @@ struct GridMatrices {
   double digits = 15;    ///< decimal digits that they carry
 };
 
-/// K and M whose rows are six for each of these grids, in this order, and then scalar points: what
-/// EXTSEOUT writes to OP4. Scalar points are numbered from 1. Throws size.
+/// K and M with six rows for each of these grids, in this order, then scalar points: the row order
+/// that EXTSEOUT writes to OP4. Scalar points are numbered from 1. Throws size.
 GridMatrices grid_matrices(std::string name, const Eigen::MatrixXd& K, const Eigen::MatrixXd& M,
                            const std::vector<int>& grids, double digits);
 
@@ -37,18 +37,18 @@ struct Grid {
   std::string name = {};  ///< empty: its number
 };
 
-/// The mesh, with all displacements turned into body axes. Scalar points are generalised
-/// coordinates, which rigid motion does not move. Units stay the data's: scale the modal data
+/// The mesh, with all displacements rotated into body axes. Scalar points are generalised
+/// coordinates, which rigid motion does not move. Units are those of the data: scale the modal data
 /// (`scaled`).
 ///
-/// Throws, all together, unknown_name for a grid that the matrices or the list have alone, and what
-/// `check(mesh)` throws. Cost n^2 per turned grid.
+/// Throws, all together, unknown_name for a grid that only the matrices or only the list contains,
+/// and the errors of `check(mesh)`. Cost n^2 per rotated grid.
 Mesh to_mesh(const GridMatrices& matrices, const std::vector<Grid>& grids);
 
-/// Rigid motions (n x 6) by statics, for data without positions: what all rows do when the six of
-/// this grid move by one each and nothing else is loaded, R = [1; -K_ff^-1 K_fr]. Their errors are
-/// those of K: digits over its condition. Throws bad_modes where the grid lacks a component or K_ff
-/// is not definite. Cost n^3 / 3.
+/// Rigid motions (n x 6) by statics, for data without positions: displacements of all rows for unit
+/// displacements of this grid's six components without other loads, R = [1; -K_ff^-1 K_fr].
+/// Relative error: that of K's digits times the condition number of K_ff. Throws bad_modes if the
+/// grid lacks a component or K_ff is not positive definite. Cost n^3 / 3.
 Eigen::MatrixXd rigid_motions_by_statics(const GridMatrices& matrices, int grid);
 
 }  // namespace titop::fe

@@ -45,9 +45,9 @@ struct Mesh {
   double digits = 15;                 ///< decimal digits that M and K carry
 };
 
-/// Throws, all together, what contradicts itself: sizes of M and K (`size`), entries that are not
-/// finite (`not_finite`), asymmetry beyond the data's digits, indices out of range (`bad_value`),
-/// names or degrees of freedom given twice (`duplicate_name`). Cost n^2.
+/// Throws, all together: inconsistent sizes of M and K (`size`), entries that are not finite
+/// (`not_finite`), asymmetry beyond the data's digits, indices out of range (`bad_value`), names or
+/// degrees of freedom given twice (`duplicate_name`). Cost n^2.
 void check(const Mesh& mesh);
 
 /// "17.x", "C.ry" (an interface's name before its point's). Row counts from 0.
@@ -61,11 +61,11 @@ std::size_t find_point(const Mesh& mesh, const std::string& name);
 /// or `bad_modes` where one of the six is missing.
 std::array<Eigen::Index, 6> interface_rows(const Mesh& mesh, const std::string& name);
 
-/// R (n x 6): what every degree of freedom does when the body moves rigidly by one unit of each
-/// component of P (translations, rotations). Rows of tau_{point,P}; P in the body's frame [m].
+/// R (n x 6): displacement of every degree of freedom per unit rigid motion in each component of P
+/// (translations, rotations). Rows of tau_{point,P}; P in the body's frame [m].
 Eigen::MatrixXd rigid_motions(const Mesh& mesh, const Vector3d& P);
 
-/// What to keep of the modes of a mesh.
+/// Selection of the modes of a mesh.
 struct ModeOptions {
   /// Number of lowest clamped modes; all of them if absent.
   std::optional<int> kept = {};
@@ -85,20 +85,22 @@ struct ModeOptions {
 ///     L_P = Phi'M_rf'    Phi_C = rows of Phi at C
 ///
 /// omega ascends. Residual vectors ([Craig 2006] ch. 17; usual in FE programs): X = K_ff^-1 B with
-/// B the unit wrenches at C (for the parent: M_rf'), made M-orthogonal to the kept modes, and modes
-/// of their own by the small eigenproblem (X'KX, X'MX). They are thus M- and K-orthogonal to all
-/// the rest and (14) holds as it is. Directions in which the kept modes leave nothing are dropped.
+/// B the unit wrenches at C (for the parent: M_rf'), made M-orthogonal to the kept modes, then
+/// turned into modes by the small eigenproblem (X'KX, X'MX). They are thus M- and K-orthogonal to
+/// all other modes and (14) applies unchanged. Directions in the span of the kept modes are
+/// dropped.
 ///
-/// Massless degrees of freedom (M_ff singular) have infinite modes. With all modes these are
-/// condensed exactly, which needs that no child moves in them; with a number of kept modes they are
-/// cut like other high modes, and residual vectors hold their static part.
+/// Massless degrees of freedom (M_ff singular) have infinite modes. If all modes are kept, these
+/// are condensed exactly, which requires that no child moves in them; if a number of modes is
+/// given, they are truncated like other high modes, and residual vectors contain their static part.
 ///
-/// Throws what `check` and `interface_rows` throw; `duplicate_name` for a child named twice;
-/// `bad_modes` where K resists rigid motion by more than 1e-6 of its terms (or 100 units of the
-/// last of its digits; `rigid_stiffness`): data of a held structure, or positions in another unit;
-/// where K clamped at the parent is not definite (a mechanism: names a degree of freedom), M not
-/// semidefinite, or all modes are asked and a child has a massless degree of freedom; `bad_value`
-/// for more modes than there are; `size` for a wrong number of damping ratios. Cost about 20 n^3.
+/// Throws the errors of `check` and `interface_rows`; `duplicate_name` for a child named twice;
+/// `bad_modes` if K resists rigid motion by more than 1e-6 of its terms (or 100 units of its last
+/// digit; `rigid_stiffness`): data of a supported structure, or positions in another unit; if K
+/// clamped at the parent is not positive definite (a mechanism: names a degree of freedom), if M is
+/// not positive semidefinite, or if all modes are kept and a child has a massless degree of
+/// freedom; `bad_value` for more modes than there are; `size` for a wrong number of damping ratios.
+/// Cost about 20 n^3.
 ModalData modal_data(const Mesh& mesh, const std::string& parent,
                      const std::vector<std::string>& children, const ModeOptions& options = {});
 

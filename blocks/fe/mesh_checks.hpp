@@ -10,7 +10,7 @@
 namespace titop::fe {
 
 struct MeshReport {
-  MassProperties mass;  ///< from R'MR about the origin: what M weighs
+  MassProperties mass;  ///< from R'MR about the origin: mass properties of M
   /// From the points alone: the mass that M puts on each (its row sums over one direction) at the
   /// point's position. The inertia leaves out the points' own rotary inertia and the distribution
   /// between points; mass and centre must agree with `mass`. Absent where some point has not the
@@ -31,20 +31,20 @@ struct RigidStiffness {
 /// K must not be empty. Cost 12 n^2.
 RigidStiffness rigid_stiffness(const Mesh& mesh);
 
-/// Checks the mesh (throws what `check` throws) and weighs it. Cost 12 n^2.
+/// Checks the mesh and computes its mass properties. Throws the errors of `check`. Cost 12 n^2.
 MeshReport mesh_report(const Mesh& mesh);
 
 /// One fact per line.
 std::string to_string(const MeshReport& report);
 
-/// What the digits of M and K cost: the standard deviation of each clamped omega, relative, if
-/// every entry of both is off by 10^-digits of itself at random,
+/// Effect of rounded digits of M and K: relative standard deviation of each clamped omega if every
+/// entry of both has a random relative error of 10^-digits,
 ///
 ///     d(omega^2) = v' dK v - omega^2 v' dM v,    v'Mv = 1
 ///
 /// Modes clamped at `parent`, the `count` lowest. Large for slender solid meshes, whose bending
-/// stiffness is a small difference of large entries. Throws what `check`, `interface_rows` and
-/// `eigh_lowest` throw. Cost 20 n^3.
+/// stiffness is a small difference of large entries. Throws the errors of `check`, `interface_rows`
+/// and `eigh_lowest`. Cost 20 n^3.
 Eigen::VectorXd omega_uncertainty(const Mesh& mesh, const std::string& parent, int count);
 
 }  // namespace titop::fe

@@ -54,8 +54,8 @@ class ModalReader {
               fmt::format("{} once: line {} has it", word, at->second));
   }
 
-  /// So many numbers behind the first `skip` fields; empty where they are not there. `what`: all
-  /// that stands behind the keyword.
+  /// The `count` numbers after the first `skip` fields; empty, with a mistake noted, if their
+  /// number differs. `what`: all fields expected after the keyword.
   std::vector<double> numbers(int line, const Fields& fields, std::size_t skip, std::size_t count,
                               const std::string& what) {
     if (fields.size() != skip + count) {
@@ -144,7 +144,7 @@ class ModalReader {
 
   const TextFile& file_;
   FileMistakes mistakes_;
-  std::map<std::string, int> first_;  ///< lines of what may come once
+  std::map<std::string, int> first_;  ///< lines of entries that are allowed once
   ModalData data_;
   DataUnits units_;
   double at_P_ = 0;
@@ -175,7 +175,7 @@ void require_sizes(const ModalData& data) {
     check("Phi_C of child " + c.name, c.Phi_C.rows(), c.Phi_C.cols(), 6, n);
 }
 
-/// What ends a field or a line cannot stand in one, and blanks around it are not read.
+/// No field or line separators, and no blanks at the ends, which the reader trims.
 void require_writable(const std::string& name) {
   if (!name.empty() && name.find_first_of(",#\r\n") == std::string::npos && trim(name) == name)
     return;

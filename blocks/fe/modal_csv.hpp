@@ -7,7 +7,7 @@
 /// Modal data typed by hand or written by scripts, as text.
 namespace titop::fe {
 
-/// Reads a file of lines `keyword, number, ...`; empty lines and what follows a # are skipped.
+/// Reads a file of lines `keyword, number, ...`; empty lines and text after a # are skipped.
 ///
 ///     units, 0.001, 1, 1            # of length [m], mass [kg], time [s]; SI if left out
 ///     digits, 7                     # that the data carry; 15 if left out
@@ -20,12 +20,11 @@ namespace titop::fe {
 /// displacements and rotations there. A line `modal mass, m` behind a mode brings it to modal mass
 /// 1 (its L_P and Phi are divided by sqrt(m)): for modes normalised to MAX. Children precede modes.
 ///
-/// The data come out in SI units and unchecked but for their form: `FlexibleBody` and
-/// `modal_report` judge them. Throws bad_file, all mistakes together, with file, line and what was
-/// expected; also for what may come once
-/// and comes twice (units, digits, at P, a child's name, a mode's modal mass), and for a last line
-/// without line end, whose number may be cut short. A file cut at the end of a line looks whole:
-/// modes that are missing are not missed.
+/// The data are in SI units; only the format is checked: `FlexibleBody` and `modal_report` check
+/// the values. Throws bad_file, all mistakes together, with file, line and the expected text; also
+/// for a repeated entry that is allowed once (units, digits, at P, a child's name, a mode's modal
+/// mass), and for a last line without line end, whose number may be truncated. A file that is
+/// truncated at the end of a line looks complete: missing modes are not detected.
 ModalData read_modal_csv(const std::filesystem::path& path);
 
 /// The same data as such a text, in SI units; reading it gives them back to the last bit. Throws

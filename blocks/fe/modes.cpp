@@ -19,7 +19,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// What K resists a rigid motion by beside its digits is no structure's own.
+/// Throws bad_modes if K resists rigid motion by more than its digits explain.
 void require_free(const Mesh& mesh) {
   const RigidStiffness held = rigid_stiffness(mesh);
   const double noise = std::max(1e-6, 100 * std::pow(10, -mesh.digits));
@@ -70,8 +70,8 @@ std::string name_of(const Clamped& c, Index row) {
               "have no natural frequency");
 }
 
-/// A mode whose strain energy is within the rounding of K is a mechanism that slipped through the
-/// Cholesky factorization. |v|'|K||v| is what v'Kv = lambda is a small difference of.
+/// A mode whose strain energy is within the rounding of K is a mechanism that the Cholesky
+/// factorization did not detect. The terms of v'Kv = lambda sum to |v|'|K||v| and cancel.
 void require_stiffness(const Clamped& c, const SymmetricModes& modes) {
   const MatrixXd size = c.K.cwiseAbs() * modes.V.cwiseAbs();
   for (Index k = 0; k < modes.lambda.size(); ++k) {
@@ -204,8 +204,8 @@ MatrixXd independent(MatrixXd X, const MatrixXd& M) {
   return Q;
 }
 
-/// The loads are freed of the kept modes before the solve, not only their responses after it: what
-/// is left of a response may be 1e-10 of it.
+/// The kept modes are removed from the loads before the solve, not only from the responses after
+/// it: the remaining response may be 1e-10 of the whole.
 SymmetricModes residual_modes(const Clamped& c, const SymmetricModes& kept, const MatrixXd& loads) {
   const VectorXd weight =
       c.M.diagonal().unaryExpr([](double m) { return m > 0 ? 1 / std::sqrt(m) : 1.0; });
@@ -277,7 +277,7 @@ ModalData modal_data(const Mesh& mesh, const std::string& parent,
   require_distinct(mesh, options.residual);
   const Clamped c = clamp(mesh, parent);
   SymmetricModes modes = clamped_modes(c, children, options.kept);
-  require_free(mesh);  // after what would be said of a mechanism
+  require_free(mesh);  // after the check for mechanisms
   const Index kept = modes.lambda.size();
   if (!options.residual.empty()) add_residual(c, parent, options, modes);
 

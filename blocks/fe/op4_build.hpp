@@ -8,7 +8,7 @@
 #include <string_view>
 #include <titop/blocks/fe/op4.hpp>
 
-/// What the readers of the two forms of OP4, text and binary, share.
+/// Common to the readers of text and binary OP4.
 namespace titop::fe::detail {
 
 /// Throws bad_file for this place of the file.
@@ -23,14 +23,14 @@ struct Op4Header {
   bool bigmat = false;  ///< rows was negative, or 65536 and more
 };
 
-/// What a file has taken so far.
+/// Matrices read so far from a file.
 struct Op4Taken {
   std::set<std::string> names;
   long long entries = 0;
 };
 
-/// The empty matrix of this header; refuses, before it takes the memory, what cannot be one, a name
-/// that the file had before, and what is too much of all.
+/// The empty matrix of this header. Before it allocates, it refuses invalid headers, a repeated
+/// name and too many entries in total.
 Op4Matrix make_matrix(const Op4Header& header, Op4Taken& taken, const Refuse& refuse);
 
 /// Puts values into a column from a row on (both from 0); refuses rows outside, values that are not

@@ -6,8 +6,8 @@
 #include <titop/graph/error.hpp>
 #include <vector>
 
-/// What readers of text files share: lines with their numbers, numbers that do not depend on the
-/// locale, mistakes that name file and line.
+/// Common to readers of text files: lines with their numbers, numbers independent of the locale,
+/// mistakes with file and line.
 namespace titop::fe {
 
 /// A line without its line end (LF or CRLF); number counts from 1.
@@ -43,8 +43,8 @@ std::string_view trim(std::string_view text);
 bool parse(std::string_view text, double& value);
 bool parse(std::string_view text, int& value);
 
-/// `bad_file`, "beam.sti:12: found ..., expected ...": what is expected is the way out. Line 0: the
-/// file as a whole.
+/// `bad_file`, "beam.sti:12: found ..., expected ...": the expected text is the way out. Line 0:
+/// the whole file.
 Mistake bad_line(const TextFile& file, int line, const std::string& found,
                  const std::string& expected);
 

@@ -24,7 +24,7 @@ const Spec& spec_of(const Block& block) {
   return dynamic_cast<const Specified<Spec>&>(block).spec();
 }
 
-/// What reads and writes one type.
+/// Writer and reader of one type.
 struct Type {
   const char* name;
   void (*write)(const Block&, const WriteValue&, const NameBody&, Json&);

@@ -5,7 +5,7 @@
 #include <titop/blocks/scene/json.hpp>
 #include <titop/graph/block.hpp>
 
-/// Blocks by type name: what they were made from, as JSON, and back.
+/// Blocks by type name: their specs as JSON, and back.
 namespace titop::scene {
 
 /// Numbers that may be parameters.
@@ -19,7 +19,7 @@ using FindBody = std::function<FlexibleBody(const Place&)>;
 /// own.
 void write_block(const Block& block, const WriteValue& value, const NameBody& body, Json& json);
 
-/// The block of this place. Throws bad_file, and what as_block throws.
+/// The block of this place. Throws bad_file, and the errors of as_block.
 BlockPtr read_block(const Place& place, const ReadValue& value, const FindBody& body);
 
 /// Shared modal data.

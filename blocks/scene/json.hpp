@@ -7,7 +7,7 @@
 #include <titop/graph/error.hpp>
 #include <vector>
 
-/// What the writer and the reader of scenes share.
+/// Common to the writer and the reader of scenes.
 namespace titop::scene {
 
 using Json = nlohmann::ordered_json;
@@ -45,7 +45,7 @@ class Place {
   std::vector<std::string> keys() const;  ///< of an object, in the file's order
   std::string where() const;              ///< "cart.json: blocks[3]"
   [[noreturn]] void refuse(const std::string& expected) const;
-  /// What is wrong with the numbers of `name`, which stand here.
+  /// Rethrows the mistakes in the numbers of `name`, with this place.
   [[noreturn]] void rethrow(const Error& error, const std::string& name) const;
 
  private:

@@ -16,7 +16,7 @@ using scene::Place;
 
 namespace {
 
-/// What is read has no source line; later messages tell its place in the file.
+/// No source line: later messages give the place in the file instead.
 constexpr std::source_location kRead = {};
 
 /// A block that is made already.
@@ -55,7 +55,7 @@ class Reader {
     for (std::size_t i = 0; i < list.size(); ++i) read(list.item(i));
   }
 
-  /// What make() makes; what is wrong with its numbers is told with its place and name.
+  /// Returns make(); adds place and name to mistakes in its numbers.
   template <class Make>
   static std::invoke_result_t<Make> named(const Place& place, const std::string& name, Make make) {
     try {

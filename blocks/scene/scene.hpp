@@ -34,8 +34,8 @@ std::string scene_json(const Diagram& diagram);
 
 /// The diagram of such a text; `file` is for messages. Compiling it gives the same model, to the
 /// last bit, as compiling the diagram that was written. Throws bad_file, with the place in the text
-/// ("blocks[3].mass"), what was found and what was expected; what `Diagram::add` throws for data
-/// that make no block. Later messages have "equations[3] of the scene file" for a source line.
+/// ("blocks[3].mass"), the text found and the text expected; and the errors of `Diagram::add` for
+/// invalid blocks. Later messages have "equations[3] of the scene file" for a source line.
 Diagram parse_scene(std::string_view json, const std::string& file = "scene");
 
 /// The same with files. Throw bad_file.
