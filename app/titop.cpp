@@ -52,7 +52,7 @@ exit code: 0 done, 1 refused (errors on stderr), 2 not understood,
            3 certify: something does not hold (the lines that begin with FAULT)
 )";
 
-/// What was typed.
+/// The command line.
 struct Arguments {
   std::vector<std::string> words;  ///< without options
   bool compiled = false, diagrams = true;
@@ -66,12 +66,12 @@ struct Arguments {
   int minimize_up_to = Options{}.minimize_up_to;
 };
 
-/// Not understood: what is wrong with the words.
+/// The command line is not valid: description of the mistake.
 struct Misuse {
   std::string what;
 };
 
-constexpr int kMost = 1'000'000;  ///< of what is counted
+constexpr int kMost = 1'000'000;  ///< upper limit of counts
 
 double number(const std::string& option, const std::string& text) {
   double value = 0;

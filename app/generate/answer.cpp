@@ -14,7 +14,7 @@ using Complex = std::complex<double>;
 
 constexpr std::uint64_t kNextSeed = 1000003;
 
-/// Eigenvalues with Im s >= 0, slow ones first; what 100 digits cannot tell from 0 is 0.
+/// Eigenvalues with Im s >= 0, slow ones first; 0 if at the rounding level of 100 digits.
 std::vector<Complex> poles(const Table<Digits>& A) {
   const auto n = static_cast<Eigen::Index>(A.rows());
   if (n == 0) return {};

@@ -8,7 +8,7 @@
 namespace titop::generate {
 namespace {
 
-/// Which columns belong to what: coordinates that are free, those of an imposed base, those held.
+/// Columns by kind: free coordinates, coordinates of an imposed base, locked coordinates.
 struct Columns {
   std::vector<std::size_t> free, imposed, held;
   std::size_t count = 0;
@@ -156,7 +156,7 @@ class Assembly {
     load(pushed, input(l.input));
   }
 
-  /// What the controller pushes against.
+  /// Reaction of the controller's force.
   void add(const Control& c, std::size_t column) {
     const bool joint = c.law == Control::Law::position &&
                        plan_.blocks[static_cast<std::size_t>(c.block)].joint.has_value();
@@ -255,7 +255,8 @@ class Assembly {
     if (r.of == Reading::Of::relative) return q_.rows({own_[block]});
     if (r.of == Reading::Of::reaction) return holding(r.point);
     if (r.of == Reading::Of::support) {
-      // What must act on the base beside all else; the port is what the body does there.
+      // Force required on the base beside all other forces; the port has the force that the body
+      // exerts there.
       std::vector<std::size_t> base;
       for (int i = 0; i < plan_.blocks[block].size(); ++i)
         base.push_back(first_[block] + static_cast<std::size_t>(i));

@@ -17,8 +17,8 @@ inline constexpr const char* kUsage =
       --mistake CODE                     planted: no-equation, frame, improper ...
 )";
 
-/// What stands behind `titop generate`. Throws std::invalid_argument for words that it does not
-/// understand, Error (bad_file) where it cannot write.
+/// `titop generate`. Throws std::invalid_argument for unknown words, Error (bad_file) if it cannot
+/// write.
 void command(const std::vector<std::string>& words);
 
 }  // namespace titop::generate

@@ -3,8 +3,8 @@
 #include "generate/assembly.hpp"
 #include "generate/tables.hpp"
 
-/// Controllers around a motion: v = Cc xc + Dc e, where e = Ex x + Eu u + Ev v is what they measure
-/// and v what they push with. e is solved for and put in everywhere.
+/// Controllers around a motion: v = Cc xc + Dc e, with the measurements e = Ex x + Eu u + Ev v and
+/// the forces v. Solves for v and substitutes it everywhere.
 namespace titop::generate {
 
 template <class S>
@@ -16,7 +16,7 @@ class Controls {
     for (const Control& c : list) first_.push_back(total_), total_ += c.A.size();
   }
 
-  /// `motion`: xdot; `y`, `e`: outputs and what is measured, one row for each controller.
+  /// `motion`: xdot; `y`, `e`: outputs and measurements, one row for each controller.
   FirstOrder<S> around(const Table<S>& motion, const Table<S>& y, const Table<S>& e) {
     solve_loop(e);
     Table<S> all = closed(motion);

@@ -171,7 +171,7 @@ class Artist {
       read({.of = Reading::Of::acceleration, .point = {i, "child"}}, 1);
   }
 
-  /// Of order 1 or 2. What it adds to the mass is positive, so that the loop is never singular.
+  /// Of order 1 or 2. Its contribution to the mass is positive, so that the loop is never singular.
   Control control(bool acceleration, int block) {
     Control c{.name = fresh("K"), .block = block};
     c.law = acceleration ? Control::Law::acceleration : Control::Law::position;
@@ -216,7 +216,7 @@ class Artist {
            3);
   }
 
-  /// Everything acts and is read at the first body, so that what hangs there twice moves alike.
+  /// All loads and outputs at the first body, so that its twin branches move alike.
   void outside_only() {
     plan_.loads.push_back({input(6), {bodies_[0], "T"}});
     read({.of = Reading::Of::acceleration, .point = {bodies_[0], "T"}}, 6);

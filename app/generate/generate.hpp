@@ -37,15 +37,14 @@ Plan draw(const Options& options);
 /// The scene file. Rows of lists stand on one line each.
 Json scene(const Plan& plan);
 
-/// What is known of it: {"order", "poles", "transfer"}. Order: of the minimal model, counted modulo
-/// a prime and again in 100 digits. Poles: with Im s >= 0, zeros as [0, 0]. Throws
-/// std::domain_error where the equations have no solution, std::logic_error where the two orders
-/// differ.
+/// The expected values: {"order", "poles", "transfer"}. Order: of the minimal model, computed
+/// modulo a prime and again in 100 digits. Poles: with Im s >= 0, zeros as [0, 0]. Throws
+/// std::domain_error if the equations have no solution, std::logic_error if the two orders differ.
 Json answer(const Plan& plan, std::uint64_t seed);
 
-/// Plants a mistake of this code into the scene; the answer is {"refused": {"code", "names"}}: what
-/// the message must name. Throws std::invalid_argument for a code that cannot be planted,
-/// std::domain_error for a scene that has no place for it, with what it would take.
+/// Plants a mistake of this code into the scene; the answer is {"refused": {"code", "names"}}: the
+/// names that the message must contain. Throws std::invalid_argument for a code that cannot be
+/// planted, std::domain_error for a scene without a place for it, with the option that brings one.
 struct Spoilt {
   Json scene, answer;
 };
@@ -58,9 +57,9 @@ bool needs_space(const std::string& code);
 struct Generated {
   Json scene, answer;
 };
-/// Draws with this seed, and with others after it where the scene has no answer, numbers too long
-/// for a Ratio, or no place for the mistake. Throws std::invalid_argument where a hundred have
-/// none, with what the last of them lacked.
+/// Draws with this seed, and with the next ones while the scene has no answer, numbers too long for
+/// a Ratio, or no place for the mistake. Throws std::invalid_argument if a hundred seeds fail, with
+/// the reason of the last.
 Generated generate(const Options& options);
 std::string test_source(const Generated& generated, const std::string& scene_file);
 

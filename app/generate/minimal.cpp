@@ -42,7 +42,7 @@ struct Krylov {
   }
 };
 
-/// The model on what its inputs move.
+/// The model restricted to its controllable subspace.
 template <class S>
 FirstOrder<S> moved(const FirstOrder<S>& m) {
   const Krylov<S> space(m.A, m.B);

@@ -116,7 +116,7 @@ struct Reading {
   enum class Of { acceleration, position, relative, support, reaction };
   std::string output = {};
   Of of = Of::acceleration;
-  Point point = {};  ///< `relative`: block; `support`: its parent; `reaction`: what holds it
+  Point point = {};  ///< `relative`: block; `support`: its parent; `reaction`: held point
   Part part = {};
 };
 
@@ -127,7 +127,7 @@ struct Named {
 
 struct Plan {
   std::string name;
-  std::vector<Block> blocks;  ///< what a block hangs on comes before it
+  std::vector<Block> blocks;  ///< a block comes after the block on which it is mounted
   std::vector<Control> controls;
   std::vector<Closure> closures;
   std::vector<Load> loads;

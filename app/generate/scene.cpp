@@ -225,7 +225,7 @@ class Writer {
       equation(signal(c.at, "force"), Json::array({term(out, -1)}), {}, true);
   }
 
-  /// What holds `point`: its acceleration is given, and the other side feels the reaction.
+  /// A closure at `point`: its acceleration is given, and the reaction acts on the other side.
   void add(const Closure& c) {
     const Json accel = signal(c.point, "accel"), force = signal(c.point, "force");
     if (!c.with) return equation(accel, Json::array());

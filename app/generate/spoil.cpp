@@ -4,8 +4,8 @@
 
 #include "generate/generate.hpp"
 
-/// One mistake, planted into a scene that was right. What the message must name follows from where
-/// it was planted. What a scene lacks for it is said with the option that brings it.
+/// Plants one mistake into a valid scene. The place determines the names that the message must
+/// contain. If the scene has no place for it, the exception names the option that brings one.
 namespace titop::generate {
 namespace {
 

@@ -10,9 +10,9 @@
 
 #include "generate/ratio.hpp"
 
-/// What little linear algebra the manual assembly needs, in two kinds of numbers: 100 digits, and
-/// the whole numbers modulo a prime, in which ranks are exact (a rank of the true fractions is lost
-/// only if the prime divides a minor: about once in 1e8).
+/// Linear algebra of the manual assembly, in two kinds of numbers: 100 digits, and integers modulo
+/// a prime, in which ranks are exact (the rank of the true fractions is lost only if the prime
+/// divides a minor: about once in 1e8).
 namespace titop::generate {
 
 using Digits = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<100>,
@@ -48,7 +48,7 @@ class Mod {
   std::uint64_t value_ = 0;
 };
 
-/// Size of a pivot; 0 for what is nothing but rounding of 100 digits.
+/// Size of a pivot; 0 at the rounding level of 100 digits.
 inline double magnitude(const Digits& x) {
   const double size = std::abs(static_cast<double>(x));
   return size > 1e-50 ? size : 0;
@@ -174,7 +174,7 @@ std::size_t rank(Table<S> A) {
   return reduce(A, A.cols()).size();
 }
 
-/// Columns that span what A sends to 0.
+/// Columns that span the null space of A.
 template <class S>
 Table<S> null_space(Table<S> A) {
   const std::vector<std::size_t> pivots = reduce(A, A.cols());

@@ -3,7 +3,7 @@
 #include "generate/plan.hpp"
 #include "generate/table.hpp"
 
-/// What a plan says, as tables of any exact scalar.
+/// The data of a plan as tables of any exact scalar.
 namespace titop::generate {
 
 template <class S>
@@ -38,7 +38,7 @@ Table<S> dual(const Mat3& T) {
   return t;
 }
 
-/// tau_CP: what a rigid body does at C when P moves; PC from P to C.
+/// tau_CP: motion of a rigid body at C per unit motion of P; PC from P to C.
 template <class S>
 Table<S> tau(const Vec3& PC) {
   Table<S> t = identity<S>(6);
