@@ -49,7 +49,7 @@ RigidBody make_bus(const Vector3d& PA, const Vector3d& C1, const Vector3d& C2) {
 
 // --- the same by hand ----------------------------------------------------------------------------
 
-/// Coordinates: motion of P (6), then what the nodes 1 and 2 of each wing do relative to it (12
+/// Coordinates: motion of P (6), then the motion of nodes 1 and 2 of each wing relative to it (12
 /// each, in the wing's frame).
 by_hand::Structure by_hand_spacecraft(const Vector3d& PA, const std::array<Vector3d, 2>& C,
                                       const std::array<Eigen::Matrix3d, 2>& T_ba) {

@@ -43,7 +43,7 @@ Diagram robot(Mechanism kind) {
     case Mechanism::free: elbow.torque = 0; break;
     case Mechanism::driven:
       elbow.accel = d.input("thetadd");  // the angle follows a given motion ...
-      d.output("C_m") = elbow.torque;    // ... and this is what it costs
+      d.output("C_m") = elbow.torque;    // ... and this torque is required
       break;
     case Mechanism::motor:  // gear and friction, and the motor's torque u
       elbow.torque = k * elbow.angle + c * elbow.rate - d.input("u");
@@ -93,8 +93,8 @@ by_hand::MatrixXcd hand_transfer(Mechanism kind, by_hand::Complex s) {
   by_hand::Structure a = by_hand_robot();
   if (kind == Mechanism::motor) a.K(0, 0) += k, a.D(0, 0) += c;
   if (kind == Mechanism::driven) {
-    // theta is given: the other coordinates feel -M_q,theta thetadd, and the joint's torque on the
-    // forearm, -C_m, is what the row of theta asks for.
+    // theta is given: the other coordinates feel -M_q,theta thetadd, and the row of theta gives the
+    // joint's torque on the forearm, -C_m.
     by_hand::Structure q = by_hand::empty(24, 7, 7);
     q.M = a.M.bottomRightCorner(24, 24);
     q.K = a.K.bottomRightCorner(24, 24);

@@ -1,5 +1,6 @@
-// A block is also a port-Hamiltonian system (eqs 7, 17): its energy changes by what its ports
-// supply less what its damping takes. The balance holds along any trajectory, here to rounding.
+// A block is also a port-Hamiltonian system (eqs 7, 17): the rate of its energy is the power
+// supplied at its ports minus the power dissipated by damping. The balance holds along any
+// trajectory, here to rounding.
 #include <Eigen/LU>
 #include <cstdio>
 #include <titop/titop.hpp>

@@ -1,5 +1,5 @@
-// Every pass of the compiler can be looked at: one Graphviz file for the diagram as written and one
-// after each pass, and a log of what each of them found.
+// How to inspect every pass of the compiler: one Graphviz file for the diagram as written and one
+// after each pass, and a log of the results of each.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

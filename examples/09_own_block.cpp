@@ -16,7 +16,7 @@ using titop::Vector3d;
 
 // --- the block -----------------------------------------------------------------------------------
 
-/// A point mass that slides along r, at the point P of what it is mounted on.
+/// A point mass that slides along r, at the point P of the body on which it is mounted.
 ///
 ///     m (deltadd + r' a_P) = -k delta - c deltad + f          f: coil, pushes the mass along r
 ///     F_P = -m (a_P + r deltadd),   no torque                 a_P: linear part of xdd_P

@@ -123,7 +123,8 @@ int main() {
   std::printf("\ntransfer in double against 32 digits: %s\n",
               digits <= 1e-14 ? "agrees" : "differs");
 
-  // A model for a tool that wants A, B, C, D: in a buffer of one's own, and what writing it costs.
+  // A model for a tool that needs A, B, C, D: in the caller's buffer, with the accuracy lost by
+  // writing it.
   StateSpace buffer;
   heavy.write(buffer);
   const double lost = heavy.certificate(buffer).dense_error;

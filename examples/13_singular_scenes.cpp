@@ -43,7 +43,7 @@ Diagram shaker(bool one_command) {
   auto z = d.add("z", SpringMass{.mass = m2, .stiffness = k2});
   plate.parent.accel = u;
   if (one_command)
-    plate.child.accel = tau({-1, 0, 0}) * u;  // what u makes of the far point: said twice
+    plate.child.accel = tau({-1, 0, 0}) * u;  // motion of the far point due to u: given twice
   else
     plate.child.accel = v;
   mount(z, plate.child.along({0, 1, 0}));

@@ -1,7 +1,7 @@
-// No more than the scene needs: the satellite of scenes/satellite.cpp, its booms two beams of 60
-// modes each, on a rigid hub, one of them on a spring hinge. Asked is what a wheel on the hub and
-// the motor of the hinge do to the hub and to one tip, up to 100 Hz, to one part in a thousand. Out
-// comes a small model with a bound on its error.
+// No more states than the scene needs: the satellite of scenes/satellite.cpp, its booms two beams
+// of 60 modes each, on a rigid hub, one of them on a spring hinge. The scene: inputs are a wheel on
+// the hub and the motor of the hinge, outputs the motion of the hub and of one tip, up to 100 Hz,
+// to one part in a thousand. The result is a small model with a bound on its error.
 #include <cstdio>
 #include <titop/titop.hpp>
 

@@ -1,9 +1,10 @@
-// No more than the scene needs, with a controller in the loop: the satellite of
-// scenes/satellite.cpp whose hub is held by a law with an actuator and a delay. That is no passive
-// structure any more: no M, D, K. Its states are balanced instead: what is on the axis (here the
-// hub's free translation, if anyone asks) is kept, the rest cut to what a disturbance and a command
-// need for the attitude, the law's torque and one tip, up to 20 Hz. With a bound on the error, and
-// beside the loop closed by hand.
+// No more states than the scene needs, with a controller in the loop: the satellite of
+// scenes/satellite.cpp whose hub is controlled by a law with an actuator and a delay. With the
+// controller it is no passive structure and has no M, D, K form, so its states are balanced
+// instead: states on the imaginary axis (here the hub's free translation, if an output needs it)
+// are kept, the rest truncated to those that a disturbance and a command need for the attitude, the
+// law's torque and one tip, up to 20 Hz. With a bound on the error, and compared with the loop
+// closed by hand.
 #include <Eigen/LU>
 #include <cstdio>
 #include <titop/titop.hpp>
@@ -17,8 +18,8 @@ using Eigen::MatrixXd;
 
 namespace {
 
-/// Torque = (kp + kd s) / (s / actuator + 1) (1 - s delay / 2) / (1 + s delay / 2) times what is
-/// missing of the attitude, for each axis.
+/// Torque = (kp + kd s) / (s / actuator + 1) (1 - s delay / 2) / (1 + s delay / 2) times the
+/// attitude error, for each axis.
 constexpr double kp = 30, kd = 45, actuator = 40, delay = 0.02;
 
 FlexibleBody boom() {
@@ -65,7 +66,7 @@ by_hand::MatrixXcd closed_by_hand(const by_hand::Structure& a, by_hand::Complex 
   const MatrixXcd turn = G.block(3, 3, 3, 3), tip = s * s * G.block(12, 3, 3, 3);
   const Complex C =
       (kp + kd * s) / (s / actuator + 1.0) * (1.0 - s * delay / 2.0) / (1.0 + s * delay / 2.0);
-  const MatrixXcd S = (I + C * turn).inverse();  // torque that is left of what disturbs
+  const MatrixXcd S = (I + C * turn).inverse();  // sensitivity: torque per disturbing torque
   MatrixXcd H(9, 6);
   H << turn * S, C * turn * S, -C * turn * S, C * S, tip * S, C * tip * S;
   return H;

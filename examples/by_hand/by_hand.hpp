@@ -4,8 +4,8 @@
 #include <complex>
 #include <vector>
 
-/// What the examples check with: structures written out by hand as M, D, K. Nothing of titop is
-/// used here, so that nothing of titop can hide its own mistake.
+/// References of the examples: structures written by hand as M, D, K. Nothing of titop is used
+/// here, so that a mistake of titop cannot appear on both sides.
 namespace by_hand {
 
 using Complex = std::complex<double>;
@@ -40,8 +40,8 @@ std::vector<Complex> poles(const Structure& a);
 /// Eigenvalues of A with Im s >= 0.
 std::vector<Complex> poles(const MatrixXd& A);
 
-/// Smallest order of a model of the outputs' accelerations: per frequency, twice the rank of what
-/// its modes pass from the inputs to the outputs (Gilbert's count of the residues). Undamped.
+/// Smallest order of a model of the outputs' accelerations: per frequency, twice the rank of the
+/// modes' residue from the inputs to the outputs (Gilbert). Undamped.
 int least_order(const Structure& a);
 
 /// Kinematic model of a rigid body: xdd_C = tau(CP) xdd_P, CP from C to P.
@@ -65,7 +65,7 @@ FreeBeam free_beam(const Beam& beam);
 /// Circular tube of a material (G = E / 2.5: Poisson's ratio 0.25).
 Beam tube(double length, double outer, double inner, double E, double rho, int elements);
 
-/// What the beam's nodes do when node 0 moves rigidly: six columns.
+/// Displacements of the beam's nodes per unit rigid motion of node 0: six columns.
 MatrixXd rigid_motion(const Beam& beam);
 
 // --- how far apart -------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 #include <titop/titop.hpp>
 #include <vector>
 
-/// What tests and benchmarks of economy share.
+/// Common to tests and benchmarks of economy.
 namespace scenes {
 
 /// Three beams in a skew chain, clamped; wrench at the tip to acceleration there.

@@ -34,5 +34,5 @@ titop::Diagram satellite(const titop::FlexibleBody& boom, const AttitudeLaw* law
 
 }  // namespace scenes
 
-/// scenes::satellite(scenes::read_boom()): what the code generator is given.
+/// scenes::satellite(scenes::read_boom()): the input of the code generator.
 titop::Diagram demo_satellite();
