@@ -8,7 +8,7 @@
 #include "support/assembly.hpp"
 
 /// The methods of at_s.hpp, dense_lu.hpp and sparse_lu.hpp on a structure with constraints, whose
-/// forces are unknowns: what one writes by hand where chains close.
+/// forces are unknowns: the usual manual form of closed chains.
 namespace titop_bench {
 
 /// All of it as one dense matrix at s, partial pivoting. O((coordinates + constraints)^3).
@@ -18,14 +18,14 @@ Eigen::MatrixXcd dense_at_s(const Assembly& assembly, std::complex<double> s,
 /// In double with one step of iterative refinement, its residual in double.
 Eigen::MatrixXcd refined_at_s(const Assembly& assembly, std::complex<double> s);
 
-/// The same eliminated body by body, each by the inverse of its own dynamic mass, then joint
-/// by joint in what that leaves (flexibilities; substructuring by Lagrange multipliers).
+/// The same eliminated body by body, each by the inverse of its own dynamic mass, then joint by
+/// joint in the remaining flexibilities (substructuring by Lagrange multipliers).
 Eigen::MatrixXcd block_by_block_at_s(const Assembly& assembly, std::complex<double> s,
                                      Digits digits = Digits::standard);
 
 /// Tearing: a ring is cut at its last joint, whose motion and force (12 numbers) are guessed,
-/// everything else follows body after body, and the guess is what closes the ring. Throws
-/// logic_error where joint i does not join bodies i and i + 1. O(bodies).
+/// everything else follows body after body, and closing the ring determines the guess. Throws
+/// logic_error if joint i does not join bodies i and i + 1. O(bodies).
 Eigen::MatrixXcd tearing_at_s(const Assembly& assembly, std::complex<double> s,
                               Digits digits = Digits::standard);
 
@@ -48,7 +48,7 @@ class SparseAssembly {
   using Number = std::complex<Real>;
   using Matrix = Eigen::SparseMatrix<Number>;
   using Dense = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
-  Matrix constant_, damping_, stiffness_;  ///< what is times 1, 1/s and 1/s^2, of one pattern
+  Matrix constant_, damping_, stiffness_;  ///< factors of 1, 1/s and 1/s^2, of one pattern
   Dense load_;
   Matrix read_;
   Eigen::SparseLU<Matrix, Eigen::COLAMDOrdering<int>> lu_;

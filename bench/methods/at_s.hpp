@@ -5,9 +5,8 @@
 
 #include "support/network.hpp"
 
-/// What one writes when nothing but the blocks' responses H(s) is at hand, y = H u, u = K y + E w,
-/// in any precision (blocks included; their data are doubles). All throw runtime_error where a
-/// pivot is missing.
+/// Methods that need only the blocks' responses H(s), y = H u, u = K y + E w, in any precision
+/// (blocks included; their data are doubles). All throw runtime_error for a zero pivot.
 namespace titop_bench {
 
 enum class Digits { single, standard, extended, fifty };  ///< float, double, long double, 50 digits
@@ -24,10 +23,10 @@ Eigen::MatrixXcd refined_at_s(const Network& network, std::complex<double> s);
 Eigen::MatrixXcd block_by_block_at_s(const Network& network, std::complex<double> s,
                                      Digits digits = Digits::standard);
 
-/// A bad example: tearing, which on a chain is chain (transfer) matrices: what enters the first
-/// block from the second is guessed, everything else follows block after block, and at the end the
-/// guess is found from what the last block wants. For chains only: throws logic_error where a block
-/// hears of others than its neighbours. O(blocks).
+/// A bad example: tearing, on a chain the method of chain (transfer) matrices: the inputs of the
+/// first block from the second are guessed, everything else follows block after block, and the last
+/// block's equations determine the guess. For chains only: throws logic_error if a block is coupled
+/// to others than its neighbours. O(blocks).
 Eigen::MatrixXcd tearing_at_s(const Network& network, std::complex<double> s,
                               Digits digits = Digits::standard);
 

@@ -6,7 +6,7 @@
 #include "methods/at_s.hpp"
 #include "methods/elimination.hpp"
 
-/// What the methods of at_s.hpp share. For their own files only.
+/// Common to the methods of at_s.hpp. For their own files only.
 namespace titop_bench {
 
 using titop::linalg::at;

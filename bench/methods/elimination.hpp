@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-/// Plain elimination in any complex number: what the oracle and the methods at one s stand on.
+/// Plain elimination in any complex number type: used by the oracle and by the methods at one s.
 namespace titop_bench {
 
 using Digits50 = boost::multiprecision::cpp_complex_50;
@@ -35,7 +35,7 @@ RealOf<T> magnitude(const T& x) {
   return abs(x.real()) + abs(x.imag());
 }
 
-/// Rows of numbers: what little is needed of a matrix.
+/// Dense matrix, row by row.
 template <class T>
 class Table {
  public:

@@ -5,8 +5,8 @@
 
 namespace titop_bench {
 
-/// What control packages do for a frequency response: A = Q H Q' with H upper Hessenberg once,
-/// O(n^3), then O(n^2) per s.
+/// The frequency response of control packages: A = Q H Q' with H upper Hessenberg once, O(n^3),
+/// then O(n^2) per s.
 class Hessenberg {
  public:
   explicit Hessenberg(const titop::StateSpace& model);

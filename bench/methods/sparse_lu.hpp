@@ -7,7 +7,7 @@
 
 #include "support/network.hpp"
 
-/// What a general sparse solver makes of the network: Eigen's SparseLU with COLAMD.
+/// The network in a general sparse solver: Eigen's SparseLU with COLAMD.
 namespace titop_bench {
 
 /// [I -D; -K I] [y; u] = [C x; E w] in one factorization.

@@ -38,7 +38,7 @@ std::vector<Index> nonzero_rows(const MatrixXd& m) {
   return rows;
 }
 
-/// One march along a chain; columns: external inputs, then what is guessed at the first block.
+/// One march along a chain; columns: external inputs, then the guesses at the first block.
 template <class T>
 class March {
  public:
@@ -82,7 +82,7 @@ class March {
     return K ? nonzero_rows(*K) : std::vector<Index>{};
   }
 
-  /// Inputs of block i but for what comes from the next.
+  /// Inputs of block i without those from the next block.
   Table<T> known(Index i, const Table<T>* y) const {
     Table<T> u(p_.inputs(i), net_.E.cols() + guesses_);
     for (Index r = 0; r < u.rows(); ++r)
@@ -94,7 +94,7 @@ class March {
     return u;
   }
 
-  /// What the next block must give: rows from_next(i) of u, less what is external there.
+  /// Values that the next block must supply: rows from_next(i) of u, less the external part there.
   Table<T> wanted_of_next(Index i, const Table<T>& u) const {
     const auto rows = from_next(i);
     Table<T> w(static_cast<Index>(rows.size()), u.cols());
@@ -105,8 +105,8 @@ class March {
     return w;
   }
 
-  /// Chooses the inputs that come from further on so that `wanted` comes out; what of it cannot be
-  /// met, at the last block, is returned.
+  /// Chooses the inputs from the next block such that `wanted` is met; returns the remainder that
+  /// cannot be met, at the last block.
   Table<T> fulfil(Index i, const Table<T>& H, const Table<T>& wanted, Table<T>& u) const {
     const MatrixXd& K = *coupling(i - 1, i);
     const auto rows = nonzero_rows(K), free = from_next(i);

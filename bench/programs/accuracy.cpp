@@ -18,9 +18,10 @@
 #include "support/cases.hpp"
 #include "support/quick.hpp"
 
-/// Error against time: one transfer by every method in every precision against 150 digits, what
-/// serves all s (compiling, writing, ordering) not counted; and 100 frequencies from the compiled
-/// system on, all counted, against 50 digits. Returns 1 where a transfer of the library's is off.
+/// Error against time: one transfer by every method in every precision against 150 digits, without
+/// the time of steps common to all s (compiling, writing, ordering); and 100 frequencies from the
+/// compiled system on, all time counted, against 50 digits. Returns 1 if a transfer of the library
+/// is off.
 namespace titop_bench {
 namespace {
 

@@ -8,9 +8,9 @@
 
 #include "support/cases.hpp"
 
-/// What the certificate that every first compile comes with costs: its share of a compile with a
-/// dense model into a warm buffer, and how many times new values of all bodies it takes. All in
-/// turn, many times, the dense model on one core; the best of each.
+/// Cost of the certificate that every first compile makes: its share of a compile with a dense
+/// model into a warm buffer, and its ratio to an update of all bodies. All in turn, many times, the
+/// dense model on one core; the best of each.
 namespace titop_bench {
 namespace {
 

@@ -48,7 +48,7 @@ Prepared changed(Case c, int n, Varies varies) {
 std::vector<Method> methods() {
   std::vector<Method> list;
   for (const Case c : {Case::T, Case::D, Case::C, Case::A, Case::BL, Case::F, Case::K}) {
-    // The hub's direct term is dense: its own size squared is what limits F.
+    // The hub's direct term is dense: its size squared limits F.
     const auto sizes =
         c == Case::F ? std::vector<int>{10, 30, 100} : std::vector<int>{10, 100, 1000};
     const auto add = [&](const char* task, const std::function<Prepared(int)>& make) {

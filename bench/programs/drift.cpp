@@ -11,9 +11,9 @@
 #include "support/energy.hpp"
 #include "support/quick.hpp"
 
-/// What time steps keep and what they lose, beside theory: energy of undamped structures over a
+/// Conservation and drift of time steps, compared with theory: energy of undamped structures over a
 /// million steps, a closed chain that must stay closed, growth per step, limits of stability.
-/// Returns 1 where growth or a limit is not what theory says.
+/// Returns 1 if growth or a limit differs from theory.
 namespace titop_bench {
 namespace {
 
@@ -218,14 +218,14 @@ StateSpace oscillator(double damping) {
   return m;
 }
 
-/// The largest factor of one step, from what it does to two states.
+/// Spectral radius of one step, from its matrix on two states.
 double growth(const March& march) {
   Eigen::Matrix2d end;
   for (Index i = 0; i < 2; ++i) end.col(i) = march(VectorXd::Unit(2, i), 1);
   return end.eigenvalues().cwiseAbs().maxCoeff();
 }
 
-/// What is measured must be what theory says.
+/// True if measurement and theory agree.
 bool agree(double measured, double theory, double tolerance) {
   return std::abs(measured - theory) <= tolerance * theory;
 }

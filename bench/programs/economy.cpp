@@ -1,9 +1,9 @@
-/// bench_economy [quick]: what accuracy costs, in CSV, a row per scene and accuracy: the states
-/// that `what_if` keeps, its bound and the error, processor seconds of one transfer and of a
-/// simulation beside the full system's, and what plain truncation by frequency needs for the same
-/// accuracy. After each scene two rows for what a rule gives that keeps all modes up to twice the
-/// band. 1 if an error is above its bound. bench_economy large: scenes of thousands of coordinates
-/// instead, step by step. docs/economy/README.md explains the columns.
+/// bench_economy [quick]: order and cost against accuracy, in CSV, a row per scene and accuracy:
+/// the states that `what_if` keeps, its bound and the error, processor seconds of one transfer and
+/// of a simulation beside those of the full system, and the order of plain truncation by frequency
+/// for the same accuracy. After each scene two rows for the rule that keeps all modes up to twice
+/// the band. Returns 1 if an error is above its bound. bench_economy large: scenes of thousands of
+/// coordinates instead, step by step. docs/economy/README.md explains the columns.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -115,7 +115,7 @@ class Measured {
     return error <= r.bound;
   }
 
-  /// What ends the accuracies that can be met, for the log.
+  /// Logs the error that ends the range of attainable accuracies.
   void say_why(double finest) const {
     Scene scene = q_.scene;
     scene.accuracy = finest;
@@ -156,7 +156,7 @@ class Measured {
   Eigen::MatrixXd full_midpoint_;
 };
 
-/// None where the accuracy cannot be met: what is reached stands in the log.
+/// None if the accuracy cannot be met: the log has the attained one.
 std::optional<ReducedSystem> reduced(const Diagram& d, const Scene& scene) try {
   return compile(d, scene);
 } catch (const Error& refusal) {
@@ -165,7 +165,7 @@ std::optional<ReducedSystem> reduced(const Diagram& d, const Scene& scene) try {
   return std::nullopt;
 }
 
-/// Thousands of coordinates: what each step leaves, what that costs, and seconds of all of it.
+/// Thousands of coordinates: order and error after each step, and the total seconds.
 void large() {
   fmt::print("bodies,coordinates,accuracy,after_bodies,bodies_error,states,bound,seconds\n");
   const FlexibleBody beam = scenes::read_boom({});

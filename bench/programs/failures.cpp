@@ -13,10 +13,9 @@
 #include "support/sweeps.hpp"
 
 /// Every method until it breaks: the error of the transfer against 150 digits while one quantity of
-/// a scene goes to an extreme. Beside the library's error stands what it says of itself: "warned"
-/// where the log warns, "noted" where it says that a closure is redundant, the error's code where
-/// it refuses. Returns 1 where an error of the library is beyond what it promises and it says
-/// nothing.
+/// a scene goes to an extreme. Beside the library's error stands its own verdict: "warned" if the
+/// log warns, "noted" if the log lists a redundant closure, the error's code if it refuses. Returns
+/// 1 if an error of the library is above its promise without a verdict.
 namespace titop_bench {
 namespace {
 
@@ -37,7 +36,7 @@ class Rows {
  public:
   explicit Rows(const Sweep& sweep) : sweep_(sweep) {}
 
-  /// What throws has no digits left: 1; a library's refusal is its mark.
+  /// A method that throws has error 1; a refusal of the library is its mark.
   double add(double value, const char* method, const Extreme& e, const Transfer& transfer,
              const std::string& mark = "") const {
     try {
@@ -93,7 +92,7 @@ std::string said_of_dense(const System& system) {
   return system.log().find(" warning ") != std::string::npos ? "warned" : said(system);
 }
 
-/// Whether the library keeps what it promises.
+/// Whether the library meets its promise.
 bool library(const Rows& rows, double value, const Extreme& e, const System& system,
              double inherent) {
   const std::string mark = said(system);

@@ -12,10 +12,10 @@
 
 #include "support/cases.hpp"
 
-/// One point of the growth charts per process, so that its memory is its own:
-/// `growth SCENE N [REPETITIONS]` prints one row. No dense model is made. The first compile has
-/// fresh memory at every size; to compile again, the process has what is left of that, which the C
-/// library keeps up to a size. Before both, a scene of ten bodies takes what a process does once.
+/// One point of the growth charts per process, for separate memory: `growth SCENE N [REPETITIONS]`
+/// prints one row. No dense model is made. The first compile has fresh memory at every size; later
+/// compiles reuse memory that the C library has kept, up to a size. A scene of ten bodies is
+/// compiled first, for the one-time cost of a process.
 namespace titop_bench {
 namespace {
 

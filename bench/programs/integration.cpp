@@ -8,10 +8,10 @@
 #include "support/cases.hpp"
 #include "support/quick.hpp"
 
-/// Error against cost of time integration: the free motion of a chain that is let go bent, by the
-/// library's steppers and by others. Steps are given as h * omega of the fastest pole; the error is
-/// the largest difference of a state at the end from the exact motion, over the largest state. What
-/// fails is shown failing, however large its error.
+/// Error against cost of time integration: the free motion of a chain released from a bent shape,
+/// by the library's steppers and by others. Steps are given as h * omega of the fastest pole; the
+/// error is the largest difference of a state at the end from the exact motion, over the largest
+/// state. Methods that fail are shown, however large their error.
 namespace titop_bench {
 namespace {
 

@@ -144,7 +144,8 @@ Prepared titop_redescriptor(Case c, int n) {
   return {[=] { sweep->next().write(*model); }, {}};
 }
 
-/// The step by effect, which compile is timed without: the dense model without what cannot matter.
+/// The step by effect, which the compile timing leaves out: the dense model without states of
+/// negligible effect.
 Prepared by_effect(Case c, int n) {
   struct Data {
     StateSpace model;
@@ -160,7 +161,7 @@ Prepared by_effect(Case c, int n) {
           }};
 }
 
-// --- what a user would pick instead ------------------------------------------------------------
+// --- alternatives of a user --------------------------------------------------------------------
 
 struct Other : Reference {
   StateSpace model = {};

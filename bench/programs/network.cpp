@@ -10,9 +10,8 @@
 #include "support/cases.hpp"
 #include "support/matfile.hpp"
 
-/// `network SCENE N FILE`: the network for Octave, with some columns V and titop's [A B; C D] V,
-/// against which Octave checks what it has found, and titop's response H at 100 frequencies w, one
-/// below the other.
+/// `network SCENE N FILE`: the network for Octave, with some columns V and titop's [A B; C D] V as
+/// reference for Octave's result, and titop's response H at 100 frequencies w, one below the other.
 namespace titop_bench {
 namespace {
 

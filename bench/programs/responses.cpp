@@ -5,8 +5,8 @@
 #include "support/cases.hpp"
 #include "support/timing.hpp"
 
-/// What one does with a compiled system: its transfer at one s, a sweep over 100 frequencies, and
-/// one product (xdot and y of x and u).
+/// Typical uses of a compiled system: its transfer at one s, a sweep over 100 frequencies, and one
+/// product (xdot and y of x and u).
 namespace titop_bench {
 namespace {
 

@@ -92,7 +92,7 @@ class Assembler {
     rows_ += 6;
   }
 
-  /// The wrench of P is what the body does to the outside.
+  /// The wrench of P acts from the body on its surroundings.
   void add_wrenches(const titop::Equation& e, const titop::Channel& c) {
     const double sign = c.takes == titop::Takes::accel ? -1 : 1;
     for (const titop::Term& t : e.terms)

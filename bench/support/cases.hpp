@@ -24,7 +24,7 @@ enum class Case {
 std::string name_of(Case c);
 Case case_of(const std::string& name);
 
-/// What parameter "p" multiplies: masses (A, BL, C) or mounting angles (D, F, K, T, CB).
+/// Use of the parameter "p": masses (A, BL, C) or mounting angles (D, F, K, T, CB).
 enum class Varies {
   nothing,  ///< there is no parameter
   one,      ///< that of body n/2

@@ -16,8 +16,8 @@ using TransferOf = std::function<Eigen::MatrixXcd(std::complex<double>)>;
 /// next. One serves all models.
 class FineGrid {
  public:
-  /// `poles` [rad/s]; `least`, outputs x inputs: what counts as 1 where a pair's own peak is below
-  /// (ErrorBound::peak: pairs that symmetry makes 0).
+  /// `poles` [rad/s]; `least`, outputs x inputs: lower limit of a pair's peak, by which its error
+  /// is divided (ErrorBound::peak: pairs that symmetry makes 0).
   FineGrid(const titop::System& full, const titop::Scene& scene, int steps,
            const Eigen::VectorXd& poles, const Eigen::MatrixXd& least);
 

@@ -22,7 +22,7 @@ struct Record {
   double step;
   int steps;
 
-  /// exp(-(t - t0)^2 / (2 d^2)), which has exp(-(2 pi f d)^2 / 2) at f of what it has at 0.
+  /// exp(-(t - t0)^2 / (2 d^2)), whose spectrum at f is exp(-(2 pi f d)^2 / 2) times that at 0.
   double at(int k) const {
     const double width = std::sqrt(2 * std::log(1e12)) / (2 * std::numbers::pi) * 200;  // [steps]
     return std::exp(-std::pow(k / width - 8, 2) / 2);
@@ -65,7 +65,7 @@ Run run(const System& system, double band_hz, bool quick) {
   const Record record(band_hz, quick);
   const Excitation excitation = record.on(static_cast<Index>(system.inputs().size()));
   Run best{HUGE_VAL, HUGE_VAL, {}};
-  // What costs less a step: its error is measured here.
+  // The stepper with the lower cost per step; its error is measured here.
   const Stepper stepper = system.order() <= 200 ? Stepper::exact : Stepper::midpoint;
   const auto least = [&](double& seconds, int steps) {
     const double start = processor_seconds();

@@ -13,9 +13,9 @@ using Sparse = Eigen::SparseMatrix<double>;
 
 /// xdot = A x + B u, y = C x + D u, block diagonal in the order in which the diagram declares the
 /// blocks; u = K y + E w, z = F y + G w. A channel that the scene drives against its block's
-/// default is inverted in the block beforehand, as the paper does by hand; where the block alone
-/// does not allow that (a hinge), its input is one more unknown: a unit gain q with
-/// `input = q out, q in = q out + (what must vanish)`.
+/// default is inverted in the block beforehand, as the paper does by hand; if the block alone
+/// cannot be inverted (a hinge), its input is one more unknown: a unit gain q with `input = q out,
+/// q in = q out + (the term that must be zero)`.
 struct Network {
   Sparse A, B, C, D, K, E, F, G;
   std::vector<std::array<int, 3>> blocks;  ///< states, inputs and outputs of each
@@ -26,7 +26,7 @@ struct Network {
 /// Of a compiled scene, at its parameter values. O(scalars log) but for the inversions.
 Network network_of(const titop::System& system);
 
-/// None where a scene says what this form cannot: ties of parts of a port, channels of points that
+/// None if this form cannot express the scene: ties of parts of a port, channels of points that
 /// modes do not move in all directions.
 std::optional<Network> network_if_any(const titop::System& system);
 

@@ -6,7 +6,7 @@
 #include <titop/titop.hpp>
 #include <vector>
 
-/// What small models are asked for: the scenes of docs/economy.
+/// Scenes of the small models: those of docs/economy.
 namespace titop_bench {
 
 struct Question {

@@ -69,7 +69,7 @@ Diagram diagram_of(const Chain& chain) {
   return d;
 }
 
-/// Dynamic stiffness from the free end to the wall: sums of what has the same sign, stable.
+/// Dynamic stiffness from the free end to the wall: sums of terms of one sign, stable.
 Number by_stiffness(const Chain& chain, Complex at) {
   const Number s = number<Number>(at.real(), at.imag());
   Number rest = number<Number>(0), passed = number<Number>(1);  // of all bodies beyond; x_n / x_i
@@ -256,8 +256,8 @@ ModalData written(ModalData d, int digits) {
   return d;
 }
 
-/// Against the same chain with all its digits. All modes are kept: what mass is left at P is the
-/// smaller the more there are.
+/// Against the same chain with all its digits. All modes are kept: the more modes, the smaller is
+/// the residual mass at P.
 Extreme digits(double count) {
   titop::Beam beam = aluminium();
   beam.elements = 10;

@@ -6,10 +6,10 @@
 #include <titop/titop.hpp>
 #include <vector>
 
-/// Scenes of which one quantity goes to an extreme: what the failure charts are drawn over.
+/// Scenes of which one quantity goes to an extreme: the data of the failure charts.
 namespace titop_bench {
 
-/// One value of a sweep: a scene, where it is looked at, and what is right there.
+/// One value of a sweep: a scene, its test points s, and the exact transfers there.
 struct Extreme {
   titop::Diagram diagram;
   std::vector<std::complex<double>> s;
@@ -23,8 +23,8 @@ struct Sweep {
   std::string quantity;  ///< below its axis
   std::vector<double> values;
   std::function<Extreme(double)> at;
-  /// About what one unit of the last place in the data makes of the answer, at this value: nothing
-  /// that reads the data can do better. 0 where that is nothing to speak of.
+  /// Approximate relative error of the answer per unit of the last place in the data, at this
+  /// value: no method that reads the data can do better. 0 if negligible.
   std::function<double(double)> inherent = [](double) { return 0.0; };
 };
 

@@ -16,11 +16,11 @@
 namespace titop_bench {
 namespace {
 
-/// What the points of one method have in common while they run.
+/// State common to the points of one method during a run.
 struct Line {
   Method method;
   double limit = 10;  ///< seconds per point
-  int n = 0;          ///< of what is prepared
+  int n = 0;          ///< size of `prepared`
   Prepared prepared = {};
   double difference = 0, seconds = 0;
   double growth = 1.5;  ///< exponent from the last size to this one
@@ -38,7 +38,7 @@ void note_time(Line& line, double seconds, int last_n, double last) {
   line.seconds = seconds;
 }
 
-/// Once per point, not once per repetition: it may take longer than what is timed.
+/// Once per point, not once per repetition: it may take longer than the timed part.
 void prepare(Line& line, int n) {
   if (line.n == n) return;
   line.prepared = {};

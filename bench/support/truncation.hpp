@@ -6,7 +6,7 @@
 
 #include "support/fine_grid.hpp"
 
-/// What one has without choosing: modes by frequency.
+/// Reference without a choice: truncation by frequency.
 namespace titop_bench {
 
 /// The lowest modes of the whole, by frequency, without static-like vectors.
@@ -20,7 +20,7 @@ class Truncation {
   /// Number of modes that these errors need: doubled, then bisected to 5 %. All, if fewer do not.
   long needed(double accuracy, const FineGrid& grid);
 
-  /// The lowest `count` modes. What it took to make one is kept.
+  /// The model of the lowest `count` modes, cached.
   const titop::detail::Small& model(long count);
   double error(long count, const FineGrid& grid);
 
