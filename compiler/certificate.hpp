@@ -5,56 +5,55 @@
 
 namespace titop {
 
-/// What was checked of a compiled system, and how well it holds. Every number is dimensionless;
-/// what is not listed was not checked.
+/// The checks of a compiled system and their results. Every number is dimensionless; checks that
+/// are not listed were not made.
 struct Certificate {
-  /// Largest |left - right| over (sum of magnitudes of the terms) among all equations of the
-  /// diagram AS WRITTEN, for one random input, all signals computed by the compiled system: at one
-  /// instant, by the very factors that the model is written from (what the input does not move at
-  /// once is moved by inputs of size 1), or at one real s: with positions or rates in the
-  /// equations, states that follow from others, in a reduced (singular) scene, or where digits may
-  /// be lost. Beside an instant also the responses at s of the first two blocks of each type
-  /// against their A, B, C, D. Negative where nothing moves: without inputs, where there is no
-  /// instant or digits may be lost there. Rounding is about 1e-16 times the length of a row. What
-  /// is above 1e-9 is looked at again: 1e4 times a sample of the signals' rounding is taken from
-  /// the difference first, and what chains that hold something twice make 0 may be 1e-14 of the
-  /// largest translation, rotation, force or torque of all points. So a number above 1e-9 is what
-  /// rounding does not explain.
+  /// Largest |left - right| / (sum of magnitudes of the terms) among all equations of the diagram
+  /// AS WRITTEN, for one random input, with all signals computed by the compiled system. Evaluated
+  /// at one instant, with the factors from which the model is written (signals without a direct
+  /// path from an input are excited by inputs of size 1); or at one real s, if the equations
+  /// contain positions or rates, if there are dependent states, in a reduced (singular) scene, or
+  /// if digits may be lost. Beside an instant also the responses at s of the first two blocks of
+  /// each type, against their A, B, C, D. Negative if nothing moves: no inputs, and an instant is
+  /// not possible or may lose digits. Rounding gives about 1e-16 times the length of a row. A
+  /// residual above 1e-9 is corrected before it is reported: 1e4 times a sample of the signals'
+  /// rounding is subtracted, and residuals of over-constrained loops may be 1e-14 of the largest
+  /// translation, rotation, force or torque of all points. Rounding therefore does not explain a
+  /// value above 1e-9.
   double residual = 0;
-  std::string residual_where;  ///< the equation or block that has it
-  /// That real s [rad/s]; at an instant the states are about those that single blocks have there.
+  std::string residual_where;  ///< the equation or block with this residual
+  /// That real s [rad/s]; at an instant, the s of the blocks' responses.
   double s = 0;
-  bool at_instant = false;  ///< which of the two
+  bool at_instant = false;  ///< true: at an instant; false: at s
   /// Largest difference between xdot, y of the dense model and of the factors, for one random x and
-  /// for one random u, beside the terms that they are made of: of a block's states, of the outputs
-  /// of one unit. Where the factors themselves lose digits, what cancels there counts as a term.
-  /// Negative where no dense model has been written.
+  /// for one random u, relative to the sum of the terms: over a block's states, or over the outputs
+  /// of one unit. Where the factors lose digits, cancelling terms count too. Negative if no dense
+  /// model has been written.
   double dense_against_factors = -1;
-  /// What writing the dense model down costs: the largest change of an output that its rounding
-  /// makes, over the largest size of that output, at s from the slowest mode that the outputs show
-  /// (or, where that is not to be seen, from far below the blocks' frequencies) to above the
-  /// blocks' frequencies and those of the assembly (by products of two entries of A), but where the
-  /// factors themselves have no digit, at all or of that output (the log says so then)
-  /// (residual of the factors' states in the dense model, carried to the outputs by the factors).
-  /// By inputs of one unit: random ones, three translations or rotations of a port together; from
-  /// the ninth unit on some share a column. Outputs likewise; what is 0 but for rounding, or 1e-14
-  /// of what stands in its row and column (what turned frames leave of a 0), counts beside its
-  /// neighbours. The same in all units of inputs and outputs; in other units of states and time
-  /// other numbers are written, and round differently. Above 1e-9 and up to 100 states it is at
-  /// most 30 times what the model's own answers are off by, as the residual itself can round where
-  /// a point has hardly any mass. Negative where no dense model has been written, where one has no
-  /// states, no inputs or no outputs, and where the factors have no digit anywhere. Above 1e-9 the
-  /// log warns, and names output and input (up to eight units).
+  /// Error of the dense model due to rounding of its entries: largest change of an output over the
+  /// output's largest size, for s from the slowest mode that the outputs show (if unknown, from far
+  /// below the blocks' frequencies) to above the frequencies of the blocks and of the assembly
+  /// (products of two entries of A). Points s at which the factors have no digit, at all or of that
+  /// output, are left out (the log lists them). Computed as the residual of the factors' states in
+  /// the dense model, mapped to the outputs by the factors. Inputs are grouped by unit: random
+  /// combinations of the three translations or rotations of a port; from the ninth unit on some
+  /// share a column. Outputs likewise; an output at rounding level, or at 1e-14 of its row and
+  /// column (a 0 after a rotation of frames), is measured relative to its neighbours. Independent
+  /// of the units of inputs and outputs; in other units of states and time other entries are
+  /// rounded. Above 1e-9 and up to 100 states it is at most 30 times the error of the model's own
+  /// outputs, as the residual itself is rounded at a point of very small mass. Negative if no dense
+  /// model has been written, if it has no states, no inputs or no outputs, and if the factors have
+  /// no digit at any s. Above 1e-9 the log warns, with output and input (up to eight units).
   double dense_error = -1;
-  std::complex<double> dense_error_s;  ///< where it is largest
-  /// The same over the size of the output at that same s, far below the slowest mode, too: there an
-  /// acceleration may fall with s^2, and what free motion keeps of its digits in A, B, C, D with
-  /// it. It grows towards lower s than those tried. Above 1e-6 the log warns of it, too, where it
+  std::complex<double> dense_error_s;  ///< s of the largest error
+  /// The same over the size of the output at that same s, also far below the slowest mode: there an
+  /// acceleration may fall with s^2, and the digits that A, B, C, D keep of a free motion fall with
+  /// it. It grows towards lower s than those tried. Above 1e-6 the log warns of it, too, if it
   /// costs another digit.
   double dense_error_where_small = -1;
-  std::complex<double> dense_error_where_small_s;  ///< where it is largest
-  /// Smallest pivot over the sum of magnitudes that formed it: 1 no cancellation, 1e-16 nothing
-  /// left. Invariant under any change of units.
+  std::complex<double> dense_error_where_small_s;  ///< s of the largest error
+  /// Smallest pivot over the sum of magnitudes of its terms: 1 no cancellation, 1e-16 no digit.
+  /// Invariant under any change of units.
   double weakest_pivot = 1;
   std::string weakest_where;  ///< signal
   double pivot_growth = 1;  ///< largest size of a row over the least before, all along the tree

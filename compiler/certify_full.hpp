@@ -11,10 +11,10 @@ namespace titop {
 
 class System;
 
-/// What to check beside the default certificate, and how much of it.
+/// Extent of the checks beside the default certificate.
 struct Full {
   int points = 24;          ///< of the grid in s; 0: none
-  int dense_up_to = 2000;   ///< states; larger models are not written, and that is said
+  int dense_up_to = 2000;   ///< states; larger models are not written, with a note
   int written_up_to = 300;  ///< scalar signals; larger diagrams are not solved as written
   /// For the order without rounding.
   ExactOptions exact = {.states = 16, .unknowns = 400, .bits = 20'000};
@@ -47,20 +47,20 @@ struct FullCertificate {
     std::complex<double> written_s;
   } grid;
 
-  /// Poles of the dense model before `minimize`; where states are not in it, which the structure
-  /// alone sets aside as moved by no input or seen by no output, `why_not` says so. The error of a
-  /// pole s with left and right vectors w, v is |w (A_factored v - s v)| / |w v|, over |s|: what
-  /// the factors say of it, to first order.
+  /// Poles of the dense model before `minimize`; `why_not` names states that the model lacks
+  /// because the structure alone shows that no input moves or no output sees them. The error of a
+  /// pole s with left and right vectors w, v is |w (A_factored v - s v)| / |w v|, over |s|:
+  /// first-order perturbation by the factors.
   struct Poles : Checked {
     int count = 0;
-    int measured = 0;  ///< the others (multiple, or at 0 beside others that are not) rounding of A
-                       ///< alone moves by 1e-8 or more
+    int measured = 0;  ///< the others (multiple, or at 0 beside others that are not) move by 1e-8
+                       ///< or more under rounding of A alone
     double error = 0;
     std::complex<double> where;
     int right = 0;  ///< poles right of the axis by more than 1e-9 |s| and ten times their error; of
-                    ///< those not measured, by more than ten times what rounding of A may move them
-    int hidden = 0;  ///< of those right, no input moves or no output sees: they are taken out by
-                     ///< `minimize`, and the system grows all the same
+                    ///< those not measured, by more than ten times their change by rounding of A
+    int hidden = 0;  ///< of those right, unreachable or unobservable ones: `minimize` removes them,
+                     ///< and the system is unstable all the same
     std::complex<double> rightmost;  ///< largest Re(s) / |s|
   } poles;
 
@@ -75,22 +75,23 @@ struct FullCertificate {
     int pairs = 0;
     double least = 0;
     std::complex<double> where;
-    /// A negative value is a fault: no one-way block pushes, forces follow motions as those of
-    /// springs and dampers do, and what moves with another gives its wrench back there.
+    /// A negative value is a fault: no one-way block adds energy, forces follow motions as those of
+    /// springs and dampers do, and every point that moves with another returns its wrench there.
     bool structure = false;
   } passivity;
 
-  /// Of the same pairs, scalar by scalar: how far G_ij, the acceleration where force i acts by
-  /// force j, is from G_ji (reciprocity of Maxwell and Betti). Largest over the same points of
-  /// |G_ij - G_ji| over sqrt(|G_ii| |G_jj|), or over |G_ij| or |G_ji| where one is larger (at a
+  /// Reciprocity (Maxwell and Betti) of the same pairs, scalar by scalar: difference of G_ij, the
+  /// acceleration at force i due to force j, and G_ji. Largest over the same points of
+  /// |G_ij - G_ji| / sqrt(|G_ii| |G_jj|), or over |G_ij| or |G_ji| if one is larger (at a
   /// held point G_ii is 0), at the same s; three translations or rotations of a port share their
-  /// size. The same in all units of the forces. What is 0 but for rounding counts over 1e-3 of the
-  /// terms that cancel. Inputs that are no such forces are 0 here: a motion imposed by one is held.
+  /// size. Independent of the units of the forces. Entries at rounding level are measured by 1e-3
+  /// of the terms that cancel. Inputs that are no such forces are 0 here: an imposed motion is
+  /// held.
   ///
   /// All bodies and joints of the library are reciprocal: their masses, stiffnesses and dampings
   /// are symmetric (to 1e-9, or refused when they are added), modes are damped one by one, and none
-  /// has gyroscopic terms. A block of your own may have some: then nothing is expected of the
-  /// whole.
+  /// has gyroscopic terms. A user's block may have some: then reciprocity of the whole is not
+  /// required.
   struct Reciprocity : Checked {
     int forces = 0;  ///< scalar
     double asymmetry = 0;
@@ -108,12 +109,12 @@ struct FullCertificate {
   OrderVerdict order;
   ExactOrder exact;  ///< independent of all passes, where the diagram is small
 
-  /// What does not hold, in words; empty if all that was checked does: equations and transfers as
-  /// written to 1e-8, entries of the dense model too, what rounding them costs (basic.dense_error,
-  /// grid.dense) to 3e-7, as generated C++ asks for, poles to 1e-6, a structure passive to 1e-9 and
-  /// reciprocal to 1e-8, without poles right of the axis (but where one-way blocks that read it
-  /// have states and are no mere integrators), the exact order inside the verdict's interval, and
-  /// nothing that the order step had to put back.
+  /// The failed checks, in words; empty if all pass: equations and transfers as written to 1e-8,
+  /// entries of the dense model too, its rounding error (basic.dense_error, grid.dense) to 3e-7,
+  /// the limit of generated C++, poles to 1e-6, a structure passive to 1e-9 and reciprocal to 1e-8,
+  /// without poles right of the axis (unless one-way blocks that read it have states and are no
+  /// mere integrators), the exact order inside the verdict's interval, and no state that the order
+  /// step had to restore.
   std::vector<std::string> faults;
   bool holds() const { return faults.empty(); }
 };
@@ -122,7 +123,7 @@ struct FullCertificate {
 /// points * O(bodies). Does not change the system, but for its dense model, which is kept.
 FullCertificate certify(const System& system, const Full& what = {});
 
-/// One line per item, in plain words; what was not checked says why.
+/// One line per item; for a check that was not made, the reason.
 std::string to_string(const FullCertificate& certificate);
 
 }  // namespace titop

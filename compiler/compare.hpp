@@ -13,10 +13,10 @@ class System;
 
 namespace titop::detail {
 
-/// Times rounding: what is below may be nothing else.
+/// Factor on rounding: differences below it may be rounding alone.
 inline constexpr double kNoise = 1e3;
-/// Of an entry's neighbours: the terms of a 0 that one order of sums hits exactly and another to
-/// 1e-17.
+/// Floor of a zero entry, relative to its neighbours: in one order of summation the terms of a 0
+/// cancel exactly, in another to 1e-17.
 inline constexpr double kHitBy = 1e-3;
 
 /// How two transfers are compared. Three translations (or rotations) of one port share their unit:
@@ -30,34 +30,34 @@ struct Measure {
 Measure measure(const Graph& graph, Eigen::MatrixXd terms);
 
 /// The model's transfers at these points. A pair without a path through nonzero entries of A, B, C
-/// and D is 0 in them, and not what row operations leave of it. O(points n^3).
+/// and D is exactly 0, without the rounding of row operations. O(points n^3).
 std::vector<Eigen::MatrixXcd> transfers(const StateSpace& m,
                                         const std::vector<std::complex<double>>& points);
 
-/// What the entries of m's transfer are the sums of, before anything cancels: with the responses
-/// X = (s I - A)^-1 B and W = C (s I - A)^-1, which make G = D + W (s I - A) X, the largest
-/// |D| + |W| |s I - A| |X| at these points. In any units of states, inputs and outputs.
-/// O(points n^3).
+/// Size of the terms whose sums are the entries of m's transfer, before cancellation: with the
+/// responses X = (s I - A)^-1 B and W = C (s I - A)^-1, which make G = D + W (s I - A) X, the
+/// largest |D| + |W| |s I - A| |X| at these points. Independent of the units of states, inputs and
+/// outputs. O(points n^3).
 Eigen::MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& points);
 
-/// Of these terms, those whose rounding is below 1e-6 of what stands in the row and column of
-/// `exact` (their geometric mean), and all where nothing stands there; else 0. What rounds more is
-/// no 0 beside others: such a model has lost digits everywhere, and an entry of it may be anything.
+/// Those of these terms whose rounding is below 1e-6 of the entries in the row and column of
+/// `exact` (their geometric mean), and all terms if these are 0; else 0. An entry with more
+/// rounding is not a 0 compared with others: such a model has lost digits everywhere.
 Eigen::MatrixXd of_nothing(const Eigen::MatrixXd& terms,
                            const std::vector<Eigen::MatrixXcd>& exact);
 
-/// The same as `terms` of the model's own rounding, what it may have put into each entry of A, B, C
-/// and D (matrices of their sizes): |dD| + |W| |dB| + |dC| |X| + |W| |dA| |X| over the rounding
-/// unit. These are sums of magnitudes: no luck has to be allowed for. 0 as in `of_nothing`, beside
-/// the model's own transfers. O(points n^3).
+/// As `terms`, for the rounding of the model's own A, B, C and D (matrices of their sizes): |dD| +
+/// |W| |dB| + |dC| |X| + |W| |dA| |X| over the rounding unit. These are sums of magnitudes, without
+/// a statistical margin. 0 as in `of_nothing`, relative to the model's own transfers. O(points
+/// n^3).
 Eigen::MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
                                   const std::vector<std::complex<double>>& points);
 
-/// What one rounding stands for: it is one sample, after a step of refinement, of what many may do.
+/// Factor on one sample of rounding, taken after a step of refinement, as a bound for many.
 inline constexpr double kTermsPerRounding = 100 / std::numeric_limits<double>::epsilon();
 
-/// The same of what cancels inside the elimination, seen by its rounding: kTermsPerRounding times
-/// double against long double at these points. Slow.
+/// The same for cancellation inside the elimination, estimated from its rounding: kTermsPerRounding
+/// times double against long double at these points. Slow.
 Eigen::MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points);
 
 /// The same of `transfer(graph, s, values)` (compiler/transfer.hpp): all equations against all in
@@ -65,11 +65,11 @@ Eigen::MatrixXd terms(const System& system, const std::vector<std::complex<doubl
 Eigen::MatrixXd terms(const Graph& graph, const std::vector<std::complex<double>>& points,
                       ParameterValues values);
 
-/// Adds the terms of an elimination to the measure, for blocks of `exact` that may be nothing but
-/// its rounding: below 1e3 of one sample of it, where three digits or fewer are left. A block that
-/// stands out is measured by itself, however many digits double has lost. Where `exact` is 0 to the
-/// last bit, as turned frames may leave it, there is no sample: 1e-3 of the geometric mean of what
-/// stands in its row and column counts as terms, so that `difference` has 1 at 1e-6 of that.
+/// Adds the terms of an elimination to the measure, for blocks of `exact` that may be rounding
+/// alone: below 1e3 of one sample of it, where three digits or fewer remain. A larger block is
+/// measured by itself, however many digits double has lost. If `exact` is 0 to the last bit
+/// (possible with rotated frames), there is no sample: 1e-3 of the geometric mean of the entries in
+/// its row and column is used as terms, so that `difference` is 1 at 1e-6 of that.
 void add_rounding(Measure& measure, const std::vector<Eigen::MatrixXcd>& exact,
                   const Eigen::MatrixXd& terms);
 
@@ -86,12 +86,12 @@ struct Difference {
 inline constexpr double kClose = 1e-9;
 
 /// Two transfers at the same points: each entry's difference over the size of its block. That is
-/// the largest value that the block takes in `exact`, or 1e-3 of its terms where these are larger
-/// and cancel, as by symmetry (in double nothing is right to better than 1e-15 of its terms, and
-/// the entries of a dense model have lost some digits where they were made). No block is measured
-/// by its neighbours (but a 0 to the last bit, by add_rounding): the result is the same in all
-/// units of scalars and of whole threes; what stands in one three is taken to share a unit. Not
-/// finite, or a difference where `exact` and the terms are 0, is infinitely far.
+/// the largest value of the block in `exact`, or 1e-3 of its terms if these are larger and cancel,
+/// as by symmetry (double has no better accuracy than 1e-15 of the terms, and the entries of a
+/// dense model have lost some digits when they were made). No block is measured by its neighbours
+/// (except a 0 to the last bit, by add_rounding): the result is independent of the units of scalars
+/// and of vectors of three, whose components share a unit. Infinite for values that are not finite,
+/// and for a difference where `exact` and the terms are 0.
 Difference difference(const std::vector<Eigen::MatrixXcd>& a,
                       const std::vector<Eigen::MatrixXcd>& exact, const Measure& measure);
 

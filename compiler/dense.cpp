@@ -12,7 +12,7 @@
 #include <titop/compiler/system_data.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-/// The dense model from the factors: what `Writing` says, in numbers.
+/// The dense model from the factors: evaluates the plan `Writing`.
 namespace titop::detail {
 namespace {
 
@@ -46,8 +46,9 @@ class Writer {
     const std::size_t batches = w_->batches.size() - 1;
     for (std::size_t i = 0; i < batches; ++i) width_ = std::max(width_, w_->width(i));
     kept.coefficients.assign(at(w_->coefficients), 0);
-    // What batches read are tasks, too: these are taken first, and all others wait for them. Only
-    // the last may throw: tasks behind one that throws are not begun, and all would wait for them.
+    // The data that batches read are computed by tasks, too: these come first, and all others wait
+    // for them. Only the last of them may throw: tasks behind one that throws are not begun, and
+    // the others would wait for ever.
     constexpr std::size_t kFirst = 4;
     std::latch first(kFirst);
     const auto prepare = [&](std::size_t i) {
@@ -132,7 +133,7 @@ class Writer {
     return own_terms(batch, room.values.data());
   }
 
-  /// False where other batches give what the target would read.
+  /// False if the target's values are known from other batches by symmetry.
   bool reads(const Writing::Target& t, std::size_t batch, bool half) const {
     return !half || t.source < 0 || !w_->has_counterparts(batch) ||
            at(t.source) >= w_->batches[batch];
@@ -210,7 +211,7 @@ class Writer {
     return {first, -modal.stiffness(j), first + s.columns * matrix.rows(), -modal.damping(j)};
   }
 
-  /// What later targets read of these sources is what these sources' targets read of theirs.
+  /// Fills by symmetry the entries that later targets would read of these sources.
   void write_rows(std::size_t batch, const double* values) {
     std::vector<solve::Modes> bodies;
     for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i)
@@ -237,7 +238,7 @@ class Writer {
     return result;
   }
 
-  /// The block's own A: what it does with all its inputs at 0.
+  /// The block's own A, with all its inputs at 0.
   void add_own(const Writing::Source& s) {
     const Dynamics& b = block(s.node);
     if (!b.modal) {

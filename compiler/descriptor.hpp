@@ -7,9 +7,9 @@
 namespace titop {
 
 /// The same model before elimination, sparse: E vdot = A v + B u, y = C v + D u with v = [x; z], x
-/// the states, z what follows from them at once: states of closed chains that depend on the others,
-/// then the interface unknowns (accelerations and forces). E = diag(I, 0). Its size is that of the
-/// diagram, O(bodies) entries for any wiring with few children per body.
+/// the states, z algebraic variables: dependent states of closed chains, then the interface
+/// unknowns (accelerations and forces). E = diag(I, 0). Its size is that of the diagram, O(bodies)
+/// entries for any wiring with few children per body.
 struct Descriptor {
   Eigen::SparseMatrix<double> E, A;     ///< (n + unknowns) x (n + unknowns)
   Eigen::SparseMatrix<double> B, C, D;  ///< (n + unknowns) x nu, ny x (n + unknowns), ny x nu

@@ -13,21 +13,21 @@ namespace {
 using linalg::at;
 using solve::RowMatrix;
 
-constexpr double kMoves = 1e-7;  ///< of what could cancel in a sum; rounding gives 1e-12
+constexpr double kMoves = 1e-7;  ///< relative to cancelling terms; rounding gives 1e-12
 constexpr double kZero = 1e-10;  ///< of the largest internal force: zero
 
-/// Rounding moves light bodies a little, and through them a heavy one: its mass times that may be
-/// much beside the forces, in double. A step of refinement takes a share of it away that is about
-/// rounding times the ratio of the masses: with so many, ratios of 1e12 do no harm. What is truly
-/// moved stays.
+/// Rounding moves light bodies a little, and through them a heavy one: its mass times that
+/// acceleration may be large beside the forces, in double. A step of refinement reduces it by a
+/// factor of about rounding times the ratio of the masses: with this many steps ratios of 1e12 do
+/// no harm. True motion remains.
 constexpr int kRefinements = 8;
 
 /// More released directions than these are judged by as many sums of all of them.
 constexpr std::size_t kSums = 32;
 
-/// Right-hand sides: a unit wrench in each of these rows or, where they are many, sums of all with
-/// random factors within +-1. What one wrench moves every sum moves, but for a coincidence in each
-/// of them.
+/// Right-hand sides: a unit wrench in each of these rows or, for many rows, sums of all with random
+/// factors within +-1. A signal that depends on one wrench depends on every sum, except by
+/// coincidence in all of them.
 RowMatrix<double> wrenches(int unknowns, const std::vector<int>& rows) {
   const bool each = rows.size() <= kSums;
   RowMatrix<double> rhs =
@@ -86,13 +86,13 @@ class SelfStress {
     return v;
   }
 
-  /// The first signal by which a sum depends on internal forces, -1 if it does not: what it shows
-  /// is more than rounding leaves of what cancels in it. Accelerations and states follow the motion
-  /// and do not count.
+  /// The first signal by which a sum depends on internal forces, -1 if it does not: the sum must be
+  /// above the rounding of its cancelling terms. Accelerations and states follow the motion and do
+  /// not count.
   int shown_by(const std::vector<Share>& sum) const {
     if (sum.empty()) return -1;
     const Eigen::Index rows = sum.front().c.rows(), columns = known_.cols();
-    // What one wrench moves stands beside what all others do.
+    // In a sum, the effect of one wrench is compared with that of all.
     const double moves = kMoves / std::sqrt(summed() ? static_cast<double>(directions_) : 1);
     RowMatrix<double> total = RowMatrix<double>::Zero(rows, columns), size = total;
     int first = -1;
@@ -216,7 +216,7 @@ struct ForceJudge {
     }
   }
 
-  /// What a block's row says of its channels' signals: D u - y.
+  /// Residual of a block's row in its channels' signals: D u - y.
   std::vector<Share> balance(const Row& row) const {
     const Graph& g = k.stage.graph;
     const Signal& y = g.signals[at(row.output)];

@@ -9,10 +9,9 @@
 
 namespace titop::detail {
 
-/// glibc adapts itself to what it is asked for: when a block that was mapped by itself is freed, it
-/// keeps twice as much from then on, blocks of up to 32 MB counted (mallopt(3), on
-/// M_MMAP_THRESHOLD). So one such block is taken and freed; as nobody writes to it, it costs no
-/// memory.
+/// glibc adapts its mmap threshold: when a block that was mapped by itself is freed, it keeps twice
+/// as much from then on, for blocks of up to 32 MB (mallopt(3), on M_MMAP_THRESHOLD). So one such
+/// block is allocated and freed; as it is never written to, it uses no memory.
 void keep_memory() {
 #if defined(__GLIBC__)
   static std::once_flag once;

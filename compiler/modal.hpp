@@ -20,10 +20,10 @@ struct Pole {
 };
 
 /// Poles sorted by frequency. Undamped and proportionally damped models are solved as symmetric
-/// problems, so that undamped poles lie on the axis exactly and slow ones have as many digits as
-/// fast ones (`eigh_graded`; where a rigid motion is spread over several states, or beyond 400
-/// pairs, what is slower than 3e-7 of the fastest is given as 0). States that A couples to no
-/// others are poles by themselves, exactly. Other models: eigenvalues of the balanced A. O(n^3).
+/// problems, so that undamped poles lie exactly on the axis and slow ones have as many digits as
+/// fast ones (`eigh_graded`; if a rigid motion is spread over several states, or beyond 400 pairs,
+/// poles slower than 3e-7 of the fastest are returned as 0). States that A couples to no others are
+/// poles by themselves, exactly. Other models: eigenvalues of the balanced A. O(n^3).
 std::vector<Pole> poles(const StateSpace& model);
 
 /// A table: rad/s, Hz, damping, blocks.
@@ -37,7 +37,7 @@ struct SecondOrder {
   Eigen::VectorXd d;         ///< scaling
   Eigen::MatrixXd S;         ///< symmetric positive semidefinite: yddot = -S y - Z ydot
   Eigen::MatrixXd Z;         ///< same scaling
-  Eigen::MatrixXd skew;      ///< what S lost: the antisymmetric part, to be small in its modes, too
+  Eigen::MatrixXd skew;      ///< antisymmetric part removed from S, to be small in its modes, too
   double asymmetry = 0;      ///< largest |S_ij - S_ji| over sqrt(S_ii S_jj) before; up to 1e-9
 };
 SecondOrder second_order(const Eigen::MatrixXd& A);

@@ -6,8 +6,8 @@
 
 namespace titop {
 
-/// Positions of a model's states, inputs and outputs in natural order of their names. What works on
-/// a model in this order gives the same bits however its diagram was written.
+/// Positions of a model's states, inputs and outputs in natural order of their names. Computations
+/// in this order give the same bits for any order of declaration in the diagram.
 struct NameOrder {
   std::vector<int> states, inputs, outputs;
 };

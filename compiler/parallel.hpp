@@ -20,9 +20,9 @@ inline int thread_count(int wanted, std::size_t tasks) {
 }
 
 /// Runs task(i) for i = 0 ... count - 1, in no order, on up to `threads` threads; make() gives each
-/// thread its own task object (its workspace). What a task does must not depend on the others: the
-/// results are then the same for any number of threads. What the task of the lowest i throws is
-/// thrown, once all threads have stopped; those before it have been done.
+/// thread its own task object (its workspace). Tasks must not depend on each other: the results are
+/// then the same for any number of threads. If tasks throw, all threads stop, all tasks before the
+/// lowest failed i are completed, and its exception is rethrown.
 template <class Make>
 void parallel(std::size_t count, int threads, Make make) {
   std::atomic<std::size_t> next{0};

@@ -41,10 +41,10 @@ constexpr Pass kPasses[] = {
     {"check", passes::check},  // the user's mistakes, in the user's words: before anything moves
     {"lower", passes::lower},  // one numeric coefficient per term; names decide the order from here
     {"split", passes::split},  // parts without output: no later pass need look at them
-    {"chains", passes::chains},  // what closes a chain twice is released: no rank can fail below
-    {"match", passes::match},    // who determines whom: channel inversions come out here
-    {"order", passes::order},    // loops, and what no input reaches or no output sees
-    {"close", passes::close},    // dependent coordinates, among the states that are left
+    {"chains", passes::chains},  // redundant closures are released: no rank can fail below
+    {"match", passes::match},    // which row determines which signal: finds channel inversions
+    {"order", passes::order},    // loops; rows that no input reaches or no output sees
+    {"close", passes::close},    // dependent coordinates, among the remaining states
 };
 
 /// A fault of ours shows in the pass that makes it. A release looks where coefficients are made and
@@ -140,8 +140,8 @@ void certify_now(detail::SystemData& data) {
   data.checked();
 }
 
-/// All passes, and the certificate; once more where it says that double takes rounding for a pivot.
-/// `note` adds to the notes of what was made.
+/// All passes and the certificate; a second time with a larger least pivot if the certificate finds
+/// that double took rounding for a pivot. `note` adds to the notes of the result.
 template <class Begin, class Note>
 std::shared_ptr<const detail::SystemData> decided(Begin begin, const Options& options, Note note) {
   const auto made = [&](double least) {

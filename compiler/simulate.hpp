@@ -8,14 +8,14 @@
 /// Time responses of a compiled system.
 namespace titop {
 
-/// The inputs over time: what a step needs are their values at its two ends, from inside. Between
-/// them every method takes them as linear, so that steps, samples and ramps are taken exactly. A
+/// The inputs over time, given by their values at the two ends of each step, as limits from inside.
+/// All methods interpolate linearly in between, so that steps, samples and ramps are exact. A
 /// vector u has the order of System::inputs(), an empty one stands for 0; matrices are inputs x
 /// samples.
 class Excitation {
  public:
-  /// u(begin), u(end) of the step from begin to end [s], both from inside. The automatic choice may
-  /// go through all steps a second time: the same step must give the same.
+  /// u(begin), u(end) of the step from begin to end [s], limits from inside. With
+  /// Stepper::automatic it may be called twice for the same step: it must return the same values.
   using Ends = std::pair<Eigen::VectorXd, Eigen::VectorXd>;
   using Over = std::function<Ends(double begin, double end)>;
 
@@ -50,7 +50,7 @@ enum class Stepper {
   exact,      ///< matrix exponential, once O(n^3), then O(n^2): for inputs that are linear in every
               ///< step no error at any step but rounding, that of writing A and B included
   midpoint,   ///< implicit midpoint rule through the factors, O(b), h^2: stable at any step, keeps
-              ///< the energy of what is undamped; high modes stay bounded, but turn too slowly
+              ///< the energy of undamped systems; high modes stay bounded, but turn too slowly
   rk4         ///< classic Runge-Kutta, O(b), h^4: refuses steps beyond its limit of stability
 };
 const char* to_string(Stepper stepper);
@@ -67,20 +67,20 @@ struct Simulation {
   double accuracy = 0.01;
 };
 
-/// What comes out, a column per time.
+/// The result, a column per time.
 struct Trajectory {
   std::vector<double> time;  ///< [s]: 0, step, ..., until
   Eigen::MatrixXd y;         ///< outputs x times; where an input jumps, just after it (the last
                              ///< time: just before)
   Eigen::MatrixXd x;         ///< states x times, or their last column alone
   Stepper stepper = Stepper::exact;  ///< the one that was taken
-  /// Per output, relative to its largest value, or to a millionth of that of the largest output of
-  /// its kind (positions, velocities, accelerations, forces), where that is more: what symmetry
-  /// makes 0 has no digits. Of the automatic choice's midpoint: the largest change from steps of
-  /// twice the size (an h^2 method: about three times the error). Of the exact stepper: what
-  /// rounding A and B has done by then, as far as their xdot differs from the factors' (looked at
-  /// up to a thousand times), carried on by the same steps: its order of magnitude. Empty where
-  /// midpoint or rk4 was asked for, which is not tried twice.
+  /// Estimated error per output, relative to its largest value, or to a millionth of that of the
+  /// largest output of its kind (positions, velocities, accelerations, forces) if that is more: an
+  /// output that is 0 by symmetry has no digits. Of the automatic choice's midpoint: the largest
+  /// change from steps of twice the size (an h^2 method: about three times the error). Of the exact
+  /// stepper: the effect of rounding in A and B, from the difference of their xdot from that of the
+  /// factors (sampled at up to a thousand times), propagated by the same steps: its order of
+  /// magnitude. Empty if midpoint or rk4 was chosen by the caller: no second run is made.
   Eigen::VectorXd error;
   std::vector<std::string> states, outputs;
 };

@@ -12,11 +12,11 @@ namespace titop {
 /// A line of the compile log.
 struct Note {
   enum class Kind {
-    info,       ///< what a pass counted
+    info,       ///< a count made by a pass
     inverted,   ///< a channel that is driven on the side that its block gives by default
-    removed,    ///< what cannot matter and is left out
+    removed,    ///< a part without effect, left out
     unchecked,  ///< accepted without a check: frames behind a nameless rotation or a matrix
-    warning,    ///< digits are lost, and how many; or what is written is rarely meant
+    warning,    ///< lost digits, with their number; or input that is rarely intended
   };
   Kind kind = Kind::info;
   std::string pass;
@@ -56,8 +56,8 @@ struct Matched {
 struct Origin {
   enum class Of {
     accel,      ///< equation `index` of the source, on an acceleration
-    released,   ///< what others add to the force of channel `index`: a joint held twice lets go
-    force,      ///< all that drives the force of channel `index`
+    released,   ///< force terms of channel `index`, released: its joint is redundant
+    force,      ///< all terms of the force of channel `index`
     one_way,    ///< equation `index` of the source, on a one-way port
     algebraic,  ///< the row of output signal `index` of a node that has become coefficients
     output,     ///< output `index` of the diagram
@@ -83,12 +83,12 @@ struct Released {
   int equation = -1;    ///< of the released force (new), in Stage::graph
   int channel = -1;     ///< whose wrench is not determined there
   int closing = -1;     ///< the closing equation; where all of it is released, the same
-  Equation whole = {};  ///< as it was: it holds, for what is released follows from closings before
+  Equation whole = {};  ///< as it was: still satisfied, it follows from earlier closings
 };
 
-/// A state that follows from others, because chains are closed or because it integrates what other
-/// states hold: x(node, state) = sum of factor * x(node, state). What stands on the right is
-/// independent, or follows from others before it in the list.
+/// A dependent state, because of closed chains or because it integrates other states: x(node,
+/// state) = sum of factor * x(node, state). The states on the right are independent, or dependent
+/// ones earlier in the list.
 struct Dependent {
   struct Share {
     int node = -1, state = -1;
@@ -98,7 +98,7 @@ struct Dependent {
   std::vector<Share> of = {};
 };
 
-/// What travels through the passes: the graph and what is known about it so far.
+/// Data passed from pass to pass: the graph and the results about it so far.
 struct Stage {
   Graph graph;                           ///< after lower
   std::vector<double> values;            ///< parameter values
@@ -122,11 +122,11 @@ struct Stage {
     if (!source) throw std::logic_error("a stage without a diagram: begin with as_written(graph)");
     return *source;
   }
-  /// What the passes have made of the diagram so far.
+  /// The diagram after the passes so far.
   const Graph& now() const { return origins.empty() ? written() : graph; }
 };
 
-/// What the passes begin with, for nominal values. `lower` copies the graph, which has to live
+/// The stage before the first pass, for nominal values. `lower` copies the graph, which must live
 /// until then.
 Stage as_written(const Graph& graph);
 

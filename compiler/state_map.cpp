@@ -11,7 +11,7 @@ using linalg::at;
 
 constexpr double kRounding = 64 * 2.220446049250313e-16;
 
-/// to += M R; what cancels to rounding is 0.
+/// to += M R; entries that cancel to rounding become 0.
 void add_product(MatrixXd& to, const MatrixXd& M, const MatrixXd& R) {
   const MatrixXd size = to.cwiseAbs() + M.cwiseAbs() * R.cwiseAbs();
   to += M * R;
@@ -22,8 +22,8 @@ void add_product(MatrixXd& to, const MatrixXd& M, const MatrixXd& R) {
 MatrixXd times_map(const MatrixXd& M, const StateMap& map) {
   MatrixXd all = M, size = M.cwiseAbs();
   std::vector<char> touched(at(M.cols()), 0);
-  // Sizes count from what is left: along a chain of followers they would grow with every link, and
-  // take what is there for rounding.
+  // Sizes restart from the sums: along a chain of dependent states they would grow with every link,
+  // and nonzero entries would pass for rounding.
   const auto clean = [&](Index j) {
     if (touched[at(j)])
       all.col(j) =

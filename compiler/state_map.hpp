@@ -34,8 +34,8 @@ class StateMap {
   }
   int order() const { return static_cast<int>(map_->kept.size()); }
 
-  /// One dependent state: sum of factor * state, all among the blocks' states. A row may read what
-  /// rows before it give.
+  /// One dependent state: sum of factor * state, all among the blocks' states. A row may refer to
+  /// the states of rows before it.
   struct Row {
     int state = -1;
     std::vector<std::pair<int, double>> of;

@@ -13,10 +13,10 @@ struct SweepOptions {
   std::function<void(std::size_t, std::size_t)> progress = {};
 };
 
-/// system.update(points[i]) for every i, each handed to visit(i, updated) on one of the threads:
-/// `visit` must only touch what belongs to i. What it sees does not depend on the number of
-/// threads, to the last bit. Of several errors that of the first point is thrown, with the point's
-/// number. Threads but the caller's are kept for later calls, with their thread_local objects.
+/// Calls visit(i, system.update(points[i])) for every i, each on one of the threads: `visit` must
+/// only touch data of i. Its arguments are the same to the last bit for any number of threads. Of
+/// several errors that of the first point is thrown, with the point's number. Threads but the
+/// caller's are kept for later calls, with their thread_local objects.
 ///
 ///     std::vector<double> hz(points.size());
 ///     sweep(s, points, [&](std::size_t i, const System& at) { hz[i] = at.poles()[0].hertz; });
@@ -36,7 +36,7 @@ enum class DrawLine {
 ///
 ///     117 of 400 points, 29 %, 12 s left
 ///
-/// The time left takes the rest to be as long as what is done, counted from the making of the line:
+/// The time left is extrapolated from the points done, counted from the construction of the line:
 /// one for each sweep. `to` must stay open.
 std::function<void(std::size_t, std::size_t)> progress_line(std::FILE* to = stderr,
                                                             DrawLine draw = DrawLine::on_terminals);

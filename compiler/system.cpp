@@ -78,9 +78,9 @@ MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
   return rounded<T>(result.outputs());
 }
 
-/// What is lost in T, once a step of refinement has mended what the elimination loses, which it did
-/// by `losses`: by the weakest pivot, by what rounding does to the outputs, by what that step
-/// leaves, which takes another step to know.
+/// Relative error in T after one step of refinement, whose change was `losses`: the largest of
+/// those by the weakest pivot, by rounding of the outputs, and by the remainder after that step,
+/// which takes another step to compute.
 template <class T>
 double lost_by(detail::Evaluation<T>& e, const typename detail::Evaluation<T>::Losses& losses) {
   const double left = losses.change <= kEnough ? 0 : e.improve();

@@ -28,29 +28,29 @@ struct Trajectory;
 /// Wrenches in closed chains that hold more than once, which motion does not determine.
 enum class InternalForces {
   refuse,        ///< whoever reads one is refused by name
-  minimal_norm,  ///< the joint that closes the chain has the smallest wrench that will do, forces
-                 ///< [N] and torques [N m] alike; what reads it is marked in the log
+  minimal_norm,  ///< the joint that closes the chain gets the wrench of smallest norm, forces [N]
+                 ///< and torques [N m] alike; the log marks its readers
 };
 
 /// How to compile.
 struct Options {
-  /// Up to this many states, `state_space()` also removes what has no effect on the transfer
-  /// (pass `minimize`, O(n^3)); beyond it only what the structure shows. 0: never.
+  /// Up to this many states, `state_space()` also removes states without effect on the transfer
+  /// (pass `minimize`, O(n^3)); beyond it only those that the structure shows. 0: never.
   int minimize_up_to = 100;
   /// Folder for one Graphviz file per pass (00-diagram.dot, 01-check.dot, ...); empty: none.
   std::string dump_to = {};
-  /// Merge what differs by less than this (relative half-bandwidth, below 1) when minimizing; 0:
-  /// only what rounding cannot tell from nothing.
+  /// Relative tolerance (half-bandwidth, below 1) of the minimal realization; 0: rounding level
+  /// only.
   double resolution = 0;
   InternalForces internal_forces = InternalForces::refuse;
-  /// Up to this many states the minimal order is found in exact arithmetic as well, where the data
-  /// allow it (compiler/exact_order.hpp), and decides what `minimize` takes out, which then runs up
-  /// to as many unless minimize_up_to is 0. 0: never.
+  /// Up to this many states the minimal order is also computed in exact arithmetic, if the data
+  /// allow it (compiler/exact_order.hpp); it then decides which states `minimize` removes, which
+  /// runs up to as many states unless minimize_up_to is 0. 0: never.
   int exact_up_to = 0;
 };
 
-/// With what arithmetic a transfer is found, coarse to fine. All run through the same elimination
-/// on the same plan; blocks are evaluated with it too, from data that are doubles.
+/// Arithmetic of a transfer, coarse to fine. All use the same elimination on the same plan; blocks
+/// are evaluated in it too, from data that are doubles.
 enum class Precision {
   standard,  ///< double: 16 digits; one step of refinement mends what the elimination loses
   refined,   ///< factors in double, blocks and residuals in long double: refined until the outputs
@@ -94,20 +94,19 @@ class System {
   /// Transfer matrix at s (outputs x inputs) through the factors of the same plan: O(bodies), full
   /// accuracy at any mass ratio unless a coarser precision is asked for. Throws singular if s is a
   /// pole of the system or of a block.
-  ///
-  /// `refined` and `twofold` are right to 1e-12 of each block of the transfer (a port by a port),
-  /// or throw singular, even where no pole is: their factors are in double, and where these have
-  /// not one digit for some unknown, or the rounding of long double costs more, they do not lead
-  /// there. That is judged by estimates: of how steps of refinement shrink, in all unknowns, and of
-  /// rounding. Where numbers leave the range that DoubleDouble has, `twofold` throws not_finite.
-  /// The way out of all that is `as_needed`, or `digits50`. `standard` refuses only a pivot without
-  /// a digit: what many pivots lose together it does not see.
+  /// `refined` and `twofold` are accurate to 1e-12 of each block of the transfer (a port by a
+  /// port), or throw singular, also without a pole: their factors are in double, and if these have
+  /// no digit for some unknown, or if the rounding of long double is too large, refinement fails.
+  /// Both are estimates: the convergence of the refinement steps in all unknowns, and the rounding.
+  /// If numbers exceed the range of DoubleDouble, `twofold` throws not_finite. In all these cases
+  /// use `as_needed` or `digits50`. `standard` detects only a completely lost pivot, not the
+  /// accumulated loss of many pivots.
   Eigen::MatrixXcd transfer(std::complex<double> s,
                             Precision precision = Precision::as_needed) const;
 
-  /// transfer(j omega, precision) for each omega [rad/s], on `threads` threads (0: all cores);
-  /// the same to the last bit whatever their number. O(bodies) per frequency. Throws what
-  /// `transfer` throws: of several omega the first, such as one on an undamped pole.
+  /// transfer(j omega, precision) for each omega [rad/s], on `threads` threads (0: all cores); the
+  /// same to the last bit for any number of threads. O(bodies) per frequency. Throws the errors of
+  /// `transfer`: of several that of the first omega, such as one on an undamped pole.
   std::vector<Eigen::MatrixXcd> frequency_response(
       std::span<const double> omega, int threads = 0,
       Precision precision = Precision::as_needed) const;
@@ -123,15 +122,14 @@ class System {
   const StateSpace& state_space() const&;
   StateSpace state_space() const&& { return state_space(); }
 
-  /// How sure the order of state_space() is, what was removed and at what cost; writes the model
-  /// where that has not been done.
+  /// Reliability of the order of state_space(), the states removed and the error of that; writes
+  /// the model if that has not been done.
   const OrderVerdict& order_verdict() const&;
   OrderVerdict order_verdict() const&& { return order_verdict(); }
 
-  /// The dense model before `minimize`, into a model of the caller's, whose memory is used again
-  /// where it fits: what a loop over parameters wants. O(n^2), on `threads` threads (0: all cores),
-  /// the same to the last bit whatever their number. What writing it down costs is for
-  /// certificate(model) to say.
+  /// The dense model before `minimize`, into the caller's model, whose memory is reused if it fits:
+  /// for loops over parameters. O(n^2), on `threads` threads (0: all cores), the same to the last
+  /// bit for any number of threads. certificate(model) returns its rounding error.
   void write(StateSpace& model, int threads = 0) const;
 
   /// The model before elimination as sparse matrices (compiler/descriptor.hpp). O(bodies).
@@ -144,42 +142,42 @@ class System {
   /// Poles of state_space() with frequency, damping and the blocks that take part. O(n^3).
   std::vector<Pole> poles() const;
 
-  /// A new system where parameters (Diagram::param) have other values; those not named keep theirs.
-  /// It shares the plan with this one, and all fronts of the elimination that do not depend on
-  /// them: O(those fronts) and one pointer per block. States keep number and meaning. The scaling
-  /// of these fronts is found anew where a value has moved by more than a factor of 8 since it was
-  /// found, that of all where pivots have lost half their digits (Certificate::plans_renewed counts
-  /// both); the numbers are then those of a fresh compile, to rounding.
-  /// Pivots are judged at once; the rest of the certificate, and the warnings that come of it, are
-  /// found when certificate(), notes(), log() or state_space() is first asked for: O(bodies). Among
-  /// these is a loop that the new values make singular where no pivot shows it. Where a pivot keeps
-  /// less than 1e-7 of its terms, and a tenth of what it kept before, all of it is found at once.
-  /// `minimize` is no part of it: state_space() of the new system judges the new values, and may
-  /// have another order (Options::minimize_up_to = 0 keeps all states at all values). Throws
-  /// unknown_name (with the names there are), duplicate_name (one set twice), not_finite, what the
-  /// blocks throw for values that make no block (bad_inertia, bad_value), improper and ill_posed.
+  /// A new system with other values of parameters (Diagram::param); those not named keep theirs. It
+  /// shares the plan with this one, and all fronts of the elimination that do not depend on them:
+  /// O(those fronts) and one pointer per block. States keep number and meaning. The scaling of
+  /// these fronts is recomputed if a value has changed by more than a factor of 8 since the last
+  /// time, that of all fronts if pivots have lost half their digits (Certificate::plans_renewed
+  /// counts both); the numbers are then those of a fresh compile, to rounding. Pivots are checked
+  /// at once; the rest of the certificate, and its warnings, are computed at the first call of
+  /// certificate(), notes(), log() or state_space(): O(bodies). They include a loop that the new
+  /// values make singular without a small pivot. If a pivot is less than 1e-7 of its terms, and a
+  /// tenth of its former ratio, all of it is computed at once. `minimize` is not included:
+  /// state_space() of the new system decides for the new values, and may have another order
+  /// (Options::minimize_up_to = 0 keeps all states at all values). Throws unknown_name (with the
+  /// valid names), duplicate_name (one set twice), not_finite, the errors of blocks for invalid
+  /// values (bad_inertia, bad_value), improper and ill_posed.
   ///
-  /// Where new values change how a closed chain moves, or bring a term in or leave one out, all
-  /// passes run again, at the cost of `compile` and with its throws; the log says so, and warns if
-  /// other states are kept than before. So does every update of a scene whose equations as written
-  /// are singular, such as one with a point without mass (its log has notes of pass `reduce`).
+  /// If new values change how a closed chain moves, or add or remove a term, all passes run again,
+  /// with the cost and the errors of `compile`; the log reports it, and warns if other states are
+  /// kept than before. The same holds for every update of a scene whose equations as written are
+  /// singular, such as one with a point without mass (its log has notes of pass `reduce`).
   System update(const ParameterList& values) const;
 
   /// All parameters and their values here, in the order of their making.
   ParameterList parameters() const;
 
   Certificate certificate() const;
-  /// The certificate with what it says of a dense model (`dense_...`) said of this one, which
-  /// write() made: what writing it down costs. O(n^2), some products with A. Throws size where
-  /// names or matrices are not those of a model of this system before `minimize`, not_finite where
-  /// an entry is not. A model of other values is found by dense_against_factors.
+  /// The certificate whose `dense_...` fields refer to this model, made by write(): its rounding
+  /// error. O(n^2), some products with A. Throws size if names or matrices are not those of a model
+  /// of this system before `minimize`, not_finite if an entry is not. A model of other values has a
+  /// large dense_against_factors.
   Certificate certificate(const StateSpace& written) const;
-  /// What the passes did: counts, inversions, what was removed, what was not checked.
+  /// Results of the passes: counts, inversions, removed and unchecked parts.
   const std::vector<Note>& notes() const&;
   std::vector<Note> notes() const&& { return notes(); }
-  /// The notes as text, one per line; after state_space() also what `minimize` did.
+  /// The notes as text, one per line; after state_space() also those of `minimize`.
   std::string log() const;
-  /// What writing and minimizing the dense model did; empty before state_space() was asked for.
+  /// Notes on writing and minimizing the dense model; empty before the first state_space().
   std::vector<Note> dense_notes() const;
   /// Seconds per pass, in their order. Not part of log(), which is the same on every machine.
   const std::vector<std::pair<std::string, double>>& seconds() const&;

@@ -9,7 +9,7 @@
 #include <titop/compiler/state_map.hpp>
 #include <titop/compiler/system.hpp>
 
-/// What stands behind a System. For the compiler's own files only.
+/// The data of a System. For the compiler's own files only.
 namespace titop::detail {
 
 /// Where the rows and columns of the model come from.
@@ -26,7 +26,7 @@ struct Layout {
 };
 Layout make_layout(const Graph& graph);
 
-/// What a parameter moves.
+/// The data that depend on a parameter.
 struct Dependents {
   std::vector<int> nodes;    ///< whose matrices change
   std::vector<int> origins;  ///< equations and outputs whose coefficients change
@@ -37,7 +37,8 @@ std::vector<Dependents> find_dependents(const Stage& stage, const solve::Joint& 
 
 struct Writing;
 
-/// What does not depend on numbers: shared by all systems that `update` makes of one another.
+/// The data that do not depend on numbers: shared by all systems that `update` makes of one
+/// another.
 struct Skeleton {
   Stage stage;  ///< after the passes
   Options options;
@@ -53,7 +54,7 @@ struct Skeleton {
   const solve::Joint& as_written() const { return before_reduce ? *before_reduce : joint; }
 };
 
-/// What rounding the dense model costs, and where: see Certificate::dense_error and below.
+/// Rounding error of the dense model, and its place: see Certificate::dense_error and below.
 struct DenseError {
   struct Worst {
     double error = 0;
@@ -64,12 +65,12 @@ struct DenseError {
   std::vector<std::complex<double>> not_tried = {};  ///< s where the factors have no digit
 };
 
-/// What `certify` finds.
+/// Result of `certify`.
 struct Check {
   Certificate certificate;
   std::vector<Note> notes;  ///< all of the system, its own at the end
-  double lost = 0;  ///< of the outputs, by rounding, in double; 0 where it was not asked for
-  bool rounding_alone = false;  ///< is all that some output has, as far as was asked for
+  double lost = 0;          ///< of the outputs, by rounding, in double; 0 if it was not computed
+  bool rounding_alone = false;  ///< some output is at rounding level, as far as computed
   int loop_without_digit = -1;  ///< of the stage, by its margin, or without one in double
   double least = 0;             ///< see least_pivot
 };
@@ -156,17 +157,17 @@ double dense_difference(const SystemData& data, const StateSpace& dense);
 /// Throws size and not_finite where this is no model that write_dense makes of this system.
 void require_written(const SystemData& data, const StateSpace& dense);
 
-/// A dense model and what rounding may have put into each of its entries.
+/// A dense model and the rounding error of each of its entries.
 struct Rounded {
   StateSpace model, rounding;
 };
-/// What rounding may put into the entries of a dense model of these sizes and names: the largest of
-/// four samples by the factors. O(bodies * order).
+/// Rounding errors of the entries of a dense model of these sizes and names: the largest of four
+/// samples by the factors. O(bodies * order).
 StateSpace rounding_of(const SystemData& data, const StateSpace& dense);
-/// The dense model with 0 for every entry that is nothing but rounding: not above some 30 times
-/// what the factors say that rounding makes of 0 there. What does not act on something else then
-/// does not, in any units. As it is where that costs the transfer digits. O(bodies * order), and
-/// where entries become 0 some transfers of a dense model; for models that `minimize` judges.
+/// The dense model with 0 for every entry at rounding level: below about 30 times the factors'
+/// rounding of a 0 there. Couplings at rounding level become exact zeros, in any units. Unchanged
+/// if that costs the transfer digits. O(bodies * order), and, if entries become 0, some transfers
+/// of a dense model; for models that `minimize` judges.
 Rounded without_rounding(const SystemData& data, StateSpace dense);
 
 /// See Certificate::dense_error. O(n^2) per s; O(n^3) for up to 100 states where it is large.
@@ -178,10 +179,10 @@ void warn_of_lost_digits(const SystemData& data, const DenseError& error, std::v
 void find_margins(const SystemData& data, std::span<const int> loops, std::vector<double>& margins);
 /// The largest of these margins, one per loop, into the certificate.
 void worst_margin(const SystemData& data, std::span<const double> margins, Check& check);
-/// What is released in a closed chain (Stage::released) leaves internal forces undetermined: throws
-/// kinematic_loop for every output and controller that reads one, or notes them as minimal-norm
-/// where Options::internal_forces says so. One solution per released direction; 32 where these are
-/// more, of sums of them; up to eight steps of refinement where something is found.
+/// Checks the internal forces that released closures (Stage::released) leave undetermined: throws
+/// kinematic_loop for every output and controller that reads one, or notes them as minimal-norm as
+/// chosen by Options::internal_forces. One solution per released direction; if these are more than
+/// 32, of 32 sums of them; up to eight steps of refinement if some are read.
 void judge_internal_forces(Skeleton& skeleton, const SystemData& data);
 
 /// All passes and the certificate once more for these values of the parameters. States that
@@ -191,7 +192,7 @@ std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
                                                 const std::function<void(SystemData&)>& note);
 
 /// Potential energy x' E x / 2 of the model's states (order x order): of closed chains, whose
-/// independent coordinates share springs. Empty where a block does not say what it stores. O(n^3).
+/// independent coordinates share springs. Empty if a block does not define its energy. O(n^3).
 Eigen::MatrixXd potential_energy(const SystemData& data);
 
 /// Replaces the dense model by the minimal one where its transfer beside the modes that leave stays

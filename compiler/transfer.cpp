@@ -72,7 +72,7 @@ struct Assembly {
     }
   }
 
-  /// row -= factor * (what these equations add to their channel's force)
+  /// row -= factor * (terms that these equations add to their channel's force)
   void subtract_equations(const MatrixXcd& factor, std::span<const int> equations) {
     for (const int e : equations) {
       const Part& part = graph.equations[at(e)].part;

@@ -6,7 +6,7 @@
 
 namespace titop {
 
-/// What a graph means: its transfer matrix at one complex s, from all its equations at once.
+/// Definition of a graph's transfer: its matrix at one complex s, from all its equations at once.
 ///
 /// Unknowns are all states and all port signals; rows are `(s I - A) x = B u` and `y = C x + D u`
 /// of every block, and the user's equations. Per channel, with S the directions in which the

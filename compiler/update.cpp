@@ -9,7 +9,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <unordered_set>
 
-/// New values of the parameters on the same plan: only what depends on them is made again.
+/// New values of the parameters on the same plan: recomputes only the parts that depend on them.
 namespace titop {
 namespace detail {
 namespace {
@@ -179,7 +179,7 @@ bool remake_coefficients(const Skeleton& k, const std::vector<int>& origins, sol
   return passes::lower_again(k.stage, origins, n.parameters, take);
 }
 
-/// True if new values change what pass `close` looked at: the kinematics of a block, or equations
+/// True if new values change the input of pass `close`: the kinematics of a block, or equations
 /// between motions. Masses and stiffnesses do not.
 bool moves_chains(const Skeleton& k, const std::vector<int>& changed, ParameterValues before,
                   ParameterValues now) {
@@ -256,7 +256,7 @@ void refactor(const SystemData& old, const std::vector<int>& changed, SystemData
   const solve::Health now = d.factors->health();
   const bool all = outgrown(now, old.scaled_health);
   d.scaled_health = old.scaled_health;
-  if (rescale) {  // some fronts only: what all of them have lost still counts
+  if (rescale) {  // some fronts only: the losses of all still count
     d.scaled_health.weakest = std::max(d.scaled_health.weakest, now.weakest);
     d.scaled_health.growth = std::min(d.scaled_health.growth, now.growth);
   }
@@ -287,7 +287,7 @@ System System::update(const ParameterList& list) const {
   constexpr const char* kOtherTerms = "closed chains or the equations' terms change";
   constexpr const char* kNoDigit = "a pivot has no digit left";
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
-  // What was reduced was found from all rows and all numbers.
+  // The reduction depends on all rows and all numbers.
   if (k.before_reduce) return again(kSingular);
   if (moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))
     return again(kOtherTerms);
@@ -309,7 +309,7 @@ System System::update(const ParameterList& list) const {
   d->changed_loops.insert(d->changed_loops.end(), data_->changed_loops.begin(),
                           data_->changed_loops.end());
   sort_unique(d->changed_loops);
-  // What was about as weak before (within a digit) has been looked at then.
+  // A pivot about as weak as before (within a digit) has been checked then.
   constexpr double kWeaker = 0.1;
   if (health.weakest < std::min(kFewDigits, kWeaker * data_->scaled_health.weakest) &&
       d->checked().least > 0)
