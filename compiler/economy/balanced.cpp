@@ -18,8 +18,8 @@ using Eigen::VectorXd;
 constexpr double kSilent = 1e-11;    ///< of the peaks: a pole that nobody moves or nobody sees
 constexpr double kUnstable = 1e-6;   ///< growth over |s| that is no rounding
 constexpr double kDistinct = 1e-10;  ///< relative gap of singular values that may be cut through
-constexpr double kClear = 1.1;       ///< times the target: an error of one sample that tells
-constexpr double kDigits = 1e-11;    ///< of the peaks: what a factorisation without pivots may lose
+constexpr double kClear = 1.1;       ///< times the target: a clear violation on one sample
+constexpr double kDigits = 1e-11;    ///< of the peaks: possible loss of unpivoted elimination
 /// Of the lowest pole: samples begin below it (Band::start is half of it) if the band begins at 0.
 constexpr double kFromZero = 2e-6;
 
@@ -37,12 +37,11 @@ double lowest(const Split& split, const Samples& samples) {
   return first;
 }
 
-/// Tells whether no input moves or no output sees what is kept.
+/// Tells whether a kept part is silent: no input moves it or no output sees it.
 ///
-/// Of a pole that counts as 0 (`Split::poles`) rounding leaves a residue, and a pole beside 0, and
-/// the lower the sample the more of the transfer they seem to be. Where the band begins at 0 a pole
-/// at 0 can only be hidden, for else there is no gain: it is judged at the lowest frequency where
-/// anything moves.
+/// Rounding leaves a residue of a pole that counts as 0 (`Split::poles`), and a pole near 0; both
+/// seem the larger, the lower the sample. If the band begins at 0, a pole at 0 can only be hidden,
+/// since otherwise there is no gain: it is judged at the lowest pole's frequency.
 class Judge {
  public:
   Judge(const Split& split, const Samples& samples)

@@ -8,18 +8,19 @@
 /// Which balanced model answers a scene. For the compiler's own files only.
 namespace titop::detail {
 
-/// Models of every order of what is no structure: integrals and poles on the axis or right of it
-/// whole, the rest balanced and cut.
+/// Models of every order of a system without M, D, K: integrals and poles on the axis or right of
+/// it whole, the rest balanced and truncated.
 ///
-/// Inputs and outputs are scaled by the sizes that the pairs' peaks have (port_sizes), so that the
-/// Hankel singular values speak of errors relative to these. Of each order there are up to four
-/// models: balanced over the whole axis, or behind low-passes at the band's upper end, which leaves
-/// out what the band does not show, but has no bound beforehand; and cut by truncation or with the
-/// others at rest. The cut of less error on the samples counts, low-passes where nothing else does.
-/// An order does as soon as one model does, so that more accuracy never gives a smaller order.
+/// Inputs and outputs are scaled by port sizes derived from the pairs' peaks (port_sizes), so that
+/// the Hankel singular values bound errors relative to these. Of each order there are up to four
+/// models: balanced over the whole axis, or with low-passes at the band's upper end, which reduces
+/// dynamics outside the band but has no a-priori bound; and reduced by truncation or by singular
+/// perturbation. The model with the least error on the samples is taken; low-passes only if no
+/// other model meets the target. An order is accepted as soon as one model meets it, so that more
+/// accuracy never gives a smaller order.
 ///
 /// One factorisation gives the errors of all orders at one sample (`learn`): a model that fails is
-/// looked at where it fails most, and all orders that fail there as clearly are passed over.
+/// checked where its error is largest, and all orders that clearly fail there are skipped.
 class Balanced {
  public:
   /// `split` and `samples` must live as long. O(60 n^3).
@@ -36,8 +37,8 @@ class Balanced {
   Choice best() const;
 
   States model(const Choice& choice) const;
-  /// Outputs x inputs: what the dropped singular values bound each pair by, everywhere right of the
-  /// axis, in the pair's own units; 0 x 0: nothing.
+  /// Outputs x inputs: bound of each pair by the dropped singular values, everywhere right of the
+  /// axis, in the pair's own units; 0 x 0: none.
   Eigen::MatrixXd anywhere(const Choice& choice) const;
 
   Eigen::Index integrals() const { return split_.integrals.order(); }
@@ -50,7 +51,7 @@ class Balanced {
   const Balancing& balancing(const Choice& c) const { return *balancings_[c.weighted ? 1 : 0]; }
   /// On the samples; HUGE_VAL if it is more than the limit, or the model not stable.
   double error(const Choice& choice, double limit) const;
-  /// True if what was learnt tells that the error is clearly above this.
+  /// True if the learnt errors are clearly above this target.
   bool fails(const Choice& choice, double target) const;
   /// Notes the errors of all orders of this kind of cut on this sample. O(5 n^3).
   void learn(const Choice& choice, std::size_t sample) const;
@@ -59,7 +60,7 @@ class Balanced {
   States::Piece kept_;
   Eigen::MatrixXd D_;
   const Samples& samples_;
-  std::vector<Eigen::MatrixXcd> rest_;  ///< of the samples, without what is kept
+  std::vector<Eigen::MatrixXcd> rest_;  ///< of the samples, without the kept part
   PortSizes sizes_;
   std::optional<Balancing> balancings_[2];
   /// By weighted, truncated, order: an error on some sample, 0 where none is known.

@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kOneFrequency = 1e-9;  ///< relative gap of frequencies that count as one
-constexpr double kInSpan = 1e-7;        ///< what vectors of other ports leave of one that they hold
+constexpr double kInSpan = 1e-7;        ///< remainder of a vector in the span of other ports
 
 using linalg::at;
 
@@ -66,7 +66,7 @@ class FewerModes final : public Block {
   std::shared_ptr<const Dynamics> matrices_;
 };
 
-/// All nodes of one block, and what its modes do in all of them.
+/// All nodes of one block, and the effects of its modes in all of them.
 struct Shared {
   BlockPtr block;
   std::shared_ptr<const Modal> modal;

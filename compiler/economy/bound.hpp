@@ -12,9 +12,9 @@ constexpr double kPhase = 1;
 
 using TransferOf = std::function<Eigen::MatrixXcd(std::complex<double>)>;
 
-/// Beside the factored system, per pair relative to its own peak, where the two can differ most:
-/// on the phase grid of the poles of both; and what rounding adds, but to pairs that are 0 in both.
-/// Cost: the full system's transfers at these points, which `samples` counts.
+/// Error against the factored system, per pair relative to its own peak, at the points where the
+/// two can differ most: the phase grid of the poles of both; plus rounding, except for pairs that
+/// are 0 in both. Cost: the full system's transfers at these points, counted by `samples`.
 ErrorBound error_bound(const System& full, const Scene& scene, const Band& band,
                        const Spectrum& spectrum, const std::vector<std::complex<double>>& poles,
                        const TransferOf& transfer);

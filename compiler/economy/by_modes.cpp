@@ -97,7 +97,7 @@ class ByModes : public Reduction {
     }
   }
 
-  /// The block with the largest part of the elastic energy of what the model leaves out there.
+  /// The block with the largest share of the elastic energy of the model's error there.
   std::string where_missing(std::size_t step, const ErrorBound& b) {
     const Small small = sequence().model(step);
     const std::complex<double> s = on_ray(setting_.scene, 2 * pi * b.hertz);
@@ -107,7 +107,8 @@ class ByModes : public Reduction {
     for (Index j = 0; j < whole_.elastic(); ++j)
       left(j) += whole_.b(j, m) / (s * (s + whole_.damping(j)) + whole_.lambda(j));
     if (whole_.blocks.empty() || left.size() == 0) return "no block";
-    // At a resonance what is left turns by a quarter: as it stands when it is largest.
+    // At a resonance the error is 90 degrees out of phase: rotate it to the phase of its largest
+    // entry.
     Index most = 0;
     (left.array().abs() * whole_.lambda.head(left.size()).array().sqrt()).maxCoeff(&most);
     if (left(most) != 0.0) left *= std::abs(left(most)) / left(most);

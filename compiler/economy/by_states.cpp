@@ -77,7 +77,7 @@ class ByStates : public Reduction {
     return b;
   }
 
-  /// What was kept, and how the rest was cut.
+  /// Notes the kept states and the reduction of the others.
   void note(ReducedData& d, const Balanced::Choice& choice) {
     const Balanced& from = balanced();
     const auto count = [](Index n) { return static_cast<int>(n); };

@@ -189,8 +189,8 @@ VectorXd stiffnesses(const MatrixXd& A, const VectorXd& known) {
   }
 }
 
-/// Stiffness of all coordinates: of those that stay by symmetry, of dependent ones by what their
-/// columns show.
+/// Stiffness of all coordinates: of independent ones by symmetry, of dependent ones from their
+/// columns of A.
 VectorXd all_stiffnesses(const Raw& raw) {
   VectorXd k = VectorXd::Zero(raw.all());
   std::vector<Index> rows, list;

@@ -24,8 +24,8 @@ struct Coordinates {
   Eigen::MatrixXd B;         ///< n x inputs
   Eigen::MatrixXd C_q, C_v;  ///< outputs x n
   Eigen::MatrixXd direct;    ///< outputs x inputs
-  /// Outputs x 2: for those whose motions go by symmetry (join_twins) what they read of positions
-  /// and rates before, as root mean square over coordinates of stiffness 1; 0 for the others.
+  /// Outputs x 2: for outputs whose motions symmetry removes (join_twins), their former sensitivity
+  /// to positions and rates, as root mean square over coordinates of stiffness 1; 0 for the others.
   Eigen::MatrixXd silent;
   std::vector<std::string> blocks;  ///< that have coordinates
   Eigen::MatrixXd shares;           ///< blocks x n_elastic: whose a coordinate is, of sum 1
@@ -38,10 +38,10 @@ class NoStructure : public Error {
   using Error::Error;
 };
 
-/// Reads it off the model. Stiffnesses are those of the bodies' modes; of joints and springs what
-/// makes G symmetric. Throws NoStructure (bad_value), naming states, where no such form is there:
-/// controllers and filters in the loop, springs that couple different coordinates, dampers on
-/// motions without stiffness. O(n^2), n^3 where chains close.
+/// Extracts them from the model. Stiffnesses are those of the bodies' modes; of joints and springs
+/// those that make G symmetric. Throws NoStructure (bad_value), with the names of states, if there
+/// is no such form: controllers and filters in the loop, springs that couple different coordinates,
+/// dampers on motions without stiffness. O(n^2), O(n^3) with closed chains.
 Coordinates coordinates(const System& system, const SystemData& data);
 
 }  // namespace titop::detail

@@ -16,8 +16,8 @@ using detail::now;
 using detail::Reduction;
 using std::numbers::pi;
 
-constexpr double kShare = 0.1;         ///< of the accuracy: sum of effects of what bodies lose
-constexpr double kMostOfBodies = 0.3;  ///< of the accuracy: what that may cost
+constexpr double kShare = 0.1;         ///< of the accuracy: effects of modes that bodies lose
+constexpr double kMostOfBodies = 0.3;  ///< of the accuracy: largest error of smaller bodies
 constexpr int kTries = 4;
 
 int states_of(const Diagram& diagram) {
@@ -50,7 +50,7 @@ class Economy {
     if (!reduction_) reduce_bodies(graph, count);
   }
 
-  Economy(const Economy&) = delete;  // the reduction refers to what is here
+  Economy(const Economy&) = delete;  // the reduction has references into this
   Economy& operator=(const Economy&) = delete;
 
   /// The smallest model whose bound is at most this.
@@ -89,8 +89,8 @@ class Economy {
     return nullptr;
   }
 
-  /// Too large for one eigenproblem: bodies first. What that costs is measured on the samples, and
-  /// where it is too much less goes.
+  /// Too large for one eigenproblem: reduces the bodies first. The error is measured on the
+  /// samples; if it is too large, fewer modes are dropped.
   void reduce_bodies(const Graph& graph, int count) {
     if (setting_.scene.bound == BoundKind::theorem)
       throw Error(Code::bad_value,
@@ -117,7 +117,7 @@ class Economy {
     }
   }
 
-  /// What smaller bodies cost, on the samples.
+  /// Error of smaller bodies, on the samples.
   double bodies_error() const {
     const detail::Samples& samples = setting_.samples;
     Eigen::MatrixXd worst = Eigen::MatrixXd::Zero(samples.peak.rows(), samples.peak.cols());
@@ -143,8 +143,8 @@ class Economy {
   std::unique_ptr<Reduction> reduction_;
 };
 
-/// Seconds of one transfer: the least of several runs, for what else the machine does only adds;
-/// each over enough of them to be told from the clock's own step.
+/// Seconds of one transfer: the least of several runs, since other load only adds time; each run is
+/// long compared with the clock's resolution.
 double seconds_of(const ReducedSystem& m, double omega) {
   constexpr int runs = 9, count = 50;
   double least = HUGE_VAL, sum = 0;

@@ -15,7 +15,7 @@ struct Balancing {
   bool weighted = false;        ///< behind low-passes: sigma then bounds nothing
 };
 
-/// What counts as 1 for inputs and outputs.
+/// Sizes by which inputs and outputs are scaled to 1.
 struct PortSizes {
   Eigen::VectorXd input, output;
 };
@@ -23,8 +23,8 @@ struct PortSizes {
 /// Balances split.stable, inputs and outputs over their sizes, by square roots: Gramians P = L L',
 /// Q = R R' as factors from Hammarling's method, sigma and the projection from the singular values
 /// of R' L [Laub et al. 1987; Tombs, Postlethwaite 1987]. With `corner` > 0 [rad/s] each input and
-/// output passes a low-pass corner^2 / (s^2 + sqrt(2) corner s + corner^2) first: what happens far
-/// above the corner counts little [Enns 1984]. O(10 n^3).
+/// output passes a low-pass corner^2 / (s^2 + sqrt(2) corner s + corner^2) first, which gives
+/// frequencies far above the corner little weight [Enns 1984]. O(10 n^3).
 Balancing balance(const Split& split, const PortSizes& sizes, double corner = 0);
 
 /// The model of the first r coordinates. Truncated: the others are 0, exact at infinite frequency;
@@ -34,7 +34,7 @@ Balancing balance(const Split& split, const PortSizes& sizes, double corner = 0)
 /// is largest on the axis [Enns, Glover 1984; Liu, Anderson 1989]; not so if `weighted`.
 struct Cut {
   Part part;
-  Eigen::MatrixXd D;  ///< what the others leave for the direct term
+  Eigen::MatrixXd D;  ///< direct term with the residual of the others
 };
 Cut cut(const Balancing& balancing, Eigen::Index r, bool truncated);
 

@@ -70,7 +70,7 @@ std::vector<double> phase_grid(const PhaseBand& band, double step) {
       t = pi;
     else if (i > 0)
       t = phase.find(total * i / count, t, pi);
-    const double c = std::cos(t / 2);  // middle + half cos t would lose what is near the lower end
+    const double c = std::cos(t / 2);  // middle + half cos t would cancel near the lower end
     points[static_cast<std::size_t>(count - i)] = band.low + (band.high - band.low) * c * c;
   }
   points.front() = band.low;

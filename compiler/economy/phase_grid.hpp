@@ -7,7 +7,7 @@
 /// Where to sample a rational function so that no peak hides between samples.
 namespace titop::detail {
 
-/// A band, and the poles of what is sampled there.
+/// A band, and the poles of the function that is sampled there.
 struct PhaseBand {
   double low = 0, high = 1;                 ///< of the real variable
   std::vector<std::complex<double>> poles;  ///< in that variable, off the interval

@@ -39,7 +39,7 @@ std::vector<int> signals_of(const Graph& g, int node, Signal::Role role) {
   return list;
 }
 
-/// The graph with what drives these nodes' blocks as outputs, behind its own.
+/// The graph with the inputs of these nodes' blocks as outputs, after its own.
 Graph reading(const Graph& graph, const std::vector<ModeEffects>& bodies) {
   Graph g = graph;
   for (const ModeEffects& body : bodies)
@@ -58,8 +58,8 @@ struct Integrated {
   int times = 0;
 };
 
-/// Outputs whose positions and rates are accelerations: what is added to these the states do not
-/// know.
+/// Outputs whose positions and rates are replaced by accelerations: the states do not contain the
+/// additions to these.
 std::vector<Output> accelerations(const Graph& g, std::vector<Integrated>& rows) {
   std::vector<Output> result;
   Index first = 0;
@@ -82,7 +82,7 @@ std::vector<Output> accelerations(const Graph& g, std::vector<Integrated>& rows)
   return result;
 }
 
-/// The graph with additions to what these nodes' blocks give as inputs, behind its own.
+/// The graph with additions to the outputs of these nodes' blocks as inputs, after its own.
 Graph driving(const Graph& graph, const std::vector<ModeEffects>& bodies,
               std::vector<Integrated>& rows) {
   Graph g = graph;
@@ -151,7 +151,7 @@ MatrixXcd integrated(const MatrixXcd& G, const std::vector<Integrated>& rows, In
   return result;
 }
 
-/// Largest magnitude of each pair, those that are nearly zero by what row and column have.
+/// Largest magnitude of each pair; of nearly zero pairs the floor from row and column.
 MatrixXd peaks(const std::vector<MatrixXcd>& H, Index outputs) {
   MatrixXd peak = MatrixXd::Zero(outputs, H.front().cols());
   for (const MatrixXcd& h : H) peak = peak.cwiseMax(h.topRows(outputs).cwiseAbs());
@@ -163,8 +163,8 @@ MatrixXd peaks(const std::vector<MatrixXcd>& H, Index outputs) {
   return (peak.array() > 0).select(peak, all);
 }
 
-/// Takes in what the modes of one body do at s: `in` drives it, `out` is what comes of what it
-/// gives.
+/// Adds the modes of one body at s: `in` is the transfer to the body's inputs, `out` that from the
+/// body's outputs.
 void take_in(ModeEffects& body, const Modal& m, const MatrixXcd& in, const MatrixXcd& out,
              const MatrixXd& peak, Complex s) {
   const Eigen::MatrixXd moved = (m.W * in).cwiseAbs(), seen = (out * m.W.transpose()).cwiseAbs();

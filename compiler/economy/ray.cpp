@@ -15,8 +15,8 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kNoPair = 1e-10;      ///< of what its row and column have: a pair of rounding only
-constexpr double kNearlyZero = 1e-6;   ///< of what it would be otherwise: a pair that is nothing
+constexpr double kNoPair = 1e-10;      ///< of its row and column: a pair at rounding level
+constexpr double kNearlyZero = 1e-6;   ///< of its size without symmetry: a pair that is 0
 constexpr double kOfTransfer = 1e-12;  ///< of the full system's transfer
 constexpr double kCancelled = 5e-14;   ///< of terms that cancel: some 200 units of the last place
 constexpr double kPoleUnits = 2;       ///< units of the last place of a pole
@@ -25,9 +25,9 @@ constexpr double kOnePole = 1e-12;     ///< relative distance of poles that are 
 
 bool equal(Complex p, Complex q) { return std::abs(p - q) <= kOnePole * std::abs(q); }
 
-/// Is this pole the last two already? Modes of one frequency and one damping, however many, are one
-/// simple pole of the transfer; the second one stands for what they differ by where they count as
-/// equal.
+/// Is this pole equal to the last two? Modes of one frequency and one damping, however many, are
+/// one simple pole of the transfer; the second one accounts for their difference within the
+/// tolerance of equality.
 bool counted(const std::vector<Complex>& poles, Complex p) {
   const std::size_t n = poles.size();
   return n >= 2 && equal(p, poles[n - 1]) && equal(p, poles[n - 2]);
@@ -57,7 +57,7 @@ std::vector<Complex> merged(std::vector<Complex> poles, const std::vector<Comple
   return poles;
 }
 
-/// What outputs read of the modes: a q'' + v q' + q q.
+/// Sensitivity of outputs to the modes: a q'' + v q' + q q.
 struct Reading {
   MatrixXd a, v, q;
 };
@@ -76,9 +76,9 @@ Reading as_meant(const Whole& w) {
   return r;
 }
 
-/// What every pair would be at s if output and input saw all modes alike: norms of what the output
-/// reads and the input drives, each mode weighed by its response [Cauchy, Schwarz]. Units cancel
-/// against the pair's own.
+/// Size of every pair at s if input and output coupled to all modes alike: norms of the output's
+/// and the input's modal vectors, each mode weighted by its response [Cauchy, Schwarz]. Has the
+/// pair's own unit.
 MatrixXd alike(const Whole& w, const Reading& r, Complex s) {
   MatrixXd out = MatrixXd::Zero(r.a.rows(), 1), in = MatrixXd::Zero(1, w.b.cols());
   for (Index j = 0; j < w.order(); ++j) {
@@ -86,7 +86,7 @@ MatrixXd alike(const Whole& w, const Reading& r, Complex s) {
     const double weight = 1 / std::abs(s * (s + w.damping(j)) + w.lambda(j));
     for (Index i = 0; i < out.size(); ++i)
       out(i) += weight * std::norm(s * (s * r.a(i, j) + r.v(i, j)) + r.q(i, j));
-    // What symmetry silences: as it was read of the motions that have gone, with its static part.
+    // Outputs silenced by symmetry: their sensitivity to the removed motions, with the static part.
     for (Index i = 0; i < out.size(); ++i)
       out(i) += weight * w.lambda(j) * std::norm(w.silent(i, 0) + s * w.silent(i, 1));
     for (Index m = 0; m < in.size(); ++m) in(m) += weight * w.b(j, m) * w.b(j, m);
@@ -94,7 +94,7 @@ MatrixXd alike(const Whole& w, const Reading& r, Complex s) {
   return out.cwiseSqrt() * in.cwiseSqrt();
 }
 
-/// Sum of the sizes of what the modes add to every pair at s, outputs as they are written.
+/// Sum of the magnitudes of the modes' terms in every pair at s, outputs as they are written.
 MatrixXd terms(const Whole& w, const MatrixXd& driven, Complex s) {
   MatrixXd read(w.ca.rows(), w.order());
   for (Index j = 0; j < w.order(); ++j) {
@@ -138,7 +138,7 @@ double lowest(const std::vector<Complex>& poles, double high) {
   return first;
 }
 
-/// At 0 also where blocks integrate what the system does not.
+/// At 0 also with block integrators that have no effect in the system.
 Eigen::MatrixXcd transfer(const System& system, Complex s) {
   return s == 0.0 ? system.static_gain().cast<Complex>() : system.transfer(s);
 }
@@ -228,8 +228,8 @@ std::pair<Eigen::VectorXd, Eigen::RowVectorXd> port_sizes(const MatrixXd& peak) 
 
 namespace {
 
-/// Where no mode is left to say what a pair might be (rigid bodies only): what its row and column
-/// have. Those of 0 count as 1: nothing gets there.
+/// Without modes to estimate a pair's size (rigid bodies only): from its row and column. Rows and
+/// columns of 0 count as 1.
 MatrixXd with_floor(MatrixXd peak) {
   const auto [out, in] = port_sizes(peak);
   const Eigen::VectorXd row = (peak.rowwise().maxCoeff().array() > 0).cast<double>();

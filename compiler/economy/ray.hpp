@@ -25,11 +25,11 @@ Band band_of(const System& system, const Scene& scene,
 
 /// How large the pairs of a model are at one s, whatever cancels: outputs x inputs.
 struct Sizes {
-  Eigen::MatrixXd alike;  ///< what every pair would be if output and input saw all modes alike
-  Eigen::MatrixXd terms;  ///< sizes of what the model adds up, as it is written: rounding is of it
+  Eigen::MatrixXd alike;  ///< every pair if output and input coupled to all modes alike
+  Eigen::MatrixXd terms;  ///< sum of the magnitudes of the model's terms: scale of its rounding
 };
 
-/// What sampling has to know of a model.
+/// Data of a model that sampling needs.
 struct Spectrum {
   std::vector<std::complex<double>> poles;  ///< [rad/s], those of pairs with Im >= 0
   int far = 0;                              ///< more poles in s^2, far above
@@ -54,9 +54,9 @@ Samples sample(const System& system, const Scene& scene, const Spectrum& whole,
 /// undamped resonance it is the damping floor.
 double nearest_pole(const Scene& scene, const Band& band, const Spectrum& whole);
 
-/// What rounding may do to the error of each pair there, relative to its peak: 1e-12 of the
-/// transfer itself (System::transfer), some units of what would be there without cancellation, and
-/// of what a pole this near makes of its own last digit.
+/// Bound of rounding in the error of each pair there, relative to its peak: 1e-12 of the transfer
+/// itself (System::transfer), some units of the terms before cancellation, and the last digit
+/// amplified by a pole this near.
 Eigen::MatrixXd rounding(const Samples& samples, double nearest);
 
 /// Sizes of outputs and of inputs with |H(i, j)| <= out(i) in(j), near to that for some pair of

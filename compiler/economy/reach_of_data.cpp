@@ -7,7 +7,7 @@
 namespace titop::detail {
 namespace {
 
-constexpr double kReach = 1.5;  ///< times the band's upper end: what a body's data should cover
+constexpr double kReach = 1.5;  ///< times the band's upper end: range of a body's data
 
 }  // namespace
 

@@ -6,9 +6,9 @@
 /// How far a body's own data reach. For the compiler's own files only.
 namespace titop::detail {
 
-/// Modal data describe a body up to its highest mode; the usual rule of component modes asks for
-/// 1.5 times the band. A warning for each body whose data end below that: no bound on the
-/// reduction can see what is not in them. O(modes).
+/// Modal data describe a body up to its highest mode; the usual rule of component modes is 1.5
+/// times the band. Returns a warning for each body whose data end below that: the bound of the
+/// reduction does not contain modes that the data lack. O(modes).
 std::vector<Note> reach_of_data(const SystemData& data, const Scene& scene);
 
 }  // namespace titop::detail

@@ -14,7 +14,7 @@ struct RealModes {
   std::vector<double> single;  ///< pole of the one left alone: none or one
 };
 
-/// Throws singular where eigenvectors are too close to each other, with what to take instead.
+/// Throws singular if eigenvectors are too close to each other, with `instead` as the way out.
 /// O(n^3).
 RealModes real_modes(const Eigen::MatrixXd& A, const char* instead);
 

@@ -5,7 +5,7 @@
 #include <titop/compiler/economy/small.hpp>
 #include <titop/compiler/economy/states.hpp>
 
-/// What stands behind a ReducedSystem. For the compiler's own files only.
+/// The data of a ReducedSystem. For the compiler's own files only.
 namespace titop::detail {
 
 struct ReducedData {

@@ -11,8 +11,8 @@ struct ReducedData;
 /// How far a reduced system is from the full one, over the scene's band.
 struct ErrorBound {
   Eigen::MatrixXd pairs;      ///< outputs x inputs, relative as Scene says
-  Eigen::MatrixXd peak;       ///< what counts as 1 for each pair, in the pair's own unit (output
-                              ///< over input): |error| <= pairs * peak
+  Eigen::MatrixXd peak;       ///< scale of each pair, in the pair's own unit (output over input):
+                              ///< |error| <= pairs * peak
   double worst = 0;           ///< the largest of `pairs`
   std::string input, output;  ///< of that pair
   double hertz = 0;           ///< where it was found [Hz]
@@ -25,11 +25,11 @@ struct ErrorBound {
   double anywhere = -1;
 };
 
-/// What one step left out.
+/// One step of the reduction.
 struct EconomyStep {
   std::string name;           ///< "structure", "bodies", "symmetry", "whole"; "kept", "balanced"
   int before = 0, after = 0;  ///< second-order coordinates; of "kept" and "balanced": states
-  double error = 0;           ///< what it cost, relative as Scene says; 0: exact
+  double error = 0;           ///< its error, relative as in Scene; 0: exact
   std::string text;           ///< in plain words
 };
 
@@ -95,10 +95,10 @@ class ReducedSystem {
 
   /// Dense; states "mode1", "mode1_rate", ...; of balanced models "kept1", ..., "balanced1", ...
   StateSpace state_space() const;
-  /// The structure kept. Throws bad_value for balanced models, with what is no structure in them.
+  /// The structure kept. Throws bad_value for balanced models, with the reason why they have none.
   SecondOrderModel second_order() const;
-  /// 2 x 2 blocks. O(order^3) if damping couples modes. Throws singular where these are too close
-  /// to defective (two of them critically damped alike, say); second_order() has them all.
+  /// 2 x 2 blocks. O(order^3) if damping couples modes. Throws singular if these are too close to
+  /// defective (two of them critically damped alike, say); second_order() always works.
   ModalModel modal() const;
 
   /// The question, with the accuracy that was asked for.
@@ -106,17 +106,16 @@ class ReducedSystem {
   Scene scene() const&& { return scene(); }
   const ErrorBound& bound() const&;
   ErrorBound bound() const&& { return bound(); }
-  /// Warnings: bodies whose own data (their highest mode) end below 1.5 times the band. No bound on
-  /// the reduction sees what is not in them.
+  /// Warnings: bodies whose own data (their highest mode) end below 1.5 times the band. The bound
+  /// of the reduction does not contain modes that the data lack.
   const std::vector<Note>& notes() const&;
   std::vector<Note> notes() const&& { return notes(); }
   const std::vector<EconomyStep>& steps() const&;
   std::vector<EconomyStep> steps() const&& { return steps(); }
   const std::vector<KeptMode>& modes() const&;
   std::vector<KeptMode> modes() const&& { return modes(); }
-  /// Seconds of what was done, in the order in which it was, what was done again once each time:
-  /// compile, bodies, modes or split, samples, balance, reduce. Not part of to_string, which is the
-  /// same on every machine.
+  /// Seconds of each step, in order; repeated steps once each time: compile, bodies, modes or
+  /// split, samples, balance, reduce. Not part of to_string, which is the same on every machine.
   const std::vector<std::pair<std::string, double>>& seconds() const&;
   std::vector<std::pair<std::string, double>> seconds() const&& { return seconds(); }
 
@@ -124,32 +123,31 @@ class ReducedSystem {
   std::shared_ptr<const detail::ReducedData> data_;
 };
 
-/// What was left out, what is kept, and the bound.
+/// The steps, the kept modes, and the bound.
 std::string to_string(const ReducedSystem& system);
 
-/// A small model that answers this question: no more than the scene needs. The diagram is compiled
-/// for the scene's inputs and outputs alone; what symmetric bodies cannot show goes exactly; the
-/// rest becomes modes of the band and static-like vectors of the modes above it, with the
-/// second-order structure kept. The result is checked against the full factored system, and grows
-/// until the bound is below the accuracy. Symmetric are bodies added from one and the same body
-/// object (two that are merely equal are not compared), and not those in closed chains.
+/// A small model for this scene. The diagram is compiled for the scene's inputs and outputs alone;
+/// motions that symmetry hides are removed exactly; the rest becomes modes of the band and
+/// static-like vectors of the modes above it, with the second-order structure kept. The result is
+/// checked against the full factored system, and its order is raised until the bound is below the
+/// accuracy. Symmetry is detected for bodies added from one and the same body object (two that are
+/// merely equal are not compared), and not for those in closed chains.
 ///
-/// Where the scene is no passive structure (controllers and filters in the loop, dashpots without
-/// springs; a note says which state), states take the place of M, D, K. Integrals, poles on the
-/// axis (undamped modes have no Gramian) and poles right of it are kept whole; the well-damped rest
-/// is balanced and cut, by truncation or with the states that go at rest (singular perturbation),
-/// over the whole axis or behind low-passes at the band's end, whichever needs fewest states; a
-/// step says which and why. The rest stays stable, which is checked; the error is checked as above,
-/// and over the whole axis 2 x the sum of the dropped Hankel singular values bounds it everywhere
-/// right of the axis (ErrorBound::anywhere) [Moore 1981; Enns 1984; Glover 1984].
+/// If the scene is no passive structure (controllers and filters in the loop, dashpots without
+/// springs; a note names the state), states replace M, D, K. Integrals, poles on the axis (undamped
+/// modes have no Gramian) and poles right of it are kept whole; the well-damped rest is balanced
+/// and reduced, by truncation or by singular perturbation, over the whole axis or with low-passes
+/// at the band's end, whichever needs fewest states; a step names it and the reason. The reduced
+/// part is stable, which is checked; the error is checked as above, and over the whole axis 2 x the
+/// sum of the dropped Hankel singular values bounds it everywhere right of the axis
+/// (ErrorBound::anywhere) [Moore 1981; Enns 1984; Glover 1984].
 ///
-/// Throws what `compile(diagram)` throws; bad_value for a scene out of range or too large, and
-/// where the accuracy cannot be met, with what was reached and where; unknown_name for inputs and
-/// outputs that are not there; singular where poles on the axis cannot be told from damped ones.
-/// Cost: one symmetric eigenproblem, O(n^3) of the coordinates (those
-/// that are left, where bodies lose modes first: Scene::whole_up_to), and some hundred transfers of
-/// the full system; of balanced models a Schur form and the Gramians, O(100 n^3) of the states
-/// (Scene::balance_up_to).
+/// Throws the errors of `compile(diagram)`; bad_value for a scene out of range or too large, and if
+/// the accuracy cannot be met, with the best one and its place; unknown_name for unknown inputs and
+/// outputs; singular if poles on the axis cannot be separated from damped ones. Cost: one symmetric
+/// eigenproblem, O(n^3) of the coordinates (of those that remain, if bodies lose modes first:
+/// Scene::whole_up_to), and some hundred transfers of the full system; of balanced models a Schur
+/// form and the Gramians, O(100 n^3) of the states (Scene::balance_up_to).
 ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options& options = {});
 
 /// One line of `what_if`.
@@ -163,10 +161,10 @@ struct WhatIf {
   ReducedSystem system;
 };
 
-/// The same question for several accuracies (Scene::accuracy is not used): one eigenproblem and one
-/// nested sequence for all, so that more accuracy never gives a smaller order. Bodies lose no more
-/// than the finest of them allows. Those that cannot be met are left out. In the order given.
-/// Throws what `compile` throws, but for those; bad_value for accuracies out of range, all
+/// The same scene for several accuracies (Scene::accuracy is not used): one eigenproblem and one
+/// nested sequence for all, so that more accuracy never gives a smaller order. Bodies lose only
+/// modes that the finest of them allows. Accuracies that cannot be met are left out. In the order
+/// given. Throws the other errors of `compile`; bad_value for accuracies out of range, all
 /// together.
 std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
                             std::span<const double> accuracies, const Options& options = {});

@@ -14,8 +14,8 @@ inline double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-/// What is known of a scene whichever way it becomes smaller: what was asked, what was compiled,
-/// and what has been done so far.
+/// State of a reduction, common to all methods: the scene, the compiled model, and the results so
+/// far.
 struct Setting {
   Setting(const Scene& asked, const Options& how, double least_accuracy, int of_blocks)
       : scene(asked), options(how), finest(least_accuracy), states(of_blocks) {}
@@ -51,10 +51,10 @@ struct Setting {
   /// Of a reduced model with these poles and this transfer, of a whole with this spectrum.
   ErrorBound bound(const Spectrum& spectrum, const std::vector<std::complex<double>>& poles,
                    const TransferOf& transfer) const;
-  /// What is known by now, with this model; `modes` are still to come.
+  /// The results so far, with this model; `modes` are filled later.
   ReducedData result(Small small, ErrorBound bound) const;
-  /// What helps where an accuracy is out of reach; `limit`: the member of Scene to raise where
-  /// bodies have lost modes; `rounding_in`: what ends else.
+  /// Way out for an accuracy that cannot be met; `limit`: the member of Scene to raise if bodies
+  /// have lost modes; `rounding_in`: otherwise, the computation that rounding limits.
   std::string way_out(double reached, const char* limit, const char* rounding_in) const;
 };
 
@@ -65,18 +65,19 @@ class Reduction {
   virtual Spectrum spectrum() const = 0;
   /// The smallest model whose bound is at most this; none if rounding ends first.
   virtual std::optional<ReducedData> reach(double accuracy) = 0;
-  /// Throws bad_value: what can be reached instead, and what is in the way.
+  /// Throws bad_value: the accuracy that can be met, and the obstacle.
   [[noreturn]] virtual void refuse(double accuracy) = 0;
 };
 
 /// Modes of the whole and static-like vectors, in second order, of the setting's model, which was
 /// compiled from this graph. Fills `band` and `samples`, adds to `steps` and `seconds`. Throws
-/// NoStructure where there is no M, D, K; bad_value where there are more coordinates than
-/// Scene::whole_up_to, and what band_of throws.
+/// NoStructure if there is no M, D, K; bad_value for more coordinates than Scene::whole_up_to, and
+/// the errors of band_of.
 std::unique_ptr<Reduction> by_modes(Setting& setting, const Graph& graph);
 
-/// Balanced states, where there is no structure. Fills `band` and `samples`, adds to `steps` and
-/// `seconds`, and to `states` what integrates positions. Throws what `split` and band_of throw.
+/// Balanced states, if there is no structure. Fills `band` and `samples`, adds to `steps` and
+/// `seconds`, and to `states` those that integrate positions. Throws the errors of `split` and
+/// band_of.
 std::unique_ptr<Reduction> by_states(Setting& setting);
 
 /// Throws bad_value: `size` coordinates are more than Scene::whole_up_to.

@@ -9,11 +9,11 @@
 namespace titop::detail {
 namespace {
 
-constexpr double kLeastAccuracy = 2e-12;  ///< twice what rounding alone is allowed in a bound
+constexpr double kLeastAccuracy = 2e-12;  ///< twice the share of rounding in a bound
 
 using linalg::at;
 
-/// What a scene chose: an input or output, and one of its scalars or all (-1).
+/// A choice of the scene: an input or output, and one of its scalars or all (-1).
 struct Choice {
   int index = -1, component = -1;
 };
@@ -74,7 +74,7 @@ Matrix unit(int size, int component, bool row) {
   return {std::make_shared<const Eigen::MatrixXd>(std::move(e))};
 }
 
-/// Terms of the inputs by what takes their place: nothing, the input itself, or its scalars.
+/// Replaces terms of the inputs by nothing, by the input itself, or by its scalars.
 class Rewriter {
  public:
   Rewriter(const Graph& before, Graph& g, const std::vector<Choice>& inputs)

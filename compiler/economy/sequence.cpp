@@ -16,12 +16,12 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kDependent = 1e-7;  ///< what is left of a column that the others hold already
-constexpr double kTie = 1e-6;  ///< errors that count as equal: the first goes, whatever rounding
+constexpr double kDependent = 1e-7;  ///< remainder of a column that is dependent on the others
+constexpr double kTie = 1e-6;        ///< errors that count as equal: the first is taken
 
 using linalg::at;
 
-/// What an output reads of the elastic modes: positions, accelerations, or rates.
+/// Sensitivity of an output to the elastic modes: positions, accelerations, or rates.
 VectorXd reading(const Whole& w, Index output) {
   const Index n = w.elastic();
   VectorXd a = w.ca.row(output).head(n).transpose();
@@ -29,7 +29,7 @@ VectorXd reading(const Whole& w, Index output) {
   return a.isZero(0) ? VectorXd(w.cv.row(output).head(n).transpose()) : a;
 }
 
-/// True if every output reads what one of the inputs drives.
+/// True if every output's modal vector is parallel to that of an input.
 bool collocated(const Whole& w) {
   const Index n = w.elastic();
   for (Index i = 0; i < w.ca.rows(); ++i) {
@@ -83,7 +83,7 @@ Small Sequence::model(std::size_t step) const {
   return small({kept_.begin(), kept_.begin() + s.kept}, W_.leftCols(s.columns));
 }
 
-/// The projection, and of the modes below the band that are not kept what they are far above them.
+/// The projection, plus the high-frequency asymptote of the modes below the band that are not kept.
 Small Sequence::small(const std::vector<Index>& kept, const MatrixXd& W) const {
   Small result = project(whole_, kept, W);
   std::vector<char> left_out = below_;
@@ -142,7 +142,7 @@ bool Sequence::keep_one(const Worst& worst, double least) {
   for (Index j = 0; j < inside_; ++j) {
     if (is_kept_[at(j)]) continue;
     const Complex c = s * (s * whole_.ca(worst.output, j) + whole_.cv(worst.output, j));
-    const double residual = below_[at(j)] ? whole_.ca(worst.output, j) : 0;  // what is left of it
+    const double residual = below_[at(j)] ? whole_.ca(worst.output, j) : 0;  // its asymptote
     const Complex term = (c / (s * (s + whole_.damping(j)) + whole_.lambda(j)) - residual) *
                          whole_.b(j, worst.input);
     sum += term;
@@ -187,7 +187,8 @@ bool Sequence::add_columns(const Worst& worst) {
   const VectorXd b = whole_.b.col(worst.input).head(n), c = reading(whole_, worst.output);
   if (!collocated_) pending_ = weight.cwiseProduct(c);
   if (add(weight.cwiseProduct(b)) || add_pending()) return true;
-  // The span holds it: damping, or the other end of the band. What the model leaves there.
+  // In the span already: the error is due to damping, or to the other end of the band. The residual
+  // of the model there.
   const Complex s = samples_.s[worst.sample];
   const Eigen::VectorXcd q = model_.V * model_.response(s, worst.input);
   Eigen::VectorXcd left = whole_.b.col(worst.input).cast<Complex>() - s * s * q -

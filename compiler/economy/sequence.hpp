@@ -5,14 +5,14 @@
 /// The order in which modes and vectors come in. For the compiler's own files only.
 namespace titop::detail {
 
-/// The full transfer on samples of the ray, and what counts as 1 for each pair.
+/// The full transfer on samples of the ray, and the scale of each pair.
 struct Samples {
   std::vector<double> omega;            ///< [rad/s], ascending
   std::vector<std::complex<double>> s;  ///< on the ray
   std::vector<Eigen::MatrixXcd> H;      ///< outputs x inputs
   Eigen::MatrixXd peak;                 ///< outputs x inputs, with the floor of pairs that are 0
-  Eigen::MatrixXd alike;  ///< what would be there if ports saw all modes alike, or the terms that
-                          ///< cancel, where these are more: rounding is of that
+  Eigen::MatrixXd alike;  ///< the pairs if ports coupled to all modes alike, or the cancelling
+                          ///< terms, if these are larger: scale of the rounding
 };
 
 /// H - Hr on one sample. Throws not_finite, with the frequency, where either is not.
@@ -24,18 +24,18 @@ inline Eigen::MatrixXcd difference(const Samples& full, const Small& small, std:
 /// Largest |H - Hr| / peak over the samples, per pair.
 Eigen::MatrixXd errors(const Samples& full, const Small& small);
 
-/// One nested sequence of ever better models: it does not depend on the accuracy asked for, so that
-/// more accuracy never gives a smaller order.
+/// One nested sequence of models of increasing accuracy: it does not depend on the required
+/// accuracy, so that more accuracy never gives a smaller order.
 ///
-/// Each step looks where the error is largest, for one input and one output (unit vectors: units
-/// cancel, and what symmetry separates stays apart). If dropped modes of the band explain half of
-/// it there, the one with the largest term comes in; otherwise the static-like response
-/// (Lambda - omega^2)^-1 b of the modes above the band to that input and, where outputs do not read
-/// what the inputs drive, the same for that output as the next step: often the first will do. W is
-/// 0 on the band's modes: nothing that comes in can have a pole in the band that the whole has not.
+/// Each step starts where the error is largest, for one input and one output (unit vectors:
+/// independent of units, and symmetry classes stay separate). If dropped modes of the band explain
+/// half of the error there, the one with the largest term is added; otherwise the static-like
+/// response (Lambda - omega^2)^-1 b of the modes above the band to that input and, if outputs and
+/// inputs are not collocated, the same for that output as the next step: often the first suffices.
+/// W is 0 on the band's modes: no added vector can have a pole in the band that the whole has not.
 ///
-/// A mode that is left out keeps what it is beside the band: its static part where it moves in the
-/// band or above it, what it tends to at infinite frequency where it moves below.
+/// A mode that is left out keeps its asymptote: its static part if it is in the band or above it,
+/// its limit at infinite frequency if it is below.
 class Sequence {
  public:
   /// `high`: upper end of the band [rad/s].

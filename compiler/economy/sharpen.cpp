@@ -13,7 +13,7 @@ using Eigen::Index;
 constexpr double kCluster = 2e-9;  ///< relative gap of lambda that counts as none
 constexpr double kSame = 1e-9;     ///< relative: one damping, but for the last digits
 
-/// The pair that sees a mode best, beside what else there is.
+/// The pair with the largest share of a mode.
 struct Pair {
   Index output = 0, input = 0;
 };

@@ -122,8 +122,8 @@ Small project(const Whole& w, const std::vector<Index>& of_band, const MatrixXd&
   m.cv = w.cv * m.V;
   m.cq = w.cq * m.V;
   m.D0 = w.D0;
-  // A position is read from positions, so that what drives and what reads one motion stay alike;
-  // then written with accelerations again.
+  // A position is projected as a position, so that collocated inputs and outputs remain collocated;
+  // then it is written with accelerations again.
   for (Index i = 0; i < m.ca.rows(); ++i) {
     if (!w.is_position[static_cast<std::size_t>(i)]) continue;
     const Eigen::RowVectorXd read =

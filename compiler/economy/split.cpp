@@ -18,9 +18,9 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kRealPart = 1e4;   ///< units of the last place of |A| that a real part may be
-constexpr double kTogether = 1e6;   ///< size of what goes over from part to part
-constexpr double kAllAlike = 1e-3;  ///< weight of what states might do that do not
+constexpr double kRealPart = 1e4;   ///< of |A|, in roundings: real part of an undamped pole
+constexpr double kTogether = 1e6;   ///< largest transformation between two parts
+constexpr double kAllAlike = 1e-3;  ///< weight of states without effect, as if all had the same
 constexpr double kAtRest = 1e-10;   ///< |s| over |A| of a pole that may be 0
 
 /// States by the pattern of A: those nothing depends on, the core, those that depend on nothing;
@@ -58,7 +58,7 @@ MatrixXd real_basis(const MatrixXcd& Q) {
          MatrixXd::Identity(Q.rows(), Q.cols());
 }
 
-/// The core in its own units, and its Schur form with what is kept in front.
+/// The core in its own units, and its Schur form with the kept part in front.
 class Core {
  public:
   Core(const StateSpace& m, const Peeled& p) : A_(m.A(p.core, p.core)) {
@@ -143,7 +143,7 @@ class Core {
   std::vector<std::string> names_;
 };
 
-/// Both ends in the core's coordinates, without what the core does to them or they to it.
+/// Both ends in the core's coordinates, without the coupling between core and ends.
 struct Ends {
   MatrixXd from_core;  ///< sinks x core: a sink is z + from_core * core
   MatrixXd to_core;    ///< core x sources: the core is z + to_core * sources
@@ -168,7 +168,7 @@ MatrixXd spread(const MatrixXd& V, const Peeled& p, const VectorXd& scale, Index
   return result;
 }
 
-/// Without what reaches no output or is reached by no input, by the pattern.
+/// Removes states that reach no output or that no input reaches, by the pattern.
 Part without_idle(Part p) {
   std::vector<Index> stay;
   for (Index i = 0; i < p.order(); ++i) stay.push_back(i);

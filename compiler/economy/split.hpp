@@ -4,31 +4,28 @@
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
-/// What has Gramians, apart from what has none. For the compiler's own files only.
+/// Separates the part with Gramians from the part without. For the compiler's own files only.
 namespace titop::detail {
 
-/// Damping ratio of what counts as undamped.
+/// Damping ratio below which a pole counts as undamped.
 inline constexpr double kUndamped = 1e-6;
 
 /// A model of its own beside the others: all of them together, added, are the whole.
 struct Part {
   Eigen::MatrixXd A, B, C;
-  /// What its coordinates are of the model's states and back: z = left x, x = right z for this part
-  /// alone, left right = I. Units of states cancel in left(j, i) right(i, j).
+  /// Coordinates of this part in terms of the model's states and back: z = left x, x = right z for
+  /// this part alone, left right = I. Units of states cancel in left(j, i) right(i, j).
   Eigen::MatrixXd left, right;
   Eigen::Index order() const { return A.rows(); }
 };
 
-/// H(s) = D + integrals + kept + stable.
-///
 /// `integrals`: states that no other one depends on, or that depend on no other one, and so on
 /// inwards: motions without stiffness that are only read, integrators of inputs. Found by the
 /// pattern, exactly; A is strictly upper triangular; those that reach no output or that no input
-/// reaches are left out. `kept`: poles on the axis, nearer to it than
-/// rounding or 1e-6 of their modulus, or right of it. `stable`: the rest, with poles well left of
-/// the axis. The parts are told apart by an ordered Schur form and Sylvester equations; where these
-/// say that poles belong together (what goes over from one part to the other would be larger than
-/// 1e6), the ones nearest the axis are kept, too.
+/// reaches are left out. `kept`: poles on the axis, nearer to it than rounding or 1e-6 of their
+/// modulus, or right of it. `stable`: the rest, with poles well left of the axis. The parts are
+/// separated by an ordered Schur form and Sylvester equations; if the solution of these is larger
+/// than 1e6 (poles that belong together), the poles nearest the axis are kept, too.
 struct Split {
   Part integrals, kept, stable;
   Eigen::MatrixXcd T, U;                    ///< stable.A = U T U^H, T upper triangular, U unitary
@@ -40,9 +37,9 @@ struct Split {
 /// Throws singular where no such parts can be told apart. O(30 n^3).
 Split split(const StateSpace& model);
 
-/// Outputs x inputs: what a pair would be at s if the terms that states and inputs give did not
-/// cancel, |C| |x| + |D|; and 1e-3 of what it would be if all states moved as far as the one that
-/// moves farthest, in the units that balance A. O(n^2) per input.
+/// Outputs x inputs: size of a pair at s without cancellation of the terms of states and inputs,
+/// |C| |x| + |D|; and 1e-3 of its size if all states moved as far as the one that moves farthest,
+/// in the units that balance A. O(n^2) per input.
 Eigen::MatrixXd terms(const StateSpace& model, const Split& split, std::complex<double> s);
 
 }  // namespace titop::detail

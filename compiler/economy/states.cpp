@@ -31,7 +31,7 @@ RealModes integrators(const MatrixXd& N) {
   const Eigen::JacobiSVD<MatrixXd> svd(N, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Index pairs = 0;
   while (pairs < n && svd.singularValues()(pairs) > 1e-12 * svd.singularValues()(0)) ++pairs;
-  // What is neither a rate nor its position: rows of the null space without the range.
+  // States that are neither a rate nor its position: rows of the null space without the range.
   MatrixXd used(n, 2 * pairs);
   used << svd.matrixU().leftCols(pairs), svd.matrixV().leftCols(pairs);
   RealModes m{MatrixXd(n, n), {}, {}};

@@ -6,7 +6,7 @@
 /// A reduced model by states, where there is no second-order form. For the compiler's own files.
 namespace titop::detail {
 
-/// D plus parts that do not act on each other: integrals, what is kept, what is balanced.
+/// D plus parts that are not coupled to each other: integrals, the kept part, the balanced part.
 struct States {
   /// A part, and its transfer by poles where it has enough eigenvectors: left / (s - pole) * right.
   struct Piece {

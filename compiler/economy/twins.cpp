@@ -34,8 +34,8 @@ Neighbours neighbours(const Graph& g) {
   return n;
 }
 
-/// The exchange of nodes that follows from exchanging a and b: what hangs on them follows, as long
-/// as it is built alike; what both share stays. None if something has no counterpart.
+/// The exchange of nodes implied by the exchange of a and b: their neighbours are exchanged, too,
+/// as long as they are equal; common neighbours stay. None if a node has no counterpart.
 std::optional<std::map<int, int>> exchange(const Graph& g, const Neighbours& n, int a, int b) {
   std::map<int, int> image{{a, b}, {b, a}};
   std::vector<std::pair<int, int>> front{{a, b}};
@@ -143,8 +143,8 @@ VectorXd row_sizes(const MatrixXd& C, const VectorXd& K) {
   return scaled.rowwise().norm() / std::sqrt(static_cast<double>(K.size()));
 }
 
-/// Outputs that read only what has gone: nothing of motions, not what rounding leaves of it. What
-/// they have of the inputs directly stays.
+/// Outputs that depend only on removed motions: sets their rounding in the others to exact zeros.
+/// Their direct terms stay.
 void silence(Coordinates& c, const Coordinates& before) {
   const VectorXd q = row_sizes(before.C_q, before.K.diagonal()),
                  v = row_sizes(before.C_v, before.K.diagonal());
@@ -202,7 +202,8 @@ bool same_diagonal(const MatrixXd& X, const std::vector<Index>& to) {
   return true;
 }
 
-/// Tries one exchange; true if coordinates went. What no signs can make a symmetry is told in O(n).
+/// Tries one exchange; true if coordinates were removed. An exchange that is no symmetry with any
+/// signs is rejected in O(n).
 bool try_exchange(Coordinates& c, const std::vector<Index>& to) {
   const Index n = c.n_elastic;
   if (!same_diagonal(c.K, to) || !same_diagonal(c.G, to) || !same_diagonal(c.D, to)) return false;

@@ -18,8 +18,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kEqual = 1e-9;  ///< relative gap of frequencies that count as one
-constexpr double kSeen = 1e-12;  ///< of what a port sees of all modes: less is rounding
-constexpr double kLeak = 3e-9;   ///< the same where chains close, and coordinates depend on others
+constexpr double kSeen = 1e-12;  ///< of a port's sensitivity to all modes: less is rounding
+constexpr double kLeak = 3e-9;   ///< the same with closed chains, which have dependent coordinates
 
 using linalg::at;
 
@@ -55,7 +55,7 @@ Scaled modes(const Coordinates& c) {
       solve_definite(s.d.asDiagonal() * c.G * s.d.asDiagonal(), MatrixXd(MatrixXd::Identity(n, n)));
   if (!c.diagonal) s.K = inverse.asDiagonal() * c.K * inverse.asDiagonal();
   const SymmetricModes m = soft_first(P, s.K);
-  // Entries of P are right to eps of their row's and column's diagonal: so is mu for what moves.
+  // The error of entries of P is eps of their row's and column's diagonal: likewise of mu.
   const VectorXd noise = static_cast<double>(n) * std::numeric_limits<double>::epsilon() *
                          m.V.cwiseAbs2().transpose() * P.diagonal();
   Index count = 0;
@@ -70,7 +70,7 @@ Scaled modes(const Coordinates& c) {
 
 /// Turns modes of equal frequency among themselves so that each looks different from the ports.
 void turn_clusters(VectorXd& lambda, MatrixXd& phi, const MatrixXd& b, const MatrixXd& c) {
-  // What each port has of all modes; rounding is on that scale.
+  // Sensitivity of each port to all modes: the scale of its rounding.
   Eigen::RowVectorXd all(b.cols() + c.rows());
   all << b.colwise().norm(), c.rowwise().norm().transpose();
   for (Index first = 0, last = 0; first < lambda.size(); first = last) {
@@ -91,8 +91,8 @@ void turn_clusters(VectorXd& lambda, MatrixXd& phi, const MatrixXd& b, const Mat
   }
 }
 
-/// What the transfer at one real s has beside the modes. Above the poles of a damped structure, and
-/// small enough beside the band that far modes do not matter.
+/// The transfer at one real s minus that of the modes. s is above the poles of a damped structure,
+/// and small enough beside the band that far modes do not matter.
 MatrixXd rest(const System& system, const Whole& w) {
   double s = 1;
   if (w.elastic() > 0) s = std::sqrt(w.lambda(0));
@@ -127,10 +127,10 @@ std::vector<Index> owners(const Coordinates& c) {
   return result;
 }
 
-/// What the inputs drive of the loose motions through the elastic ones, that these carry along.
+/// Input vectors of the loose motions through the elastic ones that move them.
 MatrixXd carried(const Coordinates& c, const Whole& w, const MatrixXd& along) {
   if (w.far == 0) return along * w.b;
-  // Modes that rounding hides carry too: their static part, K^-1 M b of all.
+  // Modes below rounding move them, too: their static part, K^-1 M b of all.
   return -c.A_loose * solve_definite(c.K, solve_definite(c.G, c.B.topRows(c.n_elastic)));
 }
 
@@ -150,7 +150,8 @@ void drop(Eigen::Ref<MatrixXd> m) {
   m = (m.array().abs() > least).select(m, 0);
 }
 
-/// What ports see of modes by rounding alone: pairs that are zero by symmetry stay so.
+/// Removes the ports' sensitivity to modes at rounding level: pairs that are zero by symmetry
+/// remain so.
 void drop_leaks(Whole& w) {
   const Index n = w.elastic();
   for (Index j = 0; j < w.b.cols(); ++j) drop(w.b.block(0, j, n, 1));
@@ -158,7 +159,7 @@ void drop_leaks(Whole& w) {
     for (Index i = 0; i < c->rows(); ++i) drop(c->block(i, 0, 1, n));
 }
 
-/// Modes of the coordinates with stiffness, mass-normalised, and what the inputs drive of them.
+/// Modes of the coordinates with stiffness, mass-normalised; returns their input vectors.
 MatrixXd elastic_modes(Whole& w, const Coordinates& c) {
   const Index n = c.n_elastic;
   Scaled s = modes(c);

@@ -6,7 +6,7 @@
 /// The whole structure in its own modes. For the compiler's own files only.
 namespace titop::detail {
 
-/// The modes of an assembly, mass-normalised, and what inputs and outputs have to do with them:
+/// The modes of an assembly, mass-normalised, with their input and output matrices:
 ///
 ///     q_j'' + sum_k Z_jk q_k' + lambda_j q_j = b_j u
 ///     y = D0 u + sum_j (ca_j q_j'' + cv_j q_j' + cq_j q_j)
@@ -39,11 +39,11 @@ struct Whole {
   double damping(Eigen::Index j) const { return Z.size() ? Z(j, j) : 0; }
 };
 
-/// Modes of these coordinates; of the clusters of equal frequency those that inputs and outputs
-/// tell apart. Modes so far above the first ones that rounding hides them (mu = 1 / lambda below
-/// n eps of what their coordinates would have by themselves) have their static part only. D0 is
-/// what the factored system's transfer leaves at one real s beside the modes, so that it also holds
-/// what they miss. Throws what `coordinates` throws. O(n^3).
+/// Modes of these coordinates; of clusters of equal frequency, the combinations that inputs and
+/// outputs distinguish. Of modes so far above the first ones that rounding hides them (mu = 1 /
+/// lambda below n eps of their coordinates' own) only the static part is kept. D0 is the factored
+/// system's transfer at one real s minus that of the modes, so that it includes the missing ones.
+/// Throws the errors of `coordinates`. O(n^3).
 Whole whole(const System& system, const Coordinates& c, std::vector<char> is_position);
 
 /// Finds `poles` where damping couples the modes: one eigenproblem of twice their number, O(8 n^3).
