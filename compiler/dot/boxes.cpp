@@ -52,7 +52,7 @@ std::string draw_box(const Picture& p, std::size_t b) {
       font(about, 9, active ? colour::soft : colour::removed));
 }
 
-/// Wires by where they run and what they carry.
+/// Wires, grouped by their ends and their quantity.
 class Bundles {
  public:
   explicit Bundles(const Picture& p) : p_(p) {

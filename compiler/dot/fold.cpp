@@ -9,8 +9,9 @@ namespace {
 
 using linalg::at;
 
-/// The blocks as a forest: each hangs on the one whose acceleration drives it (a mounted body on
-/// its parent); what nothing moves hangs on the first block, by name, that it reads.
+/// The blocks as a forest: the parent of a block is the one whose acceleration drives it (of a
+/// mounted body, its parent body); of a block that nothing moves, the first block, by name, that it
+/// reads.
 class Forest {
  public:
   Forest(const Graph& g, const std::vector<int>& rank) : g_(g), parent_(g.nodes.size(), -1) {

@@ -17,9 +17,9 @@ struct Fold {
   std::vector<int> box_of;  ///< per node: its box, -1 for a block that is shown itself
 };
 
-/// At most `most` blocks and boxes, if that is two or more (what hangs on nothing shares a box,
+/// At most `most` blocks and boxes, if that is two or more (blocks without parent share a box,
 /// too); 0: no box. The largest subtrees are opened first; of a block's children the largest are
-/// shown, eight at most, and the rest share a box. O(nodes log nodes + terms).
+/// shown, eight at most, and the others share a box. O(nodes log nodes + terms).
 Fold fold(const Graph& graph, int most);
 
 }  // namespace titop::dot

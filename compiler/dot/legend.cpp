@@ -6,7 +6,7 @@
 
 namespace titop::dot {
 
-/// The diagram's name, and what its signs mean: only those that occur.
+/// The diagram's name, and the meaning of the signs that occur.
 std::string draw_legend(const Picture& p) {
   const Graph& g = p.graph;
   std::vector<std::string> words;

@@ -17,7 +17,7 @@ bool knows_parameters(const Stage& stage, const Block& block) {
   return true;
 }
 
-/// What a sum or a gain does with this input: " +", " −", " × 12", " × k1".
+/// Coefficient of this input in a sum or a gain: " +", " −", " × 12", " × k1".
 std::string coefficient_text(const Picture& p, int signal) {
   const Signal& u = p.graph.signals[at(signal)];
   const Block& block = *p.graph.nodes[at(u.node)].block;
@@ -40,7 +40,7 @@ std::string coefficient_text(const Picture& p, int signal) {
   return D(0, 0) == -1 ? " −" : fmt::format(" × {:.4g}", D(0, 0));
 }
 
-/// A cell for one signal: its name, what it is where it is 0, the number of its loop.
+/// A cell for one signal: its name, the reason if it is 0, the number of its loop.
 std::string cell(const Picture& p, int signal, const std::string& name, bool two_rows) {
   const Signal& s = p.graph.signals[at(signal)];
   const int loop = p.loop[at(signal)];

@@ -192,7 +192,7 @@ Side side_of(const Graph& g, int signal) {
   if (s.channel < 0) return s.role == Signal::Role::input ? Side::top : Side::bottom;
   const Channel& c = g.channels[at(s.channel)];
   const auto& spec = g.nodes[at(c.node)].block->interface().channels[at(c.spec)];
-  // A joint's own axis has no parent: what drives it (a motor, a spring) hangs below.
+  // A joint's own axis has no parent: the block that drives it (a motor, a spring) is drawn below.
   return c.takes == Takes::accel && !spec.name.empty() ? Side::top : Side::bottom;
 }
 

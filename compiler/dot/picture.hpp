@@ -5,12 +5,12 @@
 #include <titop/compiler/stage.hpp>
 #include <vector>
 
-/// What a diagram's picture shows, before it is text. Everything is in natural order of names, so
-/// that neither the order of adds nor a run leaves a trace.
+/// The content of a diagram's picture, before it is text. Everything is in natural order of names,
+/// so that the picture does not depend on the order of adds.
 ///
-/// The tree stands on its head, as in the paper: parents above, children below. A block has its
-/// parent channel along its top and its children along its bottom, so accelerations run down and
-/// wrenches come back up beside them.
+/// The tree has its root at the top, as in the paper: parents above, children below. A block has
+/// its parent channel along its top and its children along its bottom, so accelerations run down
+/// and wrenches come back up beside them.
 namespace titop::dot {
 
 /// One side of a block: where a wire leaves or arrives. `loose`: it may go either way.
@@ -65,7 +65,7 @@ Look look(const Picture& p, const Assignment& a, const Term& term);
 
 /// False once every signal of the node has been set aside.
 bool is_active(const Graph& g, int node);
-/// Outputs of what stands on top go above their block, all others below.
+/// Outputs of signals at the top are drawn above their block, all others below.
 Side output_side(const Graph& g, const Assignment& a);
 /// Which side of its block a signal stands on.
 Side side_of(const Graph& g, int signal);
@@ -73,7 +73,7 @@ Side side_of(const Graph& g, int signal);
 std::string cell_name(const Graph& g, int signal);
 Anchor anchor(const Picture& p, int signal);
 
-/// One piece of wire. Graphviz puts tails above heads, so what flows up is written from head to
+/// One piece of wire. Graphviz puts tails above heads, so an upward wire is written from head to
 /// tail with its arrow at the back.
 struct Wire {
   std::string from = {}, to = {};

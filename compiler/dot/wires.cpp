@@ -39,8 +39,8 @@ std::string draw(const Wire& w) {
 
 namespace {
 
-/// Draws what drives one port or output: a sum where there are several terms, and on each term's
-/// way a small node for its gain or rotation.
+/// Draws the terms that drive one port or output: a sum if there are several, and for each term a
+/// small node for its gain or rotation.
 class Drawing {
  public:
   Drawing(const Picture& p, const Assignment& a) : p_(p), a_(a) {
@@ -62,7 +62,7 @@ class Drawing {
  private:
   bool up_into_end() const { return end_.side == Side::bottom; }
 
-  /// Of a term as it leaves its block, and of what arrives.
+  /// Of a term at its block, and of the signal that it drives.
   Quantity read_as(const Term& t) const {
     return t.of == Term::Of::rate       ? Quantity::velocity
            : t.of == Term::Of::position ? Quantity::position

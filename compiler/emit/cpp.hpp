@@ -34,24 +34,24 @@ struct CppModel {
   long long products = 0;  ///< multiplications of derivative + output (+ step)
 };
 
-/// Writes System::state_space() as a header of its own:
+/// Writes System::state_space() as a header without dependencies:
 ///
 ///     NAME::State x{};  NAME::Input u{};  u[NAME::in::tau_m] = 0.1;
 ///     NAME::State xdot = NAME::derivative(x, u);
 ///     NAME::Output y = NAME::output(x, u);      y[NAME::out::theta]
 ///     x = NAME::step(x, u);                     // exact for u held over NAME::sample_time
 ///
-/// All functions are constexpr; data are to the last bit. Each matrix is stored dense, sparse or as
-/// 2 x 2 blocks, by what is cheapest.
+/// All functions are constexpr; data are exact to the last bit. Each matrix is stored dense, sparse
+/// or as 2 x 2 blocks, whichever is cheapest.
 ///
-/// The test recovers the matrices by calling the header and checks them against what does not come
-/// from them: transfer values and static gain of the factored system, the poles, their number; and
-/// a trajectory in long double against `step`, and `step` against the Taylor series of `derivative`
-/// where that is affordable. Its tolerances follow what was measured here, up to 1e-6; a check
-/// that would need more is left out, and a comment in its place says so.
+/// The test recovers the matrices by calling the header and checks them against independent values:
+/// transfer and static gain of the factored system, the poles, their number; and a trajectory in
+/// long double against `step`, and `step` against the Taylor series of `derivative` if that is
+/// affordable. Its tolerances follow the errors measured here, up to 1e-6; a check that would need
+/// more is replaced by a comment.
 ///
-/// Throws bad_value: not an identifier, a sample time that is negative or not finite, modes asked
-/// and not accurate, a dense model that keeps fewer than six digits. O(n^3).
+/// Throws bad_value: not an identifier, a sample time that is negative or not finite, modes
+/// requested but not accurate, a dense model with fewer than six digits. O(n^3).
 CppModel generate_cpp(const System& system, const CppOptions& options = {});
 
 /// Writes NAME.hpp and NAME_test.cpp; a file that already says the same is left alone, so that

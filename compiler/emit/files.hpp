@@ -11,9 +11,9 @@
 /// All throw bad_file where a file cannot be written.
 namespace titop {
 
-/// What the log warns of System::state_space(): the digits that A, B, C, D lose, which `transfer`,
-/// `apply` and `simulate` keep. Empty where they lose none that count. Throws and costs what
-/// state_space() does where it has not been asked for yet.
+/// The log's warnings of System::state_space(): lost digits of A, B, C, D, which `transfer`,
+/// `apply` and `simulate` do not lose. Empty if the loss is small. Errors and cost are those of
+/// state_space() if it has not been called yet.
 std::vector<std::string> dense_warnings(const System& system);
 
 /// A MATLAB/Octave function: the file's name without .m must be an identifier (bad_value)
@@ -43,20 +43,20 @@ void write_numpy(const System& system, const std::filesystem::path& folder,
 void write_csv(const System& system, std::span<const double> omega,
                const std::filesystem::path& file);
 
-/// The whole model and what is known about it as one JSON object: "format" ("titop model 1"),
-/// "name", "states", "inputs", "outputs", "A", "B", "C", "D" (lists of rows), "poles",
-/// "certificate" (the fields of `Certificate`; null where a number is not finite or was not found)
-/// and "notes" (those of System::log: pass, kind, text). Keys keep this order, so that the text is
-/// stable. O(n^3) for the poles.
+/// The whole model and its properties as one JSON object: "format" ("titop model 1"), "name",
+/// "states", "inputs", "outputs", "A", "B", "C", "D" (lists of rows), "poles", "certificate" (the
+/// fields of `Certificate`; null for a number that is not finite or was not computed) and "notes"
+/// (those of System::log: pass, kind, text). Keys keep this order, so that the text is stable.
+/// O(n^3) for the poles.
 std::string model_json(const System& system);
 void write_json(const System& system, const std::filesystem::path& file);
 
 /// The full certificate as one JSON object: "format" ("titop certificate 1"), "holds", "faults" (a
 /// list of texts), "basic" (as "certificate" of a model), then "grid", "poles", "passivity",
 /// "reciprocity", "order" and "exact" with the fields of `FullCertificate` by their names; complex
-/// numbers are pairs [re, im]. Each but "order" has "done" and "why_not" (null where it is done);
-/// "order" has "judged" and "decided". What was not checked or not found is null, as is a number
-/// that is not finite; no item is left out. Keys keep this order.
+/// numbers are pairs [re, im]. Each but "order" has "done" and "why_not" (null if it is done);
+/// "order" has "judged" and "decided". Values that were not checked or computed are null, as are
+/// numbers that are not finite; no item is left out. Keys keep this order.
 std::string certificate_json(const FullCertificate& certificate);
 void write_json(const FullCertificate& certificate, const std::filesystem::path& file);
 

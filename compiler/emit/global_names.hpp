@@ -18,7 +18,7 @@ inline constexpr std::string_view kMath =
     "scalb scalbln scalbn setpayload setpayloadsig significand sin sincos sinh sqrt tan tanh "
     "tgamma totalorder totalordermag trunc ufromfp ufromfpx y0 y1 yn ";
 
-/// What else there is, but for variants of these: strtod_l, getc_unlocked, fopen64.
+/// All others, without variants of these: strtod_l, getc_unlocked, fopen64.
 inline constexpr std::string_view kGlobal =
     " a64l abort abs access acct adjtime AIO_PRIO_DELTA_MAX alarm aligned_alloc arc4random "
     "arc4random_buf arc4random_uniform asctime asprintf at_quick_exit atexit atof atoi atol atoll "

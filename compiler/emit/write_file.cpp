@@ -38,7 +38,7 @@ std::filesystem::path new_beside(const std::filesystem::path& path) {
   return {};
 }
 
-/// What a link leads to, over as many as there are; the path itself if it is none.
+/// The target of a chain of links; the path itself if it is none.
 std::filesystem::path target_of(std::filesystem::path path) {
   constexpr int most = 40;  // as the system: more go round in a circle
   std::error_code error;

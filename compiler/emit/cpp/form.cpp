@@ -136,9 +136,10 @@ Modes general_modes(const MatrixXd& A) {
   return modes;
 }
 
-/// A row may be lost in rounding at one point (what is stiff, far below its frequency) and speak at
-/// another: only one that is noise against its largest entry at any point is silent. The 50 digits
-/// are dear, so the other points are asked only where the first leaves a doubt.
+/// A row may be at rounding level at one point (a stiff row, far below its frequency) and not at
+/// another: it is silent only if it is noise compared with its largest entry over all points.
+/// Transfers in 50 digits are expensive, so the other points are evaluated only if rows are silent
+/// at the first.
 void find_silent(const System& system, Points& points) {
   MatrixXd size, off;
   const auto look_at = [&](std::complex<double> s) {

@@ -24,12 +24,12 @@ struct Form {
 constexpr double kProvable = 3e-7;
 inline bool is_provable(double error) { return error <= kProvable; }
 
-/// Where transfers are compared, and what they are by the factored system.
+/// Points of comparison, and the factored system's transfers there.
 struct Points {
   std::vector<std::complex<double>> s;
   std::vector<Eigen::MatrixXcd> exact;
-  /// Outputs and inputs whose transfer is nothing but rounding at all points together (50 digits
-  /// say so): 0 by nature, with nothing to compare to.
+  /// Outputs and inputs whose transfer is at rounding level at all points (checked in 50 digits):
+  /// exact zeros, without a scale for a comparison.
   std::vector<Eigen::Index> silent_outputs, silent_inputs;
 };
 
@@ -37,12 +37,12 @@ struct Points {
 /// them is also evaluated in 50 digits; all, where a row or a column is lost in rounding there.
 Points response_points(const System& system, const std::vector<Pole>& poles);
 
-/// C X + D against the exact transfer at one point, without the silent. Each entry is relative to
-/// the geometric mean of the largest entries of its row and column, or to 1e-6 of the terms that
-/// cancel in it, |C| |X| + |D|, where that is more (what is zero by symmetry).
+/// C X + D against the exact transfer at one point, without the silent rows and columns. Each entry
+/// is relative to the geometric mean of the largest entries of its row and column, or, if larger
+/// (zero by symmetry), to 1e-6 of the terms that cancel in it, |C| |X| + |D|.
 struct Difference {
   double worst = 0;
-  double rounding = 0;  ///< what rounding of the terms alone may make of it on another machine
+  double rounding = 0;  ///< possible difference by rounding of the terms on another machine
 };
 Difference difference(const Form& form, const Eigen::MatrixXcd& X, const Eigen::MatrixXcd& exact,
                       const Points& points);
@@ -53,7 +53,7 @@ double response_error(const Form& form, const Points& points);
 /// The points' silent outputs and inputs, and those that are 0 by nature at rest, such as rates.
 Points at_rest(const Points& points, const Eigen::MatrixXd& static_gain);
 
-/// The difference at s = 0, without what is silent at rest.
+/// The difference at s = 0, without rows and columns that are silent at rest.
 double static_error(const Form& form, const Eigen::MatrixXd& exact, const Points& points);
 
 /// The same for a trajectory: largest difference of y(k) from x(0) = 0 to `exact` (ny x steps),

@@ -205,7 +205,7 @@ namespace detail {
 }  // namespace @NAME@
 )";
 
-/// What was measured, as the header's comment.
+/// The measured errors, as the header's comment.
 std::string errors(const Naming& names, const Form& form) {
   if (names.inputs.empty() || names.outputs.empty())
     return "Its accuracy was not measured: there are no inputs or no outputs.";

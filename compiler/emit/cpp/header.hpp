@@ -5,7 +5,7 @@
 
 namespace titop::emit {
 
-/// Names and sizes of what is written.
+/// Names and sizes of the model.
 struct Naming {
   std::string diagram, name;  ///< as the user wrote it; as the namespace
   std::vector<std::string> states, inputs, outputs;

@@ -20,7 +20,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Ten times what was measured, but never so wide that a wrong sixth digit passes.
+/// Ten times the measured error, but never so wide that a wrong sixth digit passes.
 std::string tolerance(double least, double measured) {
   return fmt::format("{:.1e}", std::clamp(10 * measured, least, 1e-6));
 }
@@ -68,7 +68,7 @@ struct Resolvent {
   Eigen::PartialPivLU<MatrixXcd> lu;
 };
 
-/// What the test finds at s, where it solves without the model's equilibration.
+/// The difference that the test will find at s, where it solves without the model's equilibration.
 Difference tested_difference(const Form& form, Complex s, const MatrixXcd& exact,
                              const Points& points) {
   const MatrixXcd B = form.B.cast<Complex>();
@@ -181,7 +181,7 @@ std::string trajectory_test(const Naming& names, const Form& form, const MatrixX
                               {"TOLERANCE", tolerance(1e-11, form.step_error)}});
 }
 
-/// What the test's Taylor series (kTaylor) differ from `step` by.
+/// Difference of the test's Taylor series (kTaylor) from `step`.
 double series_error(const Form& form, const Expected& expected, double h, double parts) {
   const Eigen::SparseMatrix<double> A = form.A.sparseView();
   const auto by_series = [&](VectorXd x, const VectorXd& u) {

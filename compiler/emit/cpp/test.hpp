@@ -8,7 +8,7 @@
 
 namespace titop::emit {
 
-/// What the generated test knows from elsewhere than the header's matrices.
+/// Expected values of the generated test, independent of the header's matrices.
 struct Expected {
   Points points;
   std::vector<Pole> poles;

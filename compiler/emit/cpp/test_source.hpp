@@ -1,6 +1,6 @@
 #pragma once
 
-/// The source of the generated test, with @KEYS@ for what differs from model to model.
+/// The source of the generated test, with @KEYS@ for the parts that differ from model to model.
 namespace titop::emit {
 
 inline constexpr const char* kHead = R"(// Written by titop from the diagram @DIAGRAM@; do not edit.

@@ -33,7 +33,7 @@ std::string quoted(std::string_view text) {
       result += '\\';
       result += c;
     } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      // Octal: always three digits, so that what follows cannot belong to it.
+      // Octal: always three digits, so that the following text cannot belong to it.
       result += fmt::format("\\{:03o}", static_cast<unsigned char>(c));
     } else if (c == '?') {
       result += "\\?";  // no trigraphs

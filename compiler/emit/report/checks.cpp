@@ -143,7 +143,7 @@ std::string marked(Mark mark) {
                              : "";
 }
 
-/// With what exact arithmetic says, where it was asked.
+/// The verdict with exact arithmetic, if it was computed.
 const OrderVerdict& order_of(const Subject& s, const FullCertificate* full) {
   return full && full->order.judged ? full->order : s.system.order_verdict();
 }
@@ -232,7 +232,7 @@ std::size_t set_aside(const Graph& g) {
 
 std::string poles(int n) { return count(static_cast<std::size_t>(n), "pole"); }
 
-/// A model without what no transfer shows may be stable where the scene is not.
+/// Hidden poles are missing in the minimal model, which may be stable although the scene is not.
 std::string unstable(const Places& shown, int right) {
   const int hidden = right - shown.right - shown.near;
   std::string text = fmt::format("<b>Unstable</b>: {} right of the imaginary axis", poles(right));

@@ -8,7 +8,7 @@
 namespace titop::report {
 namespace {
 
-/// `text` without what stands from `open` to `close`. Graphviz escapes < and " in all that is ours.
+/// `text` without the parts from `open` to `close`. Graphviz escapes < and " in all text of ours.
 std::string without(const std::string& text, std::string_view open, std::string_view close) {
   std::string rest;
   std::size_t from = 0;

@@ -8,7 +8,7 @@
 namespace titop::report {
 namespace {
 
-/// What holds after each pass, for who has not read the manual.
+/// State of the diagram after each pass, for readers without the manual.
 struct Promise {
   std::string_view pass, text;
 };

@@ -27,7 +27,7 @@ class Scale {
       linear_range();
   }
 
-  /// 0 at the low end, 1 at the high one; somewhat beyond for what is far outside.
+  /// 0 at the low end, 1 at the high one; clamped to [-0.5, 1.5].
   double place(double v) const {
     if (axis_.log) v = v > 0 ? std::log10(v) : -HUGE_VAL;
     return std::clamp((v - low_) / (high_ - low_), -0.5, 1.5);
@@ -45,7 +45,7 @@ class Scale {
  private:
   void linear_range() {
     if (!std::isfinite(low_) || !std::isfinite(high_)) low_ = 0, high_ = 1;  // nothing to show
-    // What varies in its last digits is a constant.
+    // A curve that varies only in its last digits is a constant.
     if (!(high_ - low_ > 1e-12 * std::max(std::abs(low_), std::abs(high_)))) {
       const double pad = low_ == 0 ? 1 : 0.5 * std::abs(low_);
       low_ -= pad, high_ += pad;
@@ -91,7 +91,8 @@ class Scale {
   std::vector<double> fine_;
 };
 
-/// Smallest and largest of what can be drawn, within twelve decades of the largest on a log axis.
+/// Smallest and largest value that can be drawn, within twelve decades of the largest on a log
+/// axis.
 Scale scale_of(const Axis& axis, const std::vector<std::vector<double>>& data) {
   if (axis.low != axis.high) return {axis, axis.low, axis.high};
   double low = HUGE_VAL, high = -HUGE_VAL;

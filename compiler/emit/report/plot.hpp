@@ -33,8 +33,8 @@ struct Plot {
   std::vector<Frame> frames;
 };
 
-/// A `<figure>`: title, legend, one `<svg>`, caption. Every curve keeps its peaks: what falls into
-/// one column of pixels is drawn from its smallest to its largest value.
+/// A `<figure>`: title, legend, one `<svg>`, caption. Every curve keeps its peaks: all values in
+/// one column of pixels are drawn as a line from the smallest to the largest.
 std::string figure(const Plot& plot);
 
 constexpr std::size_t kStyles = 6;  ///< curves that differ; more look alike again

@@ -5,7 +5,7 @@
 
 namespace titop::report {
 
-/// What a program did.
+/// Result of a program.
 struct Finished {
   bool found = false;  ///< there is such a program
   int code = 0;        ///< its exit code; 128 + n where signal n ended it

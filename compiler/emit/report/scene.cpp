@@ -54,7 +54,7 @@ std::string ports(const List& list, const std::vector<Scalar>& scalars, const ch
          more(list.size(), verb == std::string("input") ? "inputs" : "outputs");
 }
 
-/// How many of what.
+/// Number of blocks and states per type.
 std::string blocks(const Graph& g) {
   std::map<std::string, std::pair<int, int>> types;
   for (const Node& n : g.nodes) {

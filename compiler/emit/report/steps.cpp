@@ -30,8 +30,8 @@ struct Clock {
   bool coarse = false;  ///< the fastest modes turn between steps
 };
 
-/// Eight periods of the slowest oscillation, six time constants of the slowest decay, no more than
-/// eight of what grows.
+/// Eight periods of the slowest oscillation, six time constants of the slowest decay, at most eight
+/// of the fastest growth.
 Clock clock(const Subject& s) {
   Clock c;
   double swing = 0, decay = 0, grow = 0;
@@ -51,7 +51,7 @@ Clock clock(const Subject& s) {
   return c;
 }
 
-/// Responses to a unit step on one input; what is needed of them.
+/// Responses to a unit step on one input.
 struct Steps {
   std::vector<double> time;
   std::map<int, MatrixXd> of;  ///< per input: outputs x times

@@ -7,7 +7,7 @@
 
 namespace titop::report {
 
-/// What a report is about: found once, read by all sections.
+/// The subject of a report: computed once, read by all sections.
 struct Subject {
   const System& system;
   const ReportOptions& options;
@@ -32,7 +32,7 @@ struct Pair {
   int output_group = 0, input_group = 0;
 };
 
-/// "m/s² / N"; what is not known is the user's.
+/// "m/s² / N"; an unknown unit is the user's.
 std::string ratio(const std::string& output_unit, const std::string& input_unit);
 std::string or_users(const std::string& unit);
 
@@ -51,7 +51,7 @@ std::string certificate_section(const Subject& subject, const FullCertificate* f
 std::string order_section(const Subject& subject, const FullCertificate* full);
 std::string passes_section(const Subject& subject, const FullCertificate* full);
 
-/// What must be known before anything else: stability, order, whether all checks hold; warnings.
+/// The summary: stability, order, whether all checks hold; warnings.
 std::string summary(const Subject& subject, const FullCertificate* full);
 
 }  // namespace titop::report

@@ -8,7 +8,7 @@
 namespace titop::report {
 
 inline constexpr double kTwoPi = 2 * std::numbers::pi;
-/// What no curve shows.
+/// Value of a gap in a curve.
 inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// Poles beside 0, from slow to fast [rad/s].

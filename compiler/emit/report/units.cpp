@@ -46,8 +46,8 @@ Nature of_line(const Pattern& line) {
   return linear == angular ? Nature::unknown : linear ? Nature::linear : Nature::angular;
 }
 
-/// Which scalar signals turn and which move. A joint's axes say so by its feedthrough; blocks of
-/// one axis (a SpringMass) by what they are connected to, else they move.
+/// Which scalar signals are angular and which linear. Of a joint's axes by its feedthrough; of
+/// blocks of one axis (a SpringMass) by their connections, else linear.
 class Natures {
  public:
   explicit Natures(const Graph& g) : g_(g), of_node_(g.nodes.size(), Nature::unknown) {
@@ -80,7 +80,7 @@ class Natures {
     return result;
   }
 
-  /// Of what column `k` of a term drives in its equation's target.
+  /// Of the part of its equation's target that column `k` of a term drives.
   Nature driven(const Equation& e, const Term& term, int k) const {
     const Pattern p = structure(g_, term);
     if (g_.signals[at(e.target)].size != 6)
@@ -101,7 +101,7 @@ class Natures {
                        [](const ChannelSpec& c) { return c.size == 6; });
   }
 
-  /// Of an axis of a joint: its force or torque is what the wrench on the child has along it.
+  /// Of an axis of a joint: its force or torque is the component of the child's wrench along it.
   Nature of_axis(const Signal& s) const {
     const Block& block = *g_.nodes[at(s.node)].block;
     const Interface& face = block.interface();
@@ -122,7 +122,7 @@ class Natures {
                : Nature::unknown;
   }
 
-  /// True if one end of the term tells what the other is.
+  /// True if one end of the term determines the other.
   bool spread(const Equation& e, const Term& t) {
     if (e.target < 0 || t.signal < 0 || !keeps_units(t)) return false;
     const Signal &to = g_.signals[at(e.target)], &from = g_.signals[at(t.signal)];

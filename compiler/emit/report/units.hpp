@@ -14,13 +14,14 @@ struct Scalar {
   int index = 0;       ///< column of B or row of C
 };
 
-/// All inputs, or outputs, in the model's order, with the units that follow from what they drive or
-/// read: a wrench is [N; N m], an acceleration [m/s²; rad/s²], a hinge's angle [rad]. Behind a gain
-/// that is not 1, and of signals between controllers, they are not known. O(terms).
+/// All inputs, or outputs, in the model's order, with the units that follow from the connected
+/// ports: a wrench is [N; N m], an acceleration [m/s²; rad/s²], a hinge's angle [rad]. Unknown
+/// behind a gain other than 1, and for signals between controllers. O(terms).
 std::vector<Scalar> scalar_inputs(const Stage& stage);
 std::vector<Scalar> scalar_outputs(const Stage& stage);
 
-/// What an input drives, and what an output reads: "hub.parent.force", "z1.stretch, z3.stretch".
+/// The ports that an input drives, and that an output reads: "hub.parent.force", "z1.stretch,
+/// z3.stretch".
 std::string drives(const Stage& stage, int input);
 std::string reads(const Stage& stage, int output);
 
