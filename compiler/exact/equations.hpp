@@ -5,7 +5,7 @@
 
 namespace titop::exact {
 
-/// xdot = A x + B u, y = C x + D u: what a minimal order depends on.
+/// xdot = A x + B u, y = C x + D u: the matrices that determine a minimal order.
 struct Model {
   int states = 0;
   Square A, A_transposed;

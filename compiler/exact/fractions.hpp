@@ -30,8 +30,8 @@ Matrix operator*(const Fraction& k, Matrix m);
 /// Every double as the fraction that it is.
 Matrix fractions(const Eigen::MatrixXd& m);
 
-/// Orthonormal rows as the fractions of small denominator that they stand for: 0.6 is 3/5. Throws
-/// Undecided, with `what`, where they stand for none, or these are not orthonormal.
+/// Orthonormal rows as the nearby fractions of small denominator: 0.6 is 3/5. Throws Undecided,
+/// with `what`, if there are none, or if they are not orthonormal.
 Matrix orthonormal_fractions(const Eigen::MatrixXd& rows, const std::string& what);
 
 /// The matrix of a term, as `coefficient` of graph.hpp. Throws Undecided.

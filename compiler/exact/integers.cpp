@@ -6,7 +6,7 @@
 namespace titop::exact {
 namespace {
 
-/// Divides a row by what its entries have in common.
+/// Divides a row by the common divisor of its entries.
 void shorten(Row& row) {
   Integer common = 0;
   for (const auto& [column, value] : row) {

@@ -32,9 +32,9 @@ class Echelon {
  public:
   explicit Echelon(int bits) : bits_(bits) {}
 
-  /// The row less what the rows here say; empty if it says nothing new.
+  /// The row reduced by the rows here; empty if it depends on them.
   Row reduced(Row row) const;
-  /// Takes it in, reduced. False if it says nothing new. Throws Undecided beyond `bits`.
+  /// Adds the row, reduced. False if it depends on the others. Throws Undecided beyond `bits`.
   bool add(Row row);
 
   int rank() const { return static_cast<int>(rows_.size()); }

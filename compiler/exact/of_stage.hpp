@@ -5,8 +5,8 @@
 
 namespace titop::exact {
 
-/// exact_order of what the user wrote, of which `states` are left. Where chains close, more than
-/// these are not taken for the truth: the last places of the data hold the chain open.
+/// exact_order of the diagram as written. `states`: number of states after the passes, an upper
+/// limit for closed chains: more would be due to rounding of the data, which leaves the chain open.
 ExactOrder order_of_stage(const Stage& stage, int states, const ExactOptions& options,
                           ParameterValues values);
 

@@ -34,7 +34,8 @@ constexpr double kUnit =
 
 // --- is there anything to look at? --------------------------------------------------------------
 
-/// Points and the ground, joined by what might tie them: false if nothing is tied twice.
+/// Union-find of points and the ground over possible ties: `closes` is false if nothing is tied
+/// twice.
 struct Quick {
   const Graph& g;
   UnionFind joined = UnionFind(static_cast<int>(g.channels.size()) + 1);
@@ -120,7 +121,7 @@ struct ChainChecker {
                         std::move(hint)});
   }
 
-  /// What is on the way says where its ports are, and how they move.
+  /// The blocks on the chain must define the kinematics of their ports.
   void check_blocks(const Closing& c) {
     if (const int node = motion.silent(c.chain); node >= 0)
       return refuse(c,
@@ -155,7 +156,7 @@ struct ChainChecker {
   }
 };
 
-// --- what is said twice --------------------------------------------------------------------------
+// --- redundant closures --------------------------------------------------------------------------
 
 MatrixXd orthonormal_rows(const MatrixXd& m) {
   const Eigen::HouseholderQR<MatrixXd> qr(m.transpose());
@@ -187,16 +188,17 @@ void keep_rows(Graph& g, Equation& e, const MatrixXd& rows) {
   }
 }
 
-/// Of an equation whose rows say in k directions what follows from others.
+/// An equation some of whose rows depend on other equations.
 struct Split {
   MatrixXd directions;  ///< orthonormal rows
-  MatrixXd kept;        ///< unit rows: with what follows they say all that the equation says
+  MatrixXd kept;        ///< unit rows: with the dependent ones equivalent to the equation
 };
 
-/// From directions among scaled rows. Kept are rows as they stand (those of the largest pivots go):
-/// combinations across the directions would mix translations with rotations, and in a mechanism of
-/// a millimetre what is small beside the others would be rounding. So with the directions: what is
-/// rounding among scaled rows goes before the factors make it large.
+/// From k dependent directions among scaled rows. The kept rows are original ones (those of the
+/// largest pivots are removed): combinations across the directions would mix translations with
+/// rotations, and in a mechanism of a millimetre small entries would be rounding. The same for the
+/// directions: entries at rounding level among scaled rows are cleared before the factors magnify
+/// them.
 Split split(const MatrixXd& scaled, const Eigen::VectorXd& factors) {
   const auto n = scaled.cols();
   std::vector<int> left(static_cast<std::size_t>(n));
@@ -212,8 +214,9 @@ Split split(const MatrixXd& scaled, const Eigen::VectorXd& factors) {
           MatrixXd(MatrixXd::Identity(n, n))(left, Eigen::all)};
 }
 
-/// In these directions (rows, in the space of the equation's rows) the joint lets go: it passes
-/// nothing on, and the wrench at its point is what others add there. The equation keeps these rows.
+/// Releases the joint in these directions (rows, in the space of the equation's rows): it transmits
+/// no force, and the wrench at its point is the sum of the other terms. The equation keeps the
+/// other rows.
 void release(Stage& stage, int equation, const Split& parts, Lowering& lowering) {
   Graph& g = stage.graph;
   const auto& [directions, kept] = parts;
@@ -254,7 +257,7 @@ std::string direction_names(const MatrixXd& directions) {
   return " (" + text + ")";
 }
 
-/// Chains in a singular posture have to first order what leads nowhere.
+/// Chains in a singular posture have additional first-order motions that second order blocks.
 void warn_of_stops(Stage& stage, const Component& c, const Factors& factors,
                    const std::vector<const Closing*>& in_order) {
   constexpr double kStops = 1e-6;  // rounding leaves 1e-15, a singular posture some tenths
@@ -275,7 +278,7 @@ void warn_of_stops(Stage& stage, const Component& c, const Factors& factors,
                      detail::some_names(names), part)});
 }
 
-/// Returns what the chains hold altogether.
+/// Returns the points that the chains immobilise.
 AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
   AtRest held;
   std::optional<Lowering> lowering;  // few chains are closed twice
@@ -286,7 +289,7 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
     lines.push_back(line_of(closings[at(c)]));
   }
   const Coordinates coordinates(stage.graph, stage.values);
-  // Whatever moves at all counts, prescribed motions too: they must agree with what is said twice.
+  // All motions count, prescribed ones too: they must satisfy redundant closures.
   const auto classify = [&](const Scalar& s) -> std::optional<closing::Meaning> {
     const bool state = s.column.kind == Column::Kind::states;
     return closing::Meaning{state ? Relations::Role::coordinate : Relations::Role::unknown,
@@ -344,7 +347,7 @@ std::vector<Closing> closings_of(const Graph& g, const Motion& motion) {
   return result;
 }
 
-/// Throws what is wrong with the chains; notes what is narrow.
+/// Throws the mistakes in the chains; notes narrow decisions.
 void check_chains(Stage& stage, const Twins& twins, const Motion& motion,
                   const std::vector<Closing>& closings) {
   const Coordinates coordinates(stage.graph, stage.values);

@@ -46,7 +46,7 @@ void check_scalar_names(Checker& c, const List& list, std::string_view what,
 }
 
 /// The matrices of blocks, which may be the user's own. Bodies of the same data share their block:
-/// what is shared is looked at once.
+/// it is checked once.
 void check_blocks(Checker& c, ParameterValues values) {
   std::unordered_set<const Block*> seen;
   for (const Node& node : c.graph.nodes) {

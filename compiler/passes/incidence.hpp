@@ -26,7 +26,7 @@ struct Incidence {
 /// All active rows of the graph.
 std::vector<Row> rows_of(const Graph& graph);
 
-/// At what a row looks: at once, or at some s, where a state stands for the inputs that move it.
+/// Dependence of a row: direct, or at some s, where a state depends on its inputs.
 enum class Sight { at_once, through_states };
 
 /// Declared structure of the active rows and unknowns. O(entries).

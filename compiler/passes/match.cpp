@@ -8,15 +8,15 @@ namespace {
 
 using linalg::at;
 
-/// Coarse to fine. What is only determined through states (a massless point between springs) has a
-/// singular state space at first, which `reduce` makes regular.
+/// Coarse to fine. Signals that are only determined through states (a massless point between
+/// springs) lead to a singular state space at first, which `reduce` makes regular.
 constexpr std::pair<bool, Sight> kSights[] = {{false, Sight::at_once},
                                               {true, Sight::at_once},
                                               {false, Sight::through_states},
                                               {true, Sight::through_states}};
 
-/// A channel is inverted where an equation determines the signal that its block gives by default.
-/// (What the matching or the pivots turn round inside a loop, between blocks, is their own affair.)
+/// A channel is inverted if an equation determines the signal that its block outputs by default.
+/// (Inversions by matching or pivoting inside a loop, between blocks, do not count.)
 void find_inversions(Stage& stage) {
   const Graph& g = stage.graph;
   std::vector<char> imposed(g.signals.size(), 0);

@@ -39,8 +39,8 @@ class Augmenting {
   Augmenting(const Incidence& inc, Matching& m)
       : inc_(inc), m_(m), from_(m.col_to_row.size(), -1) {}
 
-  /// One path from a free row, if there is one. Where there is none, none will ever lead through
-  /// what has been looked at: that stays marked.
+  /// One path from a free row, if there is one. If there is none, no later path leads through the
+  /// visited vertices: they remain marked.
   void from(int start) {
     rows_.assign(1, start);
     found_.clear();

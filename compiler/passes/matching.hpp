@@ -14,9 +14,9 @@ struct Matching {
 /// default. O(entries) where the defaults do, else O(entries) per row that they leave.
 Matching maximum_matching(const Graph& graph, const Incidence& incidence);
 
-/// What is wrong with a graph without a perfect matching, in ports: per independent part the
-/// equations that are too many, the signals that nothing determines (Dulmage-Mendelsohn), and the
-/// channels whose other side may be driven instead, each of them tried. O(entries) per channel.
+/// The mistakes of a graph without a perfect matching, in ports: per independent part the surplus
+/// equations, the undetermined signals (Dulmage-Mendelsohn), and the channels whose other side may
+/// be driven instead, each of them tried. O(entries) per channel.
 std::vector<Mistake> structure_mistakes(const Graph& graph, const Incidence& incidence,
                                         const Matching& matching);
 

@@ -66,8 +66,8 @@ using Digraph = boost::compressed_sparse_row_graph<boost::directedS, boost::no_p
 
 using Vertex = boost::graph_traits<Digraph>::vertex_descriptor;
 
-/// Strong component of every unknown signal; components come out dependencies first. What moves or
-/// sees one of its signals does so with all of them.
+/// Strong component of every unknown signal; components come out dependencies first. An input that
+/// moves (an output that sees) one of its signals does so with all of them.
 struct Components {
   std::vector<int> of;
   std::vector<std::size_t> size;  ///< in signals
@@ -115,9 +115,9 @@ void note_unread(Stage& stage, const Arrows& readers) {
           {Note::Kind::info, "order", fmt::format("input {}: nothing reads it", input.name)});
 }
 
-/// Signals that an input (or, without inputs, any state) moves, and that an output (or any state)
-/// sees; the rest is set aside. But loops that are seen stay: that what no input moves rests is
-/// only so if they have one solution.
+/// Keeps signals that an input (or, without inputs, any state) moves, and that an output (or any
+/// state) sees; sets the others aside. Exception: loops that are seen are kept, since a loop
+/// without input is at rest only if it has one solution.
 void set_aside(Stage& stage, const Arrows& needs, const Components& parts) {
   Graph& g = stage.graph;
   std::vector<int> sources, sinks, states;
@@ -128,7 +128,7 @@ void set_aside(Stage& stage, const Arrows& needs, const Components& parts) {
   }
   for (const Output& o : g.outputs)
     for (const Term& t : o.terms) sinks.push_back(t.signal);
-  // A released joint's own wrench is 0 by choice: what it would move is still to be judged (solve).
+  // A released joint's own wrench is 0 by choice: its effect is judged later (solve).
   for (const Released& r : stage.released) sources.push_back(g.equations[at(r.equation)].target);
   if (g.inputs.empty()) sources.insert(sources.end(), states.begin(), states.end());
   if (g.outputs.empty()) sinks.insert(sinks.end(), states.begin(), states.end());

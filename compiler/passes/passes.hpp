@@ -39,16 +39,16 @@ bool lower_again(const Stage& stage, const std::vector<int>& origins, ParameterV
 /// diagram has no outputs at all: then all states count as seen. O(terms).
 Stage split(Stage stage);
 
-/// Closed kinematic chains, through the ground or among bodies, are consistent: where a closing
-/// equation says what others say already (two rigid bodies welded at two points, a planar mechanism
-/// of 6-dof joints), the joint is released in these directions and listed, so that every closing
-/// equation left is independent; the motion is the same. Points that the chains leave no motion are
-/// listed: outputs, and equations outside the chains, read 0 there in place of rounding. Throws
-/// kinematic_loop where the geometry does not close, and where a body on the chain does not say
-/// where its ports are. O(terms) where all chains are open; about linear in the loops of a ladder
-/// or a truss, n^1.5 in a planar grid of flexible bodies; at worst O(rows width columns), for
-/// connected sets of loops in which no body belongs to one alone: the width is that of the front
-/// which goes along them, whatever the names (compiler/passes/close/along.hpp).
+/// Makes closed kinematic chains, through the ground or among bodies, consistent: if a closing
+/// equation repeats others (two rigid bodies welded at two points, a planar mechanism of 6-dof
+/// joints), the joint is released in these directions and listed, so that every remaining closing
+/// equation is independent; the motion is the same. Points that the chains immobilise are listed:
+/// outputs, and equations outside the chains, read 0 there instead of rounding. Throws
+/// kinematic_loop if the geometry does not close, and if a body on the chain does not define its
+/// kinematics. O(terms) if all chains are open; about linear in the loops of a ladder or a truss,
+/// n^1.5 in a planar grid of flexible bodies; at worst O(rows width columns), for connected sets of
+/// loops in which no body belongs to one alone: the width is that of the front along them,
+/// independent of names (compiler/passes/close/along.hpp).
 Stage chains(Stage stage);
 
 /// Every row has its unknown: maximum bipartite matching by whole signals from each channel's
@@ -58,10 +58,10 @@ Stage chains(Stage stage);
 /// driven on their other side. O(terms) for trees.
 Stage match(Stage stage);
 
-/// Block triangular form: strong components are the algebraic loops, dependencies first. What no
-/// input reaches or no output sees is set aside and listed; without inputs (outputs) all states
-/// count as driven (seen). Loops that no input reaches stay where an output sees them: that they
-/// rest is so only if they have one solution. O(terms).
+/// Block triangular form: strong components are the algebraic loops, dependencies first. Signals
+/// that no input reaches or no output sees are set aside and listed; without inputs (outputs) all
+/// states count as driven (seen). Loops that no input reaches are kept if an output sees them: they
+/// are at rest only if they have one solution. O(terms).
 Stage order(Stage stage);
 
 /// States that follow from others are known, on position and on velocity level: dependent

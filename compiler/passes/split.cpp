@@ -9,7 +9,7 @@ namespace {
 
 using linalg::at;
 
-/// Connected parts of the signals: a block joins its own, an equation joins what it mentions.
+/// Connected parts of the signals: a block joins its own, an equation joins its target and terms.
 UnionFind connect(const Graph& g) {
   UnionFind parts(static_cast<int>(g.signals.size()));
   for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i)

@@ -79,7 +79,7 @@ struct Singular {
     return maximum_matching(other, i).missing() < m.missing();
   }
 
-  /// What hangs together, and what one channel may bring together.
+  /// Joins connected equations and signals, and those that another side of a channel would connect.
   std::vector<int> connect() {
     for (int r = 0; r < rows; ++r)
       for (const int c : inc.cols(r))

@@ -128,7 +128,7 @@ void Followers::follow(int state, const Hidden& c) {
   added_.push_back(state);
 }
 
-/// Writes another follower, which has a share of this one, in what this one follows from.
+/// Substitutes this dependent state in another one that depends on it.
 void Followers::follow_through(int other, int state, const Follower& f) {
   Follower& old = of_state_[other];
   const double factor = old.of.extract(state).mapped();

@@ -106,7 +106,7 @@ void NewRows::differentiate(const Hidden& c, const VectorXd& place, std::vector<
   }
 }
 
-/// matrix * signal, in what the signal stands for.
+/// Adds matrix * signal, with the signal's meaning substituted.
 void NewRows::add(std::vector<Piece>& to, std::vector<int>& over, const MatrixXd& matrix,
                   int signal) {
   for (const solve::Meaning& m : old_.meaning(signal)) {

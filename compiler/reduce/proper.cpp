@@ -22,11 +22,11 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Rounding is as large as its samples are, but for luck: of four, none is small.
 constexpr int kSamples = 4;
 
-/// What is not above so many roundings of its own computation is 0. Found: up to 6 where the truth
-/// is 0, 1e5 and more where a scene has a derivative.
+/// Coefficients below this multiple of their own rounding are 0. Measured: up to 6 for true zeros,
+/// 1e5 and more for scenes with a derivative.
 constexpr double kRoundings = 1e3;
 
-/// What x = T xi + sum of R_j u^(j) gives: y = ... + P_j u^(j).
+/// Coefficients with x = T xi + sum of R_j u^(j): y = ... + P_j u^(j).
 struct Expansion {
   std::vector<MatrixXd> R;       ///< blocks' states x inputs
   std::vector<MatrixXd> shifts;  ///< of the kept states alone
@@ -43,7 +43,7 @@ void shake(const SystemData& d, SteadyRandom& random, MatrixXd& states) {
   }
 }
 
-/// Every entry off by about one rounding of what it is the sum of.
+/// Perturbs every entry by about one rounding of its terms.
 void shake(SteadyRandom& random, const RowMatrix<double>& terms, RowMatrix<double>& sums) {
   for (Index i = 0; i < sums.size(); ++i)
     sums.data()[i] += kEpsilon * terms.data()[i] * random.unit();
@@ -64,8 +64,8 @@ Rates rates_at(const SystemData& d, RowMatrix<double> known, const RowMatrix<dou
 }
 
 /// With xi' = A xi + E_0 u the kept states are xi + E_1 u + E_2 u' + ..., from the highest on down:
-/// E_j is the rate that E_(j+1), what follows from it, and u^(j) itself make. With a sample every
-/// number on the way is off by about one rounding.
+/// E_j is the rate due to E_(j+1), its dependent states, and u^(j). With a sample every number is
+/// perturbed by about one rounding.
 Expansion expand(const SystemData& d, const Derivatives& v, std::optional<int> sample = {}) {
   const Index n = d.layout().order();
   const auto inputs = static_cast<Index>(d.layout().inputs.size());

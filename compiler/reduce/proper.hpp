@@ -6,9 +6,9 @@ namespace titop::detail {
 
 /// Where inputs come in with their derivatives.
 struct Derivatives {
-  /// by_input[j]: what u^(j) adds to the blocks' states that follow, blocks' states x inputs.
+  /// by_input[j]: contribution of u^(j) to the blocks' dependent states, blocks' states x inputs.
   std::vector<Eigen::MatrixXd> by_input;
-  /// forcing[j]: what u^(j + 1) adds to the rows of the joint system, rows x inputs.
+  /// forcing[j]: contribution of u^(j + 1) to the rows of the joint system, rows x inputs.
   std::vector<solve::RowMatrix<double>> forcing;
   std::vector<Hidden> constraints;  ///< all, in the order in which they were met
 };

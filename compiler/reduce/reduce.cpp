@@ -138,8 +138,8 @@ class Reducer {
     return true;
   }
 
-  /// One mistake for each set of rows; `free`: the motions that those leave undetermined which say
-  /// nothing; `why`: what else is to be said.
+  /// One mistake for each set of rows; `free`: the motions that rows without content leave
+  /// undetermined; `why`: further lines.
   [[noreturn]] void refuse(const std::vector<Hidden>& rest, const std::vector<std::string>& free,
                            const std::vector<std::string>& why = {}) const {
     std::map<std::vector<int>, std::set<int>> inputs_of;

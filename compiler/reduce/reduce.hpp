@@ -17,13 +17,13 @@
 /// which nothing asked for depends (undetermined.hpp), it is taken as 0 in its place, and noted.
 namespace titop::detail {
 
-/// Replaces k.joint and d.factors, which are singular, by regular ones (`least`: of its terms that
-/// a pivot has to keep, see least_pivot); completes k.stage.dependents and d.states; keeps the
+/// Replaces k.joint and d.factors, which are singular, by regular ones (`least`: smallest ratio of
+/// a pivot to its terms, see least_pivot); completes k.stage.dependents and d.states; keeps the
 /// equations as written, undetermined motions at 0, in k.before_reduce. Throws improper (input,
-/// output, number of derivatives and the equation that makes it), or what solve::blame says where a
-/// constraint repeats or contradicts what is known (with what depends on the motion that is left
-/// undetermined), not_finite. O(bodies) per derivative that is taken, and for each missing pivot
-/// what its constraint reaches: of a point without mass its neighbours.
+/// output, number of derivatives and the equation that causes it), or the errors of solve::blame if
+/// a constraint is redundant or contradictory (with the signals that depend on an undetermined
+/// motion), not_finite. O(bodies) per derivative, and for each missing pivot the reach of its
+/// constraint: of a point without mass its neighbours.
 void reduce(Skeleton& k, SystemData& d, double least);
 
 }  // namespace titop::detail

@@ -24,7 +24,7 @@ void add(KeptMatrix& to, Index first, const C& c, const Block& value, const Bloc
   to.size.middleRows(first, c.rows()) += c.cwiseAbs() * size;
 }
 
-/// What only rounding has left is 0.
+/// Sets entries at rounding level to 0.
 void clean(KeptMatrix& m, Index column) {
   for (Index i = 0; i < m.value.rows(); ++i) m.set(i, column, solve::settled(m.at(i, column)));
 }
@@ -36,7 +36,7 @@ KeptMatrix cleaned(KeptMatrix m) {
 
 bool is_seen(const KeptMatrix& seen, Index column) { return !seen.value.col(column).isZero(0); }
 
-/// What some motions (columns, over the unknowns) do.
+/// Effects of some motions (columns, over the unknowns).
 class Motions {
  public:
   Motions(const Skeleton& k, const SystemData& d) : k_(k), d_(d), g_(k.stage.graph) {}

@@ -18,14 +18,14 @@ struct Held {
   Eigen::RowVectorXd direction;  ///< of length 1, over translation or rotation alone
 };
 
-/// What becomes of rows that say nothing.
+/// Treatment of rows without content.
 struct Undetermined {
   std::vector<Held> held;  ///< one per row; none where a motion matters or there is none
-  /// A line per motion, as "nothing determines the rotation of A.parent about x". In `held`: what
-  /// is taken as 0; else: followed by the outputs or states that depend on it.
+  /// A line per motion, as "nothing determines the rotation of A.parent about x". In `held`: the
+  /// motion set to 0; else: followed by the outputs or states that depend on it.
   std::vector<std::string> lines;
   StateMarks
-      states;  ///< with `held`: what such motions move, undetermined itself and read by nothing
+      states;  ///< with `held`: states moved by such motions, undetermined and unread themselves
 };
 
 /// The motions of the singular joint system k.joint, from its factors d.factors with patches:

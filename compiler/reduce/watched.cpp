@@ -38,7 +38,7 @@ struct Readers {
             m.signal, visit);
   }
 
-  /// Calls visit(state) for what rows and outputs read.
+  /// Calls visit(state) for the states that rows and outputs read.
   template <class Visit>
   void from_outside(Visit visit) const {
     const auto state = [&](Index, Index j) { visit(j); };

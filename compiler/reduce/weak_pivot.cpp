@@ -17,8 +17,8 @@ using solve::Complex50;
 
 constexpr double kMostProducts = 1e7;
 
-/// Below it an entry counts as nothing where 50 digits have found that something is: some hundred
-/// units of rounding at least, and never more than what null_rows takes for cancelled.
+/// Zero threshold of an entry after 50 digits have found a singular system: about a hundred units
+/// of rounding, and never more than the cancellation limit of null_rows.
 constexpr double kNothingAtLeast = 1e-13;
 
 bool is_doubtful(const Check& check) {
@@ -34,7 +34,7 @@ double products(const solve::Plan& plan) {
   return sum;
 }
 
-/// What cancels leaves exactly nothing there, so that no rounding is taken for a pivot further up.
+/// Cancelled entries are exact zeros, so that no rounding is taken for a pivot further up.
 bool singular_in_50_digits(const Skeleton& k, const SystemData& d) {
   std::vector<solve::Dense<Complex50>> direct;
   solve::Matrices<Complex50> m;

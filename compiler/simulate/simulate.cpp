@@ -72,7 +72,7 @@ Excitation::Ends inputs_of(const System& system, const Excitation& excitation, d
   return ends;
 }
 
-/// One time: states, inputs, and what the factors make of them.
+/// One time: states, inputs, and their outputs and rates by the factors.
 struct Now {
   Index step;
   bool last;
@@ -94,8 +94,8 @@ class Sizes {
       : d_(d), off_(VectorXd::Zero(std::ssize(d.layout().outputs))), size_(off_) {}
 
   void add(const VectorXd& y) { size_ = size_.cwiseMax(y.cwiseAbs()); }
-  /// What symmetry makes 0 is rounding, and has no digit to lose: an output counts as a million
-  /// times its rounding at least.
+  /// An output that is 0 by symmetry is rounding without digits: its size is at least a million
+  /// times its rounding.
   void add_off(const Now& now, const VectorXd& off) {
     constexpr double kOfRounding = 1e6;
     const VectorXd rounding = instant(now.x, now.u).rounding().outputs().cwiseAbs();
@@ -140,7 +140,7 @@ class Sizes {
 class Motion {
  public:
   virtual ~Motion() = default;
-  /// What there is to learn from this time; called once before each step and after the last.
+  /// Records the errors at this time; called once before each step and after the last.
   virtual void look(const Now&) {}
   virtual VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) = 0;
   /// See Trajectory::error.
@@ -159,8 +159,8 @@ class Asked : public Motion {
   std::unique_ptr<detail::StepRule> rule_;
 };
 
-/// Exact steps of the dense model. What A and B lose in being written down shows where their xdot
-/// differs from the factors', and goes on with the motion.
+/// Exact steps of the dense model. Its error by rounding of A and B is the difference of their xdot
+/// from the factors', propagated by the same steps.
 class Exact : public Motion {
  public:
   Exact(const System& system, const detail::SystemData& d, double h, Index steps)
@@ -298,7 +298,7 @@ Trajectory simulate(const System& system, const Excitation& excitation, const Si
       Trajectory t = by(Stepper::exact);
       exact = t.error.size() > 0 ? t.error.maxCoeff() : 0;
       if (exact <= s.accuracy) return t;
-    } catch (const Error& error) {  // what A and B have lost may grow where the system does not
+    } catch (const Error& error) {  // errors of A and B may grow in a stable system
       if (!error.has(Code::not_finite)) throw;
       overflow = error;
     }

@@ -26,8 +26,8 @@ class ExactRule : public StepRule {
                        const Eigen::VectorXd& u1, Eigen::VectorXd& other) const;
   /// A x + B u by the dense matrices that the steps are made of.
   Eigen::VectorXd xdot(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const;
-  /// What an xdot that is off by this does in one step: h (1 - h A / 2)^-1 of it, so that modes
-  /// much faster than the step count as they would, by 2 / omega.
+  /// Effect of an error of xdot in one step: h (1 - h A / 2)^-1 of it, so that modes much faster
+  /// than the step have their true effect, 2 / omega.
   Eigen::VectorXd of(const Eigen::VectorXd& xdot) const;
 
  private:

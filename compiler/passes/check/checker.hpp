@@ -5,8 +5,8 @@
 #include <titop/compiler/passes/passes.hpp>
 #include <unordered_map>
 
-/// What the checks of a graph have in common, and the checks themselves: each adds its mistakes, so
-/// that a user sees all of them at once.
+/// Common to the checks of a graph, and the checks themselves: each adds its mistakes, so that a
+/// user sees all of them at once.
 namespace titop::passes {
 
 /// Where something of the diagram was written: its source line, or its place in the scene file that
@@ -69,12 +69,12 @@ void check_outputs(Checker& c);
 /// Every direction of a channel and every one-way port is driven once (drives.cpp).
 void check_drives(Checker& c);
 
-/// Warnings of what is right and rarely meant (rarely_meant.cpp): springs and dampers that drive
-/// away, inputs without outputs, rotations by more than a turn. Of a diagram without mistakes.
+/// Warnings of legal input that is rarely intended (rarely_meant.cpp): springs and dampers of wrong
+/// sign, inputs without outputs, rotations by more than a turn. For a diagram without mistakes.
 void note_rarely_meant(Checker& c, ParameterValues values);
 
-/// Child points that the modes of their body leave rigid in some directions, where another body is
-/// fixed to them: its loads would bend what the modes that were left out bend (stiff_points.cpp).
+/// Child points that the modes of their body leave rigid in some directions, with another body
+/// mounted there: truncated modes would bend under its loads (stiff_points.cpp).
 void note_stiff_points(Checker& c, ParameterValues values);
 
 }  // namespace titop::passes

@@ -95,10 +95,10 @@ void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
   }
 }
 
-/// What the forces of other points take from a channel's force.
+/// Use of a channel's force in the forces of other points.
 struct Passed {
   bool whole = false;     ///< all of it
-  bool reaction = false;  ///< less what was added to it
+  bool reaction = false;  ///< without the terms added to it
 };
 
 std::vector<Passed> passed_on(const Graph& g) {
@@ -115,8 +115,8 @@ std::vector<Passed> passed_on(const Graph& g) {
   return result;
 }
 
-/// Where a point moves with another, its force is what that takes; what `+=` adds acts through the
-/// reaction alone. To pass on the whole force is to say that nothing was added.
+/// If a point moves with another, its force is that of the tie; terms added by `+=` act through the
+/// reaction alone. An equation that passes on the whole force loses the added terms.
 void check_added(Checker& c, const Channel& channel, const Drive& drive) {
   const Graph& g = c.graph;
   const auto says = [&](int e) { return !g.equations[at(e)].terms.empty(); };
@@ -169,7 +169,7 @@ void check_drives(Checker& c) {
   const Graph& g = c.graph;
   const Drives all(g);
   for (std::size_t i = 0; i < all.size(); ++i) check_channel(c, g.channels[i], all[i]);
-  std::vector<Passed> passed;  // only looked for where something is added to what is driven
+  std::vector<Passed> passed;  // only if terms are added to a driven channel
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (all[i].added.empty() || all[i].accel.empty()) continue;
     if (passed.empty()) passed = passed_on(g);

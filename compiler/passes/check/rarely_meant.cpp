@@ -18,7 +18,7 @@ using linalg::at;
 struct OwnGains {
   MatrixXd position, rate;           ///< empty: none
   std::vector<const Equation*> all;  ///< that say so
-  std::string spring, damper;        ///< the names of what they follow
+  std::string spring, damper;        ///< names of the readings that they follow
 };
 
 /// A reading of this channel: its own port's, or its joint's angle.
@@ -52,8 +52,8 @@ std::map<int, OwnGains> own_gains(const Graph& g, ParameterValues values) {
   return result;
 }
 
-/// Whether it pushes away along one of the axes that the equation drives, beyond what rotations
-/// leave of a 0 among three translations or rotations.
+/// Whether it is negative along one of the axes that the equation drives, beyond the rounding of a
+/// 0 after rotation, among three translations or rotations.
 bool negative(const MatrixXd& gain, const Equation& e) {
   constexpr double kRounding = 1e-12;
   if (gain.size() == 0) return false;
@@ -67,7 +67,7 @@ bool negative(const MatrixXd& gain, const Equation& e) {
   return false;
 }
 
-/// A spring that pushes away is everybody's first mistake of sign, and what some do mean.
+/// A negative spring is the most frequent mistake of sign, and sometimes intended.
 void note_negative_springs(Checker& c, ParameterValues values) {
   for (const auto& [channel, own] : own_gains(c.graph, values)) {
     const char sign = full::is_outward(c.graph, channel) ? '+' : '-';

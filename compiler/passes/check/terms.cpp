@@ -12,7 +12,7 @@ using linalg::at;
 /// Of a dual vector: translations and forces, or rotations and torques.
 enum class Half { any, linear, angular };
 
-/// What a term is, after its factors.
+/// Type of a term, after its factors.
 struct Kind {
   int size = 0;
   Quantity quantity = Quantity::plain;
@@ -20,7 +20,7 @@ struct Kind {
   Half half = Half::any;  ///< any: of all else, and where it is not known
 };
 
-/// Of a signal of which this part is taken. A joint's axis does not say what it is.
+/// Of a part of a signal. A joint's axis may be either.
 Half half_of(const Part& part, Quantity quantity) {
   const Eigen::MatrixXd& rows = part.rows();
   if (quantity == Quantity::plain || rows.cols() != 6) return Half::any;
@@ -108,8 +108,8 @@ std::string frame_hint(const Checker& c, int target, const Term& term) {
                      plain);
 }
 
-/// The right-hand side of an equation or output. What it says of itself costs more than the checks:
-/// only mistakes ask for it.
+/// The right-hand side of an equation or output. Its name and text cost more than the checks and
+/// are made for mistakes only.
 struct RightSide {
   const std::vector<Term>& terms;
   Written where;
@@ -117,7 +117,7 @@ struct RightSide {
   std::function<std::string()> name, text;
 };
 
-/// All terms against what they drive. `expected.frame` kNoFrame adopts the first frame met.
+/// Checks all terms against the target. `expected.frame` kNoFrame adopts the first frame met.
 void check_terms(Checker& c, const RightSide& side, Kind expected) {
   const bool adopts_frame = expected.frame == kNoFrame;
   const Term* from = nullptr;  // whose kind or frame is expected; none: the target's

@@ -7,7 +7,7 @@ namespace {
 
 using linalg::at;
 
-/// Nodes by their places in some order, and what the equations tie them to.
+/// Nodes by their places in some order, and the nodes to which equations tie them.
 struct Couplings {
   std::vector<std::pair<int, int>> pairs = {};  ///< both ways
   std::vector<char> given;  ///< per node: a motion is tied to the ground, or given

@@ -136,7 +136,7 @@ Amount Lowering::integrated(Amount sum, Level level) {
   return result;
 }
 
-/// What these equations add up to on their channel, in the channel's own space.
+/// Sum of these equations on their channel, in the channel's own space.
 Amount Lowering::added(std::span<const int> equations) {
   Amount sum;
   for (const int e : equations) {
@@ -147,8 +147,8 @@ Amount Lowering::added(std::span<const int> equations) {
   return sum;
 }
 
-/// What `+=` adds to a channel's force. Throws ill_posed where that reads the channel's own
-/// reaction.
+/// Sum of the terms that `+=` adds to a channel's force. Throws ill_posed if it contains the
+/// channel's own reaction.
 Amount Lowering::added_to(int channel) {
   if (drive[at(channel)].added.empty()) return {};
   if (std::find(within.begin(), within.end(), channel) != within.end())

@@ -4,8 +4,8 @@
 #include <set>
 #include <titop/compiler/stage.hpp>
 
-/// What the right-hand sides of equations and outputs amount to: signals with one numeric
-/// coefficient each. Reactions and positions are written out; so are accumulated forces.
+/// Right-hand sides of equations and outputs as signals with one numeric coefficient each.
+/// Reactions, positions and accumulated forces are expanded.
 namespace titop::passes {
 
 /// A signal with its coefficient and declared structure.
@@ -51,9 +51,9 @@ struct Lowering {
         visiting(graph.channels.size(), 0),
         motions(std::move(m)) {}
 
-  /// What an equation or output of the lowered graph amounts to.
+  /// The expanded right-hand side of an equation or output of the lowered graph.
   Amount amount(const Origin& origin);
-  /// The same as terms; the origin learns which parameters they depend on.
+  /// The same as terms; the origin gets the parameters on which they depend.
   std::vector<Term> written_out(Origin& origin);
   void meet(const Value& v) {
     if (v.is_parameter()) met.push_back(v.index());
@@ -66,7 +66,8 @@ struct Lowering {
   }
   Eigen::MatrixXd coefficient_of(const Term& t);
 
-  /// What one equation or output amounts to; its mistakes are kept, with the line it stands on.
+  /// The expanded right-hand side of one equation or output; its mistakes are kept, with its source
+  /// line.
   template <class F>
   auto collect(const std::source_location& where, F find) -> decltype(find());
   Amount terms(const std::vector<Term>& list);
@@ -77,7 +78,7 @@ struct Lowering {
   /// All rows of amount(origin), whether they count or not.
   Amount all_rows(const Origin& origin);
   Amount twin(int channel, Level level);
-  /// A point on the way, and by what its motion counts.
+  /// A point on the way, and the factor of its motion.
   struct Step {
     int channel;
     Eigen::MatrixXd factor;

@@ -72,7 +72,7 @@ void add_integrators(Graph& g, const std::set<RigidMotion>& missing,
     }
 }
 
-/// The order of by_name again; what the stage knows by number follows.
+/// Sorts by name again; the stage's node numbers follow.
 void sort_by_name(Graph& g, Stage& stage) {
   const Graph old = std::exchange(g, by_name(g));
   std::unordered_map<std::string_view, int> now;  // names of nodes are their own
@@ -117,7 +117,7 @@ void add_rigid_motions(Stage& stage, Graph& g) {
     };
     for (const Equation& e : g.equations) look(e.terms, e.where);
     for (const Output& o : g.outputs) look(o.terms, o.where);
-    missing = l.missing;  // what is wrong with these terms, `lower` finds again
+    missing = l.missing;  // mistakes in these terms are found again by `lower`
   }
   if (missing.empty()) return;
   add_integrators(g, missing, stage.motions);
