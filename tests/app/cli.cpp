@@ -1,4 +1,4 @@
-// The command line: what it prints, what it writes, its exit codes.
+// The command line: its output, its files, its exit codes.
 #include <doctest/doctest.h>
 
 #include <algorithm>

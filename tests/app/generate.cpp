@@ -1,5 +1,5 @@
-// titop generate: a planted mistake finds the family that has a place for it, or says what it
-// takes.
+// titop generate: a planted mistake finds the family that has a place for it; otherwise the error
+// names the options that bring one.
 #include <doctest/doctest.h>
 
 #include "app/shell.hpp"

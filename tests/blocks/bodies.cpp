@@ -15,7 +15,7 @@
 #include "support/random_scene.hpp"
 
 /// RigidBody, FlexibleBody, Hinge and Lti against their equations typed from the paper, their
-/// inverses, and what they refuse.
+/// inverses, and their refusals.
 
 using namespace titop;
 using namespace blocks_test;
@@ -105,7 +105,7 @@ TEST_CASE("RigidBody: wrenches and accelerations of a rigid body, by Newton and 
                    w = rng.matrix(3, 1);
     VectorXd u(12), y(12);
     u << f, t, a, w;
-    // At rest: a_A = a + w x PA; the body passes on to P what it does not keep for itself.
+    // At rest: a_A = a + w x PA; P gets the wrench that does not accelerate the body.
     const Vector3d a_A = a + w.cross(PA);
     const Vector3d F = f - m * a_A;
     y << a + w.cross(PC), w, F, t + PC.cross(f) - I_A * w - m * PA.cross(a_A);

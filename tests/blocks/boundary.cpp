@@ -42,8 +42,8 @@ VectorXd frequencies(const StateSpace& m) {
   return Eigen::Map<VectorXd>(moduli.data(), static_cast<Eigen::Index>(moduli.size()));
 }
 
-/// Relative error of the elastic frequencies; those of `exact` from `rigid` on. What the model has
-/// more than that must lie below 1e-3 of the first one: rigid motions, held ends.
+/// Relative error of the elastic frequencies; those of `exact` from `rigid` on. Further frequencies
+/// of the model must be below 1e-3 of the first one: rigid motions, held ends.
 double elastic_error(const StateSpace& model, const VectorXd& exact, Eigen::Index rigid) {
   const VectorXd all = frequencies(model);
   const Eigen::Index n = exact.size() - rigid;

@@ -106,8 +106,8 @@ TEST_CASE("equations are checked at one instant, at some s where that is not eno
 
 namespace {
 
-/// Two spring-masses on a hub, pulled alike; the difference of what the hub feels, as an output or
-/// through a filter. `apart`: of their parent masses.
+/// Two spring-masses on a hub, pulled alike; the difference of their forces on the hub, as an
+/// output or through a filter. `apart`: of their parent masses.
 Diagram twins(double apart, bool filtered) {
   Diagram d{"twins"};
   auto u = d.input("u");
@@ -144,7 +144,7 @@ TEST_CASE("what is 0 by symmetry has lost no digits, what nearly cancels has") {
 }
 
 TEST_CASE("what is left of a motion that dies down a long chain is rounding, no residual") {
-  // Free booms, hinged and controlled: what the root feels decays by tens of decades.
+  // Free booms, hinged and controlled: the motion of the root decays by tens of decades.
   titop_test::Rng random(5);
   const FlexibleBody boom = Beam{.length = 2.0,
                                  .section = rectangle(0.06, 0.04),

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <titop/titop.hpp>
 
-/// What rounding A, B, C, D costs: the full certificate measures it, and judges it as the report
-/// and generated code do.
+/// Rounding error of A, B, C, D: the full certificate measures it, and judges it as the report and
+/// generated code do.
 
 using namespace titop;
 

@@ -7,8 +7,8 @@
 
 #include "support/rng.hpp"
 
-/// What the default certificate must find: signals that break an equation, a block that says one
-/// thing in A, B, C, D and another at s.
+/// Faults that the default certificate must find: signals that break an equation, a block whose A,
+/// B, C, D contradict its response at s.
 
 using namespace titop;
 
@@ -53,8 +53,8 @@ System lag(double sign) {
   return compile(d);
 }
 
-/// A hub, a boom on it, a spring-mass on the boom and a filter of what it feels. `held_twice`: a
-/// panel is welded to the hub at two points, and what the filter gives is shown in two other units.
+/// A hub, a boom on it, a spring-mass on the boom and a filter of its reading. `held_twice`: a
+/// panel is welded to the hub at two points, and the filter's output is shown in two other units.
 Diagram satellite(bool held_twice) {
   Diagram d{"satellite"};
   auto hub =
@@ -109,7 +109,7 @@ int put_off(const detail::SystemData& d, const detail::Signals& right,
   for (std::size_t i = 0; i < d.graph().signals.size(); ++i) {
     const Signal& s = d.graph().signals[i];
     if (!s.active || s.role == Signal::Role::state) continue;
-    // What the panel's second weld passes on is rounding of forces of some 1e4 N.
+    // The force of the panel's second weld is rounding of forces of some 1e4 N.
     const double size = right.values.middleRows(right.first[i], s.size).cwiseAbs().maxCoeff();
     if (s.channel >= 0 && size <= 1e-10) continue;
     detail::Signals off = right;
@@ -146,7 +146,7 @@ TEST_CASE("a signal that is off by a millionth breaks an equation, and rounding 
 }
 
 TEST_CASE("what the input does is not drowned by stiff springs behind it") {
-  // Each spring passes on k / (m s^2), some 3e5, of what it takes.
+  // Each spring passes on k / (m s^2), some 3e5, of its displacement.
   Diagram d{"stack"};
   auto below = d.add("b0", RigidBody{.mass = 1, .children = {{"C", {0, 0, 0.1}}}});
   below.parent.force = 0;

@@ -5,7 +5,7 @@
 
 #include "support/random_scene.hpp"
 
-/// certify(system, Full): what it finds right, what it finds wrong, and what it does not claim.
+/// certify(system, Full): confirmed results, faults found, and checks without a verdict.
 
 using namespace titop;
 

@@ -5,7 +5,7 @@
 #include <titop/compiler/compare.hpp>
 #include <titop/titop.hpp>
 
-/// What rounding excuses: a 0 beside other entries, and no model that has lost digits everywhere.
+/// Rounding excuses a 0 beside other entries, but no model that has lost digits everywhere.
 
 using namespace titop;
 using namespace titop::detail;
@@ -25,7 +25,7 @@ TEST_CASE("terms of nothing: those of a 0 beside others, and where nothing stand
   CHECK(left(0, 1) == 0);  // rounding of 1e12 leaves no 6 digits of 4
   CHECK(left(1, 0) == 0);  // nor that of 8e10 of 9
   CHECK(left(1, 1) == 1);
-  CHECK(left(2, 0) == 1);  // by what to measure it otherwise?
+  CHECK(left(2, 0) == 1);  // there is no other scale
   const MatrixXcd one = MatrixXcd::Constant(1, 1, 1);
   for (const double part : {0.5, 0.9, 1.1, 2.0})
     CHECK((of_nothing(MatrixXd::Constant(1, 1, part * millionth), {one})(0, 0) > 0) == (part < 1));

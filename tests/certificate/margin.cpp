@@ -113,8 +113,8 @@ TEST_CASE("Margin of a large loop that zeros cut open is 1, too") {
   MatrixXd L = MatrixXd::Identity(2 * n + 2, 2 * n + 2);
   L(sum, sum + 1) = -1.01;
   for (int i = 0; i < n; ++i) {
-    L(2 * i, 2 * i + 1) = -1;  // f as F says
-    L(sum + 1, 2 * i) = 1;     // what they sum up to
+    L(2 * i, 2 * i + 1) = -1;  // f by F
+    L(sum + 1, 2 * i) = 1;     // their sum
   }
   within(skeel_radius(L), 1);
   L(3, sum) = -0.4;  // one of them does: a ring of four

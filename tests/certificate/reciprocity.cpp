@@ -10,8 +10,8 @@
 #include "support/close.hpp"
 #include "support/rng.hpp"
 
-/// Reciprocity: of a structure, what force j does where force i acts is what force i does where
-/// force j acts. Expected asymmetries are written down from the masses and springs.
+/// Reciprocity of a structure: the acceleration at force i due to force j equals that at force j
+/// due to force i. Expected asymmetries are computed by hand from the masses and springs.
 
 using namespace titop;
 using Complex = std::complex<double>;
@@ -52,8 +52,8 @@ void check_is(const FullCertificate::Reciprocity& r, const Worst& expected) {
   CHECK(relative(r.where, expected.s) <= 1e-10);
 }
 
-/// Masses 1 and 2 on springs 4 and 18 of their own (2 and 3 rad/s). What a filter reads of the
-/// first one pushes the second, with gain g [N/m]. Inputs and their outputs in units of u1, u2.
+/// Masses 1 and 2 on springs 4 and 18 of their own (2 and 3 rad/s). The filtered position of the
+/// first one drives the second, with gain g [N/m]. Inputs and their outputs in units of u1, u2.
 Diagram one_way(double g, double u1, double u2) {
   Diagram d{"one way"};
   auto a = d.add("a", SpringMass{.mass = 1, .stiffness = 4});
@@ -96,8 +96,8 @@ Eigen::Matrix2cd stack_by_hand(double share, Complex s) {
   return s * s * Z.inverse();
 }
 
-/// Two masses of 1 kg that turn into each other's way: m vd = f + g [0 1; -1 0] v. No energy comes
-/// or goes, and yet what one does to the other has the opposite sign back.
+/// Two masses of 1 kg with gyroscopic coupling: m vd = f + g [0 1; -1 0] v. No energy is supplied
+/// or dissipated, but the coupling is antisymmetric.
 class Gyroscope : public Block {
  public:
   explicit Gyroscope(double g) {

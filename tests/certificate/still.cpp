@@ -4,7 +4,7 @@
 #include <numbers>
 #include <titop/titop.hpp>
 
-/// Outputs that are sums of states which cancel: what does not turn has lost no digits.
+/// Outputs that are sums of cancelling states: a zero rotation has lost no digits.
 
 using namespace titop;
 using Eigen::Matrix3d, Eigen::Vector3d;

@@ -13,8 +13,8 @@
 #include "support/random_scene.hpp"
 #include "support/rng.hpp"
 
-/// Every input and every output in units of its own, powers of ten from 1e-9 to 1e9: how far two
-/// transfers are apart, and what is made of it, stays the same.
+/// Every input and every output in units of its own, powers of ten from 1e-9 to 1e9: the difference
+/// of two transfers, and its verdict, stay the same.
 
 using namespace titop;
 using namespace titop::detail;
@@ -99,8 +99,8 @@ System chain(int masses, int inputs, const std::function<double()>& unit) {
   return compile(d, {.minimize_up_to = 0});
 }
 
-/// The same but for what another rounding of the coefficients makes of it; up to 2.2e-14 there is
-/// nothing else, by luck a tenth of it.
+/// Equal up to the effect of another rounding of the coefficients; up to 2.2e-14 all is rounding,
+/// by chance down to a tenth of it.
 void check_alike(double a, double b) {
   constexpr double rounding = 100 * std::numeric_limits<double>::epsilon();
   CHECK(a <= 5 * std::max(b, rounding));
@@ -126,7 +126,7 @@ TEST_CASE("the difference of two transfers is the same number in all units") {
     const auto [one, scaled_one] = of(wrong);
     CHECK(std::abs(one / 1e-6 - 1) <= 1e-8);
     CHECK(std::abs(scaled_one / 1e-6 - 1) <= 1e-8);
-    // A fault anywhere in A; where twins are no twins any more, it shows in what was 0.
+    // A fault anywhere in A; if it breaks the symmetry of twins, it appears in entries that were 0.
     wrong = right;
     const Index at = random.below(10);
     wrong.A.row(at) *= 1 + 1e-6;
@@ -165,7 +165,7 @@ TEST_CASE("a fault as large as the pair is one, however many digits double has l
     const System system = compile(d);
     const std::vector<MatrixXcd> exact{system.transfer(0, Precision::standard)},
         twice{2 * exact[0]};
-    // What rounding stands for is far above the pair itself: it must not be what measures it.
+    // The allowance for rounding is far above the pair itself: it must not be its scale.
     CHECK(terms(system, {0})(0, 0) >= 1e5 * std::abs(exact[0](0, 0)));
     Measure by{{1}, {1}};
     CHECK(difference(twice, exact, by, system, {0}).relative >= 0.5);
@@ -243,7 +243,7 @@ TEST_CASE("what the dense model loses is the same in all units, by few inputs an
     const System in_m = chain(masses, inputs, [] { return 1.0; });
     in_m.state_space();
     const Certificate right = in_m.certificate();
-    CHECK(right.dense_error <= 1e-11);  // nothing of what matters
+    CHECK(right.dense_error <= 1e-11);  // no significant loss
     CHECK(right.dense_error_where_small >= 1e-9);
     for (int i = 0; i < 10; ++i) {
       const System system = chain(masses, inputs, [&] { return unit(random); });
@@ -257,7 +257,7 @@ TEST_CASE("what the dense model loses is the same in all units, by few inputs an
 }
 
 TEST_CASE("what is 1e-17 of its neighbours in row and column is no loss of digits") {
-  // What turned frames leave of a 0 has digits in the factors, and others in A, B, C, D.
+  // A 0 after a rotation of frames has digits in the factors, and others in A, B, C, D.
   const System system = compile(titop_test::random_scene(titop_test::random_options(186)).build());
   const StateSpace& dense = system.state_space();
   const Certificate c = system.certificate();

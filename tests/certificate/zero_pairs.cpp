@@ -87,7 +87,7 @@ TEST_CASE("a pair that is 0 by symmetry: a fault in it is found, in all units") 
     StateSpace wrong = right;
     const auto l = std::find(right.states.begin(), right.states.end(), "l.stretch_rate");
     REQUIRE(l != right.states.end());
-    // The left spring a millionth too stiff: what the base does to the two no longer cancels.
+    // The left spring a millionth too stiff: the effects of the base on the two no longer cancel.
     wrong.A.row(l - right.states.begin()) *= 1 + 1e-6;
     const Measure by{{1, 1}, {1, 1}, terms(right, kPoints)};
     CHECK(by.terms(0, 0) >= 1e3 * transfers(right)[1].cwiseAbs()(0, 0));

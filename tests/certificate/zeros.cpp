@@ -7,8 +7,8 @@
 #include <titop/compiler/evaluate.hpp>
 #include <titop/titop.hpp>
 
-/// What the certificates say where something is 0: A, a gain, an output, the number of inputs or of
-/// points; and of what grows and is no part of the structure.
+/// Certificates of degenerate cases: zero A, gain, output, number of inputs or of points; and of
+/// instability outside the structure.
 
 using namespace titop;
 

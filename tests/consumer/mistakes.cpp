@@ -1,4 +1,4 @@
-// The five likeliest mistakes: each must be refused with its code. What is printed is for reading.
+// The five likeliest mistakes: each must be refused with its code. The printed text is for reading.
 #include <cstdio>
 #include <functional>
 #include <titop/titop.hpp>

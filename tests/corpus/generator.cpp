@@ -1,5 +1,5 @@
-// `titop generate`: the same numbers, the same files, which are those of the corpus; what it does
-// not understand.
+// `titop generate`: the same numbers, the same files, which are those of the corpus; and invalid
+// command lines.
 #include <doctest/doctest.h>
 
 #include <fstream>

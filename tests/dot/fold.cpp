@@ -69,7 +69,7 @@ TEST_CASE("10, 100 and 1000 blocks: as many boxes as asked for, and all blocks a
         const int wide = arms == 1000 && most < blocks ? 9 : 1000;
         CHECK(s.blocks + s.boxes == std::min({most, blocks, wide}));
         CHECK(s.blocks + s.inside == blocks);
-        // Two wires to what a box hangs on, one from the sum before it; ground, input, output.
+        // Two wires to a box's parent, one from the sum before it; ground, input, output.
         CHECK(s.edges <= 3 * (s.blocks + s.boxes) + 3);
       }
 }

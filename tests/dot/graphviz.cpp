@@ -1,4 +1,4 @@
-// Graphviz itself reads what we write: every stage of every scene, and names of every kind.
+// Graphviz reads our output: every stage of every scene, and names of every kind.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ std::string read(const fs::path& path) {
   return text.str();
 }
 
-/// What `dot` has to say against a file: nothing, if it is well written.
+/// Complaints of `dot` about a file: none, if it is well written.
 std::string complaints(const fs::path& file) {
   const fs::path svg = fs::path(file).replace_extension("svg"), err = svg.string() + ".err";
   const std::string command =

@@ -11,7 +11,7 @@
 /// A reduced system beside the truth, where the truth is not titop's.
 namespace titop_test {
 
-/// What a scene is asked about, by hand: transfer and poles [rad/s].
+/// Reference of a scene, by hand: transfer and poles [rad/s].
 struct Truth {
   std::function<Eigen::MatrixXcd(std::complex<double>)> transfer;
   std::vector<double> omegas;
@@ -22,15 +22,15 @@ struct Truth {
 Truth accelerations(const by_hand::Structure& a, Eigen::Index rigid);
 
 /// Points of the band [rad/s]: so many steps, smaller towards both ends, each halved until the
-/// phase that the poles can turn there is 0.04 at most: each turns 2 pi over what it is wide
-/// on the ray, those outside of the band over how far away they are.
+/// phase of the poles changes by 0.04 at most: each contributes 2 pi over its width on the ray,
+/// poles outside of the band over their distance.
 std::vector<double> fine_points(const titop::Scene& scene, const std::vector<double>& poles,
                                 int steps);
 
 /// Two transfers on points of the ray.
 struct Compared {
   Eigen::MatrixXd error, peak;  ///< largest |difference| and largest |exact| of each pair
-  /// Nothing but what symmetry leaves: its own peak is rounding.
+  /// Zero by symmetry: its own peak is rounding.
   bool is_zero(Eigen::Index i, Eigen::Index j) const;
   /// Largest error of a pair over its own peak.
   double relative() const;
@@ -42,10 +42,10 @@ Compared compared(const titop::Scene& scene, const std::vector<double>& points, 
 /// On a grid of the band that knows nothing of the bound's, at least ten times finer everywhere
 /// (tests/economy/phase_grid.cpp).
 struct Beside {
-  double bound = 0;  ///< largest |error| over what the bound allows: 1 or less
+  double bound = 0;  ///< largest |error| / (bound * peak): 1 or less
   double error = 0;  ///< largest |error| of a pair over its own peak on this grid
-  double sharp = 0;  ///< |error| over what the bound allows, of the pair with the worst bound: the
-                     ///< phase grid promises 0.877, where rounding is nothing beside it
+  double sharp = 0;  ///< |error| / (bound * peak) of the pair with the worst bound: the phase grid
+                     ///< promises 0.877, if rounding is negligible
   double peak_low = HUGE_VAL, peak_high = 0;  ///< ErrorBound::peak over the peak on this grid, of
                                               ///< pairs that symmetry does not make 0
 };

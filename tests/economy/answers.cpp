@@ -5,7 +5,7 @@
 #include "support/close.hpp"
 #include "support/mistakes.hpp"
 
-/// What a reduced system says of itself, and what it does in the full one's place.
+/// The report of a reduced system, and its use in place of the full one.
 using namespace titop;
 using namespace titop_test;
 using Eigen::MatrixXd;
@@ -51,8 +51,8 @@ TEST_CASE("a reduced system says what it was asked, step by step") {
 }
 
 TEST_CASE("a band beyond a body's data is said, with the modes that it would need") {
-  // The fourth clamped mode of the beam bends about its stiff axis: its frequency by hand from
-  // cos x cosh x = -1, to what shear does to a slender beam.
+  // The fourth clamped mode of the beam is a bending mode about its stiff axis: its frequency by
+  // hand from cos x cosh x = -1, up to the effect of shear in a slender beam.
   const double x2 = 4.6940911, width = 0.06, rho_A = 2700 * 0.06 * 0.04,
                EI = 70e9 * 0.04 * width * width * width / 12,
                fourth = x2 * x2 / 4 * std::sqrt(EI / rho_A) / (2 * 3.141592653589793);

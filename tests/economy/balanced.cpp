@@ -48,7 +48,7 @@ TEST_CASE("all poles counted, the bound is a theorem") {
 }
 
 TEST_CASE("the dropped singular values bound the error far beyond the band as well") {
-  // One lag after the other: no band to speak of, so the whole axis is what is balanced for.
+  // One lag after the other: hardly any band, so the model is balanced for the whole axis.
   Diagram d{"lags"};
   auto U = d.input("U");
   Complex before = 1;

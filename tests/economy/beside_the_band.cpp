@@ -2,7 +2,7 @@
 
 #include "economy/held.hpp"
 
-/// What lies beside the band: poles at 0 that nobody moves or sees, modes far below. The truth is
+/// Poles outside the band: at 0, unreachable or unobservable, and modes far below. The reference is
 /// written out by hand.
 using namespace titop;
 using namespace titop_test;

@@ -116,7 +116,7 @@ TEST_CASE("symmetric appendages, common motion only: half their modes go exactly
   const ReducedSystem r = compile(twins(beam), scene);
   REQUIRE(r.steps().size() == 3);
   CHECK(r.steps()[1].name == "symmetry");
-  double all = 0;  // what the steps took is told
+  double all = 0;  // the steps' seconds are reported
   for (const auto& [step, seconds] : r.seconds()) all += seconds;
   CHECK(r.seconds().front().first == "compile");
   CHECK(all > 0);
@@ -173,7 +173,7 @@ TEST_CASE("kept coordinates are named in ascending order of frequency") {
 TEST_CASE("a high mode of one body that another's lock brings down into the band is kept") {
   // The beam stretches at 637 Hz, c / (4 l) with c = sqrt(E / rho), twelve times the band's end.
   // The block at its tip, 100 times as heavy, stretches it at 40 Hz, and twists and bends it below
-  // that: what a rule by frequency keeps of the beam (modes up to twice the band) is another
+  // that: the modes that a rule by frequency keeps of the beam (up to twice the band) are another
   // structure.
   const FlexibleBody beam = slim_beam(8);
   const double m = 100 * beam.data().D_P(0, 0);
@@ -214,8 +214,8 @@ TEST_CASE("a high mode of one body that another's lock brings down into the band
 }
 
 TEST_CASE("what no input of the scene reaches, and what only listens, goes exactly") {
-  // A boom that is asked for. One that stands beside it, of which the scene's inputs move nothing;
-  // one that is shaken by the boom's tip and gives nothing back; a filter of what the tip does.
+  // A boom that the scene needs. Another one that the scene's inputs do not move; one that is
+  // shaken by the boom's tip without reaction; a filter of the tip's motion.
   const FlexibleBody beam = slim_beam(6);  // 36 modes
   Diagram d{"three"};
   auto U = d.input("U", 6);

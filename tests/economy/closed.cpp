@@ -12,7 +12,7 @@ using namespace loop_test;
 
 namespace {
 
-/// What must hold of a reduced system, whatever the scene: undamped stays undamped, too.
+/// Required of every reduced system: bounds are met, and undamped poles stay undamped.
 void check(const ReducedSystem& r, const titop::Scene& scene, const Truth& truth) {
   check_beside(r, scene, truth);
   for (const Pole& p : poles(r.state_space())) CHECK(p.s.real() == 0);

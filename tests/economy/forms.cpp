@@ -15,7 +15,7 @@ namespace {
 
 const titop::Scene question{.band_hz = {0, 40}, .accuracy = 1e-4};
 
-/// Two beams, clamped; force at the tip, and what moves there.
+/// Two beams, clamped; force at the tip, motion there as output.
 Diagram boom(double xi) {
   Diagram d{"boom"};
   auto U = d.input("U", 6);

@@ -8,7 +8,7 @@
 #include "support/close.hpp"
 #include "support/rng.hpp"
 
-/// Gramians, Hankel singular values and what is told apart before, beside theory and 50 digits.
+/// Gramians, Hankel singular values and the split before them, against theory and 50 digits.
 using namespace titop;
 using namespace titop_test;
 using Eigen::Index;
@@ -134,7 +134,7 @@ TEST_CASE("Hankel singular values that theory knows") {
   // -1 + 2p / (s + p).
   const std::vector<double> poles{0.3, 1, 5, 11};
   MatrixXd A = MatrixXd::Zero(4, 4), B(4, 1), C(1, 4);
-  double through = 1;  // of what comes before a section
+  double through = 1;  // of the sections before
   for (Index k = 0; k < 4; ++k) {
     const double p = poles[static_cast<std::size_t>(k)];
     B(k, 0) = through;

@@ -6,8 +6,8 @@
 
 #include "economy/against.hpp"
 
-/// A structure with a law in its loop, the truth by hand, and what the tests of balanced states ask
-/// of a reduced system.
+/// A structure with a controller in its loop, the reference by hand, and the requirements on a
+/// reduced system with balanced states.
 namespace titop_test {
 
 inline Eigen::MatrixXd one(double x) { return Eigen::MatrixXd::Constant(1, 1, x); }
@@ -68,7 +68,7 @@ struct Held {
   static std::size_t at(int i) { return static_cast<std::size_t>(i); }
 };
 
-/// A truth, and where to look closely: at what the full system has for poles.
+/// A reference with the full system's poles, for a finer grid there.
 inline Truth with_poles(const titop::ReducedSystem& r,
                         std::function<Eigen::MatrixXcd(std::complex<double>)> transfer) {
   Truth truth{std::move(transfer), {}};

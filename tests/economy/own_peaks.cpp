@@ -14,7 +14,7 @@ using Eigen::MatrixXcd;
 
 namespace {
 
-/// What is read of a mass: so much of its position, rate and acceleration.
+/// A reading of a mass: coefficients of its position, rate and acceleration.
 struct Read {
   std::size_t mass = 0;
   double x = 0, v = 0, a = 0;
@@ -101,7 +101,7 @@ Masses chain(std::size_t n, double stiffness) {
 }  // namespace
 
 TEST_CASE("a position is held against its own motion in the band, however soft what it rests on") {
-  // Static gain 1 / k of the lowest spring: up to 1e9 times what the band shows.
+  // Static gain 1 / k of the lowest spring: up to 1e9 times the gain in the band.
   for (const double soft : {1.0, 1e-2, 1e-3})
     for (const BoundKind kind : {BoundKind::estimate, BoundKind::theorem})
       for (const Read& read : {Read{5, 1}, Read{5, 1, 1e-3}}) {

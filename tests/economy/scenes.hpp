@@ -7,7 +7,7 @@
 #include "../../examples/scenes/frame.hpp"
 #include "economy/tree.hpp"
 
-/// Scenes of the tests of economy, and what is measured on them.
+/// Scenes of the tests of economy, and measurements on them.
 namespace titop_test {
 
 using titop::Diagram;
@@ -38,8 +38,8 @@ inline Truth frame_by_hand(const titop::FlexibleBody& beam) {
   return truth_of(frame_by_hand(beam.data()));
 }
 
-/// What must hold of a reduced system beside the truth: peaks and errors are the truth's. Largest
-/// errors over true peaks stay below the accuracy, too, since no sample is above the true peak.
+/// Required of every reduced system, with peaks and errors from the reference. Largest errors over
+/// true peaks stay below the accuracy, too, since no sample is above the true peak.
 inline Beside check_beside(const ReducedSystem& r, const titop::Scene& scene, const Truth& truth,
                            int steps = 0) {
   const Beside by_hand = beside(r, scene, truth, steps);

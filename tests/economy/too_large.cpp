@@ -4,7 +4,7 @@
 #include "economy/scenes.hpp"
 #include "support/mistakes.hpp"
 
-/// Loops of more states than are balanced at once, and what balanced states cannot do.
+/// Loops of more states than are balanced at once, and the limits of balanced states.
 using namespace titop;
 using namespace titop_test;
 using Eigen::MatrixXcd;
@@ -82,8 +82,8 @@ TEST_CASE("what balanced states cannot do is refused with what they reach, a lar
 
 TEST_CASE(
     "a pole that cannot be told from one on the axis is refused by the state that moves in it") {
-  // Eigenvalues 1e-8 and -5e-7 with eigenvectors as near to each other, turned by 45 degrees so
-  // that no pattern shows it: what goes from one to the other is 1 / 5e-7.
+  // Eigenvalues 1e-8 and -5e-7 with eigenvectors as near to each other, rotated by 45 degrees to
+  // hide the pattern: the transformation between the parts is 1 / 5e-7.
   const double e = 5e-7, up = 1e-8;
   MatrixXd A(2, 2);
   A << (up - 1 - e) / 2, (up + 1 + e) / 2, (up - 1 + e) / 2, (up + 1 - e) / 2;

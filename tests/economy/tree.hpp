@@ -8,9 +8,8 @@
 
 /// Trees of modal and rigid bodies as one M, D and K, assembled by hand from the bodies' data: the
 /// coordinates are the motion of the root, if it is free, and the modes of all bodies clamped. In
-/// long double, since a bound may be as low as 1e-12 of a peak, and 5e-14 of what would be there if
-/// symmetry did not make it 0: double loses more where a free root is eliminated, and where heavy
-/// and light bodies meet.
+/// long double, since a bound may be as low as 1e-12 of a peak, and 5e-14 of a pair's size without
+/// symmetry: double loses more when a free root is eliminated, and between heavy and light bodies.
 namespace titop_test {
 
 using MatrixXl = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
@@ -34,7 +33,7 @@ class Tree {
   /// Six rows: the motion of a body's P (port -1) or of a child point, in its frame.
   MatrixXl motion(int body, int port = -1) const;
 
-  /// M, D and K; B and C by motions: forces on what the rows of `driven` are, outputs `read`.
+  /// M, D and K; B and C by motions: forces on the rows of `driven`, outputs `read`.
   Assembled structure(const MatrixXl& driven, const MatrixXl& read) const;
 
  private:

@@ -1,4 +1,5 @@
-// The full certificate as JSON: every number is the struct's, what was not checked is null.
+// The full certificate as JSON: every number is the struct's, values that were not checked are
+// null.
 #include <doctest/doctest.h>
 
 #include <cmath>

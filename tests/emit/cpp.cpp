@@ -58,7 +58,7 @@ TEST_CASE("each language has its own words") {
     CHECK(emit::is_namespace(name));
   for (const char* name : {"selected", "strut", "sigma", "timer", "model_t", "SAT_1", "EARTH"})
     CHECK(emit::is_namespace(name));
-  // Declared by what generated tests include: functions, types, macros, and their variants.
+  // Declared by the includes of generated tests: functions, types, macros, and their variants.
   for (const char* name :
        {"select",         "finite",        "clone",     "FILE",        "timex",    "uint",
         "ushort",         "sincos",        "exp10",     "exp10f",      "getline",  "realpath",
@@ -140,7 +140,7 @@ TEST_CASE("modes where they are cheaper, the model's own states on request") {
   const System system = five_masses();
   const CppModel modes = generate_cpp(system, {.name = "masses", .sample_time = 0.1});
   CHECK(modes.modal);
-  // A and A_h in blocks 3 x 10; B, C, D and B_h by what is not 0.
+  // A and A_h in blocks 3 x 10; the nonzero entries of B, C, D and B_h.
   CHECK(modes.products <= 2 * 30 + 10 + 10 + 60 + 6);
   const CppModel own =
       generate_cpp(system, {.name = "masses", .sample_time = 0.1, .states = CppStates::model});

@@ -41,7 +41,7 @@ TEST_CASE("a Python module is UTF-8 throughout, whatever its names are made of")
               folder.path, "m");
   const std::string text = folder.read("m.py");
   CHECK(is_utf8(text));
-  CHECK(has(text, "\"κ 机 \xC2\x85\","));  // what is UTF-8 stands as it is
+  CHECK(has(text, "\"κ 机 \xC2\x85\","));  // valid UTF-8 is unchanged
   CHECK(has(text, R"("broken \xc3( \xff",)"));
   CHECK(has(text, R"("cut \xe6\x9c",)"));
   CHECK(has(text, R"("\"\\\x0a",)"));

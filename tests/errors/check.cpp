@@ -6,8 +6,8 @@
 
 #include "support/mistakes.hpp"
 
-// Mistakes that the description itself shows: the pass `check`, and what is refused at once. What
-// belongs to ports, frames, quantities and sizes in equations is in tests/language.
+// Mistakes in the description itself: the pass `check`, and mistakes refused at once. Mistakes of
+// ports, frames, quantities and sizes in equations are in tests/language.
 
 using namespace titop;
 using namespace titop_test;
@@ -19,7 +19,7 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 RigidBody brick() { return {.mass = 4, .children = {{"C1", {1, 0, 0}}}}; }
 
-/// What adding this spec throws.
+/// The error of adding this spec.
 template <class Spec>
 Error refused(const Spec& spec) {
   Diagram d{"refused"};

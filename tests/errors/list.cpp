@@ -1,4 +1,4 @@
-// docs/errors.md has every code, and what it quotes is what the library says.
+// docs/errors.md has every code, and its quotations are the library's messages.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 

@@ -59,7 +59,7 @@ TEST_CASE("numbers of modal data that make no sense") {
   for (const double digits : {0.0, -1.0, std::nan(""), HUGE_VAL})
     CHECK(says(refused_with([&](ModalData& d) { d.digits = digits; }), Code::bad_value,
                {"the modal data have", "digits"}));
-  // Percent. Some modes above 1 are what damping in proportion to stiffness makes of fast ones.
+  // Percent. Damping in proportion to stiffness gives fast modes ratios above 1.
   CHECK(says(refused_with([](ModalData& d) { d.xi = Eigen::Vector2d(50, 40); }), Code::bad_modes,
              {"least damping ratio is 40", "not percent"}));
   CHECK(refused_with([](ModalData& d) { d.xi(1) = 3; }).mistakes().empty());

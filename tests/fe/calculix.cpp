@@ -11,7 +11,7 @@
 
 #include "dynamics.hpp"
 
-/// The real beam: what its files must give. Expected values: examples/data/calculix_beam/README.md.
+/// The real beam: values expected from its files. Source: examples/data/calculix_beam/README.md.
 
 using namespace titop;
 using fe_test::relative;
@@ -111,7 +111,8 @@ TEST_CASE("CalculiX beam: residual mass, ranks and effective masses of all modes
   const ModalData data = fe::modal_data(beam(), "P", {"C"});
   const ModalReport report = modal_report(data);
   CHECK(report.residual.verdict == Definiteness::definite);
-  // Small but definite: what is left is as 12 mm of the beam, turning about their own middle.
+  // Small but definite: the residual mass is that of 12 mm of the beam, rotating about their own
+  // centre.
   const Matrix6& D_P0 = report.residual.D_P0;
   CHECK(relative(D_P0(4, 4) / D_P0(2, 2), 0.04 * 0.04 / 12) <= 1e-3);
   CHECK(report.residual.component == 4);
@@ -120,7 +121,7 @@ TEST_CASE("CalculiX beam: residual mass, ranks and effective masses of all modes
   REQUIRE(report.children.size() == 1);
   CHECK(report.children[0].rank == 6);
   CHECK(report.children[0].blocked.empty());
-  // What does not move with any mode is what sits on the clamped face.
+  // The mass on the clamped face does not move with any mode.
   for (int j = 0; j < 6; ++j) {
     CHECK(report.effective.total(j) < 1);
     CHECK(report.effective.total(j) > 0.95);

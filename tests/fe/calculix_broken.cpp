@@ -9,7 +9,7 @@
 
 #include "support/refused.hpp"
 
-/// Broken files: each is refused, with file, line, what was found and what was expected.
+/// Broken files: each is refused, with file, line, the text found and the text expected.
 
 using namespace titop;
 using titop_test::replaced;

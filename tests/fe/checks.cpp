@@ -11,7 +11,7 @@
 
 #include "dynamics.hpp"
 
-/// The checks of modal data say what is wrong and where.
+/// The checks of modal data name the fault and its place.
 
 using namespace titop;
 using Eigen::Index;
@@ -46,7 +46,7 @@ TEST_CASE("mass properties of a rigid body come back") {
   CHECK((m.inertia - I).cwiseAbs().maxCoeff() <= 1e-14);
   CHECK(m.misfit <= 1e-15);
   Matrix6 D = rigid_mass(12, I, -centre);
-  D(0, 0) *= 0.9;  // a program that leaves out what sits on the clamp
+  D(0, 0) *= 0.9;  // a program that neglects the mass at the clamp
   CHECK(mass_properties(D).misfit > 0.03);
   CHECK(mass_properties(Matrix6::Zero()).misfit == 0);
 }

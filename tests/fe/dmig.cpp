@@ -1,5 +1,5 @@
 // DMIG punch: the real flying wing with its figures (examples/data/nastran_dmig_flying_wing), small
-// and 16-column fields, and what is refused.
+// and 16-column fields, and refusals.
 #include <doctest/doctest.h>
 
 #include <fstream>

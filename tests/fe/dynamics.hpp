@@ -8,7 +8,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <vector>
 
-/// What the tests of this folder compare with: the same structure without modes.
+/// Reference of the tests of this folder: the same structure without modes.
 namespace fe_test {
 
 using titop::Matrix6;

@@ -11,8 +11,8 @@
 
 #include "support/refused.hpp"
 
-/// The symmetric eigenproblems: residuals, orthogonality, what a slender structure loses by each
-/// road, refusals.
+/// The symmetric eigenproblems: residuals, orthogonality, the loss of digits of a slender structure
+/// by each method, refusals.
 
 using namespace titop;
 using Eigen::Index;
@@ -35,8 +35,7 @@ double orthogonality(const MatrixXd& V, const MatrixXd& M) {
   return largest(V.transpose() * M * V - MatrixXd::Identity(V.cols(), V.cols()));
 }
 
-/// Largest |V'KV - diag(lambda)|, entry (i, j) over omega_i omega_j: what is wrong with the shapes
-/// in energy.
+/// Largest |V'KV - diag(lambda)|, entry (i, j) over omega_i omega_j: error of the shapes in energy.
 double energy_error(const MatrixXd& K, const SymmetricModes& modes) {
   const VectorXd scale = modes.lambda.cwiseSqrt().cwiseInverse();
   const MatrixXd G = scale.asDiagonal() * modes.V.transpose() * K * modes.V * scale.asDiagonal();

@@ -1,5 +1,4 @@
-// Modal data as text: the Nastran cantilever, units, normalisation, round trip, and what is
-// refused.
+// Modal data as text: the Nastran cantilever, units, normalisation, round trip, and refusals.
 #include <doctest/doctest.h>
 
 #include <fstream>
@@ -76,7 +75,7 @@ TEST_CASE("cantilever: participation factors are those of its shapes and masses"
     CHECK((data.L_P.middleCols(first, 3) - expected).cwiseAbs().maxCoeff() <=
           std::exp2(-24) * expected.cwiseAbs().maxCoeff());
   }
-  CHECK(relative(data.D_P(0, 0), 5 + 5 * element) <= 1e-7);  // with what sits on the clamped grid
+  CHECK(relative(data.D_P(0, 0), 5 + 5 * element) <= 1e-7);  // with the mass on the clamped grid
   CHECK(relative(data.D_P(4, 4), 50291.489454230854e-6) <= 1e-14);
 }
 

@@ -10,7 +10,7 @@
 
 #include "dynamics.hpp"
 
-/// Residual vectors: exact statics with few modes, and what that is worth under load. All expected
+/// Residual vectors: exact statics with few modes, and their benefit under load. All expected
 /// numbers from M and K directly.
 
 using namespace titop;

@@ -103,7 +103,7 @@ TEST_CASE("data of a held structure, in two units, or without a grid's own frame
   unturned[1].frame = {};
   CHECK(titop_test::says(refused(fe::to_mesh(matrices(), unturned)), Code::bad_modes,
                          {"resists rigid motion", "a grid its own frame"}));
-  // Clamped: what is left of the rows when one grid is held.
+  // Clamped: the remaining rows when one grid is held.
   std::vector<Index> rest;
   fe::Mesh clamped = good;
   clamped.dofs.clear();

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <titop/graph/error.hpp>
 
-/// What the fuzzers share. Each gives one reader whatever bytes libFuzzer thinks of; a titop::Error
-/// with a mistake in it is an answer, anything else (a crash, another exception, a report of the
+/// Common to the fuzzers. Each gives a reader arbitrary bytes of libFuzzer; a titop::Error with a
+/// mistake in it is a valid result, anything else (a crash, another exception, a report of the
 /// sanitizers, 10 s, 2 GB) is a finding.
 namespace fuzz {
 

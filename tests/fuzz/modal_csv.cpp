@@ -1,4 +1,4 @@
-// Modal data as text; what is read is also written and read again.
+// Modal data as text; data that can be read are also written and read again.
 #include <titop/blocks/fe/modal_csv.hpp>
 
 #include "input_file.hpp"

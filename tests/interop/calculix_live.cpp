@@ -1,5 +1,5 @@
-// Runs CalculiX on the decks of examples/data/calculix_beam and reads what it writes: the reader
-// must follow the program as it is installed, not only the files kept here.
+// Runs CalculiX on the decks of examples/data/calculix_beam and reads its output: the reader must
+// match the installed program, not only the files kept here.
 #include <doctest/doctest.h>
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// docs/coming_from.md: its MATLAB text, run by Octave's control package, gives what M and K by hand
-// give; its C++ text stands in the example.
+// docs/coming_from.md: its MATLAB text, run by Octave's control package, agrees with M and K by
+// hand; its C++ text is that of the example.
 #include <doctest/doctest.h>
 
 #include <cstdlib>

@@ -40,7 +40,7 @@ struct Workshop {
                  "#define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN\n#include <doctest/doctest.h>\n");
     REQUIRE(folder.run(compiler + " -std=c++17 -c main.cpp") == 0);
   }
-  /// "" if the model's own test compiles and passes, else what was said.
+  /// "" if the model's own test compiles and passes, else its output.
   std::string proves(const CppModel& model) const {
     write(model, folder.path);
     if (folder.run(compiler + kFlags + model.name + "_test.cpp main.o -o proof") != 0)

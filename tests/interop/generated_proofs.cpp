@@ -13,8 +13,8 @@ using titop_test::Folder;
 
 namespace {
 
-/// "" if the model's own test compiles and passes as rounded by these compiler's options, else what
-/// was said.
+/// "" if the model's own test compiles and passes as rounded by these compiler's options, else its
+/// output.
 std::string proves(const System& system, double sample_time, const std::string& options) {
   const Folder folder;
   write(generate_cpp(system, {.name = "model", .sample_time = sample_time}), folder.path);

@@ -62,7 +62,7 @@ std::vector<double> entries(const StateSpace& m) {
   return all;
 }
 
-/// What the other program found: poles, then the transfer at 2j, as pairs (re, im).
+/// Results of the other program: poles, then the transfer at 2j, as pairs (re, im).
 void check_results(const System& system, const std::vector<double>& found) {
   const StateSpace& m = system.state_space();
   const auto n = static_cast<std::size_t>(m.order());

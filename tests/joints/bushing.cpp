@@ -5,7 +5,7 @@
 #include "support/mistakes.hpp"
 
 /// Bushings against M, D and K assembled by hand, as the joint between two bodies and between ports
-/// of any kind; what they refuse.
+/// of any kind; their refusals.
 
 using namespace joint_test;
 using namespace titop;

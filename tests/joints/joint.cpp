@@ -7,7 +7,7 @@
 #include "support/mistakes.hpp"
 
 /// Slide and joints of several axes against M, D and K assembled by hand, against each other and
-/// against partial drives; what they refuse.
+/// against partial drives; their refusals.
 
 using namespace joint_test;
 using namespace titop;
@@ -61,7 +61,7 @@ TEST_CASE("slide: driven, it costs what the boom takes to follow; free, it has n
     const System system = compile(scene.d);
     std::vector<MatrixXcd> driven;
     for (std::size_t i = 0; i < exact.size(); ++i) {
-      // The force on the boom, -f, is what makes q follow: swap input and output of the axis.
+      // The force on the boom, -f, drives q: exchange input and output of the axis.
       MatrixXcd G = exact[i];
       G.bottomRows(1) *= kPoints[i] * kPoints[i];
       const Complex g = G(12, 12);

@@ -1,7 +1,7 @@
-// corpus_wiring FOLDER SCENE.json...: each scene as a user of a block-diagram program would have to
-// give it to one: FOLDER/SCENE.m with every block as A, B, C, D, which of its channels must be
-// inverted first, and the wiring between what is then input and output. No pass of the compiler has
-// a part in it; a scene that cannot be said so is left out, and why is printed.
+// corpus_wiring FOLDER SCENE.json...: each scene in the form that a block-diagram program needs:
+// FOLDER/SCENE.m with every block as A, B, C, D, the list of its channels that must be inverted
+// first, and the wiring between the resulting inputs and outputs. No pass of the compiler has a
+// part in it; a scene that has no such form is left out, and the reason is printed.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -114,7 +114,7 @@ class Wiring {
     const Signal& s = g_.signals[at(e.target)];
     const MatrixXd right = sum(e.terms, e.part.whole() ? s.size : int(e.part.rows().rows()));
     if (s.role == Signal::Role::input) {
-      // A force on a point whose acceleration is imposed drives nothing: what holds it takes it.
+      // A force on a point whose acceleration is imposed drives nothing: the support takes it.
       if (is_swapped(s.node, s.first)) return;
       const MatrixXd P =
           e.part.whole() ? MatrixXd::Identity(s.size, s.size) : MatrixXd(e.part.rows().transpose());
@@ -167,7 +167,7 @@ class Wiring {
     return rows;
   }
 
-  /// What a driven signal is, in terms of what can be read.
+  /// A driven signal as a combination of the readable ones.
   MatrixXd driven(int signal) {
     const Signal& s = g_.signals[at(signal)];
     MatrixXd all = MatrixXd::Zero(s.size, reads_);
@@ -182,7 +182,7 @@ class Wiring {
     return all;
   }
 
-  /// Twice integrated, as one would have to: rows of `integrals` are what goes in.
+  /// Double integral, explicitly: rows of `integrals` are the integrands.
   MatrixXd integrated(const MatrixXd& rows) {
     const Index old = integrals_.rows(), m = rows.rows();
     integrals_.conservativeResize(old + m, reads_ - integrated_);
