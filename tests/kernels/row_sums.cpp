@@ -33,7 +33,7 @@ void check_sums() {
       for (auto* list : {&l, &x, &y})
         for (T& entry : *list) draw(rng, entry);
       for (std::ptrdiff_t k = 0; k < count; k += 3) {
-        l[at(k)] = T(0);  // what stands there is not looked at
+        l[at(k)] = T(0);  // x is not read for a factor of 0
         x[at(k * m)] = std::numeric_limits<double>::infinity();
       }
       std::vector<T> plain = y;

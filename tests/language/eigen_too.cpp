@@ -1,5 +1,5 @@
-// What engineers write at the top of a file. Where a name of ours were also one of Eigen's, this
-// would not compile.
+// Usual directives of a user's file. If a name of titop were also one of Eigen's, this would not
+// compile.
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>

@@ -118,7 +118,7 @@ TEST_CASE("where the motion is imposed, `+=` stays in the balance: reaction") {
   d.output("total") = z1.child.force;
   d.output("support") = z1.child.reaction;
   const Eigen::MatrixXcd G = compile(d).transfer(kS);
-  // Nothing of z1 moves: the support takes what z2 does to it, k / (m s^2 + k).
+  // z1 does not move: the support takes the force of z2, k / (m s^2 + k).
   CHECK(std::abs(G(0, 0)) <= 1e-16);
   CHECK(relative(G(1, 0), -26.0 / (2.0 * kS * kS + 26.0)) <= 1e-14);
 }

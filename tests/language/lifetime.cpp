@@ -8,7 +8,7 @@
 
 #include "support/close.hpp"
 
-/// What a System says stays when the System does not: such lines are written everywhere.
+/// Results of a System that is a temporary stay valid: such lines are written everywhere.
 
 using namespace titop;
 

@@ -6,7 +6,7 @@
 #include "support/close.hpp"
 #include "support/mistakes.hpp"
 
-/// What is added to the force of a point that moves with another: it acts through the reaction.
+/// Forces added at a point that moves with another act through its reaction.
 
 using namespace titop;
 using namespace titop_test;

@@ -334,7 +334,7 @@ TEST_CASE("parts of inputs and readings: halves of 6, components of 3") {
   B.child.force.linear += Eigen::MatrixXd(Vector3d(0, 0, 1)) * f.along({3, 0, 4});
   d.output("support") = B.parent.reaction.linear().along({0, 0, 2});
   d.output("load") = U.angular().along({0, 1, 0});
-  // B passes on to its support what it is loaded with.
+  // B transmits its load to its support.
   Eigen::MatrixXd exact = Eigen::MatrixXd::Zero(2, 9);
   exact(0, 2) = 1;
   exact(0, 6) = 0.6;

@@ -89,8 +89,8 @@ void check_stable(const SecondOrderModel& m, bool undamped) {
 }
 
 /// Force to rate at one point dissipates, at every s right of the axis: a = direct u + B' qdd, so
-/// that a / s = direct / s + s B' (s^2 + s D + K)^-1 B, and both are positive real where direct, D
-/// and K are semidefinite. To rounding, over what there is at infinite frequency.
+/// that a / s = direct / s + s B' (s^2 + s D + K)^-1 B, and both are positive real if direct, D and
+/// K are semidefinite. To rounding, relative to the transfer at infinite frequency.
 void check_passive(const SecondOrderModel& m) {
   CHECK(m.C.isZero(0));
   const Eigen::MatrixXd above = m.direct + m.C_accel * m.B;
@@ -128,5 +128,5 @@ TEST_CASE("500 random scenes: error below the bound, undamped poles on the axis,
     }
   }
   CHECK(met >= 490);
-  CHECK(near >= 0.9 * met);  // the aim; what two grids promise is 1 / cos(1 / 2)^2 = 1.30
+  CHECK(near >= 0.9 * met);  // the aim; two grids promise 1 / cos(1 / 2)^2 = 1.30
 }

@@ -7,7 +7,7 @@
 #include "support/close.hpp"
 
 /// Three beams of CalculiX, 342 modes each, in the skew frame of tests/economy: as many modes as
-/// the scene needs, beside what is usually done.
+/// the scene needs, compared with the usual truncation.
 using namespace titop;
 using namespace titop_test;
 using Eigen::Index;
@@ -30,8 +30,8 @@ Truth sum_of(const InModes& m) {
   return truth;
 }
 
-/// What plain truncation leaves out: fewest modes, taken in this order, so that the others do not
-/// amount to more than `accuracy` of any pair's peak on these points.
+/// Plain truncation: the fewest modes, taken in this order, such that the sum of the others is at
+/// most `accuracy` of any pair's peak on these points.
 Index plain_truncation(const InModes& m, const std::vector<Complex>& s, const MatrixXd& peak,
                        const std::vector<Index>& order, double accuracy) {
   std::vector<MatrixXcd> rest(s.size(), MatrixXcd::Zero(peak.rows(), peak.cols()));

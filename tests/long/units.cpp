@@ -17,7 +17,7 @@ Units random_units(Rng& rng) {
   return {.length = length, .mass = mass, .time = factor()};
 }
 
-/// What `compile` and `minimize` say: the order and its interval, or the code of the refusal.
+/// Results of `compile` and `minimize`: the order and its interval, or the code of the refusal.
 struct Said {
   std::string text;  ///< "12", or the code
   int lowest = 0, order = 0, highest = 0;
@@ -83,7 +83,7 @@ TEST_CASE("10,000 changes of units: what is certain of the minimal order") {
       CAPTURE(k);
       const Said there(scene.build(random_units(rng)), 100);
       CHECK(there.text == here.text);
-      // What rounding decides is stated as undecided: no two intervals exclude each other's order.
+      // Decisions at rounding level are undecided: no two intervals exclude each other's order.
       CHECK(here.holds(there.order));
       CHECK(there.holds(here.order));
       ++all, other_interval += here.lowest != there.lowest || here.highest != there.highest;

@@ -73,7 +73,7 @@ struct Fixed {
         list.empty() ? 6 : 6 - Eigen::FullPivLU<MatrixXd>(rigid(list, Eigen::all)).rank();
     return elastic_poles(a, zeros);
   }
-  /// Accelerations of the tip by accelerations of what is held and by a wrench at the tip.
+  /// Accelerations of the tip per acceleration of the held directions and per wrench at the tip.
   MatrixXcd tip(const std::vector<Index>& list, Complex s) const {
     const std::vector<Index> free = others(list);
     const MatrixXcd Z = s * s * fe.M.cast<Complex>() + fe.K.cast<Complex>();

@@ -11,7 +11,8 @@ namespace loop_test {
 
 using namespace scene_test;
 
-/// M, D, K of all parts in shared coordinates q: parts come with what their own coordinates are.
+/// M, D, K of all parts in shared coordinates q: each part is added with its own coordinates as
+/// functions of q.
 struct Assembly {
   by_hand::Structure a;
 
@@ -54,14 +55,14 @@ struct Constraints {
 /// A structure under constraints, in coordinates of the motions that they leave.
 by_hand::Structure constrained(const by_hand::Structure& a, const Constraints& constraints);
 
-/// What forces do at s, and what the constraints bear.
+/// Motion under forces at s, and the constraint forces.
 struct ConstrainedMotion {
-  MatrixXcd q;      ///< `given` and motions that the constraints leave
+  MatrixXcd q;      ///< `given` plus motions that the constraints allow
   MatrixXcd borne;  ///< force - (s^2 M + s D + K) q, which does no work on these motions
 };
 
 /// `given`: a motion that is prescribed. Beams are up to 1e9 N/m stiff: rounding of q times that
-/// would be forces of 1e-8, not little beside springs of 20 N/m. So what is left over is formed in
+/// would be forces of 1e-8, not negligible beside springs of 20 N/m. So the residual is computed in
 /// long double, and the motions and q are refined by it.
 ConstrainedMotion constrained_motion(const by_hand::Structure& a, const Constraints& constraints,
                                      Complex s, const MatrixXcd& force, const MatrixXcd& given);

@@ -10,7 +10,7 @@ using namespace scene_test;
 
 /// The worst block of rows x cols scalars: its largest difference over all points s, over its
 /// largest entry over all of them. Blocks below `weak` of the largest block, or of `unit`, are
-/// compared with that much of it: weaker ones are what rounding of the others leaves.
+/// compared with that limit: they contain rounding of the others.
 inline double block_error(const std::vector<MatrixXcd>& a, const std::vector<MatrixXcd>& exact,
                           Index rows, Index cols, double weak, double unit = 0) {
   double largest = unit, worst = 0;

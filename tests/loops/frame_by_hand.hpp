@@ -14,7 +14,7 @@ struct FrameByHand {
   Assembly all;
   std::vector<Index> first;  ///< of each body's coordinates
   MatrixXd held;             ///< the constraint matrix: rows that are 0
-  /// What one joint does: its rows of `held`, and the stretches of its springs.
+  /// Rows of one joint: its part of `held`, and the stretches of its springs.
   struct JointRows {
     Index first = 0, count = 0;
     MatrixXd stretch;

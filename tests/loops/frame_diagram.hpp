@@ -4,11 +4,11 @@
 
 namespace loop_test {
 
-/// What to make of a frame.
+/// Options of a frame's diagram.
 struct FrameScene {
   const Frame& frame;
-  int read = -1;  ///< a joint that hangs a body: the wrench there of the body on what it hangs on
-  bool driven = false;  ///< the first body moves as input A says
+  int read = -1;  ///< a joint that carries a body: output of the body's wrench on its parent there
+  bool driven = false;  ///< the first body has the acceleration A, an input
 };
 
 /// The diagram of a frame (frames.hpp), as a user writes one: input U pushes, outputs pushed and

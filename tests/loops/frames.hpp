@@ -41,8 +41,8 @@ struct Frame {
     Mode mode = Mode::sprung;
   };
 
-  /// Between a point of body a and one of body b, both at X; a weld without axes. What hangs is a,
-  /// by its P, unless the joint closes a chain.
+  /// Between a point of body a and one of body b, both at X; a weld without axes. a is mounted on
+  /// b, by its P, unless the joint closes a chain.
   struct Joint {
     int a = 0, b = 0;
     bool closes = false;

@@ -31,7 +31,7 @@ MatrixXcd by_apply(const System& system, std::complex<double> s) {
                      all.bottomRightCorner(p, m), s);
 }
 
-/// Of what is not 0.
+/// Relative error of nonzero values.
 double error(const MatrixXcd& a, const MatrixXcd& exact) {
   const double size = exact.size() ? exact.cwiseAbs().maxCoeff() : 0;
   return (a - exact).cwiseAbs().maxCoeff() / (size > 1e-12 ? size : 1);

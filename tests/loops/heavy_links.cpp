@@ -5,8 +5,8 @@
 #include "assembly.hpp"
 #include "support/mistakes.hpp"
 
-/// Chains that are held more than once, with masses far apart: what rounding leaves of the heavy
-/// one's balance is no internal force that moves it.
+/// Over-constrained chains with very different masses: rounding in the balance of the heavy mass is
+/// no internal force that moves it.
 
 using namespace loop_test;
 using namespace titop;

@@ -2,8 +2,8 @@
 
 #include "assembly.hpp"
 
-/// Chains whose geometry leaves some points no motion at all: outputs there are 0, not rounding,
-/// what hangs there stands on the ground, and loads still reach the ground.
+/// Chains whose geometry immobilises some points: outputs there are 0, not rounding, bodies mounted
+/// there are as on the ground, and loads still reach the ground.
 
 using namespace loop_test;
 using namespace titop;

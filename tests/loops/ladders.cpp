@@ -11,8 +11,8 @@
 #include "support/mistakes.hpp"
 #include "support/promises.hpp"
 
-/// Loops that share bodies: ladders and planar grids of beams. What the passes do grows with the
-/// structure, whatever stands between stiff and soft, and the models are right.
+/// Loops that share bodies: ladders and planar grids of beams. The work of the passes grows with
+/// the structure, independent of stiff and soft parts, and the models are right.
 
 using namespace loop_test;
 using namespace titop;

@@ -21,8 +21,7 @@ namespace {
 constexpr std::size_t kWall = 5;
 constexpr std::array<std::size_t, 5> kHangsOn{kWall, 0, 0, 1, 1};
 
-/// An end of a spring-mass; on its child's side the wrench is what is done to it, on its parent's
-/// what it does.
+/// An end of a spring-mass; at its child the wrench acts on it, at its parent it acts from it.
 struct End {
   std::size_t spring;
   bool child;

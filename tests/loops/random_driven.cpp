@@ -15,11 +15,11 @@ namespace {
 /// random_frames.cpp by rounding of stiff beams next to soft springs. A dense model keeps a digit
 /// less.
 constexpr double kTolerance = 1e-8;
-/// Of the largest entry of all ports, below which a port's counts as that much, as in
-/// random_frames.cpp. The largest is about 1: what goes along with the first body, or 1 / mass.
+/// Of the largest entry of all ports: lower limit of a port's scale, as in random_frames.cpp. The
+/// largest is about 1: motion along with the first body, or 1 / mass.
 constexpr double kWeak = 1e-3;
 
-/// Accelerations from [A; U] at s: q = (what A alone asks for) + (what the joints leave).
+/// Accelerations from [A; U] at s: q = (motion imposed by A) + (motion that the joints allow).
 MatrixXcd driven(const FrameByHand& h, const Constraints& constraints, Complex s) {
   const by_hand::Structure& a = h.all.a;
   MatrixXcd given = MatrixXcd::Zero(a.M.rows(), 12), force = given;

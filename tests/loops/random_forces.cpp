@@ -12,17 +12,17 @@ using namespace titop;
 
 namespace {
 
-/// Of forces by forces, forces by torques ..., each beside the largest of its kind. What limits it
-/// is a multiplier where constraints nearly say the same twice (Constraints::clear: up to 1e4 times
-/// the others), next to beams up to 1e9 N/m stiff.
+/// Of forces by forces, forces by torques ..., each relative to the largest of its kind. The limit
+/// is a multiplier of nearly redundant constraints (Constraints::clear: up to 1e4 times the
+/// others), next to beams up to 1e9 N/m stiff.
 constexpr double kTolerance = 1e-7;
-/// Of the largest kind, or of 1 (a unit force, an arm of a metre), below which a kind counts as
-/// that much: times the tolerance 1e-8, which is what a beam bears by rounding (1e-16 of a motion
-/// of 0.1 m/N, times 1e9 N/m) where by nature it bears nothing.
+/// Of the largest kind, or of 1 (a unit force, an arm of a metre): lower limit of a kind's scale.
+/// Times the tolerance this is 1e-8, the force of a beam by rounding (1e-16 of a motion of 0.1 m/N,
+/// times 1e9 N/m) if its true force is 0.
 constexpr double kWeak = 0.1;
 
-/// The wrench at s of the body that joint k hangs on what it hangs on, in the body's frame, per
-/// unit input: the multipliers of the joint's rows and its springs, on the body's own coordinates.
+/// The wrench at s of the body that joint k carries on its parent, in the body's frame, per unit
+/// input: the multipliers of the joint's rows and its springs, on the body's own coordinates.
 MatrixXcd wrench(const FrameByHand& h, const Constraints& constraints, int k, Complex s) {
   const by_hand::Structure& a = h.all.a;
   const MatrixXcd force = a.B.cast<Complex>();

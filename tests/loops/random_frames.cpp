@@ -11,12 +11,12 @@ using namespace loop_test;
 
 namespace {
 
-/// Of an output port by an input port, beside the largest entry of both. What limits it is rounding
-/// of beams up to 1e9 N/m stiff next to springs of 20 N/m: 1e-16 x 1e9 / 20. A dense model keeps a
-/// digit less.
+/// Of an output port by an input port, relative to the largest entry of both. The limit is rounding
+/// of beams up to 1e9 N/m stiff next to springs of 20 N/m: 1e-16 x 1e9 / 20. A dense model loses
+/// one more digit.
 constexpr double kTolerance = 1e-8;
-/// Of the largest entry of all ports, below which a port's counts as that much: times the tolerance
-/// 1e-11, which is what rounding (1e-15) moves where a constraint is 1e-4 of the others
+/// Of the largest entry of all ports: lower limit of a port's scale. Times the tolerance this is
+/// 1e-11, the motion by rounding (1e-15) under a constraint of 1e-4 of the others
 /// (Constraints::clear).
 constexpr double kWeak = 1e-3;
 
@@ -42,7 +42,7 @@ void compare(const Frame& f, Counts& count) {
   const titop::System system = titop::compile(d, {.minimize_up_to = 0});
   count.unsure += !(system.certificate().residual <= 1e-9);
   const Index moving = exact.M.rows() - (f.on_ground() ? 0 : 6);
-  CHECK(system.order() <= 2 * moving);  // what a clamped hub cuts off is left out
+  CHECK(system.order() <= 2 * moving);  // parts beyond a clamped hub are left out
   if (!f.on_ground() && unsprung(exact) == 6) CHECK(system.order() == 2 * moving);
   const MatrixXcd force = whole.B.cast<Complex>();
   const MatrixXcd still = MatrixXcd::Zero(whole.M.rows(), force.cols());

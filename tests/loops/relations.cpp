@@ -76,7 +76,7 @@ Relations loops(Rng& rng) {
       block.M.row(0).setZero();
       block.M(0, rng.below(static_cast<int>(block.M.cols()))) = 1;
     }
-    if (b > 1 && rng.below(3) == 0) {  // says in one direction what two others say
+    if (b > 1 && rng.below(3) == 0) {  // one row is a combination of two others
       const auto &one = r.blocks[at(b - 1)], &two = r.blocks[at(rng.below(b - 1))];
       std::set<int> all(block.columns.begin(), block.columns.end());
       all.insert(one.columns.begin(), one.columns.end());
@@ -98,8 +98,8 @@ Relations loops(Rng& rng) {
   return r;
 }
 
-/// Loops one after the other, as in a truss: none has a column to itself, every fifth says in one
-/// direction what the two before it say.
+/// Loops one after the other, as in a truss: none has a column to itself, every fifth has one row
+/// that is a combination of the two loops before it.
 Relations strip(Rng& rng, int count) {
   Relations r;
   const int columns = 2 * count + 4;
@@ -142,7 +142,7 @@ TEST_CASE("scaled relations: the same whatever rows and columns are measured in,
     for (auto* list : {&of_unit, &of_column})
       for (double& x : *list) x = std::ldexp(1, rng.below(60) - 30);
     for (Index c = 0; c < width(r); ++c)
-      if (r.weight(c) > 0) of_column[at(c)] = 1;  // energy says what these are measured in
+      if (r.weight(c) > 0) of_column[at(c)] = 1;  // energy defines these units
     for (std::size_t b = 0; b < r.blocks.size(); ++b)
       for (Index i = 0; i < r.blocks[b].M.rows(); ++i)
         for (Index j = 0; j < r.blocks[b].M.cols(); ++j)
@@ -205,7 +205,7 @@ TEST_CASE("what follows is decided by geometry, which of it by what is soft") {
       MatrixXd M = rng.matrix(rows, columns), of_others = rng.matrix(1, rows - 1);
       for (auto* m : {&M, &of_others})
         for (double& x : m->reshaped()) x += std::copysign(0.5, x);
-      // The last row says what the others say, but for so much.
+      // The last row is a combination of the others, plus `near` times its own.
       if (near < 1) M.bottomRows(1) = of_others * M.topRows(rows - 1) + near * M.bottomRows(1);
       Relations r{.role = std::vector(at(columns), Relations::Role::coordinate),
                   .weight = Eigen::VectorXd(columns)};
@@ -221,8 +221,8 @@ TEST_CASE("what follows is decided by geometry, which of it by what is soft") {
       const Index rank = near < 1e-9 ? rows - 1 : rows;
       CHECK(static_cast<Index>(found.follow.size()) == rank);
       CHECK(found.doubtful() == (near == 1e-7 || near == 1e-6));
-      // In units of energy what follows is no more than what it follows from, but for pivots that
-      // are not worth a thousandth.
+      // In units of energy a dependent coordinate is no larger than those that it depends on,
+      // except for pivots that differ by less than a thousandth.
       for (const auto& f : found.follow)
         for (const auto& [c, factor] : f.of)
           CHECK(std::abs(factor) * r.weight(c) <= 1e4 * r.weight(f.dependent));

@@ -7,7 +7,7 @@
 
 #include "support/rng.hpp"
 
-/// What a closed chain determines depends neither on one tiny lever nor on its size: orders,
+/// The constraints of a closed chain depend neither on one tiny lever nor on its size: orders,
 /// warnings and transfers against the same bodies and hinges in coordinates of all bodies.
 
 using namespace titop;

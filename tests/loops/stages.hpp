@@ -1,6 +1,6 @@
 #pragma once
 
-// What passes have made of a diagram.
+// Stages after some passes.
 
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/titop.hpp>

@@ -8,7 +8,7 @@
 
 #include "support/rng.hpp"
 
-/// Stiff and soft in one chain: what is independent is geometry, and springs have no say in it.
+/// Stiff and soft in one chain: independence is decided by geometry, not by springs.
 
 using namespace titop;
 using Eigen::Index;

@@ -17,7 +17,7 @@ constexpr std::array<const char*, 4> kNames{"clamped", "pinned", "guided", "free
 
 const Tube kTube{2, 0.05, 0.04, 6};
 
-/// Pinned: no translation. Guided: nothing but translation along z. In each what is held.
+/// Pinned: no translation. Guided: nothing but translation along z. Returns the held directions.
 std::vector<Index> held(Support s) {
   switch (s) {
     case Support::clamped: return {0, 1, 2, 3, 4, 5};
@@ -46,7 +46,7 @@ void support(const Point& point, Support s) {
   }
 }
 
-/// Rigid motions that the supports leave: corank of the rigid motions on what is held.
+/// Rigid motions that the supports allow: corank of the rigid motions in the held directions.
 Index rigid_motions(const std::vector<Index>& held_of_12, const MatrixXd& rigid) {
   if (held_of_12.empty()) return 6;
   const Eigen::FullPivLU<MatrixXd> lu(rigid(held_of_12, Eigen::all));

@@ -13,8 +13,8 @@
 #include "support/mistakes.hpp"
 #include "support/rng.hpp"
 
-/// Trusses of rigid bars on pins: no body belongs to one loop alone, and most of what the loops say
-/// they say twice. What the passes do grows with the structure, whatever the names.
+/// Trusses of rigid bars on pins: no body belongs to one loop alone, and most loop equations are
+/// redundant. The work of the passes grows with the structure, independent of names.
 
 using namespace loop_test;
 using namespace titop;
@@ -167,7 +167,7 @@ struct Chains {
       if (tie.closes) closings.push_back(motion.closing(tie));
   }
 
-  /// Columns that are open at once where it is decided in this order what is said twice.
+  /// Columns that are open at once if redundancy is decided in this order.
   int widest(const std::vector<int>& order) const {
     using namespace passes::closing;
     std::vector<Line> lines;

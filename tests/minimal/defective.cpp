@@ -6,7 +6,7 @@
 #include <titop/graph/linalg/schur.hpp>
 #include <titop/titop.hpp>
 
-/// Poles whose vectors are no basis: what is not judged stays.
+/// Poles whose eigenvectors are no basis: poles without a verdict are kept.
 
 using namespace titop;
 using Eigen::MatrixXd;

@@ -13,7 +13,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-/// Springs on the wall under one force; "y" is the sum of what they stretch.
+/// Springs on the wall under one force; "y" is the sum of their stretches.
 Diagram side_by_side(const std::vector<SpringMass>& springs, bool driven = true, bool seen = true) {
   Diagram d{"side by side"};
   std::vector<decltype(d.add("", SpringMass{}))> z;
@@ -112,7 +112,7 @@ TEST_CASE("minimal: equal wings of different damping on a hub") {
   const System s = compile(d);
   check_order(s, 6);
   const Complex at(0.01, 1.7);
-  const auto carried = [&](double c) {  // what a wing takes from the hub, over s^2 x
+  const auto carried = [&](double c) {  // force of a wing on the hub, over s^2 x
     const Complex spring = c * at + 3.0;
     return spring / (at * at + spring);
   };

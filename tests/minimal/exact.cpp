@@ -6,7 +6,7 @@
 #include "support/five_masses.hpp"
 #include "support/rng.hpp"
 
-/// The order in exact arithmetic, against what theory says of each scene.
+/// The order in exact arithmetic, against the theory of each scene.
 
 using namespace titop;
 using Eigen::MatrixXd;
@@ -55,7 +55,7 @@ TEST_CASE("five masses: 8 where k4/m4 = k5/m5, decided exactly; 10 one ulp besid
   CHECK(exact_order(five(std::nextafter(130, 0)).graph()).order == 10);
   CHECK(exact_order(five(170).graph()).order == 10);
   CHECK(exact_order(five(130, 0x1p-40).graph()).order == 8);
-  // Without it, what lies below its own rounding counts as nothing.
+  // Otherwise a mode below its own rounding is removed.
   CHECK(compile(five(std::nextafter(130, 200))).state_space().order() == 8);
   const System exactly = compile(five(std::nextafter(130, 200)), {.exact_up_to = 10});
   CHECK(exactly.state_space().order() == 10);

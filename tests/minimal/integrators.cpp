@@ -47,7 +47,7 @@ StateSpace whole_numbers(titop_test::Rng& rng) {
   for (Index i = 0; i + 1 < r; ++i) A(i, i + 1) = whole(rng, -1, 1);
   MatrixXd N = numbers(k, k);
   for (Index i = 0; i < k; ++i) N.row(i).tail(k - i).setZero();
-  // What the integrators are by themselves, and their part of the rest.
+  // The integrators by themselves, and their part of the rest.
   MatrixXd own = numbers(k, inputs);
   if (k > 1 && whole(rng, 0, 1)) own.row(k - 1) = own.row(k - 2), N.row(k - 1) = N.row(k - 2);
   if (whole(rng, 0, 2) == 0) own.row(0).setZero();
@@ -63,7 +63,7 @@ StateSpace whole_numbers(titop_test::Rng& rng) {
   return model(A(order, order), B(order, Eigen::all), C(Eigen::all, order));
 }
 
-/// The states of `system` and the verdict on what is needed of them.
+/// Compares the order of `system` and requires that it is decided.
 void check_order(const System& system, int order) {
   CHECK(system.state_space().order() == order);
   CHECK(system.order_verdict().decided());
@@ -92,8 +92,8 @@ TEST_CASE("random integrators in whole numbers: the order is the exact one, the 
   CHECK(fewer < 1900);
 }
 
-/// What holds of any model: no less than is needed, the truth inside the interval, and the same
-/// transfer, whether the exact order is given or not.
+/// Required of any model: no order below the minimal one, the true order inside the interval, and
+/// the same transfer, with and without the exact order given.
 void check_nothing_lost(const StateSpace& m) {
   const int exact = exact_order(m).order;
   const std::complex<double> s(0.3, 0.7);
@@ -135,7 +135,7 @@ TEST_CASE("poles at 0 that drive others, beside integrators: nothing is lost, th
   }
   CHECK(poles > 200);
   // Of random models: one whose mode at -1 is known to 1e12 of its size beside a double pole at 0,
-  // and two whose modes are rounding of what acts on them.
+  // and two whose modes are at the rounding level of the states that act on them.
   MatrixXd A = MatrixXd::Zero(8, 8);
   A.row(0) << -1, 0, 0, 0, 0, 0, 0, 0;
   A(1, 1) = -2, A(1, 2) = 1, A(3, 1) = A(4, 1) = 2, A(5, 0) = 1;

@@ -61,7 +61,7 @@ Diagram soft_in_a_chain(double k, double mass) {
   return d;
 }
 
-/// The largest error of an output, relative to what it is by 50 digits, at each point by itself.
+/// The largest error of an output, relative to its value in 50 digits, at each point by itself.
 double worst_error(const System& system, const StateSpace& m, const std::vector<Complex>& points) {
   double worst = 0;
   for (const Complex s : points) {

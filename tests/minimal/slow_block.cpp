@@ -100,8 +100,8 @@ TEST_CASE(
 }
 
 TEST_CASE("slow block: where the factors have no digit, a transfer is refused, not found by luck") {
-  // In turned frames the last place of the arms decides there: 50 digits see the chain not quite
-  // close, and hold it by what is left.
+  // In rotated frames the last place of the arms decides there: in 50 digits the chain does not
+  // close exactly, and the remainder holds it.
   const System system = compile(with_filter(1e-6));
   for (const double w : {1e-8, 1e-9}) CHECK_THROWS_AS(system.transfer({0.05 * w, w}), Error);
   CHECK(system.transfer({0, 1e-3}).allFinite());
@@ -109,7 +109,7 @@ TEST_CASE("slow block: where the factors have no digit, a transfer is refused, n
 
 namespace {
 
-/// What the model's digits are, by the certificate or by the log.
+/// Whether the certificate or the log reports lost digits of the model.
 bool told(const System& system) {
   const Certificate c = system.certificate();
   return std::max(c.dense_error, c.dense_error_where_small) > 1e-6 ||
@@ -138,7 +138,7 @@ TEST_CASE("slow block: a model that is wrong at the modes of the assembly says s
       system.write(written);
       const double off = error(system, written, {1e-3, 0.1, 1}),
                    minimal = error(system, system.state_space(), {1e-3, 0.1, 1});
-      CHECK(minimal <= 10 * std::max(off, 1e-9));  // what leaves costs no more
+      CHECK(minimal <= 10 * std::max(off, 1e-9));  // removing states loses no further digits
       if (off <= 1e-3) continue;
       ++wrong;
       CHECK(told(system));

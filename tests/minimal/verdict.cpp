@@ -5,7 +5,7 @@
 #include <numbers>
 #include <titop/titop.hpp>
 
-/// What `minimize` says of the order, beside the model.
+/// The verdict of `minimize` on the order, beside the model.
 
 using namespace titop;
 using Eigen::MatrixXd;
@@ -94,7 +94,7 @@ TEST_CASE("the exact order decides where visibility does not") {
   CHECK(told.model.order() == 4);
   CHECK(told.order.exact);
   CHECK(to_string(told.order).find("exact: order 4") == 0);
-  // What inputs do to the mode and what outputs see of it are each 1e-6: their product is missed.
+  // The mode's input and output vectors are each 1e-6: their product is not detected.
   REQUIRE(told.order.removed.size() == 1);
   CHECK(told.order.removed[0].visibility > 1e-14);
   CHECK(told.order.change > told.order.removed[0].visibility);

@@ -7,9 +7,9 @@
 #include "support/random_scene.hpp"
 #include "support/small_scenes.hpp"
 
-/// What the certificate by itself says of twenty fixed graphs: 0 if it finds no fault, 1 if it
-/// finds one or the compiler refuses, with the first words about it. No expected numbers:
-/// tests/mutants/run asks how many mistakes planted in compiler/ it finds.
+/// Verdict of the certificate alone on twenty fixed graphs: 0 if it finds no fault, 1 if it finds
+/// one or the compiler refuses, with the first words about it. No expected numbers:
+/// tests/mutants/run counts how many mistakes planted in compiler/ it finds.
 namespace {
 
 using namespace titop;

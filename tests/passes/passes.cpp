@@ -21,7 +21,7 @@ using titop::linalg::at;
 
 const std::vector<Complex> kPoints{{0.3, 1.7}, {-0.4, 6.1}, {0.1, 0.05}, {2, 40}};
 
-/// What the graph means, rows and columns as the user declared them.
+/// Transfer of the graph, rows and columns as the user declared them.
 Eigen::MatrixXcd meaning(const Graph& g, Complex s) {
   const Eigen::MatrixXcd G = transfer(g, s);
   std::vector<int> rows, cols;
@@ -84,7 +84,7 @@ TEST_CASE("every pass keeps the transfer, and so do the system and its dense mod
     }
     CHECK(system.certificate().residual <= 1e-14);
     CHECK(system.certificate().dense_against_factors <= 1e-13);
-    CHECK(system.certificate().seconds > 0);  // what the check costs is told
+    CHECK(system.certificate().seconds > 0);  // the check's seconds are reported
     std::vector<std::string> passes;
     for (const auto& [pass, seconds] : system.seconds()) {
       passes.push_back(pass);

@@ -4,7 +4,7 @@
 #include <titop/blocks/scene/scene.hpp>
 #include <titop/titop.hpp>
 
-/// What is right and rarely meant is warned of, and compiled: springs of the wrong sign, inputs
+/// Legal input that is rarely intended leads to a warning: springs of the wrong sign, inputs
 /// without outputs, degrees for radians.
 
 using namespace titop;

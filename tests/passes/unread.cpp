@@ -2,7 +2,7 @@
 
 #include <titop/titop.hpp>
 
-/// What is declared and not used is said, and what is quoted of a diagram is what was written.
+/// Declared but unused parts are reported, and quotations of a diagram are as written.
 
 using namespace titop;
 

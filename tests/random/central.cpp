@@ -8,7 +8,7 @@
 #include "support/random_checks.hpp"
 
 /// The central property, on 200 seeded random diagrams: every pass keeps the transfer and its own
-/// promise, and what is compiled agrees with the equations as written.
+/// promise, and the compiled system agrees with the equations as written.
 
 using namespace titop_test;
 

@@ -40,7 +40,7 @@ TEST_CASE("random graphs: units leave verdict and transfer unchanged") {
 
 namespace {
 
-/// Poles of scenes without controllers; `zeros` are what lies below 1e-5 of the largest.
+/// Poles of scenes without controllers; `zeros` are those below 1e-5 of the largest.
 struct Poles {
   double largest_real = -1;  ///< Re / |s| of the others
   double largest_axis = 0;   ///< |Re| / |s| of the others

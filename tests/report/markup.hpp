@@ -9,8 +9,8 @@
 /// Reads HTML that is also XML, as our reports are.
 namespace titop_test {
 
-/// What is wrong with it, "" if nothing: tags nest and close, attributes are quoted, ids are there
-/// once, every & is an entity.
+/// The first fault of the markup, "" if none: tags nest and close, attributes are quoted, ids are
+/// unique, every & is an entity.
 inline std::string complaint(const std::string& text) {
   const auto near = [&](const char* what, std::size_t at) {
     return fmt::format("{}: {}", what, text.substr(at, 60));

@@ -1,4 +1,4 @@
-// The report as a whole: its structure, its numbers, text of any origin, and what is missing.
+// The report as a whole: its structure, its numbers, text of any origin, and missing parts.
 #include <doctest/doctest.h>
 #include <stdlib.h>
 #include <sys/stat.h>

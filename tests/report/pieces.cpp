@@ -1,4 +1,4 @@
-// What a report is made of: plots, programs without a shell, units of inputs and outputs.
+// Parts of a report: plots, programs without a shell, units of inputs and outputs.
 #include <doctest/doctest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// "As written" in the report is what was written: no Integrator that the compiler has added.
+// "As written" in the report is the user's diagram: no Integrator that the compiler has added.
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Broken scene files: each is refused with its place in the text, what was found and what was
+// Broken scene files: each is refused with its place in the text, the text found and the text
 // expected.
 #include <doctest/doctest.h>
 

@@ -1,6 +1,6 @@
 #pragma once
 
-// Structures written out as M, D, K: what the examples check with.
+// Structures written out as M, D, K: the references of the examples.
 #include <titop/titop.hpp>
 
 #include "../../examples/by_hand/by_hand.hpp"

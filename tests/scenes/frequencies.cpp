@@ -6,8 +6,8 @@
 
 #include "by_hand.hpp"
 
-/// Boundary conditions by what a scene imposes: clamped, pinned, free; frequencies against the
-/// finite-element program, the same M and K, and the textbook.
+/// Boundary conditions by the scene's imposed signals: clamped, pinned, free; frequencies against
+/// the finite-element program, the same M and K, and the textbook.
 
 using namespace scene_test;
 using namespace titop;

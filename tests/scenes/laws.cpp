@@ -4,8 +4,8 @@
 
 #include "by_hand.hpp"
 
-/// What must hold of any structure: rigid mass at rest, reciprocity, independence of frames and of
-/// the root of the tree, signs of a joint.
+/// Laws of any structure: rigid mass at rest, reciprocity, independence of frames and of the root
+/// of the tree, signs of a joint.
 
 using namespace scene_test;
 using namespace titop;

@@ -128,8 +128,8 @@ TEST_CASE("minimal: slow modes beside a fast one all stay, and one that nobody s
 
 namespace {
 
-/// Two equal rows wall - a - b. What the last of one stretches pushes the last of the other, with
-/// opposite signs: no spring does that.
+/// Two equal rows wall - a - b. The stretch of the last spring of each drives the last mass of the
+/// other, with opposite signs: no spring does that.
 Diagram whirl(double light, double stiffness, double heavy, double push) {
   Diagram d{"whirl"};
   auto u = d.input("u");

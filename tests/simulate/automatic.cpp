@@ -29,7 +29,7 @@ TEST_CASE("up to 600 states the choice is exact, and its error is rounding") {
 }
 
 /// A wall, a light mass on a stiff spring, a heavy one on another; the heavy one is pushed by its
-/// weight in newtons, and moves by what the two springs give at its own slow pace.
+/// weight in newtons, and follows the deflection of the two springs at its own low frequency.
 System heavy_on_light(double heavy) {
   Diagram d{"heavy on light"};
   auto light = d.add("light", SpringMass{.mass = 1, .stiffness = 1e6});

@@ -86,7 +86,7 @@ TEST_CASE("hold of any matrix against 50 digits") {
     const double h = seed == 4 ? 40 : 0.3;
     const Hold x = hold(A, B, h);
     const Matrix50 exact = exponential(A, B, h);
-    // What has died away is known beside what was there: not to digits of its own.
+    // Decayed entries are accurate relative to the initial ones, not relative to themselves.
     for (Index i = 0; i < 5; ++i)
       for (Index j = 0; j < 7; ++j) {
         const auto expected = exact[std::size_t(i)][std::size_t(j)].convert_to<double>();

@@ -5,7 +5,7 @@
 #include "simulate/scenes.hpp"
 #include "support/mistakes.hpp"
 
-/// What makes no sense is refused, with the way out.
+/// Senseless input is refused, with the way out.
 
 using namespace titop;
 using namespace simulate_test;

@@ -11,7 +11,7 @@
 #include "support/rng.hpp"
 
 /// A derivative that reaches an output is refused however small its share is at some frequency:
-/// above that frequency it is all there is. What only rounding has left is none.
+/// above that frequency it dominates. A share at rounding level is none.
 
 using namespace scene_test;
 using namespace titop;
@@ -105,7 +105,7 @@ TEST_CASE("improper: a direction across the motion at once is none, to rounding"
     const Matrix6 C = i % 2 ? Matrix6(0.3 * K) : Matrix6::Zero();
     auto arm = d.add("arm", Bushing{.stiffness = K, .damping = C});
     mount(arm, hub.child("C"), Rotation::about(random_vector(rng), rng.between(0, 3)));
-    // The arm's end gives way to the wrench along `at_once`: what is read is across that.
+    // The arm's end gives way to the wrench along `at_once`: the reading is across that.
     Vector6 wrench, read;
     wrench << random_vector(rng), random_vector(rng);
     read << random_vector(rng), random_vector(rng);

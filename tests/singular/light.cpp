@@ -27,7 +27,7 @@ struct Form {
   bool child_accel, parent_force;
 };
 
-/// Outputs: at the child and, unless left out, at the parent what is not imposed.
+/// Outputs: at the child and, unless left out, at the parent the signals that are not imposed.
 Diagram scene(const Numbers& n, Form form, bool parent_read) {
   Diagram d{"form"};
   auto at_C = d.input("c"), at_P = d.input("p");
@@ -101,7 +101,7 @@ void check(const Numbers& n, Form form, bool parent_read) {
   CHECK((m.A.allFinite() && m.B.allFinite() && m.C.allFinite() && m.D.allFinite()));
 }
 
-/// What the dense model loses: as its certificate says, and in truth at that s.
+/// Error of the dense model: by its certificate, and measured at that s.
 struct Loss {
   double stated, found;
 };
@@ -165,8 +165,8 @@ TEST_CASE("what the dense model loses is stated, at all masses, damped or not") 
             CAPTURE(stated);
             CAPTURE(found);
             CHECK(std::min(found, 1.0) <= std::max(1e-12, 3 * stated));  // 1: no digit is left
-            // Not as close from above: it is to first order, more than 1 where nothing is left, and
-            // what rounds to nothing by luck in `found` need not do so in it.
+            // Less close from above: the estimate is of first order, more than 1 if no digit is
+            // left, and errors that round to 0 by chance in `found` need not do so in it.
             ++all, far += std::min(stated, 1.0) > std::max(1e-12, 60 * found);
           }
   CHECK(far * 10 <= all);

@@ -55,7 +55,7 @@ struct GainNetwork {
   }
 };
 
-/// In a ring that feeds the others and is not fed by what it feeds: the product of its gains.
+/// In a ring that feeds the others without feedback: the product of its gains.
 enum class Plant { nothing, one, one_but_for_rounding };
 
 /// Every loop but the planted one has a gain below 1.
@@ -206,7 +206,7 @@ TEST_CASE("1 + d k = delta: solved with the digits that it says, down to one; re
   for (const double asked : {1e-10, 1e-12, 1e-13, 1e-14}) {
     CAPTURE(asked);
     const System system = compile(ring(asked));
-    const double delta = 1 - (1 - asked);  // exact: what the gain holds
+    const double delta = 1 - (1 - asked);  // exact: the value of the gain
     const double error = relative(system.transfer(0)(0, 0).real(), 1 / delta);
     const int digits = static_cast<int>(std::round(-std::log10(asked)));
     CHECK(error <= 2.3e-16 / asked);

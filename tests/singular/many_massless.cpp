@@ -8,7 +8,7 @@
 
 #include "support/close.hpp"
 
-/// Scenes with many points without mass: what each costs does not depend on how many there are.
+/// Scenes with many points without mass: the cost of each does not depend on their number.
 
 using namespace titop;
 using namespace titop_test;
@@ -19,7 +19,7 @@ using Complex = std::complex<double>;
 
 constexpr double kMass = 1, kDamping = 0.1;   // of a link of the row [kg], [N s/m]
 constexpr double kBracket = 0.5, kInner = 3;  // mass that it adds, its spring
-constexpr double kOuter = 4, kTip = 1;        // what hangs on the massless point
+constexpr double kOuter = 4, kTip = 1;        // beyond the massless point
 constexpr double kSeries = kInner * kOuter / (kInner + kOuter);  // both springs
 
 double stiffness(int i) { return 10.0 + i % 3; }
@@ -65,7 +65,7 @@ Complex by_links(int count, Complex s) {
   return s * s / seen;
 }
 
-/// What the points' dependences among rows cost: fronts gone through, and entries of the rows.
+/// Cost of the points' dependences among rows: fronts visited, and entries of the rows.
 struct Cost {
   std::size_t points = 0, fronts = 0, entries = 0;
 };

@@ -6,8 +6,8 @@
 #include "support/close.hpp"
 #include "support/mistakes.hpp"
 
-/// Structurally singular scenes: what is too much and what is missing, in ports, part by part, and
-/// cures that repair them.
+/// Structurally singular scenes: surplus and missing equations, in ports, part by part, and cures
+/// that repair them.
 
 using namespace titop;
 using namespace titop_test;

@@ -8,7 +8,7 @@
 #include "support/mistakes.hpp"
 #include "support/random_scene.hpp"
 
-/// What writing the dense model down costs: said beforehand, found when it is tried.
+/// Rounding error of the dense model: predicted, and measured.
 
 using namespace titop;
 using titop_test::Rng;
@@ -116,7 +116,7 @@ TEST_CASE("dense export: write() fills the caller's buffer again, whatever stand
 
 TEST_CASE("dense export: an output that is small where slow modes are warns of its digits") {
   // A stiff mass (10^4 rad/s) that carries a soft one (1 rad/s): far below both the acceleration of
-  // the first is s^2 / k1 times the force, what is left of 1/m1 - 1/m1.
+  // the first is s^2 / k1 times the force, the difference of terms 1/m1 - 1/m1.
   Diagram d{"stiff and soft"};
   auto u = d.input("u");
   auto stiff = d.add("stiff", SpringMass{.mass = 1.0, .stiffness = 1e8});
@@ -197,7 +197,7 @@ StateSpace written(const System& system) {
   return model;
 }
 
-/// What is said of the model once `change` has been made to it.
+/// The certificate's verdict on the model after `change`.
 template <class F>
 double difference(const System& system, F change) {
   StateSpace model = written(system);
@@ -209,7 +209,7 @@ double difference(const System& system, F change) {
 
 TEST_CASE("dense export: a model of other numbers differs from the factors, whichever they are") {
   using Matrix = Eigen::MatrixXd StateSpace::*;
-  for (const double push : {1.0, 1e-12, 1e12}) {  // units of u: what it does to x is no measure
+  for (const double push : {1.0, 1e-12, 1e12}) {  // units of u: its effect on x is no scale
     CAPTURE(push);
     const System system = reading(push);
     CHECK(difference(system, [](StateSpace&) {}) <= 1e-15);

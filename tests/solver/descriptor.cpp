@@ -75,7 +75,7 @@ TEST_CASE("descriptor: of bodies with six degrees of freedom and joints, too") {
     const Eigen::MatrixXcd right = system.transfer(s);
     const Eigen::MatrixXd size = right.cwiseAbs();
     if (size.rowwise().maxCoeff().minCoeff() == 0 || size.colwise().maxCoeff().minCoeff() == 0)
-      continue;  // what nothing moves is rounding there
+      continue;  // a row or column without path is rounding there
     CAPTURE(seed);
     CHECK(matrix_error(transfer_of(m, s), right) <= 1e-9);
     ++compared;

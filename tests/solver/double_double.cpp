@@ -33,7 +33,7 @@ Real exact_of(const DoubleDouble& x) {
   return Real(high) + Real(static_cast<double>(x - high));
 }
 
-/// Over what the operation's numbers are.
+/// Error relative to the size of the operands.
 double error(const DoubleDouble& found, const Real& exact, const Real& size) {
   return static_cast<double>(abs(exact_of(found) - exact) / size);
 }

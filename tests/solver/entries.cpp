@@ -66,7 +66,7 @@ struct Tree {
   }
 };
 
-/// Distance in units of the last place of what is exact.
+/// Distance in units of the last place of the exact value.
 double ulps(double found, const Real& exact) {
   const double rounded = static_cast<double>(exact);
   if (rounded == 0) return found == 0 ? 0 : std::numeric_limits<double>::infinity();

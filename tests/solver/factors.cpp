@@ -4,7 +4,7 @@
 
 #include "sparse_system.hpp"
 
-/// The elimination against dense LU with full pivoting, and what it says of singular systems.
+/// The elimination against dense LU with full pivoting, and its verdict on singular systems.
 
 using namespace solver_test;
 using titop::solve::Factors;
@@ -70,7 +70,7 @@ TEST_CASE("solver: new coefficients row by row, a hundred times: the bits of fre
           CHECK(std::ranges::equal(now.made(f).order, fresh.made(f).order));
         }
       }
-      CHECK(solve<double>(first, b) == x);  // what others share is left alone
+      CHECK(solve<double>(first, b) == x);  // shared fronts are unchanged
     }
   }
 }
@@ -143,8 +143,8 @@ TEST_CASE("solver: exactly singular systems are refused") {
 
 namespace {
 
-/// The chain 1 - 2 - ... with a vector v in its null space, but for `distance` in one entry of it:
-/// each row's diagonal entry is what makes row * v = 0.
+/// The chain 1 - 2 - ... with a vector v in its null space, up to `distance` in one entry of it:
+/// each row's diagonal entry makes row * v = 0.
 System near_singular(const Links& links, int n, Rng& rng, double distance) {
   System s = random_system(links, n, rng, 0);
   MatrixXd A = s.to_dense();
@@ -190,8 +190,8 @@ TEST_CASE("solver: the distance from singular shows in the weakest pivot") {
     }
 }
 
-// Rows 1 and 2 depend on each other but for their last digits: what is left of row 2 is noise, and
-// in the front that it comes to there is nothing beside it to show that.
+// Rows 1 and 2 are dependent up to their last digits: the remainder of row 2 is noise, and the
+// front that receives it has no other entry to show that.
 TEST_CASE("solver: a row of which only rounding is left does not pass for a good one further up") {
   System s;
   for (int i = 0; i < 4; ++i) s.structure.add_variable(1);

@@ -4,8 +4,9 @@
 #include <cmath>
 #include <titop/titop.hpp>
 
-/// Two booms of many modes on a hub, one by a hinge: what one boom does to the other is what that
-/// does to it, whatever the names. A body's names decide where its equations stand.
+/// Two booms of many modes on a hub, one by a hinge: the effect of one boom on the other equals
+/// that of the other on it, independent of names. A body's name determines the place of its
+/// equations.
 
 using namespace titop;
 using Eigen::Index;

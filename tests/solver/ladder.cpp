@@ -79,7 +79,7 @@ TEST_CASE("precision: each step of the ladder is as good as its digits") {
   CHECK(standard <= 1e-10);
   CHECK(refined <= 1e-13);
   CHECK(refined <= 1e-2 * standard);
-  // What is compared is rounded to double.
+  // The compared values are rounded to double.
   CHECK(twofold <= 3e-16);
   CHECK(digits50 <= 3e-16);
 }
@@ -113,7 +113,7 @@ TEST_CASE("precision: as needed goes up where cancellation has eaten the digits 
   L.in = K.out;
   d.output("y") = K.out;
   const System system = compile(d);
-  // The factor 1/3 is a rounded double: exact arithmetic on what the doubles are.
+  // The factor 1/3 is a rounded double: exact arithmetic with these doubles.
   const Real k = 1 + 0x1p-20, l = Real((1 - 0x1p-20) / 3) * 3;
   const double exact = static_cast<double>(k / (1 - k * l));
   const auto error = [&](Precision p) {
@@ -134,9 +134,9 @@ Lti first_order(double c, double D) {
   return {.A = one(-kPole), .B = one(1), .C = one(c), .D = one(D)};
 }
 
-/// A loop by c / (s + kPole) + 1/2, and around it one by by / (s + kPole): where s = 2, each may be
-/// as near to its pole as one likes; at infinity they are far. The output is what enters, or that
-/// times `gain` beside u.
+/// A loop by c / (s + kPole) + 1/2, and around it one by by / (s + kPole): at s = 2, each may be
+/// arbitrarily near to its pole; at infinity they are far. The output is the loop's input sum, or
+/// that times `gain` beside u.
 Diagram loop_in_loop(double c, double by, std::optional<double> gain = {}) {
   Diagram d{"loops"};
   auto u = d.input("u");
@@ -151,7 +151,7 @@ Diagram loop_in_loop(double c, double by, std::optional<double> gain = {}) {
   return d;
 }
 
-/// What enters, at s = 2, for u = 1.
+/// The loop's input sum, at s = 2, for u = 1.
 Real entering(double c, double by) {
   return 1 / (Real(0.5) - (Real(c) + Real(by)) / (Real(2) + Real(kPole)));
 }
@@ -226,7 +226,7 @@ struct Answers {
 struct AnswersOfAll {
   Answers refined{Precision::refined}, twofold{Precision::twofold}, as_needed{Precision::as_needed};
 
-  /// What enters is this share of the output, about.
+  /// The loop's input sum is about this share of the output.
   void ask(double c, double by, double share) {
     const double gain = share / static_cast<double>(entering(c, by));
     const System system = compile(loop_in_loop(c, by, gain));
@@ -244,8 +244,8 @@ struct AnswersOfAll {
 
 }  // namespace
 
-// What has no digit in double is a small share of the output, and by so much smaller are its
-// changes from step to step, whether they lead anywhere or not.
+// The part without digits in double is a small share of the output, and its changes from step to
+// step are as small, whether they converge or not.
 TEST_CASE("precision: refinement is not taken in by outputs of which little is ill-determined") {
   AnswersOfAll all;
   for (int k = 20; k <= 34; ++k)
@@ -266,8 +266,8 @@ TEST_CASE("precision: refinement is not taken in by outputs of which little is i
   CHECK(answer(system, Precision::as_needed) == answer(system, Precision::digits50));
 }
 
-// So near that the factors are wrong by many times what is left: every step is then a tiny part of
-// the way, as if it had arrived.
+// So near that the factors are wrong by many times the remaining error: every step is then a tiny
+// part of the way, as if it had converged.
 TEST_CASE("precision: refinement is not taken in by steps that are small since they lead nowhere") {
   AnswersOfAll all;
   for (int k = 6; k <= 34; ++k)

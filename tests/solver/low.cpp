@@ -72,7 +72,7 @@ TEST_CASE("low: so it is no rounding that excuses a difference") {
   const System system = compile(on_the_wall({.mass = 3, .stiffness = 7e5}, 0.5));
   for (const double omega : {1.0, 1e-3, 1e-6}) {
     const std::complex<double> s(0, omega);
-    // The last place may differ; a thousandth of the terms is what may be off.
+    // The last place may differ; a thousandth of the terms is the allowed error.
     const double size = std::abs(system.transfer(s)(0, 0));
     CHECK(1e-3 * detail::terms(system, {s})(0, 0) <= size);
   }
@@ -122,7 +122,7 @@ TEST_CASE("low: masses and springs far apart cost 32 digits, too: right, finer, 
 }
 
 TEST_CASE("low: the static gain of supports inside a chain is the limit of the transfers") {
-  // At s = 0 accelerations say nothing: what 50 digits leave there of a block is no pivot.
+  // At s = 0 accelerations vanish: the 50-digit rounding of a block there is no pivot.
   const System system =
       compile(read_scene(std::string(TITOP_SOURCE_DIR) + "/tests/corpus/scenes/064.json"));
   const Eigen::MatrixXd limit = system.transfer({1e-8, 0}, Precision::digits50).real();

@@ -10,7 +10,7 @@
 #include <titop/compiler/solve/storage.hpp>
 #include <titop/titop.hpp>
 
-/// What is taken and freed at every s stays in the process; what is large comes in large pages.
+/// Memory allocated and freed at every s is kept by the process; large blocks have large pages.
 
 using namespace titop;
 
@@ -49,8 +49,7 @@ long page_faults() {
   return usage.ru_minflt;
 }
 
-/// What the kernel knows of the memory at an address (VmFlags of proc(5)); nothing where it does
-/// not say.
+/// The kernel's flags of the memory at an address (VmFlags of proc(5)); empty if there are none.
 std::string flags_of(const void* address) {
   std::ifstream maps("/proc/self/smaps");
   const auto place = reinterpret_cast<std::uintptr_t>(address);

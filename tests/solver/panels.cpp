@@ -12,7 +12,7 @@
 #include "sparse_system.hpp"
 #include "support/rng.hpp"
 
-/// Elimination by panels, some steps at a time: bit by bit what whole steps give; the steps alone
+/// Elimination by panels, some steps at a time: the same bits as by whole steps; the steps alone
 /// first, then with their pivots as the solver takes them.
 
 namespace {

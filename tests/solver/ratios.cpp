@@ -44,7 +44,7 @@ struct Flexible {
         Phi_C = Q / std::sqrt(one.D_P(0, 0));
       }
       data.push_back(titop_test::scaled(one, {.mass = scale(i, ratio)}));
-      // What `Rotation` will hold: it repairs the last digit.
+      // As `Rotation` will store it: it repairs the last digit.
       T.push_back(Rotation::matrix(rng.rotation()).nominal());
     }
   }

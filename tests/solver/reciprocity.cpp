@@ -6,8 +6,8 @@
 
 #include "support/random_scene.hpp"
 
-/// Half of a symmetric matrix is enough to write the dense model. Where it is taken, what modes of
-/// one body feel of another's is, to the last bit, what those feel of them; nowhere else.
+/// Half of a symmetric matrix is enough to write the dense model. If this is used, the coupling of
+/// two bodies' modes is symmetric to the last bit; otherwise it is not.
 
 using namespace titop;
 using titop_test::Rng;
@@ -16,8 +16,8 @@ namespace {
 
 constexpr int kModes = 6;
 
-/// A bar with modes and one degree of freedom at each end. `skew`: what its ends do to each other
-/// directly is not the same both ways. `first_alone`: the other modes do not move the child.
+/// A bar with modes and one degree of freedom at each end. `skew`: asymmetry of the direct coupling
+/// of its ends. `first_alone`: the other modes do not move the child.
 class BarBlock : public Block {
  public:
   BarBlock(Rng& rng, Value skew = 0.0, bool modal = true, double mass = 5, bool first_alone = false)
@@ -164,8 +164,8 @@ Diagram chain(const Bars& bars) {
   return d;
 }
 
-/// What the modes of all bodies feel of each other: modal accelerations by unit displacements, over
-/// minus the stiffness, without the body's own.
+/// Coupling of the modes of all bodies: modal accelerations by unit displacements, over minus the
+/// stiffness, without the body's own.
 Eigen::MatrixXd felt(const System& system) {
   StateSpace m;
   system.write(m);
@@ -198,8 +198,8 @@ Pairs pairs(const System& system) {
 bool takes_half(const Pairs& p) { return p.same > 4 * p.others; }
 bool takes_all(const Pairs& p) { return p.others > p.same; }
 
-/// Largest difference of [A B; C D] from what the factors do to unit vectors, per column over its
-/// largest entry.
+/// Largest difference of [A B; C D] from the factors' products with unit vectors, per column over
+/// its largest entry.
 double written_error(const System& system, int threads = 0) {
   StateSpace m;
   system.write(m, threads);

@@ -5,7 +5,7 @@
 
 #include "support/random_lti.hpp"
 
-/// (s - A)^-1 in every scalar type, 0 to 12 states: what is left of (s - A) x - r in 100 digits
+/// (s - A)^-1 in every scalar type, 0 to 12 states: the residual (s - A) x - r in 100 digits
 /// against the bound of Gaussian elimination with row pivoting, |residual| <= 3 n^3 growth eps
 /// max(|s - A| |x|) [Higham 2002, theorem 9.5], in any units of the states (columns).
 namespace {

@@ -104,7 +104,7 @@ TEST_CASE("column scale: at the ends of what a double holds") {
   const std::vector<int> subnormal =
       exponents(diagonal({Limits::min(), Limits::min() / 8, 2e-310}));
   for (const int e : subnormal) CHECK(std::abs(e - 511) <= 1);
-  // What has next to no digits left, and what is none, is no entry.
+  // Values with next to no digits left, and values that are not finite, count as no entry.
   CHECK(exponents(diagonal({1e-314, Limits::denorm_min(), Limits::infinity(),
                             Limits::quiet_NaN()})) == std::vector<int>(4, 0));
   CHECK(exponents(diagonal({Limits::max()})) == std::vector<int>{-512});
@@ -121,8 +121,8 @@ TEST_CASE("column scale: at the ends of what a double holds") {
 }
 
 TEST_CASE("column scale: threes share an exponent, whichever way their frame is turned") {
-  // A wrench of forces and torques, and a scalar between: 2^(p_i + q of the unit) times what three
-  // components have, none above 1.
+  // A wrench of forces and torques, and a scalar between: 2^(p_i + q of the unit) times three
+  // components, none above 1.
   const std::vector<int> units{0, 3, 4, 7}, q{0, 12, -7}, p{3, -4, 0, 5};
   const double component[] = {1, 0.5, 0x1p-30};
   const auto turned = [&](int by) {

@@ -7,8 +7,8 @@
 
 #include "oracle.hpp"
 
-/// Entries of the transfer that are tiny beside what cancels in them, and others that are 0 by
-/// symmetry: in double both are rounding. Finer arithmetic tells them apart.
+/// Entries of the transfer that are tiny beside their cancelling terms, and others that are 0 by
+/// symmetry: in double both are rounding. Finer arithmetic distinguishes them.
 
 using namespace titop;
 using solver_test::Complex;
@@ -37,7 +37,7 @@ Diagram diagram(const Springs& row) {
   return d;
 }
 
-/// The stretches, from the wall outwards: what all of it takes if the first mass moves by 1.
+/// The stretches, from the wall outwards, for a unit displacement of the first mass.
 std::array<Complex, 3> stretches(const Springs& row, std::complex<double> at) {
   const Complex s(at), s2 = s * s;
   std::array<Complex, 3> stretch;

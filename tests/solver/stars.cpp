@@ -108,9 +108,10 @@ Diagram oblique(std::uint64_t seed, int n) {
 
 }  // namespace
 
-// The direct term of a slender beam is what six modes leave of its mass: hardly any about its
-// cross axes. Taken for a pivot it costs digits of the boom's acceleration; with the hub's columns
-// scaled one by one, entries that are nearly 0 in such a turn made it look as good as the mount.
+// The direct term of a slender beam is its residual mass after six modes: hardly any about its
+// cross axes. Used as a pivot it loses digits of the boom's acceleration; with the hub's columns
+// scaled one by one, entries that are nearly 0 in such an orientation made it look as good as the
+// mount.
 TEST_CASE("star: accelerations of slender booms, mounted obliquely, follow the hub's") {
   for (const std::uint64_t seed : {4U, 5U, 7U, 11U}) {
     const int n = 100;

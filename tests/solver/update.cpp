@@ -220,7 +220,8 @@ Diagram loop() {
 }  // namespace
 
 TEST_CASE("update: where pivots lose half their digits all is made anew, and that is counted") {
-  // What is left of 1 - g: the value moves by less than 2, the pivot by a thousand million.
+  // The difference 1 - g: the value changes by less than a factor of 2, the pivot by a thousand
+  // million.
   const System before = compile(loop());
   CHECK(before.update({{"g", 0.7}}).certificate().plans_renewed == 0);
   const System after = before.update({{"g", 1 - 1e-10}});

@@ -36,7 +36,7 @@ std::vector<double> fine_points(const titop::Scene& scene, const std::vector<dou
   const auto point = [&](double omega) {
     Point p{omega, 0};
     for (const double pole : poles) {
-      if (!(pole > 0)) continue;  // what is free has no resonance
+      if (!(pole > 0)) continue;  // a free motion has no resonance
       const double centre = std::clamp(pole, low, high);
       const double width = scene.damping_floor * pole + std::abs(pole - centre);
       p.phase += 2 * std::atan((omega - centre) / width);

@@ -95,8 +95,8 @@ class Equations {
   std::vector<std::vector<Number>> rows_;
 };
 
-/// Rows spanning what is orthogonal to these independent rows: unit vectors less what they share
-/// with the rows, the one with the most left first [modified Gram-Schmidt, twice].
+/// Rows spanning the orthogonal complement of these independent rows: unit vectors minus their
+/// projection on the rows, the one with the largest remainder first [modified Gram-Schmidt, twice].
 MatrixXd orthogonal(const MatrixXd& S, Index n) {
   MatrixXd basis = S.rowwise().normalized(), rest(0, n);
   while (basis.rows() < n) {
@@ -185,7 +185,7 @@ class Assembly {
                                                    : Number(1);
       add(rows, c, t.signal, by);
       if (t.of != Term::Of::reaction) continue;
-      for (const Equation& e : g_.equations)  // a reaction is the force without what is added to it
+      for (const Equation& e : g_.equations)  // a reaction is the force without added terms
         if (e.target == t.signal && e.accumulate && !e.of_block) subtract_equation(rows, c, e);
     }
   }

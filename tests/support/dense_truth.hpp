@@ -5,9 +5,9 @@
 
 namespace titop_test {
 
-/// Transfer of a diagram: all its equations at once in 100 digits, (s - A) x = B u and
-/// y = C x + D u of every block and what the user wrote, by Gaussian elimination with row pivoting
-/// of one dense matrix. It shares no code with the compiler, only the graph and the blocks' data.
+/// Transfer of a diagram: all its equations at once in 100 digits, (s - A) x = B u and y = C x + D
+/// u of every block and the user's equations, by Gaussian elimination with row pivoting of one
+/// dense matrix. It shares no code with the compiler, only the graph and the blocks' data.
 /// O(signals^3): for graphs of up to some hundred scalar signals.
 struct DenseTruth {
   Eigen::MatrixXcd transfer;  ///< outputs x inputs, in the graph's order; rounded once

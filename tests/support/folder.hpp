@@ -29,7 +29,7 @@ struct Folder {
     std::ifstream file(path / name, std::ios::binary);
     return {std::istreambuf_iterator<char>(file), {}};
   }
-  /// Exit code of a shell command run here; what it prints goes to `log`.
+  /// Exit code of a shell command run here; its output goes to `log`.
   int run(const std::string& command, const std::string& log = "log.txt") const {
     const std::string all = "cd '" + path.string() + "' && { " + command + "; } > " + log + " 2>&1";
     const int status = std::system(all.c_str());

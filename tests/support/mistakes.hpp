@@ -6,7 +6,7 @@
 #include <string_view>
 #include <titop/compiler/system.hpp>
 
-/// What a user would read: the error that something throws, and whether it says what it should.
+/// The user's view: the error that is thrown, and whether it has the expected text.
 namespace titop_test {
 
 /// The error that f() throws; one without mistakes if it throws none.

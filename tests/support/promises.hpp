@@ -2,17 +2,17 @@
 
 #include <titop/compiler/stage.hpp>
 
-/// What each pass promises, written down a second time; std::logic_error where a promise is broken.
+/// The promise of each pass, implemented a second time; std::logic_error if a promise is broken.
 namespace titop_test {
 
 /// One numeric coefficient per term, every degree of freedom of a channel driven once.
 void demand_lowered(const titop::Stage& stage);
 
-/// What is active hangs together with an input and an output, unless the diagram has none at all;
-/// all that does so is active.
+/// Active parts are connected with an input and an output, unless the diagram has none at all; all
+/// such parts are active.
 void demand_split(const titop::Stage& stage);
 
-/// No closing equation says what others say: bodies and motions, as one matrix on all positions,
+/// No closing equation is redundant: bodies and motions, as one matrix on all positions,
 /// coordinates and prescribed motions, have full row rank.
 void demand_not_redundant(const titop::Stage& stage);
 

@@ -63,14 +63,13 @@ PassError pass_error(const Scene& scene) {
     Stage (*run)(Stage);
     void (*promise)(const Stage&);
   };
-  const Pass all[] = {
-      {"check", passes::check, nullptr},  // what it promises shows in demand_lowered
-      {"lower", passes::lower, demand_lowered},
-      {"split", passes::split, demand_split},
-      {"chains", passes::chains, demand_not_redundant},
-      {"match", passes::match, demand_matched},
-      {"order", passes::order, demand_ordered},
-      {"close", passes::close, demand_closed}};
+  const Pass all[] = {{"check", passes::check, nullptr},  // its promise shows in demand_lowered
+                      {"lower", passes::lower, demand_lowered},
+                      {"split", passes::split, demand_split},
+                      {"chains", passes::chains, demand_not_redundant},
+                      {"match", passes::match, demand_matched},
+                      {"order", passes::order, demand_ordered},
+                      {"close", passes::close, demand_closed}};
   const Diagram diagram = scene.build();
   const auto rows = Scene::blocks(scene.outputs), cols = Scene::blocks(scene.inputs);
   const std::complex<double> s = points(diagram.graph().nodes.size(), 1).front();

@@ -7,7 +7,7 @@
 
 #include "support/random_scene.hpp"
 
-/// What is measured on a random scene; the tests compare it with their tolerances.
+/// Measurements on a random scene; the tests compare them with their tolerances.
 namespace titop_test {
 
 /// Points on a line s = sigma + j omega, away from the poles of anything stable, inside the range

@@ -1,7 +1,7 @@
 #include "support/random_draft.hpp"
 #include "support/random_lti.hpp"
 
-/// Controllers of 3 to 12 states and several inputs and outputs around what has been drawn.
+/// Controllers of 3 to 12 states and several inputs and outputs around the scene drawn before.
 namespace titop_test {
 
 using namespace titop;
@@ -34,7 +34,7 @@ Lti in_units(Lti K, const Dims& in, const Dims& out, const Units& units) {
 }
 
 /// One scalar that a controller may measure: an input, a stretch, an acceleration along an axis, or
-/// what a controller before it gives.
+/// the output of a controller before it.
 Read draw_reading(Draft& d, Dims& in, const std::string& before) {
   const int kind = d.rng.below(4);
   const bool springs = !d.springs.empty() && (d.bodies.empty() || d.rng.chance(0.5));
@@ -60,7 +60,7 @@ Read draw_reading(Draft& d, Dims& in, const std::string& before) {
   return [=](Build& b) { return b.bodies.at(a).child("T").accel.along(r).expr(); };
 }
 
-/// Pushes with row `i` of K's outputs, a hundredth of a force for each unit of what is measured, so
+/// Pushes with row `i` of K's outputs, a hundredth of a force for each unit of the measurement, so
 /// that no loop becomes singular.
 void draw_push(Draft& d, const std::string& K, Index i, Index outputs) {
   const MatrixXd row = 0.01 * MatrixXd::Identity(outputs, outputs).row(i);

@@ -78,7 +78,7 @@ struct FrameMaker {
     f.names.push_back(name("b"));
     if (i > 0) join(i, b, body.P, false);
   }
-  /// Beams are held by their ends: two of them do not meet, and what drives one end is one weld.
+  /// Beams are held by their ends: two of them do not meet, and one end is driven by one weld.
   void close() {
     const int a = rng.below(static_cast<int>(f.bodies.size()));
     const int b = rng.below(static_cast<int>(f.bodies.size()) + 1) - 1;

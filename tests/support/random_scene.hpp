@@ -16,7 +16,7 @@
 
 #include "support/rng.hpp"
 
-/// Seeded random diagrams without closed chains: what the central property is tried on.
+/// Seeded random diagrams without closed chains, for the central property.
 namespace titop_test {
 
 /// Factors of the numbers when the units change: a length of 2 becomes 2 * length, and so on.
@@ -57,7 +57,7 @@ struct SceneOptions {
 /// The family, shape and sizes that belong to this seed; `larger` for the long tests.
 SceneOptions random_options(std::uint64_t seed, bool larger = false);
 
-/// What the steps of a scene write into.
+/// The diagram under construction, and its parts by name.
 struct Build {
   titop::Diagram d;
   Units units;

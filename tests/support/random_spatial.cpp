@@ -85,7 +85,7 @@ Vector3d draw_axis(Draft& d) {
   return r.norm() > 0.1 ? r : Vector3d(Vector3d::UnitZ());
 }
 
-/// What acts on the joint: nothing, spring and damper, a motor, a controller, a lock, a motion.
+/// The drive of the joint: none, spring and damper, a motor, a controller, a lock, a motion.
 void draw_mechanism(Draft& d, const std::string& h, bool turns) {
   const Dim position = turns ? kAngle : kLength, force = turns ? kTorque : kForce;
   const Dim stiffness{force.length - position.length, force.mass, force.time};

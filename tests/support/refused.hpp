@@ -5,7 +5,7 @@
 #include <string>
 #include <titop/graph/error.hpp>
 
-/// Broken input, and what the error says of it.
+/// Broken input, and the text of its error.
 namespace titop_test {
 
 /// The text with this part of it, which must be there, replaced once.
@@ -15,7 +15,7 @@ inline std::string replaced(std::string text, const std::string& what, const std
   return text.replace(at, what.size(), with);
 }
 
-/// What the error says that f() throws; "no error" if it throws none.
+/// The text of the error that f() throws; "no error" if it throws none.
 template <class F>
 std::string message_of(F f) {
   try {

@@ -127,7 +127,7 @@ struct ByPoles {
   Eigen::MatrixXcd at(std::complex<double> s) const {
     return c * (1.0 - s * nu.array()).inverse().matrix().asDiagonal() * b;
   }
-  /// What it would be if nothing cancelled.
+  /// Sum of the magnitudes of the terms.
   Eigen::MatrixXd terms(std::complex<double> s) const {
     const Eigen::VectorXd each = (1.0 - s * nu.array()).inverse().abs();
     return c.cwiseAbs() * each.asDiagonal() * b.cwiseAbs();

@@ -17,7 +17,7 @@
 
 #include "support/close.hpp"
 
-/// Sweeps, and what many threads may ask of one System: the same to the last bit, however many.
+/// Sweeps, and concurrent use of one System: the same to the last bit for any number of threads.
 
 using namespace titop;
 

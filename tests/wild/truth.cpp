@@ -49,7 +49,7 @@ Scene lossy_row(int n) {
 /// The same by its recursion from the wall, in ratios: exact to rounding, as nothing cancels.
 std::pair<Complex, Complex> lossy_row_by_recursion(int n, Complex s) {
   const Complex z = 10.0 + 20.0 * s;
-  Complex seen = z, force = z;  // what the first mass feels; wall force per position of mass 1
+  Complex seen = z, force = z;  // load of the first mass; wall force per position of mass 1
   Complex wall = force;
   for (int i = 1; i < n; ++i) {
     const Complex below = s * s + seen;     // force on mass i per its position

@@ -31,7 +31,7 @@ TEST_CASE("threads: where there is no memory for one, the caller does all by its
   int done = 0, asked = 0;
   const std::function<void()> work = [&] { ++done; };
   const std::function<bool()> over = [] { return false; }, more = [&] { return ++asked > 0; };
-  work_together(1, work, over);  // makes what all calls share
+  work_together(1, work, over);  // creates the data that all calls share
   no_memory = true;
   work_together(2, work, more);
   no_memory = false;

@@ -13,13 +13,13 @@ namespace wild {
 
 using Complex = std::complex<double>;
 
-/// With what numbers: 64 bits of mantissa, or 50 digits.
+/// Number type: 64 bits of mantissa, or 50 digits.
 enum class Digits { wide, fifty };
 
-/// H(s), outputs x inputs, and what can be said of the scene beside it.
+/// H(s), outputs x inputs, and properties of the scene.
 struct Truth {
   std::vector<Eigen::MatrixXcd> H;  ///< per s
-  /// Constraints that follow from others: loops that hold something twice.
+  /// Redundant constraints, of over-constrained loops.
   int redundant = 0;
   /// Why there is no answer: an internal force of such a loop is read, a prescribed motion stands
   /// against another, a posture is nearly singular. Empty: there is one.
@@ -27,8 +27,8 @@ struct Truth {
 };
 Truth truth(const Scene& scene, const std::vector<Complex>& s, Digits digits = Digits::wide);
 
-/// The scene with all numbers changed by `relative` of themselves at random, one by one: what
-/// rounding does, chains then meet no better.
+/// The scene with all numbers changed by `relative` of themselves at random, one by one, as by
+/// rounding; chains then do not close exactly.
 Scene disturbed(const Scene& scene, double relative, unsigned seed);
 
 /// The response y(t) from rest to input `column` stepping to 1 at time 0, by the inverse

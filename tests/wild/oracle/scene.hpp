@@ -34,7 +34,7 @@ struct Reading {
     accel,          ///< of point `at`
     rate,           ///< of point `at`
     position,       ///< of point `at`
-    reaction,       ///< of point `at`: what its ties make of the wrench
+    reaction,       ///< of point `at`: the wrench of its ties
     axis_accel,     ///< of axis `axis` of the joint at.node
     axis_rate,      ///< likewise
     axis_position,  ///< likewise

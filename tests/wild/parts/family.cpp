@@ -32,7 +32,7 @@ Judgement judge_seed(const Scene& scene, int seed) {
 
 bool fails(Verdict v) { return v == Verdict::wrong_in_silence || v == Verdict::refused_falsely; }
 
-/// A smaller scene with the same failure, and by no less than a thousand times what is allowed.
+/// A smaller scene with the same failure, by at least a thousand times the allowed error.
 std::string smallest(const Family& family, int seed) {
   const Scene scene = scene_of(family, seed);
   const Judgement first = judge_seed(scene, seed);

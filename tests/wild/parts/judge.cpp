@@ -37,7 +37,7 @@ std::vector<Complex> points_of(const Scene& scene, unsigned seed) {
 
 namespace {
 
-constexpr double kRight = 1e-8;     ///< what is asked, of a block of the transfer
+constexpr double kRight = 1e-8;     ///< required accuracy of a block of the transfer
 constexpr double kData = 1e-15;     ///< the change of data that is tried
 constexpr double kRounding = 100;   ///< errors worth so many such changes are the scene's own
 constexpr double kNothing = 1e-13;  ///< a block that rounding alone fills
@@ -65,13 +65,14 @@ MatrixXd largest(const std::vector<MatrixXcd>& a, const std::vector<MatrixXcd>* 
   return size;
 }
 
-/// What is allowed per block: 1e-8 of it, or what the data's last digits make of it; blocks that
-/// are zero by nature against their row and column.
+/// Allowed error per block: 1e-8 of it, or the effect of the data's last digits; blocks that are
+/// exact zeros against their row and column.
 Blocks blocks_of(const Scene& scene, const std::vector<MatrixXcd>& exact, const MatrixXd& moved) {
   Blocks b{.size = {}, .allowed = {}, .rows = output_blocks(scene), .cols = input_blocks(scene)};
   b.size = largest(exact, nullptr, b.rows, b.cols);
   b.allowed = b.size;
-  // Rounding moves by about as much as it is: one sample says so within a factor of 1e4.
+  // The change by rounding is about as large as rounding itself: one sample is right within a
+  // factor of 1e4.
   const MatrixXd real = (moved.array() < 1e-4 * b.size.array()).select(b.size, 0.0);
   const double all = real.maxCoeff();
   for (Index i = 0; i < b.size.rows(); ++i)
@@ -85,7 +86,7 @@ Blocks blocks_of(const Scene& scene, const std::vector<MatrixXcd>& exact, const 
   return b;
 }
 
-/// What the default certificate and the log say that would make a user doubt.
+/// Warnings of the default certificate and the log that would make a user doubt.
 std::string said(const System& system) {
   std::string text;
   for (const auto& notes : {system.notes(), system.dense_notes()})
@@ -102,7 +103,7 @@ std::string said(const System& system) {
 using WideC = std::complex<long double>;
 using Wide = Eigen::Matrix<WideC, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// A transfer, and what the last digits of the matrices that it comes from make of it.
+/// A transfer, and the effect of the last digits of its matrices.
 struct Got {
   std::vector<MatrixXcd> H;
   std::vector<MatrixXcd> rounding = {};
@@ -147,8 +148,8 @@ titop::StateSpace through_apply(const System& system) {
   return m;
 }
 
-/// Positions and rates in a row are sums of stretches, and of what the base does: 1e-12 of the
-/// largest term is allowed where these cancel. The largest position of any mass, per column.
+/// Positions and rates in a row are sums of stretches and of the base's motion: 1e-12 of the
+/// largest term is allowed if these cancel. Returns the largest position of any mass, per column.
 MatrixXd largest_position(Scene scene, const std::vector<Complex>& s) {
   scene.outputs.clear();
   for (int i = 0; i < static_cast<int>(scene.nodes.size()); ++i)
@@ -162,7 +163,7 @@ MatrixXd largest_position(Scene scene, const std::vector<Complex>& s) {
   return all.colwise().maxCoeff();
 }
 
-/// What that allows, blocks as those of the transfer.
+/// The error that this allows, blocks as those of the transfer.
 MatrixXd cancelled(const Scene& scene, const std::vector<Complex>& s) {
   const MatrixXd position = largest_position(scene, s);
   double fastest = 0;

@@ -24,7 +24,7 @@ struct Judgement {
   Verdict verdict = Verdict::right;
   std::string road;  ///< of the worst error: transfer, dense, apply, simulate
   double error = 0;  ///< in allowed errors: above 1 is wrong
-  std::string text;  ///< the error's codes, the place, what was said
+  std::string text;  ///< the error's codes, the place, the warnings
   std::vector<Complex> s;
 };
 

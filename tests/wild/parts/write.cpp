@@ -162,7 +162,7 @@ class Writer {
     }
   }
 
-  /// What no tie drives: released points, axes, inputs of controllers.
+  /// Equations of points without tie: released points, axes, inputs of controllers.
   void rest(int i) {
     const wild::Node& n = scene_.nodes[at(i)];
     const auto tied = [&](const Point& p) {

@@ -7,7 +7,7 @@
 namespace wild {
 
 /// The scene as a user writes it: blocks, equations on their ports, inputs u1, u2, ..., outputs y1,
-/// y2, ... Throws what writing throws.
+/// y2, ... Throws the errors of Diagram.
 titop::Diagram diagram_of(const Scene& scene);
 
 }  // namespace wild
