@@ -27,7 +27,7 @@ class Shell : public app_test::Shell {
 
 }  // namespace
 
-TEST_CASE("check and compile say what there is") {
+TEST_CASE("check and compile print counts and findings") {
   const Shell shell;
   Run r = shell.titop("check masses.json");
   CHECK(r.code == 0);
@@ -70,7 +70,7 @@ TEST_CASE("certify: as text and as JSON; exit code 3 where something does not ho
   CHECK(has(r.err, "error[bad-file]"));
 }
 
-TEST_CASE("draw writes what to_dot says") {
+TEST_CASE("draw writes the text of to_dot") {
   const Shell shell;
   CHECK(shell.titop("draw masses.json a.dot").code == 0);
   CHECK(shell.folder.read("a.dot") == to_dot(Shell::diagram()));
@@ -157,7 +157,7 @@ TEST_CASE("export writes by the file's ending") {
   CHECK(shell.folder.read("g.csv") == shell.folder.read("expected.csv"));
 }
 
-TEST_CASE("export says on stderr what A, B, C, D lose, and where the digits are") {
+TEST_CASE("export reports on stderr the digits lost by A, B, C, D, and how to keep them") {
   const Shell shell;
   Diagram d{"uneven"};  // every other mass 1e9 times as heavy as its neighbours
   const auto u = d.input("u");
@@ -212,7 +212,7 @@ TEST_CASE("frequencies over any range, both ends exactly") {
   CHECK(omega.back() == 1e120);
 }
 
-TEST_CASE("what cannot be printed is an error") {
+TEST_CASE("text that cannot be printed is an error") {
   const Shell shell;
   if (!std::filesystem::exists("/dev/full")) return;
   for (const char* words : {"compile masses.json", "check masses.json", "--help"}) {
@@ -252,7 +252,7 @@ TEST_CASE("who asks for help gets the usage on stdout") {
   }
 }
 
-TEST_CASE("what is not understood: exit code 2, and one line on stderr that says what") {
+TEST_CASE("invalid command lines: exit code 2, and one line on stderr with the reason") {
   const Shell shell;
   const std::string scene = shell.folder.read("masses.json");
   shell.folder.write("masses.html", scene);  // a scene whose report would stand in its place

@@ -22,7 +22,7 @@ TEST_CASE("every mistake can be planted without a word about the family") {
   }
 }
 
-TEST_CASE("a family that has no place for the mistake: what it takes") {
+TEST_CASE("a family without a place for the mistake: the error names the option") {
   const Shell shell;
   for (const std::string code : {"frame", "bad-modes", "not-a-rotation"}) {
     CAPTURE(code);

@@ -132,7 +132,7 @@ Diagram twins(double apart, bool filtered) {
 
 }  // namespace
 
-TEST_CASE("what is 0 by symmetry has lost no digits, what nearly cancels has") {
+TEST_CASE("an output that is 0 by symmetry has lost no digits, one that nearly cancels has") {
   for (const double apart : {0.0, 1e-11})
     for (const bool filtered : {false, true}) {
       CAPTURE(apart);
@@ -143,7 +143,7 @@ TEST_CASE("what is 0 by symmetry has lost no digits, what nearly cancels has") {
     }
 }
 
-TEST_CASE("what is left of a motion that dies down a long chain is rounding, no residual") {
+TEST_CASE("a motion that decays along a long chain to rounding is no residual") {
   // Free booms, hinged and controlled: the motion of the root decays by tens of decades.
   titop_test::Rng random(5);
   const FlexibleBody boom = Beam{.length = 2.0,

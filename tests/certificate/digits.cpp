@@ -106,7 +106,7 @@ TEST_CASE("digits that the dense model has lost are measured as they are") {
   }
 }
 
-TEST_CASE("what rounding A, B, C, D costs: certificate, report and generated code say the same") {
+TEST_CASE("rounding error of A, B, C, D: certificate, report and generated code agree") {
   int lost = 0;
   for (const double mass : {1.0, 1e3, 1e6, 1e8, 1e11, 1e12}) {
     CAPTURE(mass);
@@ -125,7 +125,7 @@ TEST_CASE("what rounding A, B, C, D costs: certificate, report and generated cod
   CHECK(lost == 2);
 }
 
-TEST_CASE("what is lost far below the modes of a floating frame is said, and is no fault") {
+TEST_CASE("digits lost far below the modes of a floating frame are reported, and no fault") {
   const System system = compile(frame());
   const FullCertificate c = certify(system);
   CAPTURE(to_string(c));

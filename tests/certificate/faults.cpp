@@ -145,7 +145,7 @@ TEST_CASE("a signal that is off by a millionth breaks an equation, and rounding 
   }
 }
 
-TEST_CASE("what the input does is not drowned by stiff springs behind it") {
+TEST_CASE("the residual of an input is not hidden by stiff springs behind it") {
   // Each spring passes on k / (m s^2), some 3e5, of its displacement.
   Diagram d{"stack"};
   auto below = d.add("b0", RigidBody{.mass = 1, .children = {{"C", {0, 0, 0.1}}}});

@@ -213,7 +213,7 @@ TEST_CASE("a negative damper in a controller: active and unstable, and no fault 
   CHECK(to_string(c).find("2 right of the axis") != std::string::npos);
 }
 
-TEST_CASE("what is not checked is said, with the reason") {
+TEST_CASE("omitted checks are reported, with the reason") {
   Diagram d{"unlike"};
   auto u = d.input("u");
   auto a = d.add("a", SpringMass{.mass = 1, .stiffness = 4});

@@ -87,7 +87,7 @@ TEST_CASE("Margin of a ring: as by hand in any units, in any order, beside anoth
     }
 }
 
-TEST_CASE("Margin of what is no ring: the largest eigenvalue, as Eigen finds it") {
+TEST_CASE("Margin of a loop that is no ring: the largest eigenvalue, compared with Eigen") {
   std::mt19937 random(3);
   for (const int n : {3, 4, 7, 12, 13, 30}) {
     CAPTURE(n);

@@ -208,7 +208,7 @@ TEST_CASE(
   CHECK(found);
 }
 
-TEST_CASE("what moves along without giving its wrench back is no structure, and energy may come") {
+TEST_CASE("motion without a reaction is no structure, and energy may be supplied") {
   Diagram d{"carried for nothing"};
   auto lower = d.add("lower", SpringMass{.mass = 3, .stiffness = 50, .damping = 0.4});
   auto upper = d.add("upper", SpringMass{.mass = 2, .stiffness = 70, .damping = 0.3});

@@ -217,7 +217,7 @@ TEST_CASE("a spring of six axes between two bodies in frames of any kind") {
     }
 }
 
-TEST_CASE("what only reads a structure does not change it") {
+TEST_CASE("blocks that only read a structure do not change it") {
   const System system = compile(satellite(40, 0.3, 100, 60, true));
   const FullCertificate c = certify(system, {.points = 4});
   CAPTURE(to_string(c));

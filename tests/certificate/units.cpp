@@ -236,7 +236,7 @@ TEST_CASE("outputs that nothing can move but rounding: no fault, in whatever uni
   }
 }
 
-TEST_CASE("what the dense model loses is the same in all units, by few inputs and by many") {
+TEST_CASE("errors of the dense model are the same in all units, for few inputs and many") {
   Rng random(17);
   for (const auto& [masses, inputs] : {std::pair(6, 1), std::pair(6, 2), std::pair(12, 12)}) {
     CAPTURE(inputs);
@@ -256,7 +256,7 @@ TEST_CASE("what the dense model loses is the same in all units, by few inputs an
   }
 }
 
-TEST_CASE("what is 1e-17 of its neighbours in row and column is no loss of digits") {
+TEST_CASE("an entry of 1e-17 of its row and column is no loss of digits") {
   // A 0 after a rotation of frames has digits in the factors, and others in A, B, C, D.
   const System system = compile(titop_test::random_scene(titop_test::random_options(186)).build());
   const StateSpace& dense = system.state_space();

@@ -99,7 +99,7 @@ TEST_CASE("a pair that is 0 by symmetry: a fault in it is found, in all units") 
   }
 }
 
-TEST_CASE("a pair without a path between: no fault of what row operations leave of its 0") {
+TEST_CASE("a pair without a path: rounding of row operations in its 0 is no fault") {
   // The first mass moves the second through a filter; nothing comes back. Elimination of the second
   // one's stiffness beside the filter's larger gain turns rows.
   for (const double gain : {-7.0, 3.0, 400.0}) {
@@ -127,7 +127,7 @@ TEST_CASE("a pair without a path between: no fault of what row operations leave 
   }
 }
 
-TEST_CASE("what 32 digits leave of a 0 is no fault: a loaded end without mass on a free body") {
+TEST_CASE("a 0 at the level of 32 digits is no fault: a loaded end without mass on a free body") {
   Diagram d{"loaded end"};
   auto a = d.add(
       "a",
@@ -164,7 +164,7 @@ TEST_CASE("difference: blocks of three share their size, scalars have their own"
   CHECK(std::isinf(difference(none, exact, {{3, 1}, {3}}).relative));
 }
 
-TEST_CASE("what frames leave of a 0 that the factors hit to the last bit is no fault") {
+TEST_CASE("rounding by frames of a 0 that is exact in the factors is no fault") {
   // Among the random scenes: of a torque in cu6 the factors have 0 in py12 at every s, the dense D
   // 7e-17.
   const System system = compile(titop_test::random_scene(titop_test::random_options(2092)).build(),

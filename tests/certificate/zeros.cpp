@@ -85,7 +85,7 @@ TEST_CASE("integrators alone: poles at 0, exactly, and a grid of frequencies") {
   }
 }
 
-TEST_CASE("a loop that a gain of 0 cuts open: what rounding leaves of its signals is no residual") {
+TEST_CASE("a loop opened by a gain of 0: rounding of its signals is no residual") {
   const System system = compile(cut_open(false));
   CHECK(system.certificate().residual <= 1e-12);
   CHECK(certify(system).holds());
@@ -166,7 +166,7 @@ TEST_CASE("a one-way block that grows is no fault of the structure that it reads
   CHECK(certify(compile(sensed)).holds());
 }
 
-TEST_CASE("what grows unseen is said") {
+TEST_CASE("hidden unstable poles are reported") {
   Diagram d{"twins"};
   auto u = d.input("u");
   // d(x)/dt = x and d(y)/dt = -y; the output sees y alone.
@@ -232,7 +232,7 @@ TEST_CASE("without inputs the equations are checked all the same, where there is
   CHECK(!has(to_string(system.certificate()), "rounding changes the outputs"));
 }
 
-TEST_CASE("what was not checked has no number: no inputs and no instant, no points") {
+TEST_CASE("omitted checks have no number: no inputs and no instant, no points") {
   Diagram d{"no instant"};
   auto b = d.add("b", RigidBody{.mass = 2, .inertia = {1, 2, 3}});
   b.parent.force = 3.0 * b.parent.position;

@@ -44,7 +44,7 @@ TEST_CASE("every tenth scene of the corpus and its answer come out of their line
   CHECK(compared == 20);
 }
 
-TEST_CASE("what is not understood: exit code 2; what cannot be written: 1") {
+TEST_CASE("invalid command lines: exit code 2; files that cannot be written: 1") {
   const Folder folder;
   for (const char* words :
        {"", "a.txt", "a.json b.json", "a.json --seed", "a.json --seed x", "a.json --seed -1",

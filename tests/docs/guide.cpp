@@ -87,7 +87,7 @@ Lines link_targets(const Lines& page) {
 
 }  // namespace
 
-TEST_CASE("what the guide quotes stands in the example that it names") {
+TEST_CASE("quotations of the guide are lines of the example that it links") {
   int quoted = 0;
   for (const auto& entry : fs::directory_iterator(kRoot / "docs/guide")) {
     CAPTURE(entry.path().filename().string());

@@ -104,7 +104,7 @@ TEST_CASE("inverted channels are marked, and only those") {
   CHECK_FALSE(has(compiled(five_masses()), "⁻¹"));
 }
 
-TEST_CASE("what was set aside is grey and dashed") {
+TEST_CASE("inactive parts are grey and dashed") {
   const std::string text = compiled(controlled());
   const std::string grey(dot::colour::removed);
   CHECK(has(block(text, "lone"), "set aside"));

@@ -128,7 +128,7 @@ TEST_CASE("inputs and outputs of one box share an ellipse, others stay") {
   CHECK(text.find("(49)") != std::string::npos);
 }
 
-TEST_CASE("bodies, joints and controllers fold by what they hang on") {
+TEST_CASE("bodies, joints and controllers fold into their parents") {
   for (const auto& scene : {five_masses, fig12, spacecraft, robot_joint, controlled, pinned}) {
     const Diagram d = scene();
     const std::string whole = to_dot(d);

@@ -35,7 +35,7 @@ Diagram boom(std::optional<int> modes = {}) {
 
 }  // namespace
 
-TEST_CASE("a reduced system says what it was asked, step by step") {
+TEST_CASE("a reduced system reports its scene, step by step") {
   const titop::Scene scene{.band_hz = {0, 60}, .accuracy = 1e-3, .damping_floor = 0.01};
   const ReducedSystem r = compile(boom(), scene);
   CHECK(r.scene().accuracy == scene.accuracy);

@@ -141,7 +141,7 @@ TEST_CASE("free motions are kept as integrals, and refused where the band starts
   CHECK(says(error_of([&] { compile(d, scene); }), Code::bad_value, {"x reads", "U", "above 0"}));
 }
 
-TEST_CASE("an unstable loop stays what it is: the pole right of the axis is kept") {
+TEST_CASE("an unstable loop stays unstable: the pole right of the axis is kept") {
   Diagram d{"unstable"};
   auto U = d.input("U");
   auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 4, .damping = 0.5});

@@ -86,7 +86,7 @@ TEST_CASE("two integrators of one position hide a pole at 0: nothing of it is le
   }
 }
 
-TEST_CASE("modes far below the band leave what they are far above them: a mass, no motion") {
+TEST_CASE("modes far below the band keep their high-frequency asymptote: a mass, no motion") {
   const Chain chain{.masses = 12, .k = 1e2, .c = 0};
   for (const bool slow : {false, true}) {
     CAPTURE(slow);

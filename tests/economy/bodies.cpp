@@ -147,7 +147,7 @@ TEST_CASE("smaller bodies that are twins stay twins") {
   check_beside(r, scene, truth_of(tree.structure(up, up), true));
 }
 
-TEST_CASE("what bodies cannot lose is refused with what each of them needs, a theorem as well") {
+TEST_CASE("too large scenes are refused with the vectors that bodies need, theorems too") {
   const Diagram d = frame(slim_beam(6));
   titop::Scene scene{.band_hz = {0, 60}, .accuracy = 1e-2, .whole_up_to = 20};
   const Error error = error_of([&] { compile(d, scene); });

@@ -135,7 +135,7 @@ TEST_CASE("symmetric appendages, common motion only: half their modes go exactly
   CHECK(compile(twins(beam, 1e-3), scene).steps().size() == 2);
 }
 
-TEST_CASE("an output that symmetry keeps still keeps what it has of the inputs directly") {
+TEST_CASE("an output silenced by symmetry keeps its direct terms") {
   // The hub is shaken by A; both tips follow alike, so that their difference is 0: plus A, it is A.
   const FlexibleBody beam = slim_beam(6);
   Diagram d{"shaken"};
@@ -213,7 +213,7 @@ TEST_CASE("a high mode of one body that another's lock brings down into the band
   CHECK(relative(stretched->hertz, hertz) <= 1e-3);
 }
 
-TEST_CASE("what no input of the scene reaches, and what only listens, goes exactly") {
+TEST_CASE("unreachable parts, and parts that only listen, are removed exactly") {
   // A boom that the scene needs. Another one that the scene's inputs do not move; one that is
   // shaken by the boom's tip without reaction; a filter of the tip's motion.
   const FlexibleBody beam = slim_beam(6);  // 36 modes

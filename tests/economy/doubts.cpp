@@ -112,7 +112,7 @@ TEST_CASE("modal form: motions without stiffness beside coupled damping are bloc
     CHECK(matrix_error(r.modal().transfer(s), second.transfer(s)) <= 1e-9);
 }
 
-TEST_CASE("modal form: coupled modes whose poles meet have none, and the error says what has") {
+TEST_CASE("modal form: coupled modes with equal poles have none; the error names the way out") {
   // A tuned mass damper at the point where its two pairs of poles meet, with one eigenvector: mu =
   // 1, frequency 1 / (1 + mu), damping ratio sqrt(mu / (1 + mu)) [Krenk 2005, J. Appl. Mech. 72].
   const Chain chain{{1, 1}, {1, 0.25}, {0, std::sqrt(0.5)}};
@@ -143,7 +143,7 @@ TEST_CASE(
   CHECK(says(error_of([&] { what_if(d, large, hard); }), Code::bad_value, {"whole_up_to = 3"}));
 }
 
-TEST_CASE("what cannot be met names the block that moves where the model ends") {
+TEST_CASE("an accuracy that cannot be met: the error names the block that moves there") {
   const Error error = error_of([&] {
     compile(frame(slim_beam(5, 0.005)), titop::Scene{.band_hz = {0, 30}, .accuracy = 2e-12});
   });

@@ -197,7 +197,7 @@ TEST_CASE("two poles at 0 that rounding parts stay together") {
                    1.0 / (at * at) + 2.0 / at + 1.0 / (at + 3.0) + 1.0 / (at + 8.0)) <= 1e-9);
 }
 
-TEST_CASE("what is cut costs at most twice the sum of its singular values, right of the axis too") {
+TEST_CASE("truncation costs at most twice the sum of the dropped singular values, everywhere") {
   Rng rng(12);
   const Index n = 10;
   const StateSpace m = model(random_stable(rng, n), rng.matrix(n, 2), rng.matrix(3, n));

@@ -100,7 +100,7 @@ Masses chain(std::size_t n, double stiffness) {
 
 }  // namespace
 
-TEST_CASE("a position is held against its own motion in the band, however soft what it rests on") {
+TEST_CASE("a position is compared with its own motion in the band, however soft its support") {
   // Static gain 1 / k of the lowest spring: up to 1e9 times the gain in the band.
   for (const double soft : {1.0, 1e-2, 1e-3})
     for (const BoundKind kind : {BoundKind::estimate, BoundKind::theorem})
@@ -166,7 +166,7 @@ TEST_CASE("inputs and outputs with nothing between them have no error, and no sa
   CHECK(rough.bound().hertz <= 0.2 * (1 + 1e-12));
 }
 
-TEST_CASE("what a pole's last digit does to its peak is in the bound: more, the sharper the peak") {
+TEST_CASE("the bound contains the effect of a pole's last digit: more for sharper peaks") {
   for (const double floor : {1e-5, 1e-6})
     for (const auto& [n, q] : {std::pair<std::size_t, int>{6, 6}, {12, 2}, {20, 4}}) {
       CAPTURE(floor);

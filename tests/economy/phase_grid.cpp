@@ -77,7 +77,7 @@ TEST_CASE("a uniform grid of as many points misses the peak of a lightly damped 
   CHECK(uniform * 20 <= 1e4);
 }
 
-TEST_CASE("what scenes are held against is ten times finer than the bound's grid, everywhere") {
+TEST_CASE("the reference grid of scenes is ten times finer than the bound's, everywhere") {
   // Modes in the band, in clusters and just above its end; and of the reduced model vectors above
   // the band, of which the finer grid is not told.
   titop_test::Rng rng(8);

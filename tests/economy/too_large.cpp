@@ -62,7 +62,7 @@ TEST_CASE("flexible bodies in a loop: they lose modes first where the states are
              {"balance_up_to = 4", "law.x1", "left"}));
 }
 
-TEST_CASE("what balanced states cannot do is refused with what they reach, a large scene as well") {
+TEST_CASE("limits of balanced states are refused with the accuracy reached, large scenes too") {
   const Held held;
   CHECK(says(error_of([&] {
                compile(held.diagram(), titop::Scene{.band_hz = {0, 8}, .accuracy = 2e-12});

@@ -178,7 +178,7 @@ TEST_CASE("no structure, and why; names with quotes; modes that left") {
   check_same(c);
 }
 
-TEST_CASE("what was not checked is null, with the reason") {
+TEST_CASE("values that were not checked are null, with the reason") {
   FullCertificate c = certify(compile(two(false)), {.dense_up_to = 1, .written_up_to = 1});
   check_same(c);
   CHECK(parsed(c).at("poles").at("why_not") == c.poles.why_not);

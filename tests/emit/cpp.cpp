@@ -100,7 +100,7 @@ TEST_CASE("numbers read back to the last bit and are no integers") {
   CHECK(emit::quoted("a\"b\\c\n1") == "\"a\\\"b\\\\c\\0121\"");
 }
 
-TEST_CASE("tolerances of the test end at 1e-6; what needs more is left out, and it says so") {
+TEST_CASE("tolerances of the test end at 1e-6; checks that need more are replaced by a comment") {
   // xdot = -x + u, y = x.
   emit::Form form;
   form.A = -MatrixXd::Identity(1, 1), form.B = form.C = -form.A, form.D = MatrixXd::Zero(1, 1);
@@ -194,7 +194,7 @@ TEST_CASE("an output is silent where all points say so, not one") {
   CHECK(points.silent_inputs.empty());
 }
 
-TEST_CASE("what A alone has no static gain for: no check of it, and the rest stands") {
+TEST_CASE("without a static gain of A alone: no check of it, and the other checks stay") {
   // y = (1 / s + 0.3 / s^2) u as A^2 = 0. In double the elimination of A meets a pivot that is
   // exactly 0.
   Diagram d{"nilpotent"};
@@ -217,7 +217,7 @@ TEST_CASE("what A alone has no static gain for: no check of it, and the rest sta
   CHECK(emit::static_error(form, MatrixXd::Ones(1, 1), points) == HUGE_VAL);
 }
 
-TEST_CASE("what is 0 by nature at rest is not compared with its own rounding there") {
+TEST_CASE("exact zeros at rest are not compared with their own rounding") {
   emit::Points points;
   points.s = {1.0};
   points.exact = {MatrixXcd::Ones(2, 3)};
@@ -228,7 +228,7 @@ TEST_CASE("what is 0 by nature at rest is not compared with its own rounding the
   CHECK(rest.silent_inputs == std::vector<Eigen::Index>{2, 1});
 }
 
-TEST_CASE("what cannot be a name or a time is refused, all together") {
+TEST_CASE("invalid names and times are refused, all together") {
   const System system = five_masses();
   for (const char* name :
        {"", "a b", "1a", "int", "_a", "a__b", "a-b", "NULL", "NAN", "EOF", "errno", "sin", "sinf",

@@ -60,7 +60,7 @@ struct Files {
 
 }  // namespace
 
-TEST_CASE("what A, B, C, D lose stands at the head of the files, and in the notes of the JSON") {
+TEST_CASE("digits lost by A, B, C, D are reported at the head of files and in the JSON notes") {
   const System system = compile(chain(kFarApart));
   const std::vector<std::string> warnings = dense_warnings(system);
   REQUIRE(!warnings.empty());

@@ -51,7 +51,7 @@ TEST_CASE("a file called NAME.part is not written over") {
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path), {}) == 3);
 }
 
-TEST_CASE("a link stays, and what it leads to is written") {
+TEST_CASE("a link stays, and its target is written") {
   const Folder folder;
   namespace fs = std::filesystem;
   fs::create_directory(folder.path / "sub");

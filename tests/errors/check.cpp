@@ -73,7 +73,7 @@ TEST_CASE("no-equation: an unmounted body, one-way ports, outputs") {
   CHECK(says(e, Code::no_equation, {"output y is not set", output, "d.output(\"y\") = "}));
 }
 
-TEST_CASE("no-equation: a channel that is driven in part says what is left") {
+TEST_CASE("no-equation: the error of a partly driven channel names the other directions") {
   Diagram d{"scene"};
   auto A = d.add("A", brick());
   A.parent.accel.linear = 0;

@@ -171,7 +171,7 @@ std::string section(const std::string& page, std::string_view code) {
 
 }  // namespace
 
-TEST_CASE("docs/errors.md lists every code with what the library says and the way out") {
+TEST_CASE("docs/errors.md lists every code with the library's message and the way out") {
   std::ifstream file(TITOP_SOURCE_DIR "/docs/errors.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
   std::size_t codes = 0;

@@ -127,7 +127,7 @@ TEST_CASE("own block: of a modal form, the modes are looked at") {
              {"W of this Wheel is 1 x 5, not 1 x 6"}));
 }
 
-TEST_CASE("own block: what new values of its parameters make of it") {
+TEST_CASE("own block: new values of its parameters") {
   Diagram d{"hub"};
   auto hub = d.add("hub", RigidBody{.children = {{"C"}}});
   auto w = d.add("wheel", Wheel{.momentum = d.param("h", 2), .spoil = [](Interface&, Dynamics& m) {

@@ -92,7 +92,7 @@ TEST_CASE("CalculiX beam: a wrong position is seen in K R, a wrong mass in the m
   CHECK(relative(fe::mesh_report(mesh).mass.mass.x(), 6.48) > 5e-4);
 }
 
-TEST_CASE("CalculiX beam: what its 14 digits cost is foreseen") {
+TEST_CASE("CalculiX beam: the effect of its 14 digits is predicted") {
   const fe::Mesh mesh = beam();
   const std::vector<double> expected = expected_omegas();
   const Eigen::VectorXd omega = fe::modal_data(mesh, "P", {}).omega;

@@ -100,7 +100,7 @@ TEST_CASE("flying wing: size, symmetry, massless rows") {
   CHECK((mass.array() > 1e-9).count() == 366);
 }
 
-TEST_CASE("flying wing: what ten digits cost the rigid and the first elastic mode") {
+TEST_CASE("flying wing: effect of ten digits on the rigid and the first elastic mode") {
   const fe::GridMatrices& m = wing();
   const double expected = std::pow(2 * std::numbers::pi * first_elastic(), 2);
   const VectorXd as_read = eigenvalues(m.K, m.M);

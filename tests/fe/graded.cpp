@@ -161,7 +161,7 @@ TEST_CASE("graded: damping that couples slow modes is not lost beside that of a 
     CHECK(std::abs((*damping)(k) / (1e-3 * modes.modes.lambda(k)) - 1) <= 1e-12);
 }
 
-TEST_CASE("graded: an antisymmetric part counts by what it does to the modes") {
+TEST_CASE("graded: an antisymmetric part counts by its effect on the modes") {
   MatrixXd S = MatrixXd::Zero(3, 3), skew = MatrixXd::Zero(3, 3);
   S << 2e18, -1e9, 0, -1e9, 1, 0, 0, 0, 1;  // 2 k / m, k / m, k for m = 1e-18, k = 1; and another
   const GradedModes e = eigh_graded(S);

@@ -171,7 +171,7 @@ TEST_CASE("the cantilever cut at any byte of its last line is refused") {
                          Error);
 }
 
-TEST_CASE("what may come once is refused the second time") {
+TEST_CASE("entries allowed once are refused the second time") {
   refused(replaced(kSmall, "D_P, 2", "units, 1, 1, 1\nD_P, 2"),
           "m.csv:3: found units again, expected units once: line 2 has it");
   refused(kSmall + "digits, 7\ndigits, 8\n", "m.csv:15: found digits again");
@@ -181,7 +181,7 @@ TEST_CASE("what may come once is refused the second time") {
           "m.csv:11: found child C 1 again");
 }
 
-TEST_CASE("what could not be read again is not written") {
+TEST_CASE("data that could not be read again are not written") {
   const ModalData good = read(kSmall);
   for (const char* name : {"a,b", "a#b", " a", "a\t", "", "a\nb"}) {
     ModalData data = good;

@@ -50,7 +50,7 @@ TEST_CASE("slide: spring, damper and actuator, against M, D, K") {
         1e-9);
 }
 
-TEST_CASE("slide: driven, it costs what the boom takes to follow; free, it has no states unseen") {
+TEST_CASE("slide: driven, its force accelerates the boom; free, it has no unseen states") {
   const auto a = assemble(columns({linear(kR)}), diagonal({0}), diagonal({0}));
   const auto exact = exact_transfers(a);
   {

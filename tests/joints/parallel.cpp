@@ -7,7 +7,7 @@
 using namespace joint_test;
 using namespace titop;
 
-TEST_CASE("bushings in parallel: the sum of what each does, without states of their own") {
+TEST_CASE("bushings in parallel: the sum of both, without states of their own") {
   const Vector6 k = (Vector6() << 4e4, 5e4, 9e4, 900, 700, 300).finished();
   const Vector6 c = (Vector6() << 40, 30, 20, 3, 2, 1).finished();
   const std::vector<Vector3d> legs{{0.2, 0, 0}, {-0.1, 0.2, 0}, {-0.1, -0.2, 0.05}};

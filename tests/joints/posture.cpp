@@ -85,7 +85,7 @@ TEST_CASE("four-bar: the cosine rule, on both branches, a whole turn of the cran
   }
 }
 
-TEST_CASE("slider-crank: a prismatic joint, and what it is drawn out") {
+TEST_CASE("slider-crank: a prismatic joint, and its travel") {
   for (const double theta : {0.2, 1.1, 2.9, 4.0}) {
     const std::vector<LoopStep> loop{
         {.joint = about(z), .given = theta, .link = {a, 0, 0}},

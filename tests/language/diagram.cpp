@@ -133,7 +133,7 @@ TEST_CASE("Gain, Sum and MatrixGain are the same as written inline") {
   CHECK(difference(scene(true), scene(false)) == "");
 }
 
-TEST_CASE("an Integrator is the Lti 1/s, and counts as what it integrates to") {
+TEST_CASE("an Integrator is the Lti 1/s, with the quantity that it integrates to") {
   const auto scene = [](bool own) {
     Diagram d{"integrators"};
     auto u = d.input("u");

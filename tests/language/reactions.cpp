@@ -25,7 +25,7 @@ const Rotation kTurn = Rotation::about({1, 2, 3}, 0.7);
 
 }  // namespace
 
-TEST_CASE("a wrench on a body at the point that it is mounted by acts on what carries it") {
+TEST_CASE("a wrench on a body at the point of its mount acts on its parent") {
   // A hangs on B at C1, turned: U on A there is U on B there.
   const auto scene = [](bool on_A, bool by_spring) {
     Diagram d{"on the parent"};
@@ -55,9 +55,7 @@ TEST_CASE("a wrench on a body at the point that it is mounted by acts on what ca
   CHECK(system.static_gain().norm() > 0.1);
 }
 
-TEST_CASE(
-    "a force that goes nowhere is refused: on what moves with another, whose reaction nobody "
-    "reads") {
+TEST_CASE("a force without effect is refused: at a tied point whose reaction is not read") {
   const auto scene = [](bool reaction, bool ground_it = false) {
     Diagram d{"by hand"};
     auto u = d.input("u");
@@ -87,9 +85,7 @@ TEST_CASE(
   CHECK(std::abs(compile(scene(true)).transfer(s)(0, 0) - exact) <= 1e-14 * std::abs(exact));
 }
 
-TEST_CASE(
-    "what is added where it acts is not refused: free directions, and motion that follows a "
-    "signal") {
+TEST_CASE("added forces with an effect are not refused: free directions, motion by a signal") {
   const auto by_parts = [](bool added) {  // B's point carries A's; A turns as a torque says
     Diagram d{"ball"};
     auto u = d.input("u", 3);

@@ -149,7 +149,7 @@ TEST_CASE("frames: rotations compose where the inner names agree") {
              {"C<-B", "A<-B", "inverse"}));
 }
 
-TEST_CASE("an input takes the quantity and frame of what it drives") {
+TEST_CASE("an input takes the quantity and frame of the signals that it drives") {
   Diagram d{"adopted"};
   auto U = d.input("U", 6);
   auto B = d.add("B", brick());

@@ -72,7 +72,7 @@ TEST_CASE("10,000 changes of units: random scenes, points without mass, feedthro
   }
 }
 
-TEST_CASE("10,000 changes of units: what is certain of the minimal order") {
+TEST_CASE("10,000 changes of units: the certain part of the minimal order") {
   int all = 0, other_interval = 0;
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
     const auto scene = titop_test::random_scene(titop_test::random_options(seed));

@@ -57,7 +57,7 @@ struct Truss {
 
 }  // namespace
 
-TEST_CASE("a truss: nothing moves but what hangs on it, and that as if on the ground") {
+TEST_CASE("a truss: only mounted bodies move, as if on the ground") {
   const Truss truss(true);
   const System system = compile(truss.d);
   CHECK(system.log().find("leave these points no motion: A.child(\"tip\"), box.child(\"tip\")") !=

@@ -121,7 +121,7 @@ TEST_CASE("ladders and grids: the dense model answers as the equations as writte
   }
 }
 
-TEST_CASE("what follows from what: linear in the bays of a ladder, n^1.5 log n in a grid") {
+TEST_CASE("dependent coordinates: linear in the bays of a ladder, n^1.5 log n in a grid") {
   for (const double rungs : {1.0, 0.1, 8.0}) {
     CAPTURE(rungs);
     const auto count = [&](int along, int across) { return entries(grid({along, across, rungs})); };

@@ -146,7 +146,7 @@ TEST_CASE("a chain that meets only nearly: refused, with the lengths named as a 
   }
 }
 
-TEST_CASE("what both supports of a body held twice bear together is determined") {
+TEST_CASE("the total load of two redundant supports of a body is determined") {
   Diagram d{"held twice"};
   auto A = d.add("A", block(4, {1, 0, 0}));
   ground(A);

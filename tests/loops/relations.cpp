@@ -195,7 +195,7 @@ TEST_CASE("scaled relations are in balance, and a tiny lever, to its last digit,
   }
 }
 
-TEST_CASE("what follows is decided by geometry, which of it by what is soft") {
+TEST_CASE("the number of dependent coordinates follows from geometry, their choice from softness") {
   for (std::uint64_t seed = 1; seed <= 100; ++seed)
     for (const double near : {0.0, 1e-14, 1e-7, 1e-6, 1.0}) {
       CAPTURE(seed);

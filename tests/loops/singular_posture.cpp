@@ -53,7 +53,7 @@ bool warns(const FourBar& f) {
 
 }  // namespace
 
-TEST_CASE("a four-bar linkage folded flat: the log says that it has what leads nowhere") {
+TEST_CASE("a four-bar linkage folded flat: the log warns of extra degrees of freedom") {
   CHECK(warns(parallelogram(0)));
   CHECK(warns(parallelogram(1e-12)));
   // Both angles by themselves, to first order: parallel or against each other from there.

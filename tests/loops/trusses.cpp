@@ -122,7 +122,7 @@ TEST_CASE("a truss of rigid bars: along twenty followers nothing is taken for ro
   }
 }
 
-TEST_CASE("a truss of rigid bars: what follows from what is linear in its bays") {
+TEST_CASE("a truss of rigid bars: dependent coordinates are found in linear time") {
   for (const bool crossed : {false, true})
     for (const Names names : {Names::along, Names::by_kind, Names::scrambled}) {
       CAPTURE(crossed);
@@ -189,7 +189,7 @@ struct Chains {
 
 }  // namespace
 
-TEST_CASE("a truss of rigid bars: what is said twice is decided along it, whatever the names") {
+TEST_CASE("a truss of rigid bars: redundancy is decided along it, independent of names") {
   // A bay shares some ten columns with the next; put together in no order, the front has two ends.
   for (const std::uint64_t shuffled : {0u, 1u, 2u})
     for (const Names names : {Names::along, Names::by_kind, Names::scrambled})

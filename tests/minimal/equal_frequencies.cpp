@@ -131,7 +131,7 @@ TEST_CASE("minimal: an output of positions and rates may leave out one pole of a
   check_order(compile(d), 1);
 }
 
-TEST_CASE("minimal: what turns in phase between two springs is seen, the other sense is not") {
+TEST_CASE("minimal: motion in phase between two springs is seen, motion in opposition is not") {
   // y = (u + s v) / (s^2 + 4): two states, of which the scene has four.
   Diagram d{"turning"};
   auto u = d.input("u");

@@ -135,7 +135,7 @@ TEST_CASE("six degrees of freedom: turns of 90 degrees and of 3-4-5 triangles ar
   CHECK(right.order == 8);
 }
 
-TEST_CASE("what exact arithmetic does not decide says why") {
+TEST_CASE("undecided exact orders have a reason") {
   const ExactOrder turned = exact_order(winged(Rotation::about({0, 0, 1}, 0.7)).graph());
   CHECK(!turned.decided);
   CHECK(turned.why_not.find("the rotation in") != std::string::npos);
@@ -160,7 +160,7 @@ TEST_CASE("what exact arithmetic does not decide says why") {
   CHECK(exact_order(twice.graph()).why_not.find("derivatives") != std::string::npos);
 }
 
-TEST_CASE("matrices as they stand: order of random models, blown up by what does not matter") {
+TEST_CASE("given matrices: order of random models, enlarged by states without effect") {
   titop_test::Rng rng(5);
   for (int round = 0; round < 40; ++round) {
     // The core is a chain of integrators with feedback, minimal by its form; then states that

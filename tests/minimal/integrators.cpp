@@ -109,7 +109,7 @@ void check_nothing_lost(const StateSpace& m) {
   }
 }
 
-TEST_CASE("Jordan blocks beside integrators: what is not told apart stays, with all of its pole") {
+TEST_CASE("Jordan blocks beside integrators: poles that cannot be separated stay whole") {
   int blocks = 0;
   for (int seed = 0; seed < 1000; ++seed) {
     CAPTURE(seed);
@@ -152,7 +152,7 @@ TEST_CASE("poles at 0 that drive others, beside integrators: nothing is lost, th
   check_nothing_lost(model(A, MatrixXd{{0, 2}, {0, 2}, {-1, 0}, {-1, 0}}, MatrixXd{{1, 0, 0, 0}}));
 }
 
-TEST_CASE("two dozen integrators in whole numbers: what rounding breaks is put back") {
+TEST_CASE("two dozen integrators in whole numbers: states removed by rounding are restored") {
   int put_back = 0;
   for (int seed = 0; seed < 40; ++seed) {
     CAPTURE(seed);
@@ -228,7 +228,7 @@ TEST_CASE("two integrators that are one but for their last places: undecided, an
   CHECK(seen_apart(1e-6).order.decided());
 }
 
-TEST_CASE("what the caller knows of rounding decides: what is below it is no motion of its own") {
+TEST_CASE("the caller's rounding decides: a mode below it is removed") {
   StateSpace m =
       model(MatrixXd::Zero(2, 2), MatrixXd{{1, 2}, {1, 2 + 1e-11}}, MatrixXd::Identity(2, 2));
   CHECK(minimize(m).model.order() == 2);

@@ -87,7 +87,7 @@ TEST_CASE("four weights around one plant: order 4 of 7, in double and exactly") 
                                                        {1, 1, 1, 1}, {1, 1}) <= 1e-14);
 }
 
-TEST_CASE("a pole of order k many times over: k + 1 exactly; in double what is certain, and why") {
+TEST_CASE("a pole of order k many times over: k + 1 exactly; in double an interval, and why") {
   for (int k = 1; k <= 10; ++k) {
     CAPTURE(k);
     const Diagram d = powers(k);

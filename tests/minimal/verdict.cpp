@@ -38,7 +38,7 @@ StateSpace model(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C) {
 }  // namespace
 
 TEST_CASE(
-    "an equal pair: order 4 of 6, decided; what left, what it cost, what the next would cost") {
+    "an equal pair: order 4 of 6, decided; removed states, their error, and that of the next") {
   const Minimized r = minimize(pair(25, 25));
   CHECK(r.model.order() == 4);
   CHECK(r.order.decided());
@@ -111,8 +111,7 @@ TEST_CASE("the exact order decides where visibility does not") {
   CHECK(wrong.notes.size() == 2);
 }
 
-TEST_CASE(
-    "what leaves by a wrong exact order and is missed is put back, with the change measured") {
+TEST_CASE("a state removed by a wrong exact order is restored, with the change measured") {
   // 1 / (s + 1) + c / (s + 3)
   const auto sum = [](double c) {
     return model(MatrixXd{{-1, 0}, {0, -3}}, MatrixXd{{1}, {1}}, MatrixXd{{1, c}});
@@ -156,7 +155,7 @@ TEST_CASE("poles at 0: ranks show how many are needed") {
   CHECK(mixed.order.order == 4);
 }
 
-TEST_CASE("states of any size that act on no other: what one input does to one hides no other") {
+TEST_CASE("uncoupled states of any size: the effect of one input on one hides no other") {
   // 1e-1 * 1e3 / (s + 20), and a pole that is pushed by 1e16 and seen by nobody, or by 1e-16.
   const MatrixXd A{{-20, 0}, {0, -10}}, B{{0.1}, {1e16}};
   CHECK(minimize(model(A, B, MatrixXd{{1000, 0}})).model.order() == 1);
@@ -165,7 +164,7 @@ TEST_CASE("states of any size that act on no other: what one input does to one h
   CHECK(both.order.decided());
 }
 
-TEST_CASE("equal real poles are turned until what no input moves stands alone") {
+TEST_CASE("equal real poles are rotated until the unreachable one is separate") {
   // Three copies of 1/(s + 2) behind one input, seen together and apart.
   const MatrixXd A = -2 * MatrixXd::Identity(3, 3);
   const Minimized r = minimize(model(A, MatrixXd{{1}, {2}, {3}}, MatrixXd{{1, 1, 1}, {1, 0, 0}}));
@@ -189,7 +188,8 @@ TEST_CASE("not judged: larger than Options::minimize_up_to") {
   CHECK(to_string(system.order_verdict()).find("not judged") != std::string::npos);
 }
 
-TEST_CASE("two equal beams on a hub whose attitude is read: what the hub cannot move leaves") {
+TEST_CASE(
+    "two equal beams on a hub whose attitude is read: modes without motion of the hub leave") {
   for (const int elements : {1, 2})
     for (const bool at_tip : {false, true}) {
       CAPTURE(elements);

@@ -208,7 +208,7 @@ TEST_CASE("match: every row has its unknown, each of them once; inversions come 
   }
 }
 
-TEST_CASE("order: each unknown in one loop, dependencies first; what does not matter is listed") {
+TEST_CASE("order: each unknown in one loop, dependencies first; inactive signals are listed") {
   for (const NamedScene& scene : scenes()) {
     CAPTURE(scene.name);
     const Stage stage = run_until(scene.make(), "order");

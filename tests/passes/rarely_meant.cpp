@@ -60,7 +60,7 @@ TEST_CASE("a spring or damper that drives its joint away is warned of") {
   CHECK((has(damper[0], "a damper is +") && !has(damper[0], "a spring")));
 }
 
-TEST_CASE("what counts is the sum of what acts on one's own angle, directly") {
+TEST_CASE("the sum of direct terms in a joint's own angle counts") {
   CHECK(warnings_of([](Diagram& d, auto&, auto&, auto& h) {  // a law, whose signs are its own
           auto law = d.add("law", Gain{.gain = -900.0});
           law.in = h.angle;
@@ -141,7 +141,7 @@ TEST_CASE("a rotation by more than a turn is told once, and is that rotation all
   CHECK((Rotation::about({0, 0, 3}, 90).nominal() - T).cwiseAbs().maxCoeff() <= 1e-15);
 }
 
-TEST_CASE("a scene file keeps what the warnings are about") {
+TEST_CASE("a scene file keeps the data of the warnings") {
   Diagram d{"file"};
   auto body = d.add("body", RigidBody{.mass = 2}), other = d.add("other", RigidBody{.mass = 3});
   auto hub = d.add("hub", RigidBody{.mass = 9, .children = {{"A"}, {"B"}}});

@@ -99,7 +99,7 @@ Diagram square(const fe::ModeOptions& modes) {
 
 }  // namespace
 
-TEST_CASE("what a weld closes counts on both sides") {
+TEST_CASE("a closing weld counts on both sides") {
   const std::string said = stiff(square({.kept = 6}));
   for (const char* name : {"a.child", "b.child", "c.child"}) {
     CAPTURE(name);
@@ -107,7 +107,7 @@ TEST_CASE("what a weld closes counts on both sides") {
   }
 }
 
-TEST_CASE("a square of six modes each: the first frequency hides what the third one lacks") {
+TEST_CASE("a square of six modes each: the first frequency hides the error of the third") {
   const auto all = compile(square({})).poles(), six = compile(square({.kept = 6})).poles(),
              residual = compile(square({.kept = 6, .residual = {"C"}})).poles();
   CHECK(std::abs(six[0].omega / all[0].omega - 1) <= 3e-3);

@@ -74,7 +74,7 @@ TEST_CASE("promises of split and close: broken before the pass") {
   CHECK_THROWS(demand_closed(lowered(d)));
 }
 
-TEST_CASE("random graphs: the generator covers what it promises") {
+TEST_CASE("random graphs: the generator covers its promises") {
   int no_input = 0, no_output = 0, removed = 0, inverted = 0, loops = 0, unchecked = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     const titop::System system = titop::compile(random_scene(random_options(seed)).build(),

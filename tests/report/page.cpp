@@ -122,7 +122,7 @@ TEST_CASE("poles are the eigenvalues of M and K, with shares of the blocks that 
   }
 }
 
-TEST_CASE("what was removed, and why: twin masses swing against each other unseen") {
+TEST_CASE("removed states, with the reason: twin masses swing against each other unseen") {
   Five k = kStiffnesses;
   k[4] = k[3] / kMasses[3] * kMasses[4];
   const std::string order =
@@ -165,7 +165,7 @@ TEST_CASE("the certificate says whether forces are reciprocal, and why nothing a
   CHECK(rows == 2);
 }
 
-TEST_CASE("the summary says what matters first: unstable, unchecked, undecided") {
+TEST_CASE("the summary begins with the findings: unstable, unchecked, undecided") {
   CHECK(has(report_html(five_masses(), kNoDiagrams), "10 on the axis (undamped)"));
   Diagram d{"rolls away"};
   auto u = d.input("u");

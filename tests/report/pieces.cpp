@@ -150,7 +150,7 @@ TEST_CASE("programs get their words and their input as they are") {
   CHECK_FALSE(report::run({"titop-no-such-program"}, "").found);
 }
 
-TEST_CASE("units follow from what is driven and read") {
+TEST_CASE("units follow from the ports that are driven and read") {
   const Stage masses = compile(five_masses_scene(kMasses, kStiffnesses)).stage();
   CHECK(units(report::scalar_inputs(masses)) == Names{"N"});
   CHECK(units(report::scalar_outputs(masses)) == Names{"m", "m", "m", "m", "m", "m/s²"});

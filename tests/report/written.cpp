@@ -34,7 +34,7 @@ Diagram steered() {
 
 }  // namespace
 
-TEST_CASE("what the user wrote comes back from the compiled system") {
+TEST_CASE("the diagram as written can be recovered from the compiled system") {
   const Diagram d = steered();
   const System system = compile(d);
   REQUIRE(system.stage().motions.size() == 2);  // rate and position

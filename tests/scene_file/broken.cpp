@@ -72,7 +72,7 @@ TEST_CASE("broken scenes are refused with their place") {
   refused("[0.25]", "[[1]]", "equations[1].terms[0].factors[0]: found [1], expected a number or");
 }
 
-TEST_CASE("what a reader would drop without a word is refused with its place") {
+TEST_CASE("data that a reader would ignore silently are refused with their place") {
   for (const char* sign : {"0", "-3", "0.5"})
     refused("\"sign\": -1", std::string("\"sign\": ") + sign, "equations[0].terms[0].sign: found ");
   refused("\"mass\": 1", "\"mass\": 800, \"mass\": 9",
@@ -123,7 +123,7 @@ TEST_CASE("parts of a signal are orthonormal rows") {
         "expected orthonormal rows, at least one");
 }
 
-TEST_CASE("what a program may have written by mistake") {
+TEST_CASE("plausible mistakes of a program that writes scene files") {
   refused("\"damping\": 0", "\"damping\": 1e999", "cart.json: a number is too large for a double");
   refused("{\"name\": \"u\", \"size\": 1}", "{\"name\": \"u\", \"size\": 5000}",
           "inputs[0].size: found 5000, expected a size up to 4096");

@@ -114,7 +114,7 @@ TEST_CASE("a file is the text, in the order in which it was written") {
   CHECK_THROWS_AS(read_scene(folder.path / "none.json"), Error);
 }
 
-TEST_CASE("what cannot be written is refused") {
+TEST_CASE("scenes that cannot be written are refused") {
   Diagram twice{"twice"};
   twice.add("z", SpringMass{});
   twice.add("z", SpringMass{});

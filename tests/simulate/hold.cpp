@@ -107,7 +107,7 @@ TEST_CASE("hold of nothing: no states, no inputs, neither") {
     }
 }
 
-TEST_CASE("held response of a mass and what is refused") {
+TEST_CASE("held response of a mass, and refusals") {
   const StateSpace mass{(MatrixXd(2, 2) << 0, 1, 0, 0).finished(),
                         Eigen::Vector2d(0, 0.5),
                         Eigen::RowVector2d(1, 0),

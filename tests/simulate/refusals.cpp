@@ -64,7 +64,7 @@ TEST_CASE("refused: inputs of another number, jumps inside a step, records that 
              {"no sample"}));
 }
 
-TEST_CASE("refused: what grows out of all bounds, with the time") {
+TEST_CASE("refused: an overflowing response, with the time") {
   Diagram d{"runaway"};
   auto u = d.input("u");
   auto a = d.add("a", Lti{.A = Eigen::MatrixXd::Constant(1, 1, 50.0),

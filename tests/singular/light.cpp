@@ -136,7 +136,7 @@ TEST_CASE("parent mass from 1 through 1e-300 to 0, in all four forms") {
     }
 }
 
-TEST_CASE("mass ratios of 1e-12 and 1e12, and what is off by units") {
+TEST_CASE("mass ratios of 1e-12 and 1e12, and errors of units") {
   for (const Form form : kForms)
     for (const double unit : {1.0, 1e-9, 1e9})
       for (const double ratio : {1e-12, 1e12}) {
@@ -148,7 +148,7 @@ TEST_CASE("mass ratios of 1e-12 and 1e12, and what is off by units") {
       }
 }
 
-TEST_CASE("what the dense model loses is stated, at all masses, damped or not") {
+TEST_CASE("the error of the dense model is stated, at all masses, damped or not") {
   int all = 0, far = 0;
   for (const Form form : kForms)
     for (const double c : {0.0, 0.02})

@@ -165,7 +165,7 @@ TEST_CASE("a force on the point between two springs: proper for the mass, not fo
               "z1.parent.force = ", "z1 has parent mass 0", "SpringMass{.parent_mass = ...}"}));
 }
 
-TEST_CASE("a force on a free end without mass: what moves behind it, where the end is") {
+TEST_CASE("a force on a free end without mass: motion of the mass behind it, position of the end") {
   const auto scene = [](double damping, bool accel) {
     Diagram d{"pulled"};
     auto u = d.input("u");

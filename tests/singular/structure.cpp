@@ -52,8 +52,7 @@ TEST_CASE("structure: equations too many, signals missing, and cures that repair
     CHECK(compile_error(imposed(cure)).mistakes().empty());
 }
 
-TEST_CASE(
-    "structure: what imposes the motion is named as the cure, not how the bodies hang together") {
+TEST_CASE("structure: the cure names the imposed motion, not the mounts of bodies") {
   Diagram d{"chain"};
   auto a = d.add("a", brick()), b = d.add("b", brick()), c = d.add("c", brick());
   a.parent.accel = 0;

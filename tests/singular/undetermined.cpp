@@ -263,7 +263,7 @@ TEST_CASE("update: other values, and a mass on the strut's axis, which turns as 
   CHECK(error_against(again, [&](Complex s) { return scene.exact(s, 0, 3); }) <= 1e-11);
 }
 
-TEST_CASE("whoever asks for what is not determined is told so; a torque on it contradicts") {
+TEST_CASE("reading an undetermined motion is refused; a torque on it contradicts") {
   const Error spin = compile_error(Stand{.spin = true}.diagram());
   CHECK(says(spin, Code::improper,
              {"nothing determines the rotation of strut.parent about x, and output spin(4) depends "
@@ -279,7 +279,7 @@ TEST_CASE("whoever asks for what is not determined is told so; a torque on it co
   CHECK(std::string(torque.what()).find("hold that motion") == std::string::npos);
 }
 
-TEST_CASE("units of 1e-9 to 1e9 change neither what is taken as 0 nor what is refused") {
+TEST_CASE("units of 1e-9 to 1e9 change neither zeros nor refusals") {
   Rng rng(7);
   const Complex s{0.1, 1.7};
   for (int trial = 0; trial < 24; ++trial) {
@@ -305,7 +305,7 @@ TEST_CASE("units of 1e-9 to 1e9 change neither what is taken as 0 nor what is re
   }
 }
 
-TEST_CASE("a block without mass between springs along some axes: what no spring holds stays") {
+TEST_CASE("a massless block between springs along some axes: other directions are undetermined") {
   // Along r: wall - k1 - block - k2 - mass m under the force u.
   const auto scene = [](int loaded, const Matrix3d& axes, bool read) {
     Diagram d{"junction"};

@@ -73,7 +73,7 @@ TEST_CASE("dense export: what it costs at mass ratios is said, and so it is") {
   }
 }
 
-TEST_CASE("dense export: what write() made is judged as what state_space() made, without it") {
+TEST_CASE("dense export: write() gets the verdict of state_space(), without calling it") {
   for (const double ratio : {1.0, 1e9}) {
     const System system = chain(ratio);
     StateSpace written;
@@ -261,7 +261,7 @@ TEST_CASE("dense export: an output that is 0 by symmetry makes no difference of 
   }
 }
 
-TEST_CASE("dense export: what is no model of the system is refused by name") {
+TEST_CASE("dense export: a model of another system is refused by name") {
   const System system = reading();
   const auto refused = [&](auto change) {
     StateSpace model = written(system);

@@ -84,7 +84,7 @@ TEST_CASE("double-double: the range that is promised has all digits, and ends th
   CHECK(worst_error(rng, -1000) > 100 * kUnit);
 }
 
-TEST_CASE("double-double: numbers that cancel leave what is exact") {
+TEST_CASE("double-double: cancellation leaves the exact difference") {
   const DoubleDouble third = DoubleDouble(1) / 3.0;
   CHECK(error(third, Real(1) / 3, Real(1) / 3) <= kUnit);
   CHECK(std::abs(static_cast<double>(third * 3.0 - 1.0)) <= kUnit);
@@ -140,7 +140,7 @@ TEST_CASE("double-double: complex quotients have all digits as far as double rea
   CHECK(worst <= 1.5 * kUnit);
 }
 
-TEST_CASE("double-double: what overflows is no number") {
+TEST_CASE("double-double: an overflow is not a number") {
   const DoubleDouble large(1e200);
   CHECK(std::isnan(static_cast<double>(large * large)));
   CHECK(

@@ -78,7 +78,7 @@ TEST_CASE("solver: a star takes one front per arm, with few rows") {
   for (const Front& f : p.fronts) CHECK(f.row_count <= 4 * 6);
 }
 
-TEST_CASE("solver: what stands below a front stands right before it") {
+TEST_CASE("solver: the subtrees of a front come right before it") {
   Rng rng(4);
   for (const auto& [links, n] : {std::pair(tree(300, rng), 300), std::pair(star(40), 40),
                                  std::pair(grid(9, 9), 81), std::pair(ring(50), 50)}) {

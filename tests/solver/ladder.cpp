@@ -307,7 +307,7 @@ TEST_CASE("precision: an output that cancels altogether is 0, or has no 12 digit
   }
 }
 
-TEST_CASE("precision: what a precision refuses names another one") {
+TEST_CASE("precision: a refusal names another precision") {
   const auto error = [](const Diagram& d, std::complex<double> s, Precision precision) {
     return titop_test::error_of([&] { compile(d).transfer(s, precision); });
   };
@@ -362,7 +362,7 @@ Diagram far_end(const FlexibleBody& spec, int n) {
 
 }  // namespace
 
-TEST_CASE("precision: what dies away along a chain, to the smallest numbers, is no loss") {
+TEST_CASE("precision: decay along a chain, to the smallest numbers, is no loss") {
   Rng rng(11);
   const FlexibleBody spec(titop_test::random_modes(rng, 6, {"C"}, true));
   const double s =

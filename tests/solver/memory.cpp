@@ -67,7 +67,7 @@ std::string flags_of(const void* address) {
 
 }  // namespace
 
-TEST_CASE("memory: what is large comes in large pages, where the system has such") {
+TEST_CASE("memory: large blocks have large pages, if the system has them") {
   const bool has = std::ifstream("/sys/kernel/mm/transparent_hugepage/enabled").good();
   const auto large = [&](const void* address) {
     const std::string flags = flags_of(address);
@@ -85,7 +85,7 @@ TEST_CASE("memory: what is large comes in large pages, where the system has such
   CHECK(numbers.size() == kCount);
 }
 
-TEST_CASE("memory: another s takes what the one before has freed") {
+TEST_CASE("memory: another s reuses the memory of the one before") {
   const System system = compile(chain(1000), {.minimize_up_to = 0});
   const auto responses = [&](int count) {
     for (int i = 0; i < count; ++i) CHECK(system.transfer({0.1, 1.0 + i}).allFinite());

@@ -98,7 +98,7 @@ TEST_CASE("column scale: columns of zeros stay as they are, and move no other") 
   CHECK(exponents(zeros(3, scalars(3))) == std::vector<int>(3, 0));
 }
 
-TEST_CASE("column scale: at the ends of what a double holds") {
+TEST_CASE("column scale: at the ends of the range of a double") {
   using Limits = std::numeric_limits<double>;
   // Half of 1023 and of 1022, up or down: subnormal numbers count as hardly smaller.
   const std::vector<int> subnormal =

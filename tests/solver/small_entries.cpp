@@ -61,7 +61,7 @@ double off(std::complex<double> found, const Complex& exact) {
 
 }  // namespace
 
-TEST_CASE("small entries: what double takes for a 0 is right, or refused") {
+TEST_CASE("small entries: an entry at rounding level in double is right, or refused") {
   const Springs rows[] = {{{1e-10, 1e9, 100}, {1e-4, 1e10, 10}, 10},
                           {{0.01, 1e11, 1e-9}, {1e-12, 1e7, 1e-7}, 0.01},
                           {{1e-9, 1000, 0.1}, {1e-9, 1e10, 0.1}, 1},
@@ -87,7 +87,7 @@ TEST_CASE("small entries: what double takes for a 0 is right, or refused") {
 }
 
 TEST_CASE(
-    "small entries: what is 0 by symmetry needs no finer arithmetic, and no precision refuses it") {
+    "small entries: zeros by symmetry need no finer arithmetic, and no precision refuses them") {
   // Pushed at its center of mass, a body does not turn, in whatever frame it is told.
   const Eigen::Matrix3d R =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();

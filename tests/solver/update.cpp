@@ -172,7 +172,7 @@ ParameterList numbers(int bodies, double decades, Rng& random) {
 
 }  // namespace
 
-TEST_CASE("update: far from the old values it gives what a fresh compile gives, and counts that") {
+TEST_CASE("update: far from the old values it equals a fresh compile, and counts that") {
   Rng random(8);
   for (int round = 0; round < 100; ++round) {
     const ParameterList start = numbers(8, 0, random), far = numbers(8, 12, random);

@@ -84,7 +84,7 @@ void with_chain(Diagram& d) {
 
 }  // namespace
 
-TEST_CASE("update: what a body's own geometry brings into a position is not left out") {
+TEST_CASE("update: terms of a body's own geometry in a position are not left out") {
   const std::complex<double> s{0.4, 1.7};
   for (const bool chain : {false, true})
     for (const double reach : {1.0, -0.3}) {

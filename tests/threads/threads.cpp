@@ -87,7 +87,7 @@ TEST_CASE("threads: every task is done once, on as many threads as there are tas
     }
 }
 
-TEST_CASE("threads: what a task, or the making of one, throws comes out when all have stopped") {
+TEST_CASE("threads: errors of a task, or of its construction, are thrown after all have stopped") {
   for (const int threads : {1, 3, 64}) {
     CAPTURE(threads);
     const auto make = []() -> std::function<void(std::size_t)> {
@@ -290,7 +290,7 @@ TEST_CASE("threads: sweeps over parameters have the same bits") {
   CHECK(!same(one[1].first, one[2].first));
 }
 
-TEST_CASE("threads: what is found when it is first asked for may be asked for by all at once") {
+TEST_CASE("threads: values computed at the first call may be requested by all at once") {
   const auto there_and_back = [] {
     return compile(spacecraft()).update({{"angle", 1.0}}).update({{"angle", 0.4}});
   };
