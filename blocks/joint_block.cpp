@@ -79,7 +79,7 @@ class JointBlock : public Block, public Specified<std::vector<Axis>> {
   std::shared_ptr<const Dynamics> dynamics(ParameterValues) const override { return matrices_; }
   Pattern feedthrough() const override {
     Pattern p = matrices_->D.array() != 0;
-    for (Index i = 0; i < S_.cols(); ++i) {  // whatever the direction
+    for (Index i = 0; i < S_.cols(); ++i) {  // for any direction
       const Index half = S_.col(i).head<3>().isZero(0) ? 3 : 0;
       p.block<3, 1>(half, 12 + i).setConstant(true);
       p.block<1, 3>(12 + i, half).setConstant(true);

@@ -132,7 +132,7 @@ ChildRank child_rank(const ModalData& data, const ModalChild& child) {
   MatrixXd A = child.Phi_C(moving, Eigen::all);
   const VectorXd norms = A.rowwise().norm();
   A = norms.cwiseInverse().asDiagonal() * A;
-  // A = R'Q': its singular values are those of the small R', whatever the number of modes.
+  // A = R'Q': its singular values are those of the small R', for any number of modes.
   MatrixXd R = MatrixXd::Zero(count, count);
   const Eigen::HouseholderQR<MatrixXd> qr(A.transpose());
   const Index rows = std::min(count, A.cols());

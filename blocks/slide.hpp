@@ -12,9 +12,9 @@ namespace titop {
 ///     F_P   = F_C                          (F_C: wrench by the carried body on the joint)
 ///     f     = r' f_C                       the 13th channel
 ///
-/// States: travel x and rate; small motions about the posture. C and P coincide in it: the length
-/// by which the slide is drawn out at the posture belongs to the geometry, to the child point of
-/// the body that it hangs on or to the carried body's own points (`posture` says how long it is).
+/// States: travel x and rate; small motions about the posture. C and P coincide in it: the travel
+/// of the slide at the posture belongs to the geometry, to the child point of the parent body or to
+/// the carried body's own points (`posture` computes it).
 ///
 /// Sign of the force, as with the hinge's torque: f is the force of the body ON its parent along r,
 /// so `force = k * travel + c * rate` is the stable spring-damper, and an actuator that pushes the

@@ -4,9 +4,8 @@
 
 namespace titop {
 
-/// Nodes stand in the order in which passes visit them, their blocks wherever the user's code made
-/// them. Whoever goes through all nodes calls this for each, and the block of a later one is on its
-/// way from memory while this one is worked on.
+/// Nodes are stored in the order in which passes visit them, their blocks anywhere in memory. Loops
+/// over all nodes call this for each to prefetch the block of a later one.
 inline void fetch_ahead(const Graph& graph, std::size_t node) {
   constexpr std::size_t kAhead = 8;
   if (node + kAhead < graph.nodes.size())

@@ -37,7 +37,7 @@ struct FullCertificate {
   /// nothing but rounding, as by symmetry, is measured by 1e-3 of the terms that cancel in it
   /// (compiler/compare.hpp).
   struct Grid : Checked {
-    int points = 0;  ///< of those asked for, where the factors have a transfer; `why_not`: others
+    int points = 0;  ///< where the factors have a transfer; `why_not`: other requested points
     double lowest = 0, highest = 0;  ///< w [rad/s]
     double dense = -1;               ///< the minimal dense model against the factors
     std::complex<double> dense_s;

@@ -21,7 +21,7 @@ using Eigen::MatrixXd;
 using linalg::at;
 using solve::RowMatrix;
 
-/// Whoever waits goes on, even if this task has thrown: its numbers are not used then.
+/// Releases waiting tasks, even if this task has thrown: its numbers are not used then.
 struct Done {
   std::latch& latch;
   ~Done() { latch.count_down(); }

@@ -20,7 +20,7 @@ struct Builder {
   int states = static_cast<int>(d.layout().order());
   Triplets A = {}, B = {}, C = {}, D = {};
 
-  /// Column of a variable or state in v, or of an input in u (then `known` says so).
+  /// Column of a variable or state in v, or of an input in u (`input`).
   struct Place {
     int first;
     bool input;

@@ -10,7 +10,7 @@ namespace titop {
 /// One pole, or one conjugate pair (then the one with positive imaginary part).
 struct Pole {
   std::complex<double> s;  ///< [rad/s]
-  bool pair = false;       ///< stands for s and conj(s)
+  bool pair = false;       ///< s and conj(s)
   double omega = 0;        ///< |s| [rad/s]
   double hertz = 0;        ///< |s| / 2 pi [Hz]
   double damping = 0;      ///< -Re(s) / |s| [-]; 0 for s = 0

@@ -10,7 +10,7 @@ namespace {
 
 using linalg::at;
 
-/// False where the names do not tell everything apart.
+/// False if the names are not unique.
 bool order_of(const std::vector<std::string>& names, Eigen::Index count, std::vector<int>& order) {
   if (static_cast<Eigen::Index>(names.size()) != count) return false;
   order.resize(names.size());

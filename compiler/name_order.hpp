@@ -12,13 +12,13 @@ struct NameOrder {
   std::vector<int> states, inputs, outputs;
 };
 
-/// None where the names do not tell all rows and columns apart. O(n log n).
+/// None if the names of rows or of columns are not unique. O(n log n).
 std::optional<NameOrder> name_order(const StateSpace& model);
 
 /// The model in that order.
 StateSpace by_name(const StateSpace& model, const NameOrder& order);
 
-/// Back again: `states` are the names before; those that `model` has no more are left out.
+/// Inverse of the reordering: `states` are the names before; those that `model` lacks are left out.
 StateSpace as_before(const StateSpace& model, const std::vector<std::string>& states,
                      const NameOrder& order);
 

@@ -13,7 +13,7 @@ namespace titop::detail {
 
 /// How many threads to take for `tasks` independent tasks: `wanted`, or all cores where it is 0.
 inline int thread_count(int wanted, std::size_t tasks) {
-  // Asked for once: it reads a file, which takes longer than writing a small model.
+  // Called once: it reads a file, which takes longer than writing a small model.
   static const auto cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   const auto most = static_cast<int>(std::min<std::size_t>(tasks, 4096));
   return std::max(1, std::min(wanted > 0 ? wanted : cores, most));

@@ -10,8 +10,7 @@ namespace titop {
 
 /// The inputs over time, given by their values at the two ends of each step, as limits from inside.
 /// All methods interpolate linearly in between, so that steps, samples and ramps are exact. A
-/// vector u has the order of System::inputs(), an empty one stands for 0; matrices are inputs x
-/// samples.
+/// vector u has the order of System::inputs(), an empty one is 0; matrices are inputs x samples.
 class Excitation {
  public:
   /// u(begin), u(end) of the step from begin to end [s], limits from inside. With
@@ -61,9 +60,9 @@ struct Simulation {
   Stepper stepper = Stepper::automatic;
   Eigen::VectorXd x0 = {};   ///< states at time 0, in the order of System::states(); none: 0
   bool keep_states = false;  ///< Trajectory::x at all times
-  /// Of the automatic choice: the largest Trajectory::error that is not refused, and of the exact
-  /// step not left for midpoint. Infinite where outputs are asked for that no motion has reached
-  /// yet (far down a row): they have no digit.
+  /// Of the automatic choice: the largest Trajectory::error that is accepted; above it the exact
+  /// stepper is replaced by midpoint. Use infinity for outputs that no motion has reached yet (far
+  /// down a row): they have no digit.
   double accuracy = 0.01;
 };
 

@@ -78,7 +78,7 @@ struct RigidMotion {
   auto operator<=>(const RigidMotion&) const = default;
 };
 
-/// A closing equation that says something twice: in these directions the joint is released.
+/// A closing equation that is partly redundant: in these directions the joint is released.
 struct Released {
   int equation = -1;    ///< of the released force (new), in Stage::graph
   int channel = -1;     ///< whose wrench is not determined there

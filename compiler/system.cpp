@@ -66,7 +66,7 @@ detail::Evaluation<T> refined(const detail::SystemData& d, Double s,
   return {d, solve::Scalar<T>::from(s), unit_inputs<T>(d), coarse};
 }
 
-/// An error of the outputs by more asks for a finer precision, or is refused.
+/// A larger error of the outputs needs a finer precision, or is refused.
 constexpr double kEnough = 1e-12;
 
 template <class T>

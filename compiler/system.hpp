@@ -25,9 +25,9 @@ struct FullCertificate;
 struct Simulation;
 struct Trajectory;
 
-/// Wrenches in closed chains that hold more than once, which motion does not determine.
+/// Internal forces of over-constrained closed chains, which motion does not determine.
 enum class InternalForces {
-  refuse,        ///< whoever reads one is refused by name
+  refuse,        ///< outputs and controllers that read one are refused by name
   minimal_norm,  ///< the joint that closes the chain gets the wrench of smallest norm, forces [N]
                  ///< and torques [N m] alike; the log marks its readers
 };
@@ -92,8 +92,9 @@ class System {
   Rates apply(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const;
 
   /// Transfer matrix at s (outputs x inputs) through the factors of the same plan: O(bodies), full
-  /// accuracy at any mass ratio unless a coarser precision is asked for. Throws singular if s is a
-  /// pole of the system or of a block.
+  /// accuracy at any mass ratio with the default precision. Throws singular if s is a pole of the
+  /// system or of a block.
+  ///
   /// `refined` and `twofold` are accurate to 1e-12 of each block of the transfer (a port by a
   /// port), or throw singular, also without a pole: their factors are in double, and if these have
   /// no digit for some unknown, or if the rounding of long double is too large, refinement fails.
@@ -117,8 +118,8 @@ class System {
   Eigen::MatrixXd static_gain() const;
 
   /// The dense model. The first call writes it, O(n^2), and, up to Options::minimize_up_to states,
-  /// minimizes it, O(n^3): log() says where it did not. Later calls return the same. Throws
-  /// not_finite where numbers overflow.
+  /// minimizes it, O(n^3); otherwise log() reports that it did not. Later calls return the same.
+  /// Throws not_finite if numbers overflow.
   const StateSpace& state_space() const&;
   StateSpace state_space() const&& { return state_space(); }
 

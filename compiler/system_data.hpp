@@ -108,7 +108,7 @@ struct SystemData {
   const Graph& graph() const { return skeleton->stage.graph; }
   const Layout& layout() const { return skeleton->layout; }
   const std::vector<std::string>& state_names() const { return states.names(layout().states); }
-  /// The certificate: found by `compile`; of an updated system when it is first asked for.
+  /// The certificate: computed by `compile`; of an updated system at the first call.
   const Check& checked() const;
   /// Blocks of the transfer, units of outputs x units of inputs, that are 0 by symmetry: 32 digits
   /// (or 50, where these have none) see nothing but their own rounding there, or less than 1e-15 of
@@ -131,13 +131,13 @@ struct Rates {
 Rates rates(const SystemData& data, const solve::RowMatrix<double>& known,
             const solve::RowMatrix<double>& more = {});
 
-/// About the largest frequency of a block [rad/s], by its matrix A (n x n): the same whatever the
-/// units of its states, and in units of 1 / time. 0 where A says nothing of it. O(n^2) as a rule.
+/// About the largest frequency of a block [rad/s], by its matrix A (n x n): independent of the
+/// units of its states, and in units of 1 / time. 0 if A does not determine it. O(n^2) as a rule.
 double frequency_of(const Eigen::MatrixXd& A);
 
-/// Of an assembly by its written A, where rigid bodies between springs have no frequency by
+/// Of an assembly by its written A, in which rigid bodies between springs have no frequency by
 /// themselves: the mean (in its logarithm) over the states and the largest, each of a state by the
-/// product of two entries. Empty where A says nothing. O(n^2).
+/// product of two entries. Empty if A does not determine them. O(n^2).
 std::vector<double> frequencies_of(const Eigen::MatrixXd& A);
 
 /// An s of about this modulus, so far off the axis that no pole is near.
@@ -146,7 +146,7 @@ std::complex<double> off_axis(double omega);
 /// A frequency inside the blocks' own range, off the axis. O(bodies).
 std::complex<double> pick_s(const SystemData& data);
 
-/// The transfer where it has one: none at a pole, where no digit is left, or where it overflows.
+/// The transfer if there is one: none at a pole, without a digit, or if it overflows.
 std::optional<Eigen::MatrixXcd> transfer_if_any(const System& system, std::complex<double> s);
 
 /// The dense model before `minimize`, into buffers that are resized only if they do not fit.
@@ -195,8 +195,8 @@ std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
 /// independent coordinates share springs. Empty if a block does not define its energy. O(n^3).
 Eigen::MatrixXd potential_energy(const SystemData& data);
 
-/// Replaces the dense model by the minimal one where its transfer beside the modes that leave stays
-/// within 1e-8 (or ten times Options::resolution), and says so in dense_order and dense_notes.
+/// Replaces the dense model by the minimal one if its transfer plus the removed modes stays within
+/// 1e-8 (or ten times Options::resolution), and reports it in dense_order and dense_notes.
 void minimize_checked(const System& system, const SystemData& data, StateSpace& dense);
 
 /// Certificate of the factors: see certify.cpp.

@@ -213,7 +213,7 @@ std::string text_of(const Skeleton& k, const std::vector<int>& changed, Paramete
   return text.empty() ? "no new value" : text;
 }
 
-/// All passes again; says so, and whether the states are others.
+/// All passes again; notes it, and whether the states have changed.
 System compiled_again(const SystemData& old, const std::vector<int>& changed,
                       const std::vector<double>& values, const char* why) {
   return System(compile_again(*old.skeleton, values, [&](SystemData& d) {
@@ -234,8 +234,8 @@ bool has_moved(double value, double scaled_at) {
   return a > kFar * b || b > kFar * a;
 }
 
-/// True where pivots have lost half the digits that they had when the scaling was found, in however
-/// many updates, or none are left.
+/// True if pivots have lost half the digits that they had when the scaling was found, in any number
+/// of updates, or have none left.
 bool outgrown(const solve::Health& now, const solve::Health& scaled) {
   return now.singular || now.weakest < 1e-8 * scaled.weakest || now.growth > 1e8 * scaled.growth;
 }

@@ -12,8 +12,8 @@
 namespace titop::detail {
 namespace {
 
-/// One that waits for a worker stands in a list: there at most once, as who takes it out puts it in
-/// again. (It brings its own link: no memory is asked for, which there might not be.)
+/// A call that waits for workers is in a list: at most once, as the thread that takes it out puts
+/// it in again. (It brings its own link: no memory is allocated, which might fail.)
 struct Call : boost::intrusive::list_base_hook<> {
   Call(const std::function<void()>& to_do, const std::function<bool()>& is_more, int others)
       : work(to_do), more(is_more), left(others) {}
@@ -91,7 +91,7 @@ class Workers {
   int started_ = 0, most_ = 0;
 };
 
-/// In a child of fork() the others are not there, and whoever signals to them may wait for ever.
+/// In a child of fork() the other threads do not exist, and signalling to them may block for ever.
 bool is_child = false;
 
 /// Never destroyed: a thread that ends the process must not wait for the others' work.

@@ -1,4 +1,4 @@
-// A spacecraft is written as it is built: add the bodies, mount them, ask for inputs and outputs.
+// A spacecraft is written as it is built: add the bodies, mount them, declare inputs and outputs.
 // The bus, free under U, gets its parent channel inverted by that alone (Figs. 17, 18).
 #include <Eigen/Geometry>
 #include <Eigen/LU>

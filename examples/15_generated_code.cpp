@@ -11,7 +11,7 @@
 
 namespace {
 
-// Evaluated by the compiler: nothing is left to do at start-up.
+// Evaluated by the compiler: nothing is computed at start-up.
 constexpr satellite::Input torque(double motor) {
   satellite::Input u{};
   u[satellite::in::tau_m] = motor;

@@ -144,7 +144,7 @@ std::vector<Mistake> mistakes_of(const Block& block, const Dynamics& d) {
   const Index n = static_cast<Index>(block.interface().states.size());
   const Index nu = block.interface().input_size(), ny = block.interface().output_size();
   Inspection look(block);
-  if (d.modal) {  // A is as sparse as its modes say: their numbers are all that there are
+  if (d.modal) {  // A has only the numbers of its modes
     look.sized(d.A, "A", n, n), look.sized(d.B, "B", n, nu);
     look.sized(d.C, "C", ny, n), look.sized(d.D, "D", ny, nu);
     look.whole(d.modal->W, "W", n / 2, nu);

@@ -11,7 +11,7 @@ namespace titop {
 /// Kind of a mistake. The printed names (`to_string`) are a stable interface: scripts may match
 /// them. docs/errors.md has the table of all codes with causes and cures.
 enum class Code {
-  no_equation,     ///< a channel is driven by nobody
+  no_equation,     ///< a channel without equation
   two_equations,   ///< a port is set twice, or both sides of a channel are
   size,            ///< sizes of two sides differ
   quantity,        ///< acceleration, velocity, position, force are mixed
@@ -23,8 +23,8 @@ enum class Code {
   structure,       ///< every channel is driven and still the equations contradict in pattern
   ill_posed,       ///< an algebraic loop without a unique solution
   improper,        ///< the transfer would need derivatives of an input
-  kinematic_loop,  ///< a closed chain (or the links of a posture) that does not meet, that goes
-                   ///< through a block without kinematics, or whose internal forces are asked for
+  kinematic_loop,  ///< a closed chain (or the links of a posture) that does not close, that goes
+                   ///< through a block without kinematics, or whose internal forces are read
   bad_inertia,     ///< no rigid body has this inertia
   bad_modes,       ///< modal data that contradict themselves
   bad_file,        ///< a file that does not contain the expected data

@@ -53,7 +53,7 @@ struct Signal {
   int first = 0;  ///< first row in the block's u or y
   int frame = kNoFrame;
   int channel = -1;      ///< index in Graph::channels, -1 for one-way ports
-  bool active = true;    ///< false once a pass has set it aside: it is 0, or nobody sees it
+  bool active = true;    ///< false once a pass has set it aside: it is 0, or unobservable
   bool at_rest = false;  ///< set aside because nothing moves it
   bool row = true;       ///< outputs: the block's row for it is in use
 };
@@ -153,7 +153,7 @@ std::string frame_name(const Graph& graph, int frame);
 std::vector<double> nominal_values(const Graph& graph);
 /// The matrix of a term (rows x signal size) for these parameter values, without regard to `of`.
 Eigen::MatrixXd coefficient(const Graph& graph, const Term& term, ParameterValues values);
-/// Where that matrix may be nonzero, whatever the values: a rotation by 0 is still a rotation.
+/// Where that matrix may be nonzero for any values: a rotation by 0 is still a rotation.
 Pattern structure(const Graph& graph, const Term& term);
 /// Number of rows that the term has, -1 where its factors do not fit one another.
 int rows_of(const Graph& graph, const Term& term);

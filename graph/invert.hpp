@@ -14,11 +14,11 @@ namespace titop {
 /// parameter values.
 StateSpace model_of(const BlockPtr& block);
 
-/// The block with cause and effect swapped in some channels: "parent" (all of it), "C1.angular",
-/// "C1.linear", "parent(3)" (one degree of freedom, 1 to 6), "" (a hinge's own axis). Every swapped
-/// input keeps its place and becomes the output's name, and the other way round; states stay.
-/// Inverting twice gives the same model again. Throws unknown_name, and improper if the swapped
-/// channels' direct term is singular together (it says of which rank). O(size^3).
+/// The block with input and output exchanged in some channels: "parent" (all of it), "C1.angular",
+/// "C1.linear", "parent(3)" (one degree of freedom, 1 to 6), "" (a hinge's own axis). Every
+/// exchanged input keeps its place and gets the output's name, and vice versa; states stay.
+/// Inverting twice gives the same model again. Throws unknown_name, and improper, with the rank, if
+/// the direct term of the exchanged channels is singular. O(size^3).
 StateSpace invert(const BlockPtr& block, const std::vector<std::string>& channels);
 
 /// The same for a model, input and output numbers given pair by pair.

@@ -175,7 +175,7 @@ void note_unknown_channel(Graph& graph, int node, std::string_view name, std::so
   mistake.details.push_back("written at " + to_string(at));
   mistake.hint = names.empty() ? fmt::format("{} has no child points; add one to its data", who)
                                : fmt::format("its child points are: {}", names);
-  // mount asks for a port twice.
+  // mount reads a port twice.
   const bool known =
       std::any_of(graph.mistakes.begin(), graph.mistakes.end(), [&](const Mistake& m) {
         return m.message == mistake.message && m.details == mistake.details;

@@ -27,7 +27,7 @@ struct StateSpace {
   int state(const std::string& name) const;
 };
 
-/// The matrices with their names, for reading; wide models are cut and say so.
+/// The matrices with their names, for reading; wide models are truncated with a note.
 std::string to_string(const StateSpace& model);
 
 }  // namespace titop

@@ -15,8 +15,8 @@ struct Param {
   const void* owner = nullptr;  ///< its diagram's graph
 };
 
-/// A number, or a parameter that stands for one: wherever a block takes a number, it takes a
-/// `Value`, so `SpringMass{.mass = 2.0, .stiffness = k1}` needs no second spelling.
+/// A number, or a parameter: wherever a block takes a number, it takes a `Value`, so
+/// `SpringMass{.mass = 2.0, .stiffness = k1}` needs no second spelling.
 class Value {
  public:
   constexpr Value(double number = 0) : number_(number) {}

@@ -14,8 +14,8 @@ struct FirstOrder {
   Table<S> A, B, C, D;
 };
 
-/// Throws std::domain_error where the mass matrix or an algebraic loop is singular, and where a
-/// reaction is asked for that the motion does not determine.
+/// Throws std::domain_error if the mass matrix or an algebraic loop is singular, and if an output
+/// is a reaction that the motion does not determine.
 template <class S>
 FirstOrder<S> assemble(const Plan& plan);
 

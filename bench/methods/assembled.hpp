@@ -37,7 +37,7 @@ bool is_ring(const Assembly& assembly);
 void dense_lu(const Assembly& assembly, titop::StateSpace& model);
 
 /// Factored anew at each s by Eigen's SparseLU, on an order of elimination that is found once; in
-/// float, double or long double, and with one step of refinement, its residual in Real, if asked.
+/// float, double or long double, and optionally with one step of refinement, its residual in Real.
 template <class Real = double>
 class SparseAssembly {
  public:

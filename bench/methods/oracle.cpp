@@ -93,7 +93,7 @@ void add_rows(Equations& e, Rows& M, Rows& R) {
   const titop::Graph& g = e.stage.graph;
   std::vector<char> driven(g.signals.size(), 0);
   for (const titop::Equation& equation : g.equations) {
-    if (!equation.active || equation.of_block) continue;  // the response says it
+    if (!equation.active || equation.of_block) continue;  // part of the response
     const int size = g.signals[at(equation.target)].size;
     driven[at(equation.target)] = 1;
     e.add(MatrixXd::Identity(size, size), equation.target, M, e.row, R);

@@ -30,9 +30,9 @@ class SparseLu {
   Eigen::SparseLU<Sparse, Eigen::COLAMDOrdering<int>> lu_;
 };
 
-/// [s - A, 0, -B; -C, I, -D; 0, -K, I] [x; y; u] = [0; 0; E w], factored anew at each s on an
-/// order of elimination that is found once; in float, double or long double, and with one step of
-/// refinement, its residual in Real, if asked.
+/// [s - A, 0, -B; -C, I, -D; 0, -K, I] [x; y; u] = [0; 0; E w], factored anew at each s on an order
+/// of elimination that is found once; in float, double or long double, and optionally with one step
+/// of refinement, its residual in Real.
 template <class Real = double>
 class SparsePencil {
  public:

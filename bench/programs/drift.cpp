@@ -139,8 +139,8 @@ Diagram masses(int n, bool wall) {
 // ----------------------------------------------------------------
 
 /// Of masses(6, true), stretches and rates: s_i'' = a_i - a_(i-1) with the walls' accelerations 0
-/// and m_i a_i = k_(i+1) s_(i+1) - k_i s_i. Nothing says that the stretches sum to 0; they keep the
-/// sum and its rate that they began with, as two poles at 0.
+/// and m_i a_i = k_(i+1) s_(i+1) - k_i s_i. No equation makes the sum of the stretches 0; the
+/// initial sum and its rate are kept, as two poles at 0.
 StateSpace of_accelerations() {
   StateSpace m;
   m.A = MatrixXd::Zero(12, 12);

@@ -6,8 +6,8 @@
 #include "support/timing.hpp"
 
 /// (s - A)^-1 B of one dense block, three inputs: the LU of compiler/response.hpp beside Eigen's
-/// PartialPivLU, which also takes the modulus (hypot) of every entry for a condition number that
-/// nobody asks for, and of every candidate for a pivot. One core, GCC 12, -O3, microseconds (titop,
+/// PartialPivLU, which also computes the modulus (hypot) of every entry for a condition number that
+/// is not used, and of every candidate for a pivot. One core, GCC 12, -O3, microseconds (titop,
 /// Eigen):
 ///
 ///     states          1            3            6            12
@@ -15,9 +15,9 @@
 ///     complex         0.06 0.13    0.17 0.32    0.48 0.83    1.8  2.8
 ///     long double     0.11 0.25    0.53 1.0     2.1  3.9     11   17
 ///
-/// For double-double and 50 digits Eigen needs to be told how to compare pivots (and traits for 50
-/// digits, which the whole library would have to share); told so, its factors take 1.3 to 5 times
-/// as long up to 12 states.
+/// For double-double and 50 digits Eigen needs a comparison of pivots (and traits for 50 digits,
+/// which the whole library would have to share); with these its factors take 1.3 to 5 times as long
+/// up to 12 states.
 namespace titop_bench {
 namespace {
 

@@ -42,7 +42,7 @@ struct SceneOptions {
 /// way round). R and G have no parameter and no ratio.
 titop::Diagram scene(Case c, int n, const SceneOptions& options = {});
 
-/// Where responses are asked for: so many frequencies [rad/s], logarithmic, from 0.11 to 1100.
+/// Points of responses: so many frequencies [rad/s], logarithmic, from 0.11 to 1100.
 std::vector<double> frequencies(int count);
 
 }  // namespace titop_bench

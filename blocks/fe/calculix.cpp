@@ -21,8 +21,8 @@ struct Label {
   int dof = 0;  ///< 1..3
 };
 
-/// Every line stands for something: an empty one is a mistake, and a last line without line end may
-/// be a number cut short.
+/// Every line has content: an empty one is a mistake, and a last line without line end may be a
+/// truncated number.
 std::vector<TextLine> data_lines(const TextFile& file, FileMistakes& mistakes) {
   require_line_end(file, mistakes);
   return lines_of(file);
@@ -103,7 +103,7 @@ MatrixXd read_matrix(const TextFile& file, const std::vector<Label>& labels) {
   return S.unaryExpr([](double entry) { return std::isnan(entry) ? 0.0 : entry; });
 }
 
-/// Points and rows of the mesh from the labels. A rotation node stands for its reference node.
+/// Points and rows of the mesh from the labels. A rotation node belongs to its reference node.
 void place_labels(const TextFile& file, const std::vector<Label>& labels, const CalculixDeck& deck,
                   const std::string& deck_name, Mesh& mesh) {
   FileMistakes mistakes;

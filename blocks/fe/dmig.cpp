@@ -51,7 +51,7 @@ void add_fields(DmigCard& card, const TextLine& line, bool wide) {
   }
 }
 
-/// True for a card called DMIG, in whatever form.
+/// True for a card called DMIG, in any form.
 bool is_dmig(std::string_view text) {
   text = trim(text);
   for (const char c : {'D', 'M', 'I', 'G'}) {

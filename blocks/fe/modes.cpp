@@ -182,8 +182,9 @@ MatrixXd unit_loads(const Clamped& c, const std::string& parent, const std::stri
   return B;
 }
 
-/// Columns of X made M-orthonormal, the one that has most left first. A column of which less than
-/// 1e-7 is left is a combination of the others to within the static response's own accuracy.
+/// Columns of X made M-orthonormal, the one with the largest remainder first. A column with a
+/// remainder below 1e-7 is a combination of the others to within the static response's own
+/// accuracy.
 MatrixXd independent(MatrixXd X, const MatrixXd& M) {
   const auto norms = [&] { return VectorXd((X.cwiseProduct(M * X)).colwise().sum().cwiseSqrt()); };
   const VectorXd size = norms();

@@ -15,12 +15,12 @@ struct Op4Matrix {
   double digits = 15;  ///< decimal digits that the entries carry: by precision, or by the format
 };
 
-/// All real matrices of a file, in its order. It is text or binary, dense or sparse (with or
-/// without BIGMAT, each matrix by itself), single or double precision, with words of 4 or 8 bytes
-/// in either byte order: that is found out from the file.
+/// All real matrices of a file, in its order. The format is detected: text or binary, dense or
+/// sparse (with or without BIGMAT, each matrix by itself), single or double precision, words of 4
+/// or 8 bytes in either byte order.
 ///
 /// Throws bad_file, naming the file, the matrix and the record (binary: with its byte) or line: a
-/// record that ends early or has another length than it says, a column or row outside the matrix,
+/// record that ends early or differs from its stated length, a column or row outside the matrix,
 /// columns that do not ascend, a value that is no finite number, a complex matrix, one of more than
 /// 25 million entries, more than 100 million in the file, a name twice. Dense: 8 bytes per entry.
 std::vector<Op4Matrix> read_op4(const std::filesystem::path& path);

@@ -246,7 +246,7 @@ class KeysOnce : public nlohmann::json_sax<Json> {
     throw Error(Code::bad_file, fmt::format("{}: {}: the key is given twice", file_, path()),
                 "keep one of them");
   }
-  /// Json::parse says it.
+  /// Json::parse reports it.
   bool parse_error(std::size_t, const std::string&, const Json::exception&) override {
     return false;
   }

@@ -8,7 +8,7 @@
 namespace titop::dot {
 
 struct Fold {
-  /// A box that stands for several blocks: whole subtrees.
+  /// A box for several blocks: whole subtrees.
   struct Box {
     std::vector<int> nodes;  ///< all of them, in natural order of their names
     std::vector<int> tops;   ///< the topmost of them

@@ -111,7 +111,7 @@ class Row {
     return (s.role == Signal::Role::input ? face.inputs : face.outputs)[at(s.spec)].name;
   }
 
-  /// A channel without a name (a joint's own axis) has no head: its cells say enough.
+  /// A channel without a name (a joint's own axis) has no head: its cells suffice.
   void add(int channel, bool named, std::string& heads, std::string& pairs,
            std::string& singles) const {
     const Channel& c = p_.graph.channels[at(channel)];

@@ -108,7 +108,7 @@ std::vector<std::string> find_zeros(const Graph& g, const std::vector<Assignment
     }
     if (a.terms.empty()) zero[at(a.target)] = (a.part.empty() ? "" : " ") + a.part + " = 0";
   }
-  for (const Channel& c : g.channels)  // a child channel that nobody mentions: nothing hangs there
+  for (const Channel& c : g.channels)  // child channel without equation: nothing is mounted
     if (c.takes == Takes::force && !driven[at(c.force)]) zero[at(c.force)] = " = 0";
   return zero;
 }

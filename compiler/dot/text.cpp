@@ -83,7 +83,7 @@ std::string font(std::string_view text, int size, std::string_view colour) {
 
 namespace colour {
 namespace {
-/// Okabe and Ito's palette, which also colour-blind readers tell apart; fills are tints of it.
+/// Okabe and Ito's palette, which colour-blind readers can distinguish; fills are tints of it.
 constexpr std::array<std::string_view, 6> kLines = {"#D55E00", "#0072B2", "#009E73",
                                                     "#AA4499", "#B8860B", "#56609C"};
 constexpr std::array<std::string_view, 6> kFills = {"#FBE3D3", "#D6E9F5", "#D5EFE7",

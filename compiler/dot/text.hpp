@@ -10,14 +10,14 @@ namespace titop::dot {
 std::size_t utf8_length(std::string_view text);
 /// `text` as it stands in a label: broken UTF-8 and control characters become U+FFFD.
 std::string clean(std::string_view text);
-/// A quoted Graphviz string that shows `text`, whatever is in it.
+/// A quoted Graphviz string that shows `text`, which may have any characters.
 std::string quoted(std::string_view text);
 /// `text` inside an HTML-like label. Never empty: Graphviz refuses empty elements.
 std::string html(std::string_view text);
 /// Text in another size and colour inside an HTML-like label; `text` is taken as HTML.
 std::string font(std::string_view text, int size, std::string_view colour);
 
-/// Colours. Each also tells apart in black and white by width, dash, or a sign beside it.
+/// Colours. In black and white they differ by width, dash, or a sign beside them.
 namespace colour {
 constexpr std::string_view ink = "#1F2933";
 constexpr std::string_view line = "#3E4C59";

@@ -15,7 +15,7 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kSilent = 1e-11;    ///< of the peaks: a pole that nobody moves or nobody sees
+constexpr double kSilent = 1e-11;    ///< of the peaks: an unreachable or unobservable pole
 constexpr double kUnstable = 1e-6;   ///< growth over |s| that is no rounding
 constexpr double kDistinct = 1e-10;  ///< relative gap of singular values that may be cut through
 constexpr double kClear = 1.1;       ///< times the target: a clear violation on one sample

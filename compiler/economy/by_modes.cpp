@@ -71,7 +71,7 @@ class ByModes : public Reduction {
                     fmt::format("{} move alike", fmt::join(twins.pairs, "; ")));
   }
 
-  /// Begun when a model is asked for: where bodies lose modes, only the last of several tries is.
+  /// Begun at the first call: if bodies lose modes, only for the last of several tries.
   Sequence& sequence() {
     if (!sequence_) sequence_.emplace(whole_, setting_.samples, setting_.band.high);
     return *sequence_;
@@ -121,7 +121,7 @@ class ByModes : public Reduction {
   Setting& setting_;
   Whole whole_;
   std::optional<Sequence> sequence_;
-  std::map<std::size_t, ErrorBound> bounds_;  ///< by step of the sequence, as far as asked for
+  std::map<std::size_t, ErrorBound> bounds_;  ///< by step of the sequence, as far as computed
 };
 
 }  // namespace

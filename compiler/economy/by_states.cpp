@@ -60,7 +60,7 @@ class ByStates : public Reduction {
   }
 
  private:
-  /// Begun when a model is asked for: where bodies lose modes, only the last of several tries is.
+  /// Begun at the first call: if bodies lose modes, only for the last of several tries.
   const Balanced& balanced() {
     if (!balanced_)
       setting_.timed("balance", [&] {

@@ -32,7 +32,7 @@ struct Coordinates {
   Eigen::Index size() const { return static_cast<Eigen::Index>(names.size()); }
 };
 
-/// No passive structure: the message says which states, and why.
+/// No passive structure: the message names the states and the reason.
 class NoStructure : public Error {
  public:
   using Error::Error;

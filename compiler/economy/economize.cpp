@@ -31,7 +31,7 @@ int states_of(const Diagram& diagram) {
 /// then modes of the whole, or states where it is no structure.
 class Economy {
  public:
-  /// `finest`: of the accuracies that will be asked for.
+  /// `finest`: the smallest accuracy that will be required.
   Economy(const Diagram& diagram, const Scene& scene, const Options& options, double finest)
       : setting_(scene, options, finest, states_of(diagram)) {
     detail::check(scene);

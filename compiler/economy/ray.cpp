@@ -20,7 +20,7 @@ constexpr double kNearlyZero = 1e-6;   ///< of its size without symmetry: a pair
 constexpr double kOfTransfer = 1e-12;  ///< of the full system's transfer
 constexpr double kCancelled = 5e-14;   ///< of terms that cancel: some 200 units of the last place
 constexpr double kPoleUnits = 2;       ///< units of the last place of a pole
-constexpr int kFar = 10;               ///< poles in s^2 that stand for all beyond twice the band
+constexpr int kFar = 10;               ///< poles in s^2 in place of all beyond twice the band
 constexpr double kOnePole = 1e-12;     ///< relative distance of poles that are one
 
 bool equal(Complex p, Complex q) { return std::abs(p - q) <= kOnePole * std::abs(q); }

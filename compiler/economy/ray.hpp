@@ -23,7 +23,7 @@ Band band_of(const System& system, const Scene& scene, const Whole& whole);
 Band band_of(const System& system, const Scene& scene,
              const std::vector<std::complex<double>>& poles, const Part& integrals);
 
-/// How large the pairs of a model are at one s, whatever cancels: outputs x inputs.
+/// Sizes of a model's pairs at one s without cancellation: outputs x inputs.
 struct Sizes {
   Eigen::MatrixXd alike;  ///< every pair if output and input coupled to all modes alike
   Eigen::MatrixXd terms;  ///< sum of the magnitudes of the model's terms: scale of its rounding

@@ -7,11 +7,11 @@
 namespace titop::detail {
 
 /// Real columns that span the eigenvectors of two states each: of a pair, or of two real ones; the
-/// last column is that of a real one that is left alone, if there is one.
+/// last column is that of a single real one, if there is one.
 struct RealModes {
   Eigen::MatrixXd T;
   std::vector<Eigen::Matrix2d> A;
-  std::vector<double> single;  ///< pole of the one left alone: none or one
+  std::vector<double> single;  ///< pole of the single one: none or one
 };
 
 /// Throws singular if eigenvectors are too close to each other, with `instead` as the way out.

@@ -10,7 +10,7 @@ struct ReducedData;
 
 /// How far a reduced system is from the full one, over the scene's band.
 struct ErrorBound {
-  Eigen::MatrixXd pairs;      ///< outputs x inputs, relative as Scene says
+  Eigen::MatrixXd pairs;      ///< outputs x inputs, relative as in Scene
   Eigen::MatrixXd peak;       ///< scale of each pair, in the pair's own unit (output over input):
                               ///< |error| <= pairs * peak
   double worst = 0;           ///< the largest of `pairs`
@@ -59,8 +59,7 @@ struct SecondOrderModel {
 };
 
 /// xdot = A x + B u, y = C x + D u with A of 2 x 2 blocks on the diagonal: one per mode. An odd
-/// real pole of a balanced model has a block with a second state that nothing moves and nobody
-/// reads.
+/// real pole of a balanced model has a block with an additional unreachable and unobservable state.
 struct ModalModel {
   std::vector<Eigen::Matrix2d> A;
   Eigen::MatrixXd B, C, D;  ///< 2r x inputs, outputs x 2r, outputs x inputs
@@ -101,7 +100,7 @@ class ReducedSystem {
   /// defective (two of them critically damped alike, say); second_order() always works.
   ModalModel modal() const;
 
-  /// The question, with the accuracy that was asked for.
+  /// The scene, with the required accuracy.
   const Scene& scene() const&;
   Scene scene() const&& { return scene(); }
   const ErrorBound& bound() const&;
@@ -152,7 +151,7 @@ ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options&
 
 /// One line of `what_if`.
 struct WhatIf {
-  double accuracy = 0;  ///< asked for
+  double accuracy = 0;  ///< required
   int order = 0;        ///< states
   double bound = 0;     ///< reached
   /// Of one transfer of the reduced system, measured here: the least of nine runs of fifty each,

@@ -22,9 +22,9 @@ struct Setting {
 
   Scene scene;
   Options options;
-  double finest;          ///< of the accuracies that will be asked for
+  double finest;          ///< smallest accuracy that will be required
   int states;             ///< of all blocks
-  System full{nullptr};   ///< as asked
+  System full{nullptr};   ///< as in the scene
   System model{nullptr};  ///< with smaller bodies; the same where these are not needed
   std::shared_ptr<const SystemData> data;  ///< of `model`
   bool smaller = false;                    ///< bodies have lost modes first, if they had any

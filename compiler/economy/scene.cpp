@@ -88,7 +88,7 @@ class Rewriter {
       new_[at(c.index)].push_back({signal, c.component});
     }
   }
-  /// The terms that stand for `old` (a term of the graph before) in the new graph.
+  /// The terms that replace `old` (a term of the graph before) in the new graph.
   std::vector<Term> terms(const Term& old, const Term& renumbered) const {
     if (old.signal < 0) return {renumbered};
     const Signal& s = before_.signals[at(old.signal)];

@@ -79,7 +79,7 @@ class Core {
   bool has_zero() const {
     return order() > 0 && schur_.T.diagonal().cwiseAbs().minCoeff() <= kAtRest * norm();
   }
-  /// Tells kept and stable apart.
+  /// Separates kept and stable.
   void divide() {
     if (try_divide(kUndamped)) return;
     const Error error = inseparable();

@@ -34,7 +34,7 @@ struct Split {
   double near = kUndamped;
 };
 
-/// Throws singular where no such parts can be told apart. O(30 n^3).
+/// Throws singular if the parts cannot be separated. O(30 n^3).
 Split split(const StateSpace& model);
 
 /// Outputs x inputs: size of a pair at s without cancellation of the terms of states and inputs,

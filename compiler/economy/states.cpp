@@ -56,7 +56,7 @@ bool is_strict_triangle(const MatrixXd& A) {
   return A.isUpperTriangular(0) && A.diagonal().isZero(0);
 }
 
-/// Appends a part as blocks; a real pole that is left alone shares its block with nothing.
+/// Appends a part as blocks; a single real pole has a block by itself.
 void add_blocks(ModalModel& result, const Part& part, const RealModes& modes) {
   const Index n = part.order(), first = 2 * static_cast<Index>(result.A.size());
   result.A.insert(result.A.end(), modes.A.begin(), modes.A.end());

@@ -81,7 +81,7 @@ void turn_clusters(VectorXd& lambda, MatrixXd& phi, const MatrixXd& b, const Mat
     MatrixXd seen(last - first, b.cols() + c.rows());
     seen << b.middleRows(first, last - first), c.middleCols(first, last - first).transpose();
     for (Index j = 0; j < seen.cols(); ++j) {
-      // A port that sees nothing of the cluster but rounding has no say in how it turns.
+      // A port whose share of the cluster is rounding has no influence on its rotation.
       const double size = seen.col(j).norm();
       seen.col(j) *= size > kSeen * all(j) ? 1 / size : 0;
     }

@@ -54,7 +54,7 @@ struct CppModel {
 /// requested but not accurate, a dense model with fewer than six digits. O(n^3).
 CppModel generate_cpp(const System& system, const CppOptions& options = {});
 
-/// Writes NAME.hpp and NAME_test.cpp; a file that already says the same is left alone, so that
+/// Writes NAME.hpp and NAME_test.cpp; a file that has this content already is not touched, so that
 /// nothing is built again. Throws bad_file.
 void write(const CppModel& model, const std::filesystem::path& folder);
 

@@ -45,7 +45,7 @@ struct Closer {
     return closing::Meaning{Role::coordinate, coordinates.weight(s.column.id, s.index)};
   }
 
-  /// The state that stands for this scalar on this level.
+  /// The state of this scalar on this level.
   std::pair<int, int> state(const Scalar& s, Level level) const {
     const bool own = s.column.kind == Column::Kind::integral || level == Level::position;
     return {s.column.id, own ? s.index : coordinates.rate_of(s.column.id, s.index)};

@@ -33,7 +33,7 @@ enum class Sight { at_once, through_states };
 Incidence incidence(const Graph& graph, bool by_scalar, Sight sight = Sight::at_once);
 
 /// Active signals, one by one, that a row mentions: unknowns, states and inputs. For graph walks;
-/// rows of one node in turn ask its block once.
+/// consecutive rows of one node read its block once.
 class Mentioned {
  public:
   explicit Mentioned(const Graph& graph) : g_(graph) {}

@@ -80,8 +80,8 @@ Components components(const Graph& g, const Arrows& needs) {
     if (is_unknown(g.signals[at(s)]))
       for (const int t : needs.from(s))
         if (is_unknown(g.signals[at(t)])) edges.emplace_back(s, t);
-  // From one more vertex all others are reached: a search from each of them would ask for a stack
-  // of its own. It is the last component, by itself.
+  // All vertices are reached from one additional vertex: a search from each of them would need a
+  // stack of its own. It is the last component, by itself.
   const int all = needs.count();
   for (int s = 0; s < all; ++s) edges.emplace_back(all, s);
   const Digraph digraph(boost::edges_are_sorted, edges.begin(), edges.end(), all + 1);

@@ -30,7 +30,7 @@ struct NumericTerm {
 };
 
 /// Calls take(origin, terms) with the terms of each of these equations and outputs (by their places
-/// in Stage::origins) for other parameter values; ends early where that is false, and says so.
+/// in Stage::origins) for other parameter values; stops if take returns false, and returns false.
 /// Throws as `lower` does. O(these terms).
 bool lower_again(const Stage& stage, const std::vector<int>& origins, ParameterValues values,
                  const std::function<bool(int, std::span<const NumericTerm>)>& take);

@@ -70,7 +70,7 @@ struct Singular {
     return c.accel == target ? c.force : c.accel;
   }
 
-  /// Driving the channel's other side instead, whatever drives it, leaves less to be determined.
+  /// True if driving the channel's other side instead leaves fewer signals undetermined.
   bool cures(int equation) const {
     Graph other = g;
     other.equations[at(equation)].target = other_side(equation);

@@ -19,7 +19,7 @@ using solve::RowMatrix;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
-/// Rounding is as large as its samples are, but for luck: of four, none is small.
+/// The largest of several samples estimates rounding: of four, hardly all are small.
 constexpr int kSamples = 4;
 
 /// Coefficients below this multiple of their own rounding are 0. Measured: up to 6 for true zeros,

@@ -14,9 +14,9 @@ struct Derivatives {
 };
 
 /// Shifts the states of the model by multiples of inputs and their derivatives so that only inputs
-/// themselves are left in it (StateMap::set_inputs, noted). Throws improper where a derivative
-/// still reaches an output, by more than rounding may have made of nothing: its share of the output
-/// at some s does not matter. O(bodies) per input and derivative.
+/// themselves remain in it (StateMap::set_inputs, noted). Throws improper if a derivative still
+/// reaches an output, by more than the rounding of a 0: its share of the output at some s does not
+/// matter. O(bodies) per input and derivative.
 void make_proper(Skeleton& k, SystemData& d, const Derivatives& derivatives);
 
 }  // namespace titop::detail

@@ -66,8 +66,8 @@ class Reducer {
       throw Error(solve::overflow(k_.stage, k_.joint, h));
   }
 
-  /// Constraints that determine no state. Those that say nothing leave a motion undetermined: it is
-  /// taken as 0 in the system as written where nothing depends on it.
+  /// Constraints that determine no state. Constraints without content leave a motion undetermined:
+  /// it is set to 0 in the system as written if nothing depends on it.
   void hold_or_refuse(const std::vector<Hidden>& rest) {
     std::vector<int> rows;
     for (const Hidden& c : rest)
@@ -85,7 +85,7 @@ class Reducer {
         refuse(rest, motions.lines,
                {"it cannot be taken as 0: a sum of many terms stands between it and a block's "
                 "states"});
-    for (const int row : rows)  // held, and undetermined all the same: no digit is left
+    for (const int row : rows)  // held, and still undetermined: no digit remains
       if (!held_.insert(groups.of(row)).second)
         refuse(rest, motions.lines, {"taken as 0 it is undetermined all the same"});
     for (const std::string& line : motions.lines)
@@ -98,7 +98,7 @@ class Reducer {
   }
 
   /// At some s a held row's group is written anew with the block's C, and C X(s) must find the
-  /// block's inputs in it: not where partial sums of a long row stand for them.
+  /// block's inputs in it: not possible if partial sums of a long row replace them.
   bool hides_states(int group) const {
     const auto pieces = k_.joint.row(group);
     const auto is_state = [](const Piece& p) { return p.of == Piece::Left::state; };

@@ -13,8 +13,8 @@
 /// Derivatives of inputs that come in this way must not reach an output; states may be shifted by
 /// multiples of inputs so that they do not.
 ///
-/// A constraint that says nothing (0 = 0) leaves something undetermined. Where that is a motion on
-/// which nothing asked for depends (undetermined.hpp), it is taken as 0 in its place, and noted.
+/// A constraint without content (0 = 0) leaves something undetermined. If that is a motion on which
+/// no output or state depends (undetermined.hpp), it is set to 0 instead, and noted.
 namespace titop::detail {
 
 /// Replaces k.joint and d.factors, which are singular, by regular ones (`least`: smallest ratio of

@@ -5,10 +5,9 @@
 #include <titop/compiler/reduce/watched.hpp>
 #include <vector>
 
-/// Motions that no equation determines: a massless strut between two pin joints turns about its own
-/// axis as it likes, and the balance of torques about that axis says 0 = 0. Where nothing that is
-/// asked for depends on such a motion it may be taken as 0, in place of the equation that says
-/// nothing.
+/// Motions that no equation determines: a massless strut between two pin joints rotates about its
+/// own axis freely, and the balance of torques about that axis is 0 = 0. If no output or state
+/// depends on such a motion it may be set to 0, in place of the equation without content.
 namespace titop::detail {
 
 /// direction * signal = 0 in place of a row.

@@ -28,7 +28,7 @@ struct Readers {
         if (c(i, j) != 0) visit(i, d.layout().known_first[at(signal)] + j);
   }
 
-  /// The same for c times whatever a signal stands for.
+  /// The same for c times the meaning of a signal.
   template <class Visit>
   void of_signal(const MatrixXd& c, int signal, Visit visit) const {
     for (const solve::Meaning& m : k.joint.meaning(signal))

@@ -20,8 +20,8 @@ constexpr double kFewDigits = 1e-7;
 /// bodies, some seconds); beyond, 0 with a note that it is not decided.
 double least_pivot(const SystemData& d, Check& check);
 
-/// The ports of the loop without a digit, or of the weakest pivot's, as an ill_posed mistake: where
-/// double cannot say which rows depend on each other.
+/// The ports of the loop without a digit, or of the weakest pivot's, as an ill_posed mistake: for
+/// dependent rows that double cannot identify.
 Mistake no_digit_left(const Skeleton& k, const SystemData& d);
 
 }  // namespace titop::detail

@@ -147,7 +147,7 @@ class Motion {
   virtual VectorXd error() const { return {}; }
 };
 
-/// A rule that was asked for.
+/// A stepper chosen by the caller.
 class Asked : public Motion {
  public:
   explicit Asked(std::unique_ptr<detail::StepRule> rule) : rule_(std::move(rule)) {}

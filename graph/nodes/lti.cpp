@@ -33,7 +33,7 @@ class LtiBlock : public Block {
   std::shared_ptr<const Dynamics> matrices_;
 };
 
-/// y = the integral of u, whoever writes it: passes look for these.
+/// y = the integral of u, also of a user's Lti: passes search for these.
 bool is_integrator(const Dynamics& m) {
   const auto n = m.A.rows();
   return n > 0 && m.B.cols() == n && m.C.rows() == n && m.A.isZero(0) && m.B.isIdentity(0) &&

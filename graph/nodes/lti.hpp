@@ -14,7 +14,7 @@ struct Lti {
   Eigen::MatrixXd A = {};  ///< n x n; leave A, B and C empty for a pure D
   Eigen::MatrixXd B = {};  ///< n x nu
   Eigen::MatrixXd C = {};  ///< ny x n
-  Eigen::MatrixXd D = {};  ///< ny x nu; empty stands for 0
+  Eigen::MatrixXd D = {};  ///< ny x nu; empty: 0
 
   struct Handle {
     Handle(Graph* graph, int node);

@@ -189,7 +189,8 @@ TEST_CASE("invert: twice is nothing; whole channels, halves and single degrees o
                                                    {"C.linear", "parent"}}) {
     const StateSpace N = invert(body, channels);
     CAPTURE(channels.front());
-    // Names say which were swapped; then y and u of any motion must satisfy both models.
+    // The exchanged ports have the other's names; then y and u of any motion must satisfy both
+    // models.
     MatrixXcd u = rng.matrix(12, 1).cast<Complex>();
     MatrixXcd y = G * u;
     std::vector<std::pair<int, int>> pairs;

@@ -274,7 +274,7 @@ TEST_CASE("a slow or a double pole right of the axis is not passed over") {
   CHECK(slow.poles.measured == 1);  // rounding moves it by 2e-7 of itself
   CHECK(std::abs(slow.poles.rightmost - 1e-3) <= 1e-15);
   CHECK(slow.grid.lowest <= 1e-3);
-  // A defective one is not measured; neither is it said to be none.
+  // A defective one is not measured, and not reported as none.
   const FullCertificate twice = poles((Eigen::Matrix2d() << 1, 1, 0, 1).finished(),
                                       Eigen::Vector2d(0, 1), Eigen::RowVector2d(1, 0));
   CHECK(twice.poles.measured == 0);

@@ -8,7 +8,7 @@
 #include "support/random_scene.hpp"
 
 /// Pairs of input and output that are 0 by symmetry: the certificate neither takes their rounding
-/// for a fault, in whatever units, nor lets a fault in them pass.
+/// for a fault, in any units, nor misses a fault in them.
 
 using namespace titop;
 using namespace titop::detail;

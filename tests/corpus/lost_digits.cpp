@@ -1,4 +1,4 @@
-// Closed chains that only their numbers hold: the self-check says that digits are lost.
+// Closed chains that are held only by their rounded numbers: the self-check reports lost digits.
 #include <doctest/doctest.h>
 
 #include <nlohmann/json.hpp>
@@ -10,8 +10,8 @@ using titop::OrderVerdict;
 using titop_test::Folder;
 
 TEST_CASE("where digits are lost, rounding decides no order: the interval holds the exact one") {
-  // Some ports of these are nothing but rounding, which judged by its own size moves and sees all.
-  // Where that can be told from their equations they count as 0, elsewhere the order is in doubt.
+  // Some ports of these are at rounding level and, judged by their own size, move and see all. If
+  // their equations show that, they count as 0, otherwise the order is in doubt.
   int doubted = 0;
   for (const char* scene :
        {"spatial --seed 9258 --shape star --bodies 4 --loops 4",

@@ -49,7 +49,7 @@ struct Beside {
   double peak_low = HUGE_VAL, peak_high = 0;  ///< ErrorBound::peak over the peak on this grid, of
                                               ///< pairs that symmetry does not make 0
 };
-/// More steps than eighteen per sample of the bound's where `truth` does not tell its poles.
+/// More steps than eighteen per sample of the bound's if `truth` has no poles.
 Beside beside(const titop::ReducedSystem& r, const titop::Scene& scene, const Truth& truth,
               int steps = 0);
 

@@ -124,7 +124,7 @@ TEST_CASE("symmetric appendages, common motion only: half their modes go exactly
   CHECK(r.steps()[1].after == 36);
   CHECK(r.steps()[1].error == 0);
   check_beside(r, scene, twins_by_hand(beam));
-  // One tip is read: both move alike, whoever looks at one of them.
+  // One tip is read: both move alike, independent of the choice.
   scene.outputs = {"a", "tips"};
   CHECK(compile(twins(beam), scene).steps()[1].after == 36);
   scene.accuracy = 1e-4;

@@ -9,7 +9,7 @@
 #include "support/close.hpp"
 #include "support/mistakes.hpp"
 
-/// Where numbers end, or a form is not there: said, not answered.
+/// Limits of precision and forms that do not exist: refused with a reason.
 using namespace titop;
 using namespace titop_test;
 using Eigen::MatrixXcd;

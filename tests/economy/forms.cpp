@@ -82,7 +82,7 @@ TEST_CASE("passive stays passive: force to rate at one point, in the band and fa
       const MatrixXcd Y = r.transfer({0.001 * w, w}).middleRows(6, 6);
       const MatrixXcd twice = Y + Y.adjoint();
       CHECK(smallest_eigenvalue(twice) >= -1e-9 * twice.norm());
-      // Reciprocal: far below the band to four digits more than the accuracy asked for, 1e-4.
+      // Reciprocal: far below the band to four digits more than the required accuracy, 1e-4.
       CHECK(matrix_error(Y, MatrixXcd(Y.transpose())) <= (w < 1 ? 1e-8 : 1e-9));
     }
   }

@@ -64,7 +64,7 @@ std::vector<int> multiplicities(const ReducedSystem& r) {
 }  // namespace
 
 TEST_CASE("a body keeps both bending modes of a frequency, or none") {
-  // Only one direction is asked for: each of the two has an effect of its own.
+  // Only one direction is used: each of the two has an effect of its own.
   const Diagram d = frame(square_beam());
   titop::Scene scene{.inputs = {"U(2)"}, .outputs = {"a(2)"}, .band_hz = {0, 60}};
   const Graph graph = detail::restricted(d.graph(), scene);
@@ -82,7 +82,7 @@ TEST_CASE("a body keeps both bending modes of a frequency, or none") {
       if (relative(all(i), all(j)) <= 1e-9) pairs.emplace_back(i, j);
   REQUIRE(pairs.size() == 2 * kElements);
   std::set<std::size_t> counts;
-  int apart = 0;  // single modes would have been told apart by their own effects
+  int apart = 0;  // single modes would differ by their own effects
   for (int k = 4; k <= 48; ++k) {
     const double share = std::pow(10, -0.25 * k);
     CAPTURE(share);

@@ -1,4 +1,4 @@
-// A model whose digits do not survive A, B, C, D: every file of it says so, and generated code is
+// A model that loses digits in A, B, C, D: every file of it reports that, and generated code is
 // refused with a way out that works.
 #include <doctest/doctest.h>
 #include <fmt/format.h>

@@ -44,7 +44,7 @@ TEST_CASE("the printed names of the codes are a stable interface") {
       "duplicate-name", "not-finite",    "not-a-rotation", "structure", "ill-posed", "improper",
       "kinematic-loop", "bad-inertia",   "bad-modes",      "bad-file",  "bad-value", "singular"};
   for (std::size_t i = 0; i < names.size(); ++i) CHECK(to_string(static_cast<Code>(i)) == names[i]);
-  CHECK(to_string(static_cast<Code>(names.size())) == "unknown");  // none is left out here
+  CHECK(to_string(static_cast<Code>(names.size())) == "unknown");  // the list is complete
 
   std::ifstream file(TITOP_SOURCE_DIR "/docs/errors.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};

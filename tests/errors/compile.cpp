@@ -130,7 +130,7 @@ TEST_CASE("improper: at a hinge, the body without inertia is told from the one t
     return d;
   };
   CHECK(compile_error(scene(4, 2, true)).mistakes().empty());
-  CHECK(compile_error(scene(4, 0, false)).mistakes().empty());  // nobody asks how the arm turns
+  CHECK(compile_error(scene(4, 0, false)).mistakes().empty());  // the arm's rotation is not read
   CHECK(says(compile_error(scene(4, 0, true)), Code::improper,
              {"h.torque is imposed", "h is a massless joint", "inertia about its axis",
               "nothing determines the rotation of A.parent about z, and outputs tip(2), tip(6) "

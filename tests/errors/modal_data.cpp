@@ -39,7 +39,7 @@ TEST_CASE("bad-inertia: a D_P that no body has") {
                d.D_P.bottomRightCorner<3, 3>() = Vector3d(120, 10, 130).asDiagonal();
              }),
              Code::bad_inertia, {"D_P is negative in", "the inertia in D_P is about P"}));
-  // Data of two digits may be off by a tenth: nothing to say about a twentieth.
+  // Data of two digits may be off by a tenth: a twentieth is no mistake.
   CHECK(refused_with([](ModalData& d) { d.D_P(0, 0) = 42, d.digits = 2; }).mistakes().empty());
 }
 

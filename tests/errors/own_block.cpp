@@ -1,5 +1,5 @@
-// A block of one's own whose matrices do not fit its interface, or are no numbers, is told of with
-// its node, its type and the matrix, before any pass works with it.
+// A user's block whose matrices do not fit its interface, or have numbers that are not finite, is
+// reported with its node, its type and the matrix, before any pass works with it.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -86,8 +86,7 @@ TEST_CASE("own block: sizes that are not those of the interface") {
            {"wheel: B of this Wheel is 3 x 0, not 3 x 6", "wheel was added at errors/own_block"}));
   CHECK(says(spoilt([](Interface&, Dynamics& d) { d.D = MatrixXd::Zero(5, 6); }), Code::size,
              {"wheel: D of this Wheel is 5 x 6, not 6 x 6"}));
-  // Two names for three states: which of the two is wrong nobody knows, so all that differs is
-  // told.
+  // Two names for three states: either may be wrong, so all differences are reported.
   const Error e = spoilt([](Interface& f, Dynamics&) {
     if (!f.states.empty()) f.states.pop_back();
   });

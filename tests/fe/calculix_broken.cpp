@@ -151,7 +151,7 @@ TEST_CASE("duplicates") {
   CHECK(message(f).find("b.sti:46: found '2 1 -2.0e-01', expected the value -0.1") !=
         std::string::npos);
   f = good();
-  f.sti += "2 1 -1.0e-01\n";  // says the same
+  f.sti += "2 1 -1.0e-01\n";  // the same value
   CHECK(message(f) == "no error");
   f = good();
   f.dof = replaced(f.dof, "1.2\n", "1.1\n");

@@ -67,7 +67,7 @@ TEST_CASE("residual mass of all modes is M_rr - M_rf M_ff^-1 M_fr") {
 TEST_CASE("residual mass: singular and negative to the data's digits") {
   ModalData data = modal_data(boom());
   const double left = residual_mass(data).D_P0(0, 0);
-  // One mode more that takes all the mass that is left along x: exactly, or too much.
+  // One mode more with all the residual mass along x: exactly, or too much.
   const auto with_mode_taking = [&](double mass, double digits) {
     ModalData more = data;
     more.L_P.conservativeResize(data.L_P.rows() + 1, Eigen::NoChange);

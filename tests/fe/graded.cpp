@@ -29,8 +29,8 @@ Matrix100 exactly(const MatrixXd& S) {
   return m;
 }
 
-/// Eigenvalues, ascending, by Jacobi's rotations from both sides until nothing is left beside the
-/// diagonal.
+/// Eigenvalues, ascending, by Jacobi's rotations from both sides until all off-diagonal entries are
+/// 0.
 std::vector<Real> eigenvalues(const MatrixXd& S) {
   Matrix100 m = exactly(S);
   const std::size_t n = m.size();
@@ -152,7 +152,7 @@ TEST_CASE("graded: damping that couples slow modes is not lost beside that of a 
   CHECK(*alone == VectorXd(Eigen::Vector3d(0.1, 0.2, 1e14)));
   Z(1, 2) = Z(2, 1) = 0.05;
   CHECK(!diagonal_in(e, Z));
-  // Proportional to the stiffness: no more than rounding is left between modes.
+  // Proportional to the stiffness: only rounding couples modes.
   const MatrixXd graded_S = graded(8, 10, 3);
   const GradedModes modes = eigh_graded(graded_S);
   const auto damping = diagonal_in(modes, 1e-3 * graded_S);

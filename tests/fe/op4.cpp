@@ -267,7 +267,7 @@ TEST_CASE("columns twice or out of order, half a value: refused; names in small 
   says(with(88, 1), "matrix SMALL, record 3 (byte 84): found column 1 behind column 1");
   says(with(36, 3), "found column 3 behind column 3");
 
-  // One word more than the values need, said and there: half a double.
+  // One word more than the values need, stated and present: half a double.
   std::string half = good.substr(0, 32);
   const auto put = [&](std::int32_t value) {
     half.append(reinterpret_cast<const char*>(&value), 4);

@@ -139,7 +139,7 @@ TEST_CASE("names that the test's own or the C library's might meet") {
       INFO(name);
       CHECK(shop.proves(generate_cpp(system, {.name = name, .sample_time = 0.1})) == "");
     }
-    // Behind whatever a program includes.
+    // After any includes of a program.
     shop.folder.write("behind.cpp",
                       "#include <cerrno>\n#include <cmath>\n#include <csignal>\n#include <cstdio>\n"
                       "#include <strings.h>\n#include <unistd.h>\n#include \"poles.hpp\"\n"

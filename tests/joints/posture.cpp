@@ -136,7 +136,7 @@ TEST_CASE("Bennett: a spatial loop that only its proportions let move") {
     CHECK(turned(p.values[2], -theta) <= 1e-10);
     CHECK(turned(p.values[3], -other) <= 1e-10);
     CHECK(open_by(loop, p) <= 1e-12);
-    // With rounded data it closes as well as the data say, where that is allowed for.
+    // With rounded data it closes to the accuracy of the data, if the tolerance allows it.
     const auto rounded = bennett(theta, alpha, beta, length_b * (1 + 1e-7));
     CHECK(error_of([&] { posture(rounded); }).has(Code::kinematic_loop));
     CHECK(turned(posture(rounded, {.tolerance = 1e-6}).values[1], other) <= 1e-5);

@@ -100,7 +100,7 @@ TEST_CASE("scale_rates: rates, zeros for coordinates, and nothing beside") {
   const std::ptrdiff_t entries = 6 + 1 + 4 + 3 + 11 + 2;
   auto x = numbers(rng, entries);
   x[0] = -0.0;
-  std::vector<double> first(70, 7), second = first,  // from 70 on, memory is only asked for
+  std::vector<double> first(70, 7), second = first,  // from 70 on, memory is only prefetched
       plain_first = first, plain_second = first;
   std::ptrdiff_t next = 0;
   for (const auto& p : bodies)

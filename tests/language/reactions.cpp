@@ -86,7 +86,7 @@ TEST_CASE("a force without effect is refused: at a tied point whose reaction is 
 }
 
 TEST_CASE("added forces with an effect are not refused: free directions, motion by a signal") {
-  const auto by_parts = [](bool added) {  // B's point carries A's; A turns as a torque says
+  const auto by_parts = [](bool added) {  // B's point carries A's; A rotates under a torque
     Diagram d{"ball"};
     auto u = d.input("u", 3);
     auto A = d.add("A", brick()), B = d.add("B", brick());
@@ -106,7 +106,7 @@ TEST_CASE("added forces with an effect are not refused: free directions, motion 
   CHECK(matrix_error(one.static_gain(), other.static_gain()) <= 1e-15);
   CHECK(one.static_gain().norm() > 0.1);
 
-  Diagram d{"servo"};  // b's point follows, whatever it takes
+  Diagram d{"servo"};  // b's point follows, at any force
   auto u = d.input("u");
   auto a = d.add("a", SpringMass{.mass = 2, .stiffness = 26}),
        b = d.add("b", SpringMass{.mass = 3, .stiffness = 7});

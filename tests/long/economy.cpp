@@ -123,7 +123,7 @@ TEST_CASE("500 random scenes: error below the bound, undamped poles on the axis,
       check_stable(model, r.undamped);
       if (r.collocated) check_passive(model);
     } catch (const Error& error) {
-      // Refused where rounding in the modes of the whole ends first: said, and rare.
+      // Refused if rounding in the modes of the whole limits the accuracy: reported, and rare.
       CHECK(error.has(Code::bad_value));
     }
   }

@@ -38,7 +38,7 @@ struct Said {
 
 std::string verdict(const Diagram& d) { return Said(d).text; }
 
-/// m a = k a + u - ...: singular where k = m, whatever the unit.
+/// m a = k a + u - ...: singular if k = m, in any unit.
 Diagram cancelled(double mass, const Units& u, double share) {
   Diagram d{"cancelled"};
   auto z =

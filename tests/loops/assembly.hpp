@@ -34,8 +34,8 @@ by_hand::Matrix6 mass_at_P(double mass, const Eigen::Matrix3d& inertia, const Ei
 /// A frame whose x axis points along `direction`.
 Eigen::Matrix3d along_x(const Eigen::Vector3d& direction, const Eigen::Matrix3d& any);
 
-/// Constraints held q = 0 by the singular values of their matrix: the motions that they leave, and
-/// the multipliers along which they say nothing new, which stay open.
+/// Constraints held q = 0 by the singular values of their matrix: the motions that they allow, and
+/// the multipliers of redundant constraints, which are undetermined.
 struct Constraints {
   MatrixXd held;
   Eigen::JacobiSVD<MatrixXd> svd;
@@ -70,7 +70,7 @@ ConstrainedMotion constrained_motion(const by_hand::Structure& a, const Constrai
 /// omegas of K x = omega^2 M x, the `zeros` lowest left out.
 std::vector<Complex> elastic_poles(const by_hand::Structure& a, Index zeros);
 
-/// Poles with Im s >= 0 of a dense model, whatever they are.
+/// Poles with Im s >= 0 of any dense model.
 std::vector<Complex> all_poles(const titop::System& system);
 
 }  // namespace loop_test

@@ -12,7 +12,7 @@ struct FrameScene {
 };
 
 /// The diagram of a frame (frames.hpp), as a user writes one: input U pushes, outputs pushed and
-/// watched; input A and output force as the scene says.
+/// watched; input A and output force as in the scene.
 titop::Diagram diagram_of(const FrameScene& scene);
 
 }  // namespace loop_test

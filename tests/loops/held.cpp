@@ -158,8 +158,8 @@ Diagram wedged(double tilt, bool welded) {
 }  // namespace
 
 TEST_CASE("springs along what a chain nearly lets move: as welded, within what its angles keep") {
-  // Far below all modes the factors of such a chain have no digit; the model is tried elsewhere,
-  // and the log says so.
+  // Far below all modes the factors of such a chain have no digit; the model is checked elsewhere,
+  // and the log reports it.
   for (const double tilt : {1e-2, 1e-4, 1e-5, 1e-6}) {
     CAPTURE(tilt);
     const System welded = compile(wedged(tilt, true)), held = compile(wedged(tilt, false));

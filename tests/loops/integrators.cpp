@@ -16,7 +16,7 @@ namespace {
 
 using Five = std::array<SpringMass::Handle, 5>;
 
-/// Fig. 7, and whatever a spelling adds for x3.
+/// Fig. 7, and the output x3 in any spelling.
 Diagram five(const std::function<void(Diagram&, const Five&)>& spelling) {
   Diagram d{"five"};
   const auto add = [&](std::size_t i) {

@@ -80,7 +80,7 @@ class Oriented {
     return result;
   }
 
-  /// All ends move with the first one, which takes the force that is left.
+  /// All ends move with the first one, which takes the remaining force.
   void join(std::size_t point, Expr left) {
     const End first = ends_[point].front();
     for (const End& e : ends_[point]) {

@@ -4,8 +4,8 @@
 #include "frame_by_hand.hpp"
 #include "frame_diagram.hpp"
 
-/// Random frames (frames.hpp) whose first body moves as an input says: orders and transfers as by
-/// M, D and K, where its six coordinates are given.
+/// Random frames (frames.hpp) whose first body has an acceleration input: orders and transfers as
+/// by M, D and K, where its six coordinates are given.
 
 using namespace loop_test;
 

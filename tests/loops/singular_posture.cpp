@@ -4,7 +4,7 @@
 #include <numbers>
 #include <titop/titop.hpp>
 
-/// A singular posture is told from one where chains are closed twice and still move.
+/// Singular postures are distinguished from redundantly closed chains that still move.
 
 using namespace titop;
 

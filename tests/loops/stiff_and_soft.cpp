@@ -23,7 +23,7 @@ using titop::linalg::at;
 
 namespace {
 
-/// No chain is told to be narrow or singular.
+/// No chain is reported as narrow or singular.
 void check_chains(const System& system) {
   for (const Note& note : system.notes()) {
     CAPTURE(note.text);

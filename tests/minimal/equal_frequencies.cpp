@@ -96,7 +96,7 @@ TEST_CASE("minimal: two overdamped modes with one pole in common") {
 }
 
 TEST_CASE("minimal: equal wings of different damping on a hub") {
-  // The wings mix in the modes of the springs alone: only damping tells which is which.
+  // The wings mix in the modes of the springs alone: only damping distinguishes them.
   Diagram d{"wings"};
   auto u = d.input("u");
   auto hub = d.add("hub", SpringMass{.mass = 2, .stiffness = 0.5, .damping = 0.05});

@@ -163,8 +163,8 @@ TEST_CASE("undecided exact orders have a reason") {
 TEST_CASE("given matrices: order of random models, enlarged by states without effect") {
   titop_test::Rng rng(5);
   for (int round = 0; round < 40; ++round) {
-    // The core is a chain of integrators with feedback, minimal by its form; then states that
-    // nothing moves and states that nobody sees, coupled at random, and a mixing by integers.
+    // The core is a chain of integrators with feedback, minimal by its form; then unreachable
+    // states and unobservable states, coupled at random, and a mixing by integers.
     const int n = 1 + rng.below(4), p = rng.below(3), q = rng.below(3), all = n + p + q;
     const auto whole = [&] { return static_cast<double>(rng.below(7) - 3); };
     StateSpace m;

@@ -25,7 +25,7 @@ Diagram loop(double g) {
   return d;
 }
 
-/// An acceleration fed back so that all but nothing is left of a mass of 2.
+/// An acceleration fed back so that a mass of 2 is nearly cancelled.
 Diagram nearly_massless(double kd) {
   Diagram d{"nearly_massless"};
   auto z = d.add("z", SpringMass{.mass = 2, .stiffness = 5, .damping = 0.1});

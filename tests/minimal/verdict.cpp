@@ -127,7 +127,7 @@ TEST_CASE("a state removed by a wrong exact order is restored, with the change m
     CHECK(r.notes.back() ==
           fmt::format("nothing was removed, since that changes the transfer by {:.1e}", missed));
   }
-  // Below 1e-8 it may leave, and the change is said.
+  // Below 1e-8 it may leave, and the change is reported.
   const Minimized r = minimize(sum(1e-9), {.exact_order = 1});
   CHECK(r.model.order() == 1);
   CHECK(r.order.change > 1e-10);
@@ -156,7 +156,7 @@ TEST_CASE("poles at 0: ranks show how many are needed") {
 }
 
 TEST_CASE("uncoupled states of any size: the effect of one input on one hides no other") {
-  // 1e-1 * 1e3 / (s + 20), and a pole that is pushed by 1e16 and seen by nobody, or by 1e-16.
+  // 1e-1 * 1e3 / (s + 20), and a pole with input 1e16 and output 0, or 1e-16.
   const MatrixXd A{{-20, 0}, {0, -10}}, B{{0.1}, {1e16}};
   CHECK(minimize(model(A, B, MatrixXd{{1000, 0}})).model.order() == 1);
   const Minimized both = minimize(model(A, B, MatrixXd{{1000, 1e-16}}));

@@ -1,6 +1,6 @@
 #include <titop/blocks/spring_mass.hpp>
 
-// A channel has two sides: which of them is driven must be said.
+// A channel has two sides: an equation must name the driven one.
 void scene() {
   using namespace titop;
   Diagram d{"scene"};

@@ -1,6 +1,6 @@
 #include <titop/blocks/spring_mass.hpp>
 
-// A variable is not the literal 0, whatever it holds.
+// A variable is not the literal 0, whatever its value.
 void scene() {
   using namespace titop;
   Diagram d{"scene"};

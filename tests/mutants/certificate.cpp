@@ -15,7 +15,7 @@ namespace {
 using namespace titop;
 
 /// Masses in two rings that share some, closed by stiff springs: soft ones depend on the others,
-/// with either sign. A position and a rate are asked for, which the states hold already.
+/// with either sign. Outputs are a position and a rate, which are states already.
 Diagram ring() {
   Diagram d{"ring"};
   auto u = d.input("u");

@@ -113,7 +113,7 @@ TEST_CASE("inputs and no output: the log says how to write one") {
   Diagram d{"forgotten"};
   auto z = d.add("z", SpringMass{.mass = 2, .stiffness = 3});
   ground(z);
-  CHECK(warnings(d).empty());  // no inputs: poles may be all that is asked for
+  CHECK(warnings(d).empty());  // no inputs: legal if only poles are needed
   z.child.force = d.input("u");
   const auto none = warnings(d);
   REQUIRE(none.size() == 1);

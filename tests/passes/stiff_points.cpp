@@ -4,8 +4,8 @@
 #include <numbers>
 #include <titop/titop.hpp>
 
-/// Where modes are left out a child point may be rigid in some directions. The log says so where a
-/// body is fixed to it.
+/// With truncated modes a child point may be rigid in some directions. The log reports it if a body
+/// is fixed there.
 
 using namespace titop;
 

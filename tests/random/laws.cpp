@@ -5,8 +5,8 @@
 
 #include "support/random_checks.hpp"
 
-/// Laws that hold for every diagram, on the same random ones: the order of writing and the units do
-/// not matter; undamped poles lie on the axis, damped ones left of it.
+/// Laws of every diagram, on the same random ones: the order of writing and the units do not
+/// matter; undamped poles lie on the axis, damped ones left of it.
 
 using namespace titop_test;
 using titop::compile;

@@ -91,8 +91,8 @@ TEST_CASE("(14) and its inverses in a scene against the finite elements") {
     const System system = compile(alone(body, imposed));
     std::vector<MatrixXcd> exact;
     for (const Complex z : s) exact.push_back(direct(kTube.numbers(), imposed, z));
-    // Inverted, (14) has to tell the little mass that all modes leave at P (D_P - L_P'L_P) from
-    // the whole, or Phi_C Phi_C' from its many high modes: some digits of its data go there.
+    // Inverted, (14) has the small residual mass at P, the difference D_P - L_P'L_P, and a sum over
+    // many high modes, Phi_C Phi_C': some digits of its data are lost there.
     const bool as_written = !imposed.motion_at_C && imposed.motion_at_P;
     CHECK(error_3(responses(system, s), exact) <= (as_written ? 1e-12 : 1e-10));
     CHECK(error_3(responses(system.state_space(), s), exact) <= (as_written ? 1e-10 : 1e-9));

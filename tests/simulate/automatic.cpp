@@ -4,7 +4,7 @@
 
 #include "simulate/scenes.hpp"
 
-/// The stepper that is chosen where none is asked for says how good it is.
+/// The automatic stepper reports its accuracy.
 
 using namespace titop;
 using namespace simulate_test;

@@ -116,7 +116,7 @@ TEST_CASE("exact: six masses between two walls move as their modes; the tied str
   d.output("x3") = z[0].stretch + z[1].stretch + z[2].stretch;
   const System s = compile(d);
   REQUIRE(s.order() == 10);
-  // By hand: the five masses that are left move, M xdd + K x = F e_3; the sixth stands at the wall.
+  // By hand: the five remaining masses move, M xdd + K x = F e_3; the sixth is fixed to the wall.
   Eigen::MatrixXd M = Eigen::MatrixXd::Zero(5, 5), K = M;
   for (int i = 0; i < 5; ++i) {
     M(i, i) = m[static_cast<std::size_t>(i)];

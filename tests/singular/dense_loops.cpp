@@ -109,7 +109,7 @@ TEST_CASE("300 loops that a new value makes exactly singular: refused, or said i
     ++regular;
     try {
       const System now = before->update({{"w", w}});
-      // Pivots are judged at once, margins when somebody asks.
+      // Pivots are judged at once, margins at the first query.
       CHECK(now.log().find("no digit is left") != std::string::npos);
     } catch (const Error& e) {
       CHECK(e.has(Code::ill_posed));

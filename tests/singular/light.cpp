@@ -8,7 +8,7 @@
 #include "support/mistakes.hpp"
 
 /// A parent mass from 1 down to nothing in every form of the spring-mass block, against 50 digits:
-/// right, or refused by name; never infinite, never a loss that nobody mentions.
+/// right, or refused by name; never infinite, never an unreported loss.
 
 using namespace titop;
 using namespace titop_test;

@@ -10,8 +10,8 @@
 #include "support/mistakes.hpp"
 #include "support/rng.hpp"
 
-/// Loops of gains: near-singular ones keep the digits that they say, singular ones are refused by
-/// a minimal set of ports, all others are never called singular.
+/// Loops of gains: near-singular ones keep the reported digits, singular ones are refused by a
+/// minimal set of ports, all others are never called singular.
 
 using namespace titop;
 using namespace titop_test;

@@ -9,7 +9,7 @@
 #include "support/mistakes.hpp"
 
 /// Scenes whose state space is singular as written and whose transfer is proper: points without
-/// mass between springs, forces on them. Reduced to the order that M, D and K say.
+/// mass between springs, forces on them. Reduced to the order of M, D and K.
 
 using namespace scene_test;
 using namespace titop;
@@ -146,7 +146,7 @@ TEST_CASE("a force on the point between two springs: proper for the mass, not fo
   CHECK(system.log().find("less a multiple of the inputs") != std::string::npos);
   CHECK(system.certificate().residual <= 1e-14);
   CHECK(system.certificate().dense_error <= 1e-6);
-  // The factors say the same of any x and u, and so do the sparse matrices.
+  // The factors agree for any x and u, and so do the sparse matrices.
   const StateSpace& m = system.state_space();
   const Eigen::Vector2d x(0.3, -1.1);
   const Eigen::VectorXd u = Eigen::VectorXd::Constant(1, 0.7);

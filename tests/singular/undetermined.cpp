@@ -9,9 +9,9 @@
 #include "support/mistakes.hpp"
 #include "support/random_scene.hpp"
 
-/// Motions that no equation determines and that nothing asked for depends on (a massless strut
-/// turns about its own axis as it likes): taken as 0 and noted; refused by name where something
-/// does depend on them. The truth is M, D, K, or the same scene with that motion held.
+/// Motions that no equation determines and on which no output depends (a massless strut rotates
+/// freely about its own axis): set to 0 and noted; refused by name if something depends on them.
+/// Reference: M, D, K, or the same scene with that motion held.
 
 using namespace scene_test;
 using namespace titop;

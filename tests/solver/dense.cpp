@@ -33,7 +33,7 @@ System chain(double ratio) {
   return compile(d, {.minimize_up_to = 0});
 }
 
-/// The error of the dense model for all inputs, at the s where the certificate says it is largest.
+/// The error of the dense model for all inputs, at the certificate's s of the largest error.
 double tried(const System& system) {
   const std::complex<double> s = system.certificate().dense_error_s;
   const Eigen::MatrixXcd exact = system.transfer(s, Precision::digits50);

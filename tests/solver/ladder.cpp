@@ -101,7 +101,7 @@ Diagram nearly_singular(double e) {
 }  // namespace
 
 TEST_CASE("precision: as needed goes up where cancellation has eaten the digits of double") {
-  // (1 + e)(1 - e) = 1 - e^2, so that y/u = (1 + e)/e^2: with e = 2^-33 no digit is left in double.
+  // (1 + e)(1 - e) = 1 - e^2, so that y/u = (1 + e)/e^2: with e = 2^-33 double has no digit.
   CHECK(titop_test::says(titop_test::compile_error(nearly_singular(0x1p-33)), Code::ill_posed,
                          {"K"}));
   // With e^2 = 2^-40 eight digits are lost: double shows it, `as_needed` has them all.
@@ -284,7 +284,7 @@ TEST_CASE("precision: refinement is not taken in by steps that are small since t
   CHECK(all.as_needed.right >= 1100);
 }
 
-// k x = u, y = k x - u: nothing is left, and nothing to compare a change of it with.
+// k x = u, y = k x - u: the sum cancels altogether, without a scale for its change.
 TEST_CASE("precision: an output that cancels altogether is 0, or has no 12 digits") {
   for (int k = 2; k <= 200; ++k) {
     CAPTURE(k);

@@ -29,7 +29,7 @@ Diagram chain(int n) {
   return d;
 }
 
-/// Other libraries and sanitizers have a way of their own with memory; clang says so differently.
+/// Other libraries and sanitizers manage memory differently; clang has another macro.
 #if defined(__SANITIZE_ADDRESS__)
 #define SANITIZED
 #elif defined(__has_feature)

@@ -101,7 +101,7 @@ void compare() {
 /// `common`.
 struct Textbook {
   MatrixXd lu;
-  std::vector<int> order;      ///< which row of the start stands at each place
+  std::vector<int> order;      ///< which row of the start is at each place
   double growth = 1;           ///< of rows beside their size at the start, by `common`
   int inside = 0, across = 0;  ///< swaps within 32 rows that are one panel, and beyond
 
@@ -152,8 +152,8 @@ struct Textbook {
   }
 };
 
-/// Rows of very different size, one entry of four 0; each column has a large entry, in whatever
-/// row, so that cancellation leaves something of many steps.
+/// Rows of very different size, one entry of four 0; each column has a large entry, in any row, so
+/// that many steps survive cancellation.
 MatrixXd in_no_order(int rows, int columns, Rng& rng) {
   MatrixXd a(rows, columns);
   std::vector<int> place;

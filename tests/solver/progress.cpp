@@ -6,7 +6,7 @@
 #include <thread>
 #include <titop/titop.hpp>
 
-/// The line that `progress_line` draws, in a file. Nothing is said of seconds.
+/// The line that `progress_line` draws, in a file. Seconds are not asserted.
 
 using namespace titop;
 

@@ -66,7 +66,7 @@ struct Bar {
 BlockPtr as_block(const Bar& bar) { return bar.block; }
 
 /// An algebraic block: c1 and c2 move as x, whose force is theirs and an inertia's; the force of z,
-/// which nobody sees move, is c1's and `share` times c2's.
+/// whose motion is unobservable, is c1's and `share` times c2's.
 class HubBlock : public Block {
  public:
   explicit HubBlock(double share) {

@@ -11,7 +11,7 @@
 #include "support/rng.hpp"
 
 /// The scale of a front's columns. Of magnitudes 2^(p_i + q_j) the columns are equal once column j
-/// has been multiplied by 2^-q_j: exponents differ by q_k - q_j, whatever the rows' p.
+/// has been multiplied by 2^-q_j: exponents differ by q_k - q_j, for any p.
 
 using titop::solve::column_scale;
 using titop_test::Rng;

@@ -88,7 +88,7 @@ TEST_CASE("small entries: an entry at rounding level in double is right, or refu
 
 TEST_CASE(
     "small entries: zeros by symmetry need no finer arithmetic, and no precision refuses them") {
-  // Pushed at its center of mass, a body does not turn, in whatever frame it is told.
+  // A force at the center of mass does not rotate a body, in any frame.
   const Eigen::Matrix3d R =
       Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()).toRotationMatrix();
   Diagram d{"body"};

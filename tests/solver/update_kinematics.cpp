@@ -71,7 +71,8 @@ void wire(Diagram& d, const Body& arm, const DualPort<6>& child) {
   d.output("x", 3) = child.position.linear();
 }
 
-/// A spring beside it whose two ends follow from a closed chain: its states are told again, too.
+/// A spring beside it whose two ends are dependent in a closed chain: its states are listed again,
+/// too.
 void with_chain(Diagram& d) {
   auto u = d.input("u");
   auto a = d.add("z_a", SpringMass{.mass = 1, .stiffness = 4});

@@ -7,8 +7,8 @@
 #include <string>
 #include <titop/graph/state_space.hpp>
 
-/// Comparisons without an absolute floor: whatever the units, only digits count. Compare the result
-/// with `<=`, so that not-a-number fails.
+/// Comparisons without an absolute floor: only digits count, in any units. Compare the result with
+/// `<=`, so that not-a-number fails.
 namespace titop_test {
 
 /// |a - b| / |b|; 0 where both are 0, infinite where only b is.

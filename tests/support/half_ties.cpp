@@ -39,8 +39,8 @@ int draw_mask(Rng& rng) {
   return rng.chance(0.5) ? kUsual[rng.below(3)] : 1 + rng.below(63);
 }
 
-/// How far apart the points of a tie may be, whatever moves: anywhere if no translation is tied,
-/// along the one that is, else nowhere.
+/// Admissible offset of the points of a tie: anywhere if no translation is tied, along the one that
+/// is, else nowhere.
 Vector3d draw_offset(Rng& rng, const HalfTie& t, const Matrix3d& turn) {
   const int linear = t.mask & 7;
   if (linear == 0) return vector(rng, 1);

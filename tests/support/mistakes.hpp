@@ -24,7 +24,7 @@ inline titop::Error compile_error(const titop::Diagram& d) {
   return error_of([&] { titop::compile(d); });
 }
 
-/// True if one mistake of this code says all of this, in its message, details or hint.
+/// True if one mistake of this code contains all of these texts, in its message, details or hint.
 inline bool says(const titop::Error& error, titop::Code code,
                  std::initializer_list<std::string_view> parts) {
   for (const titop::Mistake& m : error.mistakes()) {

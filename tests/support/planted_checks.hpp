@@ -9,8 +9,8 @@
 
 namespace titop_test {
 
-/// The verdict's interval holds the planted order, the model has it where it is decided, its
-/// transfer is the factors'; exact arithmetic says the same. True if it is decided.
+/// The verdict's interval contains the planted order, the model has it if it is decided, its
+/// transfer is the factors'; exact arithmetic agrees. True if it is decided.
 inline bool planted_order_holds(std::uint64_t seed, bool exactly) {
   const Planted p = planted(seed);
   const titop::System system = titop::compile(p.diagram);

@@ -54,8 +54,8 @@ Diagram loose_parts() {
   mount(z2, z1.child);
   z2.child.force = u;
   auto undriven = d.add("undriven", spring(1, 5)), unseen = d.add("unseen", spring(1, 6));
-  auto deaf = d.add("deaf", Integrator{});    // sees the scene, is seen by nobody
-  auto still = d.add("still", Integrator{});  // nothing moves it, though it acts on the scene
+  auto deaf = d.add("deaf", Integrator{});    // sees the scene, is unobservable
+  auto still = d.add("still", Integrator{});  // is unreachable, but acts on the scene
   ground(undriven), ground(unseen);
   unseen.child.force = u;
   deaf.in = z1.stretch;

@@ -149,8 +149,8 @@ TEST_CASE("threads: tasks may have tasks of their own, on many threads of the ca
 
 namespace {
 
-/// How many others worked for a call that had ended, by some `late`, when the first of them told
-/// whether there is more.
+/// How many others worked for a call that had ended, by some `late`, when the first of them
+/// returned whether there is more.
 int called_late(int most, std::chrono::milliseconds late) {
   const auto main = std::this_thread::get_id();
   std::atomic<bool> begun = false, over = false;

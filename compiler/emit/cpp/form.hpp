@@ -70,8 +70,8 @@ Eigen::MatrixXd trajectory_inputs(Eigen::Index inputs, Eigen::Index steps);
 /// The matrices as they are.
 Form own_form(const StateSpace& model);
 
-/// Modes of the second-order form where damping is proportional, of A otherwise. Its error says
-/// whether it may be used: it is large where A is defective (free rigid motion beside modes).
+/// Modes of the second-order form if damping is proportional, of A otherwise. Its error tells
+/// whether it may be used: it is large if A is defective (free rigid motion beside modes).
 Form modal_form(const StateSpace& model);
 
 /// Adds A_h, B_h; block by block where the form is modal.

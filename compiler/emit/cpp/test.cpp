@@ -207,7 +207,7 @@ double series_error(const Form& form, const Expected& expected, double h, double
   return worst_output(off, size, expected.points);
 }
 
-/// Only said where the series would take more than some seconds.
+/// A comment in its place if the series would take more than some seconds.
 std::string taylor_test(const Naming& names, const Form& form, const Expected& expected) {
   constexpr const char* what = "step against derivative";
   double fastest = 0;

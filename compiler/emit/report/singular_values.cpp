@@ -53,7 +53,7 @@ VectorXd singular_values_of(const MatrixXcd& G) {
   return sigma;
 }
 
-/// Takes out the last curves that are zero as far as rounding can tell.
+/// Removes the last curves that are at rounding level.
 void drop_zero(std::vector<std::vector<double>>& curves) {
   const auto peak = [](const std::vector<double>& curve) {
     double largest = 0;

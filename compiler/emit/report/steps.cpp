@@ -67,7 +67,7 @@ Steps steps(const Subject& s, const std::vector<Pair>& pairs, const Clock& c) {
     u(p.input) = 1;
     const Trajectory t = simulate(
         s.system, Excitation::step(u),
-        {.step = c.until / c.steps, .until = c.until, .accuracy = HUGE_VAL});  // it is said
+        {.step = c.until / c.steps, .until = c.until, .accuracy = HUGE_VAL});  // in the report
     result.time = t.time;
     result.stepper = t.stepper;
     if (t.error.size() > 0) result.error = std::max(result.error, t.error.maxCoeff());
@@ -76,8 +76,8 @@ Steps steps(const Subject& s, const std::vector<Pair>& pairs, const Clock& c) {
   return result;
 }
 
-/// Where the start goes so far out that nothing else would be seen, the frame shows the rest, and
-/// the caption says how far.
+/// If the start is far larger than the rest, the frame shows the rest, and the caption gives the
+/// start's range.
 void cut_start(Plot& plot) {
   double low = HUGE_VAL, high = -HUGE_VAL, rest_low = HUGE_VAL, rest_high = -HUGE_VAL;
   for (std::size_t c = 0; c < plot.x_data.size(); ++c)

@@ -26,7 +26,7 @@ struct Group {
 };
 std::vector<Group> groups(const std::vector<Scalar>& scalars);
 
-/// An output and an input whose response is shown, with the groups that it stands for.
+/// An output and an input whose response is shown, with their groups.
 struct Pair {
   int output = 0, input = 0;
   int output_group = 0, input_group = 0;
@@ -36,8 +36,8 @@ struct Pair {
 std::string ratio(const std::string& output_unit, const std::string& input_unit);
 std::string or_users(const std::string& unit);
 
-/// Singular values and Bode plots; step responses. `pairs`: those of ReportOptions::pairs, or as it
-/// says. Each gives the section's HTML.
+/// Singular values and Bode plots; step responses. `pairs`: those of ReportOptions::pairs, or the
+/// default described there. Each returns the section's HTML.
 struct Responses {
   std::vector<Pair> pairs;
   std::string frequency, time;

@@ -17,7 +17,7 @@ using linalg::at;
 /// and not through other points. In the signs of work: springs and dampers are positive.
 struct OwnGains {
   MatrixXd position, rate;           ///< empty: none
-  std::vector<const Equation*> all;  ///< that say so
+  std::vector<const Equation*> all;  ///< with such terms
   std::string spring, damper;        ///< names of the readings that they follow
 };
 

@@ -31,7 +31,7 @@ Half half_of(const Part& part, Quantity quantity) {
 
 const char* word(Half half) { return half == Half::linear ? "linear" : "angular"; }
 
-/// Two nodes of one name are told of by their names: nobody can tell their frames apart.
+/// Two nodes of one name are a mistake of their own: their frames count as equal.
 bool same_frame(const Checker& c, int a, int b) {
   return a == b || c.graph.nodes[at(a)].name == c.graph.nodes[at(b)].name;
 }

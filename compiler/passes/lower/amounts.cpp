@@ -98,7 +98,7 @@ std::vector<Term> merged(Amount sum) {
   return terms;
 }
 
-/// A motion that no state holds: stands for the integral of the acceleration until `integrated`.
+/// A motion that is no state: the acceleration in place of its integral, until `integrated`.
 Amount Lowering::own_motion(int channel) const {
   const Channel& c = g.channels[at(channel)];
   const MatrixXd I = MatrixXd::Identity(c.size, c.size);

@@ -12,7 +12,7 @@ namespace titop::passes {
 struct Summand {
   int signal;
   Eigen::MatrixXd c;
-  Pattern p;  ///< where c may be nonzero, whatever the numbers; 0 x 0 if not asked for
+  Pattern p;  ///< where c may be nonzero for any numbers; 0 x 0 if not needed
 };
 using Amount = std::vector<Summand>;
 

@@ -4,8 +4,8 @@
 
 namespace titop::passes {
 
-/// Integrators for positions and rates that no state holds: once per assembly, as far as the
-/// coefficients of those asked for may reach them.
+/// Integrators for positions and rates that are no states: once per assembly, as far as the
+/// coefficients of the terms that read them reach.
 void add_rigid_motions(Stage& stage, Graph& graph);
 
 }  // namespace titop::passes

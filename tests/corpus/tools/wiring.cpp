@@ -29,7 +29,7 @@ std::string octave(const MatrixXd& M) {
 }
 
 /// Rows of all that can be read: outputs of the blocks after inversion, inputs of the diagram, and
-/// behind them two integrals of each acceleration whose position is asked for.
+/// after them two integrals of each acceleration whose position is read.
 class Wiring {
  public:
   explicit Wiring(const Graph& graph) : g_(graph), values_(nominal_values(graph)) {

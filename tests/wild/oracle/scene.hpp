@@ -81,8 +81,8 @@ struct Node {
   Sum in;               ///< lti
 };
 
-/// Point a moves as b does (b of the ground: does not move, or as an input says), along some axes
-/// of a's frame, and the wrench goes back.
+/// Point a moves as b does (b of the ground: does not move, or by an input), along some axes of a's
+/// frame, and the wrench acts back.
 struct Tie {
   enum class Of { all, linear, angular, axes };
   Point a, b;

@@ -137,7 +137,7 @@ class Writer {
     }
   }
 
-  /// To the ground, or as an input says.
+  /// To the ground, or by an input.
   void hold(const DualPort<6>& a, const Tie& t) {
     const auto set = [&](const auto& port) {
       if (t.input >= 0)
