@@ -63,15 +63,15 @@ struct Bushing {
           rate(graph, detail::port_signal(*graph, node, "rate")) {}
     Handle(const Handle&) = default;
     Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
-    DualPort<6> child;     ///< C, where the body hangs
-    DualPort<6> parent;    ///< P, where the bushing hangs
+    DualPort<6> child;     ///< C, mount of the body
+    DualPort<6> parent;    ///< P, mount of the bushing
     Reading displacement;  ///< q = x_C - x_P [m; rad], 6
     Reading rate;          ///< qd [m/s; rad/s], 6
   };
 };
 BlockPtr as_block(const Bushing& spec);
 
-/// Hangs `body` on the child point `site` through a bushing called `name`, in the frame of the
+/// Mounts `body` on the child point `site` through a bushing called `name`, in the frame of the
 /// body, with T_ba the mounting rotation, body to site. On the ground: add it, `ground` it and
 /// `mount(body, b.child)`.
 ///

@@ -26,8 +26,8 @@ struct Hinge {
     Handle(Graph* graph, int node);
     Handle(const Handle&) = default;
     Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
-    Children<6> child;            ///< where the body hangs
-    DualPort<6> parent;           ///< where the joint hangs
+    Children<6> child;            ///< mount of the body
+    DualPort<6> parent;           ///< mount of the joint
     Port<1, Kind::accel> accel;   ///< thetadd [rad/s^2]
     Port<1, Kind::force> torque;  ///< C_m [N m]
     Reading angle;                ///< theta [rad]
@@ -37,9 +37,9 @@ struct Hinge {
 /// Throws bad_value if the axis has no direction.
 BlockPtr as_block(const Hinge& spec);
 
-/// Hangs `body` on the child point `site` through a hinge called `name`, about `axis` (in the
+/// Mounts `body` on the child point `site` through a hinge called `name`, about `axis` (in the
 /// body's frame, which the joint shares), with T_ba the mounting rotation at angle 0, body to site.
-/// The hinge's torque or acceleration is still to be driven.
+/// The hinge's torque or acceleration must still be driven.
 ///
 ///     auto h = hinge(d, "drive", wing, hub.child("C1"), T_ba, {0, 1, 0});
 ///     h.torque = k * h.angle + c * h.rate - u;  // spring-damper; a motor turns the wing by u

@@ -35,8 +35,8 @@ struct Joint {
     Handle(Graph* graph, int node);
     Handle(const Handle&) = default;
     Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
-    Children<6> child;   ///< where the body hangs
-    DualPort<6> parent;  ///< where the joint hangs
+    Children<6> child;   ///< mount of the body
+    DualPort<6> parent;  ///< mount of the joint
     /// The axis of this name. Throws unknown_name, with those that there are.
     AxisPorts axis(std::string_view name) const;
 

@@ -48,8 +48,8 @@ std::array<bool, 6> resting_rows(const ModalData& data, const ModalChild& child)
   return resting;
 }
 
-/// The same space, spanned by vectors with as many zeros as can be (Gauss-Jordan on the columns,
-/// the largest entry as pivot): a basis that can be read and does not hang on rounding.
+/// The same space, spanned by vectors with as many zeros as possible (Gauss-Jordan on the columns,
+/// the largest entry as pivot): a basis that can be read and does not depend on rounding.
 MatrixXd readable(MatrixXd W) {
   for (Index k = 0; k < W.cols(); ++k) {
     Index row = 0, column = 0;

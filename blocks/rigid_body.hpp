@@ -8,7 +8,7 @@
 
 namespace titop {
 
-/// A point of a body where a child may hang.
+/// A point of a body at which a child may be mounted.
 struct ChildPoint {
   std::string name;
   Vector3d PC = Vector3d::Zero();  ///< from the parent point P to C, in the body's frame [m]

@@ -27,8 +27,8 @@ struct Slide {
     Handle(Graph* graph, int node);
     Handle(const Handle&) = default;
     Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
-    Children<6> child;           ///< where the body hangs
-    DualPort<6> parent;          ///< where the joint hangs
+    Children<6> child;           ///< mount of the body
+    DualPort<6> parent;          ///< mount of the joint
     Port<1, Kind::accel> accel;  ///< xdd [m/s^2]
     Port<1, Kind::force> force;  ///< f [N]
     Reading travel;              ///< x [m]
@@ -38,9 +38,9 @@ struct Slide {
 /// Throws bad_value if the axis has no direction.
 BlockPtr as_block(const Slide& spec);
 
-/// Hangs `body` on the child point `site` through a slide called `name`, along `axis` (in the
+/// Mounts `body` on the child point `site` through a slide called `name`, along `axis` (in the
 /// body's frame, which the joint shares), with T_ba the mounting rotation, body to site. The
-/// slide's force or acceleration is still to be driven.
+/// slide's force or acceleration must still be driven.
 ///
 ///     auto s = slide(d, "jack", mast, hub.child("C1"), T_ba, {1, 0, 0});
 ///     s.force = k * s.travel + c * s.rate - u;  // spring-damper; an actuator pushes the mast by u

@@ -26,7 +26,7 @@ struct Checked {
   std::string why_not;
 };
 
-/// The certificate on request: each item holds its own oracle against the factored system. Every
+/// The certificate on request: each item has its own oracle against the factored system. Every
 /// number is dimensionless.
 struct FullCertificate {
   Certificate basic;  ///< as by System::certificate(), with the dense model's part

@@ -211,7 +211,7 @@ struct ForceJudge {
         found("the motion of " + node.name, signal, node.where,
               {"either a force elsewhere is computed from it, or the chain meets only nearly: look "
                "at the lengths and rotations around it"});
-        return;  // all that hangs on it moves as well
+        return;  // all bodies mounted on it move as well
       }
     }
   }

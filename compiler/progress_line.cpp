@@ -35,7 +35,7 @@ class Line {
     std::string text = fmt::format("{} of {} points, {} %, ", done, all, 100 * done / all);
     text += done < all ? text_of(taken * (1 / part - 1)) + " left" : text_of(taken);
     const std::size_t before = std::exchange(size_, text.size());
-    if (before > size_) text.append(before - size_, ' ');  // leaves nothing of the line before
+    if (before > size_) text.append(before - size_, ' ');  // erases the line before
     std::fputs(("\r" + text + (done < all ? "" : "\n")).c_str(), to_);
     std::fflush(to_);
   }

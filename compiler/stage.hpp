@@ -68,7 +68,7 @@ struct Origin {
   Eigen::MatrixXd times = {};        ///< rows of it that count (pass `chains`); empty: all
 };
 
-/// Integrators that `lower` adds for motions that no state holds.
+/// Integrators that `lower` adds for motions that are no states.
 struct RigidMotion {
   enum class Half { whole, linear, angular };  ///< whole: of a scalar point
   int signal = -1;                             ///< the acceleration, in Stage::graph

@@ -89,8 +89,8 @@ double lost_by(detail::Evaluation<T>& e, const typename detail::Evaluation<T>::L
                    detail::kRoundings * losses.rounding, left});
 }
 
-/// Finer than double, where double costs `lost`: refined if its own rounding (2000 times finer)
-/// leaves enough and it settles, else refined in double-double if that settles, else 50 digits.
+/// Finer than double, whose error is `lost`: refined if its own rounding (2000 times finer) is
+/// small enough and it converges, else refined in double-double if that converges, else 50 digits.
 MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
                          const detail::Evaluation<Double>& plain, double lost) {
   const double kFiner = solve::Scalar<Extended>::epsilon() / solve::Scalar<Double>::epsilon();
@@ -193,7 +193,7 @@ MatrixXd System::static_gain() const {
   try {
     return transfer(0).real();
   } catch (const Error& error) {
-    // A block may have a pole at 0 that the system has not: a hinge that its spring holds.
+    // A block may have a pole at 0 that the system has not: a hinge with a spring.
     if (!error.has(Code::singular)) throw;
     return state_space().transfer(0).real();
   }

@@ -184,7 +184,7 @@ class System {
   const std::vector<std::pair<std::string, double>>& seconds() const&;
   std::vector<std::pair<std::string, double>> seconds() const&& { return seconds(); }
   /// The graph after the passes (for diagrams: `to_dot(system.stage())`). Its values and
-  /// coefficients are those of the last compile: an `update` on the same plan leaves them.
+  /// coefficients are those of the last compile: an `update` on the same plan does not change them.
   const Stage& stage() const&;
   Stage stage() const&& { return stage(); }
 

@@ -34,8 +34,8 @@ void mount(const Handle& body, const DualPort<6>& site, const Rotation& T_ba = {
 
 /// The same on a single axis: body.parent.accel = site.accel; site.force += body.parent.reaction.
 /// The site may be one axis of a point with six degrees of freedom: `mount(z,
-/// hub.child("C").along(r))` hangs a spring-mass on it that moves along r, `.about(r)` one that
-/// turns about r (then with an inertia [kg m^2] for a mass). Its weight is felt along r only.
+/// hub.child("C").along(r))` mounts a spring-mass that moves along r, `.about(r)` one that rotates
+/// about r (then with an inertia [kg m^2] for a mass). Its weight is felt along r only.
 template <class Handle>
   requires HasParent<Handle, 1>
 void mount(const Handle& body, const DualPort<1>& site,
@@ -44,13 +44,13 @@ void mount(const Handle& body, const DualPort<1>& site,
 }
 
 namespace detail {
-/// The rotation to a body, whose parent's acceleration this is, as one to the joint of this name
-/// that the body hangs on, in the body's frame. Where it is named after another block a mistake is
-/// noted.
+/// The rotation to a body, whose parent's acceleration this is, as one to the joint of this name on
+/// which the body is mounted, in the body's frame. Notes a mistake if it is named after another
+/// block.
 Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::string& joint,
                   const std::source_location& at);
 
-/// Hangs `body` on `site` through the joint of this name, in whose frame the body is.
+/// Mounts `body` on `site` through the joint of this name, in whose frame the body is.
 template <class Joint, class Handle>
 void mount_through(const Joint& joint, const std::string& name, const Handle& body,
                    const DualPort<6>& site, const Rotation& T_ba, const std::source_location& at) {

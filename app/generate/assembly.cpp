@@ -43,7 +43,7 @@ class Assembly {
   }
 
  private:
-  /// Coordinates: six (or one) of a base that hangs on nothing, the stretch, the angle, the modes.
+  /// Coordinates: six (or one) of a base without parent, the stretch, the angle, the modes.
   void count(const Block& b) {
     first_.push_back(columns.count);
     const auto take = [&](std::vector<std::size_t>& kind) { kind.push_back(columns.count++); };

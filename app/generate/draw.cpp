@@ -224,7 +224,7 @@ class Artist {
 
   int any_body() { return bodies_[static_cast<std::size_t>(dice_.below(int(bodies_.size())))]; }
 
-  /// A body with points "R" and "T" and one for each body that may hang on it.
+  /// A body with points "R" and "T" and one for each body that may be mounted on it.
   Body random_body() {
     Body b;
     b.mass = dice_.octaves(-1, 3);

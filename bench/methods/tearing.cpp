@@ -127,7 +127,7 @@ class March {
     return Table<T>(0, 0);
   }
 
-  /// The guess that leaves nothing amiss, put into z.
+  /// The guess for which all misses are 0, put into z.
   MatrixXcd closed(const Table<T>& z, const Table<T>& misses) const {
     const Index nw = net_.E.cols();
     Table<T> guess = part(misses, 0, 0, guesses_, nw);

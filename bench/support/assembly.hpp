@@ -12,7 +12,7 @@ namespace titop_bench {
 /// [M + D/s + K/s^2, G'; G, 0] [a; l] = [B w; 0], z = C a. Coordinates of each body, by their
 /// accelerations a (by positions, s^2 M + s D + K, an LU loses up to three digits more): its point
 /// P (6), then its modes clamped there; one row of G and one constraint force in l per degree of
-/// freedom that a joint holds. Nothing is inverted or eliminated beforehand.
+/// freedom that a joint locks. Nothing is inverted or eliminated beforehand.
 struct Assembly {
   Sparse M, D, K, G, B, C;
   std::vector<int> bodies;  ///< coordinates of each, in the order of the diagram

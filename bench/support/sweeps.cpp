@@ -168,8 +168,8 @@ Extreme light_parent(double m0) {
   return e;
 }
 
-/// Two levers on hinges about z, tied to each other at two points: they turn together where the
-/// hinges are coaxial, and stand still where they are delta apart. A spring-mass hangs on one.
+/// Two levers on hinges about z, tied to each other at two points: they rotate together if the
+/// hinges are coaxial, and are immobile if they are delta apart. A spring-mass is mounted on one.
 Extreme ties(double delta) {
   Diagram d{"levers"};
   const Eigen::Vector3d y{0, 1, 0}, z{0, 0, 1};

@@ -71,7 +71,7 @@ struct ModeOptions {
   std::optional<int> kept = {};
   /// Interfaces that get residual vectors, which make their static response exact: for a child the
   /// six responses to a unit wrench there, for the parent those to a unit acceleration. At most six
-  /// modes more for each; name every child that something heavy or stiff hangs on.
+  /// modes more for each; name every child with a heavy or stiff load.
   std::vector<std::string> residual = {};
   /// Damping ratios: none (undamped), one (for all), one per kept mode (a residual vector takes
   /// that of the highest kept mode) or one per mode with the residual ones.

@@ -11,10 +11,10 @@ namespace titop::fe {
 
 struct MeshReport {
   MassProperties mass;  ///< from R'MR about the origin: mass properties of M
-  /// From the points alone: the mass that M puts on each (its row sums over one direction) at the
-  /// point's position. The inertia leaves out the points' own rotary inertia and the distribution
-  /// between points; mass and centre must agree with `mass`. Absent where some point has not the
-  /// same mass along x, y and z.
+  /// From the points alone: the mass that M assigns to each (its row sums over one direction) at
+  /// the point's position. The inertia leaves out the points' own rotary inertia and the
+  /// distribution between points; mass and centre must agree with `mass`. Absent if the masses of
+  /// some point along x, y and z differ.
   std::optional<MassProperties> geometry;
   double KR = 0;        ///< largest |K R| / largest |K|, R about the origin [m]: 0 for a free mesh
   double KR_terms = 0;  ///< largest |K R| beside the terms that cancel in it, of which K(i, j) R(j)

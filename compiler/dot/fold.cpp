@@ -22,10 +22,10 @@ class Forest {
   const std::vector<int>& parents() const { return parent_; }
 
  private:
-  using Edge = std::pair<int, int>;  ///< who hangs, on whom
+  using Edge = std::pair<int, int>;  ///< child, parent
   enum class Tie { moved, moved_inverted, read, none };
 
-  /// A force on a body does not make it hang on who exerts it.
+  /// A force on a body does not make its source the parent.
   Tie tie_of(const Signal& target) const {
     if (target.channel < 0) return Tie::read;
     if (target.quantity != Quantity::acceleration) return Tie::none;

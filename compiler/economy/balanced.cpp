@@ -39,9 +39,9 @@ double lowest(const Split& split, const Samples& samples) {
 
 /// Tells whether a kept part is silent: no input moves it or no output sees it.
 ///
-/// Rounding leaves a residue of a pole that counts as 0 (`Split::poles`), and a pole near 0; both
-/// seem the larger, the lower the sample. If the band begins at 0, a pole at 0 can only be hidden,
-/// since otherwise there is no gain: it is judged at the lowest pole's frequency.
+/// Rounding gives a pole that counts as 0 (`Split::poles`) a residue and a small distance from 0;
+/// both seem the larger, the lower the sample. If the band begins at 0, a pole at 0 can only be
+/// hidden, since otherwise there is no gain: it is judged at the lowest pole's frequency.
 class Judge {
  public:
   Judge(const Split& split, const Samples& samples)

@@ -33,8 +33,8 @@ struct Scaled {
 };
 
 /// Columns mu, y of P y = mu K y, ascending. The softest coordinates, where P is largest, come
-/// first: in this order the eigensolver leaves small entries their own digits [Wilkinson, Reinsch
-/// 1971, Handbook, II/2], and a soft spring under a stiff structure costs the latter nothing.
+/// first: in this order the eigensolver keeps the digits of small entries [Wilkinson, Reinsch 1971,
+/// Handbook, II/2], and a soft spring does not affect a stiff structure beside it.
 SymmetricModes soft_first(const MatrixXd& P, const MatrixXd& K) {
   std::vector<Index> order(at(P.rows()));
   std::iota(order.begin(), order.end(), 0);

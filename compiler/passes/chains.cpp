@@ -260,7 +260,7 @@ std::string direction_names(const MatrixXd& directions) {
 /// Chains in a singular posture have additional first-order motions that second order blocks.
 void warn_of_stops(Stage& stage, const Component& c, const Factors& factors,
                    const std::vector<const Closing*>& in_order) {
-  constexpr double kStops = 1e-6;  // rounding leaves 1e-15, a singular posture some tenths
+  constexpr double kStops = 1e-6;  // rounding gives 1e-15, a singular posture some tenths
   std::vector<const Closing*> closings;
   std::vector<std::string> names;
   for (const int l : c.lines) {

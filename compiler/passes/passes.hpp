@@ -16,11 +16,10 @@ namespace titop::passes {
 /// not_finite. O(terms).
 Stage check(Stage stage);
 
-/// Nodes, inputs and equations stand in an order that their names decide, nodes of a tree beside
-/// their neighbours; every driven part has exactly one equation; `+=`, reactions and positions are
-/// written out; every term has one numeric coefficient; Gain and Sum are equations. Positions and
-/// rates that no state holds get Integrators, listed, once per assembly. Throws not_finite.
-/// O(terms).
+/// Sorts nodes, inputs and equations by name, nodes of a tree beside their neighbours; every driven
+/// part gets exactly one equation; `+=`, reactions and positions are expanded; every term has one
+/// numeric coefficient; Gain and Sum become equations. Positions and rates that are no states get
+/// Integrators, listed, once per assembly. Throws not_finite. O(terms).
 Stage lower(Stage stage);
 
 /// coefficient * signal.
@@ -51,11 +50,11 @@ Stage split(Stage stage);
 /// independent of names (compiler/passes/close/along.hpp).
 Stage chains(Stage stage);
 
-/// Every row has its unknown: maximum bipartite matching by whole signals from each channel's
-/// default, by scalars only where that leaves a rest, and through states where that leaves one too
-/// (a point without mass between springs: `reduce` takes care of it). Inversions are known. Throws
-/// structure, with both sides of every deficient part (Dulmage-Mendelsohn) and the channels to be
-/// driven on their other side. O(terms) for trees.
+/// Matches every row with its unknown: maximum bipartite matching by whole signals from each
+/// channel's default, by scalars only for the remaining rows, and through states for those that
+/// still remain (a point without mass between springs: handled by `reduce`). Finds the inversions.
+/// Throws structure, with both sides of every deficient part (Dulmage-Mendelsohn) and the channels
+/// to be driven on their other side. O(terms) for trees.
 Stage match(Stage stage);
 
 /// Block triangular form: strong components are the algebraic loops, dependencies first. Signals

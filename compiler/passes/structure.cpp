@@ -124,8 +124,8 @@ struct Singular {
     return result;
   }
 
-  /// The equation sets a motion or a force, and joins no points: where some do, one of them is the
-  /// mistake more likely than how the bodies hang together.
+  /// True if the equation sets a motion or a force and joins no points: it is a more likely mistake
+  /// than the mounts of bodies.
   bool imposes(int equation) const {
     const std::vector<Term>& terms = g.equations[at(equation)].terms;
     return std::none_of(terms.begin(), terms.end(), [&](const Term& t) {

@@ -12,8 +12,8 @@ namespace titop::detail {
 struct Hidden {
   solve::SparseRow g;
   std::vector<Eigen::RowVectorXd> h;
-  int row = -1;  ///< a scalar row of the joint system in the combination y that leaves
-                 ///< it, and in no other
+  int row = -1;                ///< a scalar row of the joint system in the combination y of this
+                               ///< constraint, and of no other
   std::vector<int> rows = {};  ///< all that y combines, among Stage::rows
 };
 

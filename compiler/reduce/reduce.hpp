@@ -6,12 +6,12 @@
 /// force on a massless point.
 ///
 /// The joint system of the state space, 0 = L z + G x + H u, may be singular although the diagram's
-/// equations are not: where y L = 0, the equations leave y G x + y H u = 0, a hidden constraint on
-/// the states (the forces of two springs in series are equal). It makes one state depend on the
-/// others and on u, and its derivative takes the place of one of the rows that y combines. This is
-/// repeated until L is regular: the order is then the number of poles of the equations as written.
-/// Derivatives of inputs that come in this way must not reach an output; states may be shifted by
-/// multiples of inputs so that they do not.
+/// equations are not: if y L = 0, they contain y G x + y H u = 0, a hidden constraint on the states
+/// (the forces of two springs in series are equal). It makes one state depend on the others and on
+/// u, and its derivative replaces one of the rows that y combines. This is repeated until L is
+/// regular: the order is then the number of poles of the equations as written. Derivatives of
+/// inputs that come in this way must not reach an output; states may be shifted by multiples of
+/// inputs so that they do not.
 ///
 /// A constraint without content (0 = 0) leaves something undetermined. If that is a motion on which
 /// no output or state depends (undetermined.hpp), it is set to 0 instead, and noted.

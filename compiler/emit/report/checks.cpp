@@ -245,8 +245,7 @@ std::string unstable(const Places& shown, int right) {
   return verdict("bad", text + ".");
 }
 
-/// By the poles of all states, where the certificate holds them, else by those of the minimal
-/// model.
+/// By the poles of all states, if the certificate has them, else by those of the minimal model.
 std::string stability(const Subject& s, const FullCertificate* full) {
   const Places p = places(s.poles);
   const FullCertificate::Poles* all = full && full->poles.done ? &full->poles : nullptr;

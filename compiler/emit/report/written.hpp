@@ -4,8 +4,7 @@
 
 namespace titop::report {
 
-/// The diagram as the user wrote it: without the Integrators that `lower` has added for motions
-/// that no state holds. O(graph).
+/// The diagram as the user wrote it: without the Integrators that `lower` has added. O(graph).
 Graph written(const Stage& stage);
 
 }  // namespace titop::report

@@ -181,7 +181,7 @@ Amount Lowering::terms(const std::vector<Term>& list) {
   return sum;
 }
 
-/// The position or rate of a channel in terms of states and of motions that no state holds: along
+/// The position or rate of a channel in terms of states and of motions that are no states: along
 /// the equations that drive accelerations, and through bodies by their kinematics.
 Amount Lowering::twin(int channel, Level level) {
   const int n = g.channels[at(channel)].size;
