@@ -38,8 +38,8 @@ void add_bar(fe::Mesh& mesh, Index first, int component, double stiffness, doubl
   mesh.M(j, i) += mass / 6;
 }
 
-/// Places a bending element of length h: deflection w and slope component. `sign` is +1 where the
-/// rotation is +dw/dx (about z, deflection y), -1 where it is -dw/dx (about y, deflection z).
+/// Places a bending element of length h: deflection w and slope component. `sign` is +1 if the
+/// rotation is +dw/dx (about z, deflection y), -1 if it is -dw/dx (about y, deflection z).
 void add_bending(fe::Mesh& mesh, Index first, int deflection, int rotation, double sign, double EI,
                  double mass, double h) {
   const double k = EI / (h * h * h), m = mass / 420, a = sign * h;

@@ -89,8 +89,8 @@ void require_finite(const MatrixXd& m, const std::string& name) {
                     "give finite numbers");
 }
 
-/// Modes of a structure with much damping in proportion to stiffness are above 1 where they are
-/// fast, or where they are slow with damping in proportion to mass; but some of them do oscillate.
+/// Modes of a structure with much damping in proportion to stiffness are above 1 if they are
+/// fast, or if they are slow with damping in proportion to mass; but some of them do oscillate.
 constexpr double kMostDamped = 1;
 
 void check_values(const ModalData& d) {

@@ -51,7 +51,7 @@ class FlexibleBody {
   FlexibleBody(const Beam& beam, std::source_location at = std::source_location::current());
   /// No modes; parameters at their nominal values.
   FlexibleBody(const RigidBody& body, std::source_location at = std::source_location::current());
-  /// Values that `body` has already stay where these are silent.
+  /// Values of `body` are kept for modes that `values` does not name.
   FlexibleBody(const FlexibleBody& body, const ModeValues& values);
 
   /// Data from which its block is made.

@@ -16,7 +16,7 @@ namespace titop {
 ///     .inertia = {J, J, 2.0 * J}                    // principal moments: xx, yy, zz
 ///     .inertia = {20, 25, J, 0, -1.5, 0}            // xx, yy, zz, xy, xz, yz
 ///
-/// xy, xz and yz are entries of the matrix: xy = - integral of x y dm. O(1), 200 bytes more where
+/// xy, xz and yz are entries of the matrix: xy = - integral of x y dm. O(1), 200 bytes more if
 /// it has parameters.
 class Inertia {
  public:
@@ -31,7 +31,7 @@ class Inertia {
   Matrix3d at(ParameterValues values) const;
   /// Parameters at their nominal values.
   Matrix3d nominal() const { return matrix_; }
-  /// xx, yy, zz, xy, xz, yz; empty where none is a parameter.
+  /// xx, yy, zz, xy, xz, yz; empty if none is a parameter.
   std::vector<Value> values() const;
 
  private:

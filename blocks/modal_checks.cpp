@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// 1 / sqrt of a diagonal; 1 where there is nothing to scale.
+/// 1 / sqrt of a diagonal; 1 if there is nothing to scale.
 Vector6 unit_scale(const Matrix6& D) {
   return D.diagonal().unaryExpr([](double d) { return d > 0 ? 1 / std::sqrt(d) : 1.0; });
 }

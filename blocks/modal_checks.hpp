@@ -37,7 +37,7 @@ struct ResidualMass {
 };
 ResidualMass residual_mass(const ModalData& data);
 
-/// Phi_C has rank below 6 where the modes cannot produce six independent motions of C (fewer than
+/// Phi_C has rank below 6 if the modes cannot produce six independent motions of C (fewer than
 /// six modes, lumped or planar models). A degree of freedom that is blocked can be neither locked
 /// nor driven by an acceleration.
 struct ChildRank {

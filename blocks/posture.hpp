@@ -12,7 +12,7 @@ namespace titop {
 /// A joint of a loop, and the link that follows it.
 struct LoopStep {
   Axis joint;                        ///< about(r) or along(r); r in the frame of the link before
-  std::optional<double> given = {};  ///< its angle [rad] or travel [m], where it is known
+  std::optional<double> given = {};  ///< its angle [rad] or travel [m], if it is known
   double guess = 0;                  ///< where to look for it otherwise
   Vector3d link = Vector3d::Zero();  ///< from this joint to the next one, in the link's frame [m]
   Rotation turn = {};                ///< next joint's frame to the link's frame (nominal values)
@@ -32,7 +32,7 @@ struct Posture {
 
 struct PostureOptions {
   /// A loop counts as closed with gaps up to this, of its size [-] and in [rad]: more than the
-  /// digits of the data, where it is overconstrained.
+  /// digits of the data, if it is overconstrained.
   double tolerance = 1e-9;
 };
 

@@ -19,7 +19,7 @@ struct BodyHandle {
   BodyHandle(Graph* graph, int node);
   BodyHandle(const BodyHandle&) = default;
   BodyHandle& operator=(const BodyHandle& other) { return detail::rebind(*this, other); }
-  Children<6> child;   ///< child("C1"); also the only child point, where there is just one
+  Children<6> child;   ///< child("C1"); also the only child point, if there is just one
   DualPort<6> parent;  ///< P
 };
 

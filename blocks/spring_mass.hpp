@@ -36,7 +36,7 @@ struct SpringMass {
     Children<1> child;   ///< C, on the mass
     DualPort<1> parent;  ///< P, on the other end of the spring
     Reading stretch;     ///< x_C − x_P [m]
-    Reading position;    ///< x_C [m], where the chain to ground determines it
+    Reading position;    ///< x_C [m], if the chain to ground determines it
   };
 };
 BlockPtr as_block(const SpringMass& spec);

@@ -27,7 +27,7 @@ struct Certificate {
   bool at_instant = false;  ///< true: at an instant; false: at s
   /// Largest difference between xdot, y of the dense model and of the factors, for one random x and
   /// for one random u, relative to the sum of the terms: over a block's states, or over the outputs
-  /// of one unit. Where the factors lose digits, cancelling terms count too. Negative if no dense
+  /// of one unit. If the factors lose digits, cancelling terms count too. Negative if no dense
   /// model has been written.
   double dense_against_factors = -1;
   /// Error of the dense model due to rounding of its entries: largest change of an output over the
@@ -60,7 +60,7 @@ struct Certificate {
   /// Largest margin rho(|L^-1| |L|) of an algebraic loop with matrix L, and its first signal: 1 for
   /// no loop, 4/delta at distance delta from singular; invariant under any change of units.
   double margin = 1;
-  bool margin_is_exact = true;  ///< false where some loops were too large for it (see the notes),
+  bool margin_is_exact = true;  ///< false if some loops were too large for it (see the notes),
                                 ///< or have no inverse in double (50 digits, or states, decide)
   std::string margin_where;
   int fronts = 0;         ///< of the elimination

@@ -42,7 +42,7 @@ struct FullCertificate {
     double dense = -1;               ///< the minimal dense model against the factors
     std::complex<double> dense_s;
     /// `transfer` of the diagram as written against the factors, over those terms in all blocks
-    /// where they are more, for it rounds by itself; -1: too large, or closed twice.
+    /// if they are more, for it rounds by itself; -1: too large, or closed twice.
     double written = -1;
     std::complex<double> written_s;
   } grid;
@@ -69,7 +69,7 @@ struct FullCertificate {
   /// over the grid and around the poles right of the axis that a transfer shows. Negative: energy
   /// comes out (a controller may do that; a structure may not). A force that moves another's point
   /// and not its own counts as -1. The diagonal counts 64 units of rounding more, of the largest
-  /// entry in its unit; where that is not enough, also 1e-3 of the terms that cancel, as double
+  /// entry in its unit; if that is not enough, also 1e-3 of the terms that cancel, as double
   /// against long double shows them.
   struct Passivity : Checked {
     int pairs = 0;
@@ -104,10 +104,10 @@ struct FullCertificate {
     std::string why_no_structure;  ///< "hub.parent.force is driven by K.out"
   } reciprocity;
 
-  /// Of the minimal dense model. Where exact arithmetic finds states that were taken out as nothing
+  /// Of the minimal dense model. If exact arithmetic finds states that were taken out as nothing
   /// but rounding (two frequencies one ulp apart), the interval reaches up to the exact order.
   OrderVerdict order;
-  ExactOrder exact;  ///< independent of all passes, where the diagram is small
+  ExactOrder exact;  ///< independent of all passes, if the diagram is small
 
   /// The failed checks, in words; empty if all pass: equations and transfers as written to 1e-8,
   /// entries of the dense model too, its rounding error (basic.dense_error, grid.dense) to 3e-7,

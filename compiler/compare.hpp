@@ -26,7 +26,7 @@ struct Measure {
   Eigen::MatrixXd terms = {};   ///< outputs x inputs, see `terms`; empty: not known
 };
 
-/// Blocks of a graph's outputs and inputs, as declared: threes where three divides a signal's size.
+/// Blocks of a graph's outputs and inputs, as declared: threes if three divides a signal's size.
 Measure measure(const Graph& graph, Eigen::MatrixXd terms);
 
 /// The model's transfers at these points. A pair without a path through nonzero entries of A, B, C
@@ -95,7 +95,7 @@ inline constexpr double kClose = 1e-9;
 Difference difference(const std::vector<Eigen::MatrixXcd>& a,
                       const std::vector<Eigen::MatrixXcd>& exact, const Measure& measure);
 
-/// The same for an `exact` that is the system's own at these points. Where that is above kClose,
+/// The same for an `exact` that is the system's own at these points. If that is above kClose,
 /// the terms of the elimination, at up to 8 of the points, join the measure first.
 Difference difference(const std::vector<Eigen::MatrixXcd>& a,
                       const std::vector<Eigen::MatrixXcd>& exact, Measure& measure,

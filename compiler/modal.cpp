@@ -132,7 +132,7 @@ std::vector<Pole> roots(double w2, double z) {
   return {make_pole(fast != 0 ? w2 / fast : 0, false), make_pole(fast, false)};
 }
 
-/// Poles of yddot + Z ydot + S y = 0 where Z is diagonal in the modes of S; false if it is not, or
+/// Poles of yddot + Z ydot + S y = 0 if Z is diagonal in the modes of S; false if it is not, or
 /// if they show that S is not symmetric.
 bool proportional_poles(const StateSpace& model, const SecondOrder& form, std::vector<Pole>& out) {
   const GradedModes all = eigh_graded(form.S);

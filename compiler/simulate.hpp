@@ -43,7 +43,7 @@ class Excitation {
 
 /// How a step is taken. Cost per step of n states, b bodies; error per unit of time of steps h.
 enum class Stepper {
-  automatic,  ///< exact up to 600 states; beyond, and where A and B have lost the digits of slow
+  automatic,  ///< exact up to 600 states; beyond, and if A and B have lost the digits of slow
               ///< motion, midpoint at half the step, compared with midpoint at the step, three
               ///< times the cost of one of them: Trajectory::error
   exact,      ///< matrix exponential, once O(n^3), then O(n^2): for inputs that are linear in every
@@ -86,9 +86,9 @@ struct Trajectory {
 
 /// The response of the system (its states, before `minimize`: x0 keeps its meaning) from x0 to
 /// `excitation`. Throws bad_value for steps that are not positive or do not divide `until`, and for
-/// an rk4 step beyond the limit of stability, which it names, and where the automatic choice is off
+/// an rk4 step beyond the limit of stability, which it names, and if the automatic choice is off
 /// by more than Simulation::accuracy, with the output; size for x0 or inputs of another
-/// size; not_finite where the response overflows (an unstable system), with the time.
+/// size; not_finite if the response overflows (an unstable system), with the time.
 ///
 /// Sources: [Hairer, Lubich, Wanner 2006] IV.2 (midpoint), [Van Loan 1978] (exponential).
 Trajectory simulate(const System& system, const Excitation& excitation,

@@ -46,7 +46,7 @@ struct Row {
   bool active = true;  ///< false once `order` has found that nothing needs it
 };
 
-/// Which row determines which signal: pairs (row, signal), one per scalar where a signal is split.
+/// Which row determines which signal: pairs (row, signal), one per scalar if a signal is split.
 struct Matched {
   std::vector<std::pair<int, int>> rows;
 };
@@ -82,7 +82,7 @@ struct RigidMotion {
 struct Released {
   int equation = -1;    ///< of the released force (new), in Stage::graph
   int channel = -1;     ///< whose wrench is not determined there
-  int closing = -1;     ///< the closing equation; where all of it is released, the same
+  int closing = -1;     ///< the closing equation; if all of it is released, the same
   Equation whole = {};  ///< as it was: still satisfied, it follows from earlier closings
 };
 
@@ -104,7 +104,7 @@ struct Stage {
   std::vector<double> values;            ///< parameter values
   std::shared_ptr<const Graph> source;   ///< equations as written; after lower in its order
   std::vector<Origin> origins;           ///< after lower: of every equation, then of every output
-  std::shared_ptr<const Drives> drives;  ///< of source, where there are parameters
+  std::shared_ptr<const Drives> drives;  ///< of source, if there are parameters
   std::vector<RigidMotion> motions;      ///< after lower
   std::vector<Note> notes;               ///< the log
   std::vector<Row> rows;                 ///< after match: all rows
@@ -117,7 +117,7 @@ struct Stage {
   std::vector<Dependent> dependents;  ///< after close: of chains, in turn; after solve: all
   std::vector<Dependent> before;      ///< those of the system that `update` starts from
 
-  /// Throws std::logic_error where the stage has not begun with `as_written`.
+  /// Throws std::logic_error if the stage has not begun with `as_written`.
   const Graph& written() const {
     if (!source) throw std::logic_error("a stage without a diagram: begin with as_written(graph)");
     return *source;

@@ -64,7 +64,7 @@ class StateMap {
     if (by_input_.size() > 0) all += by_input_.cast<typename Matrix::Scalar>() * u;
     return all;
   }
-  /// The model's states where the blocks' states and the inputs are these at s.
+  /// The model's states if the blocks' states and the inputs are these at s.
   template <class Matrix>
   Matrix model_states(const Matrix& all, const Matrix& u, typename Matrix::Scalar s) const {
     using T = typename Matrix::Scalar;
@@ -89,7 +89,7 @@ class StateMap {
  private:
   struct Map {
     std::vector<int> kept;
-    std::vector<std::string> names;  ///< of those kept; none where all are
+    std::vector<std::string> names;  ///< of those kept; none if all are
     std::vector<Row> rows;
   };
   std::shared_ptr<const Map> map_ = std::make_shared<const Map>();  ///< updates share it

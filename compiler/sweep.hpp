@@ -25,7 +25,7 @@ void sweep(const System& system, std::span<const ParameterList> points,
            const SweepOptions& options = {});
 
 enum class DrawLine {
-  on_terminals,  ///< nothing where the file is no terminal: logs stay short
+  on_terminals,  ///< nothing if the file is no terminal: logs stay short
   always,
 };
 

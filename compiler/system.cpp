@@ -103,7 +103,7 @@ MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
   return transfer_in<solve::Complex50>(d, s, solve::Solution::settled);
 }
 
-/// In T, where double has no pivot; none where T has too few digits for it, or where the last place
+/// In T, if double has no pivot; none if T has too few digits for it, or if the last place
 /// of the data decides all digits of the outputs, as at a pole.
 template <class T>
 std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Double s) {

@@ -58,8 +58,8 @@ enum class Precision {
   twofold,   ///< the same in double-double: 32 digits, on any machine
   extended,  ///< long double: 19 digits on x86
   digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower
-  as_needed  ///< double, and finer where the weakest pivot has lost more than four digits: refined
-             ///< or twofold if that settles, else 50 digits; where double has no pivot at all
+  as_needed  ///< double, and finer if the weakest pivot has lost more than four digits: refined
+             ///< or twofold if that settles, else 50 digits; if double has no pivot at all
              ///< though s is no pole, as in wide grids, double-double or 50 digits, unless the
              ///< last place of the data decides all digits, far below all modes of a closed chain
 };
@@ -85,7 +85,7 @@ class System {
   std::vector<std::string> outputs() const&& { return outputs(); }
 
   /// xdot and y of x (as states() lists them) and u (as inputs()), through the factors: O(bodies).
-  /// Throws size where x or u has another size.
+  /// Throws size if x or u has another size.
   struct Rates {
     Eigen::VectorXd xdot, y;
   };
@@ -113,7 +113,7 @@ class System {
       Precision precision = Precision::as_needed) const;
 
   /// transfer(0), real. Throws singular if the system has a pole at 0 (a free hinge, an
-  /// integrator). Where a block has a pole at 0 that the system has not (a hinge held by a spring),
+  /// integrator). If a block has a pole at 0 that the system has not (a hinge held by a spring),
   /// transfer(0) throws, and the gain is that of state_space(): its cost and its digits.
   Eigen::MatrixXd static_gain() const;
 

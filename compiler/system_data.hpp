@@ -43,7 +43,7 @@ struct Skeleton {
   Stage stage;  ///< after the passes
   Options options;
   solve::Joint joint;                         ///< of the state space: regular
-  std::optional<solve::Joint> before_reduce;  ///< as written, where that is singular there
+  std::optional<solve::Joint> before_reduce;  ///< as written, if that is singular there
   Layout layout;
   std::vector<Dependents> dependents;  ///< per parameter
 
@@ -59,7 +59,7 @@ struct DenseError {
   struct Worst {
     double error = 0;
     std::complex<double> s = 0;
-    int output = -1, input = -1;  ///< units of measure(); -1 where many share it
+    int output = -1, input = -1;  ///< units of measure(); -1 if many share it
   };
   Worst beside_largest, where_small;
   std::vector<std::complex<double>> not_tried = {};  ///< s where the factors have no digit
@@ -80,9 +80,9 @@ struct SystemData {
   solve::Numbers numbers;
   StateMap states;  ///< those of the model
   std::unique_ptr<const solve::Factors<double>> factors;
-  /// Of the equations as written, where they are others than those of the factors.
+  /// Of the equations as written, if they are others than those of the factors.
   std::shared_ptr<const solve::ColumnScale> scale_as_written;
-  /// Per loop of the stage as compiled; 0 where it was not found.
+  /// Per loop of the stage as compiled; 0 if it was not found.
   std::shared_ptr<const std::vector<double>> margins;
   std::vector<int> changed_loops;                       ///< by updates since
   int plans_renewed = 0;                                ///< by updates since
@@ -127,7 +127,7 @@ solve::JointRows<double> real_rows(const Skeleton& skeleton, const solve::Number
 struct Rates {
   solve::RowMatrix<double> xdot, y;
 };
-/// `more`: added to the right-hand sides of the joint system, where it is not empty.
+/// `more`: added to the right-hand sides of the joint system, if it is not empty.
 Rates rates(const SystemData& data, const solve::RowMatrix<double>& known,
             const solve::RowMatrix<double>& more = {});
 
@@ -154,7 +154,7 @@ void write_dense(const SystemData& data, StateSpace& model, int threads);
 
 /// See Certificate::dense_against_factors. O(n^2).
 double dense_difference(const SystemData& data, const StateSpace& dense);
-/// Throws size and not_finite where this is no model that write_dense makes of this system.
+/// Throws size and not_finite if this is no model that write_dense makes of this system.
 void require_written(const SystemData& data, const StateSpace& dense);
 
 /// A dense model and the rounding error of each of its entries.
@@ -170,9 +170,9 @@ StateSpace rounding_of(const SystemData& data, const StateSpace& dense);
 /// of a dense model; for models that `minimize` judges.
 Rounded without_rounding(const SystemData& data, StateSpace dense);
 
-/// See Certificate::dense_error. O(n^2) per s; O(n^3) for up to 100 states where it is large.
+/// See Certificate::dense_error. O(n^2) per s; O(n^3) for up to 100 states if it is large.
 DenseError dense_error(const SystemData& data, const StateSpace& dense);
-/// A warning for each of the two that is too large, and where the model was not tried.
+/// A warning for each of the two that is too large, and if the model was not tried.
 void warn_of_lost_digits(const SystemData& data, const DenseError& error, std::vector<Note>& notes);
 
 /// Margins of these loops of the stage, others left as they are.
@@ -186,7 +186,7 @@ void worst_margin(const SystemData& data, std::span<const double> margins, Check
 void judge_internal_forces(Skeleton& skeleton, const SystemData& data);
 
 /// All passes and the certificate once more for these values of the parameters. States that
-/// followed from the others still do, where that keeps the digits. `note` adds to the notes.
+/// followed from the others still do, if that keeps the digits. `note` adds to the notes.
 std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
                                                 const std::vector<double>& values,
                                                 const std::function<void(SystemData&)>& note);

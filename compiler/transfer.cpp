@@ -35,7 +35,7 @@ struct Assembly {
     F = MatrixXcd::Zero(unknowns + outputs, inputs);
   }
 
-  /// So many rows more; throws where they are more than the unknowns.
+  /// So many rows more; throws if they are more than the unknowns.
   void need(Eigen::Index rows) const {
     if (row + rows > E.rows())
       throw Error(Code::two_equations,

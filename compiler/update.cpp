@@ -159,7 +159,7 @@ void remake_blocks(const Skeleton& k, const std::vector<int>& nodes, solve::Numb
   }
 }
 
-/// False where the new values bring in or leave out a term: the plan does not serve any more.
+/// False if the new values bring in or leave out a term: the plan does not serve any more.
 bool remake_coefficients(const Skeleton& k, const std::vector<int>& origins, solve::Numbers& n) {
   if (origins.empty()) return true;
   const Graph& g = k.stage.graph;
@@ -227,7 +227,7 @@ System compiled_again(const SystemData& old, const std::vector<int>& changed,
   }));
 }
 
-/// True where a value has moved so far that the scaling found for another one may not serve.
+/// True if a value has moved so far that the scaling found for another one may not serve.
 bool has_moved(double value, double scaled_at) {
   constexpr double kFar = 8;
   const double a = std::abs(value), b = std::abs(scaled_at);
@@ -240,7 +240,7 @@ bool outgrown(const solve::Health& now, const solve::Health& scaled) {
   return now.singular || now.weakest < 1e-8 * scaled.weakest || now.growth > 1e8 * scaled.growth;
 }
 
-/// The factors for the new values, scaled anew where need be.
+/// The factors for the new values, scaled anew if need be.
 void refactor(const SystemData& old, const std::vector<int>& changed, SystemData& d) {
   const Skeleton& k = *d.skeleton;
   const auto rows = real_rows(k, d.numbers);

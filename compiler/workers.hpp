@@ -11,7 +11,7 @@ namespace titop::detail {
 ///
 /// The others are kept, asleep, for the next call: to start a thread and to end it takes as long as
 /// writing a small model. There are never more than the largest `others` so far, for all calls
-/// together; where none is free or can be started, there are fewer, or this thread alone, as in a
+/// together; if none is free or can be started, there are fewer, or this thread alone, as in a
 /// child of fork().
 void work_together(int others, const std::function<void()>& work,
                    const std::function<bool()>& more);

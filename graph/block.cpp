@@ -90,7 +90,7 @@ class Inspection {
  public:
   explicit Inspection(const Block& block) : block_(block) {}
 
-  /// False where the matrix has another size.
+  /// False if the matrix has another size.
   bool sized(const MatrixXd& m, const char* name, Index rows, Index columns) {
     if (m.rows() == rows && m.cols() == columns) return true;
     mistakes.push_back({Code::size,

@@ -12,10 +12,10 @@ struct Drive {
   std::span<const int> accel, force, added;  ///< equations: `accel =`, `force =`, `force +=`
   int size = 0;                              ///< of the channel
   int free = 0;               ///< directions in which no acceleration is driven, but the force
-  Eigen::MatrixXd some = {};  ///< N where these are some of all; else they need no matrix
+  Eigen::MatrixXd some = {};  ///< N if these are some of all; else they need no matrix
 
   bool all_free() const { return free == size; }
-  /// Orthonormal rows of these directions, free x size (unit vectors where none is oblique).
+  /// Orthonormal rows of these directions, free x size (unit vectors if none is oblique).
   Eigen::MatrixXd N() const {
     return some.size() ? some : Eigen::MatrixXd(Eigen::MatrixXd::Identity(free, size));
   }

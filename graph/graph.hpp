@@ -76,7 +76,7 @@ struct Node {
   BlockPtr block = {};
   int first_signal = 0, first_channel = 0;
   int end_signal = 0;    ///< one past its last signal
-  int state = -1;        ///< its state signal, -1 where it has no states
+  int state = -1;        ///< its state signal, -1 if it has no states
   int declared = 0;      ///< position in the user's order
   bool lowered = false;  ///< `lower` has turned its rows into equations
   std::source_location where = {};
@@ -85,7 +85,7 @@ struct Node {
 /// Part of a term's coefficient. Factors act from the last to the first.
 struct Matrix {
   std::shared_ptr<const Eigen::MatrixXd> value;
-  std::shared_ptr<const Pattern> pattern = {};  ///< declared structure; none: where value is not 0
+  std::shared_ptr<const Pattern> pattern = {};  ///< declared structure; none: nonzeros of value
 };
 using Factor = std::variant<Value, Rotation, Matrix, Part>;
 
@@ -155,7 +155,7 @@ std::vector<double> nominal_values(const Graph& graph);
 Eigen::MatrixXd coefficient(const Graph& graph, const Term& term, ParameterValues values);
 /// Where that matrix may be nonzero for any values: a rotation by 0 is still a rotation.
 Pattern structure(const Graph& graph, const Term& term);
-/// Number of rows that the term has, -1 where its factors do not fit one another.
+/// Number of rows that the term has, -1 if its factors do not fit one another.
 int rows_of(const Graph& graph, const Term& term);
 /// The term as the user might write it: "-T_ba * A1.parent.force".
 std::string print(const Graph& graph, const Term& term);

@@ -6,7 +6,7 @@
 namespace titop::detail {
 namespace {
 
-/// Name of the frame that the signal is in, "" where it has none.
+/// Name of the frame that the signal is in, "" if it has none.
 std::string frame_of(const SignalRef& s) {
   if (!s.graph() || s.signal() < 0) return {};
   const int frame = s.graph()->signals[static_cast<std::size_t>(s.signal())].frame;

@@ -209,7 +209,7 @@ class DualPort {
   }
 };
 
-/// The channels that have names; also the only one, where there is just one.
+/// The channels that have names; also the only one, if there is just one.
 template <int N>
 class Children : public DualPort<N> {
  public:

@@ -16,7 +16,7 @@ namespace titop {
 /// accepted and listed in the compile log.
 ///
 ///     Rotation T_ba = Rotation::about({0, 0, 1}, pi / 2);
-///     Rotation T_bc = T_ba * T_ac;            // only b<-a after a<-c, where the names are known
+///     Rotation T_bc = T_ba * T_ac;            // only b<-a after a<-c, if the names are known
 ///     Rotation T_ab = T_ba.inverse();
 ///
 /// Copies share their data.

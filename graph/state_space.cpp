@@ -14,7 +14,7 @@ namespace {
 /// off by some units of the last place wherever A was written. (A spring of 1e-12 beside one of 1
 /// has 1e-12, the static bending of a row of 20 beams 4e-13.)
 constexpr double kSingular = 10 * std::numeric_limits<double>::epsilon();
-/// Where one step of refinement changes the solution by more, it has no digit.
+/// If one step of refinement changes the solution by more, it has no digit.
 constexpr double kNoDigit = 0.1;
 
 /// At s = 0, where many systems have exact poles, a pivot at rounding level counts as a pole. (At

@@ -30,7 +30,7 @@ struct Options {
 
 using Json = nlohmann::ordered_json;
 
-/// The same seed gives the same scene on every machine. Throws std::overflow_error where its ratios
+/// The same seed gives the same scene on every machine. Throws std::overflow_error if its ratios
 /// outgrow 64 bits.
 Plan draw(const Options& options);
 

@@ -155,7 +155,7 @@ std::vector<std::size_t> reduce(Table<S>& a, std::size_t columns) {
   return pivots;
 }
 
-/// A^-1 B. Throws std::domain_error where A is singular.
+/// A^-1 B. Throws std::domain_error if A is singular.
 template <class S>
 Table<S> solve(const Table<S>& A, const Table<S>& B) {
   Table<S> both(A.rows(), A.cols() + B.cols());

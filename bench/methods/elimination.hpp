@@ -86,7 +86,7 @@ Table<T> product(const Table<T>& A, const Table<T>& B) {
 template <class T>
 class Lu {
  public:
-  /// Throws runtime_error where a column has no pivot.
+  /// Throws runtime_error if a column has no pivot.
   explicit Lu(Table<T> M) : M_(std::move(M)) {
     const Eigen::Index n = M_.rows();
     for (Eigen::Index k = 0; k < n; ++k) {

@@ -10,7 +10,7 @@ using Step = std::function<Eigen::VectorXd(const Eigen::VectorXd&)>;
 
 /// Average acceleration (beta = 1/4, gamma = 1/2): for a linear model the trapezoidal rule. One LU.
 Step newmark(const titop::StateSpace& model, double h);
-/// x + h A x: grows at any step where nothing damps.
+/// x + h A x: grows at any step if nothing damps.
 Step explicit_euler(const titop::StateSpace& model, double h);
 /// Runge-Kutta as in the library, but at any step.
 Step runge_kutta(const titop::StateSpace& model, double h);

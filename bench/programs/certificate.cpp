@@ -24,7 +24,7 @@ double since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// Writes one row. False where the certificate finds a fault.
+/// Writes one row. False if the certificate finds a fault.
 bool row(Case c, int n, int rounds) {
   const Diagram diagram = scene(c, n), varied = scene(c, n, {.varies = Varies::all});
   const titop::Options options{.minimize_up_to = 0};
@@ -53,7 +53,7 @@ bool row(Case c, int n, int rounds) {
 }  // namespace
 }  // namespace titop_bench
 
-/// `certificate [quick]`: CSV to stdout, 1 where a scene's equations do not hold.
+/// `certificate [quick]`: CSV to stdout, 1 if a scene's equations do not hold.
 int main(int argc, char** argv) {
   using titop_bench::Case;
   const bool quick = argc > 1 && !std::strcmp(argv[1], "quick");

@@ -149,7 +149,7 @@ class Measured {
   double omega_;  ///< upper end of the band [rad/s]
   std::vector<WhatIf> rows_;
   System full_;
-  std::optional<Truncation> modes_;  ///< none where there is no structure
+  std::optional<Truncation> modes_;  ///< none if there is no structure
   std::optional<FineGrid> grid_;
   double full_seconds_ = 0;
   Run full_run_;

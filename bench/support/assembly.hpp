@@ -6,7 +6,7 @@
 
 #include "support/network.hpp"
 
-/// The common input of all other methods where chains close: bodies and joints written out.
+/// The common input of all other methods for closed chains: bodies and joints written out.
 namespace titop_bench {
 
 /// [M + D/s + K/s^2, G'; G, 0] [a; l] = [B w; 0], z = C a. Coordinates of each body, by their

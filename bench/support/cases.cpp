@@ -166,7 +166,7 @@ Diagram ring(int n) {
   return d;
 }
 
-/// Node i, j stands at the end of the beam from its left, in the first column from below; where it
+/// Node i, j stands at the end of the beam from its left, in the first column from below; if it
 /// has both, the beam from below is welded to it.
 Diagram grid(int n) {
   Diagram d{"case G"};

@@ -11,9 +11,9 @@ namespace titop_bench {
 
 using TransferOf = std::function<Eigen::MatrixXcd(std::complex<double>)>;
 
-/// The full system's transfers on the scene's ray: at equal steps of the band but its start where
-/// that is 0 Hz, and at thirteen points across each pole, each a fifth of its peak's width from the
-/// next. One serves all models.
+/// The full system's transfers on the scene's ray: at equal steps of the band (without its start,
+/// if that is 0 Hz), and at thirteen points across each pole, each a fifth of its peak's width from
+/// the next. One grid serves all models.
 class FineGrid {
  public:
   /// `poles` [rad/s]; `least`, outputs x inputs: lower limit of a pair's peak, by which its error

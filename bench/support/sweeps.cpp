@@ -115,7 +115,7 @@ Extreme damping(double c) {
   return chain_extreme(uniform(10, c), {{0, omega}});
 }
 
-/// [Alazard 2015] Fig. 7 with k5/m5 = (1 + delta) k4/m4: of order 8 where delta is 0.
+/// [Alazard 2015] Fig. 7 with k5/m5 = (1 + delta) k4/m4: of order 8 if delta is 0.
 Extreme twins(double delta) {
   Diagram d{"nearly coinciding"};
   auto u = d.input("u");

@@ -9,11 +9,11 @@
 namespace titop::fe {
 
 /// The stiffness and mass of these names, e.g. "KAAX", "MAAX". Rows: all degrees of freedom that
-/// either has, by grid and component; where only one has them the other is 0 there.
+/// either has, by grid and component; if only one has them the other is 0 there.
 ///
 /// Entries stand in fields of 8 or 16 columns (DMIG, DMIG*), with continuations; real, square (form
 /// 1) or symmetric (form 6: one triangle, or both alike). Other cards are passed over. `digits`
-/// are those of the longest number of either matrix, of the one that has fewer, and at most 7 where
+/// are those of the longest number of either matrix, of the one that has fewer, and at most 7 if
 /// one is of single precision (type 1).
 ///
 /// Throws bad_file, all mistakes together, with file and line: a DMIG card in free fields, in small

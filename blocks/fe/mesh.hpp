@@ -58,7 +58,7 @@ std::string dof_name(const Mesh& mesh, Eigen::Index row);
 std::size_t find_point(const Mesh& mesh, const std::string& name);
 
 /// The rows of x, y, z, rx, ry, rz of the interface or point of this name; throws `unknown_name`,
-/// or `bad_modes` where one of the six is missing.
+/// or `bad_modes` if one of the six is missing.
 std::array<Eigen::Index, 6> interface_rows(const Mesh& mesh, const std::string& name);
 
 /// R (n x 6): displacement of every degree of freedom per unit rigid motion in each component of P

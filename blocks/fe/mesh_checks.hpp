@@ -19,7 +19,7 @@ struct MeshReport {
   double KR = 0;        ///< largest |K R| / largest |K|, R about the origin [m]: 0 for a free mesh
   double KR_terms = 0;  ///< largest |K R| beside the terms that cancel in it, of which K(i, j) R(j)
                         ///< counts as sqrt(K(i, i) K(j, j)) |R(j)|: independent of units; the
-                        ///< data's digits where the positions fit the matrices and nothing is held
+                        ///< data's digits if the positions fit the matrices and nothing is held
   std::string KR_worst;  ///< degree of freedom of that entry
 };
 

@@ -136,7 +136,7 @@ void require_unloaded(const Clamped& c, const MassSplit& split, const std::vecto
               "give the node some inertia");
 }
 
-/// All finite modes where M is singular: statics in the massless motions b, Z'K(E a + Z b) = 0.
+/// All finite modes if M is singular: statics in the massless motions b, Z'K(E a + Z b) = 0.
 SymmetricModes condensed_modes(const Clamped& c, const std::vector<Index>& loaded) {
   const MassSplit split = split_mass(c);
   require_unloaded(c, split, loaded);

@@ -23,7 +23,7 @@ struct TextFile {
   bool ends_in_line = true;  ///< the last line has its line end (true for an empty file)
 };
 
-/// Throws `bad_file` where the file cannot be opened or read, or is empty.
+/// Throws `bad_file` if the file cannot be opened or read, or is empty.
 TextFile read_text(const std::filesystem::path& path);
 
 /// All lines, views into file.content: keep the file alive.

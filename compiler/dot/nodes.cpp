@@ -127,7 +127,7 @@ class Row {
   std::vector<int> channels_, one_way_;
 };
 
-/// Name, type, number of states; grey where it has been set aside.
+/// Name, type, number of states; grey if it has been set aside.
 std::string title(const Graph& g, int node, bool active) {
   const Node& n = g.nodes[at(node)];
   std::string about = html(n.block->type());

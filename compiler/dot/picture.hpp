@@ -25,7 +25,7 @@ struct Anchor {
 /// Something that is driven, with all that drives it: a port (or a part of one), or an output.
 struct Assignment {
   int target = -1, output = -1;  ///< a signal, or an index in Graph::outputs
-  std::string part = {};         ///< ".linear" where only that is driven
+  std::string part = {};         ///< ".linear" if only that is driven
   std::vector<Term> terms = {};  ///< none: it is 0
   bool active = true;
 };

@@ -117,7 +117,7 @@ class Drawing {
     return fmt::format(" style=dashed color={0} fontcolor={0}", quoted(colour::removed));
   }
 
-  /// A small node on the way, or nothing ("") where the wire may run straight. Between two ports
+  /// A small node on the way, or nothing ("") if the wire may run straight. Between two ports
   /// on the same side of their blocks a mere point keeps the wire out of the blocks.
   std::string way(const Term& t, const Look& l, Side from, int number) {
     const bool single = a_.terms.size() == 1;

@@ -65,7 +65,7 @@ class Judge {
   const Samples& samples_;
 };
 
-/// The kept part in blocks per pole, without those on the axis that are silent; as it is where
+/// The kept part in blocks per pole, without those on the axis that are silent; as it is if
 /// poles are too close to defective.
 Part without_silent(const Split& split, const Samples& samples) {
   const Part& p = split.kept;

@@ -63,7 +63,7 @@ class Balanced {
   std::vector<Eigen::MatrixXcd> rest_;  ///< of the samples, without the kept part
   PortSizes sizes_;
   std::optional<Balancing> balancings_[2];
-  /// By weighted, truncated, order: an error on some sample, 0 where none is known.
+  /// By weighted, truncated, order: an error on some sample, 0 if none is known.
   mutable Eigen::VectorXd seen_[2][2];
 };
 

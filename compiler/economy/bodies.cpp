@@ -164,7 +164,7 @@ struct Basis {
   Index vectors = 0;
 };
 
-/// None where nothing would be saved.
+/// None if nothing would be saved.
 std::optional<Basis> basis(const Shared& body, double share) {
   std::vector<Index> kept, gone;
   for (Index j = 0; j < body.cut.size(); ++j) (body.kept[at(j)] ? kept : gone).push_back(j);

@@ -2,7 +2,7 @@
 
 #include <titop/compiler/economy/probes.hpp>
 
-/// Bodies with fewer coordinates, where the whole is too large for one eigenproblem. For the
+/// Bodies with fewer coordinates, if the whole is too large for one eigenproblem. For the
 /// compiler's own files.
 namespace titop::detail {
 

@@ -45,7 +45,7 @@ StateSpace model_of_blocks(const System& system, const SystemData& data) {
   return m;
 }
 
-/// Coordinates of all blocks, as pairs of states; position -1 where a rate stands alone.
+/// Coordinates of all blocks, as pairs of states; position -1 if a rate stands alone.
 struct Pairs {
   std::vector<int> position, rate;
 };
@@ -79,7 +79,7 @@ Pairs find_pairs(const StateSpace& m) {
   return pairs;
 }
 
-/// Columns of the matrix, 0 where there is no such state.
+/// Columns of the matrix, 0 if there is no such state.
 MatrixXd columns(const MatrixXd& m, const std::vector<int>& which) {
   MatrixXd result = MatrixXd::Zero(m.rows(), static_cast<Index>(which.size()));
   for (std::size_t j = 0; j < which.size(); ++j)

@@ -12,8 +12,8 @@ namespace titop::detail {
 /// y = C_q q + C_v qd + direct u. The first n_elastic coordinates have stiffness, the others none:
 /// of those only the rows G K and G D are known, which is all that matters.
 struct Coordinates {
-  std::vector<std::string> names;  ///< of the states q (or of the rate, where only that is a state)
-  std::vector<int> nodes;          ///< of the graph
+  std::vector<std::string> names;   ///< of the states q (or of the rate, if only that is a state)
+  std::vector<int> nodes;           ///< of the graph
   std::vector<int> position, rate;  ///< places among the system's states; position -1: none
   Eigen::Index n_elastic = 0;
   Eigen::MatrixXd G;         ///< n_elastic x n_elastic, symmetric positive definite

@@ -27,8 +27,8 @@ int states_of(const Diagram& diagram) {
   return states;
 }
 
-/// One scene, compiled and made ready for any accuracy: bodies first where the whole is too large,
-/// then modes of the whole, or states where it is no structure.
+/// One scene, compiled and made ready for any accuracy: bodies first if the whole is too large,
+/// then modes of the whole, or states if it is no structure.
 class Economy {
  public:
   /// `finest`: the smallest accuracy that will be required.
@@ -76,7 +76,7 @@ class Economy {
     });
   }
 
-  /// The model's modes, or its states where it is no structure; nothing if these are too many and
+  /// The model's modes, or its states if it is no structure; nothing if these are too many and
   /// bodies can still become smaller.
   std::unique_ptr<Reduction> read(const Graph& graph) {
     if (setting_.scene.keep_structure) try {

@@ -13,7 +13,7 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Factor F of the Gramian F F^H of T and B, B behind low-passes where there is a corner: these are
+/// Factor F of the Gramian F F^H of T and B, B behind low-passes if there is a corner: these are
 /// two states more per column, as a triangle below T.
 MatrixXcd factor(const MatrixXcd& T, const MatrixXcd& B, double corner) {
   if (!(corner > 0)) return linalg::lyapunov_factor(T, B);

@@ -29,7 +29,7 @@ Balancing balance(const Split& split, const PortSizes& sizes, double corner = 0)
 
 /// The model of the first r coordinates. Truncated: the others are 0, exact at infinite frequency;
 /// otherwise the others are at rest, A_22 z_2 + A_21 z_1 + B_2 u = 0 (singular perturbation), exact
-/// at 0. Both are stable where sigma(r - 1) > sigma(r), and wrong by 2 (sigma(r) + sigma(r + 1) +
+/// at 0. Both are stable if sigma(r - 1) > sigma(r), and wrong by 2 (sigma(r) + sigma(r + 1) +
 /// ...) at most, on the axis and everywhere right of it, for both are analytic there and the error
 /// is largest on the axis [Enns, Glover 1984; Liu, Anderson 1989]; not so if `weighted`.
 struct Cut {

@@ -33,7 +33,7 @@ bool counted(const std::vector<Complex>& poles, Complex p) {
   return n >= 2 && equal(p, poles[n - 1]) && equal(p, poles[n - 2]);
 }
 
-/// Poles of the whole; where its modes couple and `couple` was not called: without that.
+/// Poles of the whole; if its modes couple and `couple` was not called: without that.
 std::vector<Complex> poles_of(const Whole& w) {
   if (!w.poles.empty()) return w.poles;
   std::vector<Complex> result;

@@ -15,7 +15,7 @@ namespace titop::detail {
 struct Band {
   double low = 0, high = 0, start = 0;
 };
-/// Throws bad_value for a band from 0 where an output reads the position or the rate of a motion
+/// Throws bad_value for a band from 0 if an output reads the position or the rate of a motion
 /// without stiffness that an input drives: there is no gain at 0.
 Band band_of(const System& system, const Scene& scene, const Whole& whole);
 

@@ -17,7 +17,7 @@ struct ReducedData {
   std::vector<EconomyStep> steps;
   std::vector<KeptMode> modes;
   std::vector<std::pair<std::string, double>> seconds;
-  std::optional<States> states = {};  ///< instead of `small`, where there is no second-order form
+  std::optional<States> states = {};  ///< instead of `small`, if there is no second-order form
 };
 
 /// The coordinates of a small model, with the blocks that move in each.

@@ -21,7 +21,7 @@ struct ErrorBound {
   /// Of balanced models: 2 x the sum of the Hankel singular values that were dropped, for the worst
   /// pair, relative as `pairs`. A theorem, not only for the band but everywhere right of the
   /// imaginary axis (up to rounding in the Gramians, and beside undamped poles whose effect is
-  /// below 1e-11 of the peaks, which are left out); negative where there is none.
+  /// below 1e-11 of the peaks, which are left out); negative if there is none.
   double anywhere = -1;
 };
 
@@ -37,7 +37,7 @@ struct EconomyStep {
 struct KeptMode {
   double hertz = 0;       ///< of its mode [Hz]
   double damping = 0;     ///< ratio; 0 for motions without stiffness
-  bool exact = false;     ///< a mode of the assembled bodies, undamped (of smaller bodies, where
+  bool exact = false;     ///< a mode of the assembled bodies, undamped (of smaller bodies, if
                           ///< these lose modes first); else a static-like vector above the band
   bool balanced = false;  ///< neither: a pole of the balanced part
   /// Blocks that take part, with their share of its elastic energy (of balanced models, of its
@@ -86,9 +86,9 @@ class ReducedSystem {
   const System& full() const&;
   System full() const&& { return full(); }
 
-  /// Outputs x inputs, O(order), O(order^3) where modes are coupled by damping. transfer(0), where
+  /// Outputs x inputs, O(order), O(order^3) if modes are coupled by damping. transfer(0), if
   /// there is one, is the full system's for modes of the whole and for balanced states whose rest
-  /// is at rest; where bodies lost modes or states are truncated it is so within the bound. Throws
+  /// is at rest; if bodies lost modes or states are truncated it is so within the bound. Throws
   /// singular if s is a pole.
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
 

@@ -25,7 +25,7 @@ struct Setting {
   double finest;          ///< smallest accuracy that will be required
   int states;             ///< of all blocks
   System full{nullptr};   ///< as in the scene
-  System model{nullptr};  ///< with smaller bodies; the same where these are not needed
+  System model{nullptr};  ///< with smaller bodies; the same if these are not needed
   std::shared_ptr<const SystemData> data;  ///< of `model`
   bool smaller = false;                    ///< bodies have lost modes first, if they had any
   std::string bodies;                      ///< which ones; empty: none

@@ -34,7 +34,7 @@ struct Scene {
   /// resonances, 4e-16 over their damping on the ray.
   double accuracy = 1e-3;
   double damping_floor = 0.002;  ///< zeta, between 1e-6 and 0.5
-  /// A theorem costs many times the samples, and where damping couples modes one eigenproblem of
+  /// A theorem costs many times the samples, and if damping couples modes one eigenproblem of
   /// O(8 n^3) for their poles.
   BoundKind bound = BoundKind::estimate;
   /// Up to this many coordinates the whole is reduced, by one symmetric eigenproblem of O(n^3). Of

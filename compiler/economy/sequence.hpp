@@ -15,7 +15,7 @@ struct Samples {
                           ///< terms, if these are larger: scale of the rounding
 };
 
-/// H - Hr on one sample. Throws not_finite, with the frequency, where either is not.
+/// H - Hr on one sample. Throws not_finite, with the frequency, if either is not.
 Eigen::MatrixXcd difference(const Samples& full, const Eigen::MatrixXcd& Hr, std::size_t k);
 inline Eigen::MatrixXcd difference(const Samples& full, const Small& small, std::size_t k) {
   return difference(full, small.transfer(full.s[k]), k);
@@ -41,7 +41,7 @@ class Sequence {
   /// `high`: upper end of the band [rad/s].
   Sequence(const Whole& whole, const Samples& samples, double high);
 
-  /// One step more; false where nothing helps any more.
+  /// One step more; false if nothing helps any more.
   bool grow();
 
   /// One model of the sequence.

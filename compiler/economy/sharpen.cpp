@@ -18,7 +18,7 @@ struct Pair {
   Index output = 0, input = 0;
 };
 
-/// 1 / H of the pair at s; 0 where s is a pole to the last bit.
+/// 1 / H of the pair at s; 0 if s is a pole to the last bit.
 Complex inverse(const System& system, const Pair& pair, Complex s) {
   try {
     return 1.0 / system.transfer(s)(pair.output, pair.input);
@@ -74,7 +74,7 @@ double distance(const Eigen::VectorXd& lambda, Index elastic, Index j) {
   return nearest;
 }
 
-/// Modes that had one frequency have one again, and one damping where they had one: in pairs that
+/// Modes that had one frequency have one again, and one damping if they had one: in pairs that
 /// symmetry makes 0 their terms cancel, and beside a resonance the last digits between them would
 /// not. `found`: those that have new values; the mean is theirs.
 void unite(Whole& w, const Eigen::VectorXd& before, const Eigen::VectorXd& damping_before,

@@ -8,7 +8,7 @@ namespace titop::detail {
 /// 1 / H of the pair that sees the mode best, by secants in s^2): G has lost the digits by which
 /// the mass of a body exceeds that of its modes, the factors have not. Modes that no pair sees well
 /// keep theirs (unless one of the same frequency, to the last bit, is seen: they keep one), those
-/// that would move more than a third of the way to a neighbour, and all where damping couples them.
+/// that would move more than a third of the way to a neighbour, and all if damping couples them.
 /// About four transfers per mode.
 void sharpen(Whole& whole, const System& system, double high);
 

@@ -20,8 +20,8 @@ struct Small {
   Eigen::MatrixXd D0;          ///< outputs x inputs
   Eigen::MatrixXd V;           ///< modes of the whole x r, orthonormal columns
 
-  /// Where damping couples the last coordinates, their part of the transfer by its poles:
-  /// sum of left * right / (s - pole); empty where these are too close to defective.
+  /// If damping couples the last coordinates, their part of the transfer by its poles:
+  /// sum of left * right / (s - pole); empty if these are too close to defective.
   Eigen::VectorXcd pole;
   Eigen::MatrixXcd left, right;  ///< outputs x poles, poles x inputs
   Eigen::MatrixXd instant;       ///< its direct term

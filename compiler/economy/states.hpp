@@ -3,12 +3,12 @@
 #include <titop/compiler/economy/reduced_system.hpp>
 #include <titop/compiler/economy/split.hpp>
 
-/// A reduced model by states, where there is no second-order form. For the compiler's own files.
+/// A reduced model by states, if there is no second-order form. For the compiler's own files.
 namespace titop::detail {
 
 /// D plus parts that are not coupled to each other: integrals, the kept part, the balanced part.
 struct States {
-  /// A part, and its transfer by poles where it has enough eigenvectors: left / (s - pole) * right.
+  /// A part, and its transfer by poles if it has enough eigenvectors: left / (s - pole) * right.
   struct Piece {
     Part part;
     Eigen::VectorXcd pole;
@@ -24,7 +24,7 @@ struct States {
   std::vector<std::complex<double>> poles() const;  ///< those with Im >= 0
   /// "kept1", ..., "balanced1", ...: the last piece is the balanced one.
   StateSpace state_space() const;
-  /// Throws singular where poles are too close to defective, but for two that are 0.
+  /// Throws singular if poles are too close to defective, but for two that are 0.
   ModalModel modal() const;
   /// Per pole (or pair) with the blocks of the model's states (by name) that take part.
   std::vector<KeptMode> modes(const std::vector<std::string>& states) const;

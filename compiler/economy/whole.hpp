@@ -21,7 +21,7 @@ struct Whole {
   Eigen::MatrixXd b;       ///< n x inputs
   Eigen::MatrixXd ca, cv, cq;     ///< outputs x n
   Eigen::MatrixXd D0;             ///< outputs x inputs
-  Eigen::MatrixXd Z;              ///< n x n, symmetric, semidefinite; 0 x 0 where nothing is damped
+  Eigen::MatrixXd Z;              ///< n x n, symmetric, semidefinite; 0 x 0 if nothing is damped
   bool proportional = true;       ///< Z is diagonal, to rounding
   Eigen::Index far = 0;           ///< modes that rounding hides: in D0 only
   std::vector<char> is_position;  ///< per output
@@ -46,7 +46,7 @@ struct Whole {
 /// Throws the errors of `coordinates`. O(n^3).
 Whole whole(const System& system, const Coordinates& c, std::vector<char> is_position);
 
-/// Finds `poles` where damping couples the modes: one eigenproblem of twice their number, O(8 n^3).
+/// Finds `poles` if damping couples the modes: one eigenproblem of twice their number, O(8 n^3).
 void couple(Whole& whole);
 
 /// Blocks x columns: each block's part of the elastic energy of the motions V (modes x columns), of

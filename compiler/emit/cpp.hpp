@@ -8,10 +8,10 @@ namespace titop {
 
 /// In which coordinates generated code keeps its state.
 enum class CppStates {
-  automatic,  ///< modes where that takes fewer operations and is as accurate (looked at up to 400
+  automatic,  ///< modes if that takes fewer operations and is as accurate (looked at up to 400
               ///< states), else the model's own
   model,      ///< those of System::state_space(), by name
-  modes,      ///< throws bad_value where modes are not as accurate (free rigid motion), or
+  modes,      ///< throws bad_value if modes are not as accurate (free rigid motion), or
               ///< there is no input or no output to measure it by
 };
 

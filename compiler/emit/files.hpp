@@ -8,7 +8,7 @@
 #include <vector>
 
 /// Models as files for other programs. Numbers are written so that they read back to the last bit.
-/// All throw bad_file where a file cannot be written.
+/// All throw bad_file if a file cannot be written.
 namespace titop {
 
 /// The log's warnings of System::state_space(): lost digits of A, B, C, D, which `transfer`,
@@ -38,7 +38,7 @@ void write_numpy(const System& system, const std::filesystem::path& folder,
                  const std::string& name);
 
 /// Frequency response as comma-separated values: a column rad_per_s, then for every output and
-/// input re(OUTPUT/INPUT) and im(OUTPUT/INPUT), quoted where a name has a comma or a quote; a line
+/// input re(OUTPUT/INPUT) and im(OUTPUT/INPUT), quoted if a name has a comma or a quote; a line
 /// per omega [rad/s]. O(bodies) per frequency.
 void write_csv(const System& system, std::span<const double> omega,
                const std::filesystem::path& file);

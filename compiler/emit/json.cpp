@@ -8,7 +8,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Numbers that are negative where nothing was found.
+/// Numbers that are negative if nothing was found.
 Json found(double x) { return x < 0 ? Json() : Json(x); }
 
 Json rows(const Eigen::MatrixXd& M) {
@@ -70,7 +70,7 @@ Json notes(const System& system) {
   return result;
 }
 
-/// Null where it was not checked or not found.
+/// Null if it was not checked or not found.
 template <class T>
 Json where(bool known, T&& value) {
   return known ? Json(std::forward<T>(value)) : Json();

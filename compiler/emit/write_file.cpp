@@ -23,13 +23,13 @@ bool put(const std::filesystem::path& path, const std::string& content) {
   return static_cast<bool>(file);
 }
 
-/// A new, empty file beside this one: NAME.part, or NAME.part2 ... where that is somebody's.
+/// A new, empty file beside this one: NAME.part, or NAME.part2 ... if that exists.
 std::filesystem::path new_beside(const std::filesystem::path& path) {
   constexpr int most = 100;
   for (int i = 1; i <= most; ++i) {
     std::filesystem::path beside = path;
     beside += i == 1 ? ".part" : fmt::format(".part{}", i);
-    if (std::FILE* made = std::fopen(beside.c_str(), "wx")) {  // x: fails where there is one
+    if (std::FILE* made = std::fopen(beside.c_str(), "wx")) {  // x: fails if there is one
       std::fclose(made);
       return beside;
     }

@@ -52,7 +52,7 @@ struct Columns {
   }
 };
 
-/// C and D of a block: of its modal form where it has one, for with rounded products of its modes
+/// C and D of a block: of its modal form if it has one, for with rounded products of its modes
 /// no closure would hold.
 class ExactBlock {
  public:
@@ -158,7 +158,7 @@ class Assembly {
   }
 
   void add_channel(const Channel& channel, const Drive& drive) {
-    // Where no acceleration is driven: all of the space, less the driven directions.
+    // If no acceleration is driven: all of the space, less the driven directions.
     Matrix rest = Matrix::identity(channel.size);
     for (const int e : drive.accel) {
       const Part& part = g_.equations[at(e)].part;

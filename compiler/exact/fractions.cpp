@@ -13,7 +13,7 @@ constexpr int kLargestDenominator = 1000;
 /// Fractions up to this denominator lie 1e-6 apart: none is as close as this by accident.
 constexpr double kRounding = 4e-16;
 
-/// The fraction of smallest denominator that rounds to x; its own value where there is none.
+/// The fraction of smallest denominator that rounds to x; its own value if there is none.
 bool simple_fraction(double x, Fraction& result) {
   for (int q = 1; q <= kLargestDenominator; ++q) {
     const double p = std::round(x * q);

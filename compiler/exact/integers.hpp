@@ -53,7 +53,7 @@ struct Square {
 };
 
 /// The smallest subspace with these rows that the matrix keeps: span(v, M v, M^2 v, ...). Cost
-/// O(n^3) operations on integers that grow as n^2, where M is dense.
+/// O(n^3) operations on integers that grow as n^2, if M is dense.
 Echelon krylov(const Square& M, std::vector<Row> start, int bits);
 
 /// Rank of the products of the rows of a by the rows of b.

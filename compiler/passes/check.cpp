@@ -26,7 +26,7 @@ void check_names(Checker& c, const List& list, std::string_view what, const char
   }
 }
 
-/// "W(3)" is the third scalar of W, and may be a name of its own only where W has no third.
+/// "W(3)" is the third scalar of W, and may be a name of its own only if W has no third.
 template <class List>
 void check_scalar_names(Checker& c, const List& list, std::string_view what,
                         const char* list_name) {

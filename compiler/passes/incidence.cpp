@@ -42,7 +42,7 @@ Pattern through(const Pattern& sees, const Pattern& moved) {
 /// Declared structure of a node.
 struct Declared {
   Pattern direct;  ///< D or, through its states, all that the inputs move in time
-  Pattern moved;   ///< which inputs move the states; empty where states do not count
+  Pattern moved;   ///< which inputs move the states; empty if states do not count
 };
 
 std::vector<Declared> all_declared(const Graph& g, Sight sight) {

@@ -11,7 +11,7 @@ struct Matching {
 };
 
 /// Maximum bipartite matching between rows and columns of the same size, from each channel's
-/// default. O(entries) where the defaults do, else O(entries) per row that they leave.
+/// default. O(entries) if the defaults suffice, else O(entries) per remaining row.
 Matching maximum_matching(const Graph& graph, const Incidence& incidence);
 
 /// The mistakes of a graph without a perfect matching, in ports: per independent part the surplus

@@ -24,7 +24,7 @@ class Followers {
   Followers(const Skeleton& k, const SystemData& d);
 
   /// Makes as many states as there are constraints depend on the others: rates first (a massless
-  /// point has no velocity of its own), then the stiffest; those that did in Stage::before where
+  /// point has no velocity of its own), then the stiffest; those that did in Stage::before if
   /// that keeps the digits. Returns the constraints that determine none, written in independent
   /// states: g = 0.
   std::vector<Hidden> add(std::vector<Hidden> constraints);

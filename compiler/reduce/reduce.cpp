@@ -29,7 +29,7 @@ class Reducer {
   Reducer(Skeleton& k, SystemData& d, double least, std::set<std::pair<int, int>>& held)
       : k_(k), d_(d), least_(least), followers_(k, d), held_(held) {}
 
-  /// False where undetermined motions have been taken out of the system as written: begin again.
+  /// False if undetermined motions have been taken out of the system as written: begin again.
   bool run() {
     k_.before_reduce = k_.joint;
     factor();

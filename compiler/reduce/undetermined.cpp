@@ -121,7 +121,7 @@ struct Place {
 
 /// Where a motion shows most: rotations first, whose unit is no length, then translations, then
 /// axes of joints and scalar points; of equals a parent's of a body without states (no joint), then
-/// the first in the graph. No signal where it is no motion of a port.
+/// the first in the graph. No signal if it is no motion of a port.
 class Showing {
  public:
   Showing(const Skeleton& k, const Motions& motions) : k_(k), g_(k.stage.graph), motions_(motions) {

@@ -19,7 +19,7 @@ struct Held {
 
 /// Treatment of rows without content.
 struct Undetermined {
-  std::vector<Held> held;  ///< one per row; none where a motion matters or there is none
+  std::vector<Held> held;  ///< one per row; none if a motion matters or there is none
   /// A line per motion, as "nothing determines the rotation of A.parent about x". In `held`: the
   /// motion set to 0; else: followed by the outputs or states that depend on it.
   std::vector<std::string> lines;

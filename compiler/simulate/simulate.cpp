@@ -28,7 +28,7 @@ namespace {
 
 constexpr int kExactUpTo = 600;  ///< states: a second or so for the exponential
 
-/// Number of steps; throws where `step` and `until` make no sense together.
+/// Number of steps; throws if `step` and `until` make no sense together.
 Index steps_of(const Simulation& s) {
   const auto refuse = [&](const char* way_out) -> Index {
     throw Error(Code::bad_value,
@@ -104,7 +104,7 @@ class Sizes {
   }
   VectorXd outputs(const VectorXd& x, const VectorXd& u) const { return instant(x, u).outputs(); }
 
-  /// Where the states themselves are rounding, so are outputs that symmetry makes 0: they count as
+  /// If the states themselves are rounding, so are outputs that symmetry makes 0: they count as
   /// a millionth of the largest of their kind at least.
   VectorXd relative() const {
     constexpr double kOfKind = 1e-6;
@@ -214,7 +214,7 @@ class Halved : public Motion {
   Sizes sizes_;
 };
 
-/// `exact`: by how much the exact step was off; negative where it was not tried.
+/// `exact`: by how much the exact step was off; negative if it was not tried.
 void refuse_inaccurate(const System& system, const Simulation& s, const VectorXd& error,
                        double exact) {
   if (error.size() == 0) return;

@@ -81,7 +81,7 @@ double transfer_error(const std::vector<MatrixXcd>& a, const std::vector<MatrixX
 std::vector<Complex> ray(double zeta, double hertz, int points);
 
 /// Largest distance of a pole to its partner in the other list, each relative to its own modulus;
-/// 1 where the lists differ in length. Lists of poles with Im s >= 0.
+/// 1 if the lists differ in length. Lists of poles with Im s >= 0.
 double pole_error(std::vector<Complex> a, const std::vector<Complex>& exact);
 
 /// Poles as the library lists them (pairs once, by the one with Im s > 0), zeros left out.
@@ -94,7 +94,7 @@ std::vector<Complex> moving(const Poles& poles) {
 }
 
 /// A verdict line: the error itself is rounding noise, which differs from machine to machine; it
-/// is printed where it is too large, and to stderr where SHOW_ERRORS is set.
+/// is printed if it is too large, and to stderr if SHOW_ERRORS is set.
 bool agrees(const char* what, double error, double limit);
 
 }  // namespace by_hand

@@ -34,7 +34,7 @@ struct Points {
 };
 
 /// Eight points beside the poles (damping 0.1), from below the slowest to above the fastest. One of
-/// them is also evaluated in 50 digits; all, where a row or a column is lost in rounding there.
+/// them is also evaluated in 50 digits; all, if a row or a column is lost in rounding there.
 Points response_points(const System& system, const std::vector<Pole>& poles);
 
 /// C X + D against the exact transfer at one point, without the silent rows and columns. Each entry
@@ -47,7 +47,7 @@ struct Difference {
 Difference difference(const Form& form, const Eigen::MatrixXcd& X, const Eigen::MatrixXcd& exact,
                       const Points& points);
 
-/// The worst difference of C (s - A)^-1 B + D over all points; HUGE_VAL where s - A is singular in
+/// The worst difference of C (s - A)^-1 B + D over all points; HUGE_VAL if s - A is singular in
 /// double.
 double response_error(const Form& form, const Points& points);
 /// The points' silent outputs and inputs, and those that are 0 by nature at rest, such as rates.
@@ -74,7 +74,7 @@ Form own_form(const StateSpace& model);
 /// whether it may be used: it is large if A is defective (free rigid motion beside modes).
 Form modal_form(const StateSpace& model);
 
-/// Adds A_h, B_h; block by block where the form is modal.
+/// Adds A_h, B_h; block by block if the form is modal.
 void add_hold(Form& form, double sample_time);
 
 /// Ends of the blocks on the diagonal of a block-diagonal A: first rows, and n at the end.

@@ -12,7 +12,7 @@ namespace titop::emit {
 struct Expected {
   Points points;
   std::vector<Pole> poles;
-  std::optional<Eigen::MatrixXd> static_gain;  ///< none where there is a pole at 0
+  std::optional<Eigen::MatrixXd> static_gain;  ///< none if there is a pole at 0
   Eigen::MatrixXd inputs, outputs;             ///< a trajectory; empty without a sample time
 };
 

@@ -19,7 +19,7 @@ std::vector<double> magnitude(const Sweep& w, const Pair& p) {
   return y;
 }
 
-/// In degrees, without jumps; where it turns by 180 at once, towards -90.
+/// In degrees, without jumps; if it turns by 180 at once, towards -90.
 std::vector<double> phase(const Sweep& w, const Pair& p) {
   std::vector<double> y;
   double last = -90;

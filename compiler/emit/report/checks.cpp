@@ -194,7 +194,7 @@ std::string tiles(const Subject& s) {
 }
 
 /// Slower than this, of the fastest pole, a pole may be one at 0: a double one moves by the root of
-/// rounding, 1.5e-8, and by more where it is ill-conditioned.
+/// rounding, 1.5e-8, and by more if it is ill-conditioned.
 constexpr double kNearZero = 1e-7;
 /// One by itself moves by rounding of A alone.
 constexpr double kAtZero = 1e-14;

@@ -8,7 +8,7 @@
 /// The figures of the section on responses: HTML.
 namespace titop::report {
 
-/// Gains from vectors of inputs to vectors of outputs; empty where all are scalars or zero.
+/// Gains from vectors of inputs to vectors of outputs; empty if all are scalars or zero.
 std::string singular_value_plots(const Sweep& sweep, const std::vector<Group>& outputs,
                                  const std::vector<Group>& inputs);
 

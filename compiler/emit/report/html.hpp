@@ -30,7 +30,7 @@ inline std::string row(const std::vector<std::string>& cells,
   return text + "</tr>\n";
 }
 
-/// A number for a table or a sentence: 4 digits, "1.2·10⁻⁵" where it is small or large. Plain text,
+/// A number for a table or a sentence: 4 digits, "1.2·10⁻⁵" if it is small or large. Plain text,
 /// that is HTML as well.
 std::string number(double x, int digits = 4);
 

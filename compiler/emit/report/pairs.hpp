@@ -10,7 +10,7 @@ namespace titop::report {
 constexpr std::size_t kFigures = 12;  ///< of one kind; more are counted
 constexpr std::size_t kCurves = 4;    ///< in one frame
 
-/// Of every pair of groups the entry with the highest peak over the sweep, where it is not zero to
+/// Of every pair of groups the entry with the highest peak over the sweep, if it is not zero to
 /// rounding.
 std::vector<Pair> strongest(const Subject& subject, const Sweep& sweep,
                             const std::vector<Group>& outputs, const std::vector<Group>& inputs);
@@ -20,10 +20,10 @@ std::vector<Pair> asked(const Subject& s, const std::vector<Group>& outputs,
                         const std::vector<Group>& inputs);
 
 /// Pairs that share a figure: the same group of inputs, outputs of the same unit; as many in each
-/// where they need several.
+/// if they need several.
 std::vector<std::vector<Pair>> by_figure(const Subject& s, const std::vector<Pair>& pairs);
 
-/// A sentence that figures beyond kFigures are left out; empty where none are.
+/// A sentence that figures beyond kFigures are left out; empty if none are.
 std::string left_out(std::size_t figures, const char* way_out);
 
 }  // namespace titop::report

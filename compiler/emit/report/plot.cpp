@@ -85,7 +85,7 @@ class Scale {
   }
 
   const Axis& axis_;
-  double low_, high_;  ///< of the exponent where the axis is logarithmic
+  double low_, high_;  ///< of the exponent if the axis is logarithmic
   int exponent_ = 0;
   std::vector<Tick> ticks_;
   std::vector<double> fine_;

@@ -9,7 +9,7 @@ namespace titop::report {
 
 struct Axis {
   std::string label;  ///< quantity alone: "frequency"
-  std::string unit;   ///< "Hz"; a power of ten is put before it where numbers are small or large
+  std::string unit;   ///< "Hz"; a power of ten is put before it if numbers are small or large
   bool log = false;
   bool degrees = false;      ///< ticks at multiples of 45, 90, 180
   double low = 0, high = 0;  ///< equal: from the data

@@ -8,7 +8,7 @@ namespace titop::report {
 /// Result of a program.
 struct Finished {
   bool found = false;  ///< there is such a program
-  int code = 0;        ///< its exit code; 128 + n where signal n ended it
+  int code = 0;        ///< its exit code; 128 + n if signal n ended it
   std::string out, err;
 };
 

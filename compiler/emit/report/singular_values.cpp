@@ -65,7 +65,7 @@ void drop_zero(std::vector<std::vector<double>>& curves) {
   while (!curves.empty() && peak(curves.back()) <= 1e-11 * largest) curves.pop_back();
 }
 
-/// Empty where all are zero.
+/// Empty if all are zero.
 std::string singular_values(const Sweep& w, const Alike& outputs, const Alike& inputs) {
   const std::size_t count = std::min({outputs.at.size(), inputs.at.size(), kStyles});
   std::vector<std::vector<double>> curves(count);

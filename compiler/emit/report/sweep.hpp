@@ -14,7 +14,7 @@ inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 /// Poles beside 0, from slow to fast [rad/s].
 std::vector<Pole> moving(const std::vector<Pole>& poles);
 
-/// The transfers; empty matrices where a frequency is a pole.
+/// The transfers; empty matrices if a frequency is a pole.
 struct Sweep {
   std::vector<double> omega, hertz;
   std::vector<Eigen::MatrixXcd> G;

@@ -39,7 +39,7 @@ struct Checker {
 
   explicit Checker(const Graph& g) : graph(g), mistakes(g.mistakes) {}
 
-  /// -1 where no node has this name. The index is made where a rotation names its frames.
+  /// -1 if no node has this name. The index is made if a rotation names its frames.
   int find_node(const std::string& name) {
     if (name.empty()) return -1;
     if (node_index.empty())

@@ -22,7 +22,7 @@ bool oblique(const Equation& a, const Equation& b) {
   return left.rowwise().norm().minCoeff() > 1e-9;
 }
 
-/// The direction of b that is at right angles to a, where both are one: "(0, 0.6, 0.8)".
+/// The direction of b that is at right angles to a, if both are one: "(0, 0.6, 0.8)".
 std::string oblique_way_out(const Equation& a, const Equation& b) {
   const Eigen::MatrixXd &A = a.part.rows(), &B = b.part.rows();
   if (A.rows() != 1 || B.rows() != 1) return "drive parts that are at right angles to each other";

@@ -35,7 +35,7 @@ class StiffPoints {
  public:
   StiffPoints(const Graph& g, ParameterValues values) : g_(g), values_(values) {}
 
-  /// Of this channel, where a body moves with it; 0 where it is no child point of one with modes.
+  /// Of this channel, if a body moves with it; 0 if it is no child point of one with modes.
   int still(int channel) {
     const Channel& c = g_.channels[at(channel)];
     if (c.takes != Takes::force) return 0;
@@ -80,7 +80,7 @@ class StiffPoints {
   std::shared_ptr<const Modal> modes_;
 };
 
-/// The point whose whole motion this equation gives to another point's; -1 where it is none.
+/// The point whose whole motion this equation gives to another point's; -1 if it is none.
 int moves_with(const Graph& g, const Equation& e) {
   const Signal& target = g.signals[at(e.target)];
   if (target.quantity != Quantity::acceleration || target.size != 6 || !e.part.whole() ||

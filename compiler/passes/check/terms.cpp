@@ -17,7 +17,7 @@ struct Kind {
   int size = 0;
   Quantity quantity = Quantity::plain;
   int frame = kNoFrame;
-  Half half = Half::any;  ///< any: of all else, and where it is not known
+  Half half = Half::any;  ///< any: of all else, and if it is not known
 };
 
 /// Of a part of a signal. A joint's axis may be either.
@@ -36,7 +36,7 @@ bool same_frame(const Checker& c, int a, int b) {
   return a == b || c.graph.nodes[at(a)].name == c.graph.nodes[at(b)].name;
 }
 
-/// One factor of a term; false where the term makes no sense from here on.
+/// One factor of a term; false if the term makes no sense from here on.
 bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term, const Written& where) {
   const auto place = [&] { return line(print(c.graph, term), where); };
   if (const auto* k = std::get_if<Value>(&factor)) {
@@ -85,7 +85,7 @@ bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term, const
   return true;
 }
 
-/// Kind of a term; size -1 where it makes no sense (already noted).
+/// Kind of a term; size -1 if it makes no sense (already noted).
 Kind describe(Checker& c, const Term& term, const Written& where) {
   if (term.signal < 0) return {-1};
   const Signal& s = c.graph.signals[at(term.signal)];

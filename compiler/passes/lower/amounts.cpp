@@ -191,7 +191,7 @@ Amount Lowering::twin(int channel, Level level) {
   return sum;
 }
 
-/// Adds factor * twin. A chain is walked along, however long it is; only where an equation has
+/// Adds factor * twin. A chain is walked along, however long it is; only if an equation has
 /// several terms the way forks.
 void Lowering::walk(Amount& sum, Step at_channel, Level level) {
   std::vector<int> way;
@@ -223,7 +223,7 @@ void Lowering::walk(Amount& sum, Step at_channel, Level level) {
   for (const int channel : way) visiting[at(channel)] = 0;
 }
 
-/// The points that this one's driven acceleration follows; false where something else drives it.
+/// The points that this one's driven acceleration follows; false if something else drives it.
 bool Lowering::find_ties(const Step& here, std::vector<Step>& ties) {
   const int n = g.channels[at(here.channel)].size;
   for (const int e : drive[at(here.channel)].accel) {

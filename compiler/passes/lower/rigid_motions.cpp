@@ -24,7 +24,7 @@ std::string name_of(const Graph& g, const RigidMotion& m) {
          (m.twice ? "position" : "rate");
 }
 
-/// This name, longer where a node has it.
+/// This name, longer if a node has it.
 std::string free_name(std::unordered_set<std::string>& taken, std::string name) {
   while (!taken.insert(name).second) name += '_';
   return name;
