@@ -56,7 +56,7 @@ struct Certificate {
   /// Invariant under any change of units.
   double weakest_pivot = 1;
   std::string weakest_where;  ///< signal
-  double pivot_growth = 1;  ///< largest size of a row over the least before, all along the tree
+  double pivot_growth = 1;    ///< largest size of a row over the least before, all along the tree
   /// Largest margin rho(|L^-1| |L|) of an algebraic loop with matrix L, and its first signal: 1 for
   /// no loop, 4/delta at distance delta from singular; invariant under any change of units.
   double margin = 1;

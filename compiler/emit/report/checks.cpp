@@ -61,8 +61,9 @@ void add_basic(std::vector<Item>& items, const Certificate& c) {
                    fmt::format("What is left of the terms that formed it{}: 1 is no cancellation, "
                                "10⁻¹⁶ is nothing left. The same in all units.",
                                c.weakest_where.empty() ? "" : ", at " + c.weakest_where)});
-  items.push_back({"growth of the entries", number(c.pivot_growth, 3),
-                   "The largest size of a row over the least that it had before, all along the tree."});
+  items.push_back(
+      {"growth of the entries", number(c.pivot_growth, 3),
+       "The largest size of a row over the least that it had before, all along the tree."});
   items.push_back(
       {"margin of the algebraic loops", number(c.margin, 3),
        fmt::format(
