@@ -76,7 +76,7 @@ MatrixXd paths(const StateSpace& m) {
   return result;
 }
 
-/// What 32 digits or 50 leave of a 0 counts as one: of blocks that are 0 in the other transfers.
+/// A residue of a 0 in 32 or 50 digits counts as one: of blocks that are 0 in the other transfers.
 void forgive_zeros(const MatrixXd& other, MatrixXd& size) {
   const Eigen::VectorXd output = size.rowwise().maxCoeff();
   const Eigen::RowVectorXd input = size.colwise().maxCoeff();

@@ -21,7 +21,7 @@ std::vector<char> nodes_in_use(const Skeleton& k) {
   return used;
 }
 
-/// What a node's block by itself is refused with: which node's, and the way out.
+/// The error of a node's block with the node's name and the way out.
 Error named(const Error& error, const Node& node) {
   std::vector<Mistake> mistakes = error.mistakes();
   for (Mistake& m : mistakes) {

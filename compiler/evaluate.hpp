@@ -9,17 +9,17 @@
 
 namespace titop::detail {
 
-/// Smaller numbers have no digits to keep: what has died away along a chain of thousands.
+/// Smaller numbers have no digits to keep: motion that has decayed along a chain of thousands.
 inline constexpr double kUnderflow = 1e-290;
 
-/// What an evaluation at s is refused with, if s is a pole or as good as one.
+/// The error of an evaluation at s, if s is a pole or numerically one.
 Error no_digit_left(const SystemData& data, std::complex<double> s);
 
-/// What Evaluation::refinement_error() is refused with, where it is too much.
+/// The error if Evaluation::refinement_error() is too large.
 Error not_refined(const SystemData& data, std::complex<double> s, double error);
 
-/// What rounding costs is estimated by one random order of it: others have cost up to so many times
-/// as much.
+/// Safety factor of the estimate of rounding, which is one sample of a random order: others have
+/// been up to this factor larger.
 constexpr double kRoundings = 4;
 
 /// Every input by itself.
@@ -55,8 +55,8 @@ class Evaluation {
   /// The diagram's outputs x columns.
   solve::RowMatrix<T> outputs() const;
 
-  /// What the outputs become when the states are also forced, xdot = A x + B u + r (r: states x
-  /// columns), less outputs(): C (s - A)^-1 r through the factors. O(bodies).
+  /// Change of the outputs if the states are also forced, xdot = A x + B u + r (r: states x
+  /// columns): C (s - A)^-1 r through the factors. O(bodies).
   solve::RowMatrix<T> forced(const solve::RowMatrix<T>& r) const;
 
   /// All blocks' states, driven by the external inputs alone.
@@ -66,26 +66,25 @@ class Evaluation {
 
   const solve::RowMatrix<T>& unknowns() const { return unknowns_; }
   solve::RowMatrix<T> solve(const solve::RowMatrix<T>& rhs) const { return factors_->solve(rhs); }
-  /// With `coarse`: about the error of the outputs, from above: their change by the last step of
-  /// refinement. 1 where a step did not shrink some unknown's error, infinite where numbers have
-  /// overflown. Measured per block of the transfer (a port by a port, dual vectors in halves), over
-  /// the block's largest entry; where the change is more than 1e-3 of that and finer arithmetic
-  /// says that it is what rounding has left of a 0 (SystemData::zero_blocks), over the geometric
-  /// mean of the largest entries of the block's row and column. (At a real s in double, and where
-  /// columns are not one per input, all that is so small is taken for such a 0.)
+  /// With `coarse`: approximate upper bound of the error of the outputs: their change by the last
+  /// step of refinement. 1 if a step did not reduce the error of some unknown, infinite if numbers
+  /// have overflown. Measured per block of the transfer (a port by a port, dual vectors in halves),
+  /// over the block's largest entry; if the change is more than 1e-3 of that and finer arithmetic
+  /// confirms that the block is a 0 with rounding (SystemData::zero_blocks), over the geometric
+  /// mean of the largest entries of the block's row and column. (At a real s in double, and if
+  /// columns are not one per input, every block that small counts as such a 0.)
   double refinement_error() const { return refinement_error_; }
-  /// One step of refinement, residual and all in T: what the elimination itself has lost (growth
-  /// that no single pivot shows) is mended by it. Returns the change of the outputs, measured as
-  /// above.
+  /// One step of refinement, residual and all in T: removes the error of the elimination itself
+  /// (growth that no single pivot shows). Returns the change of the outputs, measured as above.
   double improve();
-  /// What double (or another T) may cost.
+  /// Estimated errors of double (or another T).
   struct Losses {
     double change = 0;    ///< improve()
     double rounding = 0;  ///< the change of the outputs, measured as above, if every equation is
                           ///< off by about one unit of the last place of its terms, up or down in a
                           ///< fixed random order: an estimate of the error, not a bound
   };
-  /// improve(), and what rounding costs. One solution of two columns per column.
+  /// improve(), and the error by rounding. One solution of two columns per column.
   Losses losses();
   /// The change of the outputs by rounding as above, outputs x columns.
   solve::RowMatrix<T> rounding() const;
@@ -104,14 +103,15 @@ class Evaluation {
   solve::RowMatrix<T> values_of(const solve::RowMatrix<T>& unknowns,
                                 const solve::RowMatrix<T>& inputs,
                                 std::span<const int> first) const;
-  /// What the unknowns change by.
+  /// Change of the unknowns by rounding.
   solve::RowMatrix<T> change_by_rounding() const;
   solve::RowMatrix<T> value_of(int signal, const solve::RowMatrix<T>& unknowns,
                                const solve::RowMatrix<T>& inputs) const;
   void refine(const Evaluation<std::complex<double>>& coarse);
   solve::RowMatrix<std::complex<double>> change_by(const Evaluation<std::complex<double>>& coarse,
                                                    double* rounding) const;
-  /// Largest entries of what shares a unit, variable by variable, for each group of columns.
+  /// Largest entries of unknowns that share a unit, variable by variable, for each group of
+  /// columns.
   Eigen::ArrayXd sizes_of_unknowns(const solve::RowMatrix<std::complex<double>>& unknowns) const;
   /// The columns' groups, an input each, dual vectors in halves: their first ones, and the end.
   std::vector<Eigen::Index> groups_of_columns() const;
@@ -122,7 +122,7 @@ class Evaluation {
   const Resolvent<T>& resolvent(int node) const;
   /// (s - A)^-1 r of every block by itself.
   solve::RowMatrix<T> own_response(const solve::RowMatrix<T>& r) const;
-  /// What these do to the interface unknowns.
+  /// Effect of these on the interface unknowns.
   solve::RowMatrix<T> unknowns_of(const solve::RowMatrix<T>& own) const;
 
   solve::Matrices<T> respond(const T& s);

@@ -34,21 +34,21 @@ class Instant {
   solve::RowMatrix<double> xdot_terms() const;
   solve::RowMatrix<double> outputs_terms() const;
 
-  /// How far all signals are off, about, as an instant of its own (known signals 0): what it takes
-  /// if every equation is off by what it does not hold to, and by about one unit of the last place
-  /// of its terms, up or down in a random order, fixed for each `sample`. One more solution.
+  /// Forward error estimate of all signals, as an instant of its own (known signals 0): from the
+  /// residual of every equation plus about one unit of the last place of its terms, up or down in a
+  /// random order, fixed for each `sample`. One more solution.
   Instant doubt(int sample = 0) const;
-  /// The same where every translation and rotation is right to its length and no better: what a
-  /// frame turns by a right angle, to rounding, may be off by that in any direction.
+  /// The same with errors relative to the norm of every translation and rotation, not per
+  /// component: after a rotation by a right angle rounding may have any direction.
   Instant doubt_of_vectors(int sample) const;
-  /// The same of rounding alone, whether the equations hold or not.
+  /// The same of rounding alone, without the residual.
   Instant rounding() const;
 
  private:
   /// Every equation is off by this, and by one unit of the last place of its terms.
   Instant off_by(solve::RowMatrix<double> off, const solve::RowMatrix<double>& magnitudes,
                  int sample) const;
-  /// add(first row of xdot, matrix, what it multiplies), of all products that xdot is the sum of.
+  /// add(first row of xdot, matrix, its factor), of all products whose sum is xdot.
   template <class Add>
   void products_of_xdot(Add add) const;
   /// Likewise of the outputs.

@@ -27,11 +27,11 @@ int exact_order_of(const SystemData& d, int states) {
 }
 
 /// Part of an entry of the transfer in which finer arithmetic and the dense model must agree for
-/// what it says of the order to count, and least visibility of a mode that counts then.
+/// the model to be certain, and least visibility of a mode that counts then.
 constexpr double kCertain = 1e-6;
-constexpr double kMoving = 1e-9;  ///< of an entry: what changes less with s may be rounding
+constexpr double kMoving = 1e-9;  ///< of an entry: a smaller change with s may be rounding
 
-/// What the self-check says of lost digits, of equations, pivots, loops or outputs; null: nothing.
+/// The self-check's warning of lost digits, in equations, pivots, loops or outputs; null: none.
 const char* digits_lost(const SystemData& d) {
   const std::vector<Note>& notes = d.checked().notes;
   if (std::any_of(notes.begin(), notes.end(), [](const Note& n) {
@@ -41,8 +41,8 @@ const char* digits_lost(const SystemData& d) {
   return d.checked().rounding_alone ? "rounding is all that some output has" : nullptr;
 }
 
-/// The model with those inputs and outputs alone whose dynamics are not rounding: in some entry,
-/// what changes with s is as finer arithmetic says.
+/// The model with only those inputs and outputs whose dynamics are not rounding: in some entry, the
+/// change with s agrees with finer arithmetic.
 StateSpace with_certain_ports(const System& system, const SystemData& d, const StateSpace& m) {
   const std::complex<double> s = pick_s(d);
   const auto transfers = [&](std::complex<double> z) {
@@ -73,9 +73,9 @@ StateSpace with_certain_ports(const System& system, const SystemData& d, const S
 /// Of entries that keep fewer digits, rounding may be all that is left of a mode's.
 constexpr double kUnclearDigits = 1e-3;
 
-/// Every port is judged against its own size, so one that is nothing but rounding would count as
-/// moved and seen. Where digits are lost, only what the others show is certain: part of the inputs
-/// and outputs needs no more states than all of them.
+/// Every port is judged by its own size, so one at rounding level would count as moved and seen. If
+/// digits are lost, only states that the other ports need are certain: part of the inputs and
+/// outputs needs no more states than all of them.
 void doubt_lost_digits(const System& system, const SystemData& d, const StateSpace& dense,
                        MinimizeOptions options, OrderVerdict& v) {
   if (v.exact || v.lowest == 0 || dense.inputs.empty() || dense.outputs.empty()) return;
@@ -96,11 +96,11 @@ void doubt_lost_digits(const System& system, const SystemData& d, const StateSpa
        fmt::format("{}: of {} states, {} are certainly needed", lost, v.order, certain)});
 }
 
-/// What the transfer loses where modes leave, at any of the points by itself: beside its rigid
-/// motion far below, what a free structure has lost near its modes would not show.
+/// Error of the transfer without the removed modes, at each of the points by itself: relative to
+/// its rigid motion at low frequency, the error of a free structure near its modes would be hidden.
 struct Change {
-  double by_modes = 0;  ///< beside the terms of both models: no rounding is as large
-  double in_all = 0;    ///< beside itself, or where it is a 0 beside those of the model as written
+  double by_modes = 0;  ///< relative to the terms of both models: no rounding is as large
+  double in_all = 0;    ///< relative to itself, or for a 0 to the terms of the model as written
   std::vector<std::complex<double>> tried, left_out;  ///< where the factors have digits, and not
 };
 

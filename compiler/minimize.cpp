@@ -77,8 +77,8 @@ StateSpace side_by_side(const StateSpace& rest, const StateSpace& model,
   return modes::with_integrators(with_rates, apart, states);
 }
 
-/// The modes beside integrators that all count. Integrators keep their meaning where as much leaves
-/// without touching what they integrate.
+/// The modes beside integrators that all count. Integrators keep their meaning if as many modes
+/// leave without a change of their inputs.
 Minimized minimize_beside(const modes::Sampled& sampled, const modes::Integrated& states,
                           const StateSpace& rest, const MinimizeOptions& options) {
   const StateSpace& model = sampled.model;
@@ -117,7 +117,7 @@ Minimized minimize_needed(const modes::Sampled& sampled, const MinimizeOptions& 
   return minimize_beside(sampled, states, *rest, of_rest);
 }
 
-/// What was found of the integrators, into the verdict on what was left of the model.
+/// Adds the verdict on the integrators to that on the other states.
 void add_needless(const modes::Needless& n, Minimized& r) {
   OrderVerdict& v = r.order;
   if (!v.exact) {

@@ -9,12 +9,12 @@ namespace titop {
 struct MinimizeOptions {
   double resolution = 0;  ///< also drop modes of visibility up to this; 0: only rounding's own
   int exact_order = -1;   ///< the minimal order, where exact arithmetic has found it; -1: not known
-  /// Potential energy x' E x / 2, where it is known (n x n, else empty): it makes the symmetric
-  /// form of models whose mass couples the coordinates, as where chains are closed. What does not
-  /// fit the model is not used.
+  /// Potential energy x' E x / 2, if it is known (n x n, else empty): it gives the symmetric form
+  /// of models whose mass couples the coordinates, as in closed chains. Not used if it does not fit
+  /// the model.
   Eigen::MatrixXd energy = {};
-  /// What rounding may have put into each entry of A, B, C and D: matrices of their sizes, or empty
-  /// for 2.2e-16 of the entry. It decides which integrators count. Not used if it does not fit.
+  /// Rounding error of each entry of A, B, C and D: matrices of their sizes, or empty for 2.2e-16
+  /// of the entry. It decides which integrators count. Not used if it does not fit.
   StateSpace rounding = {};
 };
 
@@ -22,8 +22,8 @@ struct MinimizeOptions {
 struct JudgedMode {
   double omega = 0;   ///< |s| [rad/s]
   int states = 1;     ///< 2 for a pair of poles
-  double visibility;  ///< see `minimize`; of an integrator: what no other makes of its row
-  double bound;       ///< what rounding alone may have made of it
+  double visibility;  ///< see `minimize`; of an integrator: independent part of its row
+  double bound;       ///< possible visibility by rounding alone
   std::string why;    ///< "no input moves it", "no output sees it", "its pole is at 0", ...
 };
 
@@ -31,17 +31,17 @@ struct JudgedMode {
 struct OrderVerdict {
   bool judged = false;  ///< false: `minimize` has not run; only the structure has been looked at
   int order = 0;        ///< of the model
-  /// The minimal order lies between these two, both included; equal: it is decided, as far as
-  /// double precision tells data apart. Of a system whose self-check says that digits are lost,
-  /// `lowest` counts only what inputs and outputs show whose dynamics finer arithmetic confirms; of
-  /// one whose dense model keeps less than 3 digits (Certificate::dense_error), `highest` counts
-  /// all.
+  /// Interval of the minimal order, both ends included; equal: it is decided, as far as double
+  /// precision distinguishes data. Of a system whose self-check reports lost digits, `lowest`
+  /// counts only states of inputs and outputs whose dynamics finer arithmetic confirms; of one
+  /// whose dense model keeps less than 3 digits (Certificate::dense_error), `highest` counts all.
   int lowest = 0, highest = 0;
   bool exact = false;   ///< decided by exact arithmetic (compiler/exact_order.hpp)
-  double to_fewer = 1;  ///< least visibility among the modes that stay: what the next would cost
-  double to_more = 0;   ///< largest visibility among those that left: what taking them out cost
-  /// Of the transfer beside what left, relative, measured; negative: not. With nothing removed:
-  /// what left changed so much more than its modes were judged to that it was put back.
+  double to_fewer = 1;  ///< least visibility among the kept modes: error of removing the next
+  double to_more = 0;   ///< largest visibility among the removed modes: error of removing them
+  /// Measured relative change of the transfer without the removed modes; negative: not measured. If
+  /// nothing is removed: the change was so much larger than the judged visibilities that the modes
+  /// were restored.
   double change = -1;
   std::vector<JudgedMode> removed, undecided;
 
@@ -53,27 +53,26 @@ struct OrderVerdict {
 /// this precision, kept 34 modes, ...". One line.
 std::string to_string(const OrderVerdict& verdict);
 
-/// A model without what cannot matter to its transfer, and what was taken out.
+/// A model without states of no effect on its transfer, and the removed modes.
 struct Minimized {
   StateSpace model;
   OrderVerdict order;
   std::vector<std::string> notes;  ///< in plain words; the verdict is the first
 };
 
-/// Minimal by effect: what is left out may still be there in the last bits of the data, and the
-/// verdict says where that is so. Each mode has a visibility v: the relative half-bandwidth in
-/// which it stands out of the rest of the transfer, a pure number in which every input, output and
-/// unit cancels:
+/// Minimal by effect: a removed mode may be present in the last bits of the data, which the verdict
+/// reports. Each mode has a visibility v: the relative half-bandwidth in which it exceeds the rest
+/// of the transfer, a pure number, independent of the units of inputs, outputs and states:
 ///
 ///     w_i = 1 / max(|l_i - l_j|, 0.01 l_j),  q = sqrt(sum b_i^2 w_i),  r = sqrt(sum c_i^2 w_i)
 ///     v_j = max_k(|c_kj| / r_k) max_l(|b_jl| / q_l) / (2 l_j)
 ///
-/// Without it the transfer changes by at most v_j / zeta_j of what the others do there. A mode is
-/// dropped if its v lies below ten times its own rounding bound or 1e-17, and both below 1e-9, or
-/// if v lies below the resolution; in doubt it stays. Modes of equal frequency and damping are
-/// turned among themselves first, so that what no input moves stands alone. A mode that no input
-/// moves becomes a relation between states, one that no output sees likewise: the rest keep name
-/// and meaning.
+/// Without it the transfer changes by at most v_j / zeta_j of the other modes' part there. A mode
+/// is dropped if its v is below ten times its own rounding bound or 1e-17, and both below 1e-9, or
+/// if v is below the resolution; in doubt it stays. Modes of equal frequency and damping are
+/// rotated among themselves first, so that unreachable ones are separate. An unreachable mode
+/// becomes a relation between states, an unobservable one likewise: the others keep name and
+/// meaning.
 ///
 /// Undamped or proportionally damped models are treated as symmetric eigenproblems (l = omega^2),
 /// those of closed chains with the help of their energy,

@@ -27,10 +27,10 @@ constexpr double kShrinks = 0.25;
 /// If the first step changes no block of the unknowns by more, that steps shrink is plain by then;
 /// else a second step has to show it.
 constexpr double kPlain = 1e-9;
-/// Of what stands in the same row and column: what turned frames leave of a 0, cos(pi / 2) = 6e-17.
-/// More digits see it, the data do not stand for it.
+/// Of the entries in the same row and column: a 0 after rotations of frames, cos(pi / 2) = 6e-17.
+/// More digits resolve it, but the data do not.
 constexpr double kOfFrames = 1e-15;
-/// Likewise what sums over many bodies leave of a 0: no reason to ask more digits.
+/// Likewise a 0 after sums over many bodies: no reason for more digits.
 constexpr double kOfSums = 1e-13;
 
 }  // namespace
@@ -129,9 +129,9 @@ std::vector<Eigen::Index> groups_of_inputs(const SystemData& d) {
   return groups(d.graph().inputs, d.layout().input_first, 0, std::ssize(d.layout().inputs));
 }
 
-/// Blocks that are nothing beside those of other outputs by the same input, and of other inputs
-/// to the same output: `limit` of both. (Where all of a row is small, that is its unit, or what it
-/// is.)
+/// Blocks that are negligible beside those of other outputs by the same input, and of other inputs
+/// to the same output: `limit` of both. (If all of a row is small, that is its unit, or its true
+/// size.)
 Eigen::MatrixX<bool> nothing_beside(const Eigen::MatrixXd& size, double limit) {
   if (size.size() == 0) return Eigen::MatrixX<bool>(size.rows(), size.cols());
   const Eigen::ArrayXXd row = size.rowwise().maxCoeff().replicate(1, size.cols()).array(),
@@ -251,9 +251,9 @@ solve::RowMatrix<std::complex<double>> Evaluation<T>::change_by(
 }
 
 /// Every step multiplies the error by I - F^-1 L (F: the factors, L: the matrix), and so the step
-/// itself: what F has wrong shrinks slowly, or not at all, and small steps are then no sign of a
-/// small error. It is looked for in the unknowns, where it stands alone, not in the outputs, of
-/// which it may be a small share.
+/// itself: a component in which F is wrong shrinks slowly, or not at all, and small steps are then
+/// no sign of a small error. Convergence is judged by the unknowns, each by itself, not by the
+/// outputs, of which that component may be a small share.
 template <class T>
 void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
   unknowns_ = lifted<T>(coarse.unknowns());
@@ -270,14 +270,14 @@ void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
     const double now = relative_to_outputs(correction);
     if (!leads) {
       const Eigen::ArrayXd sizes = sizes_of_unknowns(change);
-      // What rounding has left of a 0 is changed altogether by the first step, and no more after.
+      // A 0 with rounding is changed altogether by the first step, and not by later ones.
       leads = step == 0 ? at_most(sizes, kPlain * start)
                         : at_most(sizes, kShrinks * sizes_before.max(0x1p-53 * start));
       sizes_before = sizes;
     }
     refinement_error_ = leads || std::isinf(now) ? std::max(now, rounding) : 1;
     if (std::isinf(now) || (step > 0 && !leads)) return;
-    // What the next step would change: this step's change, smaller by as much again.
+    // Prediction of the next step's change: this one's, times the same factor.
     const bool settled =
         now == 0 || (now <= kSettled && now * (now / before) <= solve::Scalar<T>::epsilon());
     if (leads && (settled || (step > 0 && !(now <= kShrinks * before)))) return;

@@ -69,8 +69,8 @@ solve::Response<T> modal_response(const Block& block, const Modal& m, const T& s
   return r;
 }
 
-/// What cancels in an entry of X or Y may be so many times the entry, per state: magnitudes add up,
-/// rounding does not, and this much of it is that of any LU.
+/// Cancelling terms of an entry of X or Y over the entry, allowed per state: magnitudes add up,
+/// rounding does not, and this much is usual in an LU.
 constexpr double kTerms = 100;
 
 /// The precision that is taken where one leaves too few digits; void: there is none.
@@ -135,9 +135,9 @@ double largest_ratio(const Eigen::MatrixXd& terms, const Eigen::MatrixXd& size) 
   return result;
 }
 
-/// What the entries of X and Y are sums of, over the entries, at most; with K = s - A these are
-/// |K^-1| |K| |X| and |D| + |C| |X| + |C K^-1| |K| |X|, whatever the units of states and ports.
-/// Infinite where double cannot tell: where it has less than two digits of K^-1.
+/// Largest ratio of the terms of an entry of X and Y to the entry; with K = s - A the terms are
+/// |K^-1| |K| |X| and |D| + |C| |X| + |C K^-1| |K| |X|, independent of the units of states and
+/// ports. Infinite if double has less than two digits of K^-1.
 template <class T>
 double cancels(const Dynamics& d, const T& s, const solve::Response<T>& r) {
   using Eigen::MatrixXcd;
@@ -156,9 +156,9 @@ double cancels(const Dynamics& d, const T& s, const solve::Response<T>& r) {
   return std::max(largest_ratio(of_states, X), largest_ratio(of_outputs, Y));
 }
 
-/// From the matrices, each entry right to `enough`. C X + D cancels, the more the lower s is below
-/// the block's own frequencies: what T then has too few digits for is found in a finer precision.
-/// (Of 100 digits none are too few: 1e-88 of its terms is 0, as a notch at its frequency.)
+/// From the matrices, each entry accurate to `enough`. C X + D cancels, the more the lower s is
+/// below the block's own frequencies: if T has too few digits, a finer precision is used. (100
+/// digits always suffice: 1e-88 of its terms is 0, as a notch at its frequency.)
 template <class T>
 solve::Response<T> general_response(const Block& block, const Dynamics& d, const T& s,
                                     double enough) {

@@ -14,8 +14,8 @@
 
 namespace titop {
 
-/// What a signal is. A plain signal (a controller's output, an external input) takes the quantity
-/// of what it drives; the others must agree.
+/// Quantity of a signal. A plain signal (a controller's output, an external input) takes the
+/// quantity of the signal that it drives; the others must agree.
 enum class Quantity : std::int8_t { plain, acceleration, velocity, position, force };
 
 /// Which signal of a channel the block takes by default: a child channel takes the wrench and
@@ -28,7 +28,7 @@ struct ChannelSpec {
   std::string name;  ///< "parent", "C1", ...
   int size = 6;      ///< degrees of freedom: 1 or 6
   Takes takes = Takes::force;
-  std::string accel_name = "accel", force_name = "force";  ///< what the user calls the two signals
+  std::string accel_name = "accel", force_name = "force";  ///< names of the two signals
 };
 
 /// A one-way port.
@@ -40,8 +40,8 @@ struct PortSpec {
 
 /// The ports of a block and its states by name.
 ///
-/// Order everywhere: inputs u = what each channel takes, in the order of `channels`, then `inputs`;
-/// outputs y = what each channel gives, in the same order, then `outputs`. By convention children
+/// Order everywhere: inputs u = input of each channel, in the order of `channels`, then `inputs`;
+/// outputs y = output of each channel, in the same order, then `outputs`. By convention children
 /// come first and the parent last, as in the paper: y = [xdd_C; F_P], u = [F_C; xdd_P].
 struct Interface {
   std::vector<ChannelSpec> channels;
@@ -102,8 +102,8 @@ struct Kinematics {
 /// A matrix of yes and no: may this output depend directly on this input?
 using Pattern = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
-/// What a diagram is made of. Derive from it, return it from `as_block(spec)`, and `Diagram::add`
-/// takes your spec (docs/architecture.md). Blocks are immutable and shared between nodes.
+/// A block of a diagram. Derive from it, return it from `as_block(spec)`, and `Diagram::add` takes
+/// your spec (docs/architecture.md). Blocks are immutable and shared between nodes.
 class Block {
  public:
   virtual ~Block() = default;
@@ -123,9 +123,9 @@ class Block {
   /// Declared direct feedthrough, output_size x input_size. It must not depend on the numbers: a
   /// mass of 0 or an angle of 0 is no structural zero. Default: everything.
   virtual Pattern feedthrough() const;
-  /// Declared structure of the states as a whole, whatever the numbers: which inputs may move them
-  /// (1 x input_size), which outputs may see them (output_size x 1). Default: all. What no input of
-  /// the diagram moves, or no output sees, is left out by it.
+  /// Declared structure of the states as a whole, for any numbers: which inputs may move them (1 x
+  /// input_size), which outputs may see them (output_size x 1). Default: all. States that no input
+  /// of the diagram moves, or no output sees, are left out by it.
   virtual Pattern moved_by() const;
   virtual Pattern seen_by() const;
   /// Kinematic part, if the block has one; no chain may close through a block without. A state in
@@ -151,9 +151,9 @@ using BlockPtr = std::shared_ptr<const Block>;
 
 /// Two states of one name (duplicate_name), which an own block may have. Empty where none are.
 std::vector<Mistake> mistakes_of(const Interface& interface, std::string_view type);
-/// What an own block may have got wrong in its matrices, as "B of this Rotor is 3 x 0, not 3 x 6":
-/// sizes other than those of its interface (size), entries that are not finite (not_finite). Empty
-/// where nothing is. `compile` asks both, `update` this one. O(entries).
+/// Mistakes in the matrices of a user's block, as "B of this Rotor is 3 x 0, not 3 x 6": sizes
+/// other than those of its interface (size), entries that are not finite (not_finite). Empty if
+/// there are none. `compile` calls both, `update` this one. O(entries).
 std::vector<Mistake> mistakes_of(const Block& block, const Dynamics& dynamics);
 
 std::string_view to_string(Quantity quantity);

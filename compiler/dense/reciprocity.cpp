@@ -10,7 +10,7 @@ namespace {
 using Eigen::Index;
 using linalg::at;
 
-/// A term between channels: what it reads, and its coefficient.
+/// A term between channels: its signal and its coefficient.
 struct Link {
   int signal = -1, coefficient = -1;
 };
@@ -60,8 +60,8 @@ struct Finder {
     return (e.of_block ? rows : wires).emplace(std::pair(to.channel, from.channel), link).second;
   }
 
-  /// What the channel takes is 0, or inputs alone say what it is. (What nobody sees is inactive,
-  /// too, and moves.)
+  /// The channel's input is 0, or determined by inputs alone. (An unobservable one is inactive,
+  /// too, but moves.)
   bool rests(int channel) const {
     const Channel& c = g.channels[at(channel)];
     const int taken = c.takes == Takes::force ? c.force : c.accel;
@@ -78,7 +78,7 @@ struct Finder {
       }
       const auto back = links.find({from, to});
       if (back == links.end()) return false;
-      // Who says what a block gives exchanges cause and effect: the sign changes.
+      // An equation for a block's output exchanges cause and effect: the sign changes.
       const int sign = between && says_output(to) != says_output(from) ? -1 : 1;
       if (to <= from) result.pairs.push_back({link.coefficient, back->second.coefficient, sign});
     }

@@ -9,10 +9,11 @@ namespace titop::detail {
 
 struct SystemData;
 
-/// Whether the accelerations of all modes answer the modal forces f by a symmetric matrix, as the
-/// reduced inverse mass of equation (14) of the paper is one. With y = D u - W' f of all blocks it
-/// is symmetric if D is, between what channels take (u) and give (y), and if what connects channels
-/// lets u' y* = y' u* for any two motions: then W u, what the modes feel, is symmetric in f.
+/// Whether the accelerations of all modes depend on the modal forces f by a symmetric matrix, such
+/// as the reduced inverse mass of equation (14) of the paper. With y = D u - W' f of all blocks it
+/// is symmetric if D is, between the channels' inputs (u) and outputs (y), and if the connections
+/// of channels satisfy u' y* = y' u* for any two motions: then W u, the modes' accelerations, is
+/// symmetric in f.
 struct Reciprocity {
   /// Coefficient `a` is `sign` times coefficient `b` transposed.
   struct Pair {
@@ -27,9 +28,9 @@ struct Reciprocity {
   bool holds(const solve::Numbers& numbers) const;
 };
 
-/// What these values of the parameters have to fulfil; none where it takes more than looking at
-/// terms: something else than channels acts on channels (controllers, gains, sums), directions are
-/// driven apart, or nothing acts back. By structure alone, O(terms log terms).
+/// The conditions on the values of the parameters; none if terms alone do not decide: other signals
+/// than channels act on channels (controllers, gains, sums), directions are driven separately, or a
+/// reaction is missing. By structure alone, O(terms log terms).
 std::optional<Reciprocity> reciprocity_of(const SystemData& data);
 
 }  // namespace titop::detail

@@ -15,7 +15,7 @@ const solve::RowMatrix<double>& coefficient(const SystemData& d, int i) {
   return *d.numbers.coefficients[at(i)];
 }
 
-/// to += factor * what it is multiplied by.
+/// to += factor * the coefficient `times`; -1: the identity.
 template <class Factor, class To>
 void add_product(const SystemData& d, const Factor& factor, int times, To to) {
   if (times < 0)

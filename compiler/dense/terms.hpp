@@ -3,14 +3,14 @@
 #include <titop/compiler/dense/writing.hpp>
 #include <titop/graph/state_space.hpp>
 
-/// What targets are made of, in numbers.
+/// The coefficients of targets, in numbers.
 namespace titop::detail {
 
 /// The coefficients of all targets' unknowns, where Target::coefficients and Term::to say. `to`:
 /// zeros. O(terms).
 void find_coefficients(const SystemData& data, const Writing& writing, double* to);
 
-/// Adds what targets read of states and inputs themselves. O(terms).
+/// Adds the targets' terms in states and inputs themselves. O(terms).
 void add_known(const SystemData& data, const Writing& writing, StateSpace& model);
 
 }  // namespace titop::detail

@@ -15,11 +15,10 @@ struct OwnTerms {
   void take(double x) { least = std::min(least, x), most = std::max(most, x); }
 };
 
-/// What is written into a row as well carries the rounding of its column, which is that of the
-/// column's largest entries. Batches (their own terms in turn) with a column smaller than others by
-/// more than four digits are to be solved once more, for all that their columns have. (In an
-/// ordinary chain of flexible bodies they differ by three to four: fewer would solve most of it
-/// twice.)
+/// An entry that is copied into a row by symmetry has the rounding of its column, which is that of
+/// the column's largest entries. Batches (their own terms in turn) with a column smaller than
+/// others by more than four digits must be solved again without symmetry. (In an ordinary chain of
+/// flexible bodies they differ by three to four: a smaller limit would solve most of it twice.)
 std::vector<std::size_t> uneven_batches(const Writing& writing, std::span<const OwnTerms> own);
 
 }  // namespace titop::detail

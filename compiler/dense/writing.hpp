@@ -12,20 +12,20 @@ namespace titop::detail {
 struct Skeleton;
 struct SystemData;
 
-/// How the dense model is written, by structure alone: made once for all values. Every column of A
-/// and B answers one state or input that acts on some rows of the joint system (a source); every
+/// Plan of the dense model by structure alone: made once for all values. Every column of A and B is
+/// the response to one state or input that acts on some rows of the joint system (a source); every
 /// row of xdot and y reads some unknowns (a target). A body with N modes acts through its N modal
 /// forces, not its 2 N states: half the columns.
 ///
-/// Where modes answer each other's forces symmetrically (Reciprocity), the sources of a batch are
-/// solved for the targets of these and later ones only. What earlier ones would read is what they
-/// have given already: it is written into the rows of this batch, not its columns.
+/// If modal forces and accelerations are reciprocal (Reciprocity), the sources of a batch are
+/// solved for the targets of these and later ones only. The values for earlier targets are known by
+/// symmetry from their columns: they are written into the rows of this batch.
 struct Writing {
   static constexpr Eigen::Index kBatch = 48;  ///< columns at a time
 
   explicit Writing(const SystemData& data);
 
-  /// What acts on the rows of the joint system.
+  /// A state or input that acts on the rows of the joint system.
   struct Source {
     int node = -1;             ///< of a state; -1: external inputs
     Eigen::Index first = 0;    ///< first column in [x; u]
@@ -35,7 +35,7 @@ struct Writing {
     int front = 0;                               ///< the first front it enters
   };
 
-  /// Factor of a target times what it stands for: B of a node or a coefficient, times another.
+  /// Factor of a target times its meaning: B of a node or a coefficient, times another.
   struct Term {
     int node = -1, coefficient = -1;  ///< one of the two
     Eigen::Index column = 0, size = 0;
@@ -60,8 +60,8 @@ struct Writing {
     std::vector<Term> terms = {};
     std::vector<Range> unknowns = {};
     Eigen::Index coefficients = 0;  ///< where they begin: rows x inner, row-major
-    int source = -1;  ///< of the same modes: their columns have what it would read of earlier
-                      ///< batches; -1: it reads in every batch
+    int source = -1;  ///< of the same modes: their columns have its values in earlier batches;
+                      ///< -1: it reads in every batch
   };
 
   std::vector<Source> sources;       ///< fronts ascend from batch to batch; with `reciprocity`

@@ -4,12 +4,12 @@
 #include <limits>
 #include <titop/compiler/minimize/modes.hpp>
 
-/// What both kinds of modes need: modes of one frequency, and ranks. For the compiler's own files.
+/// Common to both kinds of modes: modes of one frequency, and ranks. For the compiler's own files.
 namespace titop::modes {
 
 inline constexpr double kEps = std::numeric_limits<double>::epsilon();
 inline constexpr double kSameFrequency = 1e-9;  ///< relative: as close as this, modes are equal
-inline constexpr double kNoPart = 1e-8;     ///< of a cluster's largest: what is below takes no part
+inline constexpr double kNoPart = 1e-8;     ///< of a cluster's largest: smaller ones take no part
 inline constexpr double kClearRank = 1e-6;  ///< least singular value that rounding cannot have made
 inline constexpr double kClearRow = 1e-10;  ///< likewise of a whole row
 inline const char* const kAtZero = "its pole is at 0";
@@ -36,7 +36,7 @@ struct Parts {
 /// count as one. `vectors`: states x modes. O(n^2).
 Parts find_parts(const Eigen::MatrixXd& A, const Eigen::MatrixXd& vectors, const ModeSet& m);
 
-/// What vectors (states x modes) have outside the part of their mode is rounding, and becomes 0.
+/// Entries of vectors (states x modes) outside the part of their mode are rounding, and become 0.
 template <class Matrix>
 void keep_to_parts(const Parts& parts, Matrix&& vectors) {
   for (Eigen::Index j = 0; j < vectors.cols(); ++j)
@@ -45,9 +45,9 @@ void keep_to_parts(const Parts& parts, Matrix&& vectors) {
         vectors(i, j) = 0;
 }
 
-/// Modes of one part may be of any size against those of another: an input that moves one far,
-/// which no output sees, would hide the others. Brings what moves a part and what it shows, each
-/// against the largest of its port, to one size.
+/// Modes of one part may be of any size against those of another: an unobservable one that an input
+/// moves far would hide the others. Scales the inputs and the outputs of each part, each against
+/// the largest of its port, to one size.
 void balance_sides(const Parts& parts, ModeSet& m);
 
 /// True if no combination of the rows of M vanishes but for rounding. A row far below the others

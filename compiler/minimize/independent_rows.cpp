@@ -11,11 +11,11 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kClearly = 1e4;     ///< times rounding: not made by it
-constexpr double kFewDigits = 1e-9;  ///< of a row: where rounding is more, nothing leaves
-constexpr double kOfNoise = 1e12;    ///< times rounding: what it counts for where rows are scaled
+constexpr double kClearly = 1e4;     ///< times rounding: certainly larger
+constexpr double kFewDigits = 1e-9;  ///< of a row: with more rounding, nothing is removed
+constexpr double kOfNoise = 1e12;    ///< times rounding: its weight in the scaling of rows
 
-/// What brings the largest entries of all rows and columns to 1 [Ruiz 2001].
+/// Factors that bring the largest entries of all rows and columns to 1 [Ruiz 2001].
 struct Factors {
   VectorXd row, column;
   explicit Factors(MatrixXd sizes)
@@ -43,7 +43,7 @@ class Basis {
       : M_(std::move(M)), rest_(M_), noise_(rounding.rowwise().norm()) {}
 
   double own(int row) const { return rest_.row(row).norm(); }
-  /// Rounding in what is left of a row: its own, and that of the rows it is compared with.
+  /// Rounding in the remainder of a row: its own, and that of the rows that were subtracted.
   double noise(int row) const {
     return noise_(row) + (coefficients(row).cwiseAbs() * noise_(taken_)).sum();
   }
@@ -67,7 +67,7 @@ class Basis {
   std::vector<int> taken_;
 };
 
-/// Rows that are nothing but rounding: how much of what their entries are sums of, at most.
+/// For rows at rounding level: rounding over the terms of the entries, at most.
 VectorXd rounding_in(const MatrixXd& terms, const MatrixXd& rounding) {
   const Factors by(terms);
   const VectorXd all = by(terms).rowwise().maxCoeff(), noise = by(rounding).rowwise().maxCoeff();
@@ -89,8 +89,8 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
       r.out.push_back({i, 0, of_empty(i)});
     else
       r.keep.push_back(i), r.doubtful.push_back({i, 0, of_empty(i)});
-  // A column that tells some rows apart may be nothing but rounding in the others, and large: it
-  // must not drown what these say elsewhere.
+  // A column that distinguishes some rows may be at rounding level in the others, and large: it
+  // must not dominate these.
   const Factors by(clear.cwiseAbs().cwiseMax(kOfNoise * rounding));
   Basis basis(by(clear), by(rounding));
   while (!open.empty()) {

@@ -11,8 +11,8 @@ namespace titop::modes {
 struct IndependentRows {
   struct Row {
     int row = 0;
-    double own = 0;    ///< what the others do not make, of its size
-    double bound = 0;  ///< what rounding alone may have made of that
+    double own = 0;    ///< part independent of the other rows, relative to its size
+    double bound = 0;  ///< possible size of that by rounding alone
   };
   std::vector<int> keep;  ///< ascending, as `out`
   std::vector<Row> out;
@@ -20,11 +20,11 @@ struct IndependentRows {
   std::vector<Row> doubtful;  ///< of `keep`: rounding may be all that they have of their own
 };
 
-/// `rounding`: what rounding may have put into each entry. A row leaves if what is its own lies
-/// below 32 times that, and that is below 1e-9 of the row, or, of a row that is nothing but
-/// rounding, of `terms`, what its entries are sums of. A row is in doubt below 1e4 times its
-/// rounding. Rows of lower `level` make those of the same and of higher ones, and not the other way
-/// round. Rows and columns are scaled first: their units do not matter. O(rows^3 columns).
+/// `rounding`: rounding error of each entry. A row is dependent if its own part is below 32 times
+/// that, and that is below 1e-9 of the row, or, of a row at rounding level, of `terms`, the terms
+/// of its entries. A row is in doubt below 1e4 times its rounding. Rows depend on rows of the same
+/// and of lower `level` only. Rows and columns are scaled first: their units do not matter.
+/// O(rows^3 columns).
 IndependentRows independent_rows(const Eigen::MatrixXd& M, const Eigen::MatrixXd& rounding,
                                  const Eigen::MatrixXd& terms, const std::vector<int>& level);
 

@@ -49,7 +49,7 @@ StateSpace without_integrators(const StateSpace& model, const Integrated& states
   rest.inputs = model.inputs;
   rest.outputs = model.outputs;
   MatrixXd C = model.C(Eigen::all, states.rest), D = model.D;
-  if (model.outputs.empty()) {  // all states count, and not only what integrators take
+  if (model.outputs.empty()) {  // all states count, not only those that integrators read
     C = MatrixXd::Identity(rest.A.rows(), rest.A.cols());
     D = MatrixXd::Zero(rest.A.rows(), model.B.cols());
     rest.outputs = rest.states;

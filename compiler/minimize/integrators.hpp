@@ -15,8 +15,8 @@ struct Integrated {
 /// A state is an integrator if it acts on nothing, or on integrators alone. O(n^2) per integrator.
 Integrated find_integrators(const StateSpace& model);
 
-/// The rest by itself. What goes into the integrators are outputs, after the model's own; where it
-/// has none, after all states of the rest.
+/// The rest by itself. The integrators' inputs are outputs, after the model's own; if it has none,
+/// after all states of the rest.
 StateSpace without_integrators(const StateSpace& model, const Integrated& states);
 
 /// `rest`, perhaps with fewer states than it had, with the integrators of the model again.
@@ -25,16 +25,16 @@ StateSpace with_integrators(const StateSpace& rest, const StateSpace& model,
 
 /// The same transfer as a sum: the rest, and the integrators by themselves.
 struct Decoupled {
-  Eigen::MatrixXd X;  ///< integrators = z + X rest, with zdot = N z + B u: what no mode moves
+  Eigen::MatrixXd X;  ///< integrators = z + X rest, with zdot = N z + B u: the part without modes
   Eigen::MatrixXd N, B;
-  Eigen::MatrixXd C_rest;  ///< what outputs see of the rest, with its part in the integrators
+  Eigen::MatrixXd C_rest;  ///< of the rest, with its part in the integrators
 };
 /// None where the rest has a pole at 0 too. The order of a model is that of both parts, since they
 /// have no pole in common. O(rest^3).
 std::optional<Decoupled> decouple(const StateSpace& model, const Integrated& states);
 
-/// What the entries of Decoupled::B are sums of, before anything cancels, in the solution for X
-/// either. O(rest^3).
+/// Sums of magnitudes of the terms of the entries of Decoupled::B, before cancellation, also in the
+/// solution for X. O(rest^3).
 Eigen::MatrixXd terms_of_B(const StateSpace& model, const Integrated& states);
 
 }  // namespace titop::modes

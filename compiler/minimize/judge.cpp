@@ -14,26 +14,26 @@ using Eigen::VectorXd;
 
 /// Far narrower than the spacing of doubles at a pole: by effect nothing, but no proof of a 0.
 constexpr double kNothing = 1e-17;
-/// Rounding's part of a mode that nobody misses: above it, what looks like nothing may be
-/// something.
+/// Rounding's part of a negligible mode: above it, a mode that looks like nothing may have an
+/// effect.
 constexpr double kNarrow = 1e-14;
 constexpr double kDoubtful = 1e-9;  ///< above it a mode always stays
 constexpr double kFarOff = 1e-6;    ///< above it not even exact arithmetic makes a mode leave
 
 using linalg::at;
 
-/// What all modes do near the frequency of mode j, per port: sqrt(sum rows_i^2 w_i).
+/// Response of all modes near the frequency of mode j, per port: sqrt(sum rows_i^2 w_i).
 VectorXd background(const MatrixXd& rows, const ModeSet& m, Index j) {
   VectorXd sum = VectorXd::Zero(rows.cols());
-  // The rows of a Jordan block may have any size: beside them everything would look like nothing.
+  // The rows of a Jordan block may have any size: all others would look negligible beside them.
   for (Index i = 0; i < rows.rows(); ++i)
     if (m.apart[at(i)].empty())
       sum += rows.row(i).transpose().cwiseAbs2() / std::max(m.distance(i, j), 0.01 * m.lambda(j));
   return sum.cwiseSqrt();
 }
 
-/// Rounding's part in the row of mode j: what the other modes may have put into it, by `mixing`;
-/// those of its cluster twice, once in turning them, once in the product with B or C.
+/// Rounding in the row of mode j: contributions of the other modes, by `mixing`; those of its
+/// cluster twice, once by the rotation, once by the product with B or C.
 VectorXd rounding(const MatrixXd& rows, const MatrixXd& apart, const ModeSet& m, Index j,
                   const VectorXd& mixing) {
   VectorXd sum = apart.size() > 0 ? VectorXd(apart.row(j)) : VectorXd(VectorXd::Zero(rows.cols()));
@@ -44,7 +44,7 @@ VectorXd rounding(const MatrixXd& rows, const MatrixXd& apart, const ModeSet& m,
   return sum;
 }
 
-/// Largest ratio; what has no background counts as nothing.
+/// Largest ratio; entries without background count as 0.
 double largest(const VectorXd& mine, const VectorXd& background) {
   double most = 0;
   for (Index l = 0; l < mine.size(); ++l)

@@ -22,7 +22,7 @@ std::vector<Verdict> judge(const ModeSet& modes, double resolution);
 /// have found, or, where that would be too much, nothing.
 bool drop_down_to(int exact, int order, ModeSet& modes, std::vector<Verdict>& verdicts);
 
-/// What the verdicts come to, for a model of `order` states.
+/// Sum of the verdicts, for a model of `order` states.
 OrderVerdict sum_up(const std::vector<Verdict>& verdicts, const ModeSet& modes, int order);
 
 }  // namespace titop::modes

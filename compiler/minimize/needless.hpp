@@ -14,19 +14,19 @@ namespace titop::modes {
 /// made. None where the rest has a pole at 0 too.
 std::optional<StateSpace> decoupled_rest(const Sampled& sampled, const Integrated& states);
 
-/// What left, and what may have to.
+/// Removed integrators, and doubtful ones.
 struct Needless {
   std::vector<JudgedMode> removed;
-  int hidden = 0;                    ///< of these, what rounding might hide
-  std::vector<JudgedMode> doubtful;  ///< stay, and yet rounding may be all there is
+  int hidden = 0;                    ///< of these, possibly hidden by rounding
+  std::vector<JudgedMode> doubtful;  ///< kept, but possibly rounding alone
   std::vector<std::string> notes;
 };
 
-/// Takes out of the model and its samples the integrators that do not count: with zdot = N z + B u
-/// what they are by themselves (integrators.hpp), the rank of [B, N B, ...] says which follow from
-/// the other states, and that of [C; C N; ...] which no output sees apart from others
-/// (independent_rows.hpp). States keep their names, and their meaning but where a note says so.
-/// None, and nothing is changed, where the other states have a pole at 0 too. O(n^3).
+/// Removes from the model and its samples the integrators that do not count: with zdot = N z + B u,
+/// their part without modes (integrators.hpp), the rank of [B, N B, ...] determines which depend on
+/// the other states, and that of [C; C N; ...] which are unobservable (independent_rows.hpp).
+/// States keep their names, and their meaning unless a note tells otherwise. None, and nothing is
+/// changed, if the other states have a pole at 0 too. O(n^3).
 std::optional<Needless> take_out_needless(Sampled& sampled);
 
 }  // namespace titop::modes

@@ -3,11 +3,10 @@
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
-/// What rounding does to whatever is made of a model, seen by samples of it. For the compiler's own
-/// files.
+/// Effect of rounding on quantities derived from a model, by samples. For the compiler's own files.
 namespace titop::modes {
 
-/// Times the largest of a few samples of rounding: what is below may be nothing else.
+/// Factor on the largest of a few samples of rounding: values below may be rounding alone.
 inline constexpr double kRounding = 32;
 
 /// A model, and as it might be as well: rounding of the given sizes added to its entries.
@@ -18,8 +17,9 @@ struct Sampled {
 /// `rounding`: of every entry; empty: 2.2e-16 of it. Four samples from fixed seeds.
 Sampled sampled(const StateSpace& model, const StateSpace& rounding);
 
-/// Largest deviation from `value` among what `f` makes of the samples. They show what rounding of
-/// the entries does; where sums cancel, the sum's own may be more, and be the same in all.
+/// Largest deviation from `value` among the values of `f` for the samples. It is the effect of
+/// rounding of the entries; if sums cancel, the sum's own rounding may be larger, and the same in
+/// all.
 template <class Sample, class F>
 Eigen::MatrixXd rounding_of(const std::vector<Sample>& samples, const Eigen::MatrixXd& value,
                             const F& f) {
@@ -28,7 +28,7 @@ Eigen::MatrixXd rounding_of(const std::vector<Sample>& samples, const Eigen::Mat
   return most;
 }
 
-/// 0 for what lies below kRounding times this rounding.
+/// Sets values below kRounding times this rounding to 0.
 Eigen::MatrixXd cleared(const Eigen::MatrixXd& value, const Eigen::MatrixXd& rounding);
 
 /// Entries of the model that rounding alone may have made become 0.

@@ -14,8 +14,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kAsymmetry = 1e-9;  ///< of what must be symmetric, over its diagonal
-constexpr double kNoTerm = 1e-12;    ///< of the terms of a sum: what is left is rounding
+constexpr double kAsymmetry = 1e-9;  ///< of matrices that must be symmetric, over the diagonal
+constexpr double kNoTerm = 1e-12;    ///< of the terms of a sum: a smaller sum is rounding
 
 using linalg::at;
 
@@ -134,7 +134,7 @@ void turn_clusters(const Ports& p, const ModeSet& m, MatrixXd& Q) {
   }
 }
 
-/// Of entries of Q'c, what is more than the rounding of their terms.
+/// Entries of Q'c that are above the rounding of their terms; 0 for the others.
 MatrixXd clear(const MatrixXd& Q, const MatrixXd& c) {
   const MatrixXd in = Q.transpose() * c, terms = Q.cwiseAbs().transpose() * c.cwiseAbs();
   return (in.array().abs() <= kNoTerm * terms.array()).select(0, in);
@@ -178,8 +178,8 @@ bool shares_a_pole(const VectorXd& lambda, const VectorXd& z, const ModeSet& m) 
          }) != poles.end();
 }
 
-/// How far modes are apart (damping z counts as what it does to the pole), and what rounding mixes:
-/// graded matrices keep small ones cleaner.
+/// Distance of modes (damping z counts by its shift of the pole), and mixing by rounding: small for
+/// small modes of graded matrices.
 void find_mixing(const GradedModes& e, const VectorXd& z, ModeSet& m) {
   const VectorXd& lambda = e.modes.lambda;
   const Index n = lambda.size();

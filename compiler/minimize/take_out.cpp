@@ -15,8 +15,8 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kSmallShare = 1e-4;  ///< of a mode that rounding puts into another, at most
-constexpr double kNoise = 1e-14;  ///< of the fastest mode: what rounding may do to a model's matrix
+constexpr double kSmallShare = 1e-4;  ///< of a mode in another by rounding, at most
+constexpr double kNoise = 1e-14;      ///< of the fastest mode: rounding of a model's matrix
 
 using linalg::at;
 
@@ -58,8 +58,8 @@ struct LeavingModes {
   MatrixXd V;  ///< columns: their motions
 };
 
-/// What leaves a model: relations `undriven.W` x = 0 that hold for all that inputs can do, and
-/// motions `unseen.V` that show in no output. `scale`: units of the states.
+/// Modes that leave a model: relations `undriven.W` x = 0 that hold for all inputs, and motions
+/// `unseen.V` that no output sees. `scale`: units of the states.
 struct LeavingSides {
   LeavingModes undriven, unseen;
   VectorXd scale;
@@ -76,8 +76,8 @@ MatrixXd cleared_product(const MatrixXd& left, const MatrixXd& right, const Vect
   return (product.array().abs() <= noise * (l * r.transpose()).array()).select(0.0, product);
 }
 
-/// B -= V (W V)^-1 W B. What inputs do to modes that leave would be put into those that stay: then
-/// the transfer would change in proportion to it, and not to that times what outputs see.
+/// B -= V (W V)^-1 W B. Otherwise the inputs of removed modes would act on kept ones: then the
+/// transfer would change in proportion to them, and not to their product with the outputs.
 void drive_no_more(const LeavingSides& l, MatrixXd& B) {
   const auto& [W, V] = l.undriven;
   const MatrixXd driven = cleared_product(W, B, l.scale, l.noise);
@@ -116,7 +116,7 @@ void remove(StateSpace& m, LeavingSides l, const std::vector<int>& dependent,
   }
 }
 
-/// All modes as seen from one side: what moves them, or what they show.
+/// Modal input or output matrix of all modes.
 template <class Matrix>
 struct Modes {
   Matrix vectors;  ///< modes x states
@@ -124,10 +124,10 @@ struct Modes {
   Matrix ports;    ///< modes x ports
 };
 
-/// The vectors of the modes that leave. Rounding has put a little of those that stay into them, the
-/// more the closer their frequencies: as much is taken back as makes what leaves entirely unmoved
-/// (or unseen), unless that is more than errors of size `noise` in the matrix can have done, as
-/// where the caller's resolution drops what is there.
+/// The vectors of the removed modes. Rounding has mixed kept modes into them, the more the closer
+/// their frequencies: a share of these is subtracted that makes the removed ones exactly
+/// unreachable (or unobservable), unless it is more than errors of size `noise` in the matrix
+/// explain, as for modes that the caller's resolution drops.
 template <class Matrix>
 Matrix leaving(const Modes<Matrix>& all, const std::vector<Index>& leave,
                const std::vector<Index>& stay, const ModeSet& m, double noise) {
@@ -139,12 +139,12 @@ Matrix leaving(const Modes<Matrix>& all, const std::vector<Index>& leave,
     if (const double size = ports(stay, l).norm(); size > 0) ports.col(l) /= size;
   for (std::size_t k = 0; k < leave.size(); ++k) {
     const Index j = leave[k];
-    // What a share of mode i does to the equation of mode j: the least of all that will do. Modes
-    // of one cluster have been turned already.
+    // Effect of a share of mode i on the equation of mode j: the smallest solution. Modes of one
+    // cluster have been rotated already.
     VectorXd inverse = m.distance(stay, j).cwiseMax(kEps * noise).cwiseInverse();
     for (std::size_t i = 0; i < stay.size(); ++i)
       if (m.cluster[at(stay[i])] == m.cluster[at(j)]) inverse(static_cast<Index>(i)) = 0;
-    // A port that is all rounding says nothing.
+    // A port at rounding level gives no condition.
     std::vector<Index> clear;
     for (Index l = 0; l < ports.cols(); ++l)
       if (std::abs(ports(j, l)) <= kSmallShare) clear.push_back(l);

@@ -25,10 +25,10 @@ Instant one_by_one(const SystemData& d, const StateSpace& m) {
   return Instant(d, std::move(known));
 }
 
-/// What rounding does to xdot, of all blocks' states, and to y.
+/// Rounding of xdot, of all blocks' states, and of y.
 StateSpace rounding(const SystemData& d, const StateSpace& m, const Instant& now) {
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-  // Rounding is as large as its samples are, but for luck: of four, none is small.
+  // The largest of several samples estimates rounding: of four, hardly all are small.
   constexpr int kSamples = 4;
   RowMatrix<double> of_x = kEpsilon * now.xdot_terms(), of_y = kEpsilon * now.outputs_terms();
   for (int i = 0; i < kSamples; ++i) {
@@ -68,7 +68,7 @@ StateSpace cleared(const StateSpace& m, const StateSpace& rounding) {
 
 /// From the slowest block by itself to the assembly's fastest, each about once.
 std::vector<std::complex<double>> points_of(const SystemData& d, const MatrixXd& A) {
-  constexpr double kNear = 3;  // what an s of such a lean still sees
+  constexpr double kNear = 3;  // factor within which an s resolves a frequency
   std::vector<double> omegas = frequencies_of(A);
   omegas.push_back(std::abs(pick_s(d)));
   double slowest = omegas.back();
@@ -92,8 +92,8 @@ std::optional<MatrixXcd> transfer_of(const StateSpace& m, std::complex<double> s
   }
 }
 
-/// The factors' transfer, and how far another model may be from it: each entry may lose a digit of
-/// what the model as written keeps, or what no one misses, or what is rounding in the factors.
+/// The factors' transfer, and the allowed error of another model: the largest of ten times the
+/// error of the model as written, a negligible error, and the rounding of the factors.
 struct Reference {
   MatrixXcd G;
   MatrixXd allowed;
@@ -101,8 +101,8 @@ struct Reference {
 std::optional<Reference> reference(const SystemData& d, const StateSpace& written,
                                    std::complex<double> s) {
   constexpr double kAnotherDigit = 10, kUnmissed = 1e-8;
-  constexpr double kNoise = 1e3;         // times a sample of rounding: what may be nothing else
-  constexpr double kNeighbours = 1e-15;  // of those in row and column: what is left of a 0
+  constexpr double kNoise = 1e3;         // times a sample of rounding: may be rounding alone
+  constexpr double kNeighbours = 1e-15;  // of those in row and column: rounding of a 0
   using T = std::complex<double>;
   const Eigen::Index inputs = written.B.cols();
   try {

@@ -37,7 +37,7 @@ struct Eigensystem {
   Eigen::VectorXd scale;  ///< the states' own sizes, by `balancing` (powers of two)
   double rcond_V = 0;     ///< reciprocal condition number of V: near 0 where A is near defective
 };
-/// `balancing`: balance keeps small eigenvalues sharpest, balance_parts what parts do to others.
+/// `balancing`: balance keeps small eigenvalues sharpest, balance_parts the coupling of parts.
 Eigensystem eigensystem(const Eigen::MatrixXd& A,
                         Eigen::VectorXd (*balancing)(Eigen::MatrixXd&) = balance);
 

@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kRigid = 1e-13;  ///< of a diagonal entry, of lambda_max: what is below is rounding
+constexpr double kRigid = 1e-13;  ///< of a diagonal entry, of lambda_max: smaller is rounding
 
 /// L with S = L L', rows in their places, columns by falling pivots. `least` is the least pivot
 /// over its diagonal entry of S. Empty where that is only rounding: a rigid motion.
@@ -27,9 +27,9 @@ MatrixXd pivoted_cholesky(const MatrixXd& S, double& least) {
   return ldl.transpositionsP().transpose() * MatrixXd(L * d.cwiseSqrt().asDiagonal());
 }
 
-/// What is left of the orthogonality of two columns: nothing but rounding of their product (fine),
-/// an angle below rounding (good), or more. A small column beside a large one is orthogonal to it
-/// long before its share of it has digits.
+/// Orthogonality of two columns: to the rounding of their product (fine), to an angle below
+/// rounding (good), or not yet (open). A small column beside a large one is orthogonal to it long
+/// before its share of it has digits.
 enum class Angle { fine, good, open };
 
 /// Turns two columns towards that; says where they were.

@@ -6,12 +6,12 @@
 namespace titop {
 
 /// eigh for matrices graded as stiffness is, S = D G D with D diagonal over many decades and G well
-/// conditioned: EVERY eigenvalue comes out to about eps * cond(G) of itself and vectors as sharp,
-/// where eigh(S) gives all of them to eps * lambda_max only. Pivoted Cholesky S = L L' and Jacobi
+/// conditioned: EVERY eigenvalue has a relative error of about eps * cond(G), vectors likewise,
+/// where eigh(S) has errors of eps * lambda_max in all. Pivoted Cholesky S = L L' and Jacobi
 /// rotations of the columns of L, until they are orthogonal [Demmel, Veselic 1992, "Jacobi's method
-/// is more accurate than QR"]. Where a pivot is below 1e-13 of its diagonal entry (rigid motions),
-/// or beyond 400 rows (a sweep costs 3 n^3, of some six), it is eigh(S), and what is within 1e-13
-/// lambda_max of 0 is 0 exactly. Throws as eigh.
+/// is more accurate than QR"]. If a pivot is below 1e-13 of its diagonal entry (rigid motions), or
+/// beyond 400 rows (a sweep costs 3 n^3, of some six), it is eigh(S), and eigenvalues within 1e-13
+/// lambda_max of 0 are exactly 0. Throws as eigh.
 struct GradedModes {
   SymmetricModes modes;
   bool graded = false;
@@ -20,10 +20,9 @@ struct GradedModes {
 };
 GradedModes eigh_graded(const Eigen::MatrixXd& S);
 
-/// The diagonal of V'ZV (damping of each mode), or none where Z couples the modes: an entry beside
-/// the diagonal above 1e-12 of the terms that it is a sum of; of modes that are not graded, above
-/// 1e-13 of the largest entry. What is below 1e-13 of its own terms (a rigid motion's) is 0.
-/// O(n^3).
+/// The diagonal of V'ZV (damping of each mode), or none if Z couples the modes: an off-diagonal
+/// entry above 1e-12 of the terms of its sum; of modes that are not graded, above 1e-13 of the
+/// largest entry. Entries below 1e-13 of their own terms (a rigid motion's) are 0. O(n^3).
 std::optional<Eigen::VectorXd> diagonal_in(const GradedModes& of, const Eigen::MatrixXd& Z);
 
 /// Whether S + `skew` is S, of which these are the modes: in them the entries of the antisymmetric

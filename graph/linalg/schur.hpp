@@ -16,7 +16,7 @@ struct Schur {
 Schur schur(const Eigen::MatrixXd& A);
 
 /// Brings the marked eigenvalues to the front, in their order, by rotations of neighbours: the
-/// first columns of Q then span what belongs to them. O(n) per exchange.
+/// first columns of Q then span their invariant subspace. O(n) per exchange.
 void reorder(Schur& schur, std::vector<char> first);
 
 /// A X - X B = C for upper triangular A (m x m) and B (n x n) without a common eigenvalue, C m x n.

@@ -46,7 +46,7 @@ double perron_by_squaring(const Small& M) {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// What power iteration finds.
+/// Result of power iteration.
 struct Powers {
   double radius = 0;     ///< from above
   bool settled = false;  ///< known to 1e-3
@@ -130,8 +130,8 @@ Eigen::Index sparse_pivot(const Rows& M, Eigen::Index k) {
   return best;
 }
 
-/// M^-1 by elimination row by row: most entries of a loop are 0, and what is 0 costs nothing. 0 x 0
-/// if a pivot is 0.
+/// M^-1 by elimination row by row: most entries of a loop are 0, and zeros are skipped. 0 x 0 if a
+/// pivot is 0.
 template <class Rows>
 Rows inverse_by_rows(Rows M) {
   const auto n = M.rows();
@@ -204,8 +204,8 @@ double skeel_radius_of_ring(Eigen::Index n, const Quotient& product) {
   return p == 1 ? 0 : (1 + c) * sum / std::abs(1 - p);
 }
 
-/// Peels off rows and columns with a single entry, again and again: M is block triangular, and what
-/// goes stands on its diagonal by itself, where the radius is 1.
+/// Removes rows and columns with a single entry, repeatedly: M is block triangular, and the removed
+/// ones are diagonal blocks of size 1, with radius 1.
 class Peeled {
  public:
   using List = boost::container::small_vector<Eigen::Index, kSmall>;
@@ -236,9 +236,9 @@ class Peeled {
   List rows() const { return list(rows_); }
   List cols() const { return list(cols_); }
 
-  /// Of what is left, if that is one ring, in which every unknown stands in its own row and in the
+  /// Of the remaining part, if it is one ring, in which every unknown is in its own row and in the
   /// next one's only: (1 + c)(1 + c + ... + c^(n-1)) / |1 - p|, p the product of the n gains and c
-  /// = |p|^(1/n). Others: nothing.
+  /// = |p|^(1/n). None for others.
   std::optional<double> radius_of_ring() const {
     const auto two = [](int entries) { return entries < 0 || entries == 2; };
     if (!all(rows_, two) || !all(cols_, two)) return {};
