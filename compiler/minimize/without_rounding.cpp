@@ -92,8 +92,8 @@ std::optional<MatrixXcd> transfer_of(const StateSpace& m, std::complex<double> s
   }
 }
 
-/// The factors' transfer, and the allowed error of another model: the largest of ten times the
-/// error of the model as written, a negligible error, and the rounding of the factors.
+/// The factors' transfer, and the allowed error of another model: ten times the error of the model
+/// as written, plus 1e-8 of the entry, plus the rounding of the factors.
 struct Reference {
   MatrixXcd G;
   MatrixXd allowed;

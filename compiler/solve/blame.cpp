@@ -40,14 +40,14 @@ int direct_rank(const Graph& g, const Channel& c, const Dynamics& m) {
   return static_cast<int>(lu.rank());
 }
 
-/// What drives the signal as the user wrote it; what a pass made of it where they wrote nothing.
+/// The user's equations for the signal; those of a pass if there are none.
 std::vector<std::string> written(const Stage& stage, int signal) {
   std::vector<std::string> lines;
   for (const Graph* g : {&*stage.source, &stage.graph}) {
     for (const Equation& written_so : g->equations) {
       if (written_so.target != signal) continue;
       Equation e = written_so;
-      if (e.terms.empty()) e.accumulate = false;  // a joint adds 0 to what nothing drives
+      if (e.terms.empty()) e.accumulate = false;  // a joint adds 0 to an undriven force
       lines.push_back(fmt::format("{:<50} {}", print(*g, e), to_string(e.where)));
     }
     if (!lines.empty()) return lines;
@@ -153,8 +153,8 @@ Mistake blame(const Stage& stage, const std::vector<std::shared_ptr<const Dynami
   const auto concerns = [&](int signal) {
     return std::find(ports.begin(), ports.end(), signal) != ports.end();
   };
-  // First the channels that their block could invert by itself if its numbers were others; then
-  // those that live on what hangs there (a hinge's own axis, a child point of a rigid body).
+  // First the channels that their block could invert by itself with other numbers; then those that
+  // depend on the mounted bodies (a hinge's own axis, a child point of a rigid body).
   for (const bool by_itself : {true, false})
     for (const Inversion& inversion : stage.inversions) {
       const Channel& c = g.channels[at(inversion.channel)];

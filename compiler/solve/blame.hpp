@@ -4,18 +4,18 @@
 
 namespace titop::solve {
 
-/// What to tell the user about rows (of Stage::rows) that depend on one another and determine no
-/// state: `improper` where one of them inverts a channel whose direct term alone is singular (a
-/// force on a massless body, a locked point that the modes cannot move), `ill_posed` otherwise.
-/// `rows` is minimal: any of them left out, the others are independent. `inputs`: those that they
-/// would make 0.
+/// The mistake of rows (of Stage::rows) that depend on one another and determine no state:
+/// `improper` if one of them inverts a channel whose direct term alone is singular (a force on a
+/// massless body, a locked point that the modes cannot move), `ill_posed` otherwise. `rows` is
+/// minimal: without any one of them, the others are independent. `inputs`: those that they would
+/// make 0.
 Mistake blame(const Stage& stage, const std::vector<std::shared_ptr<const Dynamics>>& blocks,
               const std::vector<int>& rows, const std::vector<int>& inputs);
 
 /// Numbers that are not finite any more (Health::finite): at which ports.
 Mistake overflow(const Stage& stage, const Joint& joint, const Health& health);
 
-/// What leaves no acceleration free in these rows (of Stage::rows), as details and hint of an
+/// The reason why these rows (of Stage::rows) leave no acceleration free, as details and hint of an
 /// `improper` mistake: the equation that imposes a force on a massless point, and why.
 Mistake massless(const Stage& stage, const std::vector<int>& rows);
 

@@ -43,7 +43,7 @@ class Dissection {
   }
 
  private:
-  /// What is left of the part without its separator; several parts if it did not hang together.
+  /// The part without its separator, as two halves; its components if it is not connected.
   std::vector<std::vector<int>> cut(const std::vector<int>& part) {
     const int now = ++parts_;
     for (const int v : part) part_[at(v)] = now, level_[at(v)] = -1;
@@ -67,7 +67,7 @@ class Dissection {
     return result;
   }
 
-  /// Breadth first within the part: what is reached, in order; levels are noted.
+  /// Breadth first within the part: returns the reached vertices, in order; notes their levels.
   std::vector<int> search(int start, int now) {
     std::vector<int> reached{start};
     level_[at(start)] = 0;

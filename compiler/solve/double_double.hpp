@@ -19,8 +19,8 @@ static_assert(FLT_EVAL_METHOD == 0, "double-double needs every operation rounded
 /// place of the first [Dekker 1971, Knuth]: some twenty operations of doubles per sum or product,
 /// where a number of 50 digits takes hundreds. Rounding of one operation: at most 2^-104.
 ///
-/// The range is less than that of double, for what goes into an operation and for what comes out:
-/// above 2^995 (3e299) it may become NaN, below 2^-967 (8e-292) it loses the second double.
+/// The range of operands and results is less than that of double: above 2^995 (3e299) it may become
+/// NaN, below 2^-967 (8e-292) it loses the second double.
 class DoubleDouble {
  public:
   DoubleDouble() = default;
@@ -98,7 +98,7 @@ class DoubleDouble {
   double high_ = 0, low_ = 0;
 };
 
-/// z times a power of two that brings it near 1, and to `exponent` what that has taken away.
+/// z scaled to near 1 by a power of two; `exponent`: of the removed factor.
 inline std::complex<DoubleDouble> near_one(const std::complex<DoubleDouble>& z, int& exponent) {
   const auto size = [](const DoubleDouble& x) { return std::abs(static_cast<double>(x)); };
   std::frexp(std::max(size(z.real()), size(z.imag())), &exponent);
@@ -131,7 +131,7 @@ class std::numeric_limits<titop::solve::DoubleDouble> : public std::numeric_limi
   static titop::solve::DoubleDouble epsilon() { return 0x1p-104; }
 };
 
-/// @cond  Doxygen finds no scope for what stands in a namespace that is not the project's.
+/// @cond  Doxygen finds no scope for declarations in a namespace that is not the project's.
 template <>
 struct Eigen::NumTraits<titop::solve::DoubleDouble>
     : Eigen::GenericNumTraits<titop::solve::DoubleDouble> {

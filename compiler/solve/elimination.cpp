@@ -48,13 +48,13 @@ double power_of_two(std::int16_t e) {
 
 }  // namespace
 
-/// The work on one front, its buffers kept from front to front. `bound` carries the sums of
-/// magnitudes that formed each entry: a pivot far below its bound is what cancellation has left.
-/// `keeps` says so of whole rows, from front to front: a row of which only rounding is left must
-/// not pass for a good one further up.
+/// The work on one front, its buffers kept from front to front. `bound` has the sums of magnitudes
+/// of the terms of each entry: a pivot far below its bound has cancelled. `keeps` records this for
+/// whole rows, from front to front: a row at rounding level must not pass for a good one further
+/// up.
 template <class T>
 struct Factors<T>::Work {
-  double least;                          ///< of its terms, that a pivot has to keep
+  double least;                          ///< least ratio of a pivot to its terms
   std::vector<double> column_size = {};  ///< of the entries where a pivot is looked for
   std::vector<double> bound = {};        ///< as Made::lu
   std::vector<double> keeps = {};        ///< per row
@@ -66,8 +66,8 @@ struct Factors<T>::Work {
   std::vector<double> least_size = {};
   std::vector<int> units = {};
   Made* m = nullptr;
-  T* lu = nullptr;       ///< what made->lu shows
-  int* order = nullptr;  ///< what made->order shows
+  T* lu = nullptr;       ///< data of made->lu
+  int* order = nullptr;  ///< data of made->order
   int rows = 0, pivots = 0;
   std::ptrdiff_t n = 0;  ///< columns
 
@@ -81,7 +81,7 @@ struct Factors<T>::Work {
     least_size.assign(at(rows), 0);
   }
 
-  /// First columns of what shares a unit, and the end.
+  /// First columns of variables that share a unit, and the end.
   const std::vector<int>& units_of(const Plan& plan, const Front& front) {
     units.assign(1, 0);
     for (const auto range : {front.pivots, front.border})
@@ -106,7 +106,7 @@ struct Factors<T>::Work {
       take(plan.first[at(v)], plan.structure.variable_size[at(v)]);
   }
 
-  /// Bounds of what has been assembled, and sizes of its rows.
+  /// Bounds of the assembled entries, and sizes of the rows.
   void take_bounds() {
     bound.resize(m->lu.size());
     sizes(static_cast<std::ptrdiff_t>(m->lu.size()), lu, bound.data());
@@ -143,15 +143,15 @@ struct Factors<T>::Work {
       const double size = column_size[at(i)], from = bounds(i)[k], scale = row_scale[at(i)];
       if (scale > 0 && size > best_score * scale && size >= kThreshold * most * least_size[at(i)])
         best_score = size / scale, best = i;
-      // What a column keeps after cancellation, over all its rows: invariant under any scaling.
+      // Largest ratio to the terms in the column: invariant under any scaling.
       if (from > 0 && size > left * from) left = size / from;
     }
     if (left < m->weakest) m->weakest = left, m->weakest_column = k;
     return left < least || !std::isfinite(best_score) ? -1 : best;
   }
 
-  /// The column has no pivot: the row of which least is left gets one, of its own size. What was
-  /// left of the column is rounding.
+  /// The column has no pivot: the row with the smallest remainder gets one, of its own size. The
+  /// column's remainder is rounding.
   int patch(int k) {
     int best = k;
     double fewest = std::numeric_limits<double>::infinity();
@@ -177,7 +177,7 @@ struct Factors<T>::Work {
     m->singular = m->singular || !m->finite;
   }
 
-  /// What rounding has left of the rows below k is 0.
+  /// Sets entries at rounding level in the rows below k to 0.
   void clean(int k) {
     for (std::ptrdiff_t e = (k + 1) * n; e < static_cast<std::ptrdiff_t>(m->lu.size()); ++e)
       if (T& x = lu[e]; e % n > k && size_of(x) <= least * bound[static_cast<std::size_t>(e)])
@@ -231,7 +231,7 @@ struct Factors<T>::Work {
     return share == 0 ? 1 : share;
   }
 
-  /// Made::keeps, which stays empty where nothing has cancelled; what rows have grown.
+  /// Made::keeps, which stays empty without cancellation; the growth of the rows.
   void finish(double* carried) {
     for (int i = pivots; i < rows; ++i)
       if (const double share = kept(i); share != 1) {

@@ -43,11 +43,11 @@ struct Health {
 /// is a pivot of one to two digits, 1e-15 is rounding.
 constexpr double kNothingLeft = 16;
 
-/// What to do where a column has no pivot with a digit left.
+/// Treatment of a column without a pivot that has a digit.
 enum class NoPivot {
-  stop,   ///< there: the factors are of no use
-  patch,  ///< add one entry to the matrix and go on: the factors are of L + sum of patches; what is
-          ///< left of an entry below rounding is 0, so that what depends on what stays exact
+  stop,   ///< stop there: the factors are of no use
+  patch,  ///< add one entry to the matrix and go on: the factors are of L + sum of patches;
+          ///< entries at rounding level become 0, so that dependent rows and columns stay exact
 };
 
 /// An entry added to the matrix in place of a pivot that is not there.
@@ -64,19 +64,19 @@ struct ColumnScale {
   /// Factors::changed finds them anew where asked to.
   std::vector<std::int16_t> in_fronts;
   /// Per unknown, in the order of Plan::first (solve/equilibration.hpp): the same in all fronts, so
-  /// that a row's size means the same all the way up. What a row has grown is measured by it.
+  /// that a row's size means the same in all of them. The growth of a row is measured by it.
   std::vector<std::int16_t> of_unknowns;
 };
 
-/// A pivot must not be smaller than this share of the largest entry of its column, each beside the
-/// size that its row had before: no row grows by more than a factor 1 + 1 / kThreshold of that per
-/// pivot, however the fronts follow one another (threshold pivoting: I. S. Duff, A. M. Erisman,
-/// J. K. Reid, Direct Methods for Sparse Matrices, 5.4, where 0.1 is what they recommend).
+/// A pivot must not be smaller than this share of the largest entry of its column, each relative to
+/// the size that its row had before: no row grows by more than a factor 1 + 1 / kThreshold of that
+/// per pivot, in any order of fronts (threshold pivoting: I. S. Duff, A. M. Erisman, J. K. Reid,
+/// Direct Methods for Sparse Matrices, 5.4, which recommends 0.1).
 constexpr double kThreshold = 0.1;
 
 /// The factors: per front L, U and the permutation. Fronts are shared between factors that differ
 /// elsewhere; those that are made together share their memory, too, in the order in which they are
-/// visited. It is kept while one of them is in use, up to twice of what all fronts need.
+/// visited. It is kept while one of them is in use, up to twice the size of all fronts.
 template <class T>
 class Factors {
  public:
@@ -115,11 +115,11 @@ class Factors {
     std::span<const int> order = {};  ///< which assembled row stands at place i
     /// Per row left over: the least size that it has had, by ColumnScale::of_unknowns.
     std::span<const double> least_size = {};
-    /// Per row left over what cancellation has left; none: 1 of all.
+    /// Per remaining row the ratio that cancellation has left; none: all 1.
     std::vector<double> keeps = {};
     double growth = 1, weakest = 1;
     int weakest_column = -1;
-    std::vector<std::pair<int, double>> patched = {};  ///< column without pivot, what stands there
+    std::vector<std::pair<int, double>> patched = {};  ///< column without pivot, its patch
   };
   const Made& made(std::size_t front) const { return *fronts_[front]; }
 

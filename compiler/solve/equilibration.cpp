@@ -9,8 +9,8 @@ namespace {
 
 using linalg::at;
 
-/// Each halves the exponents that are left, up to what rows and columns leave to each other: of
-/// 2^60 remain about two.
+/// Each halves the remaining exponents, up to the coupling of rows and columns: of 2^60 remain
+/// about two.
 constexpr int kSweeps = 5;
 
 /// The largest entry of a scalar row in one unit.

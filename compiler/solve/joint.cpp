@@ -26,7 +26,7 @@ std::vector<int> written_out_by(const Stage& stage) {
   for (int i = 0; i < static_cast<int>(g.equations.size()); ++i) {
     const Equation& e = g.equations[at(i)];
     if (!e.active || !e.part.whole() || !is_unknown(g.signals[at(e.target)])) continue;
-    // What is released keeps its row: internal forces are found by its right-hand side.
+    // A released equation keeps its row: internal forces are found by its right-hand side.
     if (stage.origins[at(i)].of == Origin::Of::released) continue;
     const bool plain = std::all_of(e.terms.begin(), e.terms.end(), [&](const Term& t) {
       return times_target[at(t.signal)] == 0 && g.signals[at(t.signal)].role != Signal::Role::state;
@@ -55,7 +55,7 @@ struct Builder {
     for (const Output& o : g.outputs) take(o.terms, j.output_coefficient);
   }
 
-  /// signal: -1 for a partial sum; `like`: what has its unit.
+  /// signal: -1 for a partial sum; `like`: a signal of its unit.
   void add_variable(int signal, int size, const Signal& like) {
     j.variables.push_back(signal);
     structure.add_variable(size, size == like.size ? entries_per_unit(like) : 1);
@@ -86,7 +86,7 @@ struct Builder {
     }
   }
 
-  /// Adds piece * signal, the signal written in what it stands for.
+  /// Adds piece * signal, with the signal's meaning substituted.
   void add(Piece piece, int signal) {
     for (const Meaning& m : j.meaning(signal)) {
       const Signal& signal_of = g.signals[at(m.signal)];

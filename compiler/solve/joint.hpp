@@ -13,7 +13,7 @@ namespace titop::solve {
 /// Coefficients of terms, row-major; shared between systems that differ elsewhere.
 using Coefficient = std::shared_ptr<const RowMatrix<double>>;
 
-/// What parameters may change: one entry per node, and one per term (see Joint).
+/// Data that depend on parameters: one entry per node, and one per term (see Joint).
 struct Numbers {
   std::vector<double> parameters;
   std::vector<std::shared_ptr<const Dynamics>> blocks;
@@ -34,7 +34,7 @@ struct Piece {
   int row = 0, rows = 0, col = 0, cols = 0;  ///< the block of the node's matrix
   int right = -1;                            ///< coefficients[right]; -1: identity
   int entry = -1;                            ///< place in the row of the structure; -1: known
-  int signal = -1;                           ///< what is multiplied; -1: a partial sum
+  int signal = -1;                           ///< the factor; -1: a partial sum
   int size = 0;                              ///< its scalars
 };
 
@@ -44,7 +44,8 @@ struct Meaning {
   int coefficient = -1;  ///< -1: identity
 };
 
-/// What does not depend on numbers: variables, what every signal is in terms of them, rows, plan.
+/// Data that do not depend on numbers: variables, the meaning of every signal in terms of them,
+/// rows, plan.
 struct Joint {
   std::vector<int> variables;    ///< signal of each variable; -1: a partial sum of a long row
   std::vector<int> variable_of;  ///< signal -> variable, -1 if written out or known

@@ -34,7 +34,7 @@ inline void subtract(std::ptrdiff_t n, const std::complex<T>& a, const std::comp
 }
 
 /// y -= l[0] x_0 + l[1] x_1 ..., so many rows x_k of m entries each. A single column is summed in
-/// registers; there 0 times what is not finite is not skipped.
+/// registers; there a factor 0 of a value that is not finite is not skipped.
 template <class T>
 inline void subtract_rows(std::ptrdiff_t count, const T* l, const T* x, std::ptrdiff_t m, T* y) {
   if (m == 1) {

@@ -42,8 +42,8 @@ std::shared_ptr<typename Factors<T>::Lot> Factors<T>::lot_of(std::span<const int
   return lot;
 }
 
-/// What holds no front in use goes. Where the rest is more than twice what all fronts need, they
-/// move to a place of their own.
+/// Frees memory without a front in use. If the rest is more than twice the size of all fronts, they
+/// move to a new place.
 template <class T>
 void Factors<T>::tidy() {
   const auto in_use = [&](const Made& m) { return fronts_[at(m.front)] == &m; };

@@ -8,7 +8,7 @@ using Eigen::Index;
 using linalg::at;
 
 /// F z = value e_row, front by front: L from the leaves to the root, then U back (substitution.cpp
-/// with the size of what every number was made of).
+/// with the size of every number's terms).
 class Column {
  public:
   explicit Column(const Factors<double>& factors) : f_(factors), plan_(factors.plan()) {}

@@ -66,7 +66,7 @@ class Transposed {
           fronts.insert(front_of_[at(unknown)]);
   }
 
-  /// What it reads is 0 again afterwards. `fronts`: children where something stands now are added.
+  /// Resets to 0 the entries that it reads. `fronts`: adds children with nonzero entries.
   void downward(int index, std::set<int>& fronts) {
     const Front& f = plan_.fronts[at(index)];
     const Factors<double>::Made& made = f_.made(at(index));
@@ -130,7 +130,7 @@ class LeftNull {
   }
 
  private:
-  /// Row and column of what has lost least.
+  /// Row and column of the entry with the least cancellation.
   std::optional<std::pair<int, int>> pivot() const {
     std::optional<std::pair<int, int>> best;
     double score = 0;
@@ -168,7 +168,7 @@ class LeftNull {
   std::vector<std::map<int, double>> by_;  ///< row operations so far: M now = by * M before
 };
 
-/// p' Y; what cancels is 0.
+/// p' Y; sums that cancel are 0.
 SparseRow combined(const SparseRow& p, const std::vector<SparseRow>& Y) {
   std::map<int, Kept> sums;
   for (const auto& [i, factor] : p)
@@ -184,8 +184,8 @@ SparseRow combined(const SparseRow& p, const std::vector<SparseRow>& Y) {
 
 NullRows left_null(SparseRows M) { return LeftNull(std::move(M)).solve(); }
 
-// L = F - sum of value_i e_row_i e_unknown_i', F what the factors are of. y L = 0 is y F = p' Q
-// with p = y at the patched rows: y = p' Y, Y = Q F^-1, and p' (I - Y at these rows) = 0.
+// L = F - sum of value_i e_row_i e_unknown_i', F the factored matrix. y L = 0 is y F = p' Q with p
+// = y at the patched rows: y = p' Y, Y = Q F^-1, and p' (I - Y at these rows) = 0.
 NullRows null_rows(const Factors<double>& patched) {
   const std::vector<Patch> patches = patched.patches();
   const auto m = static_cast<int>(patches.size());

@@ -8,10 +8,10 @@
 
 namespace titop::solve {
 
-/// What cancellation leaves below this share of its terms is 0, where the rank is decided.
+/// Sums below this share of their terms are 0 in decisions on rank.
 constexpr double kCancelled = 1e-11;
 
-/// Sums of numbers that may cancel, each with the size of what it was made of.
+/// Sums of numbers that may cancel, each with the size of its terms.
 struct Kept {
   double value = 0, size = 0;
 
@@ -20,17 +20,17 @@ struct Kept {
   double cleaned() const { return std::abs(value) <= kCancelled * size ? 0 : value; }
 };
 
-/// A number for further sums: what has not lost much counts by itself, so that ordinary losses do
-/// not add up along a long chain.
+/// A number for further sums: one that has not lost much counts by itself, so that ordinary losses
+/// do not add up along a long chain.
 inline Kept settled(const Kept& k) {
   const double value = k.cleaned();
   return {value, std::abs(value) > 1e-4 * k.size ? std::abs(value) : k.size};
 }
 
-/// Places and values of what is not 0, ascending.
+/// Places and values of nonzero entries, ascending.
 using SparseRow = std::vector<std::pair<int, double>>;
 
-/// Rows by their entries; what is not there is 0.
+/// Rows by their entries; others are 0.
 using SparseRows = std::vector<std::map<int, Kept>>;
 
 /// Rows y (places: scalar rows, in the order of Plan::row_first) with y L = 0, as many as the rank

@@ -41,12 +41,12 @@ class JointRows : public Rows<T> {
   RowMatrix<T> rhs(const RowMatrix<T>& known, std::span<const int> first) const;
 
   /// Right-hand sides of all rows for given parts of the states (C of every block in `output`),
-  /// whether or not states are otherwise written out: what forcing the states does. O(rows).
+  /// whether or not states are otherwise substituted: the effect of forced states. O(rows).
   RowMatrix<T> rhs_of_states(const RowMatrix<T>& states, std::span<const int> first,
                              const std::vector<const Eigen::MatrixXd*>& output) const;
 
-  /// rhs - (these rows) * unknowns: what is left of every row. `magnitudes`, where it is asked for,
-  /// becomes |rhs| + |rows| |unknowns|: what that is made of. O(rows) per column.
+  /// rhs - (these rows) * unknowns: the residual of every row. `magnitudes`, if given, becomes
+  /// |rhs| + |rows| |unknowns|: the size of its terms. O(rows) per column.
   RowMatrix<T> residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns,
                         RowMatrix<double>* magnitudes = nullptr) const;
 

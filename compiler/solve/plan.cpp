@@ -194,11 +194,10 @@ std::vector<int> last_rows_first(const Plan& p) {
   return children;
 }
 
-/// Every front right behind those below it, with its lists: what a front takes from its children
-/// then lies near, however far apart the order of elimination visits them. Rows stand as a walk
-/// meets their nodes that goes depth first: taken from the last to the first, the fronts of a tree
-/// go through memory in one direction. What happens in a front, and so every number, stays the
-/// same.
+/// Postorder: every front right after its descendants, with its lists, so that a front's children
+/// are near in memory, in any order of elimination. Rows are in the depth-first order of their
+/// nodes: from the last to the first, the fronts of a tree go through memory in one direction. The
+/// operations in a front, and so every number, stay the same.
 void in_postorder(Plan& p) {
   const int count = static_cast<int>(p.fronts.size());
   std::vector<char> below(at(count), 0);

@@ -66,7 +66,7 @@ struct Front {
 struct Plan {
   Structure structure;
   std::vector<Front> fronts;
-  std::vector<int> lists;      ///< what the fronts' ranges refer to
+  std::vector<int> lists;      ///< of the fronts' ranges
   std::vector<int> first;      ///< variable -> its first scalar among the unknowns, which stand in
                                ///< the order of elimination
   std::vector<int> row_first;  ///< row group -> its first scalar among all rows

@@ -25,7 +25,7 @@ struct Substitution {
 };
 
 /// R rows from row i on, C registers of columns at a time: their sums stay in registers, and every
-/// entry of x that is loaded serves all rows. (By value: what is stored could be the product's.)
+/// loaded entry of x serves all rows. (By value: a store could alias the product's data.)
 template <class L, int C, int R>
 [[gnu::always_inline]] inline void rows_of_product(const Product p, std::ptrdiff_t i) {
   constexpr std::ptrdiff_t n = kLanes<L>;

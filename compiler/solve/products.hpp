@@ -16,9 +16,9 @@ void multiply(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m, const
               std::ptrdiff_t stride, const double* const* x, const double* const* from, double* y,
               std::ptrdiff_t y_stride, int lanes = 8);
 
-/// Row by row, x (rows x m, row-major, m a multiple of 8) loses what the rows above bring with
-/// them: L^-1 x where L (rows x pivots, its diagonal 1) stands below the diagonal of lu, rows
-/// `stride` apart. Below the pivots that is x' - L' L^-1 x.
+/// Forward substitution row by row: x (rows x m, row-major, m a multiple of 8) becomes L^-1 x with
+/// L (rows x pivots, its diagonal 1) below the diagonal of lu, rows `stride` apart. Below the
+/// pivots that is x' - L' L^-1 x.
 void substitute_lower(std::ptrdiff_t rows, std::ptrdiff_t pivots, std::ptrdiff_t m,
                       const double* lu, std::ptrdiff_t stride, double* x, int lanes = 8);
 

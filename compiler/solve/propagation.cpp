@@ -93,7 +93,8 @@ void Propagation::gather(const Front& f, Space& space) const {
   }
 }
 
-/// What the front's rows carry upwards. Those of its pivots are kept for the way back.
+/// The contributions of the front's rows to its parent. Those of its pivots are kept for back
+/// substitution.
 void Propagation::forward(int index, Space& space) const {
   const std::ptrdiff_t m = space.m;
   const Front& f = plan_.fronts[at(index)];

@@ -4,11 +4,11 @@
 
 namespace titop::solve {
 
-/// Many right-hand sides, each with a few rows that are not zero: what the dense model is written
-/// from. Forward only along these rows' fronts and what is above them. Each front becomes a few
-/// small products, formed once: its rows split into those of the pivots, r, and the rest, r', it
-/// carries r' - L' L^-1 r upwards, and on the way back its unknowns are
-/// U^-1 L^-1 r - U^-1 (border of U) (border unknowns). O(unknowns x front size) per column.
+/// Many right-hand sides, each with a few nonzero rows, for the dense model. Forward only along
+/// these rows' fronts and their ancestors. Each front becomes a few small products, formed once:
+/// with its rows split into those of the pivots, r, and the rest, r', it passes r' - L' L^-1 r
+/// upwards, and in back substitution its unknowns are U^-1 L^-1 r - U^-1 (border of U) (border
+/// unknowns). O(unknowns x front size) per column.
 class Propagation {
  public:
   /// `room`: where the products go; it must live as long, and is not cleared. `form` comes next.
@@ -17,11 +17,11 @@ class Propagation {
   /// Forms the products of all fronts, here the k-th of `parts` parts. O(sum of front sizes^3).
   void form(int k = 0, int parts = 1);
 
-  /// What one solution needs; each thread has its own.
+  /// Buffers of one solution; each thread has its own.
   struct Space {
     std::ptrdiff_t m = 0;                             ///< columns
     std::vector<double> z = {};                       ///< the unknowns, in the order of Plan::first
-    std::vector<double> rows = {}, carried = {};      ///< right-hand sides, and what goes upwards
+    std::vector<double> rows = {}, carried = {};      ///< right-hand sides; sums upwards
     std::vector<double> zeros = {};                   ///< one row
     std::vector<int> set = {}, active = {};           ///< row groups with right-hand sides; fronts
     std::vector<char> is_set = {}, is_active = {};    ///< the same as flags

@@ -56,7 +56,7 @@ template <class L, int C, class T>
   for (int c = 0; c < C; ++c) store(s.y + j + c * kLanes<L>, y[c]);
 }
 
-/// `Rest`: for what is left at the end, where L is longer; an odd double comes last.
+/// `Rest`: for the columns left at the end, if L is longer; an odd double comes last.
 template <class L, class Rest, class T>
 [[gnu::always_inline]] inline void all_columns(const Sum<T> s) {
   std::ptrdiff_t j = 0;

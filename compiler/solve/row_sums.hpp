@@ -3,8 +3,8 @@
 #include <complex>
 #include <cstddef>
 
-/// Sums of rows in registers: what solving with the factors and residuals are made of. The sum runs
-/// in order, term by term as by plain loops: the same bits on every processor. `lanes`: as in
+/// Sums of rows in registers: the kernel of solutions with the factors and of residuals. The sum
+/// runs in order, term by term as by plain loops: the same bits on every processor. `lanes`: as in
 /// products.hpp.
 namespace titop::solve {
 

@@ -7,7 +7,7 @@
 #include <titop/compiler/solve/double_double.hpp>
 #include <type_traits>
 
-/// What the kernel asks of a scalar, real or complex, of any precision.
+/// Operations that the kernel needs of a scalar, real or complex, of any precision.
 namespace titop::solve {
 
 using Complex50 = boost::multiprecision::cpp_complex_50;
@@ -27,7 +27,7 @@ struct Scalar {
     return static_cast<double>(abs(x));
   }
   static T from(double x) { return static_cast<T>(x); }
-  /// At a real s: what a block answers there is real, too.
+  /// At a real s: a block's response there is real, too.
   static T from(std::complex<double> x) { return static_cast<T>(x.real()); }
   static double round(const T& x) { return static_cast<double>(x); }
 };

@@ -72,7 +72,7 @@ struct Exponents {
   int* number = nullptr;  ///< and how many they are
   int* r = nullptr;       ///< added to them: of the rows,
   int* c = nullptr;       ///< of the units
-  int *a = nullptr, *b = nullptr;  ///< per unit: what a round works with
+  int *a = nullptr, *b = nullptr;  ///< per unit: workspace of a round
   int* line = nullptr;             ///< exponents of one row
 
   Exponents(int m, std::span<const int> of_units)
@@ -112,7 +112,7 @@ TITOP_PART void take(const Exponents& x, const double* magnitudes) {
   }
 }
 
-/// exponent -= half of what the largest sum with it is, where there is any.
+/// exponent -= half of the largest sum with it, if there is any.
 TITOP_PART void take_half(Index n, const int* __restrict largest, int* __restrict exponent) {
   for (Index i = 0; i < n; ++i) exponent[i] -= largest[i] > kNone / 2 ? largest[i] / 2 : 0;
 }

@@ -12,8 +12,8 @@
 /// widest vectors that the processor has (steps.cpp); the same bits on every machine.
 namespace titop::solve {
 
-/// The largest of n numbers of which none is negative; what is not a number, whatever its sign bit,
-/// is above all others. By their bits: whole numbers may be compared in any order.
+/// The largest of n numbers of which none is negative; NaN, of any sign bit, is above all others.
+/// By their bits: integers may be compared in any order.
 template <class Entry>
 inline double largest_of(std::ptrdiff_t n, Entry entry) {
   std::int64_t most = 0;
@@ -45,8 +45,8 @@ template <class T, class Size>
   }
 }
 
-/// Steps k ... end - 1, taken up to column `end`, go on in N columns from j on: what a row gets
-/// stays in registers, step by step, with the bits that whole steps give.
+/// Steps k ... end - 1, done up to column `end`, continue in N columns from j on: a row's sums stay
+/// in registers, step by step, with the same bits as whole steps.
 template <std::size_t N, class T, class Size>
 [[gnu::always_inline]] inline void eliminate_columns(std::ptrdiff_t k, std::ptrdiff_t end,
                                                      std::ptrdiff_t rows, std::ptrdiff_t n,

@@ -9,8 +9,8 @@
 
 namespace titop::solve {
 
-/// Room for many numbers, in large pages where it is large. What can be copied as bytes is not
-/// initialised (std::complex would be): whoever takes it writes to it.
+/// Memory for many numbers, in large pages if it is large. Trivially copyable types are not
+/// initialised (std::complex would be): the caller must write to them.
 template <class T>
 class Storage {
  public:
