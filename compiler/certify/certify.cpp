@@ -13,7 +13,7 @@ namespace {
 
 using linalg::at;
 
-/// "about 2 digits are": what a loop keeps at this distance from singular.
+/// "about 2 digits are": the digits of a loop at this distance from singular.
 std::string digits_at(double distance) {
   const double digits = std::max(0.0, std::round(std::log10(distance / 1.1e-16)));
   return digits == 1 ? "about one digit is" : fmt::format("about {:.0f} digits are", digits);

@@ -93,10 +93,10 @@ std::vector<MatrixXcd> as_written(const Graph& g, const std::vector<double>& val
   return list;
 }
 
-/// Each block over its own size: what writing the model costs is what is looked for. Only blocks
-/// that may be nothing but rounding, as those that are 0 by symmetry, count over the terms that
-/// cancel in them: the measure's, and, where something differs, those of the elimination and what
-/// rounding does in the model as written (`before` `minimize`).
+/// Each block over its own size, for the error of writing the model. Only blocks that may be
+/// rounding alone, such as zeros by symmetry, are measured by the terms that cancel in them: the
+/// measure's, and, if something differs, those of the elimination and of rounding in the model as
+/// written (`before` `minimize`).
 void check_dense(const System& system, const detail::Rounded& before,
                  const std::vector<Complex>& points, const std::vector<MatrixXcd>& factored,
                  detail::Measure measure, FullCertificate::Grid& grid) {
@@ -141,8 +141,8 @@ void check_written(const System& system, const Full& what, const std::vector<Com
   }
 }
 
-/// What forces and the accelerations where they act say of each other, over the grid and around the
-/// poles that grow and are shown. What does not hold is looked at again with what rounding does.
+/// Passivity and reciprocity of forces and the accelerations at their points, over the grid and
+/// around unstable poles. A failed check is repeated with rounding.
 void check_pairs(const System& system, std::vector<Complex> points, std::vector<MatrixXcd> factored,
                  const std::vector<full::FoundPoles::Right>& growing, FullCertificate& c) {
   const Graph& g = *system.stage().source;

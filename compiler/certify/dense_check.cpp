@@ -21,7 +21,7 @@ using Eigen::VectorXd;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDoubted = 1e-9;  ///< what is above this is looked at again, at some cost
+constexpr double kDoubted = 1e-9;  ///< a larger error is computed again, at some cost
 
 using linalg::at;
 
@@ -46,7 +46,7 @@ Groups groups(const SystemData& d) {
   return result;
 }
 
-/// Columns of [xdot; y] of the model, and what rounding makes of them.
+/// Columns of [xdot; y] of the model, and their rounding.
 struct Response {
   MatrixXd value, rounding;
 };
@@ -57,7 +57,8 @@ Response by_factors(const SystemData& d, const solve::RowMatrix<double>& x,
   solve::RowMatrix<double> known(all.rows() + u.rows(), u.cols());
   known << all, u;
   const Instant now(d, std::move(known));
-  // What cancels on the way is no part of the last terms: a sample of rounding tells its size.
+  // Cancellation on the way is not contained in the last terms: a sample of rounding gives its
+  // size.
   const Instant off = now.doubt();
   const auto both = [&](const solve::RowMatrix<double>& xdot, const solve::RowMatrix<double>& y) {
     MatrixXd result(x.rows() + y.rows(), u.cols());
@@ -135,8 +136,8 @@ namespace {
 using T = std::complex<double>;
 
 constexpr Index kColumns = 8;  ///< inputs are tried one by one up to this many
-/// Of neighbours in row and column: what rotations leave of a 0, cos(pi / 2) = 6e-17. It has its
-/// digits in the factors, but stands for none.
+/// Of neighbours in row and column: a 0 after rotations, cos(pi / 2) = 6e-17. It has digits in the
+/// factors, but is meant as 0.
 constexpr double kOfNeighbours = 1e-14;
 
 constexpr double kBelow = 0.5;  ///< of the slowest mode that shows, known to a decade
@@ -168,7 +169,7 @@ bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers)
 /// the factors have no digits so far below. O(bodies) per decade.
 std::optional<T> slowest_shown(const SystemData& d, const T s, const solve::RowMatrix<T>& u,
                                const std::vector<int>& units) {
-  constexpr int kDecades = 10;  // below them double has no digits of what is slow
+  constexpr int kDecades = 10;  // below them double has no digits of slow motion
   try {
     T at = s;
     MatrixXd here = by_unit(Evaluation<T>(d, at, u).outputs(), units), powers;
@@ -191,7 +192,7 @@ struct Tried {
 
 /// At the assembly's own frequencies as well, where nothing is tried near them.
 void add_frequencies(const MatrixXd& A, std::vector<T>& list) {
-  constexpr double kNear = 3;  // what an s of such a lean still sees
+  constexpr double kNear = 3;  // factor within which an s resolves a frequency
   for (const double w : frequencies_of(A)) {
     const auto near = [w](const T s) {
       return std::abs(s) <= kNear * w && w <= kNear * std::abs(s);
@@ -271,9 +272,9 @@ std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
   return result;
 }
 
-/// What the factors' states leave in the equations of the dense model, A x + B u - s x, carried to
-/// the outputs by the factors. Points where these have no digit (springs along directions that
-/// chains hold, far below all modes) say nothing of the model: they go to `not_tried`.
+/// The residual of the factors' states in the equations of the dense model, A x + B u - s x, mapped
+/// to the outputs by the factors. Points where these have no digit (springs along directions that
+/// chains lock, far below all modes) give no verdict on the model: they go to `not_tried`.
 std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve::RowMatrix<T>& u,
                            const Measure& units, std::vector<T>& not_tried) {
   const Tried where = tried(d, m.A, u, units.rows);
@@ -296,7 +297,7 @@ std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve
   std::vector<Sample> result;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const solve::RowMatrix<T> left = Ax[i] + m.B * u - list[i] * x[i];
-    // What C itself costs in rounding is one product: below what is looked for here.
+    // The rounding of C itself is one product: negligible here.
     const solve::RowMatrix<T> change = points[i].forced(d.states.expanded(left));
     const auto& y = points[i].outputs();
     result.push_back({list[i],
@@ -308,7 +309,7 @@ std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve
   return result;
 }
 
-constexpr double kDigit = 10;  ///< times its rounding: what has a digit
+constexpr double kDigit = 10;  ///< times its rounding: has a digit
 
 /// An output that the factors have digits of at some s says nothing where they have none, as far
 /// below the modes of closed chains: it does not count there, and the s is said.
@@ -329,8 +330,9 @@ void leave_out_lost(std::vector<Sample>& samples, std::vector<T>& not_tried) {
 constexpr Index kAnsweredUpTo = 100;  ///< states
 constexpr double kLuck = 30;          ///< by which one answer may be closer than it should be
 
-/// The estimate can round where a point has hardly any mass: what is left pushes it by 1e24 and
-/// cancels again. What the dense model itself answers there is off by what it shows, times luck.
+/// The estimate itself may round at a point of very small mass: the residual is multiplied by 1e24
+/// and cancels again. The dense model's own transfer gives an upper bound, with a safety factor
+/// kLuck.
 void bound_by_answer(Sample& p, const StateSpace& m, const solve::RowMatrix<T>& u,
                      const std::vector<int>& units) {
   const linalg::Solution x = linalg::solve(
@@ -339,9 +341,9 @@ void bound_by_answer(Sample& p, const StateSpace& m, const solve::RowMatrix<T>& 
   p.off = p.off.cwiseMin(kLuck * by_unit(m.C * x.z + m.D * u - p.y, units));
 }
 
-/// The largest error relative to the output's own size. An output that is nothing but rounding, 0
-/// by symmetry, counts beside its neighbours or what cancels in it: the same in all units, too. So
-/// does what is below `of_neighbours` of those in its row and column.
+/// The largest error relative to the output's own size. An output at rounding level (0 by symmetry)
+/// is measured by its neighbours or its cancelling terms, also independent of units. So is an
+/// output below `of_neighbours` of those in its row and column.
 DenseError::Worst relative(const MatrixXd& off, const Sizes& sizes, double of_neighbours) {
   const MatrixXd& size = sizes.value;
   if (!off.allFinite() || !size.allFinite()) return {kInfinity};
@@ -360,8 +362,9 @@ DenseError::Worst relative(const MatrixXd& off, const Sizes& sizes, double of_ne
   return worst;
 }
 
-/// Below all modes that show an output of free motion grows, or falls, with a power of s without
-/// end, and what the dense model loses there with it: that counts where outputs are small.
+/// Below all visible modes an output of free motion grows, or falls, with a power of s without
+/// limit, and so does the error of the dense model: there only the error relative to the output at
+/// the same s counts.
 DenseError worst_of(const std::vector<Sample>& samples) {
   DenseError worst;
   Sizes largest{MatrixXd::Zero(samples.front().off.rows(), samples.front().off.cols()),

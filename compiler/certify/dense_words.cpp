@@ -5,7 +5,7 @@
 #include <titop/compiler/compare.hpp>
 #include <titop/compiler/system_data.hpp>
 
-/// What is said of a dense model: that it is none of this system, or what it costs.
+/// Messages on a dense model: that it belongs to another system, or its errors.
 namespace titop::detail {
 namespace {
 

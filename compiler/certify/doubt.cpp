@@ -13,8 +13,8 @@ namespace {
 using linalg::at;
 using solve::RowMatrix;
 
-/// Share that is lost of some entries of one unit: how far they are off, and what stands around
-/// each of them.
+/// Relative error of some entries of one unit, from their errors and the size around each of them
+/// (see Surroundings).
 template <class Around>
 double lost(std::span<const double> value, std::span<const double> off, Around around) {
   double largest = 0, change = 0;
@@ -60,7 +60,7 @@ bool moves_in_doubt(const SystemData& d, const Signals& signals, const Instant& 
   return false;
 }
 
-/// What stands around a row of output o: of the signals that it is a sum of.
+/// Size around a row of output o: of the signals in its sum.
 double size_around_output(const SystemData& d, Surroundings& around, std::size_t o,
                           Eigen::Index row) {
   const std::vector<Term>& terms = d.graph().outputs[o].terms;

@@ -21,8 +21,8 @@ void add(Weights& w, int channel, const MatrixXd& m) {
   if (!fresh) place->second += m;
 }
 
-/// What each input does as a force on bodies: along a child's own wrench, against a parent's. Empty
-/// for inputs that (also) do something else.
+/// Each input as forces on bodies: along a child's own wrench, against a parent's. Empty for inputs
+/// that (also) have another effect.
 std::map<int, Weights> forces(const Graph& g, ParameterValues values) {
   std::map<int, Weights> result;
   std::map<int, bool> other;
@@ -43,7 +43,7 @@ std::map<int, Weights> forces(const Graph& g, ParameterValues values) {
   return result;
 }
 
-/// What an output sees of accelerations; empty if it sees anything else.
+/// An output as a combination of accelerations; empty if it reads anything else.
 Weights motions(const Graph& g, const Output& o, ParameterValues values) {
   Weights result;
   for (const Term& t : o.terms) {

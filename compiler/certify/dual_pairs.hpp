@@ -10,8 +10,8 @@
 /// compiler's own files.
 namespace titop::full {
 
-/// Whether a channel's force is what its block does to the outside: at a parent point and about the
-/// axis of a joint. At a child point, of a bushing too, it is what is done to the block.
+/// Whether a channel's force acts from its block on its surroundings: at a parent point and about
+/// the axis of a joint. At a child point, also of a bushing, it acts on the block.
 bool is_outward(const ChannelSpec& channel);
 bool is_outward(const Graph& graph, int channel);
 
@@ -35,7 +35,7 @@ struct DualTransfers {
   std::vector<Eigen::MatrixXcd> G;  ///< forces x forces
   detail::Measure by;               ///< the same blocks of rows and of columns
 
-  /// What rounding may leave of a 0 in this block of rows and columns; 0 where it is not known.
+  /// Possible rounding of a 0 in this block of rows and columns; 0 if it is not known.
   double floor(Eigen::Index row, Eigen::Index column, Eigen::Index rows,
                Eigen::Index columns) const;
 };

@@ -6,18 +6,18 @@
 #include <titop/compiler/emit/cpp/form.hpp>
 #include <vector>
 
-/// What a certificate must hold: one rule for the full certificate and for the report. For the
+/// Requirements on a certificate: one rule for the full certificate and for the report. For the
 /// compiler's own files.
 namespace titop::full {
 
 inline constexpr double kHolds = 1e-8;  ///< equations, and entries of the dense model one by one
-/// What rounding A, B, C, D may cost: as much as code generated from them may be off by.
+/// Allowed rounding error of A, B, C, D: that of code generated from them.
 inline constexpr double kDenseHolds = emit::kProvable;
 inline constexpr double kPoleHolds = 1e-6;  ///< to first order only
 inline constexpr double kReciprocal = 1e-8;
 
-/// What does not hold, in words. `dense`: largest difference between transfers of the dense model
-/// and of the factors over a grid; negative where there is none.
+/// The failed checks, in words. `dense`: largest difference between transfers of the dense model
+/// and of the factors over a grid; negative if there is none.
 std::vector<std::string> basic_faults(const Certificate& certificate, double dense = -1);
 
 }  // namespace titop::full

@@ -40,7 +40,7 @@ double frequency_of(const MatrixXd& A) {
 std::complex<double> off_axis(double omega) { return {0.37 * omega, 0.93 * omega}; }
 
 std::vector<double> frequencies_of(const MatrixXd& A) {
-  // What rounding leaves of a 0, between a position and its rate, is a round trip of 1e-8.
+  // The rounding of a 0 between a position and its rate gives a product of 1e-8.
   constexpr double kRounding = 1e-6;
   const double fastest = frequency_of(A);
   if (!(fastest > 0) || !std::isfinite(fastest)) return {};

@@ -35,7 +35,7 @@ Unit unit_of(const Signal& s, int i) {
   return force ? Unit{i >= 3, 1} : Unit{i < 3, 0};
 }
 
-/// An equation's row has the unit of what its target has there.
+/// An equation's row has the unit of its target.
 Unit unit_of(const Signal& s, const Part& part, int row) {
   if (part.whole()) return unit_of(s, row);
   Eigen::Index largest = 0;
@@ -44,8 +44,8 @@ Unit unit_of(const Signal& s, const Part& part, int row) {
 }
 
 /// The loop's own units, as powers of two: the force that gives its lightest point unit
-/// acceleration, and the length whose square is inertia over mass. The margin is the same in all
-/// units, but in the LU behind it what cancels must be of the size of what it cancels with.
+/// acceleration, and the length whose square is inertia over mass. The margin is independent of
+/// units, but in the LU behind it cancelling terms must be of like size.
 void to_own_units(const std::vector<Unit>& rows, const std::vector<Unit>& columns, MatrixXd& L) {
   double per_force = 0, per_moment = 0;  // accelerations, linear and angular
   for (std::size_t j = 0; j < columns.size(); ++j)

@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 /// holds.
 constexpr double kOfUnit = 64 * 2.2e-16;
 
-/// What rounding may make of each entry of G / s.
+/// Possible rounding of each entry of G / s.
 MatrixXd floors(const DualTransfers& t, std::size_t point) {
   const double s = std::abs(t.points[point]);
   MatrixXd result(t.G[point].rows(), t.G[point].cols());

@@ -9,7 +9,7 @@ namespace titop::full {
 
 struct FoundPoles {
   FullCertificate::Poles poles;
-  std::vector<double> omegas;  ///< |s| of what is not 0 and not rounding, ascending
+  std::vector<double> omegas;  ///< |s| of poles that are neither 0 nor rounding, ascending
   struct Right {
     std::complex<double> s;
     double rounding;  ///< may move it by so much
@@ -17,9 +17,9 @@ struct FoundPoles {
   std::vector<Right> right;  ///< of the axis, both of a pair
 };
 
-/// Poles of the dense model against the factors, but for those that rounding may have made of 0 or
-/// moved by more than 1e-8 of their size: `rounding` of each entry of A, and what eigenvalues in
-/// double lose.
+/// Poles of the dense model against the factors, without those that rounding may have made of 0 or
+/// moved by more than 1e-8 of their size: `rounding` of each entry of A, and the error of
+/// eigenvalues in double.
 FoundPoles check_poles(const System& system, const StateSpace& model,
                        const Eigen::MatrixXd& rounding);
 
@@ -29,8 +29,8 @@ std::vector<FoundPoles::Right> shown(const std::vector<FoundPoles::Right>& right
                                      const StateSpace& minimal);
 
 /// Points right of the axis on circles about these poles, of a tenth and a thousandth of their
-/// distance from it. What is passive has no pole there: around one G / s takes all directions, that
-/// of giving energy, too.
+/// distance from it. A passive system has no pole there: around one G / s takes all directions,
+/// also that of supplying energy.
 std::vector<std::complex<double>> around(const std::vector<FoundPoles::Right>& growing);
 
 }  // namespace titop::full

@@ -27,7 +27,7 @@ struct Asymmetry {
 };
 
 /// |G_ij - G_ji| block by block (entries of one block share their unit) over the largest of
-/// sqrt(|G_ii| |G_jj|), the blocks themselves, and what rounding may leave of a 0.
+/// sqrt(|G_ii| |G_jj|), the blocks themselves, and the possible rounding of a 0.
 void add_asymmetry(const DualTransfers& t, std::size_t k, Asymmetry& found) {
   const MatrixXcd& G = t.G[k];
   const auto largest = [](const auto& m) { return m.cwiseAbs().maxCoeff(); };
@@ -69,8 +69,9 @@ bool is_symmetric(const Dynamics& d, const Eigen::VectorXd& sign) {
   });
 }
 
-/// A block's response from what its channels take to what they give is symmetric, but for the sign
-/// of the force at points whose block takes the motion there and states the force that acts on it.
+/// A block's response from its channels' inputs to their outputs is symmetric, except for the sign
+/// of the force at points whose block has the motion as input and outputs the force that acts on
+/// it.
 bool is_reciprocal(const Block& block, ParameterValues values, Complex s) {
   DualTransfers own{{s}, {}, {}};
   std::vector<double> signs;

@@ -17,11 +17,12 @@ using Eigen::MatrixXd;
 using linalg::at;
 
 constexpr double kNotFinite = std::numeric_limits<double>::infinity();
-constexpr double kPlain = 1e-12;  ///< rounding up to this needs no excuse
-/// Of the largest motion or wrench of its kind, where chains hold it at 0: fifty units of rounding,
-/// what a sum over a way round a chain of some tens of joints leaves.
+constexpr double kPlain = 1e-12;  ///< rounding up to this needs no explanation
+/// Of the largest motion or wrench of its kind, for a 0 enforced by chains: fifty units of
+/// rounding, typical of a sum around a chain of some tens of joints.
 constexpr double kOfLargest = 1e-14;
-/// One sample of rounding may be small by luck, and says nothing of rounding in the coefficients.
+/// One sample of rounding may be small by chance, and does not contain rounding of the
+/// coefficients.
 constexpr double kSamples = 1e4;
 
 /// Entries of a signal, and a sample of their rounding where it is known.
@@ -33,7 +34,7 @@ struct Entries {
 struct Balance {
   struct Row {
     double difference = 0, magnitude = 0, rounding = 0;
-    /// What rounding does not explain.
+    /// The part that rounding does not explain.
     double off() const {
       const double explained = std::isfinite(rounding) ? kSamples * rounding : 0;
       return std::max(std::abs(difference) - explained, 0.0);
@@ -58,8 +59,8 @@ struct Balance {
     return e;
   }
 
-  /// factor * c * value. Entries that share a unit count by the largest of them: what is 0 in some
-  /// frame is rounding in another.
+  /// factor * c * value. Entries that share a unit count by the largest of them: a 0 in one frame
+  /// is rounding in another.
   template <class Matrix>
   void add(const Matrix& c, const Entries& x, int shared, double factor) {
     if (shared == 1 && rows() == 1 && x.rounding.empty()) {  // scalar diagrams: hardly any others
@@ -273,7 +274,7 @@ struct Residual {
     }
   }
 
-  /// Subtracts matrix * (inputs of the node). What is not known must not matter.
+  /// Subtracts matrix * (inputs of the node). Coefficients of unknown inputs must be 0.
   void subtract_inputs(const Node& node, int end, const MatrixXd& matrix, Eigen::Index row) {
     for (int i = node.first_signal; i < end; ++i) {
       const Signal& u = w.signals[at(i)];

@@ -6,7 +6,7 @@
 /// compiler's own files only.
 namespace titop::detail {
 
-inline constexpr double kWarn = 1e-9;  ///< what is worse than this is said in the log
+inline constexpr double kWarn = 1e-9;  ///< larger values are reported in the log
 
 /// All signals of one input, at one real s or at one instant.
 struct Signals {
@@ -27,19 +27,19 @@ struct WrittenResidual {
 };
 
 /// Largest |left - right| over (sum of magnitudes of the terms) of all equations of Stage::source
-/// and all rows of all blocks. What is 0 but for rounding does not count, nor does, where a sample
-/// of rounding is known, a difference below 1e4 times what it makes of the terms, or below 1e-14 of
-/// the largest of its kind where chains are closed twice. What is not finite counts as 1. O(terms).
+/// and all rows of all blocks. Zeros at rounding level do not count, nor, if a sample of rounding
+/// is known, a difference below 1e4 times its effect on the terms, or below 1e-14 of the largest of
+/// its kind in over-constrained chains. Values that are not finite count as 1. O(terms).
 WrittenResidual written_residual(const SystemData& d, const Signals& signals);
 
-/// What rounding leaves of a 0, beside its Surroundings: some hundred units of the last place, for
-/// it comes from sums over a front.
+/// Possible rounding of a 0, relative to its Surroundings: some hundred units of the last place,
+/// since it comes from sums over a front.
 inline constexpr double kLeftOfZero = 1e-13;
 
-/// What stands around an unknown in the elimination, in the unknown's own unit (both by the scaling
-/// of the fronts' columns): the largest of its front; where all that the front has in common with
-/// its parent is left of a 0 there, as behind a gain of 0, so may the whole front be, and the
-/// parent's size counts. Of the joint system as written.
+/// Size around an unknown in the elimination, in the unknown's own unit (by the scaling of the
+/// fronts' columns): the largest of its front; if all that the front shares with its parent is
+/// rounding of a 0 there, as behind a gain of 0, the front may be rounding, too, and the parent's
+/// magnitude is used. Of the joint system as written.
 class Surroundings {
  public:
   /// One column of unknowns, which must live as long.

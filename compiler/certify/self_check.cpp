@@ -52,7 +52,7 @@ void take_inputs(const SystemData& d, int i, const Instant& now, RowMatrix<doubl
 }
 
 /// x = (s - A)^-1 x of every block by itself, x the states of all blocks. Blocks that are the same
-/// object share what is made for one of them; no more than that of one is kept.
+/// object share one factorisation; only one is kept at a time.
 void resolve(const SystemData& d, double s, double* x) {
   std::vector<std::pair<const Dynamics*, int>> blocks;
   blocks.reserve(d.layout().state_nodes.size());
@@ -103,10 +103,10 @@ WrittenResidual check_responses(const SystemData& d, double s) {
   return result;
 }
 
-/// [x; u] with states that each block, moved by itself at s, would make of the inputs that it has
-/// when u alone acts. What is strictly proper passes nothing on at once: blocks that rest behind it
-/// are moved by random inputs of size 1, not by what the others would give them, for stiff blocks
-/// pass on much more than they take, and what u does must not drown. One solution.
+/// [x; u] with the states of each block by itself at s for the inputs that it gets when u alone
+/// acts. Strictly proper blocks have no direct term: blocks at rest behind one get random inputs of
+/// size 1, not the outputs of the others, since stiff blocks have outputs much larger than their
+/// inputs, and the effect of u must not be hidden. One solution.
 RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>& u, double s) {
   const Layout& l = d.layout();
   RowMatrix<double> known = RowMatrix<double>::Zero(l.order() + u.rows(), 1), inputs;
@@ -126,7 +126,7 @@ RowMatrix<double> known_at_instant(const SystemData& d, const RowMatrix<double>&
   return known;
 }
 
-/// What is above rounding is looked at again with a sample of the signals' own.
+/// A residual above rounding is computed again with a sample of the signals' rounding.
 template <class Rounding>
 WrittenResidual residual_of(const SystemData& d, Signals& signals, Rounding rounding) {
   const WrittenResidual written = written_residual(d, signals);
@@ -157,7 +157,7 @@ bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Ce
   return true;
 }
 
-/// What stands around the states of all blocks at a real s (see Surroundings).
+/// Size around the states of all blocks at a real s (see Surroundings).
 class AroundStates {
  public:
   AroundStates(const SystemData& d, const Evaluation<double>& point, double s)
@@ -177,7 +177,7 @@ class AroundStates {
  private:
   using Role = Signal::Role;
 
-  /// What their block makes of what stands around its inputs; no less than they are.
+  /// The block's response to the sizes around its inputs; at least the states themselves.
   const Eigen::VectorXd& of_states(int states) {
     const auto [found, added] = sizes_.try_emplace(states);
     if (!added) return found->second;
@@ -200,8 +200,8 @@ class AroundStates {
   std::map<int, Eigen::VectorXd> sizes_ = {};
 };
 
-/// These differences of the outputs, less those of what is 0 because states cancel: how a body
-/// turns is a sum of angles.
+/// These differences of the outputs, without outputs that are 0 because states cancel: the rotation
+/// of a body is a sum of angles.
 RowMatrix<double> without_zeros(const SystemData& d, AroundStates& around,
                                 const RowMatrix<double>& y, RowMatrix<double> off) {
   for (std::size_t o = 0; o < d.graph().outputs.size(); ++o) {
@@ -234,7 +234,7 @@ void find_lost(const SystemData& d, Evaluation<double>& point, double s, Check& 
   check.lost = std::min(check.lost, told);
 }
 
-/// At one real s: what holds for every real s holds for every s, at half the arithmetic.
+/// At one real s: equations that hold for every real s hold for every s, at half the arithmetic.
 void check_at_s(const SystemData& d, const RowMatrix<double>& u, double s, Check& check) {
   Evaluation<double> point(d, s, u);
   Signals signals{first_of_signals(d.graph())};

@@ -77,7 +77,7 @@ std::vector<std::vector<int>> tied(const Gains& gains, std::size_t channels) {
 }
 
 /// Gains among these channels as one matrix. Axes that share a unit have the size of the largest
-/// gain among them: what rotations leave of a 0 is no spring, and no fault.
+/// gain among them: a 0 after rotations is no spring, and no fault.
 struct Among {
   MatrixXd K;
   Eigen::VectorXd size;

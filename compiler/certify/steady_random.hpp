@@ -2,8 +2,8 @@
 
 namespace titop::detail {
 
-/// Numbers in [-1, 1] from a fixed seed [Marsaglia 2003, xorshift]: what is checked with them is
-/// the same on every run and every machine.
+/// Numbers in [-1, 1] from a fixed seed [Marsaglia 2003, xorshift]: checks with them are the same
+/// on every run and every machine.
 class SteadyRandom {
  public:
   SteadyRandom() = default;

@@ -19,8 +19,8 @@ constexpr double kNoWork = 1e-12;  ///< of the sum of magnitudes: rounding of ro
 
 using linalg::at;
 
-/// What makes an equation of a channel more than a connection of bodies, springs and dampers; empty
-/// if nothing does.
+/// The reason why an equation of a channel is more than a connection of bodies, springs and
+/// dampers; empty if it is not.
 std::string beside_bodies(const Graph& g, const Equation& e, ParameterValues values) {
   const Signal& target = g.signals[at(e.target)];
   const bool force = g.channels[at(target.channel)].force == e.target;
@@ -54,7 +54,7 @@ class Connections {
 
   std::size_t size() const { return g_.channels.size(); }
 
-  /// What wrenches of the motions imposed on channels [first, end) do in all, over the sum of
+  /// Total work of the wrenches under the motions imposed on channels [first, end), over the sum of
   /// magnitudes; motions are random.
   double work(std::size_t first, std::size_t end) {
     Vectors any = zeros();
