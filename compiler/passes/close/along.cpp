@@ -70,7 +70,7 @@ struct Walk {
     for (const int user : users[at(c)]) --waiting[at(user)], look(user);
   }
 
-  /// Decides what the way of this chain goes through, and then itself.
+  /// Decides the chains that the way of this one goes through, and then itself.
   void reach(int goal) {
     std::vector<std::pair<int, std::size_t>> stack{{goal, 0}};
     met[at(goal)] = 1;

@@ -5,12 +5,12 @@
 
 namespace titop::passes::closing {
 
-/// The chains, in an order in which to decide what they say twice: each after those that its way
-/// round goes through, and side by side where they share bodies or joints, so that few columns are
-/// open between those that are decided and those to come, whatever the names. Starts with the
-/// first, goes on where fewest columns are opened (King's order of a front), and takes in between
-/// whatever opens none; of equals the first comes first. Returns places in `closings`. O(entries
-/// log entries).
+/// The chains in the order in which their redundancy is decided: each after those that its way
+/// round goes through, and side by side if they share bodies or joints, so that few columns are
+/// open between decided chains and later ones, independent of names. Starts with the first,
+/// continues with the chain that opens fewest columns (King's order of a front), and inserts chains
+/// that open none; of equals the first comes first. Returns places in `closings`. O(entries log
+/// entries).
 std::vector<int> along(const std::vector<Closing>& closings);
 
 }  // namespace titop::passes::closing

@@ -4,14 +4,14 @@
 #include <compare>
 #include <map>
 
-/// Positions as linear forms in what they are made of: small displacements about the posture.
+/// Positions as linear forms: small displacements about the posture.
 namespace titop::passes::closing {
 
-/// What a displacement is made of. The same columns serve on position and on velocity level.
+/// A term of a displacement. The same columns are used on position and on velocity level.
 struct Column {
   enum class Kind {
-    root,        ///< of an assembly that nothing holds; id: channel of its root point
-    angle,       ///< what a joint leaves free; id: equation
+    root,        ///< of a free assembly; id: channel of its root point
+    angle,       ///< free motion of a joint; id: equation
     prescribed,  ///< double integral of a signal that is no acceleration of a point; id: signal
     states,      ///< the states of a block; id: node
     integral,    ///< the states of an Integrator; id: node

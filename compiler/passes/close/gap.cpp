@@ -10,7 +10,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using linalg::at;
 
-/// An orthonormal basis of what these free angles move (rows), rows scaled so.
+/// An orthonormal basis of the motions by these free angles (rows), rows scaled so.
 MatrixXd moved_by_angles(const Form& form, const VectorXd& scale) {
   MatrixXd basis(0, scale.size());
   for (const auto& [column, matrix] : form) {

@@ -11,7 +11,7 @@ constexpr double kExactGap = 1e-9;  ///< a gap that is larger is not rounding
 /// the geometry closes, but where ties leave translations free: these do not say how far apart
 /// their points are, and the ways do not have the lever arm.
 struct Gap {
-  Eigen::MatrixXd taken = {};  ///< what free angles on the way take up; empty: nothing
+  Eigen::MatrixXd taken = {};  ///< part taken up by free angles on the way; empty: none
   double off = 0;              ///< largest entry of the rest, relative to 1 or to the lever
 };
 

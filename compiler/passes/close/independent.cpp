@@ -17,8 +17,9 @@ using Eigen::MatrixXd;
 using Role = Relations::Role;
 using linalg::at;
 
-/// Of the best pivot, to be taken before all are known: what follows is then at most about ten
-/// times what it follows from, in units of energy, and costs the model no more than a digit.
+/// Of the best pivot, for a pivot to be taken before all are known: a dependent coordinate is then
+/// at most about ten times those that it depends on, in units of energy, and the model loses at
+/// most a digit.
 constexpr double kShare = 0.1;
 constexpr double kNoise = 64 * 2.2e-16;
 constexpr std::size_t kLookedAt = 8;  ///< neighbours per column, for one to merge with
@@ -31,7 +32,7 @@ struct PivotRows {
 
 struct Fronts {
   std::vector<Role> role;
-  Eigen::VectorXd soft;         ///< per column: what a pivot is worth
+  Eigen::VectorXd soft;         ///< per column: worth of a pivot
   std::vector<char> preferred;  ///< per column
   std::vector<RowBlock> fronts;
   Uses uses;
@@ -109,7 +110,7 @@ struct Fronts {
     if (last) return take_last(front, {known, integrals, all}, e);
     e.take(known, kGoodPivot);
     e.take(integrals, kGoodPivot);
-    // Rows may wait for what is preferred: see take_beside.
+    // Rows may wait for preferred columns: see take_beside.
     if (shared_preferred(front).empty()) {
       std::vector<int> rivals(front.columns.size());
       std::iota(rivals.begin(), rivals.end(), 0);
@@ -118,8 +119,8 @@ struct Fronts {
     return e.weakest();
   }
 
-  /// How many follow is geometry, and decided by the largest pivots of all (the last of `choices`);
-  /// which ones, by the order of the choices and by what is soft.
+  /// The number of dependent coordinates is geometry, decided by the largest pivots of all (the
+  /// last of `choices`); which ones, by the order of the choices and by softness.
   double take_last(const RowBlock& front, const std::array<std::vector<int>, 3>& choices,
                    Reflections& e) {
     Reflections rank = e;
@@ -147,9 +148,9 @@ struct Fronts {
     pivot_rows.push_back(std::move(rows));
   }
 
-  /// Rows left over wait for better pivots in what other fronts have too, but no more rows than
-  /// such pivots: in the others all that is read elsewhere is small, and their own pivots are taken
-  /// after all. Multipliers are bounded by what is small there. Returns the rows that wait.
+  /// Remaining rows wait for better pivots in columns that other fronts have too, but no more rows
+  /// than such pivots: the other rows are small in all columns that are read elsewhere, and their
+  /// own pivots are taken after all. That bounds the multipliers. Returns the rows that wait.
   MatrixXd take_beside(const RowBlock& front, const Reflections& e) {
     MatrixXd rows = e.matrix().bottomRows(e.matrix().rows() - e.done());
     if (rows.rows() == 0) return rows;
@@ -179,7 +180,7 @@ struct Fronts {
     return left;
   }
 
-  /// What is left of the front: rows without a pivot, and the columns that are not eliminated.
+  /// The remaining front: rows without a pivot, and the columns that are not eliminated.
   void shrink(int f, const MatrixXd& rows, bool no_unknowns) {
     RowBlock& front = fronts[at(f)];
     RowBlock left;
@@ -311,7 +312,7 @@ struct Fronts {
   }
 };
 
-/// In units of energy, beside the softest; what stores none is as soft.
+/// In units of energy, relative to the softest; a column that stores none is as soft.
 Eigen::VectorXd softness(const Relations& scaled, const Factors& factors) {
   Eigen::VectorXd result = scaled.weight.cwiseQuotient(factors.column);
   const double softest = result.size() == 0 ? 0 : result.maxCoeff();

@@ -69,8 +69,8 @@ struct IntegralFinder {
     return result;
   }
 
-  /// What shows the rates of states (C, rows x states) as the same of these states themselves;
-  /// false if it shows more.
+  /// A reading of the rates of states (C, rows x states) as the same of these states themselves;
+  /// false if it reads more.
   bool add_positions(Form& form, int node, MatrixXd C) const {
     MatrixXd result = MatrixXd::Zero(C.rows(), C.cols());
     for (Index j = 0; j < C.cols(); ++j)

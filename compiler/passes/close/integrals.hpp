@@ -6,16 +6,16 @@
 
 namespace titop::passes::closing {
 
-/// What an Integrator integrates, as a displacement: its output is the displacement's rate
-/// (level 1) or the displacement itself (level 2).
+/// The displacement that an Integrator integrates: its output is the displacement's rate (level 1)
+/// or the displacement itself (level 2).
 struct Integral {
   int node = -1, level = 1;
   Form form;
 };
 
 /// All Integrators whose input has one level: accelerations (level 1), or rates and Integrators of
-/// accelerations (level 2). A signal that is neither counts as what stands beside it; what mixes
-/// levels, or integrates a position, is not listed and keeps its states.
+/// accelerations (level 2). A signal that is neither has the level of the other terms; an input of
+/// mixed levels, or a position, is not listed and keeps its states.
 std::vector<Integral> integrals(const Graph& graph, const Motion& motion, const Twins& twins,
                                 const Coordinates& coordinates, ParameterValues values);
 

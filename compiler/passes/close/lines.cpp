@@ -24,7 +24,7 @@ std::vector<int> groups(const std::vector<Line>& lines) {
   return result;
 }
 
-/// Scalars with an entry other than 0, in order, with what they mean.
+/// Scalars with an entry other than 0, in order, with their meaning.
 std::map<Scalar, Meaning> scalars_of(const std::vector<Line>& lines, const std::vector<int>& own,
                                      const Classify& classify) {
   std::map<Scalar, Meaning> result;

@@ -29,7 +29,7 @@ struct Component {
   Relations relations = {};
 };
 
-/// What a scalar column is; none: it is 0 and left out.
+/// Meaning of a scalar column; none: it is 0 and left out.
 struct Meaning {
   Relations::Role role = Relations::Role::unknown;
   double weight = 0;

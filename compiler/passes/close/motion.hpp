@@ -33,8 +33,8 @@ struct Tie {
 };
 
 /// A closing equation: form + gap * (position of the meeting point) = 0, where `gap` is 0 if the
-/// geometry closes. Ties that leave translations free do not say where their points are: what such
-/// a lever arm makes of the gap is in the form.
+/// geometry closes. Ties that leave translations free do not determine the distance of their
+/// points: the effect of such a lever arm on the gap is contained in the form.
 struct Closing {
   const Tie* tie = nullptr;
   Form form = {};
@@ -43,8 +43,9 @@ struct Closing {
   std::vector<int> equations = {};  ///< ties on the way round, this one too
 };
 
-/// When a spanning forest takes what stands on the ground. `last`: a chain that closes without the
-/// ground is then seen as one, whatever the names; the ground itself has no geometry.
+/// Order in which a spanning forest takes parts mounted on the ground. `last`: a chain that closes
+/// without the ground is then found as one, independent of names; the ground itself has no
+/// geometry.
 enum class Ground { by_name, last };
 
 /// Points (channels) and the ground, joined by bodies and by equations: a spanning forest, body
@@ -52,18 +53,17 @@ enum class Ground { by_name, last };
 /// block's default direction last.
 class Motion {
  public:
-  /// `released`: by `chains`, from these equations; the ways round go through what they were.
+  /// `released`: by `chains`, from these equations; the ways round use the original equations.
   Motion(const Graph& graph, ParameterValues values, const Twins& twins,
          Ground ground = Ground::by_name, std::span<const Released> released = {});
 
   const std::vector<Tie>& ties() const { return ties_; }
-  /// Both ways from the tie to where they meet: what lies beyond the chain is exactly 0. The way
+  /// Both ways from the tie to their meeting point: beyond the chain all is exactly 0. The way
   /// round is the tree's, or a shorter one through ties that close chains themselves, by a shorter
-  /// way in the tree (of equals those before it): then it is the tree's closing equation less
-  /// some of theirs, and a ladder's rungs close a bay each. What `chains` has released of theirs
-  /// follows in turn from closing equations before: all together say the same. Ties that let go in
-  /// some direction are no such way. Some 600 edges are looked at, else up to 16 per edge of the
-  /// tree's way.
+  /// way in the tree (of equals those before it): then it is the tree's closing equation minus some
+  /// of theirs, and a ladder's rungs close a bay each. The parts that `chains` has released of
+  /// theirs follow from earlier closing equations: all together are equivalent. Released ties are
+  /// no such way. Some 600 edges are searched, else up to 16 per edge of the tree's way.
   Closing closing(const Tie& tie) const;
   /// Position of a point from the root of its assembly.
   Form position(int channel) const;
@@ -82,8 +82,8 @@ class Motion {
     int to = -1, from = -1;  ///< x_to = R x_from + own
     Eigen::MatrixXd R = {};
     Form own = {};
-    bool rigid = true;     ///< keeps what is rigid rigid: no gear
-    int silent = -1;       ///< node whose ports are anywhere
+    bool rigid = true;     ///< maps rigid motions to rigid ones: no gear
+    int silent = -1;       ///< node without kinematics of its ports
     bool one_way = false;  ///< R has no inverse
     int equation = -1;     ///< of a tie
   };
@@ -125,7 +125,7 @@ class Motion {
   Edge edge_between(int point, int next, Tie::Rank rank) const;
   /// The two ways from the ends of a tie to where they meet.
   std::pair<Way, Way> ways(const Tie& tie) const;
-  /// sum += factor * x_point, along the way; what multiplies its end.
+  /// sum += factor * x_point, along the way; returns the factor of its end.
   Eigen::MatrixXd walk(Sum& sum, Eigen::MatrixXd factor, const Way& way) const;
   void add_root(Sum& sum, const Eigen::MatrixXd& factor, int root) const;
   /// sum += gap * x_point, from the root of its assembly.

@@ -22,20 +22,20 @@ constexpr double kRounding = 64 * 2.2e-16;  ///< per column of an orthonormal ba
 constexpr int kFewColumns = 6;              ///< fewer count as so many
 constexpr double kMostly = 0.5;  ///< less of a unit vector in the span: no need to look closely
 
-/// Rows, and which of their columns no later part has: in these the rows span what `basis` spans
-/// (columns), and the rows are `factor` basis'.
+/// Rows, with the columns that no later part has (`own`): in these the rows span the columns of
+/// `basis`, and the rows are `factor` basis'.
 struct Part {
   std::vector<int> own, others;
   MatrixXd basis, factor, rest;  ///< rest: rows x others
 
-  /// Of a vector over `own`: what is not in the span.
+  /// Of a vector over `own`: the norm outside the span.
   double outside(const VectorXd& v) const { return (v - basis * (basis.transpose() * v)).norm(); }
   double rounding() const {
     return kRounding * static_cast<double>(std::max<Index>(basis.cols(), kFewColumns));
   }
 };
 
-/// Adds to `known` (orthonormal rows) what is new in these rows.
+/// Adds to `known` (orthonormal rows) the new directions of these rows.
 Redundant by_singular_values(const MatrixXd& rows, MatrixXd& known) {
   Redundant result;
   MatrixXd left = rows;
@@ -168,8 +168,8 @@ struct RedundancyFinder {
     for (const auto& [of, members] : sets) decide(members);
   }
 
-  /// Goes along the blocks with what those so far say of the columns that are still to come: a
-  /// combination of them in which another column stays is nothing that a block could repeat.
+  /// Goes along the blocks with the relations of earlier ones between columns that are still to
+  /// come: a combination with another remaining column cannot be repeated by a block.
   void decide(const std::vector<int>& members) {
     std::map<int, int> last;  // per column
     for (const int b : members)
@@ -218,7 +218,7 @@ struct RedundancyFinder {
         std::lower_bound(part.own.begin(), part.own.end(), column) - part.own.begin();
     if (part.basis.row(place).squaredNorm() < kMostly) return false;
     if (part.outside(VectorXd::Unit(part.basis.rows(), place)) > part.rounding()) return false;
-    std::map<int, double> left;  // what the rows have elsewhere
+    std::map<int, double> left;  // of the rows in other columns
     const double size = subtract(part, VectorXd::Unit(part.basis.rows(), place), left);
     return cancels(std::move(left), std::max(1.0, size));
   }

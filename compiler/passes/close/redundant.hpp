@@ -13,20 +13,20 @@ struct Redundant {
   bool doubtful() const { return weakest < kNarrow || dropped > kNothing; }
 };
 
-/// What scaled relations say, and what they say twice.
+/// Redundancy of scaled relations.
 struct Redundancy {
   std::vector<Redundant> blocks = {};  ///< per block
-  std::vector<int> held = {};          ///< columns that are 0 in all that the relations leave
+  std::vector<int> held = {};          ///< columns that are 0 in all solutions of the relations
   int widest = 0;                      ///< columns that were open at once
 };
 
-/// Rows that alone have some columns follow from nothing, and nothing from them: they are set aside
-/// until every column that is left has more than one block, or the rows there less than full rank
-/// (pivots of 1e-3). What is left is decided in order, by singular values above kRankTolerance of
-/// what is new; what was found is set aside in turn, as soon as no block to come has its columns. A
-/// column is held if its unit vector is in the span of all rows. O(entries) where every chain has a
+/// Rows that alone have some columns depend on no others, and no others on them: they are set aside
+/// until every remaining column has more than one block, or the rows there less than full rank
+/// (pivots of 1e-3). The rest is decided in order, by singular values above kRankTolerance of the
+/// new part; decided rows are set aside in turn, as soon as no block to come has their columns. A
+/// column is held if its unit vector is in the span of all rows. O(entries) if every chain has a
 /// body of its own; else rows * open^2, `open` the columns between a block and those to come: a few
-/// where blocks come `along` a truss.
+/// if blocks come `along` a truss.
 Redundancy redundancy(const Relations& scaled);
 
 }  // namespace titop::passes::closing

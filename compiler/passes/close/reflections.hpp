@@ -22,7 +22,7 @@ class Reflections {
   /// The largest norm among these columns, of those without a pivot.
   double largest(const std::vector<int>& columns) const;
 
-  /// What makes a pivot a better one.
+  /// Preference among pivots.
   struct Choice {
     Eigen::VectorXd worth = {};  ///< per column: norms are multiplied by it; empty: all 1
     double share = 0;            ///< a pivot is worth more than this times the best of `rivals`

@@ -37,29 +37,29 @@ struct Relations {
   Eigen::VectorXd weight = {};  ///< 1 / sqrt(stiffness) where the coordinate stores energy, else 0
 };
 
-/// By what rows and columns were multiplied.
+/// Factors of rows and columns.
 struct Factors {
   std::vector<Eigen::VectorXd> row;  ///< per block
   Eigen::VectorXd column;
 };
 /// Scales the relations into a balance, which is geometry alone: the squares of every free column
 /// sum to 1, and those of every unit (rows of one number: the translations or rotations of a
-/// closing equation) to what it has if each of its free columns is spread evenly over the units
-/// where it counts, and 1 for its columns that store energy. These stay as they are, shapes of unit
-/// modal mass or deflections, however stiff: a mode that hardly moves the chain (an entry of
-/// rounding, at a node of its shape) must not look like one that does. Of what counts there is one
-/// such balance and no other [Sinkhorn, Knopp 1967], which sweeps approach until none changes a
-/// factor by 2 %, a hundred at most: it depends neither on units of rows and free columns (they are
-/// factors themselves), nor on the frame (three rows count by their norm), nor on how stiff
-/// anything is. For a chain of hinges it finds the length that levers are measured by, from all
-/// joints together; where a lever is tiny, its joint's translations do not count, and no row
-/// depends on it. Taken before any elimination (afterwards noise would become 1). O(entries) per
-/// sweep; few are needed, from a start nearly in balance.
+/// closing equation) to the sum for an even distribution of each of its free columns over the units
+/// in which it counts, plus 1 for its columns that store energy. Columns that store energy are not
+/// scaled, whether shapes of unit modal mass or deflections, of any stiffness: a mode that hardly
+/// moves the chain (an entry of rounding, at a node of its shape) must not look like one that does.
+/// Such a balance of the counting entries exists and is unique [Sinkhorn, Knopp 1967]; sweeps
+/// approach it until none changes a factor by 2 %, a hundred at most: it depends neither on units
+/// of rows and free columns (they are factors themselves), nor on the frame (three rows count by
+/// their norm), nor on stiffnesses. For a chain of hinges it finds the reference length of levers,
+/// from all joints together; if a lever is tiny, its joint's translations do not count, and no row
+/// depends on it. To be used before any elimination (afterwards noise would become 1). O(entries)
+/// per sweep; few are needed, from a start nearly in balance.
 Factors scale(Relations& relations);
 
-/// z_dependent = sum of factor * z, for coordinates and integrals; in turn: what stands on the
-/// right is independent, or follows already. (Written in independent coordinates only, a ladder's
-/// rungs would follow from all bays before them, each.)
+/// z_dependent = sum of factor * z, for coordinates and integrals; in order: those on the right are
+/// independent, or dependent ones earlier in the list. (In independent coordinates only, each of a
+/// ladder's rungs would depend on all bays before it.)
 struct Independent {
   struct Follows {
     int dependent = -1;
@@ -71,15 +71,15 @@ struct Independent {
   bool doubtful() const { return weakest < kNarrow || dropped > kNothing; }
 };
 
-/// Householder elimination with column pivoting, block by block: what is read in one block only is
-/// eliminated there, the blocks that are left merge two by two, the smallest first. In each block
+/// Householder elimination with column pivoting, block by block: columns of one block only are
+/// eliminated there, the remaining blocks merge two by two, the smallest first. In each block
 /// unknowns come first, then `preferred` columns (rows wait for one that other blocks have too) and
-/// integrals while their pivots keep 1e-3 (in the last block, of the best there), then all
+/// integrals while their pivots are above 1e-3 (in the last block, of the best there), then all
 /// coordinates; until the last block only by pivots that are as good as others'. Whether there is a
-/// pivot is decided on the balance, which of those there are is taken in units of energy (eta by
-/// 1/omega): soft modes become dependent, whatever stands beside them. Ties go to the first column.
-/// O(columns) where every chain has a body of its own, about columns^1.5 for planar grids of
-/// chains; O(rows^2 columns) of blocks that merge without leaving anything behind.
+/// pivot is decided on the balance, which one is taken in units of energy (eta by 1/omega): soft
+/// modes become dependent, independent of their neighbours. Ties go to the first column. O(columns)
+/// if every chain has a body of its own, about columns^1.5 for planar grids of chains; O(rows^2
+/// columns) of blocks that merge without eliminating any column.
 Independent independent(Relations relations, const std::vector<int>& preferred = {});
 
 }  // namespace titop::passes::closing

@@ -10,25 +10,25 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// A lever of less than this beside those of its chain makes its joint's column a rotation, and one
-/// that is longer by as much a translation: what such a lever is to the last digit must not say how
-/// the joint counts.
+/// A lever below this share of those of its chain makes its joint's column a rotation, and one that
+/// is longer by as much a translation: the digits of such a lever must not influence how the joint
+/// counts.
 constexpr double kLever = 1e-5;
 
 /// Sweeps end when they change no factor by more: ranks are decided between digits, not within one.
 constexpr double kSettled = 1.02;
 constexpr int kMostSweeps = 100;
 
-/// The rows of one unit in one column: the norm of what stands there.
+/// The rows of one unit in one column: their norm.
 struct Entry {
   int unit = 0, column = 0;
   double size = 0;
   bool counts = true;  ///< it is no tiny lever, nor beside a very long one
 };
 
-/// Units are rows of one number. A start goes from what has its factor to what it reaches, so that
-/// units of measurement leave no trace; sweeps then balance all of it, and leave none of where the
-/// start began.
+/// Units are rows of one number. The start goes from entries with a factor to their neighbours, so
+/// that units of measurement have no influence; sweeps then balance all, independent of the place
+/// of the start.
 struct Scaling {
   Relations& r;
   std::vector<Entry> entries = {};
@@ -106,8 +106,8 @@ struct Scaling {
     return result;
   }
 
-  /// Every column is spread evenly over the units where it counts: so a balance of what counts
-  /// exists, and there is one only. Columns of fixed size count for one, all of a unit together.
+  /// Every column is spread evenly over the units in which it counts: so a balance exists and is
+  /// unique. Columns of fixed size count for one, all of a unit together.
   void find_shares() {
     row.assign(of_unit.size(), 0);
     share.assign(of_unit.size(), 0);
@@ -127,8 +127,8 @@ struct Scaling {
 
   double scaled(const Entry& e) const { return e.size * row[at(e.unit)] * column[at(e.column)]; }
 
-  /// By its largest entry in columns that have a factor; the columns that it reaches. A first unit
-  /// takes what does not count too, and has any factor where no column has one.
+  /// By its largest entry in columns that have a factor; adds the columns that it reaches. A first
+  /// unit takes entries that do not count too, and has any factor if no column has one.
   bool start_unit(int unit, bool first, std::vector<int>& reached) {
     if (row[at(unit)] != 0) return false;
     double largest = 0, size = 0;
@@ -179,7 +179,7 @@ struct Scaling {
     for (std::size_t j = 0; j < fixed.size(); ++j)
       if (fixed[j] != 0) add_units(static_cast<int>(j), units);
     spread(std::move(units));
-    for (std::size_t u = 0; u < row.size(); ++u)  // what no energy reaches
+    for (std::size_t u = 0; u < row.size(); ++u)  // units that no energy reaches
       if (std::vector<int> reached; start_unit(static_cast<int>(u), true, reached))
         spread(start_columns(std::move(reached)));
     for (auto* factors : {&row, &column})
@@ -206,7 +206,7 @@ struct Scaling {
     return change;
   }
 
-  /// Free columns to 1 with what does not count.
+  /// Scales free columns to 1, including entries that do not count.
   void finish() {
     std::vector<double> sum(column.size(), 0);
     for (const Entry& e : entries) sum[at(e.column)] += scaled(e) * scaled(e);

@@ -94,8 +94,8 @@ MatrixXd dense(const Component& c) {
   return result;
 }
 
-/// The span of the columns of m, and what is orthogonal to it. As reflectors one after the other: a
-/// basis written out would have as many numbers as m has rows, squared.
+/// The span of the columns of m, and its orthogonal complement. As reflectors one after the other:
+/// a basis written out would have as many numbers as the square of m's rows.
 class Span {
  public:
   explicit Span(const MatrixXd& m) : qr_(m) {
@@ -111,7 +111,7 @@ class Span {
     x.tail(left_out()) = coordinates;
     return qr_.householderQ() * x;
   }
-  /// The length of what lies outside the span.
+  /// The norm of the component outside the span.
   double outside_of(const VectorXd& x) const {
     const VectorXd along = qr_.householderQ().transpose() * x;
     return along.tail(left_out()).norm();

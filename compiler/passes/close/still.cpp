@@ -29,7 +29,7 @@ std::vector<Closing> without_hanging(const std::vector<Closing>& closings) {
 /// far end), with the gains and sums that they read.
 std::vector<char> placing(const Graph& g, const Motion& motion,
                           const std::vector<Closing>& closings) {
-  std::vector<int> equation_of(g.signals.size(), -1);  // of what is no side of a channel
+  std::vector<int> equation_of(g.signals.size(), -1);  // of signals outside channels
   for (int e = 0; e < static_cast<int>(g.equations.size()); ++e)
     if (const int target = g.equations[at(e)].target; g.signals[at(target)].channel < 0)
       equation_of[at(target)] = e;

@@ -3,17 +3,17 @@
 #include <set>
 #include <titop/compiler/passes/close/lines.hpp>
 
-/// What closed chains hold altogether: points that cannot move though nothing says so.
+/// Points immobilised by loop constraints.
 namespace titop::passes::closing {
 
-/// Scalars that are 0 in every motion that the closed chains leave; what the equations prescribe is
-/// none.
+/// Scalars that are 0 in every motion that the closed chains allow; prescribed motions are not
+/// included.
 using AtRest = std::set<Scalar>;
 
-/// Points that closed chains hold by their numbers: the elimination would find rounding in place of
-/// their accelerations. The chains' own equations need them, for the forces, and so do bodies that
-/// `lower` has turned into equations; whatever else reads one reads nothing, so that outputs are 0
-/// and what hangs there stands on the ground.
+/// Sets the motion of points that closed chains immobilise by their numbers to 0: the elimination
+/// would find rounding instead of their accelerations. The chains' own equations keep them, for the
+/// forces, and so do bodies that `lower` has turned into equations; all other equations lose their
+/// terms, so that outputs are 0 and bodies mounted there are on the ground.
 void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& closings,
                 const AtRest& held);
 

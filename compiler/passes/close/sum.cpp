@@ -12,7 +12,7 @@ using linalg::at;
 
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kUnits = 32;     ///< of rounding in a product of any two matrices of six
-constexpr double kUnitsEach = 2;  ///< more with every factor: what a product of six sums adds
+constexpr double kUnitsEach = 2;  ///< more with every factor: rounding of a product of six sums
 
 /// 0 for translations, 1 for rotations, of six.
 std::size_t half(Index i, Index count) { return count == 6 && i >= 3 ? 1 : 0; }

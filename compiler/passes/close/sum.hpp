@@ -10,9 +10,9 @@ namespace titop::passes::closing {
 /// Of rows among the six of a point (or its one): 0 for a translation, 1 for a rotation.
 std::vector<int> units_of_rows(const Eigen::MatrixXd& S);
 
-/// A form that is added up along the ways round a chain, with the rounding that is in its entries.
-/// Rows are scaled by what they have: a row of which rounding alone is left, because a chain says
-/// nothing there, would say that something does not move.
+/// A form that is summed along the ways round a chain, with the rounding of its entries. Rows are
+/// scaled by their entries later: a row at rounding level, of a direction without a constraint,
+/// would then become one.
 class Sum {
  public:
   /// `units`: per row 0 for a translation, 1 for a rotation.

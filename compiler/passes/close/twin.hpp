@@ -6,7 +6,7 @@
 
 namespace titop::passes::closing {
 
-/// A sum of signals read at position level: points of bodies, and what is not one.
+/// A sum of signals at position level: points of bodies, and other signals.
 struct Twin {
   std::map<int, Eigen::MatrixXd> points;     ///< channel -> coefficient of its position
   std::map<int, Eigen::MatrixXd> rates;      ///< one-way output of a velocity -> coefficient
@@ -22,7 +22,7 @@ class Twins {
   explicit Twins(const Graph& graph);
   /// O(terms that it stands for, counted along every way through gains and sums).
   Twin of(const std::vector<Term>& terms) const;
-  /// Of the input of a one-way port: what its equation says.
+  /// Of the input of a one-way port, by its equation.
   Twin of_input(int signal) const;
   bool is_integrator(int node) const;
 

@@ -10,8 +10,8 @@ namespace {
 
 using linalg::at;
 
-constexpr int kTreeWays = 16;  ///< what a search for a shorter way may cost, in the tree's
-constexpr int kNear = 40;      ///< a way of fewer edges is looked for first: a bay of a ladder
+constexpr int kTreeWays = 16;  ///< cost of a search for a shorter way, in ways of the tree
+constexpr int kNear = 40;      ///< a way of fewer edges is searched first: a bay of a ladder
 
 }  // namespace
 
