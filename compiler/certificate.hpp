@@ -66,7 +66,7 @@ struct Certificate {
   int fronts = 0;         ///< of the elimination
   int fronts_made = 0;    ///< of them, by the last compile or update; the others are shared
   int plans_renewed = 0;  ///< updates since compile that found the scaling, or all, anew
-  double seconds = 0;     ///< what this check cost
+  double seconds = 0;     ///< of this check
 };
 
 /// One line per item, in plain words.
