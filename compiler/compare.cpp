@@ -14,8 +14,8 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
 constexpr double kCancelled = 1e-3;  ///< of the terms
-/// Of its neighbours: 32 digits may leave 1e-26 of a 0, which is then 1e-8 of this, as much as is
-/// allowed; double leaves 1e-17.
+/// Of its neighbours: a 0 in 32 digits may be 1e-26, which is then 1e-8 of this, the limit; in
+/// double it is 1e-17.
 constexpr double kFinest = 1e-18;
 /// Of its neighbours: more rounding than that is no 0 that double misses, but digits lost.
 constexpr double kOfNothing = 1e-6;
@@ -158,7 +158,7 @@ MatrixXd terms(const System& system, const std::vector<std::complex<double>>& po
           system.transfer(s, Precision::standard) - system.transfer(s, Precision::extended);
       result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());
     } catch (const Error&) {
-      // No digit is left there in one of the two: other points must do.
+      // No digit there in one of the two: other points must suffice.
     }
   return result;
 }

@@ -166,7 +166,7 @@ solve::RowMatrix<T> Evaluation<T>::values_of(const solve::RowMatrix<T>& unknowns
     }
     if (!s.active) continue;
     const solve::Dense<T>& X = of_node_[at(s.node)]->X;
-    for (int k = g.nodes[at(s.node)].first_signal; k < i; ++k)  // inputs stand before states
+    for (int k = g.nodes[at(s.node)].first_signal; k < i; ++k)  // inputs come before states
       if (const Signal& in = g.signals[at(k)]; in.role == Signal::Role::input)
         result.middleRows(first[at(i)], s.size) +=
             X.middleCols(in.first, in.size).lazyProduct(result.middleRows(first[at(k)], in.size));

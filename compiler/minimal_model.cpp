@@ -15,7 +15,7 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// The minimal order where exact arithmetic is asked for and has found it; -1: not.
+/// The minimal order if exact arithmetic is enabled and has found it; else -1.
 int exact_order_of(const SystemData& d, int states) {
   if (states > d.skeleton->options.exact_up_to) return -1;
   // Blocks' states that follow from others count there, and so do integrators of positions.
@@ -70,7 +70,7 @@ StateSpace with_certain_ports(const System& system, const SystemData& d, const S
   return part;
 }
 
-/// Of entries that keep fewer digits, rounding may be all that is left of a mode's.
+/// Of entries with fewer digits, a mode's part may be rounding.
 constexpr double kUnclearDigits = 1e-3;
 
 /// Every port is judged by its own size, so one at rounding level would count as moved and seen. If
@@ -142,7 +142,8 @@ Change change(const System& system, const SystemData& d, const StateSpace& dense
   return worst;
 }
 
-/// Where the change was not measured; where it was not at all, nothing may leave.
+/// Notes the points at which the change was not measured; without any measurement no mode may
+/// leave.
 void say_left_out(const SystemData& d, const Change& by) {
   if (by.left_out.empty()) return;
   const auto smaller = [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); };

@@ -19,7 +19,7 @@ using solve::lifted;
 
 /// Of refinement, at most: at kShrinks each they lead to 1e-18.
 constexpr int kSteps = 30;
-/// A change of the outputs by more asks for another step, whatever T.
+/// A larger change of the outputs needs another step, for any T.
 constexpr double kSettled = 1e-12;
 /// Where steps shrink by less, refinement ends: at the rounding of T, or with no result where it
 /// has not come so far.
@@ -140,8 +140,7 @@ Eigen::MatrixX<bool> nothing_beside(const Eigen::MatrixXd& size, double limit) {
          size.array() <= std::sqrt(limit) * row.min(col);
 }
 
-/// Blocks that are nothing but the rounding of T, or that of frames; none said where T has no digit
-/// of any.
+/// Blocks at the rounding level of T, or of frames; none if T has no digit of any block.
 template <class T>
 std::optional<Eigen::MatrixX<bool>> zeros_in(const SystemData& d) {
   try {
@@ -229,8 +228,8 @@ bool at_most(const Eigen::ArrayXd& change, const Eigen::ArrayXd& limit) {
 
 }  // namespace
 
-/// The step of refinement from here. `rounding`: about the error that the rounding of T leaves in
-/// the outputs, if it is asked for: beside mass ratios of 1e18 32 digits leave few.
+/// The step of refinement from here. `rounding`, if given: about the error of the outputs by the
+/// rounding of T: at mass ratios of 1e18, 32 digits leave few.
 template <class T>
 solve::RowMatrix<std::complex<double>> Evaluation<T>::change_by(
     const Evaluation<std::complex<double>>& coarse, double* rounding) const {

@@ -73,7 +73,7 @@ solve::Response<T> modal_response(const Block& block, const Modal& m, const T& s
 /// rounding does not, and this much is usual in an LU.
 constexpr double kTerms = 100;
 
-/// The precision that is taken where one leaves too few digits; void: there is none.
+/// The precision to use if one leaves too few digits; void: there is none.
 template <class T>
 struct Finer {
   using type = void;
@@ -232,7 +232,7 @@ template <class T>
 void Resolvent<T>::apply(Index columns, T* r) const {
   if (modal_) return apply_modes(columns, r);
   const T* const lu = lu_.data();
-  // L stands in the last order of the rows: all of them change places first.
+  // L is in the last order of the rows: all of them change places first.
   for (Index k = 0; k < n_; ++k)
     if (row_[at(k)] != k) swap_rows(n_, columns, r, k, row_[at(k)]);
   for (Index k = 0; k < n_; ++k) reduce(n_, lu, k, columns, r);

@@ -28,7 +28,7 @@ class Resolvent {
   const Modal* modal_;
   T s_;
   Eigen::Index n_;
-  // Small blocks are many: no memory is asked for.
+  // Small blocks are many: no memory is allocated for them.
   boost::container::small_vector<T, 16> lu_;             ///< column-major; empty with modes
   boost::container::small_vector<Eigen::Index, 4> row_;  ///< that changed places with row k then
 };

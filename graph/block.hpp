@@ -69,8 +69,8 @@ struct Gains {
   Eigen::MatrixXd gain;
 };
 
-/// xdot = A x + B u, y = C x + D u, in the order of `Interface`. A block that has the modal form
-/// may say so: everything is then faster, and no different.
+/// xdot = A x + B u, y = C x + D u, in the order of `Interface`. A block with a modal form may
+/// provide it: the results are the same, and faster.
 ///
 /// An algebraic block of very many ports gives D by its nonzero blocks, one per pair of ports,
 /// ascending by row and then by column; D is then 0 x 0.

@@ -64,7 +64,8 @@ Matrix as_declared(const Graph& g, const Matrix& m) {
   return result;
 }
 
-/// Points of the grid and the factors' transfers there; those that have none are left out and said.
+/// Points of the grid and the factors' transfers there; points without one are left out, with a
+/// note.
 std::vector<MatrixXcd> factored_at(const System& system, std::vector<Complex>& points,
                                    FullCertificate::Grid& grid) {
   std::vector<MatrixXcd> list;
@@ -115,8 +116,8 @@ void check_dense(const System& system, const detail::Rounded& before,
   grid.dense_s = points[found.point];
 }
 
-/// Solved all at once in double, the equations lose digits of their own, which says nothing of the
-/// model: all blocks count over the measure's terms where these are more.
+/// Solved all at once in double, the equations lose digits of their own, which is no error of the
+/// model: all blocks are measured by the measure's terms if these are larger.
 void check_written(const System& system, const Full& what, const std::vector<Complex>& points,
                    const std::vector<MatrixXcd>& factored, detail::Measure measure,
                    FullCertificate::Grid& grid) {

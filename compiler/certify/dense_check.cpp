@@ -70,7 +70,7 @@ Response by_factors(const SystemData& d, const solve::RowMatrix<double>& x,
           terms.cwiseMax(both(off.xdot(), off.outputs()).cwiseAbs())};
 }
 
-/// Columns of [xdot; y]: states alone and inputs alone, whatever their units, neither hides the
+/// Columns of [xdot; y]: states alone and inputs alone, so that in any units neither hides the
 /// other.
 constexpr Index kAlone = 2;
 
@@ -223,9 +223,9 @@ Tried tried(const SystemData& d, const MatrixXd& A, const solve::RowMatrix<T>& u
   return result;
 }
 
-/// Inputs of one unit side by side in one column, at random; in two where they are few: by luck one
-/// sample of rounding may be nothing. Those of many units must share columns, scaled so that they
-/// push the states alike.
+/// Inputs of one unit side by side in one column, at random; in two if they are few: by chance one
+/// sample of rounding may be small. Those of many units must share columns, scaled so that they
+/// have effects of like size on the states.
 solve::RowMatrix<T> tried_inputs(const StateSpace& m, const std::vector<int>& units) {
   const Index n = std::ssize(units), columns = 2 * n <= kColumns ? 2 * n : std::min(n, kColumns);
   solve::RowMatrix<T> u = solve::RowMatrix<T>::Zero(m.B.cols(), columns);
@@ -311,8 +311,8 @@ std::vector<Sample> sample(const SystemData& d, const StateSpace& m, const solve
 
 constexpr double kDigit = 10;  ///< times its rounding: has a digit
 
-/// An output that the factors have digits of at some s says nothing where they have none, as far
-/// below the modes of closed chains: it does not count there, and the s is said.
+/// An output that has digits in the factors at some s gives no verdict where it has none, such as
+/// far below the modes of closed chains: it does not count there, and the s is reported.
 void leave_out_lost(std::vector<Sample>& samples, std::vector<T>& not_tried) {
   const auto known = [](const Sample& p) {
     return Eigen::ArrayXX<bool>(p.sizes.value.array() > kDigit * p.sizes.rounding.array());

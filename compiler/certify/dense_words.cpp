@@ -100,7 +100,7 @@ void require_written(const SystemData& d, const StateSpace& m) {
 
 namespace {
 
-constexpr double kLost = 1e-9;  ///< of the outputs: more than this is said
+constexpr double kLost = 1e-9;  ///< of the outputs: a larger error is reported
 /// Of outputs where they are small: an acceleration far below the modes loses some as it is.
 constexpr double kLostWhereSmall = 1e-6;
 constexpr double kAnotherDigit = 10;

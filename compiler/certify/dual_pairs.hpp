@@ -25,8 +25,8 @@ struct DualPairs {
       "no output is the acceleration where an input acts as a force";
 };
 
-/// Of the diagram as written: an input that does nothing but push on channels, and the first output
-/// that sees the motions of the same ones with the same weights. O(inputs * outputs).
+/// Of the diagram as written: an input that only pushes on channels, and the first output that sees
+/// the motions of the same ones with the same weights. O(inputs * outputs).
 DualPairs dual_pairs(const Graph& graph, ParameterValues values);
 
 /// The transfers between them, at some points.

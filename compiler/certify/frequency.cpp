@@ -26,8 +26,8 @@ double by_longer_ways(const MatrixXd& A, double size) {
 
 }  // namespace
 
-// Products of entries along round trips do not change with the units of the states, as single
-// entries do: the 1 between position and rate would stand for a frequency otherwise.
+// Products of entries along round trips are independent of the units of the states, single entries
+// are not: the 1 between position and rate would pass for a frequency.
 double frequency_of(const MatrixXd& A) {
   double square = 0;
   for (Index j = 0; j < A.cols(); ++j)

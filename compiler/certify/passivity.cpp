@@ -10,8 +10,7 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-/// Of the largest entry that shares its units: less is rounding, along an axis that something
-/// holds.
+/// Of the largest entry that shares its units: less is rounding, along a locked axis.
 constexpr double kOfUnit = 64 * 2.2e-16;
 
 /// Possible rounding of each entry of G / s.

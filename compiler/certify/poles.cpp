@@ -13,7 +13,8 @@ using Eigen::VectorXcd;
 using Eigen::VectorXd;
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
-/// A pole that rounding of A may move by more than this, of its size, says nothing about the model.
+/// A pole that rounding of A may move by more than this, relative to its size, gives no verdict on
+/// the model.
 constexpr double kMeasurable = 1e-8;
 /// Of its size: a pole of the minimal model is one of the whole, but for the rounding of both.
 constexpr double kSamePole = 1e-6;

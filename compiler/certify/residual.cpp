@@ -42,7 +42,7 @@ struct Balance {
   };
   boost::container::small_vector<Row, 8> row = {};
   const MatrixXd* part = nullptr;  ///< rows of the target; none: all of it
-  int unit = 1;                    ///< entries of the target that share one; 0: not told apart
+  int unit = 1;                    ///< entries of the target that share one; 0: not distinguished
   bool known = true;
 
   void start(Eigen::Index rows, int of_target, const MatrixXd* part_of_target = nullptr) {
@@ -154,9 +154,9 @@ struct Residual {
     return s.active || s.role == Signal::Role::external;
   }
 
-  /// The equation for this signal (-1: states) is complete. `name()` is only asked for where it is
-  /// needed. A signal that is 0 but for rounding (a gain of 0, a pinned point) or underflow (far
-  /// down a long chain) does not count.
+  /// The equation for this signal (-1: states) is complete. `name()` is only called if it is
+  /// needed. A signal that is 0 up to rounding (a gain of 0, a pinned point) or underflow (far down
+  /// a long chain) does not count.
   template <class Name>
   void take(int signal, Name name) {
     if (!b.known) return;

@@ -46,7 +46,7 @@ class Surroundings {
   Surroundings(const SystemData& data, const solve::RowMatrix<double>& unknowns)
       : d_(data), unknowns_(unknowns) {}
 
-  /// Around an entry of a signal that unknowns stand for; 0 of a known one. O(1), once O(unknowns).
+  /// Around an entry of a signal in terms of unknowns; 0 of a known one. O(1), once O(unknowns).
   double size(int signal, Eigen::Index entry);
 
  private:

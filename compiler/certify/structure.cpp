@@ -96,8 +96,8 @@ class Connections {
     return moved;
   }
 
-  /// Until all equations hold: they follow one another, so that as many rounds do as stand in a
-  /// row. `update` says whether anything moved.
+  /// Until all equations are satisfied: they follow one another, so that the number of rounds is
+  /// that of the longest chain. `update` returns whether anything moved.
   template <class Update>
   void settle(const Update& update) const {
     bool moved = true;

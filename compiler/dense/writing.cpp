@@ -70,7 +70,7 @@ struct Builder {
       columns += w.sources[i].columns;
     }
     w.batches.push_back(w.sources.size());
-    // Neighbours in the model stand together.
+    // Neighbours in the model come together.
     for (std::size_t i = 0; i + 1 < w.batches.size(); ++i)
       std::ranges::sort(std::span(w.sources).subspan(w.batches[i], w.batches[i + 1] - w.batches[i]),
                         {}, [](const Writing::Source& s) { return std::pair(s.modal, s.first); });
@@ -124,7 +124,7 @@ struct Builder {
     const std::vector<int> source_of = modal_sources();
     for (const int i : layout.state_nodes) {
       const Node& node = g.nodes[at(i)];
-      // Coordinates move with their rates, whatever acts: no input enters their rows.
+      // Coordinates move with their rates, in any case: no input enters their rows.
       Writing::Target t;
       t.still = modes(i);
       if (w.reciprocity) t.source = source_of[at(i)];
@@ -161,7 +161,7 @@ struct Builder {
     }
   }
 
-  /// Those of a target stand in the order of the unknowns.
+  /// Sorts the coefficients of a target in the order of the unknowns.
   void place_coefficients(Writing::Target& t) {
     const solve::Plan& plan = *k.joint.plan;
     std::vector<int> variables;

@@ -44,11 +44,11 @@ struct Writing {
     Eigen::Index to = 0;  ///< column in [x; u], or first column among the coefficients
   };
 
-  /// Unknowns or rows that stand side by side.
+  /// Adjacent unknowns or rows.
   struct Range {
     Eigen::Index first = 0, size = 0;
   };
-  /// The next range; where it goes on with the last one, both are one.
+  /// Appends the next range; merges it with the last one if they are adjacent.
   static void add_range(std::vector<Range>& ranges, const Range& next);
 
   /// Rows of xdot or y: sum of coefficients times unknowns and of known terms.
@@ -83,7 +83,7 @@ struct Writing {
   Eigen::Index width(std::size_t batch) const;
 };
 
-/// That of the skeleton, made when first asked for; another where it does not fit.
+/// The skeleton's cached plan, made at the first call; a new one if it is stale.
 std::shared_ptr<const Writing> writing_of(const SystemData& data);
 
 }  // namespace titop::detail

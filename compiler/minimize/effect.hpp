@@ -11,8 +11,8 @@ namespace titop::modes {
 /// than the model.
 Minimized minimize_unmeasured(const StateSpace& model, const MinimizeOptions& options);
 
-/// Where modes that leave would be missed first: beside the slowest, a middle and the fastest of
-/// them, and the most visible one; for integrators, at `s` and far below.
+/// Points at which removed modes would be missed first: near the slowest, a middle and the fastest
+/// of them, and the most visible one; for integrators, at `s` and far below.
 std::vector<std::complex<double>> near_modes(std::vector<JudgedMode> modes, std::complex<double> s);
 
 /// Measures the change of the transfer from `whole`, entry by entry (compiler/compare.hpp).

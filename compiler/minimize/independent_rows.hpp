@@ -3,8 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-/// Which rows of a small matrix say something of their own, in any units. For the compiler's own
-/// files.
+/// Independent rows of a small matrix, in any units. For the compiler's own files.
 namespace titop::modes {
 
 /// Rows that no others make, and those that these make: M(out) = T M(keep).

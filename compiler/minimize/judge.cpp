@@ -18,7 +18,7 @@ constexpr double kNothing = 1e-17;
 /// effect.
 constexpr double kNarrow = 1e-14;
 constexpr double kDoubtful = 1e-9;  ///< above it a mode always stays
-constexpr double kFarOff = 1e-6;    ///< above it not even exact arithmetic makes a mode leave
+constexpr double kFarOff = 1e-6;    ///< above it not even exact arithmetic removes a mode
 
 using linalg::at;
 
@@ -86,7 +86,7 @@ Verdict judge(const ModeSet& m, Index j, double resolution) {
   return v;
 }
 
-/// Not told from 0 by double precision, and too narrow for it to matter if it is none.
+/// Zero to double precision, and too narrow to matter otherwise.
 bool is_zero(const Verdict& v) { return v.visibility <= v.bound && v.bound <= kNarrow; }
 
 /// Why a mode left, or may have to.
@@ -145,7 +145,7 @@ bool drop_down_to(int exact, int order, ModeSet& m, std::vector<Verdict>& verdic
     return left == 0;
   };
   if (drop([](const Verdict& v) { return v.visibility <= kFarOff; })) return true;
-  // The order does not say which modes leave then: those that would without it.
+  // The order does not determine which modes leave then: those that would without it.
   return drop([](const Verdict& v) { return v.drop; });
 }
 

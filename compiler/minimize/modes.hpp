@@ -8,7 +8,7 @@
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
-/// Modes of one model, with all that is needed to say which of them matter. For the compiler's own
+/// Modes of one model, with the data needed to decide which of them matter. For the compiler's own
 /// files.
 namespace titop::modes {
 

@@ -58,7 +58,7 @@ std::optional<Apart> apart(const Sampled& s, const Integrated& states) {
   return result;
 }
 
-/// The integrators that leave: where they stand among the integrators, and as states of the model.
+/// The removed integrators: their indices among the integrators, and as states of the model.
 struct LeavingIntegrators {
   std::vector<int> rows, states;
   LeavingIntegrators(const IndependentRows& independent, const Integrated& of) {
@@ -75,7 +75,7 @@ std::vector<int> pick(const std::vector<int>& of, const std::vector<int>& which)
   return result;
 }
 
-/// Coefficients that stand at `columns` of all states, for the states but those that leave.
+/// Coefficients at `columns` of all states, for the kept states.
 MatrixXd on_others(const MatrixXd& T, const std::vector<int>& columns, Index states,
                    const std::vector<int>& out) {
   MatrixXd all = MatrixXd::Zero(T.rows(), states);

@@ -25,8 +25,8 @@ struct Needless {
 /// Removes from the model and its samples the integrators that do not count: with zdot = N z + B u,
 /// their part without modes (integrators.hpp), the rank of [B, N B, ...] determines which depend on
 /// the other states, and that of [C; C N; ...] which are unobservable (independent_rows.hpp).
-/// States keep their names, and their meaning unless a note tells otherwise. None, and nothing is
-/// changed, if the other states have a pole at 0 too. O(n^3).
+/// States keep their names, and their meaning except as noted. None, and nothing is changed, if the
+/// other states have a pole at 0 too. O(n^3).
 std::optional<Needless> take_out_needless(Sampled& sampled);
 
 }  // namespace titop::modes

@@ -20,7 +20,7 @@ constexpr double kNoise = 1e-14;      ///< of the fastest mode: rounding of a mo
 
 using linalg::at;
 
-/// Columns that stand best for the rows of W (k x n): pivoted QR.
+/// Best columns as pivots of the rows of W (k x n): pivoted QR.
 std::vector<int> pivots(const MatrixXd& W) {
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(W);
   std::vector<int> result;
@@ -159,7 +159,7 @@ Matrix leaving(const Modes<Matrix>& all, const std::vector<Index>& leave,
   return result;
 }
 
-/// Modes that may have a share in those that leave: not their conjugate partners, and none at 0,
+/// Modes that may have a share in the removed ones: not their conjugate partners, and none at 0,
 /// which are far away.
 std::vector<Index> staying(const ModeSet& m, const std::vector<Index>& leave) {
   std::vector<Index> result;

@@ -117,7 +117,7 @@ std::optional<Reference> reference(const SystemData& d, const StateSpace& writte
     return Reference{std::move(G), std::move(allowed)};
   } catch (const Error& error) {
     if (!error.has(Code::singular) && !error.has(Code::not_finite)) throw;
-    return {};  // no digit is left there: other points must do
+    return {};  // no digit there: other points must suffice
   }
 }
 

@@ -15,7 +15,7 @@ Mistake blame(const Stage& stage, const std::vector<std::shared_ptr<const Dynami
 /// Numbers that are not finite any more (Health::finite): at which ports.
 Mistake overflow(const Stage& stage, const Joint& joint, const Health& health);
 
-/// The reason why these rows (of Stage::rows) leave no acceleration free, as details and hint of an
+/// The reason why no acceleration is free in these rows (of Stage::rows), as details and hint of an
 /// `improper` mistake: the equation that imposes a force on a massless point, and why.
 Mistake massless(const Stage& stage, const std::vector<int>& rows);
 

@@ -40,7 +40,7 @@ class DoubleDouble {
     const DoubleDouble p = exact_product(a.high_, b.high_);
     return ordered_sum(p.high_, p.low_ + (a.high_ * b.low_ + a.low_ * b.high_));
   }
-  /// Long division, three digits to the base 2^53: two leave twice the rounding.
+  /// Long division, three digits to the base 2^53: with two the rounding is twice as large.
   friend DoubleDouble operator/(const DoubleDouble& a, const DoubleDouble& b) {
     const double first = a.high_ / b.high_;
     DoubleDouble left = a - b * first;
@@ -105,9 +105,9 @@ inline std::complex<DoubleDouble> near_one(const std::complex<DoubleDouble>& z, 
   return {ldexp(z.real(), -exponent), ldexp(z.imag(), -exponent)};
 }
 
-/// The standard says nothing of complex numbers of other types than its own, and its libraries
-/// square the divisor as it stands: no digit is left where that is beyond double-double's range.
-/// Here as far as double reaches, wherever numerator and divisor are. Found beside the arguments.
+/// The standard defines complex numbers of its own types only, and its libraries square the divisor
+/// unscaled: beyond double-double's range no digit remains. Here the range is that of double, for
+/// any numerator and divisor. Found by argument-dependent lookup.
 inline std::complex<DoubleDouble> operator/(const std::complex<DoubleDouble>& a,
                                             const std::complex<DoubleDouble>& b) {
   int up = 0, down = 0;

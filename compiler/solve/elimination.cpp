@@ -35,10 +35,10 @@ void add_child(const Plan& plan, const Front& child, const typename Factors<T>::
   }
 }
 
-/// Steps of elimination that are taken in their own columns first, in all others then: a front is
-/// gone through once for so many steps.
+/// Steps of elimination that are done in their own columns first, in all others then: a front is
+/// traversed once for this many steps.
 constexpr int kPanel = 32;
-/// Fewer are taken in all columns at once.
+/// Fewer are done in all columns at once.
 constexpr int kFewSteps = 16;
 
 /// 2^e for the exponents of ColumnScale, from the bits: std::ldexp costs more than the rest.
@@ -220,8 +220,8 @@ struct Factors<T>::Work {
     }
   }
 
-  /// Largest share that cancellation has left of a row left over; 1 unless it is little: ordinary
-  /// losses are not to add up along a long chain.
+  /// Largest ratio of an entry of a remaining row to its terms; 1 unless it is small: ordinary
+  /// losses must not add up along a long chain.
   double kept(int i) {
     double share = 0;
     for (std::ptrdiff_t j = pivots; j < n; ++j) {

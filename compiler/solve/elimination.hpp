@@ -10,11 +10,11 @@
 #include <vector>
 
 /// Elimination along the junctions: a row-merging LU of a block-sparse square system, front by
-/// front as the plan says. No symmetry is made use of here: controllers and exchanged channels have
-/// none, and a pivot that is chosen by its size keeps digits that a symmetric order, fixed
+/// front in the order of the plan. Symmetry is not used here: controllers and exchanged channels
+/// have none, and a pivot that is chosen by its size keeps digits that a symmetric order, fixed
 /// beforehand, would not. (The dense model is written by half of it: dense/reciprocity.hpp.)
-/// Instantiated for double, and for complex numbers of double, long double, double-double and
-/// 50 digits.
+/// Instantiated for double, and for complex numbers of double, long double, double-double and 50
+/// digits.
 namespace titop::solve {
 
 /// Where the coefficients come from.
@@ -60,8 +60,8 @@ struct Patch {
 /// Powers of two that give columns the same size, one for all that share a unit: found once from
 /// real numbers, they serve every s and new values near the old ones. Within -1000 ... 1000.
 struct ColumnScale {
-  /// Each front by itself, front after front (Front::first_column): which pivot stands out.
-  /// Factors::changed finds them anew where asked to.
+  /// Each front by itself, front after front (Front::first_column): for the choice of pivots.
+  /// Factors::changed recomputes them with `rescale`.
   std::vector<std::int16_t> in_fronts;
   /// Per unknown, in the order of Plan::first (solve/equilibration.hpp): the same in all fronts, so
   /// that a row's size means the same in all of them. The growth of a row is measured by it.

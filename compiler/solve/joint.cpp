@@ -100,7 +100,7 @@ struct Builder {
     }
   }
 
-  /// At some s a state stands for the inputs that move it: one plan serves both.
+  /// At some s a state depends on its inputs: one plan serves both.
   void mention_inputs(int state) {
     const int node = g.signals[at(state)].node;
     for (int i = g.nodes[at(node)].first_signal; i < state; ++i)
@@ -179,8 +179,7 @@ struct Builder {
     finish_row(stage_row, size, over);
   }
 
-  /// An equation that reads states stands, at some s, for the inputs that move them: it stays
-  /// whole.
+  /// An equation that reads states depends, at some s, on their inputs: it stays whole.
   bool reads_states() const {
     return std::any_of(j.pieces.begin() + j.piece_begin.back(), j.pieces.end(),
                        [&](const Piece& p) {

@@ -8,7 +8,7 @@ namespace titop::solve {
 /// N doubles in one register.
 template <int N>
 using Lanes __attribute__((vector_size(8 * N))) = double;
-/// Such numbers wherever they stand. (A struct: clang drops the attributes of an alias template.)
+/// Such numbers at any address. (A struct: clang drops the attributes of an alias template.)
 template <class L>
 struct __attribute__((packed, may_alias)) Loose {
   L lanes;

@@ -5,7 +5,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <utility>
 
-/// Where the numbers of fronts stand.
+/// Memory of the fronts' numbers.
 namespace titop::solve {
 namespace {
 

@@ -43,7 +43,7 @@ class Transposed {
   std::size_t fronts() const { return fronts_; }
 
  private:
-  /// `fronts`: those further up where something stands now are added.
+  /// `fronts`: adds those further up with nonzero entries.
   void upward(int index, std::set<int>& fronts) {
     const Front& f = plan_.fronts[at(index)];
     const double* lu = f_.made(at(index)).lu.data();

@@ -16,7 +16,7 @@ struct Kept {
   double value = 0, size = 0;
 
   void add(double term, double term_size) { value += term, size += term_size; }
-  /// 0 where only rounding is left.
+  /// 0 at rounding level.
   double cleaned() const { return std::abs(value) <= kCancelled * size ? 0 : value; }
 };
 
@@ -47,7 +47,7 @@ struct NullRows {
 NullRows null_rows(const Factors<double>& patched);
 
 /// Rows p with p M = 0, each with 1 in a place of its own where the other ones have 0: elimination
-/// with the pivot that has lost least, whatever the units. O(entries of M) per pivot.
+/// with the pivot of least cancellation, in any units. O(entries of M) per pivot.
 NullRows left_null(SparseRows M);
 
 }  // namespace titop::solve

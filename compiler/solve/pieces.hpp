@@ -34,7 +34,7 @@ View<T> view(const Dense<T>& m, int row, int rows, int col, int cols) {
 template <class T, class L>
 void subtract_product(double sign, const View<L>& l, const T* x, std::ptrdiff_t m, T* to) {
   if constexpr (std::is_same_v<T, L>)
-    if (m == 1 && l.down == 1) {  // by columns, which stand in a row
+    if (m == 1 && l.down == 1) {  // by columns, which are contiguous
       for (std::ptrdiff_t k = 0; k < l.cols; ++k)
         if (const T a = times(x[k], sign); a != T(0)) subtract(l.rows, a, l.data + k * l.right, to);
       return;
@@ -94,7 +94,7 @@ Dense<T> dense(const Piece& p, const Matrices<T>& m, const std::vector<Coefficie
   return result;
 }
 
-/// Calls visit(matrix, meaning) for all that the inputs of a known state's node stand for.
+/// Calls visit(matrix, meaning) for all meanings of the inputs of a known state's node.
 template <class T>
 template <class Visit>
 void JointRows<T>::by_inputs(const Piece& p, Visit visit) const {

@@ -146,9 +146,9 @@ std::span<const int> Merging::merge(int v) {
 /// counted when fewer are left.
 constexpr int kMany = 64;
 
-/// `when`: variables with a smaller number go first; empty: no matter. Of those that cost the same
-/// the first does, whichever was found last: branch by branch would be quicker, but goes down into
-/// branches from where they join, which cost a chain of sixteen booms two digits.
+/// `when`: variables with a smaller number go first; empty: no order. Of equal costs the first
+/// variable is taken, not the last one found: branch by branch would be quicker, but starts
+/// branches at their junctions, which cost a chain of sixteen booms two digits.
 void eliminate_all(Plan& p, const std::vector<int>& when) {
   Merging m(p);
   using Cost = std::tuple<int, int, int>;    // when, columns, rows
@@ -238,7 +238,7 @@ void in_postorder(Plan& p) {
   p.lists = std::move(lists);
 }
 
-/// Where every pivot, entry and row left over stands.
+/// Places of all pivots, entries and remaining rows.
 void place(Plan& p) {
   p.first.assign(p.structure.variable_size.size(), 0);
   p.front_of_row.assign(p.structure.row_size.size(), -1);

@@ -62,7 +62,7 @@ struct Front {
   }
 };
 
-/// Fronts in postorder, children before parents, and where everything stands in them.
+/// Fronts in postorder, children before parents, with the places of their data.
 struct Plan {
   Structure structure;
   std::vector<Front> fronts;

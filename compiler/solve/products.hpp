@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <span>
 
-/// The products that the dense model is written with. In all of them the sum over `inner` runs in
-/// order, whatever the number of columns: the same bits however the columns are batched, and on
-/// every processor. `lanes`: entries of the widest vector register to use (8, 4 or 2); the widest
-/// that the processor has below it is taken.
+/// The products that write the dense model. In all of them the sum over `inner` runs in order, for
+/// any number of columns: the same bits for any batches of columns, and on every processor.
+/// `lanes`: entries of the widest vector register to use (8, 4 or 2); the widest available one
+/// below it is taken.
 namespace titop::solve {
 
 /// y = from + a x: row i of y (rows x m, row-major, `y_stride` apart) is from[i] plus the sum of

@@ -36,7 +36,7 @@ class Storage {
   std::unique_ptr<T, Free> numbers_;
 };
 
-/// Row-major, so that the columns of a right-hand side stand side by side.
+/// Row-major, so that the columns of a right-hand side are contiguous.
 template <class T>
 using RowMatrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 

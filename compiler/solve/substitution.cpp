@@ -17,7 +17,7 @@ struct Forward {
   const Plan& plan;
   std::ptrdiff_t m;  ///< columns
   RowMatrix<T>&z, carried;
-  std::vector<const T*> assembled = {};  ///< where each row stands
+  std::vector<const T*> assembled = {};  ///< address of each row
   std::vector<T> rows = {};
 
   void run(const Front& f, const typename Factors<T>::Made& made, const RowMatrix<T>& rhs) {
@@ -99,9 +99,9 @@ void backward(const Plan& plan, const Front& f, const typename Factors<T>::Made&
   }
 }
 
-/// The numbers of the front that comes next: they stand where elimination put them, far from one
-/// another where there are many, and most of a solution's time is waiting for them. Of a wide front
-/// the beginning: the processor goes on by itself.
+/// Prefetches the numbers of the next front: they are scattered in memory for many fronts, and most
+/// of a solution's time is waiting for them. Of a wide front only the beginning: the processor
+/// prefetches the rest.
 template <class T>
 void fetch(const typename Factors<T>::Made& made) {
   constexpr std::size_t kLine = 64, kMost = 8192;

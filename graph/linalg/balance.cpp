@@ -20,7 +20,7 @@ struct Ratio {
   double log2;
 };
 
-/// Least squares over all ratios, as near to 0 as they leave open [Curtis, Reid 1972]. With
+/// Least squares over all ratios, of least norm if they leave a freedom [Curtis, Reid 1972]. With
 /// `level`, that number is found too.
 VectorXd fit(const std::vector<Ratio>& ratios, int n, bool level) {
   MatrixXd N = MatrixXd::Zero(n + 1, n + 1);

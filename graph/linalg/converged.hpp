@@ -14,11 +14,11 @@ struct Ordered {
   std::vector<Eigen::Index> order;
 };
 
-/// Eigen's iteration can go round in a circle on defective matrices whose shifts and rotations come
-/// out alike again and again (two equal 2 x 2 systems in series), since it tries other shifts after
-/// 10 and 30 steps only. Rows and columns in another order, which rounds nothing, lead elsewhere:
-/// as they are, backwards, and each turned by one, n + 1 orders at most. `solver.info()` says if
-/// none has converged. O(25 n^3) for each order.
+/// Eigen's iteration can cycle on defective matrices whose shifts and rotations repeat (two equal 2
+/// x 2 systems in series), since it tries other shifts after 10 and 30 steps only. Rows and columns
+/// in another order, which causes no rounding, avoid that: as they are, backwards, and each rotated
+/// by one, n + 1 orders at most. `solver.info()` tells if none has converged. O(25 n^3) for each
+/// order.
 template <class Solver>
 Ordered<Solver> converged(const Eigen::MatrixXd& A, bool vectors) {
   std::vector<Eigen::Index> order(static_cast<std::size_t>(A.rows()));

@@ -32,7 +32,7 @@ MatrixXd pivoted_cholesky(const MatrixXd& S, double& least) {
 /// before its share of it has digits.
 enum class Angle { fine, good, open };
 
-/// Turns two columns towards that; says where they were.
+/// Rotates two columns towards orthogonality; returns their angle before.
 Angle turn(MatrixXd& L, Index i, Index j) {
   const double a = L.col(i).squaredNorm(), b = L.col(j).squaredNorm(), c = L.col(i).dot(L.col(j));
   const double tolerance = std::sqrt(static_cast<double>(L.rows())) * kEps;
@@ -45,7 +45,7 @@ Angle turn(MatrixXd& L, Index i, Index j) {
 }
 
 /// L V = U diag(sigma), V made of rotations of two columns each. Leaves U diag(sigma) in L; false
-/// where that does not come to an end. From where all angles are good, at most four sweeps more.
+/// if it does not converge. Once all angles are good, at most four sweeps more.
 bool orthogonalize(MatrixXd& L) {
   for (int sweep = 0, good = 0; sweep < 40; ++sweep) {
     Angle worst = Angle::fine;

@@ -25,8 +25,8 @@ Eigen::MatrixXcd sylvester(const Eigen::MatrixXcd& A, const Eigen::MatrixXcd& B,
                            const Eigen::MatrixXcd& C);
 
 /// Upper triangular U (n x n) with P = U U^H the solution of T P + P T^H + B B^H = 0, T upper
-/// triangular with eigenvalues left of the axis, B n x m: the factor comes out without P ever being
-/// formed, so that small parts of P keep their digits [Hammarling 1982]. O(n^3 / 3 + n^2 m).
+/// triangular with eigenvalues left of the axis, B n x m: the factor is computed without forming P,
+/// so that small parts of P keep their digits [Hammarling 1982]. O(n^3 / 3 + n^2 m).
 Eigen::MatrixXcd lyapunov_factor(const Eigen::MatrixXcd& T, const Eigen::MatrixXcd& B);
 
 }  // namespace titop::linalg

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kSmall = 12;
 constexpr int kMost = 128;  ///< rows
-/// Small loops are many: no memory is asked for.
+/// Small loops are many: no memory is allocated for them.
 using Small =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kSmall, kSmall>;
 
@@ -226,7 +226,7 @@ class Peeled {
           leave(cols_, rows_, j, [&](std::size_t k, std::size_t i) { return entry(i, k); });
     }
   }
-  /// Nothing is left in some row or column.
+  /// Some row or column has no entry.
   bool singular() const {
     return !all(rows_, [](int entries) { return entries != 0; }) ||
            !all(cols_, [](int entries) { return entries != 0; });
@@ -271,7 +271,7 @@ class Peeled {
   double entry(std::size_t i, std::size_t j) const {
     return M_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
   }
-  /// A line leaves with its single entry and the line across it. entry(k, place): of line k there.
+  /// Removes a line with its single entry and the line across it. entry(k, place): of line k there.
   template <class Entry>
   void leave(Lines& lines, Lines& across, std::size_t line, Entry entry) {
     --left_;

@@ -43,7 +43,7 @@ Eigen::LLT<MatrixXd> cholesky(const MatrixXd& S, const char* name) {
 }
 
 /// Largest entry positive. An entry counts as largest within 1e-6, so that in (anti)symmetric
-/// vectors it is the first one, whatever the rounding.
+/// vectors it is the first one, independent of rounding.
 MatrixXd with_signs(MatrixXd V) {
   for (Index j = 0; j < V.cols(); ++j) {
     const double largest = V.col(j).cwiseAbs().maxCoeff();

@@ -32,8 +32,8 @@ SymmetricModes eigh_definite(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M)
 
 /// The same, the `count` lowest modes, for K positive definite and M semidefinite (massless degrees
 /// of freedom): M v = mu K v, largest mu = 1/lambda first, then M-orthonormalised once, in
-/// ascending order. Throws `bad_value` where fewer than `count` modes can be told from infinite
-/// ones. Cost 14 n^3.
+/// ascending order. Throws `bad_value` if fewer than `count` modes can be distinguished from
+/// infinite ones. Cost 14 n^3.
 SymmetricModes eigh_lowest(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M, Eigen::Index count);
 
 /// First row whose Cholesky pivot is not above tolerance * S(row, row); -1 if there is none, that

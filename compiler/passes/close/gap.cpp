@@ -38,7 +38,7 @@ Gap gap_of(const MatrixXd& gap, const Form& form, const std::vector<int>& units,
   const MatrixXd basis = moved_by_angles(form, rows);
   const MatrixXd taken = basis.transpose() * (basis * scaled);
   Gap result{.off = (scaled - taken).cwiseAbs().maxCoeff()};
-  // Rounding must not say that the meeting point does not move.
+  // Rounding must not become a constraint on the meeting point.
   const MatrixXd exact = (taken.array().abs() <= kExactGap).select(0.0, taken);
   if (!exact.isZero(0))
     result.taken = rows.cwiseInverse().asDiagonal() * exact * columns.cwiseInverse().asDiagonal();

@@ -7,9 +7,9 @@ namespace titop::passes::closing {
 
 constexpr double kExactGap = 1e-9;  ///< a gap that is larger is not rounding
 
-/// Gap of the way round a chain, as a matrix times the position of its meeting point. 0 if
-/// the geometry closes, but where ties leave translations free: these do not say how far apart
-/// their points are, and the ways do not have the lever arm.
+/// Gap of the way round a chain, as a matrix times the position of its meeting point. 0 if the
+/// geometry closes, unless ties leave translations free: these do not determine how far apart their
+/// points are, and the ways do not have the lever arm.
 struct Gap {
   Eigen::MatrixXd taken = {};  ///< part taken up by free angles on the way; empty: none
   double off = 0;              ///< largest entry of the rest, relative to 1 or to the lever

@@ -64,7 +64,7 @@ struct Fronts {
     if (uses.alone(column)) push(uses.block(column));
   }
 
-  /// Places of the columns that no other front has, and are as asked.
+  /// Places of the columns that no other front has, and for which `asked` is true.
   template <class Asked>
   std::vector<int> own(const RowBlock& front, Asked asked) const {
     std::vector<int> places;
@@ -80,7 +80,7 @@ struct Fronts {
                        [&](int c) { return uses.alone(c); });
   }
 
-  /// Unknowns; false if one is left.
+  /// Takes unknowns; false if one remains.
   bool take_unknowns(const RowBlock& front, bool last, Reflections& e) {
     const auto is_unknown = [&](int c) { return role[at(c)] == Role::unknown; };
     const auto unknowns = own(front, is_unknown);
@@ -193,7 +193,7 @@ struct Fronts {
         places.push_back(i), left.columns.push_back(c);
     }
     left.M = rows(Eigen::all, places);
-    // Columns that have gone may have been all that the others waited for: unknowns, or those of
+    // The eliminated columns may have been all that the others waited for: unknowns, or those of
     // other fronts.
     const bool fewer = rows.rows() > 0 && left.columns.size() < front.columns.size();
     front = std::move(left);

@@ -134,8 +134,8 @@ std::optional<Motion::Edge> Motion::edge_of(const Tie& tie) const {
   if (!orthonormal &&
       (c.rows() != c.cols() || free.rows() > 0 || !(linalg::inverse(c).rcond > 1e-3)))
     return std::nullopt;
-  // Freedom of the joint is counted from the other side: any completion of c will do. One
-  // that moves both points as one body leaves no gap.
+  // Freedom of the joint is counted from the other side: any completion of c suffices. One that
+  // moves both points as one body has no gap.
   e.R = tie.S.transpose() * c;
   if (free.rows() == 0) return e;
   if (six && tie.rotation) {

@@ -67,14 +67,14 @@ class Motion {
   Closing closing(const Tie& tie) const;
   /// Position of a point from the root of its assembly.
   Form position(int channel) const;
-  /// Per channel: the ground holds its point, if it holds these scalar columns. O(points log
+  /// Per channel: whether its point is immobile if these scalar columns are 0. O(points log
   /// points).
   std::vector<char> at_rest(const std::function<bool(const Column&, int)>& held) const;
   /// The tie that places a point relative to the one above it: its equation; -1: none, or a body.
   int tie_above(int channel) const { return up_[static_cast<std::size_t>(channel)].equation; }
   /// The point as the user knows it.
   std::string name(int point) const;
-  /// A body on this chain that does not say where its ports are: its node, else -1.
+  /// A body on this chain without kinematics of its ports: its node, else -1.
   int silent(const std::vector<int>& chain) const;
 
  private:

@@ -124,8 +124,8 @@ struct RedundancyFinder {
     return result;
   }
 
-  /// Rows with a pivot become a part, which takes along their own columns where nothing is left of
-  /// them. Returns the others.
+  /// Rows with a pivot become a part, together with their own columns if these have no other
+  /// entries. Returns the other rows.
   template <class Own>
   RowBlock rest(const std::vector<int>& columns, const Reflections& e, Own is_own) {
     const Index done = e.done(), left = e.matrix().rows() - done;

@@ -44,7 +44,7 @@ void Reflections::reflect(int column) {
   const double alpha = v(0) > 0 ? -v.norm() : v.norm();
   pivots_.push_back(column);
   taken_[static_cast<std::size_t>(column)] = 1;
-  if (v.tail(n - 1).isZero(0)) return;  // stands already: exact zeros stay
+  if (v.tail(n - 1).isZero(0)) return;  // done already: exact zeros stay
   v(0) -= alpha;
   v.normalize();
   for (Index j = 0; j < M_.cols(); ++j) {

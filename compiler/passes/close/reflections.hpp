@@ -30,8 +30,8 @@ class Reflections {
     Eigen::Index most = std::numeric_limits<Eigen::Index>::max();  ///< pivots, with those before
   };
   /// Takes pivots among these columns, of norms above `least`: the one that is worth most first, of
-  /// equals the first: no choice by rounding. Returns the largest norm that is left; 0 where no row
-  /// is. O(rows columns) per pivot.
+  /// equals the first: no choice by rounding. Returns the largest remaining norm; 0 without rows.
+  /// O(rows columns) per pivot.
   double take(const std::vector<int>& columns, double least, const Choice& choice);
   double take(const std::vector<int>& columns, double least) { return take(columns, least, {}); }
   /// The smallest pivot.

@@ -10,7 +10,7 @@ namespace titop::passes::closing {
 /// more or 1e-15 and less.
 constexpr double kRankTolerance = 1e-9;
 
-/// Decisions by pivots that neither leave are doubtful, and reported: kept ones below the first
+/// Decisions by pivots between these limits are doubtful, and reported: kept ones below the first
 /// (pi / 2 typed as 1.5708 tilts an axis by 4e-6), dropped ones above the second.
 constexpr double kNarrow = 1e-4, kNothing = 1e-12;
 

@@ -183,7 +183,7 @@ struct Scaling {
       if (std::vector<int> reached; start_unit(static_cast<int>(u), true, reached))
         spread(start_columns(std::move(reached)));
     for (auto* factors : {&row, &column})
-      std::replace(factors->begin(), factors->end(), 0.0, 1.0);  // nothing stands there
+      std::replace(factors->begin(), factors->end(), 0.0, 1.0);  // no entries
   }
 
   /// Every unit to its share, then every free column to 1. Returns the largest change.

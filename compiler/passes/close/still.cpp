@@ -10,8 +10,8 @@ namespace {
 
 using linalg::at;
 
-/// Scalar points that hang on others, and that nothing else ties, close no chain, though their
-/// equations are no edges of the tree either.
+/// Scalar points mounted on others without any other tie close no chain, though their equations are
+/// no edges of the tree either.
 std::vector<Closing> without_hanging(const std::vector<Closing>& closings) {
   std::map<Column, int> uses;
   for (const Closing& c : closings)

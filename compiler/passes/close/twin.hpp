@@ -20,7 +20,7 @@ struct Twin {
 class Twins {
  public:
   explicit Twins(const Graph& graph);
-  /// O(terms that it stands for, counted along every way through gains and sums).
+  /// O(its terms, counted along every way through gains and sums).
   Twin of(const std::vector<Term>& terms) const;
   /// Of the input of a one-way port, by its equation.
   Twin of_input(int signal) const;
