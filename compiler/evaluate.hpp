@@ -133,7 +133,7 @@ class Evaluation {
   std::vector<int> first_;  ///< per signal: first row of u
   std::map<std::pair<const Block*, const Dynamics*>, solve::Response<T>> responses_;
   std::vector<const solve::Response<T>*> of_node_;
-  mutable std::once_flag resolvents_once_;  ///< made where states are forced: few need them
+  mutable std::once_flag resolvents_once_;  ///< made if states are forced: few need them
   mutable std::map<const Dynamics*, Resolvent<T>> resolvents_;
   solve::JointRows<T> rows_;
   std::unique_ptr<const solve::Factors<T>> factors_;

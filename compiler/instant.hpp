@@ -10,7 +10,7 @@ namespace titop::detail {
 class Instant {
  public:
   /// known: [x; u] with the states of all blocks, column by column. `more`: added to the right-hand
-  /// sides of the joint system, where it is not empty.
+  /// sides of the joint system, if it is not empty.
   Instant(const SystemData& data, solve::RowMatrix<double> known,
           const solve::RowMatrix<double>& more = {},
           solve::Solution solution = solve::Solution::once);

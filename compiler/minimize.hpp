@@ -8,7 +8,7 @@ namespace titop {
 
 struct MinimizeOptions {
   double resolution = 0;  ///< also drop modes of visibility up to this; 0: only rounding's own
-  int exact_order = -1;   ///< the minimal order, where exact arithmetic has found it; -1: not known
+  int exact_order = -1;   ///< the minimal order, if exact arithmetic has found it; -1: not known
   /// Potential energy x' E x / 2, if it is known (n x n, else empty): it gives the symmetric form
   /// of models whose mass couples the coordinates, as in closed chains. Not used if it does not fit
   /// the model.

@@ -122,7 +122,7 @@ Eigen::MatrixXd sizes(const Dense<T>& m) {
   return m.unaryExpr([](const T& x) -> double { return solve::size_of(x); });
 }
 
-/// The largest of terms / size, entry by entry; a 0 without terms is one. Infinite where a number
+/// The largest of terms / size, entry by entry; a 0 without terms is one. Infinite if a number
 /// is none.
 double largest_ratio(const Eigen::MatrixXd& terms, const Eigen::MatrixXd& size) {
   double result = 0;

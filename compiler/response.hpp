@@ -34,8 +34,8 @@ class Resolvent {
 };
 
 /// X = (s - A)^-1 B and Y = C X + D: in double and below by the block's own formula, which cancels
-/// least; in finer arithmetic from its modes, or from its matrices with up to 100 digits, where
-/// these cancel, so that all digits of T are right. Throws singular where s is a pole of the block.
+/// least; in finer arithmetic from its modes, or from its matrices with up to 100 digits, if
+/// these cancel, so that all digits of T are right. Throws singular if s is a pole of the block.
 template <class T>
 solve::Response<T> response(const Block& block, const Dynamics& dynamics, const T& s,
                             ParameterValues parameters);

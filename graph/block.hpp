@@ -94,7 +94,7 @@ struct Kinematics {
   std::vector<Eigen::MatrixXd> tau;
   std::vector<Eigen::MatrixXd> Phi;
   /// Stiffness of every state in the block's potential energy, sum of stiffness x^2 / 2 [J per unit
-  /// squared]; 0 where it stores none. Empty: states as of modes of mass 1, stiffness = omega^2.
+  /// squared]; 0 if it stores none. Empty: states as of modes of mass 1, stiffness = omega^2.
   /// It decides which coordinates of a closed chain depend on the others (soft ones).
   Eigen::VectorXd stiffness = {};
 };
@@ -149,7 +149,7 @@ class Block {
 
 using BlockPtr = std::shared_ptr<const Block>;
 
-/// Two states of one name (duplicate_name), which an own block may have. Empty where none are.
+/// Two states of one name (duplicate_name), which an own block may have. Empty if none are.
 std::vector<Mistake> mistakes_of(const Interface& interface, std::string_view type);
 /// Mistakes in the matrices of a user's block, as "B of this Rotor is 3 x 0, not 3 x 6": sizes
 /// other than those of its interface (size), entries that are not finite (not_finite). Empty if

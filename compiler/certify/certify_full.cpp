@@ -138,7 +138,7 @@ void check_written(const System& system, const Full& what, const std::vector<Com
     grid.written = found.relative;
     grid.written_s = points[found.point];
   } catch (const Error&) {
-    // Not solvable as written, where chains are closed twice: the factors' own residual remains.
+    // Not solvable as written, if chains are closed twice: the factors' own residual remains.
   }
 }
 
@@ -188,7 +188,7 @@ void reach_up_to(const ExactOrder& exact, OrderVerdict& v) {
     v.highest = std::max(v.highest, exact.order);
 }
 
-/// Adds a fault to the list where a value is more than allowed, or no number.
+/// Adds a fault to the list if a value is more than allowed, or no number.
 void judge(std::vector<std::string>& faults, double value, double allowed, const std::string& text,
            const std::string& more = "") {
   if (!(value <= allowed)) faults.push_back(fmt::format("{} {:.1e}{}", text, value, more));

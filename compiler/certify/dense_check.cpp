@@ -165,7 +165,7 @@ bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers)
 }
 
 /// About the slowest mode that the outputs show, from s downwards: a row of slow bodies bends more
-/// slowly than any of them by itself. None where that is not to be seen: an output is rounding, or
+/// slowly than any of them by itself. None if that is not to be seen: an output is rounding, or
 /// the factors have no digits so far below. O(bodies) per decade.
 std::optional<T> slowest_shown(const SystemData& d, const T s, const solve::RowMatrix<T>& u,
                                const std::vector<int>& units) {
@@ -190,7 +190,7 @@ struct Tried {
   double slowest = 0;
 };
 
-/// At the assembly's own frequencies as well, where nothing is tried near them.
+/// At the assembly's own frequencies as well, if nothing is tried near them.
 void add_frequencies(const MatrixXd& A, std::vector<T>& list) {
   constexpr double kNear = 3;  // factor within which an s resolves a frequency
   for (const double w : frequencies_of(A)) {
@@ -202,7 +202,7 @@ void add_frequencies(const MatrixXd& A, std::vector<T>& list) {
 }
 
 /// Far below, at and above the blocks' frequencies, and at the assembly's; below the slowest of the
-/// blocks', and at and below the slowest mode that shows, where those are lower still. That is
+/// blocks', and at and below the slowest mode that shows, if those are lower still. That is
 /// looked for below all blocks: two that are far apart have decades without a mode between them.
 Tried tried(const SystemData& d, const MatrixXd& A, const solve::RowMatrix<T>& u,
             const std::vector<int>& units) {

@@ -116,7 +116,7 @@ struct LoopRoom {
   std::vector<int> column = {};  ///< of every signal, -1 between loops
 };
 
-/// Loop matrix of one strong component: its rows and unknowns of the equations, dense. False where
+/// Loop matrix of one strong component: its rows and unknowns of the equations, dense. False if
 /// rows and unknowns do not match.
 bool take_loop_matrix(const SystemData& d, const Loop& loop, LoopRoom& room) {
   room.L.setZero(loop.unknowns, loop.unknowns);
@@ -153,7 +153,7 @@ void to_own_units(const SystemData& d, const Loop& loop, MatrixXd& L) {
   to_own_units(rows, columns, L);
 }
 
-/// rho(|L^-1| |L|); 1 for a single unknown, 0 where it is not found: of large loops, and where L
+/// rho(|L^-1| |L|); 1 for a single unknown, 0 if it is not found: of large loops, and if L
 /// has no inverse in double.
 double margin(const SystemData& d, const Loop& loop, LoopRoom& room) {
   if (loop.unknowns == 1) return 1;

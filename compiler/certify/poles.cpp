@@ -53,7 +53,7 @@ FoundPoles check_poles(const System& system, const StateSpace& model,
     const double rounded = kEps * norm * left(k) * right(k) + moved;
     if (size > 0 && rounded <= 0.1 * size) found.omegas.push_back(size);
     if (!(rounded <= kMeasurable * size)) {
-      if (s.real() > 10 * rounded) {  // not measured, but where it is not in doubt
+      if (s.real() > 10 * rounded) {  // not measured, but if it is not in doubt
         found.right.push_back({s, rounded});
         keep_rightmost(s);
       }
@@ -63,7 +63,7 @@ FoundPoles check_poles(const System& system, const StateSpace& model,
     if (s.imag() < 0) continue;
     const VectorXcd off = times(system, e.V.col(k)) - s * e.V.col(k);
     const double change = std::abs((e.W.row(k) * off)(0));
-    const double error = change == 0 ? 0 : change / size;  // 0 to the last bit where A is 0
+    const double error = change == 0 ? 0 : change / size;  // 0 to the last bit if A is 0
     p.measured += both;
     if (error > p.error) p.error = error, p.where = s;
     if (s.real() > std::max(1e-9, 10 * error) * size) {

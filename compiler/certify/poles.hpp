@@ -23,7 +23,7 @@ struct FoundPoles {
 FoundPoles check_poles(const System& system, const StateSpace& model,
                        const Eigen::MatrixXd& rounding);
 
-/// Those of these poles that are the minimal model's, too: a transfer shows them. O(n^3) where
+/// Those of these poles that are the minimal model's, too: a transfer shows them. O(n^3) if
 /// there are any.
 std::vector<FoundPoles::Right> shown(const std::vector<FoundPoles::Right>& right,
                                      const StateSpace& minimal);

@@ -25,7 +25,7 @@ constexpr double kOfLargest = 1e-14;
 /// coefficients.
 constexpr double kSamples = 1e4;
 
-/// Entries of a signal, and a sample of their rounding where it is known.
+/// Entries of a signal, and a sample of their rounding if it is known.
 struct Entries {
   std::span<const double> value, rounding = {};
 };
@@ -100,7 +100,7 @@ struct Balance {
     return largest;
   }
 
-  /// Largest difference beyond rounding; infinite where something is not finite.
+  /// Largest difference beyond rounding; infinite if something is not finite.
   double largest() const {
     double size = 0;
     for (const Row& r : row) {
@@ -109,7 +109,7 @@ struct Balance {
     }
     return size;
   }
-  /// Largest share of the rows of one unit; 1 where something is not finite.
+  /// Largest share of the rows of one unit; 1 if something is not finite.
   double relative() const {
     if (largest() == kNotFinite) return 1;
     if (rows() == 1) return row[0].off() == 0 ? 0 : row[0].off() / row[0].magnitude;

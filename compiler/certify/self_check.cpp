@@ -67,7 +67,7 @@ void resolve(const SystemData& d, double s, double* x) {
   }
 }
 
-/// Largest |value| over `magnitude`, row by row; 1 where it is not finite.
+/// Largest |value| over `magnitude`, row by row; 1 if it is not finite.
 double relative(const Eigen::VectorXd& value, const Eigen::VectorXd& magnitude) {
   double worst = 0;
   for (Eigen::Index i = 0; i < value.size(); ++i)
@@ -135,7 +135,7 @@ WrittenResidual residual_of(const SystemData& d, Signals& signals, Rounding roun
   return written_residual(d, signals);
 }
 
-/// At one instant. False where there is none, or where the equations hold and yet digits may be
+/// At one instant. False if there is none, or if the equations hold and yet digits may be
 /// lost.
 bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Certificate& c) {
   if (!has_instants(d) || d.layout().order() + u.size() == 0) return false;

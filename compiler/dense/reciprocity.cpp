@@ -31,7 +31,7 @@ struct Finder {
     return said[at(channel)] >= 0 && signal(said[at(channel)]).role == Signal::Role::output;
   }
 
-  /// False where there is no hope.
+  /// False if there is no hope.
   bool take(int index) {
     const Equation& e = g.equations[at(index)];
     if (!e.active) return true;

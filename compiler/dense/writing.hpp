@@ -29,7 +29,7 @@ struct Writing {
   struct Source {
     int node = -1;             ///< of a state; -1: external inputs
     Eigen::Index first = 0;    ///< first column in [x; u]
-    Eigen::Index columns = 0;  ///< modes where it acts through its modes, else states or inputs
+    Eigen::Index columns = 0;  ///< modes if it acts through its modes, else states or inputs
     bool modal = false;
     std::vector<std::pair<int, int>> acts = {};  ///< row group, piece
     int front = 0;                               ///< the first front it enters
@@ -68,14 +68,14 @@ struct Writing {
                                      ///< modal ones come last
   std::vector<Target> targets;       ///< rows ascend
   std::vector<std::size_t> batches;  ///< first sources, and the end
-  std::optional<Reciprocity> reciprocity;  ///< none where one batch is all
+  std::optional<Reciprocity> reciprocity;  ///< none if one batch is all
   std::vector<int> lowest;   ///< per batch: the first front that its sources, and targets of these
-                             ///< and later ones, need; 0 where all are needed
+                             ///< and later ones, need; 0 if all are needed
   std::vector<char> always;  ///< per front: do targets that read all sources need it?
   std::vector<std::pair<int, bool>> modal;  ///< nodes with states: by their modes?
   Eigen::Index coefficients = 0;            ///< of all targets
 
-  /// False where blocks have got or lost their modal form.
+  /// False if blocks have got or lost their modal form.
   bool fits(const SystemData& data) const;
   /// True for batches of modal sources alone, with `reciprocity`.
   bool has_counterparts(std::size_t batch) const { return sources[batches[batch]].modal; }

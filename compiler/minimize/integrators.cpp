@@ -81,7 +81,7 @@ StateSpace with_integrators(const StateSpace& rest, const StateSpace& model,
 
 namespace {
 
-/// X A_rest = taken + N X, where a power of N is 0: `divided(Y)` is Y A_rest^-1.
+/// X A_rest = taken + N X, if a power of N is 0: `divided(Y)` is Y A_rest^-1.
 template <class Divided>
 MatrixXd followed(const MatrixXd& N, const MatrixXd& taken, const Divided& divided) {
   MatrixXd X = MatrixXd::Zero(taken.rows(), taken.cols());

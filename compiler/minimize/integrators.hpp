@@ -29,7 +29,7 @@ struct Decoupled {
   Eigen::MatrixXd N, B;
   Eigen::MatrixXd C_rest;  ///< of the rest, with its part in the integrators
 };
-/// None where the rest has a pole at 0 too. The order of a model is that of both parts, since they
+/// None if the rest has a pole at 0 too. The order of a model is that of both parts, since they
 /// have no pole in common. O(rest^3).
 std::optional<Decoupled> decouple(const StateSpace& model, const Integrated& states);
 

@@ -58,7 +58,7 @@ struct Symmetric {
   ModeSet modes;
   Eigen::MatrixXd Q;  ///< in y
 };
-/// None where the model has no such form, by a diagonal D or, with its potential energy, by D' E D
+/// None if the model has no such form, by a diagonal D or, with its potential energy, by D' E D
 /// = I. Modes within 2 * resolution count as equal. O(n^3).
 std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolution,
                                          const Eigen::MatrixXd& energy = {});

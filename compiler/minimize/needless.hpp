@@ -11,7 +11,7 @@
 namespace titop::modes {
 
 /// The rest of a decoupled model (integrators.hpp); entries are 0 that rounding alone may have
-/// made. None where the rest has a pole at 0 too.
+/// made. None if the rest has a pole at 0 too.
 std::optional<StateSpace> decoupled_rest(const Sampled& sampled, const Integrated& states);
 
 /// Removed integrators, and doubtful ones.

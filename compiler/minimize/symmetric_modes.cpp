@@ -88,7 +88,7 @@ Ports ports(const StateSpace& model, const Symmetric& s) {
           (model.C(Eigen::all, s.qdot) * s.D).transpose()};
 }
 
-/// yddot = -(S + skew) y - Z ydot: S is symmetric, Z where it is diagonal in the modes.
+/// yddot = -(S + skew) y - Z ydot: S is symmetric, Z if it is diagonal in the modes.
 struct Springs {
   MatrixXd S, skew, Z;
 };
@@ -140,7 +140,7 @@ MatrixXd clear(const MatrixXd& Q, const MatrixXd& c) {
   return (in.array().abs() <= kNoTerm * terms.array()).select(0, in);
 }
 
-/// An output that reads positions and rates, C = cq + s cv at each pole s, where that is more than
+/// An output that reads positions and rates, C = cq + s cv at each pole s, if that is more than
 /// a factor to real vectors: one of the two poles of an overdamped mode may be left out, or a
 /// motion with a phase between modes of one frequency.
 bool mixes_levels(const GradedModes& e, const VectorXd& z, const Ports& p, const ModeSet& m) {

@@ -91,7 +91,7 @@ void see_no_more(const LeavingSides& l, MatrixXd& C) {
   if (!seen.isZero(0)) C -= seen * MatrixXd(MatrixXd(W * V).partialPivLu().solve(W));
 }
 
-/// `dependent`: the states that follow, where the caller knows better than W alone.
+/// `dependent`: the states that follow, if the caller knows better than W alone.
 void remove(StateSpace& m, LeavingSides l, const std::vector<int>& dependent,
             std::vector<std::string>& notes) {
   if (const MatrixXd& W = l.undriven.W; W.rows() > 0) {

@@ -44,7 +44,7 @@ StateSpace rounding(const SystemData& d, const StateSpace& m, const Instant& now
           m.outputs};
 }
 
-/// Where the model, which was written in another order, differs from the factors, it is rounding.
+/// Differences of the model, written in another order, from the factors are rounding.
 void add_written(MatrixXd& of, const MatrixXd& now, const MatrixXd& written) {
   of = of.cwiseMax((now - written).cwiseAbs());
 }

@@ -135,7 +135,7 @@ struct Factors<T>::Work {
     int best = -1;
     double best_score = 0, left = 0, most = 0;
     column_size.resize(at(rows));
-    for (int i = k; i < rows; ++i) {  // divisions only where something is larger than before
+    for (int i = k; i < rows; ++i) {  // divisions only if something is larger than before
       const double size = column_size[at(i)] = size_of(row(i)[k]);
       if (least_size[at(i)] > 0 && size > most * least_size[at(i)]) most = size / least_size[at(i)];
     }

@@ -35,7 +35,7 @@ struct Health {
                        ///< 1 no cancellation, 1e-16 nothing left; invariant under units
   int weakest_variable = -1;
   bool singular = false;  ///< a pivot with no digits left: `singular_variables` depend
-  bool finite = true;     ///< false where numbers have overflown: `singular_variables` are met then
+  bool finite = true;     ///< false if numbers have overflown: `singular_variables` are met then
   std::vector<int> singular_variables;
 };
 
@@ -87,7 +87,7 @@ class Factors {
           std::shared_ptr<const ColumnScale> scale = nullptr, NoPivot no_pivot = NoPivot::stop,
           double least = 0);
 
-  /// The factors where only these row groups have new coefficients: the fronts that they enter and
+  /// The factors if only these row groups have new coefficients: the fronts that they enter and
   /// all above are made again, the others shared. O(those fronts) and one pointer per front; now
   /// and then (see above) all numbers are copied.
   /// `rescale`: they find their columns' scale anew, as a constructor would; one number per column.

@@ -60,7 +60,7 @@ void subtract_product(double sign, const View<L>& l, const T* x, std::ptrdiff_t 
     }
 }
 
-/// Calls take(view) with the piece's left matrix; `identity` where it is none.
+/// Calls take(view) with the piece's left matrix; `identity` if it is none.
 template <class T, class Take, class Identity>
 void with_left(const Piece& p, const Matrices<T>& m, const std::vector<Coefficient>& c, Take take,
                Identity identity) {

@@ -16,7 +16,7 @@
 ///
 /// Order: the variable whose front would be smallest comes next (minimum degree on the merged
 /// rows, by priority queue), ties by index; indices follow the names, so the order does too. Pivots
-/// of one front: vectors before scalars, then by index. Where that leads to wide fronts (grids,
+/// of one front: vectors before scalars, then by index. If that leads to wide fronts (grids,
 /// many loops) nested dissection is tried as well, with minimum degree inside its parts, and the
 /// order of less work taken.
 namespace titop::solve {

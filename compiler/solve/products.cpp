@@ -165,7 +165,7 @@ using Four = Lanes<4>;
 
 }  // namespace
 
-/// By tiles; the last ones reach back where rows or columns are no multiple of four.
+/// By tiles; the last ones reach back if rows or columns are no multiple of four.
 TITOP_WIDE void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
                                  std::ptrdiff_t stride, const Destination* to,
                                  std::ptrdiff_t first) {

@@ -71,7 +71,7 @@ void Propagation::form_front(std::size_t index) {
   substitute_upper(pivots, p.by_all, lu, n, formed_.data() + p.unknowns);
 }
 
-/// The rows of a front as they come: nullptr where nothing has reached them yet.
+/// The rows of a front as they come: nullptr if nothing has reached them yet.
 void Propagation::gather(const Front& f, Space& space) const {
   const std::ptrdiff_t m = space.m;
   space.come.assign(at(f.row_count), nullptr);
@@ -121,7 +121,7 @@ void Propagation::forward(int index, Space& space) const {
            p.by_pivots, with, space.from.data(), space.carried.data() + f.first_carried * m, m);
 }
 
-/// The front's unknowns from those of its border and, where it is active, its own rows.
+/// The front's unknowns from those of its border and, if it is active, its own rows.
 void Propagation::back(int index, Space& space) const {
   const std::ptrdiff_t m = space.m;
   const Front& f = plan_.fronts[at(index)];

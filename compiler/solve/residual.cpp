@@ -48,7 +48,7 @@ void add_sizes_of_products(const Left* left, const RowMatrix<double>* right, con
 
 }  // namespace
 
-/// |left| |right| of a piece whose variable is a single number, and left * right; nothing where
+/// |left| |right| of a piece whose variable is a single number, and left * right; nothing if
 /// these are not single numbers.
 template <class T>
 std::optional<std::pair<double, T>> JointRows<T>::number(const Piece& p) const {
@@ -66,7 +66,7 @@ std::optional<std::pair<double, T>> JointRows<T>::number(const Piece& p) const {
 }
 
 /// Calls take(scalar row, sign, left, right, variable) for all products sign * left * right *
-/// variable that the rows are sums of: left a view, right a coefficient, or nullptr for 1. Where
+/// variable that the rows are sums of: left a view, right a coefficient, or nullptr for 1. If
 /// these are single numbers, of which scalar diagrams are made, calls take_number(scalar row, sign,
 /// |left| |right|, left * right, variable) instead.
 template <class T>

@@ -161,7 +161,7 @@ TITOP_PART void count_entries(const Exponents& x) {
     }
 }
 
-/// to = -total / number, where there is any. By way of doubles, of which processors divide many at
+/// to = -total / number, if there is any. By way of doubles, of which processors divide many at
 /// once: the quotient of two ints, cut to a whole number, is the same.
 TITOP_PART void take_means(Index n, const int* __restrict total, const int* __restrict number,
                            int* __restrict to) {

@@ -12,7 +12,7 @@ namespace titop::solve {
 /// they would draw the means along. Columns of one unit (three of a twist or wrench) get the same
 /// exponent, whichever way their frame is turned. `units`: the first column of each unit, and the
 /// end. Writes one exponent per column, within -1000 ... 1000. O(rows x columns), and scratch of 4
-/// ints per entry where all units are scalars, 2 where all are threes, 6 at most; units per row
+/// ints per entry if all units are scalars, 2 if all are threes, 6 at most; units per row
 /// count up to a multiple of eight.
 void column_scale(const double* magnitudes, int rows, std::span<const int> units,
                   std::int16_t* exponents);

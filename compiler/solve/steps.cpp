@@ -32,7 +32,7 @@ template <int V>
   }
 }
 
-/// One step where V registers have all columns: the pivot's row stays in them.
+/// One step if V registers have all columns: the pivot's row stays in them.
 template <int V>
 [[gnu::always_inline]] inline void eliminate_narrow(std::ptrdiff_t k, std::ptrdiff_t end,
                                                     std::ptrdiff_t rows, std::ptrdiff_t n,

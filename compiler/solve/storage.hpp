@@ -40,7 +40,7 @@ class Storage {
 template <class T>
 using RowMatrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// A matrix that is still to be written, in large pages where it is large.
+/// A matrix that is still to be written, in large pages if it is large.
 template <class T>
 RowMatrix<T> unwritten(Eigen::Index rows, Eigen::Index cols) {
   RowMatrix<T> result(rows, cols);

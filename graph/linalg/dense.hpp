@@ -15,7 +15,7 @@ struct Solution {
 };
 
 /// Solves E z = F (n x n, n x m): rows and columns scaled by powers of two, LU with partial
-/// pivoting, one step of refinement. rcond = 0 where a pivot is exactly 0. O(n^3).
+/// pivoting, one step of refinement. rcond = 0 if a pivot is exactly 0. O(n^3).
 Solution solve(const Eigen::MatrixXcd& E, const Eigen::MatrixXcd& F);
 
 /// Inverse of a square matrix and its reciprocal condition number; rcond = 0 if singular. O(n^3).
@@ -35,7 +35,7 @@ struct Eigensystem {
   Eigen::VectorXcd values;
   Eigen::MatrixXcd V, W;
   Eigen::VectorXd scale;  ///< the states' own sizes, by `balancing` (powers of two)
-  double rcond_V = 0;     ///< reciprocal condition number of V: near 0 where A is near defective
+  double rcond_V = 0;     ///< reciprocal condition number of V: near 0 if A is near defective
 };
 /// `balancing`: balance keeps small eigenvalues sharpest, balance_parts the coupling of parts.
 Eigensystem eigensystem(const Eigen::MatrixXd& A,

@@ -17,7 +17,7 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kRigid = 1e-13;  ///< of a diagonal entry, of lambda_max: smaller is rounding
 
 /// L with S = L L', rows in their places, columns by falling pivots. `least` is the least pivot
-/// over its diagonal entry of S. Empty where that is only rounding: a rigid motion.
+/// over its diagonal entry of S. Empty if that is only rounding: a rigid motion.
 MatrixXd pivoted_cholesky(const MatrixXd& S, double& least) {
   const Eigen::LDLT<MatrixXd> ldl(S);
   const VectorXd d = ldl.vectorD(), diagonal = ldl.transpositionsP() * VectorXd(S.diagonal());

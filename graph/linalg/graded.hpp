@@ -16,7 +16,7 @@ struct GradedModes {
   SymmetricModes modes;
   bool graded = false;
   double relative = 0;  ///< eigenvalues are off by some such part of themselves: n eps over the
-                        ///< least pivot by its diagonal entry; infinite where not graded
+                        ///< least pivot by its diagonal entry; infinite if not graded
 };
 GradedModes eigh_graded(const Eigen::MatrixXd& S);
 

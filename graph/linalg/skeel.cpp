@@ -22,7 +22,7 @@ using Small =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kSmall, kSmall>;
 
 /// From M^k, k = 1, 2, 4 ... 1024: the row sums v of M^k give max (M v)_i / v_i, never below the
-/// radius [Collatz 1942]; where that stays loose, |M^1024|^(1/1024), the norm's own factor n having
+/// radius [Collatz 1942]; if that stays loose, |M^1024|^(1/1024), the norm's own factor n having
 /// become n^(1/1024).
 double perron_by_squaring(const Small& M) {
   using Column = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kSmall, 1>;
@@ -306,7 +306,7 @@ double skeel_radius_of_core(const MatrixXd& M) {
   if (M.rows() > kSmall) {
     const RowMatrix inverse = inverse_by_rows<RowMatrix>(M);
     if (inverse.size() == 0) return 0;
-    constexpr int kWhole = 25;  // where they do not settle by then, mostly the loop is cut open
+    constexpr int kWhole = 25;  // if they do not settle by then, mostly the loop is cut open
     const RowMatrix of_inverse = inverse.cwiseAbs();
     const Eigen::SparseMatrix<double, Eigen::RowMajor> of_M = M.cwiseAbs().sparseView();
     const Powers whole = perron_by_powers(M.rows(), kWhole, [&](const VectorXd& v) -> VectorXd {

@@ -20,7 +20,7 @@ SymmetricModes eigh(const Eigen::MatrixXd& S);
 
 /// K v = lambda M v, V'MV = I, all modes. K symmetric (free structures: semidefinite), M positive
 /// definite, both n x n. Every lambda is off by some eps * lambda_max, so that the low ones of a
-/// slender structure are lost: where K is definite take `eigh_definite`. Cost 14 n^3.
+/// slender structure are lost: if K is definite take `eigh_definite`. Cost 14 n^3.
 SymmetricModes eigh(const Eigen::MatrixXd& K, const Eigen::MatrixXd& M);
 
 /// The same, all modes, for K and M both positive definite: K = U_K'U_K, M = U_M'U_M, and the

@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Complex = std::complex<double>;
 
-/// Largest difference over the largest entry of `exact`; over 1 where that is all zero.
+/// Largest difference over the largest entry of `exact`; over 1 if that is all zero.
 template <class A, class B>
 double off(const A& a, const B& exact) {
   if (a.rows() != exact.rows() || a.cols() != exact.cols()) return 1e300;

@@ -6,7 +6,7 @@
 #include "simulate/scenes.hpp"
 #include "support/rng.hpp"
 
-/// The certificate that every compile makes: no warning where nothing is wrong.
+/// The certificate that every compile makes: no warning if nothing is wrong.
 
 using namespace titop;
 

@@ -190,7 +190,7 @@ TEST_CASE(
   CHECK(c.holds());
   CHECK(c.passivity.pairs == 2);
   CHECK(c.passivity.structure);
-  CHECK(c.passivity.least >= -1e-12);  // above 0 where dampers move; a free mass alone gives 0
+  CHECK(c.passivity.least >= -1e-12);  // above 0 if dampers move; a free mass alone gives 0
 }
 
 TEST_CASE("a negative damper in a controller: active and unstable, and no fault of the compiler") {

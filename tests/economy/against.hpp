@@ -8,7 +8,7 @@
 
 #include "../../examples/by_hand/by_hand.hpp"
 
-/// A reduced system beside the truth, where the truth is not titop's.
+/// Compares a reduced system with a reference that is not titop's.
 namespace titop_test {
 
 /// Reference of a scene, by hand: transfer and poles [rad/s].

@@ -4,7 +4,7 @@
 #include "economy/scenes.hpp"
 #include "support/mistakes.hpp"
 
-/// Where the whole is too large for one eigenproblem, bodies lose modes first. Here the limit is
+/// If the whole is too large for one eigenproblem, bodies lose modes first. Here the limit is
 /// small instead.
 using namespace titop;
 using namespace titop_test;

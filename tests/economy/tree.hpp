@@ -60,12 +60,12 @@ struct InModes {
 };
 
 /// The free root is eliminated; modes are found from M x = mu K x with stiffnesses scaled to 1, so
-/// that the low ones are sharp. In `Real`, for double is faster where the structure is large.
+/// that the low ones are sharp. In `Real`, for double is faster if the structure is large.
 template <class Real = long double>
 InModes in_modes(const Assembled& a, bool free);
 
 /// Times s^p of positions: 0 positions, 1 rates, 2 accelerations, per output. A sum over modes;
-/// over poles where there is damping, held against one LU of M, D and K.
+/// over poles if there is damping, held against one LU of M, D and K.
 Truth truth_of(const Assembled& a, bool free, const std::vector<int>& power);
 Truth truth_of(const Assembled& a, bool free = false, int power = 2);
 

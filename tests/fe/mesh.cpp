@@ -144,7 +144,7 @@ TEST_CASE("a mechanism is named") {
     contains(text, "error[bad-modes]: mesh beam clamped at its parent moves without stiffness at ");
     CHECK((text.find("at C.") != std::string::npos || text.find("at 3.") != std::string::npos));
   }
-  // The same where rounding has made K definite: energy of a rigid motion within its own rounding.
+  // The same if rounding has made K definite: energy of a rigid motion within its own rounding.
   mesh.K.diagonal() *= 1 + 4e-15;
   REQUIRE(weak_pivot(mesh.K.bottomRightCorner(24, 24)) == -1);
   for (const fe::ModeOptions& options : {fe::ModeOptions{}, fe::ModeOptions{.kept = 3}}) {

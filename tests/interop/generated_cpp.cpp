@@ -1,5 +1,5 @@
 // Generated C++ is compiled by g++ and clang with warnings as errors, its own test runs, and fails
-// where a single number of the header is wrong.
+// if a single number of the header is wrong.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 

@@ -5,7 +5,7 @@
 #include "frame_diagram.hpp"
 
 /// Random frames (frames.hpp) of which the wrench at one joint is read: as by Lagrange multipliers,
-/// or refused where they are not determined.
+/// or refused if they are not determined.
 
 using namespace loop_test;
 using namespace titop;

@@ -247,7 +247,7 @@ TEST_CASE("redundant directions and held columns: as singular values of all rela
       CHECK((directions * directions.transpose() -
              MatrixXd::Identity(directions.rows(), directions.rows()))
                 .norm() <= 1e-12);
-      // They follow from the blocks before: they are 0 where these are 0.
+      // They follow from the blocks before: they are 0 if these are 0.
       const MatrixXd N =
           b == 0 ? MatrixXd(MatrixXd::Identity(width(r), width(r))) : null_space(dense(r, b));
       const MatrixXd all = dense(r, b + 1);

@@ -73,7 +73,7 @@ inline std::vector<std::string> between(const std::string& text, const std::stri
   return found;
 }
 
-/// The page's section with this id; "" where there is none, or more than one.
+/// The page's section with this id; "" if there is none, or more than one.
 inline std::string section(const std::string& page, const std::string& id) {
   const auto found = between(page, "<section id=\"" + id + "\">", "</section>");
   return found.size() == 1 ? found.front() : "";

@@ -69,7 +69,7 @@ MatrixXcd exact(const Numbers& n, Form form, std::complex<double> at) {
   return y;
 }
 
-/// Worst entry, each over itself over all points (0 where both are).
+/// Worst entry, each over itself over all points (0 if both are).
 double error(const std::vector<MatrixXcd>& a, const std::vector<MatrixXcd>& b) {
   double worst = 0;
   for (Eigen::Index i = 0; i < a[0].rows(); ++i)

@@ -5,7 +5,7 @@
 
 #include "sparse_system.hpp"
 
-/// The plan alone: fronts, their largest size and the work grow linearly where nothing closes on
+/// The plan alone: fronts, their largest size and the work grow linearly if nothing closes on
 /// itself. Counted, not timed.
 
 using namespace solver_test;

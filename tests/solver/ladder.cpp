@@ -160,7 +160,7 @@ double off(double found, const Real& exact) {
   return std::abs(static_cast<double>(Real(found) / exact - 1));
 }
 
-/// At s = 2; none where it is refused for its lack of digits.
+/// At s = 2; none if it is refused for its lack of digits.
 std::optional<double> answer(const System& system, Precision precision) {
   try {
     return system.transfer(2, precision)(0, 0).real();
@@ -198,7 +198,7 @@ TEST_CASE("precision: refinement in 32 digits gives all of double, or says that 
                   right, lost_in_double, refused, refused_here));
   CHECK(right >= 15);
   CHECK(lost_in_double >= 15);
-  CHECK(refused > refused_here);  // some where double has no pivot, more where it has a wrong one
+  CHECK(refused > refused_here);  // some if double has no pivot, more if it has a wrong one
   CHECK(refused_here >= 20);
 }
 

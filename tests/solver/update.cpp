@@ -231,7 +231,7 @@ TEST_CASE("update: where pivots lose half their digits all is made anew, and tha
 
 TEST_CASE("update: digits that go in many small steps are made good as those that go in one") {
   // The pivot 1 - g, of terms 1 + g, falls to a tenth with every step: from 0.4 / 1.6 at g = 0.6 it
-  // has lost half its digits where 10^-k / 2 < 1e-8 / 4, from k = 9 on.
+  // has lost half its digits if 10^-k / 2 < 1e-8 / 4, from k = 9 on.
   const System start = compile(loop());
   System system = start;
   for (int k = 1; k <= 12; ++k) {

@@ -11,7 +11,7 @@
 /// `<=`, so that not-a-number fails.
 namespace titop_test {
 
-/// |a - b| / |b|; 0 where both are 0, infinite where only b is.
+/// |a - b| / |b|; 0 if both are 0, infinite if only b is.
 template <class T>
 double relative(const T& a, const T& b) {
   const auto off = static_cast<double>(std::abs(a - b));

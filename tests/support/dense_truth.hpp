@@ -17,7 +17,7 @@ struct DenseTruth {
   Eigen::MatrixXd terms;
 };
 
-/// At s, no 0 where positions or rates are read. Throws runtime_error if the equations are not as
+/// At s, no 0 if positions or rates are read. Throws runtime_error if the equations are not as
 /// many as the unknowns, or do not determine them: a pole.
 DenseTruth dense_truth(const titop::Graph& graph, std::complex<double> s);
 

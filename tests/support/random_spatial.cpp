@@ -266,7 +266,7 @@ void draw_slosh(Draft& d, const std::string& a) {
   use_spring(d, next);
 }
 
-/// Holds the tip: by the ground where nothing else does, by an input where the modes can follow.
+/// Holds the tip: by the ground if nothing else does, by an input if the modes can follow.
 void draw_tip(Draft& d, const Body& body, Root root) {
   const std::string a = body.name;
   const Vector3d r = draw_axis(d);

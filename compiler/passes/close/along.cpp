@@ -18,7 +18,7 @@ struct Walk {
   std::vector<int> unopened, waiting;       ///< per chain: how many of its columns, of `through`
   std::vector<char> opened;                 ///< per column
   std::vector<char> met, done;              ///< per chain; met: begun, at least
-  std::set<std::pair<int, int>> near = {};  ///< unopened columns, chain: where some are open
+  std::set<std::pair<int, int>> near = {};  ///< unopened columns, chain: if some are open
   std::deque<int> free = {};                ///< chains that open nothing and wait for nothing
   std::vector<int> result = {};
 

@@ -45,7 +45,7 @@ class Coordinates {
   Coordinates(const Graph& graph, ParameterValues values) : g_(graph), values_(values) {}
   /// State that is the rate of this one, -1 if none is.
   int rate_of(int node, int state) const { return of(node).rate[static_cast<std::size_t>(state)]; }
-  /// 1 / sqrt(stiffness), 0 where it stores no energy.
+  /// 1 / sqrt(stiffness), 0 if it stores no energy.
   double weight(int node, int state) const { return of(node).weight(state); }
 
  private:

@@ -38,8 +38,8 @@ struct Tie {
 struct Closing {
   const Tie* tie = nullptr;
   Form form = {};
-  double gap = 0;  ///< relative to 1, or to the longest lever; 0 where the ground is met
-  std::vector<int> chain = {};      ///< points on the way round, for messages
+  double gap = 0;               ///< relative to 1, or to the longest lever; 0 if the ground is met
+  std::vector<int> chain = {};  ///< points on the way round, for messages
   std::vector<int> equations = {};  ///< ties on the way round, this one too
 };
 

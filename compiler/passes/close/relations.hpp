@@ -34,7 +34,7 @@ struct Relations {
   std::vector<std::vector<int>> unit = {};  ///< per block and row: rows of one number share a
                                             ///< factor (three translations, three rotations)
   std::vector<Role> role = {};              ///< per column
-  Eigen::VectorXd weight = {};  ///< 1 / sqrt(stiffness) where the coordinate stores energy, else 0
+  Eigen::VectorXd weight = {};  ///< 1 / sqrt(stiffness) if the coordinate stores energy, else 0
 };
 
 /// Factors of rows and columns.

@@ -18,7 +18,7 @@ class Sum {
   /// `units`: per row 0 for a translation, 1 for a rotation.
   explicit Sum(std::vector<int> units) : units_(std::move(units)) {}
   /// A factor that is met on a way: products with it, and with those after it, round in proportion.
-  /// Translations and rotations have each their own unit, where there are six columns.
+  /// Translations and rotations have each their own unit, if there are six columns.
   void meet(const Eigen::MatrixXd& factor);
   /// += factor * own; the factor has been met.
   void add(const Eigen::MatrixXd& factor, const Form& own);

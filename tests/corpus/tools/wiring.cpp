@@ -61,7 +61,7 @@ class Wiring {
 
  private:
   /// Rows of inputs and outputs node by node. The two signals of a channel stand at the same row of
-  /// u and y: where the output is driven, the row is swapped.
+  /// u and y: if the output is driven, the row is swapped.
   void place() {
     for (const Node& n : g_.nodes) {
       const Interface& face = n.block->interface();
@@ -86,7 +86,7 @@ class Wiring {
     }
   }
 
-  /// Which rows of its target an equation drives. Throws where they are oblique.
+  /// Which rows of its target an equation drives. Throws if they are oblique.
   std::vector<Index> unit_rows(const Equation& e) const {
     const int size = g_.signals[at(e.target)].size;
     std::vector<Index> rows;

@@ -14,7 +14,7 @@ struct Family {
   std::string pending = {};
 };
 
-/// Judges this family's share of the 500 scenes (of TITOP_WILD_SCENES, where that is set): no wrong
+/// Judges this family's share of the 500 scenes (of TITOP_WILD_SCENES, if that is set): no wrong
 /// answer in silence, no false refusal. The first failing scene is shrunk and printed. With
 /// TITOP_WILD_PENDING=1 families that are pending are judged, too.
 void demand_right(const Family& family);
