@@ -68,10 +68,10 @@ enum class Precision {
 using ParameterList = std::vector<std::pair<std::string, double>>;
 
 /// A compiled diagram: the elimination plan, the factors and the blocks' data. Const, cheap to
-/// copy, may be shared between threads. (Those that it works with itself are kept, asleep, for
-/// later calls, and take no signals; a child of fork() goes on without them.) The dense model is
-/// written from it on demand. References are good while the System lives; one that does not live on
-/// gives a copy, which stays: `const StateSpace& m = compile(d).state_space();`
+/// copy, may be shared between threads. (Its worker threads are kept, asleep, for later calls, and
+/// block all signals; a child of fork() has none.) The dense model is written from it on demand.
+/// References are valid during the System's lifetime; a temporary System returns copies: `const
+/// StateSpace& m = compile(d).state_space();`
 class System {
  public:
   explicit System(std::shared_ptr<const detail::SystemData> data) : data_(std::move(data)) {}

@@ -63,10 +63,10 @@ Stage match(Stage stage);
 /// are at rest only if they have one solution. O(terms).
 Stage order(Stage stage);
 
-/// States that follow from others are known, on position and on velocity level: dependent
-/// coordinates of closed chains, and Integrators of accelerations or rates that the states hold
-/// already. They leave the model (Stage::dependents); states that an input prescribes stay. Ranks
-/// are decided after scaling; decisions near the tolerance are noted with both orders. Cost as
+/// Determines the dependent states, on position and on velocity level: dependent coordinates of
+/// closed chains, and Integrators of accelerations or rates whose integrals are states already.
+/// They leave the model (Stage::dependents); states that an input prescribes stay. Ranks are
+/// decided after scaling; decisions near the tolerance are noted with both orders. Cost as
 /// `chains`.
 Stage close(Stage stage);
 
