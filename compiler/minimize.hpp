@@ -39,7 +39,7 @@ struct OrderVerdict {
   bool exact = false;   ///< decided by exact arithmetic (compiler/exact_order.hpp)
   double to_fewer = 1;  ///< least visibility among the kept modes: error of removing the next
   double to_more = 0;   ///< largest visibility among the removed modes: error of removing them
-  /// Measured relative change of the transfer without the removed modes; negative: not measured. If
+  /// Measured relative change of the transfer near the removed modes; negative: not measured. If
   /// nothing is removed: the change was so much larger than the judged visibilities that the modes
   /// were restored.
   double change = -1;

@@ -112,8 +112,8 @@ struct Stage {
   std::vector<Inversion> inversions;     ///< after match
   std::vector<Loop> loops;               ///< after order: dependencies first
   bool chained = false;                  ///< after chains: some chain is closed
-  bool closes = false;                ///< after chains: chains close, or Integrators may hold twins
-  std::vector<Released> released;     ///< after chains
+  bool closes = false;             ///< after chains: chains close, or Integrators may repeat states
+  std::vector<Released> released;  ///< after chains
   std::vector<Dependent> dependents;  ///< after close: of chains, in turn; after solve: all
   std::vector<Dependent> before;      ///< those of the system that `update` starts from
 

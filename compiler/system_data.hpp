@@ -195,8 +195,8 @@ std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
 /// independent coordinates share springs. Empty if a block does not define its energy. O(n^3).
 Eigen::MatrixXd potential_energy(const SystemData& data);
 
-/// Replaces the dense model by the minimal one if its transfer plus the removed modes stays within
-/// 1e-8 (or ten times Options::resolution), and reports it in dense_order and dense_notes.
+/// Replaces the dense model by the minimal one if the change of its transfer near the removed modes
+/// is below 1e-8 (or ten times Options::resolution); reports it in dense_order and dense_notes.
 void minimize_checked(const System& system, const SystemData& data, StateSpace& dense);
 
 /// Certificate of the factors: see certify.cpp.
