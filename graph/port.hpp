@@ -36,7 +36,7 @@ class SignalRef {
 
   Graph* graph_ = nullptr;
   /// -1: a port that does not exist; that mistake is already noted. -2 - node: `.child` of a node
-  /// that has none or several; noted where it is used, with that line.
+  /// that has none or several; noted at its use, with that line.
   int signal_ = -1;
   Term::Of of_ = Term::Of::signal;
   titop::Part part_;

@@ -25,9 +25,9 @@ class Rotation {
   Rotation() = default;  ///< identity, no names
 
   /// By `angle` [rad] about the unit vector along `axis` (any length but 0): the columns are the
-  /// axes of the turned frame a in frame b. `angle` may be a parameter. More than a turn is right
-  /// and rarely meant (degrees?): the compile log warns of it. Entries of 2.2e-16 and less are 0,
-  /// so that a right angle is one. Throws not_a_rotation.
+  /// axes of the rotated frame a in frame b. `angle` may be a parameter. More than a turn is legal
+  /// but rarely intended (degrees?): the compile log warns of it. Entries of 2.2e-16 and less are
+  /// 0, so that a right angle is exact. Throws not_a_rotation.
   static Rotation about(const Vector3d& axis, Value angle);
 
   /// From its matrix. Throws not_a_rotation unless |T'T - I| <= 1e-9 and det T > 0; a smaller

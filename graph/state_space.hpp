@@ -7,8 +7,8 @@
 
 namespace titop {
 
-/// One linear model: xdot = A x + B u, y = C x + D u, with names for every row and column.
-/// Inputs, outputs and states stand in the order in which the diagram declares them.
+/// One linear model: xdot = A x + B u, y = C x + D u, with names for every row and column. Inputs,
+/// outputs and states are in the order of their declaration in the diagram.
 struct StateSpace {
   Eigen::MatrixXd A;                                 ///< n x n
   Eigen::MatrixXd B;                                 ///< n x nu
