@@ -32,7 +32,7 @@ struct ResidualMass {
   Matrix6 D_P0 = Matrix6::Zero();
   double smallest = 0;  ///< smallest eigenvalue with D_P scaled to a unit diagonal: a fraction
   int component = 0;    ///< 0..5, where most of its eigenvector is
-  double noise = 0;     ///< below this fraction it cannot be told from zero, by data.digits
+  double noise = 0;     ///< below this fraction it counts as zero, by data.digits
   Definiteness verdict = Definiteness::definite;
 };
 ResidualMass residual_mass(const ModalData& data);
@@ -50,8 +50,8 @@ ChildRank child_rank(const ModalData& data, const ModalChild& child);
 /// "rx", or a combination "y - 0.5 rz".
 std::string combination(const Vector6& w);
 
-/// What `compile` judges scenes by: sizes of ports as above, D_P's fractions by `data.digits`,
-/// those of shapes 1e-11 at least, the rounding of an eigenproblem.
+/// Digits by which `compile` judges scenes: sizes of ports as above, D_P's fractions by
+/// `data.digits`, those of shapes 1e-11 or more, the rounding of an eigenproblem.
 DataDigits data_digits(const ModalData& data);
 
 /// fraction(k, j) = L_P(k, j)^2 / D_P(j, j): fraction of the rigid mass that moves with mode k if P

@@ -9,12 +9,12 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-/// What the digits of modal data cannot decide. An error e of a block's direct term D moves its
-/// inputs by u = K e, K from the joint system with all that hangs on the block. With ports scaled
-/// to one unit, the error of a mass is `mass`: it makes the system singular where |K| reaches 1 /
-/// mass. A port freed in a subspace F alone has K = F (F' D F)^-1 F': this is the least eigenvalue
-/// of D there, in whatever directions joints, chains or equations leave the port free. The error of
-/// shapes W enters W' W twice: |K| reaches 1 / shapes^2.
+/// Motions and forces that the digits of modal data cannot determine. An error e of a block's
+/// direct term D changes its inputs by u = K e, K from the joint system with all bodies mounted on
+/// the block. With ports scaled to one unit, the error of a mass is `mass`: it makes the system
+/// singular if |K| reaches 1 / mass. A port freed in a subspace F alone has K = F (F' D F)^-1 F':
+/// this is the least eigenvalue of D there, for any directions in which joints, chains or equations
+/// leave the port free. The error of shapes W enters W' W twice: |K| reaches 1 / shapes^2.
 namespace titop::detail {
 namespace {
 
@@ -24,11 +24,11 @@ using Eigen::VectorXd;
 using linalg::at;
 using solve::RowMatrix;
 
-/// Less than one digit is left of what the data decide: said.
+/// Less than one digit of the result is determined by the data: noted.
 constexpr double kOneDigit = 0.1;
 
-/// First all blocks by so many random errors at once. Of what one block's error does to its port
-/// this share shows in one of them at least, but for one case in 10^4 at the limit.
+/// First all blocks by so many random errors at once. At least this share of the effect of one
+/// block's error on its port is visible in one of them, except in one case of 10^4 at the limit.
 constexpr int kSums = 4;
 constexpr double kShows = 0.1;
 
@@ -40,7 +40,7 @@ constexpr double kProducts = 64 * std::numeric_limits<double>::epsilon();
 struct DataPort {
   int node = -1, channel = -1;  ///< channel of the node's block
   int gives = -1, takes = -1;   ///< signals
-  int group = -1;               ///< row group of what it gives
+  int group = -1;               ///< row group of its output
   bool by_shapes = false;       ///< its direct term is W' W
   const FromData* block = nullptr;
 

@@ -75,32 +75,31 @@ struct Minimized {
 /// meaning.
 ///
 /// Undamped or proportionally damped models are treated as symmetric eigenproblems (l = omega^2),
-/// those of closed chains with the help of their energy,
-/// the others by the eigenvalues of A (l = s). Poles that are one but for rounding, those at 0
-/// (2e-7 of A's norm) and those of a condition number above 1e6 have no vectors to go by: with all
-/// that share their pole they are split off as a small model (linalg/spectral.hpp), whose
-/// controllability and observability staircases say how many of its states count
-/// (minimize/staircase.hpp). Integrators that act on nothing else,
-/// of positions and rates that outputs read, are taken apart, and both parts judged by themselves:
-/// zdot = N z + B u is what no mode moves of them, and the ranks of [B, N B, ...] and [C; C N; ...]
-/// say which of them follow from other states (a position that these hold already) and which no
-/// output sees apart from others (the common motion, where outputs read differences). A rank is
+/// those of closed chains with the help of their energy, the others by the eigenvalues of A (l =
+/// s). Poles that are equal to rounding, those at 0 (2e-7 of A's norm) and those of a condition
+/// number above 1e6 have no reliable vectors: with all poles of their cluster they are split off as
+/// a small model (linalg/spectral.hpp), whose controllability and observability staircases
+/// determine how many of its states count (minimize/staircase.hpp). Integrators that act on no
+/// other state, of positions and rates that outputs read, are separated, and both parts judged by
+/// themselves: zdot = N z + B u is their part without the modes, and the ranks of [B, N B, ...] and
+/// [C; C N; ...] determine which of them depend on other states (a position that is a state
+/// already) and which are unobservable (the common motion, if outputs read differences). A rank is
 /// decided against four samples of rounding, 32 times the largest. The verdict's interval counts
-///  - upwards, dropped modes above their own rounding bound, which are there, however little they
-///    do, and those whose bound is above 1e-14, where something might hide;
+///  - upwards, dropped modes above their own rounding bound, which are present, however small their
+///    effect, and those whose bound is above 1e-14, which may hide an effect;
 ///  - downwards, kept modes below 1e-9 within 1e4 of their bound, and any within ten times their
 ///    bound; integrators and states of such small models within 1e4 of their rounding.
-/// A decided order is that of all data which rounding tells from those given: what lies below its
-/// own bound (two frequencies one ulp apart) counts as nothing, and only exact arithmetic says if
-/// it is. Modes are vectors of one size in the states' own units (linalg::balance_parts): in other
-/// units of the model the verdict is the same but for what rounding decides, and that counts as
-/// undecided. `System::state_space` first sets entries to 0 that its factors cannot tell from 0
-/// (32 times the largest of four samples of rounding), unless that costs the transfer digits. With
-/// `exact_order` the least visible modes leave until the order is that one. The transfer is
-/// measured before and after, near the modes that left: if it has changed by more than 1e-8 and ten
-/// times the resolution, the whole model is the result, and the notes say so. Cost O(n^3). Throws
-/// not_finite for entries that are not, and size for matrices that do not fit each other or the
-/// names of states, inputs and outputs.
+/// A decided order is that of all data which rounding distinguishes from the given ones: effects
+/// below their own bound (two frequencies one ulp apart) count as zero, and only exact arithmetic
+/// decides about them. Modes are vectors of one size in the states' own units
+/// (linalg::balance_parts): in other units of the model the verdict is the same except for
+/// decisions at rounding level, which count as undecided. `System::state_space` first sets entries
+/// to 0 that its factors cannot distinguish from 0 (32 times the largest of four samples of
+/// rounding), unless that costs the transfer digits. With `exact_order` the least visible modes
+/// leave until the order is that one. The transfer is measured before and after, near the removed
+/// modes: if it has changed by more than 1e-8 and ten times the resolution, the whole model is the
+/// result, and the notes report it. Cost O(n^3). Throws not_finite for entries that are not, and
+/// size for matrices that do not fit each other or the names of states, inputs and outputs.
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options = {});
 
 }  // namespace titop

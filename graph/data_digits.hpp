@@ -21,9 +21,9 @@ struct DataDigits {
 class FromData {
  public:
   virtual const DataDigits& digits() const = 0;
-  /// What the message says of this channel ("has ...", as in Block::why_singular), and the way out.
+  /// The message on this channel ("has ...", as in Block::why_singular), and the way out.
   /// `direction`: of the channel's input (acceleration or force) that is not determined. `left`:
-  /// fraction of the mass, or of the motion by the modes, that there is.
+  /// remaining fraction of the mass, or of the motion by the modes.
   virtual Block::Cause beyond_digits(int channel, const Eigen::VectorXd& direction,
                                      double left) const = 0;
 

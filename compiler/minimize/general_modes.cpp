@@ -30,7 +30,7 @@ void normalize(const ModeSet& m, linalg::Eigensystem& e) {
 }
 
 /// Numbers the clusters: chains of eigenvalues of the upper half plane (and the axis) with gaps up
-/// to what counts as equal, beside those that are judged as a whole. O(n^2).
+/// to the limit of equality, beside those that are judged as a whole. O(n^2).
 void find_clusters(const linalg::Eigensystem& e, const std::vector<std::vector<Index>>& wholes,
                    double noise, double resolution, ModeSet& m) {
   const Index n = e.values.size();
@@ -99,7 +99,7 @@ void find_mixing(const linalg::Eigensystem& e, const VectorXd& left, const Vecto
     }
 }
 
-/// What is judged as a whole is no mode of its own.
+/// Judges clusters as a whole: their poles are no modes of their own.
 void judge_wholes(const StateSpace& model, const PoleClusters& p, ModeSet& m) {
   m.apart.assign(at(m.size()), "");
   m.needed.assign(at(m.size()), 0);
@@ -108,7 +108,7 @@ void judge_wholes(const StateSpace& model, const PoleClusters& p, ModeSet& m) {
     WholeCluster c{p.e.values(whole).cwiseAbs().mean(), minimal_part(own.model), std::move(own.V),
                    std::move(own.W)};
     const bool at_zero = c.omega <= kNearZero * own.model.A_size;
-    if (at_zero) c.omega = 0;  // what is left is rounding of a multiple pole
+    if (at_zero) c.omega = 0;  // a smaller value is rounding of a multiple pole
     c.name = at_zero ? kAtZero : "its poles are one but for rounding";
     for (const Index j : whole) m.apart[at(j)] = c.name, m.states[at(j)] = 0;
     m.wholes.push_back(std::move(c));

@@ -17,9 +17,9 @@ struct Verdict {
 std::vector<Verdict> judge(const ModeSet& modes, double resolution);
 
 /// The least visible modes are dropped, and no others, until `order` states have become `exact`;
-/// never one of visibility above 1e-6. False if that does not come out: then only those that are
-/// dropped already, so far as `exact` allows. Clusters that are judged as a whole give what they
-/// have found, or, where that would be too much, nothing.
+/// never one of visibility above 1e-6. False if that number cannot be reached: then only those that
+/// are dropped already, as far as `exact` allows. Clusters that are judged as a whole lose the
+/// states that they have found, or none if that is too many.
 bool drop_down_to(int exact, int order, ModeSet& modes, std::vector<Verdict>& verdicts);
 
 /// Sum of the verdicts, for a model of `order` states.

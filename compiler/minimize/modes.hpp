@@ -28,7 +28,7 @@ struct WholeCluster {
   int leaving() const { return unreachable() + unseen(); }
 };
 
-/// Sizes of what drives each mode and of what it shows.
+/// Magnitudes of the modal input and output matrices.
 struct ModeSet {
   Eigen::VectorXd lambda;    ///< of each mode: omega^2, or |s|
   Eigen::VectorXd omega;     ///< |s| [rad/s]

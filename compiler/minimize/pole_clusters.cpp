@@ -19,7 +19,7 @@ using linalg::at;
 using Places = std::vector<Index>;
 
 constexpr double kOneNumber = 100 * kEps;  ///< of a matrix's norm: as near as that, poles are one
-constexpr double kWidest = 1e-3;           ///< likewise: what rounding makes of a multiple pole
+constexpr double kWidest = 1e-3;           ///< likewise: spread of a multiple pole by rounding
 
 std::vector<std::vector<int>> find_components(const MatrixXd& A) {
   std::vector<std::vector<int>> result;
@@ -174,7 +174,7 @@ Share share(const PoleClusters& p, const Places& cluster, int component, const S
   return s;
 }
 
-/// What an error E of A does to the cluster's A, B and C, in first order.
+/// First-order effect of an error E of A on the cluster's A, B and C.
 struct Off {
   double A;
   VectorXd B, C;

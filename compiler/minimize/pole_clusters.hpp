@@ -13,11 +13,11 @@ inline constexpr double kIll = 1e6;  ///< condition number of a pole that is jud
 inline constexpr double kNearZero = 2e-7;  ///< of the norm of A: where a pole may lie at 0
 
 struct PoleClusters {
-  /// Of a cluster, V and W have a basis of what belongs to it (linalg/spectral.hpp).
+  /// Of a cluster, V and W have a basis of its invariant subspaces (linalg/spectral.hpp).
   linalg::Eigensystem e;
   Eigen::MatrixXcd T;  ///< block diagonal, upper triangular
-  /// Multiple poles, those that lie at 0 beside the model's largest, and ill-conditioned ones:
-  /// what is judged as a whole. Places in `e`, ascending.
+  /// Clusters that are judged as a whole: multiple poles, poles at 0 relative to the model's
+  /// largest, and ill-conditioned ones. Places in `e`, ascending.
   std::vector<std::vector<Eigen::Index>> clusters;
   std::vector<std::vector<int>> components;  ///< states that share no entry of A with others
   std::vector<int> component;                ///< of each pole
@@ -32,8 +32,8 @@ struct OwnModel {
   ClusterModel model;
   Eigen::MatrixXd V, W;  ///< n x k, k x n
 };
-/// Rounding: by the first order of what errors of the size of a Schur form's do, of four samples
-/// the largest. O(n^2 k) each.
+/// Rounding: first-order effect of errors of the size of a Schur form's, the largest of four
+/// samples. O(n^2 k) each.
 OwnModel own_model(const PoleClusters& p, const std::vector<Eigen::Index>& cluster,
                    const StateSpace& model);
 

@@ -12,25 +12,25 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kClearly = 1e4;     ///< times rounding: not made by it
-constexpr double kFewDigits = 1e-9;  ///< of a size: where rounding is more, nothing leaves
+constexpr double kClearly = 1e4;     ///< times rounding: certainly larger
+constexpr double kFewDigits = 1e-9;  ///< of a size: with more rounding, nothing is removed
 
-/// One side of a cluster: what drives it, or, transposed, what sees it.
+/// One side of a cluster: its inputs or, transposed, its outputs.
 struct Driven {
   MatrixXd A, B;
   double A_noise, A_size;
   VectorXd B_noise, B_size;
 };
 
-/// The first `reached` columns of U span what the ports reach.
+/// The first `reached` columns of U span the reachable subspace of the ports.
 struct Stairs {
   MatrixXd U;
   Index reached = 0;
   double angle = 0;                  ///< by which rounding may have turned them
-  double visibility = 0, bound = 0;  ///< of what was taken for 0, and rounding's
+  double visibility = 0, bound = 0;  ///< of parts taken for 0, and rounding's
 };
 
-/// Ports by their own rounding: M is told from 0 where it is larger than 1.
+/// Ports by their own rounding: M is larger than 1 unless it is 0.
 struct Step {
   MatrixXd M;
   double noise, relative;  ///< in M's units, and by the sizes

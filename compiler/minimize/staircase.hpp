@@ -6,7 +6,7 @@
 /// For the compiler's own files.
 namespace titop::modes {
 
-/// xdot = A x + B u, y = C x, and what rounding may have put into it.
+/// xdot = A x + B u, y = C x, and the bound of its rounding.
 struct ClusterModel {
   Eigen::MatrixXd A, B, C;  ///< k x k, k x nu, ny x k; nu = 0 or ny = 0: that side counts fully
   double A_noise = 0;       ///< norm
@@ -16,21 +16,21 @@ struct ClusterModel {
   Eigen::VectorXd B_size, C_size;  ///< likewise of each input and output
 };
 
-/// What of a cluster counts.
+/// The minimal part of a cluster.
 struct MinimalPart {
   Eigen::MatrixXd unreachable;  ///< k x u, orthonormal: unreachable' x stays 0
-  Eigen::MatrixXd unseen;       ///< k x v: of the others, motions that no output shows
-  /// Least number of states that would do if all that rounding may have made (up to 1e4 times its
-  /// bound) were 0.
+  Eigen::MatrixXd unseen;       ///< k x v: of the others, unobservable motions
+  /// Least number of states that would suffice if all possible rounding (up to 1e4 times its bound)
+  /// were 0.
   Eigen::Index lowest = 0;
   double visibility = 0;  ///< largest part of a column, row or A that was taken for 0
   double bound = 0;       ///< rounding's in the same units
   Eigen::Index order(Eigen::Index k) const { return k - unreachable.cols() - unseen.cols(); }
 };
 
-/// Controllability and then observability staircase [Van Dooren 1981]. A rank is that of what lies
-/// above 32 times rounding, which grows with each step by the angle that the one before left open.
-/// Where rounding is more than 1e-9 of the sizes, nothing leaves. O(k^4).
+/// Controllability and then observability staircase [Van Dooren 1981]. A rank is that of the part
+/// above 32 times rounding, which grows with each step by the uncertain angle of the one before. If
+/// rounding is more than 1e-9 of the sizes, nothing is removed. O(k^4).
 MinimalPart minimal_part(const ClusterModel& model);
 
 }  // namespace titop::modes

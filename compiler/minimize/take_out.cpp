@@ -173,7 +173,7 @@ std::vector<Index> staying(const ModeSet& m, const std::vector<Index>& leave) {
   return result;
 }
 
-/// What leaves of a cluster: orthonormal columns in its own coordinates.
+/// Removed states of a cluster: orthonormal columns in its own coordinates.
 void add(const MatrixXd& part, const WholeCluster& c, LeavingModes& to) {
   const Index before = to.W.rows(), k = part.cols();
   if (k == 0) return;

@@ -5,20 +5,19 @@
 /// Refinement of every solution, in every precision, by the componentwise backward error.
 namespace titop::solve {
 
-/// The largest share of its terms that a row is off by, |rhs - rows x| over |rhs| + |rows| |x|:
-/// the least relative change of single entries and right-hand sides that makes x exact [Oettli,
-/// Prager 1964]. The three rows of a translation, rotation, force or torque count together; columns
-/// by themselves. Infinite where a number is not finite. What is below 1e-290 has no digits to
-/// keep.
+/// The largest ratio of a row's residual to its terms, |rhs - rows x| over |rhs| + |rows| |x|: the
+/// least relative change of single entries and right-hand sides that makes x exact [Oettli, Prager
+/// 1964]. The three rows of a translation, rotation, force or torque count together; columns by
+/// themselves. Infinite if a number is not finite. Numbers below 1e-290 have no digits to keep.
 template <class T>
 double backward_error(const Plan& plan, const RowMatrix<T>& residual,
                       const RowMatrix<double>& magnitudes);
 
-/// What rounding alone may leave of it: 8 (k + 8) units of rounding, k scalars in the longest row.
-/// A row of k products, each of up to three factors, is found to (k + 4) units of its terms, and
-/// the solution itself, once refined in the same arithmetic, is off by as much again [Skeel 1980;
+/// Its possible value by rounding alone: 8 (k + 8) units of rounding, k scalars in the longest row.
+/// A row of k products, each of up to three factors, has an error of up to (k + 4) units of its
+/// terms, and the solution itself, once refined in the same arithmetic, as much again [Skeel 1980;
 /// N. J. Higham, Accuracy and Stability of Numerical Algorithms, 3.1 and 12.1]; a complex product
-/// has up to 2 sqrt(2) units. Factors that have grown leave 0.8 to 0.99, whatever the precision.
+/// has up to 2 sqrt(2) units. With growth in the factors it is 0.8 to 0.99, in any precision.
 double backward_error_of_rounding(const Plan& plan, double epsilon);
 
 /// How a solution is found: as the factors give it, for those who measure their losses; or refined.

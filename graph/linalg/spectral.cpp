@@ -33,20 +33,20 @@ void move_up(Schur& s, Index j, Index to) {
   reorder(s, std::move(first));
 }
 
-/// As near as that, poles of T are one, and what sets them apart is rounding.
+/// Poles of T that are nearer than this are equal: their difference is rounding.
 double rounding_of(const MatrixXcd& T) {
   constexpr double kOneNumber = 100;  // times the unit roundoff of |T|
   return kOneNumber * std::numeric_limits<double>::epsilon() * T.norm();
 }
 
-/// Whether the poles in [first, rest) are told from those after them.
+/// Whether the poles in [first, rest) are separate from those after them.
 bool parted(const MatrixXcd& T, Index first, Index rest, double same, double bound) {
   const Index k = rest - first, m = T.rows() - rest;
   const Index j = nearest(T, first, rest);
   if ((T.diagonal().segment(first, k).array() - T(j, j)).abs().minCoeff() <= same) return false;
   const MatrixXcd X = sylvester(T.block(first, first, k, k), T.bottomRightCorner(m, m),
                                 -T.block(first, rest, k, m));
-  return X.norm() <= bound;  // false for what is no number: a common pole
+  return X.norm() <= bound;  // false for NaN: a common pole
 }
 
 std::vector<Spectrum::Cluster> find_clusters(Schur& s, double bound) {

@@ -22,7 +22,7 @@ MatrixXd random_orthogonal(Rng& rng, Index n) {
                 : MatrixXd(Eigen::HouseholderQR<MatrixXd>(rng.matrix(n, n)).householderQ());
 }
 
-/// What holds of any spectrum; the residuals as parts of the sizes of what is multiplied.
+/// Laws of any spectrum; the residuals relative to the sizes of the factors.
 void check(const MatrixXd& A, const linalg::Spectrum& s) {
   const Index n = A.rows();
   REQUIRE(s.V.cols() == n);

@@ -23,7 +23,7 @@ StateSpace model(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C) {
   return m;
 }
 
-/// Order and transfer of what is left.
+/// Order and transfer of the minimal model.
 template <class Transfer>
 void is(int order, const Transfer& G, const StateSpace& m) {
   const Minimized r = minimize(m);

@@ -9,8 +9,8 @@
 
 #include "support/mistakes.hpp"
 
-/// What data of so many digits cannot decide is refused, whatever the directions: a parent freed
-/// where nothing is left of its mass, a child driven where its modes do not move it.
+/// Motions that the data's digits cannot determine are refused, in any directions: a parent freed
+/// without remaining mass, a child driven where its modes do not move it.
 
 using namespace titop;
 using namespace titop_test;
@@ -129,7 +129,7 @@ TEST_CASE("data digits: freed by joints, along oblique axes, through what has no
                bushing(d, "k", b, hub.child("S"), {}, {.stiffness = {1, 1, 1, 1, 1, 1}});
              }),
              Code::improper, {"b.parent is free"}));
-  // A hub with a mass gives what the modes do not leave.
+  // A hub with a mass supplies the missing mass.
   CHECK(scene([&](Diagram&, auto& hub, auto& b) {
           release(hub);
           mount(b, hub.child("S"));

@@ -8,9 +8,9 @@
 #include <titop/titop.hpp>
 #include <vector>
 
-/// Rows of equal masses in which waves die away: what elimination does to one front is harmless,
-/// and its product along the row is not. Against the recursion of the row's own dynamic stiffness
-/// in 50 digits, without a line of the library.
+/// Rows of equal masses in which waves decay: the effect of elimination on one front is harmless,
+/// its product along the row is not. Against the recursion of the row's own dynamic stiffness in 50
+/// digits, without a line of the library.
 
 using namespace titop;
 
