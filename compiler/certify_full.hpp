@@ -34,7 +34,7 @@ struct FullCertificate {
   /// Over a grid s = (0.05 + j) w, w from a tenth of the lowest to ten times the highest pole:
   /// largest difference of transfers, per block of output and input (three translations or
   /// rotations of a port together) over its largest value on the grid. Only a block that may be
-  /// nothing but rounding, as by symmetry, is measured by 1e-3 of the terms that cancel in it
+  /// rounding alone, as by symmetry, is measured by 1e-3 of the terms that cancel in it
   /// (compiler/compare.hpp).
   struct Grid : Checked {
     int points = 0;  ///< where the factors have a transfer; `why_not`: other requested points
@@ -120,7 +120,7 @@ struct FullCertificate {
 };
 
 /// Writes the dense model, its poles and all that is listed above. O(n^3) in the states, and
-/// points * O(bodies). Does not change the system, but for its dense model, which is kept.
+/// points * O(bodies). Does not change the system, except for its dense model, which is kept.
 FullCertificate certify(const System& system, const Full& what = {});
 
 /// One line per item; for a check that was not made, the reason.

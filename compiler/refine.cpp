@@ -188,7 +188,7 @@ double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) c
   double worst = 0;
   for (Eigen::Index i = 0; i < size.rows(); ++i)
     for (Eigen::Index j = 0; j < size.cols(); ++j) {
-      // A block that is 0 by symmetry is nothing but rounding: it counts beside its neighbours.
+      // A block that is 0 by symmetry is rounding alone: it counts beside its neighbours.
       const double beside = std::sqrt(size.row(i).maxCoeff()) * std::sqrt(size.col(j).maxCoeff());
       if (off(i, j) <= kUnderflow) continue;
       const bool noise = size(i, j) <= kNoise * off(i, j) &&

@@ -53,7 +53,8 @@ class Workers {
     wake_.notify_one();
   }
 
-  /// Signals are for the threads that the program knows of, but for those of a thread's own faults.
+  /// Signals are for the threads that the program knows of, except for those of a thread's own
+  /// faults.
   void start() {
     sigset_t all, before;
     sigfillset(&all);

@@ -117,7 +117,7 @@ int main() {
   std::printf("xdd_3 / u at 3 rad/s: %.12f\n", fig8.transfer({0, 3})(5, 0).real());
   const Eigen::MatrixXd rest = fig8.static_gain();
   std::printf("x at rest under 1 N:");
-  for (int i = 0; i < 5; ++i)  // two of them are 0 but for rounding, of either sign
+  for (int i = 0; i < 5; ++i)  // two of them are 0 up to rounding, of either sign
     std::printf(" %.7f", std::round(rest(i, 0) * 1e7) / 1e7 + 0.0);
   std::printf(" m\n");
 

@@ -11,7 +11,7 @@ namespace titop {
 /// these numbers are exact (a row of zeros).
 struct DataDigits {
   Eigen::VectorXd size;         ///< per scalar input
-  double shapes = 0, mass = 0;  ///< fractions, below which nothing can be told from zero
+  double shapes = 0, mass = 0;  ///< fractions; smaller ones count as zero
 };
 
 /// A block whose numbers are measured, or read from a file, derives from this too. `compile` then

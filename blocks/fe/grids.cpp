@@ -41,7 +41,7 @@ void require_same_grids(const GridMatrices& m, const std::vector<Grid>& grids) {
   if (!mistakes.empty()) throw Error(std::move(mistakes));
 }
 
-/// G with u_data = G u_body: identity but for the grids that have a frame of their own.
+/// G with u_data = G u_body: identity except for the grids that have a frame of their own.
 void turn(const GridMatrices& m, const Grid& grid, Mesh& mesh) {
   if (grid.frame.is_identity()) return;
   const Matrix3d T = grid.frame.nominal();

@@ -9,7 +9,7 @@
 #include <titop/graph/linalg/kinematics.hpp>
 #include <vector>
 
-/// Finite-element models, free in space, and the road from them to `ModalData`.
+/// Finite-element models, free in space, and their conversion to `ModalData`.
 namespace titop::fe {
 
 /// A node: a place that degrees of freedom belong to.

@@ -179,7 +179,7 @@ std::string what_is_set_aside(const Graph& g) {
                            states, states == 1 ? "" : "s");
 }
 
-/// States that left as nothing but rounding may be there in the last bits of the data. That is no
+/// States removed as rounding may be present in the last bits of the data. That is no
 /// fault of the model, but no order that double precision has decided either.
 void reach_up_to(const ExactOrder& exact, OrderVerdict& v) {
   int before = v.order;

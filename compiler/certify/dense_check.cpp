@@ -81,7 +81,7 @@ MatrixXd product(const StateSpace& of, const MatrixXd& x, const MatrixXd& u) {
   return result;
 }
 
-/// The largest |off| over the terms whose rounding is known. Groups that are nothing but `noise`,
+/// The largest |off| over the terms whose rounding is known. Groups that are `noise` alone,
 /// where it is known, count beside it.
 double beside_terms(const MatrixXd& off, const Response& r, const Groups& groups,
                     const MatrixXd& noise = {}) {

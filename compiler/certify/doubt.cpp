@@ -21,7 +21,7 @@ double lost(std::span<const double> value, std::span<const double> off, Around a
   for (const double v : value) largest = std::max(largest, std::abs(v));
   for (const double v : off) change = std::abs(v) <= change ? change : std::abs(v);  // NaN too
   if (change <= kWarn * largest || change <= kUnderflow) return 0;
-  for (std::size_t i = 0; i < value.size(); ++i)  // 0 but for rounding?
+  for (std::size_t i = 0; i < value.size(); ++i)  // 0 up to rounding?
     if (!(std::max(std::abs(value[i]), std::abs(off[i])) <= kLeftOfZero * around(i)))
       return change < largest ? change / largest : 1;
   return 0;

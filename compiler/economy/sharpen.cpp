@@ -11,7 +11,7 @@ using Complex = std::complex<double>;
 using Eigen::Index;
 
 constexpr double kCluster = 2e-9;  ///< relative gap of lambda that counts as none
-constexpr double kSame = 1e-9;     ///< relative: one damping, but for the last digits
+constexpr double kSame = 1e-9;     ///< relative: one damping, up to the last digits
 
 /// The pair with the largest share of a mode.
 struct Pair {

@@ -24,7 +24,7 @@ struct States {
   std::vector<std::complex<double>> poles() const;  ///< those with Im >= 0
   /// "kept1", ..., "balanced1", ...: the last piece is the balanced one.
   StateSpace state_space() const;
-  /// Throws singular if poles are too close to defective, but for two that are 0.
+  /// Throws singular if poles are too close to defective, except for two that are 0.
   ModalModel modal() const;
   /// Per pole (or pair) with the blocks of the model's states (by name) that take part.
   std::vector<KeptMode> modes(const std::vector<std::string>& states) const;

@@ -50,8 +50,8 @@ void keep_to_parts(const Parts& parts, Matrix&& vectors) {
 /// the largest of its port, to one size.
 void balance_sides(const Parts& parts, ModeSet& m);
 
-/// True if no combination of the rows of M vanishes but for rounding. A row far below the others
-/// may be nothing but rounding itself.
+/// True if no combination of the rows of M vanishes up to rounding. A row far below the others
+/// may itself be at rounding level.
 bool clearly_full_rank(Eigen::MatrixXd M);
 
 }  // namespace titop::modes

@@ -7,8 +7,8 @@
 /// The removal of modes is measured on the transfer: nothing is removed on trust.
 namespace titop::modes {
 
-/// `minimize` (compiler/minimize.hpp) but for the measurement, for those who measure against more
-/// than the model.
+/// `minimize` (compiler/minimize.hpp) except for the measurement, for those who measure against
+/// more than the model.
 Minimized minimize_unmeasured(const StateSpace& model, const MinimizeOptions& options);
 
 /// Points at which removed modes would be missed first: near the slowest, a middle and the fastest

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kSingular = 1e-15;  ///< rcond of a matrix with a pole at 0, but for rounding
+constexpr double kSingular = 1e-15;  ///< rcond of a matrix with a pole at 0, up to rounding
 
 using linalg::at;
 

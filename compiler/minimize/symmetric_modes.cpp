@@ -23,7 +23,7 @@ struct Range {
   Index first, count;
 };
 
-/// Modes, by rising lambda, whose frequencies are equal but for rounding and this part of lambda.
+/// Modes, by rising lambda, whose frequencies are equal up to rounding and this part of lambda.
 std::vector<Range> equal_frequencies(const GradedModes& e, double same) {
   const VectorXd& lambda = e.modes.lambda;
   const double all_alike = 100 * kEps * lambda.cwiseAbs().maxCoeff();

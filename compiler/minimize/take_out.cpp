@@ -54,7 +54,7 @@ std::string list(const std::vector<int>& out, const std::vector<std::string>& na
 
 /// Modes that leave a model by one of their sides.
 struct LeavingModes {
-  MatrixXd W;  ///< rows: of x, the modes' coordinates but for a factor
+  MatrixXd W;  ///< rows: of x, the modes' coordinates up to a factor
   MatrixXd V;  ///< columns: their motions
 };
 
@@ -66,7 +66,7 @@ struct LeavingSides {
   double noise;
 };
 
-/// left right, without entries that are nothing but rounding of vectors of this size, the states in
+/// left right, without entries at the rounding level of vectors of this size, the states in
 /// units of `scale`.
 MatrixXd cleared_product(const MatrixXd& left, const MatrixXd& right, const VectorXd& scale,
                          double noise) {

@@ -6,7 +6,7 @@
 #include <titop/compiler/instant.hpp>
 #include <titop/compiler/minimize/sampled.hpp>
 
-/// Entries of a dense model that are nothing but rounding.
+/// Entries of a dense model that are rounding alone.
 namespace titop::detail {
 
 namespace {

@@ -12,7 +12,7 @@ namespace titop::passes {
 /// Arrows between things that are numbered: those from each, ascending, without repetition.
 class Arrows {
  public:
-  /// O(pairs + count), but for the arrows of one that come in disorder.
+  /// O(pairs + count), except for the arrows of one that come in disorder.
   Arrows(const std::vector<std::pair<int, int>>& pairs, std::size_t count)
       : Arrows(count + 1, pairs.size()) {
     for (const auto& [from, to] : pairs) ++begin_[linalg::at(from) + 1];

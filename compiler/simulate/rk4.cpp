@@ -56,7 +56,7 @@ double rk4_limit(const System& system) {
   for (std::complex<double> p : poles) {
     const double size = std::abs(p);
     if (!(size > 1e-12 * largest) || p.real() > 1e-9 * size) continue;
-    // On the axis but for rounding: along it the region reaches sqrt(8).
+    // On the axis up to rounding: along it the region reaches sqrt(8).
     if (std::abs(p.real()) <= 1e-9 * size) p = {0, size};
     limit = std::min(limit, reach(p / size) / size);
   }

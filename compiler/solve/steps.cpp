@@ -20,8 +20,8 @@ template <int V>
 }
 
 /// to += factor * from. In the columns before those that count (at the end of the row above where
-/// a row has few) 0 is added: they stay as they are, but for the sign of a zero, and for a factor
-/// that is not finite; then bounds are not either and the front counts as singular.
+/// a row has few) 0 is added: they stay as they are, except for the sign of a zero, and for a
+/// factor that is not finite; then bounds are not either and the front counts as singular.
 template <int V>
 [[gnu::always_inline]] inline void add_registers(double factor, const Four* from, double* to) {
   for (int v = 0; v < V; ++v) {

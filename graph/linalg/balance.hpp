@@ -10,7 +10,7 @@ namespace titop::linalg {
 /// are not finite is left as it is. O(n^2).
 Eigen::VectorXd balance(Eigen::MatrixXd& A);
 
-/// Likewise, to the same result in all units of states and time, but for factors of about 2. States
+/// Likewise, to the same result in all units of states and time, up to factors of about 2. States
 /// that all act on one another: by the sweeps of `balance`, which end early if units are far
 /// apart, after a fit of logarithms [Curtis, Reid 1972]. Parts that act on others one way only,
 /// which no sweep brings together, act with entries about as large as the largest within a part:

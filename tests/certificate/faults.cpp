@@ -102,7 +102,7 @@ TEST_CASE("a block whose response at s is not that of its matrices is named") {
 
 namespace {
 
-/// Every signal that is not 0 but for rounding in turn is off by a millionth; how many were tried.
+/// Every signal that is not 0 up to rounding in turn is off by a millionth; how many were tried.
 int put_off(const detail::SystemData& d, const detail::Signals& right,
             const solve::RowMatrix<double>& rounding) {
   int tried = 0;

@@ -133,7 +133,7 @@ TEST_CASE("the difference of two transfers is the same number in all units") {
     const auto [any, scaled_any] = of(wrong);
     CHECK(std::abs(scaled_any / any - 1) <= 1e-6);
     CHECK((any > 1e-8) == (scaled_any > 1e-8));
-    // The same model in other states: nothing but rounding.
+    // The same model in other states: rounding alone.
     const MatrixXd Q = Eigen::HouseholderQR<MatrixXd>(random.matrix(10, 10)).householderQ();
     wrong = {
         Q.transpose() * right.A * Q, Q.transpose() * right.B, right.C * Q, right.D, {}, {}, {}};

@@ -133,7 +133,7 @@ TEST_CASE("largest entry of an eigenvector is positive, the first one of several
     modes.V.col(j).cwiseAbs().maxCoeff(&i);
     CHECK(modes.V(i, j) > 0);
   }
-  // Vectors of a symmetric chain: two largest entries each, equal but for rounding.
+  // Vectors of a symmetric chain: two largest entries each, equal up to rounding.
   MatrixXd chain = 2 * MatrixXd::Identity(40, 40);
   for (Index i = 0; i + 1 < 40; ++i) chain(i, i + 1) = chain(i + 1, i) = -1;
   const MatrixXd V = eigh(chain).V;

@@ -91,7 +91,7 @@ TEST_CASE("cantilever: the body it makes") {
   REQUIRE(poles.size() == 3);
   for (std::size_t k = 0; k < 3; ++k)
     CHECK(relative(poles[k].omega, body.data().omega(static_cast<Index>(k))) <= 1e-14);
-  // Tip flexibility of the beam with shear (a rod's factor is 0.9), but for the higher modes.
+  // Tip flexibility of the beam with shear (a rod's factor is 0.9), except for the higher modes.
   const double E = 6.898e10, G = E / 2.66, A = std::numbers::pi * 1e-4, I = A * 1e-4 / 4;
   const Eigen::MatrixXd Phi = body.data().children[0].Phi_C;
   const double flexibility =

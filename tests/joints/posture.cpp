@@ -17,7 +17,7 @@ namespace {
 constexpr double pi = 3.14159265358979323846;
 const Vector3d x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
 
-/// The same angle but for whole turns.
+/// The same angle up to whole turns.
 double turned(double a, double b) { return std::abs(std::remainder(a - b, 2 * pi)); }
 
 constexpr double a = 0.3, b = 0.9, c = 0.7, d = 1.0;  // crank, coupler, rocker, frame [m]

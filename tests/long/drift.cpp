@@ -8,7 +8,7 @@
 #include "simulate/scenes.hpp"
 #include "support/five_masses.hpp"
 
-/// Energy of undamped structures over a million steps. Both rules keep it but for rounding: a step
+/// Energy of undamped structures over a million steps. Both rules keep it up to rounding: a step
 /// is a product of the state with an orthogonal matrix (in energy's norm), computed to one unit of
 /// the last place per state, so that N steps of n states change it by no more than N n 2^-53.
 

@@ -99,7 +99,7 @@ void check_passive(const SecondOrderModel& m) {
                         off = unit.asDiagonal() * (m.C_accel - m.B.transpose());
   CHECK(off.norm() <= 1e-9);
   CHECK((direct - direct.transpose()).norm() <= 1e-9);
-  CHECK(least_eigenvalue(direct) >= -1e-6);  // 0 but for rounding if the structure is clamped
+  CHECK(least_eigenvalue(direct) >= -1e-6);  // 0 up to rounding if the structure is clamped
 }
 
 }  // namespace

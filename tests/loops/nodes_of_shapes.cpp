@@ -5,7 +5,7 @@
 #include <titop/titop.hpp>
 #include <vector>
 
-/// A mode that hardly moves the point where a chain closes, but for rounding of its shape there.
+/// A mode that moves the point where a chain closes only by rounding of its shape there.
 
 using namespace titop;
 using Eigen::MatrixXd;

@@ -254,7 +254,7 @@ TEST_CASE("a point locked by modes of rank 4: order 4 of 12, exactly, and no fau
 }
 
 TEST_CASE("chains that numbers close but for the last place are not decided exactly") {
-  // Two arms of 0.3 and one of 0.6 between the same hinges: 0.3 + 0.3 is 0.6 but for rounding.
+  // Two arms of 0.3 and one of 0.6 between the same hinges: 0.3 + 0.3 is 0.6 up to rounding.
   Diagram d{"triangle"};
   const Beam beam{.length = 0.3,
                   .section = tube(0.04, 0.03),

@@ -151,7 +151,8 @@ TEST_CASE("mass ratios: ten flexible bodies, six degrees of freedom, against 150
 }
 
 TEST_CASE("mass ratios: heavy bodies tied through light ones that do not give along x") {
-  // There elimination in double loses digits that no pivot shows: a step of refinement mends it.
+  // There elimination in double loses digits that no pivot shows: a step of refinement restores
+  // them.
   for (const double ratio : {1e-12, 1e-6, 1.0, 1e6, 1e9, 1e12}) {
     const Flexible chain(1, 10, ratio, Modes::bending);
     const double by_default = error_of(chain, 3),

@@ -173,7 +173,7 @@ Truth truth_of(const Assembled& a, bool free, const std::vector<int>& power) {
     const std::complex<double> s{0.3 * truth.omegas.back(), 0.9 * truth.omegas.back()};
     const MatrixXcd sum = poles.at(s) + m.rigid / (s * s), off = sum - position_transfer(a, s);
     const Eigen::MatrixXd terms = poles.terms(s) + m.rigid.cwiseAbs() / std::norm(s);
-    // A pair that symmetry makes 0 has nothing but rounding for terms, too.
+    // A pair that symmetry makes 0 has rounding alone for terms, too.
     const double nothing = 1e-15 * terms.maxCoeff();
     if (!(off.cwiseAbs().array() <= 1e-12 * terms.array() + nothing).all())
       throw std::logic_error("truth by poles and by LU differ");
