@@ -13,7 +13,7 @@ struct Certificate {
   /// at one instant, with the factors from which the model is written (signals without a direct
   /// path from an input are excited by inputs of size 1); or at one real s, if the equations
   /// contain positions or rates, if there are dependent states, in a reduced (singular) scene, or
-  /// if digits may be lost. Beside an instant also the responses at s of the first two blocks of
+  /// if digits may be lost. At an instant also the responses at s of the first two blocks of
   /// each type, against their A, B, C, D. Negative if nothing moves: no inputs, and an instant is
   /// not possible or may lose digits. Rounding gives about 1e-16 times the length of a row. A
   /// residual above 1e-9 is corrected before it is reported: 1e4 times a sample of the signals'
