@@ -96,7 +96,7 @@ Trajectory simulate(const System& system, const Excitation& excitation,
 
 /// The largest step [s] that rk4 may take: where h * (every stable pole) stays in its region of
 /// stability |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 (2.83 / omega of an undamped pole, 2.79 / sigma
-/// of a real one); infinite without poles. Poles that grow by themselves do not count. O(n^3).
+/// of a real one); infinite without poles. Unstable poles do not count. O(n^3).
 double rk4_limit(const System& system);
 
 }  // namespace titop

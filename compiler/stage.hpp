@@ -34,7 +34,7 @@ struct Inversion {
 /// A strong component of the equations: an algebraic loop, or a signal by itself.
 struct Loop {
   std::vector<int> signals;  ///< its unknowns
-  std::vector<int> rows;     ///< the rows matched to them (see `Rows`)
+  std::vector<int> rows;     ///< the rows matched to them (see `Row`)
   int unknowns = 0;          ///< scalars
 };
 

@@ -13,8 +13,8 @@ struct Layout;
 
 /// From the states x of the model to those of all blocks, x_blocks = T x + R u: the map that pass
 /// `close` and the reduction of singular scenes (compiler/reduce/reduce.hpp) found, applied around
-/// the solve. The model is A = (A T)(kept rows), B = (B + A R)(kept rows), C T, D + C R. R is 0 but
-/// where a force acts on a massless point.
+/// the solve. The model is A = (A T)(kept rows), B = (B + A R)(kept rows), C T, D + C R. R is 0
+/// unless a force acts on a massless point.
 class StateMap {
  public:
   StateMap() = default;

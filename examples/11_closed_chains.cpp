@@ -1,7 +1,7 @@
 // Closed chains: a four-bar mechanism of three flexible links on free pins, its crank turned by a
-// motor through a shaft. The last joint closes the chain: coordinates that follow from the
-// others leave the model by themselves, their names can still be read. Then the same chain of rigid
-// links, which 6-dof pins hold more than once.
+// motor through a shaft. The last joint closes the chain: coordinates that follow from the others
+// are no states of the model, but can still be read by name. Then the same chain of rigid links
+// with 6-dof pins, whose constraints are redundant.
 #include <cmath>
 #include <cstdio>
 #include <numbers>

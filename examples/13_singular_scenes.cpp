@@ -1,7 +1,7 @@
-// Points without mass: springs in series through a ring, a force on the ring. Whatever is asked and
-// does not need derivatives of an input has a model, as small as it can be; the rest is refused by
-// name. Then a plate that is moved at two points at once, and a rod without mass between ball
-// joints, which may turn about itself as it likes.
+// Points without mass: springs in series through a ring, a force on the ring. Outputs that need no
+// derivative of an input have a model of minimal order; the others are refused with an error that
+// names them. Then a plate whose motion is prescribed at two points, and a rod without mass between
+// ball joints, free to turn about its own axis.
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdio>
@@ -17,7 +17,7 @@ constexpr double k1 = 30, k2 = 50, k3 = 20, m2 = 2, m3 = 1.5;  // [N/m], [kg]
 constexpr double m_ship = 900, m_load = 300;                   // [kg]
 
 /// Three springs meet in a ring without mass: one from the wall, one to each of two masses. The
-/// wall holds the free end of the first (its own mass does not count there).
+/// wall fixes the free end of the first (its own mass does not count there).
 Diagram ring(bool ask_its_acceleration) {
   Diagram d{"ring"};
   auto u = d.input("u");  // on the ring [N]
@@ -35,7 +35,7 @@ Diagram ring(bool ask_its_acceleration) {
   return d;
 }
 
-/// A plate on a shaker that holds it at two points; a spring-mass stands on it.
+/// A plate on a shaker that moves it at two points; a spring-mass is mounted on it.
 Diagram shaker(bool one_command) {
   Diagram d{"shaker"};
   auto u = d.input("u", 6), v = d.input("v", 6);

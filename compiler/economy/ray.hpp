@@ -9,9 +9,9 @@
 /// Sampling on the ray of a scene. For the compiler's own files only.
 namespace titop::detail {
 
-/// Ends of the band [rad/s], as the scene has them. Beside motions without stiffness nothing can be
-/// evaluated at 0: samples below `start` are taken there, 1e-6 of the lowest frequency that is not
-/// 0, where errors are those at 0 to six digits (these motions are in both models).
+/// Ends of the band [rad/s] of the scene. A model with motions without stiffness cannot be
+/// evaluated at 0: samples below `start` are taken at `start`, 1e-6 of the lowest frequency above
+/// 0, where errors equal those at 0 to six digits (both models contain these motions).
 struct Band {
   double low = 0, high = 0, start = 0;
 };

@@ -69,9 +69,9 @@ struct ModalModel {
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
 };
 
-/// A small system that answers a scene, and how well. Inputs and outputs are those of the full
-/// system, in the same order: one can replace the other. Const, cheap to copy. References are good
-/// while it lives; one that does not live on gives a copy, as System does.
+/// A small system that answers a scene, and its error. Inputs and outputs are those of the full
+/// system, in the same order: one can replace the other. Const, cheap to copy. References are valid
+/// during its lifetime; a temporary returns copies, as System does.
 class ReducedSystem {
  public:
   explicit ReducedSystem(std::shared_ptr<const detail::ReducedData> data)

@@ -12,10 +12,11 @@ namespace {
 
 using linalg::at;
 
-/// Live row sets: original row groups first, then the rows that fronts leave over. A variable's
-/// list of sets may hold dead ones; `live` counts the others. Every front replaces at least one set
-/// of each border variable by one, so no list outgrows its first size; it has half as much room
-/// again, or dead ones would be looked for with every new one (a hub has very many).
+/// Live row sets: original row groups first, then the rows that remain of fronts. A variable's list
+/// of sets may contain sets that are no longer live; `live` counts the others. Every front replaces
+/// at least one set of each border variable by one, so no list outgrows its first size; its
+/// capacity is 1.5 times that size, otherwise every new set would need a search for sets to drop (a
+/// hub has very many).
 class Merging {
  public:
   explicit Merging(Plan& plan) : p_(plan), s_(plan.structure) {

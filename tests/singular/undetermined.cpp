@@ -39,9 +39,9 @@ struct Turns {
 
 enum class Foot { ball, universal };  ///< universal: the strut cannot turn about itself
 
-/// A body on a spring-damper of six axes that stands, at its parent point, on a massless strut with
-/// a ball joint at both ends. The force U acts on it at C. With `second`, another strut that stands
-/// at S; with `halves`, the strut is two halves with a bushing between them.
+/// A body on a spring-damper of six axes that is mounted, at its parent point, on a massless strut
+/// with a ball joint at both ends. The force U acts on it at C. With `second`, another strut
+/// supports it at S; with `halves`, the strut is two halves with a bushing between them.
 struct Stand {
   Turns turns = {};
   Foot foot = Foot::ball;

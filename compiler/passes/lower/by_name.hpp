@@ -4,10 +4,10 @@
 
 namespace titop::passes {
 
-/// The same graph in an order that names decide, so that nothing after this depends on the order in
+/// The same graph in an order decided by names, so that no later result depends on the order in
 /// which the user wrote it: inputs and outputs in natural order of their names, nodes too, or along
-/// the trees that they make, equations in the order of their targets. It
-/// stands so in memory, too, since all passes after this go through it in turn.
+/// the trees that they form, equations in the order of their targets. The order in memory is the
+/// same, since all later passes traverse it in turn.
 Graph by_name(const Graph& graph);
 
 }  // namespace titop::passes

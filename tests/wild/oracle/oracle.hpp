@@ -6,9 +6,9 @@
 
 #include "wild/oracle/scene.hpp"
 
-/// The truth of a scene: M, D, K of all bodies in maximal coordinates, constraints with
-/// multipliers, controllers as they stand, and dense elimination at each s. No header of the
-/// library is used.
+/// The exact model of a scene: M, D, K of all bodies in maximal coordinates, constraints with
+/// multipliers, controllers as given, and dense elimination at each s. No header of the library is
+/// used.
 namespace wild {
 
 using Complex = std::complex<double>;

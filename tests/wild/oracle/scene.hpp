@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-/// A scene as plain data, before anybody writes equations of it: the generator makes it, the oracle
-/// (oracle.hpp) reads it as M, D, K and constraints, the writer (parts/write.hpp) as a diagram.
-/// Nothing in this folder includes a header of the library.
+/// A scene as plain data, before any equations: the generator makes it, the oracle (oracle.hpp)
+/// reads it as M, D, K and constraints, the writer (parts/write.hpp) as a diagram. Nothing in this
+/// folder includes a header of the library.
 namespace wild {
 
 using Eigen::Matrix3d;
