@@ -168,7 +168,7 @@ void show(const Arguments& a) {
   std::fputs((system.log() + poles + to_string(system.certificate())).c_str(), stdout);
 }
 
-/// 3 if the model is not to be trusted: another matter than a scene that is refused.
+/// Returns 3 if the certificate fails, as against the exit code of a scene that is refused.
 int certify_scene(const Arguments& a) {
   const FullCertificate certificate = certify(compiled(a));
   std::fputs(to_string(certificate).c_str(), stdout);

@@ -32,10 +32,9 @@ struct ModeValues {
 /// with the line that makes it, bad_modes (shapes, omega <= 0, xi < 0 or all above 1, D_P0 negative
 /// beyond the data's digits, with the degree of freedom), bad_inertia (D_P not symmetric, negative,
 /// or further from every rigid body's than the data's digits and a twentieth), bad_value (digits),
-/// not_finite, duplicate_name. `compile` and `update` throw improper where P is freed, in whatever
-/// directions, though D_P0 is zero there by the data's digits, and where a child is driven though
-/// no mode moves it there. Cost of a compile: O(N (6 + 6 children)); of its transfer at s: the
-/// same.
+/// not_finite, duplicate_name. `compile` and `update` throw improper if P is freed in any
+/// directions in which D_P0 is zero by the data's digits, and if a child is driven though no mode
+/// moves it there. Cost of a compile: O(N (6 + 6 children)); of its transfer at s: the same.
 ///
 ///     FlexibleBody{boom, {.omega = {{1, w1}, {3, 2.0 * w1}}, .xi = {{1, z}}}}
 ///

@@ -86,8 +86,8 @@ class JointBlock : public Block, public Specified<std::vector<Axis>> {
     }
     return p;
   }
-  /// Only its own axes move the angles, and only the readings show them: at a given posture the
-  /// accelerations and wrenches on both sides know nothing of them.
+  /// Only its own axes drive the angles, and only the readings depend on them: at a given posture
+  /// the accelerations and wrenches on both sides are independent of them.
   Pattern moved_by() const override {
     Pattern p = Pattern::Constant(1, 12 + S_.cols(), false);
     p.rightCols(S_.cols()).setConstant(true);

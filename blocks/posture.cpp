@@ -150,7 +150,8 @@ void refuse_open(const Loop& loop, const End& end) {
       "PostureOptions{.tolerance = ...} allows for rounded data");
 }
 
-/// Refuses a loop that the given values do not hold: a motion that J does not see.
+/// Throws singular if the given values do not determine the posture of the loop: J has a null
+/// space.
 void check_held(const Loop& loop, const End& end) {
   const Index n = end.J.cols();
   if (n == 0) return;

@@ -280,8 +280,8 @@ class DigitJudge {
     const Node& node = g_.nodes[at(port.node)];
     const std::string name = channel_name(g_, node.first_channel + port.channel);
     const Block::Cause cause = port.block->beyond_digits(port.channel, direction, left);
-    // Where an equation imposes the motion, no mode can follow it. Elsewhere all that hangs on the
-    // port decides, and data that are exact determine it.
+    // If an equation imposes the motion, no mode can follow it. Otherwise the result depends on all
+    // bodies coupled to the port, and exact data determine it.
     const bool imposed =
         !port.by_shapes || !driving(g_.channels[at(node.first_channel + port.channel)]).empty();
     if (left > port.noise() || !imposed) {

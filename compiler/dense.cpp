@@ -113,9 +113,9 @@ class Writer {
 
   // --- columns ---------------------------------------------------------------------------------
 
-  /// Solves for the sources of a batch and writes their columns. The values of [xdot; y] stand row
-  /// by row; of rows that are not read they are those of another batch. Returns how much the modes
-  /// of the sources are accelerated by forces of their own.
+  /// Solves for the sources of a batch and writes their columns. The values of [xdot; y] are stored
+  /// row by row; rows that are not read contain those of another batch. Returns the accelerations
+  /// of the modes of the sources by forces of their own.
   OwnTerms columns(const solve::Propagation& propagation, const double* coefficients,
                    std::size_t batch, bool half, Room& room) {
     const Index m = w_->width(batch);

@@ -146,7 +146,8 @@ struct Builder {
   }
 };
 
-/// The sum of these entries, where they stand in the matrix already if they do.
+/// The matrix of these entries, duplicates summed; keeps the matrix's pattern if it contains them
+/// all.
 void fill(Eigen::SparseMatrix<double>& m, Eigen::Index rows, Eigen::Index cols,
           const Triplets& list) {
   if (m.rows() == rows && m.cols() == cols && m.isCompressed()) {

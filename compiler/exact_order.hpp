@@ -41,7 +41,7 @@ struct ExactOptions {
 ExactOrder exact_order(const Graph& graph, const ExactOptions& options = {},
                        ParameterValues values = {});
 
-/// The same of A, B, C as they stand.
+/// The same from the entries of A, B, C, taken as exact.
 ExactOrder exact_order(const StateSpace& model, const ExactOptions& options = {});
 
 /// "exact: order 8 (of 10 states, 8 are reached, 8 are seen)", or "not decided exactly: ...".

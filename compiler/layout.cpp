@@ -18,7 +18,7 @@ void add_names(std::vector<std::string>& names, const std::string& name, int siz
     names.push_back(size == 1 ? name : fmt::format("{}({})", name, i));
 }
 
-/// Names stand as declared; nodes are visited as they lie in memory.
+/// Names in declared order; nodes are visited in their order in memory.
 void add_states(const Graph& g, Layout& l) {
   std::vector<int> first(g.nodes.size() + 1, 0);
   for (std::size_t i = 0; i < g.nodes.size(); ++i) {

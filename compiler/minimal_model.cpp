@@ -7,7 +7,7 @@
 #include <titop/compiler/system_data.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-/// The dense model of a system, minimized: nothing is removed on trust.
+/// The dense model of a system, minimized; the removal is checked on the transfer.
 namespace titop::detail {
 namespace {
 
@@ -177,7 +177,7 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
     m.order.change = by.by_modes;
     m.notes.front() = to_string(m.order);
     untried = by.tried.empty();
-    lost = untried ? 1 : by.in_all;  // nothing leaves on trust
+    lost = untried ? 1 : by.in_all;  // not measured: put all back
     say_left_out(d, by);
   }
   if (modes::put_back(dense, resolution, lost, m)) {

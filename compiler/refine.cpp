@@ -9,7 +9,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <type_traits>
 
-/// Of an evaluation: how good it is, and how it becomes better. The rest is in evaluate.cpp.
+/// Error estimate and refinement of an evaluation. The rest is in evaluate.cpp.
 namespace titop::detail {
 namespace {
 

@@ -126,7 +126,7 @@ struct Stage {
   const Graph& now() const { return origins.empty() ? written() : graph; }
 };
 
-/// The stage before the first pass, for nominal values. `lower` copies the graph, which must live
+/// The stage before the first pass, for nominal values. `lower` copies the graph, which must exist
 /// until then.
 Stage as_written(const Graph& graph);
 

@@ -29,7 +29,7 @@ struct Trajectory;
 enum class InternalForces {
   refuse,        ///< outputs and controllers that read one are refused by name
   minimal_norm,  ///< the joint that closes the chain gets the wrench of smallest norm, forces [N]
-                 ///< and torques [N m] alike; the log marks its readers
+                 ///< and torques [N m] with equal weight; the log marks its readers
 };
 
 /// How to compile.
@@ -136,8 +136,8 @@ class System {
   /// The model before elimination as sparse matrices (compiler/descriptor.hpp). O(bodies).
   Descriptor descriptor() const;
 
-  /// The same into a form of the caller's. Matrices of the same size whose entries stand where
-  /// theirs did keep their memory; entries that have become 0 stay as zeros.
+  /// The same into an existing form. Matrices of the same size and pattern keep their memory;
+  /// entries that have become 0 stay as zeros.
   void write(Descriptor& form) const;
 
   /// Poles of state_space() with frequency, damping and the blocks that take part. O(n^3).

@@ -30,7 +30,7 @@ Layout make_layout(const Graph& graph);
 struct Dependents {
   std::vector<int> nodes;    ///< whose matrices change
   std::vector<int> origins;  ///< equations and outputs whose coefficients change
-  std::vector<int> rows;     ///< row groups of the joint system in which either stands
+  std::vector<int> rows;     ///< their row groups in the joint system
   std::vector<int> loops;    ///< Stage::loops with one of these rows
 };
 std::vector<Dependents> find_dependents(const Stage& stage, const solve::Joint& joint);

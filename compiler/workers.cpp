@@ -53,8 +53,8 @@ class Workers {
     wake_.notify_one();
   }
 
-  /// Signals are for the threads that the program knows of, except for those of a thread's own
-  /// faults.
+  /// Signals are blocked in worker threads, except for those of a thread's own faults: the
+  /// program's own threads handle them.
   void start() {
     sigset_t all, before;
     sigfillset(&all);

@@ -177,8 +177,7 @@ unset xlabel
   gp << "unset multiplot\n";
 }
 
-/// All there is to know about the model, to be read or printed; without Graphviz it has no
-/// diagrams.
+/// Writes the report of the model; without Graphviz it has no diagrams.
 void report(const System& system) {
   ReportOptions options{.title = "Satellite with two booms",
                         .remark =

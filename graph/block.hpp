@@ -136,7 +136,7 @@ class Block {
   /// True if the block has no states and its rows become plain equations (a Gain, a Sum, a rigid
   /// hub of many ports).
   virtual bool is_algebraic() const { return false; }
-  /// True if the vectors of its size-6 channels and size-6 plain ports live in the frame of its own
+  /// True if the vectors of its size-6 channels and size-6 plain ports are in the frame of its own
   /// node (bodies); false for controllers and scalar blocks.
   virtual bool has_frame() const { return true; }
   /// Why the direct term of this channel alone cannot be inverted, as "z1 has ..." would continue

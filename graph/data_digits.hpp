@@ -16,8 +16,8 @@ struct DataDigits {
 
 /// A block whose numbers are measured, or read from a file, derives from this too. `compile` then
 /// refuses (improper) every scene in which numbers that are zero by these digits would decide on a
-/// motion or a force: a port that is freed, in whatever directions, where D leaves no mass, and one
-/// that is driven where W moves nothing.
+/// motion or a force: a port freed in any directions where D leaves no mass, and one that is driven
+/// where W moves nothing.
 class FromData {
  public:
   virtual const DataDigits& digits() const = 0;

@@ -29,7 +29,7 @@ int Diagram::add_block(std::string name, const std::function<BlockPtr()>& make,
   BlockPtr block;
   try {
     block = make();
-  } catch (const Error& error) {  // a block's own mistakes do not know the node's name
+  } catch (const Error& error) {  // a block's own mistakes do not contain the node's name
     std::vector<Mistake> mistakes = error.mistakes();
     for (Mistake& m : mistakes) {
       m.message = fmt::format("{}: {}", name, m.message);

@@ -10,7 +10,7 @@ using Eigen::MatrixXd;
 MatrixXd complement(const MatrixXd& S, int n) {
   if (S.rows() == 0) return MatrixXd::Identity(n, n);
   if (S.rows() >= n) return MatrixXd(0, n);
-  // Take unit vectors if they are free as they stand: their zeros and ones stay exact.
+  // Unit vectors orthogonal to S first: their zeros and ones are exact.
   MatrixXd basis = S;
   const auto grow = [&](const Eigen::RowVectorXd& row) {
     basis.conservativeResize(basis.rows() + 1, n);

@@ -18,15 +18,15 @@ Eigen::MatrixXcd dense_at_s(const Network& network, std::complex<double> s,
 /// In double with one step of iterative refinement, its residual in double.
 Eigen::MatrixXcd refined_at_s(const Network& network, std::complex<double> s);
 
-/// A bad example: the same eliminated block by block in order of declaration, each by its own
-/// inverse; no pivot is ever sought in another block.
+/// A poor method: the same, eliminated block by block in order of declaration, each by its own
+/// inverse; pivots are never sought in another block.
 Eigen::MatrixXcd block_by_block_at_s(const Network& network, std::complex<double> s,
                                      Digits digits = Digits::standard);
 
-/// A bad example: tearing, on a chain the method of chain (transfer) matrices: the inputs of the
-/// first block from the second are guessed, everything else follows block after block, and the last
-/// block's equations determine the guess. For chains only: throws logic_error if a block is coupled
-/// to others than its neighbours. O(blocks).
+/// A poor method: tearing, on a chain the method of chain (transfer) matrices: the inputs of the
+/// first block from the second are torn, all other signals follow block after block, and the last
+/// block's equations determine the torn ones. For chains only: throws logic_error if a block is
+/// coupled to others than its neighbours. O(blocks).
 Eigen::MatrixXcd tearing_at_s(const Network& network, std::complex<double> s,
                               Digits digits = Digits::standard);
 

@@ -12,10 +12,10 @@
 #include "support/quick.hpp"
 #include "support/sweeps.hpp"
 
-/// Every method until it breaks: the error of the transfer against 150 digits while one quantity of
-/// a scene goes to an extreme. Beside the library's error stands its own verdict: "warned" if the
+/// Every method up to its failure: the error of the transfer against 150 digits while one quantity
+/// of a scene becomes extreme. The library's error is listed with its diagnosis: "warned" if the
 /// log warns, "noted" if the log lists a redundant closure, the error's code if it refuses. Returns
-/// 1 if an error of the library is above its promise without a verdict.
+/// 1 if an error of the library is above its promise without a diagnosis.
 namespace titop_bench {
 namespace {
 

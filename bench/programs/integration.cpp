@@ -30,7 +30,7 @@ struct Motion {
   Motion(Case c, int n) : system(compile(scene(c, n), {.minimize_up_to = 0})) {
     system.write(model);
     x0 = VectorXd::Zero(system.order());
-    for (Index i = 0; i < x0.size(); ++i)  // coordinates: their rows hold nothing but their rate
+    for (Index i = 0; i < x0.size(); ++i)  // coordinates: their rows have one entry, for their rate
       if ((model.A.row(i).array() != 0).count() == 1) x0(i) = 1e-2;
     for (const titop::Pole& p : poles(model)) fastest = std::max(fastest, p.omega);
   }

@@ -166,8 +166,8 @@ Diagram ring(int n) {
   return d;
 }
 
-/// Node i, j stands at the end of the beam from its left, in the first column from below; if it
-/// has both, the beam from below is welded to it.
+/// Node i, j is mounted on the end of the beam from its left neighbour; in the first column, of the
+/// beam from below; if it has both, the beam from below is welded to it.
 Diagram grid(int n) {
   Diagram d{"case G"};
   const int m = static_cast<int>(std::lround(std::sqrt(n)));

@@ -5,8 +5,8 @@
 /// Small models in simulation beside the full system.
 namespace titop_bench {
 
-/// The small model as a controller or filter would stand in a diagram: one block with the inputs
-/// and outputs of `asked`, compiled.
+/// The small model as a controller or filter in a diagram: one block with the inputs and outputs of
+/// `asked`, compiled.
 titop::System in_its_place(const titop::ReducedSystem& small, const titop::Diagram& asked);
 
 struct Run {

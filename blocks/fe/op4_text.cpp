@@ -142,7 +142,7 @@ Op4Matrix read_matrix(Lines& lines, Op4Taken& taken) {
   for (long long last = 0;;) {
     const auto head = integers(lines, lines.next(), 3);
     if (head[0] > h.columns) {
-      values_in(lines, 1, f);  // stands behind the last column and means nothing
+      values_in(lines, 1, f);  // follows the last column, without meaning
       return matrix;
     }
     require_ascending(head[0], last, refuse);

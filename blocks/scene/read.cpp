@@ -223,8 +223,8 @@ class Reader {
   std::map<std::string, int> nodes_, inputs_;
 };
 
-/// Refuses an object in which a key stands twice: the parser would drop one of the two values. It
-/// reads the text by itself: a parser with a callback looks at all items of a list after each.
+/// Refuses an object with a repeated key: the parser would drop one of the two values. It parses
+/// the text separately: a parser with a callback visits all items of a list after each.
 class KeysOnce : public nlohmann::json_sax<Json> {
  public:
   explicit KeysOnce(std::string file) : file_(std::move(file)) {}

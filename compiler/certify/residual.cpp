@@ -188,8 +188,8 @@ struct Residual {
     const auto k = kind(signal, entry);
     return k ? largest[*k] : 0;
   }
-  /// Chains that are closed twice mix all that they hold: a motion or a wrench that they make 0 is
-  /// rounding of the others, and so may be all that its equation has.
+  /// Redundantly closed chains mix all motions and wrenches that they constrain: one that is 0
+  /// there is rounding of the others, and so may be all terms of its equation.
   void find_largest() {
     if (d.skeleton->stage.released.empty()) return;
     for (int signal = 0; signal < static_cast<int>(w.signals.size()); ++signal)

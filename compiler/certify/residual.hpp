@@ -42,7 +42,7 @@ inline constexpr double kLeftOfZero = 1e-13;
 /// magnitude is used. Of the joint system as written.
 class Surroundings {
  public:
-  /// One column of unknowns, which must live as long.
+  /// One column of unknowns, which must outlive this object.
   Surroundings(const SystemData& data, const solve::RowMatrix<double>& unknowns)
       : d_(data), unknowns_(unknowns) {}
 

@@ -135,7 +135,7 @@ WrittenResidual residual_of(const SystemData& d, Signals& signals, Rounding roun
   return written_residual(d, signals);
 }
 
-/// At one instant. False if there is none, or if the equations hold and yet digits may be
+/// At one instant. False if it is impossible, or if the equations are satisfied but digits may be
 /// lost.
 bool check_instant(const SystemData& d, const RowMatrix<double>& u, double s, Certificate& c) {
   if (!has_instants(d) || d.layout().order() + u.size() == 0) return false;

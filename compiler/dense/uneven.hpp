@@ -8,8 +8,8 @@
 
 namespace titop::detail {
 
-/// How much modes are accelerated by forces of their own, of mass 1 as they are: a number without
-/// unit. Far below 1 for those that heavy children hold.
+/// Accelerations of modes by unit forces on themselves (the modes have mass 1): dimensionless. Far
+/// below 1 for modes constrained by heavy children.
 struct OwnTerms {
   double least = std::numeric_limits<double>::infinity(), most = 0;
   void take(double x) { least = std::min(least, x), most = std::max(most, x); }

@@ -67,7 +67,7 @@ Look look(const Picture& p, const Assignment& a, const Term& term);
 bool is_active(const Graph& g, int node);
 /// Outputs of signals at the top are drawn above their block, all others below.
 Side output_side(const Graph& g, const Assignment& a);
-/// Which side of its block a signal stands on.
+/// Side of its block at which a signal is drawn.
 Side side_of(const Graph& g, int signal);
 /// Name of a signal's cell in its block's table.
 std::string cell_name(const Graph& g, int signal);

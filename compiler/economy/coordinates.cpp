@@ -45,7 +45,7 @@ StateSpace model_of_blocks(const System& system, const SystemData& data) {
   return m;
 }
 
-/// Coordinates of all blocks, as pairs of states; position -1 if a rate stands alone.
+/// Coordinates of all blocks, as pairs of states; position -1 for a rate without position.
 struct Pairs {
   std::vector<int> position, rate;
 };

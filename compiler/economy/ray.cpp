@@ -76,9 +76,9 @@ Reading as_meant(const Whole& w) {
   return r;
 }
 
-/// Size of every pair at s if input and output coupled to all modes alike: norms of the output's
-/// and the input's modal vectors, each mode weighted by its response [Cauchy, Schwarz]. Has the
-/// pair's own unit.
+/// Size of every pair at s if input and output were coupled equally to all modes: norms of the
+/// output's and the input's modal vectors, each mode weighted by its response [Cauchy, Schwarz].
+/// Has the pair's own unit.
 MatrixXd alike(const Whole& w, const Reading& r, Complex s) {
   MatrixXd out = MatrixXd::Zero(r.a.rows(), 1), in = MatrixXd::Zero(1, w.b.cols());
   for (Index j = 0; j < w.order(); ++j) {

@@ -25,7 +25,7 @@ Band band_of(const System& system, const Scene& scene,
 
 /// Sizes of a model's pairs at one s without cancellation: outputs x inputs.
 struct Sizes {
-  Eigen::MatrixXd alike;  ///< every pair if output and input coupled to all modes alike
+  Eigen::MatrixXd alike;  ///< every pair if output and input were coupled equally to all modes
   Eigen::MatrixXd terms;  ///< sum of the magnitudes of the model's terms: scale of its rounding
 };
 

@@ -31,8 +31,8 @@ Complex inverse(const System& system, const Pair& pair, Complex s) {
 /// The root of s^2 + d s + lambda = 0 above the real axis.
 Complex pole(double lambda, double d) { return {-d / 2, std::sqrt(lambda - d * d / 4)}; }
 
-/// The pole beside a guess that is good to 1e-7 or so; none if the function is not that of one pole
-/// there.
+/// The pole near a guess with a relative error of about 1e-7; none if the function is not that of
+/// one pole there.
 std::optional<Complex> find_pole(const System& system, const Pair& pair, Complex guess) {
   constexpr double kNear = 1e-6;  // relative distance of the first two points
   Complex a = guess * (1 + kNear), b = guess * (1 - kNear);

@@ -50,7 +50,7 @@ std::optional<std::map<int, int>> exchange(const Graph& g, const Neighbours& n, 
       for (const int x : of_p) {
         const int y = *j++;
         if (x == y || image.count(x) > 0) continue;
-        // Joints are blocks of their own, one by one alike: their type must do.
+        // Every joint is a block of its own: compare their types.
         const Block &bx = *g.nodes[at(x)].block, &by = *g.nodes[at(y)].block;
         if (&bx != &by && (bx.type() != by.type() ||
                            bx.interface().states.size() != by.interface().states.size()))

@@ -11,9 +11,9 @@ namespace titop::detail {
 ///     q_j'' + sum_k Z_jk q_k' + lambda_j q_j = b_j u
 ///     y = D0 u + sum_j (ca_j q_j'' + cv_j q_j' + cq_j q_j)
 ///
-/// Every output is written with accelerations wherever a mode has stiffness (cq_j = 0 there): D0 is
-/// then its static gain without the motions that have none, and a mode that is left out keeps its
-/// static part in D0.
+/// Every output is written with accelerations of the modes with stiffness (cq_j = 0 there): D0 is
+/// then its static gain without the motions that have none, and an omitted mode keeps its static
+/// part in D0.
 struct Whole {
   Eigen::VectorXd lambda;  ///< n, ascending [rad^2/s^2], the last `loose` are 0; n - loose: the
                            ///< elastic coordinates less those that are `far`

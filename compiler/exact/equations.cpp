@@ -52,8 +52,8 @@ struct Columns {
   }
 };
 
-/// C and D of a block: of its modal form if it has one, for with rounded products of its modes
-/// no closure would hold.
+/// C and D of a block: of its modal form if it has one, since rounded products of its modes would
+/// satisfy no closure.
 class ExactBlock {
  public:
   explicit ExactBlock(const Dynamics& d) : d_(d) {}

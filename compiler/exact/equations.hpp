@@ -17,7 +17,7 @@ struct Model {
 /// its acceleration. Throws Undecided.
 Model model_of(const Graph& graph, const ExactOptions& options, ParameterValues values);
 
-/// From matrices as they stand.
+/// From the entries of the matrices, taken as exact.
 Model model_of(const StateSpace& model);
 
 }  // namespace titop::exact

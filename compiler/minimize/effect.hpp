@@ -4,7 +4,7 @@
 #include <titop/compiler/minimize.hpp>
 #include <vector>
 
-/// The removal of modes is measured on the transfer: nothing is removed on trust.
+/// Measures the effect of removed modes on the transfer.
 namespace titop::modes {
 
 /// `minimize` (compiler/minimize.hpp) except for the measurement, for those who measure against

@@ -15,8 +15,8 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using linalg::at;
 
-/// Left and right vectors of one norm in the states' own sizes, whatever their units; bases of
-/// clusters stay as they are.
+/// Scales left and right vectors to one norm in the states' own sizes, independent of units; bases
+/// of clusters remain.
 void normalize(const ModeSet& m, linalg::Eigensystem& e) {
   for (Index j = 0; j < e.values.size(); ++j) {
     if (!m.apart[at(j)].empty()) continue;
@@ -115,8 +115,8 @@ void judge_wholes(const StateSpace& model, const PoleClusters& p, ModeSet& m) {
   }
 }
 
-/// First order again, of all modes together that stand apart: those of a Jordan block are large and
-/// cancel. O(n^2 ports) for each of them.
+/// First order again, for all isolated modes (see `apart`) together: those of a Jordan block are
+/// large and cancel. O(n^2 ports) for each mode.
 void find_apart(const StateSpace& model, const PoleClusters& p, const VectorXd& left,
                 const VectorXd& right, double size, ModeSet& m) {
   const linalg::Eigensystem& e = p.e;

@@ -40,8 +40,8 @@ struct ModeSet {
   /// e_ij: how much of mode i's drive rounding may put into that of mode j; shown by outputs, how
   /// much of mode j into mode i.
   Eigen::MatrixXd mixing;
-  /// Rounding of all modes that stand apart in the others' b and c: each of them may be of any
-  /// size. Sizes of b and c, or empty: contained in `mixing`.
+  /// Rounding that all modes in `apart` cause together in the others' b and c: each of them may be
+  /// of any size. Sizes of b and c, or empty: contained in `mixing`.
   Eigen::MatrixXd b_apart, c_apart;
   std::vector<std::string> apart;  ///< why it is not judged: pole at 0, ill-conditioned; or ""
   std::vector<char> needed;        ///< not judged, and yet known to be part of a minimal model

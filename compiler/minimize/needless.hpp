@@ -6,8 +6,8 @@
 #include <titop/compiler/minimize/sampled.hpp>
 #include <vector>
 
-/// Integrators that the transfer does not need: rigid motions that nothing drives or that cancel in
-/// all outputs, positions that the other states hold already. For the compiler's own files.
+/// Integrators without effect on the transfer: rigid motions that no input drives or that cancel in
+/// all outputs, positions that are functions of the other states. For the compiler's own files.
 namespace titop::modes {
 
 /// The rest of a decoupled model (integrators.hpp); entries are 0 that rounding alone may have

@@ -58,8 +58,8 @@ struct LeavingModes {
   MatrixXd V;  ///< columns: their motions
 };
 
-/// Modes that leave a model: relations `undriven.W` x = 0 that hold for all inputs, and motions
-/// `unseen.V` that no output sees. `scale`: units of the states.
+/// Modes to remove: relations `undriven.W` x = 0 that are satisfied for all inputs, and motions
+/// `unseen.V` that are unobservable. `scale`: units of the states.
 struct LeavingSides {
   LeavingModes undriven, unseen;
   VectorXd scale;
@@ -91,7 +91,7 @@ void see_no_more(const LeavingSides& l, MatrixXd& C) {
   if (!seen.isZero(0)) C -= seen * MatrixXd(MatrixXd(W * V).partialPivLu().solve(W));
 }
 
-/// `dependent`: the states that follow, if the caller knows better than W alone.
+/// `dependent`: the states to eliminate, which the caller may know better than from W.
 void remove(StateSpace& m, LeavingSides l, const std::vector<int>& dependent,
             std::vector<std::string>& notes) {
   if (const MatrixXd& W = l.undriven.W; W.rows() > 0) {

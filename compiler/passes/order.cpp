@@ -27,7 +27,7 @@ Arrows dependencies(const Stage& stage) {
     for (const int s : list)
       if (s != signal) needs.emplace_back(signal, s);
   }
-  // Signals that share a row (a channel that is partly free) live and die together.
+  // Signals that share a row (a channel that is partly free) are needed together or not at all.
   std::vector<int> first_of(stage.rows.size(), -1);
   for (const auto& [row, signal] : stage.matched.rows) {
     int& first = first_of[at(row)];

@@ -19,8 +19,8 @@ constexpr Index kMostInLongDouble = 128;  // states: some tenths of a second
 
 double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x))); }
 
-/// Diagonal d, powers of two, such that the n first rows and columns of d^-1 X d are alike; the
-/// others (inputs) are brought down to the size of the rows that they drive.
+/// Diagonal d, powers of two, such that the first n rows and columns of d^-1 X d have equal norms;
+/// the others (inputs) are scaled down to the size of the rows that they drive.
 Eigen::VectorXd balance(MatrixXd X, Index n) {
   Eigen::VectorXd d = Eigen::VectorXd::Ones(X.rows());
   const auto scale = [&](Index i, double f) {

@@ -50,8 +50,8 @@ double power_of_two(std::int16_t e) {
 
 /// The work on one front, its buffers kept from front to front. `bound` has the sums of magnitudes
 /// of the terms of each entry: a pivot far below its bound has cancelled. `keeps` records this for
-/// whole rows, from front to front: a row at rounding level must not pass for a good one further
-/// up.
+/// whole rows, from front to front: further up, a row at rounding level must not be accepted as a
+/// pivot row.
 template <class T>
 struct Factors<T>::Work {
   double least;                          ///< least ratio of a pivot to its terms
@@ -128,9 +128,9 @@ struct Factors<T>::Work {
     largest_products(rows, n, bound.data(), column.data(), row_scale.data());
   }
 
-  /// The pivot of a column is the row where it stands out most against the row's own size, among
-  /// those that make no row grow (kThreshold): the choice depends neither on the rows' units nor on
-  /// the columns'. -1 if no digit is left.
+  /// Pivot row of a column: the row where its entry is largest relative to the row's own size,
+  /// among those whose multipliers make no row grow (kThreshold): the choice depends neither on the
+  /// rows' units nor on the columns'. -1 if no digit is left.
   int pivot(int k) {
     int best = -1;
     double best_score = 0, left = 0, most = 0;

@@ -112,7 +112,7 @@ class Factors {
     int front = -1;
     bool singular = false, finite = true;
     std::span<const T> lu = {};  ///< row_count x columns, row-major; rows left over at the bottom
-    std::span<const int> order = {};  ///< which assembled row stands at place i
+    std::span<const int> order = {};  ///< assembled row at place i
     /// Per row left over: the least size that it has had, by ColumnScale::of_unknowns.
     std::span<const double> least_size = {};
     /// Per remaining row the ratio that cancellation has left; none: all 1.
@@ -143,7 +143,7 @@ class Factors {
   std::shared_ptr<const Plan> plan_;
   std::shared_ptr<const ColumnScale> scale_;
   std::vector<const Made*> fronts_;               ///< null above a singular one
-  std::vector<std::shared_ptr<const Lot>> lots_;  ///< where they stand
+  std::vector<std::shared_ptr<const Lot>> lots_;  ///< owners of their numbers
   NoPivot no_pivot_ = NoPivot::stop;
   double least_ = 0;
   int made_ = 0;

@@ -67,8 +67,8 @@ struct Plan {
   Structure structure;
   std::vector<Front> fronts;
   std::vector<int> lists;      ///< of the fronts' ranges
-  std::vector<int> first;      ///< variable -> its first scalar among the unknowns, which stand in
-                               ///< the order of elimination
+  std::vector<int> first;      ///< variable -> its first scalar among the unknowns, in the order of
+                               ///< elimination
   std::vector<int> row_first;  ///< row group -> its first scalar among all rows
   std::vector<int> front_of_row;   ///< row group -> the front where it enters
   std::vector<int> entry_column;   ///< entry of the structure -> first column in that front

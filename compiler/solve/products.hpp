@@ -11,7 +11,7 @@ namespace titop::solve {
 
 /// y = from + a x: row i of y (rows x m, row-major, `y_stride` apart) is from[i] plus the sum of
 /// a(i, k) x[k], where a is rows x inner, `stride` apart; m is a multiple of 8. Rows of x and
-/// `from` stand anywhere; from[i] may be row i of y. No `from`: from 0.
+/// `from` may be anywhere in memory; from[i] may be row i of y. No `from`: from 0.
 void multiply(std::ptrdiff_t rows, std::ptrdiff_t inner, std::ptrdiff_t m, const double* a,
               std::ptrdiff_t stride, const double* const* x, const double* const* from, double* y,
               std::ptrdiff_t y_stride, int lanes = 8);
@@ -35,8 +35,8 @@ struct Destination {
   double by_second = 0;
 };
 
-/// Multiples of the columns of x (rows x columns, row-major, `stride` apart) go to the rows of `to`
-/// from `first` on; they stand in the order of x.
+/// Writes multiples of the columns of x (rows x columns, row-major, `stride` apart) to the rows of
+/// `to` from `first` on, in the order of x.
 void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
                       std::ptrdiff_t stride, const Destination* to, std::ptrdiff_t first);
 

@@ -11,7 +11,8 @@ namespace titop::solve {
 /// unknowns). O(unknowns x front size) per column.
 class Propagation {
  public:
-  /// `room`: where the products go; it must live as long, and is not cleared. `form` comes next.
+  /// `room`: memory of the products; it must outlive this object, and is not cleared. Call `form`
+  /// next.
   Propagation(const Factors<double>& factors, std::vector<double>& room);
 
   /// Forms the products of all fronts, here the k-th of `parts` parts. O(sum of front sizes^3).

@@ -22,9 +22,9 @@ constexpr int kOne = 16;
 constexpr int kNone = -(1 << 24);  ///< the exponent of 0
 constexpr int kRounding = -691;    ///< 1e-13
 
-/// log2 of n magnitudes to within 0.09, from the bits: exponents are all that scaling needs. The
-/// upper half of a double holds them; subnormal numbers count as 2^-1023 or a little more, and as 0
-/// below 2e-314.
+/// log2 of n magnitudes to within 0.09, from the bits: scaling needs exponents only. They are in
+/// the upper half of a double; subnormal numbers count as 2^-1023 or a little more, and as 0 below
+/// 2e-314.
 TITOP_PART void exponents_of(Index n, const double* x, int* __restrict e) {
   for (Index k = 0; k < n; ++k) {
     const auto bits = static_cast<std::int64_t>(std::bit_cast<std::uint64_t>(x[k]));

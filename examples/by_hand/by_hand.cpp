@@ -52,8 +52,8 @@ std::vector<Complex> poles(const Structure& a) {
 }
 
 std::vector<Complex> poles(const MatrixXd& A) {
-  // Balanced first (powers of two until rows and columns weigh alike): positions and velocities
-  // differ by the frequency.
+  // Balanced first (powers of two until rows and columns have equal norms): positions and
+  // velocities differ by the frequency.
   MatrixXd balanced = A;
   for (int sweep = 0; sweep < 40; ++sweep)
     for (Index i = 0; i < A.rows(); ++i) {

@@ -30,9 +30,9 @@ MatrixXcd position_transfer(const Structure& a, Complex s);
 /// s^2 times that.
 MatrixXcd accel_transfer(const Structure& a, Complex s);
 
-/// The same structure without its first `rigid` coordinates, which no spring holds (K and D have
-/// zero rows there: rigid motion, a free joint's angle): the mass of the others is
-/// M_ee - M_er M_rr^-1 M_re. Its poles are those of the whole except for the zeros.
+/// The same structure without its first `rigid` coordinates, which have no stiffness (K and D have
+/// zero rows there: rigid motion, a free joint's angle): the mass of the others is M_ee - M_er
+/// M_rr^-1 M_re. Its poles are those of the whole except for the zeros.
 Structure elastic(const Structure& a, Index rigid);
 
 /// Poles with Im s >= 0. Undamped: by K x = omega^2 M x.

@@ -48,8 +48,8 @@ void scale(MatrixXd& A, VectorXd& d, Index i, double factor) {
   d(i) *= factor;
 }
 
-/// Logarithms alike over all entries that are not 0, for sizes far apart; entries that are nothing
-/// but rounding count like others.
+/// Least-squares fit to the logarithms of all entries that are not 0, for sizes far apart; entries
+/// at rounding level count like others.
 VectorXd by_logarithms(MatrixXd& A) {
   std::vector<Ratio> ratios;
   for (int j = 0; j < A.cols(); ++j)
@@ -61,8 +61,8 @@ VectorXd by_logarithms(MatrixXd& A) {
   return d;
 }
 
-/// Makes each state's row and column alike in turn: to the least norm, if sizes are not too far
-/// apart for so many sweeps.
+/// Makes the 1-norms of each state's row and column equal in turn, until their sums decrease by
+/// less than 5 percent, in at most 20 sweeps.
 void sweep(MatrixXd& A, VectorXd& d) {
   constexpr int kSweeps = 20;
   for (int k = 0; k < kSweeps; ++k) {

@@ -28,8 +28,8 @@ MatrixXd pivoted_cholesky(const MatrixXd& S, double& least) {
 }
 
 /// Orthogonality of two columns: to the rounding of their product (fine), to an angle below
-/// rounding (good), or not yet (open). A small column beside a large one is orthogonal to it long
-/// before its share of it has digits.
+/// rounding (good), or not yet (open). A small column is orthogonal to a large one long before its
+/// component along it has digits.
 enum class Angle { fine, good, open };
 
 /// Rotates two columns towards orthogonality; returns their angle before.

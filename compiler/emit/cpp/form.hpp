@@ -5,7 +5,7 @@
 #include <titop/compiler/system.hpp>
 #include <vector>
 
-/// In which coordinates generated code computes, and how good they are.
+/// Coordinates in which generated code computes, and their accuracy.
 namespace titop::emit {
 
 /// The model's matrices in its own states, or in modes: x = to_states z, z = from_states x, with A

@@ -36,7 +36,7 @@ struct Plot {
 /// one column of pixels are drawn as a line from the smallest to the largest.
 std::string figure(const Plot& plot);
 
-constexpr std::size_t kStyles = 6;  ///< curves that differ; more look alike again
+constexpr std::size_t kStyles = 6;  ///< line styles of curves; further curves repeat them
 
 /// Round numbers in [low, high], 3 to 7 of them.
 struct Ticks {

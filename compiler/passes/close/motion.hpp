@@ -72,7 +72,7 @@ class Motion {
   std::vector<char> at_rest(const std::function<bool(const Column&, int)>& held) const;
   /// The tie that places a point relative to the one above it: its equation; -1: none, or a body.
   int tie_above(int channel) const { return up_[static_cast<std::size_t>(channel)].equation; }
-  /// The point as the user knows it.
+  /// Name of the point in the user's diagram.
   std::string name(int point) const;
   /// A body on this chain without kinematics of its ports: its node, else -1.
   int silent(const std::vector<int>& chain) const;

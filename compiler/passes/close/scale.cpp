@@ -79,9 +79,9 @@ struct Scaling {
     return result.any() ? result : Counts(sizes > 0);  // three units, each tiny beside another
   }
 
-  /// Per two units of a block how long its levers are, the one over the other: the longest of a
-  /// joint, or the middle one of those that store energy (of some modes it is rounding), if that is
-  /// longer. No matter how columns are measured, and rows are for all of them alike.
+  /// Per two units of a block the ratio of their levers: the largest of a joint, or the median of
+  /// columns that store energy (of some modes it is rounding), if that is larger. Independent of
+  /// the units of columns; rows have the same ones in all columns.
   MatrixXd levers(const MatrixXd& sizes, const std::vector<int>& columns) const {
     MatrixXd result = MatrixXd::Zero(sizes.rows(), sizes.rows());
     for (Index u = 0; u < sizes.rows(); ++u)
