@@ -128,7 +128,7 @@ void check_entries(const Matrix6& D_P) {
 }
 
 /// Relative deviation of D_P from a rigid body's mass matrix. Finite-element models neglect some
-/// rotary inertia and lump masses beside their place: about 0.01 is usual. A larger deviation than
+/// rotary inertia and lump masses off their place: about 0.01 is usual. A larger deviation than
 /// this is a mistake.
 constexpr double kRigidMisfit = 0.05;
 

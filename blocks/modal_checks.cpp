@@ -39,7 +39,7 @@ Vector6 row_sizes(const ModalChild& child) {
   return sizes;
 }
 
-/// Rows that are zero beside the others.
+/// Rows that are negligible compared with the others.
 std::array<bool, 6> resting_rows(const ModalData& data, const ModalChild& child) {
   const double noise = shape_noise(data);
   const Vector6 norms = child.Phi_C.rowwise().norm(), sizes = row_sizes(child);

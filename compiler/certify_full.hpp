@@ -11,7 +11,7 @@ namespace titop {
 
 class System;
 
-/// Extent of the checks beside the default certificate.
+/// Extent of the checks in addition to the default certificate.
 struct Full {
   int points = 24;          ///< of the grid in s; 0: none
   int dense_up_to = 2000;   ///< states; larger models are not written, with a note
@@ -53,7 +53,7 @@ struct FullCertificate {
   /// first-order perturbation by the factors.
   struct Poles : Checked {
     int count = 0;
-    int measured = 0;  ///< the others (multiple, or at 0 beside others that are not) move by 1e-8
+    int measured = 0;  ///< the others (multiple, or at 0 while others are not) move by 1e-8
                        ///< or more under rounding of A alone
     double error = 0;
     std::complex<double> where;

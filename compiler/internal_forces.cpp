@@ -17,9 +17,9 @@ constexpr double kMoves = 1e-7;  ///< relative to cancelling terms; rounding giv
 constexpr double kZero = 1e-10;  ///< of the largest internal force: zero
 
 /// Rounding moves light bodies a little, and through them a heavy one: its mass times that
-/// acceleration may be large beside the forces, in double. A step of refinement reduces it by a
-/// factor of about rounding times the ratio of the masses: with this many steps ratios of 1e12 do
-/// no harm. True motion remains.
+/// acceleration may be large compared with the forces, in double. A step of refinement reduces it
+/// by a factor of about rounding times the ratio of the masses: with this many steps ratios of 1e12
+/// do no harm. True motion remains.
 constexpr int kRefinements = 8;
 
 /// More released directions than these are judged by as many sums of all of them.

@@ -104,7 +104,7 @@ struct Change {
   std::vector<std::complex<double>> tried, left_out;  ///< where the factors have digits, and not
 };
 
-/// Beside the modes that left and at the assembly's frequencies: a block that is slow by itself may
+/// Near the removed modes and at the assembly's frequencies: a block that is slow by itself may
 /// lead where rigid bodies have no digit left.
 std::vector<std::complex<double>> points_of_change(const SystemData& d, const StateSpace& dense,
                                                    const Minimized& m) {

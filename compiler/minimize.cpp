@@ -77,8 +77,8 @@ StateSpace side_by_side(const StateSpace& rest, const StateSpace& model,
   return modes::with_integrators(with_rates, apart, states);
 }
 
-/// The modes beside integrators that all count. Integrators keep their meaning if as many modes
-/// leave without a change of their inputs.
+/// Minimizes the rest of a model whose integrators all count. Integrators keep their meaning if as
+/// many modes can be removed without a change of their inputs.
 Minimized minimize_beside(const modes::Sampled& sampled, const modes::Integrated& states,
                           const StateSpace& rest, const MinimizeOptions& options) {
   const StateSpace& model = sampled.model;

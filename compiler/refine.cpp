@@ -129,9 +129,9 @@ std::vector<Eigen::Index> groups_of_inputs(const SystemData& d) {
   return groups(d.graph().inputs, d.layout().input_first, 0, std::ssize(d.layout().inputs));
 }
 
-/// Blocks that are negligible beside those of other outputs by the same input, and of other inputs
-/// to the same output: `limit` of both. (If all of a row is small, that is its unit, or its true
-/// size.)
+/// Blocks that are negligible compared with those of other outputs by the same input, and of other
+/// inputs to the same output: `limit` of both. (If all of a row is small, that is its unit, or its
+/// true size.)
 Eigen::MatrixX<bool> nothing_beside(const Eigen::MatrixXd& size, double limit) {
   if (size.size() == 0) return Eigen::MatrixX<bool>(size.rows(), size.cols());
   const Eigen::ArrayXXd row = size.rowwise().maxCoeff().replicate(1, size.cols()).array(),
@@ -188,7 +188,7 @@ double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) c
   double worst = 0;
   for (Eigen::Index i = 0; i < size.rows(); ++i)
     for (Eigen::Index j = 0; j < size.cols(); ++j) {
-      // A block that is 0 by symmetry is rounding alone: it counts beside its neighbours.
+      // A block that is 0 by symmetry is rounding alone: it counts relative to its neighbours.
       const double beside = std::sqrt(size.row(i).maxCoeff()) * std::sqrt(size.col(j).maxCoeff());
       if (off(i, j) <= kUnderflow) continue;
       const bool noise = size(i, j) <= kNoise * off(i, j) &&

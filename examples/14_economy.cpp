@@ -31,7 +31,7 @@ by_hand::MatrixXcd asked(const by_hand::Structure& a, by_hand::Complex s) {
   return H;
 }
 
-/// Largest error of any pair, each over its own peak, beside the scene assembled by hand.
+/// Largest error of any pair, each over its own peak, against the scene assembled by hand.
 double error_by_hand(const ReducedSystem& r, const by_hand::Structure& a, const Scene& scene) {
   std::vector<by_hand::MatrixXcd> small, exact;
   for (const by_hand::Complex s : by_hand::ray(scene.damping_floor, scene.band_hz[1], 400))

@@ -78,7 +78,7 @@ Json transfer(const FirstOrder<Digits>& m, Complex s) {
   return {{"s", {s.real(), s.imag()}}, {"G", rows}};
 }
 
-/// Two points beside every pole, at the scene's own frequencies.
+/// Two points near every pole, at the scene's own frequencies.
 std::vector<Complex> points(const std::vector<Complex>& poles, std::uint64_t seed) {
   std::mt19937_64 engine(seed ^ 0xF00D);
   std::vector<Complex> list;

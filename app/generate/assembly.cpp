@@ -255,8 +255,8 @@ class Assembly {
     if (r.of == Reading::Of::relative) return q_.rows({own_[block]});
     if (r.of == Reading::Of::reaction) return holding(r.point);
     if (r.of == Reading::Of::support) {
-      // Force required on the base beside all other forces; the port has the force that the body
-      // exerts there.
+      // Force required on the base in addition to all other forces; the port has the force that the
+      // body exerts there.
       std::vector<std::size_t> base;
       for (int i = 0; i < plan_.blocks[block].size(); ++i)
         base.push_back(first_[block] + static_cast<std::size_t>(i));

@@ -104,7 +104,7 @@ struct Part {
   Vec3 direction = {};
 };
 
-/// A force on a point, beside those of bases and joints.
+/// A force on a point, in addition to those of bases and joints.
 struct Load {
   std::string input;
   Point point;

@@ -5,7 +5,7 @@
 
 #include "support/timing.hpp"
 
-/// (s - A)^-1 B of one dense block, three inputs: the LU of compiler/response.hpp beside Eigen's
+/// (s - A)^-1 B of one dense block, three inputs: the LU of compiler/response.hpp against Eigen's
 /// PartialPivLU, which also computes the modulus (hypot) of every entry for a condition number that
 /// is not used, and of every candidate for a pivot. One core, GCC 12, -O3, microseconds (titop,
 /// Eigen):

@@ -2,7 +2,7 @@
 
 #include <titop/titop.hpp>
 
-/// Small models in simulation beside the full system.
+/// Simulation of small models compared with the full system.
 namespace titop_bench {
 
 /// The small model as a controller or filter in a diagram: one block with the inputs and outputs of

@@ -16,10 +16,10 @@ struct MeshReport {
   /// distribution between points; mass and centre must agree with `mass`. Absent if the masses of
   /// some point along x, y and z differ.
   std::optional<MassProperties> geometry;
-  double KR = 0;        ///< largest |K R| / largest |K|, R about the origin [m]: 0 for a free mesh
-  double KR_terms = 0;  ///< largest |K R| beside the terms that cancel in it, of which K(i, j) R(j)
-                        ///< counts as sqrt(K(i, i) K(j, j)) |R(j)|: independent of units; the
-                        ///< data's digits if the positions fit the matrices and nothing is held
+  double KR = 0;         ///< largest |K R| / largest |K|, R about the origin [m]: 0 for a free mesh
+  double KR_terms = 0;   ///< largest |K R| relative to the terms that cancel in it, a term K(i, j)
+                         ///< R(j) counted as sqrt(K(i, i) K(j, j)) |R(j)|: independent of units; at
+                         ///< the data's digits if the positions fit the matrices of a free mesh
   std::string KR_worst;  ///< degree of freedom of that entry
 };
 

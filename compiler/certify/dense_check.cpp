@@ -81,8 +81,8 @@ MatrixXd product(const StateSpace& of, const MatrixXd& x, const MatrixXd& u) {
   return result;
 }
 
-/// The largest |off| over the terms whose rounding is known. Groups that are `noise` alone,
-/// where it is known, count beside it.
+/// The largest |off| over the terms whose rounding is known; in groups at the level of `noise`,
+/// where it is known, over the larger of rounding and noise.
 double beside_terms(const MatrixXd& off, const Response& r, const Groups& groups,
                     const MatrixXd& noise = {}) {
   if (!off.allFinite() || !r.rounding.allFinite() || !noise.allFinite()) return kInfinity;

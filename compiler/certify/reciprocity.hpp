@@ -7,7 +7,7 @@
 namespace titop::full {
 
 /// `no_structure`: why the system's diagram is none, or empty (compiler/certify/structure.hpp).
-/// O(bodies) beside O(points * forces^2).
+/// O(bodies) against O(points * forces^2).
 FullCertificate::Reciprocity check_reciprocity(const System& system, const DualPairs& pairs,
                                                const DualTransfers& transfers,
                                                std::string no_structure, ParameterValues values);

@@ -10,7 +10,7 @@
 ///
 /// The tree has its root at the top, as in the paper: parents above, children below. A block has
 /// its parent channel along its top and its children along its bottom, so accelerations run down
-/// and wrenches come back up beside them.
+/// and wrenches return upwards next to them.
 namespace titop::dot {
 
 /// One side of a block: where a wire leaves or arrives. `loose`: it may go either way.

@@ -17,7 +17,7 @@ std::string html(std::string_view text);
 /// Text in another size and colour inside an HTML-like label; `text` is taken as HTML.
 std::string font(std::string_view text, int size, std::string_view colour);
 
-/// Colours. In black and white they differ by width, dash, or a sign beside them.
+/// Colours. In black and white they differ by width, dash, or an added sign.
 namespace colour {
 constexpr std::string_view ink = "#1F2933";
 constexpr std::string_view line = "#3E4C59";

@@ -18,8 +18,8 @@ struct PhaseBand {
 /// both ends included. For a function with no other poles, whose numerator has no higher degree
 /// than its denominator, |f| <= max over the points / cos(step / 2) everywhere in the band: the
 /// Bernstein-Szego inequality for rational functions [Borwein, Erdelyi 1995, Polynomials and
-/// Polynomial Inequalities, ch. 7], for Re(e^(ja) f). Poles on the interval count as just beside
-/// it. O(points * poles).
+/// Polynomial Inequalities, ch. 7], for Re(e^(ja) f). Poles on the interval are moved off it by a
+/// small distance. O(points * poles).
 std::vector<double> phase_grid(const PhaseBand& band, double step);
 
 }  // namespace titop::detail

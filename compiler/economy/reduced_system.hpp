@@ -20,8 +20,8 @@ struct ErrorBound {
   int samples = 0;  ///< transfers of the full factored system that it took
   /// Of balanced models: 2 x the sum of the Hankel singular values that were dropped, for the worst
   /// pair, relative as `pairs`. A theorem, not only for the band but everywhere right of the
-  /// imaginary axis (up to rounding in the Gramians, and beside undamped poles whose effect is
-  /// below 1e-11 of the peaks, which are left out); negative if there is none.
+  /// imaginary axis (up to rounding in the Gramians, and not near omitted undamped poles, whose
+  /// effect is below 1e-11 of the peaks); negative if there is none.
   double anywhere = -1;
 };
 

@@ -75,7 +75,7 @@ double distance(const Eigen::VectorXd& lambda, Index elastic, Index j) {
 }
 
 /// Modes that had one frequency have one again, and one damping if they had one: in pairs that
-/// symmetry makes 0 their terms cancel, and beside a resonance the last digits between them would
+/// symmetry makes 0 their terms cancel, and near a resonance the last digits between them would
 /// not. `found`: those that have new values; the mean is theirs.
 void unite(Whole& w, const Eigen::VectorXd& before, const Eigen::VectorXd& damping_before,
            const std::vector<char>& found) {

@@ -10,7 +10,7 @@ namespace titop::detail {
 /// Damping ratio below which a pole counts as undamped.
 inline constexpr double kUndamped = 1e-6;
 
-/// A model of its own beside the others: all of them together, added, are the whole.
+/// A separate part: the sum of all parts is the whole model.
 struct Part {
   Eigen::MatrixXd A, B, C;
   /// Coordinates of this part in terms of the model's states and back: z = left x, x = right z for

@@ -34,7 +34,7 @@ struct Scaled {
 
 /// Columns mu, y of P y = mu K y, ascending. The softest coordinates, where P is largest, come
 /// first: in this order the eigensolver keeps the digits of small entries [Wilkinson, Reinsch 1971,
-/// Handbook, II/2], and a soft spring does not affect a stiff structure beside it.
+/// Handbook, II/2], and a soft spring does not affect a stiff structure next to it.
 SymmetricModes soft_first(const MatrixXd& P, const MatrixXd& K) {
   std::vector<Index> order(at(P.rows()));
   std::iota(order.begin(), order.end(), 0);
@@ -92,7 +92,7 @@ void turn_clusters(VectorXd& lambda, MatrixXd& phi, const MatrixXd& b, const Mat
 }
 
 /// The transfer at one real s minus that of the modes. s is above the poles of a damped structure,
-/// and small enough beside the band that far modes do not matter.
+/// and small enough compared with the band that far modes do not matter.
 MatrixXd rest(const System& system, const Whole& w) {
   double s = 1;
   if (w.elastic() > 0) s = std::sqrt(w.lambda(0));

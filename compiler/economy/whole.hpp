@@ -53,7 +53,7 @@ void couple(Whole& whole);
 /// sum 1; motions without stiffness belong to their own block. O(n^2 columns).
 Eigen::MatrixXd participation(const Whole& whole, const Eigen::MatrixXd& V);
 
-/// Which outputs of a graph are positions (beside them only rates and inputs), scalar by scalar, as
+/// Which outputs of a graph are positions (plus rates and inputs only), scalar by scalar, as
 /// declared.
 std::vector<char> positions_read(const Graph& graph);
 

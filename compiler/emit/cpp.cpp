@@ -36,7 +36,7 @@ void check(const CppOptions& options) {
   if (!mistakes.empty()) throw Error(std::move(mistakes));
 }
 
-/// Accurate enough beside the model's own states: no more than a digit lost.
+/// Accurate enough compared with the model's own states: no more than a digit lost.
 bool serves(const Form& modes, const Form& own) {
   return modes.error <= std::max(1e-12, 10 * own.error) &&
          modes.step_error <= std::max(1e-12, 10 * own.step_error);

@@ -29,7 +29,7 @@ struct CppModel {
   std::string header;      ///< NAME.hpp
   std::string test;        ///< NAME_test.cpp, with doctest's main (or TITOP_TEST_WITHOUT_MAIN)
   bool modal = false;      ///< the state is the modes'; to_states() gives the model's
-  double error = 0;        ///< of its transfer against the factored system, at eight s beside the
+  double error = 0;        ///< of its transfer against the factored system, at eight s near the
                            ///< poles: worst entry over the largest of its row and column
   long long products = 0;  ///< multiplications of derivative + output (+ step)
 };

@@ -15,7 +15,8 @@ enum class Language {
 /// Letters of ASCII, digits and underscores, from a letter on, and not taken in this language.
 bool is_identifier(std::string_view text, Language language = Language::cpp);
 
-/// A C++ identifier that a namespace may have beside the C library: `sin` and `link` are functions.
+/// A C++ identifier that does not collide with the C library in a namespace: `sin` and `link` are
+/// functions.
 bool is_namespace(std::string_view text);
 
 }  // namespace titop::emit

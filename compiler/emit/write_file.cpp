@@ -23,7 +23,7 @@ bool put(const std::filesystem::path& path, const std::string& content) {
   return static_cast<bool>(file);
 }
 
-/// A new, empty file beside this one: NAME.part, or NAME.part2 ... if that exists.
+/// A new, empty file in the same folder: NAME.part, or NAME.part2 ... if that exists.
 std::filesystem::path new_beside(const std::filesystem::path& path) {
   constexpr int most = 100;
   for (int i = 1; i <= most; ++i) {
@@ -56,7 +56,8 @@ void write_file(const std::filesystem::path& path, const std::string& content) {
   if (status.type() == std::filesystem::file_type::none) refuse(path, hint);  // links in a circle
   if (std::filesystem::is_directory(status)) refuse(path, "it is a folder: name a file in it");
   if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status)) {
-    if (!put(path, content)) refuse(path, hint);  // a pipe or a device has no place beside it
+    if (!put(path, content))
+      refuse(path, hint);  // a pipe or a device has no room for a file next to it
     return;
   }
   std::ifstream old(path, std::ios::binary);

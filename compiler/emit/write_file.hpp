@@ -6,7 +6,7 @@
 namespace titop::emit {
 
 /// Writes the file, unless it has this content already, so that its time stamp stays. Written
-/// beside it (.part) and renamed, so that it is never incomplete. Throws bad_file, also for a
+/// next to it (.part) and renamed, so that it is never incomplete. Throws bad_file, also for a
 /// folder.
 void write_file(const std::filesystem::path& path, const std::string& content);
 

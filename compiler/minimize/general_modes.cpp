@@ -30,7 +30,7 @@ void normalize(const ModeSet& m, linalg::Eigensystem& e) {
 }
 
 /// Numbers the clusters: chains of eigenvalues of the upper half plane (and the axis) with gaps up
-/// to the limit of equality, beside those that are judged as a whole. O(n^2).
+/// to the limit of equality, in addition to those judged as a whole. O(n^2).
 void find_clusters(const linalg::Eigensystem& e, const std::vector<std::vector<Index>>& wholes,
                    double noise, double resolution, ModeSet& m) {
   const Index n = e.values.size();

@@ -25,7 +25,8 @@ using linalg::at;
 /// Response of all modes near the frequency of mode j, per port: sqrt(sum rows_i^2 w_i).
 VectorXd background(const MatrixXd& rows, const ModeSet& m, Index j) {
   VectorXd sum = VectorXd::Zero(rows.cols());
-  // The rows of a Jordan block may have any size: all others would look negligible beside them.
+  // The rows of a Jordan block may have any size: all others would look negligible compared with
+  // them.
   for (Index i = 0; i < rows.rows(); ++i)
     if (m.apart[at(i)].empty())
       sum += rows.row(i).transpose().cwiseAbs2() / std::max(m.distance(i, j), 0.01 * m.lambda(j));

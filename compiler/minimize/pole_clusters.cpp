@@ -197,7 +197,7 @@ MatrixXd error_like(const MatrixXd& A, int sample) {
   return E;
 }
 
-/// Puts a component's part beside those before it.
+/// Puts a component's part next to the earlier ones.
 void add_share(const Share& s, OwnModel& own) {
   ClusterModel& m = own.model;
   const Index before = m.A.rows(), k = std::ssize(s.in);

@@ -42,7 +42,7 @@ Eigen::VectorXd balance(MatrixXd X, Index n) {
 }
 
 /// exp(X) - I: Taylor at X / 2^k, then (I + E)^2 - I = 2 E + E^2, k times. Without the I a slow
-/// state keeps its digits beside fast ones.
+/// state keeps its digits if others are fast.
 template <class T>
 Matrix<T> exponential_less_one(Matrix<T> X) {
   const auto norm = static_cast<double>(X.cwiseAbs().colwise().sum().maxCoeff());

@@ -55,7 +55,7 @@ class Propagation {
   struct Place {
     std::ptrdiff_t by_pivots = 0, by_all = 0;  ///< from row to row
     std::size_t lower = 0;                     ///< L^-1, and below it -L' L^-1: rows x pivots
-    std::size_t unknowns = 0;  ///< -U^-1 (border of U), and beside it U^-1 L^-1: pivots x both
+    std::size_t unknowns = 0;  ///< -U^-1 (border of U), and to its right U^-1 L^-1: pivots x both
     int carried = 0;           ///< pivots' rows that came from children: the first columns
   };
 

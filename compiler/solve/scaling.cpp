@@ -143,7 +143,7 @@ TITOP_PART void towards_one(const Exponents& x, int* of_rows, int* of_units) {
   take_half(x.width, of_units, x.c);
 }
 
-/// Counts the entries that are not rounding beside the others.
+/// Counts the entries that are above the rounding of the others.
 TITOP_PART void count_entries(const Exponents& x) {
   const Index size = x.rows * x.width;
   for (Index i = 0; i < x.rows; ++i)

@@ -26,9 +26,9 @@ GradedModes eigh_graded(const Eigen::MatrixXd& S);
 std::optional<Eigen::VectorXd> diagonal_in(const GradedModes& of, const Eigen::MatrixXd& Z);
 
 /// Whether S + `skew` is S, of which these are the modes: in them the entries of the antisymmetric
-/// `skew` are rounding (1e-12 of the terms of V'SV) or small beside the modes' own (1e-9 of
-/// sqrt(lambda_i lambda_j)). One that is neither may be small beside the diagonal of S and yet
-/// decide whether a slow mode is stable. O(n^3).
+/// `skew` are rounding (1e-12 of the terms of V'SV) or small compared with the modes' own (1e-9 of
+/// sqrt(lambda_i lambda_j)). One that is neither may be small compared with the diagonal of S and
+/// yet decide whether a slow mode is stable. O(n^3).
 bool symmetric_in(const GradedModes& of, const Eigen::MatrixXd& S, const Eigen::MatrixXd& skew);
 
 }  // namespace titop

@@ -5,7 +5,8 @@
 /// Rigid kinematics of dual vectors (linear; angular). [Alazard 2015] nomenclature.
 namespace titop {
 
-// Eigen's own names, so that `using namespace Eigen` beside `using namespace titop` stays clear.
+// Eigen's own names, so that `using namespace Eigen` together with `using namespace titop` stays
+// clear.
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Vector6 = Eigen::Matrix<double, 6, 1>;

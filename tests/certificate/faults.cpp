@@ -150,7 +150,7 @@ TEST_CASE("the residual of an input is not hidden by stiff springs behind it") {
   Diagram d{"stack"};
   auto below = d.add("b0", RigidBody{.mass = 1, .children = {{"C", {0, 0, 0.1}}}});
   below.parent.force = 0;
-  below.child("C").force += d.input("U", 6);  // beside the first spring
+  below.child("C").force += d.input("U", 6);  // in addition to the first spring
   for (int i = 1; i <= 3; ++i) {
     auto k = d.add("k" + std::to_string(i), Bushing{.stiffness = {1e5, 1e5, 1e5, 1e5, 1e5, 1e5}});
     auto body =
@@ -164,8 +164,8 @@ TEST_CASE("the residual of an input is not hidden by stiff springs behind it") {
       std::const_pointer_cast<detail::SystemData>(detail::compile_graph(d.graph(), {}));
   CHECK(data->checked().certificate.at_instant);
   CHECK(data->checked().certificate.residual <= 1e-13);
-  // A wrench that acts by a thousandth more than is written. The spring beside it carries some k /
-  // (m s^2) of it: s is about 0.6, so that the wrench has a share of some 4e-6 in the sum.
+  // A wrench that acts by a thousandth more than is written. The spring parallel to it carries some
+  // k / (m s^2) of it: s is about 0.6, so that the wrench has a share of some 4e-6 in the sum.
   int planted = 0;
   const Graph& g = data->graph();
   for (std::size_t e = 0; e < g.equations.size(); ++e)

@@ -266,7 +266,7 @@ TEST_CASE("a slow or a double pole right of the axis is not passed over") {
     d.output("y") = K.out;
     return certify(compile(d), {.points = 6});
   };
-  // Beside an integrator, six decades below the fastest: simple, and exact.
+  // With an integrator, six decades below the fastest: simple, and exact.
   const FullCertificate slow =
       poles((Eigen::MatrixXd(3, 3) << 1e-3, 0, 0, 0, -1e3, 0, 1, 0, 0).finished(),
             Eigen::Vector3d(1, 1, 0), Eigen::RowVector3d(0, 1, 1));

@@ -5,7 +5,7 @@
 #include <titop/compiler/compare.hpp>
 #include <titop/titop.hpp>
 
-/// Rounding excuses a 0 beside other entries, but no model that has lost digits everywhere.
+/// Rounding is accepted for a 0 among other entries, but no model that has lost digits everywhere.
 
 using namespace titop;
 using namespace titop::detail;

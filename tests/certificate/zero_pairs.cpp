@@ -100,8 +100,8 @@ TEST_CASE("a pair that is 0 by symmetry: a fault in it is found, in all units") 
 }
 
 TEST_CASE("a pair without a path: rounding of row operations in its 0 is no fault") {
-  // The first mass moves the second through a filter; nothing comes back. Elimination of the second
-  // one's stiffness beside the filter's larger gain turns rows.
+  // The first mass moves the second through a filter; nothing returns. Elimination of the second
+  // one's stiffness against the filter's larger gain exchanges rows.
   for (const double gain : {-7.0, 3.0, 400.0}) {
     CAPTURE(gain);
     Diagram d{"one way"};
@@ -172,7 +172,7 @@ TEST_CASE("rounding by frames of a 0 that is exact in the factors is no fault") 
   const FullCertificate c = certify(system, {.points = 8});
   CAPTURE(to_string(c));
   CHECK(c.holds());
-  // The same by hand: 0 beside entries of 4 and 9.
+  // The same by hand: 0 next to entries of 4 and 9.
   MatrixXcd G(2, 2), H(2, 2);
   G << 0, 4, 9, 1;
   for (const auto& [left, relative] : {std::pair(6e-17, 1e-11), {6e-12, 1e-6}, {6e-3, 1e3}}) {

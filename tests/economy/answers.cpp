@@ -121,8 +121,9 @@ TEST_CASE("in the full system's place: the same response to a push within the ba
   const Simulation run{.step = 1e-3, .until = 2, .stepper = Stepper::exact};
   const MatrixXd full = simulate(r.full(), push, run).y, y = simulate(replaced, push, run).y;
   // |e(t)| <= max |E| times the integral of |F| over the frequencies, which for this push is its
-  // height, 1; on the axis poles are nearer by the damping floor, 0.002 beside their own 0.01. Of
-  // positions alone: accelerations also see the corners of a push that is linear in every step.
+  // height, 1. The axis is nearer to the poles than the bound's samples by the damping floor of
+  // 0.002, at a damping of 0.01: a factor 1.2. Of positions alone: accelerations also see the
+  // corners of a push that is linear in every step.
   const VectorXd allowed = 1.2 * r.bound().pairs.cwiseProduct(r.bound().peak).rowwise().sum();
   for (Eigen::Index i = 0; i < 3; ++i) {
     const double off = (y - full).row(i).cwiseAbs().maxCoeff();

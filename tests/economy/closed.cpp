@@ -5,7 +5,7 @@
 #include "economy/scenes.hpp"
 #include "support/close.hpp"
 
-/// Closed chains through economy, beside the whole structure's M and K by hand.
+/// Closed chains through economy, against the whole structure's M and K by hand.
 using namespace titop;
 using namespace titop_test;
 using namespace loop_test;

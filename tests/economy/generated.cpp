@@ -3,8 +3,8 @@
 #include "economy/against.hpp"
 #include "support/rng.hpp"
 
-/// Lightly damped modes in clusters, where hardly anything small exists: beside the sum over modes
-/// written out.
+/// Lightly damped modes in clusters with few small terms, compared with the sum over modes written
+/// out.
 using namespace titop;
 using namespace titop_test;
 using Eigen::MatrixXcd;

@@ -5,7 +5,8 @@
 
 #include "support/rng.hpp"
 
-/// The order of a balanced model beside all orders and cuts tried one by one, by one LU per sample.
+/// The order of a balanced model against all orders and cuts tried one by one, by one LU per
+/// sample.
 using namespace titop;
 using namespace titop_test;
 using Eigen::Index;

@@ -63,7 +63,7 @@ TEST_CASE("no peak of a rational function hides between the samples of its phase
 }
 
 TEST_CASE("a uniform grid of as many points misses the peak of a lightly damped mode") {
-  // The case that the phase grid is for: 1 / (x - p) with p 1e-4 of the band beside it.
+  // The case that the phase grid is for: 1 / (x - p) with p at 1e-4 of the band from it.
   const Complex pole(0.4321, 1e-4);
   const std::vector<double> grid = phase_grid({0, 1, {pole}, 0}, 1);
   double phase = 0, uniform = 0;

@@ -34,7 +34,7 @@ TEST_CASE("a folder, or a folder that is not there, is no file to write: bad_fil
 
 TEST_CASE("where the new file cannot be written whole, the old one stays") {
   const Folder folder;
-  const std::string longest(255, 'a');  // too long for the name of the file beside it
+  const std::string longest(255, 'a');  // too long for the name of the temporary file
   folder.write(longest, "old");
   CHECK_THROWS_AS(emit::write_file(folder.path / longest, "new"), Error);
   CHECK(folder.read(longest) == "old");

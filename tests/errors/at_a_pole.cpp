@@ -71,7 +71,7 @@ TEST_CASE("static gain: a pole at 0 is refused where rounding has left something
       CAPTURE(k);
       const System system = compile(free_by_cancellation(h, k));
       CHECK(says(error_of([&] { return system.static_gain(); }), Code::singular, {"pole"}));
-      // Beside it there is a value: a pole of order one.
+      // Near it there is a value: a pole of order one.
       const double at = std::abs(system.transfer(1e-7)(0, 0)),
                    nearer = std::abs(system.transfer(1e-9)(0, 0));
       CHECK(std::abs(nearer / at / 100 - 1) <= 1e-3);

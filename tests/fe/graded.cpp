@@ -59,7 +59,7 @@ std::vector<Real> eigenvalues(const MatrixXd& S) {
   return result;
 }
 
-/// Largest |v_i' S v_j| / sqrt(lambda_i lambda_j) beside the diagonal, the product in 100 digits.
+/// Largest |v_i' S v_j| / sqrt(lambda_i lambda_j) off the diagonal, the product in 100 digits.
 double mixing(const MatrixXd& S, const SymmetricModes& e) {
   const Matrix100 K = exactly(S), V = exactly(e.V);
   const std::size_t n = K.size();

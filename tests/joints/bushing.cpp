@@ -14,7 +14,7 @@ using titop_test::says;
 
 namespace {
 
-/// Symmetric, positive definite, coupled: a diagonal one seen from a point beside it.
+/// Symmetric, positive definite, coupled: a diagonal one seen from another point.
 Matrix6 seen_from(const Vector3d& offset, const Vector6& diagonal) {
   const Matrix6 t = by_hand::tau(offset);
   const Matrix6 k = t.transpose() * diagonal.asDiagonal() * t;

@@ -62,8 +62,8 @@ struct ConstrainedMotion {
 };
 
 /// `given`: a motion that is prescribed. Beams are up to 1e9 N/m stiff: rounding of q times that
-/// would be forces of 1e-8, not negligible beside springs of 20 N/m. So the residual is computed in
-/// long double, and the motions and q are refined by it.
+/// would be forces of 1e-8, not negligible compared with springs of 20 N/m. So the residual is
+/// computed in long double, and the motions and q are refined by it.
 ConstrainedMotion constrained_motion(const by_hand::Structure& a, const Constraints& constraints,
                                      Complex s, const MatrixXcd& force, const MatrixXcd& given);
 

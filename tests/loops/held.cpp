@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kMass = 2, kStiffness = 50, kDamping = 0.6;
 
-/// A triangle of bars 3 and 4 long on pins 5 apart: a right angle at its apex. A spring-mass hangs
-/// at the apex, across all three axes, beside a body that is welded on.
+/// A triangle of bars 3 and 4 long on pins 5 apart: a right angle at its apex. A spring-mass across
+/// all three axes and a welded body are mounted at the apex.
 struct Truss {
   Diagram d{"truss"};
   double angle_A = std::atan2(4, 3), angle_B = std::atan2(-3, 4);
@@ -124,7 +124,7 @@ TEST_CASE("a hub of many points between two pins that are not parallel: what han
 namespace {
 
 /// B on a sprung slide of the hub, whose direction leaves the plane of the two sprung slides of a
-/// closing joint by `tilt`: it cannot move. Beside it A slides freely against its spring.
+/// closing joint by `tilt`: it cannot move. Next to it A slides freely against its spring.
 Diagram wedged(double tilt, bool welded) {
   Diagram d{"wedged"};
   const Vector3d far(0.6, 0.1, -0.7), root(1, 0.3, 0.2), u(0, 1, 0.2), v(0.3, 0.1, 1);

@@ -11,7 +11,7 @@ using namespace loop_test;
 
 namespace {
 
-/// Of an output port by an input port, beside the largest entry of both; limited as in
+/// Of an output port by an input port, relative to the largest entry of both; limited as in
 /// random_frames.cpp by rounding of stiff beams next to soft springs. A dense model keeps a digit
 /// less.
 constexpr double kTolerance = 1e-8;

@@ -271,7 +271,7 @@ TEST_CASE("followers: as many as the rank says, and right in every motion that i
     CAPTURE(seed);
     Rng rng(seed);
     Relations r = loops(rng);
-    if (seed % 2 == 0)  // stiff beside soft
+    if (seed % 2 == 0)  // stiff next to soft
       for (double& w : r.weight) w *= std::ldexp(1, rng.below(80) - 40);
     const Independent found = independent(r);
     const MatrixXd R = dense(r, r.blocks.size()), N = null_space(R);

@@ -134,7 +134,7 @@ TEST_CASE("poles at 0 that drive others, beside integrators: nothing is lost, th
     check_nothing_lost(m);
   }
   CHECK(poles > 200);
-  // Of random models: one whose mode at -1 is known to 1e12 of its size beside a double pole at 0,
+  // Of random models: one whose mode at -1 is known to 1e12 of its size next to a double pole at 0,
   // and two whose modes are at the rounding level of the states that act on them.
   MatrixXd A = MatrixXd::Zero(8, 8);
   A.row(0) << -1, 0, 0, 0, 0, 0, 0, 0;

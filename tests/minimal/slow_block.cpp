@@ -4,7 +4,7 @@
 #include <titop/titop.hpp>
 #include <utility>
 
-/// A slow block beside rigid bodies in a closed chain: its frequency, which decides where a system
+/// A slow block with rigid bodies in a closed chain: its frequency, which decides where a system
 /// is tried, is so low that the factors have no digit there. The assembly's own frequencies count.
 
 using namespace titop;
@@ -57,8 +57,8 @@ Diagram with_filter(double pole) {
   return std::move(c.d);
 }
 
-/// Largest error of the model at these s beside the row's largest entry there, against 50 digits:
-/// the chain's arms are whole numbers, so that 50 digits close it.
+/// Largest error of the model at these s relative to the row's largest entry there, against 50
+/// digits: the chain's arms are whole numbers, so that 50 digits close it.
 double error(const System& system, const StateSpace& m, std::initializer_list<double> omegas) {
   double worst = 0;
   for (const double w : omegas) {

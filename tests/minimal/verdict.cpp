@@ -5,7 +5,7 @@
 #include <numbers>
 #include <titop/titop.hpp>
 
-/// The verdict of `minimize` on the order, beside the model.
+/// The verdict of `minimize` on the order, with the model.
 
 using namespace titop;
 using Eigen::MatrixXd;
@@ -116,7 +116,7 @@ TEST_CASE("a state removed by a wrong exact order is restored, with the change m
   const auto sum = [](double c) {
     return model(MatrixXd{{-1, 0}, {0, -3}}, MatrixXd{{1}, {1}}, MatrixXd{{1, c}});
   };
-  const std::complex<double> s(0.3, 3);  // beside the second pole
+  const std::complex<double> s(0.3, 3);  // near the second pole
   for (const double c : {3e-8, 1e-6}) {
     const Minimized r = minimize(sum(c), {.exact_order = 1});
     CHECK(r.model.A == sum(c).A);
@@ -145,7 +145,7 @@ TEST_CASE("poles at 0: ranks show how many are needed") {
                                          MatrixXd{{1}, {1}, {0}}, MatrixXd{{0, 0, 1}}));
   CHECK(inner.order.decided());
   CHECK(inner.model.order() == 2);
-  // A double integrator, and one beside an oscillation.
+  // A double integrator, and one with an oscillation.
   CHECK(minimize(model(MatrixXd{{0, 1}, {0, 0}}, MatrixXd{{0}, {1}}, MatrixXd{{1, 0}}))
             .order.decided());
   const Minimized mixed =
@@ -224,7 +224,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a light node blurs the modes that it takes part in, not those of others") {
-  // [[k, -k], [-k, k + 1]] with k = 1e12 has a pivot of 1e-12 of its diagonal; beside it two modes
+  // [[k, -k], [-k, k + 1]] with k = 1e12 has a pivot of 1e-12 of its diagonal; with it two modes
   // that differ by 0.15 % and two of one frequency, of which one is never moved.
   const Eigen::Index n = 6;
   Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);

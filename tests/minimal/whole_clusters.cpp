@@ -81,7 +81,7 @@ struct Planted {
 };
 
 /// A Jordan block of size k at `pole`, of which inputs move the first r coordinates and outputs see
-/// nothing of the first q: r - q of it count. Beside it pairs that count, all in turned
+/// nothing of the first q: r - q of it count. With it pairs that count, all in turned
 /// coordinates.
 Planted planted(Rng& rng, Index k, Index r, Index q, double pole, Index pairs) {
   const Index n = k + 2 * pairs;

@@ -1,6 +1,6 @@
 #include <titop/blocks/spring_mass.hpp>
 
-// A number has no place beside a signal: other constants than 0 need an input.
+// A number cannot be added to a signal: other constants than 0 need an input.
 void scene() {
   using namespace titop;
   Diagram d{"scene"};

@@ -11,7 +11,7 @@ using namespace titop_test;
 
 namespace {
 
-/// A mass on a stiff spring, and beside it states of rates `diagonal`; u drives the first of them.
+/// A mass on a stiff spring, and states of rates `diagonal`; u drives the first of them.
 System beside_fast(const Eigen::VectorXd& diagonal) {
   Diagram d{"beside"};
   auto u = d.input("u");

@@ -6,13 +6,13 @@
 #include <titop/titop.hpp>
 #include <vector>
 
-/// Slow poles beside fast ones: against closed forms.
+/// Slow poles together with fast ones, against closed forms.
 
 using namespace titop;
 
 namespace {
 
-/// Springs of these rates on the wall, one beside the other, under one force.
+/// Springs of these rates on the wall, in parallel, under one force.
 Diagram side_by_side(std::initializer_list<SpringMass> springs) {
   Diagram d{"side by side"};
   auto u = d.input("u");

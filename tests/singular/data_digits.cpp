@@ -66,7 +66,7 @@ Diagram freed(const FlexibleBody& body, int set) {
   return d;
 }
 
-/// D_P0 among these directions, beside D_P: its least eigenvalue.
+/// D_P0 among these directions, relative to D_P: its least eigenvalue.
 double left(const ModalData& data, int set) {
   std::vector<int> free;
   for (int i = 0; i < 6; ++i)

@@ -52,7 +52,7 @@ MatrixXd full(std::uint64_t seed) {
   return L;
 }
 
-/// 1 on the diagonal, a few entries beside it.
+/// 1 on the diagonal, a few entries off it.
 MatrixXd sparse(std::uint64_t seed) {
   Rng rng(seed);
   const int n = 4 + rng.below(10);

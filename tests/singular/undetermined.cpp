@@ -56,7 +56,7 @@ struct Stand {
     const double l = units.length, m = units.mass;
     auto U = d.input("U", 6);
     const Param mu = d.param("mu", 0.0), softer = d.param("softer", 1.0);
-    // The second strut stands beside the first as S stands beside P.
+    // The second strut is offset from the first as S from P.
     const Vector3d beside = about(turns.axis, turns.foot) * about(turns.axis, turns.head) * kPS;
     auto base = d.add("base", RigidBody{.children = {{"C"}, {"C2", l * beside}}});
     auto body = d.add(as_hung ? "v" : "body",
@@ -342,7 +342,7 @@ TEST_CASE("a massless block between springs along some axes: other directions ar
       }
       CHECK(by_hand::transfer_error(factored, exact) <= 1e-12);
       CHECK(by_hand::transfer_error(dense, exact) <= 1e-11);
-      CHECK(system.order() == 3 * loaded);  // a damper beside a point without mass: one state more
+      CHECK(system.order() == 3 * loaded);  // one state for a damper on a point without mass
       CHECK(system.certificate().residual <= 1e-13);
     }
   const Matrix3d axes = Matrix3d::Identity();

@@ -19,7 +19,7 @@ using titop_test::Rng;
 
 namespace {
 
-/// Five flexible bodies, every second one a million times lighter; the oracle's answer beside it.
+/// Five flexible bodies, every second one a million times lighter; with the oracle's answer.
 struct Chain {
   std::vector<ModalData> data;
 
@@ -136,7 +136,7 @@ Lti first_order(double c, double D) {
 
 /// A loop by c / (s + kPole) + 1/2, and around it one by by / (s + kPole): at s = 2, each may be
 /// arbitrarily near to its pole; at infinity they are far. The output is the loop's input sum, or
-/// that times `gain` beside u.
+/// that times `gain` in addition to u.
 Diagram loop_in_loop(double c, double by, std::optional<double> gain = {}) {
   Diagram d{"loops"};
   auto u = d.input("u");

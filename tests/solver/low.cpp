@@ -21,7 +21,7 @@ double off(std::complex<double> found, const Complex& exact) {
   return static_cast<double>(sqrt(error.squared()));
 }
 
-/// The acceleration under a force; beside it a loop by `gain`, which takes digits of double.
+/// The acceleration under a force; and a loop by `gain`, which takes digits of double.
 Diagram on_the_wall(const SpringMass& spec, double gain) {
   Diagram d{"low"};
   auto u = d.input("u");

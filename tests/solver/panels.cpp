@@ -102,7 +102,7 @@ void compare() {
 struct Textbook {
   MatrixXd lu;
   std::vector<int> order;      ///< which row of the start is at each place
-  double growth = 1;           ///< of rows beside their size at the start, by `common`
+  double growth = 1;           ///< of rows relative to their size at the start, by `common`
   int inside = 0, across = 0;  ///< swaps within 32 rows that are one panel, and beyond
 
   Textbook(const MatrixXd& a, int pivots, const Eigen::VectorXd& column,

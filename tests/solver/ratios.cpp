@@ -111,7 +111,7 @@ struct Springs {
 };
 
 /// Largest difference of a p x p block over the block's largest entry, over all points: no floor,
-/// however small the block is beside others. Blocks of three: translations, rotations.
+/// however small the block is compared with others. Blocks of three: translations, rotations.
 template <class Scene>
 double error_of(const Scene& scene, Eigen::Index p, Precision precision = Precision::as_needed) {
   const System system = compile(scene.diagram());

@@ -7,8 +7,8 @@
 
 #include "oracle.hpp"
 
-/// Entries of the transfer that are tiny beside their cancelling terms, and others that are 0 by
-/// symmetry: in double both are rounding. Finer arithmetic distinguishes them.
+/// Entries of the transfer that are tiny compared with their cancelling terms, and others that are
+/// 0 by symmetry: in double both are rounding. Finer arithmetic distinguishes them.
 
 using namespace titop;
 using solver_test::Complex;

@@ -71,7 +71,7 @@ void wire(Diagram& d, const Body& arm, const DualPort<6>& child) {
   d.output("x", 3) = child.position.linear();
 }
 
-/// A spring beside it whose two ends are dependent in a closed chain: its states are listed again,
+/// A parallel spring whose two ends are dependent in a closed chain: its states are listed again,
 /// too.
 void with_chain(Diagram& d) {
   auto u = d.input("u");

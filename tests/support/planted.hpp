@@ -13,7 +13,7 @@ struct Planted {
 };
 
 /// A chain of masses on the ground, pushed at its end and watched at its start (always minimal:
-/// its matrix has no zero beside the diagonal), with appendages in two or three equal copies (only
+/// its matrix has no zero off the diagonal), with appendages in two or three equal copies (only
 /// their sum moves), filters in equal copies, and filters whose zero another one's pole cancels.
 /// Numbers are short fractions in powers of two. Damping: none, proportional, or of some springs.
 Planted planted(std::uint64_t seed);

@@ -214,7 +214,7 @@ double response_error(const Form& form, const Points& points) {
 }
 
 Points at_rest(const Points& points, const MatrixXd& static_gain) {
-  // So much smaller than beside the slowest pole that it is the rounding of a 0.
+  // So much smaller than near the slowest pole that it is the rounding of a 0.
   constexpr double kNothing = 1e-10;
   Points rest{{}, {}, points.silent_outputs, points.silent_inputs};
   const MatrixXd now = static_gain.cwiseAbs(), slow = points.exact[0].cwiseAbs();

@@ -33,7 +33,7 @@ struct Points {
   std::vector<Eigen::Index> silent_outputs, silent_inputs;
 };
 
-/// Eight points beside the poles (damping 0.1), from below the slowest to above the fastest. One of
+/// Eight points near the poles (damping 0.1), from below the slowest to above the fastest. One of
 /// them is also evaluated in 50 digits; all, if a row or a column is lost in rounding there.
 Points response_points(const System& system, const std::vector<Pole>& poles);
 
@@ -71,7 +71,7 @@ Eigen::MatrixXd trajectory_inputs(Eigen::Index inputs, Eigen::Index steps);
 Form own_form(const StateSpace& model);
 
 /// Modes of the second-order form if damping is proportional, of A otherwise. Its error tells
-/// whether it may be used: it is large if A is defective (free rigid motion beside modes).
+/// whether it may be used: it is large if A is defective (free rigid motion and modes).
 Form modal_form(const StateSpace& model);
 
 /// Adds A_h, B_h; block by block if the form is modal.

@@ -6,7 +6,7 @@ namespace titop::report {
 namespace {
 
 /// Okabe and Ito's colours, which colour-blind readers can distinguish, darkened for lines on
-/// white; every curve has a dash and a width of its own besides.
+/// white; every curve has a dash and a width of its own, too.
 constexpr const char* kStyle = R"(
 :root { color-scheme: light dark;
   --ink: #1f2933; --soft: #52606d; --rule: #d9e2ec; --fine: #edf1f5; --grid: #d3dbe3;

@@ -4,7 +4,7 @@
 #include <vector>
 
 /// Line plots as SVG for a page that styles them (page.cpp): colours by class, so that they follow
-/// the page's light and dark, dashes and widths besides, so that they differ in black and white.
+/// the page's light and dark, dashes and widths, so that they differ in black and white.
 namespace titop::report {
 
 struct Axis {

@@ -14,7 +14,7 @@ std::pair<double, double> band(const Subject& s) {
   return {list.front().omega / 10, 4 * list.back().omega};
 }
 
-/// Frequencies [rad/s]: logarithmic, closer at lightly damped poles, beside those on the axis.
+/// Frequencies [rad/s]: logarithmic, closer at lightly damped poles, and near those on the axis.
 std::vector<double> grid(const Subject& s) {
   const auto [low, high] = band(s);
   std::vector<double> list;

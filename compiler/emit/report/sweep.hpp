@@ -11,7 +11,7 @@ inline constexpr double kTwoPi = 2 * std::numbers::pi;
 /// Value of a gap in a curve.
 inline constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// Poles beside 0, from slow to fast [rad/s].
+/// Poles other than 0, from slow to fast [rad/s].
 std::vector<Pole> moving(const std::vector<Pole>& poles);
 
 /// The transfers; empty matrices if a frequency is a pole.
@@ -21,7 +21,7 @@ struct Sweep {
 };
 
 /// Over ReportOptions::band_hz, or from a tenth of the slowest pole to four times the fastest;
-/// closer at lightly damped poles, and beside those on the axis.
+/// closer at lightly damped poles, and near those on the axis.
 Sweep sweep(const Subject& subject);
 
 }  // namespace titop::report

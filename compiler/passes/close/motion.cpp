@@ -128,7 +128,7 @@ std::optional<Motion::Edge> Motion::edge_of(const Tie& tie) const {
   if (tie.points.empty()) return e;
   const auto& [point, c] = *tie.points.begin();
   e.from = point;
-  if (c.cols() != tie.S.cols()) return std::nullopt;  // a scalar point beside one of six
+  if (c.cols() != tie.S.cols()) return std::nullopt;  // a scalar point joined to one of six
   const bool six = c.cols() == 6, orthonormal = has_orthonormal_rows(c);
   e.rigid = six ? tie.rotation.has_value() : orthonormal;
   if (!orthonormal &&

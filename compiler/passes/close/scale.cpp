@@ -23,7 +23,7 @@ constexpr int kMostSweeps = 100;
 struct Entry {
   int unit = 0, column = 0;
   double size = 0;
-  bool counts = true;  ///< it is no tiny lever, nor beside a very long one
+  bool counts = true;  ///< false if tiny compared with another unit's entry times their lever
 };
 
 /// Units are rows of one number. The start goes from entries with a factor to their neighbours, so
@@ -76,7 +76,8 @@ struct Scaling {
     Counts result(sizes.size());
     for (Index u = 0; u < sizes.size(); ++u)
       result(u) = sizes(u) > 0 && (sizes(u) >= tiny.row(u).transpose().array() * sizes).all();
-    return result.any() ? result : Counts(sizes > 0);  // three units, each tiny beside another
+    return result.any() ? result
+                        : Counts(sizes > 0);  // three units, each tiny compared with another
   }
 
   /// Per two units of a block the ratio of their levers: the largest of a joint, or the median of
