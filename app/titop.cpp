@@ -213,7 +213,7 @@ constexpr const char* kKeepDigits =
     "  System::transfer, apply and simulate; for the band that matters there may be a small model\n"
     "  that keeps them: compile(d, Scene{.band_hz = {LOW, HIGH}})\n";
 
-/// Who exports sees no log.
+/// The log is not printed by an export.
 void warn_of_lost_digits(const System& system) {
   const std::vector<std::string> warnings = dense_warnings(system);
   std::string text;
@@ -251,7 +251,7 @@ constexpr std::string_view kModel = " --minimize-up-to ",
                            kHeader = " --minimize-up-to --sample-time ",
                            kResponse = " --minimize-up-to --omega ";
 
-/// An option that does nothing here is meant for something; a scene is not written over.
+/// Refuses options without effect on this command, and output over the scene file.
 void check_words(const Command& command, const Arguments& a) {
   if (a.words.size() != command.words)
     throw Misuse{fmt::format("{} takes {} files", command.name, command.words - 1)};

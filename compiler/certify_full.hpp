@@ -104,8 +104,8 @@ struct FullCertificate {
     std::string why_no_structure;  ///< "hub.parent.force is driven by K.out"
   } reciprocity;
 
-  /// Of the minimal dense model. If exact arithmetic finds states that were taken out as nothing
-  /// but rounding (two frequencies one ulp apart), the interval reaches up to the exact order.
+  /// Of the minimal dense model. If exact arithmetic finds states that were removed as rounding
+  /// (two frequencies one ulp apart), the interval extends to the exact order.
   OrderVerdict order;
   ExactOrder exact;  ///< independent of all passes, if the diagram is small
 

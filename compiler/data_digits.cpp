@@ -48,7 +48,7 @@ struct DataPort {
     const DataDigits& d = block->digits();
     return by_shapes ? d.shapes : d.mass;
   }
-  /// |K| at which nothing is decided.
+  /// |K| above which the data do not decide.
   double limit() const {
     return 1 / (by_shapes ? std::max(noise() * noise(), kProducts) : noise());
   }
@@ -101,8 +101,8 @@ class DigitJudge {
     }
   }
 
-  /// A parent that is prescribed and children driven where the modes do not move them: refused
-  /// where anything depends on the forces. Where nothing does the body is not among the rows.
+  /// Prescribed parents with children driven where the modes do not move them: refused if anything
+  /// depends on the forces. Otherwise the body is not among the rows.
   void note_contradictions() {
     for (int n = 0; n < static_cast<int>(g_.nodes.size()); ++n)
       if (const auto* block = dynamic_cast<const FromData*>(g_.nodes[at(n)].block.get()))

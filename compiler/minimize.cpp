@@ -99,7 +99,7 @@ Minimized minimize_beside(const modes::Sampled& sampled, const modes::Integrated
   return result;
 }
 
-/// A model without integrators that nothing needs.
+/// Minimizes a model without needless integrators.
 Minimized minimize_needed(const modes::Sampled& sampled, const MinimizeOptions& options,
                           const Eigen::MatrixXd& energy_of_rest) {
   MinimizeOptions of_rest{.resolution = options.resolution,
@@ -147,7 +147,7 @@ Minimized minimize_in_order(const StateSpace& model, const MinimizeOptions& opti
   return result;
 }
 
-/// The rounding of a model's entries if it has their sizes, with the model's names; else nothing.
+/// The rounding of a model's entries, with the model's names; empty if it has other sizes.
 StateSpace fitting(const StateSpace& rounding, const StateSpace& model) {
   const auto same = [](const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
     return a.rows() == b.rows() && a.cols() == b.cols();

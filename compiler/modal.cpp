@@ -161,9 +161,9 @@ void general_poles(const StateSpace& model, std::vector<Pole>& out) {
   }
 }
 
-/// States that nothing depends on through A, or that depend on nothing (a free hinge's angle, then
-/// its rate; an integrator): exact poles at A(j, j), mostly 0, that a numerical eigenvalue routine
-/// would smear. Takes them out of the model, one after the other.
+/// States that no state depends on through A, or that depend on no state (a free hinge's angle,
+/// then its rate; an integrator): exact poles at A(j, j), mostly 0, that a numerical eigenvalue
+/// routine would smear. Takes them out of the model, one after the other.
 void deflate(StateSpace& m, std::vector<Pole>& out) {
   for (bool found = true; found;) {
     found = false;

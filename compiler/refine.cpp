@@ -21,8 +21,8 @@ using solve::lifted;
 constexpr int kSteps = 30;
 /// A larger change of the outputs needs another step, for any T.
 constexpr double kSettled = 1e-12;
-/// If steps shrink by less, refinement ends: at the rounding of T, or with no result if it
-/// has not come so far.
+/// If steps shrink by less, refinement ends: at the rounding of T, or without a result if that is
+/// not reached.
 constexpr double kShrinks = 0.25;
 /// If the first step changes no block of the unknowns by more, that steps shrink is plain by then;
 /// else a second step has to show it.
@@ -193,7 +193,7 @@ double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) c
       if (off(i, j) <= kUnderflow) continue;
       const bool noise = size(i, j) <= kNoise * off(i, j) &&
                          (!known || nothing(i, j) || data_.zero_blocks()(i, j));
-      // If all are 0 there is nothing to compare with: no digit is known.
+      // If all are 0 there is no size to compare with: no digit is known.
       const double of = noise ? beside : size(i, j);
       worst = std::max(worst, of > 0 ? off(i, j) / of : 1);
     }
@@ -261,7 +261,8 @@ void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
   double before = 1, rounding = 0;
   bool leads = false;
   for (int step = 0; step < kSteps; ++step) {
-    // If the first step is enough, it is so small that the rounding of T, far finer, is nothing.
+    // If the first step is sufficient, it is so small that the rounding of T, far finer, is
+    // negligible.
     const solve::RowMatrix<std::complex<double>> change =
         change_by(coarse, step == 1 ? &rounding : nullptr);
     const solve::RowMatrix<T> correction = lifted<T>(change);

@@ -10,8 +10,8 @@ namespace titop::detail {
 template <class T>
 class Resolvent {
  public:
-  /// A body with modes needs nothing, other blocks one LU with row pivoting: O(states^3). A pole of
-  /// the block at s gives numbers that are not finite.
+  /// Free for a body with modes; for other blocks one LU with row pivoting: O(states^3). At a pole
+  /// of the block the numbers are not finite.
   Resolvent(const Dynamics& dynamics, const T& s);
 
   /// Whether that LU has a pivot of 0. With modes false.

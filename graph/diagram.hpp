@@ -22,7 +22,7 @@ class OutputRef {
  public:
   OutputRef(Graph* graph, int index) : graph_(graph), index_(index) {}
   OutputRef(const OutputRef&) = default;
-  OutputRef& operator=(const OutputRef&) = delete;  // it would set nothing
+  OutputRef& operator=(const OutputRef&) = delete;  // it would have no effect
   void operator=(const Rhs& rhs) const;
   void operator=(Zero zero) const { *this = Rhs(zero); }
 

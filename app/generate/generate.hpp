@@ -24,7 +24,7 @@ struct Options {
   Damping damping = Damping::some;
   int stiffness_low = 3, stiffness_high = 9;  ///< powers of two [N/m, N m/rad]
   bool controllers = true;
-  bool twins = false;        ///< every second part a copy of its neighbour: states that do nothing
+  bool twins = false;        ///< every second part a copy of its neighbour: removable states
   std::string mistake = {};  ///< code of a mistake to plant; "": none
 };
 

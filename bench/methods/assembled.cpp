@@ -122,7 +122,7 @@ class Round {
       for (Index r = 0; r < size; ++r) motion_.subtract(out(k, r), v, r, k);
   }
 
-  /// With the guess that comes back as it was: (round - 1) guess = -(round of w).
+  /// With the torn variables equal to their computed values: (round - 1) guess = -(round of w).
   Table<T> closed() const {
     Table<T> M(2 * joint_, 2 * joint_), g(2 * joint_, inputs_);
     for (Index r = 0; r < 2 * joint_; ++r) {

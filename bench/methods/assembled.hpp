@@ -18,7 +18,7 @@ Eigen::MatrixXcd dense_at_s(const Assembly& assembly, std::complex<double> s,
 /// In double with one step of iterative refinement, its residual in double.
 Eigen::MatrixXcd refined_at_s(const Assembly& assembly, std::complex<double> s);
 
-/// The same eliminated body by body, each by the inverse of its own dynamic mass, then joint by
+/// The same, eliminated body by body, each by the inverse of its own dynamic mass, then joint by
 /// joint in the remaining flexibilities (substructuring by Lagrange multipliers).
 Eigen::MatrixXcd block_by_block_at_s(const Assembly& assembly, std::complex<double> s,
                                      Digits digits = Digits::standard);

@@ -48,7 +48,7 @@ Eigen::VectorXd frequencies(const System& full, const std::optional<Truncation>&
   return linalg::eigenvalues(dense.A).cwiseAbs();
 }
 
-/// At least one of the accuracies must be: there is nothing to measure else.
+/// Throws if none of the accuracies is reached.
 std::vector<WhatIf> reached(const Question& q, std::vector<WhatIf> rows) {
   if (rows.empty()) throw std::runtime_error(q.name + " reaches none of the accuracies asked for");
   return rows;

@@ -91,8 +91,8 @@ Prepared titop_factor(Case c, int n) {
   return {[=] { data->product = data->probe(compiled(data->diagram)); }, {}};
 }
 
-/// Every body's parameter gets another value each time, never that of the system which is updated:
-/// nothing would be made again. Compared with a compile at the same value.
+/// Every body's parameter gets another value each time, never that of the system that is updated,
+/// whose parts would be reused. Compared with a compile at the same value.
 struct Sweep {
   Case c;
   int n;

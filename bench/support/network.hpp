@@ -6,7 +6,8 @@
 #include <titop/compiler/system.hpp>
 #include <vector>
 
-/// The common input of all other methods: the scene as a control engineer's tools take it.
+/// The common input of all other methods: the scene as the input format of control-engineering
+/// tools.
 namespace titop_bench {
 
 using Sparse = Eigen::SparseMatrix<double>;

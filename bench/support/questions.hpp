@@ -14,7 +14,7 @@ struct Question {
   titop::Scene scene;
   /// False: a controller in the loop, no modes of the whole.
   bool structure = true;
-  /// The bodies have their own modes up to this frequency [Hz], and nothing for the others.
+  /// The bodies have their own modes up to this frequency [Hz]; the others are omitted.
   std::function<titop::Diagram(double hertz)> with_modes_up_to;
 
   titop::Diagram diagram() const { return with_modes_up_to(HUGE_VAL); }

@@ -10,7 +10,7 @@
 ///
 /// To have a structure with places where other bodies attach: make each place a `*RIGID BODY` with
 /// a REF NODE (its three displacements) and a ROT NODE (whose "displacements" 1..3 are the
-/// rotations of the body), hold nothing (no `*BOUNDARY`), and run the deck. The deck must be in SI
+/// rotations of the body), leave it free (no `*BOUNDARY`), and run the deck. The deck must be in SI
 /// units.
 namespace titop::fe {
 

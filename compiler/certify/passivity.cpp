@@ -29,7 +29,7 @@ MatrixXd floors(const DualTransfers& t, std::size_t point) {
   return result;
 }
 
-/// No force moves axis i, and a force along it moves nothing: both up to rounding.
+/// Axis i has neither a response to any force nor an effect on any motion, up to rounding.
 bool is_held(const MatrixXcd& H, const MatrixXd& floor, Index i) {
   return H(i, i) == 0.0 && (H.row(i).cwiseAbs().array() <= floor.row(i).array()).all() &&
          (H.col(i).cwiseAbs().array() <= floor.col(i).array()).all();

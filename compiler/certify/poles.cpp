@@ -96,7 +96,7 @@ std::vector<FoundPoles::Right> shown(const std::vector<FoundPoles::Right>& right
 }
 
 std::vector<std::complex<double>> around(const std::vector<FoundPoles::Right>& growing) {
-  constexpr int kPoles = 8;  // one that gives energy is enough
+  constexpr int kPoles = 8;  // one that adds energy is enough
   const std::complex<double> directions[] = {1, {0, 1}, -1, {0, -1}};
   std::vector<std::complex<double>> points;
   int taken = 0;

@@ -89,7 +89,8 @@ bool is_reciprocal(const Block& block, ParameterValues values, Complex s) {
   return asymmetry(own).worst <= kByItself;
 }
 
-/// A node that is not reciprocal by itself, in words; empty if all are. Shared blocks once.
+/// Names a node whose block alone is not reciprocal; empty if all are. Shared blocks are checked
+/// once.
 std::string exception_among(const Graph& g, ParameterValues values, Complex s) {
   std::set<const Block*> seen;
   for (const Node& node : g.nodes)

@@ -217,8 +217,8 @@ RowMatrix<double> without_zeros(const SystemData& d, AroundStates& around,
   return off;
 }
 
-/// Share of the outputs that double loses at a real s. One that is 0 by cancellation, which has no
-/// size to measure it by, has lost nothing: rounding is all that it has.
+/// Share of the outputs that double loses at a real s. An output that is 0 by cancellation, without
+/// a size to compare with, counts as having lost none: it is rounding only.
 void find_lost(const SystemData& d, Evaluation<double>& point, double s, Check& check) {
   const RowMatrix<double> before = point.outputs();
   const auto losses = point.losses();

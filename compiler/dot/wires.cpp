@@ -78,7 +78,7 @@ class Drawing {
     return here > 0 && here == p_.loop[at(t.signal)] ? here : 0;
   }
 
-  /// Nothing but a motion of 0 is drawn: the ground.
+  /// The ground, the only constant that is drawn: a motion of 0.
   std::string ground() const {
     if (a_.target < 0) return {};
     const Signal& s = p_.graph.signals[at(a_.target)];
@@ -117,8 +117,8 @@ class Drawing {
     return fmt::format(" style=dashed color={0} fontcolor={0}", quoted(colour::removed));
   }
 
-  /// A small node on the way, or nothing ("") if the wire may run straight. Between two ports
-  /// on the same side of their blocks a mere point keeps the wire out of the blocks.
+  /// A small node on the wire, or "" if the wire may run straight. Between two ports on the same
+  /// side of their blocks a point keeps the wire out of the blocks.
   std::string way(const Term& t, const Look& l, Side from, int number) {
     const bool single = a_.terms.size() == 1;
     const std::string sign = single && l.minus ? "−" : "";

@@ -47,7 +47,7 @@ class Judge {
   Judge(const Split& split, const Samples& samples)
       : lowest_(lowest(split, samples)), samples_(samples) {}
   bool is_silent(const Part& p) const {
-    const bool is_zero = p.A.cwiseAbs().maxCoeff() < 0.5 * lowest_;  // none of the others
+    const bool is_zero = p.A.cwiseAbs().maxCoeff() < 0.5 * lowest_;  // distinct from all others
     if (is_zero && samples_.omega.front() <= kFromZero * lowest_)
       return size(p, lowest_) <= kSilent;
     if (p.A.trace() > kUnstable * p.A.norm()) return false;

@@ -17,7 +17,7 @@ ErrorBound error_bound(const System& full, const Scene& scene, const Band& band,
   b.samples = static_cast<int>(points.size());
   b.pairs = MatrixXd::Constant(outputs, inputs, -1);
   Eigen::MatrixXi where = Eigen::MatrixXi::Zero(outputs, inputs);  // sample of the largest error
-  MatrixXd moves = MatrixXd::Zero(outputs, inputs);  // 0: nothing in either model, to the last bit
+  MatrixXd moves = MatrixXd::Zero(outputs, inputs);                // 0: exactly 0 in both models
   for (std::size_t k = 0; k < check.s.size(); ++k) {
     const MatrixXd e =
         difference(check, transfer(check.s[k]), k).cwiseAbs().cwiseQuotient(check.peak);

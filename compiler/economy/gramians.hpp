@@ -12,7 +12,7 @@ struct Balancing {
   Eigen::MatrixXd A, B, C;
   Eigen::VectorXd sigma;        ///< Hankel singular values, descending, down to rounding
   Eigen::MatrixXd left, right;  ///< z = left x, x = right z, of the split model's states
-  bool weighted = false;        ///< behind low-passes: sigma then bounds nothing
+  bool weighted = false;        ///< behind low-passes: sigma is no bound
 };
 
 /// Sizes by which inputs and outputs are scaled to 1.

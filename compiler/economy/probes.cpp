@@ -19,7 +19,7 @@ using Eigen::MatrixXd;
 
 constexpr double kDamping = 0.05;    ///< of the ray that modes are judged on
 constexpr double kLowest = 1e-2;     ///< of the band's upper end: below it vectors are exact
-constexpr double kSmallPair = 1e-6;  ///< pairs this far below their row and column are nothing
+constexpr double kSmallPair = 1e-6;  ///< pairs this far below their row and column are negligible
 
 using linalg::at;
 

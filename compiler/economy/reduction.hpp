@@ -9,7 +9,7 @@
 /// The two ways to a smaller model. For the compiler's own files only.
 namespace titop::detail {
 
-/// Seconds on a clock that only goes on.
+/// Seconds on a monotonic clock.
 inline double now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }

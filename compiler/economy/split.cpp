@@ -23,8 +23,8 @@ constexpr double kTogether = 1e6;   ///< largest transformation between two part
 constexpr double kAllAlike = 1e-3;  ///< weight of states without effect, as if all had the same
 constexpr double kAtRest = 1e-10;   ///< |s| over |A| of a pole that may be 0
 
-/// States by the pattern of A: those nothing depends on, the core, those that depend on nothing;
-/// in an order that makes A block upper triangular with strict triangles at both ends.
+/// States by the pattern of A: those that no state depends on, the core, those that depend on no
+/// state; in an order that makes A block upper triangular with strict triangles at both ends.
 struct Peeled {
   std::vector<Index> sinks, core, sources;
 };

@@ -12,9 +12,9 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Far narrower than the spacing of doubles at a pole: by effect nothing, but no proof of a 0.
+/// Far narrower than the spacing of doubles at a pole: negligible in effect, but no proof of a 0.
 constexpr double kNothing = 1e-17;
-/// Rounding's part of a negligible mode: above it, a mode that looks like nothing may have an
+/// Rounding's part of a negligible mode: above it, an apparently negligible mode may have an
 /// effect.
 constexpr double kNarrow = 1e-14;
 constexpr double kDoubtful = 1e-9;  ///< above it a mode always stays

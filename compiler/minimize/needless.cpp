@@ -92,7 +92,7 @@ void report(const IndependentRows& rows, const char* why, Needless& n) {
   }
 }
 
-/// Which integrators the inputs move, each in a way of its own.
+/// Integrators that inputs move independently of each other.
 IndependentRows moved(const StateSpace& model, const Apart& d, const Integrated& states) {
   const int powers = powers_of(d.model.N);
   const auto moved_by = [&](const Decoupled& part) { return driven(part.N, part.B, powers); };

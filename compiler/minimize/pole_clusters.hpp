@@ -5,8 +5,8 @@
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
-/// Poles of a model with their vectors, and the clusters of poles that have none of their own. For
-/// the compiler's own files.
+/// Poles of a model with their vectors, and the clusters of poles without separate vectors. For the
+/// compiler's own files.
 namespace titop::modes {
 
 inline constexpr double kIll = 1e6;  ///< condition number of a pole that is judged by its vector

@@ -9,7 +9,7 @@ namespace titop::modes {
 /// Factor on the largest of a few samples of rounding: values below may be rounding alone.
 inline constexpr double kRounding = 32;
 
-/// A model, and as it might be as well: rounding of the given sizes added to its entries.
+/// A model, and samples of it with rounding of the given sizes added to its entries.
 struct Sampled {
   StateSpace model;
   std::vector<StateSpace> off;

@@ -51,7 +51,8 @@ Step first_step(const Driven& d) {
   return {std::move(M), 1, relative};
 }
 
-/// `times`: rounding, that may be nothing; careful: where rounding hides too much all is reached.
+/// `times`: singular values up to this multiple of rounding count as 0. `careful`: if rounding has
+/// too few digits, all states count as reached.
 Stairs stairs(const Driven& d, double times, bool careful) {
   const Index k = d.A.rows();
   Stairs s{MatrixXd::Identity(k, k)};

@@ -10,8 +10,8 @@ namespace titop::modes {
 
 /// Takes out these states (in ascending order): they follow from the others, x_out = T x_others.
 void take_out_dependent(StateSpace& model, const std::vector<int>& out, const Eigen::MatrixXd& T);
-/// Takes out these states: the others are now relative to them, x_others + P x_out, which is all
-/// that outputs see.
+/// Takes out these states: the others are now relative to them, x_others + P x_out, on which alone
+/// outputs depend.
 void take_out_unseen(StateSpace& model, const std::vector<int>& out, const Eigen::MatrixXd& P);
 /// All states but these, which are in ascending order.
 std::vector<int> others(Eigen::Index states, const std::vector<int>& out);

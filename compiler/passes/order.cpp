@@ -103,7 +103,7 @@ Components components(const Graph& g, const Arrows& needs) {
   return result;
 }
 
-/// An input that nothing reads may be a line that was forgotten.
+/// Notes inputs that are not read: a line may have been forgotten.
 void note_unread(Stage& stage, const Arrows& readers) {
   const Graph& g = stage.graph;
   std::vector<char> shown(g.signals.size(), 0);

@@ -107,7 +107,7 @@ class Reducer {
            std::any_of(pieces.begin(), pieces.end(), is_sum);
   }
 
-  /// States that nothing reads follow from nothing: 0.
+  /// Sets states that are not read to 0.
   void leave_out(const StateMarks& states) {
     std::vector<Dependent>& all = k_.stage.dependents;
     std::set<std::pair<int, int>> left;
@@ -121,7 +121,7 @@ class Reducer {
         all.push_back({node, i, {}});
       }
     if (names.empty()) return;
-    for (Dependent& other : all)  // read by nothing as well
+    for (Dependent& other : all)  // their terms in these states
       std::erase_if(other.of, [&](const Dependent::Share& s) {
         return states[at(d_.layout().state_first[at(s.node)] + s.state)] != 0;
       });

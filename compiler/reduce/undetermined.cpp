@@ -96,7 +96,7 @@ KeptMatrix watched_rows(KeptMatrix rates, const StateMarks& watched) {
   return rates;
 }
 
-/// The combinations of the motions z by which nothing of this is moved.
+/// Combinations of the motions z that move none of the rows of `seen`.
 KeptMatrix unseen(const KeptMatrix& z, const KeptMatrix& seen) {
   solve::SparseRows by_motion(at(seen.value.cols()));
   for (Index j = 0; j < seen.value.cols(); ++j)

@@ -67,7 +67,7 @@ struct Readers {
     }
   }
 
-  /// Marks to(state, read) where from(state, read) is marked, until nothing changes.
+  /// Marks to(state, read) if from(state, read) is marked, until no mark is added.
   template <class From, class To>
   void spread(StateMarks& marks, From from, To to) const {
     for (bool changed = true; changed;) {

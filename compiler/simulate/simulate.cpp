@@ -307,7 +307,7 @@ Trajectory simulate(const System& system, const Excitation& excitation, const Si
     refuse_inaccurate(system, s, halved.error, exact);
     return halved;
   } catch (const Error&) {
-    if (overflow) throw *overflow;  // nothing contradicts it
+    if (overflow) throw *overflow;  // midpoint does not contradict it
     throw;
   }
 }

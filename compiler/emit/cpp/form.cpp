@@ -33,7 +33,7 @@ double difference_at(const Form& form, std::complex<double> s, const MatrixXcd& 
   return solution.rcond > 0 ? difference(form, solution.z, exact, points).worst : HUGE_VAL;
 }
 
-/// Rows of nothing, and rows in which `off` is no smaller than the thousandth part of `exact`.
+/// Zero rows, and rows in which `off` is at least a thousandth of `exact`.
 std::vector<Index> noisy_rows(const MatrixXd& exact, const MatrixXd& off) {
   std::vector<Index> rows;
   for (Index i = 0; i < exact.rows(); ++i)

@@ -25,7 +25,7 @@ std::string tolerance(double least, double measured) {
   return fmt::format("{:.1e}", std::clamp(10 * measured, least, 1e-6));
 }
 
-/// Instead of a check that double does not carry.
+/// The comment that replaces a check for which double is not accurate enough.
 std::string omitted(const char* what, double measured) {
   if (!std::isfinite(measured))
     return fmt::format("\n// {}: not checked. In double the matrices do not give it at all.\n",

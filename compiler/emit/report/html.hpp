@@ -9,13 +9,13 @@
 /// Pieces of the page.
 namespace titop::report {
 
-/// Text of any origin inside HTML; nothing for nothing.
+/// Text of any origin, escaped for HTML; empty for empty text.
 inline std::string escaped(const std::string& text) { return text.empty() ? "" : dot::html(text); }
 
 /// Text of several lines.
 std::string escaped_lines(const std::string& text);
 
-/// The page around its body: head, style, nothing from elsewhere. `title` is plain text.
+/// The page around its body: head, style, no external resources. `title` is plain text.
 std::string page(const std::string& title, const std::string& body);
 
 /// A table's row of cells that are HTML; classes by column, "" for none.

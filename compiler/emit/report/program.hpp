@@ -12,8 +12,8 @@ struct Finished {
   std::string out, err;
 };
 
-/// Runs a program of the PATH with these words and this standard input, and waits for it. No shell
-/// is in between, and no file has a name: nothing in the words or in the text is ever interpreted.
+/// Runs a program of the PATH with these words and this standard input, and waits for it. Without
+/// shell and named files: no part of the words or the text is interpreted.
 Finished run(const std::vector<std::string>& words, const std::string& in);
 
 }  // namespace titop::report

@@ -13,8 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// Rank of six rows in all units: below this fraction of its neighbours nothing moves, to the
-/// digits of a text file.
+/// Rank of six rows in all units: motions below this fraction of those in the other directions
+/// count as 0, at the digits of a text file.
 constexpr double kStill = 1e-6;
 
 /// In how many directions no mode of these moves the point; Phi: 6 columns, a row per mode.

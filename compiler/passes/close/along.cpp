@@ -14,7 +14,7 @@ using Lists = std::vector<std::vector<int>>;
 
 struct Walk {
   Lists columns, with;   ///< per chain: columns that others have too; per column: chains
-  Lists through, users;  ///< per chain: those that its way goes through; whose ways go through it
+  Lists through, users;  ///< per chain: those that its loop contains; those whose loops contain it
   std::vector<int> unopened, waiting;       ///< per chain: how many of its columns, of `through`
   std::vector<char> opened;                 ///< per column
   std::vector<char> met, done;              ///< per chain; met: begun, at least
@@ -70,7 +70,7 @@ struct Walk {
     for (const int user : users[at(c)]) --waiting[at(user)], look(user);
   }
 
-  /// Decides the chains that the way of this one goes through, and then itself.
+  /// Decides the chains that this one's loop contains, and then this one.
   void reach(int goal) {
     std::vector<std::pair<int, std::size_t>> stack{{goal, 0}};
     met[at(goal)] = 1;

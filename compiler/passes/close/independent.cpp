@@ -297,7 +297,7 @@ struct Fronts {
           rest_places.push_back(i);
       MatrixXd T = -rows->M(Eigen::all, rest_places);
       rows->M(Eigen::all, pivot_places).eval().triangularView<Eigen::Upper>().solveInPlace(T);
-      // Rounding between directions that have nothing to do with one another is none.
+      // Clears rounding between uncoupled directions.
       const double noise = kNoise * static_cast<double>(pivot_places.size());
       for (std::size_t k = 0; k < pivot_places.size(); ++k) {
         Independent::Follows f{rows->pivots[k]};

@@ -194,7 +194,7 @@ struct RedundancyFinder {
   void decide(int b, RowBlock& known) {
     Redundant& r = result.blocks[at(b)];
     r.directions = directions[at(b)];
-    if (r.directions.rows() == 0 || known.columns.empty()) return;  // none left, or nothing moves
+    if (r.directions.rows() == 0 || known.columns.empty()) return;  // none remaining, or none known
     r = by_singular_values(over(known.columns, blocks[at(b)]), known.M);
     r.directions = r.directions * directions[at(b)];
   }

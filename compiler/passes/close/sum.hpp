@@ -25,7 +25,7 @@ class Sum {
   /// The longest lever met: of a rotation in a translation [m]; 0: none.
   double lever() const { return of_six_[0][1]; }
 
-  /// Entries below their rounding are 0; columns of nothing else are left out.
+  /// With entries below their rounding set to 0, and columns of zeros dropped.
   Form cleaned() const;
 
  private:

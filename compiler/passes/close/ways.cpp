@@ -35,7 +35,7 @@ void Motion::plant_shortcuts(std::vector<Tie> released, const std::vector<char>&
               [](const Shortcut& a, const Shortcut& b) { return a.rank < b.rank; });
 }
 
-/// Only a tie that leaves nothing free: its free angle would be one more unknown.
+/// Only ties of all directions: a free angle would be one more unknown.
 void Motion::plant_shortcut(const Tie& tie, const std::vector<char>& one_way) {
   if (tie.S.rows() != tie.S.cols()) return;
   auto edge = edge_of(tie);
@@ -49,7 +49,7 @@ std::vector<int> Motion::shorter(int a, int b, Tie::Rank rank, int length) const
   std::vector<int> front[2] = {{a}, {b}};
   int left = kTreeWays * length;  // edges that may be looked at
   for (int levels = 0; levels < length - 1; ++levels) {
-    // From the ground too much goes out.
+    // Not from the ground: too many edges start there.
     const int side = b == ground_ || front[0].size() <= front[1].size() ? 0 : 1;
     std::vector<int> next;
     int met = -1;

@@ -18,7 +18,7 @@ bool less(const Summand& a, const Summand& b) {
                                       b.c.data() + b.c.size());
 }
 
-/// None of none.
+/// The product; empty if a factor is empty.
 Pattern product(const Pattern& a, const Pattern& b) {
   if (a.size() == 0 || b.size() == 0) return {};
   return (a.cast<int>() * b.cast<int>()).array() > 0;
