@@ -194,7 +194,8 @@ class DigitJudge {
     return result;
   }
 
-  /// Ports at which random errors of all do so much that one of them alone might do too much.
+  /// Ports at which random errors of all numbers together have so large an effect that one of them
+  /// alone may have too large a one.
   std::vector<int> by_sums() const {
     std::vector<int> all(ports_.size()), result;
     RowMatrix<double> rhs = RowMatrix<double>::Zero(k_.joint.plan->unknowns, kSums);

@@ -104,8 +104,8 @@ struct Change {
   std::vector<std::complex<double>> tried, left_out;  ///< where the factors have digits, and not
 };
 
-/// Near the removed modes and at the assembly's frequencies: a block that is slow by itself may
-/// lead where rigid bodies have no digit left.
+/// Near the removed modes and at the assembly's frequencies: the pole of a slow block may be at a
+/// frequency where rigid bodies have no digits.
 std::vector<std::complex<double>> points_of_change(const SystemData& d, const StateSpace& dense,
                                                    const Minimized& m) {
   std::vector<std::complex<double>> points = modes::near_modes(m.order.removed, pick_s(d));
@@ -142,8 +142,8 @@ Change change(const System& system, const SystemData& d, const StateSpace& dense
   return worst;
 }
 
-/// Notes the points at which the change was not measured; without any measurement no mode may
-/// leave.
+/// Notes the points at which the change was not measured; without any measurement no mode is
+/// removed.
 void say_left_out(const SystemData& d, const Change& by) {
   if (by.left_out.empty()) return;
   const auto smaller = [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); };

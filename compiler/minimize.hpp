@@ -18,7 +18,7 @@ struct MinimizeOptions {
   StateSpace rounding = {};
 };
 
-/// A mode that left, or that may have to.
+/// A mode that was removed, or that is near the limit.
 struct JudgedMode {
   double omega = 0;   ///< |s| [rad/s]
   int states = 1;     ///< 2 for a pair of poles

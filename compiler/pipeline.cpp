@@ -38,7 +38,7 @@ struct Pass {
 
 /// The passes on the graph, top to bottom; then solve and certify work with numbers.
 constexpr Pass kPasses[] = {
-    {"check", passes::check},  // the user's mistakes, in the user's words: before anything moves
+    {"check", passes::check},  // mistakes in the user's words, before any change
     {"lower", passes::lower},  // one numeric coefficient per term; names decide the order from here
     {"split", passes::split},  // parts without output: no later pass need look at them
     {"chains", passes::chains},  // redundant closures are released: no rank can fail below
@@ -131,7 +131,7 @@ std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options, d
   return data;
 }
 
-/// The margins stay with the system, so that an update need find only those that it moves.
+/// The margins are stored in the system, so that an update computes only those that it changes.
 void certify_now(detail::SystemData& data) {
   std::vector<double> margins;
   detail::find_margins(data, data.changed_loops, margins);

@@ -121,9 +121,9 @@ std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Dou
   return {};
 }
 
-/// The coarsest precision whose rounding changes the outputs by no more than kEnough. Grids lose
-/// more digits on the way than in the end: the last pivots of a wide front may have none left in
-/// double, far from any pole.
+/// The coarsest precision whose rounding changes the outputs by no more than kEnough. Intermediate
+/// results of grids lose more digits than the outputs: the last pivots of a wide front may have
+/// none in double, far from any pole.
 MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
   std::optional<detail::Evaluation<Double>> plain;
   try {

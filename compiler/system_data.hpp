@@ -21,7 +21,7 @@ struct Layout {
   std::vector<int> known_first;   ///< per signal: first row of [x; u], -1 for unknowns
   std::vector<std::string> states, inputs, outputs;  ///< states: of all blocks
 
-  /// States of all blocks, before those leave that follow from others (StateMap).
+  /// Number of states of all blocks, before dependent ones are eliminated (StateMap).
   Eigen::Index order() const { return static_cast<Eigen::Index>(states.size()); }
 };
 Layout make_layout(const Graph& graph);

@@ -159,7 +159,7 @@ void remake_blocks(const Skeleton& k, const std::vector<int>& nodes, solve::Numb
   }
 }
 
-/// False if the new values bring in or leave out a term: the plan does not serve any more.
+/// False if the new values add or remove a term, which the plan does not provide for.
 bool remake_coefficients(const Skeleton& k, const std::vector<int>& origins, solve::Numbers& n) {
   if (origins.empty()) return true;
   const Graph& g = k.stage.graph;
@@ -235,7 +235,7 @@ bool has_moved(double value, double scaled_at) {
 }
 
 /// True if pivots have lost half the digits that they had when the scaling was found, in any number
-/// of updates, or have none left.
+/// of updates, or have none.
 bool outgrown(const solve::Health& now, const solve::Health& scaled) {
   return now.singular || now.weakest < 1e-8 * scaled.weakest || now.growth > 1e8 * scaled.growth;
 }

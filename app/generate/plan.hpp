@@ -90,7 +90,7 @@ struct Control {
   Ratio D = {};
 };
 
-/// One motion more than the tree has: `point` moves as `with` does (turned by T), or not at all.
+/// One closure in addition to the tree: `point` moves with `with` (turned by T), or is fixed.
 struct Closure {
   Point point;
   std::optional<Point> with = {};

@@ -148,7 +148,7 @@ Names bad_modes(Json& scene) {
     throw std::domain_error("nothing has modes; take --family spatial and more --bodies");
   const std::string name = scene["bodies"].items().begin().key();
   Json& L = scene["bodies"][name]["L_P"];
-  L[0][0] = 1000;  // the mode moves more than the body weighs
+  L[0][0] = 1000;  // the mode's participation exceeds the body's mass
   return {name};
 }
 

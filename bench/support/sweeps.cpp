@@ -101,7 +101,7 @@ Extreme stiffnesses(double ratio) {
   return chain_extreme(chain, kPoints);
 }
 
-/// At its lowest frequencies, where all of it moves.
+/// At its lowest frequencies, where the whole chain moves.
 Extreme length(double n) {
   return chain_extreme(uniform(static_cast<std::size_t>(n), 0.1),
                        {{0.5 / n, 10 / n}, {2 / n, 40 / n}, {5 / n, 100 / n}});

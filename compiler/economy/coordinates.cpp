@@ -25,7 +25,7 @@ using linalg::at;
   throw NoStructure(Code::bad_value, message, kWayOut, std::move(details));
 }
 
-/// The model of all blocks' states, before those leave that follow from others.
+/// The model of all blocks' states, before dependent ones are eliminated.
 StateSpace model_of_blocks(const System& system, const SystemData& data) {
   StateSpace m;
   if (data.states.trivial()) {
@@ -140,7 +140,7 @@ void find_kept(Raw& raw, const StateMap& states) {
     if (raw.pairs.rate[at(i)] != row.state) continue;  // positions follow the same map
     for (const auto& [of, factor] : row.of) {
       const int j = coordinate[at(of)];
-      if (leaves[at(j)])  // and is not known yet: its rate does not leave
+      if (leaves[at(j)])  // and is not known yet: keep its rate
         refuse(
             fmt::format("{} follows from {} at one level only", raw.name(i), raw.m.states[at(of)]));
       raw.T.row(i) += factor * raw.T.row(j);

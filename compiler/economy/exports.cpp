@@ -16,7 +16,7 @@ using Eigen::MatrixXd;
 
 namespace {
 
-/// A motion without stiffness whose position is not read is a rate alone.
+/// False for a motion without stiffness whose position is not read: it has a rate only.
 bool has_position(const detail::Small& m, Index j) { return m.k(j) != 0 || !m.cq.col(j).isZero(0); }
 
 MatrixXd damping(const detail::Small& m) {

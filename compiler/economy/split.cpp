@@ -116,7 +116,7 @@ class Core {
     return over.size() == 0 || over.norm() <= kTogether;
   }
 
-  /// Names the pole nearest the axis of those that are not kept, and the state that moves most in
+  /// Names the pole nearest the axis of those that are not kept, and the state that is largest in
   /// it: the first column of a Schur form that begins with a pole is its eigenvector.
   Error inseparable() const {
     Index nearest = kept, state = 0;
@@ -267,7 +267,8 @@ MatrixXd terms(const StateSpace& m, const Split& split, Complex s) {
   const MatrixXcd x = split.stable.right * (split.U * stable) +
                       split.kept.right * solve(split.kept, s) +
                       split.integrals.right * solve(split.integrals, s);
-  // Outputs that only symmetry or rounding moves: as if all states went as far, each in its unit.
+  // Floor for outputs that are 0 by symmetry, up to rounding: as if all states were as large as the
+  // largest one, each in its unit.
   const VectorXd unit =
       (split.stable.right.rowwise().squaredNorm() + split.kept.right.rowwise().squaredNorm() +
        split.integrals.right.rowwise().squaredNorm())

@@ -127,7 +127,7 @@ std::vector<Index> owners(const Coordinates& c) {
   return result;
 }
 
-/// Input vectors of the loose motions through the elastic ones that move them.
+/// Input vectors of the loose motions, driven through the elastic ones.
 MatrixXd carried(const Coordinates& c, const Whole& w, const MatrixXd& along) {
   if (w.far == 0) return along * w.b;
   // Modes below rounding move them, too: their static part, K^-1 M b of all.

@@ -46,9 +46,9 @@ void keep_to_parts(const Parts& parts, Matrix&& vectors) {
         vectors(i, j) = 0;
 }
 
-/// Modes of one part may be of any size against those of another: an unobservable one that an input
-/// moves far would hide the others. Scales the inputs and the outputs of each part, each against
-/// the largest of its port, to one size.
+/// Modes of one part may be of any size relative to those of another: an unobservable one with a
+/// large response to an input would hide the others. Scales the inputs and the outputs of each
+/// part, each by the largest of its port, to one size.
 void balance_sides(const Parts& parts, ModeSet& m);
 
 /// True if no combination of the rows of M vanishes up to rounding. A row far below the others

@@ -90,7 +90,7 @@ Verdict judge(const ModeSet& m, Index j, double resolution) {
 /// Zero to double precision, and too narrow to matter otherwise.
 bool is_zero(const Verdict& v) { return v.visibility <= v.bound && v.bound <= kNarrow; }
 
-/// Why a mode left, or may have to.
+/// Why a mode was removed, or is near the limit.
 std::string reason(const Verdict& v, bool hardly) {
   if (v.unreachable) return hardly ? "inputs hardly move it" : "no input moves it";
   return hardly ? "outputs hardly see it" : "no output sees it";
@@ -146,7 +146,8 @@ bool drop_down_to(int exact, int order, ModeSet& m, std::vector<Verdict>& verdic
     return left == 0;
   };
   if (drop([](const Verdict& v) { return v.visibility <= kFarOff; })) return true;
-  // The order does not determine which modes leave then: those that would without it.
+  // Otherwise the order does not determine which modes to remove: those that are removed without
+  // it.
   return drop([](const Verdict& v) { return v.drop; });
 }
 

@@ -65,7 +65,7 @@ Stage order(Stage stage);
 
 /// Determines the dependent states, on position and on velocity level: dependent coordinates of
 /// closed chains, and Integrators of accelerations or rates whose integrals are states already.
-/// They leave the model (Stage::dependents); states that an input prescribes stay. Ranks are
+/// They are eliminated (Stage::dependents); states that an input prescribes are kept. Ranks are
 /// decided after scaling; decisions near the tolerance are noted with both orders. Cost as
 /// `chains`.
 Stage close(Stage stage);

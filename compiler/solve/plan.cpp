@@ -65,7 +65,7 @@ class Merging {
     return {first, at(used_[at(v)])};
   }
 
-  /// All variables of the rows that mention v, as they come.
+  /// All variables of the rows that mention v, unsorted.
   const std::vector<int>& front_variables(int v) {
     ++now_;
     found_.clear();
@@ -143,8 +143,8 @@ std::span<const int> Merging::merge(int v) {
   return border;
 }
 
-/// Beyond this many row sets a variable's cost is not counted but put at that number: it will be
-/// counted when fewer are left.
+/// Beyond this many row sets a variable's cost is not counted but set to that number; it is counted
+/// once there are fewer.
 constexpr int kMany = 64;
 
 /// `when`: variables with a smaller number go first; empty: no order. Of equal costs the first

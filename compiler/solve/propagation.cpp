@@ -36,8 +36,8 @@ void Propagation::form(int k, int parts) {
   for (std::size_t i = fronts * at(k) / at(parts); i < end; ++i) form_front(i);
 }
 
-/// Columns of L^-1 for the pivots' rows: those that children left over come first. Above the front
-/// of a right-hand side the others are 0.
+/// Columns of L^-1 for the pivots' rows: rows from children are first. Above the front of a
+/// right-hand side the others are 0.
 void Propagation::order_columns(std::size_t index) {
   const Front& f = plan_.fronts[index];
   int entered = 0, next = 0;

@@ -20,8 +20,8 @@ inline titop::Diagram frame(const titop::FlexibleBody& beam) {
   return d;
 }
 
-/// A body's data with its modes up to this frequency [Hz] alone: the rule of thumb that reduction
-/// is held against.
+/// A body's data truncated at this frequency [Hz]: the rule of thumb with which reduction is
+/// compared.
 inline titop::ModalData up_to(titop::ModalData m, double hertz) {
   constexpr double two_pi = 6.283185307179586;
   std::vector<Eigen::Index> kept;

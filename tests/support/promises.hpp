@@ -16,9 +16,9 @@ void demand_split(const titop::Stage& stage);
 /// coordinates and prescribed motions, have full row rank.
 void demand_not_redundant(const titop::Stage& stage);
 
-/// Every state that left is the given sum of the others for all motions that bodies and equations
-/// allow, and those that stay are as many as these motions show: the rank of the states on the null
-/// space of that matrix, on position and on velocity level. Integrators not counted.
+/// Every eliminated state is the given sum of the others for all motions that bodies and equations
+/// allow, and as many states remain as the rank of the states on the null space of that matrix, on
+/// position and on velocity level. Integrators not counted.
 void demand_closed(const titop::Stage& stage);
 
 /// Every row and every unknown in use are matched, each of them once.

@@ -4,8 +4,8 @@
 
 namespace titop::passes::closing {
 
-/// Which blocks have which columns, while blocks lose columns. Of a column that one block has left
-/// that block is known; a change costs O(1) per column.
+/// Which blocks have which columns, while blocks lose columns. If one block remains, it is known; a
+/// change costs O(1) per column.
 class Uses {
  public:
   explicit Uses(int columns)
