@@ -255,7 +255,7 @@ TEST_CASE("who asks for help gets the usage on stdout") {
 TEST_CASE("invalid command lines: exit code 2, and one line on stderr with the reason") {
   const Shell shell;
   const std::string scene = shell.folder.read("masses.json");
-  shell.folder.write("masses.html", scene);  // a scene whose report would stand in its place
+  shell.folder.write("masses.html", scene);  // a scene whose report would overwrite it
   for (const char* words : {"",
                             "fly masses.json",
                             "check",

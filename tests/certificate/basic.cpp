@@ -12,7 +12,7 @@ using namespace titop;
 
 namespace {
 
-/// Of something that holds this text.
+/// Of an object whose text contains this.
 bool warns(const System& system, std::string_view text = "") {
   for (const Note& note : system.notes())
     if (note.kind == Note::Kind::warning && note.text.find(text) != std::string::npos) return true;
@@ -106,7 +106,7 @@ TEST_CASE("equations are checked at one instant, at some s where that is not eno
 
 namespace {
 
-/// Two spring-masses on a hub, pulled alike; the difference of their forces on the hub, as an
+/// Two spring-masses on a hub, pulled equally; the difference of their forces on the hub, as an
 /// output or through a filter. `apart`: of their parent masses.
 Diagram twins(double apart, bool filtered) {
   Diagram d{"twins"};

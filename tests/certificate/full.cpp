@@ -43,7 +43,7 @@ Diagram door(double angle) {
   return d;
 }
 
-/// A on a sprung joint of two axes that its brace B holds still.
+/// A on a sprung joint of two axes immobilised by its brace B.
 Diagram braced(double angle) {
   Diagram d{"braced"};
   const Rotation T = Rotation::about({1, 2, 2}, angle);
@@ -149,7 +149,7 @@ TEST_CASE("two free masses: one pair of poles, passive, order 2, decided exactly
 
 TEST_CASE(
     "a spring between two points that are driven: poles at 0, whatever rounding makes of them") {
-  // d2(stretch)/dt2 = w - v; the force that moves the mass so holds k stretch, which cancels.
+  // d2(stretch)/dt2 = w - v; the force that moves the mass so contains k stretch, which cancels.
   int off = 0;
   for (int k = 1; k <= 40; ++k) {
     const double stiffness = k / 7.0, mass = 0.3 + k / 11.0;

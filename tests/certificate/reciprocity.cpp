@@ -75,7 +75,7 @@ Eigen::Matrix2cd one_way_by_hand(double g, Complex s) {
   return s * s * Eigen::Matrix2cd{{1.0 / Z1, 0}, {g / (Z1 * Z2), 1.0 / Z2}};
 }
 
-/// A mass on another, which stands on the ground. Forces on both.
+/// A mass on another, which is mounted on the ground. Forces on both.
 Diagram stack() {
   Diagram d{"stack"};
   auto lower = d.add("lower", SpringMass{.mass = 3, .stiffness = 50, .damping = 0.4});

@@ -36,7 +36,7 @@ VectorXd units(Rng& random) {
   return VectorXd::NullaryExpr(4, [&] { return unit(random); });
 }
 
-/// Two parts that know nothing of each other. In the first, base and difference of twins: zero by
+/// Two uncoupled parts. In the first, base and difference of twins: zero by
 /// symmetry. In the second, anything.
 StateSpace two_parts(Rng& random) {
   // Base, left, right: x'' = -M^-1 K x - 0.1 x', pushed and read at the base and between the twins.

@@ -157,7 +157,7 @@ TEST_CASE("a one-way block that grows is no fault of the structure that it reads
     CHECK(has(to_string(c), "1 right of the axis"));
     CHECK(!full::has_poles_of_bodies_only(d->graph()));
   }
-  // A structure with an integrator on a sensor is still held to have none on the right.
+  // A structure with an integrator on a sensor must still have none on the right.
   Diagram sensed{"sensed"};
   auto J = sensed.add("J", Integrator{});
   J.in = mass(sensed).stretch;
@@ -169,7 +169,7 @@ TEST_CASE("a one-way block that grows is no fault of the structure that it reads
 TEST_CASE("hidden unstable poles are reported") {
   Diagram d{"twins"};
   auto u = d.input("u");
-  // d(x)/dt = x and d(y)/dt = -y; the output sees y alone.
+  // d(x)/dt = x and d(y)/dt = -y; the output depends on y alone.
   auto K = d.add("K", Lti{.A = (Eigen::Matrix2d() << 0, 1, 1, 0).finished(),
                           .B = Eigen::Vector2d(1, 0),
                           .C = Eigen::RowVector2d(1, -1)});

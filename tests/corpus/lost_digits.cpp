@@ -1,4 +1,5 @@
-// Closed chains that are held only by their rounded numbers: the self-check reports lost digits.
+// Closed chains that are immobile only by rounding of their numbers: the self-check reports lost
+// digits.
 #include <doctest/doctest.h>
 
 #include <nlohmann/json.hpp>
@@ -11,7 +12,7 @@ using titop_test::Folder;
 
 TEST_CASE("where digits are lost, rounding decides no order: the interval holds the exact one") {
   // Some ports of these are at rounding level and, judged by their own size, move and see all. If
-  // their equations show that, they count as 0, otherwise the order is in doubt.
+  // their equations prove it, they count as 0, otherwise the order is in doubt.
   int doubted = 0;
   for (const char* scene :
        {"spatial --seed 9258 --shape star --bodies 4 --loops 4",

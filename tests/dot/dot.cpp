@@ -15,7 +15,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// The lines that hold `part`, as one text.
+/// The lines that contain `part`, as one text.
 std::string lines_with(const std::string& text, const std::string& part) {
   std::istringstream in(text);
   std::string line, found;

@@ -17,7 +17,8 @@ SpringMass::Handle add(Diagram& d, int number) {
   return d.add("z" + std::to_string(number), SpringMass{});
 }
 
-/// Block i hangs on block (i - 1) / arms: a chain for one arm, a tree for two, a star for many.
+/// Block i is mounted on block (i - 1) / arms: a chain for one arm, a tree for two, a star for
+/// many.
 Diagram tree(int blocks, int arms, bool backwards = false) {
   Diagram d{"tree"};
   auto u = d.input("u");

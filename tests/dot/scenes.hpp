@@ -79,7 +79,7 @@ inline Diagram robot_joint() {  // Figs. 19, 20: a hinge with a local mechanism 
   return d;
 }
 
-/// A controller of named blocks, a part that no input reaches, a mass that nothing sees, a pin.
+/// A controller of named blocks, a part that no input reaches, an unobservable mass, a pin.
 inline Diagram controlled() {
   Diagram d{"controlled"};
   auto r = d.input("r");

@@ -17,8 +17,8 @@ struct Truth {
   std::vector<double> omegas;
 };
 
-/// Accelerations of an undamped structure, of which no spring holds so many motions: the sum over
-/// its modes.
+/// Accelerations of an undamped structure, with this number of motions without stiffness: the sum
+/// over its modes.
 Truth accelerations(const by_hand::Structure& a, Eigen::Index rigid);
 
 /// Points of the band [rad/s]: so many steps, smaller towards both ends, each halved until the
@@ -39,7 +39,7 @@ using TransferOf = std::function<Eigen::MatrixXcd(std::complex<double>)>;
 Compared compared(const titop::Scene& scene, const std::vector<double>& points, const Truth& truth,
                   const TransferOf& other);
 
-/// On a grid of the band that knows nothing of the bound's, at least ten times finer everywhere
+/// On a grid of the band independent of the bound's, at least ten times finer everywhere
 /// (tests/economy/phase_grid.cpp).
 struct Beside {
   double bound = 0;  ///< largest |error| / (bound * peak): 1 or less
@@ -49,7 +49,7 @@ struct Beside {
   double peak_low = HUGE_VAL, peak_high = 0;  ///< ErrorBound::peak over the peak on this grid, of
                                               ///< pairs that symmetry does not make 0
 };
-/// More steps than eighteen per sample of the bound's if `truth` has no poles.
+/// Use more than eighteen steps per sample of the bound if `truth` has no poles.
 Beside beside(const titop::ReducedSystem& r, const titop::Scene& scene, const Truth& truth,
               int steps = 0);
 

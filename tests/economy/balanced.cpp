@@ -5,7 +5,7 @@
 #include "support/mistakes.hpp"
 
 /// Scenes that are no passive structure: controllers in the loop, dashpots without springs. Their
-/// states are balanced; the truth is written out by hand.
+/// states are balanced; the reference is written out by hand.
 using namespace titop;
 using namespace titop_test;
 using Eigen::MatrixXcd;
@@ -246,7 +246,7 @@ TEST_CASE("static gain only: no states but those on the axis") {
   const Held held;
   const ReducedSystem r = compile(held.diagram(), titop::Scene{.inputs = {"R"}, .accuracy = 1e-6});
   CHECK(r.order() == 0);
-  CHECK(std::abs(r.state_space().D(0, 0) - 1) <= 1e-6);  // it goes where it should
+  CHECK(std::abs(r.state_space().D(0, 0) - 1) <= 1e-6);  // it goes to the right place
 }
 
 TEST_CASE("a balanced model is dense and modal, and says why it is no second-order model") {

@@ -124,11 +124,11 @@ TEST_CASE("symmetric appendages, common motion only: half their modes go exactly
   CHECK(r.steps()[1].after == 36);
   CHECK(r.steps()[1].error == 0);
   check_beside(r, scene, twins_by_hand(beam));
-  // One tip is read: both move alike, independent of the choice.
+  // One tip is read: both have the same motion, independent of the choice.
   scene.outputs = {"a", "tips"};
   CHECK(compile(twins(beam), scene).steps()[1].after == 36);
   scene.accuracy = 1e-4;
-  // Not all inputs are driven alike, or the places differ by a millimetre: nothing goes.
+  // Inputs differ, or the places differ by a millimetre: nothing is removed.
   scene.inputs = {"U"};
   CHECK(compile(twins(beam), scene).steps().size() == 2);
   scene.inputs = {"U(3)"};
@@ -136,7 +136,8 @@ TEST_CASE("symmetric appendages, common motion only: half their modes go exactly
 }
 
 TEST_CASE("an output silenced by symmetry keeps its direct terms") {
-  // The hub is shaken by A; both tips follow alike, so that their difference is 0: plus A, it is A.
+  // The hub is shaken by A; both tips have the same motion, so that their difference is 0: plus A,
+  // it is A.
   const FlexibleBody beam = slim_beam(6);
   Diagram d{"shaken"};
   auto A = d.input("A", 6);

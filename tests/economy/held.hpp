@@ -17,8 +17,8 @@ inline titop::Lti lag(double gain, double corner) {
   return {.A = one(-corner), .B = one(1), .C = one(gain * corner)};
 }
 
-/// A free cart that carries a chain of equal masses on springs, and holds its place by a law with a
-/// slow actuator and a delay: (kp + kd s) / (s / wa + 1) (1 - sT/2) / (1 + sT/2).
+/// A free cart with a chain of equal masses on springs, kept at its place by a law with a slow
+/// actuator and a delay: (kp + kd s) / (s / wa + 1) (1 - sT/2) / (1 + sT/2).
 struct Held {
   int masses = 12;
   double cart = 10, m = 0.5, k = 2000, c = 1.5;

@@ -155,7 +155,7 @@ TEST_CASE("inputs and outputs with nothing between them have no error, and no sa
   CHECK(b.pairs(1, 0) == 0);
   CHECK(b.pairs(0, 0) > 0);
   CHECK(b.output.substr(1) == b.input.substr(1));
-  // Less accurate, so that one of the two goes: the pair that is named is the worst one.
+  // Less accurate, so that one of the two is removed: the pair that is named is the worst one.
   const ReducedSystem rough =
       compile(c.diagram(), titop::Scene{.band_hz = {0.1, 0.2}, .accuracy = 0.2});
   Index i = 0, j = 0;

@@ -79,7 +79,7 @@ TEST_CASE("a uniform grid of as many points misses the peak of a lightly damped 
 
 TEST_CASE("the reference grid of scenes is ten times finer than the bound's, everywhere") {
   // Modes in the band, in clusters and just above its end; and of the reduced model vectors above
-  // the band, which the finer grid does not know.
+  // the band, on which the finer grid does not depend.
   titop_test::Rng rng(8);
   for (int scene = 0; scene < 40; ++scene) {
     CAPTURE(scene);

@@ -65,7 +65,7 @@ template <class Real = long double>
 InModes in_modes(const Assembled& a, bool free);
 
 /// Times s^p of positions: 0 positions, 1 rates, 2 accelerations, per output. A sum over modes;
-/// over poles if there is damping, held against one LU of M, D and K.
+/// over poles if there is damping, compared with one LU of M, D and K.
 Truth truth_of(const Assembled& a, bool free, const std::vector<int>& power);
 Truth truth_of(const Assembled& a, bool free = false, int power = 2);
 

@@ -15,8 +15,9 @@ using titop_test::says;
 
 namespace {
 
-/// Free, and the system does not show it: the rate of the last mass, less h times its own integral,
-/// drives both that integral and the mass. A = 0 for these, once rounding is done with.
+/// A motion that is free by cancellation, not by structure: the rate of the last mass, less h times
+/// its own integral, drives both that integral and the mass. A = 0 for these after rounding is
+/// cleared.
 Diagram free_by_cancellation(double h, double k) {
   Diagram d{"free"};
   auto u = d.input("u");
@@ -49,7 +50,7 @@ Diagram row_on_a_soft_spring(double soft, int n) {
   return d;
 }
 
-/// A hinge that its own torque law holds.
+/// A hinge held by a torque law on its own angle.
 Diagram held_hinge() {
   Diagram d{"held"};
   auto hub =

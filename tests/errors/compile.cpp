@@ -7,7 +7,7 @@
 #include "support/close.hpp"
 #include "support/mistakes.hpp"
 
-// Mistakes that only the equations together, or their numbers, show.
+// Mistakes that are detected from all equations together, or from their numbers.
 
 using namespace titop;
 using namespace titop_test;

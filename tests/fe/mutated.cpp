@@ -1,5 +1,5 @@
-// Files with random damage: every reader gives data or an Error, never anything else. The same
-// damage on every machine; under the sanitizers a crash would show.
+// Files with random damage: every reader returns data or throws Error. The same damage on every
+// machine; the sanitizers detect invalid accesses.
 #include <doctest/doctest.h>
 
 #include <fstream>

@@ -317,7 +317,7 @@ TEST_CASE("broken text files are refused with matrix and line") {
   says(refusal(replaced(sparse, "  196615", "  986615")), "a string of");
   says(refusal(replaced(sparse, "  196615", "  x")), "an integer that starts a string of values");
   says(refusal("nonsense\n"), "m.op4:1: found 'nonsense'");
-  // Headers that end before the name; columns 25 to 32 still hold a type.
+  // Headers that end before the name; columns 25 to 32 still contain a type.
   const std::string header = "       1       1       2       2";
   for (std::size_t length = 25; length <= 31; ++length)
     says(refusal(header.substr(0, 24) + "2" + std::string(length - 25, ' ') + "\n"),

@@ -1,4 +1,4 @@
-// A Craig-Bampton pair of Nastran as a body of four ports: weighed, held at its grids, let go, and
+// A Craig-Bampton pair of Nastran as a body of four ports: weighed, clamped at its grids, free, and
 // two copies joined at four grids. Against its own K and M, assembled without the library.
 #include <doctest/doctest.h>
 
@@ -79,7 +79,7 @@ TEST_CASE("superelement: mass about the origin, and no stiffness against rigid m
   const fe::MeshReport report = fe::mesh_report(mesh);
   CHECK((mesh.K * R).cwiseAbs().maxCoeff() <= 5e-13 * mesh.K.cwiseAbs().maxCoeff());
   CHECK(report.KR_terms <= 1e-9);
-  // Without grid 11's own frame its rows would not move along.
+  // Without grid 11's own frame its rows would not rotate with it.
   auto unturned = grids();
   unturned[1].frame = {};
   CHECK(fe::mesh_report(fe::to_mesh(matrices(), unturned)).KR_terms > 1e-3);

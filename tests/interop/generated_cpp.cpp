@@ -81,7 +81,7 @@ System two_masses() {
   return compile(d);
 }
 
-/// Poles at 0, a controller, names that are no identifiers, inputs that some outputs do not see.
+/// Poles at 0, a controller, names that are no identifiers, inputs without effect on some outputs.
 Diagram odd_names() {
   Diagram d{"a \"cart\" on\nrails \\"};
   auto u = d.input("int"), w = d.input("3 w", 2);

@@ -1,4 +1,4 @@
-// The checks that a generated test makes hold wherever the model is right: small outputs far along
+// The checks that a generated test makes pass for every correct model: small outputs far along
 // a chain, terms that cancel, static gains that are 0 by nature, other ways of rounding.
 #include <doctest/doctest.h>
 #include <fmt/format.h>

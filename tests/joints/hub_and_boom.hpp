@@ -15,7 +15,7 @@ using titop::Vector3d;
 
 constexpr double kMass = 40;                // of the hub [kg]
 inline const Vector3d kInertia(3, 4, 5);    // about its centre of mass [kg m^2]
-inline const Vector3d kPC(0.4, -0.1, 0.3);  // where the boom hangs, from P [m]
+inline const Vector3d kPC(0.4, -0.1, 0.3);  // where the boom is mounted, from P [m]
 inline const Vector3d kTurn(1, 2, -1);      // mounting: by kAngle about it
 constexpr double kAngle = 0.7;              // [rad]
 inline const Tube kBoom{1.1, 0.05, 0.04, 2};

@@ -41,7 +41,7 @@ double open_by(const std::vector<LoopStep>& loop, const Posture& p) {
   return at.norm() + (R - Matrix3d::Identity()).norm();
 }
 
-/// Bennett's linkage: opposite links alike, lengths as the sines of the twists.
+/// Bennett's linkage: opposite links equal, lengths as the sines of the twists.
 std::vector<LoopStep> bennett(double theta, double alpha, double beta, double length_b) {
   const Vector3d link_a(0.4, 0, 0), link_b(length_b, 0, 0);
   const Rotation A = Rotation::about(x, alpha), B = Rotation::about(x, beta);

@@ -4,7 +4,7 @@
 
 #include "support/close.hpp"
 
-/// Names are for people: two that print alike are two all the same.
+/// Names are for people: two names of the same appearance are still two names.
 
 using namespace titop;
 using titop_test::matrix_error;

@@ -26,7 +26,7 @@ const Rotation kTurn = Rotation::about({1, 2, 3}, 0.7);
 }  // namespace
 
 TEST_CASE("a wrench on a body at the point of its mount acts on its parent") {
-  // A hangs on B at C1, turned: U on A there is U on B there.
+  // A is mounted on B at C1, turned: U on A there is U on B there.
   const auto scene = [](bool on_A, bool by_spring) {
     Diagram d{"on the parent"};
     auto U = d.input("U", 6);
@@ -79,7 +79,7 @@ TEST_CASE("a force without effect is refused: at a tied point whose reaction is 
              {"what is added to b.parent.force goes nowhere", "b.parent.accel = a.child.accel",
               "b.parent.force += -u", "pass on the port's reaction"}));
   CHECK(compile_error(scene(false, true)).mistakes().empty());  // the ground takes it
-  // u at the point of masses 2 and 1.5 between springs of 26 and 7, on which another 3 hangs.
+  // u at the point of masses 2 and 1.5 between springs of 26 and 7, with another mass of 3 on it.
   const Complex s(0.2, 1.3), t = 7.0 * 3.0 * s * s / (3.0 * s * s + 7.0);
   const Complex exact = s * s / (3.5 * s * s + 26.0 + t);
   CHECK(std::abs(compile(scene(true)).transfer(s)(0, 0) - exact) <= 1e-14 * std::abs(exact));

@@ -64,7 +64,7 @@ TEST_CASE("frames: mount, named and nameless rotations give one model; nameless 
   const Eigen::MatrixXcd G = mounted.transfer(kS);
   CHECK(matrix_error(named.transfer(kS), G) <= 1e-15);
   CHECK(matrix_error(nameless.transfer(kS), G) <= 1e-15);
-  // The equations as they stand, solved by hand: two rigid bodies are one.
+  // The equations as written, solved by hand: two rigid bodies are one.
   const Eigen::MatrixXd T = [] {
     Eigen::MatrixXd both = Eigen::MatrixXd::Zero(6, 6);
     both.topLeftCorner<3, 3>() = both.bottomRightCorner<3, 3>() = kTurn.nominal();

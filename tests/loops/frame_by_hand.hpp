@@ -4,9 +4,9 @@
 
 namespace loop_test {
 
-/// A frame (frames.hpp) by M, D and K of all bodies by themselves, with the rows that the joints
-/// hold: rigid bodies have six coordinates, beams twelve, in their frames. Of the library only the
-/// list of a joint's axes is used.
+/// A frame (frames.hpp) by M, D and K of all separate bodies, with the constraint rows of the
+/// joints: rigid bodies have six coordinates, beams twelve, in their frames. Of the library only
+/// the list of a joint's axes is used.
 struct FrameByHand {
   explicit FrameByHand(const Frame& frame);
 

@@ -6,10 +6,10 @@
 
 #include "assembly.hpp"
 
-/// Random frames: bodies that hang on each other through joints of all kinds, in space or in a
-/// plane, and further joints that close chains through them, on other bodies or on the ground, so
-/// that most bodies belong to several loops. Here the numbers alone; frame_diagram.hpp makes
-/// diagrams of them, frame_by_hand.hpp M, D and K.
+/// Random frames: bodies mounted on each other through joints of all kinds, in space or in a plane,
+/// and further joints that close chains through them, on other bodies or on the ground, so that
+/// most bodies belong to several loops. Here the numbers alone; frame_diagram.hpp makes diagrams of
+/// them, frame_by_hand.hpp M, D and K.
 
 namespace loop_test {
 

@@ -5,7 +5,8 @@
 #include "assembly.hpp"
 #include "support/five_masses.hpp"
 
-/// Integrated accelerations that the states hold already add none; rigid motion is integrated once.
+/// Integrated accelerations whose integrals are states already add none; rigid motion is integrated
+/// once.
 
 using namespace loop_test;
 using namespace titop;

@@ -131,7 +131,7 @@ TEST_CASE("dependent coordinates: linear in the bays of a ladder, n^1.5 log n in
 }
 
 TEST_CASE("two stiff supports beside a slide: stiff directions are constraints like the others") {
-  // The slide leaves x; both bushings hold the rest, by springs up to 1e8 times stiffer.
+  // The slide leaves x; both bushings fix the rest, by springs up to 1e8 times stiffer.
   for (const double ratio : {1.0, 2e6, 1e8}) {
     CAPTURE(ratio);
     Diagram d{"supports"};

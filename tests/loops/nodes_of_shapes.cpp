@@ -61,7 +61,7 @@ TEST_CASE("loops: rounding at a node of its shape does not hold a mode") {
       d.output("a", 6) = legs[1].child("D").accel;
       const System s = compile(d);
       CHECK(s.order() == 6);
-      // D hangs on the third mode alone: s^2 / (s^2 + 25).
+      // D depends on the third mode alone: s^2 / (s^2 + 25).
       CHECK(std::abs(s.transfer(0.7)(2, 2) / (0.49 / 25.49) - 1.0) <= 1e-9);
     }
 }

@@ -31,8 +31,8 @@ enum class Read { position, integrated, stretches };
 
 class Oriented {
  public:
-  /// Bit i of `turned`: spring i hangs the other way round. Every point's mass is shared among its
-  /// ends, or lies with the child ends alone where there are any.
+  /// Bit i of `turned`: spring i is mounted the other way round. Every point's mass is distributed
+  /// over its ends, or over the child ends alone if there are any.
   Oriented(int turned, bool with_children) : turned_(turned) {
     for (std::size_t i = 0; i < 5; ++i) {
       ends_[is_turned(i) ? kHangsOn[i] : i].push_back({i, true});

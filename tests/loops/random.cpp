@@ -6,8 +6,8 @@
 #include "support/promises.hpp"
 #include "support/rng.hpp"
 
-/// Random networks of spring-masses with closed chains: the promises of `chains` and `close`, and
-/// the transfer of the equations as written.
+/// Random networks of spring-masses with closed chains: the postconditions of `chains` and `close`,
+/// and the transfer of the equations as written.
 
 using namespace loop_test;
 using namespace titop;
@@ -15,8 +15,8 @@ using titop_test::Rng;
 
 namespace {
 
-/// Each mass hangs on the ground, on a mass before it, on a shaker or on nothing; some are locked
-/// to the ground, some welded to others, some accelerations are integrated.
+/// Each mass is mounted on the ground, on a mass before it, on a shaker or on nothing; some are
+/// locked to the ground, some welded to others, some accelerations are integrated.
 Diagram network(std::uint64_t seed) {
   Rng rng(seed);
   Diagram d{"network"};

@@ -4,8 +4,8 @@
 #include "frame_by_hand.hpp"
 #include "frame_diagram.hpp"
 
-/// Random frames (frames.hpp): orders and transfers as by M, D and K on the null space of all that
-/// the joints hold.
+/// Random frames (frames.hpp): orders and transfers as by M, D and K on the null space of all joint
+/// constraints.
 
 using namespace loop_test;
 
@@ -20,7 +20,7 @@ constexpr double kTolerance = 1e-8;
 /// (Constraints::clear).
 constexpr double kWeak = 1e-3;
 
-/// Coordinates that nothing springs back: accelerations do not show them.
+/// Coordinates without stiffness: accelerations do not depend on them.
 Index unsprung(const by_hand::Structure& a) {
   if (a.M.rows() == 0) return 0;
   const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> modes(a.K, a.M, Eigen::EigenvaluesOnly);
@@ -101,7 +101,7 @@ TEST_CASE("such frames with masses on springs and bushings between bodies: as by
 }
 
 TEST_CASE("dense entries that are nothing but rounding are no fault") {
-  for (const int seed : {523, 695}) {  // of 800, those that show it
+  for (const int seed : {523, 695}) {  // of 800, those affected
     CAPTURE(seed);
     const Frame f = random_frame(seed, true, false);
     const titop::System system = titop::compile(diagram_of({f}), {.minimize_up_to = 0});

@@ -6,8 +6,8 @@
 #include "support/rng.hpp"
 
 /// Random chains in space that close over a free hub, with sprung hinges, of rigid bodies and
-/// beams, many of them held more than once: orders and transfers as by M, D and K of all bodies by
-/// themselves, on the null space of all that the joints hold.
+/// beams, many of them over-constrained: orders and transfers as by M, D and K of all separate
+/// bodies, on the null space of all joint constraints.
 
 using namespace loop_test;
 using Eigen::Matrix3d;

@@ -5,7 +5,7 @@
 #include "assembly.hpp"
 #include "support/mistakes.hpp"
 
-/// Chains that are held more than once: motion is determined, internal forces are not.
+/// Over-constrained chains: motion is determined, internal forces are not.
 
 using namespace loop_test;
 using namespace titop;
@@ -251,7 +251,7 @@ TEST_CASE(
 }
 
 TEST_CASE("a chain that does not meet is refused, whatever the name of a spring beside it") {
-  // A table on two legs that stand on the ground, and a spring from it to the ground.
+  // A table on two legs mounted on the ground, and a spring from it to the ground.
   const auto table = [](const char* spring, double low) {
     Diagram d{"table"};
     auto base = d.add("base", RigidBody{.children = {{"C1"}, {"C2", {0, 1, low}}}});

@@ -50,7 +50,7 @@ MatrixXd null_space(const MatrixXd& m) {
 
 /// Loops side by side, as in a grid: each has columns of its own, and shares others with those on
 /// either side. Some loops repeat combinations of others; some columns are unknowns; some loops
-/// have a row with one entry, which holds its column.
+/// have a row with one entry, which sets its column to 0.
 Relations loops(Rng& rng) {
   Relations r;
   const int count = 3 + rng.below(6), across = 1 + rng.below(3), size = 1 + rng.below(4);

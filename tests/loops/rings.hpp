@@ -29,7 +29,7 @@ struct Ring {
     return r.a;
   }
 
-  /// Which equation stands where must not matter: `first` is the first one.
+  /// The order of equations must not matter: `first` is the first one.
   titop::Diagram diagram(int first = 0) const {
     titop::Diagram d{"ring"};
     const titop::FlexibleBody body = tube.beam();

@@ -147,7 +147,7 @@ TEST_CASE("both walls on one shaker: the sum of the stretches stays 0") {
 }
 
 TEST_CASE("five masses in a ring in space: order 8") {
-  // Springs i between masses i and i + 1, mass 5 hangs on mass 1 again.
+  // Springs i between masses i and i + 1, and one between masses 5 and 1.
   Diagram d{"ring"};
   std::vector<SpringMass::Handle> z;
   z.reserve(5);

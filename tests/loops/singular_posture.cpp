@@ -16,7 +16,7 @@ struct FourBar {
   Vector3d base;                     ///< of the rocker
 };
 
-/// In the plane z = 0 from the origin; the coupler stands along x. Springs on the crank.
+/// In the plane z = 0 from the origin; the coupler is along x. Springs on the crank.
 Diagram diagram(const FourBar& f) {
   Diagram d{"four_bar"};
   const Vector3d z(0, 0, 1);

@@ -63,7 +63,7 @@ struct Frame {
   Matrix3d between(const Edge& e) const { return frames[at(e.b)].transpose() * frames[at(e.a)]; }
 };
 
-/// `loops` more bushings than hold all bodies; stiffnesses between 1 and 2^octaves.
+/// `loops` more bushings than needed to support all bodies; stiffnesses between 1 and 2^octaves.
 Frame random_frame(std::uint64_t seed, int loops, int octaves) {
   Rng rng(seed);
   Frame f;
@@ -192,7 +192,7 @@ TEST_CASE("bodies on bushings in space, axes up to 2^53 times as stiff as others
 TEST_CASE("a platform on two flexible bodies, modes of 1 rad/s beside 1e10 rad/s in every axis") {
   for (const double fast : {1.0, 1e4, 1e6, 1e8, 1e10}) {
     CAPTURE(fast);
-    // One mode per axis; the softer of the two bodies stands first in half of the axes.
+    // One mode per axis; the softer of the two bodies is the first in half of the axes.
     const std::array<VectorXd, 2> omega = {
         (VectorXd(6) << 1, 2 * fast, 2 * fast, fast, 1.5, 0.5 * fast).finished(),
         (VectorXd(6) << fast, 3, 3 * fast, fast, 2 * fast, fast).finished()};

@@ -38,7 +38,7 @@ std::string name_of_bar(Names names, int number, const Vector3d& v) {
 /// A braced truss of rigid bars on pins, all in one plane: every bay has two loops.
 struct Truss {
   int bays = 1;
-  bool crossed = false;  ///< a second brace, which holds nothing that the first does not
+  bool crossed = false;  ///< a second brace, which constrains nothing in addition to the first
   int read = -1;         ///< the bar of which a force is an output
   bool axial = true;     ///< of it along the bar; else all
   Names names = Names::along;
@@ -56,7 +56,7 @@ Diagram truss(const Truss& shape) {
   std::vector<char> placed(nodes.size(), 0);
   placed[0] = 1;
   int count = 0;
-  const auto bar = [&](int a, int b) {  // two nodes stand side by side, bays 1 m apart
+  const auto bar = [&](int a, int b) {  // two nodes side by side, bays 1 m apart
     const Vector3d v(b / 2 - a / 2, b % 2 - a % 2, 0);
     const Rotation R = Rotation::about({0, 0, 1}, std::atan2(v.y(), v.x()));
     const std::string name = name_of_bar(shape.names, count, v);
@@ -140,7 +140,7 @@ TEST_CASE("a truss of rigid bars: who reads an internal force is found by a few 
   using namespace titop_test;
   for (const int read : {3, 40}) {
     CAPTURE(read);
-    // A hinge holds five directions; round each of 24 triangles the three out of the plane are
+    // A hinge constrains five directions; round each of 24 triangles the three out of the plane are
     // held already.
     const System system = compile(truss({12, false, read}), {.minimize_up_to = 0});
     CHECK(system.log().find("judged by 32 sums of 72") != std::string::npos);

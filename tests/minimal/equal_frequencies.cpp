@@ -61,7 +61,7 @@ TEST_CASE("minimal: equal frequencies with different damping are different modes
     }
   // With equal damping one of the two is not seen.
   check_order(compile(side_by_side({two[0], two[0]})), 2);
-  // Three, two of them alike; their order in the scene does not matter.
+  // Three, two of them equal; their order in the scene does not matter.
   check_order(compile(side_by_side({two[0], two[1], two[0]})), 4);
 }
 

@@ -216,8 +216,9 @@ TEST_CASE("beams whose numbers are no fractions of two, held at the tip: two per
     d.output("a", 6) = b.child.accel;
     const ExactOrder exact = exact_order(d.graph(), {.states = 60});
     CHECK(exact.decided);
-    // Two bodies of two elements have 12 modes each. Where both ends of the row hold its length, or
-    // its twist, one mode of that kind has its node in the middle, where it is pushed and watched.
+    // Two bodies of two elements have 12 modes each. If both ends of the row fix its length, or its
+    // twist, one mode of that kind has its node in the middle, where the force acts and the motion
+    // is read.
     const int with_node = held == 6 ? 2 : held == 3 ? 1 : 0;
     CHECK(exact.order == 2 * (24 - held - with_node));
     CHECK(compile(d).order() == 2 * (24 - held));

@@ -212,7 +212,7 @@ TEST_CASE("two integrators that are one but for their last places: undecided, an
   CHECK(equal.model.order() == 1);
   CHECK(equal.order.decided());
   CHECK(near.order.lowest <= 1);
-  // Outputs see their sum alone, for any inputs.
+  // Outputs depend on their sum alone, for any inputs.
   CHECK(near.model.order() == 1);
   CHECK(apart.model.order() == 1);
   const auto seen_apart = [](double off) {

@@ -101,7 +101,7 @@ TEST_CASE(
 
 TEST_CASE("slow block: where the factors have no digit, a transfer is refused, not found by luck") {
   // In rotated frames the last place of the arms decides there: in 50 digits the chain does not
-  // close exactly, and the remainder holds it.
+  // close exactly, and the remainder constrains it.
   const System system = compile(with_filter(1e-6));
   for (const double w : {1e-8, 1e-9}) CHECK_THROWS_AS(system.transfer({0.05 * w, w}), Error);
   CHECK(system.transfer({0, 1e-3}).allFinite());

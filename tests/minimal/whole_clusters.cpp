@@ -80,9 +80,8 @@ struct Planted {
   int order;
 };
 
-/// A Jordan block of size k at `pole`, of which inputs move the first r coordinates and outputs see
-/// nothing of the first q: r - q of it count. With it pairs that count, all in turned
-/// coordinates.
+/// A Jordan block of size k at `pole`, of which inputs move the first r coordinates and the first q
+/// are unobservable: r - q of it count. With it pairs that count, all in turned coordinates.
 Planted planted(Rng& rng, Index k, Index r, Index q, double pole, Index pairs) {
   const Index n = k + 2 * pairs;
   MatrixXd A = MatrixXd::Zero(n, n), B = rng.matrix(n, 2), C = rng.matrix(2, n);

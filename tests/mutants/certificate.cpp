@@ -66,7 +66,7 @@ Diagram in_tune() {
 constexpr double kNobody = 1e-13;
 Diagram nearly_in_tune() {
   Diagram d{"nearly in tune"};
-  // Outputs see less of the pair on the soft hub than inputs drive it, on the hard one more.
+  // The pair on the soft hub is less observable than controllable, on the hard one more.
   for (const bool soft : {true, false}) {
     const std::string name = soft ? "soft" : "hard";
     auto hub = d.add(name, SpringMass{.mass = 4, .stiffness = soft ? 64.0 : 900.0});
@@ -124,8 +124,8 @@ Diagram triangle() {
   return d;
 }
 
-/// Two chains, free in space: of one a position that the states hold already is integrated again,
-/// of the other only a difference of positions is read.
+/// Two chains, free in space: of one a position that is a function of the states already is
+/// integrated again, of the other only a difference of positions is read.
 Diagram free_chains() {
   Diagram d{"free chains"};
   auto u = d.input("u"), v = d.input("v");

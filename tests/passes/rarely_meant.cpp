@@ -61,7 +61,7 @@ TEST_CASE("a spring or damper that drives its joint away is warned of") {
 }
 
 TEST_CASE("the sum of direct terms in a joint's own angle counts") {
-  CHECK(warnings_of([](Diagram& d, auto&, auto&, auto& h) {  // a law, whose signs are its own
+  CHECK(warnings_of([](Diagram& d, auto&, auto&, auto& h) {  // a law, of any sign
           auto law = d.add("law", Gain{.gain = -900.0});
           law.in = h.angle;
           h.torque = law.out;

@@ -8,7 +8,7 @@
 
 #include "support/five_masses.hpp"
 
-// The order in which a scene is written does not show in its model, to the last bit: rows and
+// The model does not depend on the order in which a scene is written, to the last bit: rows and
 // columns follow the declarations, their entries do not.
 
 using namespace titop;
@@ -16,7 +16,7 @@ using namespace titop_test;
 
 namespace {
 
-/// Runs these steps in an order that the seed decides; seed 0: as they stand.
+/// Runs these steps in an order determined by the seed; seed 0: as given.
 void run(std::vector<std::function<void()>> steps, unsigned seed) {
   std::mt19937 random(seed);
   if (seed != 0)
@@ -98,7 +98,7 @@ StateSpace satellite(unsigned seed) {
   return compile(d).state_space();
 }
 
-/// Where each name of `names` stands in `among`; all must be there.
+/// Position of each name of `names` in `among`; all must be there.
 std::vector<int> places(const std::vector<std::string>& names,
                         const std::vector<std::string>& among) {
   std::vector<int> result;

@@ -34,7 +34,7 @@ bool has(const std::string& text, const std::string& part) {
   return text.find(part) != std::string::npos;
 }
 
-/// A bar on the ground; `hang` hangs something on its end.
+/// A bar on the ground; `hang` mounts something on its end.
 template <class Hang>
 std::string note(fe::ModeOptions modes, Hang hang) {
   Diagram d{"bar"};

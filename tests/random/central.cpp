@@ -7,8 +7,8 @@
 #include "support/promises.hpp"
 #include "support/random_checks.hpp"
 
-/// The central property, on 200 seeded random diagrams: every pass keeps the transfer and its own
-/// promise, and the compiled system agrees with the equations as written.
+/// The central property, on 200 seeded random diagrams: every pass keeps the transfer and satisfies
+/// its own postcondition, and the compiled system agrees with the equations as written.
 
 using namespace titop_test;
 

@@ -15,7 +15,7 @@ namespace report = titop::report;
 
 namespace {
 
-/// A free hub, steered by its own attitude, which no state holds; and an Integrator of the user's.
+/// A free hub, steered by its own attitude, which is no state; and an Integrator of the user's.
 Diagram steered() {
   Diagram d{"steered"};
   auto hub = d.add("hub", RigidBody{.mass = 10, .children = {{"C", {1, 0, 0}}}});

@@ -58,7 +58,7 @@ Diagram scene(const Chain& chain) {
   return d;
 }
 
-/// Coordinates: base (6, if free), then per link the joint's angle and the nodes' own motion.
+/// Coordinates: base (6, if free), then per link the joint's angle and the nodes' elastic motion.
 by_hand::Structure assemble(const Chain& chain) {
   Index n = chain.grounded ? 0 : 6;
   for (const Link& l : chain.links) n += (l.hinged ? 1 : 0) + 6 * l.tube.elements;

@@ -10,7 +10,7 @@
 #include "support/rng.hpp"
 
 /// Loops in which every block feeds every other one. Rounding of many pivots adds up there, and the
-/// rounding of an exactly singular loop passes for a pivot: 50 digits decide.
+/// rounding of an exactly singular loop is taken for a pivot: 50 digits decide.
 
 using namespace titop;
 using namespace titop_test;

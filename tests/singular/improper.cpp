@@ -19,8 +19,8 @@ using namespace titop_test;
 
 namespace {
 
-/// A force on the massless end of a spring, which another spring with a mass hangs on. The end's
-/// own motion is a share of the output.
+/// A force on the massless end of a spring, on which another spring with a mass is mounted. The
+/// end's own motion is a share of the output.
 Diagram seen_by(double share, bool rate) {
   Diagram d{"loaded"};
   auto u = d.input("u");

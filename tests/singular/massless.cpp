@@ -38,7 +38,8 @@ double error_against(const System& system, Exact exact) {
   return std::max(by_hand::transfer_error(factored, right), by_hand::transfer_error(dense, right));
 }
 
-/// z hangs on the point where `at` begins: same motion, and the point has no mass to take a force.
+/// z is mounted on the point where `at` begins: same motion, and the point has no mass to take a
+/// force.
 void hang(const SpringMass::Handle& z, const SpringMass::Handle& at) {
   z.parent.accel = at.parent.accel;
   at.parent.force += -z.parent.force;

@@ -47,7 +47,7 @@ class RandomNetwork {
       titop::ground(z[0]);
       tie(0, -1, springs_[0]);
     } else {
-      titop::release(z[0]);  // its spring hangs loose, and stays as long as it is
+      titop::release(z[0]);  // its spring has a free end and does not change length
       if (springs_[0].c > 0) ++loose_;
     }
     while (static_cast<int>(mass_.size()) < masses) {
@@ -128,7 +128,7 @@ class RandomNetwork {
     a.C.leftCols(masses).setIdentity();
     bool grounded = false;
     for (const Tie& t : ties_) grounded = grounded || t.b < 0;
-    // Free: the states hold no common position and rate.
+    // Free: the states contain no common position and rate.
     const int order = 2 * static_cast<int>(masses) + damped_ + (grounded ? 0 : -2 + loose_);
     return {std::move(d), std::move(a), order, {}};
   }

@@ -49,7 +49,7 @@ struct Stand {
   bool second = false, halves = false;
   bool spin = false, turn = false;  ///< outputs that depend on it: acceleration, angle at the foot
   bool twisted = false;             ///< a torque on the strut
-  bool as_hung = false;             ///< names sort as the parts hang on each other
+  bool as_hung = false;             ///< names sort in the order of mounting
 
   Diagram diagram() const {
     Diagram d{"strut"};
@@ -152,7 +152,7 @@ int count_of(const std::string& text, const std::string& part) {
   return count;
 }
 
-/// Factors and dense model against the truth; the smallest digits count. Blocks of three.
+/// Factors and dense model against the reference; the smallest digits count. Blocks of three.
 template <class Exact>
 double error_against(const System& system, Exact exact) {
   std::vector<MatrixXcd> right;
@@ -238,7 +238,7 @@ TEST_CASE("a strut on springs that do not twist: their twist is read by nothing"
     d.output("a", 6) = body.parent.accel;
     return compile(d);
   };
-  const System free = scene(0), held = scene(70);  // held: no torque turns it
+  const System free = scene(0), held = scene(70);  // held: no torque about it
   CHECK(count_of(free.log(), kSpin) == 1);
   CHECK(held.log().find("nothing determines") == std::string::npos);
   CHECK(error_against(free, [&](Complex s) { return held.transfer(s); }) <= 1e-10);

@@ -7,7 +7,7 @@
 #include "support/random_scene.hpp"
 #include "support/rng.hpp"
 
-/// The sparse model before elimination: solved as it stands it has the same transfer.
+/// The sparse model before elimination: solved without elimination it has the same transfer.
 
 using namespace titop;
 using titop_test::matrix_error;

@@ -74,7 +74,7 @@ TEST_CASE("double-double: each operation is right to 2^-104") {
   CHECK(difference <= 0.6 * kUnit);
   CHECK(product <= 0.8 * kUnit);
   CHECK(quotient <= 0.6 * kUnit);  // of two digits in place of three: 0.9
-  CHECK(sum > 0);                  // 150 digits see more than 32
+  CHECK(sum > 0);                  // 150 digits resolve more than 32
 }
 
 TEST_CASE("double-double: the range that is promised has all digits, and ends there") {

@@ -6,7 +6,7 @@
 #include "oracle.hpp"
 
 /// Blocks far below their own frequencies, where C (s - A)^-1 B + D is a small difference: finer
-/// precisions find blocks from their matrices, and are right to their own digits all the same.
+/// precisions compute blocks from their matrices, and are still accurate to their own digits.
 /// Against 150 digits.
 
 using namespace titop;

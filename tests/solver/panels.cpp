@@ -95,8 +95,8 @@ void compare() {
     }
 }
 
-/// A textbook's elimination by rows, whole steps, with pivots: the row where the column stands out
-/// most against the row's own size at the start, its columns given the same size by `column`, among
+/// Textbook elimination by rows, whole steps, with pivots: the row where the column is largest
+/// relative to the row's own size at the start, its columns given the same size by `column`, among
 /// those where it is at least a tenth of the largest by the sizes that rows have at the start by
 /// `common`.
 struct Textbook {

@@ -84,7 +84,7 @@ void check_sizes(const T& s) {
     }
 }
 
-/// Poles that whole numbers hit exactly: a pivot is 0 wherever the rows stand.
+/// Poles that integers hit exactly: a pivot is 0 in any order of rows.
 template <class T>
 void check_singular() {
   Rng rng(4602);

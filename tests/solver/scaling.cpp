@@ -138,7 +138,7 @@ TEST_CASE("column scale: threes share an exponent, whichever way their frame is 
   const std::vector<int> e = turned(0);
   for (const int j : {1, 2}) CHECK(e[static_cast<std::size_t>(j)] == e[0]);
   for (const int j : {5, 6}) CHECK(e[static_cast<std::size_t>(j)] == e[4]);
-  CHECK(e[0] - e[4] == q[2] - q[0]);  // alike up to their units
+  CHECK(e[0] - e[4] == q[2] - q[0]);  // equal up to their units
   CHECK(turned(1) == e);
   CHECK(turned(2) == e);
 }

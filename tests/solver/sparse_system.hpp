@@ -152,7 +152,7 @@ inline Structure structure_of(const Links& links, const std::vector<int>& sizes)
 }
 
 /// Entries in [-1, 1], plus `diagonal` on the diagonal; groups of 1, 3 and 6 scalars. The rows are
-/// in random order, so that nothing hangs on where the pivots stand.
+/// in random order, so that the places of pivots do not matter.
 inline System random_system(const Links& links, int n, titop_test::Rng& rng, double diagonal) {
   std::vector<int> sizes;
   for (int i = 0; i < n; ++i) sizes.push_back(std::vector<int>{1, 1, 3, 6}[at(rng.below(4))]);

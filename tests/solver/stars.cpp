@@ -41,7 +41,7 @@ Diagram star(int n, double mass = 100) {
   return d;
 }
 
-/// A hub of 40 points whose free parent has no mass at all: nothing else hangs there.
+/// A hub of 40 points whose free parent has no mass at all: nothing else is mounted there.
 Diagram bare_hub(double mass) {
   Diagram d{"bare"};
   RigidBody hub{.mass = mass};

@@ -132,7 +132,7 @@ TEST_CASE("update: there and back with modes is the same to the last bit") {
 }
 
 TEST_CASE("update: one frequency makes only the fronts up to the root again") {
-  // A balanced tree of hubs: a wing hangs on the last.
+  // A balanced tree of hubs: a wing is mounted on the last.
   Diagram d{"tree"};
   auto U = d.input("U", 6);
   const int n = 127;

@@ -54,7 +54,7 @@ class Equations {
     return m;
   }
 
-  /// E becomes the identity: z stands behind it.
+  /// E becomes the identity: z is at the end.
   void solve() {
     for (std::vector<Number>& row : rows_)
       if (const Real most = largest(row); most != 0)
@@ -163,7 +163,7 @@ class Assembly {
     for (Index i = 0; i < count; ++i) rows.push_back(rows_->add());
     return rows;
   }
-  /// rows += factor * signal; an input stands on the other side.
+  /// rows += factor * signal; an input is on the other side.
   void add(const std::vector<Row>& rows, const MatrixXd& factor, int signal,
            const Number& by = Number(1)) {
     const bool other = g_.signals[at(signal)].role == Signal::Role::external;

@@ -16,7 +16,7 @@ Eigen::MatrixXcd modal_transfer(const titop::ModalData& d, Complex s) {
   const Eigen::ArrayXcd denominator = s * s +
                                       s * (2 * d.xi.array() * d.omega.array()).cast<Complex>() +
                                       d.omega.array().square().cast<Complex>();
-  // D holds the rigid part; B' eta'' adds the rest, with eta'' = s^2 / (...) B u.
+  // D contains the rigid part; B' eta'' adds the rest, with eta'' = s^2 / (...) B u.
   const Eigen::VectorXcd gain = (s * s / denominator).matrix();
   return D.cast<Complex>() + B.transpose() * gain.asDiagonal() * B;
 }

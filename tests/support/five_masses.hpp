@@ -4,7 +4,7 @@
 #include <complex>
 #include <titop/titop.hpp>
 
-/// [Alazard 2015] Fig. 7: five masses, 2 and 3 hang on 1, 4 and 5 hang on 2, 1 on the wall.
+/// [Alazard 2015] Fig. 7: five masses, 2 and 3 are mounted on 1, 4 and 5 on 2, 1 on the wall.
 namespace titop_test {
 
 using Five = std::array<double, 5>;

@@ -101,7 +101,7 @@ Sketch draw(Rng& rng, bool flexible) {
   const int bodies = 2 + rng.below(4), loops = 1 + rng.below(2);
   for (int i = 0; i < bodies; ++i) s.bodies.push_back(draw_body(rng, flexible));
   for (int i = 0; i < bodies; ++i) {
-    if (i == 0 && rng.chance(0.5)) continue;  // nothing holds the first one
+    if (i == 0 && rng.chance(0.5)) continue;  // the first one is free
     HalfTie t{.target = i, .source = i == 0 ? -1 : rng.below(i)};
     draw_source(rng, s, t, body(s, i).place);
   }

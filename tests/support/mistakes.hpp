@@ -36,7 +36,7 @@ inline bool says(const titop::Error& error, titop::Code code,
   return false;
 }
 
-/// "language/ports.cpp:17", the line after the one that this call stands on.
+/// "language/ports.cpp:17", the line after that of this call.
 inline std::string next_line(std::source_location at = std::source_location::current()) {
   const std::string here = titop::to_string(at);
   return here.substr(0, here.rfind(':') + 1) + std::to_string(at.line() + 1);

@@ -2,7 +2,7 @@
 
 #include <titop/compiler/stage.hpp>
 
-/// The promise of each pass, implemented a second time; std::logic_error if a promise is broken.
+/// The postcondition of each pass, implemented independently; std::logic_error if it is violated.
 namespace titop_test {
 
 /// One numeric coefficient per term, every degree of freedom of a channel driven once.

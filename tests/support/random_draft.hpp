@@ -57,7 +57,7 @@ std::string draw_filter(Draft& d, Dim in, Dim out, double gain, double direct);
 
 /// A spring-mass; its parent mass is positive if that end is `free`.
 std::string draw_spring(Draft& d, bool free);
-/// Forces, controllers and outputs on a spring-mass that hangs in a scene.
+/// Forces, controllers and outputs on a spring-mass mounted in a scene.
 void use_spring(Draft& d, const std::string& z);
 
 /// Controllers of 3 to 12 states (random_lti.hpp) around all that has been drawn.

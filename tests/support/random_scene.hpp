@@ -45,7 +45,7 @@ struct SceneOptions {
   Family family = Family::scalar;
   Shape shape = Shape::tree;
   int bodies = 6;      ///< of the largest assembly
-  int assemblies = 1;  ///< parts that hang together through nothing
+  int assemblies = 1;  ///< parts without coupling
   Damping damping = Damping::some;
   bool controllers = true;    ///< Lti, Gain, Sum and MatrixGain between outputs and forces
   bool incomplete = false;    ///< parts without inputs or outputs, now and then a whole diagram
@@ -85,7 +85,7 @@ class Scene {
   std::string name;
   std::vector<Step> adds, equations;
   std::vector<std::vector<Dim>> inputs, outputs;  ///< of each, scalar by scalar; declared order
-  /// Relative motions that no spring holds (a free hinge) or that inputs impose on the springs
+  /// Relative motions without stiffness (a free hinge) or that inputs impose on the springs
   /// (both ends of a chain prescribed): at most two poles at 0 each.
   int loose = 0;
 

@@ -14,7 +14,7 @@ namespace {
 
 struct Body {
   std::string name;
-  std::vector<std::string> sites;  ///< one per body that hangs here, and "T" for everything else
+  std::vector<std::string> sites;  ///< one per body mounted here, and "T" for everything else
   int modes = 0;
   bool stiff = false;  ///< a beam: prescribing both of its ends loses the digits of (omega / s)^2
 };
@@ -266,7 +266,7 @@ void draw_slosh(Draft& d, const std::string& a) {
   use_spring(d, next);
 }
 
-/// Holds the tip: by the ground if nothing else does, by an input if the modes can follow.
+/// Fixes the tip: by the ground if nothing else does, by an input if the modes can follow.
 void draw_tip(Draft& d, const Body& body, Root root) {
   const std::string a = body.name;
   const Vector3d r = draw_axis(d);

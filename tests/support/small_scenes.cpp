@@ -61,7 +61,7 @@ Diagram loose_parts() {
   deaf.in = z1.stretch;
   still.in = undriven.stretch;
   z1.child.force += still.out;
-  auto island = d.add("island", Integrator{});  // hangs together with nothing
+  auto island = d.add("island", Integrator{});  // is coupled to nothing
   island.in = -1 * island.out;
   d.output("x") = z2.position;
   d.output("dead") = undriven.stretch;

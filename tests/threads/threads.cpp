@@ -181,7 +181,7 @@ int called_late(int most, std::chrono::milliseconds late) {
 
 TEST_CASE("threads: whoever comes when a call has ended calls nobody else") {
   using std::chrono::milliseconds;
-  for (const int most : {2, 5})  // a caller that is held up itself may take longer to end
+  for (const int most : {2, 5})  // a caller that is delayed itself may take longer to end
     CHECK((called_late(most, milliseconds(20)) == 1 || called_late(most, milliseconds(200)) == 1 ||
            called_late(most, milliseconds(2000)) == 1));
 }

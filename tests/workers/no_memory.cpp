@@ -7,8 +7,8 @@
 #include <new>
 #include <titop/compiler/workers.hpp>
 
-/// A thread that there is no memory for. (A program of its own: clang's thread sanitizer, under
-/// which the tests of threads and of kernels run, brings its own operator new.)
+/// A thread whose memory cannot be allocated. (A separate program: clang's thread sanitizer, under
+/// which the tests of threads and of kernels run, replaces operator new.)
 
 namespace {
 thread_local bool no_memory = false;

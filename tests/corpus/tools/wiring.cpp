@@ -60,8 +60,8 @@ class Wiring {
   }
 
  private:
-  /// Rows of inputs and outputs node by node. The two signals of a channel stand at the same row of
-  /// u and y: if the output is driven, the row is swapped.
+  /// Rows of inputs and outputs node by node. The two signals of a channel are at the same row of u
+  /// and y: if the output is driven, the row is swapped.
   void place() {
     for (const Node& n : g_.nodes) {
       const Interface& face = n.block->interface();

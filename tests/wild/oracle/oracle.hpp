@@ -21,8 +21,8 @@ struct Truth {
   std::vector<Eigen::MatrixXcd> H;  ///< per s
   /// Redundant constraints, of over-constrained loops.
   int redundant = 0;
-  /// Why there is no answer: an internal force of such a loop is read, a prescribed motion stands
-  /// against another, a posture is nearly singular. Empty: there is one.
+  /// Why there is no answer: an internal force of such a loop is read, two prescribed motions
+  /// contradict each other, a posture is nearly singular. Empty: there is one.
   std::string none;
 };
 Truth truth(const Scene& scene, const std::vector<Complex>& s, Digits digits = Digits::wide);

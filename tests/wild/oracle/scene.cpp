@@ -49,7 +49,7 @@ MatrixXd rows_of(const Scene& scene, const Tie& tie) {
 }
 
 bool closes(const Scene& scene) {
-  // Groups of nodes that hang together; the ground is the last one.
+  // Groups of coupled nodes; the ground is the last one.
   std::vector<std::size_t> group(scene.nodes.size() + 1);
   std::iota(group.begin(), group.end(), std::size_t{0});
   const auto of = [&](int node) { return node < 0 ? group.back() : group[at(node)]; };

@@ -75,7 +75,7 @@ struct Node {
   Matrix6d D_P;             ///< of a body with modes
   std::vector<Site> sites;  ///< body
 
-  std::vector<Axis> axes;  ///< joint: its site 0 is where the body hangs
+  std::vector<Axis> axes;  ///< joint: its site 0 is where the body is mounted
 
   MatrixXd A, B, C, D;  ///< lti
   Sum in;               ///< lti

@@ -130,7 +130,7 @@ class Writer {
           const Vector3d there = t.T * axis.r;
           const DualPort<1> one = axis.turns ? a.about(axis.r) : a.along(axis.r);
           const DualPort<1> other = axis.turns ? b.about(there) : b.along(there);
-          // By matrices: the two stand in different frames.
+          // By matrices: the two are in different frames.
           one.accel = MatrixXd::Constant(1, 1, 1.0) * other.accel;
           other.force += MatrixXd::Constant(1, 1, sign) * one.reaction;
         }
