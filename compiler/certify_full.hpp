@@ -64,13 +64,13 @@ struct FullCertificate {
     std::complex<double> rightmost;  ///< largest Re(s) / |s|
   } poles;
 
-  /// Of the inputs that are forces with an output that is the acceleration where they act: the
+  /// For the inputs that are forces with an output that is the acceleration where they act: the
   /// smallest eigenvalue of the Hermitian part of G(s) / s, rows and columns scaled to diagonal 1,
-  /// over the grid and around the poles right of the axis that a transfer shows. Negative: energy
-  /// comes out (a controller may do that; a structure may not). A force that moves another's point
-  /// and not its own counts as -1. The diagonal counts 64 units of rounding more, of the largest
-  /// entry in its unit; if that is not enough, also 1e-3 of the terms that cancel, as double
-  /// against long double shows them.
+  /// over the grid and around the poles right of the axis that affect a transfer. Negative: the
+  /// model can deliver energy (a controller may do that; a structure may not). A force that moves
+  /// another's point and not its own counts as -1. The diagonal counts 64 units of rounding more,
+  /// of the largest entry in its unit; if that is not enough, also 1e-3 of the terms that cancel,
+  /// by double against long double.
   struct Passivity : Checked {
     int pairs = 0;
     double least = 0;
@@ -104,8 +104,8 @@ struct FullCertificate {
     std::string why_no_structure;  ///< "hub.parent.force is driven by K.out"
   } reciprocity;
 
-  /// Of the minimal dense model. If exact arithmetic finds states that were removed as rounding
-  /// (two frequencies one ulp apart), the interval extends to the exact order.
+  /// Verdict on the minimal dense model. If exact arithmetic finds states that were removed as
+  /// rounding (two frequencies one ulp apart), the interval extends to the exact order.
   OrderVerdict order;
   ExactOrder exact;  ///< independent of all passes, if the diagram is small
 

@@ -14,10 +14,10 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
 constexpr double kCancelled = 1e-3;  ///< of the terms
-/// Of its neighbours: a 0 in 32 digits may be 1e-26, which is then 1e-8 of this, the limit; in
-/// double it is 1e-17.
+/// Floor of sizes, relative to neighbours: a 0 in 32 digits may be 1e-26, which is then 1e-8 of
+/// this, the limit; in double it is 1e-17.
 constexpr double kFinest = 1e-18;
-/// Of its neighbours: more rounding than that is no 0 that double misses, but digits lost.
+/// Relative to neighbours: more rounding means lost digits, not a 0 that double misses.
 constexpr double kOfNothing = 1e-6;
 
 using linalg::at;

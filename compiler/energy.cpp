@@ -6,8 +6,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// Of every state of a block: its stiffness if it is a position, else 0. Empty if the block does
-/// not define its energy.
+/// Per state of a block: its stiffness if it is a position, else 0. Empty if the block does not
+/// define its energy.
 Eigen::VectorXd stiffness_of(const Block& block, const Dynamics& d, ParameterValues values) {
   const auto kinematics = block.kinematics(values);
   if (!kinematics) return {};

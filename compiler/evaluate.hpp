@@ -90,7 +90,7 @@ class Evaluation {
   solve::RowMatrix<T> rounding() const;
   /// Likewise of all signals, as values().
   solve::RowMatrix<T> rounding_of_values(std::span<const int> first) const;
-  /// Of the elimination: see Certificate::weakest_pivot.
+  /// Weakest pivot of the elimination: see Certificate::weakest_pivot.
   double weakest_pivot() const { return factors_->health().weakest; }
 
  private:

@@ -15,7 +15,7 @@ class Instant {
           const solve::RowMatrix<double>& more = {},
           solve::Solution solution = solve::Solution::once);
 
-  /// Of the joint system, in the order of Plan::first.
+  /// Unknowns of the joint system, in the order of Plan::first.
   const solve::RowMatrix<double>& unknowns() const { return unknowns_; }
 
   /// to += the signal, size x columns, row-major.
@@ -24,7 +24,7 @@ class Instant {
   /// All signals, one below the other: signal i from row first[i] on; first[signals] is the end.
   solve::RowMatrix<double> values(std::span<const int> first) const;
 
-  /// Of all blocks' states: A x + B (inputs of the block).
+  /// Derivatives of all blocks' states: A x + B (inputs of the block).
   solve::RowMatrix<double> xdot() const;
 
   /// The diagram's outputs.

@@ -70,7 +70,7 @@ StateSpace with_certain_ports(const System& system, const SystemData& d, const S
   return part;
 }
 
-/// Of entries with fewer digits, a mode's part may be rounding.
+/// If entries have fewer digits, a mode's part may be rounding.
 constexpr double kUnclearDigits = 1e-3;
 
 /// Every port is judged by its own size, so one at rounding level would count as moved and seen. If

@@ -17,7 +17,7 @@ using linalg::at;
 
 using solve::lifted;
 
-/// Of refinement, at most: at kShrinks each they lead to 1e-18.
+/// Most steps of refinement: at kShrinks each they lead to 1e-18.
 constexpr int kSteps = 30;
 /// A larger change of the outputs needs another step, for any T.
 constexpr double kSettled = 1e-12;
@@ -27,8 +27,8 @@ constexpr double kShrinks = 0.25;
 /// If the first step changes no block of the unknowns by more, that steps shrink is plain by then;
 /// else a second step has to show it.
 constexpr double kPlain = 1e-9;
-/// Of the entries in the same row and column: a 0 after rotations of frames, cos(pi / 2) = 6e-17.
-/// More digits resolve it, but the data do not.
+/// Relative to the entries in the same row and column: level of a 0 after rotations of frames,
+/// cos(pi / 2) = 6e-17. More digits resolve it, but the data do not.
 constexpr double kOfFrames = 1e-15;
 /// Likewise a 0 after sums over many bodies: no reason for more digits.
 constexpr double kOfSums = 1e-13;

@@ -11,7 +11,7 @@
 
 namespace titop::solve {
 
-/// Of blocks by themselves only, where fewer digits cancel.
+/// For single blocks only, where fewer digits cancel.
 using Complex100 = boost::multiprecision::cpp_complex_100;
 
 template <>

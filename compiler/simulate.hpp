@@ -60,9 +60,9 @@ struct Simulation {
   Stepper stepper = Stepper::automatic;
   Eigen::VectorXd x0 = {};   ///< states at time 0, in the order of System::states(); none: 0
   bool keep_states = false;  ///< Trajectory::x at all times
-  /// Of the automatic choice: the largest Trajectory::error that is accepted; above it the exact
-  /// stepper is replaced by midpoint. Use infinity for outputs that no motion has reached yet (far
-  /// down a row): they have no digit.
+  /// The largest Trajectory::error that the automatic choice accepts; above it the exact stepper is
+  /// replaced by midpoint. Use infinity for outputs that no motion has reached yet (far down a
+  /// row): they have no digit.
   double accuracy = 0.01;
 };
 

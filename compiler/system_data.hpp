@@ -80,7 +80,7 @@ struct SystemData {
   solve::Numbers numbers;
   StateMap states;  ///< those of the model
   std::unique_ptr<const solve::Factors<double>> factors;
-  /// Of the equations as written, if they are others than those of the factors.
+  /// Scale of the equations as written, if they are others than those of the factors.
   std::shared_ptr<const solve::ColumnScale> scale_as_written;
   /// Per loop of the stage as compiled; 0 if it was not found.
   std::shared_ptr<const std::vector<double>> margins;
@@ -135,9 +135,9 @@ Rates rates(const SystemData& data, const solve::RowMatrix<double>& known,
 /// units of its states, and in units of 1 / time. 0 if A does not determine it. O(n^2) as a rule.
 double frequency_of(const Eigen::MatrixXd& A);
 
-/// Of an assembly by its written A, in which rigid bodies between springs have no frequency by
-/// themselves: the mean (in its logarithm) over the states and the largest, each of a state by the
-/// product of two entries. Empty if A does not determine them. O(n^2).
+/// Frequencies of an assembly by its written A, in which rigid bodies between springs have no
+/// frequency as blocks: the mean (in its logarithm) over the states and the largest, each of a
+/// state by the product of two entries. Empty if A does not determine them. O(n^2).
 std::vector<double> frequencies_of(const Eigen::MatrixXd& A);
 
 /// An s of about this modulus, so far off the axis that no pole is near.

@@ -43,7 +43,7 @@ class Part {
 };
 
 struct Signal {
-  /// Of its block; external: of the diagram.
+  /// Role in its block; external: in the diagram.
   enum class Role : std::int8_t { input, output, state, external };
   Role role = Role::input;
   Quantity quantity = Quantity::plain;

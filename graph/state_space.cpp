@@ -10,9 +10,9 @@
 namespace titop {
 namespace {
 
-/// Of A, its entries scaled: below it rounding decides whether A is singular, as its entries may be
-/// off by some units in the last place. (A spring of 1e-12 with one of 1 has 1e-12, the static
-/// bending of a row of 20 beams 4e-13.)
+/// Limit for A with scaled entries: below it rounding decides whether A is singular, as its entries
+/// may be off by some units in the last place. (A spring of 1e-12 with one of 1 has 1e-12, the
+/// static bending of a row of 20 beams 4e-13.)
 constexpr double kSingular = 10 * std::numeric_limits<double>::epsilon();
 /// If one step of refinement changes the solution by more, it has no digit.
 constexpr double kNoDigit = 0.1;

@@ -171,7 +171,8 @@ class Artist {
       read({.of = Reading::Of::acceleration, .point = {i, "child"}}, 1);
   }
 
-  /// Of order 1 or 2. Its contribution to the mass is positive, so that the loop is never singular.
+  /// A controller of order 1 or 2. Its contribution to the mass is positive, so that the loop is
+  /// never singular.
   Control control(bool acceleration, int block) {
     Control c{.name = fresh("K"), .block = block};
     c.law = acceleration ? Control::Law::acceleration : Control::Law::position;

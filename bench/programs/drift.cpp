@@ -138,9 +138,9 @@ Diagram masses(int n, bool wall) {
 // --- a chain that must stay closed
 // ----------------------------------------------------------------
 
-/// Of masses(6, true), stretches and rates: s_i'' = a_i - a_(i-1) with the walls' accelerations 0
-/// and m_i a_i = k_(i+1) s_(i+1) - k_i s_i. No equation makes the sum of the stretches 0; the
-/// initial sum and its rate are kept, as two poles at 0.
+/// The model of masses(6, true) in stretches and rates: s_i'' = a_i - a_(i-1) with the walls'
+/// accelerations 0 and m_i a_i = k_(i+1) s_(i+1) - k_i s_i. No equation makes the sum of the
+/// stretches 0; the initial sum and its rate are kept, as two poles at 0.
 StateSpace of_accelerations() {
   StateSpace m;
   m.A = MatrixXd::Zero(12, 12);
@@ -262,7 +262,7 @@ double bisect(const std::function<bool(double)>& grows) {
   return inside;
 }
 
-/// Of steps taken, and of the factor.
+/// Checks the limits of steps taken and of the factor.
 bool limits() {
   bool right = true;
   for (const double damping : {0.01, 0.03, 0.1, 0.3, 1.0}) {

@@ -29,7 +29,7 @@ using namespace titop_bench;
 
 namespace {
 
-/// Of one transfer near the band's end: the least of nine runs of fifty.
+/// Time [s] of one transfer near the band's end: the least of nine runs of fifty.
 double seconds_of(const TransferOf& transfer, double omega) {
   double least = HUGE_VAL, sum = 0;
   for (int run = 0; run < 9; ++run) {

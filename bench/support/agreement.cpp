@@ -19,7 +19,7 @@ double ratio(double difference, double size) {
   return difference == 0 ? 0 : size > 0 ? difference / size : difference;
 }
 
-/// Of the rows of [a1 a2] against [b1 b2].
+/// Largest relative difference of the rows of [a1 a2] and [b1 b2].
 double by_rows(const MatrixXd& a1, const MatrixXd& a2, const MatrixXd& b1, const MatrixXd& b2) {
   double worst = 0;
   const auto size = [](const auto& m, Eigen::Index i) {

@@ -19,9 +19,9 @@ struct Assembly {
   std::vector<int> joints;  ///< rows of each, in the order of the diagram
 };
 
-/// Of a diagram of rigid and flexible bodies, mounted and welded as a whole (no hinges), with
-/// inputs that are wrenches and outputs that are accelerations; throws logic_error at anything
-/// else. At the nominal values of its parameters.
+/// The assembly of a diagram of rigid and flexible bodies, mounted and welded as a whole (no
+/// hinges), with inputs that are wrenches and outputs that are accelerations; throws logic_error at
+/// anything else. At the nominal values of its parameters.
 Assembly assemble(const titop::Diagram& diagram);
 
 }  // namespace titop_bench

@@ -24,7 +24,8 @@ struct Network {
   int states() const { return static_cast<int>(A.rows()); }
 };
 
-/// Of a compiled scene, at its parameter values. O(scalars log) except for the inversions.
+/// The network of a compiled scene, at its parameter values. O(scalars log) except for the
+/// inversions.
 Network network_of(const titop::System& system);
 
 /// None if this form cannot express the scene: ties of parts of a port, channels of points that

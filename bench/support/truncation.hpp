@@ -14,7 +14,7 @@ class Truncation {
  public:
   Truncation(const titop::Diagram& diagram, const titop::Scene& scene);
 
-  /// Of all elastic modes [rad/s], ascending.
+  /// Frequencies of all elastic modes [rad/s], ascending.
   Eigen::VectorXd omega() const;
 
   /// Number of modes that these errors need: doubled, then bisected to 5 %. All, if fewer do not.

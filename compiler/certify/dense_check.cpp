@@ -136,8 +136,8 @@ namespace {
 using T = std::complex<double>;
 
 constexpr Index kColumns = 8;  ///< inputs are tried one by one up to this many
-/// Of neighbours in row and column: a 0 after rotations, cos(pi / 2) = 6e-17. It has digits in the
-/// factors, but is meant as 0.
+/// Relative to neighbours in row and column: level of a 0 after rotations, cos(pi / 2) = 6e-17. It
+/// has digits in the factors, but is meant as 0.
 constexpr double kOfNeighbours = 1e-14;
 
 constexpr double kBelow = 0.5;  ///< of the slowest mode that shows, known to a decade
@@ -241,7 +241,7 @@ solve::RowMatrix<T> tried_inputs(const StateSpace& m, const std::vector<int>& un
   return u;
 }
 
-/// Of outputs of one unit, by columns of the inputs.
+/// Sizes of outputs of one unit, by columns of the inputs.
 struct Sizes {
   MatrixXd value;     ///< by the factors
   MatrixXd rounding;  ///< of the factors

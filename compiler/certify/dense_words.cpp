@@ -101,7 +101,7 @@ void require_written(const SystemData& d, const StateSpace& m) {
 namespace {
 
 constexpr double kLost = 1e-9;  ///< of the outputs: a larger error is reported
-/// Of small outputs: an acceleration far below the modes always loses some digits.
+/// The same for small outputs: an acceleration far below the modes always loses some digits.
 constexpr double kLostWhereSmall = 1e-6;
 constexpr double kAnotherDigit = 10;
 

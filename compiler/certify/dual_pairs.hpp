@@ -25,8 +25,8 @@ struct DualPairs {
       "no output is the acceleration where an input acts as a force";
 };
 
-/// Of the diagram as written: an input that only pushes on channels, and the first output that sees
-/// the motions of the same ones with the same weights. O(inputs * outputs).
+/// The pairs of the diagram as written: an input that acts on channels only, and the first output
+/// that reads the motions of the same ones with the same weights. O(inputs * outputs).
 DualPairs dual_pairs(const Graph& graph, ParameterValues values);
 
 /// The transfers between them, at some points.
@@ -40,7 +40,7 @@ struct DualTransfers {
                Eigen::Index columns) const;
 };
 
-/// Of transfers in the declared order.
+/// Selects them from transfers in the declared order.
 DualTransfers dual_transfers(const DualPairs& pairs,
                              const std::vector<std::complex<double>>& points,
                              const std::vector<Eigen::MatrixXcd>& transfers);

@@ -10,8 +10,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// Of a block whose states act on themselves through others only: the shortest such round trips,
-/// of up to kLongest steps.
+/// Frequency of a block whose states act on themselves through others only: by the shortest such
+/// round trips, of up to kLongest steps.
 double by_longer_ways(const MatrixXd& A, double size) {
   constexpr int kLongest = 8;
   const MatrixXd step = A.cwiseAbs() / size;

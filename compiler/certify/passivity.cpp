@@ -10,7 +10,7 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-/// Of the largest entry that shares its units: less is rounding, along a locked axis.
+/// Relative to the largest entry of the same units: less is rounding, along a locked axis.
 constexpr double kOfUnit = 64 * 2.2e-16;
 
 /// Possible rounding of each entry of G / s.

@@ -16,7 +16,7 @@ constexpr double kEps = std::numeric_limits<double>::epsilon();
 /// A pole that rounding of A may move by more than this, relative to its size, gives no verdict on
 /// the model.
 constexpr double kMeasurable = 1e-8;
-/// Of its size: a pole of the minimal model is one of the whole, up to the rounding of both.
+/// Relative distance: a pole of the minimal model is one of the whole, up to the rounding of both.
 constexpr double kSamePole = 1e-6;
 
 /// A v through the factors.

@@ -19,7 +19,8 @@ class SteadyRandom {
     return static_cast<double>(state_ >> 11) * 0x1p-52 - 1.0;
   }
 
-  /// Of either sign, from a half to one in size: two of them do not cancel to 0, as +1 and -1 do.
+  /// A number of either sign and magnitude 0.5 to 1: two of them do not cancel to 0, as +1 and -1
+  /// do.
   double unit() {
     const double x = next();
     return x < 0 ? (x - 1) / 2 : (x + 1) / 2;

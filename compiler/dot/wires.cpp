@@ -62,7 +62,7 @@ class Drawing {
  private:
   bool up_into_end() const { return end_.side == Side::bottom; }
 
-  /// Of a term at its block, and of the signal that it drives.
+  /// Quantity of a term at its block, and of the signal that it drives.
   Quantity read_as(const Term& t) const {
     return t.of == Term::Of::rate       ? Quantity::velocity
            : t.of == Term::Of::position ? Quantity::position

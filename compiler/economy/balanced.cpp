@@ -20,7 +20,8 @@ constexpr double kUnstable = 1e-6;   ///< growth over |s| that is no rounding
 constexpr double kDistinct = 1e-10;  ///< relative gap of singular values that may be cut through
 constexpr double kClear = 1.1;       ///< times the target: a clear violation on one sample
 constexpr double kDigits = 1e-11;    ///< of the peaks: possible loss of unpivoted elimination
-/// Of the lowest pole: samples begin below it (Band::start is half of it) if the band begins at 0.
+/// Fraction of the lowest pole: samples begin below it (Band::start is half of it) if the band
+/// begins at 0.
 constexpr double kFromZero = 2e-6;
 
 /// Rows and columns `list` of a part.

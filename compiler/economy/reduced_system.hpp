@@ -18,8 +18,8 @@ struct ErrorBound {
   double hertz = 0;           ///< where it was found [Hz]
   BoundKind kind = BoundKind::estimate;
   int samples = 0;  ///< transfers of the full factored system that it took
-  /// Of balanced models: 2 x the sum of the Hankel singular values that were dropped, for the worst
-  /// pair, relative as `pairs`. A theorem, not only for the band but everywhere right of the
+  /// For balanced models: 2 x the sum of the Hankel singular values that were dropped, for the
+  /// worst pair, relative as `pairs`. A theorem, not only for the band but everywhere right of the
   /// imaginary axis (up to rounding in the Gramians, and not near omitted undamped poles, whose
   /// effect is below 1e-11 of the peaks); negative if there is none.
   double anywhere = -1;
@@ -154,8 +154,8 @@ struct WhatIf {
   double accuracy = 0;  ///< required
   int order = 0;        ///< states
   double bound = 0;     ///< reached
-  /// Of one transfer of the reduced system, measured here: the least of nine runs of fifty each,
-  /// since other load on the machine only adds. Figures of other builds and machines differ.
+  /// Time of one transfer of the reduced system, measured here: the least of nine runs of fifty
+  /// each, since other load on the machine only adds. Figures of other builds and machines differ.
   double seconds = 0;
   ReducedSystem system;
 };

@@ -48,7 +48,7 @@ struct Setting {
   void note_structure(Eigen::Index after);
   /// Fills `samples` for a model with this spectrum.
   void take_samples(const Spectrum& spectrum);
-  /// Of a reduced model with these poles and this transfer, of a whole with this spectrum.
+  /// Bound for a reduced model with these poles and this transfer, and a whole with this spectrum.
   ErrorBound bound(const Spectrum& spectrum, const std::vector<std::complex<double>>& poles,
                    const TransferOf& transfer) const;
   /// The results so far, with this model; `modes` are filled later.

@@ -16,7 +16,7 @@ using linalg::at;
 struct Columns {
   std::vector<int> of_signal;  ///< port signal: itself; state: its value; external: the input
   std::vector<int> rate;       ///< of a signal that is a state
-  /// Of a signal whose integral is read: first of its rate's states; its position's follow.
+  /// For a signal whose integral is read: first of its rate's states; its position's follow.
   std::vector<int> integral;
   int ports = 0, outputs = 0, states = 0, inputs = 0;
 

@@ -27,7 +27,7 @@ OrderVerdict back_to(int order, double judged, OrderVerdict v) {
   return v;
 }
 
-/// Of the transfer; 1 if a model has none.
+/// Relative change of the transfer; 1 if a model has none.
 double change(const StateSpace& whole, const StateSpace& part,
               const std::vector<std::complex<double>>& points) try {
   const std::vector<MatrixXcd> before = detail::transfers(whole, points),

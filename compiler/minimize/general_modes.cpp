@@ -58,7 +58,7 @@ void find_clusters(const linalg::Eigensystem& e, const std::vector<std::vector<I
   }
 }
 
-/// Of poles that have vectors of their own.
+/// Turns the modes of clusters whose poles have separate vectors.
 void turn_clusters(const StateSpace& model, const ModeSet& m, linalg::Eigensystem& e) {
   const Index n = e.values.size();
   for (Index first = 0; first < n; ++first) {

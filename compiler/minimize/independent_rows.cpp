@@ -94,7 +94,7 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
   const Factors by(clear.cwiseAbs().cwiseMax(kOfNoise * rounding));
   Basis basis(by(clear), by(rounding));
   while (!open.empty()) {
-    // Of the lowest level the row with the largest own part, of equal ones the first.
+    // On the lowest level, the row with the largest own part; of equal ones the first.
     const auto most = std::max_element(open.begin(), open.end(), [&](int a, int b) {
       const int la = level[static_cast<std::size_t>(a)], lb = level[static_cast<std::size_t>(b)];
       return la != lb ? la > lb : basis.own(a) < (1 - 1e-9) * basis.own(b);

@@ -138,7 +138,7 @@ void leave_out_unseen(Sampled& s, const Integrated& states, Needless& n) {
     return driven(part(m), m.C(Eigen::all, states.integrators).transpose(), powers);
   };
   const MatrixXd O = seen(s.model), rounding = rounding_of(s.off, O, seen);
-  // Of entries that are 0 the cancelling terms are not known.
+  // The cancelling terms of entries that are 0 are unknown.
   const MatrixXd any = MatrixXd::Zero(O.rows(), O.cols());
   const IndependentRows rows = independent_rows(O, rounding, any, levels(part(s.model)));
   report(rows, "no output sees it", n);

@@ -125,7 +125,7 @@ PoleClusters pole_clusters(const MatrixXd& A) {
 
 namespace {
 
-/// Of a cluster and one component: the poles in and outside of the cluster.
+/// The poles of a component in and outside of a cluster.
 struct Split {
   Places in, out;
   Split(const PoleClusters& p, const Places& cluster, int component) {

@@ -13,7 +13,7 @@ inline constexpr double kIll = 1e6;  ///< condition number of a pole that is jud
 inline constexpr double kNearZero = 2e-7;  ///< of the norm of A: where a pole may lie at 0
 
 struct PoleClusters {
-  /// Of a cluster, V and W have a basis of its invariant subspaces (linalg/spectral.hpp).
+  /// For a cluster, V and W have a basis of its invariant subspaces (linalg/spectral.hpp).
   linalg::Eigensystem e;
   Eigen::MatrixXcd T;  ///< block diagonal, upper triangular
   /// Clusters that are judged as a whole: multiple poles, poles at 0 relative to the model's

@@ -41,7 +41,7 @@ class Motions {
  public:
   Motions(const Skeleton& k, const SystemData& d) : k_(k), d_(d), g_(k.stage.graph) {}
 
-  /// Of a signal.
+  /// Value of a signal.
   KeptMatrix value(int signal, const KeptMatrix& z) const {
     KeptMatrix result(g_.signals[at(signal)].size, z.value.cols());
     for (const solve::Meaning& m : k_.joint.meaning(signal)) {

@@ -52,7 +52,7 @@ bool singular_in_50_digits(const Skeleton& k, const SystemData& d) {
   return h.finite && (!factors.patches().empty() || h.weakest < rounding);
 }
 
-/// By its margin.
+/// The loop without a digit, by its margin.
 const Loop* loop_without_digit(const Skeleton& k, const SystemData& d) {
   std::vector<int> all(k.stage.loops.size());
   std::iota(all.begin(), all.end(), 0);
@@ -63,7 +63,7 @@ const Loop* loop_without_digit(const Skeleton& k, const SystemData& d) {
   return check.loop_without_digit < 0 ? nullptr : &k.stage.loops[at(check.loop_without_digit)];
 }
 
-/// Of the loop without a digit, or of the weakest pivot's; empty: of no signal.
+/// Signals of the loop without a digit, or of the weakest pivot's; empty if there is neither.
 std::vector<int> signals_without_digit(const Skeleton& k, const SystemData& d) {
   if (const Loop* const loop = loop_without_digit(k, d)) return loop->signals;
   const int variable = d.factors->health().weakest_variable;
@@ -80,7 +80,7 @@ std::vector<int> signals_without_digit(const Skeleton& k, const SystemData& d) {
 double least_pivot(const SystemData& d, Check& check) {
   const Skeleton& k = *d.skeleton;
   if (!is_doubtful(check)) return 0;
-  // Of reduced equations, those as written may well have loops that are singular by themselves.
+  // Not after reduction: loops of the equations as written may then be singular.
   if (check.loop_without_digit >= 0 && !k.before_reduce) return kNothingAtLeast;
   if (products(*k.joint.plan) > kMostProducts) {
     check.notes.push_back({Note::Kind::warning, "certify",

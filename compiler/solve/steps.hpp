@@ -79,7 +79,7 @@ template <class T, class Size>
   for (; j < n; ++j) eliminate_columns<1>(k, end, rows, n, j, a, bounds, size);
 }
 
-/// Of any other scalar.
+/// For any other scalar.
 template <class T>
 void eliminate_below(std::ptrdiff_t k, std::ptrdiff_t end, std::ptrdiff_t rows, std::ptrdiff_t n,
                      T* a, double* bounds) {

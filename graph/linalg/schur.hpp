@@ -11,8 +11,8 @@ struct Schur {
   Eigen::MatrixXcd T, Q;
 };
 
-/// Of a real square matrix: the real form [Francis], its 2 x 2 blocks turned to triangles. Throws
-/// not_finite, and singular if the iteration does not converge. O(25 n^3).
+/// Schur form of a real square matrix: the real form [Francis], its 2 x 2 blocks turned to
+/// triangles. Throws not_finite, and singular if the iteration does not converge. O(25 n^3).
 Schur schur(const Eigen::MatrixXd& A);
 
 /// Brings the marked eigenvalues to the front, in their order, by rotations of neighbours: the

@@ -236,9 +236,9 @@ class Peeled {
   List rows() const { return list(rows_); }
   List cols() const { return list(cols_); }
 
-  /// Of the remaining part, if it is one ring, in which every unknown is in its own row and in the
-  /// next one's only: (1 + c)(1 + c + ... + c^(n-1)) / |1 - p|, p the product of the n gains and c
-  /// = |p|^(1/n). None for others.
+  /// Spectral radius of the remaining part, if it is one ring, in which every unknown is in its own
+  /// row and in the next one's only: (1 + c)(1 + c + ... + c^(n-1)) / |1 - p|, p the product of the
+  /// n gains and c = |p|^(1/n). None for others.
   std::optional<double> radius_of_ring() const {
     const auto two = [](int entries) { return entries < 0 || entries == 2; };
     if (!all(rows_, two) || !all(cols_, two)) return {};

@@ -11,7 +11,7 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-/// Of the pole at j: 2 for a pair.
+/// Number of states of the pole at j: 2 for a pair.
 Index states_at(const MatrixXcd& T, Index j) { return T(j, j).imag() != 0 ? 2 : 1; }
 
 /// The pole, from `rest` on, that is nearest to one of those in [first, rest).
@@ -92,7 +92,7 @@ struct Decoupling {
   }
 };
 
-/// Of a pair, in place of a basis, its two vectors: conjugate, as those of W are.
+/// Replaces the basis of a pair by its two vectors: conjugate, as those of W are.
 void take_vectors(Spectrum& s, Index j) {
   const std::complex<double> share = s.T(j, j + 1) / (s.T(j + 1, j + 1) - s.T(j, j));
   s.W.row(j) -= share * s.W.row(j + 1);

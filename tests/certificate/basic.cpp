@@ -12,7 +12,7 @@ using namespace titop;
 
 namespace {
 
-/// Of an object whose text contains this.
+/// True if the log has a warning that contains this text.
 bool warns(const System& system, std::string_view text = "") {
   for (const Note& note : system.notes())
     if (note.kind == Note::Kind::warning && note.text.find(text) != std::string::npos) return true;

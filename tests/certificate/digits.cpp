@@ -51,7 +51,7 @@ Complex heavy_moves(double mass, Complex at) {
   return Complex(a / (a * (static_cast<long double>(mass) * s * s + b) - b * b));
 }
 
-/// Of the dense model over the certificate's grid, relative to the largest value there.
+/// Error of the dense model over the certificate's grid, relative to the largest value there.
 double off_over_grid(const StateSpace& dense, const FullCertificate::Grid& grid, double mass) {
   double off = 0, peak = 0;
   for (int k = 0; k < grid.points; ++k) {

@@ -66,7 +66,7 @@ TEST_CASE("10, 100 and 1000 blocks: as many boxes as asked for, and all blocks a
       for (const int most : {2, 5, 12, 40}) {
         INFO(arms, " arms, ", blocks, " blocks, at most ", most);
         const Shown s = shown(to_dot(tree(blocks, arms), {.fold = most}));
-        // Of a star the middle, and eight boxes at most below it.
+        // A star has its centre and at most eight boxes.
         const int wide = arms == 1000 && most < blocks ? 9 : 1000;
         CHECK(s.blocks + s.boxes == std::min({most, blocks, wide}));
         CHECK(s.blocks + s.inside == blocks);

@@ -16,7 +16,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-/// Of the cuts within the target: largest entry of the difference over the peak.
+/// Least order of the cuts within the target: largest entry of the difference over the peak.
 Index least_order(const detail::Split& split, const detail::Samples& samples, const MatrixXd& D,
                   double high, double target) {
   const auto [out, in] = detail::port_sizes(samples.peak);

@@ -33,7 +33,7 @@ Rational random_rational(titop_test::Rng& rng, double low, double high) {
                            : rng.between(low - (high - low), high + (high - low));
     const double y = (rng.chance(0.5) ? 1 : -1) * (high - low) * std::pow(10, -4 * rng.unit());
     f.poles.emplace_back(x, y);
-    // Of the size that a lightly damped mode has there.
+    // Residues of the size of a lightly damped mode there.
     f.residues.emplace_back(Complex(rng.between(-1, 1), rng.between(-1, 1)) * y);
   }
   f.direct = {rng.between(-0.1, 0.1), rng.between(-0.1, 0.1)};

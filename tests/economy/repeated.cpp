@@ -75,7 +75,7 @@ TEST_CASE("a body keeps both bending modes of a frequency, or none") {
     return g.nodes[static_cast<std::size_t>(effects[0].node)].block->dynamics(values)->modal;
   };
   const VectorXd all = modal(graph)->stiffness;
-  // Of the 6 coordinates of each node 2 x 2 bend.
+  // 2 x 2 of the 6 coordinates of each node bend.
   std::vector<std::pair<Index, Index>> pairs;
   for (Index i = 0; i < all.size(); ++i)
     for (Index j = i + 1; j < all.size(); ++j)

@@ -114,7 +114,7 @@ TEST_CASE("500 random scenes: error below the bound, undamped poles on the axis,
       ++met;
       const Beside by_hand = check_beside(reduced, r.scene, r.truth);
       near += reduced.bound().worst <= 1.2 * by_hand.error;
-      // Of pairs that symmetry makes 0 the bound allows for rounding up to 5e-8 in addition.
+      // For pairs that are 0 by symmetry the bound allows for rounding up to 5e-8 in addition.
       if (reduced.bound().worst >= 1e-6) CHECK(by_hand.sharp >= 1 / 1.2);
       CHECK(reduced.order() <= reduced.full().order());
       for (const Pole& p : poles(reduced.state_space()))

@@ -28,7 +28,7 @@ struct Assembly {
   MatrixXd unit(Index first, Index count) const;
 };
 
-/// Of a rigid body at P, whose center of mass is at PA and whose inertia is about that.
+/// Mass matrix at P of a rigid body with centre of mass at PA, the inertia about that.
 by_hand::Matrix6 mass_at_P(double mass, const Eigen::Matrix3d& inertia, const Eigen::Vector3d& PA);
 
 /// A frame whose x axis points along `direction`.

@@ -30,7 +30,7 @@ struct FrameByHand {
   void add(const Frame::SpringMass& m, Index own);
   void add(const Frame::Bushing& k);
   void spring(const MatrixXd& K, const MatrixXd& stretch);
-  /// Of the present joint.
+  /// A spring of the present joint.
   void joint_spring(double stiffness, const MatrixXd& row);
   void join(const Frame::Joint& j);
 };

@@ -11,12 +11,12 @@ using namespace loop_test;
 
 namespace {
 
-/// Of an output port by an input port, relative to the largest entry of both; limited as in
-/// random_frames.cpp by rounding of stiff beams next to soft springs. A dense model keeps a digit
-/// less.
+/// Tolerance of an output port by an input port, relative to the largest entry of both; limited as
+/// in random_frames.cpp by rounding of stiff beams next to soft springs. A dense model keeps a
+/// digit less.
 constexpr double kTolerance = 1e-8;
-/// Of the largest entry of all ports: lower limit of a port's scale, as in random_frames.cpp. The
-/// largest is about 1: motion along with the first body, or 1 / mass.
+/// Relative to the largest entry of all ports: lower limit of a port's scale, as in
+/// random_frames.cpp. The largest is about 1: motion along with the first body, or 1 / mass.
 constexpr double kWeak = 1e-3;
 
 /// Accelerations from [A; U] at s: q = (motion imposed by A) + (motion that the joints allow).

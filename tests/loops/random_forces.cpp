@@ -12,13 +12,13 @@ using namespace titop;
 
 namespace {
 
-/// Of forces by forces, forces by torques ..., each relative to the largest of its kind. The limit
-/// is a multiplier of nearly redundant constraints (Constraints::clear: up to 1e4 times the
-/// others), next to beams up to 1e9 N/m stiff.
+/// Tolerance of forces by forces, forces by torques ..., each relative to the largest of its kind.
+/// The limit is a multiplier of nearly redundant constraints (Constraints::clear: up to 1e4 times
+/// the others), next to beams up to 1e9 N/m stiff.
 constexpr double kTolerance = 1e-7;
-/// Of the largest kind, or of 1 (a unit force, an arm of a metre): lower limit of a kind's scale.
-/// Times the tolerance this is 1e-8, the force of a beam by rounding (1e-16 of a motion of 0.1 m/N,
-/// times 1e9 N/m) if its true force is 0.
+/// Relative to the largest kind, or to 1 (a unit force, an arm of a metre): lower limit of a kind's
+/// scale. Times the tolerance this is 1e-8, the force of a beam by rounding (1e-16 of a motion of
+/// 0.1 m/N, times 1e9 N/m) if its true force is 0.
 constexpr double kWeak = 0.1;
 
 /// The wrench at s of the body that joint k carries on its parent, in the body's frame, per unit

@@ -11,12 +11,12 @@ using namespace loop_test;
 
 namespace {
 
-/// Of an output port by an input port, relative to the largest entry of both. The limit is rounding
-/// of beams up to 1e9 N/m stiff next to springs of 20 N/m: 1e-16 x 1e9 / 20. A dense model loses
-/// one more digit.
+/// Tolerance of an output port by an input port, relative to the largest entry of both. The limit
+/// is rounding of beams up to 1e9 N/m stiff next to springs of 20 N/m: 1e-16 x 1e9 / 20. A dense
+/// model loses one more digit.
 constexpr double kTolerance = 1e-8;
-/// Of the largest entry of all ports: lower limit of a port's scale. Times the tolerance this is
-/// 1e-11, the motion by rounding (1e-15) under a constraint of 1e-4 of the others
+/// Relative to the largest entry of all ports: lower limit of a port's scale. Times the tolerance
+/// this is 1e-11, the motion by rounding (1e-15) under a constraint of 1e-4 of the others
 /// (Constraints::clear).
 constexpr double kWeak = 1e-3;
 

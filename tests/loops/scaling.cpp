@@ -80,7 +80,7 @@ struct Maximal {
   static Matrix3d cross(const Vector3d& v) {
     return Matrix3d{{0, -v.z(), v.y()}, {v.z(), 0, -v.x()}, {-v.y(), v.x(), 0}};
   }
-  /// Of a point of a link (-1: the ground): translations and rotations.
+  /// Motion of a point of a link (-1: the ground): translations and rotations.
   MatrixXd motion(Index link, const Vector3d& point) const {
     MatrixXd result = MatrixXd::Zero(6, width());
     if (link < 0) return result;

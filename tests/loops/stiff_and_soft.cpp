@@ -121,7 +121,7 @@ Diagram diagram(const Frame& f) {
   return d;
 }
 
-/// Of a point of a body, from the body's motion.
+/// Motion of a point of a body, from the body's motion.
 Matrix6 moved(const Vector3d& point) {
   Matrix6 result = Matrix6::Identity();
   result.topRightCorner<3, 3>() << 0, point.z(), -point.y(), -point.z(), 0, point.x(), point.y(),

@@ -23,7 +23,8 @@ namespace {
 
 using titop::linalg::at;
 
-/// Of the bars: one bay after the other; all rails, then rungs, then braces; or in no order.
+/// Order of the bars' names: one bay after the other; all rails, then rungs, then braces; or in no
+/// order.
 enum class Names { along, by_kind, scrambled };
 
 std::string name_of_bar(Names names, int number, const Vector3d& v) {

@@ -35,7 +35,7 @@ Diagram side_by_side(const std::vector<SpringMass>& springs, bool driven = true,
   return d;
 }
 
-/// Of a mass of 1 kg.
+/// Transfer of a mass of 1 kg.
 Complex gain(double stiffness, double damping, Complex s) {
   return 1.0 / (s * s + damping * s + stiffness);
 }

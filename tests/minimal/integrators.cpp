@@ -134,8 +134,8 @@ TEST_CASE("poles at 0 that drive others, beside integrators: nothing is lost, th
     check_nothing_lost(m);
   }
   CHECK(poles > 200);
-  // Of random models: one whose mode at -1 is known to 1e12 of its size next to a double pole at 0,
-  // and two whose modes are at the rounding level of the states that act on them.
+  // Found among random models: one whose mode at -1 is known to 1e12 of its size next to a double
+  // pole at 0, and two whose modes are at the rounding level of the states that act on them.
   MatrixXd A = MatrixXd::Zero(8, 8);
   A.row(0) << -1, 0, 0, 0, 0, 0, 0, 0;
   A(1, 1) = -2, A(1, 2) = 1, A(3, 1) = A(4, 1) = 2, A(5, 0) = 1;
@@ -256,8 +256,8 @@ TEST_CASE("outputs that read differences of positions need no common motion") {
   check_order(free, 4);  // two stretches and their rates
   CHECK(to_string(free.order_verdict()).find("no output sees it") != std::string::npos);
 
-  // Of a rigid body the difference of two points shows the two turns across their distance; of one
-  // point, its three displacements, each twice integrated.
+  // The difference of two points of a rigid body depends on the two rotations across their
+  // distance; a single point on its three displacements, each twice integrated.
   for (const bool difference : {true, false}) {
     Diagram d{"rigid"};
     auto U = d.input("U", 6);

@@ -14,7 +14,7 @@ using namespace titop_test;
 
 namespace {
 
-/// Of every kind of block, factor and reading something.
+/// A diagram with every kind of block, factor and reading.
 Diagram everything() {
   Diagram d{"every \"kind\" of thing, κ"};
   const Param k = d.param("k", 1.0 / 3), angle = d.param("angle", 0.7);

@@ -40,7 +40,8 @@ double error(const DoubleDouble& found, const Real& exact, const Real& size) {
 
 constexpr double kUnit = 0x1p-104;
 
-/// Of products and quotients of numbers of `most` bits at most, whose results have as many.
+/// Largest error of products and quotients of numbers of `most` bits at most, whose results have as
+/// many.
 double worst_error(Rng& rng, int most) {
   double worst = 0;
   for (int i = 0; i < 5000; ++i) {

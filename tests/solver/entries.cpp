@@ -100,7 +100,8 @@ struct Chain {
     compile(d, {.minimize_up_to = 0}).write(model);
     return model;
   }
-  /// Of the eta'' rows and eta columns: -(M^-1) diag(omega^2), M over [x_P of the root; all eta].
+  /// The part of the eta'' rows and eta columns: -(M^-1) diag(omega^2), M over [x_P of the root;
+  /// all eta].
   BigMatrix stiffness_part() const {
     const int n = static_cast<int>(data.size()), size = 6 + 6 * n;
     BigMatrix M(size, size), way(6, size);  // way: x_P of the present body

@@ -56,7 +56,7 @@ Diagram bare_hub(double mass) {
 
 std::vector<Note> notes_of(const Diagram& d) { return compile(d, {.minimize_up_to = 0}).notes(); }
 
-/// Of the elimination.
+/// Number of fronts of the elimination.
 int fronts(int n) { return compile(star(n), {.minimize_up_to = 0}).certificate().fronts; }
 
 }  // namespace

@@ -22,7 +22,7 @@ bool contains(const std::vector<Index>& list, Index i) {
   return std::find(list.begin(), list.end(), i) != list.end();
 }
 
-/// Of C (s - A)^-1 B + D. HUGE_VAL if s - A is singular in double.
+/// Error of C (s - A)^-1 B + D. HUGE_VAL if s - A is singular in double.
 double difference_at(const Form& form, std::complex<double> s, const MatrixXcd& exact,
                      const Points& points) {
   const Index n = form.A.rows();

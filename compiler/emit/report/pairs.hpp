@@ -10,7 +10,7 @@ namespace titop::report {
 constexpr std::size_t kFigures = 12;  ///< of one kind; more are counted
 constexpr std::size_t kCurves = 4;    ///< in one frame
 
-/// Of every pair of groups the entry with the highest peak over the sweep, if it is not zero to
+/// For every pair of groups the entry with the highest peak over the sweep, if it is not zero to
 /// rounding.
 std::vector<Pair> strongest(const Subject& subject, const Sweep& sweep,
                             const std::vector<Group>& outputs, const std::vector<Group>& inputs);

@@ -40,7 +40,7 @@ bool keeps_units(const Term& term) {
   });
 }
 
-/// Of a pattern's line over the six degrees of freedom of a dual vector.
+/// Nature of a pattern's line over the six degrees of freedom of a dual vector.
 Nature of_line(const Pattern& line) {
   const bool linear = line.topRows(3).any(), angular = line.bottomRows(3).any();
   return linear == angular ? Nature::unknown : linear ? Nature::linear : Nature::angular;
@@ -58,7 +58,7 @@ class Natures {
     }
   }
 
-  /// Of one row of a signal.
+  /// Nature of one row of a signal.
   Nature operator()(int signal, int row) const {
     const Signal& s = g_.signals[at(signal)];
     if (s.size == 6) return row < 3 ? Nature::linear : Nature::angular;
@@ -67,7 +67,7 @@ class Natures {
     return of_node_[at(s.node)] == Nature::angular ? Nature::angular : Nature::linear;
   }
 
-  /// Of the rows of the signal that a term reads: row by row of the term.
+  /// Natures of the rows of the signal that a term reads: row by row of the term.
   std::vector<Nature> of(const Term& term) const {
     const Pattern p = structure(g_, term);
     std::vector<Nature> result;
@@ -80,7 +80,7 @@ class Natures {
     return result;
   }
 
-  /// Of the part of its equation's target that column `k` of a term drives.
+  /// Nature of the part of its equation's target that column `k` of a term drives.
   Nature driven(const Equation& e, const Term& term, int k) const {
     const Pattern p = structure(g_, term);
     if (g_.signals[at(e.target)].size != 6)
@@ -101,7 +101,8 @@ class Natures {
                        [](const ChannelSpec& c) { return c.size == 6; });
   }
 
-  /// Of an axis of a joint: its force or torque is the component of the child's wrench along it.
+  /// Nature of an axis of a joint: its force or torque is the component of the child's wrench along
+  /// it.
   Nature of_axis(const Signal& s) const {
     const Block& block = *g_.nodes[at(s.node)].block;
     const Interface& face = block.interface();

@@ -22,7 +22,7 @@ struct Written {
   }
 };
 
-/// Of an item of this list.
+/// Origin of an item of this list.
 template <class List>
 Written written(const List& list, const char* name, const typename List::value_type& item) {
   return {item.where, name, &item - list.data()};

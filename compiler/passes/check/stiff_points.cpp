@@ -35,7 +35,8 @@ class StiffPoints {
  public:
   StiffPoints(const Graph& g, ParameterValues values) : g_(g), values_(values) {}
 
-  /// Of this channel, if a body moves with it; 0 if it is no child point of one with modes.
+  /// Number of rigid directions of this channel, if a body moves with it; 0 if it is no child point
+  /// of one with modes.
   int still(int channel) {
     const Channel& c = g_.channels[at(channel)];
     if (c.takes != Takes::force) return 0;

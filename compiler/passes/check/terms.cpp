@@ -9,7 +9,7 @@ namespace {
 
 using linalg::at;
 
-/// Of a dual vector: translations and forces, or rotations and torques.
+/// Half of a dual vector: translations and forces, or rotations and torques.
 enum class Half { any, linear, angular };
 
 /// Type of a term, after its factors.
@@ -20,7 +20,7 @@ struct Kind {
   Half half = Half::any;  ///< any: of all else, and if it is not known
 };
 
-/// Of a part of a signal. A joint's axis may be either.
+/// Half to which a part of a signal belongs. A joint's axis may be either.
 Half half_of(const Part& part, Quantity quantity) {
   const Eigen::MatrixXd& rows = part.rows();
   if (quantity == Quantity::plain || rows.cols() != 6) return Half::any;

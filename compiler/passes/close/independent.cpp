@@ -17,9 +17,9 @@ using Eigen::MatrixXd;
 using Role = Relations::Role;
 using linalg::at;
 
-/// Of the best pivot, for a pivot to be taken before all are known: a dependent coordinate is then
-/// at most about ten times those that it depends on, in units of energy, and the model loses at
-/// most a digit.
+/// Fraction of the best pivot, for a pivot to be taken before all are known: a dependent coordinate
+/// is then at most about ten times those that it depends on, in units of energy, and the model
+/// loses at most a digit.
 constexpr double kShare = 0.1;
 constexpr double kNoise = 64 * 2.2e-16;
 constexpr std::size_t kLookedAt = 8;  ///< neighbours per column, for one to merge with

@@ -82,7 +82,7 @@ void Motion::add_ties(const Twins& twins, Ground ground) {
   find_rotations(ties_);
 }
 
-/// Of all ties between the same two points together.
+/// Finds the common rotation of all ties between the same two points.
 void Motion::find_rotations(std::vector<Tie>& ties) {
   std::map<std::pair<int, int>, std::vector<Tie*>> between;
   for (Tie& tie : ties)

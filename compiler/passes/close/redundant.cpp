@@ -28,7 +28,7 @@ struct Part {
   std::vector<int> own, others;
   MatrixXd basis, factor, rest;  ///< rest: rows x others
 
-  /// Of a vector over `own`: the norm outside the span.
+  /// Norm of a vector over `own` outside the span.
   double outside(const VectorXd& v) const { return (v - basis * (basis.transpose() * v)).norm(); }
   double rounding() const {
     return kRounding * static_cast<double>(std::max<Index>(basis.cols(), kFewColumns));
@@ -46,7 +46,7 @@ Redundant by_singular_values(const MatrixXd& rows, MatrixXd& known) {
   while (rank < sigma.size() && sigma(rank) > kRankTolerance) ++rank;
   if (rank > 0) result.weakest = sigma(rank - 1);
   if (rank < sigma.size()) result.dropped = sigma(rank);
-  // Of small values: with rounding, made large.
+  // Directions of small singular values contain amplified rounding.
   MatrixXd fresh = svd.matrixV().leftCols(rank).transpose();
   fresh -= (fresh * known.transpose()) * known;
   fresh.rowwise().normalize();

@@ -17,7 +17,7 @@ class Reflections {
   const std::vector<int>& pivots() const { return pivots_; }
   Eigen::Index done() const { return static_cast<Eigen::Index>(pivots_.size()); }
   bool taken(int column) const { return taken_[static_cast<std::size_t>(column)]; }
-  /// Of a column, in the rows without a pivot.
+  /// Norm of a column, in the rows without a pivot.
   double norm(int column) const { return M_.col(column).tail(M_.rows() - done()).norm(); }
   /// The largest norm among these columns, of those without a pivot.
   double largest(const std::vector<int>& columns) const;

@@ -70,7 +70,7 @@ struct Scaling {
     }
   }
 
-  /// Of one column, per unit of a block: in one of them it counts.
+  /// For one column, per unit of a block: true in one of them at least.
   using Counts = Eigen::Array<bool, Eigen::Dynamic, 1>;
   static Counts counting(const Eigen::ArrayXd& sizes, const MatrixXd& tiny) {
     Counts result(sizes.size());

@@ -18,7 +18,7 @@ using linalg::at;
 constexpr std::size_t kMostChains = 20;  ///< a millisecond or two
 constexpr int kMotions = 3;
 
-/// Of small motions (translation of a point that stays, rotation).
+/// Lie bracket of two small motions (translation of a fixed point, rotation).
 Vector6d bracket(const Vector6d& a, const Vector6d& b) {
   Vector6d result;
   result.head<3>() = a.tail<3>().cross(b.head<3>()) - b.tail<3>().cross(a.head<3>());

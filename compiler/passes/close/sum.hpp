@@ -7,7 +7,7 @@
 
 namespace titop::passes::closing {
 
-/// Of rows among the six of a point (or its one): 0 for a translation, 1 for a rotation.
+/// Units of rows among the six of a point (or its one): 0 for a translation, 1 for a rotation.
 std::vector<int> units_of_rows(const Eigen::MatrixXd& S);
 
 /// A form that is summed along the ways round a chain, with the rounding of its entries. Rows are

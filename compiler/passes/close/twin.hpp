@@ -22,7 +22,7 @@ class Twins {
   explicit Twins(const Graph& graph);
   /// O(its terms, counted along every way through gains and sums).
   Twin of(const std::vector<Term>& terms) const;
-  /// Of the input of a one-way port, by its equation.
+  /// Twin of the input of a one-way port, by its equation.
   Twin of_input(int signal) const;
   bool is_integrator(int node) const;
 
