@@ -22,7 +22,7 @@ Error not_refined(const SystemData& data, std::complex<double> s, double error);
 /// been up to this factor larger.
 constexpr double kRoundings = 4;
 
-/// Every input by itself.
+/// One column per input: unit vectors.
 template <class T>
 solve::RowMatrix<T> unit_inputs(const SystemData& data) {
   const auto m = static_cast<Eigen::Index>(data.layout().inputs.size());
@@ -40,8 +40,8 @@ class Evaluation {
   /// u: inputs x columns. Throws singular if s is a pole of the system or of a block.
   Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
              solve::Solution solution = solve::Solution::once);
-  /// `coarse`: the same s and u in double, whose factors serve. Iterative refinement, blocks and
-  /// residuals in T, until the outputs have settled or their changes shrink no more: see
+  /// `coarse`: the same s and u in double, whose factors are reused. Iterative refinement with
+  /// blocks and residuals in T, until the outputs have settled or their changes shrink no more: see
   /// refinement_error().
   Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
              const Evaluation<std::complex<double>>& coarse);
@@ -94,9 +94,9 @@ class Evaluation {
   double weakest_pivot() const { return factors_->health().weakest; }
 
  private:
-  struct Driven {};  ///< rows and right-hand sides alone
+  struct Driven {};  ///< rows and right-hand sides only
   Evaluation(Driven, const SystemData& data, const T& s, const solve::RowMatrix<T>& u);
-  /// Outputs from unknowns; the states' own parts are added where they are given.
+  /// Outputs from unknowns; the states' own parts are added if they are given.
   solve::RowMatrix<T> outputs_of(const solve::RowMatrix<T>& unknowns,
                                  const solve::RowMatrix<T>& inputs,
                                  const solve::RowMatrix<T>* states) const;

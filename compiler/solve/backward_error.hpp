@@ -7,8 +7,8 @@ namespace titop::solve {
 
 /// The largest ratio of a row's residual to its terms, |rhs - rows x| over |rhs| + |rows| |x|: the
 /// least relative change of single entries and right-hand sides that makes x exact [Oettli, Prager
-/// 1964]. The three rows of a translation, rotation, force or torque count together; columns by
-/// themselves. Infinite if a number is not finite. Numbers below 1e-290 have no digits to keep.
+/// 1964]. The three rows of a translation, rotation, force or torque count together; columns
+/// separately. Infinite if a number is not finite. Numbers below 1e-290 have no digits to keep.
 template <class T>
 double backward_error(const Plan& plan, const RowMatrix<T>& residual,
                       const RowMatrix<double>& magnitudes);
@@ -20,14 +20,14 @@ double backward_error(const Plan& plan, const RowMatrix<T>& residual,
 /// has up to 2 sqrt(2) units. With growth in the factors it is 0.8 to 0.99, in any precision.
 double backward_error_of_rounding(const Plan& plan, double epsilon);
 
-/// How a solution is found: as the factors give it, for those who measure their losses; or refined.
+/// Solution by the factors alone, if the caller measures its losses; or refined.
 enum class Solution { once, settled };
 
-/// Solves, and refines in the same arithmetic while the backward error is more than rounding leaves
-/// and becomes half of its last value, five times at most (as LAPACK's xGERFS does). The backward
-/// error alone refuses nothing: rows between unknowns that are 0 but for rounding, as at points
-/// that closed chains hold, are off by all of their terms. Callers judge the outputs
-/// (Evaluation::losses). O(front sizes^2) and the rows once, per column.
+/// Solves, and refines in the same arithmetic while the backward error is above rounding and falls
+/// to half of its last value or less, five times at most (as LAPACK's xGERFS does). The backward
+/// error alone is no reason to refuse: rows between unknowns that are 0 up to rounding, as at
+/// points that closed chains immobilise, have a residual as large as their terms. Callers judge the
+/// outputs (Evaluation::losses). O(front sizes^2) and the rows once, per column.
 template <class T>
 RowMatrix<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const RowMatrix<T>& rhs);
 
