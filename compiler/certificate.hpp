@@ -14,12 +14,12 @@ struct Certificate {
   /// path from an input are excited by inputs of size 1); or at one real s, if the equations
   /// contain positions or rates, if there are dependent states, in a reduced (singular) scene, or
   /// if digits may be lost. At an instant also the responses at s of the first two blocks of
-  /// each type, against their A, B, C, D. Negative if nothing moves: no inputs, and an instant is
-  /// not possible or may lose digits. Rounding gives about 1e-16 times the length of a row. A
-  /// residual above 1e-9 is corrected before it is reported: 1e4 times a sample of the signals'
-  /// rounding is subtracted, and residuals of over-constrained loops may be 1e-14 of the largest
-  /// translation, rotation, force or torque of all points. Rounding therefore does not explain a
-  /// value above 1e-9.
+  /// each type, against their A, B, C, D. Negative if not evaluated: there are no inputs, and an
+  /// instant is not possible or may lose digits. Rounding gives about 1e-16 times the length of a
+  /// row. A residual above 1e-9 is corrected before it is reported: 1e4 times a sample of the
+  /// signals' rounding is subtracted, and residuals of over-constrained loops may be 1e-14 of the
+  /// largest translation, rotation, force or torque of all points. Rounding therefore does not
+  /// explain a value above 1e-9.
   double residual = 0;
   std::string residual_where;  ///< the equation or block with this residual
   /// That real s [rad/s]; at an instant, the s of the blocks' responses.
@@ -56,7 +56,7 @@ struct Certificate {
   /// Invariant under any change of units.
   double weakest_pivot = 1;
   std::string weakest_where;  ///< signal
-  double pivot_growth = 1;    ///< largest size of a row over the least before, all along the tree
+  double pivot_growth = 1;    ///< largest ratio of a row's size to its least size before
   /// Largest margin rho(|L^-1| |L|) of an algebraic loop with matrix L, and its first signal: 1 for
   /// no loop, 4/delta at distance delta from singular; invariant under any change of units.
   double margin = 1;
@@ -65,7 +65,7 @@ struct Certificate {
   std::string margin_where;
   int fronts = 0;         ///< of the elimination
   int fronts_made = 0;    ///< of them, by the last compile or update; the others are shared
-  int plans_renewed = 0;  ///< updates since compile that found the scaling, or all, anew
+  int plans_renewed = 0;  ///< updates since compile that recomputed the scaling, or all
   double seconds = 0;     ///< of this check
 };
 

@@ -42,7 +42,7 @@ struct FullCertificate {
     double dense = -1;               ///< the minimal dense model against the factors
     std::complex<double> dense_s;
     /// `transfer` of the diagram as written against the factors, over those terms in all blocks
-    /// if they are more, for it rounds by itself; -1: too large, or closed twice.
+    /// if they are larger, because of its own rounding; -1: too large, or over-constrained.
     double written = -1;
     std::complex<double> written_s;
   } grid;
@@ -97,7 +97,7 @@ struct FullCertificate {
     double asymmetry = 0;
     std::complex<double> where;
     std::string first, second;  ///< the two, as System::inputs() calls them; empty at 0
-    /// A structure, as for passivity, of blocks that are reciprocal each by itself (their responses
+    /// A structure, as for passivity, of blocks of which each is reciprocal (their responses
     /// at one s, to 1e-12; data symmetric to 1e-9 only are none): an asymmetry above 1e-8 is a
     /// fault.
     bool structure = false;
@@ -112,8 +112,8 @@ struct FullCertificate {
   /// The failed checks, in words; empty if all pass: equations and transfers as written to 1e-8,
   /// entries of the dense model too, its rounding error (basic.dense_error, grid.dense) to 3e-7,
   /// the limit of generated C++, poles to 1e-6, a structure passive to 1e-9 and reciprocal to 1e-8,
-  /// without poles right of the axis (unless one-way blocks that read it have states and are no
-  /// mere integrators), the exact order inside the verdict's interval, and no state that the order
+  /// without poles right of the axis (unless one-way blocks that read it have states and are not
+  /// only integrators), the exact order inside the verdict's interval, and no state that the order
   /// step had to restore.
   std::vector<std::string> faults;
   bool holds() const { return faults.empty(); }

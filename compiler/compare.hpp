@@ -20,7 +20,7 @@ inline constexpr double kNoise = 1e3;
 inline constexpr double kHitBy = 1e-3;
 
 /// How two transfers are compared. Three translations (or rotations) of one port share their unit:
-/// such blocks of 3 x 3, and scalars by themselves, have one size.
+/// such blocks of 3 x 3, and single scalars, have one size.
 struct Measure {
   std::vector<int> rows, cols;  ///< of the blocks, in the order of outputs and of inputs
   Eigen::MatrixXd terms = {};   ///< outputs x inputs, see `terms`; empty: not known
@@ -67,7 +67,7 @@ Eigen::MatrixXd terms(const Graph& graph, const std::vector<std::complex<double>
 
 /// Adds the terms of an elimination to the measure, for blocks of `exact` that may be rounding
 /// alone: below 1e3 of one sample of it, where three digits or fewer remain. A larger block is
-/// measured by itself, however many digits double has lost. If `exact` is 0 to the last bit
+/// compared with its own size, even if double has lost many digits. If `exact` is 0 to the last bit
 /// (possible with rotated frames), there is no sample: 1e-3 of the geometric mean of the entries in
 /// its row and column is used as terms, so that `difference` is 1 at 1e-6 of that.
 void add_rounding(Measure& measure, const std::vector<Eigen::MatrixXcd>& exact,

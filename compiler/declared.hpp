@@ -7,7 +7,7 @@
 namespace titop::detail {
 
 /// Places of a graph's nodes, inputs or outputs in the order in which the user declared them; the
-/// graph has them in an order of its own. O(n log n).
+/// graph stores them in another order. O(n log n).
 template <class List>
 std::vector<int> as_declared(const List& list) {
   std::vector<std::pair<int, int>> places;
@@ -20,7 +20,7 @@ std::vector<int> as_declared(const List& list) {
   return order;
 }
 
-/// First row or column of each output or input where those stand in the declared order. O(n).
+/// First row or column of each output or input in the declared order. O(n).
 template <class List>
 std::vector<int> first_as_declared(const List& list) {
   const auto at = [](int i) { return static_cast<std::size_t>(i); };

@@ -34,7 +34,7 @@ class Instant {
   solve::RowMatrix<double> xdot_terms() const;
   solve::RowMatrix<double> outputs_terms() const;
 
-  /// Forward error estimate of all signals, as an instant of its own (known signals 0): from the
+  /// Forward error estimate of all signals, as a separate instant (known signals 0): from the
   /// residual of every equation plus about one unit of the last place of its terms, up or down in a
   /// random order, fixed for each `sample`. One more solution.
   Instant doubt(int sample = 0) const;

@@ -3,7 +3,7 @@
 #include <boost/container/small_vector.hpp>
 #include <titop/compiler/solve/numbers.hpp>
 
-/// One block by itself at one s. T is a scalar of any precision, complex or, for a real s, double.
+/// One block at one s. T is a scalar of any precision, complex or, for a real s, double.
 namespace titop::detail {
 
 /// (s - A)^-1 of a block, for any number of right-hand sides.

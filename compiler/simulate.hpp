@@ -41,7 +41,7 @@ class Excitation {
   Over over_;
 };
 
-/// How a step is taken. Cost per step of n states, b bodies; error per unit of time of steps h.
+/// Method of a step. Cost per step of n states, b bodies; error per unit of time of steps h.
 enum class Stepper {
   automatic,  ///< exact up to 600 states; beyond, and if A and B have lost the digits of slow
               ///< motion, midpoint at half the step, compared with midpoint at the step, three
@@ -49,7 +49,7 @@ enum class Stepper {
   exact,      ///< matrix exponential, once O(n^3), then O(n^2): for inputs that are linear in every
               ///< step no error at any step but rounding, that of writing A and B included
   midpoint,   ///< implicit midpoint rule through the factors, O(b), h^2: stable at any step, keeps
-              ///< the energy of undamped systems; high modes stay bounded, but turn too slowly
+              ///< the energy of undamped systems; high modes stay bounded, with a phase lag
   rk4         ///< classic Runge-Kutta, O(b), h^4: refuses steps beyond its limit of stability
 };
 const char* to_string(Stepper stepper);

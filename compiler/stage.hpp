@@ -14,7 +14,7 @@ struct Note {
   enum class Kind {
     info,       ///< a count made by a pass
     inverted,   ///< a channel that is driven on the side that its block gives by default
-    removed,    ///< a part without effect, left out
+    removed,    ///< a part without effect
     unchecked,  ///< accepted without a check: frames behind a nameless rotation or a matrix
     warning,    ///< lost digits, with their number; or input that is rarely intended
   };
@@ -31,7 +31,7 @@ struct Inversion {
   bool forced = false;  ///< by the equations; otherwise one of several choices inside a loop
 };
 
-/// A strong component of the equations: an algebraic loop, or a signal by itself.
+/// A strong component of the equations: an algebraic loop, or a single signal.
 struct Loop {
   std::vector<int> signals;  ///< its unknowns
   std::vector<int> rows;     ///< the rows matched to them (see `Row`)
@@ -43,7 +43,7 @@ struct Row {
   int node = -1, output = -1;  ///< block row: y of this signal
   int equation = -1;           ///< or this equation
   int size = 0;
-  bool active = true;  ///< false once `order` has found that nothing needs it
+  bool active = true;  ///< false if `order` has found that it is not needed
 };
 
 /// Which row determines which signal: pairs (row, signal), one per scalar if a signal is split.

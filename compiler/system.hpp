@@ -44,8 +44,8 @@ struct Options {
   double resolution = 0;
   InternalForces internal_forces = InternalForces::refuse;
   /// Up to this many states the minimal order is also computed in exact arithmetic, if the data
-  /// allow it (compiler/exact_order.hpp); it then decides which states `minimize` removes, which
-  /// runs up to as many states unless minimize_up_to is 0. 0: never.
+  /// allow it (compiler/exact_order.hpp); it then decides which states `minimize` removes;
+  /// `minimize` runs up to the same number of states unless minimize_up_to is 0. 0: never.
   int exact_up_to = 0;
 };
 
@@ -164,7 +164,7 @@ class System {
   /// singular, such as one with a point without mass (its log has notes of pass `reduce`).
   System update(const ParameterList& values) const;
 
-  /// All parameters and their values here, in the order of their making.
+  /// All parameters and their values here, in the order of creation.
   ParameterList parameters() const;
 
   Certificate certificate() const;

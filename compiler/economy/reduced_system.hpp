@@ -87,9 +87,9 @@ class ReducedSystem {
   System full() const&& { return full(); }
 
   /// Outputs x inputs, O(order), O(order^3) if modes are coupled by damping. transfer(0), if
-  /// there is one, is the full system's for modes of the whole and for balanced states whose rest
-  /// is at rest; if bodies lost modes or states are truncated it is so within the bound. Throws
-  /// singular if s is a pole.
+  /// there is one, is the full system's for modes of the whole and for singular perturbation of
+  /// balanced states; if bodies lost modes or states are truncated it agrees within the bound.
+  /// Throws singular if s is a pole.
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
 
   /// Dense; states "mode1", "mode1_rate", ...; of balanced models "kept1", ..., "balanced1", ...
@@ -97,7 +97,8 @@ class ReducedSystem {
   /// The structure kept. Throws bad_value for balanced models, with the reason why they have none.
   SecondOrderModel second_order() const;
   /// 2 x 2 blocks. O(order^3) if damping couples modes. Throws singular if these are too close to
-  /// defective (two of them critically damped alike, say); second_order() always works.
+  /// defective (such as two critically damped modes of equal frequency); second_order() always
+  /// works.
   ModalModel modal() const;
 
   /// The scene, with the required accuracy.

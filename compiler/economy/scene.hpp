@@ -16,11 +16,11 @@ enum class BoundKind {
 /// A question: inputs, outputs, band and accuracy.
 ///
 /// The error of a pair (input, output) is the largest difference of the transfer over the band,
-/// over the largest magnitude of the pair itself there. Pairs that are nearly zero, by symmetry
-/// say, are scaled by 1e-6 of the size that they would have if input and output coupled to all
-/// modes alike, independent of units. Both are taken on the ray s = (zeta + j sqrt(1 - zeta^2))
-/// omega, zeta the damping floor, since an undamped peak has no finite height; on it every mode has
-/// the additional damping zeta.
+/// over the largest magnitude of the pair itself there. Pairs that are nearly zero, as by
+/// symmetry, are scaled by 1e-6 of the size that they would have if input and output were coupled
+/// equally to all modes, independent of units. Both are taken on the ray s = (zeta + j sqrt(1 -
+/// zeta^2)) omega, zeta the damping floor, since an undamped peak has no finite height; on it every
+/// mode has the additional damping zeta.
 struct Scene {
   /// "W", or one of its scalars, "W(3)"; empty: all. The order is the diagram's, not the order
   /// here. Other inputs are held at 0: a point or joint whose acceleration is one of them is
@@ -42,8 +42,8 @@ struct Scene {
   /// vectors of their loaded ports replace these. The error is measured, and the bound is an
   /// estimate, checked against the full system as always. Refused if too many remain.
   int whole_up_to = 2000;
-  /// Passive structures keep M, D, K. False: their states are balanced as without such a form; with
-  /// heavy damping fewer may suffice.
+  /// Passive structures keep M, D, K. False: their states are balanced; with heavy damping
+  /// fewer may suffice.
   bool keep_structure = true;
   /// Up to this many states are balanced, at O(100 n^3); of more, bodies lose modes first.
   int balance_up_to = 800;

@@ -6,7 +6,7 @@
 
 namespace titop {
 
-/// In which coordinates generated code keeps its state.
+/// Coordinates of the state in generated code.
 enum class CppStates {
   automatic,  ///< modes if that takes fewer operations and is as accurate (looked at up to 400
               ///< states), else the model's own
@@ -55,7 +55,7 @@ struct CppModel {
 CppModel generate_cpp(const System& system, const CppOptions& options = {});
 
 /// Writes NAME.hpp and NAME_test.cpp; a file that has this content already is not touched, so that
-/// nothing is built again. Throws bad_file.
+/// its dependents are not rebuilt. Throws bad_file.
 void write(const CppModel& model, const std::filesystem::path& folder);
 
 }  // namespace titop

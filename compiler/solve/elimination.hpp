@@ -27,15 +27,15 @@ class Rows {
   virtual void add(int r, T* at, std::ptrdiff_t stride, const int* column) const = 0;
 };
 
-/// How the numbers went.
+/// Numerical quality of the elimination.
 struct Health {
   double growth = 1;   ///< largest size of a row met anywhere over the least that it had before,
                        ///< from front to front along the tree, in one scale of the unknowns
   double weakest = 1;  ///< smallest pivot over the sum of magnitudes that formed its row entry:
-                       ///< 1 no cancellation, 1e-16 nothing left; invariant under units
+                       ///< 1 no cancellation, 1e-16 no digit; invariant under units
   int weakest_variable = -1;
-  bool singular = false;  ///< a pivot with no digits left: `singular_variables` depend
-  bool finite = true;     ///< false if numbers have overflown: `singular_variables` are met then
+  bool singular = false;  ///< a pivot without digits: `singular_variables` depend
+  bool finite = true;     ///< false if numbers have overflown, first at `singular_variables`
   std::vector<int> singular_variables;
 };
 
@@ -45,7 +45,7 @@ constexpr double kNothingLeft = 16;
 
 /// Treatment of a column without a pivot that has a digit.
 enum class NoPivot {
-  stop,   ///< stop there: the factors are of no use
+  stop,   ///< stop there: the factors are unusable
   patch,  ///< add one entry to the matrix and go on: the factors are of L + sum of patches;
           ///< entries at rounding level become 0, so that dependent rows and columns stay exact
 };
@@ -58,7 +58,7 @@ struct Patch {
 };
 
 /// Powers of two that give columns the same size, one for all that share a unit: found once from
-/// real numbers, they serve every s and new values near the old ones. Within -1000 ... 1000.
+/// real numbers, and used for every s and for new values near the old ones. Within -1000 ... 1000.
 struct ColumnScale {
   /// Each front by itself, front after front (Front::first_column): for the choice of pivots.
   /// Factors::changed recomputes them with `rescale`.
