@@ -10,7 +10,7 @@ struct Axis {
   enum class Kind { revolute, prismatic };
   Kind kind = Kind::revolute;
   Vector3d direction = Vector3d::UnitZ();  ///< r, any length but 0
-  std::string name = {};                   ///< of its ports and states; may be left out
+  std::string name = {};                   ///< of its ports and states; optional
 };
 
 /// A revolute axis: `about({0, 0, 1})`, `about({0, 0, 1}, "azimuth")`.

@@ -44,7 +44,7 @@ class SixAxes {
 ///     qdd = xdd_C - xdd_P
 ///
 /// States: q (x, y, z, rx, ry, rz), then qd. Both ends take the acceleration, u = [xdd_C; xdd_P],
-/// y = [F_C; F_P; q; qd]; nothing feeds through.
+/// y = [F_C; F_P; q; qd]; no direct feedthrough.
 ///
 /// In the posture both ends coincide, and K and C are about that point, K from static tests or from
 /// its elastic centre E by tau_EC' K_E tau_EC. Preloads are not in it.

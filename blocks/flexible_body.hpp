@@ -24,9 +24,9 @@ struct ModeValues {
 ///     etadd = -diag(omega^2) eta - diag(2 xi omega) etad + W u        u = [F_C; ...; xdd_P]
 ///     y     = W' (etadd) + [[0, tau_CP], [tau_CP', -D_P]] u           y = [xdd_C; ...; F_P]
 ///
-/// which is (14) written once: between two children Phi_C Phi_C'', from P (tau_CP - Phi_C L_P), at
-/// P -D_P0 with the residual mass D_P0 = D_P - L_P' L_P. States: eta1 ... etaN [m sqrt(kg)], then
-/// their rates. Frame: the node's own. No child: the clamped-free appendage of Fig. 15.
+/// with the direct terms of (14): between two children Phi_C Phi_C'', from P (tau_CP - Phi_C L_P),
+/// at P -D_P0 with the residual mass D_P0 = D_P - L_P' L_P. States: eta1 ... etaN [m sqrt(kg)],
+/// then their rates. Frame: the node's own. No child: the clamped-free appendage of Fig. 15.
 ///
 /// The data are checked once, when it is made, and then shared by all nodes that use it. Throws,
 /// with the line that makes it, bad_modes (shapes, omega <= 0, xi < 0 or all above 1, D_P0 negative

@@ -5,8 +5,8 @@
 
 namespace titop {
 
-/// Revolute joint about the unit vector along r, [Alazard 2015] eq. (18) as a massless block of its
-/// own, in the frame of the body that it carries:
+/// Revolute joint about the unit vector along r, [Alazard 2015] eq. (18) as a separate massless
+/// block, in the frame of the body that it carries:
 ///
 ///     xdd_C = xdd_P + [0; r] thetadd
 ///     F_P   = F_C                          (F_C: wrench by the carried body on the joint)

@@ -16,7 +16,7 @@ namespace titop {
 /// then their rates; small motions about the posture given by the mounting rotation, in which C and
 /// P coincide (see Slide).
 ///
-/// Each axis is a port of its own by its name ("axis1", "axis2" ... if it has none). Signs as
+/// Each axis is a separate port with its name ("axis1", "axis2" ... if it has none). Signs as
 /// with Hinge and Slide: Q is the force or torque of the body ON its parent, so
 /// `a.force = k * a.position + c * a.rate` is the stable spring-damper.
 struct Joint {
@@ -45,7 +45,7 @@ struct Joint {
     int node_;
   };
 };
-/// Throws bad_value for no axes, an axis without direction, or one that moves as others do already;
+/// Throws bad_value for no axes, an axis without direction, or one that depends on others;
 /// duplicate_name.
 BlockPtr as_block(const Joint& spec);
 
@@ -56,7 +56,7 @@ std::vector<Axis> cylindrical(const Vector3d& r);                     ///< "trav
 std::vector<Axis> planar(const Vector3d& normal);  ///< "angle" about it, "axis1", "axis2" across it
 
 namespace detail {
-/// Lets every axis move freely if nothing else drives it.
+/// Frees every axis that is not driven.
 void release_axes(const Joint::Handle& joint, const Joint& spec, const std::source_location& at);
 }  // namespace detail
 

@@ -13,7 +13,7 @@ namespace titop {
 
 /// A 6 x 6 mass matrix read as that of a rigid body.
 struct MassProperties {
-  Vector3d mass = Vector3d::Zero();     ///< seen along x, y, z: three times the same [kg]
+  Vector3d mass = Vector3d::Zero();     ///< along x, y, z: three equal values [kg]
   Vector3d centre = Vector3d::Zero();   ///< centre of mass from P [m]
   Matrix3d inertia = Matrix3d::Zero();  ///< about the centre of mass [kg m^2]
   double misfit = 0;  ///< largest |D_P - rigid_mass(...)| relative to sqrt(D_ii D_jj): 0 for a

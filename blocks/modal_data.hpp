@@ -7,7 +7,7 @@
 
 namespace titop {
 
-/// A child point of a flexible body, as the modes see it.
+/// A child point of a flexible body, with its motion by the modes.
 struct ModalChild {
   std::string name;
   Vector3d PC = Vector3d::Zero();  ///< vector from P to C in the body's frame [m]

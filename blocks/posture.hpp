@@ -13,7 +13,7 @@ namespace titop {
 struct LoopStep {
   Axis joint;                        ///< about(r) or along(r); r in the frame of the link before
   std::optional<double> given = {};  ///< its angle [rad] or travel [m], if it is known
-  double guess = 0;                  ///< where to look for it otherwise
+  double guess = 0;                  ///< its start value otherwise
   Vector3d link = Vector3d::Zero();  ///< from this joint to the next one, in the link's frame [m]
   Rotation turn = {};                ///< next joint's frame to the link's frame (nominal values)
 };

@@ -5,7 +5,7 @@
 
 namespace titop {
 
-/// Prismatic joint along the unit vector of r: the Hinge's counterpart, a massless block of its own
+/// Prismatic joint along the unit vector of r: the Hinge's counterpart, a separate massless block
 /// in the frame of the body that it carries:
 ///
 ///     xdd_C = xdd_P + [r; 0] xdd

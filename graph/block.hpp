@@ -18,8 +18,8 @@ namespace titop {
 /// quantity of the signal that it drives; the others must agree.
 enum class Quantity : std::int8_t { plain, acceleration, velocity, position, force };
 
-/// Which signal of a channel the block takes by default: a child channel takes the wrench and
-/// gives the acceleration (inverse dynamics), a parent channel the other way round (direct
+/// Default input of a channel: a child channel takes the wrench and
+/// returns the acceleration (inverse dynamics), a parent channel the other way round (direct
 /// dynamics). The user may drive the other one: that inverts the channel.
 enum class Takes { force, accel };
 
@@ -63,7 +63,7 @@ struct Modal {
   Eigen::VectorXd stiffness, damping;
 };
 
-/// A block of a direct term: from its row and column on.
+/// A block of a direct term, with its first row and column.
 struct Gains {
   int row = 0, column = 0;
   Eigen::MatrixXd gain;
@@ -87,7 +87,7 @@ struct Dynamics {
   Eigen::MatrixXd dense_direct() const;
 };
 
-/// Where the acceleration ports are: the position of channel i is
+/// Kinematics of the acceleration ports: the position of channel i is
 /// `x_i = tau[i] x_reference + Phi[i] x`, x the block's state vector; Phi[i] is size_i x n.
 struct Kinematics {
   int reference = 0;  ///< index of the reference channel (the parent)
@@ -99,7 +99,7 @@ struct Kinematics {
   Eigen::VectorXd stiffness = {};
 };
 
-/// A matrix of yes and no: may this output depend directly on this input?
+/// Boolean matrix: true if this output may depend directly on this input.
 using Pattern = Eigen::Matrix<bool, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// A block of a diagram. Derive from it, return it from `as_block(spec)`, and `Diagram::add` takes
@@ -123,9 +123,9 @@ class Block {
   /// Declared direct feedthrough, output_size x input_size. It must not depend on the numbers: a
   /// mass of 0 or an angle of 0 is no structural zero. Default: everything.
   virtual Pattern feedthrough() const;
-  /// Declared structure of the states as a whole, for any numbers: which inputs may move them (1 x
-  /// input_size), which outputs may see them (output_size x 1). Default: all. States that no input
-  /// of the diagram moves, or no output sees, are left out by it.
+  /// Declared structure of the states as a whole, for any numbers: which inputs may excite them (1
+  /// x input_size), which outputs may depend on them (output_size x 1). Default: all. States that
+  /// are unreachable or unobservable by this structure are removed.
   virtual Pattern moved_by() const;
   virtual Pattern seen_by() const;
   /// Kinematic part, if the block has one; no chain may close through a block without. A state in

@@ -4,7 +4,7 @@
 
 namespace titop {
 
-/// How well a modal block's numbers are known. The direct term of its ports is
+/// Accuracy of a modal block's numbers. The direct term of its ports is
 /// D = rigid + W' W (struct Modal). Column j of W is known to `shapes` times size(j), entry (i, j)
 /// of `rigid` between ports that take an acceleration to `mass` times size(i) size(j). Sizes make
 /// the ports comparable: of an input times its size the unit is the same for all. A size of 0:

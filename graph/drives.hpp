@@ -7,12 +7,12 @@
 
 namespace titop {
 
-/// Who drives a channel: the equations on its two signals and the directions that they take.
+/// Drives of a channel: the equations on its two signals and their directions.
 struct Drive {
   std::span<const int> accel, force, added;  ///< equations: `accel =`, `force =`, `force +=`
   int size = 0;                              ///< of the channel
   int free = 0;               ///< directions in which no acceleration is driven, but the force
-  Eigen::MatrixXd some = {};  ///< N if these are some of all; else they need no matrix
+  Eigen::MatrixXd some = {};  ///< N if some directions are free and others not; else empty
 
   bool all_free() const { return free == size; }
   /// Orthonormal rows of these directions, free x size (unit vectors if none is oblique).

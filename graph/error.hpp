@@ -20,9 +20,9 @@ enum class Code {
   duplicate_name,  ///< the name is taken
   not_finite,      ///< a number is infinite or not a number
   not_a_rotation,  ///< a matrix is not a proper rotation
-  structure,       ///< every channel is driven and still the equations contradict in pattern
-  ill_posed,       ///< an algebraic loop without a unique solution
-  improper,        ///< the transfer would need derivatives of an input
+  structure,  ///< every channel is driven, but the equations contradict each other in structure
+  ill_posed,  ///< an algebraic loop without a unique solution
+  improper,   ///< the transfer would need derivatives of an input
   kinematic_loop,  ///< a closed chain (or the links of a posture) that does not close, that goes
                    ///< through a block without kinematics, or whose internal forces are read
   bad_inertia,     ///< no rigid body has this inertia

@@ -31,7 +31,7 @@ class Expr {
   std::vector<Term> terms_;
 };
 
-/// Anything that can stand on the right of `=`.
+/// Any right-hand side of `=`.
 template <class T>
 concept Readable = requires(const T& x) {
   { x.expr() } -> std::convertible_to<Expr>;
@@ -80,7 +80,7 @@ struct Zero {
   }
 };
 
-/// The right-hand side of `=`, with the source line it stands on.
+/// The right-hand side of `=`, with its source line.
 class Rhs {
  public:
   template <Readable T>

@@ -53,8 +53,8 @@ struct Signal {
   int first = 0;  ///< first row in the block's u or y
   int frame = kNoFrame;
   int channel = -1;      ///< index in Graph::channels, -1 for one-way ports
-  bool active = true;    ///< false once a pass has set it aside: it is 0, or unobservable
-  bool at_rest = false;  ///< set aside because nothing moves it
+  bool active = true;    ///< false if a pass has set it aside: it is 0, or unobservable
+  bool at_rest = false;  ///< set aside because it is not driven
   bool row = true;       ///< outputs: the block's row for it is in use
 };
 
@@ -167,7 +167,7 @@ int add_node(Graph& graph, std::string name, BlockPtr block, std::source_locatio
 int add_input(Graph& graph, std::string name, int size, std::source_location where = {});
 /// The node's input signal whose first row in the block's u is `column`. O(log channels).
 int input_signal(const Graph& graph, int node, int column);
-/// First signal that is not of this node any more.
+/// One past the last signal of this node.
 inline int end_signal(const Graph& graph, int node) {
   return graph.nodes[static_cast<std::size_t>(node)].end_signal;
 }

@@ -35,7 +35,7 @@ void mount(const Handle& body, const DualPort<6>& site, const Rotation& T_ba = {
 /// The same on a single axis: body.parent.accel = site.accel; site.force += body.parent.reaction.
 /// The site may be one axis of a point with six degrees of freedom: `mount(z,
 /// hub.child("C").along(r))` mounts a spring-mass that moves along r, `.about(r)` one that rotates
-/// about r (then with an inertia [kg m^2] for a mass). Its weight is felt along r only.
+/// about r (then with an inertia [kg m^2] for a mass). Its mass acts along r only.
 template <class Handle>
   requires HasParent<Handle, 1>
 void mount(const Handle& body, const DualPort<1>& site,

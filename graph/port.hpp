@@ -173,7 +173,7 @@ class DualPort {
 
   Port<N, Kind::accel> accel;  ///< [m/s^2; rad/s^2]
   Port<N, Kind::force> force;  ///< [N; N m]
-  /// Force without the terms added by `+=`: the support force alone, where the motion is imposed.
+  /// Force without the terms added by `+=`: the support force, if the motion is imposed.
   Reading reaction;
   /// Displacement from rest [m; rad], small, in the body's frame; the rotation is a rotation
   /// vector. If the states determine it (a chain to the ground), it adds no state. For rigid and

@@ -62,7 +62,7 @@ class Rotation {
   /// The product, left to right; neighbouring matrices are merged.
   const std::vector<Step>& steps() const { return held().steps; }
   /// The rotation of these steps, to the last bit (from a file). Throws not_a_rotation as `matrix`
-  /// does, and repairs nothing.
+  /// does, and corrects nothing.
   static Rotation of_steps(std::vector<Step> steps);
 
  private:

@@ -16,7 +16,7 @@ struct Param {
 };
 
 /// A number, or a parameter: wherever a block takes a number, it takes a `Value`, so
-/// `SpringMass{.mass = 2.0, .stiffness = k1}` needs no second spelling.
+/// `SpringMass{.mass = 2.0, .stiffness = k1}` is valid for both.
 class Value {
  public:
   constexpr Value(double number = 0) : number_(number) {}

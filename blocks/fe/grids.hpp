@@ -38,7 +38,7 @@ struct Grid {
 };
 
 /// The mesh, with all displacements rotated into body axes. Scalar points are generalised
-/// coordinates, which rigid motion does not move. Units are those of the data: scale the modal data
+/// coordinates, independent of rigid motion. Units are those of the data: scale the modal data
 /// (`scaled`).
 ///
 /// Throws, all together, unknown_name for a grid that only the matrices or only the list contains,

@@ -22,7 +22,7 @@ constexpr int kGeneralised = 6;
 
 /// One row of M and K: a displacement of a point along a body axis (component 0, 1, 2: x, y, z)
 /// or its rotation about one (3, 4, 5: rx, ry, rz). Or a generalised coordinate, such as that of a
-/// fixed-interface mode, which no rigid motion moves (kGeneralised; a point of its own names it).
+/// fixed-interface mode, independent of rigid motion (kGeneralised; a separate point names it).
 struct Dof {
   std::size_t point = 0;  ///< index into Mesh::points
   int component = 0;      ///< 0..5, or kGeneralised
@@ -34,7 +34,7 @@ struct Interface {
   std::size_t point = 0;  ///< index into Mesh::points
 };
 
-/// A free-free structure: no degree of freedom is held. SI units, body axes.
+/// A free-free structure: no degree of freedom is fixed. SI units, body axes.
 struct Mesh {
   std::string name;                   ///< for messages
   std::vector<Point> points;          ///< names differ

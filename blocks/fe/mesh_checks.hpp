@@ -6,7 +6,7 @@
 #include <titop/blocks/fe/mesh.hpp>
 #include <titop/blocks/modal_checks.hpp>
 
-/// How good the matrices of a mesh are, before any modes are computed.
+/// Quality of the matrices of a mesh, before any modes are computed.
 namespace titop::fe {
 
 struct MeshReport {
@@ -23,7 +23,7 @@ struct MeshReport {
   std::string KR_worst;  ///< degree of freedom of that entry
 };
 
-/// How far K resists rigid motion, which it must not: KR, KR_terms and KR_worst of the report.
+/// Resistance of K to rigid motion, which should be 0: KR, KR_terms and KR_worst of the report.
 struct RigidStiffness {
   double of_largest = 0, of_terms = 0;
   std::string worst;

@@ -16,7 +16,7 @@ struct Op4Matrix {
 };
 
 /// All real matrices of a file, in its order. The format is detected: text or binary, dense or
-/// sparse (with or without BIGMAT, each matrix by itself), single or double precision, words of 4
+/// sparse (with or without BIGMAT, detected per matrix), single or double precision, words of 4
 /// or 8 bytes in either byte order.
 ///
 /// Throws bad_file, naming the file, the matrix and the record (binary: with its byte) or line: a

@@ -61,7 +61,7 @@ class FileMistakes {
 };
 
 /// A last line without line end is a mistake: its last number may be cut short. A file that ends at
-/// the end of one of its lines looks whole.
+/// the end of one of its lines looks complete.
 void require_line_end(const TextFile& file, FileMistakes& mistakes);
 
 }  // namespace titop::fe

@@ -11,11 +11,11 @@ namespace titop::scene {
 /// Numbers that may be parameters.
 using WriteValue = std::function<Json(const Value&)>;
 using ReadValue = std::function<Value(const Place&)>;
-/// The name under which shared modal data stand in the file.
+/// The name of shared modal data in the file.
 using NameBody = std::function<std::string(const ModalData&)>;
 using FindBody = std::function<FlexibleBody(const Place&)>;
 
-/// The fields of this block behind "name" and "type". Throws bad_value for a type of the user's
+/// The fields of this block after "name" and "type". Throws bad_value for a type of the user's
 /// own.
 void write_block(const Block& block, const WriteValue& value, const NameBody& body, Json& json);
 

@@ -25,10 +25,10 @@ namespace titop {
 /// A signal is [block, channel, "accel" or "force"], [block, port] or [input]; a term may read its
 /// "position", "rate" or "reaction" ("read"). Factors act from the last to the first: numbers,
 /// parameters, {"rotation": ...}, {"matrix": ...}, {"part": ...}. Keys keep this order; numbers
-/// have the digits that give them back.
+/// have enough digits to be read back exactly.
 ///
-/// Throws the mistakes noted in the diagram, bad_value for a block of the user's own type (there is
-/// no name to make it by) and duplicate_name for two blocks, inputs or parameters of one name.
+/// Throws the mistakes noted in the diagram, bad_value for a block of the user's own type (the
+/// reader cannot create it) and duplicate_name for two blocks, inputs or parameters of one name.
 /// O(size).
 std::string scene_json(const Diagram& diagram);
 

@@ -5,16 +5,16 @@
 
 namespace titop::linalg {
 
-/// Diagonal similarity by powers of two that makes rows and columns of A (n x n) alike, in place:
-/// returns d with A_new = diag(d)^-1 A diag(d) [Parlett, Reinsch 1969]. A matrix with entries that
-/// are not finite is left as it is. O(n^2).
+/// Diagonal similarity by powers of two that gives row and column i of A (n x n) equal norms, in
+/// place: returns d with A_new = diag(d)^-1 A diag(d) [Parlett, Reinsch 1969]. A matrix with
+/// entries that are not finite is unchanged. O(n^2).
 Eigen::VectorXd balance(Eigen::MatrixXd& A);
 
 /// Likewise, to the same result in all units of states and time, up to factors of about 2. States
 /// that all act on one another: by the sweeps of `balance`, which end early if units are far
-/// apart, after a fit of logarithms [Curtis, Reid 1972]. Parts that act on others one way only,
-/// which no sweep brings together, act with entries about as large as the largest within a part:
-/// for vectors; eigenvalues alone need no parts to be near. O(n^3 / 3).
+/// apart, after a fit of logarithms [Curtis, Reid 1972]. Parts coupled in one direction only,
+/// which no sweep balances, are scaled so that the coupling entries are about as large as the
+/// largest within a part: needed for vectors, not for eigenvalues. O(n^3 / 3).
 Eigen::VectorXd balance_parts(Eigen::MatrixXd& A);
 
 /// Sets of states that all act on one another, directly or through others (the strong components of

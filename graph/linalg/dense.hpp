@@ -4,10 +4,10 @@
 #include <complex>
 #include <titop/graph/linalg/balance.hpp>
 
-/// Dense solutions and eigenvalues with scaling, and a word on how well they are determined.
+/// Dense solutions and eigenvalues with scaling and estimates of their conditioning.
 namespace titop::linalg {
 
-/// Solution of E z = F with a word on how well it is determined.
+/// Solution of E z = F and estimates of its conditioning.
 struct Solution {
   Eigen::MatrixXcd z;
   double rcond = 0;  ///< reciprocal condition number of the equilibrated E (1-norm estimate)
@@ -25,7 +25,7 @@ struct Inverse {
 };
 Inverse inverse(const Eigen::MatrixXd& M);
 
-/// Eigenvalues of a real square matrix: of each of its parts by itself (linalg/balance.hpp), after
+/// Eigenvalues of a real square matrix: of each of its parts separately (linalg/balance.hpp), after
 /// balancing by powers of two. O(n^3).
 /// Throws not_finite for entries that are not; singular if the iteration does not converge.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);

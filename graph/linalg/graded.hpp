@@ -15,7 +15,7 @@ namespace titop {
 struct GradedModes {
   SymmetricModes modes;
   bool graded = false;
-  double relative = 0;  ///< eigenvalues are off by some such part of themselves: n eps over the
+  double relative = 0;  ///< relative error of eigenvalues, its order of magnitude: n eps over the
                         ///< least pivot by its diagonal entry; infinite if not graded
 };
 GradedModes eigh_graded(const Eigen::MatrixXd& S);
@@ -25,7 +25,7 @@ GradedModes eigh_graded(const Eigen::MatrixXd& S);
 /// largest entry. Entries below 1e-13 of their own terms (a rigid motion's) are 0. O(n^3).
 std::optional<Eigen::VectorXd> diagonal_in(const GradedModes& of, const Eigen::MatrixXd& Z);
 
-/// Whether S + `skew` is S, of which these are the modes: in them the entries of the antisymmetric
+/// True if these modes of S are those of S + `skew`, too: in them the entries of the antisymmetric
 /// `skew` are rounding (1e-12 of the terms of V'SV) or small compared with the modes' own (1e-9 of
 /// sqrt(lambda_i lambda_j)). One that is neither may be small compared with the diagonal of S and
 /// yet decide whether a slow mode is stable. O(n^3).

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-/// The complex Schur form of a real matrix, and the linear matrix equations that it makes easy.
+/// The complex Schur form of a real matrix, and linear matrix equations solved by it.
 namespace titop::linalg {
 
 /// A = Q T Q^H, T upper triangular, Q unitary (n x n); the eigenvalues are T's diagonal.

@@ -5,7 +5,7 @@
 namespace titop {
 
 /// out = gain * in, all plain signals of the same size, 1 or more (`add` throws size). `lower`
-/// makes it a coefficient. A gain inside an equation, `k * x`, is the same thing without a name.
+/// makes it a coefficient. A gain inside an equation, `k * x`, is the same without a name.
 struct Gain {
   Value gain = 1;  ///< [unit of out / unit of in]
   int size = 1;
