@@ -9,10 +9,10 @@
 
 namespace titop::passes {
 
-/// Arrows between things that are numbered: those from each, ascending, without repetition.
+/// A directed graph on numbered nodes: the arrows from each, ascending, without repetition.
 class Arrows {
  public:
-  /// O(pairs + count), except for the arrows of one that come in disorder.
+  /// O(pairs + count), and a sort of the arrows of a node that are not in order.
   Arrows(const std::vector<std::pair<int, int>>& pairs, std::size_t count)
       : Arrows(count + 1, pairs.size()) {
     for (const auto& [from, to] : pairs) ++begin_[linalg::at(from) + 1];
@@ -30,7 +30,7 @@ class Arrows {
     to_.resize(linalg::at(end));
   }
 
-  /// All of them the other way round. O(arrows + count).
+  /// All arrows reversed. O(arrows + count).
   Arrows reversed() const {
     Arrows result(begin_.size(), to_.size());
     for (const int t : to_) ++result.begin_[linalg::at(t) + 1];

@@ -6,7 +6,7 @@
 
 namespace titop::passes {
 
-/// Which unknowns each row mentions, at one of two resolutions: whole signals, or scalars.
+/// The unknowns in each row, at one of two resolutions: whole signals, or scalars.
 struct Incidence {
   std::vector<Row> rows;                    ///< row groups, canonical order
   std::vector<int> first_row, first_col;    ///< first vertex of each row group / of each signal

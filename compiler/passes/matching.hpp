@@ -4,7 +4,7 @@
 
 namespace titop::passes {
 
-/// Which row vertex determines which column vertex; -1 for none.
+/// Matching of row vertices and column vertices; -1 for none.
 struct Matching {
   std::vector<int> row_to_col, col_to_row;
   int missing() const;  ///< rows and columns without a partner

@@ -5,8 +5,8 @@
 #include <titop/compiler/stage.hpp>
 
 /// The passes before numbers, in their order, from as_written(graph) on. Each is a pure function:
-/// it takes a stage and gives the next one; it does not print, keeps nothing between calls, and
-/// throws only for the user's mistakes, all of them together. Every pass keeps `transfer(graph,
+/// it takes a stage and returns the next one; it does not print, has no state, and throws only for
+/// the user's mistakes, all of them together. Every pass keeps `transfer(graph,
 /// s)`.
 namespace titop::passes {
 
@@ -34,8 +34,8 @@ struct NumericTerm {
 bool lower_again(const Stage& stage, const std::vector<int>& origins, ParameterValues values,
                  const std::function<bool(int, std::span<const NumericTerm>)>& take);
 
-/// Connected parts (ground not counted) without an output are set aside and listed; not so if the
-/// diagram has no outputs at all: then all states count as seen. O(terms).
+/// Connected parts (ground not counted) without an output are set aside and listed; if the
+/// diagram has no outputs at all, all states count as observable. O(terms).
 Stage split(Stage stage);
 
 /// Makes closed kinematic chains, through the ground or among bodies, consistent: if a closing
@@ -58,8 +58,8 @@ Stage chains(Stage stage);
 Stage match(Stage stage);
 
 /// Block triangular form: strong components are the algebraic loops, dependencies first. Signals
-/// that no input reaches or no output sees are set aside and listed; without inputs (outputs) all
-/// states count as driven (seen). Loops that no input reaches are kept if an output sees them: they
+/// that are unreachable or unobservable are set aside and listed; without inputs (outputs) all
+/// states count as reachable (observable). Unreachable loops are kept if they are observable: they
 /// are at rest only if they have one solution. O(terms).
 Stage order(Stage stage);
 
@@ -71,7 +71,7 @@ Stage order(Stage stage);
 Stage close(Stage stage);
 
 /// The graph's invariants, checked after every pass, in a release after `lower` and the last
-/// one; throws std::logic_error (a fault of ours). O(terms).
+/// one; throws std::logic_error (a fault of the library). O(terms).
 void verify(const Stage& stage);
 
 }  // namespace titop::passes

@@ -18,7 +18,7 @@ class UnionFind {
     }
     return i;
   }
-  /// False if they were together already.
+  /// False if they were joined already.
   bool unite(int a, int b) {
     a = find(a), b = find(b);
     if (a == b) return false;

@@ -12,7 +12,7 @@ namespace titop::solve {
 Mistake blame(const Stage& stage, const std::vector<std::shared_ptr<const Dynamics>>& blocks,
               const std::vector<int>& rows, const std::vector<int>& inputs);
 
-/// Numbers that are not finite any more (Health::finite): at which ports.
+/// Names the ports whose numbers have overflowed (Health::finite).
 Mistake overflow(const Stage& stage, const Joint& joint, const Health& health);
 
 /// The reason why no acceleration is free in these rows (of Stage::rows), as details and hint of an

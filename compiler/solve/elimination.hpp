@@ -11,13 +11,13 @@
 
 /// Elimination along the junctions: a row-merging LU of a block-sparse square system, front by
 /// front in the order of the plan. Symmetry is not used here: controllers and exchanged channels
-/// have none, and a pivot that is chosen by its size keeps digits that a symmetric order, fixed
-/// beforehand, would not. (The dense model is written by half of it: dense/reciprocity.hpp.)
+/// have none, and pivots chosen by size keep digits that a fixed symmetric order would lose. (The
+/// dense model exploits it: dense/reciprocity.hpp.)
 /// Instantiated for double, and for complex numbers of double, long double, double-double and 50
 /// digits.
 namespace titop::solve {
 
-/// Where the coefficients come from.
+/// Source of the coefficients.
 template <class T>
 class Rows {
  public:
@@ -39,7 +39,7 @@ struct Health {
   std::vector<int> singular_variables;
 };
 
-/// A pivot that keeps less than this many units of rounding has no digit left: 1e-14 of its terms
+/// A pivot of less than this many units of rounding of its terms has no digit: 1e-14 of its terms
 /// is a pivot of one to two digits, 1e-15 is rounding.
 constexpr double kNothingLeft = 16;
 
@@ -50,7 +50,7 @@ enum class NoPivot {
           ///< entries at rounding level become 0, so that dependent rows and columns stay exact
 };
 
-/// An entry added to the matrix in place of a pivot that is not there.
+/// An entry added to the matrix in place of a missing pivot.
 struct Patch {
   int row = -1;      ///< scalar row, in the order of Plan::row_first
   int unknown = -1;  ///< scalar unknown, in the order of Plan::first
@@ -64,7 +64,7 @@ struct ColumnScale {
   /// Factors::changed recomputes them with `rescale`.
   std::vector<std::int16_t> in_fronts;
   /// Per unknown, in the order of Plan::first (solve/equilibration.hpp): the same in all fronts, so
-  /// that a row's size means the same in all of them. The growth of a row is measured by it.
+  /// that sizes of rows in different fronts are comparable. The growth of a row is measured by it.
   std::vector<std::int16_t> of_unknowns;
 };
 
@@ -101,10 +101,10 @@ class Factors {
   const Plan& plan() const { return *plan_; }
   const std::shared_ptr<const ColumnScale>& scale() const { return scale_; }
   int fronts_made() const { return made_; }  ///< by the constructor or by changed()
-  /// Entries that its fronts' memory has: those in use (Plan::entries), and at most as many that
+  /// Entries in the fronts' memory: those in use (Plan::entries), and at most as many that
   /// newer ones have replaced.
   std::size_t entries_held() const;
-  /// Where the matrix had no pivot (NoPivot::patch); at least as many as its rank lacks.
+  /// Entries added where the matrix had no pivot (NoPivot::patch): at least its rank deficiency.
   std::vector<Patch> patches() const;
 
   /// One front's numbers.
@@ -115,7 +115,7 @@ class Factors {
     std::span<const int> order = {};  ///< assembled row at place i
     /// Per row left over: the least size that it has had, by ColumnScale::of_unknowns.
     std::span<const double> least_size = {};
-    /// Per remaining row the ratio that cancellation has left; none: all 1.
+    /// Per remaining row the ratio of its size to its terms after cancellation; none: all 1.
     std::vector<double> keeps = {};
     double growth = 1, weakest = 1;
     int weakest_column = -1;

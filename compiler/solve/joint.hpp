@@ -70,9 +70,9 @@ struct Joint {
   }
 };
 
-/// A whole equation whose terms are no targets themselves is written out (its pivot is 1 and needs
-/// no search); everything else stays an unknown: substituting further would be tearing. Appends the
-/// coefficients of all terms to `coefficients`. O(terms) and the cost of the plan.
+/// An equation for a whole signal whose terms are no targets is substituted (its pivot is 1 and
+/// needs no search); all other signals remain unknowns: substituting further would be tearing.
+/// Appends the coefficients of all terms to `coefficients`. O(terms) and the cost of the plan.
 Joint joint(const Stage& stage, std::vector<Coefficient>& coefficients);
 
 /// The same row-major; 1 and -1 are shared.

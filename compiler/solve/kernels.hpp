@@ -7,7 +7,7 @@
 #include <titop/compiler/solve/row_sums.hpp>
 #include <type_traits>
 
-/// The inner loops: y -= a x and its like over contiguous entries. Plain loops that a compiler
+/// The inner loops: y -= a x and similar ones over contiguous entries. Plain loops that a compiler
 /// turns into vector instructions; sums are never regrouped, so that every machine gets the same
 /// bits.
 

@@ -18,8 +18,8 @@ struct KeptMatrix {
 };
 
 /// Columns z (unknowns x k, in the order of Plan::first) with L z = 0, k the rank deficiency of L:
-/// the counterpart of `null_rows` for the same factors. Every z has 1 in an unknown of its own,
-/// where the other ones have 0. Entries that cancel are exactly 0; `size` is that of the terms of
+/// the counterpart of `null_rows` for the same factors. Every z has 1 in one unknown, where the
+/// others have 0. Entries that cancel are exactly 0; `size` is that of the terms of
 /// the others, for sums of them. O(fronts) per patch; for patches that depend on each other as in
 /// null_rows.
 KeptMatrix null_columns(const Factors<double>& patched);

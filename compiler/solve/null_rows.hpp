@@ -20,8 +20,8 @@ struct Kept {
   double cleaned() const { return std::abs(value) <= kCancelled * size ? 0 : value; }
 };
 
-/// A number for further sums: one that has not lost much counts by itself, so that ordinary losses
-/// do not add up along a long chain.
+/// A number for further sums: its size becomes that of its value unless much has cancelled, so that
+/// ordinary losses do not accumulate along a long chain.
 inline Kept settled(const Kept& k) {
   const double value = k.cleaned();
   return {value, std::abs(value) > 1e-4 * k.size ? std::abs(value) : k.size};
@@ -33,12 +33,11 @@ using SparseRow = std::vector<std::pair<int, double>>;
 /// Rows by their entries; others are 0.
 using SparseRows = std::vector<std::map<int, Kept>>;
 
-/// Rows y (places: scalar rows, in the order of Plan::row_first) with y L = 0, as many as the rank
-/// that L lacks, from factors with patches in place of its missing pivots. Every y is one minimal
-/// dependence among rows: it has 1 in a row of its own (`own`), where the other ones have 0.
-/// Entries that cancel are exactly 0. For each patch O(fronts that its dependence reaches), which
-/// are few for a junction without mass; then O(k^2 entries) for k patches that depend on each
-/// other.
+/// Rows y (places: scalar rows, in the order of Plan::row_first) with y L = 0, as many as the
+/// rank deficiency of L, from factors with patches in place of its missing pivots. Every y is one
+/// minimal dependence among rows: it has 1 in one row (`own`), where the others have 0. Entries
+/// that cancel are exactly 0. For each patch O(fronts that its dependence reaches), which are few
+/// for a junction without mass; then O(k^2 entries) for k patches that depend on each other.
 struct NullRows {
   std::vector<SparseRow> y;
   std::vector<int> own;

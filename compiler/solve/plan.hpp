@@ -8,10 +8,10 @@
 ///
 /// The system is a list of row groups, each over a few variable groups (port signals of 1 or 6
 /// scalars). To eliminate a variable, ALL rows that mention it are gathered into one small dense
-/// front; as many pivots as it (and every variable that now stands in this front alone) has
-/// scalars are taken there by row pivoting, and the rows left over go on to the next front. So
-/// every pivot search sees the whole column: a weak pivot is never forced, there is nothing to
-/// delay, and bodies of very different mass are compared only with their neighbours. On a tree of
+/// front; as many pivots as it (and every variable that is now in this front alone) has
+/// scalars are taken there by row pivoting, and the remaining rows are passed to the next front.
+/// Every pivot search thus covers the whole column: a weak pivot is never forced, no pivot is
+/// delayed, and bodies of very different mass are compared only with their neighbours. On a tree of
 /// bodies this is the leaf-to-root recursion, one front per junction, O(bodies).
 ///
 /// Order: the variable whose front would be smallest comes next (minimum degree on the merged

@@ -7,8 +7,8 @@
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 
-/// Steps of elimination on a front: rows x n entries, row-major, and `bounds`, as many, which get
-/// the sums of the magnitudes that entries are made of. For double and its complex numbers in the
+/// Steps of elimination on a front: rows x n entries, row-major, and `bounds`, as many, for the
+/// sums of the magnitudes of the terms of entries. For double and its complex numbers in the
 /// widest vectors that the processor has (steps.cpp); the same bits on every machine.
 namespace titop::solve {
 

@@ -5,12 +5,12 @@
 #include <titop/compiler/passes/passes.hpp>
 #include <unordered_map>
 
-/// Common to the checks of a graph, and the checks themselves: each adds its mistakes, so that a
-/// user sees all of them at once.
+/// Common to the checks of a graph, and the checks themselves: each adds its mistakes, so that all
+/// are reported at once.
 namespace titop::passes {
 
-/// Where something of the diagram was written: its source line, or its place in the scene file that
-/// it was read from, whose lists stand in the same order.
+/// Place where an item of the diagram was written: its source line, or its place in the scene file,
+/// whose lists have the same order.
 struct Written {
   const std::source_location& where;
   const char* list;  ///< "equations"

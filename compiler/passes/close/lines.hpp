@@ -8,7 +8,7 @@
 
 namespace titop::passes::closing {
 
-/// Rows of homogeneous relations, still as forms.
+/// Rows of homogeneous relations, as forms.
 struct Line {
   Form form = {};
   std::vector<int> unit = {};  ///< per row: translations 0, rotations 1, mixed 2
@@ -39,7 +39,7 @@ using Classify = std::function<std::optional<Meaning>(const Scalar&)>;
 /// The connected components of these lines, in order of their first lines. O(entries).
 std::vector<Component> components(const std::vector<Line>& lines, const Classify& classify);
 
-/// Which state is the rate of which, and the stiffness of each: as far as they are coordinates.
+/// The rate of each state that is a coordinate, and its stiffness.
 class Coordinates {
  public:
   Coordinates(const Graph& graph, ParameterValues values) : g_(graph), values_(values) {}

@@ -20,7 +20,7 @@ struct Redundancy {
   int widest = 0;                      ///< columns that were open at once
 };
 
-/// Rows that alone have some columns depend on no others, and no others on them: they are set aside
+/// Rows with columns that no others have are independent of them: they are set aside
 /// until every remaining column has more than one block, or the rows there less than full rank
 /// (pivots of 1e-3). The rest is decided in order, by singular values above kRankTolerance of the
 /// new part; decided rows are set aside in turn, as soon as no block to come has their columns. A
