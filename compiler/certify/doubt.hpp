@@ -5,7 +5,7 @@
 
 namespace titop::detail {
 
-/// Whether digits may be lost of an input of a block with states, or of an output: Instant::doubt
+/// True if digits may be lost of an input of a block with states, or of an output: Instant::doubt
 /// is more than kWarn of `now` there, and more than the rounding of a 0. `signals`: all signals of
 /// `now`. One more solution, O(bodies).
 bool digits_in_doubt(const SystemData& d, const Instant& now, const Signals& signals);

@@ -10,7 +10,7 @@
 /// compiler's own files.
 namespace titop::full {
 
-/// Whether a channel's force acts from its block on its surroundings: at a parent point and about
+/// True if a channel's force acts from its block on its surroundings: at a parent point and about
 /// the axis of a joint. At a child point, also of a bushing, it acts on the block.
 bool is_outward(const ChannelSpec& channel);
 bool is_outward(const Graph& graph, int channel);
@@ -45,7 +45,7 @@ DualTransfers dual_transfers(const DualPairs& pairs,
                              const std::vector<std::complex<double>>& points,
                              const std::vector<Eigen::MatrixXcd>& transfers);
 
-/// The same, so that blocks which are rounding and no more have a floor: by transfers in double and
+/// The same with a floor for blocks at rounding level: by transfers in double and
 /// in long double at all points. Slow.
 DualTransfers with_rounding(const System& system, const DualPairs& pairs, DualTransfers transfers);
 

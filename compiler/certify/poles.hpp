@@ -12,7 +12,7 @@ struct FoundPoles {
   std::vector<double> omegas;  ///< |s| of poles that are neither 0 nor rounding, ascending
   struct Right {
     std::complex<double> s;
-    double rounding;  ///< may move it by so much
+    double rounding;  ///< possible change by rounding
   };
   std::vector<Right> right;  ///< of the axis, both of a pair
 };
@@ -23,14 +23,14 @@ struct FoundPoles {
 FoundPoles check_poles(const System& system, const StateSpace& model,
                        const Eigen::MatrixXd& rounding);
 
-/// Those of these poles that are the minimal model's, too: a transfer shows them. O(n^3) if
+/// Those of these poles that are the minimal model's, too: they affect a transfer. O(n^3) if
 /// there are any.
 std::vector<FoundPoles::Right> shown(const std::vector<FoundPoles::Right>& right,
                                      const StateSpace& minimal);
 
 /// Points right of the axis on circles about these poles, of a tenth and a thousandth of their
-/// distance from it. A passive system has no pole there: around one G / s takes all directions,
-/// also that of supplying energy.
+/// distance from it. A passive system has no pole there: around one G / s takes every phase,
+/// also those of delivered energy.
 std::vector<std::complex<double>> around(const std::vector<FoundPoles::Right>& growing);
 
 }  // namespace titop::full

@@ -2,7 +2,7 @@
 
 #include <titop/compiler/system_data.hpp>
 
-/// How well the equations hold, as the user wrote them and as the blocks state them. For the
+/// Residual of the equations, as the user wrote them and as the blocks define them. For the
 /// compiler's own files only.
 namespace titop::detail {
 

@@ -20,7 +20,7 @@ struct OfMotion {
 /// displacement; by its matrices). Empty if it is anything else.
 std::vector<OfMotion> of_motions(const Graph& graph, const Term& term, ParameterValues values);
 
-/// Whether forces that follow positions and rates are those of springs and dampers: the gains from
+/// Checks that forces by positions and rates are those of springs and dampers: the gains from
 /// all positions to all forces, in the signs of work, are symmetric and positive semidefinite, and
 /// so are those from rates. To 1e-12 of their diagonal, in all units. Empty if they are, else the
 /// first force of those that are not. O(terms), and m^3 for m degrees of freedom that such springs

@@ -5,7 +5,7 @@
 #include <titop/compiler/economy/ray.hpp>
 #include <titop/compiler/economy/states.hpp>
 
-/// Which balanced model answers a scene. For the compiler's own files only.
+/// Selection of the balanced model for a scene. For the compiler's own files only.
 namespace titop::detail {
 
 /// Models of every order of a system without M, D, K: integrals and poles on the axis or right of
@@ -23,7 +23,7 @@ namespace titop::detail {
 /// checked where its error is largest, and all orders that clearly fail there are skipped.
 class Balanced {
  public:
-  /// `split` and `samples` must live as long. O(60 n^3).
+  /// `split` and `samples` must outlive this object. O(60 n^3).
   Balanced(const StateSpace& model, const Split& split, const Samples& samples, double high);
 
   struct Choice {
@@ -31,7 +31,7 @@ class Balanced {
     bool weighted = false, truncated = true;
     double error = 0;  ///< on the samples, relative to the pairs' peaks
   };
-  /// The least order from this one on with an error of at most so much; none: no order will do.
+  /// The least order from this one on with an error up to this; none if there is no such order.
   std::optional<Choice> find(Eigen::Index from, double target) const;
   /// The model of least error of the largest orders there are.
   Choice best() const;

@@ -10,7 +10,7 @@ namespace titop::detail {
 
 /// Coordinates q (each with its rate) of a structure: qdd = -G (K q + D qd) + B u with G = M^-1,
 /// y = C_q q + C_v qd + direct u. The first n_elastic coordinates have stiffness, the others none:
-/// of those only the rows G K and G D are known, which is all that matters.
+/// of those only the rows G K and G D are known, which suffice.
 struct Coordinates {
   std::vector<std::string> names;   ///< of the states q (or of the rate, if only that is a state)
   std::vector<int> nodes;           ///< of the graph
@@ -28,7 +28,7 @@ struct Coordinates {
   /// to positions and rates, as root mean square over coordinates of stiffness 1; 0 for the others.
   Eigen::MatrixXd silent;
   std::vector<std::string> blocks;  ///< that have coordinates
-  Eigen::MatrixXd shares;           ///< blocks x n_elastic: whose a coordinate is, of sum 1
+  Eigen::MatrixXd shares;  ///< blocks x n_elastic: share of each block in a coordinate, of sum 1
   Eigen::Index size() const { return static_cast<Eigen::Index>(names.size()); }
 };
 

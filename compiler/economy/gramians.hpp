@@ -5,9 +5,8 @@
 /// Balanced coordinates of a stable part. For the compiler's own files only.
 namespace titop::detail {
 
-/// A stable model in coordinates that inputs reach as well as outputs see them: both Gramians are
-/// diag(sigma). The first r coordinates are a model of their own, as are the first r with the
-/// others at rest (below).
+/// A stable model in balanced coordinates: both Gramians are diag(sigma). The first r coordinates
+/// form a model, as do the first r with the others at rest (below).
 struct Balancing {
   Eigen::MatrixXd A, B, C;
   Eigen::VectorXd sigma;        ///< Hankel singular values, descending, down to rounding

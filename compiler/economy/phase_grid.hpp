@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-/// Where to sample a rational function so that no peak hides between samples.
+/// Samples of a rational function that bound it everywhere between them.
 namespace titop::detail {
 
 /// A band, and the poles of the function that is sampled there.

@@ -11,7 +11,7 @@ struct ModeEffects {
   int node = -1;
   Eigen::VectorXd cut;        ///< per mode: without replacement
   Eigen::VectorXd corrected;  ///< with static vectors instead, which match two orders in s^2
-  std::vector<char> ports;    ///< per column of Modal::W: any transfer there?
+  std::vector<char> ports;    ///< per column of Modal::W: true if there is a transfer
 };
 
 /// For all nodes with modes (without those whose kinematic part has stiffnesses of its own).

@@ -6,7 +6,7 @@
 #include <titop/compiler/economy/bound.hpp>
 #include <titop/compiler/economy/reduced_data.hpp>
 
-/// The two ways to a smaller model. For the compiler's own files only.
+/// The two methods of reduction. For the compiler's own files only.
 namespace titop::detail {
 
 /// Seconds on a monotonic clock.
@@ -63,7 +63,7 @@ class Reduction {
  public:
   virtual ~Reduction() = default;
   virtual Spectrum spectrum() const = 0;
-  /// The smallest model whose bound is at most this; none if rounding ends first.
+  /// The smallest model whose bound is at most this; none if rounding prevents it.
   virtual std::optional<ReducedData> reach(double accuracy) = 0;
   /// Throws bad_value: the accuracy that can be met, and the obstacle.
   [[noreturn]] virtual void refuse(double accuracy) = 0;

@@ -4,8 +4,8 @@
 
 namespace titop::detail {
 
-/// Takes these signals from the graph's list; indices everywhere else follow, -1 where they meant
-/// one of them. For the compiler's own files. O(graph).
+/// Takes these signals from the graph's list; all other indices are adapted, -1 for removed
+/// ones. For the compiler's own files. O(graph).
 void remove_signals(Graph& graph, const std::vector<char>& gone);
 
 }  // namespace titop::detail

@@ -2,7 +2,7 @@
 
 #include <titop/compiler/economy/small.hpp>
 
-/// The order in which modes and vectors come in. For the compiler's own files only.
+/// The order in which modes and vectors are added. For the compiler's own files only.
 namespace titop::detail {
 
 /// The full transfer on samples of the ray, and the scale of each pair.
@@ -11,8 +11,8 @@ struct Samples {
   std::vector<std::complex<double>> s;  ///< on the ray
   std::vector<Eigen::MatrixXcd> H;      ///< outputs x inputs
   Eigen::MatrixXd peak;                 ///< outputs x inputs, with the floor of pairs that are 0
-  Eigen::MatrixXd alike;  ///< the pairs if ports coupled to all modes alike, or the cancelling
-                          ///< terms, if these are larger: scale of the rounding
+  Eigen::MatrixXd alike;  ///< the pairs if ports were coupled equally to all modes, or the
+                          ///< cancelling terms, if these are larger: scale of the rounding
 };
 
 /// H - Hr on one sample. Throws not_finite, with the frequency, if either is not.
@@ -34,14 +34,14 @@ Eigen::MatrixXd errors(const Samples& full, const Small& small);
 /// inputs are not collocated, the same for that output as the next step: often the first suffices.
 /// W is 0 on the band's modes: no added vector can have a pole in the band that the whole has not.
 ///
-/// A mode that is left out keeps its asymptote: its static part if it is in the band or above it,
+/// An omitted mode keeps its asymptote: its static part if it is in the band or above it,
 /// its limit at infinite frequency if it is below.
 class Sequence {
  public:
   /// `high`: upper end of the band [rad/s].
   Sequence(const Whole& whole, const Samples& samples, double high);
 
-  /// One step more; false if nothing helps any more.
+  /// One step more; false if no step reduces the error.
   bool grow();
 
   /// One model of the sequence.

@@ -35,7 +35,8 @@ struct Small {
   std::vector<std::complex<double>> poles() const;
 };
 
-/// Eigenvectors of W' Lambda W, by the inverse problem: stiff directions do not spoil soft ones.
+/// Eigenvectors of W' Lambda W, by the inverse problem: stiff directions do not reduce the accuracy
+/// of soft ones.
 SymmetricModes ritz(const Eigen::VectorXd& lambda, const Eigen::MatrixXd& W);
 
 /// The whole in the span of all motions without stiffness, the modes `kept` and the columns W

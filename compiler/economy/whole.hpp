@@ -35,7 +35,7 @@ struct Whole {
 
   Eigen::Index order() const { return lambda.size(); }
   Eigen::Index elastic() const { return lambda.size() - loose; }
-  /// Damping coefficient of mode j by itself.
+  /// Damping coefficient of mode j alone.
   double damping(Eigen::Index j) const { return Z.size() ? Z(j, j) : 0; }
 };
 
@@ -53,8 +53,8 @@ void couple(Whole& whole);
 /// sum 1; motions without stiffness belong to their own block. O(n^2 columns).
 Eigen::MatrixXd participation(const Whole& whole, const Eigen::MatrixXd& V);
 
-/// Which outputs of a graph are positions (plus rates and inputs only), scalar by scalar, as
-/// declared.
+/// Marks the outputs of a graph that are positions (plus rates and inputs only), scalar by scalar,
+/// as declared.
 std::vector<char> positions_read(const Graph& graph);
 
 }  // namespace titop::detail

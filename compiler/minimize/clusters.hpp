@@ -9,8 +9,8 @@ namespace titop::modes {
 
 inline constexpr double kEps = std::numeric_limits<double>::epsilon();
 inline constexpr double kSameFrequency = 1e-9;  ///< relative: as close as this, modes are equal
-inline constexpr double kNoPart = 1e-8;     ///< of a cluster's largest: smaller ones take no part
-inline constexpr double kClearRank = 1e-6;  ///< least singular value that rounding cannot have made
+inline constexpr double kNoPart = 1e-8;     ///< of a cluster's largest: smaller ones do not count
+inline constexpr double kClearRank = 1e-6;  ///< least singular value that is no rounding
 inline constexpr double kClearRow = 1e-10;  ///< likewise of a whole row
 inline const char* const kAtZero = "its pole is at 0";
 

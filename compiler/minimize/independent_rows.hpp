@@ -6,7 +6,7 @@
 /// Independent rows of a small matrix, in any units. For the compiler's own files.
 namespace titop::modes {
 
-/// Rows that no others make, and those that these make: M(out) = T M(keep).
+/// Independent rows, and the dependent ones: M(out) = T M(keep).
 struct IndependentRows {
   struct Row {
     int row = 0;
@@ -16,7 +16,7 @@ struct IndependentRows {
   std::vector<int> keep;  ///< ascending, as `out`
   std::vector<Row> out;
   Eigen::MatrixXd T;          ///< out x keep
-  std::vector<Row> doubtful;  ///< of `keep`: rounding may be all that they have of their own
+  std::vector<Row> doubtful;  ///< of `keep`: their independent part may be rounding
 };
 
 /// `rounding`: rounding error of each entry. A row is dependent if its own part is below 32 times

@@ -4,26 +4,26 @@
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
-/// Integrators at the end of a model, which act on nothing but each other: positions and rates that
+/// Integrators at the end of a model, which act only on each other: positions and rates that
 /// outputs read. For the compiler's own files.
 namespace titop::modes {
 
-/// The states of a model: those that act on one another, and those that only take.
+/// The states of a model: coupled ones, and integrators.
 struct Integrated {
   std::vector<int> rest, integrators;
 };
-/// A state is an integrator if it acts on nothing, or on integrators alone. O(n^2) per integrator.
+/// A state is an integrator if it acts on no state, or on integrators only. O(n^2) per integrator.
 Integrated find_integrators(const StateSpace& model);
 
-/// The rest by itself. The integrators' inputs are outputs, after the model's own; if it has none,
-/// after all states of the rest.
+/// The rest without integrators. The integrators' inputs are outputs, after the model's own; if it
+/// has none, after all states of the rest.
 StateSpace without_integrators(const StateSpace& model, const Integrated& states);
 
 /// `rest`, perhaps with fewer states than it had, with the integrators of the model again.
 StateSpace with_integrators(const StateSpace& rest, const StateSpace& model,
                             const Integrated& states);
 
-/// The same transfer as a sum: the rest, and the integrators by themselves.
+/// The same transfer as a sum: the rest, and the integrators separately.
 struct Decoupled {
   Eigen::MatrixXd X;  ///< integrators = z + X rest, with zdot = N z + B u: the part without modes
   Eigen::MatrixXd N, B;

@@ -37,8 +37,8 @@ struct ModeSet {
   std::vector<int> states;   ///< of each mode; 0: the conjugate partner counts for it,
                              ///< or its cluster
   Eigen::MatrixXd distance;  ///< |lambda_i - lambda_j|
-  /// e_ij: how much of mode i's drive rounding may put into that of mode j; shown by outputs, how
-  /// much of mode j into mode i.
+  /// e_ij: fraction of b of mode i that rounding may add to b of mode j; of c, fraction of mode j
+  /// that it may add to mode i.
   Eigen::MatrixXd mixing;
   /// Rounding that all modes in `apart` cause together in the others' b and c: each of them may be
   /// of any size. Sizes of b and c, or empty: contained in `mixing`.

@@ -10,8 +10,8 @@
 /// all outputs, positions that are functions of the other states. For the compiler's own files.
 namespace titop::modes {
 
-/// The rest of a decoupled model (integrators.hpp); entries are 0 that rounding alone may have
-/// made. None if the rest has a pole at 0 too.
+/// The rest of a decoupled model (integrators.hpp); entries at rounding level are 0. None if the
+/// rest has a pole at 0 too.
 std::optional<StateSpace> decoupled_rest(const Sampled& sampled, const Integrated& states);
 
 /// Removed integrators, and doubtful ones.
@@ -25,7 +25,7 @@ struct Needless {
 /// Removes from the model and its samples the integrators that do not count: with zdot = N z + B u,
 /// their part without modes (integrators.hpp), the rank of [B, N B, ...] determines which depend on
 /// the other states, and that of [C; C N; ...] which are unobservable (independent_rows.hpp).
-/// States keep their names, and their meaning except as noted. None, and nothing is changed, if the
+/// States keep their names, and their meaning except as noted. None, without any change, if the
 /// other states have a pole at 0 too. O(n^3).
 std::optional<Needless> take_out_needless(Sampled& sampled);
 

@@ -27,7 +27,7 @@ struct PoleClusters {
 /// O(25 n^3). Throws as linalg::schur.
 PoleClusters pole_clusters(const Eigen::MatrixXd& A);
 
-/// A cluster as a model of its own: A V = V A_own, with W V = 1.
+/// A cluster as a separate model: A V = V A_own, with W V = 1.
 struct OwnModel {
   ClusterModel model;
   Eigen::MatrixXd V, W;  ///< n x k, k x n

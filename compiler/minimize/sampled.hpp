@@ -31,10 +31,10 @@ Eigen::MatrixXd rounding_of(const std::vector<Sample>& samples, const Eigen::Mat
 /// Sets values below kRounding times this rounding to 0.
 Eigen::MatrixXd cleared(const Eigen::MatrixXd& value, const Eigen::MatrixXd& rounding);
 
-/// Entries of the model that rounding alone may have made become 0.
+/// Sets entries of the model at rounding level to 0.
 void clear_rounding(Sampled& sampled);
 
-/// Coefficients as a sample has them, which were solved for: they have rounding of their own.
+/// Solved coefficients of a sample, with their own rounding added.
 Eigen::MatrixXd jittered(Eigen::MatrixXd T, int sample);
 
 }  // namespace titop::modes

@@ -5,7 +5,7 @@
 #include <titop/compiler/minimize/modes.hpp>
 #include <vector>
 
-/// Modes that leave a model, as relations between its states: the rest keep name and meaning.
+/// Removal of modes, as relations between states: the remaining states keep name and meaning.
 namespace titop::modes {
 
 /// Takes out these states (in ascending order): they follow from the others, x_out = T x_others.
