@@ -5,7 +5,7 @@
 
 /// The equations of motion of a plan, assembled by hand: coordinates of the tree, Lagrange's
 /// equations, null space of the closures, controllers around it. This is the oracle of the random
-/// scenes; neither the library nor the scene file has a part in it.
+/// scenes; it uses neither the library nor the scene file.
 namespace titop::generate {
 
 /// xdot = A x + B u, y = C x + D u; not minimal.
@@ -19,7 +19,7 @@ struct FirstOrder {
 template <class S>
 FirstOrder<S> assemble(const Plan& plan);
 
-/// The part of it that inputs move and outputs see, by its Krylov subspaces.
+/// Its reachable and observable part, by Krylov subspaces.
 template <class S>
 FirstOrder<S> minimal(const FirstOrder<S>& model);
 

@@ -33,7 +33,7 @@ struct Base {
   Kind kind = Kind::ground;
   Point on = {};
   Mat3 T = {};
-  bool turned = false;             ///< T is not just left out
+  bool turned = false;             ///< T is given
   std::optional<Vec3> along = {};  ///< a spring-mass on a body: unit vector
   std::string input = {};          ///< free: wrench; imposed: acceleration; "": none
 };

@@ -23,13 +23,13 @@ Eigen::MatrixXcd refined_at_s(const Assembly& assembly, std::complex<double> s);
 Eigen::MatrixXcd block_by_block_at_s(const Assembly& assembly, std::complex<double> s,
                                      Digits digits = Digits::standard);
 
-/// Tearing: a ring is cut at its last joint, whose motion and force (12 numbers) are guessed,
-/// everything else follows body after body, and closing the ring determines the guess. Throws
-/// logic_error if joint i does not join bodies i and i + 1. O(bodies).
+/// Tearing: a ring is cut at its last joint, whose motion and force (12 numbers) are torn
+/// variables; all others follow body after body, and closing the ring determines the torn ones.
+/// Throws logic_error if joint i does not join bodies i and i + 1. O(bodies).
 Eigen::MatrixXcd tearing_at_s(const Assembly& assembly, std::complex<double> s,
                               Digits digits = Digits::standard);
 
-/// Whether tearing_at_s takes it.
+/// True if tearing_at_s applies.
 bool is_ring(const Assembly& assembly);
 
 /// The dense model of positions and velocities of all coordinates, free or not: constraints on

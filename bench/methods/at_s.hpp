@@ -30,7 +30,7 @@ Eigen::MatrixXcd block_by_block_at_s(const Network& network, std::complex<double
 Eigen::MatrixXcd tearing_at_s(const Network& network, std::complex<double> s,
                               Digits digits = Digits::standard);
 
-/// Whether tearing_at_s takes this network.
+/// True if tearing_at_s applies to this network.
 bool is_chain(const Network& network);
 
 }  // namespace titop_bench

@@ -4,7 +4,7 @@
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
-/// How far a method's result is from another's. Every time is reported with it.
+/// Difference between the results of two methods. Every time is reported with it.
 namespace titop_bench {
 
 /// Largest difference of entries of A, B, C, D, each over the largest entry of its row of

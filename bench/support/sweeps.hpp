@@ -6,7 +6,7 @@
 #include <titop/titop.hpp>
 #include <vector>
 
-/// Scenes of which one quantity goes to an extreme: the data of the failure charts.
+/// Scenes with one quantity at extreme values: the data of the failure charts.
 namespace titop_bench {
 
 /// One value of a sweep: a scene, its test points s, and the exact transfers there.

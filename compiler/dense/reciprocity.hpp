@@ -9,7 +9,7 @@ namespace titop::detail {
 
 struct SystemData;
 
-/// Whether the accelerations of all modes depend on the modal forces f by a symmetric matrix, such
+/// Conditions for a symmetric matrix from modal forces f to accelerations of all modes, such
 /// as the reduced inverse mass of equation (14) of the paper. With y = D u - W' f of all blocks it
 /// is symmetric if D is, between the channels' inputs (u) and outputs (y), and if the connections
 /// of channels satisfy u' y* = y' u* for any two motions: then W u, the modes' accelerations, is

@@ -4,7 +4,7 @@
 #include <titop/graph/graph.hpp>
 #include <vector>
 
-/// Which blocks of a large diagram share a box.
+/// Groups the blocks of a large diagram into boxes.
 namespace titop::dot {
 
 struct Fold {
@@ -14,7 +14,7 @@ struct Fold {
     std::vector<int> tops;   ///< the topmost of them
   };
   std::vector<Box> boxes;
-  std::vector<int> box_of;  ///< per node: its box, -1 for a block that is shown itself
+  std::vector<int> box_of;  ///< per node: its box, -1 for a block that is shown individually
 };
 
 /// At most `most` blocks and boxes, if that is two or more (blocks without parent share a box,

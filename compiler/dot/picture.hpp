@@ -52,7 +52,7 @@ int box_of(const Picture& p, int signal);
 /// True if a box has a part in it: then only its wires are drawn, no sums or gains.
 bool is_folded(const Picture& p, const Assignment& a);
 
-/// How one term looks on its way.
+/// Drawing of one term on its wire.
 struct Look {
   bool minus = false;
   std::string box = {};                 ///< "k1", "T(A1←B)", "M 3x6"; empty: a plain wire
@@ -63,7 +63,7 @@ struct Look {
 
 Look look(const Picture& p, const Assignment& a, const Term& term);
 
-/// False once every signal of the node has been set aside.
+/// False if every signal of the node has been set aside.
 bool is_active(const Graph& g, int node);
 /// Outputs of signals at the top are drawn above their block, all others below.
 Side output_side(const Graph& g, const Assignment& a);

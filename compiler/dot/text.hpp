@@ -8,7 +8,7 @@ namespace titop::dot {
 
 /// Bytes of the UTF-8 character that `text`, not empty, begins with; 0 if it begins with none.
 std::size_t utf8_length(std::string_view text);
-/// `text` as it stands in a label: broken UTF-8 and control characters become U+FFFD.
+/// `text` for a label: broken UTF-8 and control characters become U+FFFD.
 std::string clean(std::string_view text);
 /// A quoted Graphviz string that shows `text`, which may have any characters.
 std::string quoted(std::string_view text);

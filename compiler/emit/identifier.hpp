@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-/// Which names a language takes.
+/// Names that a language accepts.
 namespace titop::emit {
 
 enum class Language {

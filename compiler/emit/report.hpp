@@ -38,7 +38,7 @@ struct ReportOptions {
 /// of Graphviz.
 ///
 /// Throws bad_file, with the way out, if `dot` is missing or fails; unknown_name for `pairs` and
-/// `units` that name no input or output; bad_value for a band or an end that makes no sense. Cost:
+/// `units` that name no input or output; bad_value for an invalid band or end. Cost:
 /// O(n^3) of the dense model, some hundred transfers, and one simulation per shown input.
 std::string report_html(const System& system, const ReportOptions& options = {});
 

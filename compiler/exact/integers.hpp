@@ -13,7 +13,7 @@ namespace titop::exact {
 using Integer = boost::multiprecision::cpp_int;
 using Fraction = boost::multiprecision::cpp_rational;
 
-/// Thrown inside: why something is not decided.
+/// Internal exception: the reason why the order is not decided.
 struct Undecided {
   std::string why;
 };

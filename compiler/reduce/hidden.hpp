@@ -32,7 +32,7 @@ class Followers {
   std::vector<Dependent> dependents() const;
   /// by[j] of all states, blocks' states x inputs, j = 0 ...; as many as there are.
   std::vector<Eigen::MatrixXd> by_input() const;
-  /// The states that `add` has made followers.
+  /// The states that `add` has made dependent.
   const std::vector<int>& added() const { return added_; }
 
  private:
@@ -48,7 +48,8 @@ class Followers {
   const Layout& layout_;
   Eigen::Index inputs_;
   std::map<int, Follower> of_state_;
-  std::map<int, std::set<int>> read_by_;  ///< per independent state: the followers with a share
+  std::map<int, std::set<int>>
+      read_by_;  ///< per independent state: the dependent ones with a share
   std::vector<int> added_;
   std::vector<int> node_, first_;       ///< per state
   std::vector<char> is_rate_, before_;  ///< per state

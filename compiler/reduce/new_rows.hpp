@@ -26,7 +26,7 @@ class NewRows {
   /// A motion at 0, in place of its row. It is kept by reference.
   void hold(const Held& h) { of_group(h.row).held.push_back(&h); }
 
-  /// The system with them: the same variables and row groups, a plan of its own.
+  /// The system with them: the same variables and row groups, with a separate plan.
   solve::Joint joint();
 
  private:

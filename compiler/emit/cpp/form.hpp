@@ -19,7 +19,7 @@ struct Form {
   double static_error = 0, step_error = 0;  ///< of its static gain, of its trajectory
 };
 
-/// A model, or a check of it, that is off by more is not worth flying: tolerances are 1e-6 at most,
+/// Largest accepted error of a model, or of a check of it: tolerances are 1e-6 at most,
 /// and another machine may round a little worse.
 constexpr double kProvable = 3e-7;
 inline bool is_provable(double error) { return error <= kProvable; }
@@ -67,7 +67,7 @@ double worst_output(const Eigen::VectorXd& off, const Eigen::VectorXd& size, con
 /// Inputs of the trajectory, nu x steps: numbers from -1 to 1 without rounding.
 Eigen::MatrixXd trajectory_inputs(Eigen::Index inputs, Eigen::Index steps);
 
-/// The matrices as they are.
+/// The matrices unchanged.
 Form own_form(const StateSpace& model);
 
 /// Modes of the second-order form if damping is proportional, of A otherwise. Its error tells

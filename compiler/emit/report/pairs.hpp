@@ -4,7 +4,7 @@
 #include <titop/compiler/emit/report/sweep.hpp>
 #include <vector>
 
-/// Which responses are shown, and which share a figure.
+/// Selection of responses and their grouping in figures.
 namespace titop::report {
 
 constexpr std::size_t kFigures = 12;  ///< of one kind; more are counted

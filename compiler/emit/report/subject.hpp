@@ -16,7 +16,7 @@ struct Subject {
   double dense_seconds = 0;  ///< that writing and minimizing the dense model took, here
 };
 
-/// Throws unknown_name, bad_value for options that make no sense.
+/// Throws unknown_name, bad_value for invalid options.
 Subject subject(const System& system, const ReportOptions& options);
 
 /// Neighbouring scalars of one signal with one unit: three translations, three rotations, a scalar.
