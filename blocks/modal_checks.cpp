@@ -27,8 +27,8 @@ double noise_of(const ModalData& data) { return 10 * std::pow(10, -data.digits);
 /// entry; entries below this bound count as zero motion.
 double shape_noise(const ModalData& data) { return std::max(noise_of(data), 1e-11); }
 
-/// How large its rows are: as the others of their kind; rotations also as the translations, by the
-/// distance from P.
+/// Reference sizes of its rows: the largest of their kind, translations or rotations, or of the
+/// other kind times (over) the distance from P.
 Vector6 row_sizes(const ModalChild& child) {
   const Vector6 norms = child.Phi_C.rowwise().norm();
   const double translation = norms.head<3>().maxCoeff(), rotation = norms.tail<3>().maxCoeff();

@@ -164,8 +164,8 @@ class RigidBodyBlock : public Block, public Specified<RigidBody> {
     all.push_back(spec_.mass);
     return all;
   }
-  /// A hub of many ports is its equations: each point moves with P, each wrench goes to P. A hub of
-  /// few stays together, so that its pivots are chosen among all its rows (a digit more).
+  /// A hub of many ports becomes equations: each point moves with P, each wrench acts on P. A hub
+  /// of few remains a block, so that its pivots are chosen among all its rows (a digit more).
   bool is_algebraic() const override { return PC_.size() > 7; }
   std::optional<Cause> why_singular(int channel, ParameterValues values) const override {
     if (channel != static_cast<int>(PC_.size()))

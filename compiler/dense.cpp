@@ -201,8 +201,8 @@ class Writer {
       if (w_->sources[i].node >= 0) add_own(w_->sources[i]);
   }
 
-  /// Where the answer to the j-th force or state of a source goes. A modal force is one of the
-  /// mode's coordinate and of its rate.
+  /// Destination of the result of the j-th force or state of a source. A modal force belongs to the
+  /// mode's coordinate and to its rate.
   solve::Destination column_of(MatrixXd& matrix, Index column, const Writing::Source& s,
                                Index j) const {
     double* const first = matrix.data() + column * matrix.rows();

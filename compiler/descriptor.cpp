@@ -86,8 +86,8 @@ struct Builder {
             g.outputs[o].terms[t].signal);
   }
 
-  /// The model's states first, then those that follow from them: these have 0 = T x - x in place
-  /// of their derivatives.
+  /// The model's states first, then the dependent ones, which have 0 = T x - x in place of their
+  /// derivatives.
   void set_dependents_apart() {
     if (d.states.trivial()) return;
     shift_by_inputs();

@@ -47,8 +47,9 @@ constexpr Pass kPasses[] = {
     {"close", passes::close},    // dependent coordinates, among the remaining states
 };
 
-/// A fault of ours shows in the pass that makes it. A release looks where coefficients are made and
-/// at the end only: it is a sweep through the whole graph.
+/// Invariants are checked after every pass, so that a fault of the library is reported at its pass.
+/// A release checks only where coefficients are made and at the end: a check visits the whole
+/// graph.
 #ifdef NDEBUG
 constexpr bool kVerifyEach = false;
 #else

@@ -24,8 +24,8 @@ constexpr double kSettled = 1e-12;
 /// If steps shrink by less, refinement ends: at the rounding of T, or without a result if that is
 /// not reached.
 constexpr double kShrinks = 0.25;
-/// If the first step changes no block of the unknowns by more, that steps shrink is plain by then;
-/// else a second step has to show it.
+/// If the first step changes no block of the unknowns by more, convergence is certain by then;
+/// otherwise a second step must confirm it.
 constexpr double kPlain = 1e-9;
 /// Relative to the entries in the same row and column: level of a 0 after rotations of frames,
 /// cos(pi / 2) = 6e-17. More digits resolve it, but the data do not.
@@ -250,9 +250,9 @@ solve::RowMatrix<std::complex<double>> Evaluation<T>::change_by(
 }
 
 /// Every step multiplies the error by I - F^-1 L (F: the factors, L: the matrix), and so the step
-/// itself: a component in which F is wrong shrinks slowly, or not at all, and small steps are then
-/// no sign of a small error. Convergence is judged by the unknowns, each by itself, not by the
-/// outputs, of which that component may be a small share.
+/// itself: a component in which F is inaccurate shrinks slowly, or not at all, and small steps do
+/// not imply a small error. Convergence is judged by each of the unknowns, not by the outputs, of
+/// which that component may be a small fraction.
 template <class T>
 void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
   unknowns_ = lifted<T>(coarse.unknowns());

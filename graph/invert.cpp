@@ -35,8 +35,8 @@ Range range_of(const std::string& text, const ChannelSpec& c) {
   return {0, 0};
 }
 
-/// Rows and columns brought to the same size, by powers of two: a body is no more singular in
-/// millimetres than in metres.
+/// Rows and columns scaled to one size by powers of two: singularity does not depend on millimetres
+/// or metres.
 struct Scaled {
   MatrixXd matrix;
   Eigen::VectorXd rows, cols;

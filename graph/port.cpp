@@ -82,8 +82,8 @@ SignalRef SignalRef::along(const Vector3d& r) const {
 
 namespace {
 
-/// Position of the port of this name, -1 if there is none. Ports in1, in2, ... (Sum) mostly stand
-/// at their number: all of them are found in linear time.
+/// Position of the port of this name, -1 if there is none. Ports in1, in2, ... (Sum) mostly are at
+/// the position of their number: all of them are found in linear time.
 int find_port(const std::vector<PortSpec>& ports, std::string_view name) {
   std::size_t number = 0;
   const std::size_t digits = name.find_first_of("123456789");

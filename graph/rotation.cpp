@@ -11,8 +11,8 @@
 namespace titop {
 namespace {
 
-/// A right angle is one, as far as doubles go: the 6e-17 that they have for its cosine would tie
-/// motions together that nothing ties.
+/// Right angles are exact: the cosine of pi / 2 in double, 6e-17, would couple motions that are
+/// independent.
 Matrix3d turn(const Vector3d& axis, double angle) {
   const Matrix3d T = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
   return (T.array().abs() <= std::numeric_limits<double>::epsilon()).select(0, T);

@@ -89,8 +89,8 @@ MatrixXd read_matrix(const TextFile& file, const std::vector<Label>& labels) {
   const std::vector<TextLine> lines = data_lines(file, mistakes);
   for (const TextLine& line : lines) put_entry(file, line, S, mistakes);
   mistakes.finish();  // a row in a line that was not read is not also reported as missing
-  // CalculiX writes every diagonal entry, zero or not, and each column's last: a missing one is a
-  // missing column.
+  // CalculiX writes every diagonal entry, zero or not, and each column's last: a missing one means
+  // a missing column.
   for (Index i = 0; i < n; ++i) {
     if (!std::isnan(S(i, i))) continue;
     const Label& label = labels[static_cast<std::size_t>(i)];

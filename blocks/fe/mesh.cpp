@@ -35,8 +35,8 @@ void check_matrix(const Mesh& mesh, const MatrixXd& S, char name, std::vector<Mi
                             "give finite numbers"});
         return;
       }
-      // In a semidefinite matrix no entry exceeds the geometric mean of its two diagonals: a
-      // measure of smallness that does not mix units.
+      // In a semidefinite matrix no entry exceeds the geometric mean of its two diagonals: a scale
+      // for smallness that does not mix units.
       const double size = std::sqrt(std::abs(S(i, i) * S(j, j)));
       if (std::abs(S(i, j) - S(j, i)) <= tolerance * size) continue;
       mistakes.push_back(

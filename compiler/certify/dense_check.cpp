@@ -150,8 +150,8 @@ MatrixXd by_unit(const solve::RowMatrix<T>& y, const std::vector<int>& units) {
   return result;
 }
 
-/// Powers of s by which outputs fall from one decade to the next: whole ones, all of them, below
-/// all modes that show.
+/// Powers of s by which outputs decrease per decade; true if all are integers and equal to those
+/// before: below all modes with an effect.
 bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers) {
   constexpr double kWhole = 0.03;  // a mode a decade off changes a size by some 1 %: 0.004
   const MatrixXd p = (here.array() / below.array()).log10();
@@ -164,9 +164,9 @@ bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers)
   return same;
 }
 
-/// About the slowest mode that the outputs show, from s downwards: a row of slow bodies bends more
-/// slowly than any of them by itself. None if that is not to be seen: an output is rounding, or
-/// the factors have no digits so far below. O(bodies) per decade.
+/// Searches from s downwards for the slowest mode with an effect on the outputs: a row of slow
+/// bodies bends more slowly than any single one. None if it cannot be determined: an output is
+/// rounding, or the factors have no digits so far below. O(bodies) per decade.
 std::optional<T> slowest_shown(const SystemData& d, const T s, const solve::RowMatrix<T>& u,
                                const std::vector<int>& units) {
   constexpr int kDecades = 10;  // below them double has no digits of slow motion

@@ -18,12 +18,12 @@ using linalg::at;
 
 constexpr int kExactUpTo = 120;  ///< unknowns; above it a dense inverse per loop costs too much
 
-/// At distance delta from singular a margin is about 4 / delta: from here on the last two units of
-/// a loop's own numbers decide every digit of the answer.
+/// At distance delta from singular a margin is about 4 / delta: above this limit the last two units
+/// of a loop's own numbers determine every digit of the solution.
 constexpr double kWithoutDigit = 2 / std::numeric_limits<double>::epsilon();
 
-/// Powers of length and of force in a number's unit. Scalars may mean anything: only their force
-/// counts.
+/// Powers of length and of force in a number's unit. Scalars may have any unit: only the power of
+/// force is used.
 struct Unit {
   int length = 0, force = 0;
   bool scalar = false;

@@ -76,8 +76,8 @@ double relative(const Eigen::VectorXd& value, const Eigen::VectorXd& magnitude) 
   return worst;
 }
 
-/// The blocks' own formulas at s, which transfers are made of, against their A, B, C, D, for random
-/// inputs: of the first blocks of each type, for a type has one formula. An instant needs none.
+/// The blocks' own formulas at s, used by transfers, against their A, B, C, D, for random inputs:
+/// of the first blocks of each type, since a type has one formula. An instant does not use them.
 WrittenResidual check_responses(const SystemData& d, double s) {
   constexpr std::size_t kOfEachType = 2;
   WrittenResidual result;

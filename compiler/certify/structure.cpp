@@ -133,7 +133,7 @@ class Connections {
   Vectors accel_, force_, reaction_;
 };
 
-/// The first channel whose motion is imposed and whose wrench does not come back, by halves: work
+/// The first channel whose motion is imposed and whose wrench is not returned, by bisection: work
 /// is linear in the wrenches.
 std::string taken_for_nothing(const Graph& g, Connections& all) {
   std::size_t first = 0, end = all.size();

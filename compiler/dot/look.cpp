@@ -62,7 +62,7 @@ bool is_diagonal(const Pattern& p) {
   return true;
 }
 
-/// After `lower` a term is one matrix: the words come back from its numbers, its declared
+/// After `lower` a term is one matrix: its text is recovered from its numbers, its declared
 /// structure and the frames at its ends.
 void put_matrix(Reading& r, const Matrix& matrix, const std::string& to, const std::string& from) {
   const MatrixXd& m = *matrix.value;

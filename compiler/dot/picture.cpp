@@ -23,7 +23,7 @@ std::vector<int> by_name(const List& list) {
   return order;
 }
 
-/// Blocks go by their names; everything else has a prefix, and so have blocks whose own name
+/// Blocks have their names as ids; all others have a prefix, and so have blocks whose own name
 /// starts like one.
 std::string block_prefix(const std::string& name) {
   for (const char* taken : {"block ", "input ", "output ", "sum ", "gain ", "ground ", "fold ",

@@ -62,8 +62,8 @@ struct Reading {
   MatrixXd a, v, q;
 };
 
-/// Positions as positions, not as static gain and accelerations: of a mode far below the band these
-/// are each as large as its static part, and cancel.
+/// Sensitivities with positions as such, not as static gain and accelerations: for a mode far below
+/// the band each of these is as large as its static part, and they cancel.
 Reading as_meant(const Whole& w) {
   Reading r{w.ca, w.cv, w.cq};
   const Index n = w.elastic();

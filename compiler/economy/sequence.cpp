@@ -133,7 +133,7 @@ bool Sequence::extend(const Worst& worst) {
 }
 
 /// The dropped mode of the band with the largest term in this error, if all of them explain at
-/// least so much of it.
+/// least this fraction of it.
 bool Sequence::keep_one(const Worst& worst, double least) {
   const Complex s = samples_.s[worst.sample];
   Complex sum = 0;

@@ -30,8 +30,8 @@ std::string npy(const Eigen::MatrixXd& M) {
   return text;
 }
 
-/// Python refuses files that are not UTF-8 throughout: bytes that are none are escaped, as control
-/// characters are.
+/// Python refuses files that are not valid UTF-8: invalid bytes are escaped, as control characters
+/// are.
 std::string escaped(const std::string& name) {
   std::string text;
   for (std::string_view rest = name; !rest.empty();) {

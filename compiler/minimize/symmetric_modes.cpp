@@ -52,7 +52,7 @@ const GradedModes& turn_by_damping(const MatrixXd& Z, GradedModes& e) {
   return e;
 }
 
-/// Modes of one frequency are counted as equal if their damping is, too. Sorts those of one
+/// Modes of one frequency are counted as equal if their dampings are equal, too. Sorts those of one
 /// frequency by their damping z.
 void find_clusters(GradedModes& e, VectorXd& z, double resolution, ModeSet& m) {
   VectorXd& lambda = e.modes.lambda;

@@ -121,8 +121,8 @@ std::optional<Reference> reference(const SystemData& d, const StateSpace& writte
   }
 }
 
-/// An entry of which rounding may be a third can lead all the same: 1 / (1 - g) of a loop where g
-/// is all but 1. Without it another system would be judged.
+/// An entry of which rounding is up to a third may still be decisive: 1 / (1 - g) of a loop with g
+/// near 1. Without it a different system would be judged.
 bool keeps_transfer(const SystemData& d, const StateSpace& written, const StateSpace& without) {
   if (written.inputs.empty() || written.outputs.empty()) return true;
   if (written.A == without.A && written.B == without.B && written.C == without.C &&

@@ -32,8 +32,8 @@ void take_defaults(const Graph& g, const Incidence& inc, Matching& m) {
   }
 }
 
-/// Augmenting paths, breadth first. Many free rows, each with a free column nearby, cost no more
-/// than their neighbourhoods.
+/// Augmenting paths, breadth first. The cost of many free rows, each with a free column nearby, is
+/// that of their neighbourhoods.
 class Augmenting {
  public:
   Augmenting(const Incidence& inc, Matching& m)

@@ -49,8 +49,8 @@ void shake(SteadyRandom& random, const RowMatrix<double>& terms, RowMatrix<doubl
     sums.data()[i] += kEpsilon * terms.data()[i] * random.unit();
 }
 
-/// Rates and outputs of these states and inputs; with a sample: as another order of rounding might
-/// have them.
+/// Rates and outputs of these states and inputs; with a sample: perturbed by rounding, as in
+/// another order of operations.
 Rates rates_at(const SystemData& d, RowMatrix<double> known, const RowMatrix<double>& forcing,
                std::optional<int> sample, SteadyRandom& random) {
   const Instant now(d, std::move(known), forcing);

@@ -11,8 +11,7 @@ ExactRule::ExactRule(const System& system, double h) : h_(h) {
   system.write(m);
   A_ = std::move(m.A), B_ = std::move(m.B);
   const auto n = A_.rows(), nu = B_.cols();
-  // Inputs that are linear in time are states of their own, whose slope is held: d/dt u =
-  // (u1-u0)/h.
+  // Inputs that are linear in time are additional states, with constant slope: d/dt u = (u1-u0)/h.
   MatrixXd A = MatrixXd::Zero(n + nu, n + nu), slope = MatrixXd::Zero(n + nu, nu);
   A.topLeftCorner(n, n) = A_;
   A.topRightCorner(n, nu) = B_;

@@ -21,10 +21,10 @@ class ExactRule : public StepRule {
   ExactRule(const System& system, double h);
   Eigen::VectorXd step(const Eigen::VectorXd& x, const Eigen::VectorXd& u0,
                        const Eigen::VectorXd& u1) const override;
-  /// The same, and where the free motion from `other` goes: once through memory for both.
+  /// The same, and the free motion from `other`: one pass through memory for both.
   Eigen::VectorXd step(const Eigen::VectorXd& x, const Eigen::VectorXd& u0,
                        const Eigen::VectorXd& u1, Eigen::VectorXd& other) const;
-  /// A x + B u by the dense matrices that the steps are made of.
+  /// A x + B u by the dense matrices of the steps.
   Eigen::VectorXd xdot(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const;
   /// Effect of an error of xdot in one step: h (1 - h A / 2)^-1 of it, so that modes much faster
   /// than the step have their true effect, 2 / omega.

@@ -167,8 +167,8 @@ struct Builder {
   }
 
   /// The row is complete. A row over many variables (a hub's force, a sum of a thousand sensors)
-  /// would travel through the fronts of all of them: it becomes partial sums, unknowns of their
-  /// own.
+  /// would be carried through the fronts of all of them: it is split into partial sums, which are
+  /// unknowns.
   void close_row(int stage_row, int size) {
     std::sort(over.begin(), over.end());
     over.erase(std::unique(over.begin(), over.end()), over.end());

@@ -11,8 +11,8 @@ namespace {
 using linalg::at;
 
 /// Rows x with x L = c for factors of L, where c has one entry: first U transposed from its front
-/// towards the root, then L transposed back. Fronts where all is 0 are left out: a junction's
-/// dependence costs its neighbours, not the whole scene.
+/// towards the root, then L transposed back. Fronts with zeros only are skipped: the cost of a
+/// junction's dependence is that of its neighbours, not of the whole scene.
 class Transposed {
  public:
   explicit Transposed(const Factors<double>& factors)

@@ -16,8 +16,8 @@ namespace {
 using Index = std::ptrdiff_t;
 using linalg::at;
 
-/// Exponents of two, in sixteenths: whole numbers, whose sums and largest a compiler may take in
-/// any order, and every machine gets the same.
+/// Exponents of two, in sixteenths: integers, whose sums and maxima are the same in any order and
+/// on every machine.
 constexpr int kOne = 16;
 constexpr int kNone = -(1 << 24);  ///< the exponent of 0
 constexpr int kRounding = -691;    ///< 1e-13
@@ -56,9 +56,9 @@ TITOP_PART int sum_of(const Lanes& lanes) {
   return x[0] + x[1];
 }
 
-/// A front's exponents. The columns of a unit are scaled alike: after the entries themselves have
-/// been looked at once, the front is one of rows and units. All in one buffer: fronts are small and
-/// many. Unit u of row i is at i * width + u.
+/// A front's exponents. The columns of a unit have one exponent: after one pass over the entries
+/// the front is one of rows and units. All in one buffer: fronts are small and many. Unit u of row
+/// i is at i * width + u.
 struct Exponents {
   std::span<const int> units;
   Index rows, columns;

@@ -11,7 +11,7 @@ namespace {
 using linalg::at;
 
 /// The rows of a front, as they were assembled, then permuted and reduced by L. The first
-/// pivot_count rows stay, the rest is carried to the parent.
+/// pivot_count rows remain, the rest is carried to the parent.
 template <class T>
 struct Forward {
   const Plan& plan;

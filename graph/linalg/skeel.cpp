@@ -52,8 +52,8 @@ struct Powers {
   bool settled = false;  ///< known to 1e-3
 };
 
-/// Power iteration [Collatz 1942]; `times`: M v. |M^-1| |M| has a diagonal of 1 and more: nothing
-/// oscillates.
+/// Power iteration [Collatz 1942]; `times`: M v. The diagonal of |M^-1| |M| is 1 or more: the
+/// iteration does not oscillate.
 template <class Times>
 Powers perron_by_powers(Eigen::Index n, int steps, Times times) {
   VectorXd v = VectorXd::Ones(n), w, grown;
@@ -74,8 +74,8 @@ double perron(const RowMatrix& M) {
 }
 
 /// Spectral radius of M: the largest of its irreducible diagonal blocks. Loops that a zero
-/// coefficient cuts open have rows that reach each other one way only; on them no power converges.
-/// Set: of as many bits as rows, `none` empty.
+/// coefficient opens have rows coupled in one direction only, for which power iteration does not
+/// converge. Set: of as many bits as rows, `none` empty.
 template <class Rows, class Set>
 double perron_of_parts(const Rows& M, const Set& none) {
   const auto n = static_cast<std::size_t>(M.rows());
@@ -115,8 +115,8 @@ TITOP_WIDE Eigen::Index nonzeros(Eigen::Index n, const double* x) {
   return count;
 }
 
-/// Row of the pivot of column k: one with few entries among those that are large enough there. k -
-/// 1 if all are 0.
+/// Pivot row of column k: one with few entries among those that are large enough there. k - 1 if
+/// all are 0.
 template <class Rows>
 Eigen::Index sparse_pivot(const Rows& M, Eigen::Index k) {
   double largest = 0;
@@ -258,8 +258,8 @@ class Peeled {
   }
 
  private:
-  /// A row or a column: of its entries their number and the exclusive or of their places, which is
-  /// the place of a single one, and of two, with either one's place, the place of the other.
+  /// A row or a column: number of its entries, and the exclusive or of their places. For a single
+  /// entry that is its place; for two, it gives the other's place from either one's.
   struct Line {
     int entries = 0;  ///< -1: peeled off
     std::size_t places = 0;

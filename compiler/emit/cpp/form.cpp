@@ -82,9 +82,9 @@ struct Vectors {
   Eigen::Matrix<Long, Eigen::Dynamic, 1> values;
 };
 
-/// Eigenvectors of double, sharpened in long double: with R = W A V nearly diagonal, V (I + X) with
+/// Eigenvectors of double, refined in long double: with R = W A V nearly diagonal, V (I + X) with
 /// X_ij = R_ij / (R_jj - R_ii) is so to second order [Dongarra, Moler, Wilkinson 1983]. The slow
-/// poles of a stiff model keep their digits that way.
+/// poles of a stiff model thus keep their digits.
 Vectors sharp_eigenvectors(const MatrixXd& A) {
   const linalg::Eigensystem coarse = linalg::eigensystem(A);
   const MatrixXd balanced =

@@ -17,8 +17,8 @@ struct Close {
 };
 using File = std::unique_ptr<std::FILE, Close>;
 
-/// A file without a name, gone when closed. Files, not pipes: a program that writes before it has
-/// read all must not wait for us.
+/// A nameless file, removed when closed. Files, not pipes: a program that writes before it has read
+/// all its input would block.
 File scratch(const std::string& content = {}) {
   File file(std::tmpfile());
   if (!file || std::fwrite(content.data(), 1, content.size(), file.get()) != content.size() ||

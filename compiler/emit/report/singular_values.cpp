@@ -40,7 +40,7 @@ std::string shortened(const std::string& names) {
 }
 
 /// Singular values, largest first: the eigenvalues of [0 G; G* 0] in real form, each twice there
-/// with either sign; good to rounding of the largest.
+/// with either sign; accurate to rounding of the largest.
 VectorXd singular_values_of(const MatrixXcd& G) {
   const Index m = G.rows(), n = G.cols(), k = m + n;
   MatrixXd H = MatrixXd::Zero(2 * k, 2 * k);

@@ -13,8 +13,8 @@ namespace {
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// How the force of a channel follows its own position and rate: directly, not through other blocks
-/// and not through other points. In the signs of work: springs and dampers are positive.
+/// Gains from a channel's own position and rate to its force: direct ones, not through other blocks
+/// or points. In the signs of work: springs and dampers are positive.
 struct OwnGains {
   MatrixXd position, rate;           ///< empty: none
   std::vector<const Equation*> all;  ///< with such terms

@@ -283,8 +283,8 @@ struct Fronts {
     }
   }
 
-  /// From the last pivot rows to the first: columns that they share are independent, or follow
-  /// from later ones.
+  /// From the last pivot rows to the first: common columns are independent, or dependent by later
+  /// rows.
   void write_followers(const Eigen::VectorXd& factor) {
     for (auto rows = pivot_rows.rbegin(); rows != pivot_rows.rend(); ++rows) {
       std::vector<int> pivot_places, rest_places;

@@ -223,8 +223,8 @@ struct RedundancyFinder {
     return cancels(std::move(left), std::max(1.0, size));
   }
 
-  /// `left` -= the rows' combination that is v in their own columns, in the others. Returns the
-  /// largest sum of sizes: rounding is in proportion to it.
+  /// Subtracts from `left` the combination of rows that is v in their own columns, in the other
+  /// columns. Returns the largest sum of magnitudes: rounding is in proportion to it.
   static double subtract(const Part& part, const VectorXd& v, std::map<int, double>& left) {
     if (part.others.empty()) return 0;
     const VectorXd y = part.factor.triangularView<Eigen::Lower>().transpose().solve(

@@ -25,8 +25,8 @@ std::vector<Closing> without_hanging(const std::vector<Closing>& closings) {
   return result;
 }
 
-/// The chains' own equations, and those that place the point they read (a tree that is held at a
-/// far end), with the gains and sums that they read.
+/// The chains' own equations, and those that determine the position of the point that they read (a
+/// tree fixed at a far end), with the gains and sums that they read.
 std::vector<char> placing(const Graph& g, const Motion& motion,
                           const std::vector<Closing>& closings) {
   std::vector<int> equation_of(g.signals.size(), -1);  // of signals outside channels

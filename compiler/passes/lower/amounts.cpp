@@ -105,8 +105,7 @@ Amount Lowering::own_motion(int channel) const {
   return {{c.accel, I, I.array() != 0}};
 }
 
-/// Accelerations in a twin become the outputs of their Integrators; those that are missing are
-/// noted.
+/// Accelerations in a twin become the outputs of their Integrators; missing ones are noted.
 Amount Lowering::integrated(Amount sum, Level level) {
   Amount result;
   for (Summand& p : sum) {
