@@ -50,7 +50,7 @@ struct Loop {
   }
 };
 
-/// Where the loop ends, seen from where it began, and how it moves with the unknowns.
+/// Pose of the loop's end relative to its beginning, and its derivatives by the unknowns.
 struct End {
   Vector6 gap;  ///< translation over the loop's size, rotation vector
   MatrixXd J;   ///< 6 x unknowns

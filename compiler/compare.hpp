@@ -19,8 +19,8 @@ inline constexpr double kNoise = 1e3;
 /// cancel exactly, in another to 1e-17.
 inline constexpr double kHitBy = 1e-3;
 
-/// How two transfers are compared. Three translations (or rotations) of one port share their unit:
-/// such blocks of 3 x 3, and single scalars, have one size.
+/// Scales for the comparison of two transfers. Three translations (or rotations) of one port share
+/// their unit: such blocks of 3 x 3, and single scalars, have one size.
 struct Measure {
   std::vector<int> rows, cols;  ///< of the blocks, in the order of outputs and of inputs
   Eigen::MatrixXd terms = {};   ///< outputs x inputs, see `terms`; empty: not known
@@ -76,7 +76,7 @@ void add_rounding(Measure& measure, const std::vector<Eigen::MatrixXcd>& exact,
 /// Up to 8 of these points, spread over all of them, the last one included.
 std::vector<std::complex<double>> some_of(const std::vector<std::complex<double>>& points);
 
-/// Where two transfers differ most.
+/// Place of the largest difference of two transfers.
 struct Difference {
   double relative = 0;
   std::size_t point = 0;  ///< index

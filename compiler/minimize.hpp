@@ -27,7 +27,7 @@ struct JudgedMode {
   std::string why;    ///< "no input moves it", "no output sees it", "its pole is at 0", ...
 };
 
-/// How sure the order of a model is.
+/// Reliability of the order of a model.
 struct OrderVerdict {
   bool judged = false;  ///< false: `minimize` has not run; only the structure has been looked at
   int order = 0;        ///< of the model

@@ -11,7 +11,7 @@
 
 namespace titop::detail {
 
-/// How many threads to take for `tasks` independent tasks: `wanted`, or all cores if it is 0.
+/// Number of threads for `tasks` independent tasks: `wanted`, or all cores if it is 0.
 inline int thread_count(int wanted, std::size_t tasks) {
   // Called once: it reads a file, which takes longer than writing a small model.
   static const auto cores = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));

@@ -14,7 +14,7 @@ class Resolvent {
   /// of the block the numbers are not finite.
   Resolvent(const Dynamics& dynamics, const T& s);
 
-  /// Whether that LU has a pivot of 0. With modes false.
+  /// True if that LU has a pivot of 0. With modes false.
   bool singular() const;
 
   /// (s - A)^-1 r, states x columns: O(states) per column with modes, else O(states^2).

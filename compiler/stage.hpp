@@ -46,12 +46,12 @@ struct Row {
   bool active = true;  ///< false if `order` has found that it is not needed
 };
 
-/// Which row determines which signal: pairs (row, signal), one per scalar if a signal is split.
+/// Signals determined by rows: pairs (row, signal), one per scalar if a signal is split.
 struct Matched {
   std::vector<std::pair<int, int>> rows;
 };
 
-/// Where an equation of the lowered graph comes from, so that it can be lowered again for other
+/// Origin of an equation of the lowered graph, so that it can be lowered again for other
 /// values of the parameters.
 struct Origin {
   enum class Of {

@@ -32,7 +32,7 @@ enum class InternalForces {
                  ///< and torques [N m] with equal weight; the log marks its readers
 };
 
-/// How to compile.
+/// Options of `compile`.
 struct Options {
   /// Up to this many states, `state_space()` also removes states without effect on the transfer
   /// (pass `minimize`, O(n^3)); beyond it only those that the structure shows. 0: never.

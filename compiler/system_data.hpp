@@ -12,7 +12,7 @@
 /// The data of a System. For the compiler's own files only.
 namespace titop::detail {
 
-/// Where the rows and columns of the model come from.
+/// Origin of the rows and columns of the model.
 struct Layout {
   std::vector<int> state_nodes;   ///< nodes with states, as memory has them: in the graph's order
   std::vector<int> state_first;   ///< per node: first row of x, -1 for none

@@ -21,7 +21,7 @@ void sort_unique(std::vector<int>& list) {
   list.erase(std::unique(list.begin(), list.end()), list.end());
 }
 
-/// Which parameters each coefficient depends on, by its index.
+/// The parameters on which each coefficient depends, by its index.
 std::vector<const std::vector<int>*> parameters_of_coefficients(const Stage& stage,
                                                                 const solve::Joint& joint) {
   std::vector<const std::vector<int>*> result;

@@ -64,7 +64,7 @@ class ProofMassBlock : public Block {
   std::shared_ptr<const Dynamics> dynamics(titop::ParameterValues) const override {
     return matrices_;
   }
-  /// Where the ports are in the block's own states: P is the reference, nothing else moves.
+  /// Kinematics of the ports: P, the only one, is the reference.
   std::optional<Kinematics> kinematics(titop::ParameterValues) const override {
     return Kinematics{
         .reference = 0, .tau = {MatrixXd::Identity(6, 6)}, .Phi = {MatrixXd::Zero(6, 2)}};

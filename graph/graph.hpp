@@ -58,7 +58,7 @@ struct Signal {
   bool row = true;       ///< outputs: the block's row for it is in use
 };
 
-/// How many neighbours among the entries of this signal share a unit: the three of a translation or
+/// Number of neighbouring entries of this signal that share a unit: the three of a translation or
 /// of a rotation; else 1.
 inline int entries_per_unit(const Signal& s) {
   return s.size == 6 && s.quantity != Quantity::plain ? 3 : 1;
@@ -153,7 +153,8 @@ std::string frame_name(const Graph& graph, int frame);
 std::vector<double> nominal_values(const Graph& graph);
 /// The matrix of a term (rows x signal size) for these parameter values, without regard to `of`.
 Eigen::MatrixXd coefficient(const Graph& graph, const Term& term, ParameterValues values);
-/// Where that matrix may be nonzero for any values: a rotation by 0 is still a rotation.
+/// Pattern of entries of that matrix that may be nonzero for any values: a rotation by 0 is still a
+/// rotation.
 Pattern structure(const Graph& graph, const Term& term);
 /// Number of rows that the term has, -1 if its factors do not fit one another.
 int rows_of(const Graph& graph, const Term& term);

@@ -216,7 +216,7 @@ class Assembly {
       for (std::size_t j = 0; j < values.cols(); ++j) all(rows[i], col + j) += values(i, j);
   }
 
-  /// Which input imposes which coordinate.
+  /// Input that imposes each coordinate.
   Table<S> imposed_inputs() const {
     Table<S> a(columns.imposed.size(), F_.cols());
     std::size_t k = 0;

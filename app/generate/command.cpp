@@ -32,7 +32,7 @@ class Words {
           fmt::format("'{}' is no whole number from {} to {}", text, low, high));
     return value;
   }
-  /// Which of these it is.
+  /// Its place among these.
   template <class Enum>
   Enum one_of(std::initializer_list<const char*> names) {
     const std::string& text = next();

@@ -21,7 +21,7 @@ struct Point {
   std::string channel = {};  ///< "parent", "child", "C1", ...
 };
 
-/// Where the parent point of a block is.
+/// Attachment of the parent point of a block.
 struct Base {
   enum class Kind {
     mounted,  ///< on `on`, turned by T (body to site), or along one direction of it
@@ -97,7 +97,7 @@ struct Closure {
   Mat3 T = {};
 };
 
-/// Which rows of a point's six: all, the linear ones, or one direction.
+/// Rows among a point's six: all, the linear ones, or one direction.
 struct Part {
   enum class Kind { all, linear, along };
   Kind kind = Kind::all;

@@ -22,7 +22,7 @@ void each(const Sparse& m, const F& f) {
     for (Sparse::InnerIterator k(m, j); k; ++k) f(k.row(), k.col(), k.value());
 }
 
-/// Where the unknowns of each body, then those of each joint begin; the last: how many there are.
+/// First unknown of each body, then of each joint; the last: their number.
 std::vector<Index> places(const Assembly& a) {
   std::vector<Index> first{0};
   for (const auto* sizes : {&a.bodies, &a.joints})

@@ -11,7 +11,7 @@ namespace titop_bench {
 
 using titop::linalg::at;
 
-/// Where a block's states, inputs and outputs begin.
+/// First state, input and output of a block.
 struct Places {
   std::vector<Eigen::Index> x, u, y;
   explicit Places(const Network& net) {

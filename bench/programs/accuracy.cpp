@@ -122,7 +122,7 @@ void row(const char* task, Case c, int n, const char* method, const char* precis
   std::fflush(stdout);
 }
 
-/// Whether the library's own lines are as exact as promised.
+/// True if the library's own lines are as exact as promised.
 bool transfers(Case c, int n, bool quick) {
   const Diagram diagram = scene(c, n);
   const System system = compile(diagram, {.minimize_up_to = 0});

@@ -40,7 +40,8 @@ double seconds_of(const TransferOf& transfer, double omega) {
   return std::isfinite(sum) ? least : 0;
 }
 
-/// Where the full system can have peaks: its modes, or the poles of the dense model [rad/s].
+/// Frequencies at which the full system can have peaks: its modes, or the poles of the dense model
+/// [rad/s].
 Eigen::VectorXd frequencies(const System& full, const std::optional<Truncation>& modes) {
   if (modes) return modes->omega();
   StateSpace dense;

@@ -92,7 +92,7 @@ std::string said_of_dense(const System& system) {
   return system.log().find(" warning ") != std::string::npos ? "warned" : said(system);
 }
 
-/// Whether the library meets its promise.
+/// True if the library meets its promise.
 bool library(const Rows& rows, double value, const Extreme& e, const System& system,
              double inherent) {
   const std::string mark = said(system);

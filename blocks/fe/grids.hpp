@@ -29,7 +29,7 @@ struct GridMatrices {
 GridMatrices grid_matrices(std::string name, const Eigen::MatrixXd& K, const Eigen::MatrixXd& M,
                            const std::vector<int>& grids, double digits);
 
-/// Where a grid is. It becomes a point of the mesh, and an interface if it has a name.
+/// Position of a grid. It becomes a point of the mesh, and an interface if it has a name.
 struct Grid {
   int id = 0;
   Vector3d position = Vector3d::Zero();  ///< in the body's frame, in the data's unit of length

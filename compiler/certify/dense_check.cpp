@@ -184,7 +184,8 @@ std::optional<T> slowest_shown(const SystemData& d, const T s, const solve::RowM
   return {};
 }
 
-/// Where the dense model is tried, and below which |s| no mode shows; 0: not known.
+/// Points at which the dense model is tried, and the limit below which |s| no mode shows; 0: not
+/// known.
 struct Tried {
   std::vector<T> s;
   double slowest = 0;
@@ -247,7 +248,7 @@ struct Sizes {
   MatrixXd rounding;  ///< of the factors
 };
 
-/// How far the dense model is off at one s.
+/// Error of the dense model at one s.
 struct Sample {
   T s;
   bool below;             ///< all modes that show

@@ -2,7 +2,7 @@
 #include <titop/compiler/system_data.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-/// Where in s a system is tried.
+/// Points s at which a system is tried.
 namespace titop::detail {
 namespace {
 

@@ -19,7 +19,7 @@ constexpr double kByItself = 1e-12;  ///< of a block's response: rounding and no
 
 using linalg::at;
 
-/// Where square matrices are least symmetric.
+/// Place of the largest asymmetry of square matrices.
 struct Asymmetry {
   double worst = 0;
   std::size_t point = 0;  ///< index

@@ -18,7 +18,7 @@ struct Signals {
                  ///< A x + B u by definition and positions there must be none
 };
 
-/// Where signal i begins among all, and the end.
+/// First row of signal i among all, and the end.
 std::vector<int> first_of_signals(const Graph& graph);
 
 struct WrittenResidual {

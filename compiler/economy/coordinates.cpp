@@ -121,7 +121,7 @@ void find_owners(Raw& raw, const SystemData& data) {
   }
 }
 
-/// Which coordinates stay, and the map from them to all.
+/// The kept coordinates, and the map from them to all.
 void find_kept(Raw& raw, const StateMap& states) {
   std::vector<int> coordinate(at(raw.m.A.rows()), -1);
   for (Index i = 0; i < raw.all(); ++i) {

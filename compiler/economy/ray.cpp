@@ -25,7 +25,7 @@ constexpr double kOnePole = 1e-12;     ///< relative distance of poles that are 
 
 bool equal(Complex p, Complex q) { return std::abs(p - q) <= kOnePole * std::abs(q); }
 
-/// Is this pole equal to the last two? Modes of one frequency and one damping, however many, are
+/// True if this pole equals the last two. Modes of one frequency and one damping, however many, are
 /// one simple pole of the transfer; the second one accounts for their difference within the
 /// tolerance of equality.
 bool counted(const std::vector<Complex>& poles, Complex p) {

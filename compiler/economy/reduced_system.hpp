@@ -8,7 +8,7 @@ namespace detail {
 struct ReducedData;
 }
 
-/// How far a reduced system is from the full one, over the scene's band.
+/// Error of a reduced system against the full one, over the scene's band.
 struct ErrorBound {
   Eigen::MatrixXd pairs;      ///< outputs x inputs, relative as in Scene
   Eigen::MatrixXd peak;       ///< scale of each pair, in the pair's own unit (output over input):

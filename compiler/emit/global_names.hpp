@@ -126,7 +126,7 @@ inline constexpr std::string_view kGlobal =
     "wmemcmp wmemcpy wmemmove wmempcpy wmemset WNOHANG WNOWAIT WORD_BIT wprintf write wscanf "
     "WSTOPPED WUNTRACED X_OK XATTR_LIST_MAX XATTR_NAME_MAX XATTR_SIZE_MAX ";
 
-/// How families of names begin.
+/// Prefixes of families of names.
 inline constexpr std::string_view kFamilies =
     " ADJ_ ATOMIC_ CLD_ CLOCK_ CLONE_ DBL_ DOCTEST_ FLT_ FPE_ FP_ HUGE_VAL_ ILL_ INT16_ INT32_ "
     "INT64_ INT8_ INTMAX_ INTPTR_ INT_ ITIMER_ LC_ LDBL_ POLL_ PTHREAD_ RENAME_ SCHED_ SEGV_ "

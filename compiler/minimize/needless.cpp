@@ -23,7 +23,7 @@ MatrixXd driven(const MatrixXd& N, const MatrixXd& B, int powers) {
   return all;
 }
 
-/// How many powers of N are not 0, counting N^0.
+/// Number of powers of N that are not 0, counting N^0.
 int powers_of(const MatrixXd& N) {
   MatrixXd power = MatrixXd::Identity(N.rows(), N.cols());
   int count = 0;
@@ -31,7 +31,7 @@ int powers_of(const MatrixXd& N) {
   return count;
 }
 
-/// How many steps each integrator is away from those on which no integrator acts.
+/// Number of steps of each integrator from those on which no integrator acts.
 std::vector<int> levels(const MatrixXd& N) {
   std::vector<int> level(static_cast<std::size_t>(N.rows()), 0);
   for (Index sweep = 0; sweep < N.rows(); ++sweep)

@@ -79,7 +79,7 @@ void add_component(const MatrixXd& balanced, const std::vector<int>& states, Pol
   }
 }
 
-/// Whether poles of both may be the same one.
+/// True if poles of both may be the same one.
 bool meet(const PoleClusters& p, const Cluster& a, const Cluster& b) {
   const auto size = [&](const Cluster& c) { return p.size[at(p.component[at(c.poles[0])])]; };
   const double same = kOneNumber * (size(a) + size(b)) + a.radius + b.radius;

@@ -91,7 +91,7 @@ Expansion expand(const SystemData& d, const Derivatives& v, std::optional<int> s
   return e;
 }
 
-/// How far off rounding may have made each P_j.
+/// Possible error of each P_j by rounding.
 std::vector<MatrixXd> rounding_of(const SystemData& d, const Derivatives& v, const Expansion& e) {
   std::vector<MatrixXd> result(e.P.size());
   for (int sample = 0; sample < kSamples; ++sample) {

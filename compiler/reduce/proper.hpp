@@ -4,7 +4,7 @@
 
 namespace titop::detail {
 
-/// Where the derivatives of inputs act.
+/// Effects of the derivatives of inputs.
 struct Derivatives {
   /// by_input[j]: contribution of u^(j) to the blocks' dependent states, blocks' states x inputs.
   std::vector<Eigen::MatrixXd> by_input;

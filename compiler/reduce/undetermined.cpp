@@ -119,9 +119,9 @@ struct Place {
   RowVectorXd direction;    ///< over the whole signal, of length 1
 };
 
-/// Where a motion shows most: rotations first, whose unit is no length, then translations, then
-/// axes of joints and scalar points; of equals a parent's of a body without states (no joint), then
-/// the first in the graph. No signal if it is no motion of a port.
+/// Place of the largest part of a motion: rotations first, whose unit is no length, then
+/// translations, then axes of joints and scalar points; of equals a parent's of a body without
+/// states (no joint), then the first in the graph. No signal if it is no motion of a port.
 class Showing {
  public:
   Showing(const Skeleton& k, const Motions& motions) : k_(k), g_(k.stage.graph), motions_(motions) {

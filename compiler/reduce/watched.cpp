@@ -9,7 +9,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// Who reads which state.
+/// Readers of each state.
 struct Readers {
   const Skeleton& k;
   const SystemData& d;

@@ -21,7 +21,7 @@
 /// order of less work taken.
 namespace titop::solve {
 
-/// Which variables each row group mentions.
+/// The variables of each row group.
 struct Structure {
   std::vector<int> variable_size;    ///< scalars of each variable group
   std::vector<int> variable_unit;    ///< of them share a unit: 3 of a twist or wrench, else 1

@@ -26,8 +26,8 @@ void substitute_lower(std::ptrdiff_t rows, std::ptrdiff_t pivots, std::ptrdiff_t
 void substitute_upper(std::ptrdiff_t pivots, std::ptrdiff_t m, const double* lu,
                       std::ptrdiff_t stride, double* x, int lanes = 8);
 
-/// Where multiples of a column x go: first = by * x, and second = by_second * x if there is one. No
-/// -0 is written.
+/// Destination of multiples of a column x: first = by * x, and second = by_second * x if there is
+/// one. No -0 is written.
 struct Destination {
   double* first = nullptr;
   double by = 1;
@@ -40,7 +40,7 @@ struct Destination {
 void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
                       std::ptrdiff_t stride, const Destination* to, std::ptrdiff_t first);
 
-/// Where a body's modal coordinates begin, and how many they are; their rates come next.
+/// First modal coordinate of a body, and their number; their rates follow.
 struct Modes {
   std::ptrdiff_t first = 0, size = 0;
 };

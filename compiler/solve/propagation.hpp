@@ -51,7 +51,7 @@ class Propagation {
   void order_columns(std::size_t front);
   void form_front(std::size_t front);
 
-  /// Where a front's matrices begin, row-major, rows padded to 8.
+  /// Places of a front's matrices, row-major, rows padded to 8.
   struct Place {
     std::ptrdiff_t by_pivots = 0, by_all = 0;  ///< from row to row
     std::size_t lower = 0;                     ///< L^-1, and below it -L' L^-1: rows x pivots

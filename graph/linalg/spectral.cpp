@@ -39,7 +39,7 @@ double rounding_of(const MatrixXcd& T) {
   return kOneNumber * std::numeric_limits<double>::epsilon() * T.norm();
 }
 
-/// Whether the poles in [first, rest) are separate from those after them.
+/// True if the poles in [first, rest) are separate from those after them.
 bool parted(const MatrixXcd& T, Index first, Index rest, double same, double bound) {
   const Index k = rest - first, m = T.rows() - rest;
   const Index j = nearest(T, first, rest);

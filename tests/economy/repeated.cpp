@@ -46,7 +46,7 @@ Truth line_by_hand(const MatrixXd& along) {
   return truth_of(tree.structure(tip, tip));
 }
 
-/// How often there are kept modes of the whole of each frequency.
+/// Numbers of kept modes of the whole at each frequency.
 std::vector<int> multiplicities(const ReducedSystem& r) {
   std::vector<int> counts;
   double last = 0;

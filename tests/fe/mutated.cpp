@@ -35,7 +35,7 @@ std::string damaged(std::string text, Rng& rng) {
   return text;
 }
 
-/// How many of so many damaged files were refused.
+/// Number of damaged files that were refused.
 int refusals(const std::string& good, int count, std::uint64_t seed,
              const std::function<void(const std::filesystem::path&)>& read) {
   const Folder folder;

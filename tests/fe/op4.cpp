@@ -23,7 +23,7 @@ namespace {
 const std::string kText = TITOP_TEST_DATA "/op4/";
 const std::string kReal = TITOP_DATA_DIR "/nastran_op4_superelement/outboard.op4";
 
-/// How to write a binary file.
+/// Format of a binary file.
 struct Style {
   bool big_endian = false;
   bool long_words = false;  ///< integers of 8 bytes

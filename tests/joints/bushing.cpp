@@ -177,7 +177,7 @@ TEST_CASE("bushing: an end that nothing holds, a body without mass on it") {
   mount(body, iso.child);
   iso.child.force += d.input("f", 6);
   d.output("x", 6) = iso.displacement;
-  // Nothing has mass: the displacement follows from the force at once.
+  // All is massless: the displacement follows from the force at once.
   const System system = compile(d);
   CHECK(system.order() == 0);
   CHECK(titop_test::matrix_error(system.state_space().D, Matrix6(kK.cwiseInverse().asDiagonal())) <=

@@ -26,7 +26,7 @@ struct FourBar {
   std::size_t pushed = 0;  ///< link
 
   double inertia(std::size_t i) const { return mass[i] / 12; }  ///< about every axis
-  /// Where a link is pushed, in its frame.
+  /// Point of force on a link, in its frame.
   static Vector3d push() { return {0.3, 0.2, 0.1}; }
 };
 

@@ -109,7 +109,7 @@ TEST_CASE("slow block: where the factors have no digit, a transfer is refused, n
 
 namespace {
 
-/// Whether the certificate or the log reports lost digits of the model.
+/// True if the certificate or the log reports lost digits of the model.
 bool told(const System& system) {
   const Certificate c = system.certificate();
   return std::max(c.dense_error, c.dense_error_where_small) > 1e-6 ||

@@ -51,7 +51,7 @@ struct Path {
   }
 };
 
-/// Nothing that a browser would fetch or run.
+/// Checks that a browser fetches and runs nothing.
 void check_self_contained(const std::string& page) {
   for (const char* part : {"<script", "<link", "<img", "<iframe", "<object",
                            "src=", "http:", "https:", "url(", "@import", "onload", "xlink"}) {

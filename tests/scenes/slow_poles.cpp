@@ -172,7 +172,7 @@ TEST_CASE("poles: feedback that decides on a slow mode is not lost beside a fast
       CHECK(off(p.omega, std::abs(right)) <= 1e-6);
     }
     CHECK((poles[0].s.real() < 0) != (poles[1].s.real() < 0));
-    // Where the resonance of an undamped mode would be far off.
+    // At such s an error in the resonance of an undamped mode would be large.
     const auto beside = std::abs(right) + 2 * std::abs(right.real());
     const std::complex<double> at(0, static_cast<double>(beside));
     const auto exact = s.transfer(at, Precision::digits50);

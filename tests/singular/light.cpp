@@ -22,7 +22,7 @@ struct Numbers {
   double m = 1, k = 3, c = 0.02, m0 = 1;
 };
 
-/// Which side of the child and of the parent is imposed.
+/// Imposed side of the child and of the parent.
 struct Form {
   bool child_accel, parent_force;
 };

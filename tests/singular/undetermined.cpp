@@ -31,7 +31,7 @@ Matrix3d about(const Vector3d& axis, double angle) {
   return Eigen::AngleAxisd(angle, axis.normalized()).matrix();
 }
 
-/// How the struts turn: from the ground, and the body from them.
+/// Orientation of the struts: from the ground, and the body from them.
 struct Turns {
   Vector3d axis{1, 2, -1};
   double foot = 0.7, head = 0.4;

@@ -149,7 +149,7 @@ TEST_CASE("threads: tasks may have tasks of their own, on many threads of the ca
 
 namespace {
 
-/// How many others worked for a call that had ended, by some `late`, when the first of them
+/// Number of others that worked for a call that had ended, by some `late`, when the first of them
 /// returned whether there is more.
 int called_late(int most, std::chrono::milliseconds late) {
   const auto main = std::this_thread::get_id();

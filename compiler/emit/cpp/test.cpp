@@ -75,7 +75,7 @@ Difference tested_difference(const Form& form, Complex s, const MatrixXcd& exact
   return difference(form, form.A.rows() > 0 ? Resolvent(form.A, s).refined(B) : B, exact, points);
 }
 
-/// Which points the test compares: a file of some megabytes is still compiled in seconds.
+/// Points that the test compares: a file of some megabytes is still compiled in seconds.
 std::vector<std::size_t> compared(const Points& points) {
   const auto entries = static_cast<std::size_t>(points.exact[0].size());
   const std::size_t count = std::clamp<std::size_t>(40000 / entries, 2, points.s.size());

@@ -200,7 +200,7 @@ constexpr double kNearZero = 1e-7;
 /// One by itself moves by rounding of A alone.
 constexpr double kAtZero = 1e-14;
 
-/// How many poles of the model that is shown lie where.
+/// Numbers of poles of the shown model by region.
 struct Places {
   int zero = 0;
   int near = 0;  ///< right of the axis, but not far from 0

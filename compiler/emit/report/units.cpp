@@ -30,7 +30,7 @@ std::string unit(Quantity quantity, Nature nature) {
   return {};
 }
 
-/// Nothing but signs, rotations and selections on the way: the unit passes.
+/// Signs, rotations and selections only: the unit is preserved.
 bool keeps_units(const Term& term) {
   if (std::abs(term.sign) != 1) return false;
   return std::all_of(term.factors.begin(), term.factors.end(), [](const Factor& f) {
@@ -46,7 +46,7 @@ Nature of_line(const Pattern& line) {
   return linear == angular ? Nature::unknown : linear ? Nature::linear : Nature::angular;
 }
 
-/// Which scalar signals are angular and which linear. Of a joint's axes by its feedthrough; of
+/// Classifies scalar signals as angular or linear. Of a joint's axes by its feedthrough; of
 /// blocks of one axis (a SpringMass) by their connections, else linear.
 class Natures {
  public:

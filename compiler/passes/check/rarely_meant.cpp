@@ -52,7 +52,7 @@ std::map<int, OwnGains> own_gains(const Graph& g, ParameterValues values) {
   return result;
 }
 
-/// Whether it is negative along one of the axes that the equation drives, beyond the rounding of a
+/// True if it is negative along one of the axes that the equation drives, beyond the rounding of a
 /// 0 after rotation, among three translations or rotations.
 bool negative(const MatrixXd& gain, const Equation& e) {
   constexpr double kRounding = 1e-12;

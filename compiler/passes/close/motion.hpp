@@ -20,7 +20,7 @@ struct Tie {
   Eigen::MatrixXd S = {};                      ///< rows x size, orthonormal rows
   std::map<int, Eigen::MatrixXd> points = {};  ///< channel -> rows x size
   Form own = {};                               ///< prescribed columns
-  /// How its one point is turned, by all ties of the target to it; none: no rotation, or no point.
+  /// Rotation of its one point, by all ties of the target to it; none: no rotation, or no point.
   std::optional<Matrix3d> rotation = {};
   bool closes = false;  ///< no edge of the tree: it closes a chain
   bool late = false;    ///< from the ground, and that comes last
@@ -115,7 +115,7 @@ class Motion {
   void plant_shortcuts(std::vector<Tie> released, const std::vector<char>& one_way);
   void plant_shortcut(const Tie& tie, const std::vector<char>& one_way);
   int tree_way(const Tie& tie) const;
-  /// Where the tree's ways up from both meet, -1 if they do not. O(log depth).
+  /// Meeting point of the tree's ways up from both, -1 if there is none. O(log depth).
   int meeting(int a, int b) const;
   /// In the tree, up to `above`.
   Way up_from(int point, int above) const;

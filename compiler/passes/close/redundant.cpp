@@ -209,7 +209,7 @@ struct RedundancyFinder {
     if (e.done() > 0) known = rest(known.columns, e, closed);
   }
 
-  /// Is the unit vector of a column in the span of all rows?
+  /// True if the unit vector of a column is in the span of all rows.
   bool held(int column) const {
     const int own = part_of[at(column)];
     if (own < 0) return false;

@@ -4,7 +4,7 @@
 
 namespace titop::passes::closing {
 
-/// Which blocks have which columns, while blocks lose columns. If one block remains, it is known; a
+/// The blocks of each column, while blocks lose columns. If one block remains, it is known; a
 /// change costs O(1) per column.
 class Uses {
  public:

@@ -86,7 +86,7 @@ class Wiring {
     }
   }
 
-  /// Which rows of its target an equation drives. Throws if they are oblique.
+  /// Rows of its target that an equation drives. Throws if they are oblique.
   std::vector<Index> unit_rows(const Equation& e) const {
     const int size = g_.signals[at(e.target)].size;
     std::vector<Index> rows;

@@ -123,7 +123,7 @@ int size_of(const Scene& scene, const Tie& tie);
 /// Rows of the tied axes in a's frame, (linear; angular): size x 6, or 1 x 1 of one axis.
 MatrixXd rows_of(const Scene& scene, const Tie& tie);
 
-/// Whether any chain closes, through the ground too.
+/// True if any chain closes, through the ground too.
 bool closes(const Scene& scene);
 
 /// Sizes of the blocks in which a transfer is judged: at most three each.

@@ -195,7 +195,7 @@ std::string codes(const Error& e) {
   return text;
 }
 
-/// Does the transfer grow with s, so that it needs derivatives of inputs?
+/// True if the transfer grows with s, so that it needs derivatives of inputs.
 bool improper(const Scene& scene) {
   double fastest = scene.omega;
   for (const Node& n : scene.nodes) {
