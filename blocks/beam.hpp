@@ -60,7 +60,7 @@ void check(const Beam& beam);
 fe::Mesh beam_mesh(const Beam& beam);
 
 /// Modes clamped at P with the child C: fe::modal_data(beam_mesh(beam), "P", {"C"}, beam.modes).
-/// For other interfaces call that. All 6 * elements modes unless beam.modes says otherwise.
+/// For other interfaces call that. All 6 * elements modes unless beam.modes selects others.
 ModalData modal_data(const Beam& beam);
 
 }  // namespace titop

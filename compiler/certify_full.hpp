@@ -60,7 +60,7 @@ struct FullCertificate {
     int right = 0;  ///< poles right of the axis by more than 1e-9 |s| and ten times their error; of
                     ///< those not measured, by more than ten times their change by rounding of A
     int hidden = 0;  ///< of those right, unreachable or unobservable ones: `minimize` removes them,
-                     ///< and the system is unstable all the same
+                     ///< but the system is unstable
     std::complex<double> rightmost;  ///< largest Re(s) / |s|
   } poles;
 

@@ -18,7 +18,7 @@ std::optional<NameOrder> name_order(const StateSpace& model);
 /// The model in that order.
 StateSpace by_name(const StateSpace& model, const NameOrder& order);
 
-/// Inverse of the reordering: `states` are the names before; those that `model` lacks are left out.
+/// Inverse of the reordering: `states` are the names before; those that `model` lacks are omitted.
 StateSpace as_before(const StateSpace& model, const std::vector<std::string>& states,
                      const NameOrder& order);
 

@@ -73,7 +73,7 @@ solve::Response<T> modal_response(const Block& block, const Modal& m, const T& s
 /// rounding does not, and this much is usual in an LU.
 constexpr double kTerms = 100;
 
-/// The precision to use if one leaves too few digits; void: there is none.
+/// The precision to use if one has too few digits; void: there is none.
 template <class T>
 struct Finer {
   using type = void;

@@ -23,7 +23,7 @@ MatrixXd times_map(const MatrixXd& M, const StateMap& map) {
   MatrixXd all = M, size = M.cwiseAbs();
   std::vector<char> touched(at(M.cols()), 0);
   // Sizes restart from the sums: along a chain of dependent states they would grow with every link,
-  // and nonzero entries would pass for rounding.
+  // and nonzero entries would be taken for rounding.
   const auto clean = [&](Index j) {
     if (touched[at(j)])
       all.col(j) =

@@ -191,7 +191,7 @@ bool moves_chains(const Skeleton& k, const std::vector<int>& changed, ParameterV
     if (a && (a->tau != b->tau || a->Phi != b->Phi)) return true;
   }
   const auto origins = united(k, changed, &Dependents::origins);
-  if (!stage.released.empty() && !origins.empty()) return true;  // who reads an internal force?
+  if (!stage.released.empty() && !origins.empty()) return true;  // may read internal forces
   return std::any_of(origins.begin(), origins.end(), [&](int o) {
     const Origin::Of of = stage.origins[at(o)].of;
     if (of == Origin::Of::accel) return true;

@@ -1,7 +1,7 @@
 // Blocks joined by equations: each line of the paper's Table 1 is one line here. Without inputs the
 // scene still has its modes (Fig. 1); with an actuator, the model of x_3 has the ten states that
-// the transfer needs, and eight if two masses move alike (Figs. 7, 8): decided without rounding,
-// since all data are integers. The full certificate checks the model.
+// the transfer needs, and eight if two masses have the same motion (Figs. 7, 8): decided without
+// rounding, since all data are integers. The full certificate checks the model.
 #include <cmath>
 #include <cstdio>
 #include <titop/titop.hpp>

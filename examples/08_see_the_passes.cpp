@@ -29,7 +29,7 @@ Diagram scene() {
   amplifier.in = u;
   cart.parent.force = -amplifier.out;  // imposed where the block expects a motion: inverted
   mount(load, cart.child);             // two masses at one point: an algebraic loop
-  filter.in = load.stretch;            // nobody reads it: removed
+  filter.in = load.stretch;            // not read: removed
   ground(bell);                        // no input, no output: set aside
   d.output("x") = load.stretch;
   d.output("xdd") = cart.parent.accel;

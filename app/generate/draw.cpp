@@ -217,7 +217,7 @@ class Artist {
            3);
   }
 
-  /// All loads and outputs at the first body, so that its twin branches move alike.
+  /// All loads and outputs at the first body, so that its twin branches have the same motion.
   void outside_only() {
     plan_.loads.push_back({input(6), {bodies_[0], "T"}});
     read({.of = Reading::Of::acceleration, .point = {bodies_[0], "T"}}, 6);

@@ -15,7 +15,7 @@ using Vec3 = std::array<Ratio, 3>;
 using Mat3 = std::array<Vec3, 3>;              ///< rows
 using Rows = std::vector<std::vector<Ratio>>;  ///< a matrix
 
-/// Something with a motion: a spring-mass's ends, a body's points, a joint's ends, by name.
+/// An item with a motion: a spring-mass's ends, a body's points, a joint's ends, by name.
 struct Point {
   int block = -1;
   std::string channel = {};  ///< "parent", "child", "C1", ...

@@ -88,7 +88,7 @@ struct Equations {
   }
 };
 
-/// Every input that no equation drives, and whose channel none inverts, is 0.
+/// Inputs that are not driven and whose channel is not inverted are 0.
 void add_rows(Equations& e, Rows& M, Rows& R) {
   const titop::Graph& g = e.stage.graph;
   std::vector<char> driven(g.signals.size(), 0);

@@ -9,8 +9,8 @@
 #include "support/cases.hpp"
 
 /// Cost of the certificate that every first compile makes: its share of a compile with a dense
-/// model into a warm buffer, and its ratio to an update of all bodies. All in turn, many times, the
-/// dense model on one core; the best of each.
+/// model into a warm buffer, and its ratio to an update of all bodies. All alternately, many times,
+/// the dense model on one core; the best of each.
 namespace titop_bench {
 namespace {
 

@@ -21,13 +21,13 @@ struct Method {
   std::function<Prepared(int n)> prepare;
 };
 
-/// Sizes above this are left out of a quick run; everything runs once then.
+/// Sizes above this are omitted from a quick run; everything runs once then.
 constexpr int kQuickSize = 30;
 
 /// Results further apart than this are marked in the table, and the program returns 1.
 constexpr double kAgreement = 1e-6;
 
-/// Times all points. A point is left out if, by the growth of the last two, it would take longer
+/// Times all points. A point is omitted if, by the growth of the last two, it would take longer
 /// than 10 s (quick: 1 s). CSV to stdout (task, scene, n, method, seconds, difference, note),
 /// progress to stderr; the time is the best of three repetitions. `argv[1]` may be "quick"; the
 /// rest goes to Google Benchmark. Returns the exit code of main().

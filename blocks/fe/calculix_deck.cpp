@@ -51,7 +51,7 @@ class DeckReader {
   }
 
  private:
-  /// A keyword line that ends in a comma goes on in the next line.
+  /// A keyword line that ends in a comma continues in the next line.
   Card read_card(const TextLine& first) {
     std::string text = normal(first.text);
     while (text.ends_with(',') && at_ < lines_.size()) text += normal(lines_[at_++].text);

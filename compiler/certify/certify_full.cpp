@@ -64,7 +64,7 @@ Matrix as_declared(const Graph& g, const Matrix& m) {
   return result;
 }
 
-/// Points of the grid and the factors' transfers there; points without one are left out, with a
+/// Points of the grid and the factors' transfers there; points without one are omitted, with a
 /// note.
 std::vector<MatrixXcd> factored_at(const System& system, std::vector<Complex>& points,
                                    FullCertificate::Grid& grid) {

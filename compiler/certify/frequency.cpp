@@ -27,7 +27,7 @@ double by_longer_ways(const MatrixXd& A, double size) {
 }  // namespace
 
 // Products of entries along round trips are independent of the units of the states, single entries
-// are not: the 1 between position and rate would pass for a frequency.
+// are not: the 1 between position and rate would be taken for a frequency.
 double frequency_of(const MatrixXd& A) {
   double square = 0;
   for (Index j = 0; j < A.cols(); ++j)

@@ -22,7 +22,7 @@ struct Anchor {
   Side side = Side::loose;
 };
 
-/// Something that is driven, with all that drives it: a port (or a part of one), or an output.
+/// A driven port (or a part of one) or an output, with its terms.
 struct Assignment {
   int target = -1, output = -1;  ///< a signal, or an index in Graph::outputs
   std::string part = {};         ///< ".linear" if only that is driven

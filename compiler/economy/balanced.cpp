@@ -38,7 +38,7 @@ double lowest(const Split& split, const Samples& samples) {
   return first;
 }
 
-/// Tells whether a kept part is silent: no input moves it or no output sees it.
+/// Determines whether a kept part is silent, that is, unreachable or unobservable.
 ///
 /// Rounding gives a pole that counts as 0 (`Split::poles`) a residue and a small distance from 0;
 /// both seem the larger, the lower the sample. If the band begins at 0, a pole at 0 can only be

@@ -87,7 +87,7 @@ MatrixXd columns(const MatrixXd& m, const std::vector<int>& which) {
   return result;
 }
 
-/// Everything about the coordinates of all blocks, before G is known.
+/// Data of the coordinates of all blocks, before G is known.
 struct Raw {
   StateSpace m;
   Pairs pairs;

@@ -163,7 +163,7 @@ struct WhatIf {
 
 /// The same scene for several accuracies (Scene::accuracy is not used): one eigenproblem and one
 /// nested sequence for all, so that more accuracy never gives a smaller order. Bodies lose only
-/// modes that the finest of them allows. Accuracies that cannot be met are left out. In the order
+/// modes that the finest of them allows. Accuracies that cannot be met are omitted. In the order
 /// given. Throws the other errors of `compile`; bad_value for accuracies out of range, all
 /// together.
 std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,

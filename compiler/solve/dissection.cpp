@@ -55,7 +55,7 @@ class Dissection {
     std::vector<std::vector<int>> halves(2);
     for (const int v : reached)
       if (level_[at(v)] != middle) halves[level_[at(v)] > middle].push_back(v);
-    if (halves[0].empty() || halves[1].empty()) return {};  // everything touches everything
+    if (halves[0].empty() || halves[1].empty()) return {};  // all variables are coupled
     return halves;
   }
 

@@ -130,7 +130,7 @@ struct Factors<T>::Work {
 
   /// Pivot row of a column: the row where its entry is largest relative to the row's own size,
   /// among those whose multipliers make no row grow (kThreshold): the choice depends neither on the
-  /// rows' units nor on the columns'. -1 if no digit is left.
+  /// rows' units nor on the columns'. -1 if there is no digit.
   int pivot(int k) {
     int best = -1;
     double best_score = 0, left = 0, most = 0;

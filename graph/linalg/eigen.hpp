@@ -6,9 +6,9 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 
-// Eigen's decompositions of matrices of any size, compiled once for all who include this in place
-// of <Eigen/SVD> and so on: a file that compiles its own takes up to a minute. So is `solve` of LU
-// and of the orthogonal decomposition if both sides are plain matrices: evaluate expressions.
+// Eigen's decompositions of matrices of any size, compiled once for all files that include this in
+// place of <Eigen/SVD> and so on: a file that compiles its own takes up to a minute. So is `solve`
+// of LU and of the orthogonal decomposition if both sides are plain matrices: evaluate expressions.
 /// @cond
 namespace Eigen {
 

@@ -67,7 +67,7 @@ Diagram braced(double angle) {
   return d;
 }
 
-/// A boom whose end is pinned to the ground, pushed and watched there: it only turns.
+/// A boom whose end is pinned to the ground, driven and read there: it only rotates.
 Diagram pinned(double angle) {
   Diagram d{"pinned"};
   const Rotation T = Rotation::about({1, 2, 2}, angle), R = Rotation::about({3, -1, 2}, 2 * angle);

@@ -37,7 +37,7 @@ VectorXd units(Rng& random) {
 }
 
 /// Two uncoupled parts. In the first, base and difference of twins: zero by
-/// symmetry. In the second, anything.
+/// symmetry. In the second, arbitrary.
 StateSpace two_parts(Rng& random) {
   // Base, left, right: x'' = -M^-1 K x - 0.1 x', pushed and read at the base and between the twins.
   Eigen::Matrix3d K;
@@ -147,7 +147,7 @@ TEST_CASE("a pair between parts that know nothing of each other may not differ a
   Rng random(7);
   const StateSpace right = two_parts(random);
   StateSpace wrong = right;
-  wrong.D(0, 3) = 1e-12;  // 1e-12 of anything is still too much where nothing is
+  wrong.D(0, 3) = 1e-12;  // 1e-12 of any entry is too large for an exact zero
   CHECK(apart(wrong, right) >= 1);
   const VectorXd out = units(random), in = units(random);
   CHECK(apart(in_units(wrong, out, in), in_units(right, out, in)) >= 1);

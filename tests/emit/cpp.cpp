@@ -130,7 +130,7 @@ TEST_CASE("tolerances of the test end at 1e-6; checks that need more are replace
   CHECK(has("// trajectory, and step against derivative: not checked"));
   CHECK(!has("TEST_CASE(\"lag: static gain\")"));
   CHECK(!has("TEST_CASE(\"lag: trajectory\")"));
-  // A pole that A does not have is not looked for with a tolerance that finds it all the same.
+  // A pole that A does not have is not accepted by a tolerance that is too wide.
   expected.poles[0].s = -1.001;
   CHECK(has("// Only counted, as the eigenvalues of A"));
   CHECK(has("std::vector<std::size_t>{}"));

@@ -257,7 +257,7 @@ TEST_CASE("no false alarm: bodies of very different mass, and any unit") {
       mount(A, B.child, Rotation::about({1, 1, 0}, 0.3));
       d.output("a", 6) = B.parent.accel;
       const System system = compile(d);
-      // Static gain: inverse of the total mass about P; the second body is seen at C1.
+      // Static gain: inverse of the total mass about P; the second body acts at C1.
       Eigen::MatrixXd T = Eigen::MatrixXd::Zero(6, 6);
       T.topLeftCorner<3, 3>() = T.bottomRightCorner<3, 3>() =
           Rotation::about({1, 1, 0}, 0.3).nominal();

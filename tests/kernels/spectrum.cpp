@@ -61,7 +61,7 @@ TEST_CASE("spectrum: random, scaled and permuted matrices of 0 to 12 rows") {
         A.row(i) *= d, A.col(i) /= d;
       }
       check(A, linalg::spectrum(A, kBound));
-      check(A, linalg::spectrum(A, 2));  // hardly anything is told apart
+      check(A, linalg::spectrum(A, 2));  // few poles are separated
       check(A.transpose() * A, linalg::spectrum(A.transpose() * A, kBound));
       const MatrixXd singular = n ? MatrixXd(A.col(0) * A.row(0)) : A;
       check(singular, linalg::spectrum(singular, kBound));

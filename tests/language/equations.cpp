@@ -269,7 +269,7 @@ TEST_CASE("child(name) works on every block; .child where there is just one") {
              {"a.child: a has not exactly one child point", read, "a has no child points"}));
   CHECK(says(e, Code::unknown_name, {"b has no child point \"C4\"", c4, "C1, C2"}));
   CHECK(error_of([&] { transfer(d.graph(), kS); }).mistakes().size() == 6);
-  CHECK(to_dot(d).find("a.child") == std::string::npos);  // drawn all the same, without it
+  CHECK(to_dot(d).find("a.child") == std::string::npos);  // drawn without it
 }
 
 TEST_CASE("source lines are the user's, also through mount, ground, release and hinge") {

@@ -23,7 +23,7 @@ namespace {
 using titop::linalg::at;
 
 /// Hinges in a ring, links between them, the first and the last hinge on the ground. A force acts
-/// on the link in the middle, the first one's acceleration is seen.
+/// on the link in the middle, the first one's acceleration is read.
 struct Ring {
   double size = 1;
   std::vector<Vector3d> points = {}, axes = {};  ///< of the hinges; the last one closes

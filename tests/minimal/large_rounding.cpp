@@ -4,7 +4,7 @@
 #include <limits>
 #include <titop/titop.hpp>
 
-/// Entries of A, B, C, D of which rounding may be a third, and which lead all the same: they are no
+/// Entries of A, B, C, D of which rounding may be a third, but which are decisive: they are no
 /// zeros, and the model without them is another.
 
 using namespace titop;
@@ -14,7 +14,7 @@ using Complex = std::complex<double>;
 
 namespace {
 
-/// (s + 7) / (s + 1), fed back by all but 1.
+/// (s + 7) / (s + 1), with a feedback gain near 1.
 Diagram loop(double g) {
   Diagram d{"loop"};
   auto L = d.add(

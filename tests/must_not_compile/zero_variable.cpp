@@ -1,6 +1,6 @@
 #include <titop/blocks/spring_mass.hpp>
 
-// A variable is not the literal 0, whatever its value.
+// A variable is not the literal 0, even if its value is 0.
 void scene() {
   using namespace titop;
   Diagram d{"scene"};

@@ -89,7 +89,7 @@ TEST_CASE("an unstable mode that no transfer shows is unstable, and it is said t
             "without 1 state that no transfer"));
   CHECK(has(stability(beside_fast(Eigen::Vector2d(3, 2))),
             "<b>Unstable</b>: 2 poles right of the imaginary axis; 1 of them no input moves"));
-  // Parts that the structure sets aside are not checked, and the report tells so.
+  // Parts that the structure sets aside are not checked, and the report states it.
   Diagram d{"unseen"};
   auto u = d.input("u");
   auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 4, .damping = 1});

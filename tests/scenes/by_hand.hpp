@@ -39,7 +39,7 @@ inline std::vector<Complex> points(std::initializer_list<double> omegas) {
   return s;
 }
 
-/// Transfers of anything that has `transfer(s)`.
+/// Transfers of any object with `transfer(s)`.
 template <class Model>
 std::vector<MatrixXcd> responses(const Model& model, const std::vector<Complex>& s) {
   std::vector<MatrixXcd> list;

@@ -164,7 +164,7 @@ TEST_CASE("the error of the dense model is stated, at all masses, damped or not"
             const auto [stated, found] = loss({.m = m, .k = k, .c = c, .m0 = m0}, form);
             CAPTURE(stated);
             CAPTURE(found);
-            CHECK(std::min(found, 1.0) <= std::max(1e-12, 3 * stated));  // 1: no digit is left
+            CHECK(std::min(found, 1.0) <= std::max(1e-12, 3 * stated));  // 1: no digit
             // Less close from above: the estimate is of first order, more than 1 if no digit is
             // left, and errors that round to 0 by chance in `found` need not do so in it.
             ++all, far += std::min(stated, 1.0) > std::max(1e-12, 60 * found);

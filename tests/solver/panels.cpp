@@ -233,7 +233,7 @@ TEST_CASE("factors of a front of several panels: as a textbook's whole steps, to
   Rng rng(12);
   for (int draw = 0; draw < 5; ++draw) {
     compare_factors(70, 70, 70, rng);
-    compare_factors(73, 78, 70, rng);  // three rows are left over, eight columns
+    compare_factors(73, 78, 70, rng);  // three rows remain, eight columns
     compare_factors(60, 66, 34, rng);
   }
 }

@@ -50,7 +50,7 @@ void demand_lowered(const Stage& stage) {
 
 namespace {
 
-/// Sets the marks of everything that is joined to a marked signal, step by step.
+/// Marks all signals that are joined to a marked signal, step by step.
 void spread(const Graph& g, std::vector<char>& marked) {
   const auto join = [&](const std::vector<int>& signals) {
     const bool any =

@@ -10,7 +10,7 @@
 /// Measurements on a random scene; the tests compare them with their tolerances.
 namespace titop_test {
 
-/// Points on a line s = sigma + j omega, away from the poles of anything stable, inside the range
+/// Points on a line s = sigma + j omega, away from all stable poles, inside the range
 /// of the scenes' frequencies.
 std::vector<std::complex<double>> points(std::uint64_t seed, int count);
 

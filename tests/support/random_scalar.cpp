@@ -25,7 +25,7 @@ std::string draw_spring(Draft& d, bool free) {
 
 namespace {
 
-/// Something that pushes at the child end of z: an input, plain, scaled, through a gain, or two
+/// A force at the child end of z: an input, plain, scaled, through a gain, or two
 /// through a matrix.
 void draw_force(Draft& d, const std::string& z) {
   const int kind = d.rng.below(4);

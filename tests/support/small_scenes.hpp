@@ -5,7 +5,7 @@
 #include <titop/titop.hpp>
 #include <vector>
 
-/// Small scenes that between them use everything the passes treat specially.
+/// Small scenes that together cover all special cases of the passes.
 namespace titop_test {
 
 struct NamedScene {

@@ -70,7 +70,7 @@ Eigen::MatrixXd trajectory_inputs(Eigen::Index inputs, Eigen::Index steps);
 /// The matrices unchanged.
 Form own_form(const StateSpace& model);
 
-/// Modes of the second-order form if damping is proportional, of A otherwise. Its error tells
+/// Modes of the second-order form if damping is proportional, of A otherwise. Its error determines
 /// whether it may be used: it is large if A is defective (free rigid motion and modes).
 Form modal_form(const StateSpace& model);
 

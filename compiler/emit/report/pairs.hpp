@@ -23,7 +23,7 @@ std::vector<Pair> asked(const Subject& s, const std::vector<Group>& outputs,
 /// if they need several.
 std::vector<std::vector<Pair>> by_figure(const Subject& s, const std::vector<Pair>& pairs);
 
-/// A sentence that figures beyond kFigures are left out; empty if none are.
+/// A sentence on omitted figures, beyond kFigures; empty if there are none.
 std::string left_out(std::size_t figures, const char* way_out);
 
 }  // namespace titop::report

@@ -64,7 +64,7 @@ struct Fronts {
     if (uses.alone(column)) push(uses.block(column));
   }
 
-  /// Places of the columns that no other front has, and for which `asked` is true.
+  /// Places of the columns of this front only, for which `asked` is true.
   template <class Asked>
   std::vector<int> own(const RowBlock& front, Asked asked) const {
     std::vector<int> places;

@@ -27,7 +27,7 @@ struct RowBlock {
 struct Relations {
   enum class Role {
     unknown,     ///< to be eliminated: a free displacement, a prescribed motion
-    integral,    ///< state of an Integrator: leaves first
+    integral,    ///< state of an Integrator: eliminated first
     coordinate,  ///< any other coordinate
   };
   std::vector<RowBlock> blocks = {};

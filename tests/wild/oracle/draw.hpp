@@ -3,7 +3,8 @@
 #include "support/rng.hpp"
 #include "wild/oracle/scene.hpp"
 
-/// Random scenes, small and mean. The same seed gives the same scene on every machine.
+/// Random scenes, small, with many special cases. The same seed gives the same scene on every
+/// machine.
 namespace wild {
 
 using titop_test::Rng;
