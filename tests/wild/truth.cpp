@@ -9,12 +9,12 @@ using namespace wild;
 
 namespace {
 
-using What = Reading::What;
+using Measured = Reading::Measured;
 
 double off(Complex got, Complex right) { return std::abs(got - right) / std::abs(right); }
 
 Share share_of_input(int input) {
-  return {{.what = What::input, .axis = input}, MatrixXd::Identity(1, 1)};
+  return {{.measured = Measured::input, .axis = input}, MatrixXd::Identity(1, 1)};
 }
 
 Scene one_lti(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C, bool fed_back) {
@@ -23,10 +23,11 @@ Scene one_lti(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C, bool fed_
   n.kind = Node::Kind::lti;
   n.A = A, n.B = B, n.C = C, n.D = MatrixXd::Zero(1, 1);
   n.in = {share_of_input(0)};
-  if (fed_back) n.in.push_back({{.what = What::out, .at = {0, -1}}, MatrixXd::Identity(1, 1)});
+  if (fed_back)
+    n.in.push_back({{.measured = Measured::out, .at = {0, -1}}, MatrixXd::Identity(1, 1)});
   s.nodes = {n};
   s.inputs = {1};
-  s.outputs = {{.what = What::out, .at = {0, -1}}};
+  s.outputs = {{.measured = Measured::out, .at = {0, -1}}};
   return s;
 }
 
@@ -42,7 +43,8 @@ Scene lossy_row(int n) {
   }
   s.inputs = {1};
   s.loads = {{{n - 1, 0}, 0, {share_of_input(0)}}};
-  s.outputs = {{.what = What::position, .at = {n - 1, 0}}, {.what = What::reaction, .at = {0, -1}}};
+  s.outputs = {{.measured = Measured::position, .at = {n - 1, 0}},
+               {.measured = Measured::reaction, .at = {0, -1}}};
   return s;
 }
 
@@ -107,8 +109,8 @@ TEST_CASE("the oracle knows a body tied by its rotation to another that is pinne
             {.a = {1, -1}, .b = {0, 0}, .of = Tie::Of::angular},
             {.a = {1, 0}, .b = {0, 1}, .of = Tie::Of::linear}};
   s.inputs = {1};
-  s.loads = {{{1, 0}, 2, {{{.what = What::input}, Vector3d::UnitZ()}}}};
-  s.outputs = {{.what = What::rate, .at = {1, -1}}};
+  s.loads = {{{1, 0}, 2, {{{.measured = Measured::input}, Vector3d::UnitZ()}}}};
+  s.outputs = {{.measured = Measured::rate, .at = {1, -1}}};
   const Truth t = truth(s, {1.0});
   CHECK((t.H[0].real() - (VectorXd(6) << -1, 0, 0, 0, 0, 1).finished() / 3).norm() <= 1e-15);
 }

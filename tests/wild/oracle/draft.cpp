@@ -132,7 +132,7 @@ void Draft::mechanism(int node, int axis) {
   if (kind == 4) m.moves = rng.chance(0.5);
   if (kind == 5 || kind == 3) {
     m.moves = kind == 5 && rng.chance(0.3);
-    Reading u{.what = Reading::What::input, .axis = input(1)};
+    Reading u{.measured = Reading::Measured::input, .axis = input(1)};
     m.more.push_back({u, MatrixXd::Constant(1, 1, m.moves ? 1.0 : -1.0)});
   }
   if (!m.moves && kind >= 2) m.k = factor(-4, 6), m.c = rng.chance(0.5) ? factor(-8, 2) : 0;
@@ -142,7 +142,7 @@ void Draft::mechanism(int node, int axis) {
 void Draft::load(const Point& where) {
   Load l{.at = where, .half = one_axis(scene, where) ? 0 : rng.below(3), .sum = {}};
   const int size = one_axis(scene, where) ? 1 : l.half == 0 ? 6 : 3;
-  const Reading u{.what = Reading::What::input, .axis = input(size)};
+  const Reading u{.measured = Reading::Measured::input, .axis = input(size)};
   l.sum.push_back({u, MatrixXd::Identity(size, size)});
   scene.loads.push_back(l);
 }
@@ -182,13 +182,13 @@ void Draft::tree(int bodies) {
 }
 
 Reading Draft::any_motion() {
-  using What = Reading::What;
+  using Measured = Reading::Measured;
   for (;;) {
     const int i = rng.below(static_cast<int>(scene.nodes.size()));
     const Node& n = scene.nodes[at(i)];
-    const What motion[] = {What::accel, What::rate, What::position};
-    const What of_axis[] = {What::axis_accel, What::axis_rate, What::axis_position};
-    Reading r{.what = motion[rng.below(3)], .at = {i, -1}, .half = rng.below(3)};
+    const Measured motion[] = {Measured::accel, Measured::rate, Measured::position};
+    const Measured of_axis[] = {Measured::axis_accel, Measured::axis_rate, Measured::axis_position};
+    Reading r{.measured = motion[rng.below(3)], .at = {i, -1}, .half = rng.below(3)};
     if (n.kind == Node::Kind::mass) {
       r.at.site = 0, r.half = 0;
       return r;
@@ -200,18 +200,18 @@ Reading Draft::any_motion() {
     }
     if (n.kind == Node::Kind::joint) {
       const int axis = rng.below(static_cast<int>(n.axes.size()));
-      return {.what = of_axis[rng.below(3)], .at = {i, -1}, .axis = axis};
+      return {.measured = of_axis[rng.below(3)], .at = {i, -1}, .axis = axis};
     }
   }
 }
 
 void Draft::outputs(int count) {
-  using What = Reading::What;
+  using Measured = Reading::Measured;
   for (int i = 0; i < count; ++i) {
     if (!scene.ties.empty() && rng.chance(0.25)) {
       const Tie& t = scene.ties[at(rng.below(static_cast<int>(scene.ties.size())))];
       const int half = one_axis(scene, t.a) ? 0 : rng.below(3);
-      scene.outputs.push_back({.what = What::reaction, .at = t.a, .half = half});
+      scene.outputs.push_back({.measured = Measured::reaction, .at = t.a, .half = half});
     } else {
       scene.outputs.push_back(any_motion());
     }

@@ -7,7 +7,7 @@ namespace wild {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-using What = Reading::What;
+using Measured = Reading::Measured;
 
 }  // namespace
 
@@ -41,8 +41,8 @@ Scene draw_row(Rng& rng) {
     d.load({n - 1, 0});
   }
   d.outputs(1 + rng.below(3));
-  d.scene.outputs.push_back({.what = What::stretch, .at = {rng.below(n), -1}});
-  if (first > 0) d.scene.outputs.push_back({.what = What::reaction, .at = {0, -1}});
+  d.scene.outputs.push_back({.measured = Measured::stretch, .at = {rng.below(n), -1}});
+  if (first > 0) d.scene.outputs.push_back({.measured = Measured::reaction, .at = {0, -1}});
   d.scene.omega = std::sqrt(k / m) * d.factor(-2, 3);
   return d.scene;
 }
@@ -133,7 +133,7 @@ Scene draw_half_ties(Rng& rng) {
     d.load(rng.chance(0.5) ? Point{node, -1} : d.site(node));
   }
   d.outputs(2 + rng.below(3));
-  d.scene.outputs.push_back({.what = What::rate, .at = {bodies - 1, -1}});
+  d.scene.outputs.push_back({.measured = Measured::rate, .at = {bodies - 1, -1}});
   d.scene.omega = d.factor(-2, 5);
   return d.scene;
 }
@@ -161,14 +161,14 @@ Scene draw_controller(Rng& rng) {
       n.in.push_back({r, gain * rng.matrix(ins, size_of(d.scene, r))});
     };
     if (!mechanics || rng.chance(0.5))
-      feed({.what = What::input, .axis = d.input(1 + rng.below(2))}, 1);
+      feed({.measured = Measured::input, .axis = d.input(1 + rng.below(2))}, 1);
     if (mechanics) feed(d.any_motion(), d.factor(-6, 1));
-    if (i > 0) feed({.what = What::out, .at = {first + i - 1, -1}}, 1);
+    if (i > 0) feed({.measured = Measured::out, .at = {first + i - 1, -1}}, 1);
     const int node = d.add(n);
     if (rng.chance(0.3))
       d.scene.nodes[at(node)].in.push_back(
-          {{.what = What::out, .at = {node, -1}}, d.factor(-6, 1) * rng.matrix(ins, outs)});
-    d.scene.outputs.push_back({.what = What::out, .at = {node, -1}});
+          {{.measured = Measured::out, .at = {node, -1}}, d.factor(-6, 1) * rng.matrix(ins, outs)});
+    d.scene.outputs.push_back({.measured = Measured::out, .at = {node, -1}});
     if (mechanics && rng.chance(0.7)) {
       const int body = d.any_motion().at.node;
       const Node& b = d.scene.nodes[at(body)];
@@ -176,10 +176,10 @@ Scene draw_controller(Rng& rng) {
       const Point where = b.kind == Node::Kind::mass ? Point{body, 0} : d.site(body);
       const int size = b.kind == Node::Kind::mass ? 1 : 3;
       const int half = size == 1 ? 0 : 1 + rng.below(2);
-      d.scene.loads.push_back(
-          {where,
-           half,
-           {{{.what = What::out, .at = {node, -1}}, d.factor(-6, 1) * rng.matrix(size, outs)}}});
+      d.scene.loads.push_back({where,
+                               half,
+                               {{{.measured = Measured::out, .at = {node, -1}},
+                                 d.factor(-6, 1) * rng.matrix(size, outs)}}});
     }
   }
   if (mechanics) d.outputs(1 + rng.below(2));

@@ -266,7 +266,7 @@ void Equations::drop_redundant() {
 }
 
 Equations::Signal Equations::read(const Reading& r) {
-  using What = Reading::What;
+  using Measured = Reading::Measured;
   const Index rows = size_of(scene_, r);
   Signal s;
   for (Matrix& m : s.of) m.setZero(rows, n_);
@@ -278,12 +278,12 @@ Equations::Signal Equations::read(const Reading& r) {
     if (J.rows() == 6) J = (half(r.half).transpose() * J).eval();
     s.of[at(order)].middleCols(x_[i], size_[i]) = J;
   };
-  switch (r.what) {
-    case What::input: s.in.middleCols(input_[at(r.axis)], rows).setIdentity(); break;
-    case What::accel: motion(2); break;
-    case What::rate: motion(1); break;
-    case What::position: motion(0); break;
-    case What::reaction:
+  switch (r.measured) {
+    case Measured::input: s.in.middleCols(input_[at(r.axis)], rows).setIdentity(); break;
+    case Measured::accel: motion(2); break;
+    case Measured::rate: motion(1); break;
+    case Measured::position: motion(0); break;
+    case Measured::reaction:
       for (std::size_t t = 0; t < scene_.ties.size(); ++t) {
         if (!(scene_.ties[t].a == r.at)) continue;
         Matrix S = rows_of(scene_, scene_.ties[t]).transpose().cast<Real>();
@@ -295,18 +295,18 @@ Equations::Signal Equations::read(const Reading& r) {
             none = "an internal force is read";
       }
       break;
-    case What::axis_accel: unknown(2, x_[i] + 6 + r.axis); break;
-    case What::axis_rate: unknown(1, x_[i] + 6 + r.axis); break;
-    case What::axis_position: unknown(0, x_[i] + 6 + r.axis); break;
-    case What::axis_force:
+    case Measured::axis_accel: unknown(2, x_[i] + 6 + r.axis); break;
+    case Measured::axis_rate: unknown(1, x_[i] + 6 + r.axis); break;
+    case Measured::axis_position: unknown(0, x_[i] + 6 + r.axis); break;
+    case Measured::axis_force:
       unknown(0, Q_[i] + r.axis);
       if (undetermined_[at(Q_[i] + r.axis)]) none = "an internal force is read";
       break;
-    case What::stretch:
+    case Measured::stretch:
       unknown(0, x_[i] + 1);
       s.of[0](0, x_[i]) = Real(-1);
       break;
-    case What::out: {
+    case Measured::out: {
       const Node& n = scene_.nodes[i];
       s.of[0].middleCols(z_[i] + n.A.rows() + n.D.cols(), rows).setIdentity();
       break;

@@ -45,8 +45,8 @@ class Printer {
     return n.name + (n.kind == Node::Kind::body ? ".C" + std::to_string(p.site + 1) : ".child");
   }
   static std::string half(int h) { return h == 0 ? "" : h == 1 ? ".linear" : ".angular"; }
-  void matrix(const std::string& what, const MatrixXd& m) {
-    out_ << " " << what << " [";
+  void matrix(const std::string& measured, const MatrixXd& m) {
+    out_ << " " << measured << " [";
     for (Eigen::Index i = 0; i < m.rows(); ++i) {
       for (Eigen::Index j = 0; j < m.cols(); ++j) out_ << (j ? " " : i ? "; " : "") << m(i, j);
     }
@@ -116,14 +116,14 @@ class Printer {
   void reading(const Reading& r) {
     constexpr const char* names[] = {"u",    "accel",    "rate",  "position", "reaction", "accel",
                                      "rate", "position", "force", "stretch",  "out"};
-    if (r.what == Reading::What::input) {
+    if (r.measured == Reading::Measured::input) {
       out_ << "u" << r.axis + 1 << " (size " << scene_.inputs[at(r.axis)] << ")";
       return;
     }
     out_ << name(r.at) << ".";
-    if (r.what >= Reading::What::axis_accel && r.what <= Reading::What::axis_force)
+    if (r.measured >= Reading::Measured::axis_accel && r.measured <= Reading::Measured::axis_force)
       out_ << "q" << r.axis + 1 << ".";
-    out_ << names[static_cast<std::size_t>(r.what)] << half(r.half);
+    out_ << names[static_cast<std::size_t>(r.measured)] << half(r.half);
   }
 
   const Scene& scene_;
@@ -134,7 +134,7 @@ class Printer {
 Scene without(const Scene& scene, int i) {
   Scene s = scene;
   const auto gone = [&](const Reading& r) {
-    return r.what != Reading::What::input && r.at.node == i;
+    return r.measured != Reading::Measured::input && r.at.node == i;
   };
   const auto sum = [&](Sum& shares) {
     std::erase_if(shares, [&](const Share& share) { return gone(share.of); });

@@ -20,14 +20,14 @@ bool one_axis(const Scene& scene, const Point& point) {
 }
 
 int size_of(const Scene& scene, const Reading& reading) {
-  using What = Reading::What;
-  switch (reading.what) {
-    case What::input: return scene.inputs[at(reading.axis)];
-    case What::accel:
-    case What::rate:
-    case What::position:
-    case What::reaction: return one_axis(scene, reading.at) ? 1 : reading.half == 0 ? 6 : 3;
-    case What::out: return static_cast<int>(scene.nodes[at(reading.at.node)].D.rows());
+  using Measured = Reading::Measured;
+  switch (reading.measured) {
+    case Measured::input: return scene.inputs[at(reading.axis)];
+    case Measured::accel:
+    case Measured::rate:
+    case Measured::position:
+    case Measured::reaction: return one_axis(scene, reading.at) ? 1 : reading.half == 0 ? 6 : 3;
+    case Measured::out: return static_cast<int>(scene.nodes[at(reading.at.node)].D.rows());
     default: return 1;
   }
 }
@@ -65,7 +65,7 @@ bool closes(const Scene& scene) {
 std::vector<int> output_blocks(const Scene& scene) {
   std::vector<int> blocks;
   for (const Reading& r : scene.outputs) {
-    if (r.what == Reading::What::out)
+    if (r.measured == Reading::Measured::out)
       blocks.insert(blocks.end(), at(size_of(scene, r)), 1);
     else
       add_blocks(blocks, size_of(scene, r));

@@ -29,7 +29,7 @@ struct Axis {
 
 /// A signal that can be read.
 struct Reading {
-  enum class What {
+  enum class Measured {
     input,          ///< number `axis`, all of it
     accel,          ///< of point `at`
     rate,           ///< of point `at`
@@ -42,7 +42,7 @@ struct Reading {
     stretch,        ///< of the spring-mass at.node
     out             ///< of the controller at.node
   };
-  What what = What::input;
+  Measured measured = Measured::input;
   Point at = {};
   int axis = 0;
   int half = 0;  ///< of six: 0 all, 1 the linear, 2 the angular three

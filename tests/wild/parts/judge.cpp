@@ -155,7 +155,7 @@ MatrixXd largest_position(Scene scene, const std::vector<Complex>& s) {
   for (int i = 0; i < static_cast<int>(scene.nodes.size()); ++i)
     for (const int site : {-1, 0})
       if (one_axis(scene, {i, site}))
-        scene.outputs.push_back({.what = Reading::What::position, .at = {i, site}});
+        scene.outputs.push_back({.measured = Reading::Measured::position, .at = {i, site}});
   if (scene.outputs.empty())
     return MatrixXd::Zero(1, static_cast<Index>(input_blocks(scene).size()));
   const MatrixXd all =
@@ -170,9 +170,9 @@ MatrixXd cancelled(const Scene& scene, const std::vector<Complex>& s) {
   for (const Complex& point : s) fastest = std::max(fastest, std::abs(point));
   std::vector<double> factor;
   for (const Reading& r : scene.outputs) {
-    const double f = r.what == Reading::What::position ? 1
-                     : r.what == Reading::What::rate   ? fastest
-                                                       : 0;
+    const double f = r.measured == Reading::Measured::position ? 1
+                     : r.measured == Reading::Measured::rate   ? fastest
+                                                               : 0;
     Scene one = scene;
     one.outputs = {r};
     factor.insert(factor.end(), output_blocks(one).size(), f);

@@ -198,26 +198,26 @@ class Writer {
   }
 
   Expr read(const Reading& r) const {
-    using What = Reading::What;
-    if (r.what == What::input) return inputs_[at(r.axis)].expr();
-    if (r.what == What::stretch) return masses_[at(r.at.node)]->stretch.expr();
-    if (r.what == What::out) return ltis_[at(r.at.node)]->out.expr();
-    if (r.what >= What::axis_accel) {
+    using Measured = Reading::Measured;
+    if (r.measured == Measured::input) return inputs_[at(r.axis)].expr();
+    if (r.measured == Measured::stretch) return masses_[at(r.at.node)]->stretch.expr();
+    if (r.measured == Measured::out) return ltis_[at(r.at.node)]->out.expr();
+    if (r.measured >= Measured::axis_accel) {
       const Joint::AxisPorts axis = joints_[at(r.at.node)]->axis(axis_name(r.axis));
-      if (r.what == What::axis_accel) return axis.accel.expr();
-      if (r.what == What::axis_rate) return axis.rate.expr();
-      return r.what == What::axis_position ? axis.position.expr() : axis.force.expr();
+      if (r.measured == Measured::axis_accel) return axis.accel.expr();
+      if (r.measured == Measured::axis_rate) return axis.rate.expr();
+      return r.measured == Measured::axis_position ? axis.position.expr() : axis.force.expr();
     }
-    if (one_axis(scene_, r.at)) return signal(point1(r.at), r.what).expr();
-    const detail::SignalRef six = signal(point6(r.at), r.what);
+    if (one_axis(scene_, r.at)) return signal(point1(r.at), r.measured).expr();
+    const detail::SignalRef six = signal(point6(r.at), r.measured);
     return r.half == 0 ? six.expr() : r.half == 1 ? six.linear().expr() : six.angular().expr();
   }
 
   template <int N>
-  static detail::SignalRef signal(const DualPort<N>& p, Reading::What what) {
-    if (what == Reading::What::accel) return p.accel;
-    if (what == Reading::What::rate) return p.rate;
-    return what == Reading::What::position ? p.position : p.reaction;
+  static detail::SignalRef signal(const DualPort<N>& p, Reading::Measured measured) {
+    if (measured == Reading::Measured::accel) return p.accel;
+    if (measured == Reading::Measured::rate) return p.rate;
+    return measured == Reading::Measured::position ? p.position : p.reaction;
   }
 
   Expr sum(const Sum& shares) const {
