@@ -151,7 +151,7 @@ Misuse unknown_ending(const Arguments& a) {
 }
 
 System compiled(const Arguments& a) {
-  return compile(read_scene(a.words[1]), {.minimize_up_to = a.minimize_up_to});
+  return compile(read_diagram(a.words[1]), {.minimize_up_to = a.minimize_up_to});
 }
 
 void check(const Arguments& a) {
@@ -197,7 +197,7 @@ void draw(const Arguments& a) {
   if (!picture && !kind.empty() && kind != ".dot" && kind != ".gv") throw unknown_ending(a);
   const DotOptions options{.fold = std::max(a.fold, 0)};
   const std::string text =
-      a.compiled ? to_dot(compiled(a).stage(), options) : to_dot(read_scene(a.words[1]), options);
+      a.compiled ? to_dot(compiled(a).stage(), options) : to_dot(read_diagram(a.words[1]), options);
   emit::write_file(a.words[2], picture ? drawn(text, a.words[2], kind.substr(1)) : text);
 }
 
@@ -251,7 +251,7 @@ constexpr std::string_view kModel = " --minimize-up-to ",
                            kHeader = " --minimize-up-to --sample-time ",
                            kResponse = " --minimize-up-to --omega ";
 
-/// Refuses options without effect on this command, and output over the scene file.
+/// Refuses options without effect on this command, and output over the diagram file.
 void check_words(const Command& command, const Arguments& a) {
   if (a.words.size() != command.words)
     throw Misuse{fmt::format("{} takes {} files", command.name, command.words - 1)};

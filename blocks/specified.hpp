@@ -2,7 +2,7 @@
 
 namespace titop {
 
-/// A block that keeps its spec, for the scene file. Spec: SpringMass, RigidBody,
+/// A block that keeps its spec, for the diagram file. Spec: SpringMass, RigidBody,
 /// FlexibleBody::Spec, Bushing, or the axes of a joint.
 template <class Spec>
 class Specified {

@@ -5,7 +5,7 @@
 
 /// The equations of motion of a plan, assembled by hand: coordinates of the tree, Lagrange's
 /// equations, null space of the closures, controllers around it. This is the oracle of the random
-/// scenes; it uses neither the library nor the scene file.
+/// scenes; it uses neither the library nor the diagram file.
 namespace titop::generate {
 
 /// xdot = A x + B u, y = C x + D u; not minimal.

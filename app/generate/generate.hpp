@@ -7,7 +7,7 @@
 #include "generate/plan.hpp"
 
 /// Random scenes with their answers, for testing titop and other programs with. A scene is drawn as
-/// plain data, written as a scene file, and answered from equations of motion that are assembled by
+/// plain data, written as a diagram file, and answered from equations of motion that are assembled by
 /// hand (assembly.hpp), without the library.
 namespace titop::generate {
 
@@ -34,7 +34,7 @@ using Json = nlohmann::ordered_json;
 /// outgrow 64 bits.
 Plan draw(const Options& options);
 
-/// The scene file. Each row of a list is on one line.
+/// The diagram file. Each row of a list is on one line.
 Json scene(const Plan& plan);
 
 /// The expected values: {"order", "poles", "transfer"}. Order: of the minimal model, computed

@@ -7,8 +7,8 @@
 
 #include "generate/ratio.hpp"
 
-/// A random scene as plain data, before it is written as a scene file (scene.hpp) and as equations
-/// of motion (assembly.hpp). Nothing of the library is used in either.
+/// A random scene as plain data, before it is written as a diagram file (scene.hpp) and as
+/// equations of motion (assembly.hpp). Nothing of the library is used in either.
 namespace titop::generate {
 
 using Vec3 = std::array<Ratio, 3>;

@@ -2,7 +2,7 @@
 
 #include "generate/generate.hpp"
 
-/// The plan as a scene file (docs/scene.schema.json).
+/// The plan as a diagram file (docs/diagram.schema.json).
 namespace titop::generate {
 namespace {
 

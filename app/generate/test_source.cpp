@@ -11,7 +11,7 @@ constexpr const char* kHead =
     R"(// Written by `titop generate`. Compares what titop makes of
 // {scene}
 // with equations of motion that were assembled by hand. A program by itself; run
-// it where the scene file is.
+// it where the diagram file is.
 #define DOCTEST_CONFIG_IMPLEMENT_WITH_MAIN
 #include <doctest/doctest.h>
 
@@ -51,7 +51,7 @@ const std::vector<Complex> poles = {{{poles}}};  // with Im s >= 0
 TEST_CASE({scene}) {{
   // The order is that of the minimal model, however many states there are; exact arithmetic for few,
   // as stiffnesses may be too far apart for double.
-  const titop::System system = titop::compile(titop::read_scene({scene}),
+  const titop::System system = titop::compile(titop::read_diagram({scene}),
                                               {{.minimize_up_to = 1000000, .exact_up_to = 30}});
   const titop::OrderVerdict verdict = system.order_verdict();
   CHECK(verdict.lowest <= {order});
@@ -82,7 +82,7 @@ constexpr const char* kCheck = R"(  {{
 constexpr const char* kRefused = R"(TEST_CASE({scene}) {{
   std::string said = "nothing";
   try {{
-    titop::compile(titop::read_scene({scene}));
+    titop::compile(titop::read_diagram({scene}));
   }} catch (const titop::Error& error) {{
     said = error.what();
   }}

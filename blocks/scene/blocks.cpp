@@ -283,7 +283,7 @@ void write_block(const Block& block, const WriteValue& value, const NameBody& bo
   const Type* type = find_type(block.type());
   if (!type)
     throw Error(Code::bad_value,
-                fmt::format("a {} cannot be written to a scene file", block.type()),
+                fmt::format("a {} cannot be written to a diagram file", block.type()),
                 "it knows " + all_types() + "; write an own block as an Lti or as modal data");
   json["type"] = type->name;
   type->write(block, value, body, json);

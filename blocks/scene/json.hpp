@@ -19,8 +19,8 @@ inline constexpr int kMostScalars = 4096;
 Json rows(const Eigen::MatrixXd& M);
 Json list(const Eigen::VectorXd& v);
 
-/// A place in a scene file, with its path for messages: "blocks[3].mass". Unexpected content throws
-/// bad_file with that path.
+/// A place in a diagram file, with its path for messages: "blocks[3].mass". Unexpected content
+/// throws bad_file with that path.
 class Place {
  public:
   Place(const Json& json, std::string file) : json_(&json), file_(std::move(file)) {}

@@ -302,7 +302,7 @@ Diagram parse_scene(std::string_view json, const std::string& file) {
   return std::move(Reader(Place(all, file)).diagram);
 }
 
-Diagram read_scene(const std::filesystem::path& path) {
+Diagram read_diagram(const std::filesystem::path& path) {
   const fe::TextFile file = fe::read_text(path);
   return parse_scene(file.content, file.name);
 }

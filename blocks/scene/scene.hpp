@@ -5,8 +5,8 @@
 #include <string_view>
 #include <titop/graph/diagram.hpp>
 
-/// Diagrams as text: JSON, stable, the same to the last bit when read again. docs/scene.schema.json
-/// describes it.
+/// Diagrams as text: JSON, stable, the same to the last bit when read again.
+/// docs/diagram.schema.json describes it.
 namespace titop {
 
 /// The diagram before any pass, equations as they were written:
@@ -35,11 +35,11 @@ std::string scene_json(const Diagram& diagram);
 /// The diagram of such a text; `file` is for messages. Compiling it gives the same model, to the
 /// last bit, as compiling the diagram that was written. Throws bad_file, with the place in the text
 /// ("blocks[3].mass"), the text found and the text expected; and the errors of `Diagram::add` for
-/// invalid blocks. Later messages have "equations[3] of the scene file" for a source line.
+/// invalid blocks. Later messages have "equations[3] of the diagram file" for a source line.
 Diagram parse_scene(std::string_view json, const std::string& file = "scene");
 
 /// The same with files. Throw bad_file.
-void write_scene(const Diagram& diagram, const std::filesystem::path& file);
-Diagram read_scene(const std::filesystem::path& file);
+void write_diagram(const Diagram& diagram, const std::filesystem::path& file);
+Diagram read_diagram(const std::filesystem::path& file);
 
 }  // namespace titop

@@ -159,7 +159,7 @@ std::string scene_json(const Diagram& diagram) {
   }
 }
 
-void write_scene(const Diagram& diagram, const std::filesystem::path& path) {
+void write_diagram(const Diagram& diagram, const std::filesystem::path& path) {
   const std::string text = scene_json(diagram);
   std::ofstream file(path, std::ios::binary);
   file << text;

@@ -21,7 +21,7 @@ namespace {
 /// With the five masses in it.
 class Shell : public app_test::Shell {
  public:
-  Shell() { write_scene(diagram(), folder.path / "masses.json"); }
+  Shell() { write_diagram(diagram(), folder.path / "masses.json"); }
   static Diagram diagram() { return five_masses_scene({1, 2, 3, 4, 5}, {10, 26, 33, 20, 95}); }
 };
 
@@ -59,7 +59,7 @@ TEST_CASE("certify: as text and as JSON; exit code 3 where something does not ho
   G.in = K.out + u + z.stretch;
   z.child.force += u;
   d.output("y") = G.out;
-  write_scene(d, shell.folder.path / "ring.json");
+  write_diagram(d, shell.folder.path / "ring.json");
   r = shell.titop("certify ring.json -o ring.certificate.json");
   CHECK(r.code == 3);
   CHECK(has(r.out, "FAULT: the transfer of the dense model differs"));
@@ -172,7 +172,7 @@ TEST_CASE("export reports on stderr the digits lost by A, B, C, D, and how to ke
     last = next;
   }
   d.output("a") = last.child.accel;
-  write_scene(d, shell.folder.path / "uneven.json");
+  write_diagram(d, shell.folder.path / "uneven.json");
   const System system = compile(d);
   const std::vector<std::string> warnings = dense_warnings(system);
   REQUIRE(!warnings.empty());
@@ -193,7 +193,7 @@ TEST_CASE("export reports on stderr the digits lost by A, B, C, D, and how to ke
   ground(z);
   z.child.force += even.input("u");
   even.output("x") = z.stretch;
-  write_scene(even, shell.folder.path / "even.json");
+  write_diagram(even, shell.folder.path / "even.json");
   for (const char* file : {"m.m", "m.py", "m.json", "m.hpp"})
     CHECK(shell.titop(std::string("export even.json ") + file).err == "");
 }
@@ -234,7 +234,7 @@ TEST_CASE("a scene that is refused: exit code 1 and the error on stderr") {
   CHECK(shell.titop("export masses.json none/m.json").code == 1);
   Diagram open{"open"};
   open.add("z", SpringMass{});
-  write_scene(open, shell.folder.path / "open.json");
+  write_diagram(open, shell.folder.path / "open.json");
   r = shell.titop("compile open.json");
   CHECK(r.code == 1);
   CHECK(has(r.err, "error[no-equation]: z.parent"));

@@ -94,7 +94,7 @@ TEST_CASE("200 scenes: order, poles and transfer as assembled by hand, or the re
     ++scenes;
     if (answer.contains("refused")) {
       const Json& refused = answer["refused"];
-      const std::string said = titop_test::message_of([&] { compile(read_scene(path)); });
+      const std::string said = titop_test::message_of([&] { compile(read_diagram(path)); });
       INFO(said);
       CHECK(said.find(fmt::format("error[{}]", refused["code"].get<std::string>())) !=
             std::string::npos);
@@ -105,7 +105,7 @@ TEST_CASE("200 scenes: order, poles and transfer as assembled by hand, or the re
     }
     std::string why;
     try {
-      const System system = compile(read_scene(path));
+      const System system = compile(read_diagram(path));
       const Errors e = compare(system, read_json(path), answer);
       CHECK(e.factored <= 1e-10);
       CHECK(e.dense <= 1e-8);

@@ -69,7 +69,7 @@ TEST_CASE("the written test: a file name with a quote, the order of more than 10
   CHECK(generate(folder, "'q\"x.json'") == 0);
   const std::string test = folder.read("q\"x_test.cpp");
   CHECK(test.find("TEST_CASE(\"q\\\"x.json\")") != std::string::npos);
-  CHECK(test.find("read_scene(\"q\\\"x.json\")") != std::string::npos);
-  CHECK(test.find("read_scene(\"q\"x.json\")") == std::string::npos);
+  CHECK(test.find("read_diagram(\"q\\\"x.json\")") != std::string::npos);
+  CHECK(test.find("read_diagram(\"q\"x.json\")") == std::string::npos);
   CHECK(test.find(".minimize_up_to = 1000000") != std::string::npos);
 }

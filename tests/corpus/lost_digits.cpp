@@ -27,7 +27,7 @@ TEST_CASE("where digits are lost, rounding decides no order: the interval holds 
     REQUIRE(folder.run("'" TITOP_PROGRAM "' generate a.json --family " + std::string(scene)) == 0);
     // Counted modulo a prime, without the compiler (README.md).
     const int exact = nlohmann::json::parse(folder.read("a.answer.json")).at("order").get<int>();
-    const titop::System system = titop::compile(titop::read_scene(folder.path / "a.json"));
+    const titop::System system = titop::compile(titop::read_diagram(folder.path / "a.json"));
     const OrderVerdict& v = system.order_verdict();
     CHECK(v.lowest <= exact);
     CHECK(v.highest >= exact);

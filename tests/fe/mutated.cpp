@@ -95,5 +95,5 @@ TEST_CASE("damaged scenes") {
   b.parent.force = -u;
   d.output("a", 3) = b.parent.accel.linear;
   CHECK(refusals(scene_json(d), 600, 5,
-                 [](const std::filesystem::path& path) { compile(read_scene(path)); }) > 100);
+                 [](const std::filesystem::path& path) { compile(read_diagram(path)); }) > 100);
 }

@@ -1,4 +1,4 @@
-// Scene files; a scene that can be read is also written, and then read again as the same text.
+// Diagram files; a scene that can be read is also written, and then read again as the same text.
 #include <titop/blocks/scene/scene.hpp>
 
 #include "input_file.hpp"

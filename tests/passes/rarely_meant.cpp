@@ -141,7 +141,7 @@ TEST_CASE("a rotation by more than a turn is told once, and is that rotation all
   CHECK((Rotation::about({0, 0, 3}, 90).nominal() - T).cwiseAbs().maxCoeff() <= 1e-15);
 }
 
-TEST_CASE("a scene file keeps the data of the warnings") {
+TEST_CASE("a diagram file keeps the data of the warnings") {
   Diagram d{"file"};
   auto body = d.add("body", RigidBody{.mass = 2}), other = d.add("other", RigidBody{.mass = 3});
   auto hub = d.add("hub", RigidBody{.mass = 9, .children = {{"A"}, {"B"}}});

@@ -1,4 +1,4 @@
-// Broken scene files: each is refused with its place in the text, the text found and the text
+// Broken diagram files: each is refused with its place in the text, the text found and the text
 // expected.
 #include <doctest/doctest.h>
 
@@ -101,11 +101,11 @@ TEST_CASE("mistakes of a scene's equations are told with their place in the file
   };
   const std::string text = said("[\"K\", \"in\"]", "[\"z\", \"child\", \"accel\"]");
   INFO(text);
-  CHECK(text.find("equations[2] of the scene file") != std::string::npos);
-  CHECK(text.find("K was added at blocks[1] of the scene file") != std::string::npos);
+  CHECK(text.find("equations[2] of the diagram file") != std::string::npos);
+  CHECK(text.find("K was added at blocks[1] of the diagram file") != std::string::npos);
   CHECK(text.find(".cpp") == std::string::npos);
   CHECK(said(", \"terms\": [{\"signal\": [\"z\", \"parent\", \"accel\"]}]}", "}")
-            .find("outputs[0] of the scene file") != std::string::npos);
+            .find("outputs[0] of the diagram file") != std::string::npos);
 }
 
 TEST_CASE("parts of a signal are orthonormal rows") {
@@ -123,7 +123,7 @@ TEST_CASE("parts of a signal are orthonormal rows") {
         "expected orthonormal rows, at least one");
 }
 
-TEST_CASE("plausible mistakes of a program that writes scene files") {
+TEST_CASE("plausible mistakes of a program that writes diagram files") {
   refused("\"damping\": 0", "\"damping\": 1e999", "cart.json: a number is too large for a double");
   refused("{\"name\": \"u\", \"size\": 1}", "{\"name\": \"u\", \"size\": 5000}",
           "inputs[0].size: found 5000, expected a size up to 4096");

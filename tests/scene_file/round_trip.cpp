@@ -107,11 +107,11 @@ TEST_CASE("scenes of the paper and random scenes come back to the last bit") {
 TEST_CASE("a file is the text, in the order in which it was written") {
   const Folder folder;
   const Diagram d = five_masses_scene({1, 2, 3, 4, 5}, {10, 26, 33, 20, 95});
-  write_scene(d, folder.path / "masses.json");
+  write_diagram(d, folder.path / "masses.json");
   CHECK(folder.read("masses.json") == scene_json(d));
-  CHECK(scene_json(read_scene(folder.path / "masses.json")) == scene_json(d));
-  CHECK_THROWS_AS(write_scene(d, folder.path / "none" / "masses.json"), Error);
-  CHECK_THROWS_AS(read_scene(folder.path / "none.json"), Error);
+  CHECK(scene_json(read_diagram(folder.path / "masses.json")) == scene_json(d));
+  CHECK_THROWS_AS(write_diagram(d, folder.path / "none" / "masses.json"), Error);
+  CHECK_THROWS_AS(read_diagram(folder.path / "none.json"), Error);
 }
 
 TEST_CASE("scenes that cannot be written are refused") {

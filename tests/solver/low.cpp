@@ -124,7 +124,7 @@ TEST_CASE("low: masses and springs far apart cost 32 digits, too: right, finer, 
 TEST_CASE("low: the static gain of supports inside a chain is the limit of the transfers") {
   // At s = 0 accelerations vanish: the 50-digit rounding of a block there is no pivot.
   const System system =
-      compile(read_scene(std::string(TITOP_SOURCE_DIR) + "/tests/corpus/scenes/064.json"));
+      compile(read_diagram(std::string(TITOP_SOURCE_DIR) + "/tests/corpus/scenes/064.json"));
   const Eigen::MatrixXd limit = system.transfer({1e-8, 0}, Precision::digits50).real();
   CHECK((system.static_gain() - limit).cwiseAbs().maxCoeff() <= 1e-7);
   CHECK(std::abs(limit(0, 0)) < 0.77);

@@ -9,8 +9,8 @@
 /// are reported at once.
 namespace titop::passes {
 
-/// Place where an item of the diagram was written: its source line, or its place in the scene file,
-/// whose lists have the same order.
+/// Place where an item of the diagram was written: its source line, or its place in the diagram
+/// file, whose lists have the same order.
 struct Written {
   const std::source_location& where;
   const char* list;  ///< "equations"
@@ -18,7 +18,7 @@ struct Written {
 
   std::string text() const {
     return where.line() > 0 ? to_string(where)
-                            : fmt::format("{}[{}] of the scene file", list, index);
+                            : fmt::format("{}[{}] of the diagram file", list, index);
   }
 };
 

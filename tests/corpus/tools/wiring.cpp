@@ -211,7 +211,7 @@ int main(int argc, char** argv) {
   for (int i = 2; i < argc; ++i) {
     const std::filesystem::path file = argv[i];
     try {
-      const Diagram d = read_scene(file);
+      const Diagram d = read_diagram(file);
       const std::string text = Wiring(d.graph()).text();
       std::ofstream(folder / ("s" + file.stem().string() + ".m")) << text;
     } catch (const std::exception& error) {
