@@ -32,11 +32,11 @@ void check_shapes(const ModalData& d) {
              fmt::format("6 x {}, a column per mode", n));
 }
 
-struct Modes {
+struct ModalParameters {
   VectorXd omega, xi;  // N each, [rad/s] and [-]
 };
 
-void check_modes(const Modes& m) {
+void check_modes(const ModalParameters& m) {
   for (Eigen::Index i = 0; i < m.omega.size(); ++i) {
     const auto refuse = [&](Code code, const char* hint) {
       throw Error(code,
@@ -66,9 +66,9 @@ VectorXd replaced(VectorXd numbers, const std::map<int, Value>& values, Number n
 }
 
 template <class Number>
-Modes modes_of(const FlexibleBody::Spec& spec, Number number) {
-  Modes m{replaced(spec.data->omega, spec.values.omega, number),
-          replaced(spec.data->xi, spec.values.xi, number)};
+ModalParameters modes_of(const FlexibleBody::Spec& spec, Number number) {
+  ModalParameters m{replaced(spec.data->omega, spec.values.omega, number),
+                    replaced(spec.data->xi, spec.values.xi, number)};
   check_modes(m);
   return m;
 }
@@ -224,7 +224,7 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   /// All nodes of one body share the last result, which is cached.
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
     if (spec_->values.empty()) return made_;
-    Modes m = modes_at(values);
+    ModalParameters m = modes_at(values);
     {
       const std::scoped_lock lock(keeping_);
       if (made_ && m.omega == made_for_.omega && m.xi == made_for_.xi) return made_;
@@ -285,10 +285,10 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   }
 
  private:
-  Modes modes_at(ParameterValues values) const {
+  ModalParameters modes_at(ParameterValues values) const {
     return modes_of(*spec_, [&](const Value& v) { return v.at(values); });
   }
-  Modal modal(const Modes& m) const {
+  Modal modal(const ModalParameters& m) const {
     return {shapes_->W, shapes_->rigid, m.omega.cwiseAbs2(), 2 * m.xi.cwiseProduct(m.omega)};
   }
 
@@ -296,7 +296,7 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   std::shared_ptr<const Shapes> shapes_;
   mutable std::mutex keeping_;
   mutable std::shared_ptr<const Dynamics> made_;
-  mutable Modes made_for_;
+  mutable ModalParameters made_for_;
 };
 
 ModalData without_modes(const RigidBody& body) {
@@ -361,7 +361,7 @@ FlexibleBody::FlexibleBody(const RigidBody& body, std::source_location at)
     : FlexibleBody(told_at(at, [&] { return without_modes(body); }), at) {}
 
 ModalData FlexibleBody::nominal() const {
-  Modes m = modes_of(*spec_, nominal_of);
+  ModalParameters m = modes_of(*spec_, nominal_of);
   ModalData result = data();
   result.omega = std::move(m.omega);
   result.xi = std::move(m.xi);

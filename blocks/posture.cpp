@@ -25,14 +25,14 @@ std::string name_of(const LoopStep& step, Index i) {
 }
 
 /// The loop with its constants worked out.
-struct Loop {
+struct KinematicLoop {
   const std::vector<LoopStep>& steps;
   std::vector<Vector3d> axis = {};  ///< unit vectors
   std::vector<Matrix3d> turn = {};
   std::vector<Index> unknown = {};
   double size = 0;  ///< [m], length by which translations are scaled
 
-  explicit Loop(const std::vector<LoopStep>& list) : steps(list) {
+  explicit KinematicLoop(const std::vector<LoopStep>& list) : steps(list) {
     for (std::size_t i = 0; i < list.size(); ++i) {
       const LoopStep& s = list[i];
       axis.push_back(unit_direction(s.joint));
@@ -57,7 +57,7 @@ struct End {
   double cost() const { return gap.squaredNorm(); }
 };
 
-End end_of(const Loop& loop, const VectorXd& q) {
+End end_of(const KinematicLoop& loop, const VectorXd& q) {
   const Index n = q.size();
   Matrix3d R = Matrix3d::Identity();
   Vector3d p = Vector3d::Zero();
@@ -98,7 +98,7 @@ VectorXd damped_step(const End& end, double lambda) {
 }
 
 /// Levenberg-Marquardt from q until no step helps any more.
-VectorXd close_from(const Loop& loop, VectorXd q) {
+VectorXd close_from(const KinematicLoop& loop, VectorXd q) {
   if (loop.unknown.empty()) return q;
   End end = end_of(loop, q);
   double lambda = 1e-3;
@@ -122,7 +122,7 @@ bool closed(const End& end, double tolerance) {
 }
 
 /// The values that close the loop best: from the guesses, then from ever farther away.
-VectorXd best(const Loop& loop, double tolerance) {
+VectorXd best(const KinematicLoop& loop, double tolerance) {
   constexpr int kStarts = 64;
   std::mt19937 random(1);
   // Written out: the standard's distributions differ from library to library.
@@ -138,7 +138,7 @@ VectorXd best(const Loop& loop, double tolerance) {
   return found;
 }
 
-void refuse_open(const Loop& loop, const End& end) {
+void refuse_open(const KinematicLoop& loop, const End& end) {
   throw Error(
       Code::kinematic_loop,
       fmt::format("the loop of {} to {} cannot be closed: at best it stays open by {:.6g} m and "
@@ -152,7 +152,7 @@ void refuse_open(const Loop& loop, const End& end) {
 
 /// Throws singular if the given values do not determine the posture of the loop: J has a null
 /// space.
-void check_held(const Loop& loop, const End& end) {
+void check_held(const KinematicLoop& loop, const End& end) {
   const Index n = end.J.cols();
   if (n == 0) return;
   const Eigen::JacobiSVD<MatrixXd> svd(end.J, Eigen::ComputeFullV);
@@ -194,7 +194,7 @@ double near_guess(const LoopStep& step, double q) {
 
 Posture posture(const std::vector<LoopStep>& steps, const PostureOptions& options) {
   check_finite(steps);
-  const Loop loop(steps);
+  const KinematicLoop loop(steps);
   const VectorXd q = best(loop, options.tolerance);
   const End end = end_of(loop, q);
   if (!closed(end, options.tolerance)) refuse_open(loop, end);

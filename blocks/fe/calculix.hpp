@@ -33,13 +33,13 @@ struct CalculixInterface {
 
 /// Data read from a deck.
 struct CalculixDeck {
-  struct RigidBody {
+  struct RigidConstraint {
     int ref_node = 0;
     int rot_node = 0;
     int line = 0;
   };
   std::map<int, Vector3d> nodes;  ///< positions [m] by node number
-  std::vector<RigidBody> rigid_bodies;
+  std::vector<RigidConstraint> rigid_bodies;
 };
 
 /// Node positions and rigid bodies of a deck; all other keywords are ignored. Throws `bad_file`,

@@ -95,7 +95,7 @@ class DeckReader {
   }
 
   void read_rigid_body(const Card& card) {
-    CalculixDeck::RigidBody body;
+    CalculixDeck::RigidConstraint body;
     body.line = card.line;
     for (const auto& [name, node] :
          {std::pair{"REF NODE", &body.ref_node}, std::pair{"ROT NODE", &body.rot_node}}) {

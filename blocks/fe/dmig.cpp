@@ -24,7 +24,7 @@ struct DmigCard {
   int line = 0;
 };
 
-struct Entry {
+struct DmigEntry {
   double value = 0;
   int line = 0;
 };
@@ -33,7 +33,7 @@ struct Entry {
 struct Found {
   int form = 0, type = 0;
   int digits = 0;  ///< of its longest number
-  std::map<std::pair<GridDof, GridDof>, Entry> entries;
+  std::map<std::pair<GridDof, GridDof>, DmigEntry> entries;
 };
 
 /// Commas and tabs go on with free fields.
@@ -176,12 +176,12 @@ class DmigReader {
     }
   }
 
-  void put(Found& found, const GridDof& row, const GridDof& column, const Entry& entry) {
+  void put(Found& found, const GridDof& row, const GridDof& column, const DmigEntry& entry) {
     const auto [at, is_new] = found.entries.insert({{row, column}, entry});
     const auto mirror = found.form == 6 ? found.entries.find({column, row}) : found.entries.end();
-    const Entry* other = !is_new                         ? &at->second
-                         : mirror != found.entries.end() ? &mirror->second
-                                                         : nullptr;
+    const DmigEntry* other = !is_new                         ? &at->second
+                             : mirror != found.entries.end() ? &mirror->second
+                                                             : nullptr;
     if (other && other->value != entry.value)
       mistakes_.add(bad_line(file_, entry.line,
                              fmt::format("{} at ({} {}, {} {})", entry.value, row.grid,

@@ -66,7 +66,7 @@ bool check_indices(const Mesh& mesh, std::vector<Mistake>& mistakes) {
                         {},
                         "points count from 0, components are 0 to 5, or kGeneralised"});
   }
-  for (const Interface& interface : mesh.interfaces)
+  for (const MeshInterface& interface : mesh.interfaces)
     if (interface.point >= mesh.points.size())
       mistakes.push_back(
           {Code::bad_value,
@@ -86,8 +86,8 @@ void check_names(const Mesh& mesh, std::vector<Mistake>& mistakes) {
                           {},
                           "give each a name of its own"});
   };
-  for (const Point& point : mesh.points) add(point.name);
-  for (const Interface& interface : mesh.interfaces) add(interface.name);
+  for (const MeshPoint& point : mesh.points) add(point.name);
+  for (const MeshInterface& interface : mesh.interfaces) add(interface.name);
   std::set<std::pair<std::size_t, int>> rows;
   for (std::size_t i = 0; i < mesh.dofs.size(); ++i)
     if (!rows.insert({mesh.dofs[i].point, mesh.dofs[i].component}).second)
@@ -106,7 +106,7 @@ void check(const Mesh& mesh) {
     check_names(mesh, mistakes);
     check_matrix(mesh, mesh.M, 'M', mistakes);
     check_matrix(mesh, mesh.K, 'K', mistakes);
-    for (const Point& point : mesh.points)
+    for (const MeshPoint& point : mesh.points)
       if (!point.position.allFinite())
         mistakes.push_back({Code::not_finite,
                             fmt::format("the position of point {} of mesh {} is not finite",
@@ -120,19 +120,19 @@ void check(const Mesh& mesh) {
 std::string dof_name(const Mesh& mesh, Index row) {
   const Dof& dof = mesh.dofs.at(static_cast<std::size_t>(row));
   std::string name = mesh.points.at(dof.point).name;
-  for (const Interface& interface : mesh.interfaces)
+  for (const MeshInterface& interface : mesh.interfaces)
     if (interface.point == dof.point) name = interface.name;
   if (dof.component == kGeneralised) return name;
   return fmt::format("{}.{}", name, component_name(dof.component));
 }
 
 std::size_t find_point(const Mesh& mesh, const std::string& name) {
-  for (const Interface& interface : mesh.interfaces)
+  for (const MeshInterface& interface : mesh.interfaces)
     if (interface.name == name) return interface.point;
   for (std::size_t i = 0; i < mesh.points.size(); ++i)
     if (mesh.points[i].name == name) return i;
   std::string known;
-  for (const Interface& interface : mesh.interfaces)
+  for (const MeshInterface& interface : mesh.interfaces)
     known += (known.empty() ? "" : ", ") + interface.name;
   throw Error(Code::unknown_name, fmt::format("mesh {} has no point {}", mesh.name, name),
               known.empty() ? std::string("it has no interfaces, only its points' own names")

@@ -13,7 +13,7 @@
 namespace titop::fe {
 
 /// A node: a place that degrees of freedom belong to.
-struct Point {
+struct MeshPoint {
   std::string name;
   Vector3d position = Vector3d::Zero();  ///< in the body's frame [m]
 };
@@ -29,20 +29,21 @@ struct Dof {
 };
 
 /// A point under a second name, where other bodies may be attached; it must have all six dofs.
-struct Interface {
+struct MeshInterface {
   std::string name;
   std::size_t point = 0;  ///< index into Mesh::points
 };
 
 /// A free-free structure: no degree of freedom is fixed. SI units, body axes.
 struct Mesh {
-  std::string name;                   ///< for messages
-  std::vector<Point> points;          ///< names differ
-  std::vector<Dof> dofs;              ///< n, one per row of M and K
-  std::vector<Interface> interfaces;  ///< names differ from each other and from the points' names
-  Eigen::MatrixXd M;                  ///< n x n, symmetric, semidefinite [kg, kg m, kg m^2]
-  Eigen::MatrixXd K;                  ///< n x n, symmetric, semidefinite [N/m, N, N m]
-  double digits = 15;                 ///< decimal digits that M and K carry
+  std::string name;               ///< for messages
+  std::vector<MeshPoint> points;  ///< names differ
+  std::vector<Dof> dofs;          ///< n, one per row of M and K
+  std::vector<MeshInterface>
+      interfaces;      ///< names differ from each other and from the points' names
+  Eigen::MatrixXd M;   ///< n x n, symmetric, semidefinite [kg, kg m, kg m^2]
+  Eigen::MatrixXd K;   ///< n x n, symmetric, semidefinite [N/m, N, N m]
+  double digits = 15;  ///< decimal digits that M and K carry
 };
 
 /// Throws, all together: inconsistent sizes of M and K (`size`), entries that are not finite

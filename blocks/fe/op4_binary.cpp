@@ -12,7 +12,7 @@ namespace titop::fe::detail {
 namespace {
 
 /// Integers and reals of a byte order.
-struct Layout {
+struct Op4Layout {
   bool swapped = false;  ///< against this machine
   std::size_t word = 4;  ///< bytes of an integer
 
@@ -34,7 +34,7 @@ struct Layout {
 class Records {
  public:
   Records(std::string name, std::span<const char> bytes) : name_(std::move(name)), bytes_(bytes) {
-    const auto native = Layout{}.value<std::int32_t>(bytes.data());
+    const auto native = Op4Layout{}.value<std::int32_t>(bytes.data());
     layout.swapped = native < 0 || native > 0xffff;
     const auto length = layout.value<std::int32_t>(bytes.data());
     if (length != 24 && length != 48)
@@ -69,7 +69,7 @@ class Records {
         {});
   }
 
-  Layout layout;
+  Op4Layout layout;
   std::string matrix;  ///< for messages
 
  private:
@@ -88,7 +88,7 @@ std::string name_in(std::span<const char> bytes) {
 
 Op4Header header_in(Records& records) {
   const auto record = records.next();
-  const Layout& l = records.layout;
+  const Op4Layout& l = records.layout;
   if (record.size() != 6 * l.word)
     records.refuse(fmt::format("{} bytes", record.size()),
                    fmt::format("the {} bytes that start a matrix", 6 * l.word));
@@ -104,7 +104,7 @@ Op4Header header_in(Records& records) {
 }
 
 /// The values in so many words: of 4 bytes, single or double; of 8, always double.
-std::vector<double> values_in(std::span<const char> bytes, const Op4Header& h, const Layout& l) {
+std::vector<double> values_in(std::span<const char> bytes, const Op4Header& h, const Op4Layout& l) {
   const std::size_t size = l.word == 8 || h.type == 2 ? 8 : 4;
   std::vector<double> values(bytes.size() / size);
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -116,7 +116,7 @@ std::vector<double> values_in(std::span<const char> bytes, const Op4Header& h, c
 /// Strings of values, one after the other.
 void read_sparse_column(Records& records, const Op4Header& h, long long column,
                         std::span<const char> data, Op4Matrix& matrix, const Refuse& refuse) {
-  const Layout& l = records.layout;
+  const Op4Layout& l = records.layout;
   const std::size_t head = (h.bigmat ? 2 : 1) * l.word;
   while (!data.empty()) {
     if (data.size() < head) refuse("half a string of values", "a whole one");
@@ -141,7 +141,7 @@ Op4Matrix read_matrix(Records& records, Op4Taken& taken) {
   if (records.layout.word == 8) matrix.digits = 15;
   for (long long last = 0;;) {
     const auto record = records.next();
-    const Layout& l = records.layout;
+    const Op4Layout& l = records.layout;
     if (record.size() < 3 * l.word)
       refuse(fmt::format("{} bytes", record.size()), "a column: its number, first row and length");
     const long long column = l.integer(&record[0]), row = l.integer(&record[l.word]);

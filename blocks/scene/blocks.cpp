@@ -28,7 +28,7 @@ const Spec& spec_of(const Block& block) {
 struct Type {
   const char* name;
   void (*write)(const Block&, const WriteValue&, const NameBody&, Json&);
-  BlockPtr (*read)(const Place&, const ReadValue&, const FindBody&);
+  BlockPtr (*read)(const JsonPlace&, const ReadValue&, const FindBody&);
 };
 
 // --- bodies --------------------------------------------------------------------------------------
@@ -41,7 +41,7 @@ void write_spring_mass(const Block& b, const WriteValue& value, const NameBody&,
   j["parent_mass"] = value(spec.parent_mass);
 }
 
-BlockPtr read_spring_mass(const Place& p, const ReadValue& value, const FindBody&) {
+BlockPtr read_spring_mass(const JsonPlace& p, const ReadValue& value, const FindBody&) {
   p.only({"name", "type", "mass", "stiffness", "damping", "parent_mass"});
   return as_block(SpringMass{.mass = value(p.at("mass")),
                              .stiffness = value(p.at("stiffness")),
@@ -58,7 +58,7 @@ Json inertia_json(const Inertia& inertia, const WriteValue& value) {
   return result;
 }
 
-Inertia read_inertia(const Place& p, const ReadValue& value) {
+Inertia read_inertia(const JsonPlace& p, const ReadValue& value) {
   if (p.size() == 3) return p.matrix(3, 3);
   if (p.size() != 6) p.refuse("three rows, or the six entries xx, yy, zz, xy, xz, yz");
   return {value(p.item(0)), value(p.item(1)), value(p.item(2)),
@@ -75,14 +75,14 @@ void write_rigid_body(const Block& b, const WriteValue& value, const NameBody&, 
     j["children"].push_back({{"name", c.name}, {"PC", list(c.PC)}});
 }
 
-BlockPtr read_rigid_body(const Place& p, const ReadValue& value, const FindBody&) {
+BlockPtr read_rigid_body(const JsonPlace& p, const ReadValue& value, const FindBody&) {
   p.only({"name", "type", "mass", "inertia", "PA", "children"});
   RigidBody spec{.mass = value(p.at("mass")),
                  .inertia = read_inertia(p.at("inertia"), value),
                  .PA = p.at("PA").vector(3)};
-  const Place children = p.at("children");
+  const JsonPlace children = p.at("children");
   for (std::size_t i = 0; i < children.size(); ++i) {
-    const Place c = children.item(i);
+    const JsonPlace c = children.item(i);
     c.only({"name", "PC"});
     spec.children.push_back({c.at("name").text(), c.at("PC").vector(3)});
   }
@@ -96,12 +96,12 @@ Json modes_json(const std::map<int, Value>& modes, const WriteValue& value) {
   return result;
 }
 
-std::map<int, Value> read_modes(const Place& p, const char* key, const ReadValue& value) {
+std::map<int, Value> read_modes(const JsonPlace& p, const char* key, const ReadValue& value) {
   std::map<int, Value> modes;
   if (!p.has(key)) return modes;
-  const Place list = p.at(key);
+  const JsonPlace list = p.at(key);
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const Place item = list.item(i);
+    const JsonPlace item = list.item(i);
     item.only({"mode", "value"});
     if (!modes.emplace(item.at("mode").integer(), value(item.at("value"))).second)
       item.at("mode").refuse("a mode that no value before is for");
@@ -116,7 +116,7 @@ void write_flexible_body(const Block& b, const WriteValue& value, const NameBody
   if (!spec.values.xi.empty()) j["xi"] = modes_json(spec.values.xi, value);
 }
 
-BlockPtr read_flexible_body(const Place& p, const ReadValue& value, const FindBody& body) {
+BlockPtr read_flexible_body(const JsonPlace& p, const ReadValue& value, const FindBody& body) {
   p.only({"name", "type", "body", "omega", "xi"});
   const FlexibleBody shared = body(p.at("body"));
   const ModeValues values{.omega = read_modes(p, "omega", value), .xi = read_modes(p, "xi", value)};
@@ -133,12 +133,12 @@ void write_joint(const Block& b, const WriteValue&, const NameBody&, Json& j) {
                          {"name", axis.name}});
 }
 
-std::vector<Axis> read_axes(const Place& p) {
+std::vector<Axis> read_axes(const JsonPlace& p) {
   p.only({"name", "type", "axes"});
   std::vector<Axis> axes;
-  const Place list = p.at("axes");
+  const JsonPlace list = p.at("axes");
   for (std::size_t i = 0; i < list.size(); ++i) {
-    const Place axis = list.item(i);
+    const JsonPlace axis = list.item(i);
     axis.only({"kind", "direction", "name"});
     const std::string kind = axis.at("kind").text();
     if (kind != "about" && kind != "along") axis.at("kind").refuse("about or along");
@@ -148,19 +148,19 @@ std::vector<Axis> read_axes(const Place& p) {
   return axes;
 }
 
-Vector3d read_axis(const Place& p) {
+Vector3d read_axis(const JsonPlace& p) {
   const std::vector<Axis> axes = read_axes(p);
   if (axes.size() != 1) p.at("axes").refuse("one axis");
   return axes[0].direction;
 }
 
-BlockPtr read_hinge(const Place& p, const ReadValue&, const FindBody&) {
+BlockPtr read_hinge(const JsonPlace& p, const ReadValue&, const FindBody&) {
   return as_block(Hinge{read_axis(p)});
 }
-BlockPtr read_slide(const Place& p, const ReadValue&, const FindBody&) {
+BlockPtr read_slide(const JsonPlace& p, const ReadValue&, const FindBody&) {
   return as_block(Slide{read_axis(p)});
 }
-BlockPtr read_joint(const Place& p, const ReadValue&, const FindBody&) {
+BlockPtr read_joint(const JsonPlace& p, const ReadValue&, const FindBody&) {
   return as_block(Joint{read_axes(p)});
 }
 
@@ -172,7 +172,7 @@ Json six_axes(const SixAxes& m, const WriteValue& value) {
   return result;
 }
 
-SixAxes read_six_axes(const Place& p, const ReadValue& value) {
+SixAxes read_six_axes(const JsonPlace& p, const ReadValue& value) {
   if (p.size() != 6) p.refuse("six numbers or six rows");
   if (!p.item(0).is_number() && !p.item(0).has("parameter")) return SixAxes(p.matrix(6, 6));
   return {value(p.item(0)), value(p.item(1)), value(p.item(2)),
@@ -184,7 +184,7 @@ void write_bushing(const Block& b, const WriteValue& value, const NameBody&, Jso
   j["damping"] = six_axes(spec_of<Bushing>(b).damping, value);
 }
 
-BlockPtr read_bushing(const Place& p, const ReadValue& value, const FindBody&) {
+BlockPtr read_bushing(const JsonPlace& p, const ReadValue& value, const FindBody&) {
   p.only({"name", "type", "stiffness", "damping"});
   return as_block(Bushing{.stiffness = read_six_axes(p.at("stiffness"), value),
                           .damping = read_six_axes(p.at("damping"), value)});
@@ -197,7 +197,7 @@ void write_gain(const Block& b, const WriteValue& value, const NameBody&, Json& 
   j["size"] = b.interface().input_size();
 }
 
-BlockPtr read_gain(const Place& p, const ReadValue& value, const FindBody&) {
+BlockPtr read_gain(const JsonPlace& p, const ReadValue& value, const FindBody&) {
   p.only({"name", "type", "gain", "size"});
   return as_block(Gain{.gain = value(p.at("gain")), .size = p.at("size").signal_size()});
 }
@@ -206,7 +206,7 @@ void write_matrix_gain(const Block& b, const WriteValue&, const NameBody&, Json&
   j["matrix"] = rows(b.dynamics({})->D);
 }
 
-BlockPtr read_matrix_gain(const Place& p, const ReadValue&, const FindBody&) {
+BlockPtr read_matrix_gain(const JsonPlace& p, const ReadValue&, const FindBody&) {
   p.only({"name", "type", "matrix"});
   return as_block(MatrixGain{p.at("matrix").matrix(-1, -1)});
 }
@@ -220,7 +220,7 @@ void write_sum(const Block& b, const WriteValue&, const NameBody&, Json& j) {
   j["size"] = size;
 }
 
-BlockPtr read_sum(const Place& p, const ReadValue&, const FindBody&) {
+BlockPtr read_sum(const JsonPlace& p, const ReadValue&, const FindBody&) {
   p.only({"name", "type", "signs", "size"});
   return as_block(Sum{.signs = p.at("signs").text(), .size = p.at("size").signal_size()});
 }
@@ -233,7 +233,7 @@ void write_lti(const Block& b, const WriteValue&, const NameBody&, Json& j) {
   j["D"] = rows(d->D);
 }
 
-BlockPtr read_lti(const Place& p, const ReadValue&, const FindBody&) {
+BlockPtr read_lti(const JsonPlace& p, const ReadValue&, const FindBody&) {
   p.only({"name", "type", "A", "B", "C", "D"});
   const MatrixXd D = p.at("D").matrix(-1, -1);
   const auto n = static_cast<Index>(p.at("A").size());
@@ -247,7 +247,7 @@ void write_integrator(const Block& b, const WriteValue&, const NameBody&, Json& 
   j["size"] = b.interface().output_size();
 }
 
-BlockPtr read_integrator(const Place& p, const ReadValue&, const FindBody&) {
+BlockPtr read_integrator(const JsonPlace& p, const ReadValue&, const FindBody&) {
   p.only({"name", "type", "size"});
   return as_block(Integrator{p.at("size").signal_size()});
 }
@@ -289,7 +289,7 @@ void write_block(const Block& block, const WriteValue& value, const NameBody& bo
   type->write(block, value, body, json);
 }
 
-BlockPtr read_block(const Place& place, const ReadValue& value, const FindBody& body) {
+BlockPtr read_block(const JsonPlace& place, const ReadValue& value, const FindBody& body) {
   const Type* type = find_type(place.at("type").text());
   if (!type) place.at("type").refuse("one of " + all_types());
   return type->read(place, value, body);
@@ -303,7 +303,7 @@ Json body_json(const ModalData& data) {
   return json;
 }
 
-FlexibleBody read_body(const Place& p) {
+FlexibleBody read_body(const JsonPlace& p) {
   p.only({"omega", "xi", "L_P", "D_P", "digits", "children"});
   ModalData data;
   data.omega = p.at("omega").vector();
@@ -312,9 +312,9 @@ FlexibleBody read_body(const Place& p) {
   data.L_P = p.at("L_P").matrix(n, 6);
   data.D_P = p.at("D_P").matrix(6, 6);
   data.digits = p.at("digits").number();
-  const Place children = p.at("children");
+  const JsonPlace children = p.at("children");
   for (std::size_t i = 0; i < children.size(); ++i) {
-    const Place c = children.item(i);
+    const JsonPlace c = children.item(i);
     c.only({"name", "PC", "Phi_C"});
     data.children.push_back(
         {c.at("name").text(), c.at("PC").vector(3), c.at("Phi_C").matrix(6, n)});

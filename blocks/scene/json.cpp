@@ -31,18 +31,18 @@ bool is_deep(const Json& json, int levels) {
 
 }  // namespace
 
-std::string Place::where() const {
+std::string JsonPlace::where() const {
   return fmt::format("{}: {}", file_, path_.empty() ? "the whole" : path_);
 }
 
-void Place::rethrow(const Error& error, const std::string& name) const {
+void JsonPlace::rethrow(const Error& error, const std::string& name) const {
   std::vector<Mistake> mistakes = error.mistakes();
   for (Mistake& m : mistakes)
     if (m.code != Code::bad_file) m.message = fmt::format("{}, {}: {}", where(), name, m.message);
   throw Error(std::move(mistakes));
 }
 
-void Place::refuse(const std::string& expected) const {
+void JsonPlace::refuse(const std::string& expected) const {
   std::string found = is_deep(*json_, 20)
                           ? "lists too deep to print"
                           : json_->dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -51,28 +51,28 @@ void Place::refuse(const std::string& expected) const {
               {});
 }
 
-Place Place::at(const char* key) const {
+JsonPlace JsonPlace::at(const char* key) const {
   if (!has(key)) refuse(fmt::format("an object with \"{}\"", key));
   return {(*json_)[key], file_, path_ + (path_.empty() ? "" : ".") + key};
 }
 
-Place Place::item(std::size_t index) const {
+JsonPlace JsonPlace::item(std::size_t index) const {
   return {(*json_)[index], file_, fmt::format("{}[{}]", path_, index)};
 }
 
-std::size_t Place::size() const {
+std::size_t JsonPlace::size() const {
   if (!json_->is_array()) refuse("a list");
   return json_->size();
 }
 
-std::vector<std::string> Place::keys() const {
+std::vector<std::string> JsonPlace::keys() const {
   if (!json_->is_object()) refuse("an object");
   std::vector<std::string> result;
   for (const auto& [key, value] : json_->items()) result.push_back(key);
   return result;
 }
 
-void Place::only(std::initializer_list<const char*> allowed) const {
+void JsonPlace::only(std::initializer_list<const char*> allowed) const {
   for (const std::string& key : keys())
     if (std::find(allowed.begin(), allowed.end(), key) == allowed.end()) {
       std::string all;
@@ -81,36 +81,36 @@ void Place::only(std::initializer_list<const char*> allowed) const {
     }
 }
 
-double Place::number() const {
+double JsonPlace::number() const {
   if (!json_->is_number()) refuse("a number");
   return json_->get<double>();
 }
 
-int Place::integer() const {
+int JsonPlace::integer() const {
   if (!json_->is_number_integer() || json_->get<std::int64_t>() < -1'000'000'000 ||
       json_->get<std::int64_t>() > 1'000'000'000)
     refuse("an integer");
   return json_->get<int>();
 }
 
-int Place::signal_size() const {
+int JsonPlace::signal_size() const {
   const int size = integer();
   if (size < 1) refuse("a size of 1 or more");
   if (size > kMostScalars) refuse(fmt::format("a size up to {}", kMostScalars));
   return size;
 }
 
-bool Place::yes() const {
+bool JsonPlace::yes() const {
   if (!json_->is_boolean()) refuse("true or false");
   return json_->get<bool>();
 }
 
-std::string Place::text() const {
+std::string JsonPlace::text() const {
   if (!json_->is_string()) refuse("a text");
   return json_->get<std::string>();
 }
 
-Eigen::VectorXd Place::vector(Index count) const {
+Eigen::VectorXd JsonPlace::vector(Index count) const {
   if (!json_->is_array() || (count >= 0 && static_cast<Index>(json_->size()) != count))
     refuse(count < 0 ? "a list of numbers" : fmt::format("a list of {} numbers", count));
   Eigen::VectorXd v(static_cast<Index>(json_->size()));
@@ -118,7 +118,7 @@ Eigen::VectorXd Place::vector(Index count) const {
   return v;
 }
 
-Eigen::MatrixXd Place::matrix(Index row_count, Index columns) const {
+Eigen::MatrixXd JsonPlace::matrix(Index row_count, Index columns) const {
   if (!json_->is_array() || (row_count >= 0 && static_cast<Index>(json_->size()) != row_count))
     refuse(row_count < 0 ? "a list of rows" : fmt::format("a list of {} rows", row_count));
   const auto n = static_cast<Index>(json_->size());

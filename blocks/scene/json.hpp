@@ -21,14 +21,14 @@ Json list(const Eigen::VectorXd& v);
 
 /// A place in a diagram file, with its path for messages: "blocks[3].mass". Unexpected content
 /// throws bad_file with that path.
-class Place {
+class JsonPlace {
  public:
-  Place(const Json& json, std::string file) : json_(&json), file_(std::move(file)) {}
+  JsonPlace(const Json& json, std::string file) : json_(&json), file_(std::move(file)) {}
 
   bool has(const char* key) const { return json_->is_object() && json_->contains(key); }
   /// The value of this key, which must be there.
-  Place at(const char* key) const;
-  Place item(std::size_t index) const;
+  JsonPlace at(const char* key) const;
+  JsonPlace item(std::size_t index) const;
   std::size_t size() const;  ///< of a list
   /// Refuses keys that are none of these.
   void only(std::initializer_list<const char*> keys) const;
@@ -49,7 +49,7 @@ class Place {
   [[noreturn]] void rethrow(const Error& error, const std::string& name) const;
 
  private:
-  Place(const Json& json, std::string file, std::string path)
+  JsonPlace(const Json& json, std::string file, std::string path)
       : json_(&json), file_(std::move(file)), path_(std::move(path)) {}
 
   const Json* json_;

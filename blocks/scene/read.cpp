@@ -12,7 +12,7 @@
 namespace titop {
 
 using scene::Json;
-using scene::Place;
+using scene::JsonPlace;
 
 namespace {
 
@@ -30,34 +30,35 @@ struct Ready {
 };
 BlockPtr as_block(const Ready& ready) { return ready.block; }
 
-class Reader {
+class DiagramReader {
  public:
-  explicit Reader(const Place& all) : diagram(all.at("name").text()) {
+  explicit DiagramReader(const JsonPlace& all) : diagram(all.at("name").text()) {
     all.only(
         {"format", "name", "parameters", "bodies", "blocks", "inputs", "equations", "outputs"});
     if (all.at("format").text() != "titop scene 1") all.at("format").refuse("\"titop scene 1\"");
-    each(all.at("parameters"), [&](const Place& p) { read_parameter(p); });
+    each(all.at("parameters"), [&](const JsonPlace& p) { read_parameter(p); });
     for (const std::string& name : all.at("bodies").keys()) {
-      const Place body = all.at("bodies").at(name.c_str());
+      const JsonPlace body = all.at("bodies").at(name.c_str());
       bodies_.insert_or_assign(name, named(body, name, [&] { return scene::read_body(body); }));
     }
-    each(all.at("blocks"), [&](const Place& p) { read_block(p); });
-    each(all.at("inputs"), [&](const Place& p) { read_input(p); });
-    each(all.at("equations"), [&](const Place& p) { read_equation(p); });
-    each(all.at("outputs"), [&](const Place& p) { read_output(p); });
+    each(all.at("blocks"), [&](const JsonPlace& p) { read_block(p); });
+    each(all.at("inputs"), [&](const JsonPlace& p) { read_input(p); });
+    each(all.at("equations"), [&](const JsonPlace& p) { read_equation(p); });
+    each(all.at("outputs"), [&](const JsonPlace& p) { read_output(p); });
   }
 
   Diagram diagram;
 
  private:
   template <class Read>
-  static void each(const Place& list, Read read) {
+  static void each(const JsonPlace& list, Read read) {
     for (std::size_t i = 0; i < list.size(); ++i) read(list.item(i));
   }
 
   /// Returns make(); adds place and name to mistakes in its numbers.
   template <class Make>
-  static std::invoke_result_t<Make> named(const Place& place, const std::string& name, Make make) {
+  static std::invoke_result_t<Make> named(const JsonPlace& place, const std::string& name,
+                                          Make make) {
     try {
       return make();
     } catch (const Error& error) {
@@ -65,14 +66,14 @@ class Reader {
     }
   }
 
-  void read_parameter(const Place& p) {
+  void read_parameter(const JsonPlace& p) {
     p.only({"name", "value"});
     const std::string name = p.at("name").text();
     if (parameters_.contains(name)) p.at("name").refuse("a name that no parameter before has");
     parameters_[name] = diagram.param(name, p.at("value").number(), kRead);
   }
 
-  Value read_value(const Place& p) const {
+  Value read_value(const JsonPlace& p) const {
     if (p.is_number()) return p.number();
     if (!p.has("parameter")) p.refuse("a number or {\"parameter\": name}");
     p.only({"parameter", "scale"});
@@ -81,22 +82,22 @@ class Reader {
     return {p.has("scale") ? p.at("scale").number() : 1, at->second};
   }
 
-  void read_block(const Place& p) {
+  void read_block(const JsonPlace& p) {
     const std::string name = p.at("name").text();
     if (nodes_.contains(name)) p.at("name").refuse("a name that no block before has");
-    const auto body = [&](const Place& place) {
+    const auto body = [&](const JsonPlace& place) {
       const auto at = bodies_.find(place.text());
       if (at == bodies_.end()) place.refuse("a name among the bodies");
       return at->second;
     };
-    const auto value = [&](const Place& place) { return read_value(place); };
+    const auto value = [&](const JsonPlace& place) { return read_value(place); };
     const Ready ready{named(p, name, [&] { return scene::read_block(p, value, body); })};
     const Ready::Handle handle = diagram.add(name, ready, kRead);
     graph_ = handle.graph;
     nodes_[name] = handle.node;
   }
 
-  void read_input(const Place& p) {
+  void read_input(const JsonPlace& p) {
     p.only({"name", "size"});
     const std::string name = p.at("name").text();
     if (inputs_.contains(name)) p.at("name").refuse("a name that no input before has");
@@ -105,7 +106,7 @@ class Reader {
     inputs_[name] = input.signal();
   }
 
-  int channel_signal(const Place& p, const Node& node) const {
+  int channel_signal(const JsonPlace& p, const Node& node) const {
     const int spec = node.block->interface().find_channel(p.item(1).text());
     if (spec < 0) p.item(1).refuse("a channel of " + node.name);
     const std::string which = p.item(2).text();
@@ -114,7 +115,7 @@ class Reader {
     return which == "accel" ? c.accel : c.force;
   }
 
-  int read_signal(const Place& p) const {
+  int read_signal(const JsonPlace& p) const {
     if (p.size() < 1 || p.size() > 3)
       p.refuse("[block, channel, \"accel\" or \"force\"], [block, port] or [input]");
     const std::string name = p.item(0).text();
@@ -134,7 +135,7 @@ class Reader {
     }
   }
 
-  static Part read_part(const Place& p) {
+  static Part read_part(const JsonPlace& p) {
     p.only({"part", "rows"});
     const Eigen::MatrixXd rows = p.at("rows").matrix(-1, -1);
     if (rows.rows() == 0 || !(rows * rows.transpose()).isIdentity(1e-9))
@@ -142,10 +143,10 @@ class Reader {
     return {rows, p.at("part").text()};
   }
 
-  Rotation read_rotation(const Place& p) const {
+  Rotation read_rotation(const JsonPlace& p) const {
     p.only({"rotation", "to", "from"});
     std::vector<Rotation::Step> steps;
-    each(p.at("rotation"), [&](const Place& step) {
+    each(p.at("rotation"), [&](const JsonPlace& step) {
       if (!step.has("about")) {
         steps.emplace_back(Matrix3d(step.matrix(3, 3)));
         return;
@@ -157,7 +158,7 @@ class Reader {
         .named(p.at("to").text(), p.at("from").text());
   }
 
-  Factor read_factor(const Place& p) const {
+  Factor read_factor(const JsonPlace& p) const {
     if (p.has("rotation")) return read_rotation(p);
     if (p.has("part")) return read_part(p);
     if (!p.has("matrix")) return read_value(p);
@@ -165,7 +166,7 @@ class Reader {
     return Matrix{std::make_shared<const Eigen::MatrixXd>(p.at("matrix").matrix(-1, -1)), nullptr};
   }
 
-  Term::Of read_of(const Place& p) const {
+  Term::Of read_of(const JsonPlace& p) const {
     if (!p.has("read")) return Term::Of::signal;
     const std::string what = p.at("read").text();
     if (what == "reaction") return Term::Of::reaction;
@@ -174,9 +175,9 @@ class Reader {
     return Term::Of::rate;
   }
 
-  std::vector<Term> read_terms(const Place& list) const {
+  std::vector<Term> read_terms(const JsonPlace& list) const {
     std::vector<Term> terms;
-    each(list, [&](const Place& p) {
+    each(list, [&](const JsonPlace& p) {
       p.only({"signal", "read", "sign", "factors"});
       Term term{.signal = read_signal(p.at("signal")), .of = read_of(p)};
       const Signal& s = graph_->signals[static_cast<std::size_t>(term.signal)];
@@ -185,13 +186,13 @@ class Reader {
       if (p.has("sign")) term.sign = p.at("sign").number();
       if (std::abs(term.sign) != 1) p.at("sign").refuse("1 or -1; other numbers are factors");
       if (p.has("factors"))
-        each(p.at("factors"), [&](const Place& f) { term.factors.push_back(read_factor(f)); });
+        each(p.at("factors"), [&](const JsonPlace& f) { term.factors.push_back(read_factor(f)); });
       terms.push_back(std::move(term));
     });
     return terms;
   }
 
-  void read_equation(const Place& p) {
+  void read_equation(const JsonPlace& p) {
     p.only({"of", "part", "add", "terms"});
     Equation e{.target = read_signal(p.at("of"))};
     const Signal& s = graph_->signals[static_cast<std::size_t>(e.target)];
@@ -207,7 +208,7 @@ class Reader {
     graph_->equations.push_back(std::move(e));
   }
 
-  void read_output(const Place& p) {
+  void read_output(const JsonPlace& p) {
     p.only({"name", "size", "terms"});
     const OutputRef output = diagram.output(p.at("name").text(), p.at("size").signal_size(), kRead);
     if (!p.has("terms")) return;
@@ -252,7 +253,7 @@ class KeysOnce : public nlohmann::json_sax<Json> {
   }
 
  private:
-  struct Level {
+  struct NestingLevel {
     bool list = false;
     std::ptrdiff_t item = -1;
     std::string key = {};
@@ -275,13 +276,13 @@ class KeysOnce : public nlohmann::json_sax<Json> {
 
   std::string path() const {
     std::string path;
-    for (const Level& l : open_)
+    for (const NestingLevel& l : open_)
       path += l.list ? fmt::format("[{}]", l.item) : (path.empty() ? "" : ".") + l.key;
     return path;
   }
 
   std::string file_;
-  std::vector<Level> open_;
+  std::vector<NestingLevel> open_;
 };
 
 }  // namespace
@@ -299,7 +300,7 @@ Diagram parse_scene(std::string_view json, const std::string& file) {
     throw Error(Code::bad_file, fmt::format("{}: a number is too large for a double", file),
                 "look for an exponent above 308");
   }
-  return std::move(Reader(Place(all, file)).diagram);
+  return std::move(DiagramReader(JsonPlace(all, file)).diagram);
 }
 
 Diagram read_diagram(const std::filesystem::path& path) {

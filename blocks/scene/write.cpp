@@ -13,9 +13,9 @@ using scene::Json;
 
 namespace {
 
-class Writer {
+class DiagramWriter {
  public:
-  explicit Writer(const Graph& graph) : g_(graph) {}
+  explicit DiagramWriter(const Graph& graph) : g_(graph) {}
 
   Json all() {
     require_distinct();
@@ -151,7 +151,7 @@ class Writer {
 
 std::string scene_json(const Diagram& diagram) {
   try {
-    return Writer(diagram.graph()).all().dump(1) + "\n";
+    return DiagramWriter(diagram.graph()).all().dump(1) + "\n";
   } catch (const Json::exception&) {
     throw Error(Code::bad_value,
                 fmt::format("a name in the diagram {} is no UTF-8 text", diagram.name()),

@@ -97,7 +97,7 @@ TEST_CASE("data of a held structure, in two units, or without a grid's own frame
                          {"the stiffness of mesh outboard resists rigid motion: at G11",
                           "*BOUNDARY", "the scene holds the body"}));
   fe::Mesh metres = good;
-  for (fe::Point& p : metres.points) p.position /= 1000;
+  for (fe::MeshPoint& p : metres.points) p.position /= 1000;
   CHECK(titop_test::says(refused(metres), Code::bad_modes, {"resists rigid motion"}));
   auto unturned = grids();
   unturned[1].frame = {};
