@@ -96,7 +96,7 @@ std::vector<Complex> points(const std::vector<Complex>& poles, std::uint64_t see
 
 }  // namespace
 
-Json answer(const Plan& plan, std::uint64_t seed) {
+Json answer(const ScenePlan& plan, std::uint64_t seed) {
   const FirstOrder<Digits> whole = assemble<Digits>(plan), least = minimal(whole);
   const std::size_t order = minimal(assemble<Mod>(plan)).A.rows();
   if (least.A.rows() != order)
@@ -109,11 +109,11 @@ Json answer(const Plan& plan, std::uint64_t seed) {
   return result;
 }
 
-Generated generate(const Options& options) {
+Generated generate(const GenerateOptions& options) {
   std::string lacked;
-  for (Options o = options; o.seed < options.seed + 100 * kNextSeed; o.seed += kNextSeed) {
+  for (GenerateOptions o = options; o.seed < options.seed + 100 * kNextSeed; o.seed += kNextSeed) {
     try {
-      const Plan plan = draw(o);
+      const ScenePlan plan = draw(o);
       if (o.mistake.empty()) return {scene(plan), answer(plan, o.seed)};
       Spoilt spoilt = spoil(scene(plan), o.mistake);
       return {std::move(spoilt.scene), std::move(spoilt.answer)};

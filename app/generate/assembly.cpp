@@ -9,16 +9,16 @@ namespace titop::generate {
 namespace {
 
 /// Columns by kind: free coordinates, coordinates of an imposed base, locked coordinates.
-struct Columns {
+struct CoordinateColumns {
   std::vector<std::size_t> free, imposed, held;
   std::size_t count = 0;
 };
 
 template <class S>
-class Assembly {
+class ManualAssembly {
  public:
-  explicit Assembly(const Plan& plan) : plan_(plan) {
-    for (const Block& b : plan.blocks) count(b);
+  explicit ManualAssembly(const ScenePlan& plan) : plan_(plan) {
+    for (const PlannedBlock& b : plan.blocks) count(b);
     for (std::size_t i = 0; i < plan.inputs.size(); ++i) {
       first_input_[plan.inputs[i].name] = inputs_;
       inputs_ += static_cast<std::size_t>(plan.inputs[i].size);
@@ -31,20 +31,20 @@ class Assembly {
     close();
   }
 
-  Columns columns;
+  CoordinateColumns columns;
   bool independent() const { return rank(G_.cols(columns.free)) == G_.rows(); }
 
   FirstOrder<S> model() {
     solve_motion();
     Table<S> y(0, states_ + F_.cols()), e = y;
-    for (const Reading& r : plan_.readings) y.append(reading(r));
+    for (const PlannedReading& r : plan_.readings) y.append(reading(r));
     for (const Control& c : plan_.controls) e.append(measured(c));
     return Controls<S>(plan_.controls, states_, inputs_).around(state_rows(), y, e);
   }
 
  private:
   /// Coordinates: six (or one) of a base without parent, the stretch, the angle, the modes.
-  void count(const Block& b) {
+  void count(const PlannedBlock& b) {
     first_.push_back(columns.count);
     const auto take = [&](std::vector<std::size_t>& kind) { kind.push_back(columns.count++); };
     const bool scalar = b.spring.has_value();
@@ -62,10 +62,10 @@ class Assembly {
   }
 
   std::size_t input(const std::string& name) const { return first_input_.at(name); }
-  const Table<S>& motion(const Point& p) const { return motions_.at({p.block, p.channel}); }
+  const Table<S>& motion(const PlannedPoint& p) const { return motions_.at({p.block, p.channel}); }
 
   Table<S> base_motion(std::size_t i) {
-    const Block& b = plan_.blocks[i];
+    const PlannedBlock& b = plan_.blocks[i];
     const auto size = static_cast<std::size_t>(b.size());
     if (b.base.kind == Base::Kind::mounted) {
       const Table<S>& site = motion(b.base.on);
@@ -79,7 +79,7 @@ class Assembly {
 
   void add(int block) {
     const auto i = static_cast<std::size_t>(block);
-    const Block& b = plan_.blocks[i];
+    const PlannedBlock& b = plan_.blocks[i];
     const Table<S> P = base_motion(i);
     motions_[{block, "parent"}] = P;
     if (!b.base.input.empty() && b.base.kind != Base::Kind::imposed)
@@ -90,7 +90,7 @@ class Assembly {
   }
 
   /// The directions of a base in which its input acts.
-  static std::vector<std::size_t> free_rows(const Block& b) {
+  static std::vector<std::size_t> free_rows(const PlannedBlock& b) {
     if (b.spring) return {0};
     if (b.base.kind == Base::Kind::pinned) return {3, 4, 5};
     return {0, 1, 2, 3, 4, 5};
@@ -116,7 +116,7 @@ class Assembly {
     M_.add(X.transposed() * weighted);
   }
 
-  void add_joint(int block, const Joint& h, const Table<S>& P) {
+  void add_joint(int block, const PlannedJoint& h, const Table<S>& P) {
     const std::size_t q = own_[static_cast<std::size_t>(block)];
     Table<S> C = P;
     C.add(row<S>(h.axis).transposed(), h.turns ? 3 : 0, q);
@@ -168,7 +168,7 @@ class Assembly {
 
   Table<S> rows_along(const Control& c) const {
     if (!c.along) return identity<S>(1);
-    return part_rows<S>({Part::Kind::along, *c.along}, 6);
+    return part_rows<S>({PlannedPart::Kind::along, *c.along}, 6);
   }
 
   void close() {
@@ -220,7 +220,7 @@ class Assembly {
   Table<S> imposed_inputs() const {
     Table<S> a(columns.imposed.size(), F_.cols());
     std::size_t k = 0;
-    for (const Block& b : plan_.blocks)
+    for (const PlannedBlock& b : plan_.blocks)
       if (b.base.kind == Base::Kind::imposed)
         for (int i = 0; i < b.size(); ++i)
           a(k++, input(b.base.input) + static_cast<std::size_t>(i)) = S(1);
@@ -250,11 +250,11 @@ class Assembly {
     throw std::logic_error("no unit row");
   }
 
-  Table<S> reading(const Reading& r) const {
+  Table<S> reading(const PlannedReading& r) const {
     const auto block = static_cast<std::size_t>(r.point.block);
-    if (r.of == Reading::Of::relative) return q_.rows({own_[block]});
-    if (r.of == Reading::Of::reaction) return holding(r.point);
-    if (r.of == Reading::Of::support) {
+    if (r.of == PlannedReading::Of::relative) return q_.rows({own_[block]});
+    if (r.of == PlannedReading::Of::reaction) return holding(r.point);
+    if (r.of == PlannedReading::Of::support) {
       // Force required on the base in addition to all other forces; the port has the force that the
       // body exerts there.
       std::vector<std::size_t> base;
@@ -265,7 +265,7 @@ class Assembly {
       return all.rows(base);
     }
     const Table<S>& X = motion(r.point);
-    return part_rows<S>(r.part, X.rows()) * X * (r.of == Reading::Of::position ? q_ : qdd_);
+    return part_rows<S>(r.part, X.rows()) * X * (r.of == PlannedReading::Of::position ? q_ : qdd_);
   }
 
   /// G' lambda = M qdd - F u + D qd + K q on the free coordinates.
@@ -274,7 +274,7 @@ class Assembly {
     return solve(G * Gt, G * -forces(q_, qd_, qdd_).rows(columns.free));
   }
 
-  Table<S> holding(const Point& point) const {
+  Table<S> holding(const PlannedPoint& point) const {
     std::size_t row = 0;
     for (const Closure& c : plan_.closures) {
       const std::size_t size = motion(c.point).rows();
@@ -292,7 +292,7 @@ class Assembly {
     return rows_along(c) * motion(c.at) * qdd_;
   }
 
-  const Plan& plan_;
+  const ScenePlan& plan_;
   std::vector<std::size_t> first_, own_;  ///< columns of each block: its base, its own
   std::map<std::string, std::size_t> first_input_;
   std::size_t inputs_ = 0, nz_ = 0, states_ = 0;
@@ -304,13 +304,13 @@ class Assembly {
 }  // namespace
 
 template <class S>
-FirstOrder<S> assemble(const Plan& plan) {
-  return Assembly<S>(plan).model();
+FirstOrder<S> assemble(const ScenePlan& plan) {
+  return ManualAssembly<S>(plan).model();
 }
 
-bool closures_independent(const Plan& plan) { return Assembly<Mod>(plan).independent(); }
+bool closures_independent(const ScenePlan& plan) { return ManualAssembly<Mod>(plan).independent(); }
 
-template FirstOrder<Mod> assemble(const Plan&);
-template FirstOrder<Digits> assemble(const Plan&);
+template FirstOrder<Mod> assemble(const ScenePlan&);
+template FirstOrder<Digits> assemble(const ScenePlan&);
 
 }  // namespace titop::generate

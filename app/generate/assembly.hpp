@@ -17,13 +17,13 @@ struct FirstOrder {
 /// Throws std::domain_error if the mass matrix or an algebraic loop is singular, and if an output
 /// is a reaction that the motion does not determine.
 template <class S>
-FirstOrder<S> assemble(const Plan& plan);
+FirstOrder<S> assemble(const ScenePlan& plan);
 
 /// Its reachable and observable part, by Krylov subspaces.
 template <class S>
 FirstOrder<S> minimal(const FirstOrder<S>& model);
 
 /// True if the closures are independent, so that their reactions are determined.
-bool closures_independent(const Plan& plan);
+bool closures_independent(const ScenePlan& plan);
 
 }  // namespace titop::generate

@@ -48,7 +48,7 @@ class Words {
   std::size_t at_ = 0;
 };
 
-bool option(const std::string& word, Words& words, Options& o) {
+bool option(const std::string& word, Words& words, GenerateOptions& o) {
   if (word == "--seed") {
     o.seed = static_cast<std::uint64_t>(words.number(0, 2000000000));
   } else if (word == "--family") {
@@ -88,7 +88,7 @@ void write(const std::filesystem::path& path, const std::string& content) {
 }  // namespace
 
 void command(const std::vector<std::string>& all) {
-  Options options;
+  GenerateOptions options;
   std::vector<std::filesystem::path> files;
   for (Words words(all); words.more();) {
     const std::string& word = words.next();

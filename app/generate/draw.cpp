@@ -55,11 +55,11 @@ class Dice {
 
 class Artist {
  public:
-  explicit Artist(const Options& o) : o_(o), dice_(o.seed) {
+  explicit Artist(const GenerateOptions& o) : o_(o), dice_(o.seed) {
     plan_.name = "seed " + std::to_string(o.seed);
   }
 
-  Plan plan() {
+  ScenePlan plan() {
     if (o_.family == Family::scalar)
       scalar();
     else
@@ -75,7 +75,7 @@ class Artist {
     plan_.inputs.push_back({fresh("u"), size});
     return plan_.inputs.back().name;
   }
-  void read(Reading r, int size) {
+  void read(PlannedReading r, int size) {
     plan_.outputs.push_back({fresh("y"), size});
     r.output = plan_.outputs.back().name;
     plan_.readings.push_back(std::move(r));
@@ -104,7 +104,7 @@ class Artist {
   void scalar() {
     for (int i = 0; i < o_.bodies; ++i) {
       if (o_.twins && i > 1 && i % 2 == 0 && plan_.blocks.back().base.kind == Base::Kind::mounted) {
-        Block twin = plan_.blocks.back();
+        PlannedBlock twin = plan_.blocks.back();
         twin.name = fresh("z");
         twin.stiffness_parameter.clear();
         plan_.blocks.push_back(twin);
@@ -117,17 +117,17 @@ class Artist {
     const int last = o_.twins ? 0 : dice_.below(o_.bodies);
     plan_.loads.push_back(
         {input(1), {last, "child"}, {}, dice_.chance(50) ? Ratio(1) : Ratio(-5, 2)});
-    read({.of = Reading::Of::acceleration,
+    read({.of = PlannedReading::Of::acceleration,
           .point = {o_.twins ? 0 : dice_.below(o_.bodies), "child"}},
          1);
     const bool grounded = plan_.blocks[0].base.kind == Base::Kind::ground;
     if (grounded && closures_independent(plan_))
-      read({.of = Reading::Of::support, .point = {0, "parent"}}, 1);
-    if (grounded) read({.of = Reading::Of::position, .point = {0, "child"}}, 1);
+      read({.of = PlannedReading::Of::support, .point = {0, "parent"}}, 1);
+    if (grounded) read({.of = PlannedReading::Of::position, .point = {0, "child"}}, 1);
   }
 
-  Block spring_mass(int i) {
-    Block b{.name = fresh("z")};
+  PlannedBlock spring_mass(int i) {
+    PlannedBlock b{.name = fresh("z")};
     const auto [k, c] = spring();
     b.spring = Spring{dice_.octaves(-1, 3), k, c, {}};
     if (dice_.chance(15)) b.stiffness_parameter = "k_" + b.name;
@@ -150,10 +150,10 @@ class Artist {
     const int block = o_.bodies - 1 - i;
     if (block < 1) return;
     Closure c{{block, "child"}};
-    if (block > 1 && dice_.chance(50)) c.with = Point{dice_.below(block - 1), "child"};
+    if (block > 1 && dice_.chance(50)) c.with = PlannedPoint{dice_.below(block - 1), "child"};
     plan_.closures.push_back(c);
     if (closures_independent(plan_) && dice_.chance(50))
-      read({.of = Reading::Of::reaction, .point = c.point}, 1);
+      read({.of = PlannedReading::Of::reaction, .point = c.point}, 1);
   }
 
   void use_scalar(int i) {
@@ -166,9 +166,9 @@ class Artist {
     }
     if (!dice_.chance(35)) return;
     if (dice_.chance(50))
-      read({.of = Reading::Of::relative, .point = {i, ""}}, 1);
+      read({.of = PlannedReading::Of::relative, .point = {i, ""}}, 1);
     else
-      read({.of = Reading::Of::acceleration, .point = {i, "child"}}, 1);
+      read({.of = PlannedReading::Of::acceleration, .point = {i, "child"}}, 1);
   }
 
   /// A controller of order 1 or 2. Its contribution to the mass is positive, so that the loop is
@@ -205,22 +205,22 @@ class Artist {
     for (int i = 0; i < o_.loops; ++i) close_spatial(i);
     if (o_.twins) return outside_only();
     for (const int i : bodies_) use_body(i);
-    read({.of = Reading::Of::acceleration, .point = {any_body(), "T"}}, 6);
-    plan_.loads.push_back({input(3), {any_body(), "T"}, {Part::Kind::linear, {}}});
+    read({.of = PlannedReading::Of::acceleration, .point = {any_body(), "T"}}, 6);
+    plan_.loads.push_back({input(3), {any_body(), "T"}, {PlannedPart::Kind::linear, {}}});
     const Base::Kind root = plan_.blocks[0].base.kind;
     if (root == Base::Kind::ground && closures_independent(plan_) && dice_.chance(60))
-      read({.of = Reading::Of::support, .point = {0, "parent"}}, 6);
+      read({.of = PlannedReading::Of::support, .point = {0, "parent"}}, 6);
     if (root == Base::Kind::ground && dice_.chance(60))
-      read({.of = Reading::Of::position,
+      read({.of = PlannedReading::Of::position,
             .point = {any_body(), "T"},
-            .part = {Part::Kind::linear, {}}},
+            .part = {PlannedPart::Kind::linear, {}}},
            3);
   }
 
   /// All loads and outputs at the first body, so that its twin branches have the same motion.
   void outside_only() {
     plan_.loads.push_back({input(6), {bodies_[0], "T"}});
-    read({.of = Reading::Of::acceleration, .point = {bodies_[0], "T"}}, 6);
+    read({.of = PlannedReading::Of::acceleration, .point = {bodies_[0], "T"}}, 6);
   }
 
   int any_body() { return bodies_[static_cast<std::size_t>(dice_.below(int(bodies_.size())))]; }
@@ -278,7 +278,7 @@ class Artist {
   }
 
   void body(int i) {
-    Block b{.name = fresh("b"), .body = random_body()};
+    PlannedBlock b{.name = fresh("b"), .body = random_body()};
     if (i == 0) {
       b.base.kind = base_kind();
       if (b.base.kind == Base::Kind::imposed ||
@@ -295,15 +295,15 @@ class Artist {
     add_body(b);
   }
 
-  void add_body(const Block& b) {
+  void add_body(const PlannedBlock& b) {
     bodies_.push_back(static_cast<int>(plan_.blocks.size()));
     plan_.blocks.push_back(b);
   }
 
   /// A hinge or a slide between the body and its site: it takes the body's place there.
-  void add_joint(Block& b) {
-    Block h{.name = fresh("h"), .base = b.base};
-    h.joint = Joint{.turns = dice_.chance(65), .axis = dice_.direction()};
+  void add_joint(PlannedBlock& b) {
+    PlannedBlock h{.name = fresh("h"), .base = b.base};
+    h.joint = PlannedJoint{.turns = dice_.chance(65), .axis = dice_.direction()};
     const int index = static_cast<int>(plan_.blocks.size());
     const int kind = dice_.below(o_.controllers ? 4 : 3);
     if (kind == 3) {
@@ -312,16 +312,17 @@ class Artist {
       std::tie(h.joint->stiffness, h.joint->damping) = spring();
       if (kind == 2) h.joint->input = input(1);
     }
-    if (kind > 0 && dice_.chance(50)) read({.of = Reading::Of::relative, .point = {index, ""}}, 1);
+    if (kind > 0 && dice_.chance(50))
+      read({.of = PlannedReading::Of::relative, .point = {index, ""}}, 1);
     plan_.blocks.push_back(h);
     b.base = {.kind = Base::Kind::mounted, .on = {index, "child"}, .T = unit3()};
   }
 
   /// The same body at the same place as the one before.
   void twin_body(int i) {
-    const Block last = plan_.blocks.back();
+    const PlannedBlock last = plan_.blocks.back();
     if (plan_.blocks[static_cast<std::size_t>(last.base.on.block)].joint) return body(i);
-    Block twin = last;
+    PlannedBlock twin = last;
     twin.name = fresh("b");
     add_body(twin);
   }
@@ -339,17 +340,17 @@ class Artist {
       const int modes = static_cast<int>(first.omega.size());
       first.points.push_back(point(name.c_str(), modes));
       first.points.back().PC = place;
-      c.with = Point{0, name};
+      c.with = PlannedPoint{0, name};
       c.T = T;
     }
     plan_.closures.push_back(c);
     if (closures_independent(plan_) && dice_.chance(40))
-      read({.of = Reading::Of::reaction, .point = c.point}, 6);
+      read({.of = PlannedReading::Of::reaction, .point = c.point}, 6);
   }
 
   /// Rotation (its frame to the first body's) and place of a point, from the first body's parent.
-  std::pair<Mat3, Vec3> seen_from_first(const Point& p) const {
-    const Block& b = plan_.blocks[static_cast<std::size_t>(p.block)];
+  std::pair<Mat3, Vec3> seen_from_first(const PlannedPoint& p) const {
+    const PlannedBlock& b = plan_.blocks[static_cast<std::size_t>(p.block)];
     Vec3 own{};
     if (b.body)
       for (const BodyPoint& c : b.body->points)
@@ -361,7 +362,7 @@ class Artist {
   }
 
   void use_body(int i) {
-    const Part along{Part::Kind::along, dice_.direction()};
+    const PlannedPart along{PlannedPart::Kind::along, dice_.direction()};
     if (dice_.chance(30)) plan_.loads.push_back({input(1), {i, "T"}, along});
     if (o_.controllers && dice_.chance(20)) {
       plan_.controls.push_back(control(true, i));
@@ -370,29 +371,29 @@ class Artist {
     }
     if (dice_.chance(30)) slosh(i);
     if (dice_.chance(30))
-      read({.of = Reading::Of::acceleration, .point = {i, "T"}, .part = along}, 1);
+      read({.of = PlannedReading::Of::acceleration, .point = {i, "T"}, .part = along}, 1);
   }
 
   /// A spring-mass along one direction of the body.
   void slosh(int on) {
-    Block z{.name = fresh("z")};
+    PlannedBlock z{.name = fresh("z")};
     const auto [k, c] = spring();
     z.spring = Spring{dice_.octaves(-2, 1), k, c, {}};
     z.base = {.kind = Base::Kind::mounted, .on = {on, "T"}, .along = dice_.direction()};
     if (dice_.chance(50))
-      read({.of = Reading::Of::relative, .point = {int(plan_.blocks.size()), ""}}, 1);
+      read({.of = PlannedReading::Of::relative, .point = {int(plan_.blocks.size()), ""}}, 1);
     plan_.blocks.push_back(z);
   }
 
-  Options o_;
+  GenerateOptions o_;
   Dice dice_;
-  Plan plan_;
+  ScenePlan plan_;
   int names_ = 0;
   std::vector<int> bodies_;
 };
 
 }  // namespace
 
-Plan draw(const Options& options) { return Artist(options).plan(); }
+ScenePlan draw(const GenerateOptions& options) { return Artist(options).plan(); }
 
 }  // namespace titop::generate

@@ -15,7 +15,7 @@ enum class Family { scalar, spatial };  ///< spring-masses; bodies, hinges and s
 enum class Shape { chain, tree, star };
 enum class Damping { none, some, all };
 
-struct Options {
+struct GenerateOptions {
   std::uint64_t seed = 1;
   Family family = Family::scalar;
   Shape shape = Shape::tree;
@@ -32,15 +32,15 @@ using Json = nlohmann::ordered_json;
 
 /// The same seed gives the same scene on every machine. Throws std::overflow_error if its ratios
 /// outgrow 64 bits.
-Plan draw(const Options& options);
+ScenePlan draw(const GenerateOptions& options);
 
 /// The diagram file. Each row of a list is on one line.
-Json scene(const Plan& plan);
+Json scene(const ScenePlan& plan);
 
 /// The expected values: {"order", "poles", "transfer"}. Order: of the minimal model, computed
 /// modulo a prime and again in 100 digits. Poles: with Im s >= 0, zeros as [0, 0]. Throws
 /// std::domain_error if the equations have no solution, std::logic_error if the two orders differ.
-Json answer(const Plan& plan, std::uint64_t seed);
+Json answer(const ScenePlan& plan, std::uint64_t seed);
 
 /// Plants a mistake of this code into the scene; the answer is {"refused": {"code", "names"}}: the
 /// names that the message must contain. Throws std::invalid_argument for a code that cannot be
@@ -60,7 +60,7 @@ struct Generated {
 /// Draws with this seed, and with the next ones while the scene has no answer, numbers too long for
 /// a Ratio, or no place for the mistake. Throws std::invalid_argument if a hundred seeds fail, with
 /// the reason of the last.
-Generated generate(const Options& options);
+Generated generate(const GenerateOptions& options);
 std::string test_source(const Generated& generated, const std::string& scene_file);
 
 /// JSON with one line per item of the outermost lists.

@@ -16,7 +16,7 @@ using Mat3 = std::array<Vec3, 3>;              ///< rows
 using Rows = std::vector<std::vector<Ratio>>;  ///< a matrix
 
 /// An item with a motion: a spring-mass's ends, a body's points, a joint's ends, by name.
-struct Point {
+struct PlannedPoint {
   int block = -1;
   std::string channel = {};  ///< "parent", "child", "C1", ...
 };
@@ -31,7 +31,7 @@ struct Base {
     pinned    ///< held in translation
   };
   Kind kind = Kind::ground;
-  Point on = {};
+  PlannedPoint on = {};
   Mat3 T = {};
   bool turned = false;             ///< T is given
   std::optional<Vec3> along = {};  ///< a spring-mass on a body: unit vector
@@ -57,19 +57,19 @@ struct Body {
 };
 
 /// Hinge or slide; sprung, driven by an input force, or with a controller (then k = c = 0).
-struct Joint {
+struct PlannedJoint {
   bool turns = true;
   Vec3 axis = {};  ///< unit vector
   Ratio stiffness = {}, damping = {};
   std::string input = {};
 };
 
-struct Block {
+struct PlannedBlock {
   std::string name;
   Base base = {};
   std::optional<Spring> spring = {};
   std::optional<Body> body = {};
-  std::optional<Joint> joint = {};
+  std::optional<PlannedJoint> joint = {};
   std::string stiffness_parameter = {};  ///< of a spring-mass: the number has a name
 
   int size() const { return spring ? 1 : 6; }
@@ -83,8 +83,8 @@ struct Control {
   };
   std::string name;
   Law law = Law::position;
-  int block = -1;  ///< position
-  Point at = {};   ///< acceleration, and a spring-mass's child for position
+  int block = -1;        ///< position
+  PlannedPoint at = {};  ///< acceleration, and a spring-mass's child for position
   std::optional<Vec3> along = {};
   Rows A = {}, B = {}, C = {};
   Ratio D = {};
@@ -92,13 +92,13 @@ struct Control {
 
 /// One closure in addition to the tree: `point` moves with `with` (turned by T), or is fixed.
 struct Closure {
-  Point point;
-  std::optional<Point> with = {};
+  PlannedPoint point;
+  std::optional<PlannedPoint> with = {};
   Mat3 T = {};
 };
 
 /// Rows among a point's six: all, the linear ones, or one direction.
-struct Part {
+struct PlannedPart {
   enum class Kind { all, linear, along };
   Kind kind = Kind::all;
   Vec3 direction = {};
@@ -107,17 +107,17 @@ struct Part {
 /// A force on a point, in addition to those of bases and joints.
 struct Load {
   std::string input;
-  Point point;
-  Part part = {};
+  PlannedPoint point;
+  PlannedPart part = {};
   Ratio gain = 1;
 };
 
-struct Reading {
+struct PlannedReading {
   enum class Of { acceleration, position, relative, support, reaction };
   std::string output = {};
   Of of = Of::acceleration;
-  Point point = {};  ///< `relative`: block; `support`: its parent; `reaction`: held point
-  Part part = {};
+  PlannedPoint point = {};  ///< `relative`: block; `support`: its parent; `reaction`: held point
+  PlannedPart part = {};
 };
 
 struct Named {
@@ -125,13 +125,13 @@ struct Named {
   int size = 1;
 };
 
-struct Plan {
+struct ScenePlan {
   std::string name;
-  std::vector<Block> blocks;  ///< a block comes after the block on which it is mounted
+  std::vector<PlannedBlock> blocks;  ///< a block comes after the block on which it is mounted
   std::vector<Control> controls;
   std::vector<Closure> closures;
   std::vector<Load> loads;
-  std::vector<Reading> readings;
+  std::vector<PlannedReading> readings;
   std::vector<Named> inputs, outputs;
 };
 

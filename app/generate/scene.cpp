@@ -23,9 +23,9 @@ Json rows(const Rows& M) {
 }
 Json rows(const Mat3& M) { return {list(M[0]), list(M[1]), list(M[2])}; }
 
-class Writer {
+class PlanWriter {
  public:
-  explicit Writer(const Plan& plan) : plan_(plan) {}
+  explicit PlanWriter(const ScenePlan& plan) : plan_(plan) {}
 
   Json scene() {
     for (std::size_t i = 0; i < plan_.blocks.size(); ++i) add(static_cast<int>(i));
@@ -42,13 +42,13 @@ class Writer {
   }
 
  private:
-  const Block& block(int i) const { return plan_.blocks[static_cast<std::size_t>(i)]; }
-  Json signal(const Point& p, const char* which) const {
+  const PlannedBlock& block(int i) const { return plan_.blocks[static_cast<std::size_t>(i)]; }
+  Json signal(const PlannedPoint& p, const char* which) const {
     return {block(p.block).name, p.channel, which};
   }
   /// Stretch, angle or travel.
   Json position(int i) const {
-    const Block& b = block(i);
+    const PlannedBlock& b = block(i);
     return {b.name, !b.joint ? "stretch" : b.joint->turns ? "angle" : "travel"};
   }
   static Json term(Json of, const Ratio& gain = 1) {
@@ -65,28 +65,29 @@ class Writer {
         {"rotation", Json::array({rows(T)})}, {"to", block(to).name}, {"from", block(from).name}}});
     return t;
   }
-  static Json part(const Part& p) {
+  static Json part(const PlannedPart& p) {
     Rows r;
-    if (p.kind == Part::Kind::linear)
+    if (p.kind == PlannedPart::Kind::linear)
       r = {{1, 0, 0, 0, 0, 0}, {0, 1, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}};
     else
       r = {{p.direction[0], p.direction[1], p.direction[2], 0, 0, 0}};
-    return {{"part", p.kind == Part::Kind::linear ? ".linear" : ".along"}, {"rows", rows(r)}};
+    return {{"part", p.kind == PlannedPart::Kind::linear ? ".linear" : ".along"},
+            {"rows", rows(r)}};
   }
   static Json angular() {
     return {{"part", ".angular"},
             {"rows", rows(Rows{{0, 0, 0, 1, 0, 0}, {0, 0, 0, 0, 1, 0}, {0, 0, 0, 0, 0, 1}})}};
   }
-  void equation(Json of, Json terms, const Part& p = {}, bool add = false) {
+  void equation(Json of, Json terms, const PlannedPart& p = {}, bool add = false) {
     Json e = {{"of", std::move(of)}};
-    if (p.kind != Part::Kind::all) e["part"] = part(p);
+    if (p.kind != PlannedPart::Kind::all) e["part"] = part(p);
     if (add) e["add"] = true;
     e["terms"] = std::move(terms);
     equations_.push_back(std::move(e));
   }
 
   void add(int i) {
-    const Block& b = block(i);
+    const PlannedBlock& b = block(i);
     Json j = {{"name", b.name}};
     if (b.spring) write(j, b, *b.spring);
     if (b.body) write(j, b, *b.body);
@@ -101,7 +102,7 @@ class Writer {
     if (b.joint) mechanism(i);
   }
 
-  void write(Json& j, const Block& b, const Spring& z) {
+  void write(Json& j, const PlannedBlock& b, const Spring& z) {
     j["type"] = "SpringMass";
     j["mass"] = number(z.mass);
     j["stiffness"] = number(z.stiffness);
@@ -113,7 +114,7 @@ class Writer {
     j["parent_mass"] = number(z.parent_mass);
   }
 
-  void write(Json& j, const Block& b, const Body& body) {
+  void write(Json& j, const PlannedBlock& b, const Body& body) {
     Json points = Json::array();
     for (const BodyPoint& p : body.points) {
       points.push_back({{"name", p.name}, {"PC", list(p.PC)}});
@@ -152,31 +153,31 @@ class Writer {
 
   /// The equations of a block's parent point.
   void hang(int i) {
-    const Block& b = block(i);
-    const Point parent{i, "parent"};
+    const PlannedBlock& b = block(i);
+    const PlannedPoint parent{i, "parent"};
     const Json accel = signal(parent, "accel"), force = signal(parent, "force");
     switch (b.base.kind) {
       case Base::Kind::ground: return equation(accel, Json::array());
       case Base::Kind::imposed: return equation(accel, Json::array({term({b.base.input})}));
       case Base::Kind::pinned:
-        equation(accel, Json::array(), {Part::Kind::linear, {}});
+        equation(accel, Json::array(), {PlannedPart::Kind::linear, {}});
         equations_.push_back({{"of", force}, {"part", angular()}, {"terms", acting(b)}});
         return;
       case Base::Kind::free: equations_.push_back({{"of", force}, {"terms", acting(b)}}); return;
       case Base::Kind::mounted: return mount(i);
     }
   }
-  static Json acting(const Block& b) {
+  static Json acting(const PlannedBlock& b) {
     if (b.base.input.empty()) return Json::array();
     return Json::array({term({b.base.input}, -1)});
   }
 
   void mount(int i) {
     const Base& base = block(i).base;
-    const Point parent{i, "parent"};
+    const PlannedPoint parent{i, "parent"};
     const Json accel = signal(base.on, "accel"), force = signal(parent, "force");
     if (base.along) {
-      const Part direction{Part::Kind::along, *base.along};
+      const PlannedPart direction{PlannedPart::Kind::along, *base.along};
       equation(signal(parent, "accel"),
                Json::array({Json{{"signal", accel}, {"factors", Json::array({part(direction)})}}}));
       equation(signal(base.on, "force"), Json::array({term(force)}), direction, true);
@@ -191,7 +192,7 @@ class Writer {
   }
 
   void mechanism(int i) {
-    const Joint& h = *block(i).joint;
+    const PlannedJoint& h = *block(i).joint;
     for (const Control& c : plan_.controls)
       if (c.block == i && c.law == Control::Law::position) return;  // it drives the axis
     Json terms = Json::array();
@@ -209,15 +210,15 @@ class Writer {
                        {"C", rows(c.C)},
                        {"D", rows(Rows{{c.D}})}});
     const Json out = {c.name, "out"};
-    Part direction;
-    if (c.along) direction = {Part::Kind::along, *c.along};
+    PlannedPart direction;
+    if (c.along) direction = {PlannedPart::Kind::along, *c.along};
     if (c.law == Control::Law::acceleration) {
       Json e = term(signal(c.at, "accel"));
       if (c.along) e["factors"] = Json::array({part(direction)});
       equation({c.name, "in"}, Json::array({e}));
       return equation(signal(c.at, "force"), Json::array({term(out, -1)}), direction, true);
     }
-    const Block& b = block(c.block);
+    const PlannedBlock& b = block(c.block);
     equation({c.name, "in"}, Json::array({term(position(c.block))}));
     if (b.joint)
       equation({b.name, "", "force"}, Json::array({term(out)}));
@@ -239,34 +240,34 @@ class Writer {
     equation(signal(*c.with, "force"), Json::array({back}), {}, true);
   }
 
-  void add(const Reading& r, const Named& name) {
+  void add(const PlannedReading& r, const Named& name) {
     Json t;
-    const Point& p = r.point;
+    const PlannedPoint& p = r.point;
     switch (r.of) {
-      case Reading::Of::acceleration: t = term(signal(p, "accel")); break;
-      case Reading::Of::position:
+      case PlannedReading::Of::acceleration: t = term(signal(p, "accel")); break;
+      case PlannedReading::Of::position:
         t = term(signal(p, "accel"));
         t["read"] = "position";
         break;
-      case Reading::Of::relative: t = term(position(p.block)); break;
-      case Reading::Of::support: t = term(signal(p, "force")); break;
-      case Reading::Of::reaction:
+      case PlannedReading::Of::relative: t = term(position(p.block)); break;
+      case PlannedReading::Of::support: t = term(signal(p, "force")); break;
+      case PlannedReading::Of::reaction:
         t = term(signal(p, "force"));
         t["read"] = "reaction";
         break;
     }
-    if (r.part.kind != Part::Kind::all) t["factors"] = Json::array({part(r.part)});
+    if (r.part.kind != PlannedPart::Kind::all) t["factors"] = Json::array({part(r.part)});
     outputs_.push_back({{"name", name.name}, {"size", name.size}, {"terms", Json::array({t})}});
   }
 
-  const Plan& plan_;
+  const ScenePlan& plan_;
   Json parameters_ = Json::array(), bodies_ = Json::object(), blocks_ = Json::array(),
        inputs_ = Json::array(), equations_ = Json::array(), outputs_ = Json::array();
 };
 
 }  // namespace
 
-Json scene(const Plan& plan) { return Writer(plan).scene(); }
+Json scene(const ScenePlan& plan) { return PlanWriter(plan).scene(); }
 
 std::string text(const Json& json) {
   std::string all = "{";

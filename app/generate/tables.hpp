@@ -48,10 +48,10 @@ Table<S> tau(const Vec3& PC) {
 
 /// The rows of a part, part x size of the point.
 template <class S>
-Table<S> part_rows(const Part& part, std::size_t size) {
-  if (size == 1 || part.kind == Part::Kind::all) return identity<S>(size);
-  Table<S> t(part.kind == Part::Kind::linear ? 3 : 1, 6);
-  t.add(part.kind == Part::Kind::linear ? identity<S>(3) : row<S>(part.direction));
+Table<S> part_rows(const PlannedPart& part, std::size_t size) {
+  if (size == 1 || part.kind == PlannedPart::Kind::all) return identity<S>(size);
+  Table<S> t(part.kind == PlannedPart::Kind::linear ? 3 : 1, 6);
+  t.add(part.kind == PlannedPart::Kind::linear ? identity<S>(3) : row<S>(part.direction));
   return t;
 }
 
