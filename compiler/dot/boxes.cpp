@@ -79,7 +79,7 @@ class Bundles {
     const Anchor end = a.output >= 0 ? Anchor{p_.output_id[at(a.output)], output_side(g, a)}
                                      : anchor(p_, a.target);
     Wire w{.from = anchor(p_, t.signal).port, .to = end.port};
-    w.up = end.side == Side::bottom;
+    w.up = end.side == BlockSide::bottom;
     w.active = a.active && g.signals[at(t.signal)].active;
     w.rows = std::max(1, rows_of(g, t));
     w.quantity = g.signals[at(a.target >= 0 ? a.target : t.signal)].quantity;

@@ -15,29 +15,30 @@ using linalg::at;
 class Forest {
  public:
   Forest(const Graph& g, const std::vector<int>& rank) : g_(g), parent_(g.nodes.size(), -1) {
-    for (const Tie tie : {Tie::moved, Tie::moved_inverted, Tie::read})
-      for (const auto& [target, from] : edges(tie, rank))
+    for (const ParentLink link : {ParentLink::moved, ParentLink::moved_inverted, ParentLink::read})
+      for (const auto& [target, from] : edges(link, rank))
         if (parent_[at(target)] < 0 && !hangs_on(from, target)) parent_[at(target)] = from;
   }
   const std::vector<int>& parents() const { return parent_; }
 
  private:
   using Edge = std::pair<int, int>;  ///< child, parent
-  enum class Tie { moved, moved_inverted, read, none };
+  enum class ParentLink { moved, moved_inverted, read, none };
 
   /// A force on a body does not make its source the parent.
-  Tie tie_of(const Signal& target) const {
-    if (target.channel < 0) return Tie::read;
-    if (target.quantity != Quantity::acceleration) return Tie::none;
-    return g_.channels[at(target.channel)].takes == Takes::accel ? Tie::moved : Tie::moved_inverted;
+  ParentLink link_of(const Signal& target) const {
+    if (target.channel < 0) return ParentLink::read;
+    if (target.quantity != Quantity::acceleration) return ParentLink::none;
+    return g_.channels[at(target.channel)].takes == Takes::accel ? ParentLink::moved
+                                                                 : ParentLink::moved_inverted;
   }
 
-  std::vector<Edge> edges(Tie tie, const std::vector<int>& rank) const {
+  std::vector<Edge> edges(ParentLink link, const std::vector<int>& rank) const {
     std::vector<Edge> list;
     for (const Equation& e : g_.equations) {
       if (e.target < 0) continue;
       const Signal& to = g_.signals[at(e.target)];
-      if (to.node < 0 || tie_of(to) != tie) continue;
+      if (to.node < 0 || link_of(to) != link) continue;
       for (const Term& t : e.terms) {
         const int from = t.signal < 0 ? -1 : g_.signals[at(t.signal)].node;
         if (from >= 0 && from != to.node) list.emplace_back(to.node, from);

@@ -12,7 +12,7 @@ using Eigen::MatrixXd;
 using linalg::at;
 
 /// A term as a sign, a gain, and words, read from the signal's side.
-struct Reading {
+struct TermText {
   bool minus = false;
   std::string box, part;
   bool rotation = false;
@@ -29,7 +29,7 @@ std::string arrow(const std::string& to, const std::string& from) {
   return to.empty() && from.empty() ? "T" : fmt::format("T({}←{})", to, from);
 }
 
-void put_gain(Reading& r, double k) {
+void put_gain(TermText& r, double k) {
   if (k < 0) r.minus = !r.minus;
   if (std::abs(k) != 1) r.put(fmt::format("{:.4g}", std::abs(k)));
 }
@@ -64,7 +64,7 @@ bool is_diagonal(const Pattern& p) {
 
 /// After `lower` a term is one matrix: its text is recovered from its numbers, its declared
 /// structure and the frames at its ends.
-void put_matrix(Reading& r, const Matrix& matrix, const std::string& to, const std::string& from) {
+void put_matrix(TermText& r, const Matrix& matrix, const std::string& to, const std::string& from) {
   const MatrixXd& m = *matrix.value;
   const Pattern pattern = matrix.pattern ? *matrix.pattern : Pattern(m.array() != 0);
   if (is_diagonal(pattern) && m.size() > 0 && (m.diagonal().array() == m(0, 0)).all()) {
@@ -82,8 +82,8 @@ void put_matrix(Reading& r, const Matrix& matrix, const std::string& to, const s
   }
 }
 
-Reading read(const Graph& g, const Term& term, const std::string& to, const std::string& from) {
-  Reading r;
+TermText read(const Graph& g, const Term& term, const std::string& to, const std::string& from) {
+  TermText r;
   r.minus = term.sign < 0;
   if (std::abs(term.sign) != 1) put_gain(r, std::abs(term.sign));
   for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f) {
@@ -121,7 +121,7 @@ Look look(const Picture& p, const Assignment& a, const Term& term) {
   const Signal& s = g.signals[at(term.signal)];
   const std::string from = frame(g, s.frame);
   const std::string to = a.target < 0 ? from : frame(g, g.signals[at(a.target)].frame);
-  const Reading r = read(g, term, to, from);
+  const TermText r = read(g, term, to, from);
   Look result{.minus = r.minus, .box = r.box, .rotation = r.rotation};
   result.rows = rows_of(g, term);
   result.before = extent(r.part.empty() ? s.size : result.rows, from);

@@ -68,9 +68,9 @@ std::string head(const Picture& p, int channel, const std::string& name) {
 }
 
 /// One side of a block: heads and pairs of its channels, then its one-way ports.
-class Row {
+class PortRow {
  public:
-  Row(const Picture& p, int node, Side side) : p_(p) {
+  PortRow(const Picture& p, int node, BlockSide side) : p_(p) {
     const Graph& g = p.graph;
     for (int s = g.nodes[at(node)].first_signal; s < end_signal(g, node); ++s) {
       const Signal& signal = g.signals[at(s)];
@@ -84,13 +84,13 @@ class Row {
 
   bool empty() const { return channels_.empty() && one_way_.empty(); }
 
-  std::string table(Side side) const {
+  std::string table(BlockSide side) const {
     std::string heads, pairs, singles;
     bool named = false;
     for (const int c : channels_) named = named || !spec(c).name.empty();
     for (const int c : channels_) add(c, named, heads, pairs, singles);
     for (const int s : one_way_) singles += cell(p_, s, port_name(s), named);
-    const bool pairs_first = side == Side::top;
+    const bool pairs_first = side == BlockSide::top;
     std::string rows = fmt::format("<TR>{}{}</TR>", pairs_first ? pairs : heads, singles);
     if (named) rows += fmt::format("<TR>{}</TR>", pairs_first ? heads : pairs);
     return fmt::format(
@@ -148,14 +148,14 @@ std::string title(const Graph& g, int node, bool active) {
 
 std::string draw_block(const Picture& p, int node) {
   const bool active = is_active(p.graph, node);
-  const Row top(p, node, Side::top), bottom(p, node, Side::bottom);
+  const PortRow top(p, node, BlockSide::top), bottom(p, node, BlockSide::bottom);
   return fmt::format(
       "  {} [shape=plain label=<\n"
       "    <TABLE BORDER=\"{}\"{} CELLBORDER=\"0\" CELLSPACING=\"0\" CELLPADDING=\"0\" "
       "BGCOLOR=\"{}\" COLOR=\"{}\">\n{}{}{}    </TABLE>>];\n",
       p.node_id[at(node)], active ? 2 : 1, active ? "" : R"( STYLE="dashed")", colour::paper,
-      active ? colour::line : colour::removed, top.empty() ? "" : top.table(Side::top),
-      title(p.graph, node, active), bottom.empty() ? "" : bottom.table(Side::bottom));
+      active ? colour::line : colour::removed, top.empty() ? "" : top.table(BlockSide::top),
+      title(p.graph, node, active), bottom.empty() ? "" : bottom.table(BlockSide::bottom));
 }
 
 std::string with_size(const std::string& name, int size) {

@@ -173,10 +173,10 @@ bool is_folded(const Picture& p, const Assignment& a) {
                      [&](const Term& t) { return box_of(p, t.signal) >= 0; });
 }
 
-Side output_side(const Graph& g, const Assignment& a) {
+BlockSide output_side(const Graph& g, const Assignment& a) {
   for (const Term& t : a.terms)
-    if (side_of(g, t.signal) != Side::top) return Side::top;
-  return a.terms.empty() ? Side::top : Side::bottom;
+    if (side_of(g, t.signal) != BlockSide::top) return BlockSide::top;
+  return a.terms.empty() ? BlockSide::top : BlockSide::bottom;
 }
 
 bool is_active(const Graph& g, int node) {
@@ -186,14 +186,14 @@ bool is_active(const Graph& g, int node) {
   return first == end;
 }
 
-Side side_of(const Graph& g, int signal) {
+BlockSide side_of(const Graph& g, int signal) {
   const Signal& s = g.signals[at(signal)];
-  if (s.role == Signal::Role::external) return Side::loose;
-  if (s.channel < 0) return s.role == Signal::Role::input ? Side::top : Side::bottom;
+  if (s.role == Signal::Role::external) return BlockSide::loose;
+  if (s.channel < 0) return s.role == Signal::Role::input ? BlockSide::top : BlockSide::bottom;
   const Channel& c = g.channels[at(s.channel)];
   const auto& spec = g.nodes[at(c.node)].block->interface().channels[at(c.spec)];
   // A joint's own axis has no parent: the block that drives it (a motor, a spring) is drawn below.
-  return c.takes == Takes::accel && !spec.name.empty() ? Side::top : Side::bottom;
+  return c.takes == Takes::accel && !spec.name.empty() ? BlockSide::top : BlockSide::bottom;
 }
 
 std::string cell_name(const Graph& g, int signal) {
@@ -206,10 +206,10 @@ std::string cell_name(const Graph& g, int signal) {
 
 Anchor anchor(const Picture& p, int signal) {
   const Signal& s = p.graph.signals[at(signal)];
-  const Side side = side_of(p.graph, signal);
+  const BlockSide side = side_of(p.graph, signal);
   if (s.role == Signal::Role::external) return {p.input_id[at(s.spec)], side};
   if (const int box = p.fold.box_of[at(s.node)]; box >= 0) return {p.box_id[at(box)], side};
-  const char compass = s.role == Signal::Role::state ? 'e' : side == Side::top ? 'n' : 's';
+  const char compass = s.role == Signal::Role::state ? 'e' : side == BlockSide::top ? 'n' : 's';
   return {fmt::format("{}:{}:{}", p.node_id[at(s.node)], cell_name(p.graph, signal), compass),
           side};
 }

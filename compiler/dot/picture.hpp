@@ -14,12 +14,12 @@
 namespace titop::dot {
 
 /// One side of a block: where a wire leaves or arrives. `loose`: it may go either way.
-enum class Side { top, bottom, loose };
+enum class BlockSide { top, bottom, loose };
 
 /// The end of a wire.
 struct Anchor {
   std::string port;  ///< Graphviz text: "z1":c0f:s
-  Side side = Side::loose;
+  BlockSide side = BlockSide::loose;
 };
 
 /// A driven port (or a part of one) or an output, with its terms.
@@ -66,9 +66,9 @@ Look look(const Picture& p, const Assignment& a, const Term& term);
 /// False if every signal of the node has been set aside.
 bool is_active(const Graph& g, int node);
 /// Outputs of signals at the top are drawn above their block, all others below.
-Side output_side(const Graph& g, const Assignment& a);
+BlockSide output_side(const Graph& g, const Assignment& a);
 /// Side of its block at which a signal is drawn.
-Side side_of(const Graph& g, int signal);
+BlockSide side_of(const Graph& g, int signal);
 /// Name of a signal's cell in its block's table.
 std::string cell_name(const Graph& g, int signal);
 Anchor anchor(const Picture& p, int signal);

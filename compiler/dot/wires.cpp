@@ -60,7 +60,7 @@ class Drawing {
   }
 
  private:
-  bool up_into_end() const { return end_.side == Side::bottom; }
+  bool up_into_end() const { return end_.side == BlockSide::bottom; }
 
   /// Quantity of a term at its block, and of the signal that it drives.
   Quantity read_as(const Term& t) const {
@@ -119,7 +119,7 @@ class Drawing {
 
   /// A small node on the wire, or "" if the wire may run straight. Between two ports on the same
   /// side of their blocks a point keeps the wire out of the blocks.
-  std::string way(const Term& t, const Look& l, Side from, int number) {
+  std::string way(const Term& t, const Look& l, BlockSide from, int number) {
     const bool single = a_.terms.size() == 1;
     const std::string sign = single && l.minus ? "−" : "";
     const std::string id = quoted(
@@ -131,7 +131,7 @@ class Drawing {
                            quoted(l.box.empty() ? sign + "1" : sign + l.box), look);
       return id;
     }
-    if (!single || from == Side::loose || from != end_.side) return {};
+    if (!single || from == BlockSide::loose || from != end_.side) return {};
     text_ += fmt::format("  {} [shape=point width=0.03];\n", id);
     return id;
   }
@@ -145,7 +145,7 @@ class Drawing {
     w.minus = !single && l.minus;
     w.label = l.before;
     const std::string mid = way(t, l, from.side, number);
-    const bool up_out = from.side == Side::loose ? up_into_end() : from.side == Side::top;
+    const bool up_out = from.side == BlockSide::loose ? up_into_end() : from.side == BlockSide::top;
     if (mid.empty()) {
       w.up = single ? up_into_end() : up_out;
       w.rows = l.rows;

@@ -37,9 +37,9 @@ std::string path_of(const std::string& figure) {
   return paths.front();
 }
 
-std::vector<std::string> units(const std::vector<report::Scalar>& list) {
+std::vector<std::string> units(const std::vector<report::ScalarSignal>& list) {
   std::vector<std::string> result;
-  for (const report::Scalar& s : list) result.push_back(s.unit);
+  for (const report::ScalarSignal& s : list) result.push_back(s.unit);
   return result;
 }
 

@@ -42,13 +42,13 @@ std::vector<Index> noisy_rows(const MatrixXd& exact, const MatrixXd& off) {
 }
 
 /// A in blocks on the diagonal, and the way there and back.
-struct Modes {
+struct BlockDiagonalForm {
   MatrixXl A, to_states, from_states;
 };
 
 /// [q; qdot] = scale V [m; mdot] for the modes V of the symmetric form, pairs (m, mdot) one after
 /// the other. None if there is no such form or damping couples its modes.
-std::optional<Modes> proportional_modes(const MatrixXd& A) {
+std::optional<BlockDiagonalForm> proportional_modes(const MatrixXd& A) {
   const SecondOrder second = second_order(A);
   if (!second.found) return std::nullopt;
   const GradedModes all = eigh_graded(second.S);
@@ -56,7 +56,7 @@ std::optional<Modes> proportional_modes(const MatrixXd& A) {
   if (!Z || !symmetric_in(all, second.S, second.skew)) return std::nullopt;
   const SymmetricModes& sym = all.modes;
   const Index n = A.rows(), count = sym.lambda.size();
-  Modes modes{MatrixXl::Zero(n, n), MatrixXl::Zero(n, n), MatrixXl::Zero(n, n)};
+  BlockDiagonalForm modes{MatrixXl::Zero(n, n), MatrixXl::Zero(n, n), MatrixXl::Zero(n, n)};
   for (Index k = 0; k < count; ++k) {
     modes.A(2 * k, 2 * k + 1) = 1;
     modes.A(2 * k + 1, 2 * k) = -sym.lambda(k);
@@ -109,10 +109,10 @@ Vectors sharp_eigenvectors(const MatrixXd& A) {
 }
 
 /// A pair a +- bj of A as [[a, b], [-b, a]] on the real and imaginary part of its vector.
-Modes general_modes(const MatrixXd& A) {
+BlockDiagonalForm general_modes(const MatrixXd& A) {
   const Vectors e = sharp_eigenvectors(A);
   const Index n = A.rows();
-  Modes modes{MatrixXl::Zero(n, n), MatrixXl::Zero(n, n), MatrixXl::Zero(n, n)};
+  BlockDiagonalForm modes{MatrixXl::Zero(n, n), MatrixXl::Zero(n, n), MatrixXl::Zero(n, n)};
   Index at = 0;
   for (Index k = 0; k < n && at < n; ++k) {
     const Long pole = e.values(k);
@@ -159,12 +159,12 @@ void find_silent(const System& system, Points& points) {
 
 }  // namespace
 
-Difference difference(const Form& form, const MatrixXcd& X, const MatrixXcd& exact,
-                      const Points& points) {
+TransferDifference difference(const Form& form, const MatrixXcd& X, const MatrixXcd& exact,
+                              const Points& points) {
   constexpr double kTermRounding = 10 * std::numeric_limits<double>::epsilon();
   const MatrixXcd G = form.C * X + form.D;
   const MatrixXd terms = form.C.cwiseAbs() * X.cwiseAbs() + form.D.cwiseAbs();
-  Difference d;
+  TransferDifference d;
   for (Index i = 0; i < exact.rows(); ++i)
     for (Index j = 0; j < exact.cols(); ++j) {
       if (contains(points.silent_outputs, i) || contains(points.silent_inputs, j)) continue;
@@ -257,7 +257,7 @@ Form own_form(const StateSpace& model) {
 }
 
 Form modal_form(const StateSpace& model) {
-  std::optional<Modes> modes = proportional_modes(model.A);
+  std::optional<BlockDiagonalForm> modes = proportional_modes(model.A);
   if (!modes) modes = general_modes(model.A);
   Form form;
   form.modal = true;

@@ -40,12 +40,12 @@ Points response_points(const System& system, const std::vector<Pole>& poles);
 /// C X + D against the exact transfer at one point, without the silent rows and columns. Each entry
 /// is relative to the geometric mean of the largest entries of its row and column, or, if larger
 /// (zero by symmetry), to 1e-6 of the terms that cancel in it, |C| |X| + |D|.
-struct Difference {
+struct TransferDifference {
   double worst = 0;
   double rounding = 0;  ///< possible difference by rounding of the terms on another machine
 };
-Difference difference(const Form& form, const Eigen::MatrixXcd& X, const Eigen::MatrixXcd& exact,
-                      const Points& points);
+TransferDifference difference(const Form& form, const Eigen::MatrixXcd& X,
+                              const Eigen::MatrixXcd& exact, const Points& points);
 
 /// The worst difference of C (s - A)^-1 B + D over all points; HUGE_VAL if s - A is singular in
 /// double.

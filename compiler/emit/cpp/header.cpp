@@ -11,7 +11,7 @@ using Eigen::MatrixXd;
 
 namespace {
 
-enum class Storage { none, dense, sparse, blocks };
+enum class StorageFormat { none, dense, sparse, blocks };
 
 Index nonzeros(const MatrixXd& m) { return (m.array() != 0).count(); }
 
@@ -23,20 +23,20 @@ bool is_tridiagonal(const MatrixXd& m) {
 }
 
 /// The cheapest: an entry of a sparse matrix costs about two of a dense one, which go by vectors.
-Storage storage(const MatrixXd& m) {
+StorageFormat storage(const MatrixXd& m) {
   const Index count = nonzeros(m);
-  if (count == 0) return Storage::none;
+  if (count == 0) return StorageFormat::none;
   const bool blocks = m.rows() > 2 && is_tridiagonal(m);
-  if (blocks && 3 * m.rows() < std::min(m.size(), 2 * count)) return Storage::blocks;
-  return 2 * count < m.size() ? Storage::sparse : Storage::dense;
+  if (blocks && 3 * m.rows() < std::min(m.size(), 2 * count)) return StorageFormat::blocks;
+  return 2 * count < m.size() ? StorageFormat::sparse : StorageFormat::dense;
 }
 
 long long products(const MatrixXd& m) {
   switch (storage(m)) {
-    case Storage::none: return 0;
-    case Storage::dense: return m.size();
-    case Storage::sparse: return nonzeros(m);
-    case Storage::blocks: return 3 * m.rows();
+    case StorageFormat::none: return 0;
+    case StorageFormat::dense: return m.size();
+    case StorageFormat::sparse: return nonzeros(m);
+    case StorageFormat::blocks: return 3 * m.rows();
   }
   return 0;
 }
@@ -123,17 +123,17 @@ struct Data {
   bool kinds[4] = {};
 
   void add(const MatrixXd& m, const std::string& name) {
-    const Storage kind = storage(m);
+    const StorageFormat kind = storage(m);
     kinds[static_cast<int>(kind)] = true;
-    if (kind == Storage::dense) text += dense(m, name);
-    if (kind == Storage::sparse) text += sparse(m, name);
-    if (kind == Storage::blocks) text += blocks(m, name);
+    if (kind == StorageFormat::dense) text += dense(m, name);
+    if (kind == StorageFormat::sparse) text += sparse(m, name);
+    if (kind == StorageFormat::blocks) text += blocks(m, name);
   }
   std::string all() const {
     std::string result;
-    if (kinds[static_cast<int>(Storage::dense)]) result += kDense;
-    if (kinds[static_cast<int>(Storage::sparse)]) result += kSparse;
-    if (kinds[static_cast<int>(Storage::blocks)]) result += kBlocks;
+    if (kinds[static_cast<int>(StorageFormat::dense)]) result += kDense;
+    if (kinds[static_cast<int>(StorageFormat::sparse)]) result += kSparse;
+    if (kinds[static_cast<int>(StorageFormat::blocks)]) result += kBlocks;
     return result + "\n" + text;
   }
 };

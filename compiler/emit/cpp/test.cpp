@@ -52,8 +52,8 @@ std::string indices(const std::vector<Index>& list) {
 }
 
 /// s - A as the test factors it (kHead).
-struct Resolvent {
-  explicit Resolvent(const MatrixXd& A, Complex s)
+struct LuResolvent {
+  explicit LuResolvent(const MatrixXd& A, Complex s)
       : R(s * MatrixXcd::Identity(A.rows(), A.rows()) - A),
         scale(R.cwiseAbs().rowwise().maxCoeff().cwiseInverse().cast<Complex>()),
         lu(scale.asDiagonal() * R) {}
@@ -69,10 +69,10 @@ struct Resolvent {
 };
 
 /// The difference that the test will find at s, where it solves without the model's equilibration.
-Difference tested_difference(const Form& form, Complex s, const MatrixXcd& exact,
-                             const Points& points) {
+TransferDifference tested_difference(const Form& form, Complex s, const MatrixXcd& exact,
+                                     const Points& points) {
   const MatrixXcd B = form.B.cast<Complex>();
-  return difference(form, form.A.rows() > 0 ? Resolvent(form.A, s).refined(B) : B, exact, points);
+  return difference(form, form.A.rows() > 0 ? LuResolvent(form.A, s).refined(B) : B, exact, points);
 }
 
 /// Points that the test compares: a file of some megabytes is still compiled in seconds.
@@ -85,10 +85,10 @@ std::vector<std::size_t> compared(const Points& points) {
 }
 
 std::string transfer_test(const Naming& names, const Form& form, const Points& points) {
-  Difference worst{form.error, 1e-11};
+  TransferDifference worst{form.error, 1e-11};
   std::string checks;
   for (const std::size_t k : compared(points)) {
-    const Difference here = tested_difference(form, points.s[k], points.exact[k], points);
+    const TransferDifference here = tested_difference(form, points.s[k], points.exact[k], points);
     worst.worst = std::max(worst.worst, here.worst);
     worst.rounding = std::max(worst.rounding, here.rounding);
     checks += fmt::format(
@@ -107,7 +107,7 @@ std::string transfer_test(const Naming& names, const Form& form, const Points& p
 std::string static_gain_test(const Naming& names, const Form& form, const Expected& expected) {
   const MatrixXcd exact = expected.static_gain->cast<Complex>();
   const Points rest = at_rest(expected.points, *expected.static_gain);
-  const Difference here = tested_difference(form, 0, exact, rest);
+  const TransferDifference here = tested_difference(form, 0, exact, rest);
   const double worst = std::max(form.static_error, here.worst);
   if (!is_provable(worst)) return omitted("static gain", worst);
   return filled(kStaticGain, {{"NAME", names.name},
@@ -133,7 +133,7 @@ std::vector<std::size_t> poles_to_find(const std::vector<Pole>& poles, Index n) 
 /// Distance of the eigenvalue of A that the test's search (kPoles) finds next to p, relative.
 double pole_error(const MatrixXd& A, Complex p) {
   const Complex shift = p + 1e-10 * std::abs(p) * Complex(0.6, 0.8);
-  const Resolvent resolvent(A, shift);
+  const LuResolvent resolvent(A, shift);
   Eigen::VectorXcd x(A.rows());
   for (Index i = 0; i < x.size(); ++i) x(i) = 1 + 0.1 * static_cast<double>(i * i % 7);
   Complex found;

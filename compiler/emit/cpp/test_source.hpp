@@ -50,9 +50,9 @@ const Columns C = columns<model::State>([](auto& x) { return model::output(x, {}
 const Columns D = columns<model::Input>([](auto& u) { return model::output({}, u); });
 
 /// s - A, factored with partial pivoting on scaled rows.
-class Resolvent {
+class LuResolvent {
  public:
-  explicit Resolvent(Complex s)
+  explicit LuResolvent(Complex s)
       : s_(s), lu_(A.size(), std::vector<Complex>(A.size())), row_(A.size()) {
     const std::size_t n = A.size();
     for (std::size_t i = 0; i < n; ++i) {
@@ -132,13 +132,13 @@ const Indices silent_inputs = @SILENT_INPUTS@;
 }
 
 /// Column j of C (s - A)^-1 B + D, and of the terms that it is the sum of.
-struct Response {
+struct ResponseColumn {
   std::vector<Complex> value;
   std::vector<double> terms;
 };
-Response response(const Resolvent& resolvent, std::size_t j) {
+ResponseColumn response(const LuResolvent& resolvent, std::size_t j) {
   const std::vector<Complex> x = resolvent.refined({B[j].begin(), B[j].end()});
-  Response r{{D[j].begin(), D[j].end()}, {}};
+  ResponseColumn r{{D[j].begin(), D[j].end()}, {}};
   for (std::size_t i = 0; i < D[j].size(); ++i) {
     r.terms.push_back(std::abs(D[j][i]));
     for (std::size_t k = 0; k < x.size(); ++k) {
@@ -154,7 +154,7 @@ Response response(const Resolvent& resolvent, std::size_t j) {
 [[maybe_unused]] double transfer_error(Complex s, const double (*expected)[2],
                                        const Indices& no_outputs = silent_outputs,
                                        const Indices& no_inputs = silent_inputs) {
-  const Resolvent resolvent(s);
+  const LuResolvent resolvent(s);
   const std::size_t nu = D.size(), ny = D[0].size();
   std::vector<double> row(ny), column(nu);
   const auto exact = [&](std::size_t i, std::size_t j) {
@@ -168,7 +168,7 @@ Response response(const Resolvent& resolvent, std::size_t j) {
   double worst = 0;
   for (std::size_t j = 0; j < nu; ++j) {
     if (contains(no_inputs, j)) continue;
-    const Response found = response(resolvent, j);
+    const ResponseColumn found = response(resolvent, j);
     for (std::size_t i = 0; i < ny; ++i) {
       if (contains(no_outputs, i)) continue;
       const double off = std::abs(found.value[i] - exact(i, j));
@@ -192,15 +192,15 @@ TEST_CASE("@NAME@: transfer") {
 inline constexpr const char* kPoles = R"(
 namespace {
 
-struct Pole {
+struct ExpectedPole {
   double re, im;  // im > 0 stands for the conjugate as well
 };
-const Pole poles[] = @POLES@;
+const ExpectedPole poles[] = @POLES@;
 
 /// The eigenvalue of A next to p, by inverse iteration.
 Complex eigenvalue_near(Complex p) {
   const Complex shift = p + 1e-10 * std::abs(p) * Complex(0.6, 0.8);
-  const Resolvent resolvent(shift);
+  const LuResolvent resolvent(shift);
   std::vector<Complex> x(A.size());
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = 1 + 0.1 * static_cast<double>(i * i % 7);
   Complex found;
@@ -221,7 +221,7 @@ TEST_CASE("@NAME@: poles") {
   Complex sum = 0;
   double size = 0, trace = 0;
   std::size_t count = 0;
-  for (const Pole& p : poles) {
+  for (const ExpectedPole& p : poles) {
     count += p.im > 0 ? 2 : 1;
     sum += p.im > 0 ? Complex(2 * p.re) : Complex(p.re, p.im);
     size += std::hypot(p.re, p.im);

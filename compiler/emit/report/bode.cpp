@@ -13,14 +13,14 @@ namespace {
 using Eigen::MatrixXcd;
 using linalg::at;
 
-std::vector<double> magnitude(const Sweep& w, const Pair& p) {
+std::vector<double> magnitude(const Sweep& w, const IoPair& p) {
   std::vector<double> y;
   for (const MatrixXcd& G : w.G) y.push_back(G.size() ? std::abs(G(p.output, p.input)) : kNone);
   return y;
 }
 
 /// In degrees, without jumps; if it turns by 180 at once, towards -90.
-std::vector<double> phase(const Sweep& w, const Pair& p) {
+std::vector<double> phase(const Sweep& w, const IoPair& p) {
   std::vector<double> y;
   double last = -90;
   for (const MatrixXcd& G : w.G) {
@@ -39,9 +39,9 @@ std::vector<double> phase(const Sweep& w, const Pair& p) {
   return y;
 }
 
-std::string bode(const Subject& s, const Sweep& w, const std::vector<Pair>& pairs) {
-  const Scalar& input = s.inputs[at(pairs.front().input)];
-  const Scalar& output = s.outputs[at(pairs.front().output)];
+std::string bode(const Subject& s, const Sweep& w, const std::vector<IoPair>& pairs) {
+  const ScalarSignal& input = s.inputs[at(pairs.front().input)];
+  const ScalarSignal& output = s.outputs[at(pairs.front().output)];
   Plot plot{
       .title = fmt::format("{} [{}] from {} [{}]", pairs.size() == 1 ? output.signal : "outputs",
                            or_users(output.unit), input.signal, or_users(input.unit)),
@@ -55,7 +55,7 @@ std::string bode(const Subject& s, const Sweep& w, const std::vector<Pair>& pair
              .curves = {},
              .height = 190};
   Frame turn{.y = {.label = "phase", .unit = "deg", .degrees = true}, .curves = {}, .height = 110};
-  for (const Pair& p : pairs) {
+  for (const IoPair& p : pairs) {
     plot.labels.push_back(
         fmt::format("{} / {}", s.outputs[at(p.output)].name, s.inputs[at(p.input)].name));
     plot.x_data.push_back(w.hertz);
@@ -68,7 +68,7 @@ std::string bode(const Subject& s, const Sweep& w, const std::vector<Pair>& pair
 
 }  // namespace
 
-std::string bode_plots(const Subject& s, const Sweep& w, const std::vector<Pair>& pairs) {
+std::string bode_plots(const Subject& s, const Sweep& w, const std::vector<IoPair>& pairs) {
   std::string text = "<h3>Bode plots</h3>\n";
   const bool on_axis = std::any_of(s.poles.begin(), s.poles.end(), [](const Pole& p) {
     return p.pair && std::abs(p.damping) < 1e-6;

@@ -31,9 +31,9 @@ int group_of(const List& groups, int scalar) {
   return 0;
 }
 
-int find(const std::vector<Scalar>& list, const std::string& name, const char* what) {
+int find(const std::vector<ScalarSignal>& list, const std::string& name, const char* what) {
   std::string known;
-  for (const Scalar& s : list) {
+  for (const ScalarSignal& s : list) {
     if (s.name == name) return s.index;
     if (s.index < 20) known += (known.empty() ? "" : ", ") + s.name;
   }
@@ -44,14 +44,15 @@ int find(const std::vector<Scalar>& list, const std::string& name, const char* w
 
 }  // namespace
 
-std::vector<Pair> strongest(const Subject& s, const Sweep& sweep, const std::vector<Group>& outputs,
-                            const std::vector<Group>& inputs) {
+std::vector<IoPair> strongest(const Subject& s, const Sweep& sweep,
+                              const std::vector<UnitGroup>& outputs,
+                              const std::vector<UnitGroup>& inputs) {
   const MatrixXd peak = peaks(s, sweep);
-  std::vector<Pair> list;
+  std::vector<IoPair> list;
   for (std::size_t a = 0; a < inputs.size(); ++a)
     for (std::size_t b = 0; b < outputs.size(); ++b) {
-      Pair best{outputs[b].at.front(), inputs[a].at.front(), static_cast<int>(b),
-                static_cast<int>(a)};
+      IoPair best{outputs[b].at.front(), inputs[a].at.front(), static_cast<int>(b),
+                  static_cast<int>(a)};
       for (const int i : outputs[b].at)
         for (const int j : inputs[a].at)
           if (peak(i, j) > peak(best.output, best.input)) best.output = i, best.input = j;
@@ -62,11 +63,11 @@ std::vector<Pair> strongest(const Subject& s, const Sweep& sweep, const std::vec
   return list;
 }
 
-std::vector<Pair> asked(const Subject& s, const std::vector<Group>& outputs,
-                        const std::vector<Group>& inputs) {
-  std::vector<Pair> list;
+std::vector<IoPair> asked(const Subject& s, const std::vector<UnitGroup>& outputs,
+                          const std::vector<UnitGroup>& inputs) {
+  std::vector<IoPair> list;
   for (const auto& [output, input] : s.options.pairs) {
-    Pair p{find(s.outputs, output, "output"), find(s.inputs, input, "input"), 0, 0};
+    IoPair p{find(s.outputs, output, "output"), find(s.inputs, input, "input"), 0, 0};
     p.output_group = group_of(outputs, p.output);
     p.input_group = group_of(inputs, p.input);
     list.push_back(p);
@@ -74,10 +75,10 @@ std::vector<Pair> asked(const Subject& s, const std::vector<Group>& outputs,
   return list;
 }
 
-std::vector<std::vector<Pair>> by_figure(const Subject& s, const std::vector<Pair>& pairs) {
-  std::vector<std::vector<Pair>> together, figures;
+std::vector<std::vector<IoPair>> by_figure(const Subject& s, const std::vector<IoPair>& pairs) {
+  std::vector<std::vector<IoPair>> together, figures;
   std::map<std::pair<int, std::string>, std::size_t> found;
-  for (const Pair& p : pairs) {
+  for (const IoPair& p : pairs) {
     const auto key = std::pair(p.input_group, s.outputs[at(p.output)].unit);
     const auto [place, is_new] = found.emplace(key, together.size());
     if (is_new) together.emplace_back();

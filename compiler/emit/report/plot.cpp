@@ -20,7 +20,7 @@ struct Tick {
 /// An axis with its range, and how a value becomes a place on it.
 class Scale {
  public:
-  Scale(const Axis& axis, double low, double high) : axis_(axis), low_(low), high_(high) {
+  Scale(const PlotAxis& axis, double low, double high) : axis_(axis), low_(low), high_(high) {
     if (axis.log)
       log_range();
     else
@@ -84,7 +84,7 @@ class Scale {
       }
   }
 
-  const Axis& axis_;
+  const PlotAxis& axis_;
   double low_, high_;  ///< of the exponent if the axis is logarithmic
   int exponent_ = 0;
   std::vector<Tick> ticks_;
@@ -93,7 +93,7 @@ class Scale {
 
 /// Smallest and largest value that can be drawn, within twelve decades of the largest on a log
 /// axis.
-Scale scale_of(const Axis& axis, const std::vector<std::vector<double>>& data) {
+Scale scale_of(const PlotAxis& axis, const std::vector<std::vector<double>>& data) {
   if (axis.low != axis.high) return {axis, axis.low, axis.high};
   double low = HUGE_VAL, high = -HUGE_VAL;
   for (const auto& curve : data)

@@ -7,7 +7,7 @@
 /// the page's light and dark, dashes and widths, so that they differ in black and white.
 namespace titop::report {
 
-struct Axis {
+struct PlotAxis {
   std::string label;  ///< quantity alone: "frequency"
   std::string unit;   ///< "Hz"; a power of ten is put before it if numbers are small or large
   bool log = false;
@@ -17,7 +17,7 @@ struct Axis {
 
 /// Curves in one frame.
 struct Frame {
-  Axis y;
+  PlotAxis y;
   std::vector<std::vector<double>> curves;  ///< y of each, over its x
   int height = 190;
 };
@@ -26,7 +26,7 @@ struct Frame {
 struct Plot {
   std::string title;    ///< above
   std::string caption;  ///< below
-  Axis x;
+  PlotAxis x;
   std::vector<std::string> labels;          ///< of the curves, for the legend
   std::vector<std::vector<double>> x_data;  ///< of the curves
   std::vector<Frame> frames;

@@ -10,7 +10,7 @@ namespace titop {
 
 namespace {
 
-struct Section {
+struct ReportSection {
   const char *id, *title;
   std::string html;
 };
@@ -37,7 +37,7 @@ std::string report_html(const System& system, const ReportOptions& options) {
   if (system.order() <= options.full_up_to) full = certify(system, Full{});
   const FullCertificate* checked = full ? &*full : nullptr;
   report::Responses responses = report::responses(s);
-  const Section sections[] = {
+  const ReportSection sections[] = {
       {"scene", "The scene", report::scene_section(s)},
       {"poles", "Poles", report::poles_section(s)},
       {"frequency", "Frequency responses", std::move(responses.frequency)},
@@ -55,10 +55,10 @@ std::string report_html(const System& system, const ReportOptions& options) {
   if (!options.remark.empty())
     body += fmt::format("<p class=\"remark\">{}</p>\n", report::escaped_lines(options.remark));
   body += "<nav>\n";
-  for (const Section& section : sections)
+  for (const ReportSection& section : sections)
     body += fmt::format("<a href=\"#{}\">{}</a>\n", section.id, section.title);
   body += "</nav>\n</header>\n" + report::summary(s, checked);
-  for (const Section& section : sections)
+  for (const ReportSection& section : sections)
     body += fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", section.id,
                         section.title, section.html);
   return report::page(title, body);

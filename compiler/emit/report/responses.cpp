@@ -11,7 +11,7 @@ Responses responses(const Subject& s) {
                     s.inputs.empty() ? "inputs" : "outputs");
     return {{}, none, none};
   }
-  const std::vector<Group> outputs = groups(s.outputs), inputs = groups(s.inputs);
+  const std::vector<UnitGroup> outputs = groups(s.outputs), inputs = groups(s.inputs);
   const Sweep w = sweep(s);
   Responses r;
   r.pairs = s.options.pairs.empty() ? strongest(s, w, outputs, inputs) : asked(s, outputs, inputs);

@@ -23,16 +23,16 @@ std::string more(std::size_t all, const char* what) {
 }
 
 /// "[N; N m]" over the scalars of one signal.
-std::string units_of(const std::vector<Scalar>& scalars, const std::string& signal) {
+std::string units_of(const std::vector<ScalarSignal>& scalars, const std::string& signal) {
   std::vector<std::string> units;
-  for (const Scalar& s : scalars)
+  for (const ScalarSignal& s : scalars)
     if (s.signal == signal && (units.empty() || units.back() != or_users(s.unit)))
       units.push_back(or_users(s.unit));
   return fmt::format("{}", fmt::join(units, "; "));
 }
 
 template <class List, class Words>
-std::string ports(const List& list, const std::vector<Scalar>& scalars, const char* verb,
+std::string ports(const List& list, const std::vector<ScalarSignal>& scalars, const char* verb,
                   Words words) {
   if (list.empty()) return fmt::format("<p>The scene has no {}s.</p>\n", verb);
   std::vector<int> order(list.size());

@@ -20,9 +20,9 @@ struct Alike {
   std::vector<int> at;
 };
 
-std::vector<Alike> alike(const std::vector<Group>& groups) {
+std::vector<Alike> alike(const std::vector<UnitGroup>& groups) {
   std::vector<Alike> list;
-  for (const Group& g : groups) {
+  for (const UnitGroup& g : groups) {
     const auto fits = [&](const Alike& a) {
       return a.unit == g.unit && (!g.unit.empty() || a.names == g.signal);
     };
@@ -97,8 +97,8 @@ std::string singular_values(const Sweep& w, const Alike& outputs, const Alike& i
 
 }  // namespace
 
-std::string singular_value_plots(const Sweep& w, const std::vector<Group>& outputs,
-                                 const std::vector<Group>& inputs) {
+std::string singular_value_plots(const Sweep& w, const std::vector<UnitGroup>& outputs,
+                                 const std::vector<UnitGroup>& inputs) {
   std::string figures;
   std::size_t number = 0;
   for (const Alike& in : alike(inputs))

@@ -59,9 +59,9 @@ struct Steps {
   double error = 0;  ///< of all outputs, see Trajectory::error
 };
 
-Steps steps(const Subject& s, const std::vector<Pair>& pairs, const Clock& c) {
+Steps steps(const Subject& s, const std::vector<IoPair>& pairs, const Clock& c) {
   Steps result;
-  for (const Pair& p : pairs) {
+  for (const IoPair& p : pairs) {
     if (result.of.count(p.input)) continue;
     VectorXd u = VectorXd::Zero(static_cast<Index>(s.inputs.size()));
     u(p.input) = 1;
@@ -95,9 +95,9 @@ void cut_start(Plot& plot) {
                              high, plot.frames.front().y.unit);
 }
 
-std::string step_figure(const Subject& s, const Steps& all, const std::vector<Pair>& pairs) {
-  const Scalar& input = s.inputs[at(pairs.front().input)];
-  const Scalar& output = s.outputs[at(pairs.front().output)];
+std::string step_figure(const Subject& s, const Steps& all, const std::vector<IoPair>& pairs) {
+  const ScalarSignal& input = s.inputs[at(pairs.front().input)];
+  const ScalarSignal& output = s.outputs[at(pairs.front().output)];
   Plot plot{.title = fmt::format("{} [{}] to a step of 1 {} on {}",
                                  pairs.size() == 1 ? output.signal : "outputs",
                                  or_users(output.unit), or_users(input.unit), input.signal),
@@ -109,7 +109,7 @@ std::string step_figure(const Subject& s, const Steps& all, const std::vector<Pa
                         .curves = {},
                         .height = 200}}};
   plot.x.high = all.time.back();
-  for (const Pair& p : pairs) {
+  for (const IoPair& p : pairs) {
     const auto row = all.of.at(p.input).row(p.output);
     plot.labels.push_back(
         fmt::format("{}, step on {}", s.outputs[at(p.output)].name, s.inputs[at(p.input)].name));
@@ -122,11 +122,11 @@ std::string step_figure(const Subject& s, const Steps& all, const std::vector<Pa
 
 }  // namespace
 
-std::string step_plots(const Subject& s, const std::vector<Pair>& pairs) {
+std::string step_plots(const Subject& s, const std::vector<IoPair>& pairs) {
   auto figures = by_figure(s, pairs);
   const std::size_t count = figures.size();
   figures.resize(std::min(count, kFigures));
-  std::vector<Pair> shown;
+  std::vector<IoPair> shown;
   for (const auto& f : figures) shown.insert(shown.end(), f.begin(), f.end());
   const Clock c = clock(s);
   const Steps all = steps(s, shown, c);

@@ -8,16 +8,16 @@
 namespace titop::report {
 namespace {
 
-std::string names(const std::vector<Scalar>& list) {
+std::string names(const std::vector<ScalarSignal>& list) {
   std::string text;
   for (std::size_t i = 0; i < list.size() && i < 20; ++i) text += (i ? ", " : "") + list[i].name;
   return list.empty() ? "none" : list.size() > 20 ? text + ", ..." : text;
 }
 
 /// Gives the unit to the scalars of this name; false if there are none.
-bool set_unit(std::vector<Scalar>& list, const std::string& name, const std::string& unit) {
+bool set_unit(std::vector<ScalarSignal>& list, const std::string& name, const std::string& unit) {
   bool found = false;
-  for (Scalar& s : list)
+  for (ScalarSignal& s : list)
     if (s.name == name || s.signal == name) s.unit = unit, found = true;
   return found;
 }
@@ -52,9 +52,9 @@ Subject subject(const System& system, const ReportOptions& options) {
   return s;
 }
 
-std::vector<Group> groups(const std::vector<Scalar>& scalars) {
-  std::vector<Group> list;
-  for (const Scalar& s : scalars) {
+std::vector<UnitGroup> groups(const std::vector<ScalarSignal>& scalars) {
+  std::vector<UnitGroup> list;
+  for (const ScalarSignal& s : scalars) {
     const bool joins = !list.empty() && list.back().signal == s.signal &&
                        list.back().unit == s.unit && list.back().at.size() < 3;
     if (!joins) list.push_back({s.signal, s.unit, {}});

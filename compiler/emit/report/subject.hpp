@@ -11,7 +11,7 @@ namespace titop::report {
 struct Subject {
   const System& system;
   const ReportOptions& options;
-  std::vector<Scalar> inputs, outputs;
+  std::vector<ScalarSignal> inputs, outputs;
   std::vector<Pole> poles;
   double dense_seconds = 0;  ///< that writing and minimizing the dense model took, here
 };
@@ -20,14 +20,14 @@ struct Subject {
 Subject subject(const System& system, const ReportOptions& options);
 
 /// Neighbouring scalars of one signal with one unit: three translations, three rotations, a scalar.
-struct Group {
+struct UnitGroup {
   std::string signal, unit;
   std::vector<int> at;  ///< rows or columns
 };
-std::vector<Group> groups(const std::vector<Scalar>& scalars);
+std::vector<UnitGroup> groups(const std::vector<ScalarSignal>& scalars);
 
 /// An output and an input whose response is shown, with their groups.
-struct Pair {
+struct IoPair {
   int output = 0, input = 0;
   int output_group = 0, input_group = 0;
 };
@@ -39,7 +39,7 @@ std::string or_users(const std::string& unit);
 /// Singular values and Bode plots; step responses. `pairs`: those of ReportOptions::pairs, or the
 /// default described there. Each returns the section's HTML.
 struct Responses {
-  std::vector<Pair> pairs;
+  std::vector<IoPair> pairs;
   std::string frequency, time;
 };
 Responses responses(const Subject& subject);

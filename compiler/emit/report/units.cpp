@@ -191,7 +191,8 @@ std::string output_unit(const Graph& g, const Natures& natures, const Output& ou
   return agreed.get();
 }
 
-void add(std::vector<Scalar>& list, const std::string& name, int size, int row, std::string unit) {
+void add(std::vector<ScalarSignal>& list, const std::string& name, int size, int row,
+         std::string unit) {
   list.push_back({size == 1 ? name : fmt::format("{}({})", name, row + 1), name, std::move(unit),
                   static_cast<int>(list.size())});
 }
@@ -207,10 +208,10 @@ std::string listed(const std::vector<std::string>& names) {
 
 }  // namespace
 
-std::vector<Scalar> scalar_inputs(const Stage& stage) {
+std::vector<ScalarSignal> scalar_inputs(const Stage& stage) {
   const Graph& g = *stage.source;
   const Natures natures(g);
-  std::vector<Scalar> list;
+  std::vector<ScalarSignal> list;
   for (const int i : detail::as_declared(g.inputs)) {
     const Input& input = g.inputs[at(i)];
     for (int row = 0; row < input.size; ++row)
@@ -219,10 +220,10 @@ std::vector<Scalar> scalar_inputs(const Stage& stage) {
   return list;
 }
 
-std::vector<Scalar> scalar_outputs(const Stage& stage) {
+std::vector<ScalarSignal> scalar_outputs(const Stage& stage) {
   const Graph& g = *stage.source;
   const Natures natures(g);
-  std::vector<Scalar> list;
+  std::vector<ScalarSignal> list;
   for (const int i : detail::as_declared(g.outputs)) {
     const Output& output = g.outputs[at(i)];
     for (int row = 0; row < output.size; ++row)
