@@ -42,11 +42,12 @@ std::string frame_name(const Graph& graph, int frame) {
 }
 
 Part::Part(MatrixXd rows, std::string name) {
-  if (rows.size() > 0) held_ = std::make_shared<const Held>(Held{std::move(rows), std::move(name)});
+  if (rows.size() > 0)
+    held_ = std::make_shared<const NamedRows>(NamedRows{std::move(rows), std::move(name)});
 }
 
-const Part::Held& Part::held() const {
-  static const Held all;
+const Part::NamedRows& Part::held() const {
+  static const NamedRows all;
   return held_ ? *held_ : all;
 }
 

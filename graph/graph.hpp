@@ -33,13 +33,13 @@ class Part {
   const std::string& name() const { return held().name; }
 
  private:
-  struct Held {
+  struct NamedRows {
     Eigen::MatrixXd rows = {};
     std::string name = {};
   };
-  const Held& held() const;
+  const NamedRows& held() const;
 
-  std::shared_ptr<const Held> held_;
+  std::shared_ptr<const NamedRows> held_;
 };
 
 struct Signal {

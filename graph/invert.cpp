@@ -21,10 +21,10 @@ std::string dotted(const std::string& channel, const std::string& signal) {
 }
 
 /// First scalar and count of "parent", "C1.angular", "parent(3)" inside a channel.
-struct Range {
+struct ScalarRange {
   int first, count;
 };
-Range range_of(const std::string& text, const ChannelSpec& c) {
+ScalarRange range_of(const std::string& text, const ChannelSpec& c) {
   const std::string rest = text.substr(c.name.size());
   if (rest.empty()) return {0, c.size};
   if (rest == ".linear" && c.size == 6) return {0, 3};
@@ -37,11 +37,11 @@ Range range_of(const std::string& text, const ChannelSpec& c) {
 
 /// Rows and columns scaled to one size by powers of two: singularity does not depend on millimetres
 /// or metres.
-struct Scaled {
+struct EquilibratedMatrix {
   MatrixXd matrix;
   Eigen::VectorXd rows, cols;
 
-  explicit Scaled(MatrixXd m)
+  explicit EquilibratedMatrix(MatrixXd m)
       : matrix(std::move(m)),
         rows(Eigen::VectorXd::Ones(matrix.rows())),
         cols(Eigen::VectorXd::Ones(matrix.cols())) {
@@ -85,7 +85,7 @@ StateSpace model_of(const BlockPtr& block) {
 StateSpace invert(const StateSpace& model, const std::vector<std::pair<int, int>>& pairs) {
   std::vector<int> in, out;
   for (const auto& [i, o] : pairs) in.push_back(i), out.push_back(o);
-  const Scaled D_oi(model.D(out, in));
+  const EquilibratedMatrix D_oi(model.D(out, in));
   Eigen::FullPivLU<MatrixXd> lu(D_oi.matrix);
   lu.setThreshold(1e-13);
   if (!lu.isInvertible())
@@ -119,7 +119,7 @@ StateSpace invert(const BlockPtr& block, const std::vector<std::string>& channel
   std::vector<std::pair<int, int>> pairs;
   for (const std::string& name : channels) {
     int first = 0;
-    Range found{0, 0};
+    ScalarRange found{0, 0};
     std::string all;
     for (const ChannelSpec& c : block->interface().channels) {
       all += fmt::format("{}\"{}\"", all.empty() ? "" : ", ", c.name);

@@ -13,8 +13,8 @@ std::string frame_of(const SignalRef& s) {
   return frame < 0 ? std::string{} : s.graph()->nodes[static_cast<std::size_t>(frame)].name;
 }
 
-struct Writer : SignalRef {
-  explicit Writer(const SignalRef& s) : SignalRef(s) {}
+struct SettableSignal : SignalRef {
+  explicit SettableSignal(const SignalRef& s) : SignalRef(s) {}
   using SignalRef::set;
 };
 
@@ -39,10 +39,10 @@ void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, S
   const Rotation T = T_ba.to().empty() && T_ba.from().empty() ? T_ba.named(b, a) : T_ba;
   const Expr motion = scalar ? site_accel.expr() : T.inverse() * site_accel;
   const Expr wrench = scalar ? child_force.expr() : T * child_force;
-  Writer(child_accel).set(Rhs(motion, at), /*accumulate=*/false, 1);
+  SettableSignal(child_accel).set(Rhs(motion, at), /*accumulate=*/false, 1);
   // `sign` is right between a child point as site and, for a weld, another child point.
   const bool turned = is_parent(site_force) != (sign < 0 && is_parent(child_force));
-  Writer(site_force).set(Rhs(wrench, at), /*accumulate=*/true, turned ? -sign : sign);
+  SettableSignal(site_force).set(Rhs(wrench, at), /*accumulate=*/true, turned ? -sign : sign);
 }
 
 Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::string& joint,
@@ -65,7 +65,7 @@ Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::
 }
 
 void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location& at) {
-  Writer(signal).set(Rhs(Expr{}, at), accumulate, 1);
+  SettableSignal(signal).set(Rhs(Expr{}, at), accumulate, 1);
 }
 
 }  // namespace titop::detail

@@ -28,12 +28,12 @@ Rotation Rotation::about(const Vector3d& axis, Value angle) {
                             axis.z(), angle.nominal()),
                 "give a finite axis other than 0 and a finite angle [rad]");
   if (angle.is_parameter() || std::abs(angle.nominal()) > 2 * std::numbers::pi)
-    return Rotation(Held{{Turn{axis / length, angle}}});
-  return Rotation(Held{{turn(axis / length, angle.nominal())}});
+    return Rotation(NamedSteps{{Turn{axis / length, angle}}});
+  return Rotation(NamedSteps{{turn(axis / length, angle.nominal())}});
 }
 
-const Rotation::Held& Rotation::held() const {
-  static const Held nothing;
+const Rotation::NamedSteps& Rotation::held() const {
+  static const NamedSteps nothing;
   return held_ ? *held_ : nothing;
 }
 
@@ -70,7 +70,7 @@ Rotation Rotation::of_steps(std::vector<Step> steps) {
     else if (const double off = std::get<Turn>(step).axis.norm() - 1; !(std::abs(off) <= 1e-9))
       throw Error(Code::not_a_rotation, fmt::format("an axis of length {}", off + 1),
                   "give a unit vector");
-  return Rotation(Held{std::move(steps)});
+  return Rotation(NamedSteps{std::move(steps)});
 }
 
 Rotation Rotation::matrix(const Matrix3d& T) {
@@ -78,15 +78,15 @@ Rotation Rotation::matrix(const Matrix3d& T) {
   const Eigen::JacobiSVD<Matrix3d> svd(T, Eigen::ComputeFullU | Eigen::ComputeFullV);
   // An exact rotation (a permutation of axes, say) must stay exact.
   const bool exact = (T.transpose() * T - Matrix3d::Identity()).isZero(0);
-  return Rotation(Held{{exact ? T : Matrix3d(svd.matrixU() * svd.matrixV().transpose())}});
+  return Rotation(NamedSteps{{exact ? T : Matrix3d(svd.matrixU() * svd.matrixV().transpose())}});
 }
 
 Rotation Rotation::named(std::string to, std::string from) const {
-  return Rotation(Held{steps(), named_pair(std::move(to), std::move(from))});
+  return Rotation(NamedSteps{steps(), named_pair(std::move(to), std::move(from))});
 }
 
 Rotation Rotation::inverse() const {
-  Held inverse{{}, named_pair(from(), to())};
+  NamedSteps inverse{{}, named_pair(from(), to())};
   for (auto step = steps().rbegin(); step != steps().rend(); ++step) {
     if (const auto* T = std::get_if<Matrix3d>(&*step)) {
       inverse.steps.push_back(Matrix3d(T->transpose()));
@@ -104,7 +104,7 @@ Rotation operator*(const Rotation& T_cb, const Rotation& T_ba) {
                 fmt::format("the rotation {}<-{} cannot follow the rotation {}<-{}", T_cb.to(),
                             T_cb.from(), T_ba.to(), T_ba.from()),
                 "compose T_cb * T_ba, or take the inverse of one of them");
-  Rotation::Held both = T_cb.held();
+  Rotation::NamedSteps both = T_cb.held();
   both.names = Rotation::named_pair(T_cb.to(), T_ba.from());
   for (const auto& step : T_ba.steps()) {
     auto* last = both.steps.empty() ? nullptr : std::get_if<Matrix3d>(&both.steps.back());

@@ -69,16 +69,16 @@ class Rotation {
   struct Names {
     std::string to, from;
   };
-  struct Held {
+  struct NamedSteps {
     std::vector<Step> steps = {};
     std::shared_ptr<const Names> names = {};  ///< null: none, as of most
   };
-  explicit Rotation(Held held) : held_(std::make_shared<const Held>(std::move(held))) {}
+  explicit Rotation(NamedSteps held) : held_(std::make_shared<const NamedSteps>(std::move(held))) {}
   static std::shared_ptr<const Names> named_pair(std::string to, std::string from);
-  const Held& held() const;
+  const NamedSteps& held() const;
   const Names& names() const;
 
-  std::shared_ptr<const Held> held_;  ///< null: the identity, no names
+  std::shared_ptr<const NamedSteps> held_;  ///< null: the identity, no names
 };
 
 }  // namespace titop

@@ -15,14 +15,14 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// Wanted: t(row) - t(col) = log2, or a number below by the same for all.
-struct Ratio {
+struct LogRatio {
   int row, col;
   double log2;
 };
 
 /// Least squares over all ratios, of least norm if they leave a freedom [Curtis, Reid 1972]. With
 /// `level`, that number is found too.
-VectorXd fit(const std::vector<Ratio>& ratios, int n, bool level) {
+VectorXd fit(const std::vector<LogRatio>& ratios, int n, bool level) {
   MatrixXd N = MatrixXd::Zero(n + 1, n + 1);
   VectorXd r = VectorXd::Zero(n + 1);
   for (const auto& [i, j, log2] : ratios) {
@@ -51,7 +51,7 @@ void scale(MatrixXd& A, VectorXd& d, Index i, double factor) {
 /// Least-squares fit to the logarithms of all entries that are not 0, for sizes far apart; entries
 /// at rounding level count like others.
 VectorXd by_logarithms(MatrixXd& A) {
-  std::vector<Ratio> ratios;
+  std::vector<LogRatio> ratios;
   for (int j = 0; j < A.cols(); ++j)
     for (int i = 0; i < A.rows(); ++i)
       if (i != j && A(i, j) != 0) ratios.push_back({i, j, std::log2(std::abs(A(i, j)))});
@@ -103,7 +103,7 @@ void fit_between(MatrixXd& A, VectorXd& d, const std::vector<std::vector<int>>& 
       most = std::max(most, std::abs(A(i, j)));
     }
   const double within = largest.diagonal().maxCoeff();
-  std::vector<Ratio> ratios;
+  std::vector<LogRatio> ratios;
   for (int i = 0; i < count; ++i)
     for (int j = 0; j < count; ++j)
       if (i != j && largest(i, j) > 0)

@@ -18,9 +18,10 @@ double power_of_two_near(double x) {
 }
 
 /// Scales so that every row and column has its largest entry near 1.
-struct Scaling {
+struct Equilibration {
   VectorXd rows, cols;
-  explicit Scaling(MatrixXd a) : rows(VectorXd::Ones(a.rows())), cols(VectorXd::Ones(a.cols())) {
+  explicit Equilibration(MatrixXd a)
+      : rows(VectorXd::Ones(a.rows())), cols(VectorXd::Ones(a.cols())) {
     for (int sweep = 0; sweep < 4; ++sweep) {
       for (Eigen::Index i = 0; i < a.rows(); ++i) {
         const double f = 1 / power_of_two_near(std::sqrt(a.row(i).maxCoeff()));
@@ -40,7 +41,7 @@ struct Scaling {
 
 Solution solve(const MatrixXcd& E, const MatrixXcd& F) {
   if (E.rows() == 0) return {MatrixXcd(0, F.cols()), 1, 0};
-  const Scaling scale(E.cwiseAbs());
+  const Equilibration scale(E.cwiseAbs());
   const MatrixXcd S = scale.rows.asDiagonal() * E * scale.cols.asDiagonal();
   const MatrixXcd R = scale.rows.asDiagonal() * F;
   const Eigen::PartialPivLU<MatrixXcd> lu(S);

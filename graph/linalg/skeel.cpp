@@ -206,11 +206,11 @@ double skeel_radius_of_ring(Eigen::Index n, const Quotient& product) {
 
 /// Removes rows and columns with a single entry, repeatedly: M is block triangular, and the removed
 /// ones are diagonal blocks of size 1, with radius 1.
-class Peeled {
+class WithoutSingletons {
  public:
   using List = boost::container::small_vector<Eigen::Index, kSmall>;
 
-  explicit Peeled(const MatrixXd& M)
+  explicit WithoutSingletons(const MatrixXd& M)
       : M_(M), n_(static_cast<std::size_t>(M.rows())), left_(n_), rows_(n_), cols_(n_) {
     const double* value = M.data();
     for (std::size_t j = 0; j < n_; ++j)
@@ -260,13 +260,13 @@ class Peeled {
  private:
   /// A row or a column: number of its entries, and the exclusive or of their places. For a single
   /// entry that is its place; for two, it gives the other's place from either one's.
-  struct Line {
+  struct CountedLine {
     int entries = 0;  ///< -1: peeled off
     std::size_t places = 0;
     void put(std::size_t place) { ++entries, places ^= place; }
     void drop(std::size_t place) { --entries, places ^= place; }
   };
-  using Lines = boost::container::small_vector<Line, kSmall>;
+  using Lines = boost::container::small_vector<CountedLine, kSmall>;
 
   double entry(std::size_t i, std::size_t j) const {
     return M_(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j));
@@ -276,7 +276,7 @@ class Peeled {
   void leave(Lines& lines, Lines& across, std::size_t line, Entry entry) {
     --left_;
     const std::size_t place = lines[line].places;
-    Line& other = across[place];
+    CountedLine& other = across[place];
     lines[line].entries = -1;
     other.drop(line);
     if (other.entries == 1)
@@ -288,7 +288,8 @@ class Peeled {
   }
   template <class Test>
   static bool all(const Lines& lines, Test test) {
-    return std::all_of(lines.begin(), lines.end(), [&](const Line& l) { return test(l.entries); });
+    return std::all_of(lines.begin(), lines.end(),
+                       [&](const CountedLine& l) { return test(l.entries); });
   }
   static List list(const Lines& lines) {
     List result;
@@ -326,7 +327,7 @@ double skeel_radius_of_core(const MatrixXd& M) {
 double skeel_radius(MatrixXd& M, const std::function<void(MatrixXd&)>& scale) {
   if (M.rows() != M.cols() || M.rows() > kMost)
     throw std::invalid_argument("skeel_radius: a square matrix of up to 128 rows");
-  const Peeled peeled(M);
+  const WithoutSingletons peeled(M);
   if (peeled.empty()) return 1;
   if (peeled.singular()) return 0;
   if (const auto ring = peeled.radius_of_ring()) return *ring;
