@@ -287,7 +287,7 @@ class KeysOnce : public nlohmann::json_sax<Json> {
 
 }  // namespace
 
-Diagram parse_scene(std::string_view json, const std::string& file) {
+Diagram parse_diagram(std::string_view json, const std::string& file) {
   Json all;
   try {
     KeysOnce keys(file);
@@ -305,7 +305,7 @@ Diagram parse_scene(std::string_view json, const std::string& file) {
 
 Diagram read_diagram(const std::filesystem::path& path) {
   const fe::TextFile file = fe::read_text(path);
-  return parse_scene(file.content, file.name);
+  return parse_diagram(file.content, file.name);
 }
 
 }  // namespace titop

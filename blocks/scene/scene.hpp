@@ -30,13 +30,13 @@ namespace titop {
 /// Throws the mistakes noted in the diagram, bad_value for a block of the user's own type (the
 /// reader cannot create it) and duplicate_name for two blocks, inputs or parameters of one name.
 /// O(size).
-std::string scene_json(const Diagram& diagram);
+std::string diagram_json(const Diagram& diagram);
 
 /// The diagram of such a text; `file` is for messages. Compiling it gives the same model, to the
 /// last bit, as compiling the diagram that was written. Throws bad_file, with the place in the text
 /// ("blocks[3].mass"), the text found and the text expected; and the errors of `Diagram::add` for
 /// invalid blocks. Later messages have "equations[3] of the diagram file" for a source line.
-Diagram parse_scene(std::string_view json, const std::string& file = "scene");
+Diagram parse_diagram(std::string_view json, const std::string& file = "scene");
 
 /// The same with files. Throw bad_file.
 void write_diagram(const Diagram& diagram, const std::filesystem::path& file);

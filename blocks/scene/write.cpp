@@ -149,7 +149,7 @@ class DiagramWriter {
 
 }  // namespace
 
-std::string scene_json(const Diagram& diagram) {
+std::string diagram_json(const Diagram& diagram) {
   try {
     return DiagramWriter(diagram.graph()).all().dump(1) + "\n";
   } catch (const Json::exception&) {
@@ -160,7 +160,7 @@ std::string scene_json(const Diagram& diagram) {
 }
 
 void write_diagram(const Diagram& diagram, const std::filesystem::path& path) {
-  const std::string text = scene_json(diagram);
+  const std::string text = diagram_json(diagram);
   std::ofstream file(path, std::ios::binary);
   file << text;
   file.flush();

@@ -158,7 +158,7 @@ const Case kCases[] = {
     {Code::bad_inertia, [] { Diagram("d").add("A", RigidBody{.mass = -4}); }},
     {Code::bad_modes, [] { FlexibleBody{heavy_modes()}; }},
     {Code::bad_file,
-     [] { parse_scene(R"({"name": "s", "format": "titop scene 9"})", "scene.json"); }},
+     [] { parse_diagram(R"({"name": "s", "format": "titop scene 9"})", "scene.json"); }},
     {Code::bad_value, [] { Diagram("d").add("z", SpringMass{.stiffness = -3}); }},
     {Code::singular, at_a_pole}};
 

@@ -94,6 +94,6 @@ TEST_CASE("damaged scenes") {
   h.torque = k * h.angle;
   b.parent.force = -u;
   d.output("a", 3) = b.parent.accel.linear;
-  CHECK(refusals(scene_json(d), 600, 5,
+  CHECK(refusals(diagram_json(d), 600, 5,
                  [](const std::filesystem::path& path) { compile(read_diagram(path)); }) > 100);
 }

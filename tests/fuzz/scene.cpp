@@ -5,7 +5,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   return fuzz::refuses_or_reads([&] {
-    const std::string written = titop::scene_json(titop::parse_scene(fuzz::text(data, size)));
-    if (titop::scene_json(titop::parse_scene(written)) != written) std::abort();
+    const std::string written = titop::diagram_json(titop::parse_diagram(fuzz::text(data, size)));
+    if (titop::diagram_json(titop::parse_diagram(written)) != written) std::abort();
   });
 }

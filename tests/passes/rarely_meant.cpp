@@ -149,9 +149,9 @@ TEST_CASE("a diagram file keeps the data of the warnings") {
   mount(body, hub.child("A"), Rotation::about({0, 1, 0}, 30));
   hinge(d, "h", other, hub.child("B"), {}, {0, 0, 1}).torque = 0;
   d.output("a", 6) = body.parent.accel;
-  const std::string json = scene_json(d);
-  const Diagram again = parse_scene(json);
-  CHECK(scene_json(again) == json);
+  const std::string json = diagram_json(d);
+  const Diagram again = parse_diagram(json);
+  CHECK(diagram_json(again) == json);
   const auto said = warnings(again);
   REQUIRE(said.size() == 1);
   CHECK(has(said[0], "a rotation by 30 rad is more than a turn (body.parent.accel, equations["));

@@ -25,13 +25,13 @@ const std::string kGood = R"({"format": "titop scene 1", "name": "cart",
 "outputs": [{"name": "a", "size": 1, "terms": [{"signal": ["z", "parent", "accel"]}]}]})";
 
 void refused(const std::string& what, const std::string& with, const std::string& words) {
-  titop_test::check_refused([&] { parse_scene(replaced(kGood, what, with), "cart.json"); }, words);
+  titop_test::check_refused([&] { parse_diagram(replaced(kGood, what, with), "cart.json"); }, words);
 }
 
 }  // namespace
 
 TEST_CASE("a scene typed by hand") {
-  const System system = compile(parse_scene(kGood));
+  const System system = compile(parse_diagram(kGood));
   CHECK(system.order() == 3);
   // Two masses, 1 and 0.5, on a spring of 20; the filter pushes by a quarter of the stretch.
   const std::complex<double> s{0.3, 2};
@@ -88,7 +88,7 @@ TEST_CASE("data that a reader would ignore silently are refused with their place
       "children": [{"name": "C", "PC": [1, 0, 0])" +
            more + "}]}, ";
   };
-  parse_scene(replaced(kGood, "\"blocks\": [", child("")));
+  parse_diagram(replaced(kGood, "\"blocks\": [", child("")));
   refused("\"blocks\": [", child(", \"CP\": [0, 0, 0]"), "blocks[0].children[0]: found");
   refused("\"blocks\": [", R"("blocks": [{"name": "J", "type": "Joint", "axes":
       [{"kind": "about", "direction": [0, 0, 1], "name": "", "angle": 1}]}, )",
@@ -97,7 +97,7 @@ TEST_CASE("data that a reader would ignore silently are refused with their place
 
 TEST_CASE("mistakes of a scene's equations are told with their place in the file") {
   const auto said = [](const std::string& what, const std::string& with) {
-    return titop_test::message_of([&] { compile(parse_scene(replaced(kGood, what, with))); });
+    return titop_test::message_of([&] { compile(parse_diagram(replaced(kGood, what, with))); });
   };
   const std::string text = said("[\"K\", \"in\"]", "[\"z\", \"child\", \"accel\"]");
   INFO(text);
@@ -115,11 +115,11 @@ TEST_CASE("parts of a signal are orthonormal rows") {
 "equations": [{"of": ["g", "in"], "terms": [{"signal": ["u"], "factors": [
   {"part": "along", "rows": [[0.6, 0.8]]}]}]}],
 "outputs": [{"name": "a", "size": 1, "terms": [{"signal": ["g", "out"]}]}]})";
-  const Eigen::MatrixXcd one = compile(parse_scene(guide)).transfer(1.0);
+  const Eigen::MatrixXcd one = compile(parse_diagram(guide)).transfer(1.0);
   CHECK(std::abs(one(0, 0) - 0.6) + std::abs(one(0, 1) - 0.8) <= 1e-15);
   for (const char* rows : {"[[3, 4]]", "[]", "[[0.6, 0.8], [0.6, 0.8]]", "[[1e-3, 0]]"})
     titop_test::check_refused(
-        [&] { parse_scene(replaced(guide, "[[0.6, 0.8]]", rows), "guide.json"); },
+        [&] { parse_diagram(replaced(guide, "[[0.6, 0.8]]", rows), "guide.json"); },
         "expected orthonormal rows, at least one");
 }
 
@@ -141,9 +141,9 @@ TEST_CASE("values of modes and entries of an inertia are refused with their plac
     const std::string file = replaced(replaced(kGood, "\"bodies\": {}", body), "\"blocks\": [",
                                       "\"blocks\": [{\"name\": \"A\", " + block + "}, ");
     if (words.empty())
-      CHECK_NOTHROW(parse_scene(file, "cart.json"));
+      CHECK_NOTHROW(parse_diagram(file, "cart.json"));
     else
-      titop_test::check_refused([&] { parse_scene(file, "cart.json"); }, words);
+      titop_test::check_refused([&] { parse_diagram(file, "cart.json"); }, words);
   };
   const auto wing = [&](const std::string& values, const std::string& words) {
     with(R"("type": "FlexibleBody", "body": "wing", )" + values, words);
@@ -177,13 +177,13 @@ TEST_CASE("numbers that make no block are refused with the block's name") {
   refused("\"bodies\": {}", replaced(body, "\"digits\": 15", "\"digits\": 0"),
           "error[bad-value]: cart.json: bodies.wing, wing: the modal data have 0 digits");
   try {
-    parse_scene(replaced(kGood, "\"mass\": 1", "\"mass\": -1"));
+    parse_diagram(replaced(kGood, "\"mass\": 1", "\"mass\": -1"));
     FAIL("not refused");
   } catch (const Error& error) {
     CHECK(error.has(Code::bad_inertia));
   }
   // Mistakes of the equations come out in compile, as for a diagram in C++.
   const Diagram d =
-      parse_scene(replaced(kGood, "[\"K\", \"in\"]", "[\"z\", \"child\", \"accel\"]"));
+      parse_diagram(replaced(kGood, "[\"K\", \"in\"]", "[\"z\", \"child\", \"accel\"]"));
   CHECK_THROWS_AS(compile(d), Error);
 }

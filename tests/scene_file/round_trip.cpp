@@ -70,9 +70,9 @@ Diagram everything() {
 }
 
 void check_round_trip(const Diagram& diagram) {
-  const std::string text = scene_json(diagram);
-  const Diagram again = parse_scene(text);
-  CHECK(scene_json(again) == text);
+  const std::string text = diagram_json(diagram);
+  const Diagram again = parse_diagram(text);
+  CHECK(diagram_json(again) == text);
   const System a = compile(diagram), b = compile(again);
   CHECK(difference(a.state_space(), b.state_space()) == "");
   CHECK(a.log() == b.log());
@@ -83,13 +83,13 @@ void check_round_trip(const Diagram& diagram) {
 
 TEST_CASE("every kind of thing comes back to the last bit") {
   check_round_trip(everything());
-  const System a = compile(everything()), b = compile(parse_scene(scene_json(everything())));
+  const System a = compile(everything()), b = compile(parse_diagram(diagram_json(everything())));
   const ParameterList other = {{"k", 0.5}, {"angle", -0.2}};
   CHECK(difference(a.update(other).state_space(), b.update(other).state_space()) == "");
 }
 
 TEST_CASE("shared modal data stand in the file once") {
-  const std::string text = scene_json(everything());
+  const std::string text = diagram_json(everything());
   CHECK(text.find("\"body1\": {") != std::string::npos);
   CHECK(text.find("body2") == std::string::npos);
 }
@@ -108,8 +108,8 @@ TEST_CASE("a file is the text, in the order in which it was written") {
   const Folder folder;
   const Diagram d = five_masses_scene({1, 2, 3, 4, 5}, {10, 26, 33, 20, 95});
   write_diagram(d, folder.path / "masses.json");
-  CHECK(folder.read("masses.json") == scene_json(d));
-  CHECK(scene_json(read_diagram(folder.path / "masses.json")) == scene_json(d));
+  CHECK(folder.read("masses.json") == diagram_json(d));
+  CHECK(diagram_json(read_diagram(folder.path / "masses.json")) == diagram_json(d));
   CHECK_THROWS_AS(write_diagram(d, folder.path / "none" / "masses.json"), Error);
   CHECK_THROWS_AS(read_diagram(folder.path / "none.json"), Error);
 }
@@ -120,7 +120,7 @@ TEST_CASE("scenes that cannot be written are refused") {
   twice.add("z", SpringMass{});
   twice.input("u", 0);
   try {
-    scene_json(twice);
+    diagram_json(twice);
     FAIL("not refused");
   } catch (const Error& error) {
     CHECK(error.has(Code::duplicate_name));
