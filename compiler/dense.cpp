@@ -213,7 +213,7 @@ class Writer {
 
   /// Fills by symmetry the entries that later targets would read of these sources.
   void write_rows(std::size_t batch, const double* values) {
-    std::vector<solve::Modes> bodies;
+    std::vector<solve::ModalRange> bodies;
     for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i)
       if (const Writing::Source& s = w_->sources[i]; s.modal)
         bodies.push_back({s.first, s.columns});

@@ -13,7 +13,7 @@ using solve::RowMatrix;
 using Triplets = std::vector<Eigen::Triplet<double>>;
 using linalg::at;
 
-struct Builder {
+struct DescriptorBuilder {
   const SystemData& d;
   const detail::Skeleton& k = *d.skeleton;
   const Graph& g = d.graph();
@@ -44,7 +44,7 @@ struct Builder {
   /// factor * signal, in rows of (by_v, by_u).
   template <class Matrix>
   void add(Triplets& by_v, Triplets& by_u, int row, const Matrix& factor, int signal) {
-    for (const solve::Meaning& m : k.joint.meaning(signal)) {
+    for (const solve::SignalTerm& m : k.joint.meaning(signal)) {
       const Place p = place(m.signal);
       Triplets& to = p.input ? by_u : by_v;
       if (m.coefficient < 0)
@@ -163,7 +163,7 @@ void fill(Eigen::SparseMatrix<double>& m, Eigen::Index rows, Eigen::Index cols,
 }  // namespace
 
 void System::write(Descriptor& form) const {
-  Builder b{*data_};
+  DescriptorBuilder b{*data_};
   b.add_states();
   b.add_rows();
   b.add_outputs();

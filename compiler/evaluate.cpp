@@ -35,8 +35,8 @@ Error named(const Error& error, const Node& node) {
 }
 
 template <class T>
-solve::Response<T> response_of(const Node& node, const Dynamics& dynamics, const T& s,
-                               ParameterValues parameters) {
+solve::BlockResponse<T> response_of(const Node& node, const Dynamics& dynamics, const T& s,
+                                    ParameterValues parameters) {
   try {
     return response(*node.block, dynamics, s, parameters);
   } catch (const Error& error) {
@@ -108,7 +108,7 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
 
 template <class T>
 Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
-                          solve::Solution solution)
+                          solve::Refinement refinement)
     : Evaluation(Driven(), data, s, u) {
   factors_ = std::make_unique<const solve::Factors<T>>(data.skeleton->as_written().plan, rows_,
                                                        data.scale());
@@ -121,8 +121,8 @@ Evaluation<T>::Evaluation(const SystemData& data, const T& s, const solve::RowMa
           "take an s of smaller or larger modulus, or other units");
     throw no_digit_left(data, z);
   }
-  unknowns_ = solution == solve::Solution::once ? factors_->solve(rhs_)
-                                                : solve::settled(rows_, *factors_, rhs_);
+  unknowns_ = refinement == solve::Refinement::none ? factors_->solve(rhs_)
+                                                    : solve::settled(rows_, *factors_, rhs_);
 }
 
 template <class T>
@@ -135,7 +135,7 @@ solve::RowMatrix<T> Evaluation<T>::value_of(int signal, const solve::RowMatrix<T
     return result;
   }
   if (!s.active) return result;
-  const solve::Response<T>& r = *of_node_[at(s.node)];
+  const solve::BlockResponse<T>& r = *of_node_[at(s.node)];
   for (int i = data_.graph().nodes[at(s.node)].first_signal; i < signal; ++i)
     if (const Signal& in = data_.graph().signals[at(i)]; in.role == Signal::Role::input)
       result += r.X.middleCols(in.first, in.size).lazyProduct(value_of(i, unknowns, inputs));

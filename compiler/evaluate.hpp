@@ -39,7 +39,7 @@ class Evaluation {
  public:
   /// u: inputs x columns. Throws singular if s is a pole of the system or of a block.
   Evaluation(const SystemData& data, const T& s, const solve::RowMatrix<T>& u,
-             solve::Solution solution = solve::Solution::once);
+             solve::Refinement refinement = solve::Refinement::none);
   /// `coarse`: the same s and u in double, whose factors are reused. Iterative refinement with
   /// blocks and residuals in T, until the outputs have settled or their changes shrink no more: see
   /// refinement_error().
@@ -131,8 +131,8 @@ class Evaluation {
   T s_;
   solve::RowMatrix<T> u_;
   std::vector<int> first_;  ///< per signal: first row of u
-  std::map<std::pair<const Block*, const Dynamics*>, solve::Response<T>> responses_;
-  std::vector<const solve::Response<T>*> of_node_;
+  std::map<std::pair<const Block*, const Dynamics*>, solve::BlockResponse<T>> responses_;
+  std::vector<const solve::BlockResponse<T>*> of_node_;
   mutable std::once_flag resolvents_once_;  ///< made if states are forced: few need them
   mutable std::map<const Dynamics*, Resolvent<T>> resolvents_;
   solve::JointRows<T> rows_;

@@ -8,8 +8,8 @@ namespace titop::detail {
 namespace {
 
 using linalg::at;
+using solve::Refinement;
 using solve::RowMatrix;
-using solve::Solution;
 
 }  // namespace
 
@@ -25,14 +25,14 @@ solve::JointRows<double> real_rows(const Skeleton& k, const solve::Numbers& numb
 }
 
 Instant::Instant(const SystemData& data, RowMatrix<double> known, const RowMatrix<double>& more,
-                 Solution solution)
+                 Refinement refinement)
     : data_(data),
       rows_(real_rows(*data.skeleton, data.numbers)),
       known_(std::move(known)),
       rhs_(rows_.rhs(known_, data.layout().known_first)) {
   if (more.size() > 0) rhs_ += more;
-  unknowns_ = solution == Solution::once ? data.factors->solve(rhs_)
-                                         : solve::settled(rows_, *data.factors, rhs_);
+  unknowns_ = refinement == Refinement::none ? data.factors->solve(rhs_)
+                                             : solve::settled(rows_, *data.factors, rhs_);
 }
 
 void Instant::add_value(int signal, double* to) const {
@@ -148,7 +148,7 @@ Instant Instant::off_by(RowMatrix<double> off, const RowMatrix<double>& magnitud
 }
 
 Rates rates(const SystemData& d, const RowMatrix<double>& known, const RowMatrix<double>& more) {
-  const Instant now(d, known, more, Solution::settled);
+  const Instant now(d, known, more, Refinement::settled);
   return {now.xdot(), now.outputs()};
 }
 

@@ -13,7 +13,7 @@ class Instant {
   /// sides of the joint system, if it is not empty.
   Instant(const SystemData& data, solve::RowMatrix<double> known,
           const solve::RowMatrix<double>& more = {},
-          solve::Solution solution = solve::Solution::once);
+          solve::Refinement refinement = solve::Refinement::none);
 
   /// Unknowns of the joint system, in the order of Plan::first.
   const solve::RowMatrix<double>& unknowns() const { return unknowns_; }

@@ -38,7 +38,8 @@ using solve::lift;
 using solve::lifted;
 
 template <class T>
-solve::Response<T> response_in_double(const Block& block, const T& s, ParameterValues parameters) {
+solve::BlockResponse<T> response_in_double(const Block& block, const T& s,
+                                           ParameterValues parameters) {
   Block::Response r = block.response(solve::Scalar<T>::round(s), parameters);
   if constexpr (std::is_same_v<T, std::complex<double>>)
     return {std::move(r.X), std::move(r.Y)};
@@ -53,10 +54,10 @@ Error pole_of(const Block& block, const T& at_s) {
 
 /// Y = rigid + W' diag(s^2 / d) W, d = s^2 + damping s + stiffness.
 template <class T>
-solve::Response<T> modal_response(const Block& block, const Modal& m, const T& s) {
+solve::BlockResponse<T> modal_response(const Block& block, const Modal& m, const T& s) {
   const auto n = m.W.rows();
   const Dense<T> W = lifted<T>(m.W);
-  solve::Response<T> r{Dense<T>(2 * n, W.cols()), lifted<T>(m.rigid)};
+  solve::BlockResponse<T> r{Dense<T>(2 * n, W.cols()), lifted<T>(m.rigid)};
   for (Index i = 0; i < n; ++i) {
     const T d = s * s + lift<T>(m.damping(i)) * s + lift<T>(m.stiffness(i));
     if (d == T(0)) throw pole_of(block, s);
@@ -139,7 +140,7 @@ double largest_ratio(const Eigen::MatrixXd& terms, const Eigen::MatrixXd& size) 
 /// |K^-1| |K| |X| and |D| + |C| |X| + |C K^-1| |K| |X|, independent of the units of states and
 /// ports. Infinite if double has less than two digits of K^-1.
 template <class T>
-double cancels(const Dynamics& d, const T& s, const solve::Response<T>& r) {
+double cancels(const Dynamics& d, const T& s, const solve::BlockResponse<T>& r) {
   using Eigen::MatrixXcd;
   using Eigen::MatrixXd;
   const auto n = d.A.rows();
@@ -160,18 +161,18 @@ double cancels(const Dynamics& d, const T& s, const solve::Response<T>& r) {
 /// below the block's own frequencies: if T has too few digits, a finer precision is used. (100
 /// digits always suffice: 1e-88 of its terms is 0, as a notch at its frequency.)
 template <class T>
-solve::Response<T> general_response(const Block& block, const Dynamics& d, const T& s,
-                                    double enough) {
+solve::BlockResponse<T> general_response(const Block& block, const Dynamics& d, const T& s,
+                                         double enough) {
   const Resolvent<T> resolvent(d, s);
   if (resolvent.singular()) throw pole_of(block, s);
-  solve::Response<T> r{resolvent.times(lifted<T>(d.B)), lifted<T>(d.D)};
+  solve::BlockResponse<T> r{resolvent.times(lifted<T>(d.B)), lifted<T>(d.D)};
   for (Index i = 0; i < r.Y.rows(); ++i)
     for (Index j = 0; j < r.Y.cols(); ++j)
       for (Index k = 0; k < r.X.rows(); ++k) r.Y(i, j) += lift<T>(d.C(i, k)) * r.X(k, j);
   using More = typename Finer<T>::type;
   if constexpr (!std::is_void_v<More>)
     if (d.A.rows() > 0 && !(cancels(d, s, r) * solve::Scalar<T>::epsilon() <= enough)) {
-      const solve::Response<More> finer = general_response(block, d, as<More>(s), enough);
+      const solve::BlockResponse<More> finer = general_response(block, d, as<More>(s), enough);
       return {as<T>(finer.X), as<T>(finer.Y)};
     }
   return r;
@@ -257,17 +258,18 @@ void Resolvent<T>::apply_modes(Index columns, T* r) const {
 }
 
 template <class T>
-solve::Response<T> response(const Block& block, const Dynamics& d, const T& s,
-                            ParameterValues parameters) {
+solve::BlockResponse<T> response(const Block& block, const Dynamics& d, const T& s,
+                                 ParameterValues parameters) {
   if (solve::Scalar<T>::epsilon() > 1e-16) return response_in_double(block, s, parameters);
   if (d.modal) return modal_response(block, *d.modal, s);
   const double states = static_cast<double>(d.A.rows());
   return general_response(block, d, s, kTerms * states * solve::Scalar<T>::epsilon());
 }
 
-#define TITOP_INSTANTIATE(T)   \
-  template class Resolvent<T>; \
-  template solve::Response<T> response(const Block&, const Dynamics&, const T&, ParameterValues);
+#define TITOP_INSTANTIATE(T)                                                         \
+  template class Resolvent<T>;                                                       \
+  template solve::BlockResponse<T> response(const Block&, const Dynamics&, const T&, \
+                                            ParameterValues);
 TITOP_INSTANTIATE(double)
 TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
 #undef TITOP_INSTANTIATE

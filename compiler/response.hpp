@@ -37,7 +37,7 @@ class Resolvent {
 /// least; in finer arithmetic from its modes, or from its matrices with up to 100 digits, if
 /// these cancel, so that all digits of T are right. Throws singular if s is a pole of the block.
 template <class T>
-solve::Response<T> response(const Block& block, const Dynamics& dynamics, const T& s,
-                            ParameterValues parameters);
+solve::BlockResponse<T> response(const Block& block, const Dynamics& dynamics, const T& s,
+                                 ParameterValues parameters);
 
 }  // namespace titop::detail

@@ -48,9 +48,9 @@ MatrixXcd rounded(const solve::RowMatrix<T>& m) {
 using detail::unit_inputs;
 
 template <class T>
-MatrixXcd transfer_in(const detail::SystemData& d, Double s, solve::Solution solution) {
+MatrixXcd transfer_in(const detail::SystemData& d, Double s, solve::Refinement refinement) {
   return rounded<T>(
-      detail::Evaluation<T>(d, solve::Scalar<T>::from(s), unit_inputs<T>(d), solution).outputs());
+      detail::Evaluation<T>(d, solve::Scalar<T>::from(s), unit_inputs<T>(d), refinement).outputs());
 }
 
 MatrixXcd standard_transfer(const detail::SystemData& d, Double s) {
@@ -100,7 +100,7 @@ MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
   }
   const auto twice = refined<Twofold>(d, s, plain);
   if (twice.refinement_error() <= kEnough) return rounded<Twofold>(twice.outputs());
-  return transfer_in<solve::Complex50>(d, s, solve::Solution::settled);
+  return transfer_in<solve::Complex50>(d, s, solve::Refinement::settled);
 }
 
 /// In T, if double has no pivot; none if T has too few digits for it, or if the last place
@@ -110,7 +110,7 @@ std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Dou
   constexpr double kNoDigit = 0.1;  // of the outputs, by the last place of the data
   try {
     detail::Evaluation<T> point(d, solve::Scalar<T>::from(s), unit_inputs<T>(d),
-                                solve::Solution::settled);
+                                solve::Refinement::settled);
     const auto losses = point.losses();
     const double in_double =
         losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
@@ -127,7 +127,7 @@ std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Dou
 MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
   std::optional<detail::Evaluation<Double>> plain;
   try {
-    plain.emplace(d, s, unit_inputs<Double>(d), solve::Solution::settled);
+    plain.emplace(d, s, unit_inputs<Double>(d), solve::Refinement::settled);
   } catch (const Error& error) {
     if (!error.has(Code::singular)) throw;
     auto G = transfer_without_pivot<Twofold>(d, s);
@@ -149,8 +149,9 @@ MatrixXcd transfer_with(const detail::SystemData& d, Double s, Precision precisi
     case Precision::standard: return standard_transfer(d, s);
     case Precision::refined: return refined_transfer<Extended>(d, s);
     case Precision::twofold: return refined_transfer<Twofold>(d, s);
-    case Precision::extended: return transfer_in<Extended>(d, s, solve::Solution::once);
-    case Precision::digits50: return transfer_in<solve::Complex50>(d, s, solve::Solution::settled);
+    case Precision::extended: return transfer_in<Extended>(d, s, solve::Refinement::none);
+    case Precision::digits50:
+      return transfer_in<solve::Complex50>(d, s, solve::Refinement::settled);
     case Precision::as_needed: return transfer_as_needed(d, s);
   }
   return {};

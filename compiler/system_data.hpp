@@ -33,7 +33,7 @@ struct Dependents {
   std::vector<int> rows;     ///< their row groups in the joint system
   std::vector<int> loops;    ///< Stage::loops with one of these rows
 };
-std::vector<Dependents> find_dependents(const Stage& stage, const solve::Joint& joint);
+std::vector<Dependents> find_dependents(const Stage& stage, const solve::JointSystem& joint);
 
 struct Writing;
 
@@ -42,8 +42,8 @@ struct Writing;
 struct Skeleton {
   Stage stage;  ///< after the passes
   Options options;
-  solve::Joint joint;                         ///< of the state space: regular
-  std::optional<solve::Joint> before_reduce;  ///< as written, if that is singular there
+  solve::JointSystem joint;                         ///< of the state space: regular
+  std::optional<solve::JointSystem> before_reduce;  ///< as written, if that is singular there
   Layout layout;
   std::vector<Dependents> dependents;  ///< per parameter
 
@@ -51,7 +51,7 @@ struct Skeleton {
   mutable std::shared_ptr<const Writing> writing;  ///< see writing_of
 
   /// The equations as written: for transfers, which need no state space.
-  const solve::Joint& as_written() const { return before_reduce ? *before_reduce : joint; }
+  const solve::JointSystem& as_written() const { return before_reduce ? *before_reduce : joint; }
 };
 
 /// Rounding error of the dense model, and its place: see Certificate::dense_error and below.

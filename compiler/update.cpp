@@ -23,7 +23,7 @@ void sort_unique(std::vector<int>& list) {
 
 /// The parameters on which each coefficient depends, by its index.
 std::vector<const std::vector<int>*> parameters_of_coefficients(const Stage& stage,
-                                                                const solve::Joint& joint) {
+                                                                const solve::JointSystem& joint) {
   std::vector<const std::vector<int>*> result;
   const auto take = [&](int first, std::size_t terms, const Origin& origin) {
     result.resize(std::max(result.size(), at(first) + terms), nullptr);
@@ -40,7 +40,7 @@ std::vector<const std::vector<int>*> parameters_of_coefficients(const Stage& sta
 
 }  // namespace
 
-std::vector<Dependents> find_dependents(const Stage& stage, const solve::Joint& joint) {
+std::vector<Dependents> find_dependents(const Stage& stage, const solve::JointSystem& joint) {
   const Graph& g = stage.graph;
   std::vector<Dependents> result(g.parameters.size());
   if (result.empty()) return result;

@@ -47,12 +47,12 @@ Groups groups(const SystemData& d) {
 }
 
 /// Columns of [xdot; y] of the model, and their rounding.
-struct Response {
+struct ModelColumns {
   MatrixXd value, rounding;
 };
 
-Response by_factors(const SystemData& d, const solve::RowMatrix<double>& x,
-                    const solve::RowMatrix<double>& u) {
+ModelColumns by_factors(const SystemData& d, const solve::RowMatrix<double>& x,
+                        const solve::RowMatrix<double>& u) {
   const solve::RowMatrix<double> all = d.states.expanded(x, u);
   solve::RowMatrix<double> known(all.rows() + u.rows(), u.cols());
   known << all, u;
@@ -83,7 +83,7 @@ MatrixXd product(const StateSpace& of, const MatrixXd& x, const MatrixXd& u) {
 
 /// The largest |off| over the terms whose rounding is known; in groups at the level of `noise`,
 /// where it is known, over the larger of rounding and noise.
-double beside_terms(const MatrixXd& off, const Response& r, const Groups& groups,
+double beside_terms(const MatrixXd& off, const ModelColumns& r, const Groups& groups,
                     const MatrixXd& noise = {}) {
   if (!off.allFinite() || !r.rounding.allFinite() || !noise.allFinite()) return kInfinity;
   const auto around = [&r](Index first, Index count, Index j) {
@@ -114,7 +114,7 @@ double dense_difference(const SystemData& d, const StateSpace& m) {
   SteadyRandom random;
   for (Index i = 0; i < n; ++i) x(i, 0) = random.next();
   for (Index i = 0; i < u.rows(); ++i) u(i, 1) = random.next();
-  Response r = by_factors(d, x, u);
+  ModelColumns r = by_factors(d, x, u);
   MatrixXd off = r.value, of_model = MatrixXd::Zero(off.rows(), kAlone);
   const auto take = [&](const MatrixXd& matrix, Index first, Index column, const auto& factors) {
     for (Index j = 0; j < matrix.cols(); ++j) {  // once through memory
@@ -243,7 +243,7 @@ solve::RowMatrix<T> tried_inputs(const StateSpace& m, const std::vector<int>& un
 }
 
 /// Sizes of outputs of one unit, by columns of the inputs.
-struct Sizes {
+struct OutputSizes {
   MatrixXd value;     ///< by the factors
   MatrixXd rounding;  ///< of the factors
 };
@@ -253,7 +253,7 @@ struct Sample {
   T s;
   bool below;             ///< all modes that show
   solve::RowMatrix<T> y;  ///< by the factors
-  Sizes sizes;
+  OutputSizes sizes;
   MatrixXd off;
 };
 
@@ -345,7 +345,7 @@ void bound_by_answer(Sample& p, const StateSpace& m, const solve::RowMatrix<T>& 
 /// The largest error relative to the output's own size. An output at rounding level (0 by symmetry)
 /// is measured by its neighbours or its cancelling terms, also independent of units. So is an
 /// output below `of_neighbours` of those in its row and column.
-DenseError::Worst relative(const MatrixXd& off, const Sizes& sizes, double of_neighbours) {
+DenseError::Worst relative(const MatrixXd& off, const OutputSizes& sizes, double of_neighbours) {
   const MatrixXd& size = sizes.value;
   if (!off.allFinite() || !size.allFinite()) return {kInfinity};
   const VectorXd of_row = size.rowwise().maxCoeff(), of_column = size.colwise().maxCoeff();
@@ -368,8 +368,8 @@ DenseError::Worst relative(const MatrixXd& off, const Sizes& sizes, double of_ne
 /// the same s counts.
 DenseError worst_of(const std::vector<Sample>& samples) {
   DenseError worst;
-  Sizes largest{MatrixXd::Zero(samples.front().off.rows(), samples.front().off.cols()),
-                MatrixXd::Zero(samples.front().off.rows(), samples.front().off.cols())};
+  OutputSizes largest{MatrixXd::Zero(samples.front().off.rows(), samples.front().off.cols()),
+                      MatrixXd::Zero(samples.front().off.rows(), samples.front().off.cols())};
   const bool all = std::ranges::all_of(samples, &Sample::below);
   const auto counts = [all](const Sample& p) { return all || !p.below; };
   for (const Sample& p : samples)

@@ -382,9 +382,9 @@ double Surroundings::of_variable(int variable, Eigen::Index entry) {
 }
 
 double Surroundings::size(int signal, Eigen::Index entry) {
-  const solve::Joint& joint = d_.skeleton->as_written();
+  const solve::JointSystem& joint = d_.skeleton->as_written();
   double result = 0;
-  for (const solve::Meaning& m : joint.meaning(signal)) {
+  for (const solve::SignalTerm& m : joint.meaning(signal)) {
     const int v = joint.variable_of[at(m.signal)];
     if (v < 0) continue;
     if (m.coefficient < 0) {

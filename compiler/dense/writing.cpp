@@ -12,7 +12,7 @@ using Eigen::Index;
 using linalg::at;
 using solve::Piece;
 
-struct Builder {
+struct WritingBuilder {
   Writing& w;
   const SystemData& d;
   const Skeleton& k = *d.skeleton;
@@ -153,7 +153,7 @@ struct Builder {
 
   /// `to` is the signal until coefficients have their place.
   void read(Writing::Target& t, int signal, Writing::Term term) const {
-    for (const solve::Meaning& m : k.joint.meaning(signal)) {
+    for (const solve::SignalTerm& m : k.joint.meaning(signal)) {
       term.times = m.coefficient;
       term.known = k.joint.variable_of[at(m.signal)] < 0;
       term.to = m.signal;
@@ -191,7 +191,7 @@ struct Builder {
 }  // namespace
 
 Writing::Writing(const SystemData& data) {
-  Builder builder{*this, data};
+  WritingBuilder builder{*this, data};
   builder.find_sources();
   builder.find_batches();
   builder.find_targets();

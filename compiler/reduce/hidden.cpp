@@ -9,14 +9,14 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using linalg::at;
-using solve::Kept;
+using solve::CancellingSum;
 
 constexpr double kKeeps = 1e-3;    ///< of the largest: a choice made before may cost three digits
 constexpr double kTie = 1 + 1e-9;  ///< less is rounding: the first is taken
 
 /// Sums of many numbers, entry by entry.
 struct KeptRow {
-  std::vector<Kept> entries;
+  std::vector<CancellingSum> entries;
 
   explicit KeptRow(Index n) : entries(at(n)) {}
   void add(double factor, const RowVectorXd& row) {
@@ -78,7 +78,7 @@ Followers::Followers(const Skeleton& k, const SystemData& d)
 
 /// Writes a constraint in independent states.
 void Followers::substitute(Hidden& c) const {
-  std::map<int, Kept> g;
+  std::map<int, CancellingSum> g;
   std::vector<KeptRow> h;
   for (std::size_t j = 0; j < c.h.size(); ++j) grown(h, j, inputs_).add(1, c.h[j]);
   for (const auto& [i, share] : c.g) {
@@ -133,7 +133,7 @@ void Followers::follow_through(int other, int state, const Follower& f) {
   Follower& old = of_state_[other];
   const double factor = old.of.extract(state).mapped();
   for (const auto& [of, share] : f.of) {
-    Kept sum{old.of[of], std::abs(old.of[of])};
+    CancellingSum sum{old.of[of], std::abs(old.of[of])};
     sum.add(factor * share, std::abs(factor * share));
     read_by_[of].insert(other);
     if ((old.of[of] = sum.cleaned()) == 0) old.of.erase(of), read_by_[of].erase(other);

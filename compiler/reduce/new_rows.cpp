@@ -10,7 +10,7 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 using linalg::at;
-using solve::Joint;
+using solve::JointSystem;
 using solve::Piece;
 using solve::RowMatrix;
 
@@ -29,8 +29,8 @@ NewRows::NewRows(const Skeleton& k, SystemData& d)
                 i);
 }
 
-Joint NewRows::joint() {
-  Joint j = old_;
+JointSystem NewRows::joint() {
+  JointSystem j = old_;
   j.pieces.clear();
   j.piece_begin = {0};
   solve::Structure structure;
@@ -109,7 +109,7 @@ void NewRows::differentiate(const Hidden& c, const VectorXd& place, std::vector<
 /// Adds matrix * signal, with the signal's meaning substituted.
 void NewRows::add(std::vector<Piece>& to, std::vector<int>& over, const MatrixXd& matrix,
                   int signal) {
-  for (const solve::Meaning& m : old_.meaning(signal)) {
+  for (const solve::SignalTerm& m : old_.meaning(signal)) {
     const int v = old_.variable_of[at(m.signal)];
     if (v >= 0) over.push_back(v);
     put(to, {.entry = v, .signal = m.signal},

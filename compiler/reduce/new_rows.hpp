@@ -27,7 +27,7 @@ class NewRows {
   void hold(const Held& h) { of_group(h.row).held.push_back(&h); }
 
   /// The system with them: the same variables and row groups, with a separate plan.
-  solve::Joint joint();
+  solve::JointSystem joint();
 
  private:
   struct Group {
@@ -46,7 +46,7 @@ class NewRows {
 
   const Skeleton& k_;
   SystemData& d_;
-  const solve::Joint& old_;
+  const solve::JointSystem& old_;
   RowGroups groups_;
   std::vector<int> node_of_;  ///< per state
   std::map<int, Group> by_group_;

@@ -19,7 +19,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using linalg::at;
-using solve::Joint;
+using solve::JointSystem;
 using solve::Piece;
 using solve::RowMatrix;
 
@@ -52,7 +52,7 @@ class Reducer {
     constraints_.insert(constraints_.end(), found.begin(), found.end());
     NewRows rows(k_, d_);
     for (const Hidden& c : found) rows.derivative(c);
-    Joint joint = rows.joint();
+    JointSystem joint = rows.joint();
     move_forcing(joint, found);
     k_.joint = std::move(joint);
     factor();
@@ -187,7 +187,7 @@ class Reducer {
       own(place) = value;
     }
     Hidden c{{}, {RowVectorXd::Zero(std::ssize(d_.layout().inputs))}};
-    std::map<int, solve::Kept> sum;  // by place in [x; u]
+    std::map<int, solve::CancellingSum> sum;  // by place in [x; u]
     for (const auto& [r, own] : of_group) {
       c.rows.push_back(k_.joint.rows[at(r)]);
       for (const Piece& p : k_.joint.row(r)) {
@@ -219,7 +219,7 @@ class Reducer {
   }
 
   /// Right-hand sides by u', u'' ...: those of the old rows, in the new order, and the new ones.
-  void move_forcing(const Joint& joint, const std::vector<Hidden>& found) {
+  void move_forcing(const JointSystem& joint, const std::vector<Hidden>& found) {
     const auto inputs = static_cast<Index>(d_.layout().inputs.size());
     std::vector<RowMatrix<double>> moved(forcing_.size(),
                                          RowMatrix<double>::Zero(joint.plan->unknowns, inputs));

@@ -44,7 +44,7 @@ class Motions {
   /// Value of a signal.
   KeptMatrix value(int signal, const KeptMatrix& z) const {
     KeptMatrix result(g_.signals[at(signal)].size, z.value.cols());
-    for (const solve::Meaning& m : k_.joint.meaning(signal)) {
+    for (const solve::SignalTerm& m : k_.joint.meaning(signal)) {
       const int v = k_.joint.variable_of[at(m.signal)];
       if (v < 0) continue;  // a state or an input
       const Index first = k_.joint.plan->first[at(v)], size = g_.signals[at(m.signal)].size;
@@ -144,7 +144,7 @@ class Showing {
     if (!s.active || s.channel < 0 || s.quantity != Quantity::acceleration) return false;
     const auto meaning = k_.joint.meaning(signal);
     return !meaning.empty() &&
-           std::all_of(meaning.begin(), meaning.end(), [&](const solve::Meaning& m) {
+           std::all_of(meaning.begin(), meaning.end(), [&](const solve::SignalTerm& m) {
              return k_.joint.variable_of[at(m.signal)] >= 0;
            });
   }

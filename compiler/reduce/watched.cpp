@@ -31,7 +31,7 @@ struct Readers {
   /// The same for c times the meaning of a signal.
   template <class Visit>
   void of_signal(const MatrixXd& c, int signal, Visit visit) const {
-    for (const solve::Meaning& m : k.joint.meaning(signal))
+    for (const solve::SignalTerm& m : k.joint.meaning(signal))
       if (is_state(m.signal))
         entries(
             m.coefficient < 0 ? c : solve::product(c, *d.numbers.coefficients[at(m.coefficient)]),

@@ -129,7 +129,7 @@ class Sizes {
     const VectorXd all = d_.states.expanded(states, u);
     solve::RowMatrix<double> known(all.size() + u.size(), 1);
     known << all, u;
-    return detail::Instant(d_, std::move(known), {}, solve::Solution::settled);
+    return detail::Instant(d_, std::move(known), {}, solve::Refinement::settled);
   }
 
   const detail::SystemData& d_;

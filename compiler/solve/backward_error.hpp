@@ -21,7 +21,7 @@ double backward_error(const Plan& plan, const RowMatrix<T>& residual,
 double backward_error_of_rounding(const Plan& plan, double epsilon);
 
 /// Solution by the factors alone, if the caller measures its losses; or refined.
-enum class Solution { once, settled };
+enum class Refinement { none, settled };
 
 /// Solves, and refines in the same arithmetic while the backward error is above rounding and falls
 /// to half of its last value or less, five times at most (as LAPACK's xGERFS does). The backward

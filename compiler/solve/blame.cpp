@@ -180,7 +180,7 @@ Mistake blame(const Stage& stage, const std::vector<std::shared_ptr<const Dynami
   return m;
 }
 
-Mistake overflow(const Stage& stage, const Joint& joint, const Health& health) {
+Mistake overflow(const Stage& stage, const JointSystem& joint, const Health& health) {
   std::string names;
   for (const int v : health.singular_variables)
     if (const int s = joint.variables[at(v)]; s >= 0)

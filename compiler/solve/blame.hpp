@@ -13,7 +13,7 @@ Mistake blame(const Stage& stage, const std::vector<std::shared_ptr<const Dynami
               const std::vector<int>& rows, const std::vector<int>& inputs);
 
 /// Names the ports whose numbers have overflowed (Health::finite).
-Mistake overflow(const Stage& stage, const Joint& joint, const Health& health);
+Mistake overflow(const Stage& stage, const JointSystem& joint, const Health& health);
 
 /// The reason why no acceleration is free in these rows (of Stage::rows), as details and hint of an
 /// `improper` mistake: the equation that imposes a force on a massless point, and why.

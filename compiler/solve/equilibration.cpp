@@ -14,23 +14,23 @@ using linalg::at;
 constexpr int kSweeps = 5;
 
 /// The largest entry of a scalar row in one unit.
-struct Entry {
+struct LargestEntry {
   int unit;
   float exponent;  ///< of two
 };
 
 /// The matrix by scalar rows and units.
-struct Sizes {
+struct RowSizes {
   std::vector<int> unit_of;  ///< unknown -> unit
   int units = 0;
-  std::vector<Entry> entries;
+  std::vector<LargestEntry> entries;
   std::vector<std::size_t> begin = {0};  ///< per scalar row, and the end
 };
 
 template <class T>
-class Reader {
+class SizeReader {
  public:
-  Reader(const Plan& plan, const Rows<T>& rows) : plan_(plan), rows_(rows) {
+  SizeReader(const Plan& plan, const Rows<T>& rows) : plan_(plan), rows_(rows) {
     const Structure& s = plan.structure;
     sizes_.unit_of.resize(at(plan.unknowns));
     for (std::size_t v = 0; v < plan.first.size(); ++v)
@@ -41,7 +41,7 @@ class Reader {
     for (int r = 0; r < static_cast<int>(s.row_size.size()); ++r) read(r);
   }
 
-  Sizes take() { return std::move(sizes_); }
+  RowSizes take() { return std::move(sizes_); }
 
  private:
   void read(int r) {
@@ -73,13 +73,13 @@ class Reader {
 
   const Plan& plan_;
   const Rows<T>& rows_;
-  Sizes sizes_;
+  RowSizes sizes_;
   std::vector<int> columns_;
   std::vector<T> group_;
 };
 
 /// One exponent per unit.
-std::vector<float> balanced(const Sizes& sizes) {
+std::vector<float> balanced(const RowSizes& sizes) {
   constexpr float kNone = -1e30F;
   std::vector<float> of_units(at(sizes.units), 0), most(of_units.size());
   std::vector<float> of_rows(sizes.begin.size() - 1, 0);
@@ -88,7 +88,7 @@ std::vector<float> balanced(const Sizes& sizes) {
     for (std::size_t i = 0; i < of_rows.size(); ++i) {
       float largest = kNone;
       for (std::size_t e = sizes.begin[i]; e < sizes.begin[i + 1]; ++e) {
-        const Entry& entry = sizes.entries[e];
+        const LargestEntry& entry = sizes.entries[e];
         const float own = entry.exponent + of_rows[i] + of_units[at(entry.unit)];
         largest = std::max(largest, own);
         most[at(entry.unit)] = std::max(most[at(entry.unit)], own);
@@ -105,7 +105,7 @@ std::vector<float> balanced(const Sizes& sizes) {
 
 template <class T>
 std::vector<std::int16_t> equilibration(const Plan& plan, const Rows<T>& rows) {
-  const Sizes sizes = Reader<T>(plan, rows).take();
+  const RowSizes sizes = SizeReader<T>(plan, rows).take();
   const std::vector<float> of_units = balanced(sizes);
   std::vector<std::int16_t> result;
   result.reserve(at(plan.unknowns));

@@ -36,11 +36,11 @@ std::vector<int> written_out_by(const Stage& stage) {
   return by;
 }
 
-struct Builder {
+struct JointBuilder {
   const Stage& stage;
   std::vector<Coefficient>& coefficients;
   const Graph& g = stage.graph;
-  Joint j = {};
+  JointSystem j = {};
   Structure structure = {};
   std::vector<int> by = written_out_by(stage);
   std::vector<int> over = {};  ///< variables of the row being made
@@ -88,7 +88,7 @@ struct Builder {
 
   /// Adds piece * signal, with the signal's meaning substituted.
   void add(Piece piece, int signal) {
-    for (const Meaning& m : j.meaning(signal)) {
+    for (const SignalTerm& m : j.meaning(signal)) {
       const Signal& signal_of = g.signals[at(m.signal)];
       piece.signal = m.signal;
       piece.size = signal_of.size;
@@ -105,7 +105,7 @@ struct Builder {
     const int node = g.signals[at(state)].node;
     for (int i = g.nodes[at(node)].first_signal; i < state; ++i)
       if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input && u.active)
-        for (const Meaning& m : j.meaning(i))
+        for (const SignalTerm& m : j.meaning(i))
           if (const int v = j.variable_of[at(m.signal)]; v >= 0) over.push_back(v);
   }
 
@@ -241,8 +241,8 @@ Coefficient coefficient_of(const Eigen::MatrixXd& c) {
   return std::make_shared<const RowMatrix<double>>(c);
 }
 
-Joint joint(const Stage& stage, std::vector<Coefficient>& coefficients) {
-  Builder b{stage, coefficients};
+JointSystem joint(const Stage& stage, std::vector<Coefficient>& coefficients) {
+  JointBuilder b{stage, coefficients};
   b.take_coefficients();
   b.choose_variables();
   b.find_meanings();

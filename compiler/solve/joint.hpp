@@ -13,7 +13,7 @@ namespace titop::solve {
 /// Coefficients of terms, row-major; shared between systems that differ elsewhere.
 using Coefficient = std::shared_ptr<const RowMatrix<double>>;
 
-/// Data that depend on parameters: one entry per node, and one per term (see Joint).
+/// Data that depend on parameters: one entry per node, and one per term (see JointSystem).
 struct Numbers {
   std::vector<double> parameters;
   std::vector<std::shared_ptr<const Dynamics>> blocks;
@@ -39,26 +39,28 @@ struct Piece {
 };
 
 /// A signal in terms of variables, states and inputs.
-struct Meaning {
+struct SignalTerm {
   int signal = -1;
   int coefficient = -1;  ///< -1: identity
 };
 
 /// Data that do not depend on numbers: variables, the meaning of every signal in terms of them,
 /// rows, plan.
-struct Joint {
+struct JointSystem {
   std::vector<int> variables;    ///< signal of each variable; -1: a partial sum of a long row
   std::vector<int> variable_of;  ///< signal -> variable, -1 if written out or known
   std::vector<int> meaning_begin = {0};
-  std::vector<Meaning> meanings;  ///< of all signals, signal by signal
-  std::vector<int> rows;          ///< Stage row of each row group
+  std::vector<SignalTerm> meanings;  ///< of all signals, signal by signal
+  std::vector<int> rows;             ///< Stage row of each row group
   std::vector<int> piece_begin = {0};
   std::vector<Piece> pieces;              ///< of all row groups
   std::vector<int> equation_coefficient;  ///< equation -> coefficient of its first term
   std::vector<int> output_coefficient;    ///< output -> the same
   std::shared_ptr<const Plan> plan;
 
-  std::span<const Meaning> meaning(int signal) const { return of(signal, meanings, meaning_begin); }
+  std::span<const SignalTerm> meaning(int signal) const {
+    return of(signal, meanings, meaning_begin);
+  }
   std::span<const Piece> row(int r) const { return of(r, pieces, piece_begin); }
 
  private:
@@ -73,7 +75,7 @@ struct Joint {
 /// An equation for a whole signal whose terms are no targets is substituted (its pivot is 1 and
 /// needs no search); all other signals remain unknowns: substituting further would be tearing.
 /// Appends the coefficients of all terms to `coefficients`. O(terms) and the cost of the plan.
-Joint joint(const Stage& stage, std::vector<Coefficient>& coefficients);
+JointSystem joint(const Stage& stage, std::vector<Coefficient>& coefficients);
 
 /// The same row-major; 1 and -1 are shared.
 Coefficient coefficient_of(const Eigen::MatrixXd& c);

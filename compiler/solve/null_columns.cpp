@@ -13,7 +13,7 @@ class Column {
  public:
   explicit Column(const Factors<double>& factors) : f_(factors), plan_(factors.plan()) {}
 
-  const std::vector<Kept>& solve(int row, double value) {
+  const std::vector<CancellingSum>& solve(int row, double value) {
     row_ = row, value_ = value;
     z_.assign(at(plan_.unknowns), {});
     carried_.assign(at(plan_.carried), {});
@@ -23,13 +23,13 @@ class Column {
   }
 
  private:
-  std::vector<Kept> assembled(const Front& f) const {
-    std::vector<Kept> rows;
+  std::vector<CancellingSum> assembled(const Front& f) const {
+    std::vector<CancellingSum> rows;
     rows.reserve(at(f.row_count));
     for (const int r : plan_.list(f.rows))
       for (int i = 0; i < plan_.structure.row_size[at(r)]; ++i)
-        rows.push_back(plan_.row_first[at(r)] + i == row_ ? Kept{value_, std::abs(value_)}
-                                                          : Kept{});
+        rows.push_back(plan_.row_first[at(r)] + i == row_ ? CancellingSum{value_, std::abs(value_)}
+                                                          : CancellingSum{});
     for (const int c : plan_.list(f.children)) {
       const Front& child = plan_.fronts[at(c)];
       for (int i = 0; i < child.left_over(); ++i)
@@ -41,8 +41,8 @@ class Column {
   void upward(std::size_t index) {
     const Front& f = plan_.fronts[index];
     const Factors<double>::Made& made = f_.made(index);
-    const std::vector<Kept> rows = assembled(f);
-    std::vector<Kept> b(rows.size());
+    const std::vector<CancellingSum> rows = assembled(f);
+    std::vector<CancellingSum> b(rows.size());
     for (std::size_t i = 0; i < b.size(); ++i) b[i] = rows[at(made.order[i])];
     const std::ptrdiff_t n = f.columns();
     for (int i = 0; i < f.row_count; ++i) {
@@ -60,7 +60,7 @@ class Column {
     const double* lu = f_.made(index).lu.data();
     const std::ptrdiff_t n = f.columns();
     for (int i = f.pivot_count - 1; i >= 0; --i) {
-      Kept& own = z_[at(f.first_unknown + i)];
+      CancellingSum& own = z_[at(f.first_unknown + i)];
       int column = f.pivot_count;
       for (const int v : plan_.list(f.border))
         for (int k = 0; k < plan_.structure.variable_size[at(v)]; ++k, ++column)
@@ -72,7 +72,7 @@ class Column {
     }
   }
 
-  static void pass(const Kept& from, double factor, Kept& to) {
+  static void pass(const CancellingSum& from, double factor, CancellingSum& to) {
     to.add(-factor * from.value, std::abs(factor) * from.size);
   }
 
@@ -80,7 +80,7 @@ class Column {
   const Plan& plan_;
   int row_ = 0;
   double value_ = 0;
-  std::vector<Kept> z_, carried_;
+  std::vector<CancellingSum> z_, carried_;
 };
 
 }  // namespace
@@ -92,14 +92,14 @@ KeptMatrix null_columns(const Factors<double>& patched) {
   const auto m = static_cast<int>(patches.size());
   std::vector<int> patch_at(at(patched.plan().unknowns), -1);
   for (int i = 0; i < m; ++i) patch_at[at(patches[at(i)].unknown)] = i;
-  std::vector<std::vector<std::pair<int, Kept>>> Z(at(m));
+  std::vector<std::vector<std::pair<int, CancellingSum>>> Z(at(m));
   SparseRows M(at(m));  // transposed
   Column column(patched);
   for (int j = 0; j < m; ++j) {
-    const std::vector<Kept>& z = column.solve(patches[at(j)].row, patches[at(j)].value);
-    std::map<int, Kept> row{{j, {1, 1}}};
+    const std::vector<CancellingSum>& z = column.solve(patches[at(j)].row, patches[at(j)].value);
+    std::map<int, CancellingSum> row{{j, {1, 1}}};
     for (int r = 0; r < patched.plan().unknowns; ++r) {
-      const Kept& k = z[at(r)];
+      const CancellingSum& k = z[at(r)];
       if (k.size == 0) continue;
       Z[at(j)].emplace_back(r, k);
       if (const int i = patch_at[at(r)]; i >= 0) row[i].add(-k.value, k.size);
@@ -110,7 +110,7 @@ KeptMatrix null_columns(const Factors<double>& patched) {
   const NullRows small = left_null(std::move(M));
   KeptMatrix result(patched.plan().unknowns, std::ssize(small.y));
   for (Index k = 0; k < result.value.cols(); ++k) {
-    std::map<int, Kept> sums;
+    std::map<int, CancellingSum> sums;
     for (const auto& [j, factor] : small.y[at(k)])
       for (const auto& [r, z] : Z[at(j)]) sums[r].add(factor * z.value, std::abs(factor) * z.size);
     // At the patched unknowns z is q itself.

@@ -11,8 +11,8 @@ struct KeptMatrix {
   KeptMatrix() = default;
   KeptMatrix(Eigen::Index rows, Eigen::Index columns)
       : value(Eigen::MatrixXd::Zero(rows, columns)), size(value) {}
-  Kept at(Eigen::Index i, Eigen::Index j) const { return {value(i, j), size(i, j)}; }
-  void set(Eigen::Index i, Eigen::Index j, const Kept& k) {
+  CancellingSum at(Eigen::Index i, Eigen::Index j) const { return {value(i, j), size(i, j)}; }
+  void set(Eigen::Index i, Eigen::Index j, const CancellingSum& k) {
     value(i, j) = k.value, size(i, j) = k.size;
   }
 };

@@ -49,7 +49,7 @@ class Transposed {
     const double* lu = f_.made(at(index)).lu.data();
     const std::ptrdiff_t n = f.columns();
     for (int k = 0; k < f.pivot_count; ++k) {
-      Kept& own = c_[at(f.first_unknown + k)];
+      CancellingSum& own = c_[at(f.first_unknown + k)];
       const double pivot = lu[k * n + k];
       own = settled({own.value / pivot, own.size / std::abs(pivot)});
       if (own.size == 0) continue;
@@ -71,7 +71,7 @@ class Transposed {
     const Front& f = plan_.fronts[at(index)];
     const Factors<double>::Made& made = f_.made(at(index));
     const std::ptrdiff_t n = f.columns();
-    std::vector<Kept> b(at(f.row_count));
+    std::vector<CancellingSum> b(at(f.row_count));
     for (int i = 0; i < f.row_count; ++i)
       b[at(i)] =
           std::exchange(i < f.pivot_count ? c_[at(f.first_unknown + i)]
@@ -81,7 +81,7 @@ class Transposed {
       for (int i = k + 1; i < f.row_count; ++i) pass(b[at(i)], made.lu[at(i * n + k)], b[at(k)]);
       b[at(k)] = settled(b[at(k)]);
     }
-    std::vector<Kept> assembled(b.size());
+    std::vector<CancellingSum> assembled(b.size());
     for (std::size_t i = 0; i < b.size(); ++i) assembled[at(made.order[i])] = b[i];
     int place = 0;
     for (const int r : plan_.list(f.rows))
@@ -91,20 +91,20 @@ class Transposed {
     for (const int c : plan_.list(f.children)) {
       const Front& child = plan_.fronts[at(c)];
       for (int i = 0; i < child.left_over(); ++i) {
-        const Kept& k = carried_[at(child.first_carried + i)] = assembled[at(place++)];
+        const CancellingSum& k = carried_[at(child.first_carried + i)] = assembled[at(place++)];
         if (k.size != 0) fronts.insert(c);
       }
     }
   }
 
-  static void pass(const Kept& from, double factor, Kept& to) {
+  static void pass(const CancellingSum& from, double factor, CancellingSum& to) {
     to.add(-factor * from.value, std::abs(factor) * from.size);
   }
 
   const Factors<double>& f_;
   const Plan& plan_;
-  std::vector<int> front_of_;      ///< per unknown
-  std::vector<Kept> c_, carried_;  ///< 0 between solutions
+  std::vector<int> front_of_;               ///< per unknown
+  std::vector<CancellingSum> c_, carried_;  ///< 0 between solutions
   SparseRow x_;
   std::size_t fronts_ = 0;
 };
@@ -146,7 +146,7 @@ class LeftNull {
 
   void take_out(int row, int column) {
     std::erase(rows_, row);
-    const Kept own = M_[at(row)].at(column);
+    const CancellingSum own = M_[at(row)].at(column);
     M_[at(row)].erase(column);
     for (const int i : rows_) {
       const auto found = M_[at(i)].find(column);
@@ -155,7 +155,7 @@ class LeftNull {
       M_[at(i)].erase(found);
       if (l == 0) continue;
       for (const auto& [j, k] : M_[at(row)]) {
-        Kept& sum = M_[at(i)][j];
+        CancellingSum& sum = M_[at(i)][j];
         sum.add(-l * k.value, std::abs(l) * k.size);
         sum.value = sum.cleaned();
       }
@@ -170,7 +170,7 @@ class LeftNull {
 
 /// p' Y; sums that cancel are 0.
 SparseRow combined(const SparseRow& p, const std::vector<SparseRow>& Y) {
-  std::map<int, Kept> sums;
+  std::map<int, CancellingSum> sums;
   for (const auto& [i, factor] : p)
     for (const auto& [place, value] : Y[at(i)])
       sums[place].add(factor * value, std::abs(factor * value));
@@ -196,7 +196,7 @@ NullRows null_rows(const Factors<double>& patched) {
   Transposed transposed(patched);
   for (int i = 0; i < m; ++i) {
     Y.push_back(transposed.solve(patches[at(i)].unknown, patches[at(i)].value));
-    std::map<int, Kept> row{{i, {1, 1}}};
+    std::map<int, CancellingSum> row{{i, {1, 1}}};
     for (const auto& [place, y] : Y.back())
       if (const int j = patch_at[at(place)]; j >= 0) row[j].add(-y, std::abs(y));
     for (const auto& [j, k] : row)

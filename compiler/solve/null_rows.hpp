@@ -12,7 +12,7 @@ namespace titop::solve {
 constexpr double kCancelled = 1e-11;
 
 /// Sums of numbers that may cancel, each with the size of its terms.
-struct Kept {
+struct CancellingSum {
   double value = 0, size = 0;
 
   void add(double term, double term_size) { value += term, size += term_size; }
@@ -22,7 +22,7 @@ struct Kept {
 
 /// A number for further sums: its size becomes that of its value unless much has cancelled, so that
 /// ordinary losses do not accumulate along a long chain.
-inline Kept settled(const Kept& k) {
+inline CancellingSum settled(const CancellingSum& k) {
   const double value = k.cleaned();
   return {value, std::abs(value) > 1e-4 * k.size ? std::abs(value) : k.size};
 }
@@ -31,7 +31,7 @@ inline Kept settled(const Kept& k) {
 using SparseRow = std::vector<std::pair<int, double>>;
 
 /// Rows by their entries; others are 0.
-using SparseRows = std::vector<std::map<int, Kept>>;
+using SparseRows = std::vector<std::map<int, CancellingSum>>;
 
 /// Rows y (places: scalar rows, in the order of Plan::row_first) with y L = 0, as many as the
 /// rank deficiency of L, from factors with patches in place of its missing pivots. Every y is one

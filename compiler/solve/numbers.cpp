@@ -87,7 +87,7 @@ template <class T>
 void JointRows<T>::add_state(const Piece& p, int r, T* to, std::ptrdiff_t stride,
                              const int* column) const {
   const auto variables = joint_.plan->structure.row(r);
-  by_inputs(p, [&](const Dense<T>& m, const Meaning& meaning) {
+  by_inputs(p, [&](const Dense<T>& m, const SignalTerm& meaning) {
     const int v = joint_.variable_of[at(meaning.signal)];
     if (v < 0) return;
     const auto entry = std::lower_bound(variables.begin(), variables.end(), v) - variables.begin();
@@ -118,7 +118,7 @@ void JointRows<T>::subtract_known(const Piece& p, const RowMatrix<T>& known,
   const auto value = [&](int signal) { return known.data() + first[at(signal)] * m; };
   if (written_out(p) && p.of == Piece::Left::state) return;  // part of Y(s)
   if (written_out(p)) {
-    by_inputs(p, [&](const Dense<T>& by_u, const Meaning& meaning) {
+    by_inputs(p, [&](const Dense<T>& by_u, const SignalTerm& meaning) {
       if (joint_.variable_of[at(meaning.signal)] >= 0) return;
       const Dense<T> c =
           meaning.coefficient < 0
@@ -148,7 +148,7 @@ template <class T>
 void JointRows<T>::add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
                              std::span<const int> first, T* to) const {
   const std::ptrdiff_t m = known.cols(), size = graph_.signals[at(signal)].size * m;
-  for (const Meaning& meaning : joint_.meaning(signal)) {
+  for (const SignalTerm& meaning : joint_.meaning(signal)) {
     const int v = joint_.variable_of[at(meaning.signal)];
     const T* value = v >= 0 ? unknowns.data() + joint_.plan->first[at(v)] * m
                             : known.data() + first[at(meaning.signal)] * m;

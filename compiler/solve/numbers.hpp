@@ -12,7 +12,7 @@ using Dense = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// A block at one s.
 template <class T>
-struct Response {
+struct BlockResponse {
   Dense<T> X;  ///< inputs to states
   Dense<T> Y;  ///< inputs to outputs
 };
@@ -30,8 +30,8 @@ struct Matrices {
 template <class T>
 class JointRows : public Rows<T> {
  public:
-  JointRows(const Graph& graph, const Joint& joint, const std::vector<Coefficient>& coefficients,
-            Matrices<T> matrices)
+  JointRows(const Graph& graph, const JointSystem& joint,
+            const std::vector<Coefficient>& coefficients, Matrices<T> matrices)
       : graph_(graph), joint_(joint), coefficients_(coefficients), m_(std::move(matrices)) {}
 
   void add(int r, T* at, std::ptrdiff_t stride, const int* column) const override;
@@ -74,7 +74,7 @@ class JointRows : public Rows<T> {
   void by_products(Take take, TakeNumber take_number) const;
 
   const Graph& graph_;
-  const Joint& joint_;
+  const JointSystem& joint_;
   const std::vector<Coefficient>& coefficients_;
   Matrices<T> m_;
 };

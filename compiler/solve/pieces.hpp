@@ -104,7 +104,7 @@ void JointRows<T>::by_inputs(const Piece& p, Visit visit) const {
     const Signal& u = graph_.signals[at(i)];
     if (u.role != Signal::Role::input || !u.active) continue;
     const Dense<T> by_u = m.lazyProduct(m_.states[at(x.node)]->middleCols(u.first, u.size));
-    for (const Meaning& meaning : joint_.meaning(i)) visit(by_u, meaning);
+    for (const SignalTerm& meaning : joint_.meaning(i)) visit(by_u, meaning);
   }
 }
 

@@ -188,10 +188,10 @@ TITOP_WIDE void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, co
   }
 }
 
-TITOP_WIDE void scale_rates(std::span<const Modes> bodies, const double* x, const Destination& to,
-                            std::ptrdiff_t next) {
+TITOP_WIDE void scale_rates(std::span<const ModalRange> bodies, const double* x,
+                            const Destination& to, std::ptrdiff_t next) {
   constexpr std::ptrdiff_t n = 4, line = 8;
-  for (const Modes& p : bodies) {
+  for (const ModalRange& p : bodies) {
     for (std::ptrdiff_t j = next + p.first; next > 0 && j < next + p.first + 2 * p.size; j += line)
       __builtin_prefetch(to.first + j, 1), __builtin_prefetch(to.second + j, 1);
     if (p.size < n) {

@@ -41,13 +41,13 @@ void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, const double*
                       std::ptrdiff_t stride, const Destination* to, std::ptrdiff_t first);
 
 /// First modal coordinate of a body, and their number; their rates follow.
-struct Modes {
+struct ModalRange {
   std::ptrdiff_t first = 0, size = 0;
 };
 /// Multiples of the entries of x, one body's after the other's, go to the rates of `to`, which has
 /// both columns; the coordinates there become 0. `next`: so many numbers behind these columns are
 /// those of the next call; they are prefetched.
-void scale_rates(std::span<const Modes> bodies, const double* x, const Destination& to,
+void scale_rates(std::span<const ModalRange> bodies, const double* x, const Destination& to,
                  std::ptrdiff_t next = 0);
 
 }  // namespace titop::solve

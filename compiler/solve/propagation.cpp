@@ -22,7 +22,7 @@ Propagation::Propagation(const Factors<double>& factors, std::vector<double>& ro
   std::size_t total = 0;
   place_.reserve(plan_.fronts.size());
   for (const Front& f : plan_.fronts) {
-    Place p{padded(f.pivot_count), padded(f.border_count + f.pivot_count), total};
+    FrontPlace p{padded(f.pivot_count), padded(f.border_count + f.pivot_count), total};
     p.unknowns = p.lower + at(f.row_count * p.by_pivots);
     total = p.unknowns + at(f.pivot_count * p.by_all);
     place_.push_back(p);
@@ -54,7 +54,7 @@ void Propagation::order_columns(std::size_t index) {
 void Propagation::form_front(std::size_t index) {
   order_columns(index);
   const Front& f = plan_.fronts[index];
-  const Place& p = place_[index];
+  const FrontPlace& p = place_[index];
   const double* const lu = factors_.made(index).lu.data();
   const std::ptrdiff_t n = f.columns(), pivots = f.pivot_count, border = f.border_count;
   const int* const column = column_.data() + f.first_unknown;
@@ -98,7 +98,7 @@ void Propagation::gather(const Front& f, Space& space) const {
 void Propagation::forward(int index, Space& space) const {
   const std::ptrdiff_t m = space.m;
   const Front& f = plan_.fronts[at(index)];
-  const Place& p = place_[at(index)];
+  const FrontPlace& p = place_[at(index)];
   const auto& order = factors_.made(at(index)).order;
   const int* const column = column_.data() + f.first_unknown;
   const double* const zeros = space.zeros.data();
@@ -125,7 +125,7 @@ void Propagation::forward(int index, Space& space) const {
 void Propagation::back(int index, Space& space) const {
   const std::ptrdiff_t m = space.m;
   const Front& f = plan_.fronts[at(index)];
-  const Place& p = place_[at(index)];
+  const FrontPlace& p = place_[at(index)];
   double* const top = space.z.data() + f.first_unknown * m;
   space.with.clear();
   for (const int v : plan_.list(f.border))

@@ -52,7 +52,7 @@ class Propagation {
   void form_front(std::size_t front);
 
   /// Places of a front's matrices, row-major, rows padded to 8.
-  struct Place {
+  struct FrontPlace {
     std::ptrdiff_t by_pivots = 0, by_all = 0;  ///< from row to row
     std::size_t lower = 0;                     ///< L^-1, and below it -L' L^-1: rows x pivots
     std::size_t unknowns = 0;  ///< -U^-1 (border of U), and to its right U^-1 L^-1: pivots x both
@@ -61,7 +61,7 @@ class Propagation {
 
   const Factors<double>& factors_;
   const Plan& plan_;
-  std::vector<Place> place_;
+  std::vector<FrontPlace> place_;
   std::vector<int> column_;  ///< pivot -> column of L^-1
   std::vector<double>& formed_;
 };

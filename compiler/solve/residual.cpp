@@ -89,7 +89,7 @@ void JointRows<T>::by_products(Take take, TakeNumber take_number) const {
             p, m_, coefficients_, [&](const auto& left) { take(row, p.sign, &left, right, v); },
             [&] { take(row, p.sign, static_cast<const View<double>*>(nullptr), right, v); });
       } else if (written_out(p) && p.of != Piece::Left::state) {
-        by_inputs(p, [&](const Dense<T>& m, const Meaning& meaning) {
+        by_inputs(p, [&](const Dense<T>& m, const SignalTerm& meaning) {
           const int v = joint_.variable_of[at(meaning.signal)];
           const auto left = view(m, 0, static_cast<int>(m.rows()), 0, static_cast<int>(m.cols()));
           if (v >= 0) take(row, 1.0, &left, coefficient(meaning.coefficient), v);

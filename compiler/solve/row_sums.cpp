@@ -30,7 +30,7 @@ template <class L>
 
 /// Numbers of T by the doubles that they are made of.
 template <class T>
-struct Sum {
+struct RowProduct {
   std::ptrdiff_t count;
   const T* l;
   const double* x;
@@ -40,7 +40,7 @@ struct Sum {
 
 /// C registers of columns from j on.
 template <class L, int C, class T>
-[[gnu::always_inline]] inline void columns(const Sum<T> s, std::ptrdiff_t j) {
+[[gnu::always_inline]] inline void columns(const RowProduct<T> s, std::ptrdiff_t j) {
   L y[std::size_t{C}];
   for (int c = 0; c < C; ++c) load(y[c], s.y + j + c * kLanes<L>);
   for (std::ptrdiff_t k = 0; k < s.count; ++k) {
@@ -58,7 +58,7 @@ template <class L, int C, class T>
 
 /// `Rest`: for the columns left at the end, if L is longer; an odd double comes last.
 template <class L, class Rest, class T>
-[[gnu::always_inline]] inline void all_columns(const Sum<T> s) {
+[[gnu::always_inline]] inline void all_columns(const RowProduct<T> s) {
   std::ptrdiff_t j = 0;
   // Six complex columns, or twelve, are the usual case: a wrench, and with it its rounding.
   for (; j + 6 * kLanes<L> <= s.m; j += 6 * kLanes<L>) columns<L, 6>(s, j);
@@ -74,22 +74,22 @@ template <class L, class Rest, class T>
 }
 
 template <class T>
-void sum_2(const Sum<T>& s) {
+void sum_2(const RowProduct<T>& s) {
   all_columns<Lanes<2>, Lanes<2>>(s);
 }
 #if defined(__x86_64__)
 template <class T>
-[[gnu::target("avx2")]] void sum_4(const Sum<T>& s) {
+[[gnu::target("avx2")]] void sum_4(const RowProduct<T>& s) {
   all_columns<Lanes<4>, Lanes<4>>(s);
 }
 template <class T>
-[[gnu::target("avx512f")]] void sum_8(const Sum<T>& s) {
+[[gnu::target("avx512f")]] void sum_8(const RowProduct<T>& s) {
   all_columns<Lanes<8>, Lanes<4>>(s);
 }
 #endif
 
 template <class T>
-void subtract(const Sum<T>& s, [[maybe_unused]] int at_most) {
+void subtract(const RowProduct<T>& s, [[maybe_unused]] int at_most) {
 #if defined(__x86_64__)
   static const int widest = lanes_here(8);
   const int lanes = at_most < widest ? at_most : widest;
@@ -103,14 +103,14 @@ void subtract(const Sum<T>& s, [[maybe_unused]] int at_most) {
 
 void subtract_sum(std::ptrdiff_t count, const double* l, const double* x, std::ptrdiff_t m,
                   double* y, int lanes) {
-  subtract(Sum<double>{count, l, x, m, y}, lanes);
+  subtract(RowProduct<double>{count, l, x, m, y}, lanes);
 }
 
 void subtract_sum(std::ptrdiff_t count, const std::complex<double>* l,
                   const std::complex<double>* x, std::ptrdiff_t m, std::complex<double>* y,
                   int lanes) {
-  subtract(Sum<std::complex<double>>{count, l, reinterpret_cast<const double*>(x), 2 * m,
-                                     reinterpret_cast<double*>(y)},
+  subtract(RowProduct<std::complex<double>>{count, l, reinterpret_cast<const double*>(x), 2 * m,
+                                            reinterpret_cast<double*>(y)},
            lanes);
 }
 

@@ -95,8 +95,8 @@ TEST_CASE("scale_transposed: every entry in its place, once or twice, and nothin
 TEST_CASE("scale_rates: rates, zeros for coordinates, and nothing beside") {
   Rng rng(11);
   const auto at = [](std::ptrdiff_t i) { return static_cast<std::size_t>(i); };
-  const std::vector<titop::solve::Modes> bodies{{40, 6}, {1, 1},   {4, 4},
-                                                {60, 3}, {14, 11}, {36, 2}};
+  const std::vector<titop::solve::ModalRange> bodies{{40, 6}, {1, 1},   {4, 4},
+                                                     {60, 3}, {14, 11}, {36, 2}};
   const std::ptrdiff_t entries = 6 + 1 + 4 + 3 + 11 + 2;
   auto x = numbers(rng, entries);
   x[0] = -0.0;
