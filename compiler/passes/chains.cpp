@@ -105,7 +105,7 @@ std::string way(const Motion& motion, const Closing& c) {
 struct ChainChecker {
   const Graph& g;
   const Motion& motion;
-  const Coordinates& coordinates;
+  const StateRates& coordinates;
   std::vector<Mistake> mistakes = {};
   std::vector<Note> notes = {};
 
@@ -130,7 +130,7 @@ struct ChainChecker {
                                 target(c), g.nodes[at(node)].name),
                     "give its block kinematics() (docs/architecture.md), or open one joint");
     for (const auto& [column, matrix] : c.form)
-      if (column.kind == Column::Kind::states)
+      if (column.kind == FormColumn::Kind::states)
         for (Index j = 0; j < matrix.cols(); ++j)
           if (!matrix.col(j).isZero(0) && coordinates.rate_of(column.id, static_cast<int>(j)) < 0)
             return refuse(
@@ -189,7 +189,7 @@ void keep_rows(Graph& g, Equation& e, const MatrixXd& rows) {
 }
 
 /// An equation some of whose rows depend on other equations.
-struct Split {
+struct EquationSplit {
   MatrixXd directions;  ///< orthonormal rows
   MatrixXd kept;        ///< unit rows: with the dependent ones equivalent to the equation
 };
@@ -199,7 +199,7 @@ struct Split {
 /// rotations, and in a mechanism of a millimetre small entries would be rounding. The same for the
 /// directions: entries at rounding level among scaled rows are cleared before the factors magnify
 /// them.
-Split split(const MatrixXd& scaled, const Eigen::VectorXd& factors) {
+EquationSplit split(const MatrixXd& scaled, const Eigen::VectorXd& factors) {
   const auto n = scaled.cols();
   std::vector<int> left(static_cast<std::size_t>(n));
   std::iota(left.begin(), left.end(), 0);
@@ -217,7 +217,7 @@ Split split(const MatrixXd& scaled, const Eigen::VectorXd& factors) {
 /// Releases the joint in these directions (rows, in the space of the equation's rows): it transmits
 /// no force, and the wrench at its point is the sum of the other terms. The equation keeps the
 /// other rows.
-void release(Stage& stage, int equation, const Split& parts, Lowering& lowering) {
+void release(Stage& stage, int equation, const EquationSplit& parts, Lowering& lowering) {
   Graph& g = stage.graph;
   const auto& [directions, kept] = parts;
   const MatrixXd S = g.equations[at(equation)].part.whole()
@@ -258,7 +258,7 @@ std::string direction_names(const MatrixXd& directions) {
 }
 
 /// Chains in a singular posture have additional first-order motions that second order blocks.
-void warn_of_stops(Stage& stage, const Component& c, const Factors& factors,
+void warn_of_stops(Stage& stage, const Component& c, const ScaleFactors& factors,
                    const std::vector<const Closing*>& in_order) {
   constexpr double kStops = 1e-6;  // rounding gives 1e-15, a singular posture some tenths
   std::vector<const Closing*> closings;
@@ -282,27 +282,27 @@ void warn_of_stops(Stage& stage, const Component& c, const Factors& factors,
 AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
   AtRest held;
   std::optional<Lowering> lowering;  // few chains are closed twice
-  std::vector<Line> lines;
+  std::vector<RelationRows> lines;
   std::vector<const Closing*> in_order;
   for (const int c : along(closings)) {
     in_order.push_back(&closings[at(c)]);
     lines.push_back(line_of(closings[at(c)]));
   }
-  const Coordinates coordinates(stage.graph, stage.values);
+  const StateRates coordinates(stage.graph, stage.values);
   // All motions count, prescribed ones too: they must satisfy redundant closures.
-  const auto classify = [&](const Scalar& s) -> std::optional<closing::Meaning> {
-    const bool state = s.column.kind == Column::Kind::states;
-    return closing::Meaning{state ? Relations::Role::coordinate : Relations::Role::unknown,
-                            state ? coordinates.weight(s.column.id, s.index) : 0};
+  const auto classify = [&](const ScalarColumn& s) -> std::optional<closing::ColumnRole> {
+    const bool state = s.column.kind == FormColumn::Kind::states;
+    return closing::ColumnRole{state ? Relations::Role::coordinate : Relations::Role::unknown,
+                               state ? coordinates.weight(s.column.id, s.index) : 0};
   };
   for (Component& c : components(lines, classify)) {
-    const Factors factors = scale(c.relations);
+    const ScaleFactors factors = scale(c.relations);
     const Redundancy found = redundancy(c.relations);
     if (std::ranges::any_of(found.blocks,
                             [](const Redundant& r) { return r.directions.rows() > 0; }))
       warn_of_stops(stage, c, factors, in_order);
     for (std::size_t i = 0; i < c.lines.size(); ++i) {
-      const Line& line = lines[at(c.lines[i])];
+      const RelationRows& line = lines[at(c.lines[i])];
       const auto rows = static_cast<Index>(line.unit.size());
       const Redundant& r = found.blocks[i];
       const std::string name =
@@ -316,7 +316,7 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
                          name, rows - r.directions.rows(), rows, r.weakest, r.dropped,
                          kRankTolerance)});
       if (r.directions.rows() == 0) continue;
-      const Split parts = split(r.directions, factors.row[i]);
+      const EquationSplit parts = split(r.directions, factors.row[i]);
       stage.notes.push_back(
           {Note::Kind::info, "chains",
            fmt::format("{}: {} of {} closing equations are redundant{}; internal forces there are "
@@ -330,7 +330,8 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
       release(stage, line.equation, parts, *lowering);
     }
     for (const int j : found.held)
-      if (c.scalars[at(j)].column.kind != Column::Kind::prescribed) held.insert(c.scalars[at(j)]);
+      if (c.scalars[at(j)].column.kind != FormColumn::Kind::prescribed)
+        held.insert(c.scalars[at(j)]);
   }
   return held;
 }
@@ -350,7 +351,7 @@ std::vector<Closing> closings_of(const Graph& g, const Motion& motion) {
 /// Throws the mistakes in the chains; notes narrow decisions.
 void check_chains(Stage& stage, const Twins& twins, const Motion& motion,
                   const std::vector<Closing>& closings) {
-  const Coordinates coordinates(stage.graph, stage.values);
+  const StateRates coordinates(stage.graph, stage.values);
   ChainChecker blocks{stage.graph, motion, coordinates};
   for (const Closing& c : closings) blocks.check_blocks(c);
   if (!blocks.mistakes.empty()) throw Error(std::move(blocks.mistakes));

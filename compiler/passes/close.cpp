@@ -16,7 +16,7 @@ using namespace closing;
 using linalg::at;
 
 /// One of the two levels on which chains close.
-enum class Level { position, velocity };
+enum class ClosureLevel { position, velocity };
 
 /// A rank decided by a narrow margin.
 struct Doubt {
@@ -27,32 +27,32 @@ struct Doubt {
 
 struct Closer {
   const Graph& g;
-  const Coordinates& coordinates;
+  const StateRates& coordinates;
   std::vector<Doubt> doubts = {};
   std::vector<Dependent> dependents = {};
   std::set<std::pair<int, int>> before = {};  ///< states that followed from the others before
   int closings = 0;  ///< of all lines on either level, so many come first: those of chains
-  std::vector<Scalar> positions = {};  ///< dependent on position level, in order
+  std::vector<ScalarColumn> positions = {};  ///< dependent on position level, in order
   std::map<std::vector<int>, Independent> of_positions = {};  ///< by lines, all of them of chains
 
-  std::optional<closing::Meaning> classify(const Scalar& s) const {
+  std::optional<closing::ColumnRole> classify(const ScalarColumn& s) const {
     using Role = Relations::Role;
-    if (s.column.kind == Column::Kind::integral) return closing::Meaning{Role::integral, 0};
-    if (s.column.kind != Column::Kind::states) return closing::Meaning{Role::unknown, 0};
+    if (s.column.kind == FormColumn::Kind::integral) return closing::ColumnRole{Role::integral, 0};
+    if (s.column.kind != FormColumn::Kind::states) return closing::ColumnRole{Role::unknown, 0};
     const Signal& x = g.signals[at(g.nodes[at(s.column.id)].state)];
     if (x.at_rest) return std::nullopt;
-    if (!x.active) return closing::Meaning{Role::unknown, 0};
-    return closing::Meaning{Role::coordinate, coordinates.weight(s.column.id, s.index)};
+    if (!x.active) return closing::ColumnRole{Role::unknown, 0};
+    return closing::ColumnRole{Role::coordinate, coordinates.weight(s.column.id, s.index)};
   }
 
   /// The state of this scalar on this level.
-  std::pair<int, int> state(const Scalar& s, Level level) const {
-    const bool own = s.column.kind == Column::Kind::integral || level == Level::position;
+  std::pair<int, int> state(const ScalarColumn& s, ClosureLevel level) const {
+    const bool own = s.column.kind == FormColumn::Kind::integral || level == ClosureLevel::position;
     return {s.column.id, own ? s.index : coordinates.rate_of(s.column.id, s.index)};
   }
 
   /// Columns that followed before, and coordinates whose positions follow.
-  std::vector<int> preferred(const Component& c, Level level) const {
+  std::vector<int> preferred(const Component& c, ClosureLevel level) const {
     std::vector<int> list;
     for (int i = 0; i < static_cast<int>(c.scalars.size()); ++i)
       if (std::binary_search(positions.begin(), positions.end(), c.scalars[at(i)]) ||
@@ -62,9 +62,9 @@ struct Closer {
     return list;
   }
 
-  void close(const std::vector<Line>& lines, Level level) {
-    const auto meaning = [&](const Scalar& s) { return classify(s); };
-    std::vector<Scalar> now;
+  void close(const std::vector<RelationRows>& lines, ClosureLevel level) {
+    const auto meaning = [&](const ScalarColumn& s) { return classify(s); };
+    std::vector<ScalarColumn> now;
     for (Component& c : components(lines, meaning)) {
       const auto same = of_positions.find(c.lines);
       const std::vector<int> first = preferred(c, level);  // before the relations move on
@@ -72,11 +72,11 @@ struct Closer {
           same != of_positions.end()
               ? same->second  // rates follow as positions do, coordinate by coordinate
               : independent(std::move(c.relations), first);
-      if (level == Level::position && c.lines.back() < closings)
+      if (level == ClosureLevel::position && c.lines.back() < closings)
         of_positions.emplace(c.lines, found);
       warn(c, lines, found, level);
       for (const Independent::Follows& f : found.follow) {
-        const Scalar& s = c.scalars[at(f.dependent)];
+        const ScalarColumn& s = c.scalars[at(f.dependent)];
         const auto [node, index] = state(s, level);
         Dependent dependent{node, index};
         for (const auto& [independent, factor] : f.of) {
@@ -84,16 +84,16 @@ struct Closer {
           dependent.of.push_back({of, at_index, factor});
         }
         dependents.push_back(std::move(dependent));
-        if (level == Level::position) now.push_back(s);
+        if (level == ClosureLevel::position) now.push_back(s);
       }
     }
     positions = std::move(now);
     std::sort(positions.begin(), positions.end());
   }
 
-  void warn(const Component& c, const std::vector<Line>& lines, const Independent& found,
-            Level level) {
-    if (!found.doubtful() || level != Level::position) return;
+  void warn(const Component& c, const std::vector<RelationRows>& lines, const Independent& found,
+            ClosureLevel level) {
+    if (!found.doubtful() || level != ClosureLevel::position) return;
     std::string names;
     for (const int l : c.lines)
       if (const int e = lines[at(l)].equation; e >= 0)
@@ -122,24 +122,24 @@ Stage close(Stage stage) {
   const Graph& g = stage.graph;
   const Twins twins(g);
   const Motion motion(g, stage.values, twins, Ground::by_name, stage.released);
-  const Coordinates coordinates(g, stage.values);
-  std::vector<Line> closed, on_positions, on_rates;
+  const StateRates coordinates(g, stage.values);
+  std::vector<RelationRows> closed, on_positions, on_rates;
   for (const Tie& tie : motion.ties())
     if (tie.closes) closed.push_back(line_of(motion.closing(tie)));
   on_positions = on_rates = closed;
   for (const Integral& i : integrals(g, motion, twins, coordinates, stage.values)) {
     const int n = g.signals[at(g.nodes[at(i.node)].state)].size;
-    Line line;
+    RelationRows line;
     add(line.form, -Eigen::MatrixXd::Identity(n, n), i.form);
-    add(line.form, {Column::Kind::integral, i.node}, Eigen::MatrixXd::Identity(n, n));
+    add(line.form, {FormColumn::Kind::integral, i.node}, Eigen::MatrixXd::Identity(n, n));
     for (int k = 0; k < n; ++k) line.unit.push_back(n == 6 && k >= 3 ? 1 : 0);
     (i.level == 1 ? on_rates : on_positions).push_back(std::move(line));
   }
   Closer closer{g, coordinates};
   closer.closings = static_cast<int>(closed.size());
   for (const Dependent& d : stage.before) closer.before.emplace(d.node, d.state);
-  closer.close(on_positions, Level::position);
-  closer.close(on_rates, Level::velocity);
+  closer.close(on_positions, ClosureLevel::position);
+  closer.close(on_rates, ClosureLevel::velocity);
   stage.dependents = std::move(closer.dependents);
   int order = -static_cast<int>(stage.dependents.size());
   for (const Signal& x : g.signals)

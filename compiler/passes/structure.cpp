@@ -49,7 +49,7 @@ std::string joined(const std::set<std::string>& names) {
 }
 
 /// One independent part: equations too many, signals that nothing determines, or both.
-struct Part {
+struct SingularPart {
   std::set<int> rows, signals;    ///< row groups; signals
   std::vector<int> cures;         ///< equations whose channel may be driven on its other side
   int too_many = 0, too_few = 0;  ///< scalars
@@ -101,12 +101,12 @@ struct Singular {
     return good;
   }
 
-  std::map<int, Part> find() {
+  std::map<int, SingularPart> find() {
     const std::vector<int> good = connect();
-    std::map<int, Part> result;
+    std::map<int, SingularPart> result;
     for (int r = 0; r < rows; ++r) {
       if (!over[at(r)]) continue;
-      Part& p = result[parts.find(r)];
+      SingularPart& p = result[parts.find(r)];
       const int row = inc.row_of_vertex[at(r)];
       p.rows.insert(row);
       p.too_many += m.row_to_col[at(r)] < 0;
@@ -117,7 +117,7 @@ struct Singular {
     }
     for (int c = 0; c < static_cast<int>(under.size()); ++c) {
       if (!under[at(c)]) continue;
-      Part& p = result[parts.find(rows + c)];
+      SingularPart& p = result[parts.find(rows + c)];
       p.signals.insert(inc.signal_of[at(c)]);
       p.too_few += m.col_to_row[at(c)] < 0;
     }
@@ -140,7 +140,7 @@ struct Singular {
     return fmt::format("{:<50} {}", print(g, e), to_string(e.where));
   }
 
-  Mistake mistake(const Part& p) const {
+  Mistake mistake(const SingularPart& p) const {
     Mistake result{Code::structure, "every channel is driven, but ", {}, {}};
     std::set<std::string> here, there, sides;
     for (const int r : p.rows) {

@@ -184,7 +184,7 @@ TEST_CASE("scaled relations are in balance, and a tiny lever, to its last digit,
     }
     r.blocks.push_back(block);
     r.unit.push_back({0, 0, 0, 1, 1, 1});
-    const Factors f = scale(r);
+    const ScaleFactors f = scale(r);
     const MatrixXd& M = r.blocks[0].M;
     // Half of every column with a lever for the translations; 2 % per factor.
     const double translations = (hinges - tiny) / 2.0, rotations = hinges - translations;

@@ -171,9 +171,9 @@ struct Chains {
   /// Columns that are open at once if redundancy is decided in this order.
   int widest(const std::vector<int>& order) const {
     using namespace passes::closing;
-    std::vector<Line> lines;
+    std::vector<RelationRows> lines;
     for (const int c : order) lines.push_back(line_of(closings[at(c)]));
-    const auto all = [](const Scalar&) { return Meaning{Relations::Role::coordinate, 0}; };
+    const auto all = [](const ScalarColumn&) { return ColumnRole{Relations::Role::coordinate, 0}; };
     int result = 0;
     for (Component& c : components(lines, all)) {
       scale(c.relations);

@@ -10,26 +10,26 @@ namespace {
 using linalg::at;
 
 /// Half of a dual vector: translations and forces, or rotations and torques.
-enum class Half { any, linear, angular };
+enum class TermHalf { any, linear, angular };
 
 /// Type of a term, after its factors.
-struct Kind {
+struct TermType {
   int size = 0;
   Quantity quantity = Quantity::plain;
   int frame = kNoFrame;
-  Half half = Half::any;  ///< any: of all else, and if it is not known
+  TermHalf half = TermHalf::any;  ///< any: of all else, and if it is not known
 };
 
 /// Half to which a part of a signal belongs. A joint's axis may be either.
-Half half_of(const Part& part, Quantity quantity) {
+TermHalf half_of(const Part& part, Quantity quantity) {
   const Eigen::MatrixXd& rows = part.rows();
-  if (quantity == Quantity::plain || rows.cols() != 6) return Half::any;
-  return rows.rightCols<3>().isZero(0)  ? Half::linear
-         : rows.leftCols<3>().isZero(0) ? Half::angular
-                                        : Half::any;
+  if (quantity == Quantity::plain || rows.cols() != 6) return TermHalf::any;
+  return rows.rightCols<3>().isZero(0)  ? TermHalf::linear
+         : rows.leftCols<3>().isZero(0) ? TermHalf::angular
+                                        : TermHalf::any;
 }
 
-const char* word(Half half) { return half == Half::linear ? "linear" : "angular"; }
+const char* word(TermHalf half) { return half == TermHalf::linear ? "linear" : "angular"; }
 
 /// Two nodes of one name are a mistake of their own: their frames count as equal.
 bool same_frame(const Checker& c, int a, int b) {
@@ -37,11 +37,12 @@ bool same_frame(const Checker& c, int a, int b) {
 }
 
 /// One factor of a term; false if the term makes no sense from here on.
-bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term, const Written& where) {
+bool apply(Checker& c, TermType& kind, const Factor& factor, const Term& term,
+           const Written& where) {
   const auto place = [&] { return line(print(c.graph, term), where); };
   if (const auto* k = std::get_if<Value>(&factor)) {
     kind.quantity = Quantity::plain;
-    kind.half = Half::any;
+    kind.half = TermHalf::any;
     if (!std::isfinite(k->nominal()))
       c.add(Code::not_finite, fmt::format("a gain is {}", k->nominal()), {place()},
             "give a finite gain");
@@ -85,11 +86,11 @@ bool apply(Checker& c, Kind& kind, const Factor& factor, const Term& term, const
   return true;
 }
 
-/// Kind of a term; size -1 if it makes no sense (already noted).
-Kind describe(Checker& c, const Term& term, const Written& where) {
+/// Type of a term; size -1 if it makes no sense (already noted).
+TermType describe(Checker& c, const Term& term, const Written& where) {
   if (term.signal < 0) return {-1};
   const Signal& s = c.graph.signals[at(term.signal)];
-  Kind kind{s.size, s.quantity, s.frame};
+  TermType kind{s.size, s.quantity, s.frame};
   if (term.of == Term::Of::position) kind.quantity = Quantity::position;
   if (term.of == Term::Of::rate) kind.quantity = Quantity::velocity;
   for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f)
@@ -118,13 +119,13 @@ struct RightSide {
 };
 
 /// Checks all terms against the target. `expected.frame` kNoFrame adopts the first frame met.
-void check_terms(Checker& c, const RightSide& side, Kind expected) {
+void check_terms(Checker& c, const RightSide& side, TermType expected) {
   const bool adopts_frame = expected.frame == kNoFrame;
   const Term* from = nullptr;  // whose kind or frame is expected; none: the target's
   const auto place = [&] { return line(side.text(), side.where); };
   const auto origin = [&] { return from ? print(c.graph, *from) : side.name(); };
   for (const Term& term : side.terms) {
-    const Kind kind = describe(c, term, side.where);
+    const TermType kind = describe(c, term, side.where);
     if (kind.size < 0) continue;
     if (kind.size != expected.size) {
       c.add(Code::size,
@@ -145,10 +146,10 @@ void check_terms(Checker& c, const RightSide& side, Kind expected) {
             fmt::format("{} is of kind {}, {} of kind {}", origin(), to_string(expected.quantity),
                         print(c.graph, term), to_string(kind.quantity)),
             {place()}, "a gain with units in front, as k * signal, makes it a plain signal");
-    } else if (expected.half == Half::any && kind.half != Half::any) {
+    } else if (expected.half == TermHalf::any && kind.half != TermHalf::any) {
       expected.half = kind.half;
       from = &term;
-    } else if (kind.half != Half::any && kind.half != expected.half) {
+    } else if (kind.half != TermHalf::any && kind.half != expected.half) {
       c.add(Code::quantity,
             fmt::format("{} is {}, {} is {}", origin(), word(expected.half), print(c.graph, term),
                         word(kind.half)),
@@ -178,8 +179,8 @@ void check_terms(Checker& c, const RightSide& side, Kind expected) {
 
 void check_equation(Checker& c, const Equation& e) {
   const Signal& s = c.graph.signals[at(e.target)];
-  const Kind expected{e.part.whole() ? s.size : static_cast<int>(e.part.rows().rows()), s.quantity,
-                      s.frame, half_of(e.part, s.quantity)};
+  const TermType expected{e.part.whole() ? s.size : static_cast<int>(e.part.rows().rows()),
+                          s.quantity, s.frame, half_of(e.part, s.quantity)};
   check_terms(c,
               {e.terms, written(c.graph, e), e.target,
                [&] { return name_of(c.graph, e.target) + e.part.name(); },

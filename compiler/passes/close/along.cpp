@@ -28,7 +28,7 @@ struct Walk {
         users(closings.size()),
         met(closings.size(), 0),
         done(closings.size(), 0) {
-    std::map<Column, std::vector<int>> all;
+    std::map<FormColumn, std::vector<int>> all;
     std::unordered_map<int, int> of_equation;
     for (int c = 0; c < static_cast<int>(closings.size()); ++c) {
       of_equation[closings[at(c)].tie->equation] = c;

@@ -8,7 +8,7 @@
 namespace titop::passes::closing {
 
 /// A term of a displacement. The same columns are used on position and on velocity level.
-struct Column {
+struct FormColumn {
   enum class Kind {
     root,        ///< of a free assembly; id: channel of its root point
     angle,       ///< free motion of a joint; id: equation
@@ -19,13 +19,13 @@ struct Column {
   Kind kind = Kind::root;
   int id = 0;
   int level = 0;  ///< prescribed: 0 for accelerations, 1 for rates
-  auto operator<=>(const Column&) const = default;
+  auto operator<=>(const FormColumn&) const = default;
 };
 
 /// Sum of matrix * column; all matrices have the same number of rows.
-using Form = std::map<Column, Eigen::MatrixXd>;
+using Form = std::map<FormColumn, Eigen::MatrixXd>;
 
-inline void add(Form& to, const Column& column, const Eigen::MatrixXd& matrix) {
+inline void add(Form& to, const FormColumn& column, const Eigen::MatrixXd& matrix) {
   const auto [place, added] = to.try_emplace(column, matrix);
   if (!added) place->second += matrix;
 }

@@ -14,7 +14,7 @@ using linalg::at;
 MatrixXd moved_by_angles(const Form& form, const VectorXd& scale) {
   MatrixXd basis(0, scale.size());
   for (const auto& [column, matrix] : form) {
-    if (column.kind != Column::Kind::angle) continue;
+    if (column.kind != FormColumn::Kind::angle) continue;
     for (Index j = 0; j < matrix.cols(); ++j) {
       Eigen::RowVectorXd v = matrix.col(j).cwiseProduct(scale).transpose();
       const double size = v.norm();

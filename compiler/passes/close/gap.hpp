@@ -15,8 +15,8 @@ struct Gap {
   double off = 0;              ///< largest entry of the rest, relative to 1 or to the lever
 };
 
-/// The parts of a gap. `form`: the closing equation; `units` of its rows, as in Sum; `lever`: the
-/// longest on the way [m], by which lengths are measured.
+/// The parts of a gap. `form`: the closing equation; `units` of its rows, as in RoundedSum;
+/// `lever`: the longest on the way [m], by which lengths are measured.
 Gap gap_of(const Eigen::MatrixXd& gap, const Form& form, const std::vector<int>& units,
            double lever);
 

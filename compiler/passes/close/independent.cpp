@@ -313,7 +313,7 @@ struct Fronts {
 };
 
 /// In units of energy, relative to the softest; a column that stores none is as soft.
-Eigen::VectorXd softness(const Relations& scaled, const Factors& factors) {
+Eigen::VectorXd softness(const Relations& scaled, const ScaleFactors& factors) {
   Eigen::VectorXd result = scaled.weight.cwiseQuotient(factors.column);
   const double softest = result.size() == 0 ? 0 : result.maxCoeff();
   for (double& x : result) x = x > 0 ? x / softest : 1;
@@ -323,7 +323,7 @@ Eigen::VectorXd softness(const Relations& scaled, const Factors& factors) {
 }  // namespace
 
 Independent independent(Relations relations, const std::vector<int>& preferred) {
-  const Factors factors = scale(relations);
+  const ScaleFactors factors = scale(relations);
   Eigen::VectorXd soft = softness(relations, factors);
   Fronts fronts(std::move(relations), std::move(soft), preferred);
   fronts.run();

@@ -12,7 +12,7 @@ struct IntegralFinder {
   const Graph& g;
   const Motion& motion;
   const Twins& twins;
-  const Coordinates& coordinates;
+  const StateRates& coordinates;
   ParameterValues values;
   std::map<int, std::optional<Integral>> found = {};
 
@@ -33,9 +33,9 @@ struct IntegralFinder {
     Integral result;
     for (const auto& [channel, c] : twin.points) add(result.form, c, motion.position(channel));
     for (const auto& [signal, c] : twin.others)
-      add(result.form, {Column::Kind::prescribed, signal, 0}, c);
+      add(result.form, {FormColumn::Kind::prescribed, signal, 0}, c);
     for (const auto& [column, matrix] : result.form)
-      if (column.kind == Column::Kind::states && !all_have_rates(column.id, matrix))
+      if (column.kind == FormColumn::Kind::states && !all_have_rates(column.id, matrix))
         return std::nullopt;  // it keeps its states
     return result;
   }
@@ -65,7 +65,7 @@ struct IntegralFinder {
     for (const auto& [signal, c] : twin.states)
       if (!add_positions(result.form, g.signals[at(signal)].node, c)) return std::nullopt;
     for (const auto& [signal, c] : twin.others)
-      add(result.form, {Column::Kind::prescribed, signal, 1}, c);
+      add(result.form, {FormColumn::Kind::prescribed, signal, 1}, c);
     return result;
   }
 
@@ -79,7 +79,7 @@ struct IntegralFinder {
         C.col(rate).setZero();
       }
     if (!C.isZero(0)) return false;
-    add(form, {Column::Kind::states, node}, result);
+    add(form, {FormColumn::Kind::states, node}, result);
     return true;
   }
 };
@@ -87,7 +87,7 @@ struct IntegralFinder {
 }  // namespace
 
 std::vector<Integral> integrals(const Graph& g, const Motion& motion, const Twins& twins,
-                                const Coordinates& coordinates, ParameterValues values) {
+                                const StateRates& coordinates, ParameterValues values) {
   IntegralFinder finder{g, motion, twins, coordinates, values};
   std::vector<Integral> result;
   for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {

@@ -17,6 +17,6 @@ struct Integral {
 /// accelerations (level 2). A signal that is neither has the level of the other terms; an input of
 /// mixed levels, or a position, is not listed and keeps its states.
 std::vector<Integral> integrals(const Graph& graph, const Motion& motion, const Twins& twins,
-                                const Coordinates& coordinates, ParameterValues values);
+                                const StateRates& coordinates, ParameterValues values);
 
 }  // namespace titop::passes::closing

@@ -12,9 +12,9 @@ using Eigen::Index;
 using linalg::at;
 
 /// Per line its group: lines that share a column have the same.
-std::vector<int> groups(const std::vector<Line>& lines) {
+std::vector<int> groups(const std::vector<RelationRows>& lines) {
   UnionFind joined(static_cast<int>(lines.size()));
-  std::map<Column, int> first;
+  std::map<FormColumn, int> first;
   for (int l = 0; l < static_cast<int>(lines.size()); ++l)
     for (const auto& [column, matrix] : lines[at(l)].form)
       if (const auto [place, added] = first.try_emplace(column, l); !added)
@@ -25,22 +25,23 @@ std::vector<int> groups(const std::vector<Line>& lines) {
 }
 
 /// Scalars with an entry other than 0, in order, with their meaning.
-std::map<Scalar, Meaning> scalars_of(const std::vector<Line>& lines, const std::vector<int>& own,
-                                     const Classify& classify) {
-  std::map<Scalar, Meaning> result;
+std::map<ScalarColumn, ColumnRole> scalars_of(const std::vector<RelationRows>& lines,
+                                              const std::vector<int>& own,
+                                              const Classify& classify) {
+  std::map<ScalarColumn, ColumnRole> result;
   for (const int l : own)
     for (const auto& [column, matrix] : lines[at(l)].form)
       for (Index j = 0; j < matrix.cols(); ++j)
-        if (const Scalar s{column, static_cast<int>(j)};
+        if (const ScalarColumn s{column, static_cast<int>(j)};
             !matrix.col(j).isZero(0) && !result.contains(s))
           if (const auto meaning = classify(s)) result.emplace(s, *meaning);
   return result;
 }
 
-Component component(const std::vector<Line>& lines, std::vector<int> own,
+Component component(const std::vector<RelationRows>& lines, std::vector<int> own,
                     const Classify& classify) {
   Component c{.lines = std::move(own)};
-  std::map<Scalar, int> place;
+  std::map<ScalarColumn, int> place;
   const auto scalars = scalars_of(lines, c.lines, classify);
   c.relations.weight.resize(static_cast<Index>(scalars.size()));
   for (const auto& [scalar, meaning] : scalars) {
@@ -75,7 +76,8 @@ Component component(const std::vector<Line>& lines, std::vector<int> own,
 
 }  // namespace
 
-std::vector<Component> components(const std::vector<Line>& lines, const Classify& classify) {
+std::vector<Component> components(const std::vector<RelationRows>& lines,
+                                  const Classify& classify) {
   const std::vector<int> group = groups(lines);
   std::map<int, std::vector<int>> members;
   for (int l = 0; l < static_cast<int>(lines.size()); ++l) members[group[at(l)]].push_back(l);
@@ -84,7 +86,7 @@ std::vector<Component> components(const std::vector<Line>& lines, const Classify
   return result;
 }
 
-const Coordinates::Pairs& Coordinates::of(int node) const {
+const StateRates::Pairs& StateRates::of(int node) const {
   const auto [place, added] = pairs_.try_emplace(node);
   if (!added) return place->second;
   Pairs& p = place->second;
@@ -107,8 +109,8 @@ const Coordinates::Pairs& Coordinates::of(int node) const {
   return p;
 }
 
-Line line_of(const Closing& closing) {
-  Line line{.form = closing.form, .unit = {}, .equation = closing.tie->equation};
+RelationRows line_of(const Closing& closing) {
+  RelationRows line{.form = closing.form, .unit = {}, .equation = closing.tie->equation};
   const Eigen::MatrixXd& S = closing.tie->S;
   for (Index i = 0; i < S.rows(); ++i) {
     const bool six = S.cols() == 6;

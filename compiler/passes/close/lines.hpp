@@ -9,40 +9,40 @@
 namespace titop::passes::closing {
 
 /// Rows of homogeneous relations, as forms.
-struct Line {
+struct RelationRows {
   Form form = {};
   std::vector<int> unit = {};  ///< per row: translations 0, rotations 1, mixed 2
   int equation = -1;           ///< of a closing equation
 };
 
 /// One scalar column.
-struct Scalar {
-  Column column;
+struct ScalarColumn {
+  FormColumn column;
   int index = 0;
-  auto operator<=>(const Scalar&) const = default;
+  auto operator<=>(const ScalarColumn&) const = default;
 };
 
 /// Lines that share columns, as relations: a block per line.
 struct Component {
   std::vector<int> lines = {};
-  std::vector<Scalar> scalars = {};
+  std::vector<ScalarColumn> scalars = {};
   Relations relations = {};
 };
 
-/// Meaning of a scalar column; none: it is 0 and left out.
-struct Meaning {
+/// Role of a scalar column; none: it is 0 and left out.
+struct ColumnRole {
   Relations::Role role = Relations::Role::unknown;
   double weight = 0;
 };
-using Classify = std::function<std::optional<Meaning>(const Scalar&)>;
+using Classify = std::function<std::optional<ColumnRole>(const ScalarColumn&)>;
 
 /// The connected components of these lines, in order of their first lines. O(entries).
-std::vector<Component> components(const std::vector<Line>& lines, const Classify& classify);
+std::vector<Component> components(const std::vector<RelationRows>& lines, const Classify& classify);
 
 /// The rate of each state that is a coordinate, and its stiffness.
-class Coordinates {
+class StateRates {
  public:
-  Coordinates(const Graph& graph, ParameterValues values) : g_(graph), values_(values) {}
+  StateRates(const Graph& graph, ParameterValues values) : g_(graph), values_(values) {}
   /// State that is the rate of this one, -1 if none is.
   int rate_of(int node, int state) const { return of(node).rate[static_cast<std::size_t>(state)]; }
   /// 1 / sqrt(stiffness), 0 if it stores no energy.
@@ -60,6 +60,6 @@ class Coordinates {
 };
 
 /// A closing equation as lines of translations and rotations.
-Line line_of(const Closing& closing);
+RelationRows line_of(const Closing& closing);
 
 }  // namespace titop::passes::closing

@@ -55,7 +55,7 @@ void Motion::add_body(int index, ParameterValues values) {
       if (i == 0) continue;
       Edge e{.to = point, .from = node.first_channel, .silent = index, .one_way = true};
       e.R = MatrixXd::Zero(channels[at(i)].size, channels.front().size);
-      e.own[{Column::Kind::root, point}] =
+      e.own[{FormColumn::Kind::root, point}] =
           MatrixXd::Identity(channels[at(i)].size, channels[at(i)].size);
       edges_.push_back(std::move(e));
       continue;
@@ -66,7 +66,7 @@ void Motion::add_body(int index, ParameterValues values) {
     Edge e{.to = point, .from = carried ? node.first_channel + k->reference : ground_};
     e.R = carried ? tau : MatrixXd(tau.rows(), 0);
     e.one_way = tau.rows() != tau.cols() || !(linalg::inverse(tau).rcond > 1e-12);
-    if (node.state >= 0) e.own[{Column::Kind::states, index}] = k->Phi[at(i)];
+    if (node.state >= 0) e.own[{FormColumn::Kind::states, index}] = k->Phi[at(i)];
     edges_.push_back(std::move(e));
   }
 }
@@ -108,7 +108,7 @@ Tie Motion::tie_of(const Equation& q, int index, const Twins& twins, Ground grou
   const Twin twin = twins.of(q.terms);
   tie.points = twin.points;
   for (const auto* list : {&twin.rates, &twin.integrals, &twin.states, &twin.others})
-    for (const auto& [signal, c] : *list) add(tie.own, {Column::Kind::prescribed, signal}, c);
+    for (const auto& [signal, c] : *list) add(tie.own, {FormColumn::Kind::prescribed, signal}, c);
   // A locked child point closes the chain rather than the joint that carries the body.
   const auto all = static_cast<int>(g_.equations.size());
   const bool inverted = g_.channels[at(target.channel)].takes != Takes::accel;
@@ -123,7 +123,7 @@ std::optional<Motion::Edge> Motion::edge_of(const Tie& tie) const {
   Edge e{.to = tie.target, .from = ground_, .equation = tie.equation};
   const auto free = complement(tie.S, static_cast<int>(tie.S.cols()));
   for (const auto& [column, matrix] : tie.own) e.own[column] = tie.S.transpose() * matrix;
-  if (free.rows() > 0) e.own[{Column::Kind::angle, tie.equation}] = free.transpose();
+  if (free.rows() > 0) e.own[{FormColumn::Kind::angle, tie.equation}] = free.transpose();
   e.R = MatrixXd(tie.S.cols(), 0);
   if (tie.points.empty()) return e;
   const auto& [point, c] = *tie.points.begin();
@@ -153,7 +153,7 @@ Motion::Edge Motion::reversed(const Edge& e) const {
   Edge r = e;
   r.to = e.from, r.from = e.to;
   r.R = linalg::inverse(e.R).matrix;
-  Sum own(units_of_rows(MatrixXd::Identity(r.R.rows(), r.R.rows())));
+  RoundedSum own(units_of_rows(MatrixXd::Identity(r.R.rows(), r.R.rows())));
   own.meet(r.R), own.add(-r.R, e.own);
   r.own = own.cleaned();
   return r;
@@ -243,7 +243,7 @@ bool Motion::Way::rigid() const {
   return std::all_of(edges.begin(), edges.end(), [](const Edge& e) { return e.rigid; });
 }
 
-MatrixXd Motion::walk(Sum& sum, MatrixXd factor, const Way& way) const {
+MatrixXd Motion::walk(RoundedSum& sum, MatrixXd factor, const Way& way) const {
   sum.meet(factor);
   for (const Edge& e : way.edges) {
     sum.add(factor, e.own);
@@ -254,20 +254,21 @@ MatrixXd Motion::walk(Sum& sum, MatrixXd factor, const Way& way) const {
   return factor;
 }
 
-void Motion::add_root(Sum& sum, const MatrixXd& factor, int root) const {
+void Motion::add_root(RoundedSum& sum, const MatrixXd& factor, int root) const {
   if (root == ground_) return;
-  sum.add(factor, {{{Column::Kind::root, root}, MatrixXd::Identity(factor.cols(), factor.cols())}});
+  sum.add(factor,
+          {{{FormColumn::Kind::root, root}, MatrixXd::Identity(factor.cols(), factor.cols())}});
 }
 
 Form Motion::position(int channel) const {
   const int size = g_.channels[at(channel)].size;
   const MatrixXd all = MatrixXd::Identity(size, size);
-  Sum sum(units_of_rows(all));
+  RoundedSum sum(units_of_rows(all));
   add_root(sum, walk(sum, all, up_from(channel, -1)), root_[at(channel)]);
   return sum.cleaned();
 }
 
-std::vector<char> Motion::at_rest(const std::function<bool(const Column&, int)>& held) const {
+std::vector<char> Motion::at_rest(const std::function<bool(const FormColumn&, int)>& held) const {
   std::vector<char> result(at(ground_) + 1, 0);
   std::vector<int> points(result.size());
   std::iota(points.begin(), points.end(), 0);
@@ -285,7 +286,7 @@ std::vector<char> Motion::at_rest(const std::function<bool(const Column&, int)>&
   return result;
 }
 
-void Motion::add_gap(Sum& sum, const MatrixXd& gap, int point, Closing& closing) const {
+void Motion::add_gap(RoundedSum& sum, const MatrixXd& gap, int point, Closing& closing) const {
   const Way up = up_from(point, -1);
   add_root(sum, walk(sum, gap, up), root_[at(point)]);
   for (const Edge& e : up.edges)
@@ -295,7 +296,7 @@ void Motion::add_gap(Sum& sum, const MatrixXd& gap, int point, Closing& closing)
 Closing Motion::closing(const Tie& tie) const {
   Closing result{.tie = &tie, .equations = {tie.equation}};
   const MatrixXd minus = -MatrixXd::Identity(tie.S.rows(), tie.S.rows());
-  Sum sum(units_of_rows(tie.S));
+  RoundedSum sum(units_of_rows(tie.S));
   sum.meet(minus), sum.add(minus, tie.own);
   auto [there, back] = ways(tie);
   const bool meets = tie.points.size() <= 1 && there.to == back.to;

@@ -69,7 +69,7 @@ class Motion {
   Form position(int channel) const;
   /// Per channel: whether its point is immobile if these scalar columns are 0. O(points log
   /// points).
-  std::vector<char> at_rest(const std::function<bool(const Column&, int)>& held) const;
+  std::vector<char> at_rest(const std::function<bool(const FormColumn&, int)>& held) const;
   /// The tie that places a point relative to the one above it: its equation; -1: none, or a body.
   int tie_above(int channel) const { return up_[static_cast<std::size_t>(channel)].equation; }
   /// Name of the point in the user's diagram.
@@ -126,10 +126,10 @@ class Motion {
   /// The two ways from the ends of a tie to where they meet.
   std::pair<Way, Way> ways(const Tie& tie) const;
   /// sum += factor * x_point, along the way; returns the factor of its end.
-  Eigen::MatrixXd walk(Sum& sum, Eigen::MatrixXd factor, const Way& way) const;
-  void add_root(Sum& sum, const Eigen::MatrixXd& factor, int root) const;
+  Eigen::MatrixXd walk(RoundedSum& sum, Eigen::MatrixXd factor, const Way& way) const;
+  void add_root(RoundedSum& sum, const Eigen::MatrixXd& factor, int root) const;
   /// sum += gap * x_point, from the root of its assembly.
-  void add_gap(Sum& sum, const Eigen::MatrixXd& gap, int point, Closing& closing) const;
+  void add_gap(RoundedSum& sum, const Eigen::MatrixXd& gap, int point, Closing& closing) const;
 
   const Graph& g_;
   int ground_;

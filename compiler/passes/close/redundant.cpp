@@ -24,7 +24,7 @@ constexpr double kMostly = 0.5;  ///< less of a unit vector in the span: no need
 
 /// Rows, with the columns that no later part has (`own`): in these the rows span the columns of
 /// `basis`, and the rows are `factor` basis'.
-struct Part {
+struct RedundantPart {
   std::vector<int> own, others;
   MatrixXd basis, factor, rest;  ///< rest: rows x others
 
@@ -71,7 +71,7 @@ struct RedundancyFinder {
   Uses uses;
   std::deque<int> queue = {};
   std::vector<char> queued;
-  std::vector<Part> parts = {};
+  std::vector<RedundantPart> parts = {};
   std::vector<int> part_of;  ///< per column: the part that has it as its own, -1: none
   Redundancy result = {};
 
@@ -129,7 +129,7 @@ struct RedundancyFinder {
   template <class Own>
   RowBlock rest(const std::vector<int>& columns, const Reflections& e, Own is_own) {
     const Index done = e.done(), left = e.matrix().rows() - done;
-    Part part;
+    RedundantPart part;
     RowBlock rows;
     std::vector<int> own, others, stay;
     for (int i = 0; i < static_cast<int>(columns.size()); ++i) {
@@ -148,7 +148,7 @@ struct RedundancyFinder {
     return rows;
   }
 
-  static void set_basis(Part& part, const MatrixXd& rows) {
+  static void set_basis(RedundantPart& part, const MatrixXd& rows) {
     const Eigen::HouseholderQR<MatrixXd> qr(rows.transpose());
     const Index n = rows.rows();
     part.basis = qr.householderQ() * MatrixXd::Identity(rows.cols(), n);
@@ -184,7 +184,7 @@ struct RedundancyFinder {
       decide(b, known);
       if (b != members.back()) close(known, [&](int c) { return last.at(c) <= b; });
     }
-    Part part;
+    RedundantPart part;
     part.own = std::move(known.columns);
     part.basis = known.M.transpose();
     for (const int c : part.own) part_of[at(c)] = static_cast<int>(parts.size());
@@ -213,7 +213,7 @@ struct RedundancyFinder {
   bool held(int column) const {
     const int own = part_of[at(column)];
     if (own < 0) return false;
-    const Part& part = parts[at(own)];
+    const RedundantPart& part = parts[at(own)];
     const auto place =
         std::lower_bound(part.own.begin(), part.own.end(), column) - part.own.begin();
     if (part.basis.row(place).squaredNorm() < kMostly) return false;
@@ -225,7 +225,7 @@ struct RedundancyFinder {
 
   /// Subtracts from `left` the combination of rows that is v in their own columns, in the other
   /// columns. Returns the largest sum of magnitudes: rounding is in proportion to it.
-  static double subtract(const Part& part, const VectorXd& v, std::map<int, double>& left) {
+  static double subtract(const RedundantPart& part, const VectorXd& v, std::map<int, double>& left) {
     if (part.others.empty()) return 0;
     const VectorXd y = part.factor.triangularView<Eigen::Lower>().transpose().solve(
         VectorXd(part.basis.transpose() * v));
@@ -248,7 +248,7 @@ struct RedundancyFinder {
         if (next < 0 || part_of[at(c)] < next) next = part_of[at(c)];
       }
       if (next < 0) return true;
-      const Part& p = parts[at(next)];
+      const RedundantPart& p = parts[at(next)];
       VectorXd v = VectorXd::Zero(p.basis.rows());
       for (std::size_t i = 0; i < p.own.size(); ++i)
         if (const auto found = left.find(p.own[i]); found != left.end())

@@ -37,8 +37,8 @@ struct Relations {
   Eigen::VectorXd weight = {};  ///< 1 / sqrt(stiffness) if the coordinate stores energy, else 0
 };
 
-/// Factors of rows and columns.
-struct Factors {
+/// Scale factors of rows and columns.
+struct ScaleFactors {
   std::vector<Eigen::VectorXd> row;  ///< per block
   Eigen::VectorXd column;
 };
@@ -55,7 +55,7 @@ struct Factors {
 /// from all joints together; if a lever is tiny, its joint's translations do not count, and no row
 /// depends on it. To be used before any elimination (afterwards noise would become 1). O(entries)
 /// per sweep; few are needed, from a start nearly in balance.
-Factors scale(Relations& relations);
+ScaleFactors scale(Relations& relations);
 
 /// z_dependent = sum of factor * z, for coordinates and integrals; in order: those on the right are
 /// independent, or dependent ones earlier in the list. (In independent coordinates only, each of a

@@ -20,7 +20,7 @@ constexpr double kSettled = 1.02;
 constexpr int kMostSweeps = 100;
 
 /// The rows of one unit in one column: their norm.
-struct Entry {
+struct UnitEntry {
   int unit = 0, column = 0;
   double size = 0;
   bool counts = true;  ///< false if tiny compared with another unit's entry times their lever
@@ -29,15 +29,15 @@ struct Entry {
 /// Units are rows of one number. The start goes from entries with a factor to their neighbours, so
 /// that units of measurement have no influence; sweeps then balance all, independent of the place
 /// of the start.
-struct Scaling {
+struct RelationScaling {
   Relations& r;
-  std::vector<Entry> entries = {};
+  std::vector<UnitEntry> entries = {};
   std::vector<std::vector<int>> of_unit = {}, of_column;  ///< entries
   std::vector<double> row = {}, column;                   ///< factors; 0: none yet
   std::vector<double> share = {};                         ///< per unit: its square sum, balanced
   std::vector<char> fixed;                                ///< per column: it stores energy
 
-  explicit Scaling(Relations& relations)
+  explicit RelationScaling(Relations& relations)
       : r(relations), of_column(r.role.size()), column(r.role.size(), 0), fixed(r.role.size(), 0) {
     for (std::size_t j = 0; j < column.size(); ++j)
       if (r.weight(static_cast<Index>(j)) > 0) column[j] = 1, fixed[j] = 1;
@@ -126,7 +126,9 @@ struct Scaling {
     for (std::size_t u = 0; u < share.size(); ++u) share[u] += has_fixed[u];
   }
 
-  double scaled(const Entry& e) const { return e.size * row[at(e.unit)] * column[at(e.column)]; }
+  double scaled(const UnitEntry& e) const {
+    return e.size * row[at(e.unit)] * column[at(e.column)];
+  }
 
   /// By its largest entry in columns that have a factor; adds the columns that it reaches. A first
   /// unit takes entries that do not count too, and has any factor if no column has one.
@@ -195,12 +197,12 @@ struct Scaling {
       change = std::max({change, by, 1 / by});
     };
     std::vector<double> sum(row.size(), 0);
-    for (const Entry& e : entries)
+    for (const UnitEntry& e : entries)
       if (e.counts) sum[at(e.unit)] += scaled(e) * scaled(e);
     for (std::size_t u = 0; u < sum.size(); ++u)
       if (share[u] > 0) correct(row[u], std::sqrt(share[u] / sum[u]));
     sum.assign(column.size(), 0);
-    for (const Entry& e : entries)
+    for (const UnitEntry& e : entries)
       if (e.counts) sum[at(e.column)] += scaled(e) * scaled(e);
     for (std::size_t j = 0; j < sum.size(); ++j)
       if (fixed[j] == 0 && sum[j] > 0) correct(column[j], 1 / std::sqrt(sum[j]));
@@ -210,13 +212,13 @@ struct Scaling {
   /// Scales free columns to 1, including entries that do not count.
   void finish() {
     std::vector<double> sum(column.size(), 0);
-    for (const Entry& e : entries) sum[at(e.column)] += scaled(e) * scaled(e);
+    for (const UnitEntry& e : entries) sum[at(e.column)] += scaled(e) * scaled(e);
     for (std::size_t j = 0; j < sum.size(); ++j)
       if (fixed[j] == 0 && sum[j] > 0) column[j] /= std::sqrt(sum[j]);
   }
 
-  Factors factors() const {
-    Factors f{{}, Eigen::Map<const Eigen::VectorXd>(column.data(), std::ssize(column))};
+  ScaleFactors factors() const {
+    ScaleFactors f{{}, Eigen::Map<const Eigen::VectorXd>(column.data(), std::ssize(column))};
     for (std::size_t b = 0; b < r.blocks.size(); ++b) {
       f.row.emplace_back(r.blocks[b].M.rows());
       for (Index i = 0; i < f.row.back().size(); ++i) f.row.back()(i) = row[at(r.unit[b][at(i)])];
@@ -227,12 +229,12 @@ struct Scaling {
 
 }  // namespace
 
-Factors scale(Relations& relations) {
-  Scaling scaling(relations);
+ScaleFactors scale(Relations& relations) {
+  RelationScaling scaling(relations);
   scaling.start();
   for (int k = 0; k < kMostSweeps && scaling.sweep() > kSettled; ++k) continue;
   scaling.finish();
-  Factors f = scaling.factors();
+  ScaleFactors f = scaling.factors();
   for (std::size_t b = 0; b < relations.blocks.size(); ++b) {
     RowBlock& block = relations.blocks[b];
     block.M = f.row[b].asDiagonal() * block.M * f.column(block.columns).asDiagonal();

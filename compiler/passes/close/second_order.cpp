@@ -27,31 +27,31 @@ Vector6d bracket(const Vector6d& a, const Vector6d& b) {
 }
 
 /// The place of a column on the way round; -1: not on it, or no joint.
-std::ptrdiff_t place(const Column& column, const Closing& c, const Graph& g) {
+std::ptrdiff_t place(const FormColumn& column, const Closing& c, const Graph& g) {
   const auto on_way = [&](int point) {
     if (at(point) >= g.channels.size()) return false;  // the ground
-    if (column.kind == Column::Kind::states) return g.channels[at(point)].node == column.id;
+    if (column.kind == FormColumn::Kind::states) return g.channels[at(point)].node == column.id;
     return g.signals[at(g.equations[at(column.id)].target)].channel == point;
   };
-  if (column.kind != Column::Kind::states && column.kind != Column::Kind::angle) return -1;
+  if (column.kind != FormColumn::Kind::states && column.kind != FormColumn::Kind::angle) return -1;
   const auto found = std::find_if(c.chain.begin(), c.chain.end(), on_way);
   return found == c.chain.end() ? -1 : found - c.chain.begin();
 }
 
 /// The joints of a chain in the order of the way round, each with its columns in the component.
-struct Joint {
+struct ChainJoint {
   std::ptrdiff_t place = 0;
   const MatrixXd* screws = nullptr;  ///< 6 x its columns
   std::vector<int> columns = {};     ///< -1: it does not move
 };
 
-std::vector<Joint> joints(const Component& component, const Closing& c, const Graph& g) {
-  std::vector<Joint> result;
+std::vector<ChainJoint> joints(const Component& component, const Closing& c, const Graph& g) {
+  std::vector<ChainJoint> result;
   for (const auto& [column, screws] : c.form) {
-    Joint joint{place(column, c, g), &screws};
+    ChainJoint joint{place(column, c, g), &screws};
     if (joint.place < 0 || screws.rows() != 6) return {};
     for (int i = 0; i < screws.cols(); ++i) {
-      const Scalar scalar{column, i};
+      const ScalarColumn scalar{column, i};
       const auto found =
           std::lower_bound(component.scalars.begin(), component.scalars.end(), scalar);
       const bool there = found != component.scalars.end() && *found == scalar;
@@ -60,7 +60,7 @@ std::vector<Joint> joints(const Component& component, const Closing& c, const Gr
     result.push_back(std::move(joint));
   }
   std::sort(result.begin(), result.end(),
-            [](const Joint& a, const Joint& b) { return a.place < b.place; });
+            [](const ChainJoint& a, const ChainJoint& b) { return a.place < b.place; });
   return result;
 }
 
@@ -69,10 +69,10 @@ struct Brackets {
   Vector6d sum = Vector6d::Zero(), size = Vector6d::Zero();
 };
 
-Brackets brackets(const std::vector<Joint>& chain, const VectorXd& motion) {
+Brackets brackets(const std::vector<ChainJoint>& chain, const VectorXd& motion) {
   Brackets result;
   Vector6d before = Vector6d::Zero();
-  for (const Joint& joint : chain) {
+  for (const ChainJoint& joint : chain) {
     Vector6d here = Vector6d::Zero();
     for (std::size_t i = 0; i < joint.columns.size(); ++i)
       if (joint.columns[i] >= 0)
@@ -124,10 +124,10 @@ class Span {
 
 }  // namespace
 
-double stopped(const Component& scaled, const Factors& factors,
+double stopped(const Component& scaled, const ScaleFactors& factors,
                const std::vector<const Closing*>& closings, const Graph& graph) {
   if (closings.size() > kMostChains) return -1;
-  std::vector<std::vector<Joint>> chains;
+  std::vector<std::vector<ChainJoint>> chains;
   for (const Closing* c : closings) {
     chains.push_back(joints(scaled, *c, graph));
     if (chains.back().empty()) return -1;

@@ -19,7 +19,7 @@ namespace titop::passes::closing {
 /// the length of a chain.
 ///
 /// `closings`: those of the component's lines, in this order; `scaled`, by `factors`.
-double stopped(const Component& scaled, const Factors& factors,
+double stopped(const Component& scaled, const ScaleFactors& factors,
                const std::vector<const Closing*>& closings, const Graph& graph);
 
 }  // namespace titop::passes::closing

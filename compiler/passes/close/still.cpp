@@ -13,13 +13,14 @@ using linalg::at;
 /// Scalar points mounted on others without any other tie close no chain, though their equations are
 /// no edges of the tree either.
 std::vector<Closing> without_hanging(const std::vector<Closing>& closings) {
-  std::map<Column, int> uses;
+  std::map<FormColumn, int> uses;
   for (const Closing& c : closings)
     for (const auto& [column, matrix] : c.form) ++uses[column];
   std::vector<Closing> result;
   std::copy_if(closings.begin(), closings.end(), std::back_inserter(result), [&](const Closing& c) {
     return c.tie->S.rows() != 1 || std::none_of(c.form.begin(), c.form.end(), [&](const auto& f) {
-             return f.first.kind == Column::Kind::root && uses[f.first] == 1 && !f.second.isZero(0);
+             return f.first.kind == FormColumn::Kind::root && uses[f.first] == 1 &&
+                    !f.second.isZero(0);
            });
   });
   return result;
@@ -56,9 +57,9 @@ void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& 
                 const AtRest& held) {
   if (held.empty()) return;
   Graph& g = stage.graph;
-  const auto holds = [&](const Column& c, int index) { return held.contains({c, index}); };
+  const auto holds = [&](const FormColumn& c, int index) { return held.contains({c, index}); };
   const std::vector<char> still = motion.at_rest(holds),
-                          grounded = motion.at_rest([](const Column&, int) { return false; });
+                          grounded = motion.at_rest([](const FormColumn&, int) { return false; });
   const std::vector<char> places = placing(g, motion, without_hanging(closings));
   std::set<int> points;
   const auto clear = [&](std::vector<Term>& terms) {

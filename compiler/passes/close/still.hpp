@@ -8,7 +8,7 @@ namespace titop::passes::closing {
 
 /// Scalars that are 0 in every motion that the closed chains allow; prescribed motions are not
 /// included.
-using AtRest = std::set<Scalar>;
+using AtRest = std::set<ScalarColumn>;
 
 /// Sets the motion of points that closed chains immobilise by their numbers to 0: the elimination
 /// would find rounding instead of their accelerations. The chains' own equations keep them, for the

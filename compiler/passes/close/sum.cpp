@@ -26,7 +26,7 @@ std::vector<int> units_of_rows(const MatrixXd& S) {
   return units;
 }
 
-void Sum::meet(const MatrixXd& factor) {
+void RoundedSum::meet(const MatrixXd& factor) {
   ++factors_;
   for (Index j = 0; j < factor.cols(); ++j)
     for (Index i = 0; i < factor.rows(); ++i) {
@@ -42,7 +42,7 @@ void Sum::meet(const MatrixXd& factor) {
     }
 }
 
-void Sum::add(const MatrixXd& factor, const Form& own) {
+void RoundedSum::add(const MatrixXd& factor, const Form& own) {
   const double units = (kUnits + kUnitsEach * factors_) * kEpsilon;
   for (const auto& [column, matrix] : own) {
     closing::add(form_, column, factor * matrix);
@@ -62,7 +62,7 @@ void Sum::add(const MatrixXd& factor, const Form& own) {
   }
 }
 
-Form Sum::cleaned() const {
+Form RoundedSum::cleaned() const {
   Form result;
   for (const auto& [column, matrix] : form_) {
     MatrixXd m = (matrix.array().abs() <= rounding_.at(column).array()).select(0.0, matrix);

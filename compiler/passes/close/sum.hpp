@@ -13,10 +13,10 @@ std::vector<int> units_of_rows(const Eigen::MatrixXd& S);
 /// A form that is summed along the ways round a chain, with the rounding of its entries. Rows are
 /// scaled by their entries later: a row at rounding level, of a direction without a constraint,
 /// would then become one.
-class Sum {
+class RoundedSum {
  public:
   /// `units`: per row 0 for a translation, 1 for a rotation.
-  explicit Sum(std::vector<int> units) : units_(std::move(units)) {}
+  explicit RoundedSum(std::vector<int> units) : units_(std::move(units)) {}
   /// A factor that is met on a way: products with it, and with those after it, round in proportion.
   /// Translations and rotations have each their own unit, if there are six columns.
   void meet(const Eigen::MatrixXd& factor);
