@@ -65,7 +65,7 @@ Minimized minimize_as_it_stands(const StateSpace& model, const MinimizeOptions& 
 
 /// `rest` and the integrators of the model, which act on each other no more.
 StateSpace side_by_side(const StateSpace& rest, const StateSpace& model,
-                        const modes::Integrated& states) {
+                        const modes::IntegratorSplit& states) {
   StateSpace apart = model;
   apart.A(states.integrators, states.rest).setZero();
   StateSpace with_rates = rest;
@@ -79,7 +79,7 @@ StateSpace side_by_side(const StateSpace& rest, const StateSpace& model,
 
 /// Minimizes the rest of a model whose integrators all count. Integrators keep their meaning if as
 /// many modes can be removed without a change of their inputs.
-Minimized minimize_beside(const modes::Sampled& sampled, const modes::Integrated& states,
+Minimized minimize_beside(const modes::Sampled& sampled, const modes::IntegratorSplit& states,
                           const StateSpace& rest, const MinimizeOptions& options) {
   const StateSpace& model = sampled.model;
   Minimized result = minimize_as_it_stands(rest, options);
@@ -105,7 +105,7 @@ Minimized minimize_needed(const modes::Sampled& sampled, const MinimizeOptions& 
   MinimizeOptions of_rest{.resolution = options.resolution,
                           .exact_order = options.exact_order,
                           .energy = energy_of_rest};
-  const modes::Integrated states = modes::find_integrators(sampled.model);
+  const modes::IntegratorSplit states = modes::find_integrators(sampled.model);
   if (states.integrators.empty()) return minimize_as_it_stands(sampled.model, of_rest);
   const int k = static_cast<int>(states.integrators.size());
   const auto rest = modes::decoupled_rest(sampled, states);
@@ -133,7 +133,7 @@ void add_needless(const modes::Needless& n, Minimized& r) {
 }
 
 Minimized minimize_in_order(const StateSpace& model, const MinimizeOptions& options) {
-  const modes::Integrated states = modes::find_integrators(model);
+  const modes::IntegratorSplit states = modes::find_integrators(model);
   const bool open = model.inputs.empty() && model.outputs.empty();
   if (states.integrators.empty() || open) return minimize_as_it_stands(model, options);
   modes::Sampled sampled = modes::sampled(model, options.rounding);

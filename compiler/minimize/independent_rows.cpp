@@ -16,9 +16,9 @@ constexpr double kFewDigits = 1e-9;  ///< of a row: with more rounding, nothing 
 constexpr double kOfNoise = 1e12;    ///< times rounding: its weight in the scaling of rows
 
 /// Factors that bring the largest entries of all rows and columns to 1 [Ruiz 2001].
-struct Factors {
+struct UnitScale {
   VectorXd row, column;
-  explicit Factors(MatrixXd sizes)
+  explicit UnitScale(MatrixXd sizes)
       : row(VectorXd::Ones(sizes.rows())), column(VectorXd::Ones(sizes.cols())) {
     constexpr int kSweeps = 20;
     const auto unit = [](const VectorXd& size) {
@@ -37,9 +37,9 @@ struct Factors {
 };
 
 /// Rows are taken one by one [Gram, Schmidt, with reorthogonalization].
-class Basis {
+class RowBasis {
  public:
-  Basis(MatrixXd M, const MatrixXd& rounding)
+  RowBasis(MatrixXd M, const MatrixXd& rounding)
       : M_(std::move(M)), rest_(M_), noise_(rounding.rowwise().norm()) {}
 
   double own(int row) const { return rest_.row(row).norm(); }
@@ -69,7 +69,7 @@ class Basis {
 
 /// For rows at rounding level: rounding over the terms of the entries, at most.
 VectorXd rounding_in(const MatrixXd& terms, const MatrixXd& rounding) {
-  const Factors by(terms);
+  const UnitScale by(terms);
   const VectorXd all = by(terms).rowwise().maxCoeff(), noise = by(rounding).rowwise().maxCoeff();
   return (all.array() > 0).select(noise.cwiseQuotient(all), 0.0);
 }
@@ -91,8 +91,8 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
       r.keep.push_back(i), r.doubtful.push_back({i, 0, of_empty(i)});
   // A column that distinguishes some rows may be at rounding level in the others, and large: it
   // must not dominate these.
-  const Factors by(clear.cwiseAbs().cwiseMax(kOfNoise * rounding));
-  Basis basis(by(clear), by(rounding));
+  const UnitScale by(clear.cwiseAbs().cwiseMax(kOfNoise * rounding));
+  RowBasis basis(by(clear), by(rounding));
   while (!open.empty()) {
     // On the lowest level, the row with the largest own part; of equal ones the first.
     const auto most = std::max_element(open.begin(), open.end(), [&](int a, int b) {

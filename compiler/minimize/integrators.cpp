@@ -23,7 +23,7 @@ MatrixXd above(const MatrixXd& a, const MatrixXd& b) {
 
 }  // namespace
 
-Integrated find_integrators(const StateSpace& model) {
+IntegratorSplit find_integrators(const StateSpace& model) {
   const Index n = model.A.rows();
   std::vector<char> integrator(at(n), 0);
   const auto acts_on_the_rest = [&](Index j) {
@@ -36,12 +36,12 @@ Integrated find_integrators(const StateSpace& model) {
     for (Index j = 0; j < n; ++j)
       if (!integrator[at(j)] && !acts_on_the_rest(j)) integrator[at(j)] = found = true;
   }
-  Integrated states;
+  IntegratorSplit states;
   for (int j = 0; j < n; ++j) (integrator[at(j)] ? states.integrators : states.rest).push_back(j);
   return states;
 }
 
-StateSpace without_integrators(const StateSpace& model, const Integrated& states) {
+StateSpace without_integrators(const StateSpace& model, const IntegratorSplit& states) {
   StateSpace rest;
   rest.A = model.A(states.rest, states.rest);
   rest.B = model.B(states.rest, Eigen::all);
@@ -61,7 +61,7 @@ StateSpace without_integrators(const StateSpace& model, const Integrated& states
 }
 
 StateSpace with_integrators(const StateSpace& rest, const StateSpace& model,
-                            const Integrated& states) {
+                            const IntegratorSplit& states) {
   const Index n = rest.A.rows(), k = std::ssize(states.integrators), outputs = model.C.rows();
   StateSpace m;
   m.A = MatrixXd::Zero(n + k, n + k);
@@ -95,7 +95,7 @@ MatrixXd followed(const MatrixXd& N, const MatrixXd& taken, const Divided& divid
 
 }  // namespace
 
-std::optional<Decoupled> decouple(const StateSpace& model, const Integrated& states) {
+std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit& states) {
   const auto& [rest, integrators] = states;
   Decoupled d{MatrixXd::Zero(std::ssize(integrators), std::ssize(rest)),
               model.A(integrators, integrators), model.B(integrators, Eigen::all),
@@ -117,7 +117,7 @@ std::optional<Decoupled> decouple(const StateSpace& model, const Integrated& sta
   return d;
 }
 
-MatrixXd terms_of_B(const StateSpace& model, const Integrated& states) {
+MatrixXd terms_of_B(const StateSpace& model, const IntegratorSplit& states) {
   const auto& [rest, integrators] = states;
   MatrixXd terms = model.B(integrators, Eigen::all).cwiseAbs();
   if (rest.empty()) return terms;

@@ -9,19 +9,19 @@
 namespace titop::modes {
 
 /// The states of a model: coupled ones, and integrators.
-struct Integrated {
+struct IntegratorSplit {
   std::vector<int> rest, integrators;
 };
 /// A state is an integrator if it acts on no state, or on integrators only. O(n^2) per integrator.
-Integrated find_integrators(const StateSpace& model);
+IntegratorSplit find_integrators(const StateSpace& model);
 
 /// The rest without integrators. The integrators' inputs are outputs, after the model's own; if it
 /// has none, after all states of the rest.
-StateSpace without_integrators(const StateSpace& model, const Integrated& states);
+StateSpace without_integrators(const StateSpace& model, const IntegratorSplit& states);
 
 /// `rest`, perhaps with fewer states than it had, with the integrators of the model again.
 StateSpace with_integrators(const StateSpace& rest, const StateSpace& model,
-                            const Integrated& states);
+                            const IntegratorSplit& states);
 
 /// The same transfer as a sum: the rest, and the integrators separately.
 struct Decoupled {
@@ -31,10 +31,10 @@ struct Decoupled {
 };
 /// None if the rest has a pole at 0 too. The order of a model is that of both parts, since they
 /// have no pole in common. O(rest^3).
-std::optional<Decoupled> decouple(const StateSpace& model, const Integrated& states);
+std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit& states);
 
 /// Sums of magnitudes of the terms of the entries of Decoupled::B, before cancellation, also in the
 /// solution for X. O(rest^3).
-Eigen::MatrixXd terms_of_B(const StateSpace& model, const Integrated& states);
+Eigen::MatrixXd terms_of_B(const StateSpace& model, const IntegratorSplit& states);
 
 }  // namespace titop::modes

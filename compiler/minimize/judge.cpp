@@ -54,16 +54,16 @@ double largest(const VectorXd& mine, const VectorXd& background) {
 }
 
 /// One side of a mode, inputs or outputs: its size against the background, and rounding's.
-struct Side {
+struct ModeSide {
   double size, noise;
-  Side(const MatrixXd& rows, const MatrixXd& apart, const ModeSet& m, Index j,
-       const VectorXd& mixing) {
+  ModeSide(const MatrixXd& rows, const MatrixXd& apart, const ModeSet& m, Index j,
+           const VectorXd& mixing) {
     const VectorXd all = background(rows, m, j);
     size = largest(rows.row(j), all);
     noise = largest(rounding(rows, apart, m, j, mixing), all);
   }
   /// All states are driven, or seen.
-  explicit Side(double lambda) : size(std::sqrt(lambda)), noise(0) {}
+  explicit ModeSide(double lambda) : size(std::sqrt(lambda)), noise(0) {}
 };
 
 Verdict judge(const ModeSet& m, Index j, double resolution) {
@@ -73,8 +73,10 @@ Verdict judge(const ModeSet& m, Index j, double resolution) {
     return v;
   }
   const bool inputs = m.b.cols() > 0, outputs = m.c.cols() > 0;
-  const Side b = inputs ? Side(m.b, m.b_apart, m, j, m.mixing.col(j)) : Side(m.lambda(j));
-  const Side c = outputs ? Side(m.c, m.c_apart, m, j, m.mixing.row(j)) : Side(m.lambda(j));
+  const ModeSide b =
+      inputs ? ModeSide(m.b, m.b_apart, m, j, m.mixing.col(j)) : ModeSide(m.lambda(j));
+  const ModeSide c =
+      outputs ? ModeSide(m.c, m.c_apart, m, j, m.mixing.row(j)) : ModeSide(m.lambda(j));
   v.visibility = b.size * c.size / (2 * m.lambda(j));
   v.bound = std::max(c.size * b.noise, b.size * c.noise) / (2 * m.lambda(j));
   v.unreachable = inputs && (!outputs || b.size <= c.size);

@@ -46,7 +46,7 @@ struct Apart {
   Decoupled model;
   std::vector<Decoupled> off;
 };
-std::optional<Apart> apart(const Sampled& s, const Integrated& states) {
+std::optional<Apart> apart(const Sampled& s, const IntegratorSplit& states) {
   const auto model = decouple(s.model, states);
   if (!model) return std::nullopt;
   Apart result{*model, {}};
@@ -61,7 +61,7 @@ std::optional<Apart> apart(const Sampled& s, const Integrated& states) {
 /// The removed integrators: their indices among the integrators, and as states of the model.
 struct LeavingIntegrators {
   std::vector<int> rows, states;
-  LeavingIntegrators(const IndependentRows& independent, const Integrated& of) {
+  LeavingIntegrators(const IndependentRows& independent, const IntegratorSplit& of) {
     for (const IndependentRows::Row& out : independent.out) {
       rows.push_back(out.row);
       states.push_back(of.integrators[at(out.row)]);
@@ -93,7 +93,7 @@ void report(const IndependentRows& rows, const char* why, Needless& n) {
 }
 
 /// Integrators that inputs move independently of each other.
-IndependentRows moved(const StateSpace& model, const Apart& d, const Integrated& states) {
+IndependentRows moved(const StateSpace& model, const Apart& d, const IntegratorSplit& states) {
   const int powers = powers_of(d.model.N);
   const auto moved_by = [&](const Decoupled& part) { return driven(part.N, part.B, powers); };
   const MatrixXd K = moved_by(d.model),
@@ -103,7 +103,7 @@ IndependentRows moved(const StateSpace& model, const Apart& d, const Integrated&
 }
 
 /// States that follow from the others: out = T keep + (X_out - T X_keep) rest.
-bool take_out_undriven(Sampled& s, const Integrated& states, Needless& n) {
+bool take_out_undriven(Sampled& s, const IntegratorSplit& states, Needless& n) {
   const std::optional<Apart> d = apart(s, states);
   if (!d) return false;
   const IndependentRows rows = moved(s.model, *d, states);
@@ -129,7 +129,7 @@ bool take_out_undriven(Sampled& s, const Integrated& states, Needless& n) {
 }
 
 /// States that outputs see only together with others, or not at all.
-void leave_out_unseen(Sampled& s, const Integrated& states, Needless& n) {
+void leave_out_unseen(Sampled& s, const IntegratorSplit& states, Needless& n) {
   const auto part = [&](const StateSpace& m) {
     return MatrixXd(m.A(states.integrators, states.integrators).transpose());
   };
@@ -156,7 +156,7 @@ void leave_out_unseen(Sampled& s, const Integrated& states, Needless& n) {
 
 }  // namespace
 
-std::optional<StateSpace> decoupled_rest(const Sampled& s, const Integrated& states) {
+std::optional<StateSpace> decoupled_rest(const Sampled& s, const IntegratorSplit& states) {
   const std::optional<Apart> d = apart(s, states);
   if (!d) return std::nullopt;
   const auto seen = [](const Decoupled& part) { return part.C_rest; };
@@ -173,7 +173,7 @@ std::optional<StateSpace> decoupled_rest(const Sampled& s, const Integrated& sta
 
 std::optional<Needless> take_out_needless(Sampled& s) {
   Needless n;
-  Integrated states = find_integrators(s.model);
+  IntegratorSplit states = find_integrators(s.model);
   if (!s.model.inputs.empty() && !states.integrators.empty()) {
     if (!take_out_undriven(s, states, n)) return std::nullopt;
     states = find_integrators(s.model);

@@ -12,7 +12,7 @@ namespace titop::modes {
 
 /// The rest of a decoupled model (integrators.hpp); entries at rounding level are 0. None if the
 /// rest has a pole at 0 too.
-std::optional<StateSpace> decoupled_rest(const Sampled& sampled, const Integrated& states);
+std::optional<StateSpace> decoupled_rest(const Sampled& sampled, const IntegratorSplit& states);
 
 /// Removed integrators, and doubtful ones.
 struct Needless {

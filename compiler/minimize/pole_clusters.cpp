@@ -38,7 +38,7 @@ std::vector<std::vector<int>> find_components(const MatrixXd& A) {
   return result;
 }
 
-struct Cluster {
+struct PoleCluster {
   Places poles;
   bool whole;     ///< judged as a whole
   double radius;  ///< by which rounding may have moved the poles of a multiple one
@@ -51,7 +51,7 @@ double condition(const PoleClusters& p, Index j) {
 
 /// The spectrum of one component into the whole's.
 void add_component(const MatrixXd& balanced, const std::vector<int>& states, PoleClusters& p,
-                   std::vector<Cluster>& clusters) {
+                   std::vector<PoleCluster>& clusters) {
   const Index first = std::ssize(p.component), n = std::ssize(states);
   const MatrixXd A = balanced(states, states);
   const linalg::Spectrum s = linalg::spectrum(A, kIll);
@@ -66,7 +66,7 @@ void add_component(const MatrixXd& balanced, const std::vector<int>& states, Pol
   p.components.push_back(states);
   p.size.push_back(A.norm());
   for (const auto& [begin, count, simple] : s.clusters) {
-    Cluster c{{}, !simple, 0};
+    PoleCluster c{{}, !simple, 0};
     const auto values = s.values.segment(begin, count);
     const std::complex<double> mean = values.mean();
     for (Index j = begin; j < begin + count; ++j) {
@@ -80,8 +80,8 @@ void add_component(const MatrixXd& balanced, const std::vector<int>& states, Pol
 }
 
 /// True if poles of both may be the same one.
-bool meet(const PoleClusters& p, const Cluster& a, const Cluster& b) {
-  const auto size = [&](const Cluster& c) { return p.size[at(p.component[at(c.poles[0])])]; };
+bool meet(const PoleClusters& p, const PoleCluster& a, const PoleCluster& b) {
+  const auto size = [&](const PoleCluster& c) { return p.size[at(p.component[at(c.poles[0])])]; };
   const double same = kOneNumber * (size(a) + size(b)) + a.radius + b.radius;
   for (const Index i : a.poles)
     for (const Index j : b.poles)
@@ -92,10 +92,10 @@ bool meet(const PoleClusters& p, const Cluster& a, const Cluster& b) {
 }
 
 /// Clusters take in all that shares a pole with them.
-void join(const PoleClusters& p, std::vector<Cluster>& clusters) {
+void join(const PoleClusters& p, std::vector<PoleCluster>& clusters) {
   for (std::size_t a = 0; a < clusters.size(); ++a)
     for (std::size_t b = 0; clusters[a].whole && b < clusters.size(); ++b) {
-      Cluster &one = clusters[a], &other = clusters[b];
+      PoleCluster &one = clusters[a], &other = clusters[b];
       if (a == b || other.poles.empty() || one.poles.empty() || !meet(p, one, other)) continue;
       one.poles.insert(one.poles.end(), other.poles.begin(), other.poles.end());
       std::sort(one.poles.begin(), one.poles.end());
@@ -114,11 +114,11 @@ PoleClusters pole_clusters(const MatrixXd& A) {
   p.e.scale = linalg::balance_parts(balanced);
   p.e.values.resize(n);
   p.e.V = p.e.W = p.T = MatrixXcd::Zero(n, n);
-  std::vector<Cluster> clusters;
+  std::vector<PoleCluster> clusters;
   for (const std::vector<int>& states : find_components(A))
     add_component(balanced, states, p, clusters);
   join(p, clusters);
-  for (Cluster& c : clusters)
+  for (PoleCluster& c : clusters)
     if (c.whole && !c.poles.empty()) p.clusters.push_back(std::move(c.poles));
   return p;
 }
@@ -126,9 +126,9 @@ PoleClusters pole_clusters(const MatrixXd& A) {
 namespace {
 
 /// The poles of a component in and outside of a cluster.
-struct Split {
+struct ComponentSplit {
   Places in, out;
-  Split(const PoleClusters& p, const Places& cluster, int component) {
+  ComponentSplit(const PoleClusters& p, const Places& cluster, int component) {
     for (Index j = 0; j < std::ssize(p.component); ++j) {
       if (p.component[at(j)] != component) continue;
       (std::binary_search(cluster.begin(), cluster.end(), j) ? in : out).push_back(j);
@@ -145,16 +145,17 @@ MatrixXd real_basis(const MatrixXcd& V) {
 }
 
 /// A component's part of a cluster, in balanced states.
-struct Share {
+struct ClusterShare {
   Places in, out, at_states;
   MatrixXd Q, W;                                                  ///< W Q = 1
   MatrixXcd V_in, W_in, V_out, W_out, T_in, T_out, G, G_inverse;  ///< V_in = Q G
   MatrixXd A, B, C;                                               ///< of the component
 };
 
-Share share(const PoleClusters& p, const Places& cluster, int component, const StateSpace& m) {
-  const Split split(p, cluster, component);
-  Share s{split.in, split.out, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
+ClusterShare share(const PoleClusters& p, const Places& cluster, int component,
+                   const StateSpace& m) {
+  const ComponentSplit split(p, cluster, component);
+  ClusterShare s{split.in, split.out, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}, {}};
   if (s.in.empty()) return s;
   for (const int i : p.components[at(component)]) s.at_states.push_back(i);
   const VectorXd scale = p.e.scale(s.at_states), inverse = scale.cwiseInverse();
@@ -179,7 +180,7 @@ struct Off {
   double A;
   VectorXd B, C;
 };
-Off off(const Share& s, const MatrixXd& E) {
+Off off(const ClusterShare& s, const MatrixXd& E) {
   const MatrixXcd X = linalg::sylvester(s.T_in, s.T_out, s.W_in * E * s.V_out),
                   Y = linalg::sylvester(s.T_out, s.T_in, -s.W_out * E * s.V_in);
   return {(s.W * E * s.Q).norm(), (s.G * X * s.W_out * s.B).colwise().norm(),
@@ -198,7 +199,7 @@ MatrixXd error_like(const MatrixXd& A, int sample) {
 }
 
 /// Puts a component's part next to the earlier ones.
-void add_share(const Share& s, OwnModel& own) {
+void add_share(const ClusterShare& s, OwnModel& own) {
   ClusterModel& m = own.model;
   const Index before = m.A.rows(), k = std::ssize(s.in);
   m.A.conservativeResize(before + k, before + k);
@@ -237,7 +238,7 @@ OwnModel own_model(const PoleClusters& p, const Places& cluster, const StateSpac
   own.model.B = MatrixXd(0, nu);
   own.model.C = MatrixXd(ny, 0);
   for (int c = 0; c < std::ssize(p.components); ++c) {
-    const Share s = share(p, cluster, c, model);
+    const ClusterShare s = share(p, cluster, c, model);
     if (s.in.empty()) continue;
     const VectorXd scale = p.e.scale(s.at_states);
     Places own_places;

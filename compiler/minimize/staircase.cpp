@@ -16,7 +16,7 @@ constexpr double kClearly = 1e4;     ///< times rounding: certainly larger
 constexpr double kFewDigits = 1e-9;  ///< of a size: with more rounding, nothing is removed
 
 /// One side of a cluster: its inputs or, transposed, its outputs.
-struct Driven {
+struct DrivenSide {
   MatrixXd A, B;
   double A_noise, A_size;
   VectorXd B_noise, B_size;
@@ -31,12 +31,12 @@ struct Stairs {
 };
 
 /// Ports by their own rounding: M is larger than 1 unless it is 0.
-struct Step {
+struct ScaledPorts {
   MatrixXd M;
   double noise, relative;  ///< in M's units, and by the sizes
 };
 
-Step first_step(const Driven& d) {
+ScaledPorts first_step(const DrivenSide& d) {
   std::vector<Index> ports;
   double relative = 0;
   for (Index l = 0; l < d.B.cols(); ++l)
@@ -53,13 +53,13 @@ Step first_step(const Driven& d) {
 
 /// `times`: singular values up to this multiple of rounding count as 0. `careful`: if rounding has
 /// too few digits, all states count as reached.
-Stairs stairs(const Driven& d, double times, bool careful) {
+Stairs stairs(const DrivenSide& d, double times, bool careful) {
   const Index k = d.A.rows();
   Stairs s{MatrixXd::Identity(k, k)};
   MatrixXd A = d.A;
   A.diagonal().array() -= k > 0 ? A.trace() / static_cast<double>(k) : 0;
   const double own = A.norm();
-  Step step = first_step(d);
+  ScaledPorts step = first_step(d);
   while (s.reached < k) {
     if (careful && step.relative > kFewDigits) {
       s.reached = k;
@@ -94,11 +94,11 @@ Stairs stairs(const Driven& d, double times, bool careful) {
   return s;
 }
 
-struct Part {
+struct StairsPair {
   Stairs reach, see;
 };
-Part part(const ClusterModel& m, double times, bool careful) {
-  Part p;
+StairsPair part(const ClusterModel& m, double times, bool careful) {
+  StairsPair p;
   const Index k = m.A.rows();
   p.reach = m.B.cols() > 0
                 ? stairs({m.A, m.B, m.A_noise, m.A_size, m.B_noise, m.B_size}, times, careful)
@@ -117,7 +117,7 @@ Part part(const ClusterModel& m, double times, bool careful) {
 
 MinimalPart minimal_part(const ClusterModel& model) {
   const Index k = model.A.rows();
-  const Part p = part(model, kRounding, /*careful=*/true);
+  const StairsPair p = part(model, kRounding, /*careful=*/true);
   const Index reached = p.reach.reached;
   return {p.reach.U.rightCols(k - reached),
           p.reach.U.leftCols(reached) * p.see.U.rightCols(reached - p.see.reached),

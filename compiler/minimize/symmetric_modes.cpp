@@ -19,15 +19,15 @@ constexpr double kNoTerm = 1e-12;    ///< of the terms of a sum: a smaller sum i
 
 using linalg::at;
 
-struct Range {
+struct ModeRange {
   Index first, count;
 };
 
 /// Modes, by rising lambda, whose frequencies are equal up to rounding and this part of lambda.
-std::vector<Range> equal_frequencies(const GradedModes& e, double same) {
+std::vector<ModeRange> equal_frequencies(const GradedModes& e, double same) {
   const VectorXd& lambda = e.modes.lambda;
   const double all_alike = 100 * kEps * lambda.cwiseAbs().maxCoeff();
-  std::vector<Range> result;
+  std::vector<ModeRange> result;
   for (Index i = 0; i < lambda.size(); ++i) {
     const double size = std::abs(lambda(i));
     const double rounding = e.graded ? std::min(all_alike, 4 * e.relative * size) : all_alike;

@@ -118,7 +118,7 @@ void remove(StateSpace& m, LeavingSides l, const std::vector<int>& dependent,
 
 /// Modal input or output matrix of all modes.
 template <class Matrix>
-struct Modes {
+struct ModeVectors {
   Matrix vectors;  ///< modes x states
   VectorXd sizes;  ///< of the vectors, the states in units of their own
   Matrix ports;    ///< modes x ports
@@ -129,7 +129,7 @@ struct Modes {
 /// unreachable (or unobservable), unless it is more than errors of size `noise` in the matrix
 /// explain, as for modes that the caller's resolution drops.
 template <class Matrix>
-Matrix leaving(const Modes<Matrix>& all, const std::vector<Index>& leave,
+Matrix leaving(const ModeVectors<Matrix>& all, const std::vector<Index>& leave,
                const std::vector<Index>& stay, const ModeSet& m, double noise) {
   const VectorXd unit = all.sizes.cwiseInverse();
   const Matrix vectors = unit.asDiagonal() * all.vectors;
@@ -246,7 +246,8 @@ void take_out(const Symmetric& s, const std::vector<Verdict>& verdicts, StateSpa
   MatrixXd shown(2 * model.C.rows(), s.Q.rows());
   shown << model.C(Eigen::all, s.q) * s.D, model.C(Eigen::all, s.qdot) * s.D;
   const auto modes = [&](const MatrixXd& ports, const std::vector<Index>& leave) {
-    const Modes<MatrixXd> all{s.Q.transpose(), VectorXd::Ones(s.Q.cols()), s.Q.transpose() * ports};
+    const ModeVectors<MatrixXd> all{s.Q.transpose(), VectorXd::Ones(s.Q.cols()),
+                                    s.Q.transpose() * ports};
     return leaving(all, leave, staying(s.modes, leave), s.modes,
                    kNoise * s.modes.lambda.maxCoeff());
   };
@@ -291,7 +292,7 @@ void take_out(const General& g, const std::vector<Verdict>& verdicts, StateSpace
   };
   const auto relations = [&](const MatrixXcd& vectors, const VectorXd& sizes,
                              const MatrixXcd& ports, const std::vector<Index>& leave) {
-    return real_rows(leaving(Modes<MatrixXcd>{vectors, sizes, ports}, leave,
+    return real_rows(leaving(ModeVectors<MatrixXcd>{vectors, sizes, ports}, leave,
                              staying(g.modes, leave), g.modes, kNoise * g.modes.lambda.maxCoeff()),
                      leave);
   };
