@@ -25,7 +25,7 @@ constexpr double kDigits = 1e-11;    ///< of the peaks: possible loss of unpivot
 constexpr double kFromZero = 2e-6;
 
 /// Rows and columns `list` of a part.
-Part select(const Part& p, const std::vector<Index>& list) {
+SpectralPart select(const SpectralPart& p, const std::vector<Index>& list) {
   return {p.A(list, list), p.B(list, Eigen::all), p.C(Eigen::all, list), p.left(list, Eigen::all),
           p.right(Eigen::all, list)};
 }
@@ -47,7 +47,7 @@ class Judge {
  public:
   Judge(const Split& split, const Samples& samples)
       : lowest_(lowest(split, samples)), samples_(samples) {}
-  bool is_silent(const Part& p) const {
+  bool is_silent(const SpectralPart& p) const {
     const bool is_zero = p.A.cwiseAbs().maxCoeff() < 0.5 * lowest_;  // distinct from all others
     if (is_zero && samples_.omega.front() <= kFromZero * lowest_)
       return size(p, lowest_) <= kSilent;
@@ -59,7 +59,7 @@ class Judge {
 
  private:
   /// Largest share of any pair's peak.
-  double size(const Part& p, Complex s) const {
+  double size(const SpectralPart& p, Complex s) const {
     return transfer(p, s).cwiseAbs().cwiseQuotient(samples_.peak).maxCoeff();
   }
   double lowest_;
@@ -68,8 +68,8 @@ class Judge {
 
 /// The kept part in blocks per pole, without those on the axis that are silent; as it is if
 /// poles are too close to defective.
-Part without_silent(const Split& split, const Samples& samples) {
-  const Part& p = split.kept;
+SpectralPart without_silent(const Split& split, const Samples& samples) {
+  const SpectralPart& p = split.kept;
   if (p.order() == 0) return p;
   RealModes modes;
   try {
@@ -78,8 +78,8 @@ Part without_silent(const Split& split, const Samples& samples) {
     return p;
   }
   const MatrixXd inverse = modes.T.inverse();
-  Part blocks{MatrixXd::Zero(p.order(), p.order()), inverse * p.B, p.C * modes.T, inverse * p.left,
-              p.right * modes.T};
+  SpectralPart blocks{MatrixXd::Zero(p.order(), p.order()), inverse * p.B, p.C * modes.T,
+                      inverse * p.left, p.right * modes.T};
   const Judge judge(split, samples);
   std::vector<Index> stay;
   const auto add = [&](const std::vector<Index>& list, const MatrixXd& A) {

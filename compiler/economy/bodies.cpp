@@ -102,14 +102,14 @@ std::vector<Shared> by_block(const Graph& g, const std::vector<ModeEffects>& eff
 }
 
 /// Modes of one body that stay or go together.
-struct Group {
+struct ModeGroup {
   std::size_t body = 0;
   std::vector<Index> modes;
   double effect = 0;
 };
 
-std::vector<Group> groups(const std::vector<Shared>& bodies) {
-  std::vector<Group> list;
+std::vector<ModeGroup> groups(const std::vector<Shared>& bodies) {
+  std::vector<ModeGroup> list;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
     const VectorXd& k = bodies[b].modal->stiffness;
     std::vector<Index> order;
@@ -127,11 +127,11 @@ std::vector<Group> groups(const std::vector<Shared>& bodies) {
 
 /// Marks the modes that stay: the rest is worth `share` or less.
 void keep(std::vector<Shared>& bodies, double share) {
-  std::vector<Group> list = groups(bodies);
+  std::vector<ModeGroup> list = groups(bodies);
   std::stable_sort(list.begin(), list.end(),
-                   [](const Group& a, const Group& b) { return a.effect < b.effect; });
+                   [](const ModeGroup& a, const ModeGroup& b) { return a.effect < b.effect; });
   double sum = 0;
-  for (const Group& g : list) {
+  for (const ModeGroup& g : list) {
     sum += g.effect;
     if (sum <= share) continue;
     for (const Index j : g.modes) bodies[g.body].kept[at(j)] = 1;
@@ -158,21 +158,21 @@ MatrixXd static_vectors(const Shared& body, const std::vector<Index>& gone) {
 }
 
 /// The coordinates that a body keeps, with their stiffnesses.
-struct Basis {
+struct BodyBasis {
   MatrixXd V;
   VectorXd stiffness;
   Index vectors = 0;
 };
 
 /// None if nothing would be saved.
-std::optional<Basis> basis(const Shared& body, double share) {
+std::optional<BodyBasis> basis(const Shared& body, double share) {
   std::vector<Index> kept, gone;
   for (Index j = 0; j < body.cut.size(); ++j) (body.kept[at(j)] ? kept : gone).push_back(j);
   const auto n = static_cast<Index>(kept.size());
   MatrixXd S(static_cast<Index>(gone.size()), 0);
   if (n > 0 || body.cut.sum() > share) S = static_vectors(body, gone);
   if (S.cols() >= S.rows()) return std::nullopt;
-  Basis b{MatrixXd::Zero(body.cut.size(), n + S.cols()), VectorXd(n + S.cols()), S.cols()};
+  BodyBasis b{MatrixXd::Zero(body.cut.size(), n + S.cols()), VectorXd(n + S.cols()), S.cols()};
   for (Index i = 0; i < n; ++i) {
     b.V(kept[at(i)], i) = 1;
     b.stiffness(i) = body.modal->stiffness(kept[at(i)]);
@@ -185,7 +185,7 @@ std::optional<Basis> basis(const Shared& body, double share) {
   return b;
 }
 
-std::string told(const Graph& g, const Shared& body, const std::optional<Basis>& b) {
+std::string told(const Graph& g, const Shared& body, const std::optional<BodyBasis>& b) {
   std::string names = g.nodes[at(body.nodes.front())].name;
   if (body.nodes.size() > 1) names += fmt::format(" and {} more", body.nodes.size() - 1);
   const Index all = body.cut.size();
@@ -205,7 +205,7 @@ SmallerBodies smaller_bodies(const Graph& graph, const std::vector<ModeEffects>&
   std::vector<char> gone(graph.signals.size(), 0);
   for (const Shared& body : bodies) {
     const auto count = static_cast<int>(body.nodes.size());
-    const std::optional<Basis> b = basis(body, share);
+    const std::optional<BodyBasis> b = basis(body, share);
     result.before += count * static_cast<int>(body.cut.size());
     result.after += count * static_cast<int>(b ? b->V.cols() : body.cut.size());
     result.text.push_back(told(graph, body, b));

@@ -7,8 +7,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 ErrorBound error_bound(const System& full, const Scene& scene, const Band& band,
-                       const Spectrum& spectrum, const std::vector<std::complex<double>>& poles,
-                       const TransferOf& transfer) {
+                       const SampledSpectrum& spectrum,
+                       const std::vector<std::complex<double>>& poles, const TransferOf& transfer) {
   const auto points = sample_points(scene, band, spectrum, poles, kPhase);
   const Samples check = sample(full, scene, spectrum, points);
   const Index outputs = check.peak.rows(), inputs = check.peak.cols();

@@ -16,7 +16,7 @@ using TransferOf = std::function<Eigen::MatrixXcd(std::complex<double>)>;
 /// two can differ most: the phase grid of the poles of both; plus rounding, except for pairs that
 /// are 0 in both. Cost: the full system's transfers at these points, counted by `samples`.
 ErrorBound error_bound(const System& full, const Scene& scene, const Band& band,
-                       const Spectrum& spectrum, const std::vector<std::complex<double>>& poles,
-                       const TransferOf& transfer);
+                       const SampledSpectrum& spectrum,
+                       const std::vector<std::complex<double>>& poles, const TransferOf& transfer);
 
 }  // namespace titop::detail

@@ -31,7 +31,7 @@ class ByModes : public Reduction {
     setting_.take_samples(whole_);
   }
 
-  Spectrum spectrum() const override { return whole_; }
+  SampledSpectrum spectrum() const override { return whole_; }
 
   std::optional<ReducedData> reach(double accuracy) override {
     const double start = now();
@@ -65,7 +65,7 @@ class ByModes : public Reduction {
  private:
   void join(Coordinates& c) {
     const Index before = c.size();
-    const Twins twins = join_twins(c, setting_.data->graph());
+    const TwinReduction twins = join_twins(c, setting_.data->graph());
     if (twins.removed > 0)
       setting_.note("symmetry", before, c.size(),
                     fmt::format("{} move alike", fmt::join(twins.pairs, "; ")));

@@ -24,7 +24,7 @@ class ByStates : public Reduction {
     setting_.take_samples(spectrum());
   }
 
-  Spectrum spectrum() const override { return {dense_, split_}; }
+  SampledSpectrum spectrum() const override { return {dense_, split_}; }
 
   std::optional<ReducedData> reach(double accuracy) override {
     const Balanced& sequence = balanced();

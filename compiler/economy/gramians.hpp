@@ -32,7 +32,7 @@ Balancing balance(const Split& split, const PortSizes& sizes, double corner = 0)
 /// ...) at most, on the axis and everywhere right of it, for both are analytic there and the error
 /// is largest on the axis [Enns, Glover 1984; Liu, Anderson 1989]; not so if `weighted`.
 struct Cut {
-  Part part;
+  SpectralPart part;
   Eigen::MatrixXd D;  ///< direct term with the residual of the others
 };
 Cut cut(const Balancing& balancing, Eigen::Index r, bool truncated);

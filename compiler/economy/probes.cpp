@@ -53,14 +53,14 @@ Graph reading(const Graph& graph, const std::vector<ModeEffects>& bodies) {
 }
 
 /// A row of the graph below: part of an output's scalar, that many times integrated.
-struct Integrated {
+struct IntegratedRow {
   Index output = 0;
   int times = 0;
 };
 
 /// Outputs whose positions and rates are replaced by accelerations: the states do not contain the
 /// additions to these.
-std::vector<Output> accelerations(const Graph& g, std::vector<Integrated>& rows) {
+std::vector<Output> accelerations(const Graph& g, std::vector<IntegratedRow>& rows) {
   std::vector<Output> result;
   Index first = 0;
   for (const Output& o : g.outputs) {
@@ -84,7 +84,7 @@ std::vector<Output> accelerations(const Graph& g, std::vector<Integrated>& rows)
 
 /// The graph with additions to the outputs of these nodes' blocks as inputs, after its own.
 Graph driving(const Graph& graph, const std::vector<ModeEffects>& bodies,
-              std::vector<Integrated>& rows) {
+              std::vector<IntegratedRow>& rows) {
   Graph g = graph;
   g.outputs = accelerations(graph, rows);
   std::map<int, int> addition;
@@ -143,7 +143,7 @@ std::vector<MatrixXcd> transfers(const Graph& graph, Options options,
 }
 
 /// Outputs of the scene from the rows of `driving`.
-MatrixXcd integrated(const MatrixXcd& G, const std::vector<Integrated>& rows, Index outputs,
+MatrixXcd integrated(const MatrixXcd& G, const std::vector<IntegratedRow>& rows, Index outputs,
                      Complex s) {
   MatrixXcd result = MatrixXcd::Zero(outputs, G.cols());
   for (std::size_t r = 0; r < rows.size(); ++r)
@@ -198,7 +198,7 @@ std::vector<ModeEffects> mode_effects(const Graph& graph, const Scene& scene,
   if (bodies.empty()) return bodies;
   const double damping = std::max(kDamping, scene.damping_floor);
   const std::vector<Complex> s = ray(scene, modes, damping);
-  std::vector<Integrated> rows;
+  std::vector<IntegratedRow> rows;
   const std::vector<MatrixXcd> H = transfers(reading(graph, bodies), options, s);
   const std::vector<MatrixXcd> G = transfers(driving(graph, bodies, rows), options, s);
   Index outputs = 0, inputs = 0;

@@ -58,14 +58,14 @@ std::vector<Complex> merged(std::vector<Complex> poles, const std::vector<Comple
 }
 
 /// Sensitivity of outputs to the modes: a q'' + v q' + q q.
-struct Reading {
+struct OutputSensitivity {
   MatrixXd a, v, q;
 };
 
 /// Sensitivities with positions as such, not as static gain and accelerations: for a mode far below
 /// the band each of these is as large as its static part, and they cancel.
-Reading as_meant(const Whole& w) {
-  Reading r{w.ca, w.cv, w.cq};
+OutputSensitivity as_meant(const Whole& w) {
+  OutputSensitivity r{w.ca, w.cv, w.cq};
   const Index n = w.elastic();
   for (Index i = 0; i < r.a.rows(); ++i) {
     if (!w.is_position[static_cast<std::size_t>(i)]) continue;
@@ -79,7 +79,7 @@ Reading as_meant(const Whole& w) {
 /// Size of every pair at s if input and output were coupled equally to all modes: norms of the
 /// output's and the input's modal vectors, each mode weighted by its response [Cauchy, Schwarz].
 /// Has the pair's own unit.
-MatrixXd alike(const Whole& w, const Reading& r, Complex s) {
+MatrixXd alike(const Whole& w, const OutputSensitivity& r, Complex s) {
   MatrixXd out = MatrixXd::Zero(r.a.rows(), 1), in = MatrixXd::Zero(1, w.b.cols());
   for (Index j = 0; j < w.order(); ++j) {
     if (w.lambda(j) == 0 && s == 0.0) continue;
@@ -154,7 +154,7 @@ Band band_of(const System& system, const Scene& scene, const Whole& w) {
 }
 
 Band band_of(const System& system, const Scene& scene, const std::vector<Complex>& poles,
-             const Part& integrals) {
+             const SpectralPart& integrals) {
   Band band{2 * std::numbers::pi * scene.band_hz[0], 2 * std::numbers::pi * scene.band_hz[1], 0};
   if (band.low > 0 || std::find(poles.begin(), poles.end(), 0.0) == poles.end()) return band;
   const MatrixXd one = integrals.C * integrals.B,
@@ -173,21 +173,21 @@ Complex on_ray(const Scene& scene, double omega) {
   return {zeta * omega, std::sqrt(1 - zeta * zeta) * omega};
 }
 
-Spectrum::Spectrum(const Whole& w)
+SampledSpectrum::SampledSpectrum(const Whole& w)
     : poles(poles_of(w)),
       far(static_cast<int>(w.far)),
       squared(w.Z.size() == 0 && w.cv.isZero(0)),
       sizes([&w, reading = as_meant(w), driven = MatrixXd(w.b.cwiseAbs())](Complex s) {
-        return Sizes{alike(w, reading, s), terms(w, driven, s)};
+        return PairSizes{alike(w, reading, s), terms(w, driven, s)};
       }) {}
 
-Spectrum::Spectrum(const StateSpace& model, const Split& split)
+SampledSpectrum::SampledSpectrum(const StateSpace& model, const Split& split)
     : poles(split.poles), by_peaks(true), sizes([&](Complex s) {
         const MatrixXd size = detail::terms(model, split, s);
-        return Sizes{size, size};
+        return PairSizes{size, size};
       }) {}
 
-std::vector<double> sample_points(const Scene& scene, const Band& band, const Spectrum& w,
+std::vector<double> sample_points(const Scene& scene, const Band& band, const SampledSpectrum& w,
                                   const std::vector<Complex>& small, double step) {
   if (!(band.high > band.low)) return {std::max(band.low, band.start)};
   const bool all = scene.bound == BoundKind::theorem;
@@ -240,7 +240,7 @@ MatrixXd with_floor(MatrixXd peak) {
 
 }  // namespace
 
-Samples sample(const System& system, const Scene& scene, const Spectrum& w,
+Samples sample(const System& system, const Scene& scene, const SampledSpectrum& w,
                std::vector<double> omega) {
   Samples result;
   result.omega = std::move(omega);
@@ -253,7 +253,7 @@ Samples sample(const System& system, const Scene& scene, const Spectrum& w,
   MatrixXd meant = MatrixXd::Zero(outputs, inputs);
   result.peak = result.alike = meant;
   for (std::size_t k = 0; k < result.s.size(); ++k) {
-    const Sizes here = w.sizes(result.s[k]);
+    const PairSizes here = w.sizes(result.s[k]);
     result.peak = result.peak.cwiseMax(result.H[k].cwiseAbs());
     meant = meant.cwiseMax(here.alike);
     result.alike = result.alike.cwiseMax(here.terms);
@@ -267,7 +267,7 @@ Samples sample(const System& system, const Scene& scene, const Spectrum& w,
   return result;
 }
 
-double nearest_pole(const Scene& scene, const Band& band, const Spectrum& w) {
+double nearest_pole(const Scene& scene, const Band& band, const SampledSpectrum& w) {
   const Complex turn = std::conj(on_ray(scene, 1));
   const double low = std::max(band.low, band.start), high = std::max(low, band.high);
   double nearest = 1;

@@ -21,38 +21,39 @@ Band band_of(const System& system, const Scene& scene, const Whole& whole);
 
 /// The same of a model by states, with these poles and `integrals`, the part of those at 0.
 Band band_of(const System& system, const Scene& scene,
-             const std::vector<std::complex<double>>& poles, const Part& integrals);
+             const std::vector<std::complex<double>>& poles, const SpectralPart& integrals);
 
 /// Sizes of a model's pairs at one s without cancellation: outputs x inputs.
-struct Sizes {
+struct PairSizes {
   Eigen::MatrixXd alike;  ///< every pair if output and input were coupled equally to all modes
   Eigen::MatrixXd terms;  ///< sum of the magnitudes of the model's terms: scale of its rounding
 };
 
 /// Data of a model that sampling needs.
-struct Spectrum {
+struct SampledSpectrum {
   std::vector<std::complex<double>> poles;  ///< [rad/s], those of pairs with Im >= 0
   int far = 0;                              ///< more poles in s^2, far above
   bool squared = false;                     ///< the transfer is rational in s^2
   bool by_peaks = false;                    ///< pairs that are 0 are compared with others, too
-  std::function<Sizes(std::complex<double>)> sizes;
+  std::function<PairSizes(std::complex<double>)> sizes;
 
-  Spectrum(const Whole& whole);  // NOLINT: a whole is one; it must live as long
-  Spectrum(const StateSpace& model, const Split& split);  ///< likewise
+  SampledSpectrum(const Whole& whole);  // NOLINT: a whole is one; it must live as long
+  SampledSpectrum(const StateSpace& model, const Split& split);  ///< likewise
 };
 
 /// Points of the band for the difference of two models with these poles [rad/s, of positive
 /// imaginary part for pairs], by the scene's kind of bound: phase steps of at most `step`.
-std::vector<double> sample_points(const Scene& scene, const Band& band, const Spectrum& whole,
+std::vector<double> sample_points(const Scene& scene, const Band& band,
+                                  const SampledSpectrum& whole,
                                   const std::vector<std::complex<double>>& small, double step);
 
 /// The factored system there, on all cores. O(points * bodies).
-Samples sample(const System& system, const Scene& scene, const Spectrum& whole,
+Samples sample(const System& system, const Scene& scene, const SampledSpectrum& whole,
                std::vector<double> omega);
 
 /// Smallest distance of a pole from the band on the ray, over its modulus; 1 at most. On an
 /// undamped resonance it is the damping floor.
-double nearest_pole(const Scene& scene, const Band& band, const Spectrum& whole);
+double nearest_pole(const Scene& scene, const Band& band, const SampledSpectrum& whole);
 
 /// Bound of rounding in the error of each pair there, relative to its peak: 1e-12 of the transfer
 /// itself (System::transfer), some units of the terms before cancellation, and the last digit

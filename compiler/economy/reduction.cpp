@@ -16,13 +16,14 @@ void Setting::note_structure(Eigen::Index after) {
          "what the scene's inputs reach and its outputs see, without tied coordinates");
 }
 
-void Setting::take_samples(const Spectrum& spectrum) {
+void Setting::take_samples(const SampledSpectrum& spectrum) {
   timed("samples", [&] {
     samples = sample(full, scene, spectrum, sample_points(scene, band, spectrum, {}, kPhase));
   });
 }
 
-ErrorBound Setting::bound(const Spectrum& spectrum, const std::vector<std::complex<double>>& poles,
+ErrorBound Setting::bound(const SampledSpectrum& spectrum,
+                          const std::vector<std::complex<double>>& poles,
                           const TransferOf& transfer) const {
   ErrorBound b = error_bound(full, scene, band, spectrum, poles, transfer);
   b.samples += static_cast<int>(samples.s.size());

@@ -47,9 +47,9 @@ struct Setting {
   /// The first of all steps, down to so many coordinates; once.
   void note_structure(Eigen::Index after);
   /// Fills `samples` for a model with this spectrum.
-  void take_samples(const Spectrum& spectrum);
+  void take_samples(const SampledSpectrum& spectrum);
   /// Bound for a reduced model with these poles and this transfer, and a whole with this spectrum.
-  ErrorBound bound(const Spectrum& spectrum, const std::vector<std::complex<double>>& poles,
+  ErrorBound bound(const SampledSpectrum& spectrum, const std::vector<std::complex<double>>& poles,
                    const TransferOf& transfer) const;
   /// The results so far, with this model; `modes` are filled later.
   ReducedData result(Small small, ErrorBound bound) const;
@@ -62,7 +62,7 @@ struct Setting {
 class Reduction {
  public:
   virtual ~Reduction() = default;
-  virtual Spectrum spectrum() const = 0;
+  virtual SampledSpectrum spectrum() const = 0;
   /// The smallest model whose bound is at most this; none if rounding prevents it.
   virtual std::optional<ReducedData> reach(double accuracy) = 0;
   /// Throws bad_value: the accuracy that can be met, and the obstacle.

@@ -14,13 +14,13 @@ constexpr double kLeastAccuracy = 2e-12;  ///< twice the share of rounding in a 
 using linalg::at;
 
 /// A choice of the scene: an input or output, and one of its scalars or all (-1).
-struct Choice {
+struct PortChoice {
   int index = -1, component = -1;
 };
 
 /// "W" or "W(3)" among inputs or outputs.
 template <class List>
-Choice find(const List& list, const std::string& name) {
+PortChoice find(const List& list, const std::string& name) {
   for (int i = 0; i < static_cast<int>(list.size()); ++i) {
     if (list[at(i)].name == name) return {i, -1};
     for (int k = 0; k < list[at(i)].size; ++k)
@@ -32,12 +32,12 @@ Choice find(const List& list, const std::string& name) {
 
 /// The chosen ones in the order of the list, each once; all for no names.
 template <class List>
-std::vector<Choice> choose(const List& list, const std::vector<std::string>& names,
-                           std::string_view what, std::vector<Mistake>& mistakes) {
+std::vector<PortChoice> choose(const List& list, const std::vector<std::string>& names,
+                               std::string_view what, std::vector<Mistake>& mistakes) {
   std::vector<std::vector<char>> taken;
   for (const auto& item : list) taken.emplace_back(at(item.size), names.empty() ? 1 : 0);
   for (const std::string& name : names) {
-    const Choice c = find(list, name);
+    const PortChoice c = find(list, name);
     if (c.index >= 0) {
       auto& mask = taken[at(c.index)];
       if (c.component < 0)
@@ -54,7 +54,7 @@ std::vector<Choice> choose(const List& list, const std::vector<std::string>& nam
                         fmt::format("take one of them, or one scalar of it as \"{}(1)\"",
                                     list.empty() ? "name" : list.front().name)});
   }
-  std::vector<Choice> result;
+  std::vector<PortChoice> result;
   for (int i = 0; i < static_cast<int>(list.size()); ++i) {
     const auto& mask = taken[at(i)];
     if (std::count(mask.begin(), mask.end(), 1) == list[at(i)].size) {
@@ -77,9 +77,9 @@ Matrix unit(int size, int component, bool row) {
 /// Replaces terms of the inputs by nothing, by the input itself, or by its scalars.
 class Rewriter {
  public:
-  Rewriter(const Graph& before, Graph& g, const std::vector<Choice>& inputs)
+  Rewriter(const Graph& before, Graph& g, const std::vector<PortChoice>& inputs)
       : before_(before), new_(before.inputs.size()) {
-    for (const Choice& c : inputs) {
+    for (const PortChoice& c : inputs) {
       const Input& old = before.inputs[at(c.index)];
       const bool whole = c.component < 0;
       const int signal =
@@ -154,7 +154,7 @@ Graph restricted(const Graph& graph, const Scene& scene) {
   for (std::size_t e = 0; e < g.equations.size(); ++e)
     g.equations[e].terms = rewrite.terms(graph.equations[e].terms, g.equations[e].terms);
   std::vector<Output> kept;
-  for (const Choice& c : outputs) {
+  for (const PortChoice& c : outputs) {
     Output o = g.outputs[at(c.index)];
     o.terms = rewrite.terms(graph.outputs[at(c.index)].terms, o.terms);
     if (c.component >= 0) {

@@ -14,12 +14,12 @@ constexpr double kCluster = 2e-9;  ///< relative gap of lambda that counts as no
 constexpr double kSame = 1e-9;     ///< relative: one damping, up to the last digits
 
 /// The pair with the largest share of a mode.
-struct Pair {
+struct PortPair {
   Index output = 0, input = 0;
 };
 
 /// 1 / H of the pair at s; 0 if s is a pole to the last bit.
-Complex inverse(const System& system, const Pair& pair, Complex s) {
+Complex inverse(const System& system, const PortPair& pair, Complex s) {
   try {
     return 1.0 / system.transfer(s)(pair.output, pair.input);
   } catch (const Error& error) {
@@ -33,7 +33,7 @@ Complex pole(double lambda, double d) { return {-d / 2, std::sqrt(lambda - d * d
 
 /// The pole near a guess with a relative error of about 1e-7; none if the function is not that of
 /// one pole there.
-std::optional<Complex> find_pole(const System& system, const Pair& pair, Complex guess) {
+std::optional<Complex> find_pole(const System& system, const PortPair& pair, Complex guess) {
   constexpr double kNear = 1e-6;  // relative distance of the first two points
   Complex a = guess * (1 + kNear), b = guess * (1 - kNear);
   Complex fa = inverse(system, pair, a), fb = inverse(system, pair, b);
@@ -50,8 +50,8 @@ std::optional<Complex> find_pole(const System& system, const Pair& pair, Complex
   return b;
 }
 
-Pair best_pair(const Whole& w, Index j) {
-  Pair best;
+PortPair best_pair(const Whole& w, Index j) {
+  PortPair best;
   double largest = -1;
   for (Index i = 0; i < w.ca.rows(); ++i) {
     const double row = w.ca.row(i).norm() + w.cv.row(i).norm();

@@ -25,12 +25,12 @@ constexpr double kAtRest = 1e-10;   ///< |s| over |A| of a pole that may be 0
 
 /// States by the pattern of A: those that no state depends on, the core, those that depend on no
 /// state; in an order that makes A block upper triangular with strict triangles at both ends.
-struct Peeled {
+struct PeeledStates {
   std::vector<Index> sinks, core, sources;
 };
 
-Peeled peel(const MatrixXd& A) {
-  Peeled p;
+PeeledStates peel(const MatrixXd& A) {
+  PeeledStates p;
   for (Index i = 0; i < A.rows(); ++i) p.core.push_back(i);
   const auto take = [&](std::vector<Index>& to, auto stands_alone) {
     const auto found = std::find_if(p.core.begin(), p.core.end(), stands_alone);
@@ -61,7 +61,7 @@ MatrixXd real_basis(const MatrixXcd& Q) {
 /// The core in its own units, and its Schur form with the kept part in front.
 class Core {
  public:
-  Core(const StateSpace& m, const Peeled& p) : A_(m.A(p.core, p.core)) {
+  Core(const StateSpace& m, const PeeledStates& p) : A_(m.A(p.core, p.core)) {
     for (const Index i : p.core)
       if (const auto k = static_cast<std::size_t>(i); k < m.states.size())
         names_.push_back(m.states[k]);
@@ -149,7 +149,7 @@ struct Ends {
   MatrixXd to_core;    ///< core x sources: the core is z + to_core * sources
 };
 
-Ends decouple(const StateSpace& m, const Peeled& p, const Core& core) {
+Ends decouple(const StateSpace& m, const PeeledStates& p, const Core& core) {
   const MatrixXcd &T = core.schur().T, &Q = core.schur().Q;
   const MatrixXd A_pc = m.A(p.sinks, p.core) * core.scale().asDiagonal(),
                  A_cr = core.scale().cwiseInverse().asDiagonal() * m.A(p.core, p.sources);
@@ -162,14 +162,14 @@ Ends decouple(const StateSpace& m, const Peeled& p, const Core& core) {
 }
 
 /// Rows of the states x columns of a part of the core, in the states' own units.
-MatrixXd spread(const MatrixXd& V, const Peeled& p, const VectorXd& scale, Index n) {
+MatrixXd spread(const MatrixXd& V, const PeeledStates& p, const VectorXd& scale, Index n) {
   MatrixXd result = MatrixXd::Zero(n, V.cols());
   result(p.core, Eigen::all) = scale.asDiagonal() * V;
   return result;
 }
 
 /// Removes states that reach no output or that no input reaches, by the pattern.
-Part without_idle(Part p) {
+SpectralPart without_idle(SpectralPart p) {
   std::vector<Index> stay;
   for (Index i = 0; i < p.order(); ++i) stay.push_back(i);
   const auto idle = [&](Index i) {
@@ -185,12 +185,12 @@ Part without_idle(Part p) {
           p.right(Eigen::all, stay)};
 }
 
-Part integrals(const StateSpace& m, const Peeled& p, const Core& core, const Ends& e,
-               const MatrixXd& B_core, const MatrixXd& C_core) {
+SpectralPart integrals(const StateSpace& m, const PeeledStates& p, const Core& core, const Ends& e,
+                       const MatrixXd& B_core, const MatrixXd& C_core) {
   const auto sinks = static_cast<Index>(p.sinks.size()),
              sources = static_cast<Index>(p.sources.size()), n = sinks + sources;
   const MatrixXd A_cr = core.scale().cwiseInverse().asDiagonal() * m.A(p.core, p.sources);
-  Part part;
+  SpectralPart part;
   part.A = MatrixXd::Zero(n, n);
   part.A.topLeftCorner(sinks, sinks) = m.A(p.sinks, p.sinks);
   part.A.bottomRightCorner(sources, sources) = m.A(p.sources, p.sources);
@@ -209,7 +209,7 @@ Part integrals(const StateSpace& m, const Peeled& p, const Core& core, const End
   return without_idle(std::move(part));
 }
 
-Split assemble(const StateSpace& m, const Peeled& p, const Core& core) {
+Split assemble(const StateSpace& m, const PeeledStates& p, const Core& core) {
   const Ends e = decouple(m, p, core);
   const Index n = m.A.rows(), rest = core.order() - core.kept;
   const MatrixXd B_own = core.scale().cwiseInverse().asDiagonal() * m.B(p.core, Eigen::all);
@@ -220,9 +220,9 @@ Split assemble(const StateSpace& m, const Peeled& p, const Core& core) {
   const MatrixXd B_core = B_own - e.to_core * m.B(p.sources, Eigen::all);
   const VectorXd inverse = core.scale().cwiseInverse();
   const auto part = [&](const MatrixXd& left, const MatrixXd& right, const MatrixXd& A) {
-    return Part{A, left * B_core, C_core * right,
-                spread(left.transpose(), p, inverse, n).transpose(),
-                spread(right, p, core.scale(), n)};
+    return SpectralPart{A, left * B_core, C_core * right,
+                        spread(left.transpose(), p, inverse, n).transpose(),
+                        spread(right, p, core.scale(), n)};
   };
   s.kept = part(core.V_kept.transpose() - core.over * core.V_stable.transpose(), core.V_kept,
                 core.V_kept.transpose() * core.A() * core.V_kept);
@@ -239,7 +239,7 @@ Split assemble(const StateSpace& m, const Peeled& p, const Core& core) {
 }
 
 /// (s - A)^-1 B of a small part.
-MatrixXcd solve(const Part& p, Complex s) {
+MatrixXcd solve(const SpectralPart& p, Complex s) {
   if (p.order() == 0) return MatrixXcd(0, p.B.cols());
   MatrixXcd S = -p.A.cast<Complex>();
   S.diagonal().array() += s;
@@ -249,7 +249,7 @@ MatrixXcd solve(const Part& p, Complex s) {
 }  // namespace
 
 Split split(const StateSpace& m) {
-  Peeled peeled = peel(m.A);
+  PeeledStates peeled = peel(m.A);
   Core core(m, peeled);
   if (core.has_zero() && core.order() < m.A.rows()) {  // integrals of integrals: all in one part
     peeled = {};

@@ -11,7 +11,7 @@ namespace titop::detail {
 inline constexpr double kUndamped = 1e-6;
 
 /// A separate part: the sum of all parts is the whole model.
-struct Part {
+struct SpectralPart {
   Eigen::MatrixXd A, B, C;
   /// Coordinates of this part in terms of the model's states and back: z = left x, x = right z for
   /// this part alone, left right = I. Units of states cancel in left(j, i) right(i, j).
@@ -27,7 +27,7 @@ struct Part {
 /// separated by an ordered Schur form and Sylvester equations; if the solution of these is larger
 /// than 1e6 (poles that belong together), the poles nearest the axis are kept, too.
 struct Split {
-  Part integrals, kept, stable;
+  SpectralPart integrals, kept, stable;
   Eigen::MatrixXcd T, U;                    ///< stable.A = U T U^H, T upper triangular, U unitary
   std::vector<std::complex<double>> poles;  ///< of the model, those with Im >= 0
   /// Damping ratio up to which poles are kept as if they were on the axis.

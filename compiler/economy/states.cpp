@@ -57,7 +57,7 @@ bool is_strict_triangle(const MatrixXd& A) {
 }
 
 /// Appends a part as blocks; a single real pole has a block by itself.
-void add_blocks(ModalModel& result, const Part& part, const RealModes& modes) {
+void add_blocks(ModalModel& result, const SpectralPart& part, const RealModes& modes) {
   const Index n = part.order(), first = 2 * static_cast<Index>(result.A.size());
   result.A.insert(result.A.end(), modes.A.begin(), modes.A.end());
   for (const double pole : modes.single) {
@@ -98,7 +98,7 @@ void set_blocks(KeptMode& mode, const VectorXd& share, const std::vector<std::st
 
 }  // namespace
 
-States::Piece piece(Part part) {
+States::Piece piece(SpectralPart part) {
   States::Piece p{std::move(part), {}, {}, {}};
   if (p.part.order() == 0 || is_strict_triangle(p.part.A)) return p;
   const linalg::Eigensystem e = linalg::eigensystem(p.part.A);
@@ -109,7 +109,7 @@ States::Piece piece(Part part) {
   return p;
 }
 
-MatrixXcd transfer(const Part& p, Complex s) {
+MatrixXcd transfer(const SpectralPart& p, Complex s) {
   if (p.order() == 0) return MatrixXcd::Zero(p.C.rows(), p.B.cols());
   MatrixXcd S = -p.A.cast<Complex>();
   S.diagonal().array() += s;

@@ -10,7 +10,7 @@ namespace titop::detail {
 struct States {
   /// A part, and its transfer by poles if it has enough eigenvectors: left / (s - pole) * right.
   struct Piece {
-    Part part;
+    SpectralPart part;
     Eigen::VectorXcd pole;
     Eigen::MatrixXcd left, right;
   };
@@ -30,9 +30,9 @@ struct States {
   std::vector<KeptMode> modes(const std::vector<std::string>& states) const;
 };
 
-States::Piece piece(Part part);
+States::Piece piece(SpectralPart part);
 
 /// C (s - A)^-1 B by LU. Throws singular. O(order^3).
-Eigen::MatrixXcd transfer(const Part& part, std::complex<double> s);
+Eigen::MatrixXcd transfer(const SpectralPart& part, std::complex<double> s);
 
 }  // namespace titop::detail

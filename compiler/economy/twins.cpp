@@ -232,8 +232,8 @@ bool try_exchange(Coordinates& c, const std::vector<Index>& to) {
 
 }  // namespace
 
-Twins join_twins(Coordinates& c, const Graph& g) {
-  Twins result;
+TwinReduction join_twins(Coordinates& c, const Graph& g) {
+  TwinReduction result;
   if (!c.diagonal) return result;
   const Neighbours near = neighbours(g);
   for (int a = 0; a < static_cast<int>(g.nodes.size()); ++a)

@@ -5,7 +5,7 @@
 namespace titop::detail {
 
 /// Result of the reduction by symmetry of equal bodies.
-struct Twins {
+struct TwinReduction {
   int removed = 0;                 ///< coordinates
   std::vector<std::string> pairs;  ///< "boom1 and boom2", one per symmetry that was used
 };
@@ -17,6 +17,6 @@ struct Twins {
 /// unobservable: the coordinates are replaced by their common ones, exactly half. Closed chains are
 /// not reduced. O(n) for each pair of nodes with one block, and O(n^2) if their sizes agree and
 /// only signs are unknown.
-Twins join_twins(Coordinates& c, const Graph& graph);
+TwinReduction join_twins(Coordinates& c, const Graph& graph);
 
 }  // namespace titop::detail

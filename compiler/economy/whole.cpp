@@ -25,7 +25,7 @@ using linalg::at;
 
 /// Modes in coordinates scaled to stiffness 1: P y = mu K y with P = M scaled, largest mu first, so
 /// that the low modes keep their digits.
-struct Scaled {
+struct ScaledModes {
   VectorXd lambda;  ///< ascending, without those that rounding hides
   MatrixXd y;       ///< y'Ky = 1, one mode per column
   MatrixXd K;       ///< scaled
@@ -46,8 +46,8 @@ SymmetricModes soft_first(const MatrixXd& P, const MatrixXd& K) {
   return result;
 }
 
-Scaled modes(const Coordinates& c) {
-  Scaled s;
+ScaledModes modes(const Coordinates& c) {
+  ScaledModes s;
   const Index n = c.n_elastic;
   s.d = c.K.diagonal().cwiseSqrt();
   const VectorXd inverse = s.d.cwiseInverse();
@@ -162,7 +162,7 @@ void drop_leaks(Whole& w) {
 /// Modes of the coordinates with stiffness, mass-normalised; returns their input vectors.
 MatrixXd elastic_modes(Whole& w, const Coordinates& c) {
   const Index n = c.n_elastic;
-  Scaled s = modes(c);
+  ScaledModes s = modes(c);
   const MatrixXd Kd = c.diagonal ? MatrixXd(s.d.asDiagonal()) : MatrixXd(s.K * s.d.asDiagonal());
   const MatrixXd forces = Kd * c.B.topRows(n),
                  read = c.C_q.leftCols(n) * s.d.cwiseInverse().asDiagonal();

@@ -75,7 +75,7 @@ VectorXd hankel(const StateSpace& m) {
 
 Complex sum(const detail::Split& s, const StateSpace& m, Complex at) {
   Complex H = m.D(0, 0);
-  for (const detail::Part* p : {&s.integrals, &s.kept, &s.stable}) {
+  for (const detail::SpectralPart* p : {&s.integrals, &s.kept, &s.stable}) {
     if (p->order() == 0) continue;
     const MatrixXcd S = at * MatrixXcd::Identity(p->order(), p->order()) - p->A.cast<Complex>();
     H += (p->C * S.partialPivLu().solve(p->B.cast<Complex>()))(0, 0);
@@ -175,7 +175,7 @@ TEST_CASE("integrals, poles on the axis or right of it and the rest are told apa
   CHECK(s.stable.order() == 3);
   for (const Complex at : {Complex(0.2, 1), Complex(1, 19), Complex(-2, 0.3), Complex(40, 0)})
     CHECK(relative(sum(s, m, at), m.transfer(at)(0, 0)) <= 1e-11);
-  for (const detail::Part* p : {&s.kept, &s.stable})
+  for (const detail::SpectralPart* p : {&s.kept, &s.stable})
     CHECK((p->left * p->right - MatrixXd::Identity(3, 3)).norm() <= 1e-12);
   CHECK(s.stable.A.eigenvalues().real().maxCoeff() <= -0.999);
 }
