@@ -147,7 +147,8 @@ Instant Instant::off_by(RowMatrix<double> off, const RowMatrix<double>& magnitud
   return result;
 }
 
-Rates rates(const SystemData& d, const RowMatrix<double>& known, const RowMatrix<double>& more) {
+RateColumns rates(const SystemData& d, const RowMatrix<double>& known,
+                  const RowMatrix<double>& more) {
   const Instant now(d, known, more, Refinement::settled);
   return {now.xdot(), now.outputs()};
 }

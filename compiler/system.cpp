@@ -30,7 +30,7 @@ System::Rates System::apply(const VectorXd& x, const VectorXd& u) const {
   const VectorXd all = data_->states.expanded(x, u);
   solve::RowMatrix<double> known(all.size() + u.size(), 1);
   known << all, u;
-  const detail::Rates r = detail::rates(*data_, known);
+  const detail::RateColumns r = detail::rates(*data_, known);
   return {data_->states.kept_rows(VectorXd(r.xdot)), r.y};
 }
 

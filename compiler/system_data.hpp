@@ -124,12 +124,12 @@ struct SystemData {
 solve::JointRows<double> real_rows(const Skeleton& skeleton, const solve::Numbers& numbers);
 
 /// xdot and y for known = [x; u], column by column; x and xdot of all blocks' states.
-struct Rates {
+struct RateColumns {
   solve::RowMatrix<double> xdot, y;
 };
 /// `more`: added to the right-hand sides of the joint system, if it is not empty.
-Rates rates(const SystemData& data, const solve::RowMatrix<double>& known,
-            const solve::RowMatrix<double>& more = {});
+RateColumns rates(const SystemData& data, const solve::RowMatrix<double>& known,
+                  const solve::RowMatrix<double>& more = {});
 
 /// About the largest frequency of a block [rad/s], by its matrix A (n x n): independent of the
 /// units of its states, and in units of 1 / time. 0 if A does not determine it. O(n^2) as a rule.

@@ -34,7 +34,7 @@ StateSpace model_of_blocks(const System& system, const SystemData& data) {
   }
   const Layout& l = data.layout();
   const auto n = l.order(), all = n + static_cast<Index>(l.inputs.size());
-  const Rates r = rates(data, solve::RowMatrix<double>::Identity(all, all));
+  const RateColumns r = rates(data, solve::RowMatrix<double>::Identity(all, all));
   m.A = r.xdot.leftCols(n);
   m.B = r.xdot.rightCols(all - n);
   m.C = r.y.leftCols(n);
@@ -46,12 +46,12 @@ StateSpace model_of_blocks(const System& system, const SystemData& data) {
 }
 
 /// Coordinates of all blocks, as pairs of states; position -1 for a rate without position.
-struct Pairs {
+struct StatePairs {
   std::vector<int> position, rate;
 };
 
 /// A state whose derivative is another state is a position.
-Pairs find_pairs(const StateSpace& m) {
+StatePairs find_pairs(const StateSpace& m) {
   const Index n = m.A.rows();
   std::vector<int> position_of(at(n), -1), rate_of(at(n), -1);
   for (Index i = 0; i < n; ++i) {
@@ -65,7 +65,7 @@ Pairs find_pairs(const StateSpace& m) {
     position_of[at(found)] = static_cast<int>(i);
     rate_of[at(i)] = static_cast<int>(found);
   }
-  Pairs pairs;
+  StatePairs pairs;
   for (Index i = 0; i < n; ++i) {
     if (rate_of[at(i)] >= 0) {
       if (position_of[at(i)] >= 0)
@@ -90,7 +90,7 @@ MatrixXd columns(const MatrixXd& m, const std::vector<int>& which) {
 /// Data of the coordinates of all blocks, before G is known.
 struct Raw {
   StateSpace m;
-  Pairs pairs;
+  StatePairs pairs;
   std::vector<int> kept;  ///< coordinates that stay
   MatrixXd T;             ///< all from kept; 0 x 0: they are the same
   MatrixXd A_q, A_v;      ///< rates of kept from positions and rates of all

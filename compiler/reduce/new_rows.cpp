@@ -66,11 +66,12 @@ void NewRows::rewrite(int r, const Group& group, std::vector<Piece>& pieces,
   };
   MatrixXd mask = MatrixXd::Identity(size, size);
   for (const Hidden* c : group.derivatives) mask.row(groups_.of(c->row).second).setZero();
-  for (const Held* h : group.held) mask.row(groups_.of(h->row).second).setZero();
+  for (const HeldDirection* h : group.held) mask.row(groups_.of(h->row).second).setZero();
   std::vector<Piece> result;
   for (const Piece& p : pieces) put(result, p, mask * solve::matrix_of(p, d_.numbers));
   for (const Hidden* c : group.derivatives) differentiate(*c, place(c->row), result, over);
-  for (const Held* h : group.held) add(result, over, place(h->row) * h->direction, h->signal);
+  for (const HeldDirection* h : group.held)
+    add(result, over, place(h->row) * h->direction, h->signal);
   pieces = std::move(result);
 }
 

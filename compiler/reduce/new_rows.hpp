@@ -24,7 +24,7 @@ class NewRows {
   /// place of its row (without its right-hand side by u'). It is kept by reference.
   void derivative(const Hidden& c) { of_group(c.row).derivatives.push_back(&c); }
   /// A motion at 0, in place of its row. It is kept by reference.
-  void hold(const Held& h) { of_group(h.row).held.push_back(&h); }
+  void hold(const HeldDirection& h) { of_group(h.row).held.push_back(&h); }
 
   /// The system with them: the same variables and row groups, with a separate plan.
   solve::JointSystem joint();
@@ -32,7 +32,7 @@ class NewRows {
  private:
   struct Group {
     std::vector<const Hidden*> derivatives = {};
-    std::vector<const Held*> held = {};
+    std::vector<const HeldDirection*> held = {};
   };
   Group& of_group(int row) { return by_group_[groups_.of(row).first]; }
 

@@ -49,12 +49,12 @@ void shake(SteadyRandom& random, const RowMatrix<double>& terms, RowMatrix<doubl
     sums.data()[i] += kEpsilon * terms.data()[i] * random.unit();
 }
 
-/// Rates and outputs of these states and inputs; with a sample: perturbed by rounding, as in
+/// RateColumns and outputs of these states and inputs; with a sample: perturbed by rounding, as in
 /// another order of operations.
-Rates rates_at(const SystemData& d, RowMatrix<double> known, const RowMatrix<double>& forcing,
+RateColumns rates_at(const SystemData& d, RowMatrix<double> known, const RowMatrix<double>& forcing,
                std::optional<int> sample, SteadyRandom& random) {
   const Instant now(d, std::move(known), forcing);
-  Rates r{now.xdot(), now.outputs()};
+  RateColumns r{now.xdot(), now.outputs()};
   if (!sample) return r;
   const Instant off = now.doubt_of_vectors(*sample);
   r.xdot += off.xdot(), r.y += off.outputs();
@@ -82,7 +82,7 @@ Expansion expand(const SystemData& d, const Derivatives& v, std::optional<int> s
     RowMatrix<double> known = RowMatrix<double>::Zero(n + inputs, inputs);
     known.topRows(n) = e.R[j];
     if (j == 0) known.bottomRows(inputs).setIdentity();
-    const Rates r = rates_at(
+    const RateColumns r = rates_at(
         d, std::move(known),
         j > 0 && j <= v.forcing.size() ? v.forcing[j - 1] : RowMatrix<double>(), sample, random);
     shift = d.states.kept_rows(MatrixXd(r.xdot));

@@ -93,7 +93,7 @@ class Reducer {
           {Note::Kind::info, "reduce", line + ", and nothing asked for depends on it: taken as 0"});
     leave_out(motions.states);
     NewRows held(k_, d_);
-    for (const Held& h : motions.held) held.hold(h);
+    for (const HeldDirection& h : motions.held) held.hold(h);
     k_.joint = held.joint();
   }
 

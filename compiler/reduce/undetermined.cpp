@@ -113,7 +113,7 @@ KeptMatrix unseen(const KeptMatrix& z, const KeptMatrix& seen) {
 }
 
 /// A part of a port that moves.
-struct Place {
+struct MovingPart {
   int signal = -1;
   int first = 0, size = 0;  ///< translation, rotation, or all of a scalar
   RowVectorXd direction;    ///< over the whole signal, of length 1
@@ -129,11 +129,11 @@ class Showing {
       if (moves(s)) signals_.push_back(s);
   }
 
-  Place of(const KeptMatrix& z, Index column) const {
+  MovingPart of(const KeptMatrix& z, Index column) const {
     KeptMatrix one;
     one.value = z.value.col(column), one.size = z.size.col(column);
     for (const auto& [size, first, count] : {std::tuple{6, 3, 3}, {6, 0, 3}, {1, 0, 1}})
-      if (Place p = largest(one, size, first, count); p.signal >= 0) return p;
+      if (MovingPart p = largest(one, size, first, count); p.signal >= 0) return p;
     return {};
   }
 
@@ -153,8 +153,8 @@ class Showing {
     return c.takes == Takes::accel && g_.nodes[at(c.node)].state < 0;
   }
 
-  Place largest(const KeptMatrix& z, int size, int first, int count) const {
-    Place best;
+  MovingPart largest(const KeptMatrix& z, int size, int first, int count) const {
+    MovingPart best;
     double most = 0;
     bool best_of_body = false;
     for (const int s : signals_) {
@@ -178,7 +178,7 @@ class Showing {
 };
 
 /// The other motions less a multiple of this one, so that they do not show at its place.
-void take_out(KeptMatrix& z, Index column, const Place& p, const Motions& motions) {
+void take_out(KeptMatrix& z, Index column, const MovingPart& p, const Motions& motions) {
   const KeptMatrix v = motions.value(p.signal, z);
   const RowVectorXd along = p.direction * v.value;
   for (Index j = column + 1; j < z.value.cols(); ++j) {
@@ -203,8 +203,8 @@ std::string axis(RowVectorXd v) {
 }
 
 /// "the rotation of strut.parent about x", for all places at one part of a port together.
-std::string words(const Graph& g, const std::vector<Place>& places) {
-  const Place& p = places.front();
+std::string words(const Graph& g, const std::vector<MovingPart>& places) {
+  const MovingPart& p = places.front();
   const std::string name = channel_name(g, g.signals[at(p.signal)].channel);
   if (p.size == 1) return "the motion of " + name;
   std::string text = (p.first == 3 ? "the rotation of " : "the translation of ") + name;
@@ -217,12 +217,12 @@ std::string words(const Graph& g, const std::vector<Place>& places) {
 }
 
 /// One line per part of a port, in the order in which they were found.
-std::vector<std::string> lines(const Graph& g, const std::vector<Place>& places) {
+std::vector<std::string> lines(const Graph& g, const std::vector<MovingPart>& places) {
   std::vector<std::string> result;
   std::vector<char> done(places.size(), 0);
   for (std::size_t i = 0; i < places.size(); ++i) {
     if (done[i]) continue;
-    std::vector<Place> same;
+    std::vector<MovingPart> same;
     for (std::size_t j = i; j < places.size(); ++j)
       if (places[j].signal == places[i].signal && places[j].first == places[i].first)
         same.push_back(places[j]), done[j] = 1;
@@ -259,7 +259,7 @@ Undetermined undetermined(const Skeleton& k, const SystemData& d, const std::vec
   const auto name = [&](const char* what, const KeptMatrix& z, const KeptMatrix& seen,
                         const std::vector<std::string>& names) {
     for (Index j = 0; j < z.value.cols(); ++j)
-      if (const Place p = showing.of(z, j); p.signal >= 0 && is_seen(seen, j))
+      if (const MovingPart p = showing.of(z, j); p.signal >= 0 && is_seen(seen, j))
         result.lines.push_back(fmt::format("{}, and {}", lines(k.stage.graph, {p}).front(),
                                            depends(what, seen, j, names)));
   };
@@ -276,9 +276,9 @@ Undetermined undetermined(const Skeleton& k, const SystemData& d, const std::vec
     name("output", free, outputs, d.layout().outputs);
     return result;
   }
-  std::vector<Place> places;
+  std::vector<MovingPart> places;
   for (Index j = 0; j < still.value.cols() && static_cast<Index>(places.size()) < count; ++j) {
-    const Place p = showing.of(still, j);
+    const MovingPart p = showing.of(still, j);
     if (p.signal < 0) continue;  // forces alone
     take_out(still, j, p, motions);
     places.push_back(p);

@@ -11,7 +11,7 @@
 namespace titop::detail {
 
 /// direction * signal = 0 in place of a row.
-struct Held {
+struct HeldDirection {
   int row = -1;                  ///< scalar row of the joint system
   int signal = -1;               ///< an acceleration
   Eigen::RowVectorXd direction;  ///< of length 1, over translation or rotation alone
@@ -19,7 +19,7 @@ struct Held {
 
 /// Treatment of rows without content.
 struct Undetermined {
-  std::vector<Held> held;  ///< one per row; none if a motion matters or there is none
+  std::vector<HeldDirection> held;  ///< one per row; none if a motion matters or there is none
   /// A line per motion, as "nothing determines the rotation of A.parent about x". In `held`: the
   /// motion set to 0; else: followed by the outputs or states that depend on it.
   std::vector<std::string> lines;
