@@ -27,9 +27,9 @@ struct Done {
   ~Done() { latch.count_down(); }
 };
 
-class Writer {
+class DenseWriter {
  public:
-  Writer(const SystemData& d, StateSpace& m, int threads)
+  DenseWriter(const SystemData& d, StateSpace& m, int threads)
       : d_(d),
         k_(*d.skeleton),
         m_(m),
@@ -267,7 +267,7 @@ class Writer {
 }  // namespace
 
 void write_dense(const SystemData& data, StateSpace& model, int threads) {
-  Writer(data, model, threads).write();
+  DenseWriter(data, model, threads).write();
   data.states.reduce(model);
 }
 

@@ -14,7 +14,7 @@ using Eigen::MatrixXd;
 using linalg::at;
 
 /// All equations as E z = F u: one column of E per scalar signal, then one per scalar output.
-struct Assembly {
+struct TransferAssembly {
   const Graph& graph;
   ParameterValues values;
   std::complex<double> s;
@@ -23,7 +23,7 @@ struct Assembly {
   int unknowns = 0, inputs = 0, outputs = 0, row = 0;
   MatrixXcd E, F;
 
-  Assembly(const Graph& g, ParameterValues v, std::complex<double> at_s)
+  TransferAssembly(const Graph& g, ParameterValues v, std::complex<double> at_s)
       : graph(g), values(v), s(at_s), drive(g) {
     for (const Signal& sig : g.signals) {
       int& count = sig.role == Signal::Role::external ? inputs : unknowns;
@@ -82,7 +82,7 @@ struct Assembly {
   }
 };
 
-void add_block(Assembly& a, const Node& node, int index, std::complex<double> s) {
+void add_block(TransferAssembly& a, const Node& node, int index, std::complex<double> s) {
   const auto d = node.block->dynamics(a.values);
   const auto n = d->A.rows();
   const int end = end_signal(a.graph, index);
@@ -105,7 +105,7 @@ void add_block(Assembly& a, const Node& node, int index, std::complex<double> s)
   }
 }
 
-void add_channel(Assembly& a, const Channel& channel, const Drive& drive) {
+void add_channel(TransferAssembly& a, const Channel& channel, const Drive& drive) {
   const auto& equations = a.graph.equations;
   for (const int e : drive.accel) {
     if (!equations[at(e)].active) continue;
@@ -128,15 +128,15 @@ void add_channel(Assembly& a, const Channel& channel, const Drive& drive) {
 }
 
 /// signal (or output) = sum of its terms
-void add_definition(Assembly& a, int column, int size, const std::vector<Term>& terms) {
+void add_definition(TransferAssembly& a, int column, int size, const std::vector<Term>& terms) {
   a.need(size);
   a.E.block(a.row, column, size, size).setIdentity();
   a.subtract(MatrixXd::Identity(size, size), terms);
   a.row += size;
 }
 
-Assembly assembled(const Graph& graph, std::complex<double> s, ParameterValues values) {
-  Assembly a(graph, values, s);
+TransferAssembly assembled(const Graph& graph, std::complex<double> s, ParameterValues values) {
+  TransferAssembly a(graph, values, s);
   for (int i = 0; i < static_cast<int>(graph.nodes.size()); ++i)
     if (!graph.nodes[at(i)].lowered) add_block(a, graph.nodes[at(i)], i, s);
   for (std::size_t c = 0; c < a.drive.size(); ++c) add_channel(a, graph.channels[c], a.drive[c]);
@@ -157,7 +157,8 @@ Assembly assembled(const Graph& graph, std::complex<double> s, ParameterValues v
 MatrixXcd transfer(const Graph& graph, std::complex<double> s, ParameterValues values) {
   if (!graph.mistakes.empty()) throw Error(graph.mistakes);
   const std::vector<double> nominal = nominal_values(graph);
-  const Assembly a = assembled(graph, s, values.empty() ? ParameterValues(nominal) : values);
+  const TransferAssembly a =
+      assembled(graph, s, values.empty() ? ParameterValues(nominal) : values);
   if (a.row != a.unknowns + a.outputs)
     throw Error(
         Code::no_equation,
@@ -179,7 +180,7 @@ MatrixXd terms(const Graph& graph, const std::vector<std::complex<double>>& poin
                ParameterValues values) {
   MatrixXd result;
   for (const std::complex<double> s : points) {
-    const Assembly a = assembled(graph, s, values);
+    const TransferAssembly a = assembled(graph, s, values);
     const MatrixXcd z = linalg::solve(a.E, a.F).z,
                     back = linalg::solve(a.E.reverse(), a.F.colwise().reverse()).z;
     if (z.size() == 0 || back.size() == 0) continue;  // no unique solution

@@ -68,7 +68,7 @@ struct Finder {
     return signal(taken).at_rest || (said[at(channel)] == taken && is_outside[at(channel)]);
   }
 
-  bool pair(const Links& links, bool between, Reciprocity& result) const {
+  bool pair(const Links& links, bool between, ReciprocalPairs& result) const {
     for (const auto& [channels, link] : links) {
       const auto [to, from] = channels;
       if (!between && (rests(to) || rests(from))) continue;
@@ -99,13 +99,13 @@ bool is_symmetric(const Dynamics& d, Index size) {
 
 }  // namespace
 
-std::optional<Reciprocity> reciprocity_of(const SystemData& data) {
+std::optional<ReciprocalPairs> reciprocity_of(const SystemData& data) {
   Finder f{data};
   f.said.assign(f.g.channels.size(), -1);
   f.is_outside.assign(f.g.channels.size(), false);
   for (int e = 0; e < static_cast<int>(f.g.equations.size()); ++e)
     if (!f.take(e)) return std::nullopt;
-  Reciprocity result;
+  ReciprocalPairs result;
   if (!f.pair(f.rows, false, result) || !f.pair(f.wires, true, result)) return std::nullopt;
   for (int i = 0; i < static_cast<int>(f.g.nodes.size()); ++i) {
     const Node& node = f.g.nodes[at(i)];
@@ -116,7 +116,7 @@ std::optional<Reciprocity> reciprocity_of(const SystemData& data) {
   return result;
 }
 
-bool Reciprocity::holds(const solve::Numbers& numbers) const {
+bool ReciprocalPairs::holds(const solve::Numbers& numbers) const {
   const Dynamics* seen = nullptr;  // neighbours often share theirs
   for (const auto& [node, size] : blocks) {
     const Dynamics* const d = numbers.blocks[at(node)].get();

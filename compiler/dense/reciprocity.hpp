@@ -14,7 +14,7 @@ struct SystemData;
 /// is symmetric if D is, between the channels' inputs (u) and outputs (y), and if the connections
 /// of channels satisfy u' y* = y' u* for any two motions: then W u, the modes' accelerations, is
 /// symmetric in f.
-struct Reciprocity {
+struct ReciprocalPairs {
   /// Coefficient `a` is `sign` times coefficient `b` transposed.
   struct Pair {
     int a = -1, b = -1;
@@ -31,6 +31,6 @@ struct Reciprocity {
 /// The conditions on the values of the parameters; none if terms alone do not decide: other signals
 /// than channels act on channels (controllers, gains, sums), directions are driven separately, or a
 /// reaction is missing. By structure alone, O(terms log terms).
-std::optional<Reciprocity> reciprocity_of(const SystemData& data);
+std::optional<ReciprocalPairs> reciprocity_of(const SystemData& data);
 
 }  // namespace titop::detail

@@ -8,7 +8,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Target = Writing::Target;
-using Term = Writing::Term;
+using TargetTerm = Writing::TargetTerm;
 using linalg::at;
 
 const solve::RowMatrix<double>& coefficient(const SystemData& d, int i) {
@@ -25,13 +25,13 @@ void add_product(const SystemData& d, const Factor& factor, int times, To to) {
 }
 
 template <class To>
-void add_term(const SystemData& d, const Target& t, const Term& term, To to) {
+void add_term(const SystemData& d, const Target& t, const TargetTerm& term, To to) {
   if (term.node < 0) return add_product(d, coefficient(d, term.coefficient), term.times, to);
   const MatrixXd& B = d.numbers.blocks[at(term.node)]->B;
   add_product(d, B.block(t.still, term.column, t.rows, term.size), term.times, to);
 }
 
-Index size(const SystemData& d, const Term& term) {
+Index size(const SystemData& d, const TargetTerm& term) {
   return term.times < 0 ? term.size : coefficient(d, term.times).cols();
 }
 
@@ -39,7 +39,7 @@ Index size(const SystemData& d, const Term& term) {
 
 void find_coefficients(const SystemData& d, const Writing& writing, double* to) {
   for (const Target& t : writing.targets)
-    for (const Term& term : t.terms)
+    for (const TargetTerm& term : t.terms)
       if (!term.known)
         add_term(d, t, term,
                  Eigen::Map<solve::RowMatrix<double>, 0, Eigen::OuterStride<>>(
@@ -52,7 +52,7 @@ void add_known(const SystemData& d, const Writing& writing, StateSpace& model) {
   for (const Target& t : writing.targets) {
     const bool state = t.row < states;
     const Index row = state ? t.row : t.row - states;
-    for (const Term& term : t.terms) {
+    for (const TargetTerm& term : t.terms) {
       if (!term.known) continue;
       const bool of_state = term.to < states;
       MatrixXd& to = of_state ? (state ? model.A : model.C) : (state ? model.B : model.D);

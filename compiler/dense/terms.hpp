@@ -6,8 +6,8 @@
 /// The coefficients of targets, in numbers.
 namespace titop::detail {
 
-/// The coefficients of all targets' unknowns, at Target::coefficients and Term::to. `to`: zeros.
-/// O(terms).
+/// The coefficients of all targets' unknowns, at Target::coefficients and TargetTerm::to. `to`:
+/// zeros. O(terms).
 void find_coefficients(const SystemData& data, const Writing& writing, double* to);
 
 /// Adds the targets' terms in states and inputs themselves. O(terms).

@@ -152,7 +152,7 @@ struct WritingBuilder {
   }
 
   /// `to` is the signal until coefficients have their place.
-  void read(Writing::Target& t, int signal, Writing::Term term) const {
+  void read(Writing::Target& t, int signal, Writing::TargetTerm term) const {
     for (const solve::SignalTerm& m : k.joint.meaning(signal)) {
       term.times = m.coefficient;
       term.known = k.joint.variable_of[at(m.signal)] < 0;
@@ -165,7 +165,7 @@ struct WritingBuilder {
   void place_coefficients(Writing::Target& t) {
     const solve::Plan& plan = *k.joint.plan;
     std::vector<int> variables;
-    for (const Writing::Term& term : t.terms)
+    for (const Writing::TargetTerm& term : t.terms)
       if (!term.known) variables.push_back(k.joint.variable_of[at(term.to)]);
     std::sort(variables.begin(), variables.end(),
               [&](int a, int b) { return plan.first[at(a)] < plan.first[at(b)]; });
@@ -180,7 +180,7 @@ struct WritingBuilder {
     }
     t.coefficients = w.coefficients;
     w.coefficients += t.rows * t.inner;
-    for (Writing::Term& term : t.terms) {
+    for (Writing::TargetTerm& term : t.terms) {
       const int v = k.joint.variable_of[at(term.to)];
       const auto found = std::find(variables.begin(), variables.end(), v);
       term.to = term.known ? layout.known_first[at(term.to)] : place[at(found - variables.begin())];

@@ -17,7 +17,7 @@ struct SystemData;
 /// row of xdot and y reads some unknowns (a target). A body with N modes acts through its N modal
 /// forces, not its 2 N states: half the columns.
 ///
-/// If modal forces and accelerations are reciprocal (Reciprocity), the sources of a batch are
+/// If modal forces and accelerations are reciprocal (ReciprocalPairs), the sources of a batch are
 /// solved for the targets of these and later ones only. The values for earlier targets are known by
 /// symmetry from their columns: they are written into the rows of this batch.
 struct Writing {
@@ -36,7 +36,7 @@ struct Writing {
   };
 
   /// Factor of a target times its meaning: B of a node or a coefficient, times another.
-  struct Term {
+  struct TargetTerm {
     int node = -1, coefficient = -1;  ///< one of the two
     Eigen::Index column = 0, size = 0;
     int times = -1;  ///< a coefficient; -1: identity
@@ -57,7 +57,7 @@ struct Writing {
     Eigen::Index rows = 0;
     Eigen::Index inner = 0;  ///< unknowns that it reads
     Eigen::Index still = 0;  ///< rows of the node above: coordinates move with their rates
-    std::vector<Term> terms = {};
+    std::vector<TargetTerm> terms = {};
     std::vector<Range> unknowns = {};
     Eigen::Index coefficients = 0;  ///< where they begin: rows x inner, row-major
     int source = -1;  ///< of the same modes: their columns have its values in earlier batches;
@@ -68,7 +68,7 @@ struct Writing {
                                      ///< modal ones come last
   std::vector<Target> targets;       ///< rows ascend
   std::vector<std::size_t> batches;  ///< first sources, and the end
-  std::optional<Reciprocity> reciprocity;  ///< none if one batch is all
+  std::optional<ReciprocalPairs> reciprocity;  ///< none if one batch is all
   std::vector<int> lowest;   ///< per batch: the first front that its sources, and targets of these
                              ///< and later ones, need; 0 if all are needed
   std::vector<char> always;  ///< per front: do targets that read all sources need it?

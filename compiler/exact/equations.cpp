@@ -13,7 +13,7 @@ using linalg::at;
 
 /// All equations as rows over these columns, in this order: port signals; rates of all states and
 /// outputs, which are wanted; states and inputs, which are known.
-struct Columns {
+struct EquationColumns {
   std::vector<int> of_signal;  ///< port signal: itself; state: its value; external: the input
   std::vector<int> rate;       ///< of a signal that is a state
   /// For a signal whose integral is read: first of its rate's states; its position's follow.
@@ -25,7 +25,7 @@ struct Columns {
   int first_state() const { return ports + states + outputs; }
   int first_input() const { return ports + 2 * states + outputs; }
 
-  explicit Columns(const Graph& g)
+  explicit EquationColumns(const Graph& g)
       : of_signal(g.signals.size(), -1),
         rate(g.signals.size(), -1),
         integral(g.signals.size(), -1) {
@@ -59,12 +59,13 @@ class ExactBlock {
   explicit ExactBlock(const Dynamics& d) : d_(d) {}
 
   /// Some rows of C.
-  Matrix states(Index row, Index rows) const {
+  FractionMatrix states(Index row, Index rows) const {
     if (!d_.modal) return fractions(d_.C.middleRows(row, rows));
     const Index n = d_.modal->W.rows();
-    const Matrix W = fractions(d_.modal->W.middleCols(row, rows)),
-                 stiffness = fractions(d_.modal->stiffness), damping = fractions(d_.modal->damping);
-    Matrix C(rows, 2 * n);
+    const FractionMatrix W = fractions(d_.modal->W.middleCols(row, rows)),
+                         stiffness = fractions(d_.modal->stiffness),
+                         damping = fractions(d_.modal->damping);
+    FractionMatrix C(rows, 2 * n);
     for (Index i = 0; i < rows; ++i)
       for (Index k = 0; k < n; ++k) {
         C(i, k) = -W(k, i) * stiffness(k, 0);
@@ -73,13 +74,13 @@ class ExactBlock {
     return C;
   }
   /// A part of D.
-  Matrix direct(Index row, Index col, Index rows, Index cols) const {
+  FractionMatrix direct(Index row, Index col, Index rows, Index cols) const {
     if (!d_.modal)
       return fractions(d_.direct(static_cast<int>(row), static_cast<int>(col),
                                  static_cast<int>(rows), static_cast<int>(cols)));
-    Matrix D = fractions(d_.modal->W.middleCols(row, rows)).transposed() *
-               fractions(d_.modal->W.middleCols(col, cols));
-    const Matrix rigid = fractions(d_.modal->rigid.block(row, col, rows, cols));
+    FractionMatrix D = fractions(d_.modal->W.middleCols(row, rows)).transposed() *
+                       fractions(d_.modal->W.middleCols(col, cols));
+    const FractionMatrix rigid = fractions(d_.modal->rigid.block(row, col, rows, cols));
     for (std::size_t i = 0; i < D.entries.size(); ++i) D.entries[i] += rigid.entries[i];
     return D;
   }
@@ -88,9 +89,9 @@ class ExactBlock {
   const Dynamics& d_;
 };
 
-class Assembly {
+class ExactAssembly {
  public:
-  Assembly(const Graph& g, const ExactOptions& options, ParameterValues values)
+  ExactAssembly(const Graph& g, const ExactOptions& options, ParameterValues values)
       : g_(g), values_(values), columns_(g), drive_(g), rows_(options.bits) {
     if (columns_.states > options.states)
       throw Undecided{fmt::format("{} states are more than {} (ExactOptions::states)",
@@ -108,14 +109,14 @@ class Assembly {
     add_integrators();
   }
 
-  const Columns& columns() const { return columns_; }
+  const EquationColumns& columns() const { return columns_; }
   const Echelon& rows() const { return rows_; }
 
  private:
   using Block = std::vector<Fractions>;  ///< some rows at once
 
   /// rows += m * (columns from `first` on)
-  static void add(Block& rows, const Matrix& m, int first, int sign = 1) {
+  static void add(Block& rows, const FractionMatrix& m, int first, int sign = 1) {
     for (Index i = 0; i < m.rows; ++i)
       for (Index j = 0; j < m.cols; ++j)
         if (m(i, j) != 0)
@@ -127,9 +128,9 @@ class Assembly {
   }
 
   /// rows -= factor * terms
-  void subtract(Block& rows, const Matrix& factor, const std::vector<Term>& terms) {
+  void subtract(Block& rows, const FractionMatrix& factor, const std::vector<Term>& terms) {
     for (const Term& t : terms) {
-      const Matrix c = factor * exact_coefficient(g_, t, values_);
+      const FractionMatrix c = factor * exact_coefficient(g_, t, values_);
       const int integral = columns_.first_state() + columns_.integral[at(t.signal)];
       add(rows, c,
           t.of == Term::Of::rate       ? integral
@@ -140,7 +141,7 @@ class Assembly {
         subtract_forces(rows, Fraction(-1) * c, drive_[at(g_.signals[at(t.signal)].channel)].added);
     }
   }
-  void subtract_forces(Block& rows, const Matrix& factor, std::span<const int> equations) {
+  void subtract_forces(Block& rows, const FractionMatrix& factor, std::span<const int> equations) {
     for (const int e : equations) {
       const Part& part = g_.equations[at(e)].part;
       subtract(rows,
@@ -152,23 +153,23 @@ class Assembly {
 
   void define(int column, int size, const std::vector<Term>& terms) {
     Block rows(at(size));
-    add(rows, Matrix::identity(size), column);
-    subtract(rows, Matrix::identity(size), terms);
+    add(rows, FractionMatrix::identity(size), column);
+    subtract(rows, FractionMatrix::identity(size), terms);
     take(rows);
   }
 
   void add_channel(const Channel& channel, const Drive& drive) {
     // If no acceleration is driven: all of the space, less the driven directions.
-    Matrix rest = Matrix::identity(channel.size);
+    FractionMatrix rest = FractionMatrix::identity(channel.size);
     for (const int e : drive.accel) {
       const Part& part = g_.equations[at(e)].part;
-      const Matrix S = part.whole() ? Matrix::identity(channel.size)
-                                    : orthonormal_fractions(part.rows(), part.name());
+      const FractionMatrix S = part.whole() ? FractionMatrix::identity(channel.size)
+                                            : orthonormal_fractions(part.rows(), part.name());
       Block rows(static_cast<std::size_t>(S.rows));
       add(rows, S, columns_.of_signal[at(channel.accel)]);
-      subtract(rows, Matrix::identity(S.rows), g_.equations[at(e)].terms);
+      subtract(rows, FractionMatrix::identity(S.rows), g_.equations[at(e)].terms);
       take(rows);
-      const Matrix projector = S.transposed() * S;
+      const FractionMatrix projector = S.transposed() * S;
       for (std::size_t i = 0; i < rest.entries.size(); ++i) rest.entries[i] -= projector.entries[i];
     }
     if (drive.free == 0) return;
@@ -187,7 +188,7 @@ class Assembly {
     const auto equation = [&](int column, const Signal* y) {
       const Index row = y ? y->first : 0, size = y ? y->size : d->A.rows();
       Block rows(static_cast<std::size_t>(size));
-      add(rows, Matrix::identity(size), column);
+      add(rows, FractionMatrix::identity(size), column);
       if (node.state >= 0)
         add(rows, y ? exact.states(row, size) : fractions(d->A), columns_.of_signal[at(node.state)],
             -1);
@@ -221,13 +222,13 @@ class Assembly {
 
   const Graph& g_;
   ParameterValues values_;
-  Columns columns_;
+  EquationColumns columns_;
   Drives drive_;
   Echelon rows_;
 };
 
 /// Every wanted column as a combination of the known ones, which count from 0.
-std::vector<Fractions> solve(const Columns& c, const Echelon& all) {
+std::vector<Fractions> solve(const EquationColumns& c, const Echelon& all) {
   const int first = c.first_rate(), known = c.first_state();
   if (all.rows().lower_bound(known) != all.rows().end())
     throw Undecided{
@@ -283,8 +284,8 @@ Model model_from(int states, int inputs, const std::vector<Fractions>& rates,
 }  // namespace
 
 Model model_of(const Graph& graph, const ExactOptions& options, ParameterValues values) {
-  const Assembly a(graph, options, values);
-  const Columns& c = a.columns();
+  const ExactAssembly a(graph, options, values);
+  const EquationColumns& c = a.columns();
   const std::vector<Fractions> wanted = solve(c, a.rows());
   return model_from(c.states, c.inputs, {wanted.begin(), wanted.begin() + c.states},
                     {wanted.begin() + c.states, wanted.end()});
@@ -292,7 +293,7 @@ Model model_of(const Graph& graph, const ExactOptions& options, ParameterValues 
 
 Model model_of(const StateSpace& model) {
   const auto n = model.A.rows();
-  const Matrix A = fractions(model.A), B = fractions(model.B), C = fractions(model.C);
+  const FractionMatrix A = fractions(model.A), B = fractions(model.B), C = fractions(model.C);
   std::vector<Fractions> rates(static_cast<std::size_t>(n)), outputs;
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j)

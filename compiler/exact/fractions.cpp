@@ -26,21 +26,21 @@ bool simple_fraction(double x, Fraction& result) {
 
 }  // namespace
 
-Matrix Matrix::identity(Index n) {
-  Matrix m(n, n);
+FractionMatrix FractionMatrix::identity(Index n) {
+  FractionMatrix m(n, n);
   for (Index i = 0; i < n; ++i) m(i, i) = 1;
   return m;
 }
 
-Matrix Matrix::transposed() const {
-  Matrix m(cols, rows);
+FractionMatrix FractionMatrix::transposed() const {
+  FractionMatrix m(cols, rows);
   for (Index i = 0; i < rows; ++i)
     for (Index j = 0; j < cols; ++j) m(j, i) = (*this)(i, j);
   return m;
 }
 
-Matrix operator*(const Matrix& a, const Matrix& b) {
-  Matrix m(a.rows, b.cols);
+FractionMatrix operator*(const FractionMatrix& a, const FractionMatrix& b) {
+  FractionMatrix m(a.rows, b.cols);
   for (Index i = 0; i < a.rows; ++i)
     for (Index k = 0; k < a.cols; ++k) {
       if (a(i, k) == 0) continue;
@@ -50,26 +50,26 @@ Matrix operator*(const Matrix& a, const Matrix& b) {
   return m;
 }
 
-Matrix operator*(const Fraction& k, Matrix m) {
+FractionMatrix operator*(const Fraction& k, FractionMatrix m) {
   for (Fraction& entry : m.entries) entry *= k;
   return m;
 }
 
-Matrix fractions(const MatrixXd& m) {
+FractionMatrix fractions(const MatrixXd& m) {
   if (!m.allFinite()) throw Undecided{"a number is not finite"};
-  Matrix result(m.rows(), m.cols());
+  FractionMatrix result(m.rows(), m.cols());
   for (Index i = 0; i < m.rows(); ++i)
     for (Index j = 0; j < m.cols(); ++j) result(i, j) = Fraction(m(i, j));
   return result;
 }
 
-Matrix orthonormal_fractions(const MatrixXd& rows, const std::string& what) {
-  Matrix m(rows.rows(), rows.cols());
+FractionMatrix orthonormal_fractions(const MatrixXd& rows, const std::string& what) {
+  FractionMatrix m(rows.rows(), rows.cols());
   bool found = true;
   for (Index i = 0; i < rows.rows(); ++i)
     for (Index j = 0; j < rows.cols(); ++j) found = found && simple_fraction(rows(i, j), m(i, j));
   if (found) {
-    const Matrix product = m * m.transposed(), one = Matrix::identity(rows.rows());
+    const FractionMatrix product = m * m.transposed(), one = FractionMatrix::identity(rows.rows());
     found = product.entries == one.entries;
   }
   if (!found)
@@ -80,8 +80,9 @@ Matrix orthonormal_fractions(const MatrixXd& rows, const std::string& what) {
   return m;
 }
 
-Matrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues values) {
-  Matrix result = Matrix::identity(graph.signals[static_cast<std::size_t>(term.signal)].size);
+FractionMatrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues values) {
+  FractionMatrix result =
+      FractionMatrix::identity(graph.signals[static_cast<std::size_t>(term.signal)].size);
   Fraction scale = term.sign;
   for (auto f = term.factors.rbegin(); f != term.factors.rend(); ++f) {
     if (const auto* k = std::get_if<Value>(&*f)) {
@@ -91,9 +92,9 @@ Matrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues v
     } else if (const auto* p = std::get_if<Part>(&*f)) {
       if (!p->whole()) result = orthonormal_fractions(p->rows(), p->name()) * result;
     } else if (const auto& T = std::get<Rotation>(*f); !T.is_identity()) {
-      const Matrix turn =
+      const FractionMatrix turn =
           orthonormal_fractions(T.at(values), "the rotation in " + print(graph, term));
-      Matrix both(result.rows, result.rows);
+      FractionMatrix both(result.rows, result.rows);
       for (Index i = 0; i < result.rows; ++i)
         for (Index j = i / 3 * 3; j < i / 3 * 3 + 3; ++j) both(i, j) = turn(i % 3, j % 3);
       result = both * result;

@@ -9,11 +9,11 @@
 namespace titop::exact {
 
 /// Dense, row by row.
-struct Matrix {
+struct FractionMatrix {
   Eigen::Index rows = 0, cols = 0;
   std::vector<Fraction> entries;
 
-  Matrix(Eigen::Index r, Eigen::Index c)
+  FractionMatrix(Eigen::Index r, Eigen::Index c)
       : rows(r), cols(c), entries(static_cast<std::size_t>(r * c)) {}
   Fraction& operator()(Eigen::Index i, Eigen::Index j) {
     return entries[static_cast<std::size_t>(i * cols + j)];
@@ -21,20 +21,20 @@ struct Matrix {
   const Fraction& operator()(Eigen::Index i, Eigen::Index j) const {
     return entries[static_cast<std::size_t>(i * cols + j)];
   }
-  static Matrix identity(Eigen::Index n);
-  Matrix transposed() const;
+  static FractionMatrix identity(Eigen::Index n);
+  FractionMatrix transposed() const;
 };
-Matrix operator*(const Matrix& a, const Matrix& b);
-Matrix operator*(const Fraction& k, Matrix m);
+FractionMatrix operator*(const FractionMatrix& a, const FractionMatrix& b);
+FractionMatrix operator*(const Fraction& k, FractionMatrix m);
 
 /// Every double as the fraction that it is.
-Matrix fractions(const Eigen::MatrixXd& m);
+FractionMatrix fractions(const Eigen::MatrixXd& m);
 
 /// Orthonormal rows as the nearby fractions of small denominator: 0.6 is 3/5. Throws Undecided,
 /// with `what`, if there are none, or if they are not orthonormal.
-Matrix orthonormal_fractions(const Eigen::MatrixXd& rows, const std::string& what);
+FractionMatrix orthonormal_fractions(const Eigen::MatrixXd& rows, const std::string& what);
 
 /// The matrix of a term, as `coefficient` of graph.hpp. Throws Undecided.
-Matrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues values);
+FractionMatrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues values);
 
 }  // namespace titop::exact
