@@ -103,11 +103,11 @@ std::vector<MatrixXcd> transfers(const StateSpace& m,
 namespace {
 
 /// |s I - A|, |(s I - A)^-1 B| and |C (s I - A)^-1|.
-struct Gain {
+struct ResolventGain {
   MatrixXd size, of_states, to_outputs;
 };
 
-Gain gain(const StateSpace& m, std::complex<double> s) {
+ResolventGain gain(const StateSpace& m, std::complex<double> s) {
   const MatrixXcd K = s * MatrixXcd::Identity(m.A.rows(), m.A.rows()) - m.A;
   return {K.cwiseAbs(), linalg::solve(K, m.B.cast<std::complex<double>>()).z.cwiseAbs(),
           linalg::solve(K.transpose(), m.C.transpose().cast<std::complex<double>>())
@@ -121,7 +121,7 @@ MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& poi
   MatrixXd result = m.D.cwiseAbs();
   if (m.A.rows() == 0) return result;
   for (const std::complex<double> s : points) {
-    const Gain by = gain(m, s);
+    const ResolventGain by = gain(m, s);
     if (by.of_states.size() == 0 || by.to_outputs.size() == 0) continue;  // a pole, or no ports
     const MatrixXd right = by.size * by.of_states, sum = by.to_outputs * right;
     if (sum.allFinite()) result = result.cwiseMax(m.D.cwiseAbs() + sum);
@@ -142,7 +142,7 @@ MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
   MatrixXd result = rounding.D;
   for (const std::complex<double> s : points) {
     if (m.A.rows() == 0) break;
-    const Gain by = gain(m, s);
+    const ResolventGain by = gain(m, s);
     const MatrixXd states = rounding.B + rounding.A * by.of_states,
                    sum = by.to_outputs * states + rounding.C * by.of_states;
     if (sum.allFinite()) result = result.cwiseMax(rounding.D + sum);

@@ -43,7 +43,7 @@ RowMatrix<double> wrenches(int unknowns, const std::vector<int>& rows) {
 }
 
 /// One term of a sum.
-struct Share {
+struct ForceTerm {
   int signal = -1;
   Eigen::MatrixXd c;
 };
@@ -89,14 +89,14 @@ class SelfStress {
   /// The first signal by which a sum depends on internal forces, -1 if it does not: the sum must be
   /// above the rounding of its cancelling terms. Accelerations and states follow the motion and do
   /// not count.
-  int shown_by(const std::vector<Share>& sum) const {
+  int shown_by(const std::vector<ForceTerm>& sum) const {
     if (sum.empty()) return -1;
     const Eigen::Index rows = sum.front().c.rows(), columns = known_.cols();
     // In a sum, the effect of one wrench is compared with that of all.
     const double moves = kMoves / std::sqrt(summed() ? static_cast<double>(directions_) : 1);
     RowMatrix<double> total = RowMatrix<double>::Zero(rows, columns), size = total;
     int first = -1;
-    for (const Share& share : sum) {
+    for (const ForceTerm& share : sum) {
       const Quantity q = g_.signals[at(share.signal)].quantity;
       if (q != Quantity::force && q != Quantity::plain) continue;
       const RowMatrix<double> v = value(share.signal);
@@ -153,8 +153,8 @@ struct ForceJudge {
          "Options{.internal_forces = InternalForces::minimal_norm}"});
   }
 
-  std::vector<Share> terms(const std::vector<Term>& list, int first) const {
-    std::vector<Share> sum;
+  std::vector<ForceTerm> terms(const std::vector<Term>& list, int first) const {
+    std::vector<ForceTerm> sum;
     for (std::size_t t = 0; t < list.size(); ++t)
       sum.push_back({list[t].signal, *d.numbers.coefficients[at(first) + t]});
     return sum;
@@ -195,7 +195,7 @@ struct ForceJudge {
     const Graph& g = k.stage.graph;
     for (const Row& row : k.stage.rows) {
       if (!row.active) continue;
-      std::vector<Share> sum;
+      std::vector<ForceTerm> sum;
       if (row.node >= 0)
         sum = balance(row);
       else if (const Equation& e = g.equations[at(row.equation)]; e.of_block) {
@@ -217,10 +217,10 @@ struct ForceJudge {
   }
 
   /// Residual of a block's row in its channels' signals: D u - y.
-  std::vector<Share> balance(const Row& row) const {
+  std::vector<ForceTerm> balance(const Row& row) const {
     const Graph& g = k.stage.graph;
     const Signal& y = g.signals[at(row.output)];
-    std::vector<Share> sum{{row.output, -Eigen::MatrixXd::Identity(y.size, y.size)}};
+    std::vector<ForceTerm> sum{{row.output, -Eigen::MatrixXd::Identity(y.size, y.size)}};
     for (int i = g.nodes[at(row.node)].first_signal; i < end_signal(g, row.node); ++i)
       if (const Signal& u = g.signals[at(i)]; u.role == Signal::Role::input && u.active)
         sum.push_back(

@@ -23,9 +23,9 @@ std::string text_of(double seconds) {
   return fmt::format("{} h {} min", s / 3600, s / 60 % 60);
 }
 
-class Line {
+class ProgressLine {
  public:
-  explicit Line(std::FILE* to) : to_(to) {}
+  explicit ProgressLine(std::FILE* to) : to_(to) {}
 
   void show(std::size_t done, std::size_t all) {
     const Clock::time_point now = Clock::now();
@@ -50,7 +50,7 @@ class Line {
 
 std::function<void(std::size_t, std::size_t)> progress_line(std::FILE* to, DrawLine draw) {
   if (draw == DrawLine::on_terminals && !isatty(fileno(to))) return [](std::size_t, std::size_t) {};
-  return [line = std::make_shared<Line>(to)](std::size_t done, std::size_t all) {
+  return [line = std::make_shared<ProgressLine>(to)](std::size_t done, std::size_t all) {
     line->show(done, all);
   };
 }

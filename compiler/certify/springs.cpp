@@ -41,12 +41,12 @@ Gains gains(const Graph& g, ParameterValues values, Term::Of of) {
 }
 
 /// The inputs of a block that a one-way output is the rate or the position of, with their gains.
-struct Integrated {
+struct IntegratedInputs {
   Term::Of of = Term::Of::rate;
   MatrixXd of_inputs = {};  ///< no columns: none
 };
 
-Integrated integrated(const Dynamics& d, const Signal& output) {
+IntegratedInputs integrated(const Dynamics& d, const Signal& output) {
   if (d.A.size() == 0 || d.C.rows() < output.first + output.size ||
       !d.D.middleRows(output.first, output.size).isZero(0))
     return {};
@@ -54,7 +54,7 @@ Integrated integrated(const Dynamics& d, const Signal& output) {
   for (const Term::Of of : {Term::Of::rate, Term::Of::position}) {
     const MatrixXd moved = C * d.B;
     C = C * d.A;
-    if (!moved.isZero(0)) return C.isZero(0) ? Integrated{of, moved} : Integrated{};
+    if (!moved.isZero(0)) return C.isZero(0) ? IntegratedInputs{of, moved} : IntegratedInputs{};
   }
   return {};
 }
@@ -123,7 +123,7 @@ std::vector<OfMotion> of_motions(const Graph& g, const Term& t, ParameterValues 
     return {{t.of, s.channel, coefficient(g, t, values)}};
   if (s.role != Signal::Role::output || s.channel >= 0) return {};
   const Node& node = g.nodes[at(s.node)];
-  const Integrated found = integrated(*node.block->dynamics(values), s);
+  const IntegratedInputs found = integrated(*node.block->dynamics(values), s);
   if (found.of_inputs.size() == 0) return {};
   const MatrixXd gain = coefficient(g, t, values) * found.of_inputs;
   MatrixXd rest = found.of_inputs;

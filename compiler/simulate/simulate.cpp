@@ -88,9 +88,9 @@ Quantity kind_of(const Graph& g, const Output& o) {
 }
 
 /// Largest values of outputs, and how far they are off.
-class Sizes {
+class OutputPeaks {
  public:
-  explicit Sizes(const detail::SystemData& d)
+  explicit OutputPeaks(const detail::SystemData& d)
       : d_(d), off_(VectorXd::Zero(std::ssize(d.layout().outputs))), size_(off_) {}
 
   void add(const VectorXd& y) { size_ = size_.cwiseMax(y.cwiseAbs()); }
@@ -137,9 +137,9 @@ class Sizes {
 };
 
 /// States on their way.
-class Motion {
+class TimeStepping {
  public:
-  virtual ~Motion() = default;
+  virtual ~TimeStepping() = default;
   /// Records the errors at this time; called once before each step and after the last.
   virtual void look(const Now&) {}
   virtual VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) = 0;
@@ -148,7 +148,7 @@ class Motion {
 };
 
 /// A stepper chosen by the caller.
-class Asked : public Motion {
+class Asked : public TimeStepping {
  public:
   explicit Asked(std::unique_ptr<detail::StepRule> rule) : rule_(std::move(rule)) {}
   VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) override {
@@ -161,7 +161,7 @@ class Asked : public Motion {
 
 /// Exact steps of the dense model. Its error by rounding of A and B is the difference of their xdot
 /// from the factors', propagated by the same steps.
-class Exact : public Motion {
+class Exact : public TimeStepping {
  public:
   Exact(const System& system, const detail::SystemData& d, double h, Index steps)
       : rule_(system, h),
@@ -183,14 +183,14 @@ class Exact : public Motion {
  private:
   static constexpr Index kLooks = 1000;  ///< in one motion: a look costs as much as some steps
   detail::ExactRule rule_;
-  Sizes sizes_;
+  OutputPeaks sizes_;
   Index every_;
   double weight_;
   VectorXd off_;
 };
 
 /// Midpoint at half the step, against that at the step.
-class Halved : public Motion {
+class Halved : public TimeStepping {
  public:
   Halved(const detail::SystemData& d, double h, VectorXd x0)
       : half_(detail::midpoint_rule(d, h / 2)),
@@ -211,7 +211,7 @@ class Halved : public Motion {
  private:
   std::unique_ptr<detail::StepRule> half_, whole_;
   VectorXd other_;
-  Sizes sizes_;
+  OutputPeaks sizes_;
 };
 
 /// `exact`: by how much the exact step was off; negative if it was not tried.
@@ -242,9 +242,9 @@ void refuse_overflow(const System& system, double time) {
               "look at its poles: it is unstable; stop earlier");
 }
 
-std::unique_ptr<Motion> motion_of(const System& system, const detail::SystemData& d,
-                                  const Simulation& s, Stepper stepper, Index steps,
-                                  const VectorXd& x0) {
+std::unique_ptr<TimeStepping> motion_of(const System& system, const detail::SystemData& d,
+                                        const Simulation& s, Stepper stepper, Index steps,
+                                        const VectorXd& x0) {
   switch (stepper) {
     case Stepper::rk4: return std::make_unique<Asked>(detail::rk4_rule(system, s.step));
     case Stepper::midpoint:
@@ -256,7 +256,7 @@ std::unique_ptr<Motion> motion_of(const System& system, const detail::SystemData
 }
 
 Trajectory move(const System& system, const Excitation& excitation, const Simulation& s,
-                Stepper stepper, Motion& motion, VectorXd x, Index steps) {
+                Stepper stepper, TimeStepping& motion, VectorXd x, Index steps) {
   Trajectory result;
   result.stepper = stepper;
   result.states = system.states();
