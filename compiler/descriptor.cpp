@@ -21,15 +21,15 @@ struct DescriptorBuilder {
   Triplets A = {}, B = {}, C = {}, D = {};
 
   /// Column of a variable or state in v, or of an input in u (`input`).
-  struct Place {
+  struct ColumnPlace {
     int first;
     bool input;
   };
-  Place place(int signal) const {
+  ColumnPlace place(int signal) const {
     if (const int v = k.joint.variable_of[at(signal)]; v >= 0)
       return {states + k.joint.plan->first[at(v)], false};
     const int first = d.layout().known_first[at(signal)];
-    return first < states ? Place{first, false} : Place{first - states, true};
+    return first < states ? ColumnPlace{first, false} : ColumnPlace{first - states, true};
   }
 
   const RowMatrix<double>& coefficient(int i) const { return *d.numbers.coefficients[at(i)]; }
@@ -45,7 +45,7 @@ struct DescriptorBuilder {
   template <class Matrix>
   void add(Triplets& by_v, Triplets& by_u, int row, const Matrix& factor, int signal) {
     for (const solve::SignalTerm& m : k.joint.meaning(signal)) {
-      const Place p = place(m.signal);
+      const ColumnPlace p = place(m.signal);
       Triplets& to = p.input ? by_u : by_v;
       if (m.coefficient < 0)
         put(to, row, p.first, factor);
@@ -70,9 +70,10 @@ struct DescriptorBuilder {
     const solve::Plan& plan = *k.joint.plan;
     for (int r = 0; r < static_cast<int>(k.joint.rows.size()); ++r)
       for (const Piece& p : k.joint.row(r)) {
-        const Place to =
-            p.entry < 0 ? place(p.signal)
-                        : Place{states + plan.first[at(plan.structure.row(r)[at(p.entry)])], false};
+        const ColumnPlace to =
+            p.entry < 0
+                ? place(p.signal)
+                : ColumnPlace{states + plan.first[at(plan.structure.row(r)[at(p.entry)])], false};
         put(to.input ? B : A, states + plan.row_first[at(r)], to.first,
             solve::matrix_of(p, d.numbers));
       }
@@ -94,7 +95,7 @@ struct DescriptorBuilder {
     std::vector<int> place(at(states), -1);
     int next = 0;
     for (const int i : d.states.kept()) place[at(i)] = next++;
-    for (const StateMap::Row& row : d.states.dependent()) place[at(row.state)] = next++;
+    for (const StateMap::DependentRow& row : d.states.dependent()) place[at(row.state)] = next++;
     const auto moved = [&](const Triplets& list, bool rows, bool columns) {
       Triplets result;
       for (const auto& t : list) {
@@ -105,7 +106,7 @@ struct DescriptorBuilder {
       return result;
     };
     A = moved(A, true, true), B = moved(B, true, false), C = moved(C, false, true);
-    for (const StateMap::Row& row : d.states.dependent()) {
+    for (const StateMap::DependentRow& row : d.states.dependent()) {
       A.emplace_back(place[at(row.state)], place[at(row.state)], -1.0);
       for (const auto& [of, factor] : row.of)
         A.emplace_back(place[at(row.state)], place[at(of)], factor);
@@ -131,7 +132,7 @@ struct DescriptorBuilder {
 
   std::vector<std::string> names() const {
     std::vector<std::string> result = d.state_names();
-    for (const StateMap::Row& row : d.states.dependent())
+    for (const StateMap::DependentRow& row : d.states.dependent())
       result.push_back(d.layout().states[at(row.state)]);
     result.resize(at(states + k.joint.plan->unknowns));
     for (std::size_t v = 0; v < k.joint.variables.size(); ++v) {

@@ -56,7 +56,7 @@ StateMap::StateMap(const std::vector<Dependent>& dependents, const Layout& l) {
     if (!dependents.empty()) map.names.push_back(l.states[i]);
   }
   for (const Dependent& d : dependents) {
-    Row row{l.state_first[at(d.node)] + d.state, {}};
+    DependentRow row{l.state_first[at(d.node)] + d.state, {}};
     for (const Dependent::Share& s : d.of)
       row.of.emplace_back(l.state_first[at(s.node)] + s.state, s.factor);
     map.rows.push_back(std::move(row));

@@ -36,11 +36,11 @@ class StateMap {
 
   /// One dependent state: sum of factor * state, all among the blocks' states. A row may refer to
   /// the states of rows before it.
-  struct Row {
+  struct DependentRow {
     int state = -1;
     std::vector<std::pair<int, double>> of;
   };
-  const std::vector<Row>& dependent() const { return map_->rows; }
+  const std::vector<DependentRow>& dependent() const { return map_->rows; }
 
   /// T x: blocks' states x columns. O(entries of the rows) per column.
   template <class Matrix>
@@ -50,7 +50,7 @@ class StateMap {
     Matrix all(static_cast<Eigen::Index>(kept.size() + rows.size()), x.cols());
     for (std::size_t i = 0; i < kept.size(); ++i)
       all.row(kept[i]) = x.row(static_cast<Eigen::Index>(i));
-    for (const Row& row : rows) {
+    for (const DependentRow& row : rows) {
       all.row(row.state).setZero();
       for (const auto& [of, factor] : row.of)
         all.row(row.state) += typename Matrix::Scalar(factor) * all.row(of);
@@ -90,7 +90,7 @@ class StateMap {
   struct Map {
     std::vector<int> kept;
     std::vector<std::string> names;  ///< of those kept; none if all are
-    std::vector<Row> rows;
+    std::vector<DependentRow> rows;
   };
   std::shared_ptr<const Map> map_ = std::make_shared<const Map>();  ///< updates share it
   Eigen::MatrixXd by_input_;

@@ -32,7 +32,7 @@ struct Entries {
 
 /// One equation after the other: left - right, and the sums of magnitudes, row by row.
 struct Balance {
-  struct Row {
+  struct RowResidual {
     double difference = 0, magnitude = 0, rounding = 0;
     /// The part that rounding does not explain.
     double off() const {
@@ -40,13 +40,13 @@ struct Balance {
       return std::max(std::abs(difference) - explained, 0.0);
     }
   };
-  boost::container::small_vector<Row, 8> row = {};
+  boost::container::small_vector<RowResidual, 8> row = {};
   const MatrixXd* part = nullptr;  ///< rows of the target; none: all of it
   int unit = 1;                    ///< entries of the target that share one; 0: not distinguished
   bool known = true;
 
   void start(Eigen::Index rows, int of_target, const MatrixXd* part_of_target = nullptr) {
-    row.assign(at(rows), Row());
+    row.assign(at(rows), RowResidual());
     unit = of_target;
     part = part_of_target;
     known = true;
@@ -64,7 +64,7 @@ struct Balance {
   template <class Matrix>
   void add(const Matrix& c, const Entries& x, int shared, double factor) {
     if (shared == 1 && rows() == 1 && x.rounding.empty()) {  // scalar diagrams: hardly any others
-      Row sum;
+      RowResidual sum;
       for (std::size_t j = 0; j < x.value.size(); ++j) {
         const double by = c(0, static_cast<Eigen::Index>(j)) * factor * x.value[j];
         sum.difference += by, sum.magnitude += std::abs(by);
@@ -72,7 +72,7 @@ struct Balance {
       return add(0, sum, 1);
     }
     for (std::size_t j = 0; j < x.value.size(); ++j) {
-      const Row term = entry_of(x, j, shared);
+      const RowResidual term = entry_of(x, j, shared);
       if (term.magnitude == 0 && term.difference == 0 && term.rounding == 0)
         continue;  // not a number is neither
       for (std::size_t i = 0; i < rows(); ++i)
@@ -83,12 +83,12 @@ struct Balance {
     for (std::size_t i = 0; i < rows(); ++i)
       add(i, entry_of(x, i, rows() == 1 ? 1 : shared), factor);
   }
-  void add(std::size_t i, const Row& term, double factor) {
+  void add(std::size_t i, const RowResidual& term, double factor) {
     row[i].difference += factor * term.difference;
     row[i].magnitude += std::abs(factor) * term.magnitude;
     row[i].rounding += std::abs(factor) * term.rounding;
   }
-  static Row entry_of(const Entries& x, std::size_t j, int shared) {
+  static RowResidual entry_of(const Entries& x, std::size_t j, int shared) {
     return {x.value[j], largest_with(x.value, j, shared),
             x.rounding.empty() ? 0 : largest_with(x.rounding, j, shared)};
   }
@@ -103,7 +103,7 @@ struct Balance {
   /// Largest difference beyond rounding; infinite if something is not finite.
   double largest() const {
     double size = 0;
-    for (const Row& r : row) {
+    for (const RowResidual& r : row) {
       if (!std::isfinite(r.difference)) return kNotFinite;
       size = std::max(size, r.off());
     }

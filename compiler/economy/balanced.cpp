@@ -123,7 +123,7 @@ void factor(Eigen::Ref<MatrixXcd> S) {
   factor(S.bottomRightCorner(n - half, n - half));
 }
 
-bool is_stable(const States::Piece& p) {
+bool is_stable(const States::PartialFractions& p) {
   if (p.part.order() == 0) return true;
   const Eigen::VectorXcd poles = p.pole.size() ? p.pole : linalg::eigenvalues(p.part.A);
   return poles.real().maxCoeff() < 0;

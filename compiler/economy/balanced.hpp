@@ -57,7 +57,7 @@ class Balanced {
   void learn(const Choice& choice, std::size_t sample) const;
 
   const Split& split_;
-  States::Piece kept_;
+  States::PartialFractions kept_;
   Eigen::MatrixXd D_;
   const Samples& samples_;
   std::vector<Eigen::MatrixXcd> rest_;  ///< of the samples, without the kept part

@@ -129,13 +129,14 @@ void find_kept(Raw& raw, const StateMap& states) {
     if (const int q = raw.pairs.position[at(i)]; q >= 0) coordinate[at(q)] = static_cast<int>(i);
   }
   std::vector<char> leaves(at(raw.all()), 0);
-  for (const StateMap::Row& row : states.dependent()) leaves[at(coordinate[at(row.state)])] = 1;
+  for (const StateMap::DependentRow& row : states.dependent())
+    leaves[at(coordinate[at(row.state)])] = 1;
   for (Index i = 0; i < raw.all(); ++i)
     if (!leaves[at(i)]) raw.kept.push_back(static_cast<int>(i));
   if (states.trivial()) return;
   raw.T = MatrixXd::Zero(raw.all(), static_cast<Index>(raw.kept.size()));
   for (std::size_t k = 0; k < raw.kept.size(); ++k) raw.T(raw.kept[k], static_cast<Index>(k)) = 1;
-  for (const StateMap::Row& row : states.dependent()) {
+  for (const StateMap::DependentRow& row : states.dependent()) {
     const int i = coordinate[at(row.state)];
     if (raw.pairs.rate[at(i)] != row.state) continue;  // positions follow the same map
     for (const auto& [of, factor] : row.of) {

@@ -98,8 +98,8 @@ void set_blocks(KeptMode& mode, const VectorXd& share, const std::vector<std::st
 
 }  // namespace
 
-States::Piece piece(SpectralPart part) {
-  States::Piece p{std::move(part), {}, {}, {}};
+States::PartialFractions piece(SpectralPart part) {
+  States::PartialFractions p{std::move(part), {}, {}, {}};
   if (p.part.order() == 0 || is_strict_triangle(p.part.A)) return p;
   const linalg::Eigensystem e = linalg::eigensystem(p.part.A);
   if (!(e.rcond_V > kDefective)) return p;
@@ -120,13 +120,13 @@ MatrixXcd transfer(const SpectralPart& p, Complex s) {
 
 Index States::order() const {
   Index n = 0;
-  for (const Piece& p : pieces) n += p.part.order();
+  for (const PartialFractions& p : pieces) n += p.part.order();
   return n;
 }
 
 MatrixXcd States::transfer(Complex s) const {
   MatrixXcd H = D.cast<Complex>();
-  for (const Piece& p : pieces) {
+  for (const PartialFractions& p : pieces) {
     if (p.pole.size() == 0)
       H += detail::transfer(p.part, s);
     else
@@ -137,7 +137,7 @@ MatrixXcd States::transfer(Complex s) const {
 
 std::vector<Complex> States::poles() const {
   std::vector<Complex> result;
-  for (const Piece& p : pieces) {
+  for (const PartialFractions& p : pieces) {
     const Eigen::VectorXcd all = p.pole.size() ? p.pole
                                  : is_strict_triangle(p.part.A)
                                      ? Eigen::VectorXcd::Zero(p.part.order())
@@ -156,7 +156,7 @@ StateSpace States::state_space() const {
   m.C.resize(D.rows(), n);
   m.D = D;
   Index first = 0;
-  for (const Piece& p : pieces) {
+  for (const PartialFractions& p : pieces) {
     const Index r = p.part.order();
     m.A.block(first, first, r, r) = p.part.A;
     m.B.middleRows(first, r) = p.part.B;
@@ -172,7 +172,7 @@ StateSpace States::state_space() const {
 
 ModalModel States::modal() const {
   ModalModel result{{}, MatrixXd(0, D.cols()), MatrixXd(D.rows(), 0), D, {}, {}};
-  for (const Piece& p : pieces)
+  for (const PartialFractions& p : pieces)
     add_blocks(result, p.part,
                is_strict_triangle(p.part.A) ? integrators(p.part.A)
                                             : real_modes(p.part.A, "state_space()"));
@@ -181,7 +181,7 @@ ModalModel States::modal() const {
 
 std::vector<KeptMode> States::modes(const std::vector<std::string>& states) const {
   std::vector<KeptMode> result;
-  for (const Piece& p : pieces) {
+  for (const PartialFractions& p : pieces) {
     const bool balanced = &p == &pieces.back();
     const auto add = [&](Complex pole, const VectorXd& share) {
       KeptMode m = mode_of(pole);

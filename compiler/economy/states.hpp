@@ -9,12 +9,12 @@ namespace titop::detail {
 /// D plus parts that are not coupled to each other: integrals, the kept part, the balanced part.
 struct States {
   /// A part, and its transfer by poles if it has enough eigenvectors: left / (s - pole) * right.
-  struct Piece {
+  struct PartialFractions {
     SpectralPart part;
     Eigen::VectorXcd pole;
     Eigen::MatrixXcd left, right;
   };
-  std::vector<Piece> pieces;
+  std::vector<PartialFractions> pieces;
   Eigen::MatrixXd D;
   std::string why;  ///< there is no second-order form
 
@@ -30,7 +30,7 @@ struct States {
   std::vector<KeptMode> modes(const std::vector<std::string>& states) const;
 };
 
-States::Piece piece(SpectralPart part);
+States::PartialFractions piece(SpectralPart part);
 
 /// C (s - A)^-1 B by LU. Throws singular. O(order^3).
 Eigen::MatrixXcd transfer(const SpectralPart& part, std::complex<double> s);

@@ -116,7 +116,7 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
   std::sort(r.out.begin(), r.out.end(), [](const auto& a, const auto& b) { return a.row < b.row; });
   r.T = MatrixXd::Zero(std::ssize(r.out), std::ssize(r.keep));
   for (std::size_t i = 0; i < r.out.size(); ++i) {
-    const IndependentRows::Row& out = r.out[i];
+    const IndependentRows::RowRemainder& out = r.out[i];
     const MatrixXd t = basis.coefficients(out.row);
     for (std::size_t k = 0; k < basis.taken().size(); ++k) {
       const int row = basis.taken()[k];

@@ -8,15 +8,15 @@ namespace titop::modes {
 
 /// Independent rows, and the dependent ones: M(out) = T M(keep).
 struct IndependentRows {
-  struct Row {
+  struct RowRemainder {
     int row = 0;
     double own = 0;    ///< part independent of the other rows, relative to its size
     double bound = 0;  ///< possible size of that by rounding alone
   };
   std::vector<int> keep;  ///< ascending, as `out`
-  std::vector<Row> out;
+  std::vector<RowRemainder> out;
   Eigen::MatrixXd T;          ///< out x keep
-  std::vector<Row> doubtful;  ///< of `keep`: their independent part may be rounding
+  std::vector<RowRemainder> doubtful;  ///< of `keep`: their independent part may be rounding
 };
 
 /// `rounding`: rounding error of each entry. A row is dependent if its own part is below 32 times

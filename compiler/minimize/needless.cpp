@@ -62,7 +62,7 @@ std::optional<Apart> apart(const Sampled& s, const IntegratorSplit& states) {
 struct LeavingIntegrators {
   std::vector<int> rows, states;
   LeavingIntegrators(const IndependentRows& independent, const IntegratorSplit& of) {
-    for (const IndependentRows::Row& out : independent.out) {
+    for (const IndependentRows::RowRemainder& out : independent.out) {
       rows.push_back(out.row);
       states.push_back(of.integrators[at(out.row)]);
     }
@@ -84,9 +84,9 @@ MatrixXd on_others(const MatrixXd& T, const std::vector<int>& columns, Index sta
 }
 
 void report(const IndependentRows& rows, const char* why, Needless& n) {
-  for (const IndependentRows::Row& o : rows.doubtful)
+  for (const IndependentRows::RowRemainder& o : rows.doubtful)
     n.doubtful.push_back({0, 1, o.own, o.bound, kAtZero});
-  for (const IndependentRows::Row& o : rows.out) {
+  for (const IndependentRows::RowRemainder& o : rows.out) {
     n.removed.push_back({0, 1, o.own, o.bound, why});
     n.hidden += o.bound > kHides;
   }

@@ -125,7 +125,7 @@ struct Fronts {
                    Reflections& e) {
     Reflections rank = e;
     result.dropped = std::max(result.dropped, rank.take(choices.back(), kRankTolerance));
-    Reflections::Choice choice{soft(front.columns)};
+    Reflections::PivotChoice choice{soft(front.columns)};
     for (choice.most = e.done() + 1; choice.most <= rank.done(); ++choice.most) {
       const double least = kGoodPivot * e.largest(choices.back());
       for (const std::vector<int>& columns : choices) e.take(columns, least, choice);

@@ -18,7 +18,7 @@ double Reflections::largest(const std::vector<int>& columns) const {
   return result;
 }
 
-double Reflections::take(const std::vector<int>& columns, double least, const Choice& choice) {
+double Reflections::take(const std::vector<int>& columns, double least, const PivotChoice& choice) {
   const auto worth = [&](int c, double above) {
     const double size = taken(c) ? 0 : norm(c);
     return !(size > above) ? 0 : choice.worth.size() == 0 ? size : size * choice.worth(c);

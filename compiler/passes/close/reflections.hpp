@@ -23,7 +23,7 @@ class Reflections {
   double largest(const std::vector<int>& columns) const;
 
   /// Preference among pivots.
-  struct Choice {
+  struct PivotChoice {
     Eigen::VectorXd worth = {};  ///< per column: norms are multiplied by it; empty: all 1
     double share = 0;            ///< a pivot is worth more than this times the best of `rivals`
     std::vector<int> rivals = {};
@@ -32,7 +32,7 @@ class Reflections {
   /// Takes pivots among these columns, of norms above `least`: the one that is worth most first, of
   /// equals the first: no choice by rounding. Returns the largest remaining norm; 0 without rows.
   /// O(rows columns) per pivot.
-  double take(const std::vector<int>& columns, double least, const Choice& choice);
+  double take(const std::vector<int>& columns, double least, const PivotChoice& choice);
   double take(const std::vector<int>& columns, double least) { return take(columns, least, {}); }
   /// The smallest pivot.
   double weakest() const { return weakest_; }

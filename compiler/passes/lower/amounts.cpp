@@ -192,11 +192,11 @@ Amount Lowering::twin(int channel, Level level) {
 
 /// Adds factor * twin. A chain is walked along, however long it is; only if an equation has
 /// several terms the way forks.
-void Lowering::walk(Amount& sum, Step at_channel, Level level) {
+void Lowering::walk(Amount& sum, WayPoint at_channel, Level level) {
   std::vector<int> way;
-  std::optional<Step> next = std::move(at_channel);
+  std::optional<WayPoint> next = std::move(at_channel);
   while (next) {
-    const Step here = std::move(*next);
+    const WayPoint here = std::move(*next);
     next.reset();
     const Drive& d = drive[at(here.channel)];
     const bool back = visiting[at(here.channel)];  // round a closed chain: the motion of all of it
@@ -210,20 +210,20 @@ void Lowering::walk(Amount& sum, Step at_channel, Level level) {
       next = through_body(sum, here, level);
       continue;
     }
-    std::vector<Step> ties;
+    std::vector<WayPoint> ties;
     if (!find_ties(here, ties)) {  // prescribed
       append(sum, times(here.factor, here.declared, own_motion(here.channel)));
       break;
     }
     if (ties.size() == 1) next = std::move(ties.front());
-    for (Step& tie : ties)
+    for (WayPoint& tie : ties)
       if (ties.size() > 1) walk(sum, std::move(tie), level);
   }
   for (const int channel : way) visiting[at(channel)] = 0;
 }
 
 /// The points that this one's driven acceleration follows; false if something else drives it.
-bool Lowering::find_ties(const Step& here, std::vector<Step>& ties) {
+bool Lowering::find_ties(const WayPoint& here, std::vector<WayPoint>& ties) {
   const int n = g.channels[at(here.channel)].size;
   for (const int e : drive[at(here.channel)].accel) {
     const Equation& equation = g.equations[at(e)];
@@ -241,11 +241,12 @@ bool Lowering::find_ties(const Step& here, std::vector<Step>& ties) {
 }
 
 /// From a point of a body to its parent point, or from that to another that is driven.
-std::optional<Lowering::Step> Lowering::through_body(Amount& sum, const Step& here, Level level) {
+std::optional<Lowering::WayPoint> Lowering::through_body(Amount& sum, const WayPoint& here,
+                                                         Level level) {
   const Channel& c = g.channels[at(here.channel)];
   const Node& node = g.nodes[at(c.node)];
   const auto k = node.block->kinematics(values);
-  const auto add_deformation = [&](int spec, const Step& by, double sign) {
+  const auto add_deformation = [&](int spec, const WayPoint& by, double sign) {
     if (node.state < 0) return;
     MatrixXd Phi = sign * k->Phi[at(spec)];
     if (level == Level::rate) Phi = Phi * node.block->dynamics(values)->A;
@@ -255,8 +256,8 @@ std::optional<Lowering::Step> Lowering::through_body(Amount& sum, const Step& he
   if (k && c.spec != k->reference) {
     const MatrixXd& tau = k->tau[at(c.spec)];
     add_deformation(c.spec, here, 1);
-    return Step{node.first_channel + k->reference, here.factor * tau,
-                product(here.declared, Pattern(tau.array() != 0))};
+    return WayPoint{node.first_channel + k->reference, here.factor * tau,
+                    product(here.declared, Pattern(tau.array() != 0))};
   }
   for (int spec = 0; k && spec < static_cast<int>(k->tau.size()); ++spec) {
     const int other = node.first_channel + spec;
@@ -265,8 +266,8 @@ std::optional<Lowering::Step> Lowering::through_body(Amount& sum, const Step& he
       continue;
     const linalg::Inverse inverse = linalg::inverse(tau);
     if (inverse.rcond == 0) continue;
-    Step step{other, here.factor * inverse.matrix,
-              product(here.declared, Pattern(inverse.matrix.array() != 0))};
+    WayPoint step{other, here.factor * inverse.matrix,
+                  product(here.declared, Pattern(inverse.matrix.array() != 0))};
     add_deformation(spec, step, -1);
     return step;
   }

@@ -79,14 +79,14 @@ struct Lowering {
   Amount all_rows(const Origin& origin);
   Amount twin(int channel, Level level);
   /// A point on the way, and the factor of its motion.
-  struct Step {
+  struct WayPoint {
     int channel;
     Eigen::MatrixXd factor;
     Pattern declared;
   };
-  void walk(Amount& sum, Step at_channel, Level level);
-  bool find_ties(const Step& here, std::vector<Step>& ties);
-  std::optional<Step> through_body(Amount& sum, const Step& here, Level level);
+  void walk(Amount& sum, WayPoint at_channel, Level level);
+  bool find_ties(const WayPoint& here, std::vector<WayPoint>& ties);
+  std::optional<WayPoint> through_body(Amount& sum, const WayPoint& here, Level level);
   Amount own_motion(int channel) const;
   Amount integrated(Amount sum, Level level);
   Amount added(std::span<const int> equations);
