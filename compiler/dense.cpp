@@ -143,7 +143,7 @@ class DenseWriter {
   void read(const Writing::Target& t, const double* coefficients, Index m, Room& room) const {
     if (t.unknowns.empty()) return;
     room.reads.clear();
-    for (const Writing::Range& r : t.unknowns)
+    for (const Writing::IndexRange& r : t.unknowns)
       for (Index i = r.first; i < r.first + r.size; ++i)
         room.reads.push_back(room.space.z.data() + i * m);
     solve::multiply(t.rows, t.inner, m, coefficients + t.coefficients, t.inner, room.reads.data(),
@@ -170,8 +170,8 @@ class DenseWriter {
   }
 
   /// Rows of xdot that targets of this batch have.
-  std::vector<Writing::Range> rows_of(std::size_t batch, bool half) const {
-    std::vector<Writing::Range> rows;
+  std::vector<Writing::IndexRange> rows_of(std::size_t batch, bool half) const {
+    std::vector<Writing::IndexRange> rows;
     for (const Writing::Target& t : w_->targets)
       if (t.row < states_ && reads(t, batch, half))
         Writing::add_range(rows, {t.row - t.still, t.rows + t.still});
@@ -192,7 +192,7 @@ class DenseWriter {
     }
     const auto count = static_cast<Index>(room.state.size());
     const double* const values = room.values.data();
-    for (const Writing::Range& r : rows_of(batch, half))
+    for (const Writing::IndexRange& r : rows_of(batch, half))
       solve::scale_transposed(r.size, count, values + r.first * width_, width_, room.state.data(),
                               r.first);
     solve::scale_transposed(rows_ - states_, count, values + states_ * width_, width_,

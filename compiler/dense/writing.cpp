@@ -103,7 +103,7 @@ struct WritingBuilder {
     std::vector<int> needs;
     for (const Writing::Source& s : w.sources) needs.push_back(s.front);
     for (const Writing::Target& t : w.targets)
-      for (const Writing::Range& r : t.unknowns)
+      for (const Writing::IndexRange& r : t.unknowns)
         for (Index u = r.first; u < r.first + r.size; ++u)
           if (t.source >= 0)
             needs[at(t.source)] = std::min(needs[at(t.source)], front_of(u));
@@ -199,7 +199,7 @@ Writing::Writing(const SystemData& data) {
   for (const int i : data.layout().state_nodes) modal.emplace_back(i, builder.modes(i) > 0);
 }
 
-void Writing::add_range(std::vector<Range>& ranges, const Range& next) {
+void Writing::add_range(std::vector<IndexRange>& ranges, const IndexRange& next) {
   if (!ranges.empty() && ranges.back().first + ranges.back().size == next.first)
     ranges.back().size += next.size;
   else

@@ -45,11 +45,11 @@ struct Writing {
   };
 
   /// Adjacent unknowns or rows.
-  struct Range {
+  struct IndexRange {
     Eigen::Index first = 0, size = 0;
   };
   /// Appends the next range; merges it with the last one if they are adjacent.
-  static void add_range(std::vector<Range>& ranges, const Range& next);
+  static void add_range(std::vector<IndexRange>& ranges, const IndexRange& next);
 
   /// Rows of xdot or y: sum of coefficients times unknowns and of known terms.
   struct Target {
@@ -58,7 +58,7 @@ struct Writing {
     Eigen::Index inner = 0;  ///< unknowns that it reads
     Eigen::Index still = 0;  ///< rows of the node above: coordinates move with their rates
     std::vector<TargetTerm> terms = {};
-    std::vector<Range> unknowns = {};
+    std::vector<IndexRange> unknowns = {};
     Eigen::Index coefficients = 0;  ///< where they begin: rows x inner, row-major
     int source = -1;  ///< of the same modes: their columns have its values in earlier batches;
                       ///< -1: it reads in every batch

@@ -93,14 +93,14 @@ Small Sequence::small(const std::vector<Index>& kept, const MatrixXd& W) const {
   return result;
 }
 
-void Sequence::note(const Worst& worst) {
+void Sequence::note(const WorstPair& worst) {
   steps_.push_back({static_cast<Index>(kept_.size()), W_.cols(), worst.error});
 }
 
-Sequence::Worst Sequence::evaluate() {
+Sequence::WorstPair Sequence::evaluate() {
   model_ = small(kept_, W_);
   error_.resize(samples_.s.size());
-  Worst worst;
+  WorstPair worst;
   for (std::size_t k = 0; k < samples_.s.size(); ++k) {
     error_[k] = difference(samples_, model_, k);
     for (Index j = 0; j < error_[k].cols(); ++j)
@@ -128,13 +128,13 @@ bool Sequence::stalled() const {
   return steps_.back().kept == before.kept && steps_.back().error > 0.95 * before.error;
 }
 
-bool Sequence::extend(const Worst& worst) {
+bool Sequence::extend(const WorstPair& worst) {
   return keep_one(worst, 0.5) || add_columns(worst) || keep_one(worst, 0);
 }
 
 /// The dropped mode of the band with the largest term in this error, if all of them explain at
 /// least this fraction of it.
-bool Sequence::keep_one(const Worst& worst, double least) {
+bool Sequence::keep_one(const WorstPair& worst, double least) {
   const Complex s = samples_.s[worst.sample];
   Complex sum = 0;
   Index best = -1;
@@ -177,7 +177,7 @@ bool Sequence::add_pending() {
   return add(column);
 }
 
-bool Sequence::add_columns(const Worst& worst) {
+bool Sequence::add_columns(const WorstPair& worst) {
   const Index n = whole_.elastic();
   if (inside_ == n) return false;
   const double omega = samples_.omega[worst.sample];

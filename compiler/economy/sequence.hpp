@@ -53,21 +53,21 @@ class Sequence {
   Small model(std::size_t step) const;
 
  private:
-  struct Worst {
+  struct WorstPair {
     Eigen::Index output = 0, input = 0;
     std::size_t sample = 0;
     double error = 0;
   };
-  Worst evaluate();
+  WorstPair evaluate();
   bool stalled() const;
 
   Small small(const std::vector<Eigen::Index>& kept, const Eigen::MatrixXd& W) const;
-  bool extend(const Worst& worst);
-  bool keep_one(const Worst& worst, double least);
-  bool add_columns(const Worst& worst);
+  bool extend(const WorstPair& worst);
+  bool keep_one(const WorstPair& worst, double least);
+  bool add_columns(const WorstPair& worst);
   bool add(Eigen::VectorXd column);
   bool add_pending();
-  void note(const Worst& worst);
+  void note(const WorstPair& worst);
 
   const Whole& whole_;
   const Samples& samples_;
@@ -79,7 +79,7 @@ class Sequence {
   Eigen::MatrixXd W_;        ///< elastic modes x columns
   Eigen::VectorXd pending_;  ///< the output's column to the input's that came last; or empty
   Small model_;
-  Worst worst_;
+  WorstPair worst_;
   std::vector<Eigen::MatrixXcd> error_;
   std::vector<Step> steps_;
 };
