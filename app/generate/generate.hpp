@@ -7,8 +7,8 @@
 #include "generate/plan.hpp"
 
 /// Random scenes with their answers, for testing titop and other programs with. A scene is drawn as
-/// plain data, written as a diagram file, and answered from equations of motion that are assembled by
-/// hand (assembly.hpp), without the library.
+/// plain data, written as a diagram file, and answered from equations of motion that are assembled
+/// by hand (assembly.hpp), without the library.
 namespace titop::generate {
 
 enum class Family { scalar, spatial };  ///< spring-masses; bodies, hinges and slides in space

@@ -15,7 +15,7 @@ struct IndependentRows {
   };
   std::vector<int> keep;  ///< ascending, as `out`
   std::vector<RowRemainder> out;
-  Eigen::MatrixXd T;          ///< out x keep
+  Eigen::MatrixXd T;                   ///< out x keep
   std::vector<RowRemainder> doubtful;  ///< of `keep`: their independent part may be rounding
 };
 

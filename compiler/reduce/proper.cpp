@@ -49,10 +49,10 @@ void shake(SteadyRandom& random, const RowMatrix<double>& terms, RowMatrix<doubl
     sums.data()[i] += kEpsilon * terms.data()[i] * random.unit();
 }
 
-/// RateColumns and outputs of these states and inputs; with a sample: perturbed by rounding, as in
+/// Rates and outputs of these states and inputs; with a sample: perturbed by rounding, as in
 /// another order of operations.
 RateColumns rates_at(const SystemData& d, RowMatrix<double> known, const RowMatrix<double>& forcing,
-               std::optional<int> sample, SteadyRandom& random) {
+                     std::optional<int> sample, SteadyRandom& random) {
   const Instant now(d, std::move(known), forcing);
   RateColumns r{now.xdot(), now.outputs()};
   if (!sample) return r;

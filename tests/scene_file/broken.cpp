@@ -25,7 +25,8 @@ const std::string kGood = R"({"format": "titop scene 1", "name": "cart",
 "outputs": [{"name": "a", "size": 1, "terms": [{"signal": ["z", "parent", "accel"]}]}]})";
 
 void refused(const std::string& what, const std::string& with, const std::string& words) {
-  titop_test::check_refused([&] { parse_diagram(replaced(kGood, what, with), "cart.json"); }, words);
+  titop_test::check_refused([&] { parse_diagram(replaced(kGood, what, with), "cart.json"); },
+                            words);
 }
 
 }  // namespace

@@ -225,7 +225,8 @@ struct RedundancyFinder {
 
   /// Subtracts from `left` the combination of rows that is v in their own columns, in the other
   /// columns. Returns the largest sum of magnitudes: rounding is in proportion to it.
-  static double subtract(const RedundantPart& part, const VectorXd& v, std::map<int, double>& left) {
+  static double subtract(const RedundantPart& part, const VectorXd& v,
+                         std::map<int, double>& left) {
     if (part.others.empty()) return 0;
     const VectorXd y = part.factor.triangularView<Eigen::Lower>().transpose().solve(
         VectorXd(part.basis.transpose() * v));
