@@ -11,9 +11,9 @@
 #include <string>
 #include <string_view>
 #include <system_error>
-#include <titop/blocks/scene/scene.hpp>
-#include <titop/compiler/emit/report/program.hpp>
-#include <titop/compiler/emit/write_file.hpp>
+#include <titop/blocks/diagram_file/diagram_file.hpp>
+#include <titop/emit/report/program.hpp>
+#include <titop/emit/text/write_file.hpp>
 #include <titop/titop.hpp>
 #include <vector>
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <mutex>
 #include <titop/blocks/body_interface.hpp>
+#include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/flexible_body.hpp>
-#include <titop/blocks/modal_checks.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/modal_form.hpp>
 #include <type_traits>

@@ -2,8 +2,8 @@
 
 #include <map>
 #include <source_location>
-#include <titop/blocks/beam.hpp>
-#include <titop/blocks/modal_data.hpp>
+#include <titop/blocks/fe/beam.hpp>
+#include <titop/blocks/fe/modal_data.hpp>
 #include <titop/blocks/rigid_body.hpp>
 #include <titop/graph/diagram.hpp>
 

@@ -9,6 +9,6 @@ foreach(command add_executable target_link_libraries add_custom_target add_libra
   cmake_language(EVAL CODE "function(${command})\nendfunction()")
 endforeach()
 
-include(${ROOT}/compiler/emit/titop-generate-model.cmake)
+include(${ROOT}/emit/cpp/titop-generate-model.cmake)
 set(CMAKE_CURRENT_BINARY_DIR ${FOLDER})
 titop_generate_model(lag SCENE lag.cpp DATA ${DATA} SAMPLE_TIME ${SAMPLE_TIME})

@@ -1,19 +1,132 @@
-# The layers: graph includes only itself, blocks and compiler only graph and themselves. Only the
-# umbrella header, compiler/titop.hpp, lies above both.
+# The rooms of the library, lowest first: room(NAME MAY_INCLUDE...), beside itself and graph. Rooms
+# that may be included stand above, so there is no cycle. docs/architecture.md has the same table.
+cmake_policy(VERSION 3.25)
 set(wrong "")
-foreach(rule "graph:blocks|compiler" "blocks:compiler" "compiler:blocks")
-  string(REPLACE ":" ";" rule "${rule}")
-  list(GET rule 0 folder)
-  list(GET rule 1 forbidden)
-  file(GLOB_RECURSE files ${ROOT}/${folder}/*.hpp ${ROOT}/${folder}/*.cpp)
-  list(REMOVE_ITEM files ${ROOT}/compiler/titop.hpp)
-  foreach(file ${files})
-    file(STRINGS ${file} lines REGEX "^ *# *include *[<\"]titop/((${forbidden})/|titop.hpp)")
-    foreach(line ${lines})
-      string(APPEND wrong "\n  ${file}: ${line}")
-    endforeach()
+set(names)
+function(room name)
+  foreach(other ${ARGN})
+    if(NOT other IN_LIST names)
+      message(FATAL_ERROR "${name} may not include ${other}, which is not above it in the table")
+    endif()
+  endforeach()
+  set(names ${names} ${name} PARENT_SCOPE)
+  set("allowed ${name}" ${ARGN} PARENT_SCOPE)
+endfunction()
+room(graph)
+room(blocks/fe)
+room(blocks                    blocks/fe)
+room(blocks/diagram_file       blocks/fe blocks)
+room(compiler/passes)
+room(compiler/diagram          compiler/passes)
+room(compiler/definition       compiler/passes)
+room(compiler/solve            compiler/passes compiler/definition)
+room(compiler/loops            compiler/passes compiler/solve)
+room(compiler/realization      compiler/passes compiler/solve)
+room(compiler/certificate      compiler/passes compiler/definition compiler/solve
+                               compiler/realization)
+room(compiler/index_reduction  compiler/passes compiler/solve compiler/loops compiler/certificate)
+room(compiler/minreal          compiler/passes compiler/definition compiler/solve
+                               compiler/realization compiler/certificate)
+room(compiler/system           compiler/passes compiler/diagram compiler/definition compiler/solve
+                               compiler/loops compiler/realization compiler/certificate
+                               compiler/index_reduction compiler/minreal)
+# Deeper than System: the implicit midpoint rule and its error estimate use the factors of
+# compiler/solve.
+room(analysis/simulation       compiler/solve compiler/system)
+room(analysis/sweep            compiler/system)
+# Deeper than System: its oracles use the graph's structure, the definition, and the rounding of
+# each entry.
+room(analysis/certify          compiler/passes compiler/definition compiler/certificate
+                               compiler/minreal compiler/system)
+room(analysis/reduction        compiler/system)
+room(emit/text)
+# Deeper than System: names of any encoding are cleaned by compiler/diagram.
+room(emit/files                compiler/diagram compiler/system analysis/certify emit/text)
+room(emit/cpp                  compiler/system analysis/simulation analysis/certify emit/text)
+# Deeper than System: it draws System::stage(), a type of compiler/passes.
+room(emit/report               compiler/passes compiler/diagram compiler/system analysis/simulation
+                               analysis/certify analysis/reduction emit/text)
+
+# Headers with the data behind System: internal(HEADER USER...), the only files or folders outside of
+# its room that may include it.
+set(headers)
+function(internal header)
+  set(headers ${headers} ${header} PARENT_SCOPE)
+  set("users ${header}" ${ARGN} PARENT_SCOPE)
+endfunction()
+# analysis/certify/certify_full.cpp reads the data of a System, as its friend.
+# analysis/reduction/coordinates.hpp reads bodies' modes and stiffnesses.
+# analysis/reduction/reach_of_data.hpp reads bodies' modes. analysis/simulation/simulate.cpp takes
+# the factors of a System, as its friend. emit/cpp/form.cpp uses transfer_if_any.
+internal(compiler/system/system_data.hpp analysis/certify/certify_full.cpp
+         analysis/reduction/coordinates.hpp analysis/reduction/reach_of_data.hpp
+         analysis/simulation/simulate.cpp emit/cpp/form.cpp)
+# analysis/reduction/ compiles diagrams that it has rewritten.
+internal(compiler/system/compile_graph.hpp analysis/reduction/)
+# analysis/certify/ measures differences beside the rounding of the elimination.
+internal(compiler/system/elimination_terms.hpp analysis/certify/)
+
+# The room of a file: that of the longest folder.
+function(room_of file result)
+  set(room "")
+  while(file MATCHES "/" AND NOT room)
+    string(REGEX REPLACE "/[^/]*$" "" file "${file}")
+    if(file IN_LIST names)
+      set(room ${file})
+    endif()
+  endwhile()
+  set(${result} "${room}" PARENT_SCOPE)
+endfunction()
+
+function(is_user file header result)
+  set(found FALSE)
+  foreach(user ${users\ ${header}})
+    string(FIND "${file}" "${user}" place)
+    if(place EQUAL 0)
+      set(found TRUE)
+    endif()
+  endforeach()
+  set(${result} ${found} PARENT_SCOPE)
+endfunction()
+
+set(files)
+foreach(layer graph blocks compiler analysis emit)
+  file(GLOB_RECURSE of_layer RELATIVE ${ROOT} ${ROOT}/${layer}/*.hpp ${ROOT}/${layer}/*.cpp)
+  list(APPEND files ${of_layer})
+endforeach()
+list(REMOVE_ITEM files emit/titop.hpp)  # for users: above all rooms
+foreach(file ${files})
+  room_of(${file} room)
+  if(NOT room)
+    string(APPEND wrong "\n  ${file} is in no room")
+    continue()
+  endif()
+  file(STRINGS ${ROOT}/${file} lines REGEX "^ *# *include *[<\"]titop/")
+  foreach(line ${lines})
+    string(REGEX REPLACE "^.*[<\"]titop/([^>\"]*).*$" "\\1" header "${line}")
+    room_of(${header} from)
+    if(from STREQUAL room)
+      continue()
+    elseif(NOT from STREQUAL "graph" AND NOT from IN_LIST "allowed ${room}")
+      string(APPEND wrong "\n  ${file} includes ${header}, ${room} may not")
+    elseif(header IN_LIST headers)
+      is_user(${file} ${header} listed)
+      if(NOT listed)
+        string(APPEND wrong "\n  ${file} includes ${header}, which is internal")
+      endif()
+    endif()
   endforeach()
 endforeach()
+
+file(READ ${ROOT}/docs/architecture.md document)
+foreach(name ${names})
+  list(TRANSFORM "allowed ${name}" REPLACE "(.+)" "`\\1`" OUTPUT_VARIABLE allowed)
+  list(JOIN allowed ", " allowed)
+  string(FIND "${document}" "| `${name}` | ${allowed} |" place)
+  if(place EQUAL -1)
+    string(APPEND wrong "\n  docs/architecture.md has no row | `${name}` | ${allowed} |")
+  endif()
+endforeach()
 if(wrong)
-  message(FATAL_ERROR "includes against the layers:${wrong}")
+  message(FATAL_ERROR "includes against the table of rooms:${wrong}")
 endif()

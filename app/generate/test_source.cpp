@@ -1,6 +1,6 @@
 #include <fmt/format.h>
 
-#include <titop/compiler/emit/cpp/text.hpp>
+#include <titop/emit/text/literals.hpp>
 
 #include "generate/generate.hpp"
 

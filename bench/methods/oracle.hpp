@@ -1,7 +1,7 @@
 #pragma once
 
 #include <complex>
-#include <titop/compiler/system.hpp>
+#include <titop/compiler/system/system.hpp>
 
 namespace titop_bench {
 

@@ -1,14 +1,14 @@
 #include <Eigen/LU>
 #include <memory>
-#include <titop/compiler/response.hpp>
+#include <titop/compiler/solve/response.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 
 #include "support/timing.hpp"
 
-/// (s - A)^-1 B of one dense block, three inputs: the LU of compiler/response.hpp against Eigen's
-/// PartialPivLU, which also computes the modulus (hypot) of every entry for a condition number that
-/// is not used, and of every candidate for a pivot. One core, GCC 12, -O3, microseconds (titop,
-/// Eigen):
+/// (s - A)^-1 B of one dense block, three inputs: the LU of compiler/solve/response.hpp against
+/// Eigen's PartialPivLU, which also computes the modulus (hypot) of every entry for a condition
+/// number that is not used, and of every candidate for a pivot. One core, GCC 12, -O3, microseconds
+/// (titop, Eigen):
 ///
 ///     states          1            3            6            12
 ///     double          0.04 0.10    0.10 0.15    0.28 0.31    0.98 0.78

@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <cmath>
-#include <titop/compiler/modal.hpp>
+#include <titop/compiler/realization/modal.hpp>
 
 namespace titop_bench {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <titop/compiler/parallel.hpp>
+#include <titop/graph/support/parallel.hpp>
 
 namespace titop_bench {
 namespace {

@@ -3,7 +3,7 @@
 #include <Eigen/SparseCore>
 #include <array>
 #include <optional>
-#include <titop/compiler/system.hpp>
+#include <titop/compiler/system/system.hpp>
 #include <vector>
 
 /// The common input of all other methods: the scene as the input format of control-engineering

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
-#include <titop/compiler/compile_graph.hpp>
-#include <titop/compiler/economy/ray.hpp>
-#include <titop/compiler/economy/sharpen.hpp>
+#include <titop/analysis/reduction/ray.hpp>
+#include <titop/analysis/reduction/sharpen.hpp>
+#include <titop/compiler/system/compile_graph.hpp>
 
 namespace titop_bench {
 

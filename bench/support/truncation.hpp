@@ -1,7 +1,7 @@
 #pragma once
 
 #include <map>
-#include <titop/compiler/economy/small.hpp>
+#include <titop/analysis/reduction/small.hpp>
 #include <titop/titop.hpp>
 
 #include "support/fine_grid.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 #include <titop/blocks/fe/mesh.hpp>
-#include <titop/blocks/modal_checks.hpp>
+#include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/graph/error.hpp>
 
 namespace titop::fe {

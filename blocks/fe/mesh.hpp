@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <titop/blocks/modal_data.hpp>
+#include <titop/blocks/fe/modal_data.hpp>
 #include <titop/graph/linalg/kinematics.hpp>
 #include <vector>
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 #include <titop/blocks/fe/mesh.hpp>
-#include <titop/blocks/modal_checks.hpp>
+#include <titop/blocks/fe/modal_checks.hpp>
 
 /// Quality of the matrices of a mesh, before any modes are computed.
 namespace titop::fe {

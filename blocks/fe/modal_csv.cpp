@@ -3,8 +3,8 @@
 #include <cmath>
 #include <map>
 #include <titop/blocks/fe/modal_csv.hpp>
+#include <titop/blocks/fe/scaled.hpp>
 #include <titop/blocks/fe/text_file.hpp>
-#include <titop/blocks/scaled.hpp>
 
 namespace titop::fe {
 

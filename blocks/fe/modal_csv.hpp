@@ -2,7 +2,7 @@
 
 #include <filesystem>
 #include <string>
-#include <titop/blocks/modal_data.hpp>
+#include <titop/blocks/fe/modal_data.hpp>
 
 /// Modal data typed by hand or written by scripts, as text.
 namespace titop::fe {

@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <titop/compiler/ahead.hpp>
 #include <titop/compiler/passes/incidence.hpp>
+#include <titop/graph/ahead.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {

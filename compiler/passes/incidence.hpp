@@ -1,7 +1,7 @@
 #pragma once
 
 #include <span>
-#include <titop/compiler/stage.hpp>
+#include <titop/compiler/passes/stage.hpp>
 #include <vector>
 
 namespace titop::passes {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <boost/graph/compressed_sparse_row_graph.hpp>
 #include <boost/graph/strong_components.hpp>
-#include <titop/compiler/ahead.hpp>
 #include <titop/compiler/passes/arrows.hpp>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/compiler/passes/passes.hpp>
+#include <titop/graph/ahead.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {

@@ -2,7 +2,7 @@
 
 #include <functional>
 #include <span>
-#include <titop/compiler/stage.hpp>
+#include <titop/compiler/passes/stage.hpp>
 
 /// The passes before numbers, in their order, from as_written(graph) on. Each is a pure function:
 /// it takes a stage and returns the next one; it does not print, has no state, and throws only for
@@ -47,7 +47,7 @@ Stage split(Stage stage);
 /// kinematics. O(terms) if all chains are open; about linear in the loops of a ladder or a truss,
 /// n^1.5 in a planar grid of flexible bodies; at worst O(rows width columns), for connected sets of
 /// loops in which no body belongs to one alone: the width is that of the front along them,
-/// independent of names (compiler/passes/close/along.hpp).
+/// independent of names (compiler/loops/along.hpp).
 Stage chains(Stage stage);
 
 /// Matches every row with its unknown: maximum bipartite matching by whole signals from each

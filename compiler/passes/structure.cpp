@@ -5,8 +5,8 @@
 #include <set>
 #include <titop/compiler/passes/matching.hpp>
 #include <titop/compiler/passes/union_find.hpp>
-#include <titop/compiler/some_names.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/some_names.hpp>
 
 /// The structurally singular part, in the user's words.
 namespace titop::passes {

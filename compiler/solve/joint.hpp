@@ -2,8 +2,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <titop/compiler/passes/stage.hpp>
 #include <titop/compiler/solve/elimination.hpp>
-#include <titop/compiler/stage.hpp>
 #include <vector>
 
 /// The joint system of all interface unknowns of a graph: block rows `y - D u = C x` and the

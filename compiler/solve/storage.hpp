@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <memory>
 #include <new>
-#include <titop/compiler/memory.hpp>
+#include <titop/compiler/solve/memory.hpp>
 #include <type_traits>
 
 namespace titop::solve {

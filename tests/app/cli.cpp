@@ -5,7 +5,7 @@
 #include <cmath>
 #include <filesystem>
 #include <sstream>
-#include <titop/blocks/scene/scene.hpp>
+#include <titop/blocks/diagram_file/diagram_file.hpp>
 #include <titop/titop.hpp>
 
 #include "app/shell.hpp"

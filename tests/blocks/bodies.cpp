@@ -1,12 +1,12 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <titop/blocks/fe/modal_checks.hpp>
+#include <titop/blocks/fe/scaled.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/hinge.hpp>
-#include <titop/blocks/modal_checks.hpp>
 #include <titop/blocks/port_hamiltonian.hpp>
 #include <titop/blocks/rigid_body.hpp>
-#include <titop/blocks/scaled.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/invert.hpp>
 #include <titop/graph/nodes/lti.hpp>

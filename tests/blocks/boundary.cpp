@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <titop/blocks/beam.hpp>
+#include <titop/blocks/fe/beam.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/graph/invert.hpp>
 #include <titop/graph/linalg/dense.hpp>

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "simulate/scenes.hpp"
+#include "simulation/scenes.hpp"
 #include "support/rng.hpp"
 
 /// The certificate that every compile makes: no warning if nothing is wrong.

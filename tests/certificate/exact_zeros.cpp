@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <titop/compiler/certify_full.hpp>
+#include <titop/analysis/certify/certify_full.hpp>
 #include <titop/titop.hpp>
 
 /// Outputs that are 0 to the last bit on one way of computing and rounding on another: no fault.

@@ -1,8 +1,9 @@
 #include <doctest/doctest.h>
 
-#include <titop/compiler/certify/residual.hpp>
-#include <titop/compiler/compile_graph.hpp>
-#include <titop/compiler/instant.hpp>
+#include <titop/compiler/certificate/residual.hpp>
+#include <titop/compiler/solve/instant.hpp>
+#include <titop/compiler/system/compile_graph.hpp>
+#include <titop/compiler/system/system_data.hpp>
 #include <titop/titop.hpp>
 
 #include "support/rng.hpp"

@@ -2,7 +2,8 @@
 
 #include <cmath>
 #include <limits>
-#include <titop/compiler/compare.hpp>
+#include <titop/compiler/definition/compare.hpp>
+#include <titop/compiler/system/elimination_terms.hpp>
 #include <titop/titop.hpp>
 
 /// Rounding is accepted for a 0 among other entries, but no model that has lost digits everywhere.

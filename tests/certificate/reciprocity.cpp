@@ -3,8 +3,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <functional>
-#include <titop/compiler/compile_graph.hpp>
-#include <titop/compiler/system_data.hpp>
+#include <titop/compiler/system/compile_graph.hpp>
+#include <titop/compiler/system/system_data.hpp>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"

@@ -5,7 +5,8 @@
 #include <functional>
 #include <limits>
 #include <numbers>
-#include <titop/compiler/compare.hpp>
+#include <titop/compiler/definition/compare.hpp>
+#include <titop/compiler/system/elimination_terms.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/titop.hpp>

@@ -2,7 +2,8 @@
 
 #include <cmath>
 #include <numbers>
-#include <titop/compiler/compare.hpp>
+#include <titop/compiler/definition/compare.hpp>
+#include <titop/compiler/system/elimination_terms.hpp>
 #include <titop/titop.hpp>
 
 #include "support/random_scene.hpp"

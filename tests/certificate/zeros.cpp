@@ -1,10 +1,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <titop/compiler/certify/residual.hpp>
-#include <titop/compiler/certify/structure.hpp>
-#include <titop/compiler/compile_graph.hpp>
-#include <titop/compiler/evaluate.hpp>
+#include <titop/analysis/certify/structure.hpp>
+#include <titop/compiler/certificate/residual.hpp>
+#include <titop/compiler/solve/evaluate.hpp>
+#include <titop/compiler/system/compile_graph.hpp>
+#include <titop/compiler/system/system_data.hpp>
 #include <titop/titop.hpp>
 
 /// Certificates of degenerate cases: zero A, gain, output, number of inputs or of points; and of

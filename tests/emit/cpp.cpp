@@ -4,10 +4,10 @@
 
 #include <cstdlib>
 #include <set>
-#include <titop/compiler/emit/cpp/form.hpp>
-#include <titop/compiler/emit/cpp/test.hpp>
-#include <titop/compiler/emit/cpp/text.hpp>
-#include <titop/compiler/emit/identifier.hpp>
+#include <titop/emit/cpp/form.hpp>
+#include <titop/emit/cpp/test.hpp>
+#include <titop/emit/text/identifier.hpp>
+#include <titop/emit/text/literals.hpp>
 #include <titop/titop.hpp>
 
 #include "support/five_masses.hpp"

@@ -1,7 +1,7 @@
 // Names of any kind in the files for Python and Octave: both can read them.
 #include <doctest/doctest.h>
 
-#include <titop/compiler/dot/text.hpp>
+#include <titop/compiler/diagram/text.hpp>
 #include <titop/titop.hpp>
 
 #include "support/folder.hpp"

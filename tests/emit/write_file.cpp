@@ -1,7 +1,7 @@
 // Files are written whole or not at all.
 #include <doctest/doctest.h>
 
-#include <titop/compiler/emit/write_file.hpp>
+#include <titop/emit/text/write_file.hpp>
 #include <titop/graph/error.hpp>
 
 #include "support/folder.hpp"

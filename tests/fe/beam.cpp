@@ -5,7 +5,7 @@
 #include <functional>
 #include <numbers>
 #include <string>
-#include <titop/blocks/beam.hpp>
+#include <titop/blocks/fe/beam.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/eigen.hpp>

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 #include <string>
-#include <titop/blocks/beam.hpp>
-#include <titop/blocks/modal_checks.hpp>
+#include <titop/blocks/fe/beam.hpp>
+#include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <vector>
 

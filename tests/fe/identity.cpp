@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <titop/blocks/beam.hpp>
+#include <titop/blocks/fe/beam.hpp>
 #include <titop/blocks/fe/calculix.hpp>
 
 #include "../../examples/by_hand/by_hand.hpp"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 #include <string>
-#include <titop/blocks/beam.hpp>
+#include <titop/blocks/fe/beam.hpp>
 #include <titop/blocks/fe/calculix.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/symmetric.hpp>

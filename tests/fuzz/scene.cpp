@@ -1,5 +1,5 @@
 // Diagram files; a scene that can be read is also written, and then read again as the same text.
-#include <titop/blocks/scene/scene.hpp>
+#include <titop/blocks/diagram_file/diagram_file.hpp>
 
 #include "input_file.hpp"
 

@@ -5,7 +5,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 
 #include "../../examples/scenes/satellite.hpp"
-#include "simulate/scenes.hpp"
+#include "simulation/scenes.hpp"
 #include "support/five_masses.hpp"
 
 /// Energy of undamped structures over a million steps. Both rules keep it up to rounding: a step

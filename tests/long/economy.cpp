@@ -3,7 +3,7 @@
 #include <cmath>
 #include <titop/graph/linalg/eigen.hpp>
 
-#include "economy/scenes.hpp"
+#include "reduction/scenes.hpp"
 #include "support/rng.hpp"
 
 /// Random scenes through the whole of economy; see tests/economy.

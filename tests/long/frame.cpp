@@ -3,10 +3,10 @@
 #include <numeric>
 
 #include "../../examples/scenes/satellite.hpp"
-#include "economy/scenes.hpp"
+#include "reduction/scenes.hpp"
 #include "support/close.hpp"
 
-/// Three beams of CalculiX, 342 modes each, in the skew frame of tests/economy: as many modes as
+/// Three beams of CalculiX, 342 modes each, in the skew frame of tests/reduction: as many modes as
 /// the scene needs, compared with the usual truncation.
 using namespace titop;
 using namespace titop_test;

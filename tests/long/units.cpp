@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include "singular/networks.hpp"
+#include "index_reduction/networks.hpp"
 #include "support/random_checks.hpp"
 
 /// 10,000 random changes of all units by factors from 1e-9 to 1e9: no verdict flips.

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <titop/compiler/passes/close/redundant.hpp>
-#include <titop/compiler/passes/close/relations.hpp>
+#include <titop/compiler/loops/redundant.hpp>
+#include <titop/compiler/loops/relations.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 

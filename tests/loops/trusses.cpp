@@ -2,9 +2,9 @@
 
 #include <cmath>
 #include <map>
-#include <titop/compiler/passes/close/along.hpp>
-#include <titop/compiler/passes/close/lines.hpp>
-#include <titop/compiler/passes/close/redundant.hpp>
+#include <titop/compiler/loops/along.hpp>
+#include <titop/compiler/loops/lines.hpp>
+#include <titop/compiler/loops/redundant.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/graph/linalg/index.hpp>
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <stdexcept>
-#include <titop/compiler/dot.hpp>
+#include <titop/compiler/diagram/dot.hpp>
 #include <titop/compiler/passes/incidence.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/graph/linalg/index.hpp>

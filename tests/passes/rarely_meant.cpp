@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <numbers>
-#include <titop/blocks/scene/scene.hpp>
+#include <titop/blocks/diagram_file/diagram_file.hpp>
 #include <titop/titop.hpp>
 
 /// Legal input that is rarely intended leads to a warning: springs of the wrong sign, inputs

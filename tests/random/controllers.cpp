@@ -1,6 +1,6 @@
 #include <doctest/doctest.h>
 
-#include <titop/compiler/system.hpp>
+#include <titop/compiler/system/system.hpp>
 #include <titop/graph/error.hpp>
 
 #include "support/dense_truth.hpp"

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <titop/compiler/emit/report/html.hpp>
-#include <titop/compiler/emit/report/plot.hpp>
-#include <titop/compiler/emit/report/program.hpp>
-#include <titop/compiler/emit/report/sweep.hpp>
-#include <titop/compiler/emit/report/units.hpp>
+#include <titop/emit/report/html.hpp>
+#include <titop/emit/report/plot.hpp>
+#include <titop/emit/report/program.hpp>
+#include <titop/emit/report/sweep.hpp>
+#include <titop/emit/report/units.hpp>
 #include <titop/titop.hpp>
 
 #include "markup.hpp"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <titop/compiler/emit/report/written.hpp>
+#include <titop/emit/report/written.hpp>
 #include <titop/titop.hpp>
 
 #include "markup.hpp"

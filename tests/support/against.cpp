@@ -1,10 +1,10 @@
-#include "economy/against.hpp"
+#include "reduction/against.hpp"
 
 #include <algorithm>
 #include <numbers>
 #include <titop/graph/linalg/eigen.hpp>
 
-#include "economy/tree.hpp"
+#include "reduction/tree.hpp"
 
 namespace titop_test {
 

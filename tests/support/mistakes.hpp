@@ -4,7 +4,7 @@
 #include <source_location>
 #include <string>
 #include <string_view>
-#include <titop/compiler/system.hpp>
+#include <titop/compiler/system/system.hpp>
 
 /// The user's view: the error that is thrown, and whether it has the expected text.
 namespace titop_test {
@@ -36,7 +36,7 @@ inline bool says(const titop::Error& error, titop::Code code,
   return false;
 }
 
-/// "language/ports.cpp:17", the line after that of this call.
+/// "graph/ports.cpp:17", the line after that of this call.
 inline std::string next_line(std::source_location at = std::source_location::current()) {
   const std::string here = titop::to_string(at);
   return here.substr(0, here.rfind(':') + 1) + std::to_string(at.line() + 1);

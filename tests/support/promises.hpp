@@ -1,6 +1,6 @@
 #pragma once
 
-#include <titop/compiler/stage.hpp>
+#include <titop/compiler/passes/stage.hpp>
 
 /// The postcondition of each pass, implemented independently; std::logic_error if it is violated.
 namespace titop_test {

@@ -1,8 +1,8 @@
 #include "support/random_checks.hpp"
 
 #include <algorithm>
+#include <titop/compiler/definition/transfer.hpp>
 #include <titop/compiler/passes/passes.hpp>
-#include <titop/compiler/transfer.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 #include "support/promises.hpp"

@@ -2,7 +2,7 @@
 
 #include <complex>
 #include <string>
-#include <titop/compiler/system.hpp>
+#include <titop/compiler/system/system.hpp>
 #include <vector>
 
 #include "support/random_scene.hpp"

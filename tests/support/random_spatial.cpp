@@ -1,4 +1,4 @@
-#include <titop/blocks/beam.hpp>
+#include <titop/blocks/fe/beam.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/mount.hpp>
 

@@ -1,4 +1,4 @@
-#include "economy/tree.hpp"
+#include "reduction/tree.hpp"
 
 #include <cmath>
 #include <numbers>

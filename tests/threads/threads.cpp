@@ -12,7 +12,7 @@
 #include <functional>
 #include <latch>
 #include <thread>
-#include <titop/compiler/parallel.hpp>
+#include <titop/graph/support/parallel.hpp>
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"

@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <functional>
 #include <new>
-#include <titop/compiler/workers.hpp>
+#include <titop/graph/support/workers.hpp>
 
 /// A thread whose memory cannot be allocated. (A separate program: clang's thread sanitizer, under
 /// which the tests of threads and of kernels run, replaces operator new.)

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <titop/compiler/certify/dual_pairs.hpp>
-#include <titop/compiler/certify/springs.hpp>
 #include <titop/compiler/passes/check/checker.hpp>
+#include <titop/compiler/passes/check/dual_pairs.hpp>
+#include <titop/compiler/passes/check/springs.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 namespace titop::passes {

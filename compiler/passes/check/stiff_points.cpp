@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <map>
 #include <titop/compiler/passes/check/checker.hpp>
-#include <titop/compiler/some_names.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/some_names.hpp>
 #include <utility>
 
 namespace titop::passes {

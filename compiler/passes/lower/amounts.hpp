@@ -2,7 +2,7 @@
 
 #include <optional>
 #include <set>
-#include <titop/compiler/stage.hpp>
+#include <titop/compiler/passes/stage.hpp>
 
 /// Right-hand sides of equations and outputs as signals with one numeric coefficient each.
 /// Reactions, positions and accumulated forces are expanded.

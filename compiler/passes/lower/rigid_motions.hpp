@@ -1,6 +1,6 @@
 #pragma once
 
-#include <titop/compiler/stage.hpp>
+#include <titop/compiler/passes/stage.hpp>
 
 namespace titop::passes {
 

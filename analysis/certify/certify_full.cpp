@@ -1,0 +1,368 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <titop/analysis/certify/certify_full.hpp>
+#include <titop/analysis/certify/faults.hpp>
+#include <titop/analysis/certify/passivity.hpp>
+#include <titop/analysis/certify/poles.hpp>
+#include <titop/analysis/certify/reciprocity.hpp>
+#include <titop/analysis/certify/structure.hpp>
+#include <titop/compiler/certificate/without_rounding.hpp>
+#include <titop/compiler/definition/compare.hpp>
+#include <titop/compiler/definition/transfer.hpp>
+#include <titop/compiler/minreal/order_of_stage.hpp>
+#include <titop/compiler/system/elimination_terms.hpp>
+#include <titop/compiler/system/system.hpp>
+#include <titop/compiler/system/system_data.hpp>
+#include <titop/graph/declared.hpp>
+#include <utility>
+
+namespace titop {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+
+/// s = (0.05 + j) w, w from a tenth of the lowest to ten times the highest, evenly in log w.
+std::vector<Complex> grid_of(const FullCertificate::Grid& grid) {
+  std::vector<Complex> list;
+  const double ratio = grid.highest / grid.lowest;
+  for (int k = 0; k < grid.points; ++k) {
+    const double part = grid.points > 1 ? static_cast<double>(k) / (grid.points - 1) : 0.5;
+    const double w = grid.lowest * std::pow(ratio, part);
+    list.emplace_back(0.05 * w, w);
+  }
+  return list;
+}
+
+void set_range(const std::vector<double>& omegas, FullCertificate::Grid& grid) {
+  grid.lowest = omegas.empty() ? 0.1 : 0.1 * omegas.front();
+  grid.highest = omegas.empty() ? 10 : 10 * omegas.back();
+}
+
+/// Rows (or columns) of each output (or input), from the graph's order to the declared one.
+template <class List>
+std::vector<int> declared(const List& list) {
+  const std::vector<int> first = detail::first_as_declared(list);
+  std::vector<int> result;
+  for (std::size_t i = 0; i < list.size(); ++i)
+    for (int k = 0; k < list[i].size; ++k) result.push_back(first[i] + k);
+  return result;
+}
+
+std::vector<double> values_of(const System& system) {
+  std::vector<double> values;
+  for (const auto& [name, value] : system.parameters()) values.push_back(value);
+  return values;
+}
+
+/// Outputs x inputs as declared.
+template <class Matrix>
+Matrix as_declared(const Graph& g, const Matrix& m) {
+  Matrix result(m.rows(), m.cols());
+  result(declared(g.outputs), declared(g.inputs)) = m;
+  return result;
+}
+
+/// Points of the grid and the factors' transfers there; points without one are omitted, with a
+/// note.
+std::vector<MatrixXcd> factored_at(const System& system, std::vector<Complex>& points,
+                                   FullCertificate::Grid& grid) {
+  std::vector<MatrixXcd> list;
+  std::vector<Complex> kept, left_out;
+  for (const Complex s : points) {
+    std::optional<MatrixXcd> G = detail::transfer_if_any(system, s);
+    (G ? kept : left_out).push_back(s);
+    if (G) list.push_back(std::move(*G));
+  }
+  points = std::move(kept);
+  grid.points = static_cast<int>(points.size());
+  if (!left_out.empty())  // from the lowest s upwards
+    grid.why_not += fmt::format(
+        "{}the factors have no digit, or numbers overflow, at {} of {} "
+        "points, the lowest |s| = {:.3g}",
+        grid.why_not.empty() ? "" : "; ", left_out.size(), list.size() + left_out.size(),
+        std::abs(left_out.front()));
+  return list;
+}
+
+/// The graph's own equations, solved all at once without any pass.
+std::vector<MatrixXcd> as_written(const Graph& g, const std::vector<double>& values,
+                                  const std::vector<Complex>& points) {
+  std::vector<MatrixXcd> list;
+  for (const Complex s : points) list.push_back(as_declared(g, transfer(g, s, values)));
+  return list;
+}
+
+/// Each block over its own size, for the error of writing the model. Only blocks that may be
+/// rounding alone, such as zeros by symmetry, are measured by the terms that cancel in them: the
+/// measure's, and, if something differs, those of the elimination and of rounding in the model as
+/// written (`before` `minimize`).
+void check_dense(const System& system, const detail::Rounded& before,
+                 const std::vector<Complex>& points, const std::vector<MatrixXcd>& factored,
+                 detail::Measure measure, FullCertificate::Grid& grid) {
+  const std::vector<MatrixXcd> dense = detail::transfers(system.state_space(), points);
+  const MatrixXd terms = std::exchange(measure.terms, {});
+  detail::add_rounding(measure, factored, detail::of_nothing(terms, factored));
+  detail::Difference found = detail::difference(dense, factored, measure, system, points);
+  if (found.relative > detail::kClose) {
+    detail::add_rounding(
+        measure, factored,
+        detail::terms_of_rounding(before.model, before.rounding, detail::some_of(points)));
+    found = detail::difference(dense, factored, measure);
+  }
+  grid.done = true;
+  grid.dense = found.relative;
+  grid.dense_s = points[found.point];
+}
+
+/// Solved all at once in double, the equations lose digits of their own, which is no error of the
+/// model: all blocks are measured by the measure's terms if these are larger.
+void check_written(const System& system, const Full& what, const std::vector<Complex>& points,
+                   const std::vector<MatrixXcd>& factored, detail::Measure measure,
+                   FullCertificate::Grid& grid) {
+  const Graph& g = *system.stage().source;
+  int signals = 0;
+  for (const Signal& s : g.signals) signals += s.size;
+  if (signals > what.written_up_to) return;
+  try {
+    const std::vector<double> values = values_of(system);
+    const std::vector<MatrixXcd> written = as_written(g, values, points);
+    detail::Difference found = detail::difference(written, factored, measure, system, points);
+    // At some points one order of sums may hit a 0 and the other not: all of them, if need be.
+    for (const auto& at : {detail::some_of(points), points}) {
+      if (!(found.relative > detail::kClose)) break;
+      detail::add_rounding(measure, factored, as_declared(g, detail::terms(g, at, values)));
+      found = detail::difference(written, factored, measure);
+    }
+    grid.written = found.relative;
+    grid.written_s = points[found.point];
+  } catch (const Error&) {
+    // Not solvable as written, if chains are closed twice: the factors' own residual remains.
+  }
+}
+
+/// Passivity and reciprocity of forces and the accelerations at their points, over the grid and
+/// around unstable poles. A failed check is repeated with rounding.
+void check_pairs(const System& system, std::vector<Complex> points, std::vector<MatrixXcd> factored,
+                 const std::vector<full::FoundPoles::Right>& growing, FullCertificate& c) {
+  const Graph& g = *system.stage().source;
+  const std::vector<double> values = values_of(system);
+  const full::DualPairs pairs = full::dual_pairs(g, values);
+  if (pairs.count > 0)
+    for (const Complex s : full::around(growing))
+      if (std::optional<MatrixXcd> G = detail::transfer_if_any(system, s)) {
+        points.push_back(s);
+        factored.push_back(std::move(*G));
+      }
+  const std::string no_structure = full::why_no_structure(g, values);
+  full::DualTransfers transfers = full::dual_transfers(pairs, points, factored);
+  const auto check = [&] {
+    c.passivity = full::check_passivity(pairs, transfers, no_structure.empty());
+    c.reciprocity = full::check_reciprocity(system, pairs, transfers, no_structure, values);
+  };
+  check();
+  if (c.passivity.least >= -full::kPassive && c.reciprocity.asymmetry <= detail::kClose) return;
+  transfers = full::with_rounding(system, pairs, std::move(transfers));
+  check();
+}
+
+/// States that the dense model has not even before `minimize`; empty if there are none.
+std::string what_is_set_aside(const Graph& g) {
+  int states = 0;
+  for (const Signal& s : g.signals)
+    if (s.role == Signal::Role::state && !s.active) states += s.size;
+  return states == 0 ? ""
+                     : fmt::format(
+                           "{} state{} that no input moves or no output sees, as the "
+                           "structure shows (the log names the blocks)",
+                           states, states == 1 ? "" : "s");
+}
+
+/// States removed as rounding may be present in the last bits of the data. That is no
+/// fault of the model, but no order that double precision has decided either.
+void reach_up_to(const ExactOrder& exact, OrderVerdict& v) {
+  int before = v.order;
+  for (const JudgedMode& m : v.removed) before += m.states;
+  if (exact.decided && v.judged && exact.order <= before)
+    v.highest = std::max(v.highest, exact.order);
+}
+
+/// Adds a fault to the list if a value is more than allowed, or no number.
+void judge(std::vector<std::string>& faults, double value, double allowed, const std::string& text,
+           const std::string& more = "") {
+  if (!(value <= allowed)) faults.push_back(fmt::format("{} {:.1e}{}", text, value, more));
+}
+
+void list_faults(const Graph& source, FullCertificate& c) {
+  c.faults = full::basic_faults(c.basic, c.grid.dense);
+  const auto fault = [&c](double value, double allowed, const std::string& text) {
+    judge(c.faults, value, allowed, text);
+  };
+  fault(c.grid.written, full::kHolds,
+        "the transfer differs from that of the equations as written by");
+  if (c.order.removed.empty() &&
+      c.order.change > 0)  // put back (compiler/system/minimal_model.cpp)
+    c.faults.push_back(
+        fmt::format("modes judged to do nothing change the transfer by {:.1e} when they leave",
+                    c.order.change));
+  fault(c.poles.error, full::kPoleHolds, "poles of the dense model differ from the factors' by");
+  if (c.passivity.structure) {
+    fault(-c.passivity.least, full::kPassive, "energy comes out of a structure:");
+    if (c.poles.right > 0 && full::has_poles_of_bodies_only(source))
+      c.faults.push_back(
+          fmt::format("{} poles of a structure lie right of the axis, the worst by "
+                      "{:.1e} of its size",
+                      c.poles.right, c.poles.rightmost.real() / std::abs(c.poles.rightmost)));
+  }
+  if (const auto& r = c.reciprocity; r.structure)
+    fault(r.asymmetry, full::kReciprocal,
+          fmt::format("forces {} and {} on a structure do not move each other alike (reciprocity), "
+                      "by",
+                      r.first, r.second));
+  if (c.exact.decided && c.order.judged &&
+      (c.exact.order < c.order.lowest || c.exact.order > c.order.highest))
+    c.faults.push_back(fmt::format("the minimal order is {}, not between {} and {}", c.exact.order,
+                                   c.order.lowest, c.order.highest));
+}
+
+}  // namespace
+
+std::vector<std::string> full::basic_faults(const Certificate& c, double dense) {
+  const std::string way_out =
+      "; System::transfer and apply keep the digits, and so do simulate by Stepper::midpoint and a "
+      "model of the band that matters, compile(d, Scene{.band_hz = {low, high}})";
+  std::vector<std::string> faults;
+  judge(faults, c.residual, kHolds, "equations as written hold only to");
+  judge(faults, c.dense_against_factors, kHolds, "the dense model differs from the factors by");
+  judge(faults, c.dense_error, kDenseHolds,
+        fmt::format("written as A, B, C, D the model loses digits: at s = {:.3g}{:+.3g}j outputs "
+                    "change, beside their largest, by",
+                    c.dense_error_s.real(), c.dense_error_s.imag()),
+        way_out);
+  judge(faults, dense, kDenseHolds, "the transfer of the dense model differs from the factors' by",
+        c.dense_error > kDenseHolds ? "" : way_out);
+  return faults;
+}
+
+FullCertificate certify(const System& system, const Full& what) {
+  FullCertificate c;
+  const bool dense = system.order() <= what.dense_up_to;
+  std::vector<double> omegas;
+  std::vector<full::FoundPoles::Right> growing;
+  detail::Rounded before;  // as written, before `minimize`
+  if (dense) {
+    c.order = system.order_verdict();
+    system.write(before.model);
+    before.rounding = detail::rounding_of(*system.data_, before.model);
+    full::FoundPoles found = full::check_poles(system, before.model, before.rounding.A);
+    omegas = std::move(found.omegas);
+    c.poles = std::move(found.poles);
+    growing = full::shown(found.right, system.state_space());
+    c.poles.hidden = c.poles.right - static_cast<int>(growing.size());
+    c.poles.why_not = what_is_set_aside(system.stage().graph);
+  } else {
+    c.poles.why_not = c.grid.why_not = fmt::format("{} states are more than {} (Full::dense_up_to)",
+                                                   system.order(), what.dense_up_to);
+    c.order.order = c.order.highest = system.order();
+  }
+  c.basic = system.certificate();
+  c.exact = exact::order_of_stage(system.stage(), system.order(), what.exact, values_of(system));
+  reach_up_to(c.exact, c.order);
+  set_range(omegas, c.grid);
+  const bool transfers = !system.inputs().empty() && !system.outputs().empty();
+  c.grid.points = transfers ? std::max(what.points, 0) : 0;
+  std::vector<Complex> points = grid_of(c.grid);
+  const std::vector<MatrixXcd> factored = factored_at(system, points, c.grid);
+  if (c.grid.points > 0) {
+    detail::Measure measure = detail::measure(*system.stage().source, {});
+    if (dense) {
+      measure.terms =
+          detail::terms(before.model, points).cwiseMax(detail::terms(system.state_space(), points));
+      check_dense(system, before, points, factored, measure, c.grid);
+    }
+    check_written(system, what, points, factored, measure, c.grid);
+    check_pairs(system, points, factored, growing, c);
+  } else {
+    if (!transfers)
+      c.grid.why_not = "without inputs, or without outputs, nothing transfers";
+    else if (what.points <= 0)
+      c.grid.why_not = "no grid is asked for (Full::points)";
+    c.passivity.why_not = c.reciprocity.why_not = c.grid.why_not;
+  }
+  list_faults(*system.stage().source, c);
+  return c;
+}
+
+namespace {
+
+std::string at_s(Complex s) { return fmt::format("s = {:.3g}{:+.3g}j", s.real(), s.imag()); }
+
+std::string to_string(const FullCertificate::Grid& g) {
+  std::string text =
+      fmt::format("grid of {} points, {:.3g} to {:.3g} rad/s: ", g.points, g.lowest, g.highest);
+  text += g.done
+              ? fmt::format("dense model as the factors to {:.1e} ({})", g.dense, at_s(g.dense_s))
+              : "dense model not compared: " + g.why_not;
+  if (g.done && !g.why_not.empty()) text += "; left out: " + g.why_not;
+  text += g.written >= 0 ? fmt::format("; equations as written, solved at once, to {:.1e} ({})",
+                                       g.written, at_s(g.written_s))
+                         : "; equations as written not solved at once";
+  return text + "\n";
+}
+
+std::string to_string(const FullCertificate::Poles& p) {
+  if (!p.done) return "poles not checked: " + p.why_not + "\n";
+  std::string text = fmt::format("{} poles, {} of them as the factors say to {:.1e}", p.count,
+                                 p.measured, p.error);
+  if (p.measured < p.count)
+    text += fmt::format(", {} at 0 or ill-conditioned and not measured", p.count - p.measured);
+  if (p.right > 0)
+    text += fmt::format("; {} right of the axis, the worst {}", p.right, at_s(p.rightmost));
+  else
+    text += p.measured < p.count ? "; none of those measured right of the axis"
+                                 : "; none right of the axis";
+  if (!p.why_not.empty()) text += "; not counted: " + p.why_not;
+  if (p.hidden > 0)
+    text += fmt::format(
+        "\nWARNING: {} right of the axis and in no transfer: no input moves {}, or no "
+        "output sees {}",
+        p.hidden == 1 ? "one pole is" : fmt::format("{} poles are", p.hidden),
+        p.hidden == 1 ? "it" : "them", p.hidden == 1 ? "it" : "them");
+  return text + "\n";
+}
+
+std::string to_string(const FullCertificate::Passivity& p) {
+  if (!p.done) return "passivity not checked: " + p.why_not + "\n";
+  return fmt::format(
+      "{} pairs of a force and the acceleration where it acts: {} (least {:.1e} of 1, {})\n",
+      p.pairs, p.least >= -full::kPassive ? "passive at all points" : "not passive", p.least,
+      at_s(p.where));
+}
+
+std::string to_string(const FullCertificate::Reciprocity& r) {
+  if (!r.done) return "reciprocity not checked: " + r.why_not + "\n";
+  std::string text =
+      fmt::format("{} forces: {}", r.forces,
+                  r.asymmetry <= full::kReciprocal ? "reciprocal" : "not reciprocal");
+  if (r.asymmetry > 0)
+    text += fmt::format(" (what {} and {} do where the other acts differs by {:.1e}, {})", r.first,
+                        r.second, r.asymmetry, at_s(r.where));
+  if (!r.structure) text += "; nothing asks for it: " + r.why_no_structure;
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string to_string(const FullCertificate& c) {
+  std::string text = to_string(c.basic) + to_string(c.grid) + to_string(c.poles) +
+                     to_string(c.passivity) + to_string(c.reciprocity) + to_string(c.order) + "\n" +
+                     to_string(c.exact) + "\n";
+  if (c.holds()) return text + "no fault found in what was checked\n";
+  for (const std::string& fault : c.faults) text += "FAULT: " + fault + "\n";
+  return text;
+}
+
+}  // namespace titop

@@ -1,0 +1,133 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <titop/analysis/reduction/reduction.hpp>
+#include <titop/analysis/reduction/sequence.hpp>
+#include <titop/analysis/reduction/sharpen.hpp>
+#include <titop/analysis/reduction/twins.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using std::numbers::pi;
+
+class ByModes : public Reduction {
+ public:
+  ByModes(Setting& setting, const Graph& graph) : setting_(setting) {
+    setting_.timed("modes", [&] {
+      Coordinates c = coordinates(setting_.model, *setting_.data);
+      setting_.note_structure(c.size());
+      join(c);
+      if (c.size() > setting_.scene.whole_up_to) refuse_size(setting_, c.size());
+      whole_ = whole(setting_.model, c, positions_read(graph));
+      setting_.band = band_of(setting_.model, setting_.scene, whole_);
+      sharpen(whole_, setting_.model, 1.2 * setting_.band.high);
+      if (setting_.scene.bound == BoundKind::theorem) couple(whole_);
+    });
+    setting_.take_samples(whole_);
+  }
+
+  SampledSpectrum spectrum() const override { return whole_; }
+
+  std::optional<ReducedData> reach(double accuracy) override {
+    const double start = now();
+    const std::optional<std::size_t> step = first_within(accuracy);
+    if (!step) return std::nullopt;
+    ReducedData d = setting_.result(sequence().model(*step), bounds_.at(*step));
+    d.steps.push_back({"whole", static_cast<int>(whole_.order() + whole_.far),
+                       static_cast<int>(d.small.order()), d.bound.worst,
+                       "modes of the band, and static-like vectors of those above it"});
+    d.modes = kept_modes(whole_, d.small);
+    d.seconds.emplace_back("reduce", now() - start);
+    return d;
+  }
+
+  [[noreturn]] void refuse(double accuracy) override {
+    const auto& steps = sequence().steps();
+    const auto best = std::min_element(steps.begin(), steps.end(),
+                                       [](auto& a, auto& b) { return a.error < b.error; });
+    const auto step = static_cast<std::size_t>(best - steps.begin());
+    const ErrorBound& b = bound_of(step);
+    throw Error(
+        Code::bad_value,
+        fmt::format("an accuracy of {:.1e} cannot be met: {:.1e} is reached with {} "
+                    "coordinates, from {} to {} at {:.4g} Hz",
+                    accuracy, b.worst, sequence().model(step).order(), b.input, b.output, b.hertz),
+        setting_.way_out(b.worst, "whole_up_to", "the modes of the whole"),
+        {fmt::format("most of what is missing moves in {}{}", where_missing(step, b),
+                     setting_.bodies.empty() ? "" : "; " + setting_.bodies)});
+  }
+
+ private:
+  void join(Coordinates& c) {
+    const Index before = c.size();
+    const TwinReduction twins = join_twins(c, setting_.data->graph());
+    if (twins.removed > 0)
+      setting_.note("symmetry", before, c.size(),
+                    fmt::format("{} move alike", fmt::join(twins.pairs, "; ")));
+  }
+
+  /// Begun at the first call: if bodies lose modes, only for the last of several tries.
+  Sequence& sequence() {
+    if (!sequence_) sequence_.emplace(whole_, setting_.samples, setting_.band.high);
+    return *sequence_;
+  }
+
+  const ErrorBound& bound_of(std::size_t step) {
+    const auto found = bounds_.find(step);
+    if (found != bounds_.end()) return found->second;
+    const Small small = sequence().model(step);
+    return bounds_
+        .emplace(step, setting_.bound(whole_, small.poles(),
+                                      [&](std::complex<double> s) { return small.transfer(s); }))
+        .first->second;
+  }
+
+  /// The bound costs more than the error on the samples, which goes first.
+  std::optional<std::size_t> first_within(double accuracy) {
+    const double target = accuracy * std::cos(kPhase / 2);
+    for (std::size_t k = 0; true; ++k) {
+      const auto& steps = sequence().steps();
+      if (k == steps.size() && !sequence().grow()) return std::nullopt;
+      if (steps[k].error <= target && bound_of(k).worst <= accuracy) return k;
+    }
+  }
+
+  /// The block with the largest share of the elastic energy of the model's error there.
+  std::string where_missing(std::size_t step, const ErrorBound& b) {
+    const Small small = sequence().model(step);
+    const std::complex<double> s = on_ray(setting_.scene, 2 * pi * b.hertz);
+    const auto& names = setting_.full.inputs();
+    const Index m = std::find(names.begin(), names.end(), b.input) - names.begin();
+    Eigen::VectorXcd left = -(small.V * small.response(s, m));
+    for (Index j = 0; j < whole_.elastic(); ++j)
+      left(j) += whole_.b(j, m) / (s * (s + whole_.damping(j)) + whole_.lambda(j));
+    if (whole_.blocks.empty() || left.size() == 0) return "no block";
+    // At a resonance the error is 90 degrees out of phase: rotate it to the phase of its largest
+    // entry.
+    Index most = 0;
+    (left.array().abs() * whole_.lambda.head(left.size()).array().sqrt()).maxCoeff(&most);
+    if (left(most) != 0.0) left *= std::abs(left(most)) / left(most);
+    Index block = 0;
+    const double share = participation(whole_, left.real()).col(0).maxCoeff(&block);
+    return fmt::format("{} ({:.0f} %)", whole_.blocks[static_cast<std::size_t>(block)],
+                       100 * share);
+  }
+
+  Setting& setting_;
+  Whole whole_;
+  std::optional<Sequence> sequence_;
+  std::map<std::size_t, ErrorBound> bounds_;  ///< by step of the sequence, as far as computed
+};
+
+}  // namespace
+
+std::unique_ptr<Reduction> by_modes(Setting& setting, const Graph& graph) {
+  return std::make_unique<ByModes>(setting, graph);
+}
+
+}  // namespace titop::detail

@@ -1,0 +1,344 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <titop/analysis/reduction/coordinates.hpp>
+#include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/symmetric.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kSymmetric = 1e-7;  ///< of G, relative to its diagonal: rounding of an elimination
+constexpr const char* kWayOut =
+    "take controllers and filters out of the scene (their signals become inputs and outputs), or "
+    "give a spring its own joint";
+
+using linalg::at;
+
+[[noreturn]] void refuse(const std::string& message, std::vector<std::string> details = {}) {
+  throw NoStructure(Code::bad_value, message, kWayOut, std::move(details));
+}
+
+/// The model of all blocks' states, before dependent ones are eliminated.
+StateSpace model_of_blocks(const System& system, const SystemData& data) {
+  StateSpace m;
+  if (data.states.trivial()) {
+    system.write(m);
+    return m;
+  }
+  const Layout& l = data.layout();
+  const auto n = l.order(), all = n + static_cast<Index>(l.inputs.size());
+  const RateColumns r = rates(data, solve::RowMatrix<double>::Identity(all, all));
+  m.A = r.xdot.leftCols(n);
+  m.B = r.xdot.rightCols(all - n);
+  m.C = r.y.leftCols(n);
+  m.D = r.y.rightCols(all - n);
+  m.states = l.states;
+  m.inputs = l.inputs;
+  m.outputs = l.outputs;
+  return m;
+}
+
+/// Coordinates of all blocks, as pairs of states; position -1 for a rate without position.
+struct StatePairs {
+  std::vector<int> position, rate;
+};
+
+/// A state whose derivative is another state is a position.
+StatePairs find_pairs(const StateSpace& m) {
+  const Index n = m.A.rows();
+  std::vector<int> position_of(at(n), -1), rate_of(at(n), -1);
+  for (Index i = 0; i < n; ++i) {
+    Index count = 0, found = -1;
+    for (Index j = 0; j < n && count < 2; ++j)
+      if (m.A(i, j) != 0) ++count, found = j;
+    if (count != 1 || m.A(i, found) != 1 || found == i || !m.B.row(i).isZero(0)) continue;
+    if (position_of[at(found)] >= 0)
+      refuse(fmt::format("{} is the rate of {} and of {}", m.states[at(found)],
+                         m.states[at(position_of[at(found)])], m.states[at(i)]));
+    position_of[at(found)] = static_cast<int>(i);
+    rate_of[at(i)] = static_cast<int>(found);
+  }
+  StatePairs pairs;
+  for (Index i = 0; i < n; ++i) {
+    if (rate_of[at(i)] >= 0) {
+      if (position_of[at(i)] >= 0)
+        refuse(fmt::format("{} integrates {}, which is a position",
+                           m.states[at(position_of[at(i)])], m.states[at(i)]));
+      continue;
+    }
+    pairs.position.push_back(position_of[at(i)]);
+    pairs.rate.push_back(static_cast<int>(i));
+  }
+  return pairs;
+}
+
+/// Columns of the matrix, 0 if there is no such state.
+MatrixXd columns(const MatrixXd& m, const std::vector<int>& which) {
+  MatrixXd result = MatrixXd::Zero(m.rows(), static_cast<Index>(which.size()));
+  for (std::size_t j = 0; j < which.size(); ++j)
+    if (which[j] >= 0) result.col(static_cast<Index>(j)) = m.col(which[j]);
+  return result;
+}
+
+/// Data of the coordinates of all blocks, before G is known.
+struct Raw {
+  StateSpace m;
+  StatePairs pairs;
+  std::vector<int> kept;  ///< coordinates that stay
+  MatrixXd T;             ///< all from kept; 0 x 0: they are the same
+  MatrixXd A_q, A_v;      ///< rates of kept from positions and rates of all
+  std::vector<int> node;  ///< per coordinate of all
+  VectorXd known;         ///< stiffness by a body's modes; 0: not known
+
+  Index all() const { return static_cast<Index>(pairs.rate.size()); }
+  const std::string& name(Index i) const {
+    const int q = pairs.position[at(i)];
+    return m.states[at(q >= 0 ? q : pairs.rate[at(i)])];
+  }
+};
+
+void find_owners(Raw& raw, const SystemData& data) {
+  const Layout& l = data.layout();
+  std::vector<int> node_of(at(raw.m.A.rows()), -1);
+  VectorXd stiffness = VectorXd::Zero(raw.m.A.rows());
+  for (const int i : l.state_nodes) {
+    const Dynamics& d = *data.numbers.blocks[at(i)];
+    const int first = l.state_first[at(i)];
+    for (Index k = 0; k < d.A.rows(); ++k) node_of[at(first + k)] = i;
+    if (d.modal) stiffness.segment(first, d.modal->stiffness.size()) = d.modal->stiffness;
+  }
+  raw.known = VectorXd::Zero(raw.all());
+  for (Index i = 0; i < raw.all(); ++i) {
+    raw.node.push_back(node_of[at(raw.pairs.rate[at(i)])]);
+    if (const int q = raw.pairs.position[at(i)]; q >= 0) raw.known(i) = stiffness(q);
+  }
+}
+
+/// The kept coordinates, and the map from them to all.
+void find_kept(Raw& raw, const StateMap& states) {
+  std::vector<int> coordinate(at(raw.m.A.rows()), -1);
+  for (Index i = 0; i < raw.all(); ++i) {
+    coordinate[at(raw.pairs.rate[at(i)])] = static_cast<int>(i);
+    if (const int q = raw.pairs.position[at(i)]; q >= 0) coordinate[at(q)] = static_cast<int>(i);
+  }
+  std::vector<char> leaves(at(raw.all()), 0);
+  for (const StateMap::DependentRow& row : states.dependent())
+    leaves[at(coordinate[at(row.state)])] = 1;
+  for (Index i = 0; i < raw.all(); ++i)
+    if (!leaves[at(i)]) raw.kept.push_back(static_cast<int>(i));
+  if (states.trivial()) return;
+  raw.T = MatrixXd::Zero(raw.all(), static_cast<Index>(raw.kept.size()));
+  for (std::size_t k = 0; k < raw.kept.size(); ++k) raw.T(raw.kept[k], static_cast<Index>(k)) = 1;
+  for (const StateMap::DependentRow& row : states.dependent()) {
+    const int i = coordinate[at(row.state)];
+    if (raw.pairs.rate[at(i)] != row.state) continue;  // positions follow the same map
+    for (const auto& [of, factor] : row.of) {
+      const int j = coordinate[at(of)];
+      if (leaves[at(j)])  // and is not known yet: keep its rate
+        refuse(
+            fmt::format("{} follows from {} at one level only", raw.name(i), raw.m.states[at(of)]));
+      raw.T.row(i) += factor * raw.T.row(j);
+    }
+    leaves[at(i)] = 0;
+  }
+}
+
+Raw read(const System& system, const SystemData& data) {
+  Raw raw;
+  raw.m = model_of_blocks(system, data);
+  raw.pairs = find_pairs(raw.m);
+  find_owners(raw, data);
+  find_kept(raw, data.states);
+  std::vector<int> rows;
+  for (const int i : raw.kept) rows.push_back(raw.pairs.rate[at(i)]);
+  raw.A_q = columns(raw.m.A(rows, Eigen::all), raw.pairs.position);
+  raw.A_v = columns(raw.m.A(rows, Eigen::all), raw.pairs.rate);
+  return raw;
+}
+
+/// Stiffnesses k of the coordinates `list` (rows and columns of A = -G k), so that G is symmetric:
+/// k_i / k_j = A_ji / A_ij, from those that are known along the strongest couplings.
+VectorXd stiffnesses(const MatrixXd& A, const VectorXd& known) {
+  const Index n = A.rows();
+  VectorXd k = known, best = VectorXd::Constant(n, -1);
+  std::vector<Index> from(at(n), -1);
+  const auto offer = [&](Index i) {
+    for (Index j = 0; j < n; ++j) {
+      if (k(j) != 0 || !(A(i, j) * A(j, i) > 0)) continue;
+      const double strength = A(i, j) / A(i, i) * (A(j, i) / A(j, j));
+      if (strength > best(j)) best(j) = strength, from[at(j)] = i;
+    }
+  };
+  for (Index i = 0; i < n; ++i)
+    if (k(i) != 0) offer(i);
+  while (true) {
+    Index next = -1;
+    for (Index j = 0; j < n; ++j)
+      if (k(j) == 0 && (next < 0 || best(j) > best(next))) next = j;
+    if (next < 0) return k;
+    const Index i = from[at(next)];
+    // A part without modes: any mass will do, so 1.
+    k(next) = i < 0 ? std::abs(A(next, next)) : k(i) * A(i, next) / A(next, i);
+    offer(next);
+  }
+}
+
+/// Stiffness of all coordinates: of independent ones by symmetry, of dependent ones from their
+/// columns of A.
+VectorXd all_stiffnesses(const Raw& raw) {
+  VectorXd k = VectorXd::Zero(raw.all());
+  std::vector<Index> rows, list;
+  for (std::size_t r = 0; r < raw.kept.size(); ++r)
+    if (raw.A_q.col(raw.kept[r]).cwiseAbs().maxCoeff() > 0) {
+      rows.push_back(static_cast<Index>(r));
+      list.push_back(raw.kept[r]);
+    }
+  const MatrixXd A = raw.A_q(rows, list);
+  for (std::size_t i = 0; i < list.size(); ++i)
+    if (!(A(static_cast<Index>(i), static_cast<Index>(i)) < 0))
+      refuse(fmt::format("{} is not held by a spring of its own, and yet acts on other states",
+                         raw.name(list[i])));
+  k(list) = stiffnesses(A, raw.known(list));
+  if (raw.T.size() == 0) return k;
+  MatrixXd G(A.rows(), A.cols());
+  for (Index j = 0; j < A.cols(); ++j) G.col(j) = -A.col(j) / k(list[at(j)]);
+  for (Index i = 0; i < raw.all(); ++i) {
+    if (std::find(raw.kept.begin(), raw.kept.end(), i) != raw.kept.end()) continue;
+    const VectorXd t = raw.T(i, rows).transpose();
+    const VectorXd response = G * t;
+    k(i) = raw.known(i) != 0     ? raw.known(i)
+           : response.norm() > 0 ? -response.dot(raw.A_q(rows, i)) / response.squaredNorm()
+                                 : 0;
+  }
+  return k;
+}
+
+/// Damping of each coordinate: its column of A_v is that of A_q times c / k.
+VectorXd dampings(const Raw& raw, const VectorXd& k) {
+  VectorXd c = VectorXd::Zero(raw.all());
+  for (Index i = 0; i < raw.all(); ++i) {
+    const auto v = raw.A_v.col(i), q = raw.A_q.col(i);
+    const double size = v.norm();
+    if (size == 0) continue;
+    if (q.norm() == 0)
+      refuse(
+          fmt::format("the rate of {} acts on other states, and no spring holds it", raw.name(i)));
+    const double ratio = v.dot(q) / q.squaredNorm();
+    if ((v - ratio * q).norm() > kSymmetric * size || ratio < 0)
+      refuse(fmt::format("the rate of {} acts where its spring does not: no damper of its own",
+                         raw.name(i)));
+    c(i) = ratio * k(i);
+  }
+  return c;
+}
+
+MatrixXd congruent(const VectorXd& diagonal, const MatrixXd& T) {
+  return T.transpose() * diagonal.asDiagonal() * T;
+}
+
+/// G = -A_ee K^-1, symmetric up to rounding, or refused.
+MatrixXd flexibility(const Coordinates& c, const MatrixXd& A_ee) {
+  MatrixXd G = -A_ee;
+  if (c.diagonal) {
+    for (Index j = 0; j < G.cols(); ++j) G.col(j) /= c.K(j, j);
+  } else {
+    G = solve_definite(c.K, G.transpose()).transpose();
+  }
+  for (Index i = 0; i < G.rows(); ++i) {
+    if (!(G(i, i) > 0)) refuse(fmt::format("a force on {} moves it backwards", c.names[at(i)]));
+    for (Index j = 0; j < i; ++j) {
+      const double off = std::abs(G(i, j) - G(j, i)) / std::sqrt(G(i, i)) / std::sqrt(G(j, j));
+      if (!(off <= kSymmetric))
+        refuse(fmt::format("what {} does to {} is not what that does to it", c.names[at(i)],
+                           c.names[at(j)]),
+               {fmt::format("reciprocal to {:.1g} only", off)});
+    }
+  }
+  return (G + G.transpose()) / 2;
+}
+
+void find_shares(Coordinates& c, const Graph& graph) {
+  std::map<int, Index> row;
+  for (const int node : c.nodes)
+    if (row.emplace(node, static_cast<Index>(row.size())).second)
+      c.blocks.push_back(graph.nodes[at(node)].name);
+  c.shares = MatrixXd::Zero(static_cast<Index>(row.size()), c.n_elastic);
+  for (Index i = 0; i < c.n_elastic; ++i) c.shares(row[c.nodes[at(i)]], i) = 1;
+}
+
+/// Those with stiffness first.
+std::vector<Index> elastic_first(const MatrixXd& A_total, Index& n_elastic) {
+  std::vector<Index> order, loose;
+  for (Index j = 0; j < A_total.cols(); ++j)
+    (A_total.col(j).cwiseAbs().maxCoeff() > 0 ? order : loose).push_back(j);
+  n_elastic = static_cast<Index>(order.size());
+  order.insert(order.end(), loose.begin(), loose.end());
+  return order;
+}
+
+}  // namespace
+
+Coordinates coordinates(const System& system, const SystemData& data) {
+  Coordinates c;
+  const Raw raw = read(system, data);
+  c.silent = MatrixXd::Zero(raw.m.C.rows(), 2);
+  if (raw.all() == 0) {
+    c.B.resize(0, raw.m.B.cols());
+    c.C_q.resize(raw.m.C.rows(), 0);
+    c.C_v = c.C_q;
+    c.direct = raw.m.D;
+    return c;
+  }
+  const VectorXd k = all_stiffnesses(raw), damping = dampings(raw, k);
+  const bool closed = raw.T.size() > 0;
+  const MatrixXd A_total = closed ? MatrixXd(raw.A_q * raw.T) : raw.A_q;
+  const std::vector<Index> order = elastic_first(A_total, c.n_elastic);
+  const std::vector<Index> elastic(order.begin(), order.begin() + c.n_elastic);
+  const std::vector<Index> loose(order.begin() + c.n_elastic, order.end());
+  std::vector<int> rows, positions;
+  for (const Index j : order) {
+    const int i = raw.kept[at(j)];
+    c.names.push_back(raw.name(i));
+    c.nodes.push_back(raw.node[at(i)]);
+    rows.push_back(raw.pairs.rate[at(i)]);
+    positions.push_back(raw.pairs.position[at(i)]);
+  }
+  const std::vector<int>& kept_states = data.states.kept();
+  const auto place = [&](int state) {
+    return state < 0
+               ? -1
+               : static_cast<int>(std::lower_bound(kept_states.begin(), kept_states.end(), state) -
+                                  kept_states.begin());
+  };
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    c.rate.push_back(place(rows[i]));
+    c.position.push_back(place(positions[i]));
+  }
+  MatrixXd T = MatrixXd::Zero(raw.all(), A_total.cols());
+  if (closed)
+    T = raw.T;
+  else
+    for (std::size_t j = 0; j < raw.kept.size(); ++j) T(raw.kept[j], static_cast<Index>(j)) = 1;
+  c.diagonal = !closed;
+  c.K = closed ? MatrixXd(congruent(k, T(Eigen::all, elastic))) : MatrixXd(k(elastic).asDiagonal());
+  if (damping.maxCoeff() > 0)
+    c.D = closed ? MatrixXd(congruent(damping, T(Eigen::all, elastic)))
+                 : MatrixXd(damping(elastic).asDiagonal());
+  c.G = flexibility(c, A_total(elastic, elastic));
+  c.A_loose = A_total(loose, elastic);
+  c.B = raw.m.B(rows, Eigen::all);
+  c.C_q = columns(raw.m.C, raw.pairs.position) * T(Eigen::all, order);
+  c.C_v = columns(raw.m.C, raw.pairs.rate) * T(Eigen::all, order);
+  c.direct = raw.m.D;
+  find_shares(c, data.graph());
+  return c;
+}
+
+}  // namespace titop::detail

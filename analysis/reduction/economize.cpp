@@ -1,0 +1,187 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <titop/analysis/reduction/bodies.hpp>
+#include <titop/analysis/reduction/reach_of_data.hpp>
+#include <titop/analysis/reduction/reduction.hpp>
+#include <titop/compiler/system/compile_graph.hpp>
+
+/// `compile` for a scene, step by step.
+namespace titop {
+namespace {
+
+using detail::now;
+using detail::Reduction;
+using std::numbers::pi;
+
+constexpr double kShare = 0.1;         ///< of the accuracy: effects of modes that bodies lose
+constexpr double kMostOfBodies = 0.3;  ///< of the accuracy: largest error of smaller bodies
+constexpr int kTries = 4;
+
+int states_of(const Diagram& diagram) {
+  int states = 0;
+  for (const Node& n : diagram.graph().nodes)
+    states += static_cast<int>(n.block->interface().states.size());
+  return states;
+}
+
+/// One scene, compiled and made ready for any accuracy: bodies first if the whole is too large,
+/// then modes of the whole, or states if it is no structure.
+class Economy {
+ public:
+  /// `finest`: the smallest accuracy that will be required.
+  Economy(const Diagram& diagram, const Scene& scene, const Options& options, double finest)
+      : setting_(scene, options, finest, states_of(diagram)) {
+    detail::check(scene);
+    const Graph graph = detail::restricted(diagram.graph(), scene);
+    if (graph.inputs.empty() || graph.outputs.empty())
+      throw Error(
+          Code::bad_value,
+          fmt::format("{} has no {}", graph.name, graph.inputs.empty() ? "input" : "output"),
+          "a scene asks from inputs to outputs: give the diagram both");
+    compile_model(graph);
+    setting_.full = setting_.model;
+    setting_.notes = detail::reach_of_data(*setting_.data, scene);
+    const int count = (setting_.full.order() + 1) / 2;
+    if (!scene.keep_structure) setting_.why = "the scene asks for balanced states";
+    if (!scene.keep_structure || count <= scene.whole_up_to) reduction_ = read(graph);
+    if (!reduction_) reduce_bodies(graph, count);
+  }
+
+  Economy(const Economy&) = delete;  // the reduction has references into this
+  Economy& operator=(const Economy&) = delete;
+
+  /// The smallest model whose bound is at most this.
+  ReducedSystem reach(double accuracy) {
+    std::optional<ReducedSystem> system = try_reach(accuracy);
+    if (!system) reduction_->refuse(accuracy);
+    return *std::move(system);
+  }
+
+  /// The same; none if rounding ends first.
+  std::optional<ReducedSystem> try_reach(double accuracy) {
+    std::optional<detail::ReducedData> data = reduction_->reach(accuracy);
+    if (!data) return std::nullopt;
+    data->scene.accuracy = accuracy;
+    return ReducedSystem(std::make_shared<const detail::ReducedData>(*std::move(data)));
+  }
+
+ private:
+  void compile_model(const Graph& graph) {
+    setting_.timed("compile", [&] {
+      setting_.data = detail::compile_graph(graph, setting_.options);
+      setting_.model = System(setting_.data);
+    });
+  }
+
+  /// The model's modes, or its states if it is no structure; nothing if these are too many and
+  /// bodies can still become smaller.
+  std::unique_ptr<Reduction> read(const Graph& graph) {
+    if (setting_.scene.keep_structure) try {
+        return detail::by_modes(setting_, graph);
+      } catch (const detail::NoStructure& error) {
+        setting_.why = error.mistakes().front().message;
+      }
+    if (setting_.model.order() <= setting_.scene.balance_up_to) return detail::by_states(setting_);
+    if (setting_.smaller) refuse_states();
+    return nullptr;
+  }
+
+  /// Too large for one eigenproblem: reduces the bodies first. The error is measured on the
+  /// samples; if it is too large, fewer modes are dropped.
+  void reduce_bodies(const Graph& graph, int count) {
+    if (setting_.scene.bound == BoundKind::theorem)
+      throw Error(Code::bad_value,
+                  fmt::format("{} has {} coordinates, and a theorem counts every pole of theirs",
+                              graph.name, count),
+                  fmt::format("raise Scene::{} (the cost grows with its cube), or take an estimate",
+                              setting_.why.empty() ? "whole_up_to" : "balance_up_to"));
+    setting_.smaller = true;
+    std::vector<detail::ModeEffects> effects;
+    setting_.timed(
+        "bodies", [&] { effects = detail::mode_effects(graph, setting_.scene, setting_.options); });
+    for (double share = kShare * setting_.finest, tries = 1; true; share /= 10, ++tries) {
+      const detail::SmallerBodies smaller = detail::smaller_bodies(graph, effects, share);
+      setting_.bodies = fmt::format("{}", fmt::join(smaller.text, "; "));
+      setting_.steps.clear();
+      setting_.note_structure(count);
+      const int after = count - smaller.before + smaller.after;
+      if (setting_.why.empty() && after > setting_.scene.whole_up_to) refuse_size(setting_, after);
+      compile_model(smaller.graph);
+      const std::size_t step = setting_.note("bodies", count, after, setting_.bodies);
+      reduction_ = read(smaller.graph);
+      const double cost = setting_.steps[step].error = bodies_error();
+      if (cost <= kMostOfBodies * setting_.finest || tries == kTries) return;
+    }
+  }
+
+  /// Error of smaller bodies, on the samples.
+  double bodies_error() const {
+    const detail::Samples& samples = setting_.samples;
+    Eigen::MatrixXd worst = Eigen::MatrixXd::Zero(samples.peak.rows(), samples.peak.cols());
+    const std::vector<Eigen::MatrixXcd> H =
+        detail::sample(setting_.model, setting_.scene, reduction_->spectrum(), samples.omega).H;
+    for (std::size_t k = 0; k < H.size(); ++k)
+      worst = worst.cwiseMax((H[k] - samples.H[k]).cwiseAbs());
+    return worst.cwiseQuotient(samples.peak).maxCoeff();
+  }
+
+  [[noreturn]] void refuse_states() const {
+    throw Error(Code::bad_value,
+                fmt::format("{} has {} states where its bodies have the fewest that do, more than "
+                            "Scene::balance_up_to = {}",
+                            setting_.full.stage().graph.name, setting_.model.order(),
+                            setting_.scene.balance_up_to),
+                "raise it (the cost grows with its cube), ask for less accuracy or a smaller band, "
+                "or take what is no structure out of the scene",
+                {fmt::format("states are balanced because {}", setting_.why), setting_.bodies});
+  }
+
+  detail::Setting setting_;
+  std::unique_ptr<Reduction> reduction_;
+};
+
+/// Seconds of one transfer: the least of several runs, since other load only adds time; each run is
+/// long compared with the clock's resolution.
+double seconds_of(const ReducedSystem& m, double omega) {
+  constexpr int runs = 9, count = 50;
+  double least = HUGE_VAL, sum = 0;
+  for (int run = 0; run < runs; ++run) {
+    const double start = now();
+    for (int k = 0; k < count; ++k) sum += std::abs(m.transfer({0.01 * omega, omega + k})(0, 0));
+    least = std::min(least, (now() - start) / count);
+  }
+  return std::isfinite(sum) ? least : 0;
+}
+
+}  // namespace
+
+ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options& options) {
+  return Economy(diagram, scene, options, scene.accuracy).reach(scene.accuracy);
+}
+
+std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
+                            std::span<const double> accuracies, const Options& options) {
+  std::vector<Mistake> mistakes;
+  for (Scene one = scene; const double accuracy : accuracies) {
+    one.accuracy = accuracy;
+    try {
+      detail::check(one);
+    } catch (const Error& error) {
+      mistakes.insert(mistakes.end(), error.mistakes().begin(), error.mistakes().end());
+    }
+  }
+  if (!mistakes.empty()) throw Error(std::move(mistakes));
+  std::vector<WhatIf> result;
+  if (accuracies.empty()) return result;
+  Economy economy(diagram, scene, options, *std::min_element(accuracies.begin(), accuracies.end()));
+  for (const double accuracy : accuracies)
+    if (const auto system = economy.try_reach(accuracy))
+      result.push_back({accuracy, system->order(), system->bound().worst,
+                        seconds_of(*system, 2 * pi * std::max(1e-3, scene.band_hz[1])), *system});
+  return result;
+}
+
+}  // namespace titop

@@ -1,0 +1,224 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <titop/analysis/reduction/probes.hpp>
+#include <titop/compiler/system/compile_graph.hpp>
+#include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/parallel.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+
+constexpr double kDamping = 0.05;    ///< of the ray that modes are judged on
+constexpr double kLowest = 1e-2;     ///< of the band's upper end: below it vectors are exact
+constexpr double kSmallPair = 1e-6;  ///< pairs this far below their row and column are negligible
+
+using linalg::at;
+
+std::shared_ptr<const Modal> modes_of(const Graph& g, int node, ParameterValues values) {
+  const Block& block = *g.nodes[at(node)].block;
+  const auto modal = block.dynamics(values)->modal;
+  if (!modal) return nullptr;
+  const auto kinematics = block.kinematics(values);
+  return kinematics && kinematics->stiffness.size() > 0 ? nullptr : modal;
+}
+
+/// The signals of this role of the node's block, in the order of its u or y.
+std::vector<int> signals_of(const Graph& g, int node, Signal::Role role) {
+  std::vector<int> list;
+  for (int s = g.nodes[at(node)].first_signal; s < end_signal(g, node); ++s)
+    if (g.signals[at(s)].role == role) list.push_back(s);
+  return list;
+}
+
+/// The graph with the inputs of these nodes' blocks as outputs, after its own.
+Graph reading(const Graph& graph, const std::vector<ModeEffects>& bodies) {
+  Graph g = graph;
+  for (const ModeEffects& body : bodies)
+    for (const int s : signals_of(g, body.node, Signal::Role::input))
+      g.outputs.push_back({.name = fmt::format("of signal {}", s),
+                           .size = g.signals[at(s)].size,
+                           .set = true,
+                           .terms = {Term{.signal = s}},
+                           .declared = static_cast<int>(g.outputs.size())});
+  return g;
+}
+
+/// A row of the graph below: part of an output's scalar, that many times integrated.
+struct IntegratedRow {
+  Index output = 0;
+  int times = 0;
+};
+
+/// Outputs whose positions and rates are replaced by accelerations: the states do not contain the
+/// additions to these.
+std::vector<Output> accelerations(const Graph& g, std::vector<IntegratedRow>& rows) {
+  std::vector<Output> result;
+  Index first = 0;
+  for (const Output& o : g.outputs) {
+    for (int times = 0; times < 3; ++times) {
+      Output part = o;
+      std::erase_if(part.terms, [&](const Term& t) {
+        return times != (t.of == Term::Of::position ? 2 : t.of == Term::Of::rate ? 1 : 0);
+      });
+      if (part.terms.empty()) continue;
+      if (times > 0)
+        for (Term& t : part.terms) t.of = Term::Of::signal;
+      part.name = fmt::format("{} {}", times, o.name);
+      part.declared = static_cast<int>(result.size());
+      result.push_back(std::move(part));
+      for (int k = 0; k < o.size; ++k) rows.push_back({first + k, times});
+    }
+    first += o.size;
+  }
+  return result;
+}
+
+/// The graph with additions to the outputs of these nodes' blocks as inputs, after its own.
+Graph driving(const Graph& graph, const std::vector<ModeEffects>& bodies,
+              std::vector<IntegratedRow>& rows) {
+  Graph g = graph;
+  g.outputs = accelerations(graph, rows);
+  std::map<int, int> addition;
+  for (const ModeEffects& body : bodies)
+    for (const int s : signals_of(graph, body.node, Signal::Role::output))
+      addition[s] = add_input(g, fmt::format("to signal {}", s), graph.signals[at(s)].size);
+  const auto add = [&](std::vector<Term>& terms) {
+    for (std::size_t k = 0, count = terms.size(); k < count; ++k) {
+      Term t = terms[k];
+      const auto found = addition.find(t.signal);
+      if (found == addition.end() || (t.of != Term::Of::signal && t.of != Term::Of::reaction))
+        continue;
+      t.signal = found->second;
+      t.of = Term::Of::signal;
+      terms.push_back(std::move(t));
+    }
+  };
+  for (Equation& e : g.equations) {
+    add(e.terms);
+    const auto found = addition.find(e.target);
+    if (e.accumulate || found == addition.end()) continue;
+    Term t{.signal = found->second, .sign = -1};
+    if (!e.part.whole()) t.factors.emplace_back(e.part);
+    e.terms.push_back(std::move(t));
+  }
+  for (Output& o : g.outputs) add(o.terms);
+  return g;
+}
+
+/// Points of the ray for smooth functions of the band.
+std::vector<Complex> ray(const Scene& scene, const std::vector<std::shared_ptr<const Modal>>& modes,
+                         double damping) {
+  double high = 2 * std::numbers::pi * scene.band_hz[1];
+  if (high == 0) {  // static gain: so far below all modes that nothing moves
+    high = HUGE_VAL;
+    for (const auto& m : modes) high = std::min(high, 1e-4 * std::sqrt(m->stiffness.minCoeff()));
+  }
+  const double low = std::max(2 * std::numbers::pi * scene.band_hz[0], kLowest * high);
+  const int count = 1 + static_cast<int>(std::ceil(std::log(high / low) / (2 * damping)));
+  std::vector<Complex> s;
+  for (int k = 0; k <= count; ++k)
+    s.push_back(low * std::pow(high / low, static_cast<double>(k) / count) *
+                Complex(damping, std::sqrt(1 - damping * damping)));
+  return s;
+}
+
+std::vector<MatrixXcd> transfers(const Graph& graph, Options options,
+                                 const std::vector<Complex>& s) {
+  options.dump_to.clear();
+  const System system(compile_graph(graph, options));
+  std::vector<MatrixXcd> H(s.size());
+  parallel(s.size(), 0, [&] {
+    return [&](std::size_t k) { H[k] = system.transfer(s[k], Precision::standard); };
+  });
+  return H;
+}
+
+/// Outputs of the scene from the rows of `driving`.
+MatrixXcd integrated(const MatrixXcd& G, const std::vector<IntegratedRow>& rows, Index outputs,
+                     Complex s) {
+  MatrixXcd result = MatrixXcd::Zero(outputs, G.cols());
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    result.row(rows[r].output) += G.row(static_cast<Index>(r)) * std::pow(s, -rows[r].times);
+  return result;
+}
+
+/// Largest magnitude of each pair; of nearly zero pairs the floor from row and column.
+MatrixXd peaks(const std::vector<MatrixXcd>& H, Index outputs) {
+  MatrixXd peak = MatrixXd::Zero(outputs, H.front().cols());
+  for (const MatrixXcd& h : H) peak = peak.cwiseMax(h.topRows(outputs).cwiseAbs());
+  const double all = peak.maxCoeff();
+  if (!(all > 0)) return MatrixXd::Ones(peak.rows(), peak.cols());
+  const Eigen::VectorXd row = peak.rowwise().maxCoeff();
+  const Eigen::RowVectorXd column = peak.colwise().maxCoeff();
+  peak = peak.cwiseMax(kSmallPair * row * column / all);
+  return (peak.array() > 0).select(peak, all);
+}
+
+/// Adds the modes of one body at s: `in` is the transfer to the body's inputs, `out` that from the
+/// body's outputs.
+void take_in(ModeEffects& body, const Modal& m, const MatrixXcd& in, const MatrixXcd& out,
+             const MatrixXd& peak, Complex s) {
+  const Eigen::MatrixXd moved = (m.W * in).cwiseAbs(), seen = (out * m.W.transpose()).cwiseAbs();
+  for (Index j = 0; j < m.W.rows(); ++j) {
+    const double gain = std::norm(s) / std::abs(s * (s + m.damping(j)) + m.stiffness(j));
+    double worst = 0;
+    for (Index i = 0; i < seen.rows(); ++i)
+      for (Index k = 0; k < moved.cols(); ++k)
+        worst = std::max(worst, seen(i, j) * moved(j, k) / peak(i, k));
+    body.cut(j) = std::max(body.cut(j), gain * worst);
+    body.corrected(j) =
+        std::max(body.corrected(j), gain * worst * std::pow(std::norm(s) / m.stiffness(j), 2));
+  }
+  for (Index p = 0; p < m.W.cols(); ++p)
+    if (!in.row(p).isZero(0) || !out.col(p).isZero(0)) body.ports[at(p)] = 1;
+}
+
+}  // namespace
+
+std::vector<ModeEffects> mode_effects(const Graph& graph, const Scene& scene,
+                                      const Options& options) {
+  const std::vector<double> values = nominal_values(graph);
+  std::vector<ModeEffects> bodies;
+  std::vector<std::shared_ptr<const Modal>> modes;
+  for (int i = 0; i < static_cast<int>(graph.nodes.size()); ++i)
+    if (auto modal = modes_of(graph, i, values)) {
+      const Eigen::VectorXd none = Eigen::VectorXd::Zero(modal->stiffness.size());
+      bodies.push_back({i, none, none, std::vector<char>(at(modal->W.cols()), 0)});
+      modes.push_back(std::move(modal));
+    }
+  if (bodies.empty()) return bodies;
+  const double damping = std::max(kDamping, scene.damping_floor);
+  const std::vector<Complex> s = ray(scene, modes, damping);
+  std::vector<IntegratedRow> rows;
+  const std::vector<MatrixXcd> H = transfers(reading(graph, bodies), options, s);
+  const std::vector<MatrixXcd> G = transfers(driving(graph, bodies, rows), options, s);
+  Index outputs = 0, inputs = 0;
+  for (const Output& o : graph.outputs) outputs += o.size;
+  for (const Input& u : graph.inputs) inputs += u.size;
+  const MatrixXd peak = peaks(H, outputs);
+  for (std::size_t k = 0; k < s.size(); ++k) {
+    const MatrixXcd out = integrated(G[k], rows, outputs, s[k]);
+    for (Index b = 0, first = 0; b < static_cast<Index>(bodies.size()); ++b) {
+      const Index ports = modes[at(b)]->W.cols();
+      take_in(bodies[at(b)], *modes[at(b)], H[k].middleRows(outputs + first, ports),
+              out.middleCols(inputs + first, ports), peak, s[k]);
+      first += ports;
+    }
+  }
+  for (ModeEffects& body : bodies) {
+    body.cut *= damping / scene.damping_floor;
+    body.corrected *= damping / scene.damping_floor;
+  }
+  return bodies;
+}
+
+}  // namespace titop::detail

@@ -1,0 +1,287 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <titop/analysis/reduction/phase_grid.hpp>
+#include <titop/analysis/reduction/ray.hpp>
+#include <titop/graph/support/parallel.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr double kNoPair = 1e-10;      ///< of its row and column: a pair at rounding level
+constexpr double kNearlyZero = 1e-6;   ///< of its size without symmetry: a pair that is 0
+constexpr double kOfTransfer = 1e-12;  ///< of the full system's transfer
+constexpr double kCancelled = 5e-14;   ///< of terms that cancel: some 200 units of the last place
+constexpr double kPoleUnits = 2;       ///< units of the last place of a pole
+constexpr int kFar = 10;               ///< poles in s^2 in place of all beyond twice the band
+constexpr double kOnePole = 1e-12;     ///< relative distance of poles that are one
+
+bool equal(Complex p, Complex q) { return std::abs(p - q) <= kOnePole * std::abs(q); }
+
+/// True if this pole equals the last two. Modes of one frequency and one damping, however many, are
+/// one simple pole of the transfer; the second one accounts for their difference within the
+/// tolerance of equality.
+bool counted(const std::vector<Complex>& poles, Complex p) {
+  const std::size_t n = poles.size();
+  return n >= 2 && equal(p, poles[n - 1]) && equal(p, poles[n - 2]);
+}
+
+/// Poles of the whole; if its modes couple and `couple` was not called: without that.
+std::vector<Complex> poles_of(const Whole& w) {
+  if (!w.poles.empty()) return w.poles;
+  std::vector<Complex> result;
+  for (Index j = 0; j < w.order(); ++j) {
+    const double half = w.damping(j) / 2;
+    const Complex root = std::sqrt(Complex(half * half - w.lambda(j), 0));
+    if (w.proportional && root.imag() > 0 && counted(result, -half + root)) continue;
+    result.push_back(-half + root);
+    if (root.imag() == 0 && w.Z.size() > 0) result.push_back(-half - root);
+  }
+  return result;
+}
+
+/// Those that are not in the first list, to rounding: common poles count once.
+std::vector<Complex> merged(std::vector<Complex> poles, const std::vector<Complex>& more) {
+  const std::size_t own = poles.size();
+  for (const Complex& p : more)
+    if (std::none_of(poles.begin(), poles.begin() + static_cast<std::ptrdiff_t>(own),
+                     [&](const Complex& q) { return equal(p, q); }))
+      poles.push_back(p);
+  return poles;
+}
+
+/// Sensitivity of outputs to the modes: a q'' + v q' + q q.
+struct OutputSensitivity {
+  MatrixXd a, v, q;
+};
+
+/// Sensitivities with positions as such, not as static gain and accelerations: for a mode far below
+/// the band each of these is as large as its static part, and they cancel.
+OutputSensitivity as_meant(const Whole& w) {
+  OutputSensitivity r{w.ca, w.cv, w.cq};
+  const Index n = w.elastic();
+  for (Index i = 0; i < r.a.rows(); ++i) {
+    if (!w.is_position[static_cast<std::size_t>(i)]) continue;
+    if (w.Z.size() > 0) r.v.row(i) -= w.ca.row(i) * w.Z;
+    r.q.row(i).head(n) -= w.ca.row(i).head(n).cwiseProduct(w.lambda.head(n).transpose());
+    r.a.row(i).setZero();
+  }
+  return r;
+}
+
+/// Size of every pair at s if input and output were coupled equally to all modes: norms of the
+/// output's and the input's modal vectors, each mode weighted by its response [Cauchy, Schwarz].
+/// Has the pair's own unit.
+MatrixXd alike(const Whole& w, const OutputSensitivity& r, Complex s) {
+  MatrixXd out = MatrixXd::Zero(r.a.rows(), 1), in = MatrixXd::Zero(1, w.b.cols());
+  for (Index j = 0; j < w.order(); ++j) {
+    if (w.lambda(j) == 0 && s == 0.0) continue;
+    const double weight = 1 / std::abs(s * (s + w.damping(j)) + w.lambda(j));
+    for (Index i = 0; i < out.size(); ++i)
+      out(i) += weight * std::norm(s * (s * r.a(i, j) + r.v(i, j)) + r.q(i, j));
+    // Outputs silenced by symmetry: their sensitivity to the removed motions, with the static part.
+    for (Index i = 0; i < out.size(); ++i)
+      out(i) += weight * w.lambda(j) * std::norm(w.silent(i, 0) + s * w.silent(i, 1));
+    for (Index m = 0; m < in.size(); ++m) in(m) += weight * w.b(j, m) * w.b(j, m);
+  }
+  return out.cwiseSqrt() * in.cwiseSqrt();
+}
+
+/// Sum of the magnitudes of the modes' terms in every pair at s, outputs as they are written.
+MatrixXd terms(const Whole& w, const MatrixXd& driven, Complex s) {
+  MatrixXd read(w.ca.rows(), w.order());
+  for (Index j = 0; j < w.order(); ++j) {
+    const bool rests = w.lambda(j) == 0 && s == 0.0;
+    const double weight = rests ? 0 : 1 / std::abs(s * (s + w.damping(j)) + w.lambda(j));
+    for (Index i = 0; i < read.rows(); ++i)
+      read(i, j) = weight * std::abs(s * (s * w.ca(i, j) + w.cv(i, j)) + w.cq(i, j));
+  }
+  return read * driven;
+}
+
+[[noreturn]] void refuse_integral(const System& system, const char* what, Index output,
+                                  Index input) {
+  throw Error(
+      Code::bad_value,
+      fmt::format("{} reads {} that {} drives: it has no gain at 0 Hz, where the scene's "
+                  "band starts",
+                  system.outputs()[static_cast<std::size_t>(output)], what,
+                  system.inputs()[static_cast<std::size_t>(input)]),
+      "start Scene::band_hz above 0, read an acceleration instead, or leave this output out");
+}
+
+/// A band from 0 has no place for outputs that grow without end there.
+void refuse_integrals(const System& system, const Whole& w) {
+  for (Index j = w.elastic(); j < w.order(); ++j) {
+    Index m = 0;
+    if (w.b.row(j).cwiseAbs().maxCoeff(&m) == 0) continue;
+    for (Index i = 0; i < w.ca.rows(); ++i)
+      if (w.cq(i, j) != 0 || w.cv(i, j) != 0)
+        refuse_integral(system,
+                        w.cq(i, j) != 0 ? "the position of a motion without stiffness"
+                                        : "the rate of a motion without stiffness",
+                        i, m);
+  }
+}
+
+double lowest(const std::vector<Complex>& poles, double high) {
+  double first = high > 0 ? high : 1;
+  for (const Complex& p : poles)
+    if (p != 0.0 && std::abs(p) < first) first = std::abs(p);
+  return first;
+}
+
+/// At 0 also with block integrators that have no effect in the system.
+Eigen::MatrixXcd transfer(const System& system, Complex s) {
+  return s == 0.0 ? system.static_gain().cast<Complex>() : system.transfer(s);
+}
+
+}  // namespace
+
+Band band_of(const System& system, const Scene& scene, const Whole& w) {
+  Band band{2 * std::numbers::pi * scene.band_hz[0], 2 * std::numbers::pi * scene.band_hz[1], 0};
+  if (band.low > 0 || w.loose == 0) return band;
+  refuse_integrals(system, w);
+  band.start = 1e-6 * lowest(poles_of(w), band.high);
+  return band;
+}
+
+Band band_of(const System& system, const Scene& scene, const std::vector<Complex>& poles,
+             const SpectralPart& integrals) {
+  Band band{2 * std::numbers::pi * scene.band_hz[0], 2 * std::numbers::pi * scene.band_hz[1], 0};
+  if (band.low > 0 || std::find(poles.begin(), poles.end(), 0.0) == poles.end()) return band;
+  const MatrixXd one = integrals.C * integrals.B,
+                 size = integrals.C.cwiseAbs() * integrals.B.cwiseAbs(),
+                 two = integrals.C * integrals.A * integrals.B;
+  for (Index i = 0; i < one.rows(); ++i)
+    for (Index m = 0; m < one.cols(); ++m)
+      if (std::abs(one(i, m)) > 1e-12 * size(i, m) || two(i, m) != 0)
+        refuse_integral(system, "an integral", i, m);
+  band.start = 1e-6 * lowest(poles, band.high);
+  return band;
+}
+
+Complex on_ray(const Scene& scene, double omega) {
+  const double zeta = scene.damping_floor;
+  return {zeta * omega, std::sqrt(1 - zeta * zeta) * omega};
+}
+
+SampledSpectrum::SampledSpectrum(const Whole& w)
+    : poles(poles_of(w)),
+      far(static_cast<int>(w.far)),
+      squared(w.Z.size() == 0 && w.cv.isZero(0)),
+      sizes([&w, reading = as_meant(w), driven = MatrixXd(w.b.cwiseAbs())](Complex s) {
+        return PairSizes{alike(w, reading, s), terms(w, driven, s)};
+      }) {}
+
+SampledSpectrum::SampledSpectrum(const StateSpace& model, const Split& split)
+    : poles(split.poles), by_peaks(true), sizes([&](Complex s) {
+        const MatrixXd size = detail::terms(model, split, s);
+        return PairSizes{size, size};
+      }) {}
+
+std::vector<double> sample_points(const Scene& scene, const Band& band, const SampledSpectrum& w,
+                                  const std::vector<Complex>& small, double step) {
+  if (!(band.high > band.low)) return {std::max(band.low, band.start)};
+  const bool all = scene.bound == BoundKind::theorem;
+  const Complex turn = std::conj(on_ray(scene, 1));
+  const int far = all ? w.far : kFar;
+  // Undamped and without rates everything is rational in s^2: half the poles.
+  PhaseBand grid{band.low, band.high, {}, w.squared ? far : 2 * far};
+  if (w.squared) grid.low *= grid.low, grid.high *= grid.high;
+  for (const Complex& p : merged(w.poles, small)) {
+    if (p == 0.0) continue;  // motions without stiffness are in both models: no pole of the error
+    if (!all && std::abs(p) > 2 * band.high) continue;
+    for (const Complex& s : {p, std::conj(p)}) {
+      const Complex x = s * turn;
+      grid.poles.push_back(w.squared ? x * x : x);
+      if (w.squared || s.imag() == 0) break;
+    }
+  }
+  std::vector<double> points = phase_grid(grid, step);
+  for (double& x : points) x = std::max(w.squared ? std::sqrt(x) : x, band.start);
+  return points;
+}
+
+std::pair<Eigen::VectorXd, Eigen::RowVectorXd> port_sizes(const MatrixXd& peak) {
+  Eigen::VectorXd out = Eigen::VectorXd::Ones(peak.rows());
+  Eigen::RowVectorXd in = Eigen::RowVectorXd::Ones(peak.cols());
+  const auto root = [](const auto& largest) {
+    return (largest.array() > 0).select(largest.array().sqrt(), 1).matrix().eval();
+  };
+  for (int sweep = 0; sweep < 60; ++sweep) {
+    const MatrixXd left = out.cwiseInverse().asDiagonal() * peak * in.cwiseInverse().asDiagonal();
+    const Eigen::VectorXd rows = left.rowwise().maxCoeff();
+    const Eigen::RowVectorXd columns = left.colwise().maxCoeff();
+    out = out.cwiseProduct(root(rows));
+    in = in.cwiseProduct(root(columns));
+  }
+  return {out, in};
+}
+
+namespace {
+
+/// Without modes to estimate a pair's size (rigid bodies only): from its row and column. Rows and
+/// columns of 0 count as 1.
+MatrixXd with_floor(MatrixXd peak) {
+  const auto [out, in] = port_sizes(peak);
+  const Eigen::VectorXd row = (peak.rowwise().maxCoeff().array() > 0).cast<double>();
+  const Eigen::RowVectorXd column = (peak.colwise().maxCoeff().array() > 0).cast<double>();
+  peak = peak.cwiseMax(kNoPair * out.cwiseProduct(row) * in.cwiseProduct(column));
+  return (peak.array() > 0).select(peak, 1);
+}
+
+}  // namespace
+
+Samples sample(const System& system, const Scene& scene, const SampledSpectrum& w,
+               std::vector<double> omega) {
+  Samples result;
+  result.omega = std::move(omega);
+  result.H.resize(result.omega.size());
+  for (const double omega_k : result.omega) result.s.push_back(on_ray(scene, omega_k));
+  parallel(result.s.size(), 0,
+           [&] { return [&](std::size_t i) { result.H[i] = transfer(system, result.s[i]); }; });
+  const auto outputs = static_cast<Index>(system.outputs().size()),
+             inputs = static_cast<Index>(system.inputs().size());
+  MatrixXd meant = MatrixXd::Zero(outputs, inputs);
+  result.peak = result.alike = meant;
+  for (std::size_t k = 0; k < result.s.size(); ++k) {
+    const PairSizes here = w.sizes(result.s[k]);
+    result.peak = result.peak.cwiseMax(result.H[k].cwiseAbs());
+    meant = meant.cwiseMax(here.alike);
+    result.alike = result.alike.cwiseMax(here.terms);
+  }
+  if (w.by_peaks) {
+    const auto [out, in] = port_sizes(result.peak.cwiseMax(kNearlyZero * meant));
+    meant = meant.cwiseMax(out * in);
+  }
+  result.alike = result.alike.cwiseMax(meant);
+  result.peak = with_floor(result.peak.cwiseMax(kNearlyZero * meant));
+  return result;
+}
+
+double nearest_pole(const Scene& scene, const Band& band, const SampledSpectrum& w) {
+  const Complex turn = std::conj(on_ray(scene, 1));
+  const double low = std::max(band.low, band.start), high = std::max(low, band.high);
+  double nearest = 1;
+  for (const Complex& p : w.poles) {
+    const Complex x = p * turn;
+    if (p != 0.0)
+      nearest = std::min(nearest, std::abs(x - std::clamp(x.real(), low, high)) / std::abs(x));
+  }
+  return nearest;
+}
+
+MatrixXd rounding(const Samples& samples, double nearest) {
+  const double resonance = kPoleUnits * std::numeric_limits<double>::epsilon() / nearest;
+  return (kCancelled * samples.alike.cwiseQuotient(samples.peak)).array() + kOfTransfer + resonance;
+}
+
+}  // namespace titop::detail

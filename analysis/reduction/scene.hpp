@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <titop/compiler/system/system.hpp>
+#include <vector>
+
+namespace titop {
+
+/// Kind of an error bound.
+enum class BoundKind {
+  estimate,  ///< samples are spaced for the poles up to twice the band's upper end and ten more
+  theorem    ///< spaced for every pole of both models: up to rounding no peak is between samples
+};
+
+/// A question: inputs, outputs, band and accuracy.
+///
+/// The error of a pair (input, output) is the largest difference of the transfer over the band,
+/// over the largest magnitude of the pair itself there. Pairs that are nearly zero, as by
+/// symmetry, are scaled by 1e-6 of the size that they would have if input and output were coupled
+/// equally to all modes, independent of units. Both are taken on the ray s = (zeta + j sqrt(1 -
+/// zeta^2)) omega, zeta the damping floor, since an undamped peak has no finite height; on it every
+/// mode has the additional damping zeta.
+struct Scene {
+  /// "W", or one of its scalars, "W(3)"; empty: all. The order is the diagram's, not the order
+  /// here. Other inputs are held at 0: a point or joint whose acceleration is one of them is
+  /// locked.
+  std::vector<std::string> inputs = {};
+  std::vector<std::string> outputs = {};  ///< likewise, in the diagram's order
+  /// Lower and upper end [Hz]; {0, 0}: static gain only. A band from 0 requires a gain at 0:
+  /// positions and rates of motions without stiffness (free bodies, free hinges) are refused.
+  std::array<double, 2> band_hz = {0, 0};
+  /// Largest error of any pair, between 2e-12 and 1. The limits by rounding are 1e-12 and, on
+  /// resonances, 4e-16 over their damping on the ray.
+  double accuracy = 1e-3;
+  double damping_floor = 0.002;  ///< zeta, between 1e-6 and 0.5
+  /// A theorem costs many times the samples, and if damping couples modes one eigenproblem of
+  /// O(8 n^3) for their poles.
+  BoundKind bound = BoundKind::estimate;
+  /// Up to this many coordinates the whole is reduced, by one symmetric eigenproblem of O(n^3). Of
+  /// more, bodies lose modes first, those with the least effect on the assembled transfer; static
+  /// vectors of their loaded ports replace these. The error is measured, and the bound is an
+  /// estimate, checked against the full system as always. Refused if too many remain.
+  int whole_up_to = 2000;
+  /// Passive structures keep M, D, K. False: their states are balanced; with heavy damping
+  /// fewer may suffice.
+  bool keep_structure = true;
+  /// Up to this many states are balanced, at O(100 n^3); of more, bodies lose modes first.
+  int balance_up_to = 800;
+};
+
+namespace detail {
+
+/// Throws bad_value for a band, accuracy or damping floor out of range, all together.
+void check(const Scene& scene);
+
+/// The graph with these inputs and outputs only; single scalars become inputs and outputs of their
+/// own. Throws unknown_name with the names there are. O(graph).
+Graph restricted(const Graph& graph, const Scene& scene);
+
+}  // namespace detail
+}  // namespace titop

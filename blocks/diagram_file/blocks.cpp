@@ -1,0 +1,325 @@
+#include <fmt/format.h>
+
+#include <titop/blocks/bushing.hpp>
+#include <titop/blocks/diagram_file/blocks.hpp>
+#include <titop/blocks/flexible_body.hpp>
+#include <titop/blocks/hinge.hpp>
+#include <titop/blocks/joint.hpp>
+#include <titop/blocks/rigid_body.hpp>
+#include <titop/blocks/slide.hpp>
+#include <titop/blocks/specified.hpp>
+#include <titop/blocks/spring_mass.hpp>
+#include <titop/graph/nodes/gain.hpp>
+#include <titop/graph/nodes/lti.hpp>
+
+namespace titop::scene {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+namespace {
+
+template <class Spec>
+const Spec& spec_of(const Block& block) {
+  return dynamic_cast<const Specified<Spec>&>(block).spec();
+}
+
+/// Writer and reader of one type.
+struct Type {
+  const char* name;
+  void (*write)(const Block&, const WriteValue&, const NameBody&, Json&);
+  BlockPtr (*read)(const JsonPlace&, const ReadValue&, const FindBody&);
+};
+
+// --- bodies --------------------------------------------------------------------------------------
+
+void write_spring_mass(const Block& b, const WriteValue& value, const NameBody&, Json& j) {
+  const auto& spec = spec_of<SpringMass>(b);
+  j["mass"] = value(spec.mass);
+  j["stiffness"] = value(spec.stiffness);
+  j["damping"] = value(spec.damping);
+  j["parent_mass"] = value(spec.parent_mass);
+}
+
+BlockPtr read_spring_mass(const JsonPlace& p, const ReadValue& value, const FindBody&) {
+  p.only({"name", "type", "mass", "stiffness", "damping", "parent_mass"});
+  return as_block(SpringMass{.mass = value(p.at("mass")),
+                             .stiffness = value(p.at("stiffness")),
+                             .damping = value(p.at("damping")),
+                             .parent_mass = value(p.at("parent_mass"))});
+}
+
+/// Three rows of numbers; with parameters xx, yy, zz, xy, xz, yz.
+Json inertia_json(const Inertia& inertia, const WriteValue& value) {
+  const std::vector<Value> entries = inertia.values();
+  if (entries.empty()) return rows(inertia.nominal());
+  Json result = Json::array();
+  for (const Value& v : entries) result.push_back(value(v));
+  return result;
+}
+
+Inertia read_inertia(const JsonPlace& p, const ReadValue& value) {
+  if (p.size() == 3) return p.matrix(3, 3);
+  if (p.size() != 6) p.refuse("three rows, or the six entries xx, yy, zz, xy, xz, yz");
+  return {value(p.item(0)), value(p.item(1)), value(p.item(2)),
+          value(p.item(3)), value(p.item(4)), value(p.item(5))};
+}
+
+void write_rigid_body(const Block& b, const WriteValue& value, const NameBody&, Json& j) {
+  const auto& spec = spec_of<RigidBody>(b);
+  j["mass"] = value(spec.mass);
+  j["inertia"] = inertia_json(spec.inertia, value);
+  j["PA"] = list(spec.PA);
+  j["children"] = Json::array();
+  for (const ChildPoint& c : spec.children)
+    j["children"].push_back({{"name", c.name}, {"PC", list(c.PC)}});
+}
+
+BlockPtr read_rigid_body(const JsonPlace& p, const ReadValue& value, const FindBody&) {
+  p.only({"name", "type", "mass", "inertia", "PA", "children"});
+  RigidBody spec{.mass = value(p.at("mass")),
+                 .inertia = read_inertia(p.at("inertia"), value),
+                 .PA = p.at("PA").vector(3)};
+  const JsonPlace children = p.at("children");
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    const JsonPlace c = children.item(i);
+    c.only({"name", "PC"});
+    spec.children.push_back({c.at("name").text(), c.at("PC").vector(3)});
+  }
+  return as_block(spec);
+}
+
+/// Values of some modes, by their numbers.
+Json modes_json(const std::map<int, Value>& modes, const WriteValue& value) {
+  Json result = Json::array();
+  for (const auto& [mode, of] : modes) result.push_back({{"mode", mode}, {"value", value(of)}});
+  return result;
+}
+
+std::map<int, Value> read_modes(const JsonPlace& p, const char* key, const ReadValue& value) {
+  std::map<int, Value> modes;
+  if (!p.has(key)) return modes;
+  const JsonPlace list = p.at(key);
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const JsonPlace item = list.item(i);
+    item.only({"mode", "value"});
+    if (!modes.emplace(item.at("mode").integer(), value(item.at("value"))).second)
+      item.at("mode").refuse("a mode that no value before is for");
+  }
+  return modes;
+}
+
+void write_flexible_body(const Block& b, const WriteValue& value, const NameBody& body, Json& j) {
+  const auto& spec = spec_of<FlexibleBody::Spec>(b);
+  j["body"] = body(*spec.data);
+  if (!spec.values.omega.empty()) j["omega"] = modes_json(spec.values.omega, value);
+  if (!spec.values.xi.empty()) j["xi"] = modes_json(spec.values.xi, value);
+}
+
+BlockPtr read_flexible_body(const JsonPlace& p, const ReadValue& value, const FindBody& body) {
+  p.only({"name", "type", "body", "omega", "xi"});
+  const FlexibleBody shared = body(p.at("body"));
+  const ModeValues values{.omega = read_modes(p, "omega", value), .xi = read_modes(p, "xi", value)};
+  return as_block(values.empty() ? shared : FlexibleBody(shared, values));
+}
+
+// --- joints --------------------------------------------------------------------------------------
+
+void write_joint(const Block& b, const WriteValue&, const NameBody&, Json& j) {
+  j["axes"] = Json::array();
+  for (const Axis& axis : spec_of<std::vector<Axis>>(b))
+    j["axes"].push_back({{"kind", axis.kind == Axis::Kind::revolute ? "about" : "along"},
+                         {"direction", list(axis.direction)},
+                         {"name", axis.name}});
+}
+
+std::vector<Axis> read_axes(const JsonPlace& p) {
+  p.only({"name", "type", "axes"});
+  std::vector<Axis> axes;
+  const JsonPlace list = p.at("axes");
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const JsonPlace axis = list.item(i);
+    axis.only({"kind", "direction", "name"});
+    const std::string kind = axis.at("kind").text();
+    if (kind != "about" && kind != "along") axis.at("kind").refuse("about or along");
+    axes.push_back({kind == "about" ? Axis::Kind::revolute : Axis::Kind::prismatic,
+                    axis.at("direction").vector(3), axis.at("name").text()});
+  }
+  return axes;
+}
+
+Vector3d read_axis(const JsonPlace& p) {
+  const std::vector<Axis> axes = read_axes(p);
+  if (axes.size() != 1) p.at("axes").refuse("one axis");
+  return axes[0].direction;
+}
+
+BlockPtr read_hinge(const JsonPlace& p, const ReadValue&, const FindBody&) {
+  return as_block(Hinge{read_axis(p)});
+}
+BlockPtr read_slide(const JsonPlace& p, const ReadValue&, const FindBody&) {
+  return as_block(Slide{read_axis(p)});
+}
+BlockPtr read_joint(const JsonPlace& p, const ReadValue&, const FindBody&) {
+  return as_block(Joint{read_axes(p)});
+}
+
+/// A diagonal of numbers and parameters, or six rows.
+Json six_axes(const SixAxes& m, const WriteValue& value) {
+  if (m.values().empty()) return rows(m.nominal());
+  Json result = Json::array();
+  for (const Value& v : m.values()) result.push_back(value(v));
+  return result;
+}
+
+SixAxes read_six_axes(const JsonPlace& p, const ReadValue& value) {
+  if (p.size() != 6) p.refuse("six numbers or six rows");
+  if (!p.item(0).is_number() && !p.item(0).has("parameter")) return SixAxes(p.matrix(6, 6));
+  return {value(p.item(0)), value(p.item(1)), value(p.item(2)),
+          value(p.item(3)), value(p.item(4)), value(p.item(5))};
+}
+
+void write_bushing(const Block& b, const WriteValue& value, const NameBody&, Json& j) {
+  j["stiffness"] = six_axes(spec_of<Bushing>(b).stiffness, value);
+  j["damping"] = six_axes(spec_of<Bushing>(b).damping, value);
+}
+
+BlockPtr read_bushing(const JsonPlace& p, const ReadValue& value, const FindBody&) {
+  p.only({"name", "type", "stiffness", "damping"});
+  return as_block(Bushing{.stiffness = read_six_axes(p.at("stiffness"), value),
+                          .damping = read_six_axes(p.at("damping"), value)});
+}
+
+// --- signals -------------------------------------------------------------------------------------
+
+void write_gain(const Block& b, const WriteValue& value, const NameBody&, Json& j) {
+  j["gain"] = value(b.values().at(0));
+  j["size"] = b.interface().input_size();
+}
+
+BlockPtr read_gain(const JsonPlace& p, const ReadValue& value, const FindBody&) {
+  p.only({"name", "type", "gain", "size"});
+  return as_block(Gain{.gain = value(p.at("gain")), .size = p.at("size").signal_size()});
+}
+
+void write_matrix_gain(const Block& b, const WriteValue&, const NameBody&, Json& j) {
+  j["matrix"] = rows(b.dynamics({})->D);
+}
+
+BlockPtr read_matrix_gain(const JsonPlace& p, const ReadValue&, const FindBody&) {
+  p.only({"name", "type", "matrix"});
+  return as_block(MatrixGain{p.at("matrix").matrix(-1, -1)});
+}
+
+void write_sum(const Block& b, const WriteValue&, const NameBody&, Json& j) {
+  const Index size = b.interface().output_size();
+  const auto dynamics = b.dynamics({});
+  std::string signs;
+  for (Index i = 0; i < dynamics->D.cols(); i += size) signs += dynamics->D(0, i) > 0 ? '+' : '-';
+  j["signs"] = signs;
+  j["size"] = size;
+}
+
+BlockPtr read_sum(const JsonPlace& p, const ReadValue&, const FindBody&) {
+  p.only({"name", "type", "signs", "size"});
+  return as_block(Sum{.signs = p.at("signs").text(), .size = p.at("size").signal_size()});
+}
+
+void write_lti(const Block& b, const WriteValue&, const NameBody&, Json& j) {
+  const auto d = b.dynamics({});
+  j["A"] = rows(d->A);
+  j["B"] = rows(d->B);
+  j["C"] = rows(d->C);
+  j["D"] = rows(d->D);
+}
+
+BlockPtr read_lti(const JsonPlace& p, const ReadValue&, const FindBody&) {
+  p.only({"name", "type", "A", "B", "C", "D"});
+  const MatrixXd D = p.at("D").matrix(-1, -1);
+  const auto n = static_cast<Index>(p.at("A").size());
+  return as_block(Lti{.A = p.at("A").matrix(n, n),
+                      .B = p.at("B").matrix(n, D.cols()),
+                      .C = p.at("C").matrix(D.rows(), n),
+                      .D = D});
+}
+
+void write_integrator(const Block& b, const WriteValue&, const NameBody&, Json& j) {
+  j["size"] = b.interface().output_size();
+}
+
+BlockPtr read_integrator(const JsonPlace& p, const ReadValue&, const FindBody&) {
+  p.only({"name", "type", "size"});
+  return as_block(Integrator{p.at("size").signal_size()});
+}
+
+constexpr Type kTypes[] = {{"SpringMass", write_spring_mass, read_spring_mass},
+                           {"RigidBody", write_rigid_body, read_rigid_body},
+                           {"FlexibleBody", write_flexible_body, read_flexible_body},
+                           {"Hinge", write_joint, read_hinge},
+                           {"Slide", write_joint, read_slide},
+                           {"Joint", write_joint, read_joint},
+                           {"Bushing", write_bushing, read_bushing},
+                           {"Gain", write_gain, read_gain},
+                           {"MatrixGain", write_matrix_gain, read_matrix_gain},
+                           {"Sum", write_sum, read_sum},
+                           {"Lti", write_lti, read_lti},
+                           {"Integrator", write_integrator, read_integrator}};
+
+const Type* find_type(std::string_view name) {
+  for (const Type& type : kTypes)
+    if (name == type.name) return &type;
+  return nullptr;
+}
+
+std::string all_types() {
+  std::string all;
+  for (const Type& type : kTypes) all += (all.empty() ? "" : ", ") + std::string(type.name);
+  return all;
+}
+
+}  // namespace
+
+void write_block(const Block& block, const WriteValue& value, const NameBody& body, Json& json) {
+  const Type* type = find_type(block.type());
+  if (!type)
+    throw Error(Code::bad_value,
+                fmt::format("a {} cannot be written to a diagram file", block.type()),
+                "it knows " + all_types() + "; write an own block as an Lti or as modal data");
+  json["type"] = type->name;
+  type->write(block, value, body, json);
+}
+
+BlockPtr read_block(const JsonPlace& place, const ReadValue& value, const FindBody& body) {
+  const Type* type = find_type(place.at("type").text());
+  if (!type) place.at("type").refuse("one of " + all_types());
+  return type->read(place, value, body);
+}
+
+Json body_json(const ModalData& data) {
+  Json json = {{"omega", list(data.omega)}, {"xi", list(data.xi)},   {"L_P", rows(data.L_P)},
+               {"D_P", rows(data.D_P)},     {"digits", data.digits}, {"children", Json::array()}};
+  for (const ModalChild& c : data.children)
+    json["children"].push_back({{"name", c.name}, {"PC", list(c.PC)}, {"Phi_C", rows(c.Phi_C)}});
+  return json;
+}
+
+FlexibleBody read_body(const JsonPlace& p) {
+  p.only({"omega", "xi", "L_P", "D_P", "digits", "children"});
+  ModalData data;
+  data.omega = p.at("omega").vector();
+  const Index n = data.omega.size();
+  data.xi = p.at("xi").vector(n);
+  data.L_P = p.at("L_P").matrix(n, 6);
+  data.D_P = p.at("D_P").matrix(6, 6);
+  data.digits = p.at("digits").number();
+  const JsonPlace children = p.at("children");
+  for (std::size_t i = 0; i < children.size(); ++i) {
+    const JsonPlace c = children.item(i);
+    c.only({"name", "PC", "Phi_C"});
+    data.children.push_back(
+        {c.at("name").text(), c.at("PC").vector(3), c.at("Phi_C").matrix(6, n)});
+  }
+  return {data, std::source_location{}};
+}
+
+}  // namespace titop::scene

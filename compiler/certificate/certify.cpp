@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <titop/compiler/certificate/check.hpp>
+#include <titop/compiler/certificate/self_check.hpp>
+#include <titop/compiler/certificate/weak_pivot.hpp>
+#include <titop/compiler/solve/factored.hpp>
+#include <titop/graph/linalg/index.hpp>
+
+namespace titop::detail {
+namespace {
+
+using linalg::at;
+
+/// "about 2 digits are": the digits of a loop at this distance from singular.
+std::string digits_at(double distance) {
+  const double digits = std::max(0.0, std::round(std::log10(distance / 1.1e-16)));
+  return digits == 1 ? "about one digit is" : fmt::format("about {:.0f} digits are", digits);
+}
+
+std::string variable_name(const Factored& d, int variable) {
+  const int signal = d.skeleton->joint.variables[at(variable)];
+  return signal < 0 ? "a sum of many terms" : name_of(d.graph(), signal);
+}
+
+}  // namespace
+
+Check certify(const Factored& d) {
+  const auto start = std::chrono::steady_clock::now();
+  const solve::Health h = d.factors->health();
+  Check check{{}, d.notes};
+  Certificate& c = check.certificate;
+  c.weakest_pivot = h.weakest;
+  if (h.weakest_variable >= 0) c.weakest_where = variable_name(d, h.weakest_variable);
+  c.pivot_growth = h.growth;
+  c.fronts = static_cast<int>(d.skeleton->joint.plan->fronts.size());
+  c.fronts_made = d.factors->fronts_made();
+  c.plans_renewed = d.plans_renewed;
+  std::vector<double> margins = *d.margins;
+  find_margins(d, d.changed_loops, margins);
+  worst_margin(d, margins, check);
+  self_check(d, check);
+  check.least = least_pivot(d, check);
+  c.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  // At distance delta from singular the margin is about 4/delta, and a pivot keeps delta/2.
+  const double by_margin = 4 / c.margin, by_pivot = 2 * c.weakest_pivot;
+  if (by_margin < kFewDigits)
+    check.notes.push_back({Note::Kind::warning, "certify",
+                           fmt::format("the loop at {} has margin {:.2g}: {} left", c.margin_where,
+                                       c.margin, digits_at(by_margin))});
+  else if (by_pivot < kFewDigits)
+    check.notes.push_back({Note::Kind::warning, "certify",
+                           fmt::format("the pivot at {} keeps {:.1e} of its terms: {} left",
+                                       c.weakest_where, c.weakest_pivot, digits_at(by_pivot))});
+  if (c.residual > kWarn)
+    check.notes.push_back({Note::Kind::warning, "certify",
+                           fmt::format("{} holds only to {:.1g}", c.residual_where, c.residual)});
+  if (check.least > 0)
+    check.notes.push_back(
+        {Note::Kind::warning, "certify", "no digit is left: double takes rounding for a pivot"});
+  return check;
+}
+
+}  // namespace titop::detail
+
+namespace titop {
+
+namespace {
+
+std::string words_of_residual(const Certificate& c) {
+  if (c.residual < 0) return "equations as written not checked: without inputs nothing moves\n";
+  return fmt::format("equations as written hold to {:.1e} {} s = {:.3g}{}\n", c.residual,
+                     c.at_instant ? "at an instant, states as of single blocks at" : "at", c.s,
+                     c.residual_where.empty() ? "" : " (worst: " + c.residual_where + ")");
+}
+
+std::string words_of_dense(const Certificate& c) {
+  if (c.dense_against_factors < 0) return "dense model not written yet\n";
+  std::string text =
+      fmt::format("dense model agrees with the factors to {:.1e}", c.dense_against_factors);
+  if (c.dense_error >= 0)
+    text += fmt::format(
+        "; its rounding changes the outputs by {:.1e} of their largest at s = {:.3g}{:+.3g}j, by "
+        "{:.1e} of what they are at s = {:.3g}{:+.3g}j",
+        c.dense_error, c.dense_error_s.real(), c.dense_error_s.imag(), c.dense_error_where_small,
+        c.dense_error_where_small_s.real(), c.dense_error_where_small_s.imag());
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string to_string(const Certificate& c) {
+  std::string text = words_of_residual(c) + words_of_dense(c);
+  text += fmt::format("weakest pivot keeps {:.1e} of its terms{}, growth {:.3g}\n", c.weakest_pivot,
+                      c.weakest_where.empty() ? "" : " (" + c.weakest_where + ")", c.pivot_growth);
+  text +=
+      fmt::format("largest loop margin {:.3g}{}{}\n", c.margin,
+                  c.margin_where.empty() ? "" : " (at " + c.margin_where + ")",
+                  c.margin_is_exact ? "" : "; loops too large for it are judged by their pivots");
+  return text;
+}
+
+}  // namespace titop

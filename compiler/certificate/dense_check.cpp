@@ -1,0 +1,421 @@
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <limits>
+#include <optional>
+#include <titop/compiler/certificate/dense_check.hpp>
+#include <titop/compiler/certificate/without_rounding.hpp>
+#include <titop/compiler/definition/compare.hpp>
+#include <titop/compiler/solve/evaluate.hpp>
+#include <titop/compiler/solve/factored.hpp>
+#include <titop/compiler/solve/frequency.hpp>
+#include <titop/compiler/solve/instant.hpp>
+#include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/steady_random.hpp>
+
+/// The dense model against the factors that it was written from.
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kDoubted = 1e-9;  ///< a larger error is computed again, at some cost
+
+using linalg::at;
+
+/// Rows of [xdot; y] that share a size, first and count.
+using Groups = std::vector<std::pair<Index, Index>>;
+
+/// Block by block, then unit by unit.
+Groups groups(const Factored& d) {
+  Groups result;
+  const std::vector<int>& kept = d.states.kept();
+  for (const int i : d.layout().state_nodes) {
+    const int begin = d.layout().state_first[at(i)],
+              end = begin + static_cast<int>(d.numbers.blocks[at(i)]->A.rows());
+    const auto first = std::lower_bound(kept.begin(), kept.end(), begin);
+    result.emplace_back(first - kept.begin(), std::lower_bound(first, kept.end(), end) - first);
+  }
+  Index first = d.states.order();
+  for (const int size : measure(d.graph(), {}).rows) {
+    result.emplace_back(first, size);
+    first += size;
+  }
+  return result;
+}
+
+/// Columns of [xdot; y] of the model, and their rounding.
+struct ModelColumns {
+  MatrixXd value, rounding;
+};
+
+ModelColumns by_factors(const Factored& d, const solve::RowMatrix<double>& x,
+                        const solve::RowMatrix<double>& u) {
+  const solve::RowMatrix<double> all = d.states.expanded(x, u);
+  solve::RowMatrix<double> known(all.rows() + u.rows(), u.cols());
+  known << all, u;
+  const Instant now(d, std::move(known));
+  // Cancellation on the way is not contained in the last terms: a sample of rounding gives its
+  // size.
+  const Instant off = now.doubt();
+  const auto both = [&](const solve::RowMatrix<double>& xdot, const solve::RowMatrix<double>& y) {
+    MatrixXd result(x.rows() + y.rows(), u.cols());
+    result << d.states.kept_rows(xdot), y;
+    return result;
+  };
+  const MatrixXd terms = kEpsilon * both(now.xdot_terms(), now.outputs_terms());
+  return {both(now.xdot(), now.outputs()),
+          terms.cwiseMax(both(off.xdot(), off.outputs()).cwiseAbs())};
+}
+
+/// Columns of [xdot; y]: states alone and inputs alone, so that in any units neither hides the
+/// other.
+constexpr Index kAlone = 2;
+
+/// |dA| |x| and the like of a model's entries.
+MatrixXd product(const StateSpace& of, const MatrixXd& x, const MatrixXd& u) {
+  MatrixXd result(of.A.rows() + of.C.rows(), kAlone);
+  result << of.A * x.cwiseAbs() + of.B * u.cwiseAbs(), of.C * x.cwiseAbs() + of.D * u.cwiseAbs();
+  return result;
+}
+
+/// The largest |off| over the terms whose rounding is known; in groups at the level of `noise`,
+/// where it is known, over the larger of rounding and noise.
+double beside_terms(const MatrixXd& off, const ModelColumns& r, const Groups& groups,
+                    const MatrixXd& noise = {}) {
+  if (!off.allFinite() || !r.rounding.allFinite() || !noise.allFinite()) return kInfinity;
+  const auto around = [&r](Index first, Index count, Index j) {
+    return std::sqrt(r.value.middleRows(first, count).cwiseAbs().maxCoeff()) *
+           std::sqrt(r.value.col(j).cwiseAbs().maxCoeff());
+  };
+  double worst = 0;
+  for (const auto& [first, count] : groups)
+    for (Index j = 0; j < kAlone && count > 0; ++j) {
+      const auto largest = [first = first, count = count, j](const MatrixXd& m) {
+        return m.col(j).segment(first, count).cwiseAbs().maxCoeff();
+      };
+      double size = largest(r.rounding);
+      if (noise.size() > 0 && largest(r.value) <= kNoise * largest(noise))
+        size = std::max(size, largest(noise));
+      if (largest(r.value) == 0)  // hit to the last bit, as another order of sums may not
+        size = std::max(size, kEpsilon * kHitBy * around(first, count, j));
+      if (size > 0) worst = std::max(worst, kEpsilon * (largest(off) / size));
+    }
+  return worst;
+}
+
+}  // namespace
+
+double dense_difference(const Factored& d, const StateSpace& m) {
+  const Index n = m.A.rows();
+  solve::RowMatrix<double> x = MatrixXd::Zero(n, kAlone), u = MatrixXd::Zero(m.B.cols(), kAlone);
+  SteadyRandom random;
+  for (Index i = 0; i < n; ++i) x(i, 0) = random.next();
+  for (Index i = 0; i < u.rows(); ++i) u(i, 1) = random.next();
+  ModelColumns r = by_factors(d, x, u);
+  MatrixXd off = r.value, of_model = MatrixXd::Zero(off.rows(), kAlone);
+  const auto take = [&](const MatrixXd& matrix, Index first, Index column, const auto& factors) {
+    for (Index j = 0; j < matrix.cols(); ++j) {  // once through memory
+      const double factor = factors(j, column);
+      off.col(column).segment(first, matrix.rows()) -= matrix.col(j) * factor;
+      of_model.col(column).segment(first, matrix.rows()) +=
+          matrix.col(j).cwiseAbs() * (kEpsilon * std::abs(factor));
+    }
+  };
+  take(m.A, 0, 0, x), take(m.B, 0, 1, u), take(m.C, n, 0, x), take(m.D, n, 1, u);
+  r.rounding = r.rounding.cwiseMax(of_model);
+  const double worst = beside_terms(off, r, groups(d));
+  if (worst <= kDoubted || worst == kInfinity) return worst;
+  return beside_terms(off, r, groups(d), product(rounding_of(d, m), x, u));
+}
+
+namespace {
+
+using T = std::complex<double>;
+
+constexpr Index kColumns = 8;  ///< inputs are tried one by one up to this many
+/// Relative to neighbours in row and column: level of a 0 after rotations, cos(pi / 2) = 6e-17. It
+/// has digits in the factors, but is meant as 0.
+constexpr double kOfNeighbours = 1e-14;
+
+constexpr double kBelow = 0.5;  ///< of the slowest mode that shows, known to a decade
+
+/// Largest entries of the outputs of one unit, column by column.
+MatrixXd by_unit(const solve::RowMatrix<T>& y, const std::vector<int>& units) {
+  MatrixXd result(std::ssize(units), y.cols());
+  for (Index i = 0, first = 0; i < result.rows(); first += units[at(i++)])
+    result.row(i) = y.middleRows(first, units[at(i)]).cwiseAbs().colwise().maxCoeff();
+  return result;
+}
+
+/// Powers of s by which outputs decrease per decade; true if all are integers and equal to those
+/// before: below all modes with an effect.
+bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers) {
+  constexpr double kWhole = 0.03;  // a mode a decade off changes a size by some 1 %: 0.004
+  const MatrixXd p = (here.array() / below.array()).log10();
+  const MatrixXd whole = p.array().round();
+  const auto shows = here.array() > kUnderflow && below.array() > kUnderflow;
+  const bool same =
+      whole.size() == powers.size() &&
+      (!shows || ((p - whole).array().abs() < kWhole && (whole - powers).array() == 0)).all();
+  powers = whole;
+  return same;
+}
+
+/// Searches from s downwards for the slowest mode with an effect on the outputs: a row of slow
+/// bodies bends more slowly than any single one. None if it cannot be determined: an output is
+/// rounding, or the factors have no digits so far below. O(bodies) per decade.
+std::optional<T> slowest_shown(const Factored& d, const T s, const solve::RowMatrix<T>& u,
+                               const std::vector<int>& units) {
+  constexpr int kDecades = 10;  // below them double has no digits of slow motion
+  try {
+    T at = s;
+    MatrixXd here = by_unit(Evaluation<T>(d, at, u).outputs(), units), powers;
+    for (int k = 1; k <= kDecades; ++k) {
+      at *= 0.1;
+      MatrixXd below = by_unit(Evaluation<T>(d, at, u).outputs(), units);
+      if (whole_powers(here, below, powers)) return 100.0 * at;  // two decades without a mode
+      here = std::move(below);
+    }
+  } catch (const Error&) {
+  }
+  return {};
+}
+
+/// Points at which the dense model is tried, and the limit below which |s| no mode shows; 0: not
+/// known.
+struct Tried {
+  std::vector<T> s;
+  double slowest = 0;
+};
+
+/// At the assembly's own frequencies as well, if nothing is tried near them.
+void add_frequencies(const MatrixXd& A, std::vector<T>& list) {
+  constexpr double kNear = 3;  // factor within which an s resolves a frequency
+  for (const double w : frequencies_of(A)) {
+    const auto near = [w](const T s) {
+      return std::abs(s) <= kNear * w && w <= kNear * std::abs(s);
+    };
+    if (std::ranges::none_of(list, near)) list.push_back(off_axis(w));
+  }
+}
+
+/// Far below, at and above the blocks' frequencies, and at the assembly's; below the slowest of the
+/// blocks', and at and below the slowest mode that shows, if those are lower still. That is
+/// looked for below all blocks: two that are far apart have decades without a mode between them.
+Tried tried(const Factored& d, const MatrixXd& A, const solve::RowMatrix<T>& u,
+            const std::vector<int>& units) {
+  const T s = pick_s(d);
+  Tried result{{1e-4 * s, 1e-2 * s, s, 1e2 * s}};
+  add_frequencies(A, result.s);
+  double slowest = std::abs(s);
+  for (const int i : d.layout().state_nodes)
+    if (const double w = frequency_of(d.numbers.blocks[at(i)]->A); w > 0)
+      slowest = std::min(slowest, w);
+  const T of_blocks = slowest / std::abs(s) * s;
+  if (slowest < 1e-2 * std::abs(s)) result.s.push_back(1e-2 * of_blocks);
+  const std::optional<T> shown = slowest_shown(d, of_blocks, u, units);
+  if (!shown) return result;
+  result.slowest = std::abs(*shown);
+  if (result.slowest < 0.5 * std::abs(s)) result.s.push_back(*shown);
+  if (result.slowest < 2e-2 * std::abs(s)) result.s.push_back(1e-2 * *shown);
+  return result;
+}
+
+/// Inputs of one unit side by side in one column, at random; in two if they are few: by chance one
+/// sample of rounding may be small. Those of many units must share columns, scaled so that they
+/// have effects of like size on the states.
+solve::RowMatrix<T> tried_inputs(const StateSpace& m, const std::vector<int>& units) {
+  const Index n = std::ssize(units), columns = 2 * n <= kColumns ? 2 * n : std::min(n, kColumns);
+  solve::RowMatrix<T> u = solve::RowMatrix<T>::Zero(m.B.cols(), columns);
+  SteadyRandom random;
+  for (Index k = 0, first = 0; k < std::max(n, columns); ++k) {
+    if (k == n) first = 0;
+    const int size = units[at(k % n)];
+    const double push = m.B.middleCols(first, size).cwiseAbs().maxCoeff();
+    const double scale = columns < n && push > 0 ? 1 / push : 1;
+    for (const Index end = first + size; first < end; ++first)
+      u(first, k % columns) = scale * T(random.next(), random.next());
+  }
+  return u;
+}
+
+/// Sizes of outputs of one unit, by columns of the inputs.
+struct OutputSizes {
+  MatrixXd value;     ///< by the factors
+  MatrixXd rounding;  ///< of the factors
+};
+
+/// Error of the dense model at one s.
+struct Sample {
+  T s;
+  bool below;             ///< all modes that show
+  solve::RowMatrix<T> y;  ///< by the factors
+  OutputSizes sizes;
+  MatrixXd off;
+};
+
+/// A x of all of these: once through memory.
+std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
+                                       const std::vector<solve::RowMatrix<T>>& x) {
+  const Index m = x.front().cols();
+  MatrixXd parts(A.cols(), 2 * m * std::ssize(x));
+  for (Index i = 0; i < std::ssize(x); ++i)
+    parts.middleCols(2 * m * i, 2 * m) << x[at(i)].real(), x[at(i)].imag();
+  const MatrixXd product = A * parts;
+  std::vector<solve::RowMatrix<T>> result(x.size(), solve::RowMatrix<T>(A.rows(), m));
+  for (Index i = 0; i < std::ssize(x); ++i) {
+    result[at(i)].real() = product.middleCols(2 * m * i, m);
+    result[at(i)].imag() = product.middleCols(2 * m * i + m, m);
+  }
+  return result;
+}
+
+/// The residual of the factors' states in the equations of the dense model, A x + B u - s x, mapped
+/// to the outputs by the factors. Points where these have no digit (springs along directions that
+/// chains lock, far below all modes) give no verdict on the model: they go to `not_tried`.
+std::vector<Sample> sample(const Factored& d, const StateSpace& m, const solve::RowMatrix<T>& u,
+                           const Measure& units, std::vector<T>& not_tried) {
+  const Tried where = tried(d, m.A, u, units.rows);
+  std::vector<T> list;
+  std::deque<Evaluation<T>> points;
+  std::vector<solve::RowMatrix<T>> x;
+  for (const T s : where.s) {
+    try {
+      points.emplace_back(d, s, u);
+    } catch (const Error& error) {
+      if (!error.has(Code::singular)) throw;
+      not_tried.push_back(s);
+      continue;
+    }
+    list.push_back(s);
+    x.push_back(d.states.model_states(points.back().states(), u, s));
+  }
+  if (list.empty()) return {};
+  const std::vector<solve::RowMatrix<T>> Ax = moved(m.A, x);
+  std::vector<Sample> result;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const solve::RowMatrix<T> left = Ax[i] + m.B * u - list[i] * x[i];
+    // The rounding of C itself is one product: negligible here.
+    const solve::RowMatrix<T> change = points[i].forced(d.states.expanded(left));
+    const auto& y = points[i].outputs();
+    result.push_back({list[i],
+                      std::abs(list[i]) < kBelow * where.slowest,
+                      y,
+                      {by_unit(y, units.rows), by_unit(points[i].rounding(), units.rows)},
+                      by_unit(change, units.rows)});
+  }
+  return result;
+}
+
+constexpr double kDigit = 10;  ///< times its rounding: has a digit
+
+/// An output that has digits in the factors at some s gives no verdict where it has none, such as
+/// far below the modes of closed chains: it does not count there, and the s is reported.
+void leave_out_lost(std::vector<Sample>& samples, std::vector<T>& not_tried) {
+  const auto known = [](const Sample& p) {
+    return Eigen::ArrayXX<bool>(p.sizes.value.array() > kDigit * p.sizes.rounding.array());
+  };
+  Eigen::ArrayXX<bool> anywhere = known(samples.front());
+  for (const Sample& p : samples) anywhere = anywhere || known(p);
+  for (Sample& p : samples) {
+    const Eigen::ArrayXX<bool> lost = anywhere && !known(p);
+    if (!lost.any()) continue;
+    for (MatrixXd* m : {&p.off, &p.sizes.value, &p.sizes.rounding}) *m = lost.select(0, *m);
+    if (!p.below) not_tried.push_back(p.s);
+  }
+}
+
+constexpr Index kAnsweredUpTo = 100;  ///< states
+constexpr double kLuck = 30;          ///< by which one answer may be closer than it should be
+
+/// The estimate itself may round at a point of very small mass: the residual is multiplied by 1e24
+/// and cancels again. The dense model's own transfer gives an upper bound, with a safety factor
+/// kLuck.
+void bound_by_answer(Sample& p, const StateSpace& m, const solve::RowMatrix<T>& u,
+                     const std::vector<int>& units) {
+  const linalg::Solution x = linalg::solve(
+      p.s * Eigen::MatrixXcd::Identity(m.order(), m.order()) - m.A, Eigen::MatrixXcd(m.B * u));
+  if (!(x.rcond > 0) || !x.z.allFinite()) return;
+  p.off = p.off.cwiseMin(kLuck * by_unit(m.C * x.z + m.D * u - p.y, units));
+}
+
+/// The largest error relative to the output's own size. An output at rounding level (0 by symmetry)
+/// is measured by its neighbours or its cancelling terms, also independent of units. So is an
+/// output below `of_neighbours` of those in its row and column.
+DenseError::Worst relative(const MatrixXd& off, const OutputSizes& sizes, double of_neighbours) {
+  const MatrixXd& size = sizes.value;
+  if (!off.allFinite() || !size.allFinite()) return {kInfinity};
+  const VectorXd of_row = size.rowwise().maxCoeff(), of_column = size.colwise().maxCoeff();
+  DenseError::Worst worst;
+  for (Index i = 0; i < off.rows(); ++i)
+    for (Index j = 0; j < off.cols(); ++j) {
+      if (off(i, j) <= kUnderflow) continue;
+      const double around = std::sqrt(of_row(i)) * std::sqrt(of_column(j));
+      const bool noise =
+          size(i, j) <= std::max(kNoise * sizes.rounding(i, j), of_neighbours * around);
+      const double beside = std::max(around, sizes.rounding(i, j) / kEpsilon);
+      if (const double error = off(i, j) / (noise ? beside : size(i, j)); error > worst.error)
+        worst = {error, {}, static_cast<int>(i), static_cast<int>(j)};
+    }
+  return worst;
+}
+
+/// Below all visible modes an output of free motion grows, or falls, with a power of s without
+/// limit, and so does the error of the dense model: there only the error relative to the output at
+/// the same s counts.
+DenseError worst_of(const std::vector<Sample>& samples) {
+  DenseError worst;
+  OutputSizes largest{MatrixXd::Zero(samples.front().off.rows(), samples.front().off.cols()),
+                      MatrixXd::Zero(samples.front().off.rows(), samples.front().off.cols())};
+  const bool all = std::ranges::all_of(samples, &Sample::below);
+  const auto counts = [all](const Sample& p) { return all || !p.below; };
+  for (const Sample& p : samples)
+    if (counts(p)) {
+      largest.value = largest.value.cwiseMax(p.sizes.value);
+      largest.rounding = largest.rounding.cwiseMax(p.sizes.rounding);
+    }
+  const auto keep = [](const DenseError::Worst& found, T s, DenseError::Worst& so_far) {
+    if (found.error > so_far.error) so_far = found, so_far.s = s;
+  };
+  for (const Sample& p : samples) {
+    if (counts(p)) keep(relative(p.off, largest, kOfNeighbours), p.s, worst.beside_largest);
+    keep(relative(p.off, p.sizes, 0), p.s, worst.where_small);
+  }
+  return worst;
+}
+
+/// Columns of the inputs tried become units of inputs.
+DenseError by_input(DenseError e, int units) {
+  for (DenseError::Worst* w : {&e.beside_largest, &e.where_small})
+    w->input = units <= kColumns && w->input >= 0 ? w->input % units : -1;
+  return e;
+}
+
+}  // namespace
+
+DenseError dense_error(const Factored& d, const StateSpace& m) {
+  if (m.B.cols() == 0 || m.C.rows() == 0 || m.A.size() == 0) return {{-1}, {-1}};
+  const Measure units = measure(d.graph(), {});
+  const solve::RowMatrix<T> u = tried_inputs(m, units.cols);
+  std::vector<T> not_tried;
+  std::vector<Sample> samples = sample(d, m, u, units, not_tried);
+  if (samples.empty()) return {{-1}, {-1}, std::move(not_tried)};
+  leave_out_lost(samples, not_tried);
+  DenseError found = worst_of(samples);
+  const double worst = std::max(found.beside_largest.error, found.where_small.error);
+  if (worst > kDoubted && m.order() <= kAnsweredUpTo) {
+    for (Sample& p : samples) bound_by_answer(p, m, u, units.rows);
+    found = worst_of(samples);
+  }
+  found = by_input(found, static_cast<int>(units.cols.size()));
+  found.not_tried = std::move(not_tried);
+  return found;
+}
+
+}  // namespace titop::detail

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <titop/compiler/solve/factored.hpp>
+
+/// Residual of the equations, as the user wrote them and as the blocks define them. For the
+/// compiler's own files only.
+namespace titop::detail {
+
+inline constexpr double kWarn = 1e-9;  ///< larger values are reported in the log
+
+/// All signals of one input, at one real s or at one instant.
+struct Signals {
+  std::vector<int> first = {};             ///< of every signal in `values`, and the end
+  solve::RowMatrix<double> values = {};    ///< one column
+  solve::RowMatrix<double> unknowns = {};  ///< of the joint system as written
+  solve::RowMatrix<double> rounding = {};  ///< one sample of it, as `values`; none: not known
+  double s = 0;  ///< xdot = s x, positions are accelerations over s^2. 0: an instant, where xdot is
+                 ///< A x + B u by definition and positions there must be none
+};
+
+/// First row of signal i among all, and the end.
+std::vector<int> first_of_signals(const Graph& graph);
+
+struct WrittenResidual {
+  double worst = 0;   ///< Certificate::residual
+  std::string where;  ///< the equation or block that has it
+};
+
+/// Largest |left - right| over (sum of magnitudes of the terms) of all equations of Stage::source
+/// and all rows of all blocks. Zeros at rounding level do not count, nor, if a sample of rounding
+/// is known, a difference below 1e4 times its effect on the terms, or below 1e-14 of the largest of
+/// its kind in over-constrained chains. Values that are not finite count as 1. O(terms).
+WrittenResidual written_residual(const Factored& d, const Signals& signals);
+
+/// Possible rounding of a 0, relative to its Surroundings: some hundred units of the last place,
+/// since it comes from sums over a front.
+inline constexpr double kLeftOfZero = 1e-13;
+
+/// Size around an unknown in the elimination, in the unknown's own unit (by the scaling of the
+/// fronts' columns): the largest of its front; if all that the front shares with its parent is
+/// rounding of a 0 there, as behind a gain of 0, the front may be rounding, too, and the parent's
+/// magnitude is used. Of the joint system as written.
+class Surroundings {
+ public:
+  /// One column of unknowns, which must outlive this object.
+  Surroundings(const Factored& data, const solve::RowMatrix<double>& unknowns)
+      : d_(data), unknowns_(unknowns) {}
+
+  /// Around an entry of a signal in terms of unknowns; 0 of a known one. O(1), once O(unknowns).
+  double size(int signal, Eigen::Index entry);
+
+ private:
+  double of_variable(int variable, Eigen::Index entry);
+  /// Once that of its parent is known.
+  double of_front(const solve::Front& front) const;
+
+  const Factored& d_;
+  const solve::RowMatrix<double>& unknowns_;
+  std::vector<double> sizes_ = {};  ///< per front, in the scale of its columns
+};
+
+}  // namespace titop::detail

@@ -1,0 +1,279 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <string_view>
+#include <titop/compiler/certificate/check.hpp>
+#include <titop/compiler/certificate/doubt.hpp>
+#include <titop/compiler/certificate/residual.hpp>
+#include <titop/compiler/certificate/self_check.hpp>
+#include <titop/compiler/solve/evaluate.hpp>
+#include <titop/compiler/solve/frequency.hpp>
+#include <titop/compiler/solve/instant.hpp>
+#include <titop/compiler/solve/kernels.hpp>
+#include <titop/graph/ahead.hpp>
+#include <titop/graph/linalg/index.hpp>
+#include <titop/graph/support/steady_random.hpp>
+#include <utility>
+
+namespace titop::detail {
+namespace {
+
+using linalg::at;
+
+using solve::RowMatrix;
+
+constexpr double kRealShare = 0.6180;  ///< of |pick_s|: the s of the certificate
+
+RowMatrix<double> random_input(const Factored& d) {
+  SteadyRandom random;
+  RowMatrix<double> u(static_cast<Eigen::Index>(d.layout().inputs.size()), 1);
+  for (Eigen::Index i = 0; i < u.size(); ++i) u(i) = random.next();
+  return u;
+}
+
+/// Every signal follows from states and inputs, and no state from others.
+bool has_instants(const Factored& d) {
+  if (d.skeleton->before_reduce || !d.states.trivial() || d.states.by_input().size() > 0)
+    return false;
+  for (const Equation& e : d.skeleton->stage.source->equations)
+    for (const Term& t : e.terms)
+      if (t.of == Term::Of::position || t.of == Term::Of::rate) return false;
+  return true;
+}
+
+/// The inputs of node i, all of them.
+void take_inputs(const Factored& d, int i, const Instant& now, RowMatrix<double>& inputs) {
+  const Node& node = d.graph().nodes[at(i)];
+  inputs.setZero(d.numbers.blocks[at(i)]->B.cols(), 1);
+  for (int k = node.first_signal; k < node.state; ++k)
+    if (const Signal& in = d.graph().signals[at(k)]; in.role == Signal::Role::input && in.active)
+      now.add_value(k, inputs.data() + in.first);
+}
+
+/// x = (s - A)^-1 x of every block by itself, x the states of all blocks. Blocks that are the same
+/// object share one factorisation; only one is kept at a time.
+void resolve(const Factored& d, double s, double* x) {
+  std::vector<std::pair<const Dynamics*, int>> blocks;
+  blocks.reserve(d.layout().state_nodes.size());
+  for (const int i : d.layout().state_nodes)
+    blocks.emplace_back(d.numbers.blocks[at(i)].get(), d.layout().state_first[at(i)]);
+  std::sort(blocks.begin(), blocks.end());
+  for (std::size_t k = 0; k < blocks.size();) {
+    const Dynamics* const block = blocks[k].first;
+    const Resolvent<double> resolvent(*block, s);
+    for (; k < blocks.size() && blocks[k].first == block; ++k)
+      resolvent.apply(1, x + blocks[k].second);
+  }
+}
+
+/// Largest |value| over `magnitude`, row by row; 1 if it is not finite.
+double relative(const Eigen::VectorXd& value, const Eigen::VectorXd& magnitude) {
+  double worst = 0;
+  for (Eigen::Index i = 0; i < value.size(); ++i)
+    if (const double off = std::abs(value(i)); !(off <= kUnderflow))
+      worst = std::max(worst, std::isfinite(off) ? off / magnitude(i) : 1.0);
+  return worst;
+}
+
+/// The blocks' own formulas at s, used by transfers, against their A, B, C, D, for random inputs:
+/// of the first blocks of each type, since a type has one formula. An instant does not use them.
+WrittenResidual check_responses(const Factored& d, double s) {
+  constexpr std::size_t kOfEachType = 2;
+  WrittenResidual result;
+  SteadyRandom random;
+  std::map<std::string_view, std::set<const Dynamics*>> seen;
+  for (const int i : d.layout().state_nodes) {
+    const Node& node = d.graph().nodes[at(i)];
+    fetch_ahead(d.graph(), at(i));
+    const Dynamics& m = *d.numbers.blocks[at(i)];
+    auto& of_type = seen[node.block->type()];
+    if (of_type.size() == kOfEachType || !of_type.insert(&m).second) continue;
+    const auto r = response<double>(*node.block, m, s, d.numbers.parameters);
+    Eigen::VectorXd u(m.B.cols());
+    for (double& v : u) v = random.next();
+    const Eigen::VectorXd x = Resolvent<double>(m, s).times(m.B * u), size = u.cwiseAbs();
+    double worst = relative(r.X * u - x, r.X.cwiseAbs() * size + x.cwiseAbs());
+    if (m.sparse.empty())
+      worst = std::max(worst, relative(r.Y * u - (m.C * x + m.D * u),
+                                       r.Y.cwiseAbs() * size + m.C.cwiseAbs() * x.cwiseAbs() +
+                                           m.D.cwiseAbs() * size));
+    if (worst > result.worst) result = {worst, "the response of " + node.name};
+  }
+  return result;
+}
+
+/// [x; u] with the states of each block by itself at s for the inputs that it gets when u alone
+/// acts. Strictly proper blocks have no direct term: blocks at rest behind one get random inputs of
+/// size 1, not the outputs of the others, since stiff blocks have outputs much larger than their
+/// inputs, and the effect of u must not be hidden. One solution.
+RowMatrix<double> known_at_instant(const Factored& d, const RowMatrix<double>& u, double s) {
+  const Layout& l = d.layout();
+  RowMatrix<double> known = RowMatrix<double>::Zero(l.order() + u.rows(), 1), inputs;
+  known.bottomRows(u.rows()) = u;
+  const Instant by_u(d, known);
+  SteadyRandom random;
+  for (int i = 0; i < static_cast<int>(l.state_first.size()); ++i) {
+    if (l.state_first[at(i)] < 0) continue;
+    const Dynamics& m = *d.numbers.blocks[at(i)];
+    take_inputs(d, i, by_u, inputs);
+    if (inputs.isZero(0))
+      for (double& x : inputs.reshaped()) x = random.next();
+    solve::add_dense_product(m.B.rows(), m.B.cols(), m.B.data(), inputs.data(), 1,
+                             known.data() + l.state_first[at(i)]);
+  }
+  resolve(d, s, known.data());
+  return known;
+}
+
+/// A residual above rounding is computed again with a sample of the signals' rounding.
+template <class Rounding>
+WrittenResidual residual_of(const Factored& d, Signals& signals, Rounding rounding) {
+  const WrittenResidual written = written_residual(d, signals);
+  if (written.worst <= kWarn) return written;
+  signals.rounding = rounding();
+  return written_residual(d, signals);
+}
+
+/// At one instant. False if it is impossible, or if the equations are satisfied but digits may be
+/// lost.
+bool check_instant(const Factored& d, const RowMatrix<double>& u, double s, Certificate& c) {
+  if (!has_instants(d) || d.layout().order() + u.size() == 0) return false;
+  const Instant now(d, known_at_instant(d, u, s));
+  if (!now.unknowns().allFinite()) return false;
+  Signals signals{first_of_signals(d.graph())};
+  signals.values = now.values(signals.first);
+  signals.unknowns = now.unknowns();
+  WrittenResidual written =
+      residual_of(d, signals, [&] { return now.rounding().values(signals.first); });
+  // Two formulas for one thing differ by more than rounding near a block's own real pole.
+  if (const auto responses = check_responses(d, s);
+      responses.worst > std::max(kWarn, written.worst))
+    written = responses;
+  if (written.worst <= kWarn && digits_in_doubt(d, now, signals)) return false;
+  c.residual = written.worst;
+  c.residual_where = written.where;
+  c.at_instant = true;
+  return true;
+}
+
+/// Size around the states of all blocks at a real s (see Surroundings).
+class AroundStates {
+ public:
+  AroundStates(const Factored& d, const Evaluation<double>& point, double s)
+      : d_(d), point_(point), s_(s), around_(d, point.unknowns()) {}
+
+  /// Row by row, of the states that output o is a sum of.
+  Eigen::VectorXd of_output(std::size_t o) {
+    const Output& output = d_.graph().outputs[o];
+    const int first = d_.skeleton->joint.output_coefficient[o];
+    Eigen::VectorXd sum = Eigen::VectorXd::Zero(output.size);
+    for (std::size_t k = 0; k < output.terms.size(); ++k)
+      if (const int x = output.terms[k].signal; d_.graph().signals[at(x)].role == Role::state)
+        sum += d_.numbers.coefficients[at(first) + k]->cwiseAbs() * of_states(x);
+    return sum;
+  }
+
+ private:
+  using Role = Signal::Role;
+
+  /// The block's response to the sizes around its inputs; at least the states themselves.
+  const Eigen::VectorXd& of_states(int states) {
+    const auto [found, added] = sizes_.try_emplace(states);
+    if (!added) return found->second;
+    const int i = d_.graph().signals[at(states)].node;
+    const Node& node = d_.graph().nodes[at(i)];
+    const Dynamics& m = *d_.numbers.blocks[at(i)];
+    Eigen::VectorXd u = Eigen::VectorXd::Zero(m.B.cols());
+    for (int k = node.first_signal; k < node.state; ++k)
+      if (const Signal& in = d_.graph().signals[at(k)]; in.role == Role::input && in.active)
+        for (Eigen::Index j = 0; j < in.size; ++j) u(in.first + j) = around_.size(k, j);
+    const auto X = response<double>(*node.block, m, s_, d_.numbers.parameters).X;
+    found->second = (X.cwiseAbs() * u).cwiseMax(point_.value(states).col(0).cwiseAbs());
+    return found->second;
+  }
+
+  const Factored& d_;
+  const Evaluation<double>& point_;
+  double s_;
+  Surroundings around_;
+  std::map<int, Eigen::VectorXd> sizes_ = {};
+};
+
+/// These differences of the outputs, without outputs that are 0 because states cancel: the rotation
+/// of a body is a sum of angles.
+RowMatrix<double> without_zeros(const Factored& d, AroundStates& around, const RowMatrix<double>& y,
+                                RowMatrix<double> off) {
+  for (std::size_t o = 0; o < d.graph().outputs.size(); ++o) {
+    const int size = d.graph().outputs[o].size, unit = size == 6 ? 3 : 1;
+    for (int i = 0; i < size; i += unit) {
+      auto part = off.middleRows(d.layout().output_first[o] + i, unit);
+      const double value = y.middleRows(d.layout().output_first[o] + i, unit).cwiseAbs().maxCoeff();
+      if ((part.array().abs() <= kWarn * value).all()) continue;
+      const double zero = kLeftOfZero * around.of_output(o).segment(i, unit).maxCoeff();
+      if (value <= zero && (part.array().abs() <= zero).all()) part.setZero();
+    }
+  }
+  return off;
+}
+
+/// Share of the outputs that double loses at a real s. An output that is 0 by cancellation, without
+/// a size to compare with, counts as having lost none: it is rounding only.
+void find_lost(const Factored& d, Evaluation<double>& point, double s, Check& check) {
+  const RowMatrix<double> before = point.outputs();
+  const auto losses = point.losses();
+  check.lost = std::max(losses.change, losses.rounding);
+  if (check.lost <= kWarn) return;
+  const RowMatrix<double> y = point.outputs();
+  AroundStates around(d, point, s);
+  const auto lost = [&](const RowMatrix<double>& off) {
+    return lost_of_outputs(d, point.unknowns(), y, without_zeros(d, around, y, off));
+  };
+  const double told = std::max(lost(y - before), lost(point.rounding()));
+  check.rounding_alone = told < check.lost;
+  check.lost = std::min(check.lost, told);
+}
+
+/// At one real s: equations that hold for every real s hold for every s, at half the arithmetic.
+void check_at_s(const Factored& d, const RowMatrix<double>& u, double s, Check& check) {
+  Evaluation<double> point(d, s, u);
+  Signals signals{first_of_signals(d.graph())};
+  signals.values = point.values(signals.first);
+  signals.unknowns = point.unknowns();
+  signals.s = s;
+  const WrittenResidual written =
+      residual_of(d, signals, [&] { return point.rounding_of_values(signals.first); });
+  check.certificate.residual = written.worst;
+  check.certificate.residual_where = written.where;
+  find_lost(d, point, s, check);
+  if (const double lost = check.lost; lost > kWarn)
+    check.notes.push_back(
+        {Note::Kind::warning, "certify",
+         fmt::format(
+             "in double the outputs are right to {:.1g} at s = {:.3g}: transfer takes finer "
+             "arithmetic, apply and A, B, C, D have these digits only",
+             lost, s)});
+}
+
+}  // namespace
+
+void self_check(const Factored& d, Check& check) try {
+  Certificate& certificate = check.certificate;
+  const RowMatrix<double> u = random_input(d);
+  // Not |pick_s| itself, where a block by itself may have a pole.
+  const double s = kRealShare * std::abs(pick_s(d));
+  certificate.s = s;
+  if (check_instant(d, u, s, certificate)) return;
+  if (u.size() > 0)
+    check_at_s(d, u, s, check);
+  else
+    certificate.residual = -1;  // at s nothing moves
+} catch (const Error& error) {
+  if (!error.has(Code::singular)) throw;
+  check.certificate.residual = 1;
+  check.certificate.residual_where = "in double, not one equation";
+}
+
+}  // namespace titop::detail

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <limits>
+#include <titop/graph/graph.hpp>
+#include <titop/graph/state_space.hpp>
+#include <vector>
+
+namespace titop::detail {
+
+/// Factor on rounding: differences below it may be rounding alone.
+inline constexpr double kNoise = 1e3;
+/// Floor of a zero entry, relative to its neighbours: in one order of summation the terms of a 0
+/// cancel exactly, in another to 1e-17.
+inline constexpr double kHitBy = 1e-3;
+
+/// Scales for the comparison of two transfers. Three translations (or rotations) of one port share
+/// their unit: such blocks of 3 x 3, and single scalars, have one size.
+struct Measure {
+  std::vector<int> rows, cols;  ///< of the blocks, in the order of outputs and of inputs
+  Eigen::MatrixXd terms = {};   ///< outputs x inputs, see `terms`; empty: not known
+};
+
+/// Blocks of a graph's outputs and inputs, as declared: threes if three divides a signal's size.
+Measure measure(const Graph& graph, Eigen::MatrixXd terms);
+
+/// The model's transfers at these points. A pair without a path through nonzero entries of A, B, C
+/// and D is exactly 0, without the rounding of row operations. O(points n^3).
+std::vector<Eigen::MatrixXcd> transfers(const StateSpace& m,
+                                        const std::vector<std::complex<double>>& points);
+
+/// Size of the terms whose sums are the entries of m's transfer, before cancellation: with the
+/// responses X = (s I - A)^-1 B and W = C (s I - A)^-1, which make G = D + W (s I - A) X, the
+/// largest |D| + |W| |s I - A| |X| at these points. Independent of the units of states, inputs and
+/// outputs. O(points n^3).
+Eigen::MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& points);
+
+/// Those of these terms whose rounding is below 1e-6 of the entries in the row and column of
+/// `exact` (their geometric mean), and all terms if these are 0; else 0. An entry with more
+/// rounding is not a 0 compared with others: such a model has lost digits everywhere.
+Eigen::MatrixXd of_nothing(const Eigen::MatrixXd& terms,
+                           const std::vector<Eigen::MatrixXcd>& exact);
+
+/// As `terms`, for the rounding of the model's own A, B, C and D (matrices of their sizes): |dD| +
+/// |W| |dB| + |dC| |X| + |W| |dA| |X| over the rounding unit. These are sums of magnitudes, without
+/// a statistical margin. 0 as in `of_nothing`, relative to the model's own transfers. O(points
+/// n^3).
+Eigen::MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
+                                  const std::vector<std::complex<double>>& points);
+
+/// Factor on one sample of rounding, taken after a step of refinement, as a bound for many.
+inline constexpr double kTermsPerRounding = 100 / std::numeric_limits<double>::epsilon();
+
+/// The same of `transfer(graph, s, values)` (compiler/definition/transfer.hpp): all equations
+/// against all in reverse order, likewise. Outputs and inputs in the graph's order. O(points
+/// signals^3).
+Eigen::MatrixXd terms(const Graph& graph, const std::vector<std::complex<double>>& points,
+                      ParameterValues values);
+
+/// Adds the terms of an elimination to the measure, for blocks of `exact` that may be rounding
+/// alone: below 1e3 of one sample of it, where three digits or fewer remain. A larger block is
+/// compared with its own size, even if double has lost many digits. If `exact` is 0 to the last bit
+/// (possible with rotated frames), there is no sample: 1e-3 of the geometric mean of the entries in
+/// its row and column is used as terms, so that `difference` is 1 at 1e-6 of that.
+void add_rounding(Measure& measure, const std::vector<Eigen::MatrixXcd>& exact,
+                  const Eigen::MatrixXd& terms);
+
+/// Up to 8 of these points, spread over all of them, the last one included.
+std::vector<std::complex<double>> some_of(const std::vector<std::complex<double>>& points);
+
+/// Place of the largest difference of two transfers.
+struct Difference {
+  double relative = 0;
+  std::size_t point = 0;  ///< index
+};
+
+/// Above it a difference may be rounding of terms that a dense model does not show.
+inline constexpr double kClose = 1e-9;
+
+/// Two transfers at the same points: each entry's difference over the size of its block. That is
+/// the largest value of the block in `exact`, or 1e-3 of its terms if these are larger and cancel,
+/// as by symmetry (double has no better accuracy than 1e-15 of the terms, and the entries of a
+/// dense model have lost some digits when they were made). No block is measured by its neighbours
+/// (except a 0 to the last bit, by add_rounding): the result is independent of the units of scalars
+/// and of vectors of three, whose components share a unit. Infinite for values that are not finite,
+/// and for a difference where `exact` and the terms are 0.
+Difference difference(const std::vector<Eigen::MatrixXcd>& a,
+                      const std::vector<Eigen::MatrixXcd>& exact, const Measure& measure);
+
+}  // namespace titop::detail

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <titop/compiler/definition/exact/integers.hpp>
+#include <titop/compiler/definition/exact_order.hpp>
+
+namespace titop::exact {
+
+/// xdot = A x + B u, y = C x + D u: the matrices that determine a minimal order.
+struct Model {
+  int states = 0;
+  Square A, A_transposed;
+  std::vector<Row> B;  ///< per input, over states
+  std::vector<Row> C;  ///< per output, over states
+};
+
+/// From all equations of the graph, in fractions; a position or a rate is a chain of integrators on
+/// its acceleration. Throws Undecided.
+Model model_of(const Graph& graph, const ExactOptions& options, ParameterValues values);
+
+/// From the entries of the matrices, taken as exact.
+Model model_of(const StateSpace& model);
+
+}  // namespace titop::exact

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <set>
+#include <titop/compiler/loops/lines.hpp>
+
+/// Points immobilised by loop constraints.
+namespace titop::passes::closing {
+
+/// Scalars that are 0 in every motion that the closed chains allow; prescribed motions are not
+/// included.
+using AtRest = std::set<ScalarColumn>;
+
+/// Sets the motion of points that closed chains immobilise by their numbers to 0: the elimination
+/// would find rounding instead of their accelerations. The chains' own equations keep them, for the
+/// forces, and so do bodies that `lower` has turned into equations; all other equations lose their
+/// terms, so that outputs are 0 and bodies mounted there are on the ground.
+void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& closings,
+                const AtRest& held);
+
+}  // namespace titop::passes::closing

@@ -1,0 +1,134 @@
+#include <algorithm>
+#include <numeric>
+#include <titop/compiler/minreal/integrators.hpp>
+#include <titop/graph/linalg/balance.hpp>
+#include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
+
+namespace titop::modes {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr double kSingular = 1e-15;  ///< rcond of a matrix with a pole at 0, up to rounding
+
+using linalg::at;
+
+MatrixXd above(const MatrixXd& a, const MatrixXd& b) {
+  MatrixXd both(a.rows() + b.rows(), a.cols());
+  both << a, b;
+  return both;
+}
+
+}  // namespace
+
+IntegratorSplit find_integrators(const StateSpace& model) {
+  const Index n = model.A.rows();
+  std::vector<char> integrator(at(n), 0);
+  const auto acts_on_the_rest = [&](Index j) {
+    for (Index i = 0; i < n; ++i)
+      if (model.A(i, j) != 0 && !integrator[at(i)]) return true;
+    return false;
+  };
+  for (bool found = true; found;) {
+    found = false;
+    for (Index j = 0; j < n; ++j)
+      if (!integrator[at(j)] && !acts_on_the_rest(j)) integrator[at(j)] = found = true;
+  }
+  IntegratorSplit states;
+  for (int j = 0; j < n; ++j) (integrator[at(j)] ? states.integrators : states.rest).push_back(j);
+  return states;
+}
+
+StateSpace without_integrators(const StateSpace& model, const IntegratorSplit& states) {
+  StateSpace rest;
+  rest.A = model.A(states.rest, states.rest);
+  rest.B = model.B(states.rest, Eigen::all);
+  for (const int i : states.rest) rest.states.push_back(model.states[at(i)]);
+  rest.inputs = model.inputs;
+  rest.outputs = model.outputs;
+  MatrixXd C = model.C(Eigen::all, states.rest), D = model.D;
+  if (model.outputs.empty()) {  // all states count, not only those that integrators read
+    C = MatrixXd::Identity(rest.A.rows(), rest.A.cols());
+    D = MatrixXd::Zero(rest.A.rows(), model.B.cols());
+    rest.outputs = rest.states;
+  }
+  rest.C = above(C, model.A(states.integrators, states.rest));
+  rest.D = above(D, model.B(states.integrators, Eigen::all));
+  for (const int i : states.integrators) rest.outputs.push_back(model.states[at(i)] + "_rate");
+  return rest;
+}
+
+StateSpace with_integrators(const StateSpace& rest, const StateSpace& model,
+                            const IntegratorSplit& states) {
+  const Index n = rest.A.rows(), k = std::ssize(states.integrators), outputs = model.C.rows();
+  StateSpace m;
+  m.A = MatrixXd::Zero(n + k, n + k);
+  m.A.topLeftCorner(n, n) = rest.A;
+  m.A.bottomLeftCorner(k, n) = rest.C.bottomRows(k);
+  m.A.bottomRightCorner(k, k) = model.A(states.integrators, states.integrators);
+  m.B = above(rest.B, rest.D.bottomRows(k));
+  m.C.resize(outputs, n + k);
+  m.C << rest.C.topRows(outputs), model.C(Eigen::all, states.integrators);
+  m.D = rest.D.topRows(outputs);
+  m.states = rest.states;
+  for (const int i : states.integrators) m.states.push_back(model.states[at(i)]);
+  m.inputs = model.inputs;
+  m.outputs = model.outputs;
+  return m;
+}
+
+namespace {
+
+/// X A_rest = taken + N X, if a power of N is 0: `divided(Y)` is Y A_rest^-1.
+template <class Divided>
+MatrixXd followed(const MatrixXd& N, const MatrixXd& taken, const Divided& divided) {
+  MatrixXd X = MatrixXd::Zero(taken.rows(), taken.cols());
+  for (Index step = 0; step < N.rows(); ++step) {
+    const MatrixXd before = X;
+    X = divided(MatrixXd(taken + N * X));
+    if (!X.allFinite() || X == before) break;
+  }
+  return X;
+}
+
+}  // namespace
+
+std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit& states) {
+  const auto& [rest, integrators] = states;
+  Decoupled d{MatrixXd::Zero(std::ssize(integrators), std::ssize(rest)),
+              model.A(integrators, integrators), model.B(integrators, Eigen::all),
+              model.C(Eigen::all, rest)};
+  if (rest.empty()) return d;
+  MatrixXd A = model.A(rest, rest);
+  const Eigen::VectorXd scale = linalg::balance_parts(A);
+  const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd(A.transpose()));
+  if (!(lu.rcond() > kSingular)) return std::nullopt;
+  const auto divided = [&](const MatrixXd& Y) {
+    const MatrixXd right = Y.transpose();
+    return MatrixXd(MatrixXd(lu.solve(right)).transpose());
+  };
+  const MatrixXd taken = model.A(integrators, rest) * scale.asDiagonal();
+  d.X = followed(d.N, taken, divided) * scale.cwiseInverse().asDiagonal();
+  d.B -= d.X * model.B(rest, Eigen::all);
+  d.C_rest += model.C(Eigen::all, integrators) * d.X;
+  if (!d.X.allFinite() || !d.B.allFinite() || !d.C_rest.allFinite()) return std::nullopt;
+  return d;
+}
+
+MatrixXd terms_of_B(const StateSpace& model, const IntegratorSplit& states) {
+  const auto& [rest, integrators] = states;
+  MatrixXd terms = model.B(integrators, Eigen::all).cwiseAbs();
+  if (rest.empty()) return terms;
+  MatrixXd A = model.A(rest, rest);
+  const Eigen::VectorXd scale = linalg::balance_parts(A);
+  const MatrixXd one = MatrixXd::Identity(A.rows(), A.cols()),
+                 inverse = Eigen::PartialPivLU<MatrixXd>(A).solve(one).cwiseAbs();
+  const MatrixXd N = model.A(integrators, integrators).cwiseAbs(),
+                 taken = model.A(integrators, rest).cwiseAbs() * scale.asDiagonal();
+  const MatrixXd X = followed(N, taken, [&](const MatrixXd& Y) { return MatrixXd(Y * inverse); });
+  return terms + X * scale.cwiseInverse().asDiagonal() * model.B(rest, Eigen::all).cwiseAbs();
+}
+
+}  // namespace titop::modes

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <string>
+#include <titop/graph/state_space.hpp>
+#include <vector>
+
+namespace titop {
+
+struct MinimizeOptions {
+  double resolution = 0;  ///< also drop modes of visibility up to this; 0: only rounding's own
+  int exact_order = -1;   ///< the minimal order, if exact arithmetic has found it; -1: not known
+  /// Potential energy x' E x / 2, if it is known (n x n, else empty): it gives the symmetric form
+  /// of models whose mass couples the coordinates, as in closed chains. Not used if it does not fit
+  /// the model.
+  Eigen::MatrixXd energy = {};
+  /// Rounding error of each entry of A, B, C and D: matrices of their sizes, or empty for 2.2e-16
+  /// of the entry. It decides which integrators count. Not used if it does not fit.
+  StateSpace rounding = {};
+};
+
+/// A mode that was removed, or that is near the limit.
+struct JudgedMode {
+  double omega = 0;   ///< |s| [rad/s]
+  int states = 1;     ///< 2 for a pair of poles
+  double visibility;  ///< see `minimize`; of an integrator: independent part of its row
+  double bound;       ///< possible visibility by rounding alone
+  std::string why;    ///< "no input moves it", "no output sees it", "its pole is at 0", ...
+};
+
+/// Reliability of the order of a model.
+struct OrderVerdict {
+  bool judged = false;  ///< false: `minimize` has not run; only the structure has been looked at
+  int order = 0;        ///< of the model
+  /// Interval of the minimal order, both ends included; equal: it is decided, as far as double
+  /// precision distinguishes data. Of a system whose self-check reports lost digits, `lowest`
+  /// counts only states of inputs and outputs whose dynamics finer arithmetic confirms; of one
+  /// whose dense model keeps less than 3 digits (Certificate::dense_error), `highest` counts all.
+  int lowest = 0, highest = 0;
+  bool exact = false;   ///< decided by exact arithmetic (compiler/definition/exact_order.hpp)
+  double to_fewer = 1;  ///< least visibility among the kept modes: error of removing the next
+  double to_more = 0;   ///< largest visibility among the removed modes: error of removing them
+  /// Measured relative change of the transfer near the removed modes; negative: not measured. If
+  /// nothing is removed: the change was so much larger than the judged visibilities that the modes
+  /// were restored.
+  double change = -1;
+  std::vector<JudgedMode> removed, undecided;
+
+  bool decided() const { return judged && lowest == highest; }
+};
+
+/// "order 8; 2 states taken out, the mode at 11.4 rad/s: no output sees it (visibility 2e-33,
+/// rounding 8e-32); the next would cost 3.8e-03", or "order 162, undecided between 94 and 162 at
+/// this precision, kept 34 modes, ...". One line.
+std::string to_string(const OrderVerdict& verdict);
+
+/// A model without states of no effect on its transfer, and the removed modes.
+struct Minimized {
+  StateSpace model;
+  OrderVerdict order;
+  std::vector<std::string> notes;  ///< in plain words; the verdict is the first
+};
+
+/// Minimal by effect: a removed mode may be present in the last bits of the data, which the verdict
+/// reports. Each mode has a visibility v: the relative half-bandwidth in which it exceeds the rest
+/// of the transfer, a pure number, independent of the units of inputs, outputs and states:
+///
+///     w_i = 1 / max(|l_i - l_j|, 0.01 l_j),  q = sqrt(sum b_i^2 w_i),  r = sqrt(sum c_i^2 w_i)
+///     v_j = max_k(|c_kj| / r_k) max_l(|b_jl| / q_l) / (2 l_j)
+///
+/// Without it the transfer changes by at most v_j / zeta_j of the other modes' part there. A mode
+/// is dropped if its v is below ten times its own rounding bound or 1e-17, and both below 1e-9, or
+/// if v is below the resolution; in doubt it stays. Modes of equal frequency and damping are
+/// rotated among themselves first, so that unreachable ones are separate. An unreachable mode
+/// becomes a relation between states, an unobservable one likewise: the others keep name and
+/// meaning.
+///
+/// Undamped or proportionally damped models are treated as symmetric eigenproblems (l = omega^2),
+/// those of closed chains with the help of their energy, the others by the eigenvalues of A (l =
+/// s). Poles that are equal to rounding, those at 0 (2e-7 of A's norm) and those of a condition
+/// number above 1e6 have no reliable vectors: with all poles of their cluster they are split off as
+/// a small model (linalg/spectral.hpp), whose controllability and observability staircases
+/// determine how many of its states count (minimize/staircase.hpp). Integrators that act on no
+/// other state, of positions and rates that outputs read, are separated, and both parts judged by
+/// themselves: zdot = N z + B u is their part without the modes, and the ranks of [B, N B, ...] and
+/// [C; C N; ...] determine which of them depend on other states (a position that is a state
+/// already) and which are unobservable (the common motion, if outputs read differences). A rank is
+/// decided against four samples of rounding, 32 times the largest. The verdict's interval counts
+///  - upwards, dropped modes above their own rounding bound, which are present, however small their
+///    effect, and those whose bound is above 1e-14, which may hide an effect;
+///  - downwards, kept modes below 1e-9 within 1e4 of their bound, and any within ten times their
+///    bound; integrators and states of such small models within 1e4 of their rounding.
+/// A decided order is that of all data which rounding distinguishes from the given ones: effects
+/// below their own bound (two frequencies one ulp apart) count as zero, and only exact arithmetic
+/// decides about them. Modes are vectors of one size in the states' own units
+/// (linalg::balance_parts): in other units of the model the verdict is the same except for
+/// decisions at rounding level, which count as undecided. `System::state_space` first sets entries
+/// to 0 that its factors cannot distinguish from 0 (32 times the largest of four samples of
+/// rounding), unless that costs the transfer digits. With `exact_order` the least visible modes
+/// leave until the order is that one. The transfer is measured before and after, near the removed
+/// modes: if it has changed by more than 1e-8 and ten times the resolution, the whole model is the
+/// result, and the notes report it. Cost O(n^3). Throws not_finite for entries that are not, and
+/// size for matrices that do not fit each other or the names of states, inputs and outputs.
+Minimized minimize(const StateSpace& model, const MinimizeOptions& options = {});
+
+}  // namespace titop

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <titop/compiler/minreal/judge.hpp>
+#include <titop/compiler/minreal/modes.hpp>
+#include <vector>
+
+/// Removal of modes, as relations between states: the remaining states keep name and meaning.
+namespace titop::modes {
+
+/// Takes out these states (in ascending order): they follow from the others, x_out = T x_others.
+void take_out_dependent(StateSpace& model, const std::vector<int>& out, const Eigen::MatrixXd& T);
+/// Takes out these states: the others are now relative to them, x_others + P x_out, on which alone
+/// outputs depend.
+void take_out_unseen(StateSpace& model, const std::vector<int>& out, const Eigen::MatrixXd& P);
+/// All states but these, which are in ascending order.
+std::vector<int> others(Eigen::Index states, const std::vector<int>& out);
+/// The notes on such states.
+std::string note_of_dependent(const StateSpace& model, const std::vector<int>& out);
+std::string note_of_unseen(const StateSpace& model, const std::vector<int>& out);
+
+/// Takes out the modes that the verdicts drop; one note for states that now follow from the others,
+/// one for those that the others are taken relative to. O(n^2) per mode.
+void take_out(const Symmetric& s, const std::vector<Verdict>& verdicts, StateSpace& model,
+              std::vector<std::string>& notes);
+void take_out(const General& g, const std::vector<Verdict>& verdicts, StateSpace& model,
+              std::vector<std::string>& notes);
+
+}  // namespace titop::modes

@@ -1,0 +1,157 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <boost/pending/disjoint_sets.hpp>
+#include <cmath>
+#include <map>
+#include <titop/compiler/passes/check/dual_pairs.hpp>
+#include <titop/compiler/passes/check/springs.hpp>
+#include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/symmetric.hpp>
+#include <utility>
+
+namespace titop::full {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+constexpr double kRounding = 1e-12;  ///< of the axes' sizes
+
+using linalg::at;
+
+/// By channels, force and motion: the wrench that works against the structure.
+using Gains = std::map<std::pair<int, int>, MatrixXd>;
+
+Gains gains(const Graph& g, ParameterValues values, Term::Of of) {
+  Gains result;
+  for (const Equation& e : g.equations) {
+    const int force = g.signals[at(e.target)].channel;
+    if (force < 0) continue;
+    const double sign = is_outward(g, force) ? 1 : -1;
+    for (const Term& t : e.terms)
+      for (const OfMotion& m : of_motions(g, t, values)) {
+        if (m.of != of || m.gain.isZero(0)) continue;
+        MatrixXd& sum = result[{force, m.channel}];
+        if (sum.size() == 0) sum.setZero(g.channels[at(force)].size, m.gain.cols());
+        sum += sign * (e.part.whole() ? m.gain : MatrixXd(e.part.rows().transpose() * m.gain));
+      }
+  }
+  return result;
+}
+
+/// The inputs of a block that a one-way output is the rate or the position of, with their gains.
+struct IntegratedInputs {
+  Term::Of of = Term::Of::rate;
+  MatrixXd of_inputs = {};  ///< no columns: none
+};
+
+IntegratedInputs integrated(const Dynamics& d, const Signal& output) {
+  if (d.A.size() == 0 || d.C.rows() < output.first + output.size ||
+      !d.D.middleRows(output.first, output.size).isZero(0))
+    return {};
+  MatrixXd C = d.C.middleRows(output.first, output.size);
+  for (const Term::Of of : {Term::Of::rate, Term::Of::position}) {
+    const MatrixXd moved = C * d.B;
+    C = C * d.A;
+    if (!moved.isZero(0)) return C.isZero(0) ? IntegratedInputs{of, moved} : IntegratedInputs{};
+  }
+  return {};
+}
+
+/// Channels that the gains tie together, in ascending order.
+std::vector<std::vector<int>> tied(const Gains& gains, std::size_t channels) {
+  boost::disjoint_sets_with_storage<> sets(channels);
+  std::map<std::size_t, std::vector<int>> by_set;
+  std::vector<int> all;
+  for (const auto& [pair, gain] : gains) {
+    sets.union_set(at(pair.first), at(pair.second));
+    all.insert(all.end(), {pair.first, pair.second});
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  for (const int c : all) by_set[sets.find_set(at(c))].push_back(c);
+  std::vector<std::vector<int>> result;
+  for (auto& [set, list] : by_set) result.push_back(std::move(list));
+  return result;
+}
+
+/// Gains among these channels as one matrix. Axes that share a unit have the size of the largest
+/// gain among them: a 0 after rotations is no spring, and no fault.
+struct Among {
+  MatrixXd K;
+  Eigen::VectorXd size;
+
+  Among(const std::vector<int>& channels, const Graph& g, const Gains& gains) {
+    std::map<int, Index> first;
+    Index rows = 0;
+    for (const int c : channels) first[c] = std::exchange(rows, rows + g.channels[at(c)].size);
+    K.setZero(rows, rows);
+    for (const auto& [pair, gain] : gains)
+      if (const auto row = first.find(pair.first); row != first.end())
+        K.block(row->second, first.at(pair.second), gain.rows(), gain.cols()) = gain;
+    size = K.diagonal();
+    for (const auto& [c, row] : first) {
+      const int each = entries_per_unit(g.signals[at(g.channels[at(c)].accel)]);
+      for (Index i = row; i < row + g.channels[at(c)].size; i += each) {
+        auto unit = size.segment(i, each);
+        unit.setConstant(unit.maxCoeff());
+      }
+    }
+  }
+
+  bool symmetric_and_semidefinite() const {
+    if (!K.allFinite()) return false;
+    Eigen::VectorXd scale = Eigen::VectorXd::Zero(size.size());
+    for (Index i = 0; i < size.size(); ++i) {
+      if (size(i) > 0)
+        scale(i) = 1 / std::sqrt(size(i));
+      else if (!K.row(i).isZero(0) || !K.col(i).isZero(0))
+        return false;
+    }
+    const MatrixXd S = scale.asDiagonal() * K * scale.asDiagonal();
+    return (S - S.transpose()).cwiseAbs().maxCoeff() <= kRounding &&
+           eigh(S).lambda.minCoeff() >= -kRounding * static_cast<double>(S.rows());
+  }
+};
+
+}  // namespace
+
+std::vector<OfMotion> of_motions(const Graph& g, const Term& t, ParameterValues values) {
+  const Signal& s = g.signals[at(t.signal)];
+  if (t.of == Term::Of::position || t.of == Term::Of::rate)
+    return {{t.of, s.channel, coefficient(g, t, values)}};
+  if (s.role != Signal::Role::output || s.channel >= 0) return {};
+  const Node& node = g.nodes[at(s.node)];
+  const IntegratedInputs found = integrated(*node.block->dynamics(values), s);
+  if (found.of_inputs.size() == 0) return {};
+  const MatrixXd gain = coefficient(g, t, values) * found.of_inputs;
+  MatrixXd rest = found.of_inputs;
+  std::vector<OfMotion> result;
+  const auto& channels = node.block->interface().channels;
+  for (int k = 0; k < static_cast<int>(channels.size()); ++k) {
+    if (channels[at(k)].takes != Takes::accel) continue;
+    const Signal& taken = g.signals[at(g.channels[at(node.first_channel + k)].accel)];
+    result.push_back({found.of, node.first_channel + k, gain.middleCols(taken.first, taken.size)});
+    rest.middleCols(taken.first, taken.size).setZero();
+  }
+  return rest.isZero(0) ? result : std::vector<OfMotion>{};
+}
+
+std::string why_no_springs(const Graph& g, ParameterValues values) {
+  for (const Term::Of of : {Term::Of::position, Term::Of::rate}) {
+    const Gains all = gains(g, values, of);
+    for (const std::vector<int>& channels : tied(all, g.channels.size())) {
+      if (Among(channels, g, all).symmetric_and_semidefinite()) continue;
+      const auto pushed = std::find_if(channels.begin(), channels.end(), [&](int c) {
+        return all.lower_bound({c, 0}) != all.lower_bound({c + 1, 0});
+      });
+      return fmt::format(
+          "{} follows {} do", name_of(g, g.channels[at(*pushed)].force),
+          of == Term::Of::position ? "positions as no springs" : "rates as no dampers");
+    }
+  }
+  return "";
+}
+
+}  // namespace titop::full

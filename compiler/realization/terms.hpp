@@ -1,0 +1,16 @@
+#pragma once
+
+#include <titop/compiler/realization/writing.hpp>
+#include <titop/graph/state_space.hpp>
+
+/// The coefficients of targets, in numbers.
+namespace titop::detail {
+
+/// The coefficients of all targets' unknowns, at Target::coefficients and TargetTerm::to. `to`:
+/// zeros. O(terms).
+void find_coefficients(const Factored& data, const Writing& writing, double* to);
+
+/// Adds the targets' terms in states and inputs themselves. O(terms).
+void add_known(const Factored& data, const Writing& writing, StateSpace& model);
+
+}  // namespace titop::detail

@@ -1,0 +1,277 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <titop/compiler/solve/kernels.hpp>
+#include <titop/compiler/solve/response.hpp>
+#include <titop/compiler/solve/scalar.hpp>
+#include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/index.hpp>
+#include <titop/graph/pole.hpp>
+
+namespace titop::solve {
+
+/// For single blocks only, where fewer digits cancel.
+using Complex100 = boost::multiprecision::cpp_complex_100;
+
+template <>
+struct Scalar<Complex100> {
+  static double epsilon() { return 1e-100; }
+  static double size(const Complex100& x) {
+    return static_cast<double>(abs(x.real()) + abs(x.imag()));
+  }
+  static Complex100 from(double x) { return Complex100(x); }
+  static std::complex<double> round(const Complex100& x) {
+    return {static_cast<double>(x.real()), static_cast<double>(x.imag())};
+  }
+};
+
+}  // namespace titop::solve
+
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using linalg::at;
+using solve::Dense;
+using solve::lift;
+using solve::lifted;
+
+template <class T>
+solve::BlockResponse<T> response_in_double(const Block& block, const T& s,
+                                           ParameterValues parameters) {
+  Block::Response r = block.response(solve::Scalar<T>::round(s), parameters);
+  if constexpr (std::is_same_v<T, std::complex<double>>)
+    return {std::move(r.X), std::move(r.Y)};
+  else
+    return {lifted<T>(r.X), lifted<T>(r.Y)};
+}
+
+template <class T>
+Error pole_of(const Block& block, const T& at_s) {
+  return pole_at(solve::Scalar<T>::round(at_s), fmt::format("a {}", block.type()));
+}
+
+/// Y = rigid + W' diag(s^2 / d) W, d = s^2 + damping s + stiffness.
+template <class T>
+solve::BlockResponse<T> modal_response(const Block& block, const Modal& m, const T& s) {
+  const auto n = m.W.rows();
+  const Dense<T> W = lifted<T>(m.W);
+  solve::BlockResponse<T> r{Dense<T>(2 * n, W.cols()), lifted<T>(m.rigid)};
+  for (Index i = 0; i < n; ++i) {
+    const T d = s * s + lift<T>(m.damping(i)) * s + lift<T>(m.stiffness(i));
+    if (d == T(0)) throw pole_of(block, s);
+    for (Index j = 0; j < W.cols(); ++j) {
+      r.X(i, j) = W(i, j) / d;
+      r.X(n + i, j) = s * r.X(i, j);
+      for (Index k = 0; k < W.cols(); ++k) r.Y(k, j) += W(i, k) * s * r.X(n + i, j);
+    }
+  }
+  return r;
+}
+
+/// Cancelling terms of an entry of X or Y over the entry, allowed per state: magnitudes add up,
+/// rounding does not, and this much is usual in an LU.
+constexpr double kTerms = 100;
+
+/// The precision to use if one has too few digits; void: there is none.
+template <class T>
+struct Finer {
+  using type = void;
+};
+template <>
+struct Finer<std::complex<long double>> {
+  using type = std::complex<solve::DoubleDouble>;
+};
+template <>
+struct Finer<std::complex<solve::DoubleDouble>> {
+  using type = solve::Complex100;
+};
+template <>
+struct Finer<solve::Complex50> {
+  using type = solve::Complex100;
+};
+
+template <class To, class From>
+To real_as(const From& x) {
+  if constexpr (std::is_same_v<To, solve::DoubleDouble>) {
+    const double high = static_cast<double>(x);
+    return To(high) + To(static_cast<double>(From(x - From(high))));
+  } else if constexpr (std::is_same_v<From, solve::DoubleDouble>) {
+    const double high = static_cast<double>(x);
+    return To(high) + To(static_cast<double>(x - From(high)));
+  } else {
+    return static_cast<To>(x);
+  }
+}
+
+/// z in another precision.
+template <class To, class From>
+To as(const From& z) {
+  using Real = std::decay_t<decltype(std::declval<const To&>().real())>;
+  using Part = std::decay_t<decltype(z.real())>;
+  return To(real_as<Real>(Part(z.real())), real_as<Real>(Part(z.imag())));
+}
+
+template <class To, class From>
+Dense<To> as(const Dense<From>& m) {
+  return m.unaryExpr([](const From& z) -> To { return as<To>(z); });
+}
+
+template <class T>
+Eigen::MatrixXd sizes(const Dense<T>& m) {
+  return m.unaryExpr([](const T& x) -> double { return solve::size_of(x); });
+}
+
+/// The largest of terms / size, entry by entry; a 0 without terms is one. Infinite if a number
+/// is none.
+double largest_ratio(const Eigen::MatrixXd& terms, const Eigen::MatrixXd& size) {
+  double result = 0;
+  for (Index i = 0; i < size.size(); ++i) {
+    if (terms(i) == 0) continue;
+    const double ratio = terms(i) / size(i);
+    if (std::isnan(ratio)) return HUGE_VAL;
+    result = std::max(result, ratio);
+  }
+  return result;
+}
+
+/// Largest ratio of the terms of an entry of X and Y to the entry; with K = s - A the terms are
+/// |K^-1| |K| |X| and |D| + |C| |X| + |C K^-1| |K| |X|, independent of the units of states and
+/// ports. Infinite if double has less than two digits of K^-1.
+template <class T>
+double cancels(const Dynamics& d, const T& s, const solve::BlockResponse<T>& r) {
+  using Eigen::MatrixXcd;
+  using Eigen::MatrixXd;
+  const auto n = d.A.rows();
+  const MatrixXcd one = MatrixXcd::Identity(n, n), K = solve::Scalar<T>::round(s) * one - d.A;
+  const linalg::Solution solution = linalg::solve(K, one);
+  const MatrixXcd& inverse = solution.z;
+  const double two_digits = 100 * static_cast<double>(n) * solve::Scalar<double>::epsilon();
+  if (!(solution.rcond > two_digits) || !inverse.allFinite()) return HUGE_VAL;
+  const MatrixXd X = sizes(r.X), Y = sizes(r.Y);
+  if (!X.allFinite() || !Y.allFinite()) return HUGE_VAL;
+  const MatrixXd right = K.cwiseAbs() * X, of_states = inverse.cwiseAbs() * right;
+  const MatrixXd of_outputs =
+      d.D.cwiseAbs() + d.C.cwiseAbs() * X + (d.C * inverse).cwiseAbs() * right;
+  return std::max(largest_ratio(of_states, X), largest_ratio(of_outputs, Y));
+}
+
+/// From the matrices, each entry accurate to `enough`. C X + D cancels, the more the lower s is
+/// below the block's own frequencies: if T has too few digits, a finer precision is used. (100
+/// digits always suffice: 1e-88 of its terms is 0, as a notch at its frequency.)
+template <class T>
+solve::BlockResponse<T> general_response(const Block& block, const Dynamics& d, const T& s,
+                                         double enough) {
+  const Resolvent<T> resolvent(d, s);
+  if (resolvent.singular()) throw pole_of(block, s);
+  solve::BlockResponse<T> r{resolvent.times(lifted<T>(d.B)), lifted<T>(d.D)};
+  for (Index i = 0; i < r.Y.rows(); ++i)
+    for (Index j = 0; j < r.Y.cols(); ++j)
+      for (Index k = 0; k < r.X.rows(); ++k) r.Y(i, j) += lift<T>(d.C(i, k)) * r.X(k, j);
+  using More = typename Finer<T>::type;
+  if constexpr (!std::is_void_v<More>)
+    if (d.A.rows() > 0 && !(cancels(d, s, r) * solve::Scalar<T>::epsilon() <= enough)) {
+      const solve::BlockResponse<More> finer = general_response(block, d, as<More>(s), enough);
+      return {as<T>(finer.X), as<T>(finer.Y)};
+    }
+  return r;
+}
+
+/// Columns right of k, or right-hand sides, `count` of them, of as many rows as lu, n x n: x -=
+/// (column k of L) x(k), below row k.
+template <class T>
+void reduce(Index n, const T* lu, Index k, Index count, T* columns) {
+  for (T* x = columns; x != columns + count * n; x += n)
+    if (const T by = x[k]; by != T(0))
+      solve::subtract(n - k - 1, by, lu + k * n + k + 1, x + k + 1);
+}
+
+/// Rows a and b of n x columns numbers, column-major, change places.
+template <class T>
+void swap_rows(Index n, Index columns, T* x, Index a, Index b) {
+  for (T* const end = x + columns * n; x != end; x += n) std::swap(x[a], x[b]);
+}
+
+}  // namespace
+
+template <class T>
+Resolvent<T>::Resolvent(const Dynamics& dynamics, const T& s)
+    : modal_(dynamics.modal.get()), s_(s), n_(dynamics.A.rows()) {
+  if (modal_) return;
+  lu_.reserve(at(n_ * n_));
+  for (const double& a : dynamics.A.reshaped()) lu_.push_back(-lift<T>(a));
+  row_.reserve(at(n_));
+  T* const lu = lu_.data();
+  for (Index i = 0; i < n_; ++i) lu[i + i * n_] += s;
+  for (Index k = 0; k < n_; ++k) {
+    T* const column = lu + k * n_;
+    Index best = k;
+    for (Index i = k + 1; i < n_; ++i)
+      if (solve::size_of(column[i]) > solve::size_of(column[best])) best = i;
+    row_.push_back(best);
+    if (best != k) swap_rows(n_, n_, lu, k, best);
+    for (Index i = k + 1; i < n_; ++i) column[i] /= column[k];
+    reduce(n_, lu, k, n_ - k - 1, column + n_);
+  }
+}
+
+template <class T>
+bool Resolvent<T>::singular() const {
+  for (Index k = 0; k < n_ && !modal_; ++k)
+    if (lu_[at(k + k * n_)] == T(0)) return true;
+  return false;
+}
+
+template <class T>
+Dense<T> Resolvent<T>::times(Dense<T> r) const {
+  apply(r.cols(), r.data());
+  return r;
+}
+
+template <class T>
+void Resolvent<T>::apply(Index columns, T* r) const {
+  if (modal_) return apply_modes(columns, r);
+  const T* const lu = lu_.data();
+  // L is in the last order of the rows: all of them change places first.
+  for (Index k = 0; k < n_; ++k)
+    if (row_[at(k)] != k) swap_rows(n_, columns, r, k, row_[at(k)]);
+  for (Index k = 0; k < n_; ++k) reduce(n_, lu, k, columns, r);
+  for (T* x = r; x != r + columns * n_; x += n_)
+    for (Index k = n_; k-- > 0;) {
+      x[k] /= lu[k + k * n_];
+      solve::subtract(k, x[k], lu + k * n_, x);
+    }
+}
+
+template <class T>
+void Resolvent<T>::apply_modes(Index columns, T* r) const {
+  const Index modes = modal_->stiffness.size();
+  for (Index i = 0; i < modes; ++i) {
+    const T c = lift<T>(modal_->damping(i)), d = s_ * s_ + c * s_ + lift<T>(modal_->stiffness(i));
+    for (T* x = r; x != r + columns * n_; x += n_) {
+      const T eta = ((s_ + c) * x[i] + x[modes + i]) / d;
+      x[modes + i] = s_ * eta - x[i];
+      x[i] = eta;
+    }
+  }
+}
+
+template <class T>
+solve::BlockResponse<T> response(const Block& block, const Dynamics& d, const T& s,
+                                 ParameterValues parameters) {
+  if (solve::Scalar<T>::epsilon() > 1e-16) return response_in_double(block, s, parameters);
+  if (d.modal) return modal_response(block, *d.modal, s);
+  const double states = static_cast<double>(d.A.rows());
+  return general_response(block, d, s, kTerms * states * solve::Scalar<T>::epsilon());
+}
+
+#define TITOP_INSTANTIATE(T)                                                         \
+  template class Resolvent<T>;                                                       \
+  template solve::BlockResponse<T> response(const Block&, const Dynamics&, const T&, \
+                                            ParameterValues);
+TITOP_INSTANTIATE(double)
+TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
+#undef TITOP_INSTANTIATE
+
+}  // namespace titop::detail

@@ -1,0 +1,202 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <titop/compiler/certificate/without_rounding.hpp>
+#include <titop/compiler/definition/compare.hpp>
+#include <titop/compiler/minreal/effect.hpp>
+#include <titop/compiler/minreal/order_of_stage.hpp>
+#include <titop/compiler/realization/energy.hpp>
+#include <titop/compiler/solve/frequency.hpp>
+#include <titop/compiler/system/elimination_terms.hpp>
+#include <titop/compiler/system/system_data.hpp>
+#include <titop/graph/linalg/index.hpp>
+
+/// The dense model of a system, minimized; the removal is checked on the transfer.
+namespace titop::detail {
+namespace {
+
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using linalg::at;
+
+/// The minimal order if exact arithmetic is enabled and has found it; else -1.
+int exact_order_of(const SystemData& d, int states) {
+  if (states > d.skeleton->options.exact_up_to) return -1;
+  // Blocks' states that follow from others count there, and so do integrators of positions.
+  const ExactOrder exact =
+      exact::order_of_stage(d.skeleton->stage, states,
+                            {.states = 4 * d.skeleton->options.exact_up_to}, d.numbers.parameters);
+  d.dense_notes.push_back({Note::Kind::info, "minimize", to_string(exact)});
+  return exact.decided ? exact.order : -1;
+}
+
+/// Part of an entry of the transfer in which finer arithmetic and the dense model must agree for
+/// the model to be certain, and least visibility of a mode that counts then.
+constexpr double kCertain = 1e-6;
+constexpr double kMoving = 1e-9;  ///< of an entry: a smaller change with s may be rounding
+
+/// The self-check's warning of lost digits, in equations, pivots, loops or outputs; null: none.
+const char* digits_lost(const SystemData& d) {
+  const std::vector<Note>& notes = d.checked().notes;
+  if (std::any_of(notes.begin(), notes.end(), [](const Note& n) {
+        return n.pass == "certify" && n.kind == Note::Kind::warning;
+      }))
+    return "digits are lost (see certify)";
+  return d.checked().rounding_alone ? "rounding is all that some output has" : nullptr;
+}
+
+/// The model with only those inputs and outputs whose dynamics are not rounding: in some entry, the
+/// change with s agrees with finer arithmetic.
+StateSpace with_certain_ports(const System& system, const SystemData& d, const StateSpace& m) {
+  const std::complex<double> s = pick_s(d);
+  const auto transfers = [&](std::complex<double> z) {
+    return std::pair(system.transfer(z, Precision::as_needed), m.transfer(z));
+  };
+  const auto [exact, dense] = transfers(s);
+  Eigen::MatrixX<bool> certain = Eigen::MatrixX<bool>::Zero(exact.rows(), exact.cols());
+  for (const double factor : {0.1, 10.0}) {
+    const auto [other_exact, other_dense] = transfers(factor * s);
+    const MatrixXd size = exact.cwiseAbs().cwiseMax(other_exact.cwiseAbs());
+    const MatrixXd change = (other_exact - exact).cwiseAbs();
+    const MatrixXd off = (other_dense - dense - (other_exact - exact)).cwiseAbs();
+    certain = certain.array() ||
+              (change.array() > kMoving * size.array() && off.array() <= kCertain * change.array());
+  }
+  StateSpace part{m.A, {}, {}, {}, m.states, {}, {}};
+  std::vector<int> in, out;
+  for (int l = 0; l < certain.cols(); ++l)
+    if (certain.col(l).any()) in.push_back(l), part.inputs.push_back(m.inputs[at(l)]);
+  for (int i = 0; i < certain.rows(); ++i)
+    if (certain.row(i).any()) out.push_back(i), part.outputs.push_back(m.outputs[at(i)]);
+  part.B = m.B(Eigen::all, in);
+  part.C = m.C(out, Eigen::all);
+  part.D = m.D(out, in);
+  return part;
+}
+
+/// If entries have fewer digits, a mode's part may be rounding.
+constexpr double kUnclearDigits = 1e-3;
+
+/// Every port is judged by its own size, so one at rounding level would count as moved and seen. If
+/// digits are lost, only states that the other ports need are certain: part of the inputs and
+/// outputs needs no more states than all of them.
+void doubt_lost_digits(const System& system, const SystemData& d, const StateSpace& dense,
+                       MinimizeOptions options, OrderVerdict& v) {
+  if (v.exact || v.lowest == 0 || dense.inputs.empty() || dense.outputs.empty()) return;
+  const char* const lost = digits_lost(d);
+  if (!lost) return;
+  options.resolution = std::max(options.resolution, kCertain);
+  int certain = 0;
+  try {
+    const StateSpace part = with_certain_ports(system, d, dense);
+    if (!part.inputs.empty()) certain = minimize(part, options).order.lowest;
+  } catch (const Error& error) {
+    if (!error.has(Code::singular)) throw;  // no transfer: nothing is certain
+  }
+  if (certain >= v.lowest) return;
+  v.lowest = certain;
+  d.dense_notes.push_back(
+      {Note::Kind::warning, "minimize",
+       fmt::format("{}: of {} states, {} are certainly needed", lost, v.order, certain)});
+}
+
+/// Error of the transfer without the removed modes, at each of the points by itself: relative to
+/// its rigid motion at low frequency, the error of a free structure near its modes would be hidden.
+struct Change {
+  double by_modes = 0;  ///< relative to the terms of both models: no rounding is as large
+  double in_all = 0;    ///< relative to itself, or for a 0 to the terms of the model as written
+  std::vector<std::complex<double>> tried, left_out;  ///< where the factors have digits, and not
+};
+
+/// Near the removed modes and at the assembly's frequencies: the pole of a slow block may be at a
+/// frequency where rigid bodies have no digits.
+std::vector<std::complex<double>> points_of_change(const SystemData& d, const StateSpace& dense,
+                                                   const Minimized& m) {
+  std::vector<std::complex<double>> points = modes::near_modes(m.order.removed, pick_s(d));
+  for (const double omega : frequencies_of(dense.A)) points.push_back(off_axis(omega));
+  return points;
+}
+
+Change change(const System& system, const SystemData& d, const StateSpace& dense,
+              const Minimized& m) {
+  constexpr double kAnotherDigit = 10;
+  Change worst;
+  for (const std::complex<double> s : points_of_change(d, dense, m)) {
+    const std::optional<MatrixXcd> G = transfer_if_any(system, s);
+    (G ? worst.tried : worst.left_out).push_back(s);
+    if (!G) continue;
+    const std::vector<std::complex<double>> here{s};
+    const std::vector<MatrixXcd> exact{*G}, minimal = transfers(m.model, here);
+    const MatrixXd as_written = terms(dense, here);
+    const auto off = [&](const std::vector<MatrixXcd>& of, const MatrixXd& terms_there) {
+      Measure by = measure(*d.skeleton->stage.source, terms_there);
+      return difference(of, exact, by, system, here).relative;
+    };
+    worst.by_modes =
+        std::max(worst.by_modes, off(minimal, as_written.cwiseMax(terms(m.model, here))));
+    const auto digits = [&](const std::vector<MatrixXcd>& of) {
+      Measure by = measure(*d.skeleton->stage.source, {});
+      add_rounding(by, exact, of_nothing(as_written, exact));
+      return difference(of, exact, by, system, here).relative;
+    };
+    const double lost = digits(minimal);
+    if (lost > worst.in_all && lost > kAnotherDigit * digits(transfers(dense, here)))
+      worst.in_all = lost;
+  }
+  return worst;
+}
+
+/// Notes the points at which the change was not measured; without any measurement no mode is
+/// removed.
+void say_left_out(const SystemData& d, const Change& by) {
+  if (by.left_out.empty()) return;
+  const auto smaller = [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); };
+  d.dense_notes.push_back(
+      {Note::Kind::unchecked, "minimize",
+       fmt::format("the change of the transfer is measured at {} of {} points: at the others, the "
+                   "lowest |s| = {:.3g}, the factors have no digit",
+                   by.tried.size(), by.tried.size() + by.left_out.size(),
+                   std::abs(*std::min_element(by.left_out.begin(), by.left_out.end(), smaller)))});
+}
+
+}  // namespace
+
+void minimize_checked(const System& system, const SystemData& d, StateSpace& dense) {
+  const double resolution = d.skeleton->options.resolution;
+  const auto [judged, rounding] = without_rounding(d, dense);
+  const MinimizeOptions options{.resolution = resolution,
+                                .exact_order = exact_order_of(d, dense.order()),
+                                .energy = d.states.trivial() ? MatrixXd() : potential_energy(d),
+                                .rounding = rounding};
+  Minimized m = modes::minimize_unmeasured(judged, options);
+  doubt_lost_digits(system, d, judged, options, m.order);
+  if (d.dense_error.beside_largest.error > kUnclearDigits && !m.order.exact)
+    m.order.highest = dense.order();
+  if (!m.notes.empty()) m.notes.front() = to_string(m.order);
+  const bool removed = !m.order.removed.empty();
+  double lost = 0;
+  bool untried = false;
+  if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
+    const Change by = change(system, d, dense, m);
+    m.order.change = by.by_modes;
+    m.notes.front() = to_string(m.order);
+    untried = by.tried.empty();
+    lost = untried ? 1 : by.in_all;  // not measured: put all back
+    say_left_out(d, by);
+  }
+  if (modes::put_back(dense, resolution, lost, m)) {
+    if (untried)
+      m.notes.back() = "nothing was removed: where it would show, the factors have no digit";
+    d.dense_notes.push_back(
+        {Note::Kind::warning, "minimize", fmt::format("{}: {}", m.notes.back(), m.notes.front())});
+    d.dense_order = std::move(m.order);
+    return;
+  }
+  for (std::string& text : m.notes)
+    d.dense_notes.push_back(
+        {removed ? Note::Kind::removed : Note::Kind::info, "minimize", std::move(text)});
+  d.dense_order = std::move(m.order);
+  if (removed) dense = std::move(m.model);
+}
+
+}  // namespace titop::detail

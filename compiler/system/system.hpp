@@ -1,0 +1,183 @@
+#pragma once
+
+#include <complex>
+#include <memory>
+#include <span>
+#include <string>
+#include <titop/compiler/certificate/certificate.hpp>
+#include <titop/compiler/minreal/minimize.hpp>
+#include <titop/compiler/passes/options.hpp>
+#include <titop/compiler/passes/stage.hpp>
+#include <titop/compiler/realization/descriptor.hpp>
+#include <titop/compiler/realization/modal.hpp>
+#include <titop/graph/diagram.hpp>
+#include <titop/graph/state_space.hpp>
+#include <utility>
+#include <vector>
+
+namespace titop {
+
+namespace detail {
+struct SystemData;
+}
+class Excitation;
+struct Full;
+struct FullCertificate;
+struct Simulation;
+struct Trajectory;
+
+/// Arithmetic of a transfer, coarse to fine. All use the same elimination on the same plan; blocks
+/// are evaluated in it too, from data that are doubles.
+enum class Precision {
+  standard,  ///< double: 16 digits; one step of refinement after the elimination
+  refined,   ///< factors in double, blocks and residuals in long double: refined until the outputs
+             ///< settle, or refused; see System::transfer
+  twofold,   ///< the same in double-double: 32 digits, on any machine
+  extended,  ///< long double: 19 digits on x86
+  digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower
+  as_needed  ///< double, and finer if the weakest pivot has lost more than four digits: refined
+             ///< or twofold if that settles, else 50 digits; if double has no pivot at all
+             ///< though s is no pole, as in wide grids, double-double or 50 digits, unless the
+             ///< last place of the data decides all digits, far below all modes of a closed chain
+};
+
+/// Values of parameters by name: {{"k1", 12.0}, {"angle", 0.3}}.
+using ParameterList = std::vector<std::pair<std::string, double>>;
+
+/// A compiled diagram: the elimination plan, the factors and the blocks' data. Const, cheap to
+/// copy, may be shared between threads. (Its worker threads are kept, asleep, for later calls, and
+/// block all signals; a child of fork() has none.) The dense model is written from it on demand.
+/// References are valid during the System's lifetime; a temporary System returns copies: `const
+/// StateSpace& m = compile(d).state_space();`
+class System {
+ public:
+  explicit System(std::shared_ptr<const detail::SystemData> data) : data_(std::move(data)) {}
+
+  int order() const;  ///< states, before `minimize`
+  const std::vector<std::string>& states() const&;
+  std::vector<std::string> states() const&& { return states(); }
+  const std::vector<std::string>& inputs() const&;  ///< "u", or "U(1)" ... "U(6)"
+  std::vector<std::string> inputs() const&& { return inputs(); }
+  const std::vector<std::string>& outputs() const&;
+  std::vector<std::string> outputs() const&& { return outputs(); }
+
+  /// xdot and y of x (as states() lists them) and u (as inputs()), through the factors: O(bodies).
+  /// Throws size if x or u has another size.
+  struct Rates {
+    Eigen::VectorXd xdot, y;
+  };
+  Rates apply(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const;
+
+  /// Transfer matrix at s (outputs x inputs) through the factors of the same plan: O(bodies), full
+  /// accuracy at any mass ratio with the default precision. Throws singular if s is a pole of the
+  /// system or of a block.
+  ///
+  /// `refined` and `twofold` are accurate to 1e-12 of each block of the transfer (a port by a
+  /// port), or throw singular, also without a pole: their factors are in double, and if these have
+  /// no digit for some unknown, or if the rounding of long double is too large, refinement fails.
+  /// Both are estimates: the convergence of the refinement steps in all unknowns, and the rounding.
+  /// If numbers exceed the range of DoubleDouble, `twofold` throws not_finite. In all these cases
+  /// use `as_needed` or `digits50`. `standard` detects only a completely lost pivot, not the
+  /// accumulated loss of many pivots.
+  Eigen::MatrixXcd transfer(std::complex<double> s,
+                            Precision precision = Precision::as_needed) const;
+
+  /// transfer(j omega, precision) for each omega [rad/s], on `threads` threads (0: all cores); the
+  /// same to the last bit for any number of threads. O(bodies) per frequency. Throws the errors of
+  /// `transfer`: of several that of the first omega, such as one on an undamped pole.
+  std::vector<Eigen::MatrixXcd> frequency_response(
+      std::span<const double> omega, int threads = 0,
+      Precision precision = Precision::as_needed) const;
+
+  /// transfer(0), real. Throws singular if the system has a pole at 0 (a free hinge, an
+  /// integrator). If a block has a pole at 0 that the system has not (a hinge held by a spring),
+  /// transfer(0) throws, and the gain is that of state_space(): its cost and its digits.
+  Eigen::MatrixXd static_gain() const;
+
+  /// The dense model. The first call writes it, O(n^2), and, up to Options::minimize_up_to states,
+  /// minimizes it, O(n^3); otherwise log() reports that it did not. Later calls return the same.
+  /// Throws not_finite if numbers overflow.
+  const StateSpace& state_space() const&;
+  StateSpace state_space() const&& { return state_space(); }
+
+  /// Reliability of the order of state_space(), the states removed and the error of that; writes
+  /// the model if that has not been done.
+  const OrderVerdict& order_verdict() const&;
+  OrderVerdict order_verdict() const&& { return order_verdict(); }
+
+  /// The dense model before `minimize`, into the caller's model, whose memory is reused if it fits:
+  /// for loops over parameters. O(n^2), on `threads` threads (0: all cores), the same to the last
+  /// bit for any number of threads. certificate(model) returns its rounding error.
+  void write(StateSpace& model, int threads = 0) const;
+
+  /// The model before elimination as sparse matrices (compiler/realization/descriptor.hpp).
+  /// O(bodies).
+  Descriptor descriptor() const;
+
+  /// The same into an existing form. Matrices of the same size and pattern keep their memory;
+  /// entries that have become 0 stay as zeros.
+  void write(Descriptor& form) const;
+
+  /// Poles of state_space() with frequency, damping and the blocks that take part. O(n^3).
+  std::vector<Pole> poles() const;
+
+  /// A new system with other values of parameters (Diagram::param); those not named keep theirs. It
+  /// shares the plan with this one, and all fronts of the elimination that do not depend on them:
+  /// O(those fronts) and one pointer per block. States keep number and meaning. The scaling of
+  /// these fronts is recomputed if a value has changed by more than a factor of 8 since the last
+  /// time, that of all fronts if pivots have lost half their digits (Certificate::plans_renewed
+  /// counts both); the numbers are then those of a fresh compile, to rounding. Pivots are checked
+  /// at once; the rest of the certificate, and its warnings, are computed at the first call of
+  /// certificate(), notes(), log() or state_space(): O(bodies). They include a loop that the new
+  /// values make singular without a small pivot. If a pivot is less than 1e-7 of its terms, and a
+  /// tenth of its former ratio, all of it is computed at once. `minimize` is not included:
+  /// state_space() of the new system decides for the new values, and may have another order
+  /// (Options::minimize_up_to = 0 keeps all states at all values). Throws unknown_name (with the
+  /// valid names), duplicate_name (one set twice), not_finite, the errors of blocks for invalid
+  /// values (bad_inertia, bad_value), improper and ill_posed.
+  ///
+  /// If new values change how a closed chain moves, or add or remove a term, all passes run again,
+  /// with the cost and the errors of `compile`; the log reports it, and warns if other states are
+  /// kept than before. The same holds for every update of a scene whose equations as written are
+  /// singular, such as one with a point without mass (its log has notes of pass `reduce`).
+  System update(const ParameterList& values) const;
+
+  /// All parameters and their values here, in the order of creation.
+  ParameterList parameters() const;
+
+  Certificate certificate() const;
+  /// The certificate whose `dense_...` fields refer to this model, made by write(): its rounding
+  /// error. O(n^2), some products with A. Throws size if names or matrices are not those of a model
+  /// of this system before `minimize`, not_finite if an entry is not. A model of other values has a
+  /// large dense_against_factors.
+  Certificate certificate(const StateSpace& written) const;
+  /// Results of the passes: counts, inversions, removed and unchecked parts.
+  const std::vector<Note>& notes() const&;
+  std::vector<Note> notes() const&& { return notes(); }
+  /// The notes as text, one per line; after state_space() also those of `minimize`.
+  std::string log() const;
+  /// Notes on writing and minimizing the dense model; empty before the first state_space().
+  std::vector<Note> dense_notes() const;
+  /// Seconds per pass, in their order. Not part of log(), which is the same on every machine.
+  const std::vector<std::pair<std::string, double>>& seconds() const&;
+  std::vector<std::pair<std::string, double>> seconds() const&& { return seconds(); }
+  /// The graph after the passes (for diagrams: `to_dot(system.stage())`). Its values and
+  /// coefficients are those of the last compile: an `update` on the same plan does not change them.
+  const Stage& stage() const&;
+  Stage stage() const&& { return stage(); }
+
+ private:
+  friend FullCertificate certify(const System&, const Full&);
+  friend Trajectory simulate(const System&, const Excitation&, const Simulation&);
+
+  std::shared_ptr<const detail::SystemData> data_;
+};
+
+/// Compiles a diagram: check, lower, split, chains, match, order, close, solve, certify (see
+/// compiler/system/pipeline.cpp, which reads like this line). Throws Error with all mistakes of the
+/// first pass that finds any, bad_value for options out of their range. Cost: linear in the number
+/// of bodies for trees. From the first compile on, glibc keeps up to 64 MB of freed memory in the
+/// process (see compiler/solve/memory.hpp).
+System compile(const Diagram& diagram, const Options& options = {});
+
+}  // namespace titop

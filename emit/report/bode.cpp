@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <titop/emit/report/figures.hpp>
+#include <titop/emit/report/plot.hpp>
+#include <titop/graph/linalg/index.hpp>
+
+namespace titop::report {
+namespace {
+
+using Eigen::MatrixXcd;
+using linalg::at;
+
+std::vector<double> magnitude(const Sweep& w, const IoPair& p) {
+  std::vector<double> y;
+  for (const MatrixXcd& G : w.G) y.push_back(G.size() ? std::abs(G(p.output, p.input)) : kNone);
+  return y;
+}
+
+/// In degrees, without jumps; if it turns by 180 at once, towards -90.
+std::vector<double> phase(const Sweep& w, const IoPair& p) {
+  std::vector<double> y;
+  double last = -90;
+  for (const MatrixXcd& G : w.G) {
+    if (G.size() == 0 || std::abs(G(p.output, p.input)) == 0) {
+      y.push_back(kNone);
+      continue;
+    }
+    double now = std::arg(G(p.output, p.input)) * 180 / std::numbers::pi;
+    now += 360 * std::round((last - now) / 360);
+    if (std::abs(now - last) > 179) {
+      const double other = now > last ? now - 360 : now + 360;
+      if (std::abs(other + 90) < std::abs(now + 90)) now = other;
+    }
+    y.push_back(last = now);
+  }
+  return y;
+}
+
+std::string bode(const Subject& s, const Sweep& w, const std::vector<IoPair>& pairs) {
+  const ScalarSignal& input = s.inputs[at(pairs.front().input)];
+  const ScalarSignal& output = s.outputs[at(pairs.front().output)];
+  Plot plot{
+      .title = fmt::format("{} [{}] from {} [{}]", pairs.size() == 1 ? output.signal : "outputs",
+                           or_users(output.unit), input.signal, or_users(input.unit)),
+      .caption = {},
+      .x = {.label = "frequency", .unit = "Hz", .log = true},
+      .labels = {},
+      .x_data = {},
+      .frames = {}};
+  plot.x.low = w.hertz.front(), plot.x.high = w.hertz.back();
+  Frame size{.y = {.label = "magnitude", .unit = ratio(output.unit, input.unit), .log = true},
+             .curves = {},
+             .height = 190};
+  Frame turn{.y = {.label = "phase", .unit = "deg", .degrees = true}, .curves = {}, .height = 110};
+  for (const IoPair& p : pairs) {
+    plot.labels.push_back(
+        fmt::format("{} / {}", s.outputs[at(p.output)].name, s.inputs[at(p.input)].name));
+    plot.x_data.push_back(w.hertz);
+    size.curves.push_back(magnitude(w, p));
+    turn.curves.push_back(phase(w, p));
+  }
+  plot.frames = {std::move(size), std::move(turn)};
+  return figure(plot);
+}
+
+}  // namespace
+
+std::string bode_plots(const Subject& s, const Sweep& w, const std::vector<IoPair>& pairs) {
+  std::string text = "<h3>Bode plots</h3>\n";
+  const bool on_axis = std::any_of(s.poles.begin(), s.poles.end(), [](const Pole& p) {
+    return p.pair && std::abs(p.damping) < 1e-6;
+  });
+  text += s.options.pairs.empty() ? "<p>Of every pair of vectors the entry with the highest peak."
+                                  : "<p>The pairs that were asked for.";
+  text += on_axis
+              ? " Undamped modes have peaks without a height: they end where the grid does.</p>\n"
+              : "</p>\n";
+  const auto figures = by_figure(s, pairs);
+  text += "<div class=\"figures\">\n";
+  for (std::size_t i = 0; i < figures.size() && i < kFigures; ++i) text += bode(s, w, figures[i]);
+  return text + "</div>\n" + left_out(figures.size(), "ask for pairs by ReportOptions::pairs");
+}
+
+}  // namespace titop::report

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <titop/emit/report/pairs.hpp>
+#include <titop/emit/report/sweep.hpp>
+#include <vector>
+
+/// The figures of the section on responses: HTML.
+namespace titop::report {
+
+/// Gains from vectors of inputs to vectors of outputs; empty if all are scalars or zero.
+std::string singular_value_plots(const Sweep& sweep, const std::vector<UnitGroup>& outputs,
+                                 const std::vector<UnitGroup>& inputs);
+
+std::string bode_plots(const Subject& subject, const Sweep& sweep,
+                       const std::vector<IoPair>& pairs);
+
+/// Responses to unit steps, by `simulate`.
+std::string step_plots(const Subject& subject, const std::vector<IoPair>& pairs);
+
+}  // namespace titop::report

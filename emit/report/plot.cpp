@@ -1,0 +1,263 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <titop/compiler/diagram/text.hpp>
+#include <titop/emit/report/html.hpp>
+#include <titop/emit/report/plot.hpp>
+
+namespace titop::report {
+namespace {
+
+constexpr double kWidth = 520, kLeft = 66, kRight = 14, kTop = 8, kGap = 12, kBottom = 40;
+constexpr double kInner = kWidth - kLeft - kRight;
+
+struct Tick {
+  double value = 0;
+  std::string text;
+};
+
+/// An axis with its range, and how a value becomes a place on it.
+class Scale {
+ public:
+  Scale(const PlotAxis& axis, double low, double high) : axis_(axis), low_(low), high_(high) {
+    if (axis.log)
+      log_range();
+    else
+      linear_range();
+  }
+
+  /// 0 at the low end, 1 at the high one; clamped to [-0.5, 1.5].
+  double place(double v) const {
+    if (axis_.log) v = v > 0 ? std::log10(v) : -HUGE_VAL;
+    return std::clamp((v - low_) / (high_ - low_), -0.5, 1.5);
+  }
+
+  std::string title() const {
+    const std::string factor = exponent_ ? power_of_ten(exponent_) : "";
+    const std::string space = factor.empty() || axis_.unit.empty() ? "" : " ";
+    return fmt::format("{} [{}{}{}]", axis_.label, factor, space, axis_.unit);
+  }
+
+  const std::vector<Tick>& ticks() const { return ticks_; }
+  const std::vector<double>& fine() const { return fine_; }  ///< between decades
+
+ private:
+  void linear_range() {
+    if (!std::isfinite(low_) || !std::isfinite(high_)) low_ = 0, high_ = 1;  // nothing to show
+    // A curve that varies only in its last digits is a constant.
+    if (!(high_ - low_ > 1e-12 * std::max(std::abs(low_), std::abs(high_)))) {
+      const double pad = low_ == 0 ? 1 : 0.5 * std::abs(low_);
+      low_ -= pad, high_ += pad;
+    }
+    const double size = std::max(std::abs(low_), std::abs(high_));
+    if (!axis_.degrees && (size >= 1e5 || size < 1e-2))
+      exponent_ = 3 * static_cast<int>(std::floor(std::log10(size) / 3));
+    const double unit = std::pow(10.0, exponent_);
+    const Ticks t = linear_ticks(low_ / unit, high_ / unit, axis_.degrees);
+    for (const double v : t.at) {
+      const double clean = std::abs(v) < 1e-9 * t.step ? 0 : v;
+      ticks_.push_back({clean * unit, fmt::format("{:.6g}", clean)});
+    }
+  }
+
+  void log_range() {
+    low_ = std::log10(low_), high_ = std::log10(high_);
+    if (!std::isfinite(low_) || !std::isfinite(high_)) low_ = 0, high_ = 1;  // nothing to show
+    if (high_ - low_ < 0.5) {
+      const double middle = (low_ + high_) / 2;
+      low_ = middle - 0.25, high_ = middle + 0.25;
+    }
+    const int first = static_cast<int>(std::ceil(low_ - 1e-9)),
+              last = static_cast<int>(std::floor(high_ + 1e-9));
+    const bool plain = low_ >= -3.01 && high_ <= 5.01, few = high_ - low_ < 2;
+    const int stride = std::max(1, (last - first + 6) / 7);
+    for (int decade = first - 1; decade <= last; ++decade)
+      for (int k = 1; k < 10; ++k) {
+        const double v = k * std::pow(10.0, decade), at = std::log10(v);
+        if (at < low_ - 1e-9 || at > high_ + 1e-9) continue;
+        const bool named = k == 1 ? (decade - first) % stride == 0 : few && (k == 2 || k == 5);
+        if (named)
+          ticks_.push_back({v, plain || k > 1 ? fmt::format("{:.6g}", v) : power_of_ten(decade)});
+        else if (stride == 1 || k == 1)
+          fine_.push_back(v);
+      }
+  }
+
+  const PlotAxis& axis_;
+  double low_, high_;  ///< of the exponent if the axis is logarithmic
+  int exponent_ = 0;
+  std::vector<Tick> ticks_;
+  std::vector<double> fine_;
+};
+
+/// Smallest and largest value that can be drawn, within twelve decades of the largest on a log
+/// axis.
+Scale scale_of(const PlotAxis& axis, const std::vector<std::vector<double>>& data) {
+  if (axis.low != axis.high) return {axis, axis.low, axis.high};
+  double low = HUGE_VAL, high = -HUGE_VAL;
+  for (const auto& curve : data)
+    for (const double v : curve)
+      if (std::isfinite(v) && (v > 0 || !axis.log))
+        low = std::min(low, v), high = std::max(high, v);
+  if (!(low <= high)) return {axis, axis.log ? 0.1 : 0, 1};
+  if (axis.log) {
+    low = std::max(low, high * 1e-12);
+    const double pad = std::pow(high / low, 0.04);
+    return {axis, low / pad, high * pad};
+  }
+  const double pad = 0.05 * (high - low);
+  return {axis, low - pad, high + pad};
+}
+
+/// The points of a column of pixels that show all of it: first, lowest, highest, last.
+class Path {
+ public:
+  void add(double x, double y) {
+    const double column = std::floor(2 * x);
+    if (points_.empty() || column != column_) flush(), column_ = column;
+    points_.emplace_back(x, y);
+  }
+  void gap() {
+    flush();
+    pen_down_ = false;
+  }
+  std::string text() {
+    flush();
+    return text_;
+  }
+
+ private:
+  void flush() {
+    if (points_.empty()) return;
+    const auto by_y = [](const auto& a, const auto& b) { return a.second < b.second; };
+    const auto [lowest, highest] = std::minmax_element(points_.begin(), points_.end(), by_y);
+    std::vector<std::size_t> keep = {0, static_cast<std::size_t>(lowest - points_.begin()),
+                                     static_cast<std::size_t>(highest - points_.begin()),
+                                     points_.size() - 1};
+    std::sort(keep.begin(), keep.end());
+    keep.erase(std::unique(keep.begin(), keep.end()), keep.end());
+    for (const std::size_t i : keep) {
+      text_ += fmt::format("{}{:.1f} {:.1f}", pen_down_ ? "L" : "M", points_[i].first,
+                           points_[i].second);
+      pen_down_ = true;
+    }
+    points_.clear();
+  }
+
+  std::string text_;
+  bool pen_down_ = false;
+  double column_ = 0;
+  std::vector<std::pair<double, double>> points_;
+};
+
+std::string style(std::size_t curve) { return fmt::format("curve c{}", curve % kStyles + 1); }
+
+std::string curve_path(const std::vector<double>& x, const std::vector<double>& y,
+                       const Scale& across, const Scale& up, int height) {
+  Path path;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (!std::isfinite(y[i])) {
+      path.gap();
+      continue;
+    }
+    path.add(kInner * across.place(x[i]), height * (1 - up.place(y[i])));
+  }
+  return path.text();
+}
+
+std::string line(const char* cls, double x1, double y1, double x2, double y2) {
+  return fmt::format(R"(<path class="{}" d="M{:.1f} {:.1f}L{:.1f} {:.1f}"/>)", cls, x1, y1, x2, y2);
+}
+
+std::string grid(const Scale& across, const Scale& up, double top, int height) {
+  std::string text;
+  const auto vertical = [&](const char* cls, double v) {
+    const double x = kLeft + kInner * across.place(v);
+    text += line(cls, x, top, x, top + height);
+  };
+  const auto horizontal = [&](const char* cls, double v) {
+    const double y = top + height * (1 - up.place(v));
+    text += line(cls, kLeft, y, kLeft + kInner, y);
+  };
+  for (const double v : across.fine()) vertical("fine", v);
+  for (const double v : up.fine()) horizontal("fine", v);
+  for (const Tick& t : across.ticks()) vertical("grid", t.value);
+  for (const Tick& t : up.ticks()) horizontal(t.value == 0 ? "zero" : "grid", t.value);
+  return text;
+}
+
+std::string draw(const Plot& plot, const Frame& frame, const Scale& across, double top) {
+  const Scale up = scale_of(frame.y, frame.curves);
+  std::string text = grid(across, up, top, frame.height);
+  text += fmt::format(R"(<svg x="{}" y="{}" width="{}" height="{}">)", kLeft, top, kInner,
+                      frame.height);
+  for (std::size_t i = 0; i < frame.curves.size(); ++i)
+    text += fmt::format(R"(<path class="{}" d="{}"/>)", style(i),
+                        curve_path(plot.x_data[i], frame.curves[i], across, up, frame.height));
+  text += fmt::format(R"(</svg><rect class="frame" x="{}" y="{}" width="{}" height="{}"/>)", kLeft,
+                      top, kInner, frame.height);
+  for (const Tick& t : up.ticks())
+    text += fmt::format(R"(<text class="tick" x="{}" y="{:.1f}" text-anchor="end">{}</text>)",
+                        kLeft - 6, top + frame.height * (1 - up.place(t.value)) + 4, t.text);
+  const double middle = top + frame.height / 2.0;
+  text += fmt::format(
+      R"-(<text class="y-label" x="14" y="{0}" text-anchor="middle" transform="rotate(-90 14 {0})">{1}</text>)-",
+      middle, dot::html(up.title()));
+  return text;
+}
+
+std::string legend(const std::vector<std::string>& labels) {
+  std::string text = R"(<ul class="legend">)";
+  for (std::size_t i = 0; i < labels.size(); ++i)
+    text += fmt::format(
+        R"(<li><svg class="sample" width="36" height="10" viewBox="0 0 36 10" aria-hidden="true"><path class="{}" d="M1 5H35"/></svg>{}</li>)",
+        style(i), dot::html(labels[i]));
+  return text + "</ul>";
+}
+
+}  // namespace
+
+Ticks linear_ticks(double low, double high, bool degrees) {
+  constexpr double kMost = 7;
+  const auto number = [&](double step) {
+    return std::floor(high / step + 1e-9) - std::ceil(low / step - 1e-9) + 1;
+  };
+  Ticks t;
+  if (degrees && number(45) >= 3) {
+    for (t.step = 45; number(t.step) > kMost;) t.step *= 2;
+  } else {
+    double unit = std::pow(10.0, std::floor(std::log10((high - low) / 10)));
+    for (t.step = unit; number(t.step) > kMost; unit *= 10)
+      for (const double k : {1.0, 2.0, 2.5, 5.0})
+        if (number(t.step) > kMost) t.step = k * unit;
+  }
+  const double first = std::ceil(low / t.step - 1e-9);
+  for (int k = 0, count = static_cast<int>(number(t.step)); k < count; ++k)
+    t.at.push_back((first + k) * t.step);
+  return t;
+}
+
+std::string figure(const Plot& plot) {
+  const Scale across = scale_of(plot.x, plot.x_data);
+  std::string frames;
+  double top = kTop;
+  for (const Frame& frame : plot.frames) {
+    frames += draw(plot, frame, across, top);
+    top += frame.height + kGap;
+  }
+  const double bottom = top - kGap;
+  for (const Tick& t : across.ticks())
+    frames += fmt::format(R"(<text class="tick" x="{:.1f}" y="{}" text-anchor="middle">{}</text>)",
+                          kLeft + kInner * across.place(t.value), bottom + 16, t.text);
+  frames += fmt::format(R"(<text class="x-label" x="{}" y="{}" text-anchor="middle">{}</text>)",
+                        kLeft + kInner / 2, bottom + 34, dot::html(across.title()));
+  const std::string name = dot::html(plot.title);
+  return fmt::format(
+      R"(<figure class="plot"><h4>{0}</h4>{1}<svg role="img" aria-label="{0}" viewBox="0 0 {2} {3}">{4}</svg>{5}</figure>)"
+      "\n",
+      name, legend(plot.labels), kWidth, bottom + kBottom, frames,
+      plot.caption.empty() ? "" : "<figcaption>" + dot::html(plot.caption) + "</figcaption>");
+}
+
+}  // namespace titop::report
