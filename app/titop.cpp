@@ -68,7 +68,7 @@ struct Arguments {
 
 /// The command line is not valid: description of the mistake.
 struct Misuse {
-  std::string what;
+  std::string subject;
 };
 
 constexpr int kMost = 1'000'000;  ///< upper limit of counts
@@ -322,7 +322,7 @@ int main(int argc, char** argv) try {
                 "check that its disk is not full and that its reader stays to the end");
   return code;
 } catch (const Misuse& misuse) {
-  std::fputs(fmt::format("titop: {}\ntitop --help says what there is\n", misuse.what).c_str(),
+  std::fputs(fmt::format("titop: {}\ntitop --help says what there is\n", misuse.subject).c_str(),
              stderr);
   return 2;
 } catch (const std::exception& error) {

@@ -21,12 +21,12 @@ const Interface& bushing_face() {
 }
 
 /// Entries have different units: each is judged against the diagonal of its row and column.
-void check_matrix(const Matrix6& m, std::string_view what) {
+void check_matrix(const Matrix6& m, std::string_view subject) {
   const auto refuse = [&](const std::string& why, const char* hint) {
-    throw Error(Code::bad_value, fmt::format("the Bushing's {} is {}", what, why), hint);
+    throw Error(Code::bad_value, fmt::format("the Bushing's {} is {}", subject, why), hint);
   };
   if (!m.allFinite())
-    throw Error(Code::not_finite, fmt::format("the Bushing's {} is not finite", what),
+    throw Error(Code::not_finite, fmt::format("the Bushing's {} is not finite", subject),
                 "give finite numbers");
   Vector6 size = Vector6::Zero();
   for (int i = 0; i < 6; ++i) {

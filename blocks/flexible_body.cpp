@@ -18,9 +18,9 @@ namespace {
 
 void check_shapes(const ModalData& d) {
   const auto n = d.omega.size();
-  const auto refuse = [&](const std::string& what, Eigen::Index rows, Eigen::Index cols,
+  const auto refuse = [&](const std::string& subject, Eigen::Index rows, Eigen::Index cols,
                           const std::string& expected) {
-    throw Error(Code::bad_modes, fmt::format("{} is {} x {} for {} modes", what, rows, cols, n),
+    throw Error(Code::bad_modes, fmt::format("{} is {} x {} for {} modes", subject, rows, cols, n),
                 fmt::format("it must be {}", expected));
   };
   if (d.xi.size() != n) refuse("xi", d.xi.size(), 1, fmt::format("{} x 1", n));

@@ -37,14 +37,14 @@ Eigen::MatrixXcd StateSpace::transfer(std::complex<double> s) const {
 
 namespace {
 
-int find(const std::vector<std::string>& names, const std::string& name, std::string_view what) {
+int find(const std::vector<std::string>& names, const std::string& name, std::string_view subject) {
   const auto it = std::find(names.begin(), names.end(), name);
   if (it != names.end()) return static_cast<int>(it - names.begin());
   std::string all;
   for (std::size_t i = 0; i < names.size() && i < 12; ++i) all += (i ? ", " : "") + names[i];
   if (names.size() > 12) all += ", ...";
-  throw Error(Code::unknown_name, fmt::format("the model has no {} \"{}\"", what, name),
-              fmt::format("its {}s are: {}", what, all));
+  throw Error(Code::unknown_name, fmt::format("the model has no {} \"{}\"", subject, name),
+              fmt::format("its {}s are: {}", subject, all));
 }
 
 void print(std::string& text, std::string_view title, const Eigen::MatrixXd& m,

@@ -120,13 +120,13 @@ void check_dense(const System& system, const detail::Rounded& before,
 
 /// Solved all at once in double, the equations lose digits of their own, which is no error of the
 /// model: all blocks are measured by the measure's terms if these are larger.
-void check_written(const System& system, const Full& what, const std::vector<Complex>& points,
+void check_written(const System& system, const Full& subject, const std::vector<Complex>& points,
                    const std::vector<MatrixXcd>& factored, detail::Measure measure,
                    FullCertificate::Grid& grid) {
   const Graph& g = *system.stage().source;
   int signals = 0;
   for (const Signal& s : g.signals) signals += s.size;
-  if (signals > what.written_up_to) return;
+  if (signals > subject.written_up_to) return;
   try {
     const std::vector<double> values = values_of(system);
     const std::vector<MatrixXcd> written = as_written(g, values, points);
@@ -247,9 +247,9 @@ std::vector<std::string> full::basic_faults(const Certificate& c, double dense) 
   return faults;
 }
 
-FullCertificate certify(const System& system, const Full& what) {
+FullCertificate certify(const System& system, const Full& subject) {
   FullCertificate c;
-  const bool dense = system.order() <= what.dense_up_to;
+  const bool dense = system.order() <= subject.dense_up_to;
   std::vector<double> omegas;
   std::vector<full::FoundPoles::Right> growing;
   detail::Rounded before;  // as written, before `minimize`
@@ -265,15 +265,15 @@ FullCertificate certify(const System& system, const Full& what) {
     c.poles.why_not = what_is_set_aside(system.stage().graph);
   } else {
     c.poles.why_not = c.grid.why_not = fmt::format("{} states are more than {} (Full::dense_up_to)",
-                                                   system.order(), what.dense_up_to);
+                                                   system.order(), subject.dense_up_to);
     c.order.order = c.order.highest = system.order();
   }
   c.basic = system.certificate();
-  c.exact = exact::order_of_stage(system.stage(), system.order(), what.exact, values_of(system));
+  c.exact = exact::order_of_stage(system.stage(), system.order(), subject.exact, values_of(system));
   reach_up_to(c.exact, c.order);
   set_range(omegas, c.grid);
   const bool transfers = !system.inputs().empty() && !system.outputs().empty();
-  c.grid.points = transfers ? std::max(what.points, 0) : 0;
+  c.grid.points = transfers ? std::max(subject.points, 0) : 0;
   std::vector<Complex> points = grid_of(c.grid);
   const std::vector<MatrixXcd> factored = factored_at(system, points, c.grid);
   if (c.grid.points > 0) {
@@ -283,12 +283,12 @@ FullCertificate certify(const System& system, const Full& what) {
           detail::terms(before.model, points).cwiseMax(detail::terms(system.state_space(), points));
       check_dense(system, before, points, factored, measure, c.grid);
     }
-    check_written(system, what, points, factored, measure, c.grid);
+    check_written(system, subject, points, factored, measure, c.grid);
     check_pairs(system, points, factored, growing, c);
   } else {
     if (!transfers)
       c.grid.why_not = "without inputs, or without outputs, nothing transfers";
-    else if (what.points <= 0)
+    else if (subject.points <= 0)
       c.grid.why_not = "no grid is asked for (Full::points)";
     c.passivity.why_not = c.reciprocity.why_not = c.grid.why_not;
   }

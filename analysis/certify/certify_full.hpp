@@ -121,7 +121,7 @@ struct FullCertificate {
 
 /// Writes the dense model, its poles and all that is listed above. O(n^3) in the states, and
 /// points * O(bodies). Does not change the system, except for its dense model, which is kept.
-FullCertificate certify(const System& system, const Full& what = {});
+FullCertificate certify(const System& system, const Full& subject = {});
 
 /// One line per item; for a check that was not made, the reason.
 std::string to_string(const FullCertificate& certificate);

@@ -106,13 +106,13 @@ MatrixXd terms(const Whole& w, const MatrixXd& driven, Complex s) {
   return read * driven;
 }
 
-[[noreturn]] void refuse_integral(const System& system, const char* what, Index output,
+[[noreturn]] void refuse_integral(const System& system, const char* subject, Index output,
                                   Index input) {
   throw Error(
       Code::bad_value,
       fmt::format("{} reads {} that {} drives: it has no gain at 0 Hz, where the scene's "
                   "band starts",
-                  system.outputs()[static_cast<std::size_t>(output)], what,
+                  system.outputs()[static_cast<std::size_t>(output)], subject,
                   system.inputs()[static_cast<std::size_t>(input)]),
       "start Scene::band_hz above 0, read an acceleration instead, or leave this output out");
 }

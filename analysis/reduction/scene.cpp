@@ -33,7 +33,7 @@ PortChoice find(const List& list, const std::string& name) {
 /// The chosen ones in the order of the list, each once; all for no names.
 template <class List>
 std::vector<PortChoice> choose(const List& list, const std::vector<std::string>& names,
-                               std::string_view what, std::vector<Mistake>& mistakes) {
+                               std::string_view subject, std::vector<Mistake>& mistakes) {
   std::vector<std::vector<char>> taken;
   for (const auto& item : list) taken.emplace_back(at(item.size), names.empty() ? 1 : 0);
   for (const std::string& name : names) {
@@ -49,7 +49,7 @@ std::vector<PortChoice> choose(const List& list, const std::vector<std::string>&
     std::string valid;
     for (const auto& item : list) valid += (valid.empty() ? "" : ", ") + item.name;
     mistakes.push_back({Code::unknown_name,
-                        fmt::format("the scene asks for {} {}, which is not there", what, name),
+                        fmt::format("the scene asks for {} {}, which is not there", subject, name),
                         {fmt::format("there are: {}", valid.empty() ? "none" : valid)},
                         fmt::format("take one of them, or one scalar of it as \"{}(1)\"",
                                     list.empty() ? "name" : list.front().name)});

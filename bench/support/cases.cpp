@@ -179,8 +179,8 @@ Diagram grid(int n) {
   nodes.reserve(at(m * m));
   for (int j = 0; j < m; ++j)
     for (int i = 0; i < m; ++i) {
-      const auto name = [&](const char* what) {
-        return fmt::format("{}{}_{}", what, i + 1, j + 1);
+      const auto name = [&](const char* subject) {
+        return fmt::format("{}{}_{}", subject, i + 1, j + 1);
       };
       nodes.push_back(d.add(name("N"), node));
       if (i > 0) {

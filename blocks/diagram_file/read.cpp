@@ -168,10 +168,10 @@ class DiagramReader {
 
   Term::Of read_of(const JsonPlace& p) const {
     if (!p.has("read")) return Term::Of::signal;
-    const std::string what = p.at("read").text();
-    if (what == "reaction") return Term::Of::reaction;
-    if (what == "position") return Term::Of::position;
-    if (what != "rate") p.at("read").refuse("reaction, position or rate");
+    const std::string subject = p.at("read").text();
+    if (subject == "reaction") return Term::Of::reaction;
+    if (subject == "position") return Term::Of::position;
+    if (subject != "rate") p.at("read").refuse("reaction, position or rate");
     return Term::Of::rate;
   }
 

@@ -40,12 +40,12 @@ class DiagramWriter {
   /// Names are how the file points to things.
   void require_distinct() const {
     std::vector<Mistake> mistakes = g_.mistakes;
-    const auto look = [&](const auto& list, const char* what) {
+    const auto look = [&](const auto& list, const char* subject) {
       std::set<std::string> seen;
       for (const auto& item : list)
         if (!seen.insert(item.name).second)
           mistakes.push_back({Code::duplicate_name,
-                              fmt::format("a second {} is called \"{}\"", what, item.name),
+                              fmt::format("a second {} is called \"{}\"", subject, item.name),
                               {"at " + to_string(item.where)},
                               "give each a name of its own"});
     };

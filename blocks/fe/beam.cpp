@@ -15,9 +15,9 @@ namespace {
 
 using std::numbers::pi;
 
-void require_positive(double value, const char* what) {
+void require_positive(double value, const char* subject) {
   if (!(value > 0) || !std::isfinite(value))
-    throw Error(Code::bad_value, fmt::format("{} is {}, not a positive number", what, value),
+    throw Error(Code::bad_value, fmt::format("{} is {}, not a positive number", subject, value),
                 "give it in metres");
 }
 
@@ -89,12 +89,13 @@ Section tube(double outer_diameter, double inner_diameter) {
 
 void check(const Beam& beam) {
   std::vector<Mistake> mistakes;
-  const auto positive = [&](double value, const char* what) {
+  const auto positive = [&](double value, const char* subject) {
     if (!(value > 0) || !std::isfinite(value))
-      mistakes.push_back({Code::bad_value,
-                          fmt::format("{} of the beam is {}, not a positive number", what, value),
-                          {},
-                          "Beam must give it, in SI units"});
+      mistakes.push_back(
+          {Code::bad_value,
+           fmt::format("{} of the beam is {}, not a positive number", subject, value),
+           {},
+           "Beam must give it, in SI units"});
   };
   positive(beam.length, "length");
   positive(beam.section.area, "section.area");

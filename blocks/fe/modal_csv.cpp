@@ -55,12 +55,12 @@ class ModalReader {
   }
 
   /// The `count` numbers after the first `skip` fields; empty, with a mistake noted, if their
-  /// number differs. `what`: all fields expected after the keyword.
+  /// number differs. `subject`: all fields expected after the keyword.
   std::vector<double> numbers(int line, const Fields& fields, std::size_t skip, std::size_t count,
-                              const std::string& what) {
+                              const std::string& subject) {
     if (fields.size() != skip + count) {
       mistake(line, fmt::format("{} fields behind {}", fields.size() - 1, fields[0]),
-              fmt::format("{}: {}", skip + count - 1, what));
+              fmt::format("{}: {}", skip + count - 1, subject));
       return {};
     }
     std::vector<double> values(count);
@@ -163,10 +163,10 @@ namespace {
 
 void require_sizes(const ModalData& data) {
   const Eigen::Index n = data.omega.size();
-  const auto check = [n](const std::string& what, Eigen::Index rows, Eigen::Index columns,
+  const auto check = [n](const std::string& subject, Eigen::Index rows, Eigen::Index columns,
                          Eigen::Index rows_wanted, Eigen::Index columns_wanted) {
     if (rows != rows_wanted || columns != columns_wanted)
-      throw Error(Code::size, fmt::format("{} of modal data is {} x {}", what, rows, columns),
+      throw Error(Code::size, fmt::format("{} of modal data is {} x {}", subject, rows, columns),
                   fmt::format("with {} modes it is {} x {}", n, rows_wanted, columns_wanted));
   };
   check("xi", data.xi.size(), 1, n, 1);

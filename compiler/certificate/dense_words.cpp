@@ -34,37 +34,37 @@ void refuse_counts(const Factored& d, const StateSpace& m) {
 }
 
 /// The first name that differs.
-void compare_names(const char* what, const std::vector<std::string>& given,
+void compare_names(const char* subject, const std::vector<std::string>& given,
                    const std::vector<std::string>& expected, std::vector<Mistake>& mistakes) {
   const auto [is, should] = std::mismatch(given.begin(), given.end(), expected.begin());
   if (is == given.end()) return;
   mistakes.push_back({Code::size,
                       fmt::format("certificate: {} {} of the model is {}, in this system it is {}",
-                                  what, is - given.begin() + 1, *is, *should),
+                                  subject, is - given.begin() + 1, *is, *should),
                       {},
                       "give it what System::write of this system made"});
 }
 
-void compare_size(const char* what, const MatrixXd& m, Index rows, Index columns,
+void compare_size(const char* subject, const MatrixXd& m, Index rows, Index columns,
                   std::vector<Mistake>& mistakes) {
   if (m.rows() == rows && m.cols() == columns) return;
   mistakes.push_back({Code::size,
                       fmt::format("certificate: {} of the model is {} x {}, by its names it is "
                                   "{} x {}",
-                                  what, m.rows(), m.cols(), rows, columns),
+                                  subject, m.rows(), m.cols(), rows, columns),
                       {},
                       "give it the model as System::write made it"});
 }
 
 /// The first entry that is infinite or no number, by the names of its row and column.
-void find_not_finite(const char* what, const MatrixXd& m, const std::vector<std::string>& rows,
+void find_not_finite(const char* subject, const MatrixXd& m, const std::vector<std::string>& rows,
                      const std::vector<std::string>& columns, std::vector<Mistake>& mistakes) {
   for (Index j = 0; j < m.cols(); ++j)
     for (Index i = 0; i < m.rows(); ++i)
       if (!std::isfinite(m(i, j))) {
         mistakes.push_back(
             {Code::not_finite,
-             fmt::format("certificate: {} of the model has {} at {}, {}", what, m(i, j),
+             fmt::format("certificate: {} of the model has {} at {}, {}", subject, m(i, j),
                          rows[static_cast<std::size_t>(i)], columns[static_cast<std::size_t>(j)]),
              {},
              "write it again; if System::write made this, take other units, or smaller gains: all "

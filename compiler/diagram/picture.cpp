@@ -127,13 +127,13 @@ void share_ends(Picture& p) {
         meet(input[at(p.graph.signals[at(t.signal)].spec)], box_of(p, a.target));
     }
   const auto share = [&](const std::vector<int>& box, std::vector<std::string>& id,
-                         const char* what) {
+                         const char* subject) {
     for (std::size_t b = 0; b < p.box_id.size(); ++b)
       if (std::count(box.begin(), box.end(), static_cast<int>(b)) > 1)
         for (std::size_t i = 0; i < box.size(); ++i)
           if (box[i] == static_cast<int>(b))
             id[i] = quoted(fmt::format(
-                "{} of {}", what, clean(p.graph.nodes[at(p.fold.boxes[b].nodes.front())].name)));
+                "{} of {}", subject, clean(p.graph.nodes[at(p.fold.boxes[b].nodes.front())].name)));
   };
   share(input, p.input_id, "inputs");
   share(output, p.output_id, "outputs");

@@ -232,14 +232,14 @@ std::vector<std::string> lines(const Graph& g, const std::vector<MovingPart>& pl
 }
 
 /// "output a(1), a(2) and 3 more depend on it"
-std::string depends(const char* what, const KeptMatrix& seen, Index column,
+std::string depends(const char* subject, const KeptMatrix& seen, Index column,
                     const std::vector<std::string>& names) {
   std::string text;
   int count = 0;
   for (Index i = 0; i < seen.value.rows(); ++i)
     if (seen.value(i, column) != 0 && ++count <= 4) text += (count > 1 ? ", " : "") + names[at(i)];
   if (count > 4) text += fmt::format(" and {} more", count - 4);
-  return fmt::format("{}{} {} {} on it", what, count > 1 ? "s" : "", text,
+  return fmt::format("{}{} {} {} on it", subject, count > 1 ? "s" : "", text,
                      count > 1 ? "depend" : "depends");
 }
 
@@ -256,12 +256,12 @@ Undetermined undetermined(const Skeleton& k, const Factored& d, const std::vecto
   KeptMatrix still = unseen(free, outputs);
   const auto count = static_cast<Index>(rows.size());
   Undetermined result;
-  const auto name = [&](const char* what, const KeptMatrix& z, const KeptMatrix& seen,
+  const auto name = [&](const char* subject, const KeptMatrix& z, const KeptMatrix& seen,
                         const std::vector<std::string>& names) {
     for (Index j = 0; j < z.value.cols(); ++j)
       if (const MovingPart p = showing.of(z, j); p.signal >= 0 && is_seen(seen, j))
         result.lines.push_back(fmt::format("{}, and {}", lines(k.stage.graph, {p}).front(),
-                                           depends(what, seen, j, names)));
+                                           depends(subject, seen, j, names)));
   };
   if (free.value.cols() < count) {
     name("state", all, rates, d.layout().states);

@@ -112,10 +112,10 @@ struct ChainChecker {
   std::string target(const Closing& c) const {
     return name_of(g, g.equations[at(c.tie->equation)].target);
   }
-  void refuse(const Closing& c, std::string what, std::string hint) {
+  void refuse(const Closing& c, std::string subject, std::string hint) {
     const Equation& e = g.equations[at(c.tie->equation)];
     mistakes.push_back({Code::kinematic_loop,
-                        std::move(what),
+                        std::move(subject),
                         {fmt::format("{:<50} {}", print(g, e), to_string(e.where)),
                          "the chain: " + way(motion, c)},
                         std::move(hint)});

@@ -164,12 +164,12 @@ void refuse_sizes(const StateSpace& m) {
   std::vector<Mistake> mistakes;
   const Eigen::Index n = std::ssize(m.states), nu = std::ssize(m.inputs),
                      ny = std::ssize(m.outputs);
-  const auto compare = [&](const char* what, const Eigen::MatrixXd& entries, Eigen::Index rows,
+  const auto compare = [&](const char* subject, const Eigen::MatrixXd& entries, Eigen::Index rows,
                            Eigen::Index columns) {
     if (entries.rows() == rows && entries.cols() == columns) return;
     mistakes.push_back(
         {Code::size,
-         fmt::format("minimize: {} of the model is {} x {}, by its names it is {} x {}", what,
+         fmt::format("minimize: {} of the model is {} x {}, by its names it is {} x {}", subject,
                      entries.rows(), entries.cols(), rows, columns),
          {},
          "name every state, input and output of the model; A is n x n, B n x nu, "

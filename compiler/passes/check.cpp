@@ -8,19 +8,19 @@ namespace titop::passes {
 namespace {
 
 template <class List>
-void check_names(Checker& c, const List& list, std::string_view what, const char* list_name) {
+void check_names(Checker& c, const List& list, std::string_view subject, const char* list_name) {
   const auto place = [&](const auto& item) { return written(list, list_name, item).text(); };
   std::unordered_map<std::string_view, const typename List::value_type*> seen;
   seen.reserve(list.size());
   for (const auto& item : list) {
     if (item.name.empty()) {
-      c.add(Code::duplicate_name, fmt::format("one {} has no name", what),
+      c.add(Code::duplicate_name, fmt::format("one {} has no name", subject),
             {"written at " + place(item)}, "give it a name of its own");
       continue;
     }
     const auto [first, is_new] = seen.emplace(item.name, &item);
     if (!is_new)
-      c.add(Code::duplicate_name, fmt::format("two {}s are called {}", what, item.name),
+      c.add(Code::duplicate_name, fmt::format("two {}s are called {}", subject, item.name),
             {"the first is at " + place(*first->second), "the second is at " + place(item)},
             "names come out with the model: give each its own");
   }
@@ -28,7 +28,7 @@ void check_names(Checker& c, const List& list, std::string_view what, const char
 
 /// "W(3)" is the third scalar of W, and may be a name of its own only if W has no third.
 template <class List>
-void check_scalar_names(Checker& c, const List& list, std::string_view what,
+void check_scalar_names(Checker& c, const List& list, std::string_view subject,
                         const char* list_name) {
   const auto place = [&](const auto& item) { return written(list, list_name, item).text(); };
   std::unordered_map<std::string_view, const typename List::value_type*> declared;
@@ -38,7 +38,7 @@ void check_scalar_names(Checker& c, const List& list, std::string_view what,
       const auto found = declared.find(fmt::format("{}({})", item.name, i));
       if (found != declared.end())
         c.add(Code::duplicate_name,
-              fmt::format("{} {} has the name of a scalar of {}", what, found->first, item.name),
+              fmt::format("{} {} has the name of a scalar of {}", subject, found->first, item.name),
               {fmt::format("{} is at {}", found->first, place(*found->second)),
                fmt::format("{} is at {}", item.name, place(item))},
               "names come out with the model: give each its own");

@@ -7,8 +7,8 @@
 namespace titop::passes {
 namespace {
 
-void demand(bool holds, const char* what) {
-  if (!holds) throw std::logic_error(std::string("titop, internal: ") + what);
+void demand(bool holds, const char* subject) {
+  if (!holds) throw std::logic_error(std::string("titop, internal: ") + subject);
 }
 
 }  // namespace

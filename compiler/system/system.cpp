@@ -158,8 +158,8 @@ MatrixXcd transfer_with(const detail::SystemData& d, Double s, Precision precisi
   return {};
 }
 
-void refuse_overflow(const std::string& what) {
-  throw Error(Code::not_finite, what + " overflows",
+void refuse_overflow(const std::string& subject) {
+  throw Error(Code::not_finite, subject + " overflows",
               "take other units, or smaller gains: all numbers must stay below 1e308");
 }
 
@@ -277,8 +277,8 @@ Certificate System::certificate(const StateSpace& written) const {
 }
 
 std::string System::log() const {
-  const auto count = [](std::size_t n, const char* what) {
-    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  const auto count = [](std::size_t n, const char* subject) {
+    return fmt::format("{} {}{}", n, subject, n == 1 ? "" : "s");
   };
   std::string text =
       fmt::format("{}: {}, {}, {}\n", data_->graph().name, count(states().size(), "state"),

@@ -274,8 +274,8 @@ long long products(const Form& form) {
 }
 
 std::string header_text(const Naming& names, const Form& form) {
-  const auto count = [](std::size_t n, const char* what) {
-    return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+  const auto count = [](std::size_t n, const char* subject) {
+    return fmt::format("{} {}{}", n, subject, n == 1 ? "" : "s");
   };
   return filled(
       kHeader,

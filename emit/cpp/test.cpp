@@ -26,13 +26,13 @@ std::string tolerance(double least, double measured) {
 }
 
 /// The comment that replaces a check for which double is not accurate enough.
-std::string omitted(const char* what, double measured) {
+std::string omitted(const char* subject, double measured) {
   if (!std::isfinite(measured))
     return fmt::format("\n// {}: not checked. In double the matrices do not give it at all.\n",
-                       what);
+                       subject);
   return fmt::format(
       "\n// {}: not checked. The matrices give it within {:.1e} only, too wide for a proof.\n",
-      what, measured);
+      subject, measured);
 }
 
 std::string pair(double re, double im) { return fmt::format("{{{}, {}}}", number(re), number(im)); }
@@ -209,15 +209,16 @@ double series_error(const Form& form, const Expected& expected, double h, double
 
 /// A comment in its place if the series would take more than some seconds.
 std::string taylor_test(const Naming& names, const Form& form, const Expected& expected) {
-  constexpr const char* what = "step against derivative";
+  constexpr const char* subject = "step against derivative";
   double fastest = 0;
   for (const Pole& p : expected.poles) fastest = std::max(fastest, p.omega);
   const double parts = std::max(1.0, std::ceil(fastest * names.sample_time));
   const double cost = 72 * parts * static_cast<double>(products(form));
   if (cost > 1e9)
-    return fmt::format("\n// {}: not checked, it would take {:.0e} multiplications.\n", what, cost);
+    return fmt::format("\n// {}: not checked, it would take {:.0e} multiplications.\n", subject,
+                       cost);
   const double error = series_error(form, expected, names.sample_time, parts);
-  if (!is_provable(error)) return omitted(what, error);
+  if (!is_provable(error)) return omitted(subject, error);
   return filled(kTaylor, {{"NAME", names.name},
                           {"NY", std::to_string(names.outputs.size())},
                           {"STEPS", std::to_string(expected.inputs.cols())},

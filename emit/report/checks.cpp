@@ -14,7 +14,7 @@ using full::kHolds;
 enum class Mark { good, bad, none };
 
 struct Item {
-  std::string what, value, meaning;
+  std::string item, value, meaning;
   Mark mark = Mark::none;
 };
 
@@ -25,8 +25,8 @@ std::string place(std::complex<double> s) {
 
 Mark judged(double value, double limit) { return value <= limit ? Mark::good : Mark::bad; }
 
-void add_not_done(std::vector<Item>& items, const char* what, const std::string& why_not) {
-  items.push_back({what, "not checked", why_not});
+void add_not_done(std::vector<Item>& items, const char* item, const std::string& why_not) {
+  items.push_back({item, "not checked", why_not});
 }
 
 void add_basic(std::vector<Item>& items, const Certificate& c) {
@@ -170,8 +170,8 @@ std::string verdict(const char* cls, const std::string& html) {
   return fmt::format("<li class=\"{}\">{}</li>\n", cls, html);
 }
 
-std::string tile(const std::string& value, const std::string& what) {
-  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>\n", value, what);
+std::string tile(const std::string& value, const std::string& item) {
+  return fmt::format("<div class=\"tile\"><b>{}</b><span>{}</span></div>\n", value, item);
 }
 
 std::string tiles(const Subject& s) {
@@ -303,7 +303,7 @@ std::string certificate_section(const Subject& s, const FullCertificate* full) {
       "class=\"certificate\">\n<thead>" +
       row({"what", "number", "", "in words"}, {"", "n", "", ""}, "th") + "</thead>\n<tbody>\n";
   for (const Item& i : items)
-    text += row({escaped(i.what), i.value, marked(i.mark), escaped(i.meaning)}, classes);
+    text += row({escaped(i.item), i.value, marked(i.mark), escaped(i.meaning)}, classes);
   text += "</tbody></table></div>\n";
   if (!full)
     text += fmt::format(

@@ -38,7 +38,7 @@ std::string attribute(const std::string& tag, const std::string& name) {
 
 }  // namespace
 
-std::string drawing(const std::string& dot_text, const std::string& what) {
+std::string drawing(const std::string& dot_text, const std::string& subject) {
   const Finished dot = run({"dot", "-Tsvg", "-Gbgcolor=transparent"}, dot_text);
   if (!dot.found)
     refuse("the program dot is not there", "install Graphviz (Debian package graphviz), or ");
@@ -54,8 +54,8 @@ std::string drawing(const std::string& dot_text, const std::string& what) {
   body = without(body, " id=\"", "\"");
   return fmt::format(
       R"(<svg class="drawing" role="img" aria-label="{}" width="{}" height="{}" viewBox="{}">{}</svg>)",
-      dot::html(what), attribute(tag, "width"), attribute(tag, "height"), attribute(tag, "viewBox"),
-      body);
+      dot::html(subject), attribute(tag, "width"), attribute(tag, "height"),
+      attribute(tag, "viewBox"), body);
 }
 
 }  // namespace titop::report

@@ -38,8 +38,8 @@ std::string number(double x, int digits = 4);
 std::string power_of_ten(int exponent);
 
 /// "1 state", "2 states".
-inline std::string count(std::size_t n, const char* what) {
-  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+inline std::string count(std::size_t n, const char* subject) {
+  return fmt::format("{} {}{}", n, subject, n == 1 ? "" : "s");
 }
 
 }  // namespace titop::report

@@ -31,15 +31,15 @@ int group_of(const List& groups, int scalar) {
   return 0;
 }
 
-int find(const std::vector<ScalarSignal>& list, const std::string& name, const char* what) {
+int find(const std::vector<ScalarSignal>& list, const std::string& name, const char* subject) {
   std::string known;
   for (const ScalarSignal& s : list) {
     if (s.name == name) return s.index;
     if (s.index < 20) known += (known.empty() ? "" : ", ") + s.name;
   }
   throw Error(Code::unknown_name,
-              fmt::format("ReportOptions::pairs: there is no {} \"{}\"", what, name),
-              fmt::format("{}s are: {}", what, known));
+              fmt::format("ReportOptions::pairs: there is no {} \"{}\"", subject, name),
+              fmt::format("{}s are: {}", subject, known));
 }
 
 }  // namespace

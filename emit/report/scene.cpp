@@ -16,10 +16,10 @@ using linalg::at;
 
 constexpr std::size_t kRows = 60;  ///< of a table; more are counted
 
-std::string more(std::size_t all, const char* what) {
+std::string more(std::size_t all, const char* item) {
   return all <= kRows
              ? ""
-             : fmt::format("<p class=\"note\">{} more {} are not listed.</p>\n", all - kRows, what);
+             : fmt::format("<p class=\"note\">{} more {} are not listed.</p>\n", all - kRows, item);
 }
 
 /// "[N; N m]" over the scalars of one signal.

@@ -193,11 +193,11 @@ double pole_error(std::vector<Complex> a, const std::vector<Complex>& exact) {
   return worst;
 }
 
-bool agrees(const char* what, double error, double limit) {
+bool agrees(const char* subject, double error, double limit) {
   const bool yes = error <= limit;
-  std::printf("%s: to %.0e %s\n", what, limit, yes ? "yes" : "NO");
+  std::printf("%s: to %.0e %s\n", subject, limit, yes ? "yes" : "NO");
   if (!yes) std::printf("  off by %.1e\n", error);
-  if (std::getenv("SHOW_ERRORS")) std::fprintf(stderr, "%s: %.1e\n", what, error);
+  if (std::getenv("SHOW_ERRORS")) std::fprintf(stderr, "%s: %.1e\n", subject, error);
   return yes;
 }
 

@@ -95,6 +95,6 @@ std::vector<Complex> moving(const Poles& poles) {
 
 /// A verdict line: the error itself is rounding noise, which differs from machine to machine; it
 /// is printed if it is too large, and to stderr if SHOW_ERRORS is set.
-bool agrees(const char* what, double error, double limit);
+bool agrees(const char* subject, double error, double limit);
 
 }  // namespace by_hand

@@ -24,8 +24,8 @@ const std::string kGood = R"({"format": "titop scene 1", "name": "cart",
               {"of": ["K", "in"], "terms": [{"signal": ["z", "stretch"]}]}],
 "outputs": [{"name": "a", "size": 1, "terms": [{"signal": ["z", "parent", "accel"]}]}]})";
 
-void refused(const std::string& what, const std::string& with, const std::string& words) {
-  titop_test::check_refused([&] { parse_diagram(replaced(kGood, what, with), "cart.json"); },
+void refused(const std::string& subject, const std::string& with, const std::string& words) {
+  titop_test::check_refused([&] { parse_diagram(replaced(kGood, subject, with), "cart.json"); },
                             words);
 }
 
@@ -97,8 +97,8 @@ TEST_CASE("data that a reader would ignore silently are refused with their place
 }
 
 TEST_CASE("mistakes of a scene's equations are told with their place in the file") {
-  const auto said = [](const std::string& what, const std::string& with) {
-    return titop_test::message_of([&] { compile(parse_diagram(replaced(kGood, what, with))); });
+  const auto said = [](const std::string& subject, const std::string& with) {
+    return titop_test::message_of([&] { compile(parse_diagram(replaced(kGood, subject, with))); });
   };
   const std::string text = said("[\"K\", \"in\"]", "[\"z\", \"child\", \"accel\"]");
   INFO(text);

@@ -247,9 +247,9 @@ TEST_CASE("a beam that cannot be is refused, all mistakes at once") {
             .find("length of the beam is -1, not a positive "
                   "number") != std::string::npos);
   const std::string text = message_of([] { beam_mesh(Beam{}); });
-  for (const char* what : {"length", "section.area", "section.I_y", "section.I_z", "section.J",
-                           "material.E", "material.rho", "neither of nu and G"})
-    CHECK(text.find(what) != std::string::npos);
+  for (const char* subject : {"length", "section.area", "section.I_y", "section.I_z", "section.J",
+                              "material.E", "material.rho", "neither of nu and G"})
+    CHECK(text.find(subject) != std::string::npos);
   Beam beam = plank(2);
   beam.material.G = 26e9;
   CHECK(message_of([&] { beam_mesh(beam); }) ==

@@ -53,16 +53,16 @@ struct Tree {
   }
   /// x_i'' by the stretch of j (k) or its rate (c): M_i x_i'' = -k_i s_i + sum over children k_j
   /// s_j.
-  Real of(int i, int j, const std::vector<double>& what) const {
+  Real of(int i, int j, const std::vector<double>& subject) const {
     if (i < 0 || (j != i && parent[at(j)] != i)) return 0;
     Real mass = m[at(i)];
     for (std::size_t l = 0; l < m.size(); ++l)
       if (parent[l] == i) mass += m0[l];
-    return (j == i ? Real(-what[at(j)]) : Real(what[at(j)])) / mass;
+    return (j == i ? Real(-subject[at(j)]) : Real(subject[at(j)])) / mass;
   }
   /// s_i'' by the stretch of j or its rate.
-  Real entry(int i, int j, const std::vector<double>& what) const {
-    return of(i, j, what) - of(parent[at(i)], j, what);
+  Real entry(int i, int j, const std::vector<double>& subject) const {
+    return of(i, j, subject) - of(parent[at(i)], j, subject);
   }
 };
 

@@ -12,8 +12,8 @@ namespace titop_test {
 /// The first fault of the markup, "" if none: tags nest and close, attributes are quoted, ids are
 /// unique, every & is an entity.
 inline std::string complaint(const std::string& text) {
-  const auto near = [&](const char* what, std::size_t at) {
-    return fmt::format("{}: {}", what, text.substr(at, 60));
+  const auto near = [&](const char* subject, std::size_t at) {
+    return fmt::format("{}: {}", subject, text.substr(at, 60));
   };
   std::vector<std::string> open;
   std::set<std::string> ids;

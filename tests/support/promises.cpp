@@ -16,8 +16,8 @@ namespace {
 
 using titop::linalg::at;
 
-void demand(bool holds, const std::string& what) {
-  if (!holds) throw std::logic_error("promise broken: " + what);
+void demand(bool holds, const std::string& subject) {
+  if (!holds) throw std::logic_error("promise broken: " + subject);
 }
 
 }  // namespace

@@ -148,7 +148,7 @@ std::vector<Eigen::Index> places(const Names& of, const Names& in) {
   return result;
 }
 
-std::string first_difference(const char* what, const MatrixXd& a, const MatrixXd& b,
+std::string first_difference(const char* subject, const MatrixXd& a, const MatrixXd& b,
                              const std::vector<Eigen::Index>& rows,
                              const std::vector<Eigen::Index>& cols) {
   for (Eigen::Index i = 0; i < a.rows(); ++i)
@@ -156,7 +156,7 @@ std::string first_difference(const char* what, const MatrixXd& a, const MatrixXd
       if (const double other =
               b(rows[static_cast<std::size_t>(i)], cols[static_cast<std::size_t>(j)]);
           a(i, j) != other)
-        return std::string(what) + "(" + std::to_string(i) + ", " + std::to_string(j) +
+        return std::string(subject) + "(" + std::to_string(i) + ", " + std::to_string(j) +
                "): " + std::to_string(a(i, j)) + " against " + std::to_string(other) + ", off by " +
                std::to_string((a(i, j) - other) / a(i, j) * 1e15) + "e-15";
   return {};

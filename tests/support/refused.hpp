@@ -9,10 +9,10 @@
 namespace titop_test {
 
 /// The text with this part of it, which must be there, replaced once.
-inline std::string replaced(std::string text, const std::string& what, const std::string& with) {
-  const auto at = text.find(what);
+inline std::string replaced(std::string text, const std::string& subject, const std::string& with) {
+  const auto at = text.find(subject);
   REQUIRE(at != std::string::npos);
-  return text.replace(at, what.size(), with);
+  return text.replace(at, subject.size(), with);
 }
 
 /// The text of the error that f() throws; "no error" if it throws none.

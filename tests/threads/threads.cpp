@@ -155,8 +155,8 @@ int called_late(int most, std::chrono::milliseconds late) {
   const auto main = std::this_thread::get_id();
   std::atomic<bool> begun = false, over = false;
   std::atomic<int> others = 0;
-  const auto wait_for = [](const std::atomic<bool>& what) {
-    for (int i = 0; i < 10000 && !what; ++i)
+  const auto wait_for = [](const std::atomic<bool>& subject) {
+    for (int i = 0; i < 10000 && !subject; ++i)
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
   };
   detail::work_together(

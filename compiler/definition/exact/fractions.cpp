@@ -63,7 +63,7 @@ FractionMatrix fractions(const MatrixXd& m) {
   return result;
 }
 
-FractionMatrix orthonormal_fractions(const MatrixXd& rows, const std::string& what) {
+FractionMatrix orthonormal_fractions(const MatrixXd& rows, const std::string& subject) {
   FractionMatrix m(rows.rows(), rows.cols());
   bool found = true;
   for (Index i = 0; i < rows.rows(); ++i)
@@ -76,7 +76,7 @@ FractionMatrix orthonormal_fractions(const MatrixXd& rows, const std::string& wh
     throw Undecided{
         fmt::format("{} has no exact fractions up to a denominator of {}: take turns of 90 degrees "
                     "or of 3-4-5 triangles",
-                    what, kLargestDenominator)};
+                    subject, kLargestDenominator)};
   return m;
 }
 

@@ -31,8 +31,8 @@ FractionMatrix operator*(const Fraction& k, FractionMatrix m);
 FractionMatrix fractions(const Eigen::MatrixXd& m);
 
 /// Orthonormal rows as the nearby fractions of small denominator: 0.6 is 3/5. Throws Undecided,
-/// with `what`, if there are none, or if they are not orthonormal.
-FractionMatrix orthonormal_fractions(const Eigen::MatrixXd& rows, const std::string& what);
+/// with `subject`, if there are none, or if they are not orthonormal.
+FractionMatrix orthonormal_fractions(const Eigen::MatrixXd& rows, const std::string& subject);
 
 /// The matrix of a term, as `coefficient` of graph.hpp. Throws Undecided.
 FractionMatrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues values);

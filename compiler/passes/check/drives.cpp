@@ -86,11 +86,11 @@ void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
   }
   const bool child = channel.takes == Takes::force;
   if (!clash && rows < channel.size && !child && drive.added.empty()) {
-    const std::string what =
+    const std::string subject =
         rows == 0 ? name_of(g, channel.accel)
                   : fmt::format("{} ({} of {} degrees of freedom)", name_of(g, channel.accel),
                                 channel.size - rows, channel.size);
-    c.add(Code::no_equation, fmt::format("{} is not driven", what),
+    c.add(Code::no_equation, fmt::format("{} is not driven", subject),
           {added_at(g, g.nodes[at(channel.node)])}, free_way_out(g, channel));
   }
 }
