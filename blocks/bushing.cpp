@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <titop/blocks/bushing.hpp>
 #include <titop/blocks/specified.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop {
 namespace {

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -8,6 +7,7 @@
 #include <titop/blocks/body_interface.hpp>
 #include <titop/blocks/rigid_body.hpp>
 #include <titop/blocks/specified.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop {
 

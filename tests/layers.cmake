@@ -1,5 +1,6 @@
 # The rooms of the library, lowest first: room(NAME MAY_INCLUDE...), beside itself and graph. Rooms
 # that may be included stand above, so there is no cycle. docs/architecture.md has the same table.
+# Only graph/linalg includes decompositions of Eigen, or LAPACK.
 cmake_policy(VERSION 3.25)
 set(wrong "")
 set(names)
@@ -100,6 +101,11 @@ foreach(file ${files})
   if(NOT room)
     string(APPEND wrong "\n  ${file} is in no room")
     continue()
+  endif()
+  file(STRINGS ${ROOT}/${file} lines
+       REGEX "include *<(lapack.*|Eigen/(LU|QR|SVD|Cholesky|Eigenvalues|Dense|SparseLU|SparseQR|SparseCholesky))>")
+  if(lines AND NOT file MATCHES "^graph/linalg/")
+    string(APPEND wrong "\n  ${file}: ${lines}; include titop/graph/linalg/eigen.hpp")
   endif()
   file(STRINGS ${ROOT}/${file} lines REGEX "^ *# *include *[<\"]titop/")
   foreach(line ${lines})

@@ -1,7 +1,7 @@
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <titop/analysis/certify/passivity.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop::full {
 namespace {

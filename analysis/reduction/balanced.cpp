@@ -1,10 +1,10 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <titop/analysis/reduction/balanced.hpp>
 #include <titop/analysis/reduction/real_modes.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop::detail {
 namespace {

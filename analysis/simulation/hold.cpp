@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <Eigen/LU>
 #include <cmath>
 #include <titop/analysis/simulation/hold.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 
 namespace titop {
 

@@ -1,8 +1,8 @@
 #include <Eigen/Geometry>
-#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/loops/second_order.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/steady_random.hpp>
 

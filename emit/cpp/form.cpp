@@ -1,4 +1,3 @@
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +6,7 @@
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/emit/cpp/form.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/graded.hpp>
 
 namespace titop::emit {
