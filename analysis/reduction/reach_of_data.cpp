@@ -21,7 +21,7 @@ std::vector<Note> reach_of_data(const SystemData& data, const Scene& scene) {
     const double highest = std::sqrt(m.modal->stiffness.maxCoeff()) / (2 * std::numbers::pi);
     if (highest < needed)
       notes.push_back(
-          {Note::Kind::warning, "economy",
+          {Note::Kind::warning, "reduction",
            fmt::format("the data of {} end at {:.4g} Hz, and the band at {:.4g} Hz: give it its "
                        "modes up to {:.4g} Hz (more of them, or a finer mesh); the bound is on the "
                        "reduction, not on what the data leave out",

@@ -6,7 +6,7 @@
 #include <titop/titop.hpp>
 #include <vector>
 
-/// Scenes of the small models: those of docs/economy.
+/// Scenes of the small models: those of docs/reduction.
 namespace titop_bench {
 
 struct Question {

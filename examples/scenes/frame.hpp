@@ -3,7 +3,7 @@
 #include <titop/titop.hpp>
 #include <vector>
 
-/// Common to tests and benchmarks of economy.
+/// Common to tests and benchmarks of model reduction.
 namespace scenes {
 
 /// Three beams in a skew chain, clamped; wrench at the tip to acceleration there.

@@ -5,7 +5,7 @@
 #include "scenes.hpp"
 #include "support/close.hpp"
 
-/// Closed chains through economy, against the whole structure's M and K by hand.
+/// Closed chains through model reduction, against the whole structure's M and K by hand.
 using namespace titop;
 using namespace titop_test;
 using namespace loop_test;

@@ -7,7 +7,7 @@
 #include "../../examples/scenes/frame.hpp"
 #include "tree.hpp"
 
-/// Scenes of the tests of economy, and measurements on them.
+/// Scenes of the tests of model reduction, and measurements on them.
 namespace titop_test {
 
 using titop::Diagram;

@@ -29,10 +29,10 @@ int states_of(const Diagram& diagram) {
 
 /// One scene, compiled and made ready for any accuracy: bodies first if the whole is too large,
 /// then modes of the whole, or states if it is no structure.
-class Economy {
+class SceneReduction {
  public:
   /// `finest`: the smallest accuracy that will be required.
-  Economy(const Diagram& diagram, const Scene& scene, const Options& options, double finest)
+  SceneReduction(const Diagram& diagram, const Scene& scene, const Options& options, double finest)
       : setting_(scene, options, finest, states_of(diagram)) {
     detail::check(scene);
     const Graph graph = detail::restricted(diagram.graph(), scene);
@@ -50,8 +50,8 @@ class Economy {
     if (!reduction_) reduce_bodies(graph, count);
   }
 
-  Economy(const Economy&) = delete;  // the reduction has references into this
-  Economy& operator=(const Economy&) = delete;
+  SceneReduction(const SceneReduction&) = delete;  // the reduction has references into this
+  SceneReduction& operator=(const SceneReduction&) = delete;
 
   /// The smallest model whose bound is at most this.
   ReducedSystem reach(double accuracy) {
@@ -159,7 +159,7 @@ double seconds_of(const ReducedSystem& m, double omega) {
 }  // namespace
 
 ReducedSystem compile(const Diagram& diagram, const Scene& scene, const Options& options) {
-  return Economy(diagram, scene, options, scene.accuracy).reach(scene.accuracy);
+  return SceneReduction(diagram, scene, options, scene.accuracy).reach(scene.accuracy);
 }
 
 std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
@@ -176,9 +176,10 @@ std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,
   if (!mistakes.empty()) throw Error(std::move(mistakes));
   std::vector<WhatIf> result;
   if (accuracies.empty()) return result;
-  Economy economy(diagram, scene, options, *std::min_element(accuracies.begin(), accuracies.end()));
+  SceneReduction reduction(diagram, scene, options,
+                           *std::min_element(accuracies.begin(), accuracies.end()));
   for (const double accuracy : accuracies)
-    if (const auto system = economy.try_reach(accuracy))
+    if (const auto system = reduction.try_reach(accuracy))
       result.push_back({accuracy, system->order(), system->bound().worst,
                         seconds_of(*system, 2 * pi * std::max(1e-3, scene.band_hz[1])), *system});
   return result;

@@ -1,9 +1,9 @@
-/// bench_economy [quick]: order and cost against accuracy, in CSV, a row per scene and accuracy:
+/// bench_reduction [quick]: order and cost against accuracy, in CSV, a row per scene and accuracy:
 /// the states that `what_if` keeps, its bound and the error, processor seconds of one transfer and
 /// of a simulation and those of the full system, and the order of plain truncation by frequency
 /// for the same accuracy. After each scene two rows for the rule that keeps all modes up to twice
-/// the band. Returns 1 if an error is above its bound. bench_economy large: scenes of thousands of
-/// coordinates instead, step by step. docs/economy/README.md explains the columns.
+/// the band. Returns 1 if an error is above its bound. bench_reduction large: scenes of thousands
+/// of coordinates instead, step by step. docs/reduction/README.md explains the columns.
 #include <fmt/format.h>
 
 #include <algorithm>

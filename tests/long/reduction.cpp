@@ -6,7 +6,7 @@
 #include "reduction/scenes.hpp"
 #include "support/rng.hpp"
 
-/// Random scenes through the whole of economy; see tests/economy.
+/// Random scenes through the whole of model reduction; see tests/reduction.
 using namespace titop;
 using namespace titop_test;
 
