@@ -1,5 +1,5 @@
 # Installs what users include: titop.hpp and all that it includes, below `folder_of_headers`. The
-# other headers are the compiler's own.
+# other headers are internal.
 cmake_policy(VERSION 3.25)
 cmake_path(ABSOLUTE_PATH folder_of_headers BASE_DIRECTORY "${CMAKE_INSTALL_PREFIX}")
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH root)

@@ -1,5 +1,5 @@
-// All scenes of the corpus through the scene reader and the compiler, against their answers, which
-// were assembled without either (README.md).
+// All scenes of the corpus through the reader of diagram files and the compiler, against their
+// answers, which were assembled without either (README.md).
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 

@@ -7,7 +7,7 @@
 #include "support/mistakes.hpp"
 
 // Mistakes in the description itself: the pass `check`, and mistakes refused at once. Mistakes of
-// ports, frames, quantities and sizes in equations are in tests/language.
+// ports, frames, quantities and sizes in equations are in tests/graph.
 
 using namespace titop;
 using namespace titop_test;

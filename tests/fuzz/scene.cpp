@@ -1,4 +1,4 @@
-// Diagram files; a scene that can be read is also written, and then read again as the same text.
+// Diagram files; a diagram that can be read is also written, and then read again as the same text.
 #include <titop/blocks/diagram_file/diagram_file.hpp>
 
 #include "input_file.hpp"
