@@ -6,7 +6,7 @@
 #include <vector>
 
 /// Requirements on a certificate: one rule for the full certificate and for the report. For the
-/// compiler's own files.
+/// library's own files.
 namespace titop::full {
 
 inline constexpr double kHolds = 1e-8;  ///< equations, and entries of the dense model one by one

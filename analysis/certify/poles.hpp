@@ -4,7 +4,7 @@
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
-/// Items of the full certificate (analysis/certify/certify_full.hpp). For the compiler's own files.
+/// Items of the full certificate (analysis/certify/certify_full.hpp). For the library's own files.
 namespace titop::full {
 
 struct FoundPoles {

@@ -5,7 +5,7 @@
 #include <titop/analysis/reduction/ray.hpp>
 #include <titop/analysis/reduction/states.hpp>
 
-/// Selection of the balanced model for a scene. For the compiler's own files only.
+/// Selection of the balanced model for a scene. For the library's own files only.
 namespace titop::detail {
 
 /// Models of every order of a system without M, D, K: integrals and poles on the axis or right of

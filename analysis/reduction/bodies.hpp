@@ -3,7 +3,7 @@
 #include <titop/analysis/reduction/probes.hpp>
 
 /// Bodies with fewer coordinates, if the whole is too large for one eigenproblem. For the
-/// compiler's own files.
+/// library's own files.
 namespace titop::detail {
 
 /// A graph of smaller bodies, and the changes of each.

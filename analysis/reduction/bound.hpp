@@ -4,7 +4,7 @@
 #include <titop/analysis/reduction/ray.hpp>
 #include <titop/analysis/reduction/reduced_system.hpp>
 
-/// The error of a reduced model over a scene's band. For the compiler's own files only.
+/// The error of a reduced model over a scene's band. For the library's own files only.
 namespace titop::detail {
 
 /// Step of the phase grid: a bound of 1 / cos(1 / 2) = 1.14 times the samples.

@@ -5,7 +5,7 @@
 #include <titop/compiler/system/system_data.hpp>
 #include <vector>
 
-/// The second-order form that the states of a passive structure have. For the compiler's own files.
+/// The second-order form that the states of a passive structure have. For the library's own files.
 namespace titop::detail {
 
 /// Coordinates q (each with its rate) of a structure: qdd = -G (K q + D qd) + B u with G = M^-1,

@@ -2,7 +2,7 @@
 
 #include <titop/analysis/reduction/split.hpp>
 
-/// Balanced coordinates of a stable part. For the compiler's own files only.
+/// Balanced coordinates of a stable part. For the library's own files only.
 namespace titop::detail {
 
 /// A stable model in balanced coordinates: both Gramians are diag(sigma). The first r coordinates

@@ -2,7 +2,7 @@
 
 #include <titop/analysis/reduction/scene.hpp>
 
-/// Effect of single modes of single bodies on the scene's transfer. For the compiler's own files.
+/// Effect of single modes of single bodies on the scene's transfer. For the library's own files.
 namespace titop::detail {
 
 /// A node whose block has modes, and the effect of dropping each of them on the worst pair of the

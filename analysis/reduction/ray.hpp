@@ -6,7 +6,7 @@
 #include <titop/analysis/reduction/split.hpp>
 #include <utility>
 
-/// Sampling on the ray of a scene. For the compiler's own files only.
+/// Sampling on the ray of a scene. For the library's own files only.
 namespace titop::detail {
 
 /// Ends of the band [rad/s] of the scene. A model with motions without stiffness cannot be

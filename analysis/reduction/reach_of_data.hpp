@@ -3,7 +3,7 @@
 #include <titop/analysis/reduction/scene.hpp>
 #include <titop/compiler/system/system_data.hpp>
 
-/// Frequency limit of a body's own data. For the compiler's own files only.
+/// Frequency limit of a body's own data. For the library's own files only.
 namespace titop::detail {
 
 /// Modal data describe a body up to its highest mode; the usual rule of component modes is 1.5

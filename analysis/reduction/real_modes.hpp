@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-/// Blocks of 2 x 2 from the eigenvectors of a matrix. For the compiler's own files only.
+/// Blocks of 2 x 2 from the eigenvectors of a matrix. For the library's own files only.
 namespace titop::detail {
 
 /// Real columns that span the eigenvectors of two states each: of a pair, or of two real ones; the

@@ -5,7 +5,7 @@
 #include <titop/analysis/reduction/small.hpp>
 #include <titop/analysis/reduction/states.hpp>
 
-/// The data of a ReducedSystem. For the compiler's own files only.
+/// The data of a ReducedSystem. For the library's own files only.
 namespace titop::detail {
 
 struct ReducedData {

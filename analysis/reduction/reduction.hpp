@@ -6,7 +6,7 @@
 #include <titop/analysis/reduction/bound.hpp>
 #include <titop/analysis/reduction/reduced_data.hpp>
 
-/// The two methods of reduction. For the compiler's own files only.
+/// The two methods of reduction. For the library's own files only.
 namespace titop::detail {
 
 /// Seconds on a monotonic clock.

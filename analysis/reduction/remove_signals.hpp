@@ -5,7 +5,7 @@
 namespace titop::detail {
 
 /// Takes these signals from the graph's list; all other indices are adapted, -1 for removed
-/// ones. For the compiler's own files. O(graph).
+/// ones. For the library's own files. O(graph).
 void remove_signals(Graph& graph, const std::vector<char>& gone);
 
 }  // namespace titop::detail

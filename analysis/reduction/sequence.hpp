@@ -2,7 +2,7 @@
 
 #include <titop/analysis/reduction/small.hpp>
 
-/// The order in which modes and vectors are added. For the compiler's own files only.
+/// The order in which modes and vectors are added. For the library's own files only.
 namespace titop::detail {
 
 /// The full transfer on samples of the ray, and the scale of each pair.

@@ -3,7 +3,7 @@
 #include <titop/analysis/reduction/whole.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
-/// A small model in second order, as a projection of the whole. For the compiler's own files only.
+/// A small model in second order, as a projection of the whole. For the library's own files only.
 namespace titop::detail {
 
 /// Reciprocal condition number of eigenvectors below which modes count as defective.

@@ -4,7 +4,7 @@
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
-/// Separates the part with Gramians from the part without. For the compiler's own files only.
+/// Separates the part with Gramians from the part without. For the library's own files only.
 namespace titop::detail {
 
 /// Damping ratio below which a pole counts as undamped.

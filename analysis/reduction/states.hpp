@@ -3,7 +3,7 @@
 #include <titop/analysis/reduction/reduced_system.hpp>
 #include <titop/analysis/reduction/split.hpp>
 
-/// A reduced model by states, if there is no second-order form. For the compiler's own files.
+/// A reduced model by states, if there is no second-order form. For the library's own files.
 namespace titop::detail {
 
 /// D plus parts that are not coupled to each other: integrals, the kept part, the balanced part.

@@ -3,7 +3,7 @@
 #include <complex>
 #include <titop/analysis/reduction/coordinates.hpp>
 
-/// The whole structure in its own modes. For the compiler's own files only.
+/// The whole structure in its own modes. For the library's own files only.
 namespace titop::detail {
 
 /// The modes of an assembly, mass-normalised, with their input and output matrices:

@@ -5,7 +5,7 @@
 #include <titop/compiler/system/system.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 
-/// One step of each method. For the compiler's own files only.
+/// One step of each method. For the library's own files only.
 namespace titop::detail {
 
 /// x at the end of a step from x at its beginning and the inputs at both ends.

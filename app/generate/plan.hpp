@@ -7,7 +7,7 @@
 
 #include "generate/ratio.hpp"
 
-/// A random scene as plain data, before it is written as a diagram file (scene.hpp) and as
+/// A random scene as plain data, before it is written as a diagram file (scene.cpp) and as
 /// equations of motion (assembly.hpp). Nothing of the library is used in either.
 namespace titop::generate {
 

@@ -7,7 +7,7 @@
 #include <titop/graph/error.hpp>
 #include <vector>
 
-/// Common to the writer and the reader of scenes.
+/// Common to the writer and the reader of diagram files.
 namespace titop::scene {
 
 using Json = nlohmann::ordered_json;

@@ -79,7 +79,7 @@ struct Minimized {
 /// s). Poles that are equal to rounding, those at 0 (2e-7 of A's norm) and those of a condition
 /// number above 1e6 have no reliable vectors: with all poles of their cluster they are split off as
 /// a small model (linalg/spectral.hpp), whose controllability and observability staircases
-/// determine how many of its states count (minimize/staircase.hpp). Integrators that act on no
+/// determine how many of its states count (minreal/staircase.hpp). Integrators that act on no
 /// other state, of positions and rates that outputs read, are separated, and both parts judged by
 /// themselves: zdot = N z + B u is their part without the modes, and the ranks of [B, N B, ...] and
 /// [C; C N; ...] determine which of them depend on other states (a position that is a state

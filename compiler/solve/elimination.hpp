@@ -12,7 +12,7 @@
 /// Elimination along the junctions: a row-merging LU of a block-sparse square system, front by
 /// front in the order of the plan. Symmetry is not used here: controllers and exchanged channels
 /// have none, and pivots chosen by size keep digits that a fixed symmetric order would lose. (The
-/// dense model exploits it: dense/reciprocity.hpp.)
+/// dense model exploits it: realization/reciprocity.hpp.)
 /// Instantiated for double, and for complex numbers of double, long double, double-double and 50
 /// digits.
 namespace titop::solve {
