@@ -11,7 +11,6 @@ namespace {
 using linalg::at;
 
 constexpr int kSteps = 5;
-constexpr double kUnderflow = 1e-290;
 
 }  // namespace
 

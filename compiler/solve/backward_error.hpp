@@ -5,10 +5,13 @@
 /// Refinement of every solution, in every precision, by the componentwise backward error.
 namespace titop::solve {
 
+/// Smaller numbers have no digits to keep: motion that has decayed along a chain of thousands.
+inline constexpr double kUnderflow = 1e-290;
+
 /// The largest ratio of a row's residual to its terms, |rhs - rows x| over |rhs| + |rows| |x|: the
 /// least relative change of single entries and right-hand sides that makes x exact [Oettli, Prager
 /// 1964]. The three rows of a translation, rotation, force or torque count together; columns
-/// separately. Infinite if a number is not finite. Numbers below 1e-290 have no digits to keep.
+/// separately. Infinite if a number is not finite. Residuals below kUnderflow count as 0.
 template <class T>
 double backward_error(const Plan& plan, const RowMatrix<T>& residual,
                       const RowMatrix<double>& magnitudes);

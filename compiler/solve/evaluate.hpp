@@ -9,8 +9,7 @@
 
 namespace titop::detail {
 
-/// Smaller numbers have no digits to keep: motion that has decayed along a chain of thousands.
-inline constexpr double kUnderflow = 1e-290;
+using solve::kUnderflow;
 
 /// The error of an evaluation at s, if s is a pole or numerically one.
 Error no_digit_left(const Factored& data, std::complex<double> s);
