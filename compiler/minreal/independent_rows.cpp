@@ -2,6 +2,7 @@
 #include <cmath>
 #include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/minreal/independent_rows.hpp>
+#include <titop/compiler/minreal/staircase.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 
 namespace titop::modes {
@@ -11,9 +12,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kClearly = 1e4;     ///< times rounding: certainly larger
-constexpr double kFewDigits = 1e-9;  ///< of a row: with more rounding, nothing is removed
-constexpr double kOfNoise = 1e12;    ///< times rounding: its weight in the scaling of rows
+constexpr double kOfNoise = 1e12;  ///< times rounding: its weight in the scaling of rows
 
 /// Factors that bring the largest entries of all rows and columns to 1 [Ruiz 2001].
 struct UnitScale {

@@ -12,9 +12,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kClearly = 1e4;     ///< times rounding: certainly larger
-constexpr double kFewDigits = 1e-9;  ///< of a size: with more rounding, nothing is removed
-
 /// One side of a cluster: its inputs or, transposed, its outputs.
 struct DrivenSide {
   MatrixXd A, B;

@@ -6,6 +6,9 @@
 /// For the compiler's own files.
 namespace titop::modes {
 
+inline constexpr double kClearly = 1e4;     ///< times rounding: certainly larger
+inline constexpr double kFewDigits = 1e-9;  ///< of a size: with more rounding, nothing is removed
+
 /// xdot = A x + B u, y = C x, and the bound of its rounding.
 struct ClusterModel {
   Eigen::MatrixXd A, B, C;  ///< k x k, k x nu, ny x k; nu = 0 or ny = 0: that side counts fully
