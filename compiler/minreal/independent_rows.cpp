@@ -1,9 +1,11 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/certificate/sampled.hpp>
+#include <titop/compiler/minreal/clusters.hpp>
 #include <titop/compiler/minreal/independent_rows.hpp>
 #include <titop/compiler/minreal/staircase.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop::modes {
 namespace {
@@ -11,10 +13,13 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using linalg::at;
 
+constexpr double kLater = 0.03;    ///< weight in pivoting of a row of the next level
 constexpr double kOfNoise = 1e12;  ///< times rounding: its weight in the scaling of rows
 
-/// Factors that bring the largest entries of all rows and columns to 1 [Ruiz 2001].
+/// Factors that bring the largest entries of all rows and columns to 1 [Ruiz 2001]; rows and
+/// columns of zeros keep theirs.
 struct UnitScale {
   VectorXd row, column;
   explicit UnitScale(MatrixXd sizes)
@@ -35,96 +40,131 @@ struct UnitScale {
   }
 };
 
-/// Rows are taken one by one [Gram, Schmidt, with reorthogonalization].
-class RowBasis {
- public:
-  RowBasis(MatrixXd M, const MatrixXd& rounding)
-      : M_(std::move(M)), rest_(M_), noise_(rounding.rowwise().norm()) {}
-
-  double own(int row) const { return rest_.row(row).norm(); }
-  /// Rounding in the remainder of a row: its own, and that of the rows that were subtracted.
-  double noise(int row) const {
-    return noise_(row) + (coefficients(row).cwiseAbs() * noise_(taken_)).sum();
-  }
-  void take(int row) {
-    const Eigen::RowVectorXd direction = rest_.row(row).normalized();
-    for (int again = 0; again < 2; ++again)
-      rest_ -= (rest_ * direction.transpose() * direction).eval();
-    taken_.push_back(row);
-  }
-  /// A row by those that were taken: 1 x taken.
-  MatrixXd coefficients(int row) const {
-    if (taken_.empty()) return MatrixXd::Zero(1, 0);
-    const MatrixXd basis = M_(taken_, Eigen::all).transpose(), right = M_.row(row).transpose();
-    return MatrixXd(basis.completeOrthogonalDecomposition().solve(right)).transpose();
-  }
-  const std::vector<int>& taken() const { return taken_; }
-
- private:
-  MatrixXd M_, rest_;
-  VectorXd noise_;
-  std::vector<int> taken_;
+/// Some rows, and the rounding in the norm of each.
+struct NoisyRows {
+  std::vector<int> number;
+  MatrixXd rows;
+  VectorXd noise;
 };
 
-/// For rows at rounding level: rounding over the terms of the entries, at most.
-VectorXd rounding_in(const MatrixXd& terms, const MatrixXd& rounding) {
-  const UnitScale by(terms);
-  const VectorXd all = by(terms).rowwise().maxCoeff(), noise = by(rounding).rowwise().maxCoeff();
-  return (all.array() > 0).select(noise.cwiseQuotient(all), 0.0);
+/// Rows that a pivoted QR separates clearly, and the remainders of the others.
+struct SeparatedRows {
+  std::vector<int> clear;
+  NoisyRows others;
+};
+SeparatedRows separate(const NoisyRows& of) {
+  SeparatedRows result;
+  if (of.rows.size() == 0) {  // no row, or none with a remainder
+    result.others = of;
+    return result;
+  }
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(of.rows.transpose());
+  const MatrixXd R = qr.matrixR().triangularView<Eigen::Upper>();
+  const auto& place = qr.colsPermutation().indices();
+  const Index all = R.cols(), pivots = std::min(R.rows(), all);
+  VectorXd noise(all);
+  for (Index j = 0; j < all; ++j) noise(j) = of.noise(place(j));
+  // Rounding in what is left of row j beside the first `taken` ones: its own and theirs.
+  const auto bound = [&](Index j, Index taken) {
+    const VectorXd part = R.col(j).head(taken);
+    const VectorXd share =
+        R.topLeftCorner(taken, taken).triangularView<Eigen::Upper>().solve(part).cwiseAbs();
+    return noise(j) + share.dot(noise.head(taken));
+  };
+  Index rank = 0;
+  while (rank < pivots && std::abs(R(rank, rank)) > kClearly * bound(rank, rank))
+    result.clear.push_back(of.number[at(place(rank++))]);
+  result.others.rows = R.bottomRightCorner(R.rows() - rank, all - rank).transpose();
+  result.others.noise.resize(all - rank);
+  for (Index j = rank; j < all; ++j) {
+    result.others.number.push_back(of.number[at(place(j))]);
+    result.others.noise(j - rank) = bound(j, rank);
+  }
+  return result;
+}
+
+/// Rows `number` of these, in the units of their states.
+NoisyRows weighted(const std::vector<int>& number, const MatrixXd& scaled, const MatrixXd& rounding,
+                   const VectorXd& weight) {
+  const VectorXd noise =
+      rounding.rowwise().norm().cwiseMax(kEps * scaled.rowwise().norm()).cwiseProduct(weight);
+  const MatrixXd rows = weight.asDiagonal() * scaled;
+  return {number, rows(number, Eigen::all), noise(number)};
+}
+
+/// Separates the rows, and what is left of them again in units of their rounding: returns the
+/// clearly independent rows, and the others with their remainders.
+SeparatedRows separate_twice(const NoisyRows& open) {
+  SeparatedRows result = separate(open);
+  NoisyRows& others = result.others;
+  const std::vector<int> number = others.number;
+  const VectorXd bounds = others.noise;
+  others.rows = bounds.cwiseInverse().asDiagonal() * others.rows;
+  others.noise.setOnes();
+  const SeparatedRows second = separate(others);
+  result.clear.insert(result.clear.end(), second.clear.begin(), second.clear.end());
+  others = second.others;
+  for (Index k = 0; k < others.noise.size(); ++k) {
+    const auto place = std::find(number.begin(), number.end(), others.number[at(k)]);
+    const double size = bounds(place - number.begin());
+    others.noise(k) *= size;
+    others.rows.row(k) *= size;
+  }
+  return result;
+}
+
+/// Coefficients of the rows `out` by those of the basis, without those at rounding level.
+void solve_for(const std::vector<int>& basis, const MatrixXd& scaled, const VectorXd& row_scale,
+               IndependentRows& r) {
+  r.T = MatrixXd::Zero(std::ssize(r.out), std::ssize(r.keep));
+  if (basis.empty() || r.out.empty()) return;
+  std::vector<int> out;
+  for (const IndependentRows::RowRemainder& o : r.out) out.push_back(o.row);
+  const Eigen::ColPivHouseholderQR<MatrixXd> qr(MatrixXd(scaled(basis, Eigen::all).transpose()));
+  const MatrixXd share = qr.solve(MatrixXd(scaled(out, Eigen::all).transpose())).transpose();
+  for (Index k = 0; k < share.cols(); ++k) {
+    const int row = basis[at(k)];
+    const Index place = std::lower_bound(r.keep.begin(), r.keep.end(), row) - r.keep.begin();
+    for (Index i = 0; i < share.rows(); ++i)
+      if (std::abs(share(i, k)) > kRounding * r.out[at(i)].bound)
+        r.T(i, place) = share(i, k) * row_scale(row) / row_scale(out[at(i)]);
+  }
 }
 
 }  // namespace
 
-IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, const MatrixXd& terms,
+IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, const VectorXd& unit,
                                  const std::vector<int>& level) {
   IndependentRows r;
+  if (M.size() == 0) return r;
   const MatrixXd clear = (M.array().abs() > kRounding * rounding.array()).select(M, 0.0);
-  const VectorXd of_empty = rounding_in(terms, rounding);
-  std::vector<int> open;
-  for (int i = 0; i < M.rows(); ++i)
-    if (clear.row(i).cwiseAbs().sum() > 0)
-      open.push_back(i);
-    else if (of_empty(i) <= kFewDigits)
-      r.out.push_back({i, 0, of_empty(i)});
-    else
-      r.keep.push_back(i), r.doubtful.push_back({i, 0, of_empty(i)});
   // A column that distinguishes some rows may be at rounding level in the others, and large: it
   // must not dominate these.
   const UnitScale by(clear.cwiseAbs().cwiseMax(kOfNoise * rounding));
-  RowBasis basis(by(clear), by(rounding));
-  while (!open.empty()) {
-    // On the lowest level, the row with the largest own part; of equal ones the first.
-    const auto most = std::max_element(open.begin(), open.end(), [&](int a, int b) {
-      const int la = level[static_cast<std::size_t>(a)], lb = level[static_cast<std::size_t>(b)];
-      return la != lb ? la > lb : basis.own(a) < (1 - 1e-9) * basis.own(b);
-    });
-    const int i = *most;
-    open.erase(most);
-    const double own = basis.own(i), bound = basis.noise(i);
-    if (own <= kRounding * bound && bound <= kFewDigits) {
-      r.out.push_back({i, own, bound});
-      continue;
-    }
-    r.keep.push_back(i);
-    if (own > kClearly * bound)
-      basis.take(i);
+  const MatrixXd scaled = by(clear);
+  VectorXd weight(M.rows());
+  std::vector<int> open;
+  for (int i = 0; i < M.rows(); ++i) {
+    weight(i) = std::pow(kLater, level[at(i)]) / (unit(i) * by.row(i));
+    if ((clear.row(i).array() != 0).any())
+      open.push_back(i);
     else
-      r.doubtful.push_back({i, own, bound});
+      r.out.push_back({i, 0, 0});
+  }
+  const auto [basis, others] = separate_twice(weighted(open, scaled, by(rounding), weight));
+  r.keep = basis;
+  for (Index k = 0; k < std::ssize(others.number); ++k) {
+    const int row = others.number[at(k)];
+    const double size = scaled.row(row).norm() * weight(row), bound = others.noise(k) / size,
+                 own = others.rows.row(k).norm() / size;
+    if (own <= kRounding * bound && bound <= kFewDigits)
+      r.out.push_back({row, own, bound});
+    else
+      r.keep.push_back(row), r.doubtful.push_back({row, own, bound});
   }
   std::sort(r.keep.begin(), r.keep.end());
   std::sort(r.out.begin(), r.out.end(), [](const auto& a, const auto& b) { return a.row < b.row; });
-  r.T = MatrixXd::Zero(std::ssize(r.out), std::ssize(r.keep));
-  for (std::size_t i = 0; i < r.out.size(); ++i) {
-    const IndependentRows::RowRemainder& out = r.out[i];
-    const MatrixXd t = basis.coefficients(out.row);
-    for (std::size_t k = 0; k < basis.taken().size(); ++k) {
-      const int row = basis.taken()[k];
-      const auto place = std::lower_bound(r.keep.begin(), r.keep.end(), row) - r.keep.begin();
-      const double c = t(0, static_cast<Index>(k));
-      if (std::abs(c) > kRounding * out.bound)
-        r.T(static_cast<Index>(i), place) = c * by.row(row) / by.row(out.row);
-    }
-  }
+  solve_for(basis, scaled, by.row, r);
   return r;
 }
 

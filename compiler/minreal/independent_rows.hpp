@@ -20,11 +20,13 @@ struct IndependentRows {
 };
 
 /// `rounding`: rounding error of each entry. A row is dependent if its own part is below 32 times
-/// that, and that is below 1e-9 of the row, or, of a row at rounding level, of `terms`, the terms
-/// of its entries. A row is in doubt below 1e4 times its rounding. Rows depend on rows of the same
-/// and of lower `level` only. Rows and columns are scaled first: their units do not matter.
-/// O(rows^3 columns).
+/// that and that is below 1e-9 of the row, or if all its entries are at rounding level. A row is in
+/// doubt below 1e4 times its rounding. Rows and columns are scaled first: their units do not
+/// matter. `unit`: of each row's state; in these units the coefficients T are small. Rows of lower
+/// `level` are preferred as independent ones. Pivoted QR [Businger, Golub 1965] in units of the
+/// entries, and of the rows that it does not clearly separate in units of their rounding. O(rows^2
+/// columns).
 IndependentRows independent_rows(const Eigen::MatrixXd& M, const Eigen::MatrixXd& rounding,
-                                 const Eigen::MatrixXd& terms, const std::vector<int>& level);
+                                 const Eigen::VectorXd& unit, const std::vector<int>& level);
 
 }  // namespace titop::modes

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <numeric>
+#include <titop/compiler/minreal/clusters.hpp>
 #include <titop/compiler/minreal/integrators.hpp>
 #include <titop/graph/linalg/balance.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -117,18 +118,24 @@ std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit
   return d;
 }
 
-MatrixXd terms_of_B(const StateSpace& model, const IntegratorSplit& states) {
-  const auto& [rest, integrators] = states;
-  MatrixXd terms = model.B(integrators, Eigen::all).cwiseAbs();
-  if (rest.empty()) return terms;
-  MatrixXd A = model.A(rest, rest);
-  const Eigen::VectorXd scale = linalg::balance_parts(A);
-  const MatrixXd one = MatrixXd::Identity(A.rows(), A.cols()),
-                 inverse = Eigen::PartialPivLU<MatrixXd>(A).solve(one).cwiseAbs();
-  const MatrixXd N = model.A(integrators, integrators).cwiseAbs(),
-                 taken = model.A(integrators, rest).cwiseAbs() * scale.asDiagonal();
-  const MatrixXd X = followed(N, taken, [&](const MatrixXd& Y) { return MatrixXd(Y * inverse); });
-  return terms + X * scale.cwiseInverse().asDiagonal() * model.B(rest, Eigen::all).cwiseAbs();
+std::optional<StateSpace> decoupled_rest(const Sampled& s, const IntegratorSplit& states) {
+  const std::optional<Decoupled> d = decouple(s.model, states);
+  if (!d) return std::nullopt;
+  std::vector<Decoupled> samples;
+  for (const StateSpace& off : s.off) {
+    std::optional<Decoupled> of_sample = decouple(off, states);
+    if (!of_sample) return std::nullopt;
+    samples.push_back(std::move(*of_sample));
+  }
+  StateSpace rest = without_integrators(s.model, states);
+  const MatrixXd terms = s.model.C(Eigen::all, states.rest).cwiseAbs() +
+                         s.model.C(Eigen::all, states.integrators).cwiseAbs() * d->X.cwiseAbs();
+  const MatrixXd rounding =
+      rounding_of(samples, d->C_rest, [](const Decoupled& part) { return part.C_rest; });
+  rest.C = cleared(d->C_rest, rounding.cwiseMax(kEps * terms));
+  rest.D = s.model.D;
+  rest.outputs = s.model.outputs;
+  return rest;
 }
 
 }  // namespace titop::modes

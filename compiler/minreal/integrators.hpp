@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <titop/compiler/certificate/sampled.hpp>
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
@@ -33,8 +34,8 @@ struct Decoupled {
 /// have no pole in common. O(rest^3).
 std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit& states);
 
-/// Sums of magnitudes of the terms of the entries of Decoupled::B, before cancellation, also in the
-/// solution for X. O(rest^3).
-Eigen::MatrixXd terms_of_B(const StateSpace& model, const IntegratorSplit& states);
+/// The rest of a decoupled model; entries at rounding level are 0. None if the rest has a pole at 0
+/// too.
+std::optional<StateSpace> decoupled_rest(const Sampled& sampled, const IntegratorSplit& states);
 
 }  // namespace titop::modes

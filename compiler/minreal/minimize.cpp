@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <optional>
+#include <titop/compiler/minreal/at_zero.hpp>
 #include <titop/compiler/minreal/effect.hpp>
+#include <titop/compiler/minreal/integrators.hpp>
 #include <titop/compiler/minreal/minimize.hpp>
 #include <titop/compiler/minreal/name_order.hpp>
-#include <titop/compiler/minreal/needless.hpp>
 #include <titop/compiler/minreal/take_out.hpp>
 #include <titop/graph/error.hpp>
 
@@ -50,15 +51,26 @@ void minimize_by(Modes modes, const MinimizeOptions& options, Minimized& r) {
   r.notes.insert(r.notes.begin(), to_string(r.order));
 }
 
-Minimized minimize_as_it_stands(const StateSpace& model, const MinimizeOptions& options) {
+/// All states, before any is judged.
+Minimized as_a_whole(const StateSpace& model) {
   Minimized result;
   result.model = model;
   result.order.judged = true;
   result.order.order = result.order.lowest = result.order.highest = model.order();
+  return result;
+}
+
+/// False, without a change, if the model has no symmetric form.
+bool minimize_symmetric(const MinimizeOptions& options, Minimized& result) {
+  auto s = modes::symmetric_modes(result.model, options.resolution, options.energy);
+  if (s) minimize_by(std::move(*s), options, result);
+  return s.has_value();
+}
+
+Minimized minimize_as_it_stands(const StateSpace& model, const MinimizeOptions& options) {
+  Minimized result = as_a_whole(model);
   if (model.order() == 0 || (model.inputs.empty() && model.outputs.empty())) return result;
-  if (auto s = modes::symmetric_modes(model, options.resolution, options.energy))
-    minimize_by(std::move(*s), options, result);
-  else
+  if (!minimize_symmetric(options, result))
     minimize_by(modes::general_modes(model, options.resolution), options, result);
   return result;
 }
@@ -99,26 +111,22 @@ Minimized minimize_beside(const modes::Sampled& sampled, const modes::Integrator
   return result;
 }
 
-/// Minimizes a model without needless integrators.
-Minimized minimize_needed(const modes::Sampled& sampled, const MinimizeOptions& options,
-                          const Eigen::MatrixXd& energy_of_rest) {
-  MinimizeOptions of_rest{.resolution = options.resolution,
-                          .exact_order = options.exact_order,
-                          .energy = energy_of_rest};
+/// Minimizes a model whose poles at 0 all count.
+Minimized minimize_needed(const modes::Sampled& sampled, const MinimizeOptions& options) {
+  MinimizeOptions of_rest = options;
   const modes::IntegratorSplit states = modes::find_integrators(sampled.model);
   if (states.integrators.empty()) return minimize_as_it_stands(sampled.model, of_rest);
   const int k = static_cast<int>(states.integrators.size());
   const auto rest = modes::decoupled_rest(sampled, states);
-  if (!rest || (options.exact_order >= 0 && options.exact_order < k)) {
-    of_rest.energy.resize(0, 0);
+  if (!rest || (options.exact_order >= 0 && options.exact_order < k))
     return minimize_as_it_stands(sampled.model, of_rest);
-  }
   if (options.exact_order >= 0) of_rest.exact_order = options.exact_order - k;
+  if (options.energy.size() > 0) of_rest.energy = options.energy(states.rest, states.rest);
   return minimize_beside(sampled, states, *rest, of_rest);
 }
 
-/// Adds the verdict on the integrators to that on the other states.
-void add_needless(const modes::Needless& n, Minimized& r) {
+/// Adds the verdict on states that have left to that on the others.
+void add_removed(const modes::RemovedStates& n, Minimized& r) {
   OrderVerdict& v = r.order;
   if (!v.exact) {
     v.lowest = std::max(0, v.lowest - static_cast<int>(n.doubtful.size()));
@@ -133,17 +141,21 @@ void add_needless(const modes::Needless& n, Minimized& r) {
 }
 
 Minimized minimize_in_order(const StateSpace& model, const MinimizeOptions& options) {
-  const modes::IntegratorSplit states = modes::find_integrators(model);
-  const bool open = model.inputs.empty() && model.outputs.empty();
-  if (states.integrators.empty() || open) return minimize_as_it_stands(model, options);
+  if (model.inputs.empty() && model.outputs.empty()) return minimize_as_it_stands(model, options);
   modes::Sampled sampled = modes::sampled(model, options.rounding);
-  const std::optional<modes::Needless> needless = modes::take_out_needless(sampled);
-  if (!needless || sampled.model.order() < options.exact_order)
-    return minimize_as_it_stands(model, options);
-  Eigen::MatrixXd energy;
-  if (options.energy.rows() == model.A.rows()) energy = options.energy(states.rest, states.rest);
-  Minimized result = minimize_needed(sampled, options, energy);
-  add_needless(*needless, result);
+  MinimizeOptions of_rest{.resolution = options.resolution, .exact_order = options.exact_order};
+  if (options.energy.rows() == model.A.rows()) of_rest.energy = options.energy;
+  const modes::RemovedStates by_pattern = modes::take_out_by_pattern(sampled, of_rest.energy);
+  Minimized result = as_a_whole(sampled.model);
+  // Rigid motions of a symmetric form are modes at exactly 0.
+  if (!modes::find_integrators(sampled.model).integrators.empty() ||
+      !minimize_symmetric(of_rest, result)) {
+    const modes::RemovedStates at_zero = modes::take_out_at_zero(sampled, of_rest.energy);
+    if (sampled.model.order() < options.exact_order) return minimize_as_it_stands(model, options);
+    result = minimize_needed(sampled, of_rest);
+    add_removed(at_zero, result);
+  }
+  add_removed(by_pattern, result);
   return result;
 }
 

@@ -79,11 +79,12 @@ struct Minimized {
 /// s). Poles that are equal to rounding, those at 0 (2e-7 of A's norm) and those of a condition
 /// number above 1e6 have no reliable vectors: with all poles of their cluster they are split off as
 /// a small model (linalg/spectral.hpp), whose controllability and observability staircases
-/// determine how many of its states count (minreal/staircase.hpp). Integrators that act on no
-/// other state, of positions and rates that outputs read, are separated, and both parts judged by
-/// themselves: zdot = N z + B u is their part without the modes, and the ranks of [B, N B, ...] and
-/// [C; C N; ...] determine which of them depend on other states (a position that is a state
-/// already) and which are unobservable (the common motion, if outputs read differences). A rank is
+/// determine how many of its states count (minreal/staircase.hpp). Before any pole is computed,
+/// states leave that no input reaches or no output sees by the pattern of the matrices, and then
+/// the uncontrollable and unobservable part at s = 0 [Popov, Belevitch, Hautus], by the ranks of
+/// [A, B] and [A; C] (minreal/at_zero.hpp): momenta that no input changes, rigid motions and rotor
+/// angles that no output sees, positions that are functions of other states. Integrators that then
+/// act on no other state are separated, and the others judged by themselves. A rank is
 /// decided against four samples of rounding, 32 times the largest. The verdict's interval counts
 ///  - upwards, dropped modes above their own rounding bound, which are present, however small their
 ///    effect, and those whose bound is above 1e-14, which may hide an effect;

@@ -108,12 +108,19 @@ struct Change {
   std::vector<std::complex<double>> tried, left_out;  ///< where the factors have digits, and not
 };
 
-/// Near the removed modes and at the assembly's frequencies: the pole of a slow block may be at a
-/// frequency where rigid bodies have no digits.
+/// Near the removed modes and at the assembly's frequencies (the pole of a slow block may be at a
+/// frequency where rigid bodies have no digits), and a decade beyond these, where a model that was
+/// written relative to fewer states may cancel more.
 std::vector<std::complex<double>> points_of_change(const SystemData& d, const StateSpace& dense,
                                                    const Minimized& m) {
   std::vector<std::complex<double>> points = modes::near_modes(m.order.removed, pick_s(d));
-  for (const double omega : frequencies_of(dense.A)) points.push_back(off_axis(omega));
+  std::vector<double> omegas = frequencies_of(dense.A);
+  if (!omegas.empty()) {
+    const auto [least, most] = std::minmax_element(omegas.begin(), omegas.end());
+    const double below = *least / 10, above = *most * 10;
+    omegas.insert(omegas.end(), {below, above});
+  }
+  for (const double omega : omegas) points.push_back(off_axis(omega));
   return points;
 }
 

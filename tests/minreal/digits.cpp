@@ -37,20 +37,27 @@ double worst_error(const System& system, const StateSpace& model) {
 
 }  // namespace
 
-TEST_CASE("states stay where the model without them has lost the transfer's digits") {
-  for (const double mass : {26000.0, 1000.0})
+TEST_CASE("a smaller model keeps the digits that it promises, or all states stay") {
+  // By exact arithmetic (Options::exact_up_to = 20) the order is 5 for all of these.
+  int put_back = 0;
+  for (const double mass : {26000.0, 1024.0, 1000.0})
     for (const double gain : {1e-5, 1e-4, 1e-3}) {
       const System system = compile(nearly_equal_poles(mass, gain));
+      const OrderVerdict verdict = system.order_verdict();
       CAPTURE(mass);
       CAPTURE(gain);
-      CHECK(worst_error(system, system.state_space()) <= 1e-9);
-      CHECK(system.state_space().order() == 8);
-      CHECK(system.log().find("nothing was removed: the smaller model cancels more") !=
-            std::string::npos);
-      CHECK(system.order_verdict().removed.empty());
-      CHECK_FALSE(system.order_verdict().decided());
+      CAPTURE(to_string(verdict));
+      CHECK(worst_error(system, system.state_space()) <= 1e-8);
+      CHECK(verdict.lowest <= 5);
+      CHECK(verdict.order >= 5);
+      if (verdict.removed.empty()) {
+        ++put_back;
+        CHECK(system.state_space().order() == 8);
+        CHECK_FALSE(verdict.decided());
+      }
       CHECK(certify(system).holds());
     }
+  CHECK(put_back < 9);
 }
 
 TEST_CASE("states leave where that costs no digits") {

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <string>
+#include <titop/compiler/certificate/sampled.hpp>
+#include <titop/compiler/minreal/minimize.hpp>
+#include <vector>
+
+/// States without effect on the transfer that leave before any eigenvalue is computed: by the
+/// pattern of the matrices, and at s = 0, such as conserved momenta, rigid motions that no output
+/// sees, positions that are functions of other states. For the compiler's own files.
+namespace titop::modes {
+
+/// States that were removed, and doubtful ones.
+struct RemovedStates {
+  std::vector<JudgedMode> removed;
+  int hidden = 0;                    ///< of these, possibly hidden by rounding
+  std::vector<JudgedMode> doubtful;  ///< kept, but possibly rounding alone
+  std::vector<std::string> notes;
+};
+
+/// Removes the states that no input reaches, or that reach no output, through entries of A, B and C
+/// that are not 0; `energy` as below. O(n^2).
+RemovedStates take_out_by_pattern(Sampled& sampled, Eigen::MatrixXd& energy);
+
+/// Removes the uncontrollable and the unobservable part at s = 0 [Popov, Belevitch, Hautus]: a row
+/// of [A B] that depends on the other rows belongs to a state that follows from the others (a rate
+/// from the other rates, since their momentum is constant); a column of [A; C] that depends on the
+/// other columns to a state that outputs and other states see only relative to the others. Both are
+/// repeated until no row or column depends on others: so chains of integrators leave step by step.
+/// Each rank is decided by independent_rows.hpp, against the rounding of each entry; no eigenvalue
+/// takes part, so that slow poles cannot be taken for poles at 0. States keep their names, and
+/// their meaning except as noted. `energy` (see MinimizeOptions; or empty) follows. Without inputs,
+/// or without outputs, that side removes nothing.
+///
+/// Of several states that could leave, that leaves which moves most (is seen most) at one s, so
+/// that its sum over the others cancels least. O(n^3) for each repetition.
+RemovedStates take_out_at_zero(Sampled& sampled, Eigen::MatrixXd& energy);
+
+}  // namespace titop::modes

@@ -1,0 +1,70 @@
+#include "support/wheels.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <titop/titop.hpp>
+
+/// Reaction wheels on a free satellite: orders by momentum, counted by hand.
+
+using namespace titop;
+using namespace titop_test;
+
+namespace {
+
+template <class Check>
+void all_satellites(const Check& check) {
+  for (const bool law : {true, false})
+    for (const int count : {0, 1, 3, 4})
+      for (const double friction : {0.0, 1e-6, 1e-4})
+        for (const bool off_centre : {true, false}) {
+          if (count == 0 && (!law || friction > 0)) continue;
+          const Wheels wheels{count, friction, law, off_centre};
+          CAPTURE(law);
+          CAPTURE(count);
+          CAPTURE(friction);
+          CAPTURE(off_centre);
+          check(wheels, compile(satellite(wheels)));
+        }
+}
+
+}  // namespace
+
+TEST_CASE("wheels: the order is that of the momenta, and no pole lies right of the axis") {
+  all_satellites([](const Wheels& wheels, const System& system) {
+    const OrderVerdict verdict = system.order_verdict();
+    CAPTURE(to_string(verdict));
+    const int order = order_by_momentum(wheels);
+    CHECK(verdict.lowest <= order);
+    CHECK(verdict.highest >= order);
+    if (wheels.count != 1) {  // one wheel: the boom's two bending modes share a frequency
+      CHECK(verdict.order == order);
+      CHECK(verdict.highest - verdict.lowest <= 1);
+      for (const Pole& pole : system.poles()) CHECK(pole.s.real() <= 0);
+    }
+    CHECK(certify(system).holds());
+  });
+}
+
+TEST_CASE("wheels: the model without their momenta has the transfer of the factors") {
+  all_satellites([](const Wheels& wheels, const System& system) {
+    const int speeds = wheels.count;
+    for (const double omega : {1e-3, 0.03, 1.0, 60.0, 500.0}) {
+      const std::complex<double> s(0.05 * omega, omega);
+      const Eigen::MatrixXcd exact = system.transfer(s, Precision::digits50),
+                             minimal = system.state_space().transfer(s);
+      // Attitude about x of all; wheels about one axis do not turn the others.
+      const auto att = exact.row(speeds);
+      CHECK((minimal.row(speeds) - att).norm() <= 1e-9 * att.norm());
+      if (speeds > 0)
+        CHECK((minimal - exact).topRows(speeds).norm() <= 1e-9 * exact.topRows(speeds).norm());
+    }
+  });
+}
+
+TEST_CASE("wheels: three or four wheels become code") {
+  for (const int count : {3, 4}) {
+    const System system = compile(satellite({.count = count}));
+    CHECK(generate_cpp(system, {.sample_time = 0.1}).header.find("struct") != std::string::npos);
+  }
+}
