@@ -17,8 +17,11 @@ class ByStates : public Reduction {
       setting_.states =
           std::max(setting_.states, setting_.model.order());  // integrals of positions
       setting_.note_structure((setting_.model.order() + 1) / 2);
-      setting_.model.write(dense_);
+      dense_ = setting_.model.state_space();
       split_ = split(dense_);
+      StateSpace written;
+      setting_.model.write(written);
+      split_.reading = split_.reading.cwiseMax(reading(written));
       setting_.band = band_of(setting_.full, setting_.scene, split_.poles, split_.integrals);
     });
     setting_.take_samples(spectrum());
@@ -82,7 +85,7 @@ class ByStates : public Reduction {
     const Balanced& from = balanced();
     const auto count = [](Index n) { return static_cast<int>(n); };
     d.steps.push_back(
-        {"kept", dense_.order(), count(from.integrals() + from.kept() + from.stable()), 0,
+        {"kept", setting_.model.order(), count(from.integrals() + from.kept() + from.stable()), 0,
          fmt::format("no M, D, K, for {}; whole are {} integrals and {} states of poles on the "
                      "axis or right of it ({} unstable){}, {} more neither move nor are seen",
                      setting_.why, from.integrals(), from.kept(), from.unstable(),

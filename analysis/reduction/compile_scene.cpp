@@ -71,7 +71,9 @@ class SceneReduction {
  private:
   void compile_model(const Graph& graph) {
     setting_.timed("compile", [&] {
-      setting_.data = detail::compile_graph(graph, setting_.options);
+      Options options = setting_.options;  // of states, the minimal ones are balanced
+      options.minimize_up_to = std::max(options.minimize_up_to, setting_.scene.balance_up_to);
+      setting_.data = detail::compile_graph(graph, options);
       setting_.model = System(setting_.data);
     });
   }

@@ -143,6 +143,16 @@ Eigen::MatrixXcd transfer(const System& system, Complex s) {
   return s == 0.0 ? system.static_gain().cast<Complex>() : system.transfer(s);
 }
 
+/// False if a pole at 0, though without effect, hides the gain of a system that is too large to be
+/// minimized.
+bool has_gain(const System& system) try {
+  system.static_gain();
+  return true;
+} catch (const Error& error) {
+  if (!error.has(Code::singular)) throw;
+  return false;
+}
+
 }  // namespace
 
 Band band_of(const System& system, const Scene& scene, const Whole& w) {
@@ -156,7 +166,8 @@ Band band_of(const System& system, const Scene& scene, const Whole& w) {
 Band band_of(const System& system, const Scene& scene, const std::vector<Complex>& poles,
              const SpectralPart& integrals) {
   Band band{2 * std::numbers::pi * scene.band_hz[0], 2 * std::numbers::pi * scene.band_hz[1], 0};
-  if (band.low > 0 || std::find(poles.begin(), poles.end(), 0.0) == poles.end()) return band;
+  const bool integral = std::find(poles.begin(), poles.end(), 0.0) != poles.end();
+  if (band.low > 0 || (!integral && has_gain(system))) return band;
   const MatrixXd one = integrals.C * integrals.B,
                  size = integrals.C.cwiseAbs() * integrals.B.cwiseAbs(),
                  two = integrals.C * integrals.A * integrals.B;

@@ -257,7 +257,14 @@ Split split(const StateSpace& m) {
     core = Core(m, peeled);
   }
   core.divide();
-  return assemble(m, peeled, core);
+  Split result = assemble(m, peeled, core);
+  result.reading = reading(m);
+  return result;
+}
+
+VectorXd reading(const StateSpace& m) {
+  MatrixXd A = m.A;
+  return m.C.cwiseAbs() * linalg::balance(A);
 }
 
 MatrixXd terms(const StateSpace& m, const Split& split, Complex s) {
@@ -275,7 +282,8 @@ MatrixXd terms(const StateSpace& m, const Split& split, Complex s) {
           .cwiseSqrt();
   const VectorXd inverse = (unit.array() > 0).select(unit.cwiseInverse(), 0);
   const MatrixXd far = (inverse.asDiagonal() * x).cwiseAbs().colwise().maxCoeff();
-  return m.C.cwiseAbs() * (x.cwiseAbs() + kAllAlike * unit * far) + m.D.cwiseAbs();
+  const MatrixXd alike = kAllAlike * (m.C.cwiseAbs() * unit).cwiseMax(split.reading) * far;
+  return m.C.cwiseAbs() * x.cwiseAbs() + alike + m.D.cwiseAbs();
 }
 
 }  // namespace titop::detail
