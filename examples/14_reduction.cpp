@@ -51,7 +51,7 @@ int main() {
   const ReducedSystem r = compile(d, scene);
   std::printf("%s: %d states answer what %d states were asked\n", d.name().c_str(), r.order(),
               r.full().order());
-  for (const EconomyStep& s : r.steps())
+  for (const ReductionStep& s : r.steps())
     std::printf("  %s: %d -> %d coordinates, %s\n", s.name.c_str(), s.before, s.after,
                 s.error == 0 ? "exact" : s.text.c_str());
   bool ok = r.bound().worst <= scene.accuracy;

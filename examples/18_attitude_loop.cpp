@@ -91,7 +91,7 @@ int main() {
   const ReducedSystem r = compile(d, scene);
   std::printf("%s: %d states answer what %d states were asked\n", d.name().c_str(), r.order(),
               r.full().order());
-  for (const EconomyStep& s : r.steps())
+  for (const ReductionStep& s : r.steps())
     std::printf("  %s: %d -> %d\n    %s\n", s.name.c_str(), s.before, s.after, s.text.c_str());
   bool ok = r.bound().worst <= scene.accuracy;
   std::printf("bound below 1e-3: %s\n", ok ? "yes" : "NO");

@@ -14,7 +14,7 @@ struct ReducedData {
   Small small;
   ErrorBound bound;
   std::vector<Note> notes;
-  std::vector<EconomyStep> steps;
+  std::vector<ReductionStep> steps;
   std::vector<KeptMode> modes;
   std::vector<std::pair<std::string, double>> seconds;
   std::optional<States> states = {};  ///< instead of `small`, if there is no second-order form

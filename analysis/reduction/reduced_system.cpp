@@ -15,7 +15,7 @@ const System& ReducedSystem::full() const& { return data_->full; }
 const Scene& ReducedSystem::scene() const& { return data_->scene; }
 const std::vector<Note>& ReducedSystem::notes() const& { return data_->notes; }
 const ErrorBound& ReducedSystem::bound() const& { return data_->bound; }
-const std::vector<EconomyStep>& ReducedSystem::steps() const& { return data_->steps; }
+const std::vector<ReductionStep>& ReducedSystem::steps() const& { return data_->steps; }
 const std::vector<KeptMode>& ReducedSystem::modes() const& { return data_->modes; }
 
 Eigen::MatrixXcd ReducedSystem::transfer(std::complex<double> s) const {
@@ -38,7 +38,7 @@ std::string to_string(const ReducedSystem& system) {
       "omega\n",
       q.accuracy, q.band_hz[0], q.band_hz[1], q.damping_floor,
       std::sqrt(1 - q.damping_floor * q.damping_floor));
-  for (const EconomyStep& s : system.steps())
+  for (const ReductionStep& s : system.steps())
     text += fmt::format("  {:<9} {:>5} -> {:>4} {}, {}: {}\n", s.name, s.before, s.after,
                         s.name == "kept" || s.name == "balanced" ? "states" : "coordinates",
                         s.error == 0 ? "exact" : fmt::format("error {:.1e}", s.error), s.text);

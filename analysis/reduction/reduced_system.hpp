@@ -26,7 +26,7 @@ struct ErrorBound {
 };
 
 /// One step of the reduction.
-struct EconomyStep {
+struct ReductionStep {
   std::string name;           ///< "structure", "bodies", "symmetry", "whole"; "kept", "balanced"
   int before = 0, after = 0;  ///< second-order coordinates; of "kept" and "balanced": states
   double error = 0;           ///< its error, relative as in Scene; 0: exact
@@ -110,8 +110,8 @@ class ReducedSystem {
   /// of the reduction does not contain modes that the data lack.
   const std::vector<Note>& notes() const&;
   std::vector<Note> notes() const&& { return notes(); }
-  const std::vector<EconomyStep>& steps() const&;
-  std::vector<EconomyStep> steps() const&& { return steps(); }
+  const std::vector<ReductionStep>& steps() const&;
+  std::vector<ReductionStep> steps() const&& { return steps(); }
   const std::vector<KeptMode>& modes() const&;
   std::vector<KeptMode> modes() const&& { return modes(); }
   /// Seconds of each step, in order; repeated steps once each time: compile, bodies, modes or

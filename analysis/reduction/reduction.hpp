@@ -33,7 +33,7 @@ struct Setting {
   Band band;
   Samples samples;  ///< the full system's transfers where it or `model` can have peaks
   std::vector<Note> notes;
-  std::vector<EconomyStep> steps;
+  std::vector<ReductionStep> steps;
   std::vector<std::pair<std::string, double>> seconds;
 
   template <class F>

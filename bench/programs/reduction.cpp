@@ -178,7 +178,7 @@ void large() {
       const ReducedSystem& r = *made;
       const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
       const auto bodies = std::find_if(r.steps().begin(), r.steps().end(),
-                                       [](const EconomyStep& s) { return s.name == "bodies"; });
+                                       [](const ReductionStep& s) { return s.name == "bodies"; });
       if (bodies == r.steps().end())
         throw std::runtime_error(fmt::format("{} beams have lost no modes", count));
       fmt::print("{},{},{:.0e},{},{:.1e},{},{:.2e},{:.1f}\n", count, bodies->before, accuracy,

@@ -193,7 +193,7 @@ TEST_CASE("states that are asked for are balanced whatever whole_up_to says of c
                            .keep_structure = false,
                            .balance_up_to = 28};
   const ReducedSystem r = compile(held.diagram(), scene);
-  for (const EconomyStep& s : r.steps()) CHECK(s.name != "bodies");
+  for (const ReductionStep& s : r.steps()) CHECK(s.name != "bodies");
   CHECK(beside_by_hand(r, scene, held).bound <= 1);
 }
 

@@ -17,8 +17,8 @@ titop::Scene limited(titop::Scene scene, int whole_up_to) {
   return scene;
 }
 
-const EconomyStep& step(const ReducedSystem& r, const std::string& name) {
-  for (const EconomyStep& s : r.steps())
+const ReductionStep& step(const ReducedSystem& r, const std::string& name) {
+  for (const ReductionStep& s : r.steps())
     if (s.name == name) return s;
   FAIL("no step " << name);
   return r.steps().front();

@@ -81,8 +81,8 @@ inline Beside beside_by_hand(const titop::ReducedSystem& r, const titop::Scene& 
   return beside(r, scene, with_poles(r, [&](std::complex<double> s) { return held.transfer(s); }));
 }
 
-inline const titop::EconomyStep& step(const titop::ReducedSystem& r, const std::string& name) {
-  for (const titop::EconomyStep& s : r.steps())
+inline const titop::ReductionStep& step(const titop::ReducedSystem& r, const std::string& name) {
+  for (const titop::ReductionStep& s : r.steps())
     if (s.name == name) return s;
   FAIL("no step " << name);
   return r.steps().front();
