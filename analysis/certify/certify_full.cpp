@@ -147,25 +147,27 @@ void check_written(const System& system, const Full& subject, const std::vector<
 /// Passivity and reciprocity of forces and the accelerations at their points, over the grid and
 /// around unstable poles. A failed check is repeated with rounding.
 void check_pairs(const System& system, std::vector<Complex> points, std::vector<MatrixXcd> factored,
-                 const std::vector<full::FoundPoles::Right>& growing, FullCertificate& c) {
+                 const std::vector<certification::FoundPoles::Right>& growing, FullCertificate& c) {
   const Graph& g = *system.stage().source;
   const std::vector<double> values = values_of(system);
-  const full::DualPairs pairs = full::dual_pairs(g, values);
+  const passes::DualPairs pairs = passes::dual_pairs(g, values);
   if (pairs.count > 0)
-    for (const Complex s : full::around(growing))
+    for (const Complex s : certification::around(growing))
       if (std::optional<MatrixXcd> G = detail::transfer_if_any(system, s)) {
         points.push_back(s);
         factored.push_back(std::move(*G));
       }
-  const std::string no_structure = full::why_no_structure(g, values);
-  full::DualTransfers transfers = full::dual_transfers(pairs, points, factored);
+  const std::string no_structure = certification::why_no_structure(g, values);
+  certification::DualTransfers transfers = certification::dual_transfers(pairs, points, factored);
   const auto check = [&] {
-    c.passivity = full::check_passivity(pairs, transfers, no_structure.empty());
-    c.reciprocity = full::check_reciprocity(system, pairs, transfers, no_structure, values);
+    c.passivity = certification::check_passivity(pairs, transfers, no_structure.empty());
+    c.reciprocity =
+        certification::check_reciprocity(system, pairs, transfers, no_structure, values);
   };
   check();
-  if (c.passivity.least >= -full::kPassive && c.reciprocity.asymmetry <= detail::kClose) return;
-  transfers = full::with_rounding(system, pairs, std::move(transfers));
+  if (c.passivity.least >= -certification::kPassive && c.reciprocity.asymmetry <= detail::kClose)
+    return;
+  transfers = certification::with_rounding(system, pairs, std::move(transfers));
   check();
 }
 
@@ -197,28 +199,29 @@ void judge(std::vector<std::string>& faults, double value, double allowed, const
 }
 
 void list_faults(const Graph& source, FullCertificate& c) {
-  c.faults = full::basic_faults(c.basic, c.grid.dense);
+  c.faults = certification::basic_faults(c.basic, c.grid.dense);
   const auto fault = [&c](double value, double allowed, const std::string& text) {
     judge(c.faults, value, allowed, text);
   };
-  fault(c.grid.written, full::kHolds,
+  fault(c.grid.written, certification::kHolds,
         "the transfer differs from that of the equations as written by");
   if (c.order.removed.empty() &&
       c.order.change > 0)  // put back (compiler/system/minimal_model.cpp)
     c.faults.push_back(
         fmt::format("modes judged to do nothing change the transfer by {:.1e} when they leave",
                     c.order.change));
-  fault(c.poles.error, full::kPoleHolds, "poles of the dense model differ from the factors' by");
+  fault(c.poles.error, certification::kPoleHolds,
+        "poles of the dense model differ from the factors' by");
   if (c.passivity.structure) {
-    fault(-c.passivity.least, full::kPassive, "energy comes out of a structure:");
-    if (c.poles.right > 0 && full::has_poles_of_bodies_only(source))
+    fault(-c.passivity.least, certification::kPassive, "energy comes out of a structure:");
+    if (c.poles.right > 0 && certification::has_poles_of_bodies_only(source))
       c.faults.push_back(
           fmt::format("{} poles of a structure lie right of the axis, the worst by "
                       "{:.1e} of its size",
                       c.poles.right, c.poles.rightmost.real() / std::abs(c.poles.rightmost)));
   }
   if (const auto& r = c.reciprocity; r.structure)
-    fault(r.asymmetry, full::kReciprocal,
+    fault(r.asymmetry, certification::kReciprocal,
           fmt::format("forces {} and {} on a structure do not move each other alike (reciprocity), "
                       "by",
                       r.first, r.second));
@@ -230,7 +233,7 @@ void list_faults(const Graph& source, FullCertificate& c) {
 
 }  // namespace
 
-std::vector<std::string> full::basic_faults(const Certificate& c, double dense) {
+std::vector<std::string> certification::basic_faults(const Certificate& c, double dense) {
   const std::string way_out =
       "; System::transfer and apply keep the digits, and so do simulate by Stepper::midpoint and a "
       "model of the band that matters, compile(d, Scene{.band_hz = {low, high}})";
@@ -251,16 +254,17 @@ FullCertificate certify(const System& system, const Full& subject) {
   FullCertificate c;
   const bool dense = system.order() <= subject.dense_up_to;
   std::vector<double> omegas;
-  std::vector<full::FoundPoles::Right> growing;
+  std::vector<certification::FoundPoles::Right> growing;
   detail::Rounded before;  // as written, before `minimize`
   if (dense) {
     c.order = system.order_verdict();
     system.write(before.model);
     before.rounding = detail::rounding_of(*system.data_, before.model);
-    full::FoundPoles found = full::check_poles(system, before.model, before.rounding.A);
+    certification::FoundPoles found =
+        certification::check_poles(system, before.model, before.rounding.A);
     omegas = std::move(found.omegas);
     c.poles = std::move(found.poles);
-    growing = full::shown(found.right, system.state_space());
+    growing = certification::shown(found.right, system.state_space());
     c.poles.hidden = c.poles.right - static_cast<int>(growing.size());
     c.poles.why_not = what_is_set_aside(system.stage().graph);
   } else {
@@ -269,7 +273,8 @@ FullCertificate certify(const System& system, const Full& subject) {
     c.order.order = c.order.highest = system.order();
   }
   c.basic = system.certificate();
-  c.exact = exact::order_of_stage(system.stage(), system.order(), subject.exact, values_of(system));
+  c.exact =
+      minreal::order_of_stage(system.stage(), system.order(), subject.exact, values_of(system));
   reach_up_to(c.exact, c.order);
   set_range(omegas, c.grid);
   const bool transfers = !system.inputs().empty() && !system.outputs().empty();
@@ -338,15 +343,15 @@ std::string to_string(const FullCertificate::Passivity& p) {
   if (!p.done) return "passivity not checked: " + p.why_not + "\n";
   return fmt::format(
       "{} pairs of a force and the acceleration where it acts: {} (least {:.1e} of 1, {})\n",
-      p.pairs, p.least >= -full::kPassive ? "passive at all points" : "not passive", p.least,
-      at_s(p.where));
+      p.pairs, p.least >= -certification::kPassive ? "passive at all points" : "not passive",
+      p.least, at_s(p.where));
 }
 
 std::string to_string(const FullCertificate::Reciprocity& r) {
   if (!r.done) return "reciprocity not checked: " + r.why_not + "\n";
   std::string text =
       fmt::format("{} forces: {}", r.forces,
-                  r.asymmetry <= full::kReciprocal ? "reciprocal" : "not reciprocal");
+                  r.asymmetry <= certification::kReciprocal ? "reciprocal" : "not reciprocal");
   if (r.asymmetry > 0)
     text += fmt::format(" (what {} and {} do where the other acts differs by {:.1e}, {})", r.first,
                         r.second, r.asymmetry, at_s(r.where));

@@ -2,7 +2,7 @@
 #include <titop/analysis/certify/dual_transfers.hpp>
 #include <titop/compiler/system/elimination_terms.hpp>
 
-namespace titop::full {
+namespace titop::certification {
 namespace {
 
 using Eigen::MatrixXd;
@@ -19,7 +19,7 @@ double DualTransfers::floor(Eigen::Index row, Eigen::Index column, Eigen::Index 
                                 by.terms.block(column, row, columns, rows).maxCoeff());
 }
 
-DualTransfers dual_transfers(const DualPairs& pairs,
+DualTransfers dual_transfers(const passes::DualPairs& pairs,
                              const std::vector<std::complex<double>>& points,
                              const std::vector<Eigen::MatrixXcd>& transfers) {
   DualTransfers result{points, {}, {pairs.sizes, pairs.sizes}};
@@ -27,11 +27,12 @@ DualTransfers dual_transfers(const DualPairs& pairs,
   return result;
 }
 
-DualTransfers with_rounding(const System& system, const DualPairs& pairs, DualTransfers transfers) {
+DualTransfers with_rounding(const System& system, const passes::DualPairs& pairs,
+                            DualTransfers transfers) {
   // At all points: rounding may show at one of them only.
   const MatrixXd terms = detail::terms(system, transfers.points);
   detail::add_rounding(transfers.by, transfers.G, terms(pairs.out, pairs.in));
   return transfers;
 }
 
-}  // namespace titop::full
+}  // namespace titop::certification

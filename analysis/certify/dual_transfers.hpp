@@ -6,7 +6,7 @@
 #include <titop/compiler/system/system.hpp>
 #include <vector>
 
-namespace titop::full {
+namespace titop::certification {
 
 /// The transfers between them, at some points.
 struct DualTransfers {
@@ -20,12 +20,13 @@ struct DualTransfers {
 };
 
 /// Selects them from transfers in the declared order.
-DualTransfers dual_transfers(const DualPairs& pairs,
+DualTransfers dual_transfers(const passes::DualPairs& pairs,
                              const std::vector<std::complex<double>>& points,
                              const std::vector<Eigen::MatrixXcd>& transfers);
 
 /// The same with a floor for blocks at rounding level: by transfers in double and
 /// in long double at all points. Slow.
-DualTransfers with_rounding(const System& system, const DualPairs& pairs, DualTransfers transfers);
+DualTransfers with_rounding(const System& system, const passes::DualPairs& pairs,
+                            DualTransfers transfers);
 
-}  // namespace titop::full
+}  // namespace titop::certification

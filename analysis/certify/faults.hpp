@@ -7,7 +7,7 @@
 
 /// Requirements on a certificate: one rule for the full certificate and for the report. For the
 /// library's own files.
-namespace titop::full {
+namespace titop::certification {
 
 inline constexpr double kHolds = 1e-8;  ///< equations, and entries of the dense model one by one
 /// Allowed rounding error of A, B, C, D: that of code generated from them.
@@ -19,4 +19,4 @@ inline constexpr double kReciprocal = 1e-8;
 /// and of the factors over a grid; negative if there is none.
 std::vector<std::string> basic_faults(const Certificate& certificate, double dense = -1);
 
-}  // namespace titop::full
+}  // namespace titop::certification

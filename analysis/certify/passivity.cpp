@@ -3,7 +3,7 @@
 #include <titop/analysis/certify/passivity.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 
-namespace titop::full {
+namespace titop::certification {
 namespace {
 
 using Eigen::Index;
@@ -57,13 +57,13 @@ double least(const MatrixXcd& H, const MatrixXd& floor) {
 
 }  // namespace
 
-FullCertificate::Passivity check_passivity(const DualPairs& pairs, const DualTransfers& transfers,
-                                           bool structure) {
+FullCertificate::Passivity check_passivity(const passes::DualPairs& pairs,
+                                           const DualTransfers& transfers, bool structure) {
   FullCertificate::Passivity p;
   p.structure = structure;
   p.pairs = pairs.count;
   if (p.pairs == 0) {
-    p.why_not = DualPairs::kNone;
+    p.why_not = passes::DualPairs::kNone;
     return p;
   }
   p.done = true;
@@ -76,4 +76,4 @@ FullCertificate::Passivity check_passivity(const DualPairs& pairs, const DualTra
   return p;
 }
 
-}  // namespace titop::full
+}  // namespace titop::certification

@@ -5,7 +5,7 @@
 #include <titop/compiler/system/system.hpp>
 #include <titop/graph/linalg/dense.hpp>
 
-namespace titop::full {
+namespace titop::certification {
 namespace {
 
 using Eigen::Index;
@@ -109,4 +109,4 @@ std::vector<std::complex<double>> around(const std::vector<FoundPoles::Right>& g
   return points;
 }
 
-}  // namespace titop::full
+}  // namespace titop::certification

@@ -5,7 +5,7 @@
 #include <vector>
 
 /// Items of the full certificate (analysis/certify/certify_full.hpp). For the library's own files.
-namespace titop::full {
+namespace titop::certification {
 
 struct FoundPoles {
   FullCertificate::Poles poles;
@@ -33,4 +33,4 @@ std::vector<FoundPoles::Right> shown(const std::vector<FoundPoles::Right>& right
 /// also those of delivered energy.
 std::vector<std::complex<double>> around(const std::vector<FoundPoles::Right>& growing);
 
-}  // namespace titop::full
+}  // namespace titop::certification

@@ -7,7 +7,7 @@
 #include <titop/compiler/system/system.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::full {
+namespace titop::certification {
 namespace {
 
 using Complex = std::complex<double>;
@@ -76,7 +76,7 @@ bool is_reciprocal(const Block& block, ParameterValues values, Complex s) {
   DualTransfers own{{s}, {}, {}};
   std::vector<double> signs;
   for (const ChannelSpec& c : block.interface().channels) {
-    const bool inward = c.takes == Takes::accel && !is_outward(c);
+    const bool inward = c.takes == Takes::accel && !passes::is_outward(c);
     signs.insert(signs.end(), at(c.size), inward ? -1 : 1);
     const int each = c.size % 3 == 0 ? 3 : 1;
     own.by.rows.insert(own.by.rows.end(), at(c.size / each), each);
@@ -103,14 +103,14 @@ std::string exception_among(const Graph& g, ParameterValues values, Complex s) {
 
 }  // namespace
 
-FullCertificate::Reciprocity check_reciprocity(const System& system, const DualPairs& pairs,
+FullCertificate::Reciprocity check_reciprocity(const System& system, const passes::DualPairs& pairs,
                                                const DualTransfers& transfers,
                                                std::string no_structure, ParameterValues values) {
   FullCertificate::Reciprocity r;
   r.forces = static_cast<int>(pairs.in.size());
   if (r.forces < 2) {
-    r.why_not =
-        r.forces == 0 ? DualPairs::kNone : "a single force has no other to exchange places with";
+    r.why_not = r.forces == 0 ? passes::DualPairs::kNone
+                              : "a single force has no other to exchange places with";
     return r;
   }
   r.done = true;
@@ -128,4 +128,4 @@ FullCertificate::Reciprocity check_reciprocity(const System& system, const DualP
   return r;
 }
 
-}  // namespace titop::full
+}  // namespace titop::certification

@@ -9,7 +9,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
-namespace titop::full {
+namespace titop::certification {
 namespace {
 
 using Eigen::VectorXd;
@@ -27,7 +27,7 @@ std::string beside_bodies(const Graph& g, const Equation& e, ParameterValues val
   for (const Term& t : e.terms) {
     const Signal& s = g.signals[at(t.signal)];
     if (s.role == Signal::Role::external) continue;
-    const bool motion = !of_motions(g, t, values).empty();
+    const bool motion = !passes::of_motions(g, t, values).empty();
     if (motion && force) continue;
     if (motion || s.channel < 0)
       return fmt::format("{} is driven by {}", name_of(g, e.target), name_of(g, t.signal));
@@ -71,7 +71,7 @@ class Connections {
     double all = 0, magnitudes = 0;
     for (std::size_t c = 0; c < size(); ++c) {
       const VectorXd each = force_[c].cwiseProduct(accel_[c]);
-      all += is_outward(g_, static_cast<int>(c)) ? -each.sum() : each.sum();
+      all += passes::is_outward(g_, static_cast<int>(c)) ? -each.sum() : each.sum();
       magnitudes += each.cwiseAbs().sum();
     }
     return magnitudes > 0 ? std::abs(all) / magnitudes : 0;
@@ -157,7 +157,7 @@ std::string why_no_structure(const Graph& g, ParameterValues values) {
       return name_of(g, e.target) + " is driven, a one-way port of a body";
     }
   }
-  if (std::string found = why_no_springs(g, values); !found.empty()) return found;
+  if (std::string found = passes::why_no_springs(g, values); !found.empty()) return found;
   Connections all(g, values);
   return taken_for_nothing(g, all);
 }
@@ -181,4 +181,4 @@ bool has_poles_of_bodies_only(const Graph& g) {
   return true;
 }
 
-}  // namespace titop::full
+}  // namespace titop::certification

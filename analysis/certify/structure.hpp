@@ -3,7 +3,7 @@
 #include <string>
 #include <titop/graph/graph.hpp>
 
-namespace titop::full {
+namespace titop::certification {
 
 /// Reason why a diagram as written is no structure; empty if it is one: bodies, joints, and forces
 /// by positions and rates that are those of springs and dampers
@@ -18,4 +18,4 @@ std::string why_no_structure(const Graph& graph, ParameterValues values);
 /// read it, have no states, except integrators of outputs of bodies and of inputs.
 bool has_poles_of_bodies_only(const Graph& graph);
 
-}  // namespace titop::full
+}  // namespace titop::certification

@@ -12,7 +12,7 @@
 #include <titop/graph/nodes/gain.hpp>
 #include <titop/graph/nodes/lti.hpp>
 
-namespace titop::scene {
+namespace titop::diagram_file {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
@@ -322,4 +322,4 @@ FlexibleBody read_body(const JsonPlace& p) {
   return {data, std::source_location{}};
 }
 
-}  // namespace titop::scene
+}  // namespace titop::diagram_file

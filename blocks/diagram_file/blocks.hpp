@@ -6,7 +6,7 @@
 #include <titop/graph/block.hpp>
 
 /// Blocks by type name: their specs as JSON, and back.
-namespace titop::scene {
+namespace titop::diagram_file {
 
 /// Numbers that may be parameters.
 using WriteValue = std::function<Json(const Value&)>;
@@ -26,4 +26,4 @@ BlockPtr read_block(const JsonPlace& place, const ReadValue& value, const FindBo
 Json body_json(const ModalData& data);
 FlexibleBody read_body(const JsonPlace& place);
 
-}  // namespace titop::scene
+}  // namespace titop::diagram_file

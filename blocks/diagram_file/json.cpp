@@ -4,7 +4,7 @@
 #include <titop/blocks/diagram_file/json.hpp>
 #include <titop/graph/error.hpp>
 
-namespace titop::scene {
+namespace titop::diagram_file {
 
 using Eigen::Index;
 
@@ -131,4 +131,4 @@ Eigen::MatrixXd JsonPlace::matrix(Index row_count, Index columns) const {
   return M;
 }
 
-}  // namespace titop::scene
+}  // namespace titop::diagram_file

@@ -8,7 +8,7 @@
 #include <vector>
 
 /// Common to the writer and the reader of diagram files.
-namespace titop::scene {
+namespace titop::diagram_file {
 
 using Json = nlohmann::ordered_json;
 
@@ -56,4 +56,4 @@ class JsonPlace {
   std::string file_, path_;
 };
 
-}  // namespace titop::scene
+}  // namespace titop::diagram_file

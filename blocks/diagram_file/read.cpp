@@ -11,8 +11,8 @@
 
 namespace titop {
 
-using scene::Json;
-using scene::JsonPlace;
+using diagram_file::Json;
+using diagram_file::JsonPlace;
 
 namespace {
 
@@ -39,7 +39,8 @@ class DiagramReader {
     each(all.at("parameters"), [&](const JsonPlace& p) { read_parameter(p); });
     for (const std::string& name : all.at("bodies").keys()) {
       const JsonPlace body = all.at("bodies").at(name.c_str());
-      bodies_.insert_or_assign(name, named(body, name, [&] { return scene::read_body(body); }));
+      bodies_.insert_or_assign(name,
+                               named(body, name, [&] { return diagram_file::read_body(body); }));
     }
     each(all.at("blocks"), [&](const JsonPlace& p) { read_block(p); });
     each(all.at("inputs"), [&](const JsonPlace& p) { read_input(p); });
@@ -91,7 +92,7 @@ class DiagramReader {
       return at->second;
     };
     const auto value = [&](const JsonPlace& place) { return read_value(place); };
-    const Ready ready{named(p, name, [&] { return scene::read_block(p, value, body); })};
+    const Ready ready{named(p, name, [&] { return diagram_file::read_block(p, value, body); })};
     const Ready::Handle handle = diagram.add(name, ready, kRead);
     graph_ = handle.graph;
     nodes_[name] = handle.node;

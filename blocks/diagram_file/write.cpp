@@ -9,7 +9,7 @@
 
 namespace titop {
 
-using scene::Json;
+using diagram_file::Json;
 
 namespace {
 
@@ -67,10 +67,10 @@ class DiagramWriter {
     const auto body = [&](const ModalData& data) {
       const auto [at, is_new] =
           body_names_.insert({&data, fmt::format("body{}", body_names_.size() + 1)});
-      if (is_new) bodies_[at->second] = scene::body_json(data);
+      if (is_new) bodies_[at->second] = diagram_file::body_json(data);
       return at->second;
     };
-    scene::write_block(
+    diagram_file::write_block(
         *node.block, [&](const Value& v) { return value(v); }, body, json);
     return json;
   }
@@ -90,16 +90,18 @@ class DiagramWriter {
     return Json::array({node.name, ports[static_cast<std::size_t>(s.spec)].name});
   }
 
-  static Json part(const Part& p) { return {{"part", p.name()}, {"rows", scene::rows(p.rows())}}; }
+  static Json part(const Part& p) {
+    return {{"part", p.name()}, {"rows", diagram_file::rows(p.rows())}};
+  }
 
   Json rotation(const Rotation& T) const {
     Json steps = Json::array();
     for (const Rotation::Step& step : T.steps()) {
       if (const auto* M = std::get_if<Matrix3d>(&step)) {
-        steps.push_back(scene::rows(*M));
+        steps.push_back(diagram_file::rows(*M));
       } else {
         const auto& turn = std::get<Rotation::Turn>(step);
-        steps.push_back({{"about", scene::list(turn.axis)}, {"angle", value(turn.angle)}});
+        steps.push_back({{"about", diagram_file::list(turn.axis)}, {"angle", value(turn.angle)}});
       }
     }
     return {{"rotation", std::move(steps)}, {"to", T.to()}, {"from", T.from()}};
@@ -108,7 +110,7 @@ class DiagramWriter {
   Json factor(const Factor& f) const {
     if (const auto* v = std::get_if<Value>(&f)) return value(*v);
     if (const auto* T = std::get_if<Rotation>(&f)) return rotation(*T);
-    if (const auto* M = std::get_if<Matrix>(&f)) return {{"matrix", scene::rows(*M->value)}};
+    if (const auto* M = std::get_if<Matrix>(&f)) return {{"matrix", diagram_file::rows(*M->value)}};
     return part(std::get<Part>(f));
   }
 

@@ -3,20 +3,20 @@
 #include <titop/compiler/certificate/sampled.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
-namespace titop::modes {
+namespace titop::detail {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr int kSamples = 4;
+constexpr int kSampleCount = 4;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
 Sampled sampled(const StateSpace& model, const StateSpace& rounding) {
   Sampled s{model, {}};
-  for (int i = 1; i <= kSamples; ++i) {
+  for (int i = 1; i <= kSampleCount; ++i) {
     detail::SteadyRandom random(i);
     StateSpace off = model;
     const auto add = [&](MatrixXd& m, const MatrixXd& sizes) {
@@ -34,7 +34,7 @@ Sampled sampled(const StateSpace& model, const StateSpace& rounding) {
 }
 
 MatrixXd cleared(const MatrixXd& value, const MatrixXd& rounding) {
-  return (value.array().abs() <= kRounding * rounding.array()).select(0.0, value);
+  return (value.array().abs() <= kRoundingFactor * rounding.array()).select(0.0, value);
 }
 
 void clear_rounding(Sampled& s) {
@@ -46,10 +46,10 @@ void clear_rounding(Sampled& s) {
 }
 
 MatrixXd jittered(MatrixXd T, int sample) {
-  detail::SteadyRandom random(kSamples + 1 + sample);
+  detail::SteadyRandom random(kSampleCount + 1 + sample);
   for (Index c = 0; c < T.cols(); ++c)
     for (Index r = 0; r < T.rows(); ++r) T(r, c) *= 1 + 4 * kEps * random.unit();
   return T;
 }
 
-}  // namespace titop::modes
+}  // namespace titop::detail

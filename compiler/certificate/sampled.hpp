@@ -4,10 +4,10 @@
 #include <vector>
 
 /// Effect of rounding on quantities derived from a model, by samples. For the compiler's own files.
-namespace titop::modes {
+namespace titop::detail {
 
 /// Factor on the largest of a few samples of rounding: values below may be rounding alone.
-inline constexpr double kRounding = 32;
+inline constexpr double kRoundingFactor = 32;
 
 /// A model, and samples of it with rounding of the given sizes added to its entries.
 struct Sampled {
@@ -28,7 +28,7 @@ Eigen::MatrixXd rounding_of(const std::vector<Sample>& samples, const Eigen::Mat
   return most;
 }
 
-/// Sets values below kRounding times this rounding to 0.
+/// Sets values below kRoundingFactor times this rounding to 0.
 Eigen::MatrixXd cleared(const Eigen::MatrixXd& value, const Eigen::MatrixXd& rounding);
 
 /// Sets entries of the model at rounding level to 0.
@@ -37,4 +37,4 @@ void clear_rounding(Sampled& sampled);
 /// Solved coefficients of a sample, with their own rounding added.
 Eigen::MatrixXd jittered(Eigen::MatrixXd T, int sample);
 
-}  // namespace titop::modes
+}  // namespace titop::detail

@@ -61,10 +61,10 @@ namespace {
 
 StateSpace cleared(const StateSpace& m, const StateSpace& rounding) {
   StateSpace result = m;
-  result.A = modes::cleared(m.A, rounding.A);
-  result.B = modes::cleared(m.B, rounding.B);
-  result.C = modes::cleared(m.C, rounding.C);
-  result.D = modes::cleared(m.D, rounding.D);
+  result.A = detail::cleared(m.A, rounding.A);
+  result.B = detail::cleared(m.B, rounding.B);
+  result.C = detail::cleared(m.C, rounding.C);
+  result.D = detail::cleared(m.D, rounding.D);
   return result;
 }
 

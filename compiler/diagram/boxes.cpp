@@ -7,7 +7,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <tuple>
 
-namespace titop::dot {
+namespace titop::diagram {
 namespace {
 
 using linalg::at;
@@ -104,4 +104,4 @@ std::string draw_boxes(const Picture& p) {
 
 std::string draw_folded_wires(const Picture& p) { return Bundles(p).text(); }
 
-}  // namespace titop::dot
+}  // namespace titop::diagram

@@ -7,7 +7,7 @@
 namespace titop {
 
 std::string to_dot(const Stage& stage, const DotOptions& options) {
-  const dot::Picture p = dot::picture(stage, options.fold);
+  const diagram::Picture p = diagram::picture(stage, options.fold);
   return fmt::format(
       "digraph {0} {{\n"
       "  graph [rankdir=TB nodesep=0.35 ranksep=0.4 fontname=\"Helvetica\" fontsize=14 "
@@ -16,8 +16,9 @@ std::string to_dot(const Stage& stage, const DotOptions& options) {
       "width=0.2 margin=\"0.06,0.03\"];\n"
       "  edge [fontname=\"Helvetica\" fontsize=9 fontcolor=\"{3}\" color=\"{2}\" arrowsize=0.7];\n"
       "{5}{6}}}\n",
-      dot::quoted(stage.now().name), dot::colour::ink, dot::colour::line, dot::colour::soft,
-      dot::draw_legend(p), dot::draw_nodes(p), dot::draw_wires(p) + dot::draw_folded_wires(p));
+      diagram::quoted(stage.now().name), diagram::colour::ink, diagram::colour::line,
+      diagram::colour::soft, diagram::draw_legend(p), diagram::draw_nodes(p),
+      diagram::draw_wires(p) + diagram::draw_folded_wires(p));
 }
 
 std::string to_dot(const Diagram& diagram, const DotOptions& options) {

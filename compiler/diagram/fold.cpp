@@ -4,7 +4,7 @@
 #include <titop/compiler/diagram/fold.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::dot {
+namespace titop::diagram {
 namespace {
 
 using linalg::at;
@@ -155,4 +155,4 @@ Fold fold(const Graph& graph, int most) {
   return Folding(graph, most).run();
 }
 
-}  // namespace titop::dot
+}  // namespace titop::diagram

@@ -5,7 +5,7 @@
 #include <vector>
 
 /// Groups the blocks of a large diagram into boxes.
-namespace titop::dot {
+namespace titop::diagram {
 
 struct Fold {
   /// A box for several blocks: whole subtrees.
@@ -22,4 +22,4 @@ struct Fold {
 /// shown, eight at most, and the others share a box. O(nodes log nodes + terms).
 Fold fold(const Graph& graph, int most);
 
-}  // namespace titop::dot
+}  // namespace titop::diagram

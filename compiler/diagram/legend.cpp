@@ -4,7 +4,7 @@
 #include <titop/compiler/diagram/picture.hpp>
 #include <titop/compiler/diagram/text.hpp>
 
-namespace titop::dot {
+namespace titop::diagram {
 
 /// The diagram's name, and the meaning of the signs that occur.
 std::string draw_legend(const Picture& p) {
@@ -29,4 +29,4 @@ std::string draw_legend(const Picture& p) {
          font(fmt::format("{}", fmt::join(words, " &#160; &#160; ")), 9, colour::soft);
 }
 
-}  // namespace titop::dot
+}  // namespace titop::diagram

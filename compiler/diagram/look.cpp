@@ -5,7 +5,7 @@
 #include <titop/compiler/diagram/picture.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::dot {
+namespace titop::diagram {
 namespace {
 
 using Eigen::MatrixXd;
@@ -141,4 +141,4 @@ Look look(const Picture& p, const Assignment& a, const Term& term) {
   return result;
 }
 
-}  // namespace titop::dot
+}  // namespace titop::diagram

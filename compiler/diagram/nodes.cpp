@@ -6,7 +6,7 @@
 #include <titop/compiler/diagram/text.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::dot {
+namespace titop::diagram {
 namespace {
 
 using linalg::at;
@@ -191,4 +191,4 @@ std::string draw_nodes(const Picture& p) {
   return text + draw_boxes(p) + draw_ends(p.graph.outputs, p.outputs, p.output_id, "peripheries=2");
 }
 
-}  // namespace titop::dot
+}  // namespace titop::diagram

@@ -8,7 +8,7 @@
 #include <titop/compiler/diagram/text.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::dot {
+namespace titop::diagram {
 namespace {
 
 using linalg::at;
@@ -214,4 +214,4 @@ Anchor anchor(const Picture& p, int signal) {
           side};
 }
 
-}  // namespace titop::dot
+}  // namespace titop::diagram

@@ -11,7 +11,7 @@
 /// The tree has its root at the top, as in the paper: parents above, children below. A block has
 /// its parent channel along its top and its children along its bottom, so accelerations run down
 /// and wrenches return upwards next to them.
-namespace titop::dot {
+namespace titop::diagram {
 
 /// One side of a block: where a wire leaves or arrives. `loose`: it may go either way.
 enum class BlockSide { top, bottom, loose };
@@ -95,4 +95,4 @@ std::string draw_nodes(const Picture& p);
 std::string draw_wires(const Picture& p);
 std::string draw_legend(const Picture& p);
 
-}  // namespace titop::dot
+}  // namespace titop::diagram

@@ -3,7 +3,7 @@
 #include <array>
 #include <titop/compiler/diagram/text.hpp>
 
-namespace titop::dot {
+namespace titop::diagram {
 namespace {
 
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";  // U+FFFD
@@ -95,4 +95,4 @@ std::string_view loop_line(int number) { return kLines[index(number)]; }
 std::string_view loop_fill(int number) { return kFills[index(number)]; }
 }  // namespace colour
 
-}  // namespace titop::dot
+}  // namespace titop::diagram

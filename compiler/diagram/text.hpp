@@ -4,7 +4,7 @@
 #include <string_view>
 
 /// Text of any origin in Graphviz files.
-namespace titop::dot {
+namespace titop::diagram {
 
 /// Bytes of the UTF-8 character that `text`, not empty, begins with; 0 if it begins with none.
 std::size_t utf8_length(std::string_view text);
@@ -31,4 +31,4 @@ std::string_view loop_line(int number);
 std::string_view loop_fill(int number);
 }  // namespace colour
 
-}  // namespace titop::dot
+}  // namespace titop::diagram

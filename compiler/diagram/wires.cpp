@@ -4,7 +4,7 @@
 #include <titop/compiler/diagram/text.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::dot {
+namespace titop::diagram {
 namespace {
 
 using linalg::at;
@@ -190,4 +190,4 @@ std::string draw_wires(const Picture& p) {
   return text;
 }
 
-}  // namespace titop::dot
+}  // namespace titop::diagram

@@ -45,7 +45,7 @@ Followers::Followers(const Skeleton& k, const Factored& d)
   first_.assign(at(n), -1);
   before_.assign(at(n), 0);
   weight_ = Eigen::VectorXd::Zero(n);
-  const passes::closing::StateRates coordinates(k.stage.graph, k.stage.values);
+  const loops::StateRates coordinates(k.stage.graph, k.stage.values);
   for (const int node : layout_.state_nodes) {
     const int first = layout_.state_first[at(node)];
     const Index count = d.numbers.blocks[at(node)]->A.rows();

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <utility>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using linalg::at;
@@ -101,4 +101,4 @@ std::vector<int> along(const std::vector<Closing>& closings) {
   return std::move(walk.result);
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

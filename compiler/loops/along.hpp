@@ -3,7 +3,7 @@
 #include <titop/compiler/loops/motion.hpp>
 #include <vector>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// The order in which the redundancy of chains is decided: each after those that its loop contains,
 /// and next to chains with common bodies or joints, so that few columns are open between decided
@@ -12,4 +12,4 @@ namespace titop::passes::closing {
 /// equals the first comes first. Returns places in `closings`. O(entries log entries).
 std::vector<int> along(const std::vector<Closing>& closings);
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -25,7 +25,7 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using namespace closing;
+using namespace loops;
 using linalg::at;
 
 constexpr double kGap = 1e-6;  ///< a loop that is open by more does not close
@@ -290,10 +290,10 @@ AtRest release_redundant(Stage& stage, const std::vector<Closing>& closings) {
   }
   const StateRates coordinates(stage.graph, stage.values);
   // All motions count, prescribed ones too: they must satisfy redundant closures.
-  const auto classify = [&](const ScalarColumn& s) -> std::optional<closing::ColumnRole> {
+  const auto classify = [&](const ScalarColumn& s) -> std::optional<loops::ColumnRole> {
     const bool state = s.column.kind == FormColumn::Kind::states;
-    return closing::ColumnRole{state ? Relations::Role::coordinate : Relations::Role::unknown,
-                               state ? coordinates.weight(s.column.id, s.index) : 0};
+    return loops::ColumnRole{state ? Relations::Role::coordinate : Relations::Role::unknown,
+                             state ? coordinates.weight(s.column.id, s.index) : 0};
   };
   for (Component& c : components(lines, classify)) {
     const ScaleFactors factors = scale(c.relations);

@@ -12,7 +12,7 @@ namespace titop::passes {
 namespace {
 
 using Eigen::Index;
-using namespace closing;
+using namespace loops;
 using linalg::at;
 
 /// One of the two levels on which chains close.
@@ -35,14 +35,14 @@ struct Closer {
   std::vector<ScalarColumn> positions = {};  ///< dependent on position level, in order
   std::map<std::vector<int>, Independent> of_positions = {};  ///< by lines, all of them of chains
 
-  std::optional<closing::ColumnRole> classify(const ScalarColumn& s) const {
+  std::optional<loops::ColumnRole> classify(const ScalarColumn& s) const {
     using Role = Relations::Role;
-    if (s.column.kind == FormColumn::Kind::integral) return closing::ColumnRole{Role::integral, 0};
-    if (s.column.kind != FormColumn::Kind::states) return closing::ColumnRole{Role::unknown, 0};
+    if (s.column.kind == FormColumn::Kind::integral) return loops::ColumnRole{Role::integral, 0};
+    if (s.column.kind != FormColumn::Kind::states) return loops::ColumnRole{Role::unknown, 0};
     const Signal& x = g.signals[at(g.nodes[at(s.column.id)].state)];
     if (x.at_rest) return std::nullopt;
-    if (!x.active) return closing::ColumnRole{Role::unknown, 0};
-    return closing::ColumnRole{Role::coordinate, coordinates.weight(s.column.id, s.index)};
+    if (!x.active) return loops::ColumnRole{Role::unknown, 0};
+    return loops::ColumnRole{Role::coordinate, coordinates.weight(s.column.id, s.index)};
   }
 
   /// The state of this scalar on this level.

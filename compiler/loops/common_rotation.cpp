@@ -2,7 +2,7 @@
 #include <titop/compiler/loops/common_rotation.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using Eigen::MatrixXd;
@@ -39,4 +39,4 @@ std::optional<Matrix3d> common_rotation(const MatrixXd& S, const MatrixXd& c) {
   return std::nullopt;
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -5,7 +5,7 @@
 #include <map>
 
 /// Positions as linear forms: small displacements about the posture.
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// A term of a displacement. The same columns are used on position and on velocity level.
 struct FormColumn {
@@ -35,4 +35,4 @@ inline void add(Form& to, const Eigen::MatrixXd& factor, const Form& form) {
   for (const auto& [column, matrix] : form) add(to, column, factor * matrix);
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

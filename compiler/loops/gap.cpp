@@ -2,7 +2,7 @@
 #include <titop/compiler/loops/gap.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using Eigen::Index;
@@ -45,4 +45,4 @@ Gap gap_of(const MatrixXd& gap, const Form& form, const std::vector<int>& units,
   return result;
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -3,7 +3,7 @@
 #include <titop/compiler/loops/form.hpp>
 #include <vector>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 constexpr double kExactGap = 1e-9;  ///< a gap that is larger is not rounding
 
@@ -20,4 +20,4 @@ struct Gap {
 Gap gap_of(const Eigen::MatrixXd& gap, const Form& form, const std::vector<int>& units,
            double lever);
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -9,7 +9,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using Eigen::Index;
@@ -331,4 +331,4 @@ Independent independent(Relations relations, const std::vector<int>& preferred) 
   return std::move(fronts.result);
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

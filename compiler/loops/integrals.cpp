@@ -1,7 +1,7 @@
 #include <titop/compiler/loops/integrals.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using Eigen::Index;
@@ -98,4 +98,4 @@ std::vector<Integral> integrals(const Graph& g, const Motion& motion, const Twin
   return result;
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -4,7 +4,7 @@
 #include <titop/compiler/loops/lines.hpp>
 #include <titop/compiler/loops/motion.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// The displacement that an Integrator integrates: its output is the displacement's rate (level 1)
 /// or the displacement itself (level 2).
@@ -19,4 +19,4 @@ struct Integral {
 std::vector<Integral> integrals(const Graph& graph, const Motion& motion, const Twins& twins,
                                 const StateRates& coordinates, ParameterValues values);
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

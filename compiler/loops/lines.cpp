@@ -5,7 +5,7 @@
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using Eigen::Index;
@@ -13,7 +13,7 @@ using linalg::at;
 
 /// Per line its group: lines that share a column have the same.
 std::vector<int> groups(const std::vector<RelationRows>& lines) {
-  UnionFind joined(static_cast<int>(lines.size()));
+  passes::UnionFind joined(static_cast<int>(lines.size()));
   std::map<FormColumn, int> first;
   for (int l = 0; l < static_cast<int>(lines.size()); ++l)
     for (const auto& [column, matrix] : lines[at(l)].form)
@@ -121,4 +121,4 @@ RelationRows line_of(const Closing& closing) {
   return line;
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

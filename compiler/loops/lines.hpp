@@ -6,7 +6,7 @@
 #include <titop/compiler/loops/motion.hpp>
 #include <titop/compiler/loops/relations.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// Rows of homogeneous relations, as forms.
 struct RelationRows {
@@ -62,4 +62,4 @@ class StateRates {
 /// A closing equation as lines of translations and rotations.
 RelationRows line_of(const Closing& closing);
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

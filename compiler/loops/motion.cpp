@@ -10,7 +10,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <utility>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using Eigen::Index;
@@ -160,7 +160,7 @@ Motion::Edge Motion::reversed(const Edge& e) const {
 }
 
 void Motion::plant(std::vector<Tie> released) {
-  UnionFind joined(ground_ + 1);
+  passes::UnionFind joined(ground_ + 1);
   std::vector<char> one_way(at(ground_) + 1, 0);
   const auto join = [&](int e) {
     joined.unite(edges_[at(e)].to, edges_[at(e)].from);
@@ -349,4 +349,4 @@ int Motion::silent(const std::vector<int>& chain) const {
   return -1;
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// An equation between accelerations, read between positions: S x_target = sum of c x_point + own.
 struct Tie {
@@ -143,4 +143,4 @@ class Motion {
   std::vector<std::vector<Shortcut>> shortcut_;  ///< per point: edges that start there
 };
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -9,7 +9,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using Eigen::Index;
@@ -157,7 +157,7 @@ struct RedundancyFinder {
 
   /// The rest, in order, each connected set of blocks for itself.
   void decide_rest() {
-    UnionFind joined(static_cast<int>(blocks.size()));
+    passes::UnionFind joined(static_cast<int>(blocks.size()));
     std::map<int, int> first;
     for (int b = 0; b < static_cast<int>(blocks.size()); ++b)
       for (const int c : blocks[at(b)].columns)
@@ -280,4 +280,4 @@ Redundancy redundancy(const Relations& scaled) {
   return std::move(finder.result);
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

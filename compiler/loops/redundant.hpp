@@ -2,7 +2,7 @@
 
 #include <titop/compiler/loops/relations.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// Directions among a block's rows (k x rows, orthonormal) in which they follow from the blocks
 /// before it.
@@ -29,4 +29,4 @@ struct Redundancy {
 /// if blocks come `along` a truss.
 Redundancy redundancy(const Relations& scaled);
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

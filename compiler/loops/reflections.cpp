@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <titop/compiler/loops/reflections.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 using Eigen::Index;
 
@@ -55,4 +55,4 @@ void Reflections::reflect(int column) {
   M_(k, column) = alpha;
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -4,7 +4,7 @@
 #include <limits>
 #include <vector>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// Householder elimination of a dense matrix, row by row from the top, one pivot each; columns keep
 /// their places.
@@ -46,4 +46,4 @@ class Reflections {
   double weakest_ = 1;
 };
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// Ranks are decided at this, absolutely, after scaling to 1: exact data give pivots of 1e-3 and
 /// more or 1e-15 and less.
@@ -82,4 +82,4 @@ struct Independent {
 /// columns) of blocks that merge without eliminating any column.
 Independent independent(Relations relations, const std::vector<int>& preferred = {});
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

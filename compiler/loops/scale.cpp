@@ -3,7 +3,7 @@
 #include <titop/compiler/loops/relations.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using Eigen::Index;
@@ -242,4 +242,4 @@ ScaleFactors scale(Relations& relations) {
   return f;
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

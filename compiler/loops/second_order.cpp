@@ -6,7 +6,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using Eigen::Index;
@@ -153,4 +153,4 @@ double stopped(const Component& scaled, const ScaleFactors& factors,
   return worst;
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -2,7 +2,7 @@
 
 #include <titop/compiler/loops/lines.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// Fraction of the chains' first-order mobility that is blocked at second order: at a singular
 /// posture (a four-bar linkage folded flat) the equations of first order lose rank, and allow the
@@ -22,4 +22,4 @@ namespace titop::passes::closing {
 double stopped(const Component& scaled, const ScaleFactors& factors,
                const std::vector<const Closing*>& closings, const Graph& graph);
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

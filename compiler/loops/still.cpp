@@ -5,7 +5,7 @@
 #include <titop/graph/support/some_names.hpp>
 #include <utility>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using linalg::at;
@@ -85,4 +85,4 @@ void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& 
        "closed chains leave these points no motion: " + detail::some_names(names)});
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

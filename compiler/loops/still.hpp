@@ -4,7 +4,7 @@
 #include <titop/compiler/loops/lines.hpp>
 
 /// Points immobilised by loop constraints.
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// Scalars that are 0 in every motion that the closed chains allow; prescribed motions are not
 /// included.
@@ -17,4 +17,4 @@ using AtRest = std::set<ScalarColumn>;
 void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& closings,
                 const AtRest& held);
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

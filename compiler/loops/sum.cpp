@@ -3,7 +3,7 @@
 #include <titop/compiler/loops/sum.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using Eigen::Index;
@@ -45,7 +45,7 @@ void RoundedSum::meet(const MatrixXd& factor) {
 void RoundedSum::add(const MatrixXd& factor, const Form& own) {
   const double units = (kUnits + kUnitsEach * factors_) * kEpsilon;
   for (const auto& [column, matrix] : own) {
-    closing::add(form_, column, factor * matrix);
+    loops::add(form_, column, factor * matrix);
     MatrixXd rounding(factor.rows(), matrix.cols());
     for (Index j = 0; j < matrix.cols(); ++j) {
       std::array<double, 2> size = {};
@@ -58,7 +58,7 @@ void RoundedSum::add(const MatrixXd& factor, const Form& own) {
         rounding(i, j) = units * (most[0] * size[0] + most[1] * size[1]);
       }
     }
-    closing::add(rounding_, column, rounding);
+    loops::add(rounding_, column, rounding);
   }
 }
 
@@ -71,4 +71,4 @@ Form RoundedSum::cleaned() const {
   return result;
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

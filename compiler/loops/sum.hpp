@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// Units of rows among the six of a point (or its one): 0 for a translation, 1 for a rotation.
 std::vector<int> units_of_rows(const Eigen::MatrixXd& S);
@@ -36,4 +36,4 @@ class RoundedSum {
   double factors_ = 0;
 };
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

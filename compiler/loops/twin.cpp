@@ -2,7 +2,7 @@
 #include <titop/compiler/loops/twin.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using linalg::at;
@@ -60,4 +60,4 @@ Twin Twins::of_input(int signal) const {
   return e < 0 ? Twin{} : of(g_.equations[at(e)].terms);
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

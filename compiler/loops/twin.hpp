@@ -4,7 +4,7 @@
 #include <titop/graph/graph.hpp>
 #include <vector>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// A sum of signals at position level: points of bodies, and other signals.
 struct Twin {
@@ -34,4 +34,4 @@ class Twins {
   std::vector<int> equation_of_;  ///< of one-way targets and outputs of lowered nodes; -1: none
 };
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

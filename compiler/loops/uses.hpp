@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace titop::passes::closing {
+namespace titop::loops {
 
 /// The blocks of each column, while blocks lose columns. If one block remains, it is known; a
 /// change costs O(1) per column.
@@ -24,4 +24,4 @@ class Uses {
   std::vector<long> sum_;  ///< of the numbers of its blocks
 };
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -5,7 +5,7 @@
 #include <utility>
 
 /// Ways round a closed chain: the tree's, or a shorter one through ties that close chains.
-namespace titop::passes::closing {
+namespace titop::loops {
 namespace {
 
 using linalg::at;
@@ -108,4 +108,4 @@ std::pair<Motion::Way, Motion::Way> Motion::ways(const Tie& tie) const {
   return {std::move(there), std::move(back)};
 }
 
-}  // namespace titop::passes::closing
+}  // namespace titop::loops

@@ -10,7 +10,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/some_names.hpp>
 
-namespace titop::modes {
+namespace titop::minreal {
 namespace {
 
 using Eigen::MatrixXd;
@@ -77,10 +77,11 @@ void report(const IndependentRows& rows, const char* why, RemovedStates& result)
 using Rows = MatrixXd (*)(const StateSpace&);
 
 /// One repetition for one side; false if all states count.
-bool take_out_once(Sampled& s, Rows rows_of_model, bool by_inputs, MatrixXd& energy,
+bool take_out_once(detail::Sampled& s, Rows rows_of_model, bool by_inputs, MatrixXd& energy,
                    RemovedStates& result) {
   const MatrixXd M = rows_of_model(s.model);
-  const MatrixXd rounding = rounding_of(s.off, M, rows_of_model).cwiseMax(kEps * M.cwiseAbs());
+  const MatrixXd rounding =
+      detail::rounding_of(s.off, M, rows_of_model).cwiseMax(kEps * M.cwiseAbs());
   const MatrixXd A = by_inputs ? s.model.A : MatrixXd(s.model.A.transpose());
   MatrixXd balanced = A;
   const Eigen::VectorXd unit = linalg::balance_parts(balanced);
@@ -99,8 +100,8 @@ bool take_out_once(Sampled& s, Rows rows_of_model, bool by_inputs, MatrixXd& ene
       take_out_unseen(m, out, T.transpose());
   };
   remove(s.model, rows.T);
-  for (int i = 0; i < std::ssize(s.off); ++i) remove(s.off[at(i)], jittered(rows.T, i));
-  clear_rounding(s);
+  for (int i = 0; i < std::ssize(s.off); ++i) remove(s.off[at(i)], detail::jittered(rows.T, i));
+  detail::clear_rounding(s);
   energy = energy_without(energy, out, by_inputs ? rows.T : none);
   return true;
 }
@@ -125,7 +126,7 @@ std::vector<char> reached(const MatrixXd& A, const MatrixXd& B) {
 
 }  // namespace
 
-RemovedStates take_out_by_pattern(Sampled& s, MatrixXd& energy) {
+RemovedStates take_out_by_pattern(detail::Sampled& s, MatrixXd& energy) {
   RemovedStates result;
   for (const bool by_inputs : {true, false}) {
     const StateSpace& m = s.model;
@@ -149,7 +150,7 @@ RemovedStates take_out_by_pattern(Sampled& s, MatrixXd& energy) {
   return result;
 }
 
-RemovedStates take_out_at_zero(Sampled& s, MatrixXd& energy) {
+RemovedStates take_out_at_zero(detail::Sampled& s, MatrixXd& energy) {
   RemovedStates result;
   for (bool again = true; again && s.model.order() > 0;) {
     again = false;
@@ -161,4 +162,4 @@ RemovedStates take_out_at_zero(Sampled& s, MatrixXd& energy) {
   return result;
 }
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -8,7 +8,7 @@
 /// States without effect on the transfer that leave before any eigenvalue is computed: by the
 /// pattern of the matrices, and at s = 0, such as conserved momenta, rigid motions that no output
 /// sees, positions that are functions of other states. For the compiler's own files.
-namespace titop::modes {
+namespace titop::minreal {
 
 /// States that were removed, and doubtful ones.
 struct RemovedStates {
@@ -20,7 +20,7 @@ struct RemovedStates {
 
 /// Removes the states that no input reaches, or that reach no output, through entries of A, B and C
 /// that are not 0; `energy` as below. O(n^2).
-RemovedStates take_out_by_pattern(Sampled& sampled, Eigen::MatrixXd& energy);
+RemovedStates take_out_by_pattern(detail::Sampled& sampled, Eigen::MatrixXd& energy);
 
 /// Removes the uncontrollable and the unobservable part at s = 0 [Popov, Belevitch, Hautus]: a row
 /// of [A B] that depends on the other rows belongs to a state that follows from the others (a rate
@@ -34,6 +34,6 @@ RemovedStates take_out_by_pattern(Sampled& sampled, Eigen::MatrixXd& energy);
 ///
 /// Of several states that could leave, that leaves which moves most (is seen most) at one s, so
 /// that its sum over the others cancels least. O(n^3) for each repetition.
-RemovedStates take_out_at_zero(Sampled& sampled, Eigen::MatrixXd& energy);
+RemovedStates take_out_at_zero(detail::Sampled& sampled, Eigen::MatrixXd& energy);
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -6,7 +6,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::modes {
+namespace titop::minreal {
 namespace {
 
 using Eigen::Index;
@@ -106,4 +106,4 @@ bool clearly_full_rank(MatrixXd M) {
   return Eigen::BDCSVD<MatrixXd>(M).singularValues()(M.rows() - 1) > kClearRank;
 }
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -5,7 +5,7 @@
 #include <titop/compiler/minreal/modes.hpp>
 
 /// Common to both kinds of modes: modes of one frequency, and ranks. For the compiler's own files.
-namespace titop::modes {
+namespace titop::minreal {
 
 inline constexpr double kEps = std::numeric_limits<double>::epsilon();
 inline constexpr double kSameFrequency = 1e-9;  ///< relative: as close as this, modes are equal
@@ -55,4 +55,4 @@ void balance_sides(const Parts& parts, ModeSet& m);
 /// may itself be at rounding level.
 bool clearly_full_rank(Eigen::MatrixXd M);
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -7,7 +7,7 @@
 #include <titop/compiler/solve/frequency.hpp>
 #include <titop/graph/error.hpp>
 
-namespace titop::modes {
+namespace titop::minreal {
 namespace {
 
 using Eigen::MatrixXcd;
@@ -92,4 +92,4 @@ bool put_back(const StateSpace& whole, double resolution, double lost, Minimized
   return true;
 }
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

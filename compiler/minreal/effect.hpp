@@ -5,7 +5,7 @@
 #include <vector>
 
 /// Measures the effect of removed modes on the transfer.
-namespace titop::modes {
+namespace titop::minreal {
 
 /// `minimize` (compiler/minreal/minimize.hpp) except for the measurement, for callers that measure
 /// against more than the model.
@@ -28,4 +28,4 @@ void measure_change(const StateSpace& whole, Minimized& m);
 /// whose modes are nearly parallel): an error as large as that also restores all.
 bool put_back(const StateSpace& whole, double resolution, double lost, Minimized& m);
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

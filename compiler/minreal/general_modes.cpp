@@ -6,7 +6,7 @@
 #include <titop/graph/linalg/index.hpp>
 
 /// Models of any other kind: eigenvalues with left and right vectors.
-namespace titop::modes {
+namespace titop::minreal {
 namespace {
 
 using Eigen::Index;
@@ -175,4 +175,4 @@ General general_modes(const StateSpace& model, double resolution) {
   return g;
 }
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -7,7 +7,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::modes {
+namespace titop::minreal {
 namespace {
 
 using Eigen::Index;
@@ -126,7 +126,7 @@ void solve_for(const std::vector<int>& basis, const MatrixXd& scaled, const Vect
     const int row = basis[at(k)];
     const Index place = std::lower_bound(r.keep.begin(), r.keep.end(), row) - r.keep.begin();
     for (Index i = 0; i < share.rows(); ++i)
-      if (std::abs(share(i, k)) > kRounding * r.out[at(i)].bound)
+      if (std::abs(share(i, k)) > detail::kRoundingFactor * r.out[at(i)].bound)
         r.T(i, place) = share(i, k) * row_scale(row) / row_scale(out[at(i)]);
   }
 }
@@ -137,7 +137,8 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
                                  const std::vector<int>& level) {
   IndependentRows r;
   if (M.size() == 0) return r;
-  const MatrixXd clear = (M.array().abs() > kRounding * rounding.array()).select(M, 0.0);
+  const MatrixXd clear =
+      (M.array().abs() > detail::kRoundingFactor * rounding.array()).select(M, 0.0);
   // A column that distinguishes some rows may be at rounding level in the others, and large: it
   // must not dominate these.
   const UnitScale by(clear.cwiseAbs().cwiseMax(kOfNoise * rounding));
@@ -157,7 +158,7 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
     const int row = others.number[at(k)];
     const double size = scaled.row(row).norm() * weight(row), bound = others.noise(k) / size,
                  own = others.rows.row(k).norm() / size;
-    if (own <= kRounding * bound && bound <= kFewDigits)
+    if (own <= detail::kRoundingFactor * bound && bound <= kFewDigits)
       r.out.push_back({row, own, bound});
     else
       r.keep.push_back(row), r.doubtful.push_back({row, own, bound});
@@ -168,4 +169,4 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
   return r;
 }
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

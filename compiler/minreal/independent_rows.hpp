@@ -4,7 +4,7 @@
 #include <vector>
 
 /// Independent rows of a small matrix, in any units. For the compiler's own files.
-namespace titop::modes {
+namespace titop::minreal {
 
 /// Independent rows, and the dependent ones: M(out) = T M(keep).
 struct IndependentRows {
@@ -29,4 +29,4 @@ struct IndependentRows {
 IndependentRows independent_rows(const Eigen::MatrixXd& M, const Eigen::MatrixXd& rounding,
                                  const Eigen::VectorXd& unit, const std::vector<int>& level);
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -6,7 +6,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::modes {
+namespace titop::minreal {
 namespace {
 
 using Eigen::Index;
@@ -118,7 +118,7 @@ std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit
   return d;
 }
 
-std::optional<StateSpace> decoupled_rest(const Sampled& s, const IntegratorSplit& states) {
+std::optional<StateSpace> decoupled_rest(const detail::Sampled& s, const IntegratorSplit& states) {
   const std::optional<Decoupled> d = decouple(s.model, states);
   if (!d) return std::nullopt;
   std::vector<Decoupled> samples;
@@ -131,11 +131,11 @@ std::optional<StateSpace> decoupled_rest(const Sampled& s, const IntegratorSplit
   const MatrixXd terms = s.model.C(Eigen::all, states.rest).cwiseAbs() +
                          s.model.C(Eigen::all, states.integrators).cwiseAbs() * d->X.cwiseAbs();
   const MatrixXd rounding =
-      rounding_of(samples, d->C_rest, [](const Decoupled& part) { return part.C_rest; });
-  rest.C = cleared(d->C_rest, rounding.cwiseMax(kEps * terms));
+      detail::rounding_of(samples, d->C_rest, [](const Decoupled& part) { return part.C_rest; });
+  rest.C = detail::cleared(d->C_rest, rounding.cwiseMax(kEps * terms));
   rest.D = s.model.D;
   rest.outputs = s.model.outputs;
   return rest;
 }
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -7,7 +7,7 @@
 
 /// Integrators at the end of a model, which act only on each other: positions and rates that
 /// outputs read. For the compiler's own files.
-namespace titop::modes {
+namespace titop::minreal {
 
 /// The states of a model: coupled ones, and integrators.
 struct IntegratorSplit {
@@ -36,6 +36,7 @@ std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit
 
 /// The rest of a decoupled model; entries at rounding level are 0. None if the rest has a pole at 0
 /// too.
-std::optional<StateSpace> decoupled_rest(const Sampled& sampled, const IntegratorSplit& states);
+std::optional<StateSpace> decoupled_rest(const detail::Sampled& sampled,
+                                         const IntegratorSplit& states);
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

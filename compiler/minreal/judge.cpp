@@ -5,7 +5,7 @@
 #include <titop/compiler/minreal/judge.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::modes {
+namespace titop::minreal {
 namespace {
 
 using Eigen::Index;
@@ -185,4 +185,4 @@ OrderVerdict sum_up(const std::vector<Verdict>& verdicts, const ModeSet& m, int 
   return r;
 }
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

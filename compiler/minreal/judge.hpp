@@ -4,7 +4,7 @@
 #include <titop/compiler/minreal/modes.hpp>
 
 /// Selection of modes: visibility against its own rounding bound (compiler/minreal/minimize.hpp).
-namespace titop::modes {
+namespace titop::minreal {
 
 struct Verdict {
   double visibility = 1, bound = 0;
@@ -25,4 +25,4 @@ bool drop_down_to(int exact, int order, ModeSet& modes, std::vector<Verdict>& ve
 /// Sum of the verdicts, for a model of `order` states.
 OrderVerdict sum_up(const std::vector<Verdict>& verdicts, const ModeSet& modes, int order);
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -34,11 +34,11 @@ std::string describe(const std::vector<JudgedMode>& modes) {
 template <class Modes>
 void minimize_by(Modes modes, const MinimizeOptions& options, Minimized& r) {
   const int order = r.model.order();
-  std::vector<modes::Verdict> verdicts = modes::judge(modes.modes, options.resolution);
+  std::vector<minreal::Verdict> verdicts = minreal::judge(modes.modes, options.resolution);
   bool agrees = true;
   if (options.exact_order >= 0)
-    agrees = modes::drop_down_to(options.exact_order, order, modes.modes, verdicts);
-  r.order = modes::sum_up(verdicts, modes.modes, order);
+    agrees = minreal::drop_down_to(options.exact_order, order, modes.modes, verdicts);
+  r.order = minreal::sum_up(verdicts, modes.modes, order);
   if (options.exact_order >= 0) {
     r.order.exact = true;
     r.order.lowest = r.order.highest = options.exact_order;
@@ -47,7 +47,7 @@ void minimize_by(Modes modes, const MinimizeOptions& options, Minimized& r) {
     r.notes.push_back(fmt::format(
         "{} states stay where exact arithmetic needs {}: in double their modes are not apart",
         r.order.order, options.exact_order));
-  if (!r.order.removed.empty()) modes::take_out(modes, verdicts, r.model, r.notes);
+  if (!r.order.removed.empty()) minreal::take_out(modes, verdicts, r.model, r.notes);
   r.notes.insert(r.notes.begin(), to_string(r.order));
 }
 
@@ -62,7 +62,7 @@ Minimized as_a_whole(const StateSpace& model) {
 
 /// False, without a change, if the model has no symmetric form.
 bool minimize_symmetric(const MinimizeOptions& options, Minimized& result) {
-  auto s = modes::symmetric_modes(result.model, options.resolution, options.energy);
+  auto s = minreal::symmetric_modes(result.model, options.resolution, options.energy);
   if (s) minimize_by(std::move(*s), options, result);
   return s.has_value();
 }
@@ -71,13 +71,13 @@ Minimized minimize_as_it_stands(const StateSpace& model, const MinimizeOptions& 
   Minimized result = as_a_whole(model);
   if (model.order() == 0 || (model.inputs.empty() && model.outputs.empty())) return result;
   if (!minimize_symmetric(options, result))
-    minimize_by(modes::general_modes(model, options.resolution), options, result);
+    minimize_by(minreal::general_modes(model, options.resolution), options, result);
   return result;
 }
 
 /// `rest` and the integrators of the model, which act on each other no more.
 StateSpace side_by_side(const StateSpace& rest, const StateSpace& model,
-                        const modes::IntegratorSplit& states) {
+                        const minreal::IntegratorSplit& states) {
   StateSpace apart = model;
   apart.A(states.integrators, states.rest).setZero();
   StateSpace with_rates = rest;
@@ -85,23 +85,23 @@ StateSpace side_by_side(const StateSpace& rest, const StateSpace& model,
   with_rates.C.conservativeResize(model.C.rows() + k, n);
   with_rates.C.bottomRows(k).setZero();
   with_rates.D.conservativeResize(model.C.rows() + k, model.B.cols());
-  with_rates.D.bottomRows(k) = modes::decouple(model, states)->B;
-  return modes::with_integrators(with_rates, apart, states);
+  with_rates.D.bottomRows(k) = minreal::decouple(model, states)->B;
+  return minreal::with_integrators(with_rates, apart, states);
 }
 
 /// Minimizes the rest of a model whose integrators all count. Integrators keep their meaning if as
 /// many modes can be removed without a change of their inputs.
-Minimized minimize_beside(const modes::Sampled& sampled, const modes::IntegratorSplit& states,
+Minimized minimize_beside(const detail::Sampled& sampled, const minreal::IntegratorSplit& states,
                           const StateSpace& rest, const MinimizeOptions& options) {
   const StateSpace& model = sampled.model;
   Minimized result = minimize_as_it_stands(rest, options);
   const Minimized coupled =
-      minimize_as_it_stands(modes::without_integrators(model, states),
+      minimize_as_it_stands(minreal::without_integrators(model, states),
                             {.resolution = options.resolution, .energy = options.energy});
   if (coupled.model.order() < result.model.order() && !result.order.exact) result = coupled;
   if (coupled.model.order() == result.model.order()) {
     result.notes = coupled.notes;
-    result.model = modes::with_integrators(coupled.model, model, states);
+    result.model = minreal::with_integrators(coupled.model, model, states);
   } else {
     result.model = side_by_side(result.model, model, states);
     result.notes.push_back("integrators are those of the motion without the other states");
@@ -112,12 +112,12 @@ Minimized minimize_beside(const modes::Sampled& sampled, const modes::Integrator
 }
 
 /// Minimizes a model whose poles at 0 all count.
-Minimized minimize_needed(const modes::Sampled& sampled, const MinimizeOptions& options) {
+Minimized minimize_needed(const detail::Sampled& sampled, const MinimizeOptions& options) {
   MinimizeOptions of_rest = options;
-  const modes::IntegratorSplit states = modes::find_integrators(sampled.model);
+  const minreal::IntegratorSplit states = minreal::find_integrators(sampled.model);
   if (states.integrators.empty()) return minimize_as_it_stands(sampled.model, of_rest);
   const int k = static_cast<int>(states.integrators.size());
-  const auto rest = modes::decoupled_rest(sampled, states);
+  const auto rest = minreal::decoupled_rest(sampled, states);
   if (!rest || (options.exact_order >= 0 && options.exact_order < k))
     return minimize_as_it_stands(sampled.model, of_rest);
   if (options.exact_order >= 0) of_rest.exact_order = options.exact_order - k;
@@ -126,7 +126,7 @@ Minimized minimize_needed(const modes::Sampled& sampled, const MinimizeOptions& 
 }
 
 /// Adds the verdict on states that have left to that on the others.
-void add_removed(const modes::RemovedStates& n, Minimized& r) {
+void add_removed(const minreal::RemovedStates& n, Minimized& r) {
   OrderVerdict& v = r.order;
   if (!v.exact) {
     v.lowest = std::max(0, v.lowest - static_cast<int>(n.doubtful.size()));
@@ -142,15 +142,15 @@ void add_removed(const modes::RemovedStates& n, Minimized& r) {
 
 Minimized minimize_in_order(const StateSpace& model, const MinimizeOptions& options) {
   if (model.inputs.empty() && model.outputs.empty()) return minimize_as_it_stands(model, options);
-  modes::Sampled sampled = modes::sampled(model, options.rounding);
+  detail::Sampled sampled = detail::sampled(model, options.rounding);
   MinimizeOptions of_rest{.resolution = options.resolution, .exact_order = options.exact_order};
   if (options.energy.rows() == model.A.rows()) of_rest.energy = options.energy;
-  const modes::RemovedStates by_pattern = modes::take_out_by_pattern(sampled, of_rest.energy);
+  const minreal::RemovedStates by_pattern = minreal::take_out_by_pattern(sampled, of_rest.energy);
   Minimized result = as_a_whole(sampled.model);
   // Rigid motions of a symmetric form are modes at exactly 0.
-  if (!modes::find_integrators(sampled.model).integrators.empty() ||
+  if (!minreal::find_integrators(sampled.model).integrators.empty() ||
       !minimize_symmetric(of_rest, result)) {
-    const modes::RemovedStates at_zero = modes::take_out_at_zero(sampled, of_rest.energy);
+    const minreal::RemovedStates at_zero = minreal::take_out_at_zero(sampled, of_rest.energy);
     if (sampled.model.order() < options.exact_order) return minimize_as_it_stands(model, options);
     result = minimize_needed(sampled, of_rest);
     add_removed(at_zero, result);
@@ -218,7 +218,7 @@ std::string to_string(const OrderVerdict& v) {
   return text;
 }
 
-Minimized modes::minimize_unmeasured(const StateSpace& model, const MinimizeOptions& given) {
+Minimized minreal::minimize_unmeasured(const StateSpace& model, const MinimizeOptions& given) {
   refuse_sizes(model);
   if (!model.A.allFinite() || !model.B.allFinite() || !model.C.allFinite() || !model.D.allFinite())
     throw Error(Code::not_finite, "minimize: entries of the model are not finite",
@@ -238,9 +238,9 @@ Minimized modes::minimize_unmeasured(const StateSpace& model, const MinimizeOpti
 }
 
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options) {
-  Minimized result = modes::minimize_unmeasured(model, options);
-  modes::measure_change(model, result);
-  modes::put_back(model, options.resolution, 0, result);
+  Minimized result = minreal::minimize_unmeasured(model, options);
+  minreal::measure_change(model, result);
+  minreal::put_back(model, options.resolution, 0, result);
   return result;
 }
 

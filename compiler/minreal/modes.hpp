@@ -10,7 +10,7 @@
 
 /// Modes of one model, with the data needed to decide which of them matter. For the compiler's own
 /// files.
-namespace titop::modes {
+namespace titop::minreal {
 
 /// Relative rounding of a row or of a cluster above which it may hide an entry that counts.
 inline constexpr double kHides = 1e-11;
@@ -70,4 +70,4 @@ struct General {
 };
 General general_modes(const StateSpace& model, double resolution);
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

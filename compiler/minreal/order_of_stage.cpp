@@ -2,7 +2,7 @@
 
 #include <titop/compiler/minreal/order_of_stage.hpp>
 
-namespace titop::exact {
+namespace titop::minreal {
 
 ExactOrder order_of_stage(const Stage& stage, int states, const ExactOptions& options,
                           ParameterValues values) {
@@ -14,4 +14,4 @@ ExactOrder order_of_stage(const Stage& stage, int states, const ExactOptions& op
               exact.order, states)};
 }
 
-}  // namespace titop::exact
+}  // namespace titop::minreal

@@ -3,7 +3,7 @@
 #include <titop/compiler/definition/exact_order.hpp>
 #include <titop/compiler/passes/stage.hpp>
 
-namespace titop::exact {
+namespace titop::minreal {
 
 /// exact_order of the diagram as written. `states`: number of states after the passes, an upper
 /// limit for closed chains: more would be due to rounding of the data, by which the chain does not
@@ -11,4 +11,4 @@ namespace titop::exact {
 ExactOrder order_of_stage(const Stage& stage, int states, const ExactOptions& options,
                           ParameterValues values);
 
-}  // namespace titop::exact
+}  // namespace titop::minreal

@@ -8,7 +8,7 @@
 #include <titop/graph/linalg/spectral.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
-namespace titop::modes {
+namespace titop::minreal {
 namespace {
 
 using Eigen::Index;
@@ -250,4 +250,4 @@ OwnModel own_model(const PoleClusters& p, const Places& cluster, const StateSpac
   return own;
 }
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

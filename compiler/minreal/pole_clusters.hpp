@@ -7,7 +7,7 @@
 
 /// Poles of a model with their vectors, and the clusters of poles without separate vectors. For the
 /// compiler's own files.
-namespace titop::modes {
+namespace titop::minreal {
 
 inline constexpr double kIll = 1e6;  ///< condition number of a pole that is judged by its vector
 inline constexpr double kNearZero = 2e-7;  ///< of the norm of A: where a pole may lie at 0
@@ -37,4 +37,4 @@ struct OwnModel {
 OwnModel own_model(const PoleClusters& p, const std::vector<Eigen::Index>& cluster,
                    const StateSpace& model);
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

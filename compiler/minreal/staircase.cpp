@@ -5,7 +5,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <vector>
 
-namespace titop::modes {
+namespace titop::minreal {
 namespace {
 
 using Eigen::Index;
@@ -114,7 +114,7 @@ StairsPair part(const ClusterModel& m, double times, bool careful) {
 
 MinimalPart minimal_part(const ClusterModel& model) {
   const Index k = model.A.rows();
-  const StairsPair p = part(model, kRounding, /*careful=*/true);
+  const StairsPair p = part(model, detail::kRoundingFactor, /*careful=*/true);
   const Index reached = p.reach.reached;
   return {p.reach.U.rightCols(k - reached),
           p.reach.U.leftCols(reached) * p.see.U.rightCols(reached - p.see.reached),
@@ -122,4 +122,4 @@ MinimalPart minimal_part(const ClusterModel& model) {
           std::max(p.reach.visibility, p.see.visibility), std::max(p.reach.bound, p.see.bound)};
 }
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -4,7 +4,7 @@
 
 /// The minimal part of a small model whose poles are one cluster, by orthogonal transformations.
 /// For the compiler's own files.
-namespace titop::modes {
+namespace titop::minreal {
 
 inline constexpr double kClearly = 1e4;     ///< times rounding: certainly larger
 inline constexpr double kFewDigits = 1e-9;  ///< of a size: with more rounding, nothing is removed
@@ -36,4 +36,4 @@ struct MinimalPart {
 /// rounding is more than 1e-9 of the sizes, nothing is removed. O(k^4).
 MinimalPart minimal_part(const ClusterModel& model);
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -7,7 +7,7 @@
 #include <titop/graph/linalg/index.hpp>
 
 /// Undamped and proportionally damped models.
-namespace titop::modes {
+namespace titop::minreal {
 namespace {
 
 using Eigen::Index;
@@ -247,4 +247,4 @@ std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolut
   return s;
 }
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

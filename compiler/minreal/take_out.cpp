@@ -7,7 +7,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/some_names.hpp>
 
-namespace titop::modes {
+namespace titop::minreal {
 namespace {
 
 using Eigen::Index;
@@ -316,4 +316,4 @@ void take_out(const General& g, const std::vector<Verdict>& verdicts, StateSpace
   remove(model, std::move(l), dependent, notes);
 }
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -6,7 +6,7 @@
 #include <vector>
 
 /// Removal of modes, as relations between states: the remaining states keep name and meaning.
-namespace titop::modes {
+namespace titop::minreal {
 
 /// Takes out these states (in ascending order): they follow from the others, x_out = T x_others.
 void take_out_dependent(StateSpace& model, const std::vector<int>& out, const Eigen::MatrixXd& T);
@@ -26,4 +26,4 @@ void take_out(const Symmetric& s, const std::vector<Verdict>& verdicts, StateSpa
 void take_out(const General& g, const std::vector<Verdict>& verdicts, StateSpace& model,
               std::vector<std::string>& notes);
 
-}  // namespace titop::modes
+}  // namespace titop::minreal

@@ -23,9 +23,9 @@ using linalg::at;
 int exact_order_of(const SystemData& d, int states) {
   if (states > d.skeleton->options.exact_up_to) return -1;
   // Blocks' states that follow from others count there, and so do integrators of positions.
-  const ExactOrder exact =
-      exact::order_of_stage(d.skeleton->stage, states,
-                            {.states = 4 * d.skeleton->options.exact_up_to}, d.numbers.parameters);
+  const ExactOrder exact = minreal::order_of_stage(d.skeleton->stage, states,
+                                                   {.states = 4 * d.skeleton->options.exact_up_to},
+                                                   d.numbers.parameters);
   d.dense_notes.push_back({Note::Kind::info, "minimize", to_string(exact)});
   return exact.decided ? exact.order : -1;
 }
@@ -113,7 +113,7 @@ struct Change {
 /// written relative to fewer states may cancel more.
 std::vector<std::complex<double>> points_of_change(const SystemData& d, const StateSpace& dense,
                                                    const Minimized& m) {
-  std::vector<std::complex<double>> points = modes::near_modes(m.order.removed, pick_s(d));
+  std::vector<std::complex<double>> points = minreal::near_modes(m.order.removed, pick_s(d));
   std::vector<double> omegas = frequencies_of(dense.A);
   if (!omegas.empty()) {
     const auto [least, most] = std::minmax_element(omegas.begin(), omegas.end());
@@ -175,7 +175,7 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
                                 .exact_order = exact_order_of(d, dense.order()),
                                 .energy = d.states.trivial() ? MatrixXd() : potential_energy(d),
                                 .rounding = rounding};
-  Minimized m = modes::minimize_unmeasured(judged, options);
+  Minimized m = minreal::minimize_unmeasured(judged, options);
   doubt_lost_digits(system, d, judged, options, m.order);
   if (d.dense_error.beside_largest.error > kUnclearDigits && !m.order.exact)
     m.order.highest = dense.order();
@@ -191,7 +191,7 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
     lost = untried ? 1 : by.in_all;  // not measured: put all back
     say_left_out(d, by);
   }
-  if (modes::put_back(dense, resolution, lost, m)) {
+  if (minreal::put_back(dense, resolution, lost, m)) {
     if (untried)
       m.notes.back() = "nothing was removed: where it would show, the factors have no digit";
     d.dense_notes.push_back(

@@ -22,7 +22,7 @@ struct Form {
 
 /// Largest accepted error of a model, or of a check of it: tolerances are 1e-6 at most,
 /// and another machine may round a little worse.
-constexpr double kProvable = full::kDenseHolds;
+constexpr double kProvable = certification::kDenseHolds;
 inline bool is_provable(double error) { return error <= kProvable; }
 
 /// Points of comparison, and the factored system's transfers there.

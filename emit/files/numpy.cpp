@@ -35,7 +35,7 @@ std::string npy(const Eigen::MatrixXd& M) {
 std::string escaped(const std::string& name) {
   std::string text;
   for (std::string_view rest = name; !rest.empty();) {
-    const std::size_t n = dot::utf8_length(rest);
+    const std::size_t n = diagram::utf8_length(rest);
     const char c = rest.front();
     if (c == '"' || c == '\\') text += '\\';
     if (n == 0 || (n == 1 && static_cast<unsigned char>(c) < 0x20))

@@ -9,7 +9,7 @@
 namespace titop::report {
 namespace {
 
-using full::kHolds;
+using certification::kHolds;
 
 enum class Mark { good, bad, none };
 
@@ -56,7 +56,7 @@ void add_basic(std::vector<Item>& items, const Certificate& c) {
                                  "its size at the same s: {}, found at {}.",
                                  place(c.dense_error_s), number(c.dense_error_where_small, 2),
                                  place(c.dense_error_where_small_s)),
-                     judged(c.dense_error, full::kDenseHolds)});
+                     judged(c.dense_error, certification::kDenseHolds)});
   items.push_back({"weakest pivot", number(c.weakest_pivot, 2),
                    fmt::format("What is left of the terms that formed it{}: 1 is no cancellation, "
                                "10⁻¹⁶ is nothing left. The same in all units.",
@@ -82,7 +82,7 @@ void add_reciprocity(std::vector<Item>& items, const FullCertificate::Reciprocit
                    count(static_cast<std::size_t>(r.forces), "force"),
                    r.first.empty() ? "" : fmt::format("; {} and {}", r.first, r.second),
                    r.structure ? "" : "; nothing asks for it: " + r.why_no_structure),
-       r.structure ? judged(r.asymmetry, full::kReciprocal) : Mark::none});
+       r.structure ? judged(r.asymmetry, certification::kReciprocal) : Mark::none});
 }
 
 void add_full(std::vector<Item>& items, const FullCertificate& f) {
@@ -96,7 +96,7 @@ void add_full(std::vector<Item>& items, const FullCertificate& f) {
           {"minimal A, B, C, D against the factored system over a grid", number(f.grid.dense, 2),
            over + "; what may be nothing but rounding, as by symmetry, over 10⁻³ of the "
                   "terms that cancel in it.",
-           judged(f.grid.dense, full::kDenseHolds)});
+           judged(f.grid.dense, certification::kDenseHolds)});
     if (f.grid.written >= 0)
       items.push_back({"the equations as written, solved all at once, against the factored system",
                        number(f.grid.written, 2),
@@ -113,7 +113,7 @@ void add_full(std::vector<Item>& items, const FullCertificate& f) {
                          ? ""
                          : fmt::format("; {} of {}, the others rounding of A alone moves too far",
                                        f.poles.measured, f.poles.count)),
-         judged(f.poles.error, full::kPoleHolds)});
+         judged(f.poles.error, certification::kPoleHolds)});
   if (f.poles.done)
     items.push_back(
         {"poles right of the imaginary axis", fmt::format("{}", f.poles.right),
@@ -132,7 +132,7 @@ void add_full(std::vector<Item>& items, const FullCertificate& f) {
                      count(static_cast<std::size_t>(f.passivity.pairs), "pair"),
                      f.passivity.structure ? "" : "; a controller may give some",
                      place(f.passivity.where)),
-         f.passivity.structure ? judged(-f.passivity.least, full::kPassive) : Mark::none});
+         f.passivity.structure ? judged(-f.passivity.least, certification::kPassive) : Mark::none});
   else
     add_not_done(items, "passivity", f.passivity.why_not);
   add_reciprocity(items, f.reciprocity);
@@ -356,7 +356,7 @@ std::string summary(const Subject& s, const FullCertificate* full) {
   const Certificate c = s.system.certificate();
   const OrderVerdict& v = order_of(s, full);
   std::string text = tiles(s) + "<ul class=\"verdicts\">\n" + stability(s, full);
-  const std::vector<std::string> faults = full ? full->faults : full::basic_faults(c);
+  const std::vector<std::string> faults = full ? full->faults : certification::basic_faults(c);
   for (const std::string& fault : faults) text += verdict("bad", escaped(fault));
   if (faults.empty()) text += verdict("good", "<b>All checks hold</b>" + what_holds(c, full) + ".");
   text += verdict(v.decided() ? "good" : "open", as_range(v));

@@ -54,7 +54,7 @@ std::string drawing(const std::string& dot_text, const std::string& subject) {
   body = without(body, " id=\"", "\"");
   return fmt::format(
       R"(<svg class="drawing" role="img" aria-label="{}" width="{}" height="{}" viewBox="{}">{}</svg>)",
-      dot::html(subject), attribute(tag, "width"), attribute(tag, "height"),
+      diagram::html(subject), attribute(tag, "width"), attribute(tag, "height"),
       attribute(tag, "viewBox"), body);
 }
 

@@ -10,7 +10,9 @@
 namespace titop::report {
 
 /// Text of any origin, escaped for HTML; empty for empty text.
-inline std::string escaped(const std::string& text) { return text.empty() ? "" : dot::html(text); }
+inline std::string escaped(const std::string& text) {
+  return text.empty() ? "" : diagram::html(text);
+}
 
 /// Text of several lines.
 std::string escaped_lines(const std::string& text);

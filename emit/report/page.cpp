@@ -127,7 +127,7 @@ std::string page(const std::string& title, const std::string& body) {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
       "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n{}</main>\n</body>\n"
       "</html>\n",
-      dot::html(title), kStyle, body);
+      diagram::html(title), kStyle, body);
 }
 
 std::string power_of_ten(int exponent) {

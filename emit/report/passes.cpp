@@ -69,7 +69,7 @@ std::string passes_section(const Subject& s, const FullCertificate* full) {
       row({"pass", "promise afterwards", "what it did", "time", ""}, {"", "", "", "n", ""}, "th") +
       "</thead>\n<tbody>\n";
   for (const auto& [pass, t] : times)
-    text += row({dot::html(pass), escaped(promise(pass)), notes(s, pass),
+    text += row({diagram::html(pass), escaped(promise(pass)), notes(s, pass),
                  pass == "minimize" && t < kLook ? "made before" : duration(t),
                  fmt::format(R"(<i class="bar" style="width:{:.0f}px"></i>)",
                              longest > 0 ? 80 * t / longest : 0)},

@@ -203,7 +203,7 @@ std::string draw(const Plot& plot, const Frame& frame, const Scale& across, doub
   const double middle = top + frame.height / 2.0;
   text += fmt::format(
       R"-(<text class="y-label" x="14" y="{0}" text-anchor="middle" transform="rotate(-90 14 {0})">{1}</text>)-",
-      middle, dot::html(up.title()));
+      middle, diagram::html(up.title()));
   return text;
 }
 
@@ -212,7 +212,7 @@ std::string legend(const std::vector<std::string>& labels) {
   for (std::size_t i = 0; i < labels.size(); ++i)
     text += fmt::format(
         R"(<li><svg class="sample" width="36" height="10" viewBox="0 0 36 10" aria-hidden="true"><path class="{}" d="M1 5H35"/></svg>{}</li>)",
-        style(i), dot::html(labels[i]));
+        style(i), diagram::html(labels[i]));
   return text + "</ul>";
 }
 
@@ -251,13 +251,13 @@ std::string figure(const Plot& plot) {
     frames += fmt::format(R"(<text class="tick" x="{:.1f}" y="{}" text-anchor="middle">{}</text>)",
                           kLeft + kInner * across.place(t.value), bottom + 16, t.text);
   frames += fmt::format(R"(<text class="x-label" x="{}" y="{}" text-anchor="middle">{}</text>)",
-                        kLeft + kInner / 2, bottom + 34, dot::html(across.title()));
-  const std::string name = dot::html(plot.title);
+                        kLeft + kInner / 2, bottom + 34, diagram::html(across.title()));
+  const std::string name = diagram::html(plot.title);
   return fmt::format(
       R"(<figure class="plot"><h4>{0}</h4>{1}<svg role="img" aria-label="{0}" viewBox="0 0 {2} {3}">{4}</svg>{5}</figure>)"
       "\n",
       name, legend(plot.labels), kWidth, bottom + kBottom, frames,
-      plot.caption.empty() ? "" : "<figcaption>" + dot::html(plot.caption) + "</figcaption>");
+      plot.caption.empty() ? "" : "<figcaption>" + diagram::html(plot.caption) + "</figcaption>");
 }
 
 }  // namespace titop::report

@@ -21,7 +21,7 @@ std::string names_of_states(const System& system) {
   std::string text =
       "<p>Names of the states, in the model's order.</p>\n<ul class=\"columns name\">\n";
   for (std::size_t i = 0; i < states.size() && i < kShown; ++i)
-    text += fmt::format("<li>{}</li>\n", dot::html(states[i]));
+    text += fmt::format("<li>{}</li>\n", diagram::html(states[i]));
   text += "</ul>\n";
   if (states.empty()) return "<p>The model has no states.</p>\n";
   if (states.size() > kShown)
@@ -51,7 +51,7 @@ std::string report_html(const System& system, const ReportOptions& options) {
   std::string body = fmt::format(
       "<header>\n<h1>{}</h1>\n<p class=\"about\">Compiled model of the "
       "scene “{}”, by titop</p>\n",
-      dot::html(title), report::escaped(system.stage().graph.name));
+      diagram::html(title), report::escaped(system.stage().graph.name));
   if (!options.remark.empty())
     body += fmt::format("<p class=\"remark\">{}</p>\n", report::escaped_lines(options.remark));
   body += "<nav>\n";

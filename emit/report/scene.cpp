@@ -46,7 +46,7 @@ std::string ports(const List& list, const std::vector<ScalarSignal>& scalars, co
                      "</thead>\n<tbody>\n";
   for (std::size_t i = 0; i < order.size() && i < kRows; ++i) {
     const auto& one = list[at(order[i])];
-    text += row({dot::html(one.name), fmt::format("{}", one.size),
+    text += row({diagram::html(one.name), fmt::format("{}", one.size),
                  escaped(units_of(scalars, one.name)), escaped(words(order[i]))},
                 classes);
   }
@@ -66,9 +66,9 @@ std::string blocks(const Graph& g) {
                      row({"type of block", "number", "states together"}, {"", "n", "n"}, "th") +
                      "</thead>\n<tbody>\n";
   for (const auto& [type, numbers] : types)
-    text +=
-        row({dot::html(type), fmt::format("{}", numbers.first), fmt::format("{}", numbers.second)},
-            {"", "n", "n"});
+    text += row(
+        {diagram::html(type), fmt::format("{}", numbers.first), fmt::format("{}", numbers.second)},
+        {"", "n", "n"});
   return text + "</tbody></table></div>\n";
 }
 
@@ -140,7 +140,7 @@ std::string poles_section(const Subject& s) {
     for (const auto& [name, share] : p.blocks)
       shares += fmt::format(
           R"(<span class="share"><i class="bar" style="width:{:.0f}px"></i>{} {:.0f} %</span> )",
-          60 * share, dot::html(name), 100 * share);
+          60 * share, diagram::html(name), 100 * share);
     text += row({fmt::format("{}{}", i + 1, p.pair ? "" : " (real)"), number(p.hertz, 6),
                  number(p.omega, 6), p.omega > 0 ? number(100 * p.damping, 4) : "–",
                  number(p.s.real(), 4), shares},

@@ -8,7 +8,7 @@
 
 namespace joint_test {
 
-using namespace scene_test;
+using namespace scenes_test;
 using titop::Matrix3d;
 using titop::Matrix6;
 using titop::Vector3d;

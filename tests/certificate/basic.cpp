@@ -46,7 +46,7 @@ System beams(double length) {
 
 TEST_CASE("a force that dies away along 3000 masses to less than the smallest double is no fault") {
   const std::vector<double> m(3000, 1.3), k(3000, 107);
-  const System system = compile(simulate_test::row_of_masses(m, k, 0.1), {.minimize_up_to = 0});
+  const System system = compile(simulation_test::row_of_masses(m, k, 0.1), {.minimize_up_to = 0});
   CHECK(system.certificate().residual <= 1e-12);
   CHECK(!warns(system));
 }

@@ -156,14 +156,14 @@ TEST_CASE("a one-way block that grows is no fault of the structure that it reads
     CHECK(c.poles.right == 1);
     CHECK(c.poles.hidden == 0);
     CHECK(has(to_string(c), "1 right of the axis"));
-    CHECK(!full::has_poles_of_bodies_only(d->graph()));
+    CHECK(!certification::has_poles_of_bodies_only(d->graph()));
   }
   // A structure with an integrator on a sensor must still have none on the right.
   Diagram sensed{"sensed"};
   auto J = sensed.add("J", Integrator{});
   J.in = mass(sensed).stretch;
   sensed.output("y") = J.out;
-  CHECK(full::has_poles_of_bodies_only(sensed.graph()));
+  CHECK(certification::has_poles_of_bodies_only(sensed.graph()));
   CHECK(certify(compile(sensed)).holds());
 }
 

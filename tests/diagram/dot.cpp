@@ -86,7 +86,7 @@ TEST_CASE("algebraic loops have one colour and one number each") {
   const std::string to_z4 = lines_with(text, "-> \"z4\":c1a");
   const std::string to_z3 = lines_with(text, "-> \"z3\":c1a");
   const auto colour_of = [](int loop) {
-    return "color=\"" + std::string(dot::colour::loop_line(loop)) + "\"";
+    return "color=\"" + std::string(diagram::colour::loop_line(loop)) + "\"";
   };
   CHECK(has(to_z3, colour_of(1)));
   CHECK(has(to_z4, colour_of(2)));
@@ -106,7 +106,7 @@ TEST_CASE("inverted channels are marked, and only those") {
 
 TEST_CASE("inactive parts are grey and dashed") {
   const std::string text = compiled(controlled());
-  const std::string grey(dot::colour::removed);
+  const std::string grey(diagram::colour::removed);
   CHECK(has(block(text, "lone"), "set aside"));
   CHECK(has(block(text, "lone"), "STYLE=\"dashed\""));
   CHECK_FALSE(has(block(text, "z1"), "set aside"));
@@ -166,15 +166,15 @@ TEST_CASE("a parameter keeps its sign and its factor in a drawing") {
 }
 
 TEST_CASE("text of any origin is quoted") {
-  CHECK(dot::quoted("a\"b\\") == "\"a\\\"b\\\\\"");
-  CHECK(dot::quoted("&lt;") == "\"&amp;lt;\"");
-  CHECK(dot::html("<b> & \"c\"") == "&lt;b&gt; &amp; &quot;c&quot;");
-  CHECK(dot::html("") == "(no name)");
-  CHECK(dot::clean("ärm→") == "ärm→");
-  CHECK(dot::clean("a\nb") ==
+  CHECK(diagram::quoted("a\"b\\") == "\"a\\\"b\\\\\"");
+  CHECK(diagram::quoted("&lt;") == "\"&amp;lt;\"");
+  CHECK(diagram::html("<b> & \"c\"") == "&lt;b&gt; &amp; &quot;c&quot;");
+  CHECK(diagram::html("") == "(no name)");
+  CHECK(diagram::clean("ärm→") == "ärm→");
+  CHECK(diagram::clean("a\nb") ==
         "a\xEF\xBF\xBD"
         "b");
-  CHECK(dot::clean("\xC3(\xED\xA0\x80") == "\xEF\xBF\xBD(\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD");
+  CHECK(diagram::clean("\xC3(\xED\xA0\x80") == "\xEF\xBF\xBD(\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD");
 }
 
 TEST_CASE("every block, input and output is a node of its own, whatever the names") {

@@ -25,7 +25,7 @@ bool has(const std::string& text, const std::string& part) {
 
 bool is_utf8(std::string_view text) {
   while (!text.empty()) {
-    const std::size_t n = dot::utf8_length(text);
+    const std::size_t n = diagram::utf8_length(text);
     if (n == 0) return false;
     text.remove_prefix(n);
   }

@@ -13,7 +13,7 @@
 /// A derivative that reaches an output is refused however small its share is at some frequency:
 /// above that frequency it dominates. A share at rounding level is none.
 
-using namespace scene_test;
+using namespace scenes_test;
 using namespace titop;
 using namespace titop_test;
 

@@ -13,8 +13,8 @@
 using namespace titop;
 using namespace titop_test;
 using Eigen::MatrixXcd;
-using solver_test::BigMatrix;
-using solver_test::Complex;
+using solve_test::BigMatrix;
+using solve_test::Complex;
 
 namespace {
 
@@ -62,7 +62,7 @@ MatrixXcd exact(const Numbers& n, Form form, std::complex<double> at) {
   E(1, 0) = Complex(0) - g / s2, E(1, 2) = g / s2 + Complex(n.m0), E(1, 3) = Complex(1);
   E(2, form.child_accel ? 0 : 1) = Complex(1), F(2, 0) = Complex(1);
   E(3, form.parent_force ? 3 : 2) = Complex(1), F(3, 1) = Complex(1);
-  const MatrixXcd all = solver_test::rounded(solver_test::solve(E, F));
+  const MatrixXcd all = solve_test::rounded(solve_test::solve(E, F));
   MatrixXcd y(2, 2);
   y.row(0) = all.row(form.child_accel ? 1 : 0);
   y.row(1) = all.row(form.parent_force ? 2 : 3);

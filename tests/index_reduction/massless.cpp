@@ -11,7 +11,7 @@
 /// Scenes whose state space is singular as written and whose transfer is proper: points without
 /// mass between springs, forces on them. Reduced to the order of M, D and K.
 
-using namespace scene_test;
+using namespace scenes_test;
 using namespace titop;
 using namespace titop_test;
 

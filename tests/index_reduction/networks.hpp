@@ -8,9 +8,9 @@
 #include "support/random_scene.hpp"
 
 /// Random networks of spring-masses with points that have no mass, and the same as M, D, K.
-namespace singular_test {
+namespace index_reduction_test {
 
-using namespace scene_test;
+using namespace scenes_test;
 using titop_test::Rng;
 using titop_test::Units;
 
@@ -145,4 +145,4 @@ inline Network random_network(std::uint64_t seed, const Units& units = {}) {
   return RandomNetwork(seed, units).make();
 }
 
-}  // namespace singular_test
+}  // namespace index_reduction_test

@@ -5,7 +5,7 @@
 
 /// Random networks with points without mass against M, D, K: transfer, order, any units.
 
-using namespace singular_test;
+using namespace index_reduction_test;
 using namespace titop;
 
 TEST_CASE("400 random networks with points without mass: transfer and order as M, D and K say") {

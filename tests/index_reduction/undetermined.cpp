@@ -13,7 +13,7 @@
 /// freely about its own axis): set to 0 and noted; refused by name if something depends on them.
 /// Reference: M, D, K, or the same scene with that motion held.
 
-using namespace scene_test;
+using namespace scenes_test;
 using namespace titop;
 using namespace titop_test;
 

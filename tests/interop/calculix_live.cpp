@@ -52,7 +52,7 @@ std::vector<double> printed_omegas(const fs::path& dat) {
 }  // namespace
 
 TEST_CASE("matrices of a live CalculiX run are those of the stored files") {
-  if (!installed()) return titop::test::skip("CalculiX (ccx) is not installed");
+  if (!installed()) return titop_test::skip("CalculiX (ccx) is not installed");
   const fe::Mesh live = read(run_deck("beam_free_mat") / "beam_free_mat");
   const fe::Mesh kept = read(fs::path(TITOP_DATA_DIR) / "calculix_beam" / "beam_free_mat");
   REQUIRE(live.M.rows() == kept.M.rows());
@@ -62,7 +62,7 @@ TEST_CASE("matrices of a live CalculiX run are those of the stored files") {
 }
 
 TEST_CASE("clamped-free frequencies of a scene are those that CalculiX computes itself") {
-  if (!installed()) return titop::test::skip("CalculiX (ccx) is not installed");
+  if (!installed()) return titop_test::skip("CalculiX (ccx) is not installed");
   const std::vector<double> printed = printed_omegas(run_deck("beam_cf") / "beam_cf.dat");
   REQUIRE(printed.size() >= 10);
   const fe::Mesh mesh = read(run_deck("beam_free_mat") / "beam_free_mat");

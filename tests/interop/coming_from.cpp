@@ -35,7 +35,7 @@ TEST_CASE("the page's C++ is the example's") {
 
 TEST_CASE("the page's MATLAB text in Octave: the transfer at 3 rad/s and the order") {
   if (std::system("octave-cli -q --eval 'pkg load control' >/dev/null 2>&1") != 0)
-    return titop::test::skip("Octave with its control package is not installed");
+    return titop_test::skip("Octave with its control package is not installed");
   // (K - 9 M) x = [1; 0] for m0 = 2, m1 = 3 on springs of 50 and 80 N/m, m2 held:
   // x = [103, 50] / (32 * 103 - 50^2), outputs -9 x0, -9 x1, -80 x1.
   const Folder folder;

@@ -26,7 +26,7 @@ std::vector<std::string> compilers() {
     if (std::system(("command -v " + std::string(name) + " >/dev/null 2>&1").c_str()) == 0)
       found.emplace_back(name);
     else
-      titop::test::skip(std::string(name) + " is not installed");
+      titop_test::skip(std::string(name) + " is not installed");
   return found;
 }
 

@@ -25,7 +25,7 @@ std::string proves(const System& system, double sample_time, const std::string& 
 
 bool compiler_found() {
   const bool found = std::system("command -v g++ >/dev/null 2>&1") == 0;
-  if (!found) titop::test::skip("g++ is not installed");
+  if (!found) titop_test::skip("g++ is not installed");
   return found;
 }
 

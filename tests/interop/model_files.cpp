@@ -88,7 +88,7 @@ void check_results(const System& system, const std::vector<double>& found) {
 }  // namespace
 
 TEST_CASE("Octave reads the model to the last bit and finds its poles and transfer") {
-  if (!runs("command -v octave-cli")) return titop::test::skip("Octave is not installed");
+  if (!runs("command -v octave-cli")) return titop_test::skip("Octave is not installed");
   const System system = model();
   const StateSpace& m = system.state_space();
   const Folder folder;
@@ -115,7 +115,7 @@ fprintf (f, "%s\n", m.states{:}, m.inputs{:}, m.outputs{:});  fclose (f);
 
 TEST_CASE("NumPy reads the model to the last bit and finds its poles and transfer") {
   const std::string program = python();
-  if (program.empty()) return titop::test::skip("Python with NumPy is not installed");
+  if (program.empty()) return titop_test::skip("Python with NumPy is not installed");
   const System system = model();
   const StateSpace& m = system.state_space();
   const Folder folder;

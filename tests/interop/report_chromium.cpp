@@ -19,7 +19,7 @@ bool runs(const std::string& command) {
 }  // namespace
 
 TEST_CASE("Chromium shows the report without an error, and prints it") {
-  if (!runs("command -v chromium")) return titop::test::skip("Chromium is not installed");
+  if (!runs("command -v chromium")) return titop_test::skip("Chromium is not installed");
   const Folder folder;
   write_report(compile(five_masses_scene(kMasses, kStiffnesses)), folder.path / "report.html");
   const std::string chromium =
@@ -38,7 +38,7 @@ TEST_CASE("Chromium shows the report without an error, and prints it") {
 }
 
 TEST_CASE("Python's XML parser reads the report") {
-  if (!runs("python3 --version")) return titop::test::skip("Python is not installed");
+  if (!runs("python3 --version")) return titop_test::skip("Python is not installed");
   const Folder folder;
   write_report(compile(five_masses_scene(kMasses, kStiffnesses)), folder.path / "report.html");
   folder.write("check.py", R"py(

@@ -100,11 +100,11 @@ TEST_CASE("energy of 1000 masses in a row over 10,000 steps, by the midpoint rul
     mass[i] = 1 + 0.3 * static_cast<double>(i % 3);
     stiffness[i] = 100 + 7 * static_cast<double>(i % 5);
   }
-  const System s = compile(simulate_test::row_of_masses(mass, stiffness));
+  const System s = compile(simulation_test::row_of_masses(mass, stiffness));
   Eigen::VectorXd x = Eigen::VectorXd::Zero(2000);
   for (int i = 0; i < 1000; ++i) x(2 * i) = i % 2 ? -0.1 : 0.1;
   const auto energy = [&](const Eigen::VectorXd& at) {
-    return simulate_test::energy(mass, stiffness, at);
+    return simulation_test::energy(mass, stiffness, at);
   };
   CHECK(drift(s, Stepper::midpoint, 0.05, x, 10000, energy) <= bound(10000, 2000));
 }

@@ -66,7 +66,7 @@ TEST_CASE("10,000 changes of units: random scenes, points without mass, feedthro
       CHECK(verdict(cancelled(rng.octaves(-3, 3), units, share)) ==
             (share == 1 ? "improper" : "2"));
     } else {
-      const auto network = singular_test::random_network(seed, units);
+      const auto network = index_reduction_test::random_network(seed, units);
       CHECK(verdict(network.diagram) == std::to_string(network.order));
     }
   }

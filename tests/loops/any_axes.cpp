@@ -5,7 +5,7 @@
 /// A beam whose root has any subset of its six degrees of freedom free, the others locked or
 /// driven: the same finite elements with those supports.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 using Eigen::MatrixXcd;
 

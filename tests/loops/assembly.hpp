@@ -7,9 +7,9 @@
 
 #include "../scenes/by_hand.hpp"
 
-namespace loop_test {
+namespace loops_test {
 
-using namespace scene_test;
+using namespace scenes_test;
 
 /// M, D, K of all parts in shared coordinates q: each part is added with its own coordinates as
 /// functions of q.
@@ -73,4 +73,4 @@ std::vector<Complex> elastic_poles(const by_hand::Structure& a, Index zeros);
 /// Poles with Im s >= 0 of any dense model.
 std::vector<Complex> all_poles(const titop::System& system);
 
-}  // namespace loop_test
+}  // namespace loops_test

@@ -4,9 +4,9 @@
 
 #include "../scenes/by_hand.hpp"
 
-namespace loop_test {
+namespace loops_test {
 
-using namespace scene_test;
+using namespace scenes_test;
 
 /// The worst block of rows x cols scalars: its largest difference over all points s, over its
 /// largest entry over all of them. Blocks below `weak` of the largest block, or of `unit`, are
@@ -30,4 +30,4 @@ inline double block_error(const std::vector<MatrixXcd>& a, const std::vector<Mat
   return worst;
 }
 
-}  // namespace loop_test
+}  // namespace loops_test

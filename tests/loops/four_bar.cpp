@@ -2,7 +2,7 @@
 
 #include "four_bars.hpp"
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 
 TEST_CASE("four-bar with flexible links, crank locked at 0, 90 and 180 degrees") {

@@ -6,7 +6,7 @@
 #include "assembly.hpp"
 
 /// Four-bar mechanisms: ground, crank, coupler and rocker with pins about z, the crank locked.
-namespace loop_test {
+namespace loops_test {
 
 /// Lengths of crank, coupler, rocker, and between the fixed pins (Grashof: the crank turns round).
 inline constexpr std::array<double, 4> kLength{0.3, 0.9, 0.7, 0.8};
@@ -115,4 +115,4 @@ inline by_hand::Structure mechanism_by_hand(double crank, Space space) {
   return a;
 }
 
-}  // namespace loop_test
+}  // namespace loops_test

@@ -2,7 +2,7 @@
 
 #include "frames.hpp"
 
-namespace loop_test {
+namespace loops_test {
 
 /// A frame (frames.hpp) by M, D and K of all separate bodies, with the constraint rows of the
 /// joints: rigid bodies have six coordinates, beams twelve, in their frames. Of the library only
@@ -35,4 +35,4 @@ struct FrameByHand {
   void join(const Frame::Joint& j);
 };
 
-}  // namespace loop_test
+}  // namespace loops_test

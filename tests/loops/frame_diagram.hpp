@@ -2,7 +2,7 @@
 
 #include "frames.hpp"
 
-namespace loop_test {
+namespace loops_test {
 
 /// Options of a frame's diagram.
 struct FrameScene {
@@ -15,4 +15,4 @@ struct FrameScene {
 /// watched; input A and output force as in the scene.
 titop::Diagram diagram_of(const FrameScene& scene);
 
-}  // namespace loop_test
+}  // namespace loops_test

@@ -11,7 +11,7 @@
 /// most bodies belong to several loops. Here the numbers alone; frame_diagram.hpp makes diagrams of
 /// them, frame_by_hand.hpp M, D and K.
 
-namespace loop_test {
+namespace loops_test {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -84,4 +84,4 @@ struct Frame {
 /// `springs`: also masses on springs and bushings; the same frame without them otherwise.
 Frame random_frame(int seed, bool plane, bool springs);
 
-}  // namespace loop_test
+}  // namespace loops_test

@@ -8,7 +8,7 @@
 /// Over-constrained chains with very different masses: rounding in the balance of the heavy mass is
 /// no internal force that moves it.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 
 namespace {

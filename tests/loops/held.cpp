@@ -5,7 +5,7 @@
 /// Chains whose geometry immobilises some points: outputs there are 0, not rounding, bodies mounted
 /// there are as on the ground, and loads still reach the ground.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 
 namespace {

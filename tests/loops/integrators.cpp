@@ -8,7 +8,7 @@
 /// Integrated accelerations whose integrals are states already add none; rigid motion is integrated
 /// once.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 using titop_test::kMasses;
 using titop_test::kStiffnesses;

@@ -14,7 +14,7 @@
 /// Loops that share bodies: ladders and planar grids of beams. The work of the passes grows with
 /// the structure, independent of stiff and soft parts, and the models are right.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 
 namespace {

@@ -10,7 +10,7 @@
 /// Five masses with every spring-mass hung either way round: the channels that this inverts, and
 /// the loops that it closes, change nothing.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 using titop_test::impedance;
 using titop_test::kMasses;

@@ -9,7 +9,7 @@
 /// Random networks of spring-masses with closed chains: the postconditions of `chains` and `close`,
 /// and the transfer of the equations as written.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 using titop_test::Rng;
 

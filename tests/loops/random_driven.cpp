@@ -7,7 +7,7 @@
 /// Random frames (frames.hpp) whose first body has an acceleration input: orders and transfers as
 /// by M, D and K, where its six coordinates are given.
 
-using namespace loop_test;
+using namespace loops_test;
 
 namespace {
 

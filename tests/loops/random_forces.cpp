@@ -7,7 +7,7 @@
 /// Random frames (frames.hpp) of which the wrench at one joint is read: as by Lagrange multipliers,
 /// or refused if they are not determined.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 
 namespace {

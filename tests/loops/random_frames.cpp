@@ -7,7 +7,7 @@
 /// Random frames (frames.hpp): orders and transfers as by M, D and K on the null space of all joint
 /// constraints.
 
-using namespace loop_test;
+using namespace loops_test;
 
 namespace {
 

@@ -9,7 +9,7 @@
 /// beams, many of them over-constrained: orders and transfers as by M, D and K of all separate
 /// bodies, on the null space of all joint constraints.
 
-using namespace loop_test;
+using namespace loops_test;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using titop_test::Rng;

@@ -7,7 +7,7 @@
 
 /// Over-constrained chains: motion is determined, internal forces are not.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 
 namespace {

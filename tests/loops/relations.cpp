@@ -13,7 +13,7 @@
 /// Ranks and followers of relations that share columns, block by block, against singular values of
 /// all of them at once.
 
-using namespace titop::passes::closing;
+using namespace titop::loops;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using titop_test::Rng;

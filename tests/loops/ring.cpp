@@ -2,7 +2,7 @@
 
 #include "rings.hpp"
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 
 TEST_CASE("ring of eight flexible beams, free: order 372, poles as the whole ring's M and K") {

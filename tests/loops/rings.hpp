@@ -6,7 +6,7 @@
 
 /// Rings of beams, each turned about z against the one before, welded to themselves, free in space.
 /// A wrench on one corner; accelerations there and at another.
-namespace loop_test {
+namespace loops_test {
 
 struct Ring {
   int beams;
@@ -48,4 +48,4 @@ struct Ring {
   }
 };
 
-}  // namespace loop_test
+}  // namespace loops_test

@@ -4,7 +4,7 @@
 
 /// Chains of spring-masses that close through the ground.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 
 namespace {

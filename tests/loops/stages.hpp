@@ -5,7 +5,7 @@
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/titop.hpp>
 
-namespace loop_test {
+namespace loops_test {
 
 using namespace titop;
 
@@ -31,4 +31,4 @@ inline double entries(const Diagram& diagram) {
   return count;
 }
 
-}  // namespace loop_test
+}  // namespace loops_test

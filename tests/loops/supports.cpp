@@ -7,7 +7,7 @@
 /// One beam, its ends clamped, pinned, guided or free in every combination: the same finite
 /// elements with those supports.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 
 namespace {

@@ -16,7 +16,7 @@
 /// Trusses of rigid bars on pins: no body belongs to one loop alone, and most loop equations are
 /// redundant. The work of the passes grows with the structure, independent of names.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 
 namespace {
@@ -156,9 +156,9 @@ namespace {
 /// The chains of a truss, as pass `chains` meets them.
 struct Chains {
   Stage stage;
-  passes::closing::Twins twins;
-  passes::closing::Motion motion;
-  std::vector<passes::closing::Closing> closings = {};
+  loops::Twins twins;
+  loops::Motion motion;
+  std::vector<loops::Closing> closings = {};
 
   explicit Chains(const Truss& shape)
       : stage(passes::split(passes::lower(passes::check(as_written(truss(shape).graph()))))),
@@ -170,7 +170,7 @@ struct Chains {
 
   /// Columns that are open at once if redundancy is decided in this order.
   int widest(const std::vector<int>& order) const {
-    using namespace passes::closing;
+    using namespace loops;
     std::vector<RelationRows> lines;
     for (const int c : order) lines.push_back(line_of(closings[at(c)]));
     const auto all = [](const ScalarColumn&) { return ColumnRole{Relations::Role::coordinate, 0}; };

@@ -6,7 +6,7 @@
 
 /// A ring of eight beams, pushed out of its plane at one corner and watched at the opposite one.
 
-using namespace loop_test;
+using namespace loops_test;
 using namespace titop;
 
 namespace {

@@ -13,7 +13,7 @@
 /// The entries of the dense A of well-conditioned scenes, one by one, against 150 digits.
 
 using namespace titop;
-using namespace solver_test;
+using namespace solve_test;
 using titop_test::Rng;
 
 namespace {

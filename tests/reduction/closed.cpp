@@ -8,7 +8,7 @@
 /// Closed chains through model reduction, against the whole structure's M and K by hand.
 using namespace titop;
 using namespace titop_test;
-using namespace loop_test;
+using namespace loops_test;
 
 namespace {
 

@@ -63,7 +63,7 @@ void check_self_contained(const std::string& page) {
 }  // namespace
 
 TEST_CASE("the page is well formed, holds every section, and needs nothing from elsewhere") {
-  if (dot_is_missing()) return titop::test::skip("dot (Graphviz) is not installed");
+  if (dot_is_missing()) return titop_test::skip("dot (Graphviz) is not installed");
   const std::string page = report_html(five_masses());
   CHECK(complaint(page) == "");
   check_self_contained(page);
@@ -327,7 +327,7 @@ TEST_CASE("numbers inside a sentence are text, too") {
 }
 
 TEST_CASE("scenes of controllers alone are drawn") {
-  if (dot_is_missing()) return titop::test::skip("dot (Graphviz) is not installed");
+  if (dot_is_missing()) return titop_test::skip("dot (Graphviz) is not installed");
   Diagram d{"gain"};
   auto K = d.add("K", Gain{.gain = 3});
   K.in = d.input("u");

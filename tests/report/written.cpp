@@ -64,7 +64,7 @@ TEST_CASE("the report counts and draws the user's blocks") {
   CHECK(counted("Integrator", "1") == 1);
   CHECK(counted("RigidBody", "2") == 1);
   if (std::system("dot -V >/dev/null 2>&1") != 0)
-    return titop::test::skip("dot (Graphviz) is not installed");
+    return titop_test::skip("dot (Graphviz) is not installed");
   const auto drawings = between(section(report_html(compile(steered())), "scene"),
                                 "<svg class=\"drawing\"", "</svg>");
   REQUIRE(drawings.size() == 2);

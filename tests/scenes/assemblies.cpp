@@ -6,7 +6,7 @@
 
 /// Trees of bodies and joints against M, D and K assembled by hand.
 
-using namespace scene_test;
+using namespace scenes_test;
 using namespace titop;
 
 namespace {

@@ -6,7 +6,7 @@
 #include "../../examples/by_hand/by_hand.hpp"
 #include "support/transfer_error.hpp"
 
-namespace scene_test {
+namespace scenes_test {
 
 using by_hand::Complex;
 using by_hand::MatrixXcd;
@@ -54,4 +54,4 @@ inline double error_3(const std::vector<MatrixXcd>& a, const std::vector<MatrixX
   return titop_test::transfer_error(a, exact, rows, cols);
 }
 
-}  // namespace scene_test
+}  // namespace scenes_test

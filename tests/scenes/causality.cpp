@@ -7,7 +7,7 @@
 /// A beam alone in a scene, (14), with either side of either end imposed, against the finite
 /// elements themselves: no modes, no inversion.
 
-using namespace scene_test;
+using namespace scenes_test;
 using namespace titop;
 
 namespace {

@@ -9,7 +9,7 @@
 /// Boundary conditions by the scene's imposed signals: clamped, pinned, free; frequencies against
 /// the finite-element program, the same M and K, and the textbook.
 
-using namespace scene_test;
+using namespace scenes_test;
 using namespace titop;
 
 namespace {

@@ -7,7 +7,7 @@
 /// Laws of any structure: rigid mass at rest, reciprocity, independence of frames and of the root
 /// of the tree, signs of a joint.
 
-using namespace scene_test;
+using namespace scenes_test;
 using namespace titop;
 
 namespace {

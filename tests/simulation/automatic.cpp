@@ -7,7 +7,7 @@
 /// The automatic stepper reports its accuracy.
 
 using namespace titop;
-using namespace simulate_test;
+using namespace simulation_test;
 
 namespace {
 

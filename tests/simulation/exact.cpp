@@ -8,7 +8,7 @@
 /// Stepper::exact against motions in closed form: no step is too long.
 
 using namespace titop;
-using namespace simulate_test;
+using namespace simulation_test;
 
 namespace {
 

@@ -8,7 +8,7 @@
 /// Senseless input is refused, with the way out.
 
 using namespace titop;
-using namespace simulate_test;
+using namespace simulation_test;
 using titop_test::error_of;
 using titop_test::says;
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 /// Scenes whose motion can be written down.
-namespace simulate_test {
+namespace simulation_test {
 
 /// A mass on a spring on the ground; states: stretch and its rate. Output: its position.
 inline titop::Diagram mass_on_spring(double m, double k, double c) {
@@ -52,4 +52,4 @@ inline double energy(const std::vector<double>& m, const std::vector<double>& k,
   return sum;
 }
 
-}  // namespace simulate_test
+}  // namespace simulation_test

@@ -9,7 +9,7 @@
 /// Orders of convergence, energy, and limits of stability, against theory.
 
 using namespace titop;
-using namespace simulate_test;
+using namespace simulation_test;
 
 namespace {
 

@@ -10,7 +10,7 @@
 
 /// Sums, products and quotients of numbers of two doubles each, against 150 digits.
 
-using namespace solver_test;
+using namespace solve_test;
 using titop::solve::DoubleDouble;
 using titop_test::Rng;
 

@@ -6,7 +6,7 @@
 
 /// The elimination against dense LU with full pivoting, and its verdict on singular systems.
 
-using namespace solver_test;
+using namespace solve_test;
 using titop::solve::Factors;
 using titop::solve::Health;
 using titop_test::Rng;

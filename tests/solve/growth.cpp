@@ -8,7 +8,7 @@
 /// The plan alone: fronts, their largest size and the work grow linearly if nothing closes on
 /// itself. Counted, not timed.
 
-using namespace solver_test;
+using namespace solve_test;
 using titop::solve::Front;
 using titop::solve::Plan;
 using titop::solve::plan;

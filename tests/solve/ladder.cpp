@@ -14,7 +14,7 @@
 /// The same elimination in every precision, against the oracle's own 150 digits.
 
 using namespace titop;
-using namespace solver_test;
+using namespace solve_test;
 using titop_test::Rng;
 
 namespace {

@@ -11,7 +11,7 @@
 /// Against 150 digits.
 
 using namespace titop;
-using namespace solver_test;
+using namespace solve_test;
 
 namespace {
 

@@ -9,7 +9,7 @@
 /// Transfers of chains in 150 digits, from the same doubles that the library is given: block
 /// matrices by their formulas at s, then Gaussian elimination with partial pivoting. No library
 /// code but `ModalData` and its plain fields.
-namespace solver_test {
+namespace solve_test {
 
 using Real = boost::multiprecision::number<boost::multiprecision::cpp_bin_float<150>,
                                            boost::multiprecision::et_off>;
@@ -185,4 +185,4 @@ inline Eigen::MatrixXcd rounded(const BigMatrix& m) {
   return result;
 }
 
-}  // namespace solver_test
+}  // namespace solve_test

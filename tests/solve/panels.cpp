@@ -17,7 +17,7 @@
 
 namespace {
 
-using solver_test::MatrixXd;
+using solve_test::MatrixXd;
 using titop_test::Rng;
 
 template <class T>
@@ -123,23 +123,23 @@ struct Textbook {
         size.back() = std::max(size.back(), std::abs(a(i, j)) * column(j));
     }
     const auto stands_out = [&](int i, int k) {
-      return std::abs(lu(i, k)) / size[solver_test::at(i)];
+      return std::abs(lu(i, k)) / size[solve_test::at(i)];
     };
     for (int k = 0; k < pivots; ++k) {
       double most = 0;
       for (int i = k; i < rows; ++i)
-        most = std::max(most, std::abs(lu(i, k)) / start[solver_test::at(i)]);
+        most = std::max(most, std::abs(lu(i, k)) / start[solve_test::at(i)]);
       int best = -1;
       for (int i = k; i < rows; ++i)
-        if (std::abs(lu(i, k)) >= 0.1 * most * start[solver_test::at(i)] &&
+        if (std::abs(lu(i, k)) >= 0.1 * most * start[solve_test::at(i)] &&
             (best < 0 || stands_out(i, k) > stands_out(best, k)))
           best = i;
       inside += best > k && best / 32 == k / 32;
       across += best / 32 > k / 32;
       lu.row(k).swap(lu.row(best));
-      std::swap(size[solver_test::at(k)], size[solver_test::at(best)]);
-      std::swap(start[solver_test::at(k)], start[solver_test::at(best)]);
-      std::swap(order[solver_test::at(k)], order[solver_test::at(best)]);
+      std::swap(size[solve_test::at(k)], size[solve_test::at(best)]);
+      std::swap(start[solve_test::at(k)], start[solve_test::at(best)]);
+      std::swap(order[solve_test::at(k)], order[solve_test::at(best)]);
       for (int i = k + 1; i < rows; ++i) {
         if (lu(i, k) == 0) continue;
         const double l = lu(i, k) / lu(k, k);
@@ -148,7 +148,7 @@ struct Textbook {
       }
     }
     for (int i = 0; i < rows; ++i)
-      growth = std::max(growth, by_common(i, std::min(i, pivots)) / start[solver_test::at(i)]);
+      growth = std::max(growth, by_common(i, std::min(i, pivots)) / start[solve_test::at(i)]);
   }
 };
 
@@ -161,7 +161,7 @@ MatrixXd in_no_order(int rows, int columns, Rng& rng) {
   rng.shuffle(place);
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < columns; ++j) a(i, j) = rng.below(4) == 0 ? 0 : rng.between(-1, 1);
-  for (int j = 0; j < std::min(rows, columns); ++j) a(place[solver_test::at(j)], j) += 4;
+  for (int j = 0; j < std::min(rows, columns); ++j) a(place[solve_test::at(j)], j) += 4;
   for (int i = 0; i < rows; ++i) a.row(i) *= rng.octaves(-20, 20);
   return a;
 }
@@ -172,7 +172,7 @@ void compare_factors(int rows, int columns, int pivots, Rng& rng) {
   INFO(rows, " x ", columns, ", ", pivots, " pivots");
   const MatrixXd a = in_no_order(rows, columns, rng);
   titop::solve::Structure structure;
-  std::vector<solver_test::RowEntries<double>> entries{{a.leftCols(pivots)}};
+  std::vector<solve_test::RowEntries<double>> entries{{a.leftCols(pivots)}};
   structure.add_variable(pivots);
   if (columns == pivots) {
     structure.add_row(rows, std::vector{0});
@@ -200,14 +200,14 @@ void compare_factors(int rows, int columns, int pivots, Rng& rng) {
   Eigen::VectorXd column(columns), common(columns);
   for (int j = 0; j < columns; ++j) {
     const int unknown = j < pivots ? f.first_unknown + j : plan->first[1] + j - pivots;
-    column(j) = std::ldexp(1.0, scale->in_fronts[solver_test::at(f.first_column + j)]);
-    common(j) = std::ldexp(1.0, scale->of_unknowns[solver_test::at(unknown)]);
+    column(j) = std::ldexp(1.0, scale->in_fronts[solve_test::at(f.first_column + j)]);
+    common(j) = std::ldexp(1.0, scale->of_unknowns[solve_test::at(unknown)]);
   }
 
   const Textbook exact(a, pivots, column, common);
   CHECK(exact.inside > 0);
   CHECK(exact.across > 0);
-  const titop::solve::Factors<double> factors(plan, solver_test::EntryRows<double>(entries), scale);
+  const titop::solve::Factors<double> factors(plan, solve_test::EntryRows<double>(entries), scale);
   CHECK(!factors.health().singular);
   const auto& made = factors.made(front);
   REQUIRE(made.lu.size() == static_cast<std::size_t>(rows * columns));
@@ -215,7 +215,7 @@ void compare_factors(int rows, int columns, int pivots, Rng& rng) {
   int other = 0;
   for (int i = 0; i < rows; ++i)
     for (int j = 0; j < columns; ++j)
-      other += std::bit_cast<std::uint64_t>(made.lu[solver_test::at(i * columns + j)]) !=
+      other += std::bit_cast<std::uint64_t>(made.lu[solve_test::at(i * columns + j)]) !=
                std::bit_cast<std::uint64_t>(exact.lu(i, j));
   CHECK(other == 0);
   CHECK(made.growth == exact.growth);

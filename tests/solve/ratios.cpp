@@ -13,7 +13,7 @@
 /// ratio.
 
 using namespace titop;
-using namespace solver_test;
+using namespace solve_test;
 using titop_test::Rng;
 
 namespace {

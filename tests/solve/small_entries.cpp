@@ -11,7 +11,7 @@
 /// 0 by symmetry: in double both are rounding. Finer arithmetic distinguishes them.
 
 using namespace titop;
-using solver_test::Complex;
+using solve_test::Complex;
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "support/rng.hpp"
 
 /// Block-sparse systems for the solver alone, without any diagram.
-namespace solver_test {
+namespace solve_test {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
@@ -181,4 +181,4 @@ inline std::vector<Kind> kinds(titop_test::Rng& rng) {
           {"tree", tree(n, rng), n}, {"grid", grid(4, 3), 12},     {"dense", dense(6), 6}};
 }
 
-}  // namespace solver_test
+}  // namespace solve_test

@@ -4,7 +4,7 @@
 
 /// Verdict and weakest pivot do not depend on units: rows and columns scaled by powers of ten.
 
-using namespace solver_test;
+using namespace solve_test;
 using titop::solve::Health;
 using titop_test::Rng;
 

@@ -1,6 +1,6 @@
 #include "loops/assembly.hpp"
 
-namespace loop_test {
+namespace loops_test {
 
 Assembly::Assembly(Index n, Index inputs, Index outputs) : a(by_hand::empty(n, inputs, outputs)) {}
 
@@ -117,4 +117,4 @@ std::vector<Complex> all_poles(const titop::System& system) {
   return list;
 }
 
-}  // namespace loop_test
+}  // namespace loops_test

@@ -1,6 +1,6 @@
 #include "loops/frame_by_hand.hpp"
 
-namespace loop_test {
+namespace loops_test {
 namespace {
 
 Index size(const Frame& f) {
@@ -101,4 +101,4 @@ void FrameByHand::join(const Frame::Joint& j) {
   }
 }
 
-}  // namespace loop_test
+}  // namespace loops_test

@@ -1,6 +1,6 @@
 #include "loops/frame_diagram.hpp"
 
-namespace loop_test {
+namespace loops_test {
 namespace {
 
 struct FrameDiagram {
@@ -106,4 +106,4 @@ struct FrameDiagram {
 
 titop::Diagram diagram_of(const FrameScene& scene) { return FrameDiagram{scene}.build(); }
 
-}  // namespace loop_test
+}  // namespace loops_test

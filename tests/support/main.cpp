@@ -20,7 +20,7 @@ bool nothing_may_be_skipped() {
 
 }  // namespace
 
-void titop::test::skip(std::string_view reason) {
+void titop_test::skip(std::string_view reason) {
   std::printf("SKIPPED: %.*s\n", static_cast<int>(reason.size()), reason.data());
   skipped = true;
 }

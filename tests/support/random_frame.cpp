@@ -3,7 +3,7 @@
 #include "loops/frames.hpp"
 #include "support/rng.hpp"
 
-namespace loop_test {
+namespace loops_test {
 
 using titop_test::Rng;
 
@@ -122,4 +122,4 @@ Frame random_frame(int seed, bool plane, bool springs) {
   return FrameMaker{Rng(static_cast<std::uint64_t>(seed)), plane}.make(springs);
 }
 
-}  // namespace loop_test
+}  // namespace loops_test

@@ -4,7 +4,7 @@
 #include <titop/graph/declared.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-namespace titop::full {
+namespace titop::passes {
 namespace {
 
 using Eigen::MatrixXd;
@@ -103,4 +103,4 @@ DualPairs dual_pairs(const Graph& g, ParameterValues values) {
   return pairs;
 }
 
-}  // namespace titop::full
+}  // namespace titop::passes

@@ -6,7 +6,7 @@
 
 /// Inputs that are forces, with the outputs that are the accelerations where they act. For the
 /// compiler's own files.
-namespace titop::full {
+namespace titop::passes {
 
 /// True if a channel's force acts from its block on its surroundings: at a parent point and about
 /// the axis of a joint. At a child point, also of a bushing, it acts on the block.
@@ -27,4 +27,4 @@ struct DualPairs {
 /// that reads the motions of the same ones with the same weights. O(inputs * outputs).
 DualPairs dual_pairs(const Graph& graph, ParameterValues values);
 
-}  // namespace titop::full
+}  // namespace titop::passes

@@ -35,7 +35,7 @@ std::map<int, OwnGains> own_gains(const Graph& g, ParameterValues values) {
     if (channel < 0 || g.channels[at(channel)].force != e.target) continue;
     for (const Term& t : e.terms) {
       if (!may_be_of(g, t, channel)) continue;
-      for (const full::OfMotion& m : full::of_motions(g, t, values)) {
+      for (const OfMotion& m : of_motions(g, t, values)) {
         if (m.channel != channel || m.gain.isZero(0)) continue;
         OwnGains& own = result[channel];
         const bool spring = m.of == Term::Of::position;
@@ -43,7 +43,7 @@ std::map<int, OwnGains> own_gains(const Graph& g, ParameterValues values) {
         const MatrixXd gain =
             e.part.whole() ? m.gain : MatrixXd(e.part.rows().transpose() * m.gain);
         if (sum.size() == 0) sum.setZero(gain.rows(), gain.cols());
-        sum += full::is_outward(g, channel) ? gain : MatrixXd(-gain);
+        sum += is_outward(g, channel) ? gain : MatrixXd(-gain);
         (spring ? own.spring : own.damper) = print(g, Term{t.signal, t.of, 1, {}});
         if (own.all.empty() || own.all.back() != &e) own.all.push_back(&e);
       }
@@ -70,7 +70,7 @@ bool negative(const MatrixXd& gain, const Equation& e) {
 /// A negative spring is the most frequent mistake of sign, and sometimes intended.
 void note_negative_springs(Checker& c, ParameterValues values) {
   for (const auto& [channel, own] : own_gains(c.graph, values)) {
-    const char sign = full::is_outward(c.graph, channel) ? '+' : '-';
+    const char sign = is_outward(c.graph, channel) ? '+' : '-';
     for (const Equation* e : own.all) {
       std::string right;
       if (negative(own.position, *e))

@@ -10,7 +10,7 @@
 #include <titop/graph/linalg/symmetric.hpp>
 #include <utility>
 
-namespace titop::full {
+namespace titop::passes {
 namespace {
 
 using Eigen::Index;
@@ -154,4 +154,4 @@ std::string why_no_springs(const Graph& g, ParameterValues values) {
   return "";
 }
 
-}  // namespace titop::full
+}  // namespace titop::passes

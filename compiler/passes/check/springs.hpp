@@ -6,7 +6,7 @@
 #include <vector>
 
 /// Springs and dampers written as equations: `h.torque = k * h.angle + c * h.rate`.
-namespace titop::full {
+namespace titop::passes {
 
 /// gain * the position (or rate) of a channel.
 struct OfMotion {
@@ -27,4 +27,4 @@ std::vector<OfMotion> of_motions(const Graph& graph, const Term& term, Parameter
 /// tie together.
 std::string why_no_springs(const Graph& graph, ParameterValues values);
 
-}  // namespace titop::full
+}  // namespace titop::passes
