@@ -5,9 +5,9 @@
 #include <limits>
 #include <titop/analysis/reduction/split.hpp>
 #include <titop/graph/error.hpp>
-#include <titop/graph/linalg/balance.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/schur.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 
 namespace titop::detail {
 namespace {
@@ -67,7 +67,7 @@ class Core {
         names_.push_back(m.states[k]);
       else
         names_.push_back(fmt::format("state {}", i + 1));
-    scale_ = linalg::balance(A_);
+    scale_ = linalg::similarity_scaling(A_);
     schur_ = linalg::schur(A_);
   }
   const MatrixXd& A() const { return A_; }
@@ -264,7 +264,7 @@ Split split(const StateSpace& m) {
 
 VectorXd reading(const StateSpace& m) {
   MatrixXd A = m.A;
-  return m.C.cwiseAbs() * linalg::balance(A);
+  return m.C.cwiseAbs() * linalg::similarity_scaling(A);
 }
 
 MatrixXd terms(const StateSpace& m, const Split& split, Complex s) {

@@ -30,8 +30,9 @@ struct Split {
   SpectralPart integrals, kept, stable;
   Eigen::MatrixXcd T, U;                    ///< stable.A = U T U^H, T upper triangular, U unitary
   std::vector<std::complex<double>> poles;  ///< of the model, those with Im >= 0
-  /// Outputs: |C| times the units that balance A, over all states of the model as written: size of
-  /// an output to which the model without ineffective states may have nothing left.
+  /// Outputs: |C| times the units of linalg::similarity_scaling, over all states of the model as
+  /// written: size of an output to which the model without ineffective states may have nothing
+  /// left.
   Eigen::VectorXd reading;
   /// Damping ratio up to which poles are kept as if they were on the axis.
   double near = kUndamped;
@@ -45,7 +46,7 @@ Eigen::VectorXd reading(const StateSpace& model);
 
 /// Outputs x inputs: size of a pair at s without cancellation of the terms of states and inputs,
 /// |C| |x| + |D|; and 1e-3 of its size if all states moved as far as the one that moves farthest,
-/// in the units that balance A (Split::reading). O(n^2) per input.
+/// in the units of linalg::similarity_scaling (Split::reading). O(n^2) per input.
 Eigen::MatrixXd terms(const StateSpace& model, const Split& split, std::complex<double> s);
 
 }  // namespace titop::detail

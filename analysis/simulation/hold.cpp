@@ -21,7 +21,7 @@ double power_of_two_near(double x) { return std::exp2(std::round(std::log2(x)));
 
 /// Diagonal d, powers of two, such that the first n rows and columns of d^-1 X d have equal norms;
 /// the others (inputs) are scaled down to the size of the rows that they drive.
-Eigen::VectorXd balance(MatrixXd X, Index n) {
+Eigen::VectorXd similarity_scaling(MatrixXd X, Index n) {
   Eigen::VectorXd d = Eigen::VectorXd::Ones(X.rows());
   const auto scale = [&](Index i, double f) {
     X.col(i) *= f;
@@ -64,9 +64,9 @@ Matrix<T> increments(const MatrixXd& A, const MatrixXd& B, double h) {
   if (n == 0) return Matrix<T>::Zero(0, m);
   MatrixXd X = MatrixXd::Zero(n + m, n + m);
   X << A, B, MatrixXd::Zero(m, n + m);
-  const Eigen::VectorXd d = balance(X, n);
-  const MatrixXd balanced = d.cwiseInverse().asDiagonal() * X * d.asDiagonal();  // exact
-  const Matrix<T> E = exponential_less_one<T>(balanced.cast<T>() * T(h));
+  const Eigen::VectorXd d = similarity_scaling(X, n);
+  const MatrixXd scaled = d.cwiseInverse().asDiagonal() * X * d.asDiagonal();  // exact
+  const Matrix<T> E = exponential_less_one<T>(scaled.cast<T>() * T(h));
   return d.cast<T>().head(n).asDiagonal() * E.topRows(n) * d.cwiseInverse().cast<T>().asDiagonal();
 }
 

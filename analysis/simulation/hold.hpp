@@ -12,7 +12,7 @@ struct Hold {
   Eigen::MatrixXd B;  ///< n x nu
 };
 
-/// Scaling and squaring of exp(A h) - I on the balanced matrix, in long double up to 128 states and
+/// Scaling and squaring of exp(A h) - I on the scaled matrix, in long double up to 128 states and
 /// in double beyond; rounded once. Entries are off by some 2^k ulp of that precision at 1, 2^k
 /// about the largest |pole| h. Throws bad_value unless h is positive and finite, size unless A is n
 /// x n and B n x nu. O((n + nu)^3 log(|A| h)).

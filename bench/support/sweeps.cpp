@@ -116,7 +116,7 @@ Extreme damping(double c) {
 }
 
 /// [Alazard 2015] Fig. 7 with k5/m5 = (1 + delta) k4/m4: of order 8 if delta is 0.
-Extreme twins(double delta) {
+Extreme close_modes(double delta) {
   Diagram d{"nearly coinciding"};
   auto u = d.input("u");
   const auto body = [&](const char* name, double mass, double stiffness) {
@@ -293,8 +293,8 @@ std::vector<Sweep> sweeps() {
        light_parent},
       {"damping", "ten spring-masses at their highest resonance", "damping c [N s/m]",
        powers(1, 1e-16, 0.1), damping, by_damping},
-      {"twins", "five masses with two frequencies apart by delta: minimal model", "delta",
-       powers(1, 1e-16, 0.1), twins},
+      {"close-modes", "five masses with two frequencies apart by delta: minimal model", "delta",
+       powers(1, 1e-16, 0.1), close_modes},
       {"closures", "two levers on hinges delta apart and tied twice: do they turn?", "delta [m]",
        powers(0.1, 1e-15, 0.1), ties},
       {"digits",

@@ -31,7 +31,7 @@ struct Entries {
 };
 
 /// One equation after the other: left - right, and the sums of magnitudes, row by row.
-struct Balance {
+struct EquationResidual {
   struct RowResidual {
     double difference = 0, magnitude = 0, rounding = 0;
     /// The part that rounding does not explain.
@@ -136,7 +136,7 @@ struct Residual {
   const Signals& at_hand;
   const Graph& w = *d.skeleton->stage.source;
   Surroundings around{d, at_hand.unknowns};
-  Balance b = {};                      ///< of the present equation
+  EquationResidual b = {};             ///< of the present equation
   std::array<double, 4> largest = {};  ///< see find_largest()
   double worst = 0;
   std::string where = {};

@@ -6,8 +6,8 @@
 #include <vector>
 
 /// Motions that no equation determines: a massless strut between two pin joints rotates about its
-/// own axis freely, and the balance of torques about that axis is 0 = 0. If no output or state
-/// depends on such a motion it may be set to 0, in place of the equation without content.
+/// own axis freely, and the sum of torques about that axis is 0 = 0. If no output or state depends
+/// on such a motion it may be set to 0, in place of the equation without content.
 namespace titop::detail {
 
 /// direction * signal = 0 in place of a row.

@@ -349,13 +349,13 @@ std::vector<Closing> closings_of(const Graph& g, const Motion& motion) {
 }
 
 /// Throws the mistakes in the chains; notes narrow decisions.
-void check_chains(Stage& stage, const Twins& twins, const Motion& motion,
+void check_chains(Stage& stage, const SumExpander& sums, const Motion& motion,
                   const std::vector<Closing>& closings) {
   const StateRates coordinates(stage.graph, stage.values);
   ChainChecker blocks{stage.graph, motion, coordinates};
   for (const Closing& c : closings) blocks.check_blocks(c);
   if (!blocks.mistakes.empty()) throw Error(std::move(blocks.mistakes));
-  const Motion geometry(stage.graph, stage.values, twins, Ground::last);
+  const Motion geometry(stage.graph, stage.values, sums, Ground::last);
   ChainChecker gaps{stage.graph, geometry, coordinates};
   for (const Closing& c : closings_of(stage.graph, geometry)) gaps.check_gap(c);
   if (!gaps.mistakes.empty()) throw Error(std::move(gaps.mistakes));
@@ -367,10 +367,10 @@ void check_chains(Stage& stage, const Twins& twins, const Motion& motion,
 Stage chains(Stage stage) {
   if (!Quick{stage.graph}.closes(stage.values)) return stage;
   stage.closes = true;
-  const Twins twins(stage.graph);
-  const Motion motion(stage.graph, stage.values, twins);
+  const SumExpander sums(stage.graph);
+  const Motion motion(stage.graph, stage.values, sums);
   const std::vector<Closing> closings = closings_of(stage.graph, motion);
-  check_chains(stage, twins, motion, closings);
+  check_chains(stage, sums, motion, closings);
   stage.chained = !closings.empty();
   if (stage.chained) hold_still(stage, motion, closings, release_redundant(stage, closings));
   return stage;

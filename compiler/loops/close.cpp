@@ -120,14 +120,14 @@ std::string list(const Graph& g, std::vector<Dependent> dependents) {
 Stage close(Stage stage) {
   if (!stage.closes) return stage;
   const Graph& g = stage.graph;
-  const Twins twins(g);
-  const Motion motion(g, stage.values, twins, Ground::by_name, stage.released);
+  const SumExpander sums(g);
+  const Motion motion(g, stage.values, sums, Ground::by_name, stage.released);
   const StateRates coordinates(g, stage.values);
   std::vector<RelationRows> closed, on_positions, on_rates;
   for (const Tie& tie : motion.ties())
     if (tie.closes) closed.push_back(line_of(motion.closing(tie)));
   on_positions = on_rates = closed;
-  for (const Integral& i : integrals(g, motion, twins, coordinates, stage.values)) {
+  for (const Integral& i : integrals(g, motion, sums, coordinates, stage.values)) {
     const int n = g.signals[at(g.nodes[at(i.node)].state)].size;
     RelationRows line;
     add(line.form, -Eigen::MatrixXd::Identity(n, n), i.form);

@@ -11,7 +11,7 @@ using linalg::at;
 struct IntegralFinder {
   const Graph& g;
   const Motion& motion;
-  const Twins& twins;
+  const SumExpander& sums;
   const StateRates& coordinates;
   ParameterValues values;
   std::map<int, std::optional<Integral>> found = {};
@@ -20,19 +20,19 @@ struct IntegralFinder {
     const auto [place, added] = found.try_emplace(node, std::nullopt);  // a ring of them: none
     if (!added) return place->second;
     const Node& n = g.nodes[at(node)];
-    const Twin twin = twins.of_input(n.first_signal);
-    auto result = twin.rates.empty() && twin.integrals.empty() && twin.states.empty()
-                      ? of_accelerations(twin)
-                  : twin.points.empty() ? of_rates(twin)
-                                        : std::nullopt;
+    const ExpandedSum sum = sums.of_input(n.first_signal);
+    auto result = sum.rates.empty() && sum.integrals.empty() && sum.states.empty()
+                      ? of_accelerations(sum)
+                  : sum.points.empty() ? of_rates(sum)
+                                       : std::nullopt;
     if (result) result->node = node;
     return found[node] = std::move(result);
   }
 
-  std::optional<Integral> of_accelerations(const Twin& twin) const {
+  std::optional<Integral> of_accelerations(const ExpandedSum& sum) const {
     Integral result;
-    for (const auto& [channel, c] : twin.points) add(result.form, c, motion.position(channel));
-    for (const auto& [signal, c] : twin.others)
+    for (const auto& [channel, c] : sum.points) add(result.form, c, motion.position(channel));
+    for (const auto& [signal, c] : sum.others)
       add(result.form, {FormColumn::Kind::prescribed, signal, 0}, c);
     for (const auto& [column, matrix] : result.form)
       if (column.kind == FormColumn::Kind::states && !all_have_rates(column.id, matrix))
@@ -47,24 +47,24 @@ struct IntegralFinder {
     return true;
   }
 
-  std::optional<Integral> of_rates(const Twin& twin) {
+  std::optional<Integral> of_rates(const ExpandedSum& sum) {
     Integral result;
     result.level = 2;
-    for (const auto& [signal, c] : twin.integrals) {
+    for (const auto& [signal, c] : sum.integrals) {
       const auto inner = find(g.signals[at(signal)].node);
       if (!inner || inner->level != 1) return std::nullopt;
       add(result.form, c, inner->form);
     }
-    for (const auto& [signal, c] : twin.rates) {
+    for (const auto& [signal, c] : sum.rates) {
       const Signal& y = g.signals[at(signal)];
       const auto d = g.nodes[at(y.node)].block->dynamics(values);
       if (!d->D.middleRows(y.first, y.size).isZero(0) ||
           !add_positions(result.form, y.node, c * d->C.middleRows(y.first, y.size)))
         return std::nullopt;
     }
-    for (const auto& [signal, c] : twin.states)
+    for (const auto& [signal, c] : sum.states)
       if (!add_positions(result.form, g.signals[at(signal)].node, c)) return std::nullopt;
-    for (const auto& [signal, c] : twin.others)
+    for (const auto& [signal, c] : sum.others)
       add(result.form, {FormColumn::Kind::prescribed, signal, 1}, c);
     return result;
   }
@@ -86,13 +86,13 @@ struct IntegralFinder {
 
 }  // namespace
 
-std::vector<Integral> integrals(const Graph& g, const Motion& motion, const Twins& twins,
+std::vector<Integral> integrals(const Graph& g, const Motion& motion, const SumExpander& sums,
                                 const StateRates& coordinates, ParameterValues values) {
-  IntegralFinder finder{g, motion, twins, coordinates, values};
+  IntegralFinder finder{g, motion, sums, coordinates, values};
   std::vector<Integral> result;
   for (int i = 0; i < static_cast<int>(g.nodes.size()); ++i) {
     const Node& node = g.nodes[at(i)];
-    if (!twins.is_integrator(i) || node.state < 0 || !g.signals[at(node.state)].active) continue;
+    if (!sums.is_integrator(i) || node.state < 0 || !g.signals[at(node.state)].active) continue;
     if (auto found = finder.find(i)) result.push_back(std::move(*found));
   }
   return result;

@@ -16,7 +16,7 @@ struct Integral {
 /// All Integrators whose input has one level: accelerations (level 1), or rates and Integrators of
 /// accelerations (level 2). A signal that is neither has the level of the other terms; an input of
 /// mixed levels, or a position, is not listed and keeps its states.
-std::vector<Integral> integrals(const Graph& graph, const Motion& motion, const Twins& twins,
+std::vector<Integral> integrals(const Graph& graph, const Motion& motion, const SumExpander& sums,
                                 const StateRates& coordinates, ParameterValues values);
 
 }  // namespace titop::loops

@@ -191,14 +191,14 @@ struct ForceJudge {
     }
   }
 
-  /// Self-stress is in balance on every body; a body where it is not is moved by it.
+  /// Self-stress is in equilibrium on every body; a body where it is not is moved by it.
   void bodies() {
     const Graph& g = k.stage.graph;
     for (const Row& row : k.stage.rows) {
       if (!row.active) continue;
       std::vector<ForceTerm> sum;
       if (row.node >= 0)
-        sum = balance(row);
+        sum = force_sum(row);
       else if (const Equation& e = g.equations[at(row.equation)]; e.of_block) {
         sum = terms(e.terms, k.joint.equation_coefficient[at(row.equation)]);
         const int n = g.signals[at(e.target)].size;
@@ -218,7 +218,7 @@ struct ForceJudge {
   }
 
   /// Residual of a block's row in its channels' signals: D u - y.
-  std::vector<ForceTerm> balance(const Row& row) const {
+  std::vector<ForceTerm> force_sum(const Row& row) const {
     const Graph& g = k.stage.graph;
     const Signal& y = g.signals[at(row.output)];
     std::vector<ForceTerm> sum{{row.output, -Eigen::MatrixXd::Identity(y.size, y.size)}};

@@ -24,13 +24,13 @@ bool has_orthonormal_rows(const MatrixXd& m) {
 
 }  // namespace
 
-Motion::Motion(const Graph& graph, ParameterValues values, const Twins& twins, Ground ground,
+Motion::Motion(const Graph& graph, ParameterValues values, const SumExpander& sums, Ground ground,
                std::span<const Released> released)
     : g_(graph), ground_(static_cast<int>(graph.channels.size())), at_point_(at(ground_) + 1) {
   add_bodies(values);
-  add_ties(twins, ground);
+  add_ties(sums, ground);
   std::vector<Tie> whole;
-  for (const Released& r : released) whole.push_back(tie_of(r.whole, r.closing, twins, ground));
+  for (const Released& r : released) whole.push_back(tie_of(r.whole, r.closing, sums, ground));
   find_rotations(whole);
   plant(std::move(whole));
 }
@@ -71,12 +71,12 @@ void Motion::add_body(int index, ParameterValues values) {
   }
 }
 
-void Motion::add_ties(const Twins& twins, Ground ground) {
+void Motion::add_ties(const SumExpander& sums, Ground ground) {
   for (int e = 0; e < static_cast<int>(g_.equations.size()); ++e) {
     const Equation& q = g_.equations[at(e)];
     const Signal& target = g_.signals[at(q.target)];
     if (q.of_block || target.channel < 0 || target.quantity != Quantity::acceleration) continue;
-    ties_.push_back(tie_of(q, e, twins, ground));
+    ties_.push_back(tie_of(q, e, sums, ground));
   }
   std::sort(ties_.begin(), ties_.end(), [](const Tie& a, const Tie& b) { return a.turn < b.turn; });
   find_rotations(ties_);
@@ -101,13 +101,13 @@ void Motion::find_rotations(std::vector<Tie>& ties) {
   }
 }
 
-Tie Motion::tie_of(const Equation& q, int index, const Twins& twins, Ground ground) const {
+Tie Motion::tie_of(const Equation& q, int index, const SumExpander& sums, Ground ground) const {
   const Signal& target = g_.signals[at(q.target)];
   Tie tie{.equation = index, .target = target.channel};
   tie.S = q.part.whole() ? MatrixXd::Identity(target.size, target.size) : q.part.rows();
-  const Twin twin = twins.of(q.terms);
-  tie.points = twin.points;
-  for (const auto* list : {&twin.rates, &twin.integrals, &twin.states, &twin.others})
+  const ExpandedSum sum = sums.of(q.terms);
+  tie.points = sum.points;
+  for (const auto* list : {&sum.rates, &sum.integrals, &sum.states, &sum.others})
     for (const auto& [signal, c] : *list) add(tie.own, {FormColumn::Kind::prescribed, signal}, c);
   // A locked child point closes the chain rather than the joint that carries the body.
   const auto all = static_cast<int>(g_.equations.size());

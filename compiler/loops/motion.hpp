@@ -4,8 +4,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <titop/compiler/loops/expanded_sum.hpp>
 #include <titop/compiler/loops/sum.hpp>
-#include <titop/compiler/loops/twin.hpp>
 #include <titop/compiler/passes/stage.hpp>
 #include <titop/graph/linalg/kinematics.hpp>
 #include <tuple>
@@ -54,7 +54,7 @@ enum class Ground { by_name, last };
 class Motion {
  public:
   /// `released`: by `chains`, from these equations; the ways round use the original equations.
-  Motion(const Graph& graph, ParameterValues values, const Twins& twins,
+  Motion(const Graph& graph, ParameterValues values, const SumExpander& sums,
          Ground ground = Ground::by_name, std::span<const Released> released = {});
 
   const std::vector<Tie>& ties() const { return ties_; }
@@ -90,8 +90,8 @@ class Motion {
 
   void add_bodies(ParameterValues values);
   void add_body(int node, ParameterValues values);
-  void add_ties(const Twins& twins, Ground ground);
-  Tie tie_of(const Equation& equation, int index, const Twins& twins, Ground ground) const;
+  void add_ties(const SumExpander& sums, Ground ground);
+  Tie tie_of(const Equation& equation, int index, const SumExpander& sums, Ground ground) const;
   static void find_rotations(std::vector<Tie>& ties);
   std::optional<Edge> edge_of(const Tie& tie) const;
   Edge reversed(const Edge& edge) const;

@@ -42,19 +42,19 @@ struct ScaleFactors {
   std::vector<Eigen::VectorXd> row;  ///< per block
   Eigen::VectorXd column;
 };
-/// Scales the relations into a balance, which is geometry alone: the squares of every free column
-/// sum to 1, and those of every unit (rows of one number: the translations or rotations of a
-/// closing equation) to the sum for an even distribution of each of its free columns over the units
-/// in which it counts, plus 1 for its columns that store energy. Columns that store energy are not
-/// scaled, whether shapes of unit modal mass or deflections, of any stiffness: a mode that hardly
-/// moves the chain (an entry of rounding, at a node of its shape) must not look like one that does.
-/// Such a balance of the counting entries exists and is unique [Sinkhorn, Knopp 1967]; sweeps
-/// approach it until none changes a factor by 2 %, a hundred at most: it depends neither on units
-/// of rows and free columns (they are factors themselves), nor on the frame (three rows count by
-/// their norm), nor on stiffnesses. For a chain of hinges it finds the reference length of levers,
-/// from all joints together; if a lever is tiny, its joint's translations do not count, and no row
-/// depends on it. To be used before any elimination (afterwards noise would become 1). O(entries)
-/// per sweep; few are needed, from a start nearly in balance.
+/// Equilibrates the relations, by geometry alone: the squares of every free column sum to 1, and
+/// those of every unit (rows of one number: the translations or rotations of a closing equation) to
+/// the sum for an even distribution of each of its free columns over the units in which it counts,
+/// plus 1 for its columns that store energy. Columns that store energy are not scaled, whether
+/// shapes of unit modal mass or deflections, of any stiffness: a mode that hardly moves the chain
+/// (an entry of rounding, at a node of its shape) must not look like one that does. Such a scaling
+/// of the counting entries exists and is unique [Sinkhorn, Knopp 1967]; sweeps approach it until
+/// none changes a factor by 2 %, a hundred at most: it depends neither on units of rows and free
+/// columns (they are factors themselves), nor on the frame (three rows count by their norm), nor on
+/// stiffnesses. For a chain of hinges it finds the reference length of levers, from all joints
+/// together; if a lever is tiny, its joint's translations do not count, and no row depends on it.
+/// To be used before any elimination (afterwards noise would become 1). O(entries) per sweep; few
+/// are needed, from a start that is nearly equilibrated.
 ScaleFactors scale(Relations& relations);
 
 /// z_dependent = sum of factor * z, for coordinates and integrals; in order: those on the right are
@@ -76,10 +76,10 @@ struct Independent {
 /// unknowns come first, then `preferred` columns (rows wait for one that other blocks have too) and
 /// integrals while their pivots are above 1e-3 (in the last block, of the best there), then all
 /// coordinates; until the last block only by pivots that are as good as others'. Whether there is a
-/// pivot is decided on the balance, which one is taken in units of energy (eta by 1/omega): soft
-/// modes become dependent, independent of their neighbours. Ties go to the first column. O(columns)
-/// if every chain has a body of its own, about columns^1.5 for planar grids of chains; O(rows^2
-/// columns) of blocks that merge without eliminating any column.
+/// pivot is decided on the equilibrated relations, which one is taken in units of energy (eta by
+/// 1/omega): soft modes become dependent, independent of their neighbours. Ties go to the first
+/// column. O(columns) if every chain has a body of its own, about columns^1.5 for planar grids of
+/// chains; O(rows^2 columns) of blocks that merge without eliminating any column.
 Independent independent(Relations relations, const std::vector<int>& preferred = {});
 
 }  // namespace titop::loops

@@ -27,15 +27,15 @@ struct UnitEntry {
 };
 
 /// Units are rows of one number. The start goes from entries with a factor to their neighbours, so
-/// that units of measurement have no influence; sweeps then balance all, independent of the place
-/// of the start.
+/// that units of measurement have no influence; sweeps then equilibrate all, independent of the
+/// place of the start.
 struct RelationScaling {
   Relations& r;
   std::vector<UnitEntry> entries = {};
   std::vector<std::vector<int>> of_unit = {}, of_column;  ///< entries
   std::vector<double> row = {}, column;                   ///< factors; 0: none yet
-  std::vector<double> share = {};                         ///< per unit: its square sum, balanced
-  std::vector<char> fixed;                                ///< per column: it stores energy
+  std::vector<double> share = {};  ///< per unit: its square sum, equilibrated
+  std::vector<char> fixed;         ///< per column: it stores energy
 
   explicit RelationScaling(Relations& relations)
       : r(relations), of_column(r.role.size()), column(r.role.size(), 0), fixed(r.role.size(), 0) {
@@ -107,7 +107,7 @@ struct RelationScaling {
     return result;
   }
 
-  /// Every column is spread evenly over the units in which it counts: so a balance exists and is
+  /// Every column is spread evenly over the units in which it counts: so a scaling exists and is
   /// unique. Columns of fixed size count for one, all of a unit together.
   void find_shares() {
     row.assign(of_unit.size(), 0);

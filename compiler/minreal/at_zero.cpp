@@ -6,8 +6,8 @@
 #include <titop/compiler/minreal/independent_rows.hpp>
 #include <titop/compiler/minreal/integrators.hpp>
 #include <titop/compiler/minreal/take_out.hpp>
-#include <titop/graph/linalg/balance.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 #include <titop/graph/support/some_names.hpp>
 
 namespace titop::minreal {
@@ -84,7 +84,7 @@ bool take_out_once(detail::Sampled& s, Rows rows_of_model, bool by_inputs, Matri
       detail::rounding_of(s.off, M, rows_of_model).cwiseMax(kEps * M.cwiseAbs());
   const MatrixXd A = by_inputs ? s.model.A : MatrixXd(s.model.A.transpose());
   MatrixXd balanced = A;
-  const Eigen::VectorXd unit = linalg::balance_parts(balanced);
+  const Eigen::VectorXd unit = linalg::similarity_scaling_of_parts(balanced);
   const IndependentRows rows =
       independent_rows(M, rounding, unit, levels(A, find_integrators(s.model).integrators));
   report(rows, by_inputs ? "no input moves it" : "no output sees it", result);

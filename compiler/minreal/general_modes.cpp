@@ -149,8 +149,8 @@ General general_modes(const StateSpace& model, double resolution) {
   General g;
   linalg::Eigensystem& e = p.e;
   ModeSet& m = g.modes;
-  const MatrixXd balanced = e.scale.cwiseInverse().asDiagonal() * model.A * e.scale.asDiagonal();
-  const double size = balanced.norm();
+  const MatrixXd scaled = e.scale.cwiseInverse().asDiagonal() * model.A * e.scale.asDiagonal();
+  const double size = scaled.norm();
   m.lambda = m.omega = e.values.cwiseAbs();
   for (Index j = 0; j < m.size(); ++j)
     m.states.push_back(e.values(j).imag() > 0 ? 2 : e.values(j).imag() < 0 ? 0 : 1);

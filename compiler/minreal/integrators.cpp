@@ -2,9 +2,9 @@
 #include <numeric>
 #include <titop/compiler/minreal/clusters.hpp>
 #include <titop/compiler/minreal/integrators.hpp>
-#include <titop/graph/linalg/balance.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 
 namespace titop::minreal {
 namespace {
@@ -103,7 +103,7 @@ std::optional<Decoupled> decouple(const StateSpace& model, const IntegratorSplit
               model.C(Eigen::all, rest)};
   if (rest.empty()) return d;
   MatrixXd A = model.A(rest, rest);
-  const Eigen::VectorXd scale = linalg::balance_parts(A);
+  const Eigen::VectorXd scale = linalg::similarity_scaling_of_parts(A);
   const Eigen::PartialPivLU<MatrixXd> lu(MatrixXd(A.transpose()));
   if (!(lu.rcond() > kSingular)) return std::nullopt;
   const auto divided = [&](const MatrixXd& Y) {

@@ -93,14 +93,15 @@ struct Minimized {
 /// A decided order is that of all data which rounding distinguishes from the given ones: effects
 /// below their own bound (two frequencies one ulp apart) count as zero, and only exact arithmetic
 /// decides about them. Modes are vectors of one size in the states' own units
-/// (linalg::balance_parts): in other units of the model the verdict is the same except for
-/// decisions at rounding level, which count as undecided. `System::state_space` first sets entries
-/// to 0 that its factors cannot distinguish from 0 (32 times the largest of four samples of
-/// rounding), unless that costs the transfer digits. With `exact_order` the least visible modes
-/// leave until the order is that one. The transfer is measured before and after, near the removed
-/// modes: if it has changed by more than 1e-8 and ten times the resolution, the whole model is the
-/// result, and the notes report it. Cost O(n^3). Throws not_finite for entries that are not, and
-/// size for matrices that do not fit each other or the names of states, inputs and outputs.
+/// (linalg::similarity_scaling_of_parts): in other units of the model the verdict is the same
+/// except for decisions at rounding level, which count as undecided. `System::state_space` first
+/// sets entries to 0 that its factors cannot distinguish from 0 (32 times the largest of four
+/// samples of rounding), unless that costs the transfer digits. With `exact_order` the least
+/// visible modes leave until the order is that one. The transfer is measured before and after, near
+/// the removed modes: if it has changed by more than 1e-8 and ten times the resolution, the whole
+/// model is the result, and the notes report it. Cost O(n^3). Throws not_finite for entries that
+/// are not, and size for matrices that do not fit each other or the names of states, inputs and
+/// outputs.
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options = {});
 
 }  // namespace titop

@@ -50,10 +50,10 @@ double condition(const PoleClusters& p, Index j) {
 }
 
 /// The spectrum of one component into the whole's.
-void add_component(const MatrixXd& balanced, const std::vector<int>& states, PoleClusters& p,
+void add_component(const MatrixXd& scaled, const std::vector<int>& states, PoleClusters& p,
                    std::vector<PoleCluster>& clusters) {
   const Index first = std::ssize(p.component), n = std::ssize(states);
-  const MatrixXd A = balanced(states, states);
+  const MatrixXd A = scaled(states, states);
   const linalg::Spectrum s = linalg::spectrum(A, kIll);
   Places places(at(n));
   for (Index j = 0; j < n; ++j) places[at(j)] = first + j;
@@ -110,13 +110,13 @@ void join(const PoleClusters& p, std::vector<PoleCluster>& clusters) {
 PoleClusters pole_clusters(const MatrixXd& A) {
   const Index n = A.rows();
   PoleClusters p;
-  MatrixXd balanced = A;
-  p.e.scale = linalg::balance_parts(balanced);
+  MatrixXd scaled = A;
+  p.e.scale = linalg::similarity_scaling_of_parts(scaled);
   p.e.values.resize(n);
   p.e.V = p.e.W = p.T = MatrixXcd::Zero(n, n);
   std::vector<PoleCluster> clusters;
   for (const std::vector<int>& states : find_components(A))
-    add_component(balanced, states, p, clusters);
+    add_component(scaled, states, p, clusters);
   join(p, clusters);
   for (PoleCluster& c : clusters)
     if (c.whole && !c.poles.empty()) p.clusters.push_back(std::move(c.poles));
@@ -144,7 +144,7 @@ MatrixXd real_basis(const MatrixXcd& V) {
   return MatrixXd(qr.householderQ()).leftCols(V.cols());
 }
 
-/// A component's part of a cluster, in balanced states.
+/// A component's part of a cluster, in scaled states.
 struct ClusterShare {
   Places in, out, at_states;
   MatrixXd Q, W;                                                  ///< W Q = 1

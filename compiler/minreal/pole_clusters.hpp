@@ -21,7 +21,7 @@ struct PoleClusters {
   std::vector<std::vector<Eigen::Index>> clusters;
   std::vector<std::vector<int>> components;  ///< states that share no entry of A with others
   std::vector<int> component;                ///< of each pole
-  std::vector<double> size;                  ///< norm of A of each component, balanced
+  std::vector<double> size;                  ///< norm of the scaled A of each component
 };
 
 /// O(25 n^3). Throws as linalg::schur.

@@ -23,7 +23,7 @@ struct Pole {
 /// problems, so that undamped poles lie exactly on the axis and slow ones have as many digits as
 /// fast ones (`eigh_graded`; if a rigid motion is spread over several states, or beyond 400 pairs,
 /// poles slower than 3e-7 of the fastest are returned as 0). States that A couples to no others are
-/// exact poles. Other models: eigenvalues of the balanced A. O(n^3).
+/// exact poles. Other models: eigenvalues of the scaled A. O(n^3).
 std::vector<Pole> poles(const StateSpace& model);
 
 /// A table: rad/s, Hz, damping, blocks.

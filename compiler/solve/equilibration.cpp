@@ -79,7 +79,7 @@ class SizeReader {
 };
 
 /// One exponent per unit.
-std::vector<float> balanced(const RowSizes& sizes) {
+std::vector<float> equilibrated(const RowSizes& sizes) {
   constexpr float kNone = -1e30F;
   std::vector<float> of_units(at(sizes.units), 0), most(of_units.size());
   std::vector<float> of_rows(sizes.begin.size() - 1, 0);
@@ -106,7 +106,7 @@ std::vector<float> balanced(const RowSizes& sizes) {
 template <class T>
 std::vector<std::int16_t> equilibration(const Plan& plan, const Rows<T>& rows) {
   const RowSizes sizes = SizeReader<T>(plan, rows).take();
-  const std::vector<float> of_units = balanced(sizes);
+  const std::vector<float> of_units = equilibrated(sizes);
   std::vector<std::int16_t> result;
   result.reserve(at(plan.unknowns));
   for (const int unit : sizes.unit_of)

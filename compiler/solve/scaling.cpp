@@ -200,7 +200,7 @@ TITOP_PART void centre(const Exponents& x, int* totals, int* numbers) {
   take_means(x.width, totals, numbers, x.c);
 }
 
-TITOP_WIDE void balance(const Exponents& x, const double* magnitudes) {
+TITOP_WIDE void equilibrate(const Exponents& x, const double* magnitudes) {
   take(x, magnitudes);
   for (int round = 0; round < 4; ++round) towards_one(x, x.a, x.b);
   count_entries(x);
@@ -212,7 +212,7 @@ TITOP_WIDE void balance(const Exponents& x, const double* magnitudes) {
 void column_scale(const double* magnitudes, int rows, std::span<const int> units,
                   std::int16_t* exponents) {
   Exponents x(rows, units);
-  balance(x, magnitudes);
+  equilibrate(x, magnitudes);
   for (Index u = 0; u < x.count; ++u) {
     const int rounded = (x.c[u] + (x.c[u] < 0 ? -kOne : kOne) / 2) / kOne;
     std::fill(exponents + units[at(u)], exponents + units[at(u + 1)],

@@ -87,13 +87,12 @@ struct Vectors {
 /// poles of a stiff model thus keep their digits.
 Vectors sharp_eigenvectors(const MatrixXd& A) {
   const linalg::Eigensystem coarse = linalg::eigensystem(A);
-  const MatrixXd balanced =
-      coarse.scale.cwiseInverse().asDiagonal() * A * coarse.scale.asDiagonal();
+  const MatrixXd scaled = coarse.scale.cwiseInverse().asDiagonal() * A * coarse.scale.asDiagonal();
   Vectors e;
   e.V = (coarse.scale.cwiseInverse().asDiagonal() * coarse.V).cast<Long>();
   for (int step = 0;; ++step) {
     e.W = Eigen::PartialPivLU<MatrixXcl>(e.V).inverse();
-    const MatrixXcl R = e.W * (balanced.cast<Long>() * e.V);
+    const MatrixXcl R = e.W * (scaled.cast<Long>() * e.V);
     e.values = R.diagonal();
     if (step == 3) break;
     MatrixXcl X = MatrixXcl::Zero(A.rows(), A.rows());

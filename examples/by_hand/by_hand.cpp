@@ -52,21 +52,21 @@ std::vector<Complex> poles(const Structure& a) {
 }
 
 std::vector<Complex> poles(const MatrixXd& A) {
-  // Balanced first (powers of two until rows and columns have equal norms): positions and
+  // Scaled first (powers of two until rows and columns have equal norms): positions and
   // velocities differ by the frequency.
-  MatrixXd balanced = A;
+  MatrixXd scaled = A;
   for (int sweep = 0; sweep < 40; ++sweep)
     for (Index i = 0; i < A.rows(); ++i) {
-      const double own = std::abs(balanced(i, i));
-      const double row = balanced.row(i).cwiseAbs().sum() - own;
-      const double column = balanced.col(i).cwiseAbs().sum() - own;
+      const double own = std::abs(scaled(i, i));
+      const double row = scaled.row(i).cwiseAbs().sum() - own;
+      const double column = scaled.col(i).cwiseAbs().sum() - own;
       if (row == 0 || column == 0) continue;
       const double f = std::exp2(std::round(0.5 * std::log2(row / column)));
-      balanced.col(i) *= f;
-      balanced.row(i) /= f;
+      scaled.col(i) *= f;
+      scaled.row(i) /= f;
     }
   std::vector<Complex> list;
-  const Eigen::EigenSolver<MatrixXd> modes(balanced, /*computeEigenvectors=*/false);
+  const Eigen::EigenSolver<MatrixXd> modes(scaled, /*computeEigenvectors=*/false);
   for (const Complex s : modes.eigenvalues())
     if (s.imag() >= 0) list.push_back(s);
   return list;

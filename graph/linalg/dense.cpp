@@ -82,22 +82,22 @@ Eigen::VectorXcd eigenvalues(const MatrixXd& A) {
   Eigen::VectorXcd result(A.rows());
   Eigen::Index first = 0;
   for (const std::vector<int>& part : parts(A)) {
-    MatrixXd balanced = A(part, part);
-    balance(balanced);
-    const auto solver = converged<Eigen::EigenSolver<MatrixXd>>(balanced, /*vectors=*/false).solver;
+    MatrixXd scaled = A(part, part);
+    similarity_scaling(scaled);
+    const auto solver = converged<Eigen::EigenSolver<MatrixXd>>(scaled, /*vectors=*/false).solver;
     check(A, solver.info());
-    result.segment(first, balanced.rows()) = solver.eigenvalues();
-    first += balanced.rows();
+    result.segment(first, scaled.rows()) = solver.eigenvalues();
+    first += scaled.rows();
   }
   return result;
 }
 
-Eigensystem eigensystem(const MatrixXd& A, VectorXd (*balancing)(MatrixXd&)) {
+Eigensystem eigensystem(const MatrixXd& A, VectorXd (*scaling)(MatrixXd&)) {
   if (A.rows() == 0) return {{}, MatrixXcd(0, 0), MatrixXcd(0, 0), {}, 1};
   check(A, Eigen::Success);
-  MatrixXd balanced = A;
-  const VectorXd d = balancing(balanced);
-  const auto [solver, order] = converged<Eigen::EigenSolver<MatrixXd>>(balanced, /*vectors=*/true);
+  MatrixXd scaled = A;
+  const VectorXd d = scaling(scaled);
+  const auto [solver, order] = converged<Eigen::EigenSolver<MatrixXd>>(scaled, /*vectors=*/true);
   check(A, solver.info());
   Eigensystem result;
   result.values = solver.eigenvalues();

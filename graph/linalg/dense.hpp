@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 #include <complex>
-#include <titop/graph/linalg/balance.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 
 /// Dense solutions and eigenvalues with scaling and estimates of their conditioning.
 namespace titop::linalg {
@@ -25,20 +25,21 @@ struct Inverse {
 };
 Inverse inverse(const Eigen::MatrixXd& M);
 
-/// Eigenvalues of a real square matrix: of each of its parts separately (linalg/balance.hpp), after
-/// balancing by powers of two. O(n^3).
-/// Throws not_finite for entries that are not; singular if the iteration does not converge.
+/// Eigenvalues of a real square matrix: of each of its parts separately, after a similarity scaling
+/// by powers of two (linalg/similarity_scaling.hpp). O(n^3). Throws not_finite for entries that are
+/// not; singular if the iteration does not converge.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& A);
 
 /// Eigenvalues with right vectors V (columns, norm 1) and left vectors W = V^-1 (rows).
 struct Eigensystem {
   Eigen::VectorXcd values;
   Eigen::MatrixXcd V, W;
-  Eigen::VectorXd scale;  ///< the states' own sizes, by `balancing` (powers of two)
+  Eigen::VectorXd scale;  ///< the states' own sizes, by `scaling` (powers of two)
   double rcond_V = 0;     ///< reciprocal condition number of V: near 0 if A is near defective
 };
-/// `balancing`: balance keeps small eigenvalues sharpest, balance_parts the coupling of parts.
+/// `scaling`: similarity_scaling keeps small eigenvalues sharpest, similarity_scaling_of_parts the
+/// coupling of parts.
 Eigensystem eigensystem(const Eigen::MatrixXd& A,
-                        Eigen::VectorXd (*balancing)(Eigen::MatrixXd&) = balance);
+                        Eigen::VectorXd (*scaling)(Eigen::MatrixXd&) = similarity_scaling);
 
 }  // namespace titop::linalg

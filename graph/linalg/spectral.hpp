@@ -24,9 +24,9 @@ struct Spectrum {
 /// the Sylvester equation that separates it from the rest has a solution of Frobenius norm above
 /// `bound`, or while that pole is no further away than 100 roundings of |A|: a Jordan block is
 /// never split, and a multiple pole is one cluster. A pair whose two vectors are parallel up to 1 /
-/// bound, or whose poles are one number, is not simple. `A` should be balanced
-/// (linalg/balance.hpp): norms are those of A's own units. Throws as `schur`. O(25 n^3), and O(n^2)
-/// for each pole that a cluster takes in.
+/// bound, or whose poles are one number, is not simple. `A` should be scaled
+/// (linalg/similarity_scaling.hpp): norms are those of A's own units. Throws as `schur`. O(25 n^3),
+/// and O(n^2) for each pole that a cluster takes in.
 Spectrum spectrum(const Eigen::MatrixXd& A, double bound);
 
 }  // namespace titop::linalg

@@ -168,7 +168,7 @@ TEST_CASE("a one-way block that grows is no fault of the structure that it reads
 }
 
 TEST_CASE("hidden unstable poles are reported") {
-  Diagram d{"twins"};
+  Diagram d{"hidden"};
   auto u = d.input("u");
   // d(x)/dt = x and d(y)/dt = -y; the output depends on y alone.
   auto K = d.add("K", Lti{.A = (Eigen::Matrix2d() << 0, 1, 1, 0).finished(),

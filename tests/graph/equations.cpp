@@ -106,7 +106,7 @@ TEST_CASE("`+=` alone releases a parent point") {
   CHECK(relative(model(d).transfer(kS)(0, 0), Complex(1)) <= 1e-14);
 }
 
-TEST_CASE("where the motion is imposed, `+=` stays in the balance: reaction") {
+TEST_CASE("where the motion is imposed, `+=` stays in the sum of forces: reaction") {
   Diagram d{"locked"};
   auto u = d.input("u");
   auto z1 = d.add("z1", SpringMass{.mass = 5, .stiffness = 500, .parent_mass = 1});

@@ -100,7 +100,7 @@ TEST_CASE("massless: the dependences of many points cost as much for each as tho
     // The row's ends differ from its middle: a tenth for that.
     CHECK(static_cast<double>(many.fronts) <= 1.1 * 16 * static_cast<double>(few.fronts));
     CHECK(static_cast<double>(many.entries) <= 1.1 * 16 * static_cast<double>(few.entries));
-    // A point's dependence is among its own springs and its balance.
+    // A point's dependence is among its own springs and its sum of forces.
     CHECK(many.entries <= 8 * many.points);
   }
 }

@@ -99,7 +99,7 @@ struct Stand {
   }
 
   /// The same by M, D, K: Z are the motions of P that the struts allow. The force in the strut is
-  /// the residual of the body's balance. mu: a point mass in the middle of the strut.
+  /// the residual of the body's sum of forces. mu: a point mass in the middle of the strut.
   MatrixXcd exact(Complex s, double mu = 0, double softer = 1) const {
     const Vector3d e = (about(turns.axis, turns.foot) * about(turns.axis, turns.head)).transpose() *
                        about(turns.axis, turns.foot).col(0);

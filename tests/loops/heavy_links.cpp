@@ -5,8 +5,8 @@
 #include "assembly.hpp"
 #include "support/mistakes.hpp"
 
-/// Over-constrained chains with very different masses: rounding in the balance of the heavy mass is
-/// no internal force that moves it.
+/// Over-constrained chains with very different masses: rounding in the sum of forces of the heavy
+/// mass is no internal force that moves it.
 
 using namespace loops_test;
 using namespace titop;

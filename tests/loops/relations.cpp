@@ -169,7 +169,8 @@ TEST_CASE("scaled relations: no spring, stiff or soft, has a say") {
   }
 }
 
-TEST_CASE("scaled relations are in balance, and a tiny lever, to its last digit, leaves it there") {
+TEST_CASE(
+    "scaled relations are equilibrated, and a tiny lever, to its last digit, leaves it there") {
   const int hinges = 7, tiny = 2;  // one of these at the closing point itself
   std::vector<double> lengths;
   for (const double lever : {0.0, 1e-15, 1e-12, 1e-9, 1e-6}) {

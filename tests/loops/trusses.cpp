@@ -156,14 +156,14 @@ namespace {
 /// The chains of a truss, as pass `chains` meets them.
 struct Chains {
   Stage stage;
-  loops::Twins twins;
+  loops::SumExpander sums;
   loops::Motion motion;
   std::vector<loops::Closing> closings = {};
 
   explicit Chains(const Truss& shape)
       : stage(passes::split(passes::lower(passes::check(as_written(truss(shape).graph()))))),
-        twins(stage.graph),
-        motion(stage.graph, stage.values, twins) {
+        sums(stage.graph),
+        motion(stage.graph, stage.values, sums) {
     for (const auto& tie : motion.ties())
       if (tie.closes) closings.push_back(motion.closing(tie));
   }

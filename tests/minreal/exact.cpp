@@ -48,9 +48,9 @@ Diagram winged(const Rotation& T) {
 }  // namespace
 
 TEST_CASE("five masses: 8 where k4/m4 = k5/m5, decided exactly; 10 one ulp beside it") {
-  const ExactOrder twins = exact_order(five(130).graph());
-  CHECK(twins.decided);
-  CHECK(twins.order == 8);
+  const ExactOrder equal = exact_order(five(130).graph());
+  CHECK(equal.decided);
+  CHECK(equal.order == 8);
   CHECK(exact_order(five(std::nextafter(130, 200)).graph()).order == 10);
   CHECK(exact_order(five(std::nextafter(130, 0)).graph()).order == 10);
   CHECK(exact_order(five(170).graph()).order == 10);

@@ -205,10 +205,10 @@ TEST_CASE("in other units of states, inputs, outputs and time the same integrato
 }
 
 TEST_CASE("two integrators that are one but for their last places: undecided, and both stay") {
-  const auto twins = [](double off) {
+  const auto pair = [](double off) {
     return minimize(model(MatrixXd::Zero(2, 2), MatrixXd{{1, 2}, {1, 2 + off}}, MatrixXd{{1, 1}}));
   };
-  const Minimized equal = twins(0), near = twins(1e-13), apart = twins(1e-6);
+  const Minimized equal = pair(0), near = pair(1e-13), apart = pair(1e-6);
   CHECK(equal.model.order() == 1);
   CHECK(equal.order.decided());
   CHECK(near.order.lowest <= 1);

@@ -136,10 +136,10 @@ TEST_CASE("a state removed by a wrong exact order is restored, with the change m
 
 TEST_CASE("poles at 0: ranks show how many are needed") {
   // Two integrators of one input, added up: one will do.
-  const Minimized twins =
+  const Minimized both =
       minimize(model(MatrixXd::Zero(2, 2), MatrixXd::Ones(2, 1), MatrixXd::Ones(1, 2)));
-  CHECK(twins.model.order() == 1);
-  CHECK(twins.order.decided());
+  CHECK(both.model.order() == 1);
+  CHECK(both.order.decided());
   // Two that act on another pole: 2 / (s (s + 2)).
   const Minimized inner = minimize(model(MatrixXd{{0, 0, 0}, {0, 0, 0}, {1, 1, -2}},
                                          MatrixXd{{1}, {1}, {0}}, MatrixXd{{0, 0, 1}}));

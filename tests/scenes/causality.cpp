@@ -45,8 +45,8 @@ using MatrixXl = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
 
 /// In long double, since at low frequency stiffness hides the inertia under test.
 ///
-/// Unknowns [x_P; q; F_C; F_P] of the balance s^2 M x + K x = S'F_C - E'F_P, and the imposed
-/// signals.
+/// Unknowns [x_P; q; F_C; F_P] of the equation of motion s^2 M x + K x = S'F_C - E'F_P, and the
+/// imposed signals.
 MatrixXcd direct(const by_hand::Beam& beam, Imposed imposed, Complex s) {
   const by_hand::FreeBeam fe = by_hand::free_beam(beam);
   const Index n = fe.M.rows();

@@ -217,7 +217,7 @@ class Assembly {
     }
   }
 
-  /// Driven accelerations, and the balance of forces in all other directions.
+  /// Driven accelerations, and the sum of forces in all other directions.
   void add_channel(const titop::Channel& channel) {
     MatrixXd driven(0, channel.size);
     for (const Equation& e : g_.equations) {

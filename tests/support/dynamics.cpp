@@ -54,7 +54,7 @@ Eigen::MatrixXcd direct_transfer(const titop::fe::Mesh& mesh, const std::string&
   const MatrixC Sc = S.template cast<C>(), Rc = R.template cast<C>();
   G.topRows(m) = s * s * Sc * q;
   G.topRightCorner(m, 6) += Sc * Rc;
-  // F_A/P = -R'(inertia of the whole) + R'F: balance of the body, all reduced at P.
+  // F_A/P = -R'(inertia of the whole) + R'F: equation of motion of the body, all reduced at P.
   G.bottomRows(6) = -Rc.transpose() * (s * s * M.template cast<C>() * q);
   G.bottomLeftCorner(6, m) += Rc.transpose() * Sc.transpose();
   G.bottomRightCorner(6, 6) -= Rc.transpose() * M.template cast<C>() * Rc;

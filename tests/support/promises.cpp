@@ -92,8 +92,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-/// All relations of bodies and equations between positions, as rows over: twins of all signals,
-/// then all states. States of modes in units of 1/omega.
+/// All relations of bodies and equations between positions, as rows over: positions in place of
+/// all signals, then all states. States of modes in units of 1/omega.
 struct Constraints {
   const Graph& g;
   std::vector<Index> column;  ///< per signal; states too

@@ -105,7 +105,8 @@ Amount Lowering::own_motion(int channel) const {
   return {{c.accel, I, I.array() != 0}};
 }
 
-/// Accelerations in a twin become the outputs of their Integrators; missing ones are noted.
+/// Accelerations in a position or rate become the outputs of their Integrators; missing ones are
+/// noted.
 Amount Lowering::integrated(Amount sum, Level level) {
   Amount result;
   for (Summand& p : sum) {
@@ -171,7 +172,7 @@ Amount Lowering::terms(const std::vector<Term>& list) {
     const int channel = g.signals[at(t.signal)].channel;
     if (t.of == Term::Of::position || t.of == Term::Of::rate) {
       const Level level = t.of == Term::Of::rate ? Level::rate : Level::position;
-      append(sum, integrated(times(c, structure(g, t), twin(channel, level)), level));
+      append(sum, integrated(times(c, structure(g, t), motion(channel, level)), level));
       continue;
     }
     if (t.of == Term::Of::reaction) append(sum, times(-c, added_to(channel)));
@@ -182,7 +183,7 @@ Amount Lowering::terms(const std::vector<Term>& list) {
 
 /// The position or rate of a channel in terms of states and of motions that are no states: along
 /// the equations that drive accelerations, and through bodies by their kinematics.
-Amount Lowering::twin(int channel, Level level) {
+Amount Lowering::motion(int channel, Level level) {
   const int n = g.channels[at(channel)].size;
   const MatrixXd I = MatrixXd::Identity(n, n);
   Amount sum;
@@ -190,7 +191,7 @@ Amount Lowering::twin(int channel, Level level) {
   return sum;
 }
 
-/// Adds factor * twin. A chain is walked along, however long it is; only if an equation has
+/// Adds factor * motion. A chain is walked along, however long it is; only if an equation has
 /// several terms the way forks.
 void Lowering::walk(Amount& sum, WayPoint at_channel, Level level) {
   std::vector<int> way;

@@ -77,7 +77,7 @@ struct Lowering {
   Amount algebraic(int output);
   /// All rows of amount(origin), whether they count or not.
   Amount all_rows(const Origin& origin);
-  Amount twin(int channel, Level level);
+  Amount motion(int channel, Level level);
   /// A point on the way, and the factor of its motion.
   struct WayPoint {
     int channel;

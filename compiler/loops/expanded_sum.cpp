@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <titop/compiler/loops/twin.hpp>
+#include <titop/compiler/loops/expanded_sum.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 namespace titop::loops {
@@ -14,17 +14,18 @@ void put(std::map<int, Eigen::MatrixXd>& to, int key, const Eigen::MatrixXd& mat
 
 }  // namespace
 
-Twins::Twins(const Graph& graph) : g_(graph), equation_of_(graph.signals.size(), -1) {
+SumExpander::SumExpander(const Graph& graph) : g_(graph), equation_of_(graph.signals.size(), -1) {
   for (int e = 0; e < static_cast<int>(graph.equations.size()); ++e)
     if (const int target = graph.equations[at(e)].target; graph.signals[at(target)].channel < 0)
       equation_of_[at(target)] = e;
 }
 
-bool Twins::is_integrator(int node) const {
+bool SumExpander::is_integrator(int node) const {
   return node >= 0 && g_.nodes[at(node)].block->type() == "Integrator";
 }
 
-void Twins::add(Twin& to, const Eigen::MatrixXd& factor, int signal, std::vector<int>& way) const {
+void SumExpander::add(ExpandedSum& to, const Eigen::MatrixXd& factor, int signal,
+                      std::vector<int>& way) const {
   if (factor.isZero(0)) return;
   const Signal& s = g_.signals[at(signal)];
   if (s.channel >= 0 && s.quantity == Quantity::acceleration)
@@ -48,16 +49,16 @@ void Twins::add(Twin& to, const Eigen::MatrixXd& factor, int signal, std::vector
     put(to.others, signal, factor);
 }
 
-Twin Twins::of(const std::vector<Term>& terms) const {
-  Twin result;
+ExpandedSum SumExpander::of(const std::vector<Term>& terms) const {
+  ExpandedSum result;
   std::vector<int> way;
   for (const Term& t : terms) add(result, coefficient(g_, t, {}), t.signal, way);
   return result;
 }
 
-Twin Twins::of_input(int signal) const {
+ExpandedSum SumExpander::of_input(int signal) const {
   const int e = equation_of_[at(signal)];
-  return e < 0 ? Twin{} : of(g_.equations[at(e)].terms);
+  return e < 0 ? ExpandedSum{} : of(g_.equations[at(e)].terms);
 }
 
 }  // namespace titop::loops

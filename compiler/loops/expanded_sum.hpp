@@ -6,29 +6,29 @@
 
 namespace titop::loops {
 
-/// A sum of signals at position level: points of bodies, and other signals.
-struct Twin {
-  std::map<int, Eigen::MatrixXd> points;     ///< channel -> coefficient of its position
+/// A sum of accelerations and other signals, by their kinds. As a sum of positions it has the same
+/// coefficients.
+struct ExpandedSum {
+  std::map<int, Eigen::MatrixXd> points;     ///< channel -> coefficient of its acceleration
   std::map<int, Eigen::MatrixXd> rates;      ///< one-way output of a velocity -> coefficient
   std::map<int, Eigen::MatrixXd> integrals;  ///< output of an Integrator -> coefficient
   std::map<int, Eigen::MatrixXd> states;     ///< state signal -> coefficient
   std::map<int, Eigen::MatrixXd> others;     ///< any other signal: an input, a controller, a force
 };
 
-/// The twins of a lowered graph's sums: the same sums with positions in place of accelerations.
-/// Gains and sums, which are equations by now, are followed through.
-class Twins {
+/// Expands the sums of a lowered graph: substitutes the equations of gains and sums.
+class SumExpander {
  public:
-  explicit Twins(const Graph& graph);
+  explicit SumExpander(const Graph& graph);
   /// O(its terms, counted along every way through gains and sums).
-  Twin of(const std::vector<Term>& terms) const;
-  /// Twin of the input of a one-way port, by its equation.
-  Twin of_input(int signal) const;
+  ExpandedSum of(const std::vector<Term>& terms) const;
+  /// The input of a one-way port, by its equation.
+  ExpandedSum of_input(int signal) const;
   bool is_integrator(int node) const;
 
  private:
-  /// `way`: the gains and sums that are being followed through.
-  void add(Twin& to, const Eigen::MatrixXd& factor, int signal, std::vector<int>& way) const;
+  /// `way`: the gains and sums that are being substituted.
+  void add(ExpandedSum& to, const Eigen::MatrixXd& factor, int signal, std::vector<int>& way) const;
 
   const Graph& g_;
   std::vector<int> equation_of_;  ///< of one-way targets and outputs of lowered nodes; -1: none

@@ -2,9 +2,9 @@
 #include <boost/graph/adjacency_list.hpp>
 #include <boost/graph/strong_components.hpp>
 #include <cmath>
-#include <titop/graph/linalg/balance.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 #include <vector>
 
 namespace titop::linalg {
@@ -115,13 +115,13 @@ void fit_between(MatrixXd& A, VectorXd& d, const std::vector<std::vector<int>>& 
 
 }  // namespace
 
-VectorXd balance(MatrixXd& A) {
+VectorXd similarity_scaling(MatrixXd& A) {
   VectorXd d = VectorXd::Ones(A.rows());
   if (A.allFinite()) sweep(A, d);
   return d;
 }
 
-VectorXd balance_parts(MatrixXd& A) {
+VectorXd similarity_scaling_of_parts(MatrixXd& A) {
   VectorXd d = VectorXd::Ones(A.rows());
   if (!A.allFinite()) return d;
   const std::vector<std::vector<int>> sets = parts(A);

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+namespace titop::linalg {
+
+/// Diagonal similarity by powers of two that gives row and column i of A (n x n) equal norms, in
+/// place: returns d with A_new = diag(d)^-1 A diag(d) (LAPACK's gebal) [Parlett, Reinsch 1969]. A
+/// matrix with entries that are not finite is unchanged. O(n^2).
+Eigen::VectorXd similarity_scaling(Eigen::MatrixXd& A);
+
+/// Likewise, to the same result in all units of states and time, up to factors of about 2. States
+/// that all act on one another: by the sweeps of `similarity_scaling`, which end early if units are
+/// far apart, after a fit of logarithms [Curtis, Reid 1972]. Parts coupled in one direction only,
+/// for which sweeps do not converge, are scaled so that the coupling entries are about as large as
+/// the largest within a part: needed for vectors, not for eigenvalues. O(n^3 / 3).
+Eigen::VectorXd similarity_scaling_of_parts(Eigen::MatrixXd& A);
+
+/// Sets of states that all act on one another, directly or through others (the strong components of
+/// A's pattern of entries other than 0): the eigenvalues of A are those of its parts. O(n^2).
+std::vector<std::vector<int>> parts(const Eigen::MatrixXd& A);
+
+}  // namespace titop::linalg
