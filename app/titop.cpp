@@ -25,31 +25,31 @@ namespace fs = std::filesystem;
 using namespace titop;
 
 constexpr const char* kUsage = R"(usage:
-  titop check SCENE.json                 compiles, says how many states, inputs and outputs
-  titop compile SCENE.json               log, poles and certificate
-  titop certify SCENE.json               the full certificate; as JSON, too, with -o
-  titop draw SCENE.json FILE             the diagram: FILE.dot, text for Graphviz; drawn by it:
-                                         FILE.svg, FILE.png, FILE.pdf
-  titop draw --compiled SCENE.json FILE  the same after all passes
-  titop report SCENE.json                one HTML page for reading and printing: SCENE.html, or -o
-  titop export SCENE.json FILE           the model; what is written follows from FILE:
-      NAME.hpp     C++17 header, and beside it NAME_test.cpp that proves it
+  titop check DIAGRAM.json                 compiles; prints the numbers of states, inputs, outputs
+  titop compile DIAGRAM.json               log, poles and certificate
+  titop certify DIAGRAM.json               the full certificate; with -o also as JSON
+  titop draw DIAGRAM.json FILE             the diagram: FILE.dot, text for Graphviz; drawn by it:
+                                           FILE.svg, FILE.png, FILE.pdf
+  titop draw --compiled DIAGRAM.json FILE  the same after all passes
+  titop report DIAGRAM.json                one HTML page to read and print: DIAGRAM.html, or -o
+  titop export DIAGRAM.json FILE           the model in the format of FILE's extension:
+      NAME.hpp     C++17 header, and its test NAME_test.cpp
       NAME.m       MATLAB or Octave function
       NAME.py      Python module, and its arrays NAME_A.npy ...
-      FILE.json    all there is, with poles, certificate and notes
+      FILE.json    the model with its poles, certificate and notes
       FILE.csv     frequency response; needs --omega
 options:
-  --fold COUNT                           draw, report: at most so many boxes, each whole subtrees;
-                                         draw: all if left out; report: 40, 0 for all
-  -o FILE                                report: where to; certify: also a FILE for programs
-  --band LOW HIGH                        report: of the frequency responses, Hz
-  --until SECONDS                        report: of the step responses
-  --no-diagrams                          report: without drawings, which need Graphviz
-  --sample-time SECONDS                  for .hpp: also `step`
-  --omega LOW HIGH COUNT                 for .csv: rad/s, logarithmic
-  --minimize-up-to STATES                100 if left out; 0: never
-exit code: 0 done, 1 refused (errors on stderr), 2 not understood,
-           3 certify: something does not hold (the lines that begin with FAULT)
+  --fold COUNT                             draw, report: at most so many boxes, each whole subtrees;
+                                           draw: all if left out; report: 40, 0 for all
+  -o FILE                                  report: the HTML file; certify: also writes JSON
+  --band LOW HIGH                          report: of the frequency responses, Hz
+  --until SECONDS                          report: of the step responses
+  --no-diagrams                            report: without drawings, which need Graphviz
+  --sample-time SECONDS                    for .hpp: also `step`
+  --omega LOW HIGH COUNT                   for .csv: rad/s, logarithmic
+  --minimize-up-to STATES                  100 if left out; 0: never
+exit code: 0 done, 1 refused (errors on stderr), 2 invalid command line,
+           3 certify: a check failed (the lines that begin with FAULT)
 )";
 
 /// The command line.
@@ -209,7 +209,7 @@ void report(const Arguments& a) {
 }
 
 constexpr const char* kKeepDigits =
-    "  frequency responses keep the digits (titop export SCENE.json FILE.csv), in C++ also\n"
+    "  frequency responses keep the digits (titop export DIAGRAM.json FILE.csv), in C++ also\n"
     "  System::transfer, apply and simulate; for the band that matters there may be a small model\n"
     "  that keeps them: compile(d, Scene{.band_hz = {LOW, HIGH}})\n";
 

@@ -100,7 +100,7 @@ void command(const std::vector<std::string>& all) {
   const bool family_given = std::find(all.begin(), all.end(), "--family") != all.end();
   if (!family_given && needs_space(options.mistake)) options.family = Family::spatial;
   if (files.size() != 1 || files[0].extension() != ".json")
-    throw std::invalid_argument("generate takes one file, SCENE.json");
+    throw std::invalid_argument("generate takes one file, DIAGRAM.json");
   const Generated g = generate(options);
   const std::filesystem::path folder = files[0].parent_path();
   const std::string name = files[0].stem().string();

@@ -6,15 +6,16 @@
 namespace titop::generate {
 
 inline constexpr const char* kUsage =
-    R"(  titop generate SCENE.json              a random scene, its answer SCENE.answer.json by equations
-                                         assembled by hand, and SCENE_test.cpp that compares:
-      --seed N                           the same number, the same scene; 1
-      --family scalar|spatial            spring-masses, or bodies and joints in space;
-                                         left out: scalar, or what the mistake needs
-      --shape chain|tree|star            --bodies N    --loops N
-      --damping none|some|all            --stiffness LOW HIGH    powers of two
-      --no-controllers                   --twins                 parts that swing alike
-      --mistake CODE                     planted: no-equation, frame, improper ...
+    R"(  titop generate DIAGRAM.json              a random diagram; DIAGRAM.answer.json: its answer by
+                                           equations assembled by hand; DIAGRAM_test.cpp: a
+                                           test that compares both
+      --seed N                             equal numbers give equal diagrams; 1 if left out
+      --family scalar|spatial              spring-masses, or bodies and joints in space;
+                                           if left out: scalar, or as the mistake requires
+      --shape chain|tree|star              --bodies N    --loops N
+      --damping none|some|all              --stiffness LOW HIGH    powers of two
+      --no-controllers                     --twins       equal bodies in pairs
+      --mistake CODE                       planted: no-equation, frame, improper ...
 )";
 
 /// `titop generate`. Throws std::invalid_argument for unknown words, Error (bad_file) if it cannot

@@ -180,7 +180,7 @@ TEST_CASE("export reports on stderr the digits lost by A, B, C, D, and how to ke
     CAPTURE(file);
     const Run r = shell.titop(std::string("export uneven.json ") + file);
     for (const std::string& text : warnings) CHECK(has(r.err, "warning: " + text + "\n"));
-    CHECK(has(r.err, "export SCENE.json FILE.csv"));
+    CHECK(has(r.err, "export DIAGRAM.json FILE.csv"));
     CHECK(has(r.err, "compile(d, Scene{.band_hz"));
     CHECK(r.out.empty());
   }
@@ -247,7 +247,7 @@ TEST_CASE("who asks for help gets the usage on stdout") {
     const Run r = shell.titop(words);
     CHECK(r.code == 0);
     CHECK(has(r.out, "usage:"));
-    CHECK(has(r.out, "titop generate SCENE.json"));
+    CHECK(has(r.out, "titop generate DIAGRAM.json"));
     CHECK(r.err.empty());
   }
 }
