@@ -14,9 +14,8 @@ namespace titop::loops {
 /// is the part of their brackets outside the span, over the sum of the brackets' sizes: rounding
 /// for over-constrained chains that still move (a linkage in a plane), about 1 at a singular
 /// posture. 0 if nothing is redundant. -1, not tried: closing equations of fewer than six rows, or
-/// through prescribed or entirely free motions; more than 20 chains that share joints. Source:
-/// [Mueller 2002], mobility of higher order. O(rows^2 columns) of the component's matrix: linear in
-/// the length of a chain.
+/// through prescribed or entirely free motions; more than 20 chains that share joints. O(rows^2
+/// columns) of the component's matrix: linear in the length of a chain.
 ///
 /// `closings`: those of the component's lines, in this order; `scaled`, by `factors`.
 double stopped(const Component& scaled, const ScaleFactors& factors,
