@@ -20,7 +20,7 @@ double backward_error(const Plan& plan, const RowMatrix<T>& residual,
 /// A row of k products, each of up to three factors, has an error of up to (k + 4) units of its
 /// terms, and the solution itself, once refined in the same arithmetic, as much again [Skeel 1980;
 /// N. J. Higham, Accuracy and Stability of Numerical Algorithms, 3.1 and 12.1]; a complex product
-/// has up to 2 sqrt(2) units. With growth in the factors it is 0.8 to 0.99, in any precision.
+/// has up to 2 sqrt(2) units.
 double backward_error_of_rounding(const Plan& plan, double epsilon);
 
 /// Solution by the factors alone, if the caller measures its losses; or refined.
