@@ -4,6 +4,7 @@
 #include <span>
 #include <titop/compiler/certificate/doubt.hpp>
 #include <titop/compiler/certificate/residual.hpp>
+#include <titop/compiler/certificate/surroundings.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
 #include <titop/graph/linalg/index.hpp>
 

@@ -32,31 +32,4 @@ struct WrittenResidual {
 /// its kind in over-constrained chains. Values that are not finite count as 1. O(terms).
 WrittenResidual written_residual(const Factored& d, const Signals& signals);
 
-/// Possible rounding of a 0, relative to its Surroundings: some hundred units of the last place,
-/// since it comes from sums over a front.
-inline constexpr double kLeftOfZero = 1e-13;
-
-/// Size around an unknown in the elimination, in the unknown's own unit (by the scaling of the
-/// fronts' columns): the largest of its front; if all that the front shares with its parent is
-/// rounding of a 0 there, as behind a gain of 0, the front may be rounding, too, and the parent's
-/// magnitude is used. Of the joint system as written.
-class Surroundings {
- public:
-  /// One column of unknowns, which must outlive this object.
-  Surroundings(const Factored& data, const solve::RowMatrix<double>& unknowns)
-      : d_(data), unknowns_(unknowns) {}
-
-  /// Around an entry of a signal in terms of unknowns; 0 of a known one. O(1), once O(unknowns).
-  double size(int signal, Eigen::Index entry);
-
- private:
-  double of_variable(int variable, Eigen::Index entry);
-  /// Once that of its parent is known.
-  double of_front(const solve::Front& front) const;
-
-  const Factored& d_;
-  const solve::RowMatrix<double>& unknowns_;
-  std::vector<double> sizes_ = {};  ///< per front, in the scale of its columns
-};
-
 }  // namespace titop::detail

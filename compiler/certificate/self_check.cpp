@@ -9,6 +9,7 @@
 #include <titop/compiler/certificate/doubt.hpp>
 #include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/certificate/self_check.hpp>
+#include <titop/compiler/certificate/surroundings.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
 #include <titop/compiler/solve/frequency.hpp>
 #include <titop/compiler/solve/instant.hpp>
