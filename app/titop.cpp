@@ -147,7 +147,7 @@ Arguments parse(const std::vector<std::string>& all) {
 }
 
 Misuse unknown_ending(const Arguments& a) {
-  return {fmt::format("'{}' ends in none of the known ways", a.words[2])};
+  return {fmt::format("'{}' has an unknown extension", a.words[2])};
 }
 
 System compiled(const Arguments& a) {
@@ -181,7 +181,7 @@ std::string drawn(const std::string& text, const std::string& file, const std::s
   const report::Finished dot = report::run({"dot", "-T" + format}, text);
   if (dot.found && dot.code == 0) return dot.out;
   const std::string why =
-      dot.found ? fmt::format("dot ends with {}", dot.code) : "the program dot is not there";
+      dot.found ? fmt::format("dot ends with {}", dot.code) : "the program dot is not installed";
   throw Error(
       Code::bad_file, fmt::format("{}: cannot be drawn: {}", file, why),
       fmt::format("install Graphviz (Debian package graphviz), or write a FILE.dot and draw "
@@ -210,8 +210,8 @@ void report(const Arguments& a) {
 
 constexpr const char* kKeepDigits =
     "  frequency responses keep the digits (titop export DIAGRAM.json FILE.csv), in C++ also\n"
-    "  System::transfer, apply and simulate; for the band that matters there may be a small model\n"
-    "  that keeps them: compile(d, Scene{.band_hz = {LOW, HIGH}})\n";
+    "  System::transfer, apply and simulate; a reduced model of the required band may keep them:\n"
+    "  compile(d, Scene{.band_hz = {LOW, HIGH}})\n";
 
 /// The log is not printed by an export.
 void warn_of_lost_digits(const System& system) {
@@ -261,13 +261,13 @@ void check_words(const Command& command, const Arguments& a) {
     options = kind == ".hpp" ? kHeader : kind == ".csv" ? kResponse : kModel;
   for (const std::string& option : a.given)
     if (options.find(" " + option + " ") == std::string_view::npos)
-      throw Misuse{fmt::format("{}{} does nothing with {}", command.name,
+      throw Misuse{fmt::format("{}{} does not have the option {}", command.name,
                                kind.empty() ? "" : " to a file " + kind, option)};
   std::vector<std::string> written(a.words.begin() + 2, a.words.end());
   if (!a.to.empty()) written.push_back(a.to);
   for (const std::string& to : written)
     if (std::error_code none; fs::equivalent(to, a.words[1], none))
-      throw Misuse{fmt::format("{} is the scene itself: write to another file", to)};
+      throw Misuse{fmt::format("{} is the diagram's own file: write to another one", to)};
 }
 
 template <void (*F)(const Arguments&)>
@@ -318,11 +318,11 @@ int run(const std::vector<std::string>& all) {
 int main(int argc, char** argv) try {
   const int code = run({argv + 1, argv + argc});
   if (std::fflush(stdout) != 0 || std::ferror(stdout))
-    throw Error(Code::bad_file, "standard output: not all could be written",
+    throw Error(Code::bad_file, "standard output could not be written completely",
                 "check that its disk is not full and that its reader stays to the end");
   return code;
 } catch (const Misuse& misuse) {
-  std::fputs(fmt::format("titop: {}\ntitop --help says what there is\n", misuse.subject).c_str(),
+  std::fputs(fmt::format("titop: {}\ntitop --help prints the usage\n", misuse.subject).c_str(),
              stderr);
   return 2;
 } catch (const std::exception& error) {

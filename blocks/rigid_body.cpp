@@ -41,9 +41,9 @@ void check_inertia(double mass, const Matrix3d& inertia) {
   if (I(2) > (I(0) + I(1)) * (1 + 1e-9))
     throw Error(
         Code::bad_inertia,
-        fmt::format("principal moments {:.6g}, {:.6g} and {:.6g} kg m^2 break the triangle "
-                    "inequality",
-                    I(0), I(1), I(2)),
+        fmt::format(
+            "principal moments {:.6g}, {:.6g} and {:.6g} kg m^2 violate the triangle inequality",
+            I(0), I(1), I(2)),
         "no mass distribution has them: the largest may not exceed the sum of the others; is "
         "the inertia really about the centre of mass?");
 }

@@ -49,8 +49,7 @@ int main() {
                     .band_hz = {0, 100},
                     .accuracy = 1e-3};
   const ReducedSystem r = compile(d, scene);
-  std::printf("%s: %d states answer what %d states were asked\n", d.name().c_str(), r.order(),
-              r.full().order());
+  std::printf("%s: %d states instead of %d\n", d.name().c_str(), r.order(), r.full().order());
   for (const ReductionStep& s : r.steps())
     std::printf("  %s: %d -> %d coordinates, %s\n", s.name.c_str(), s.before, s.after,
                 s.error == 0 ? "exact" : s.text.c_str());

@@ -89,8 +89,7 @@ int main() {
   const Diagram d = controlled(beam);
   const Scene scene{.band_hz = {0, 20}, .accuracy = 1e-3};
   const ReducedSystem r = compile(d, scene);
-  std::printf("%s: %d states answer what %d states were asked\n", d.name().c_str(), r.order(),
-              r.full().order());
+  std::printf("%s: %d states instead of %d\n", d.name().c_str(), r.order(), r.full().order());
   for (const ReductionStep& s : r.steps())
     std::printf("  %s: %d -> %d\n    %s\n", s.name.c_str(), s.before, s.after, s.text.c_str());
   bool ok = r.bound().worst <= scene.accuracy;

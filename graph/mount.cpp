@@ -56,11 +56,11 @@ Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::
       std::any_of(graph->nodes.begin(), graph->nodes.end(), is_it))
     graph->mistakes.push_back(
         {Code::frame,
-         fmt::format("{} takes a rotation from {} to {}, and what it holds is {}", joint,
-                     T_ba.from(), T_ba.to().empty() ? "a frame without a name" : T_ba.to(),
+         fmt::format("{} takes a rotation from {} to {}, but carries {}", joint, T_ba.from(),
+                     T_ba.to().empty() ? "a frame without a name" : T_ba.to(),
                      body.empty() ? "without a frame" : body),
          {"written at " + to_string(at)},
-         "give the rotation of the body that hangs there, or none of the names"});
+         "give the rotation of the mounted body, or a rotation without names"});
   return T_ba.named(T_ba.to(), joint);
 }
 

@@ -208,23 +208,20 @@ void list_faults(const Graph& source, FullCertificate& c) {
   if (c.order.removed.empty() &&
       c.order.change > 0)  // put back (compiler/system/minimal_model.cpp)
     c.faults.push_back(
-        fmt::format("modes judged to do nothing change the transfer by {:.1e} when they leave",
+        fmt::format("removing modes that were judged without effect changes the transfer by {:.1e}",
                     c.order.change));
   fault(c.poles.error, certification::kPoleHolds,
         "poles of the dense model differ from the factors' by");
   if (c.passivity.structure) {
-    fault(-c.passivity.least, certification::kPassive, "energy comes out of a structure:");
+    fault(-c.passivity.least, certification::kPassive, "a structure is not passive, by");
     if (c.poles.right > 0 && certification::has_poles_of_bodies_only(source))
       c.faults.push_back(
-          fmt::format("{} poles of a structure lie right of the axis, the worst by "
-                      "{:.1e} of its size",
+          fmt::format("{} poles of a structure lie right of the axis, Re(s) / |s| up to {:.1e}",
                       c.poles.right, c.poles.rightmost.real() / std::abs(c.poles.rightmost)));
   }
   if (const auto& r = c.reciprocity; r.structure)
     fault(r.asymmetry, certification::kReciprocal,
-          fmt::format("forces {} and {} on a structure do not move each other alike (reciprocity), "
-                      "by",
-                      r.first, r.second));
+          fmt::format("forces {} and {} on a structure are not reciprocal, by", r.first, r.second));
   if (c.exact.decided && c.order.judged &&
       (c.exact.order < c.order.lowest || c.exact.order > c.order.highest))
     c.faults.push_back(fmt::format("the minimal order is {}, not between {} and {}", c.exact.order,
@@ -235,14 +232,14 @@ void list_faults(const Graph& source, FullCertificate& c) {
 
 std::vector<std::string> certification::basic_faults(const Certificate& c, double dense) {
   const std::string way_out =
-      "; System::transfer and apply keep the digits, and so do simulate by Stepper::midpoint and a "
-      "model of the band that matters, compile(d, Scene{.band_hz = {low, high}})";
+      "; System::transfer, apply and simulate by Stepper::midpoint keep the digits, and so does a "
+      "model of the required band, compile(d, Scene{.band_hz = {low, high}})";
   std::vector<std::string> faults;
-  judge(faults, c.residual, kHolds, "equations as written hold only to");
+  judge(faults, c.residual, kHolds, "equations as written are satisfied only to");
   judge(faults, c.dense_against_factors, kHolds, "the dense model differs from the factors by");
   judge(faults, c.dense_error, kDenseHolds,
         fmt::format("written as A, B, C, D the model loses digits: at s = {:.3g}{:+.3g}j outputs "
-                    "change, beside their largest, by",
+                    "change, relative to their largest value, by",
                     c.dense_error_s.real(), c.dense_error_s.imag()),
         way_out);
   judge(faults, dense, kDenseHolds, "the transfer of the dense model differs from the factors' by",
@@ -292,9 +289,9 @@ FullCertificate certify(const System& system, const Full& subject) {
     check_pairs(system, points, factored, growing, c);
   } else {
     if (!transfers)
-      c.grid.why_not = "without inputs, or without outputs, nothing transfers";
+      c.grid.why_not = "without inputs, or without outputs, there is no transfer";
     else if (subject.points <= 0)
-      c.grid.why_not = "no grid is asked for (Full::points)";
+      c.grid.why_not = "no grid is requested (Full::points)";
     c.passivity.why_not = c.reciprocity.why_not = c.grid.why_not;
   }
   list_faults(*system.stage().source, c);
@@ -308,9 +305,9 @@ std::string at_s(Complex s) { return fmt::format("s = {:.3g}{:+.3g}j", s.real(),
 std::string to_string(const FullCertificate::Grid& g) {
   std::string text =
       fmt::format("grid of {} points, {:.3g} to {:.3g} rad/s: ", g.points, g.lowest, g.highest);
-  text += g.done
-              ? fmt::format("dense model as the factors to {:.1e} ({})", g.dense, at_s(g.dense_s))
-              : "dense model not compared: " + g.why_not;
+  text += g.done ? fmt::format("dense model equal to the factors to {:.1e} ({})", g.dense,
+                               at_s(g.dense_s))
+                 : "dense model not compared: " + g.why_not;
   if (g.done && !g.why_not.empty()) text += "; left out: " + g.why_not;
   text += g.written >= 0 ? fmt::format("; equations as written, solved at once, to {:.1e} ({})",
                                        g.written, at_s(g.written_s))
@@ -320,7 +317,7 @@ std::string to_string(const FullCertificate::Grid& g) {
 
 std::string to_string(const FullCertificate::Poles& p) {
   if (!p.done) return "poles not checked: " + p.why_not + "\n";
-  std::string text = fmt::format("{} poles, {} of them as the factors say to {:.1e}", p.count,
+  std::string text = fmt::format("{} poles, {} of them equal to the factors' to {:.1e}", p.count,
                                  p.measured, p.error);
   if (p.measured < p.count)
     text += fmt::format(", {} at 0 or ill-conditioned and not measured", p.count - p.measured);
@@ -353,9 +350,10 @@ std::string to_string(const FullCertificate::Reciprocity& r) {
       fmt::format("{} forces: {}", r.forces,
                   r.asymmetry <= certification::kReciprocal ? "reciprocal" : "not reciprocal");
   if (r.asymmetry > 0)
-    text += fmt::format(" (what {} and {} do where the other acts differs by {:.1e}, {})", r.first,
-                        r.second, r.asymmetry, at_s(r.where));
-  if (!r.structure) text += "; nothing asks for it: " + r.why_no_structure;
+    text +=
+        fmt::format(" (the accelerations at {} and {} due to the other force differ by {:.1e}, {})",
+                    r.first, r.second, r.asymmetry, at_s(r.where));
+  if (!r.structure) text += "; not required: " + r.why_no_structure;
   return text + "\n";
 }
 

@@ -142,7 +142,7 @@ std::string taken_for_nothing(const Graph& g, Connections& all) {
     const std::size_t middle = (first + end) / 2;
     (all.work(first, middle) > kNoWork ? end : first) = middle;
   }
-  return fmt::format("{} takes a motion and does not give its wrench back there",
+  return fmt::format("{} takes the motion of a point and returns no wrench there",
                      channel_name(g, static_cast<int>(first)));
 }
 

@@ -58,7 +58,7 @@ class ByModes : public Reduction {
                     "coordinates, from {} to {} at {:.4g} Hz",
                     accuracy, b.worst, sequence().model(step).order(), b.input, b.output, b.hertz),
         setting_.way_out(b.worst, "whole_up_to", "the modes of the whole"),
-        {fmt::format("most of what is missing moves in {}{}", where_missing(step, b),
+        {fmt::format("most of the missing motion is in {}{}", where_missing(step, b),
                      setting_.bodies.empty() ? "" : "; " + setting_.bodies)});
   }
 

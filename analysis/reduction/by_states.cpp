@@ -86,23 +86,23 @@ class ByStates : public Reduction {
     const auto count = [](Index n) { return static_cast<int>(n); };
     d.steps.push_back(
         {"kept", setting_.model.order(), count(from.integrals() + from.kept() + from.stable()), 0,
-         fmt::format("no M, D, K, for {}; whole are {} integrals and {} states of poles on the "
-                     "axis or right of it ({} unstable){}, {} more neither move nor are seen",
-                     setting_.why, from.integrals(), from.kept(), from.unstable(),
-                     split_.near > kUndamped
-                         ? fmt::format(", with those up to a damping ratio of {:.0e} that cannot "
-                                       "be told apart from them",
-                                       split_.near)
-                         : "",
-                     from.silent())});
+         fmt::format(
+             "no M, D, K, because {}; kept whole: {} integrals and {} states of poles on the axis "
+             "or right of it ({} unstable){}; {} more are unreachable or unobservable",
+             setting_.why, from.integrals(), from.kept(), from.unstable(),
+             split_.near > kUndamped ? fmt::format(", with those up to a damping ratio of {:.0e} "
+                                                   "that cannot be separated from them",
+                                                   split_.near)
+                                     : "",
+             from.silent())});
     d.steps.push_back(
         {"balanced", count(from.stable()), count(choice.order), d.bound.worst,
-         fmt::format("{}, {}: the least error at the least order that does",
+         fmt::format("{}, {}: the least error at the least sufficient order",
                      choice.weighted ? "balanced behind low-passes at the band's end (no bound "
                                        "beforehand)"
                                      : "balanced over the whole axis",
                      choice.truncated ? "truncated (exact at infinite frequency)"
-                                      : "the others at rest (exact at 0 Hz)")});
+                                      : "singular perturbation (exact at 0 Hz)")});
   }
 
   Setting& setting_;

@@ -40,12 +40,13 @@ class SceneReduction {
       throw Error(
           Code::bad_value,
           fmt::format("{} has no {}", graph.name, graph.inputs.empty() ? "input" : "output"),
-          "a scene asks from inputs to outputs: give the diagram both");
+          "a reduced model needs an input and an output: declare both in the diagram");
     compile_model(graph);
     setting_.full = setting_.model;
     setting_.notes = detail::reach_of_data(*setting_.data, scene);
     const int count = (setting_.full.order() + 1) / 2;
-    if (!scene.keep_structure) setting_.why = "the scene asks for balanced states";
+    if (!scene.keep_structure)
+      setting_.why = "the scene requires balanced states (Scene::keep_structure)";
     if (!scene.keep_structure || count <= scene.whole_up_to) reduction_ = read(graph);
     if (!reduction_) reduce_bodies(graph, count);
   }
@@ -95,11 +96,12 @@ class SceneReduction {
   /// samples; if it is too large, fewer modes are dropped.
   void reduce_bodies(const Graph& graph, int count) {
     if (setting_.scene.bound == BoundKind::theorem)
-      throw Error(Code::bad_value,
-                  fmt::format("{} has {} coordinates, and a theorem counts every pole of theirs",
-                              graph.name, count),
-                  fmt::format("raise Scene::{} (the cost grows with its cube), or take an estimate",
-                              setting_.why.empty() ? "whole_up_to" : "balance_up_to"));
+      throw Error(
+          Code::bad_value,
+          fmt::format("{} has {} coordinates: BoundKind::theorem would need all their poles",
+                      graph.name, count),
+          fmt::format("raise Scene::{} (the cost grows with its cube), or use BoundKind::estimate",
+                      setting_.why.empty() ? "whole_up_to" : "balance_up_to"));
     setting_.smaller = true;
     std::vector<detail::ModeEffects> effects;
     setting_.timed(
@@ -132,12 +134,12 @@ class SceneReduction {
 
   [[noreturn]] void refuse_states() const {
     throw Error(Code::bad_value,
-                fmt::format("{} has {} states where its bodies have the fewest that do, more than "
-                            "Scene::balance_up_to = {}",
+                fmt::format("{} has {} states with the fewest modes of its bodies that meet the "
+                            "accuracy, more than Scene::balance_up_to = {}",
                             setting_.full.stage().graph.name, setting_.model.order(),
                             setting_.scene.balance_up_to),
-                "raise it (the cost grows with its cube), ask for less accuracy or a smaller band, "
-                "or take what is no structure out of the scene",
+                "raise it (the cost grows with its cube), lower the accuracy, narrow the band, or "
+                "remove controllers and filters from the scene",
                 {fmt::format("states are balanced because {}", setting_.why), setting_.bodies});
   }
 

@@ -16,7 +16,7 @@ using Eigen::VectorXd;
 
 constexpr double kSymmetric = 1e-7;  ///< of G, relative to its diagonal: rounding of an elimination
 constexpr const char* kWayOut =
-    "take controllers and filters out of the scene (their signals become inputs and outputs), or "
+    "remove controllers and filters from the scene (their signals become inputs and outputs), or "
     "give a spring its own joint";
 
 using linalg::at;
@@ -203,8 +203,8 @@ VectorXd all_stiffnesses(const Raw& raw) {
   const MatrixXd A = raw.A_q(rows, list);
   for (std::size_t i = 0; i < list.size(); ++i)
     if (!(A(static_cast<Index>(i), static_cast<Index>(i)) < 0))
-      refuse(fmt::format("{} is not held by a spring of its own, and yet acts on other states",
-                         raw.name(list[i])));
+      refuse(
+          fmt::format("{} has no spring of its own, but acts on other states", raw.name(list[i])));
   k(list) = stiffnesses(A, raw.known(list));
   if (raw.T.size() == 0) return k;
   MatrixXd G(A.rows(), A.cols());
@@ -228,12 +228,12 @@ VectorXd dampings(const Raw& raw, const VectorXd& k) {
     const double size = v.norm();
     if (size == 0) continue;
     if (q.norm() == 0)
-      refuse(
-          fmt::format("the rate of {} acts on other states, and no spring holds it", raw.name(i)));
+      refuse(fmt::format("the rate of {} acts on other states, and it has no spring", raw.name(i)));
     const double ratio = v.dot(q) / q.squaredNorm();
     if ((v - ratio * q).norm() > kSymmetric * size || ratio < 0)
-      refuse(fmt::format("the rate of {} acts where its spring does not: no damper of its own",
-                         raw.name(i)));
+      refuse(
+          fmt::format("the rate of {} acts on other states than its spring: no proportional damper",
+                      raw.name(i)));
     c(i) = ratio * k(i);
   }
   return c;
@@ -252,11 +252,12 @@ MatrixXd flexibility(const Coordinates& c, const MatrixXd& A_ee) {
     G = solve_definite(c.K, G.transpose()).transpose();
   }
   for (Index i = 0; i < G.rows(); ++i) {
-    if (!(G(i, i) > 0)) refuse(fmt::format("a force on {} moves it backwards", c.names[at(i)]));
+    if (!(G(i, i) > 0))
+      refuse(fmt::format("a force on {} accelerates it in the opposite direction", c.names[at(i)]));
     for (Index j = 0; j < i; ++j) {
       const double off = std::abs(G(i, j) - G(j, i)) / std::sqrt(G(i, i)) / std::sqrt(G(j, j));
       if (!(off <= kSymmetric))
-        refuse(fmt::format("what {} does to {} is not what that does to it", c.names[at(i)],
+        refuse(fmt::format("the coupling of {} and {} is not symmetric", c.names[at(i)],
                            c.names[at(j)]),
                {fmt::format("reciprocal to {:.1g} only", off)});
     }

@@ -22,9 +22,9 @@ std::vector<Note> reach_of_data(const SystemData& data, const Scene& scene) {
     if (highest < needed)
       notes.push_back(
           {Note::Kind::warning, "reduction",
-           fmt::format("the data of {} end at {:.4g} Hz, and the band at {:.4g} Hz: give it its "
-                       "modes up to {:.4g} Hz (more of them, or a finer mesh); the bound is on the "
-                       "reduction, not on what the data leave out",
+           fmt::format("the modes of {} end at {:.4g} Hz, the band at {:.4g} Hz: give it its modes "
+                       "up to {:.4g} Hz (more of them, or a finer mesh); the bound does not "
+                       "contain modes that the data lack",
                        data.graph().nodes[node].name, highest, scene.band_hz[1], needed)});
   }
   return notes;

@@ -34,7 +34,7 @@ std::string to_string(const ReducedSystem& system) {
                                  system.order(), system.full().order());
   const Scene& q = system.scene();
   text += fmt::format(
-      "  asked     {:.1e} of each pair's own peak, {:g} to {:g} Hz, on s = ({:g} + {:.6g} j) "
+      "  required  {:.1e} of each pair's own peak, {:g} to {:g} Hz, on s = ({:g} + {:.6g} j) "
       "omega\n",
       q.accuracy, q.band_hz[0], q.band_hz[1], q.damping_floor,
       std::sqrt(1 - q.damping_floor * q.damping_floor));

@@ -13,7 +13,8 @@ std::size_t Setting::note(const char* name, Eigen::Index before, Eigen::Index af
 void Setting::note_structure(Eigen::Index after) {
   if (steps.empty())
     note("structure", (states + 1) / 2, after,
-         "what the scene's inputs reach and its outputs see, without tied coordinates");
+         "reachable from the scene's inputs and observable at its outputs, without dependent "
+         "coordinates");
 }
 
 void Setting::take_samples(const SampledSpectrum& spectrum) {
@@ -37,17 +38,21 @@ ReducedData Setting::result(Small small, ErrorBound error) const {
 std::string Setting::way_out(double reached, const char* limit, const char* rounding_in) const {
   const std::string less = 2 * reached < 1 ? fmt::format("ask for {:.0e}, or ", 2 * reached) : "";
   return less + (!bodies.empty()
-                     ? fmt::format("raise Scene::{}: what smaller bodies can do ends there", limit)
-                     : fmt::format("use compile(diagram): rounding in {} ends there", rounding_in));
+                     ? fmt::format(
+                           "raise Scene::{}: bodies with fewer modes reach no smaller error", limit)
+                     : fmt::format("use compile(diagram): rounding in {} limits the accuracy",
+                                   rounding_in));
 }
 
 void refuse_size(const Setting& setting, Eigen::Index size) {
   throw Error(Code::bad_value,
               fmt::format("{} has {} coordinates{}, more than Scene::whole_up_to = {}",
                           setting.full.stage().graph.name, size,
-                          setting.bodies.empty() ? "" : " where its bodies have the fewest that do",
+                          setting.bodies.empty()
+                              ? ""
+                              : " with the fewest modes of its bodies that meet the accuracy",
                           setting.scene.whole_up_to),
-              "raise it (the cost grows with its cube), ask for less accuracy or a smaller band",
+              "raise it (the cost grows with its cube), lower the accuracy or narrow the band",
               setting.bodies.empty() ? std::vector<std::string>{} : std::vector{setting.bodies});
 }
 

@@ -48,11 +48,12 @@ std::vector<PortChoice> choose(const List& list, const std::vector<std::string>&
     }
     std::string valid;
     for (const auto& item : list) valid += (valid.empty() ? "" : ", ") + item.name;
-    mistakes.push_back({Code::unknown_name,
-                        fmt::format("the scene asks for {} {}, which is not there", subject, name),
-                        {fmt::format("there are: {}", valid.empty() ? "none" : valid)},
-                        fmt::format("take one of them, or one scalar of it as \"{}(1)\"",
-                                    list.empty() ? "name" : list.front().name)});
+    mistakes.push_back(
+        {Code::unknown_name,
+         fmt::format("the scene has the {} {}, which the diagram does not have", subject, name),
+         {fmt::format("there are: {}", valid.empty() ? "none" : valid)},
+         fmt::format("take one of them, or one scalar of it as \"{}(1)\"",
+                     list.empty() ? "name" : list.front().name)});
   }
   std::vector<PortChoice> result;
   for (int i = 0; i < static_cast<int>(list.size()); ++i) {

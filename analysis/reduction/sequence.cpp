@@ -49,7 +49,7 @@ MatrixXcd difference(const Samples& full, const MatrixXcd& Hr, std::size_t k) {
   MatrixXcd d = full.H[k] - Hr;
   if (!d.allFinite())
     throw Error(Code::not_finite,
-                fmt::format("the transfer that the scene asks for is not finite at {:.4g} Hz",
+                fmt::format("the transfer of the scene is not finite at {:.4g} Hz",
                             full.omega[k] / (2 * std::numbers::pi)),
                 "numbers overflow there: look for stiffnesses and masses that are far too large or "
                 "too small, or take other units");

@@ -127,14 +127,13 @@ class Core {
     linalg::Schur s = schur_;
     linalg::reorder(s, first);
     s.Q.col(0).cwiseAbs().maxCoeff(&state);
-    return Error(
-        Code::singular,
-        fmt::format("{} moves in a pole at {:.3g}{:+.3g}j, which cannot be told from those "
-                    "on the axis",
-                    names_[static_cast<std::size_t>(state)], pole(nearest).real(),
-                    pole(nearest).imag()),
-        "they depend on each other too closely to be reduced apart: leave out the outputs "
-        "that read it, or use compile(diagram)");
+    return Error(Code::singular,
+                 fmt::format("{} has most of a pole at {:.3g}{:+.3g}j, which cannot be separated "
+                             "from those on the axis",
+                             names_[static_cast<std::size_t>(state)], pole(nearest).real(),
+                             pole(nearest).imag()),
+                 "their eigenvectors are nearly dependent: leave out the outputs that read it, or "
+                 "use compile(diagram)");
   }
 
   MatrixXd A_;

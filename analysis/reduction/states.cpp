@@ -26,7 +26,7 @@ RealModes integrators(const MatrixXd& N) {
   if (n == 0) return {MatrixXd(0, 0), {}, {}};
   if (!(N * N).isZero(1e-12 * N.squaredNorm()))
     throw Error(Code::singular,
-                "the reduced system integrates three times: that is no block of 2 x 2",
+                "the reduced system has a triple integrator, which is no block of 2 x 2",
                 "take state_space()");
   const Eigen::JacobiSVD<MatrixXd> svd(N, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Index pairs = 0;

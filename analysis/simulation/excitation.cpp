@@ -43,7 +43,7 @@ Excitation Excitation::held(MatrixXd samples, double period) {
           Code::bad_value,
           fmt::format("the step from {} to {} s crosses the sample at {} s", begin, end,
                       static_cast<double>(first + 1) * period),
-          fmt::format("take Simulation::step = {}, or a whole part of it",
+          fmt::format("take Simulation::step = {} over a whole number",
                       period / std::max(1.0, std::ceil((1 - slack) * period / (end - begin)))));
     const VectorXd u = samples.col(std::clamp<Index>(first, 0, samples.cols() - 1));
     return Ends{u, u};

@@ -226,15 +226,14 @@ void refuse_inaccurate(const System& system, const Simulation& s, const VectorXd
       exact >= 0
           ? fmt::format("Stepper::exact is off by {:.1e}, as A and B have few digits here", exact)
           : fmt::format(
-                "Stepper::exact is right at any step, once for {0} x {0} x {0} "
-                "operations",
+                "Stepper::exact has no such error, at a cost of {0} x {0} x {0} operations once",
                 system.order());
   throw Error(
       Code::bad_value,
       fmt::format("half of the step of {} s changes output {} by {:.1e} of its largest value",
                   s.step, system.outputs()[static_cast<std::size_t>(worst)], error(worst)),
-      fmt::format("take smaller steps; {}; or say by Simulation::accuracy, or Stepper::midpoint, "
-                  "that it is good enough",
+      fmt::format("take smaller steps; {}; or accept the error by Simulation::accuracy or "
+                  "Stepper::midpoint",
                   of_exact));
 }
 

@@ -125,7 +125,8 @@ Generated generate(const GenerateOptions& options) {
   if (!lacked.empty())
     throw std::invalid_argument("none of 100 scenes has a place for the mistake '" +
                                 options.mistake + "': " + lacked);
-  throw std::invalid_argument("none of 100 scenes of this kind can be had; ask for another kind");
+  throw std::invalid_argument(
+      "none of 100 random diagrams of this kind is valid; change the options");
 }
 
 }  // namespace titop::generate

@@ -121,10 +121,11 @@ MatrixXd rigid_motions_by_statics(const GridMatrices& m, int grid) {
   const MatrixXd K_ff = m.K(f, f);
   if (const Index row = weak_pivot(K_ff); row >= 0) {
     const GridDof& dof = m.dofs[static_cast<std::size_t>(f[static_cast<std::size_t>(row)])];
-    throw Error(Code::bad_modes,
-                fmt::format("{} held at grid {} moves without stiffness at grid {}, component {}",
-                            m.name, grid, dof.grid, dof.component),
-                "hold it at another grid, or leave out what no stiffness holds");
+    throw Error(
+        Code::bad_modes,
+        fmt::format("{} clamped at grid {} moves without stiffness at grid {}, component {}",
+                    m.name, grid, dof.grid, dof.component),
+        "clamp it at another grid, or leave out degrees of freedom without stiffness");
   }
   MatrixXd R = MatrixXd::Zero(m.K.rows(), 6);
   R(r, Eigen::all) = MatrixXd::Identity(6, 6);

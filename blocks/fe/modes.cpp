@@ -28,9 +28,9 @@ void require_free(const Mesh& mesh) {
       Code::bad_modes,
       fmt::format("the stiffness of mesh {} resists rigid motion: at {}, {:.1e} of its terms",
                   mesh.name, held.worst, held.of_terms),
-      fmt::format("supports (*BOUNDARY, SPC, springs to ground) are in the data: take them out, "
-                  "the scene holds the body; or positions have another unit than the "
-                  "matrices, or a grid its own frame. Rounding of {} digits makes {:.0e}",
+      fmt::format("the data contain supports (*BOUNDARY, SPC, springs to ground): remove them, the "
+                  "diagram supports the body; or positions have another unit than the matrices, or "
+                  "a grid its own frame. Rounding of {} digits gives {:.0e}",
                   mesh.digits, noise));
 }
 

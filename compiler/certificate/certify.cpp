@@ -52,14 +52,15 @@ Check certify(const Factored& d) {
                                        c.margin, digits_at(by_margin))});
   else if (by_pivot < kFewDigits)
     check.notes.push_back({Note::Kind::warning, "certify",
-                           fmt::format("the pivot at {} keeps {:.1e} of its terms: {} left",
+                           fmt::format("the pivot at {} is {:.1e} of its terms: {} left",
                                        c.weakest_where, c.weakest_pivot, digits_at(by_pivot))});
   if (c.residual > kWarn)
-    check.notes.push_back({Note::Kind::warning, "certify",
-                           fmt::format("{} holds only to {:.1g}", c.residual_where, c.residual)});
+    check.notes.push_back(
+        {Note::Kind::warning, "certify",
+         fmt::format("{} is satisfied only to {:.1g}", c.residual_where, c.residual)});
   if (check.least > 0)
     check.notes.push_back(
-        {Note::Kind::warning, "certify", "no digit is left: double takes rounding for a pivot"});
+        {Note::Kind::warning, "certify", "no digit is left: in double a pivot is rounding alone"});
   return check;
 }
 
@@ -70,9 +71,9 @@ namespace titop {
 namespace {
 
 std::string words_of_residual(const Certificate& c) {
-  if (c.residual < 0) return "equations as written not checked: without inputs nothing moves\n";
-  return fmt::format("equations as written hold to {:.1e} {} s = {:.3g}{}\n", c.residual,
-                     c.at_instant ? "at an instant, states as of single blocks at" : "at", c.s,
+  if (c.residual < 0) return "equations as written not checked: there are no inputs\n";
+  return fmt::format("equations as written are satisfied to {:.1e} {} s = {:.3g}{}\n", c.residual,
+                     c.at_instant ? "at an instant, responses of single blocks at" : "at", c.s,
                      c.residual_where.empty() ? "" : " (worst: " + c.residual_where + ")");
 }
 
@@ -82,8 +83,8 @@ std::string words_of_dense(const Certificate& c) {
       fmt::format("dense model agrees with the factors to {:.1e}", c.dense_against_factors);
   if (c.dense_error >= 0)
     text += fmt::format(
-        "; its rounding changes the outputs by {:.1e} of their largest at s = {:.3g}{:+.3g}j, by "
-        "{:.1e} of what they are at s = {:.3g}{:+.3g}j",
+        "; its rounding changes the outputs by {:.1e} of their largest value at s = "
+        "{:.3g}{:+.3g}j, by {:.1e} of their value at s = {:.3g}{:+.3g}j",
         c.dense_error, c.dense_error_s.real(), c.dense_error_s.imag(), c.dense_error_where_small,
         c.dense_error_where_small_s.real(), c.dense_error_where_small_s.imag());
   return text + "\n";
@@ -93,12 +94,11 @@ std::string words_of_dense(const Certificate& c) {
 
 std::string to_string(const Certificate& c) {
   std::string text = words_of_residual(c) + words_of_dense(c);
-  text += fmt::format("weakest pivot keeps {:.1e} of its terms{}, growth {:.3g}\n", c.weakest_pivot,
+  text += fmt::format("weakest pivot {:.1e} of its terms{}, growth {:.3g}\n", c.weakest_pivot,
                       c.weakest_where.empty() ? "" : " (" + c.weakest_where + ")", c.pivot_growth);
-  text +=
-      fmt::format("largest loop margin {:.3g}{}{}\n", c.margin,
-                  c.margin_where.empty() ? "" : " (at " + c.margin_where + ")",
-                  c.margin_is_exact ? "" : "; loops too large for it are judged by their pivots");
+  text += fmt::format("largest loop margin {:.3g}{}{}\n", c.margin,
+                      c.margin_where.empty() ? "" : " (at " + c.margin_where + ")",
+                      c.margin_is_exact ? "" : "; larger loops are checked by their pivots");
   return text;
 }
 

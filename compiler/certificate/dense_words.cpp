@@ -26,11 +26,11 @@ void refuse_counts(const Factored& d, const StateSpace& m) {
     return;
   throw Error(
       Code::size,
-      fmt::format("certificate: a model of {} is none that {} writes",
+      fmt::format("certificate: a model of {} is not one of {}",
                   counts(m.states.size(), m.inputs.size(), m.outputs.size()), d.graph().name),
-      fmt::format("give it what System::write made: {}; what state_space() made is in "
-                  "certificate()",
-                  counts(states.size(), l.inputs.size(), l.outputs.size())));
+      fmt::format(
+          "pass a model made by System::write: {}; the model of state_space() is in certificate()",
+          counts(states.size(), l.inputs.size(), l.outputs.size())));
 }
 
 /// The first name that differs.
@@ -42,7 +42,7 @@ void compare_names(const char* subject, const std::vector<std::string>& given,
                       fmt::format("certificate: {} {} of the model is {}, in this system it is {}",
                                   subject, is - given.begin() + 1, *is, *should),
                       {},
-                      "give it what System::write of this system made"});
+                      "pass a model made by System::write of this system"});
 }
 
 void compare_size(const char* subject, const MatrixXd& m, Index rows, Index columns,
@@ -53,7 +53,7 @@ void compare_size(const char* subject, const MatrixXd& m, Index rows, Index colu
                                   "{} x {}",
                                   subject, m.rows(), m.cols(), rows, columns),
                       {},
-                      "give it the model as System::write made it"});
+                      "pass the model as System::write made it"});
 }
 
 /// The first entry that is infinite or no number, by the names of its row and column.
@@ -137,7 +137,7 @@ void warn_of_lost_digits(const Factored& d, const DenseError& e, std::vector<Not
     const std::string s = fmt::format("{:.3g}{:+.3g}j", w.s.real(), w.s.imag());
     notes.push_back({Note::Kind::warning, "dense",
                      fmt::format(fmt::runtime(text), s, digits_of(d, w)) +
-                         "; System::transfer and apply keep them all"});
+                         "; System::transfer and apply keep all digits"});
   };
   if (e.beside_largest.error > kLost)
     warn("written as A, B, C, D the model keeps {1} at s = {0}", e.beside_largest);
@@ -147,13 +147,12 @@ void warn_of_lost_digits(const Factored& d, const DenseError& e, std::vector<Not
          e.where_small);
   if (e.not_tried.empty()) return;
   const bool none = e.beside_largest.error < 0;
-  notes.push_back(
-      {none ? Note::Kind::unchecked : Note::Kind::warning, "dense",
-       fmt::format("the dense model is not tried at {} of the s where it is compared, or "
-                   "not in all outputs, the lowest |s| = {:.3g}: the factors have no "
-                   "digit there in double; transfer takes finer arithmetic",
-                   none ? "any" : std::to_string(e.not_tried.size()),
-                   std::abs(lowest(e.not_tried)))});
+  notes.push_back({none ? Note::Kind::unchecked : Note::Kind::warning, "dense",
+                   fmt::format("the dense model is not compared at {} of the points s, or not in "
+                               "all outputs, the lowest |s| = {:.3g}: the factors have no digit "
+                               "there in double; transfer uses finer arithmetic",
+                               none ? "any" : std::to_string(e.not_tried.size()),
+                               std::abs(lowest(e.not_tried)))});
 }
 
 }  // namespace titop::detail

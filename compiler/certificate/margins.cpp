@@ -192,8 +192,7 @@ void worst_margin(const Factored& d, std::span<const double> margins, Check& che
   if (skipped > 0)
     check.notes.push_back(
         {Note::Kind::info, "certify",
-         fmt::format("{} loop{} of more than {} unknowns: judged by {} pivots, "
-                     "not by {} margin",
+         fmt::format("{} loop{} of more than {} unknowns: checked by {} pivots, not by {} margin",
                      skipped, skipped == 1 ? "" : "s", kExactUpTo, skipped == 1 ? "its" : "their",
                      skipped == 1 ? "its" : "their")});
 }

@@ -252,10 +252,9 @@ void check_at_s(const Factored& d, const RowMatrix<double>& u, double s, Check& 
   if (const double lost = check.lost; lost > kWarn)
     check.notes.push_back(
         {Note::Kind::warning, "certify",
-         fmt::format(
-             "in double the outputs are right to {:.1g} at s = {:.3g}: transfer takes finer "
-             "arithmetic, apply and A, B, C, D have these digits only",
-             lost, s)});
+         fmt::format("in double the outputs are accurate to {:.1g} at s = {:.3g}: transfer uses "
+                     "finer arithmetic, apply and A, B, C, D have only these digits",
+                     lost, s)});
 }
 
 }  // namespace
@@ -274,7 +273,7 @@ void self_check(const Factored& d, Check& check) try {
 } catch (const Error& error) {
   if (!error.has(Code::singular)) throw;
   check.certificate.residual = 1;
-  check.certificate.residual_where = "in double, not one equation";
+  check.certificate.residual_where = "no equation: in double the system is singular";
 }
 
 }  // namespace titop::detail

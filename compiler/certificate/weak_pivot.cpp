@@ -85,8 +85,8 @@ double least_pivot(const Factored& d, Check& check) {
   if (check.loop_without_digit >= 0 && !k.before_reduce) return kNothingAtLeast;
   if (products(*k.joint.plan) > kMostProducts) {
     check.notes.push_back({Note::Kind::warning, "certify",
-                           "whether these equations have a solution with a digit left is not "
-                           "decided: the scene is too large for an elimination in 50 digits"});
+                           "it is not decided whether the solution of these equations has a digit "
+                           "left: the diagram is too large for an elimination in 50 digits"});
     return 0;
   }
   if (!singular_in_50_digits(k, d)) return 0;
@@ -100,7 +100,7 @@ Mistake no_digit_left(const Skeleton& k, const Factored& d) {
           fmt::format("the algebraic loop through {} has no unique solution, or none with a digit "
                       "in double",
                       ports.empty() ? "a sum of many terms" : some_names(ports)),
-          {"no digit is left: double takes rounding for a pivot there"},
+          {"no digit is left: in double a pivot there is rounding alone"},
           "break the direct feedthrough there: give one block of the loop a state, or change a "
           "gain"};
 }

@@ -47,7 +47,7 @@ ExactOrder exact_order(const StateSpace& model, const ExactOptions& options) {
 
 std::string to_string(const ExactOrder& r) {
   if (!r.decided) return "not decided exactly: " + r.why_not;
-  return fmt::format("exact: order {} (of {} states, {} are reached, {} are seen)", r.order,
+  return fmt::format("exact: order {} (of {} states, {} reachable, {} observable)", r.order,
                      r.states, r.reachable, r.observable);
 }
 

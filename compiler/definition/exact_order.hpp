@@ -44,7 +44,7 @@ ExactOrder exact_order(const Graph& graph, const ExactOptions& options = {},
 /// The same from the entries of A, B, C, taken as exact.
 ExactOrder exact_order(const StateSpace& model, const ExactOptions& options = {});
 
-/// "exact: order 8 (of 10 states, 8 are reached, 8 are seen)", or "not decided exactly: ...".
+/// "exact: order 8 (of 10 states, 8 reachable, 8 observable)", or "not decided exactly: ...".
 std::string to_string(const ExactOrder& result);
 
 }  // namespace titop

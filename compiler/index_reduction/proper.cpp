@@ -161,8 +161,9 @@ void make_proper(Skeleton& k, Factored& d, const Derivatives& v) {
   if (!names.empty())
     k.stage.notes.push_back(
         {Note::Kind::info, "reduce",
-         fmt::format("states less a multiple of the inputs that act where nothing has mass: {}",
-                     some_names(names))});
+         fmt::format(
+             "states from which a multiple of the inputs at points without mass is subtracted: {}",
+             some_names(names))});
   d.states.set_inputs(std::move(e.R[0]), std::move(e.shifts));
 }
 

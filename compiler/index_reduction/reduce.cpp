@@ -75,22 +75,21 @@ class Reducer {
     if (rows.size() < rest.size()) refuse(rest, {});
     if (!constraints_.empty())
       refuse(rest, {},
-             {"this shows only after a derivative: motions that nothing determines are "
-              "not looked for there; give one of these bodies a mass, or hold it"});
+             {"this follows only from a derivative of the equations, where undetermined motions "
+              "are not identified; give one of these bodies a mass, or impose its motion"});
     const Undetermined motions = undetermined(k_, d_, rows);
     if (motions.held.empty()) refuse(rest, motions.lines);
     const RowGroups groups(*k_.joint.plan);
     for (const int row : rows)
       if (hides_states(groups.of(row).first))
         refuse(rest, motions.lines,
-               {"it cannot be taken as 0: a sum of many terms stands between it and a block's "
-                "states"});
+               {"it cannot be set to 0: a sum of many terms connects it with a block's states"});
     for (const int row : rows)  // held, and still undetermined: no digit remains
       if (!held_.insert(groups.of(row)).second)
-        refuse(rest, motions.lines, {"taken as 0 it is undetermined all the same"});
+        refuse(rest, motions.lines, {"set to 0 it is still undetermined"});
     for (const std::string& line : motions.lines)
       k_.stage.notes.push_back(
-          {Note::Kind::info, "reduce", line + ", and nothing asked for depends on it: taken as 0"});
+          {Note::Kind::info, "reduce", line + ", and no output depends on it: set to 0"});
     leave_out(motions.states);
     NewRows held(k_, d_);
     for (const HeldDirection& h : motions.held) held.hold(h);
@@ -128,7 +127,7 @@ class Reducer {
     d_.states = StateMap(all, d_.layout());
     k_.stage.notes.push_back(
         {Note::Kind::info, "reduce",
-         fmt::format("states that only say how far that has gone leave the model: {}",
+         fmt::format("states that only integrate these motions are removed: {}",
                      some_names(names))});
   }
 
@@ -159,8 +158,8 @@ class Reducer {
       m.details.insert(m.details.end(), free.begin(), free.end());
       m.details.insert(m.details.end(), why.begin(), why.end());
       if (!free.empty())
-        m.hint += why.empty() ? "; or hold that motion, or ask for nothing that depends on it"
-                              : "; or hold that motion";
+        m.hint += why.empty() ? "; or impose that motion, or remove the outputs that depend on it"
+                              : "; or impose that motion";
     }
     throw Error(std::move(mistakes));
   }
@@ -250,8 +249,8 @@ class Reducer {
     for (const int state : followers_.added()) names.push_back(d_.layout().states[at(state)]);
     k_.stage.notes.push_back(
         {Note::Kind::info, "reduce",
-         fmt::format("{} states follow from the others where nothing has mass: {}", names.size(),
-                     some_names(names))});
+         fmt::format("{} states are determined by the others at points without mass: {}",
+                     names.size(), some_names(names))});
     make_proper(k_, d_, {followers_.by_input(), forcing_, constraints_});
   }
 

@@ -266,10 +266,10 @@ Undetermined undetermined(const Skeleton& k, const Factored& d, const std::vecto
   if (free.value.cols() < count) {
     name("state", all, rates, d.layout().states);
     if (!result.lines.empty() && all.value.cols() > count)
-      result.lines.insert(result.lines.begin(),
-                          fmt::format("{} of these motions, or of what they make together, {} "
-                                      "determined by nothing:",
-                                      count, count > 1 ? "are" : "is"));
+      result.lines.insert(
+          result.lines.begin(),
+          fmt::format("{} of these motions, or of their combinations, {} undetermined:", count,
+                      count > 1 ? "are" : "is"));
     return result;
   }
   if (still.value.cols() < count) {

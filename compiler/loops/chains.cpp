@@ -125,8 +125,8 @@ struct ChainChecker {
   void check_blocks(const Closing& c) {
     if (const int node = motion.silent(c.chain); node >= 0)
       return refuse(c,
-                    fmt::format("{} closes a chain through {}, which does not say where its ports "
-                                "are",
+                    fmt::format("{} closes a chain through {}, whose block does not define the "
+                                "positions of its ports",
                                 target(c), g.nodes[at(node)].name),
                     "give its block kinematics() (docs/architecture.md), or open one joint");
     for (const auto& [column, matrix] : c.form)
@@ -146,13 +146,14 @@ struct ChainChecker {
   void check_gap(const Closing& c) {
     if (c.gap > kGap)
       refuse(c,
-             fmt::format("{} closes a chain that does not meet: off by {:.1e} of its size",
+             fmt::format("{} closes a chain whose ends do not meet: gap {:.1e} of its size",
                          target(c), c.gap),
-             "look at the lengths and rotations around the chain; joints hold at the posture that "
-             "the rotations give");
+             "check the lengths and rotations around the chain; the mounting rotations give the "
+             "joints' posture");
     else if (c.gap > kExactGap)
-      notes.push_back({Note::Kind::warning, "chains",
-                       fmt::format("{} closes its chain to {:.1e} only", target(c), c.gap)});
+      notes.push_back(
+          {Note::Kind::warning, "chains",
+           fmt::format("{} closes its chain only to {:.1e} of its size", target(c), c.gap)});
   }
 };
 
@@ -272,10 +273,11 @@ void warn_of_stops(Stage& stage, const Component& c, const ScaleFactors& factors
   if (part > kStops)
     stage.notes.push_back(
         {Note::Kind::warning, "chains",
-         fmt::format("the chain closed by {} is in a singular posture: motions that its equations "
-                     "allow to first order do not go on ({:.1e} of their second order is left), "
-                     "and the model has them all; take a posture beside it, or lock a joint",
-                     detail::some_names(names), part)});
+         fmt::format(
+             "the chain closed by {} is in a singular posture: its equations block, at second "
+             "order, motions that they allow to first order (relative residual {:.1e}), and the "
+             "model contains these motions; take a posture beside it, or lock a joint",
+             detail::some_names(names), part)});
 }
 
 /// Returns the points that the chains immobilise.

@@ -135,22 +135,21 @@ struct ForceJudge {
       const std::string name = channel_name(g, r.channel);
       if (joints.find(name) == std::string::npos) joints += (joints.empty() ? "" : ", ") + name;
     }
-    notes.push_back(
-        {Note::Kind::warning, "solve",
-         fmt::format("{} reads {}, an internal force that motion does not determine: the "
-                     "smallest wrench at {} is taken",
-                     reader, name_of(g, signal), joints)});
+    notes.push_back({Note::Kind::warning, "solve",
+                     fmt::format("{} reads {}, an internal force that motion does not determine: "
+                                 "the wrench of minimal norm at {} is used",
+                                 reader, name_of(g, signal), joints)});
     std::vector<std::string> lines = {
         "written at " + to_string(where),
-        fmt::format("the chain is held more than once; released: {}", joints)};
+        fmt::format("the chain is over-constrained; released: {}", joints)};
     lines.insert(lines.end(), causes.begin(), causes.end());
     mistakes.push_back(
         {Code::kinematic_loop,
          fmt::format("{} reads {}, an internal force that is not determined", reader,
                      name_of(g, signal)),
          std::move(lines),
-         "make a body of the chain flexible, let the joint leave free what the others hold already "
-         "(.linear, .angular, .along(r)), or take the minimal-norm ones: "
+         "make a body of the chain flexible, free the directions of the joint that other joints "
+         "constrain already (.linear, .angular, .along(r)), or use the minimal-norm ones: "
          "Options{.internal_forces = InternalForces::minimal_norm}"});
   }
 
@@ -210,8 +209,8 @@ struct ForceJudge {
       if (node.block->interface().channels.empty()) continue;
       if (const int signal = stress.shown_by(sum); signal >= 0) {
         found("the motion of " + node.name, signal, node.where,
-              {"either a force elsewhere is computed from it, or the chain meets only nearly: look "
-               "at the lengths and rotations around it"});
+              {"either a force elsewhere is computed from it, or the chain's ends meet only "
+               "nearly: check the lengths and rotations around it"});
         return;  // all bodies mounted on it move as well
       }
     }
@@ -244,10 +243,10 @@ void judge_internal_forces(Skeleton& k, const Factored& d) {
   if (!judge.mistakes.empty() && k.options.internal_forces == InternalForces::refuse)
     throw Error(std::move(judge.mistakes));
   if (stress.summed())
-    k.stage.notes.push_back(
-        {Note::Kind::info, "solve",
-         fmt::format("who reads an undetermined internal force is judged by {} sums of {} of them",
-                     kSums, stress.directions())});
+    k.stage.notes.push_back({Note::Kind::info, "solve",
+                             fmt::format("readers of undetermined internal forces are found from "
+                                         "{} random sums of the {} forces",
+                                         kSums, stress.directions())});
   k.stage.notes.insert(k.stage.notes.end(), judge.notes.begin(), judge.notes.end());
 }
 

@@ -80,9 +80,8 @@ void hold_still(Stage& stage, const Motion& motion, const std::vector<Closing>& 
   if (points.empty()) return;
   std::vector<std::string> names;
   for (const int p : points) names.push_back(motion.name(p));
-  stage.notes.push_back(
-      {Note::Kind::info, "chains",
-       "closed chains leave these points no motion: " + detail::some_names(names)});
+  stage.notes.push_back({Note::Kind::info, "chains",
+                         "closed chains immobilise these points: " + detail::some_names(names)});
 }
 
 }  // namespace titop::loops

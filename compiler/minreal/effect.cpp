@@ -85,7 +85,7 @@ bool put_back(const StateSpace& whole, double resolution, double lost, Minimized
   m.notes = {
       to_string(m.order),
       change > allowed
-          ? fmt::format("nothing was removed, since that changes the transfer by {:.1e}", change)
+          ? fmt::format("nothing was removed, because that changes the transfer by {:.1e}", change)
           : fmt::format("nothing was removed: the smaller model cancels more, and keeps "
                         "{:.0f} digits of the transfer",
                         std::max(0.0, -std::log10(lost)))};

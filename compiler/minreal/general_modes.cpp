@@ -109,7 +109,7 @@ void judge_wholes(const StateSpace& model, const PoleClusters& p, ModeSet& m) {
                    std::move(own.W)};
     const bool at_zero = c.omega <= kNearZero * own.model.A_size;
     if (at_zero) c.omega = 0;  // a smaller value is rounding of a multiple pole
-    c.name = at_zero ? kAtZero : "its poles are one but for rounding";
+    c.name = at_zero ? kAtZero : "its poles are equal up to rounding";
     for (const Index j : whole) m.apart[at(j)] = c.name, m.states[at(j)] = 0;
     m.wholes.push_back(std::move(c));
   }

@@ -44,9 +44,10 @@ void minimize_by(Modes modes, const MinimizeOptions& options, Minimized& r) {
     r.order.lowest = r.order.highest = options.exact_order;
   }
   if (!agrees)
-    r.notes.push_back(fmt::format(
-        "{} states stay where exact arithmetic needs {}: in double their modes are not apart",
-        r.order.order, options.exact_order));
+    r.notes.push_back(
+        fmt::format("{} states are kept although exact arithmetic needs {}: double precision does "
+                    "not separate their modes",
+                    r.order.order, options.exact_order));
   if (!r.order.removed.empty()) minreal::take_out(modes, verdicts, r.model, r.notes);
   r.notes.insert(r.notes.begin(), to_string(r.order));
 }

@@ -8,10 +8,9 @@ ExactOrder order_of_stage(const Stage& stage, int states, const ExactOptions& op
                           ParameterValues values) {
   ExactOrder exact = exact_order(*stage.source, options, values);
   if (!exact.decided || exact.order <= states || !stage.chained) return exact;
-  return {.why_not = fmt::format(
-              "the numbers close the chains only but for their last places: taken exactly, {} "
-              "states where {} are free to move",
-              exact.order, states)};
+  return {.why_not = fmt::format("the chains close only up to rounding of their data: exactly, {} "
+                                 "states are independent, and {} within rounding",
+                                 exact.order, states)};
 }
 
 }  // namespace titop::minreal

@@ -218,7 +218,7 @@ std::string note_of_dependent(const StateSpace& m, const std::vector<int>& out) 
 }
 
 std::string note_of_unseen(const StateSpace& m, const std::vector<int>& out) {
-  return "states that the others are now taken relative to: " + list(out, m.states);
+  return "states that were subtracted from the others: " + list(out, m.states);
 }
 
 void take_out_dependent(StateSpace& m, const std::vector<int>& out, const MatrixXd& T) {

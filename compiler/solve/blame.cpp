@@ -140,8 +140,8 @@ Mistake massless(const Stage& stage, const std::vector<int>& rows) {
   }
   m.details = equations_around(stage, rows);
   m.hint =
-      "give what stands between these equations mass, or a block of their loop a state or another "
-      "gain; or ask for positions and not for accelerations";
+      "give the points between these equations mass, or a block of their loop a state or another "
+      "gain; or output positions instead of accelerations";
   return m;
 }
 
@@ -170,8 +170,9 @@ Mistake blame(const Stage& stage, const std::vector<std::shared_ptr<const Dynami
   m.message = fmt::format("the algebraic loop through {} has no unique solution", names);
   m.details = equations_around(stage, rows);
   m.details.push_back(
-      inputs.empty() ? "together these say nothing that fixes the ports: one of them is said twice"
-                     : fmt::format("together these say that a combination of {} is 0", driven));
+      inputs.empty()
+          ? "these equations do not determine the ports: one of them follows from the others"
+          : fmt::format("these equations require a combination of {} to be 0", driven));
   m.details.push_back("without any one of these ports the others would be determined");
   m.hint = fmt::format(
       "break the direct feedthrough around {}: give one block of the loop a state, or "

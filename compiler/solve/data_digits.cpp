@@ -161,12 +161,11 @@ class DigitJudge {
     if (left > block.digits().shapes) return;
     const Block::Cause cause =
         block.beyond_digits(i, S.transpose() * svd.matrixU().col(last), left);
-    notes_.push_back(
-        {Note::Kind::warning, "digits",
-         fmt::format("{} is driven, the parent prescribed, and {} {}: these contradict each other. "
-                     "Nothing that is asked for depends on it: left out ({})",
-                     channel_name(g_, node.first_channel + i), node.name, cause.why,
-                     cause.way_out)});
+    notes_.push_back({Note::Kind::warning, "digits",
+                      fmt::format("{} is driven, the parent prescribed, and {} {}: these "
+                                  "contradict each other. No output depends on it: left out ({})",
+                                  channel_name(g_, node.first_channel + i), node.name, cause.why,
+                                  cause.way_out)});
   }
 
   VectorXd size(const DataPort& p) const {
@@ -288,7 +287,7 @@ class DigitJudge {
     if (left > port.noise() || !imposed) {
       notes_.push_back(
           {Note::Kind::warning, "digits",
-           fmt::format("{} {}: less than one digit of what it does is left", name, cause.why)});
+           fmt::format("{} {}: less than one digit of its effect is left", name, cause.why)});
       return;
     }
     const char* const how = port.by_shapes ? "is driven" : "is free";

@@ -57,10 +57,10 @@ Error not_refined(const Factored& data, std::complex<double> s, double error) {
   const std::string place =
       fmt::format("{} at s = {}{:+}j: ", data.graph().name, s.real(), s.imag());
   if (std::isinf(error))
-    return {Code::not_finite, place + "numbers leave the range that this precision has",
+    return {Code::not_finite, place + "numbers exceed the range of this precision",
             "take Precision::digits50, an s of smaller or larger modulus, or other units"};
   return {Code::singular,
-          place + "refinement does not lead to 12 digits, from factors in double that have too few",
+          place + "refinement does not reach 12 digits: the factors in double have too few",
           "take Precision::as_needed or Precision::digits50"};
 }
 

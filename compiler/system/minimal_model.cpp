@@ -42,7 +42,7 @@ const char* digits_lost(const SystemData& d) {
         return n.pass == "certify" && n.kind == Note::Kind::warning;
       }))
     return "digits are lost (see certify)";
-  return d.checked().rounding_alone ? "rounding is all that some output has" : nullptr;
+  return d.checked().rounding_alone ? "some output is rounding alone" : nullptr;
 }
 
 /// The model with only those inputs and outputs whose dynamics are not rounding: in some entry, the
@@ -97,7 +97,7 @@ void doubt_lost_digits(const System& system, const SystemData& d, const StateSpa
   v.lowest = certain;
   d.dense_notes.push_back(
       {Note::Kind::warning, "minimize",
-       fmt::format("{}: of {} states, {} are certainly needed", lost, v.order, certain)});
+       fmt::format("{}: of {} states, only {} are certainly needed", lost, v.order, certain)});
 }
 
 /// Error of the transfer without the removed modes, at each of the points by itself: relative to
@@ -193,7 +193,7 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
   }
   if (minreal::put_back(dense, resolution, lost, m)) {
     if (untried)
-      m.notes.back() = "nothing was removed: where it would show, the factors have no digit";
+      m.notes.back() = "nothing was removed: near the removed modes the factors have no digit";
     d.dense_notes.push_back(
         {Note::Kind::warning, "minimize", fmt::format("{}: {}", m.notes.back(), m.notes.front())});
     d.dense_order = std::move(m.order);

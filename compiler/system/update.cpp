@@ -218,12 +218,13 @@ System compiled_again(const SystemData& old, const std::vector<int>& changed,
                       const std::vector<double>& values, const char* why) {
   return System(compile_again(*old.skeleton, values, [&](SystemData& d) {
     d.plans_renewed = old.plans_renewed + 1;
-    d.notes.push_back(
-        {Note::Kind::info, "update",
-         fmt::format("{}: {}, all compiled again", text_of(*old.skeleton, changed, values), why)});
+    d.notes.push_back({Note::Kind::info, "update",
+                       fmt::format("{}: {}, all passes run again",
+                                   text_of(*old.skeleton, changed, values), why)});
     if (d.state_names() != old.state_names())
-      d.notes.push_back({Note::Kind::warning, "update",
-                         "other states depend on the rest than before: the model's states differ"});
+      d.notes.push_back(
+          {Note::Kind::warning, "update",
+           "the dependent states have changed: the model has other states than before"});
   }));
 }
 
@@ -284,7 +285,7 @@ System System::update(const ParameterList& list) const {
   };
   constexpr const char* kSingular =
       "the equations as written are singular, as where a point has no mass";
-  constexpr const char* kOtherTerms = "closed chains or the equations' terms change";
+  constexpr const char* kOtherTerms = "closed chains or terms of the equations change";
   constexpr const char* kNoDigit = "a pivot has no digit left";
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
   // The reduction depends on all rows and all numbers.
@@ -302,7 +303,7 @@ System System::update(const ParameterList& list) const {
   d->notes.insert(d->notes.end(), digits.begin(), digits.end());
   d->notes.push_back(
       {Note::Kind::info, "update",
-       fmt::format("{}: {} of {} fronts made again", text_of(k, changed, d->numbers.parameters),
+       fmt::format("{}: {} of {} fronts recomputed", text_of(k, changed, d->numbers.parameters),
                    d->factors->fronts_made(), k.joint.plan->fronts.size())});
   d->margins = data_->margins;
   d->changed_loops = united(k, changed, &Dependents::loops);

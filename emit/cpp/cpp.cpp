@@ -88,19 +88,20 @@ void measure(Form& form, const emit::Expected& e, double sample_time) {
 
 void refuse_unmeasured_modes(const emit::Expected& expected, const CppOptions& options) {
   if (options.states != CppStates::modes || !expected.points.s.empty()) return;
-  throw Error(Code::bad_value,
-              fmt::format("how good modes of {} are cannot be measured without inputs and outputs",
-                          options.name),
-              "take CppStates::automatic, or declare an input and an output");
+  throw Error(
+      Code::bad_value,
+      fmt::format("the accuracy of the modes of {} cannot be measured without inputs and outputs",
+                  options.name),
+      "take CppStates::automatic, or declare an input and an output");
 }
 
 void refuse_few_digits(const Form& form, const std::string& name) {
   if (emit::is_provable(form.error)) return;
   throw Error(Code::bad_value,
               fmt::format("written as A, B, C, D the model {} is off by {:.1e}", name, form.error),
-              "System::transfer, apply and simulate keep the digits; or ask for the band that "
-              "matters, compile(d, Scene{.band_hz = {low, high}}): that model is small, its bound "
-              "says how good it is, and as an Lti of another diagram it becomes C++");
+              "System::transfer, apply and simulate keep the digits; or reduce the model to the "
+              "required band, compile(d, Scene{.band_hz = {low, high}}): it is small, has an error "
+              "bound, and as an Lti of another diagram it becomes C++");
 }
 
 }  // namespace

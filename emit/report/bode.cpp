@@ -74,7 +74,7 @@ std::string bode_plots(const Subject& s, const Sweep& w, const std::vector<IoPai
     return p.pair && std::abs(p.damping) < 1e-6;
   });
   text += s.options.pairs.empty() ? "<p>Of every pair of vectors the entry with the highest peak."
-                                  : "<p>The pairs that were asked for.";
+                                  : "<p>The requested pairs.";
   text += on_axis
               ? " Undamped modes have peaks without a height: they end where the grid does.</p>\n"
               : "</p>\n";

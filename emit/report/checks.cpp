@@ -50,39 +50,38 @@ void add_basic(std::vector<Item>& items, const Certificate& c) {
          "and input.",
          judged(c.dense_against_factors, kHolds)});
   if (c.dense_error >= 0)
-    items.push_back({"what rounding A, B, C, D costs", number(c.dense_error, 2),
-                     fmt::format("The largest change of an output that writing the model in 16 "
-                                 "digits makes, over that output's largest size; found at {}. Over "
-                                 "its size at the same s: {}, found at {}.",
-                                 place(c.dense_error_s), number(c.dense_error_where_small, 2),
-                                 place(c.dense_error_where_small_s)),
-                     judged(c.dense_error, certification::kDenseHolds)});
+    items.push_back(
+        {"effect of rounding A, B, C, D", number(c.dense_error, 2),
+         fmt::format(
+             "The largest change of an output due to writing the model in 16 digits, over that "
+             "output's largest size; found at {}. Over its size at the same s: {}, found at {}.",
+             place(c.dense_error_s), number(c.dense_error_where_small, 2),
+             place(c.dense_error_where_small_s)),
+         judged(c.dense_error, certification::kDenseHolds)});
   items.push_back({"weakest pivot", number(c.weakest_pivot, 2),
-                   fmt::format("What is left of the terms that formed it{}: 1 is no cancellation, "
-                               "10⁻¹⁶ is nothing left. The same in all units.",
+                   fmt::format("The pivot over the sum of the magnitudes of its terms{}: 1 is no "
+                               "cancellation, 10⁻¹⁶ no digit. The same in all units.",
                                c.weakest_where.empty() ? "" : ", at " + c.weakest_where)});
   items.push_back(
       {"growth of the entries", number(c.pivot_growth, 3),
        "The largest size of a row over the least that it had before, all along the tree."});
   items.push_back(
       {"margin of the algebraic loops", number(c.margin, 3),
-       fmt::format(
-           "1 without a loop, about 4/δ at a relative distance δ from a loop without a "
-           "solution{}.{}",
-           c.margin_where.empty() ? "" : "; here at " + c.margin_where,
-           c.margin_is_exact ? "" : " Loops too large for it are judged by their pivots.")});
+       fmt::format("1 without a loop, about 4/δ at a relative distance δ from a loop without a "
+                   "solution{}.{}",
+                   c.margin_where.empty() ? "" : "; here at " + c.margin_where,
+                   c.margin_is_exact ? "" : " Larger loops are checked by their pivots.")});
 }
 
 void add_reciprocity(std::vector<Item>& items, const FullCertificate::Reciprocity& r) {
   if (!r.done) return add_not_done(items, "reciprocity", r.why_not);
-  items.push_back(
-      {"reciprocity", number(r.asymmetry, 2),
-       fmt::format("Of {}: the largest difference between what one does where the other acts and "
-                   "the other way round, over what each does where it acts itself{}{}.",
-                   count(static_cast<std::size_t>(r.forces), "force"),
-                   r.first.empty() ? "" : fmt::format("; {} and {}", r.first, r.second),
-                   r.structure ? "" : "; nothing asks for it: " + r.why_no_structure),
-       r.structure ? judged(r.asymmetry, certification::kReciprocal) : Mark::none});
+  items.push_back({"reciprocity", number(r.asymmetry, 2),
+                   fmt::format("Of {}: the largest |G_ij - G_ji| over sqrt(|G_ii| |G_jj|), G_ij "
+                               "the acceleration at force i due to force j{}{}.",
+                               count(static_cast<std::size_t>(r.forces), "force"),
+                               r.first.empty() ? "" : fmt::format("; {} and {}", r.first, r.second),
+                               r.structure ? "" : "; not required: " + r.why_no_structure),
+                   r.structure ? judged(r.asymmetry, certification::kReciprocal) : Mark::none});
 }
 
 void add_full(std::vector<Item>& items, const FullCertificate& f) {
@@ -92,11 +91,11 @@ void add_full(std::vector<Item>& items, const FullCertificate& f) {
         "and input over the largest there (three translations or rotations of a port together)",
         f.grid.points, f.grid.lowest, f.grid.highest);
     if (f.grid.dense >= 0)
-      items.push_back(
-          {"minimal A, B, C, D against the factored system over a grid", number(f.grid.dense, 2),
-           over + "; what may be nothing but rounding, as by symmetry, over 10⁻³ of the "
-                  "terms that cancel in it.",
-           judged(f.grid.dense, certification::kDenseHolds)});
+      items.push_back({"minimal A, B, C, D against the factored system over a grid",
+                       number(f.grid.dense, 2),
+                       over + "; values that may be rounding alone, as by symmetry, over 10⁻³ of "
+                              "the terms that cancel in them.",
+                       judged(f.grid.dense, certification::kDenseHolds)});
     if (f.grid.written >= 0)
       items.push_back({"the equations as written, solved all at once, against the factored system",
                        number(f.grid.written, 2),
@@ -108,7 +107,7 @@ void add_full(std::vector<Item>& items, const FullCertificate& f) {
   if (f.poles.done && f.poles.measured > 0)
     items.push_back(
         {"error of the poles", number(f.poles.error, 2),
-         fmt::format("To first order, by what the factors say of each pole and its vectors{}.",
+         fmt::format("To first order, by the factors' products with the vectors of each pole{}.",
                      f.poles.measured == f.poles.count
                          ? ""
                          : fmt::format("; {} of {}, the others rounding of A alone moves too far",
@@ -126,11 +125,11 @@ void add_full(std::vector<Item>& items, const FullCertificate& f) {
   if (f.passivity.done)
     items.push_back(
         {"passivity", number(f.passivity.least, 3),
-         fmt::format("Smallest eigenvalue of the Hermitian part of G(s)/s over {} "
-                     "of force and acceleration at one point, scaled: not negative for "
-                     "what gives no energy{}. Found at {}.",
+         fmt::format("Smallest eigenvalue of the Hermitian part of G(s)/s over {} of force and "
+                     "acceleration at one point, scaled: not negative for a passive structure{}. "
+                     "Found at {}.",
                      count(static_cast<std::size_t>(f.passivity.pairs), "pair"),
-                     f.passivity.structure ? "" : "; a controller may give some",
+                     f.passivity.structure ? "" : "; a controller may supply energy",
                      place(f.passivity.where)),
          f.passivity.structure ? judged(-f.passivity.least, certification::kPassive) : Mark::none});
   else
@@ -151,17 +150,17 @@ const OrderVerdict& order_of(const Subject& s, const FullCertificate* full) {
 
 std::string as_range(const OrderVerdict& v) {
   if (!v.judged)
-    return fmt::format(
-        "Order {}: only the structure was looked at; modes without effect may still "
-        "be in it.",
-        v.order);
+    return fmt::format("Order {}: by structure only; it may contain modes without effect.",
+                       v.order);
   if (!v.decided())
     return fmt::format(
         "Order {} is undecided: at this precision the minimal order lies between {} "
         "and {}{}{}.",
         v.order, v.lowest, v.highest,
-        v.highest > v.order ? "; what left has no effect that this precision could tell" : "",
-        v.lowest < v.order ? "; what is in doubt is kept" : "");
+        v.highest > v.order
+            ? "; the removed modes have no effect that this precision distinguishes from 0"
+            : "",
+        v.lowest < v.order ? "; modes in doubt are kept" : "");
   return fmt::format("Order {} is minimal{}.", v.order,
                      v.exact ? ", decided in exact arithmetic" : ", decided beyond rounding");
 }
@@ -297,11 +296,10 @@ std::string certificate_section(const Subject& s, const FullCertificate* full) {
   if (full) add_full(items, *full);
   const std::vector<std::string> classes = {"", "n", "fit", "wide"};
   std::string text =
-      "<p>What was checked of this model, each by another way than the one that made it. All "
-      "numbers "
-      "are without units; what is not listed was not checked.</p>\n<div class=\"table\"><table "
-      "class=\"certificate\">\n<thead>" +
-      row({"what", "number", "", "in words"}, {"", "n", "", ""}, "th") + "</thead>\n<tbody>\n";
+      "<p>The checks of this model, each by another method than the one that computed it. All "
+      "numbers are dimensionless; checks that are not listed were not made.</p>\n"
+      "<div class=\"table\"><table class=\"certificate\">\n<thead>" +
+      row({"check", "number", "", "meaning"}, {"", "n", "", ""}, "th") + "</thead>\n<tbody>\n";
   for (const Item& i : items)
     text += row({escaped(i.item), i.value, marked(i.mark), escaped(i.meaning)}, classes);
   text += "</tbody></table></div>\n";
@@ -327,7 +325,7 @@ std::string order_section(const Subject& s, const FullCertificate* full) {
             ? ""
             : fmt::format("; the most visible one that left, {}", number(v.to_more, 2)),
         v.change < 0 ? ""
-                     : fmt::format("; beside what left the transfer changed by {}, measured",
+                     : fmt::format("; near the removed modes the transfer changed by {}, measured",
                                    number(v.change, 2)));
   const auto table = [&](const std::vector<JudgedMode>& modes, const char* title) {
     if (modes.empty()) return;

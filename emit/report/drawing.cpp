@@ -41,7 +41,7 @@ std::string attribute(const std::string& tag, const std::string& name) {
 std::string drawing(const std::string& dot_text, const std::string& subject) {
   const Finished dot = run({"dot", "-Tsvg", "-Gbgcolor=transparent"}, dot_text);
   if (!dot.found)
-    refuse("the program dot is not there", "install Graphviz (Debian package graphviz), or ");
+    refuse("the program dot is not installed", "install Graphviz (Debian package graphviz), or ");
   const std::size_t start = dot.out.find("<svg"), end = dot.out.find('>', start);
   if (dot.code != 0 || end == std::string::npos || dot.out.rfind("</svg>") == std::string::npos)
     refuse(fmt::format("dot ends with {}", dot.code),

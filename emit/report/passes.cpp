@@ -16,13 +16,13 @@ constexpr Promise kPromises[] = {
     {"check", "sizes, quantities and frames agree; each channel is driven once"},
     {"lower", "sums, gains and rotations are coefficients of equations"},
     {"split", "parts without output are set aside"},
-    {"chains", "closed chains meet; what closes them twice is released"},
+    {"chains", "closed chains meet; redundant loop constraints are released"},
     {"match", "every row has its unknown; channel inversions are known"},
-    {"order", "algebraic loops are known; what cannot matter is set aside"},
-    {"close", "states that follow from others are known and leave"},
+    {"order", "algebraic loops are known; unreachable and unobservable signals are set aside"},
+    {"close", "dependent states are known and eliminated"},
     {"solve", "all interface unknowns, junction by junction: the factored system"},
-    {"certify", "what was checked, and how well it holds"},
-    {"minimize", "A, B, C, D written from the factors; modes without effect leave"},
+    {"certify", "the checks and their residuals"},
+    {"minimize", "A, B, C, D written from the factors; modes without effect are removed"},
 };
 
 std::string promise(const std::string& pass) {

@@ -43,7 +43,7 @@ std::string report_html(const System& system, const ReportOptions& options) {
       {"frequency", "Frequency responses", std::move(responses.frequency)},
       {"time", "Step responses", std::move(responses.time)},
       {"certificate", "Certificate", report::certificate_section(s, checked)},
-      {"order", "Order, and what was left out", report::order_section(s, checked)},
+      {"order", "Order, and removed states", report::order_section(s, checked)},
       {"passes", "Passes", report::passes_section(s, checked)},
       {"states", "States", names_of_states(system)},
   };

@@ -90,15 +90,14 @@ std::string diagrams(const Subject& s, const Graph& g) {
   Stage before = as_written(g);
   before.values = after.values;
   const std::string added =
-      after.motions.empty()
-          ? ""
-          : " Integrators were added: they hold motions that no other state holds.";
+      after.motions.empty() ? ""
+                            : " Integrators were added for motions that no other state determines.";
   return diagram(s, before, "As written",
                  "Filled arrows carry accelerations, open ones forces or wrenches; thick lines are "
                  "vectors, with their size and frame.") +
          diagram(s, after, "After the passes",
                  "Coloured: algebraic loops, numbered; dark heads: inverted channels; grey and "
-                 "dashed: set aside, since it cannot matter." +
+                 "dashed: set aside, without effect on any output." +
                      added);
 }
 

@@ -20,7 +20,7 @@ bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c =
 std::string number(double x) {
   if (!std::isfinite(x))
     throw Error(Code::not_finite, fmt::format("generated code would contain the number {}", x),
-                "scale what is far apart: a value of the model overflows");
+                "a value of the model overflows: take other units");
   std::string text = fmt::format("{}", x);
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
   return text;

@@ -38,7 +38,7 @@ Eigen::LLT<MatrixXd> cholesky(const MatrixXd& S, const char* name) {
   if (S.rows() > 0 && llt.info() != Eigen::Success)
     throw Error(Code::singular,
                 fmt::format("{} is not positive definite at row {}", name, weak_pivot(S)),
-                "hold what moves freely there, or give it stiffness or mass");
+                "clamp the free degree of freedom there, or give it stiffness or mass");
   return llt;
 }
 

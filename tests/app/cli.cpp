@@ -37,7 +37,7 @@ TEST_CASE("check and compile print counts and findings") {
   CHECK(r.code == 0);
   const System system = compile(Shell::diagram());
   CHECK(has(r.out, to_string(system.poles())));
-  CHECK(has(r.out, "equations as written hold to"));
+  CHECK(has(r.out, "equations as written are satisfied to"));
 }
 
 TEST_CASE("certify: as text and as JSON; exit code 3 where something does not hold") {
@@ -95,11 +95,12 @@ TEST_CASE("draw makes pictures by Graphviz, text for it, and nothing else") {
   CHECK(shell.folder.read("diagram") == to_dot(Shell::diagram()));
   const Run r = shell.titop("draw masses.json a.jpg");
   CHECK(r.code == 2);
-  CHECK(has(r.err, "'a.jpg' ends in none of the known ways"));
+  CHECK(has(r.err, "'a.jpg' has an unknown extension"));
   CHECK(!std::filesystem::exists(shell.folder.path / "a.jpg"));
   const std::string without = "PATH=/nowhere '" TITOP_PROGRAM "' draw masses.json none.svg 2>err";
   CHECK(shell.folder.run(without) == 1);
-  CHECK(has(shell.folder.read("err"), "none.svg: cannot be drawn: the program dot is not there"));
+  CHECK(
+      has(shell.folder.read("err"), "none.svg: cannot be drawn: the program dot is not installed"));
   CHECK(has(shell.folder.read("err"), "dot -Tsvg FILE.dot -o FILE.svg"));
   CHECK(!std::filesystem::exists(shell.folder.path / "none.svg"));
   if (std::system("dot -V >/dev/null 2>&1") != 0) return;
@@ -309,6 +310,6 @@ TEST_CASE("invalid command lines: exit code 2, and one line on stderr with the r
   CHECK(
       has(shell.titop("export masses.json g.csv --omega 1 x 3").err, "--omega: 'x' is no number"));
   CHECK(has(shell.titop("export masses.json m.py --sample-time 0.01").err,
-            "export to a file .py does nothing with --sample-time"));
+            "export to a file .py does not have the option --sample-time"));
   CHECK(shell.titop("check masses.json").code == 0);  // no scene is written over
 }

@@ -101,7 +101,7 @@ TEST_CASE("equations are checked at one instant, at some s where that is not eno
   CHECK(!warns(fed_back(0.5)));
   const System close = fed_back(1 - 0x1p-34);  // 6e-11 from singular
   CHECK(!close.certificate().at_instant);
-  CHECK(warns(close, "in double the outputs are right to"));
+  CHECK(warns(close, "in double the outputs are accurate to"));
 }
 
 namespace {
@@ -138,7 +138,7 @@ TEST_CASE("an output that is 0 by symmetry has lost no digits, one that nearly c
       CAPTURE(apart);
       CAPTURE(filtered);
       const System system = compile(twins(apart, filtered));
-      CHECK(warns(system, "in double the outputs are right to") == (apart > 0));
+      CHECK(warns(system, "in double the outputs are accurate to") == (apart > 0));
       CHECK(system.certificate().at_instant == (apart == 0));
     }
 }

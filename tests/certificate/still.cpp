@@ -50,7 +50,8 @@ Diagram swing(double angle, double off) {
 
 bool warns(const System& system) {
   for (const Note& n : system.notes())
-    if (n.kind == Note::Kind::warning && n.text.find("outputs are right to") != std::string::npos)
+    if (n.kind == Note::Kind::warning &&
+        n.text.find("outputs are accurate to") != std::string::npos)
       return true;
   return false;
 }

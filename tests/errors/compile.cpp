@@ -148,7 +148,7 @@ TEST_CASE("kinematic-loop: a chain that does not meet, by how much and along whi
   D.child.accel = Rotation::about({0, 0, 1}, std::numbers::pi) * C.parent.accel;
   const Error g = compile_error(f);
   CHECK(says(g, Code::kinematic_loop,
-             {"D.child(\"C1\").accel closes a chain", "does not meet", "1.0e-03", joint, "C.parent",
+             {"D.child(\"C1\").accel closes a chain", "do not meet", "1.0e-03", joint, "C.parent",
               "C.child(\"C1\")", "D.parent", "rotations around the chain"}));
 }
 

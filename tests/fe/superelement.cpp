@@ -95,7 +95,7 @@ TEST_CASE("data of a held structure, in two units, or without a grid's own frame
   sprung.K(7, 7) *= 1 + 1e-4;
   CHECK(titop_test::says(refused(sprung), Code::bad_modes,
                          {"the stiffness of mesh outboard resists rigid motion: at G11",
-                          "*BOUNDARY", "the scene holds the body"}));
+                          "*BOUNDARY", "the diagram supports the body"}));
   fe::Mesh metres = good;
   for (fe::MeshPoint& p : metres.points) p.position /= 1000;
   CHECK(titop_test::says(refused(metres), Code::bad_modes, {"resists rigid motion"}));

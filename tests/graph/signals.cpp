@@ -114,9 +114,9 @@ TEST_CASE("frames: through a joint, too, a rotation is that of the body that han
     CHECK(scene(T.named("hub", "other wing"), joint).has(Code::frame));
     CHECK(scene(T.named("wing", "hub"), joint).has(Code::frame));
     if (joint != 2)
-      CHECK(says(scene(T.named("hub", "other wing"), joint), Code::frame,
-                 {"drive takes a rotation from other wing to hub, and what it holds is wing",
-                  "signals.cpp:"}));
+      CHECK(says(
+          scene(T.named("hub", "other wing"), joint), Code::frame,
+          {"drive takes a rotation from other wing to hub, but carries wing", "signals.cpp:"}));
   }
 }
 

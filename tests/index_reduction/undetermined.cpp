@@ -143,8 +143,8 @@ struct Stand {
 };
 
 const char* const kSpin =
-    "nothing determines the rotation of strut.parent about x, and nothing asked for depends on it: "
-    "taken as 0";
+    "nothing determines the rotation of strut.parent about x, and no output depends on it: "
+    "set to 0";
 
 int count_of(const std::string& text, const std::string& part) {
   int count = 0;
@@ -246,7 +246,7 @@ TEST_CASE("a strut on springs that do not twist: their twist is read by nothing"
   // a state that nothing reads.
   CHECK(free.order() == 12);
   CHECK(held.order() == 14);
-  CHECK(free.log().find("leave the model: low.rx, low.rx_rate, high.rx, high.rx_rate") !=
+  CHECK(free.log().find("are removed: low.rx, low.rx_rate, high.rx, high.rx_rate") !=
         std::string::npos);
   CHECK(free.certificate().residual <= 1e-13);
 }
@@ -268,7 +268,7 @@ TEST_CASE("reading an undetermined motion is refused; a torque on it contradicts
   CHECK(says(spin, Code::improper,
              {"nothing determines the rotation of strut.parent about x, and output spin(4) depends "
               "on it",
-              "hold that motion, or ask for nothing that depends on it"}));
+              "impose that motion, or remove the outputs that depend on it"}));
   CHECK(compile_error(Stand{.foot = Foot::universal, .spin = true}.diagram()).mistakes().empty());
   const Error turn = compile_error(Stand{.turn = true}.diagram());
   CHECK(says(turn, Code::improper,
@@ -276,7 +276,7 @@ TEST_CASE("reading an undetermined motion is refused; a torque on it contradicts
   const Error torque = compile_error(Stand{.twisted = true}.diagram());
   CHECK(torque.mistakes().size() == 1);
   CHECK(torque.has(Code::improper));
-  CHECK(std::string(torque.what()).find("hold that motion") == std::string::npos);
+  CHECK(std::string(torque.what()).find("impose that motion") == std::string::npos);
 }
 
 TEST_CASE("units of 1e-9 to 1e9 change neither zeros nor refusals") {

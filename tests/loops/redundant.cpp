@@ -142,7 +142,7 @@ TEST_CASE("a chain that meets only nearly: refused, with the lengths named as a 
     mount(B, A.child("near"));
     weld(B.child("far"), A.child("far"));
     d.output("a", 6) = A.parent.accel;
-    CHECK(says(compile_error(d), Code::kinematic_loop, {"look at the lengths"}));
+    CHECK(says(compile_error(d), Code::kinematic_loop, {"check the lengths"}));
   }
 }
 
@@ -278,7 +278,7 @@ TEST_CASE("a chain that does not meet is refused, whatever the name of a spring 
     CAPTURE(name);
     CHECK(titop_test::compile_error(table(name, 0)).mistakes().empty());
     CHECK(titop_test::says(titop_test::compile_error(table(name, 0.1)), Code::kinematic_loop,
-                           {"closes a chain that does not meet"}));
+                           {"closes a chain whose ends do not meet"}));
   }
 }
 
@@ -305,5 +305,5 @@ TEST_CASE(
   };
   CHECK(titop_test::compile_error(pinned(0)).mistakes().empty());
   CHECK(titop_test::says(titop_test::compile_error(pinned(1e-6)), Code::kinematic_loop,
-                         {"closes a chain that does not meet"}));
+                         {"closes a chain whose ends do not meet"}));
 }

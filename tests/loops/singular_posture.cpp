@@ -47,7 +47,7 @@ Diagram diagram(const FourBar& f) {
 FourBar parallelogram(double angle) { return {0.3, 1, 0.3, angle, angle, {1, 0, 0}}; }
 
 bool warns(const FourBar& f) {
-  return compile(diagram(f)).log().find("is in a singular posture: motions that its equations") !=
+  return compile(diagram(f)).log().find("is in a singular posture: its equations block") !=
          std::string::npos;
 }
 

@@ -144,7 +144,7 @@ TEST_CASE("a truss of rigid bars: who reads an internal force is found by a few 
     // A hinge constrains five directions; round each of 24 triangles the three out of the plane are
     // held already.
     const System system = compile(truss({12, false, read}), {.minimize_up_to = 0});
-    CHECK(system.log().find("judged by 32 sums of 72") != std::string::npos);
+    CHECK(system.log().find("from 32 random sums of the 72") != std::string::npos);
     const std::string reads = "output F reads B" + std::to_string(read) + ".parent.force";
     CHECK(says(compile_error(truss({12, false, read, false})), Code::kinematic_loop, {reads}));
     CHECK(says(compile_error(truss({12, true, read})), Code::kinematic_loop, {reads}));

@@ -113,7 +113,7 @@ namespace {
 bool told(const System& system) {
   const Certificate c = system.certificate();
   return std::max(c.dense_error, c.dense_error_where_small) > 1e-6 ||
-         system.log().find("the dense model is not tried at") != std::string::npos;
+         system.log().find("the dense model is not compared at") != std::string::npos;
 }
 
 Diagram with_heavy_end(double mass, double stiffness) {

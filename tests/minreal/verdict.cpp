@@ -125,7 +125,7 @@ TEST_CASE("a state removed by a wrong exact order is restored, with the change m
     CHECK(r.order.removed.empty());
     const double missed = std::abs(c / (s + 3.0)) / std::abs(1.0 / (s + 1.0) + c / (s + 3.0));
     CHECK(r.notes.back() ==
-          fmt::format("nothing was removed, since that changes the transfer by {:.1e}", missed));
+          fmt::format("nothing was removed, because that changes the transfer by {:.1e}", missed));
   }
   // Below 1e-8 it may leave, and the change is reported.
   const Minimized r = minimize(sum(1e-9), {.exact_order = 1});

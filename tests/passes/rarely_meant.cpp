@@ -51,7 +51,7 @@ TEST_CASE("a spring or damper that drives its joint away is warned of") {
   CHECK(torque(0, 0).empty());
   const auto both = torque(-900, -0.5);
   REQUIRE(both.size() == 1);
-  CHECK(has(both[0], "h.torque = -900 * h.angle - 0.5 * h.rate - u drives away from rest"));
+  CHECK(has(both[0], "h.torque = -900 * h.angle - 0.5 * h.rate - u is destabilising"));
   CHECK(has(both[0], "a spring is + k * h.angle, a damper is + c * h.rate"));
   CHECK(has(both[0], "rarely_meant.cpp:"));
   const auto spring = torque(-900, 0.5), damper = torque(900, -0.5);

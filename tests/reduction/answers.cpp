@@ -59,7 +59,7 @@ TEST_CASE("a band beyond a body's data is said, with the modes that it would nee
   const ReducedSystem r = compile(boom(4), titop::Scene{.band_hz = {0, 60}});
   REQUIRE(r.notes().size() == 1);
   const std::string& text = r.notes()[0].text;
-  CHECK(text.find("the data of b end at ") == 0);
+  CHECK(text.find("the modes of b end at ") == 0);
   CHECK(std::abs(std::stod(text.substr(21)) / fourth - 1) <= 5e-3);
   CHECK(text.find("up to 90 Hz") != std::string::npos);
   CHECK(to_string(r).find(text) != std::string::npos);

@@ -147,5 +147,5 @@ TEST_CASE("an accuracy that cannot be met: the error names the block that moves 
   const Error error = error_of([&] {
     compile(frame(slim_beam(5, 0.005)), titop::Scene{.band_hz = {0, 30}, .accuracy = 2e-12});
   });
-  CHECK(says(error, Code::bad_value, {"cannot be met", "most of what is missing moves in b"}));
+  CHECK(says(error, Code::bad_value, {"cannot be met", "most of the missing motion is in b"}));
 }

@@ -231,8 +231,7 @@ class ExactAssembly {
 std::vector<Fractions> solve(const EquationColumns& c, const Echelon& all) {
   const int first = c.first_rate(), known = c.first_state();
   if (all.rows().lower_bound(known) != all.rows().end())
-    throw Undecided{
-        "the equations tie states or inputs to one another, as where a transfer needs derivatives"};
+    throw Undecided{"the equations constrain states or inputs, as those of an improper transfer"};
   std::vector<Fractions> result(at(known - first));
   for (int w = known - 1; w >= first; --w) {
     const auto found = all.rows().find(w);

@@ -67,7 +67,7 @@ bool Echelon::add(Row row) {
   if (row.empty()) return false;
   for (const auto& [column, value] : row)
     if (static_cast<long>(msb(abs(value))) > bits_)
-      throw Undecided{fmt::format("its numbers outgrow {} bits (ExactOptions::bits)", bits_)};
+      throw Undecided{fmt::format("its integers exceed {} bits (ExactOptions::bits)", bits_)};
   const int leading = row.front().first;
   rows_.emplace(leading, std::move(row));
   return true;

@@ -131,12 +131,12 @@ void check_added(Checker& c, const Channel& channel, const Drive& drive) {
   if (added == drive.added.end() || tie == drive.accel.end()) return;
   const Equation &a = g.equations[at(*tie)], &b = g.equations[at(*added)];
   c.add(Code::two_equations,
-        fmt::format("what is added to {} goes nowhere: its acceleration is driven, and the whole "
+        fmt::format("a force added to {} has no effect: its acceleration is driven, and the whole "
                     "force is passed on",
                     name_of(g, channel.force)),
         {line(print(g, a), written(g, a)), line(print(g, b), written(g, b))},
-        "pass on the port's reaction, the force less what is added, as mount does; or add to the "
-        "force of the point that it moves with");
+        "pass on the port's reaction (the force without the added terms), as mount does; or add "
+        "the force at the point with which it moves");
 }
 
 void check_one_way(Checker& c) {

@@ -80,8 +80,7 @@ void note_negative_springs(Checker& c, ParameterValues values) {
             fmt::format("{}a damper is {} c * {}", right.empty() ? "" : ", ", sign, own.damper);
       if (right.empty()) continue;
       c.notes.push_back({Note::Kind::warning, "check",
-                         fmt::format("{} drives away from rest: {} ({}); all is well where that "
-                                     "is meant",
+                         fmt::format("{} is destabilising: {} ({}); ignore this if it is intended",
                                      print(c.graph, *e), right, written(c.graph, *e).text())});
     }
   }
@@ -90,8 +89,8 @@ void note_negative_springs(Checker& c, ParameterValues values) {
 void note_no_outputs(Checker& c) {
   if (c.graph.inputs.empty() || !c.graph.outputs.empty()) return;
   c.notes.push_back({Note::Kind::warning, "check",
-                     "there are inputs and no output: nothing can be read of the model; write "
-                     "d.output(\"x\") = ..., of size 6 d.output(\"a\", 6) = ..."});
+                     "the diagram has inputs, but no output: write d.output(\"x\") = ..., or, of "
+                     "size 6, d.output(\"a\", 6) = ..."});
 }
 
 /// Angles by more than a turn are degrees: one note for each of them.

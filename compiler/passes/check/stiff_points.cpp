@@ -116,10 +116,9 @@ void note_stiff_points(Checker& c, ParameterValues values) {
   for (auto& [channel, name] : found) names.push_back(std::move(name));
   c.notes.push_back(
       {Note::Kind::info, "check",
-       fmt::format(
-           "points that a body is fixed to and that no mode moves in some directions are rigid "
-           "there: {}; residual vectors or more modes make them bend",
-           detail::some_names(names))});
+       fmt::format("no mode moves these points, on which bodies are mounted, in some directions: "
+                   "{}; residual vectors or more modes make them flexible there",
+                   detail::some_names(names))});
 }
 
 }  // namespace titop::passes

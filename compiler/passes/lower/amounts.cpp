@@ -152,10 +152,10 @@ Amount Lowering::added(std::span<const int> equations) {
 Amount Lowering::added_to(int channel) {
   if (drive[at(channel)].added.empty()) return {};
   if (std::find(within.begin(), within.end(), channel) != within.end())
-    throw Error(
-        Code::ill_posed,
-        fmt::format("the reaction at {} is passed round to itself", channel_name(g, channel)),
-        "these points move with each other: let one of them be carried by something else");
+    throw Error(Code::ill_posed,
+                fmt::format("the reaction at {} depends on itself", channel_name(g, channel)),
+                "each of these points is driven by another one: drive one of them by another body, "
+                "or ground it");
   within.push_back(channel);
   Amount sum = added(drive[at(channel)].added);
   within.pop_back();

@@ -125,8 +125,8 @@ void add_rigid_motions(Stage& stage, Graph& g) {
   std::string list;
   for (const RigidMotion& m : stage.motions)
     list += (list.empty() ? "" : ", ") + g.nodes[at(m.node)].name;
-  stage.notes.push_back(
-      {Note::Kind::info, "lower", "motions that no other state holds are integrated: " + list});
+  stage.notes.push_back({Note::Kind::info, "lower",
+                         "Integrators added for motions that no state determines: " + list});
 }
 
 }  // namespace titop::passes
