@@ -47,7 +47,7 @@ class SixAxes {
 /// y = [F_C; F_P; q; qd]; no direct feedthrough.
 ///
 /// In the posture both ends coincide, and K and C are about that point, K from static tests or from
-/// its elastic centre E by tau_EC' K_E tau_EC. Preloads are not in it.
+/// its elastic centre E by tau_EC' K_E tau_EC. Preloads are not modelled.
 ///
 /// K and C are symmetric and positive semidefinite, checked when it is added (bad_value;
 /// not_finite); an axis without stiffness is a free one.

@@ -31,18 +31,20 @@ struct ModeValues {
 /// The data are checked once, when it is made, and then shared by all nodes that use it. Throws,
 /// with the line that makes it, bad_modes (shapes, omega <= 0, xi < 0 or all above 1, D_P0 negative
 /// beyond the data's digits, with the degree of freedom), bad_inertia (D_P not symmetric, negative,
-/// or further from every rigid body's than the data's digits and a twentieth), bad_value (digits),
-/// not_finite, duplicate_name. `compile` and `update` throw improper if P is freed in any
-/// directions in which D_P0 is zero by the data's digits, and if a child is driven though no mode
-/// moves it there. Cost of a compile: O(N (6 + 6 children)); of its transfer at s: the same.
+/// or different from the mass matrix of every rigid body by more than 5 % and the data's digits),
+/// bad_value (digits), not_finite, duplicate_name. `compile` and `update` throw improper if P is
+/// freed in any directions in which D_P0 is zero by the data's digits, and if a child is driven
+/// though no mode moves it there. Cost of a compile: O(N (6 + 6 children)); of its transfer at s:
+/// the same.
 ///
 ///     FlexibleBody{boom, {.omega = {{1, w1}, {3, 2.0 * w1}}, .xi = {{1, z}}}}
 ///
-/// is boom with other values for some modes, w1 and z being parameters. Shapes, participations and
-/// masses are boom's, and shared with it. Values are checked when it is added, and by `update` for
-/// new ones: bad_modes (no such mode, omega <= 0, xi < 0), not_finite. New values cost O(N^2 + N
-/// inputs^2), once for all nodes that use the same FlexibleBody. A beam of another E has all its
-/// omegas times one parameter, sqrt(E / E0); of another density or length it has other shapes too.
+/// is boom with other frequencies and damping ratios for some modes, w1 and z being parameters.
+/// Shapes, participations and masses are boom's, and shared with it. Values are checked when it is
+/// added, and by `update` for new ones: bad_modes (no such mode, omega <= 0, xi < 0), not_finite.
+/// New values cost O(N^2 + N inputs^2), once for all nodes that use the same FlexibleBody. A beam
+/// of another E has all its omegas times one parameter, sqrt(E / E0); of another density or length
+/// it has other shapes too.
 class FlexibleBody {
  public:
   FlexibleBody(ModalData data, std::source_location at = std::source_location::current());
@@ -60,7 +62,7 @@ class FlexibleBody {
   };
   const Spec& spec() const { return *spec_; }
   const ModalData& data() const { return *spec_->data; }  ///< as given, without other values
-  ModalData nominal() const;  ///< with these, parameters at their nominal values
+  ModalData nominal() const;  ///< with the spec's values, parameters at their nominal ones
   const BlockPtr& block() const { return block_; }
 
   using Handle = BodyHandle;

@@ -10,7 +10,7 @@
 namespace titop {
 
 /// Inertia of a rigid body [kg m^2]: a 3 x 3 matrix, or its entries, each of which may be a
-/// parameter. Whether a body has it is checked where it is used.
+/// parameter. Blocks that use it check that a rigid body can have it.
 ///
 ///     .inertia = Vector3d(9, 11, 13).asDiagonal()
 ///     .inertia = {J, J, 2.0 * J}                    // principal moments: xx, yy, zz

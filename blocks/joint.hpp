@@ -62,7 +62,7 @@ void release_axes(const Joint::Handle& joint, const Joint& spec, const std::sour
 
 /// Mounts `body` on the child point `site` through a joint called `name` with the free `axes` (in
 /// the body's frame, which the joint shares), with T_ba the mounting rotation, body to site. An
-/// axis without further equations moves freely: give it a mechanism, drive it, or lock it.
+/// axis without further equations moves freely: give it a spring-damper, drive it, or lock it.
 ///
 ///     auto g = joint(d, "gimbal", mirror, hub.child("M"), T_ba,
 ///                    {about({1, 0, 0}, "roll"), about({0, 1, 0}, "pitch")});

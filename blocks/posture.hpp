@@ -24,8 +24,8 @@ struct Posture {
   /// Mounting rotation: frame of the link after the joint to frame of the link before it, with the
   /// `turn` of that.
   std::vector<Rotation> T_ba;
-  /// From the end of the link before to the joint's other side, in the frame of the link before
-  /// [m]: the travel of a slide; 0 for a revolute joint.
+  /// Translation in the joint, from the end of the link before it, in that link's frame [m]: the
+  /// travel of a slide; 0 for a revolute joint.
   std::vector<Vector3d> offset;
   double gap = 0, gap_angle = 0;  ///< remaining misclosure [m], [rad]
 };
@@ -50,7 +50,8 @@ struct PostureOptions {
 /// Levenberg-Marquardt on the pose of the end, from the guesses. Of several postures it returns the
 /// one to which the guesses converge, angles within pi of them; if they do not converge, it tries
 /// other starts, at increasing distance, always the same ones. O(iterations * joints^3): 50
-/// microseconds for a four-bar from a fair guess, a hundred times that before it is refused.
+/// microseconds for a four-bar from a fair guess, a hundred times that until kinematic_loop is
+/// thrown.
 ///
 /// Throws kinematic_loop if the loop cannot be closed (with the smallest gap), singular if it is
 /// closed but can still move with the given values (which joints), bad_value for an empty loop or

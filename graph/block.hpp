@@ -128,8 +128,9 @@ class Block {
   /// are unreachable or unobservable by this structure are removed.
   virtual Pattern moved_by() const;
   virtual Pattern seen_by() const;
-  /// Kinematic part, if the block has one; no chain may close through a block without. A state in
-  /// Phi needs another state as its rate: one 1 in its row of A, zeros in its row of B.
+  /// Kinematics of the ports, if the block defines them; no chain may close through a block without
+  /// kinematics. A state in Phi needs another state as its rate: one 1 in its row of A, zeros in
+  /// its row of B.
   virtual std::optional<Kinematics> kinematics(ParameterValues) const { return std::nullopt; }
   /// The values that the matrices depend on (only those that are parameters matter).
   virtual std::vector<Value> values() const { return {}; }

@@ -9,7 +9,7 @@
 
 namespace titop {
 
-/// A spec that `Diagram::add` takes: `as_block(spec)` gives its block, `Handle` its user's view.
+/// A spec that `Diagram::add` takes: `as_block(spec)` gives its block, `Handle` its ports.
 template <class Spec>
 concept BlockSpec = requires(const Spec& spec, Graph* graph, int node) {
   { as_block(spec) } -> std::convertible_to<BlockPtr>;

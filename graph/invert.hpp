@@ -5,9 +5,8 @@
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
-/// Channel inversion of a single block, as a separate operation: the paper's Z^-1u, Z^-1l, Z^-1
-/// and G^-1p can be printed and compared. Scenes do not need it: the compiler
-/// inverts their channels.
+/// Channel inversion of a single block: the paper's Z^-1u, Z^-1l, Z^-1 and G^-1p. Scenes do not
+/// need it: the compiler inverts their channels.
 namespace titop {
 
 /// A block alone, by its ports' names: inputs "child.force", "parent.accel(3)", ... at the nominal

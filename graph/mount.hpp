@@ -21,7 +21,8 @@ void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location
 }  // namespace detail
 
 /// Fixes `body` (frame a, at its parent point P) to the child point `site` of another body (frame
-/// b): same motion there, wrench back. T_ba: components in frame a to components in frame b.
+/// b): equal accelerations there, and the body's reaction acts on the site. T_ba: components in
+/// frame a to components in frame b.
 ///     body.parent.accel = T_ba^-1 * site.accel;   site.force += T_ba * body.parent.reaction;
 /// A wrench that the user adds to body.parent.force acts from outside on the body: `+= -U` is a
 /// wrench U.

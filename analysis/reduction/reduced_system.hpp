@@ -17,10 +17,10 @@ struct ErrorBound {
   std::string input, output;  ///< of that pair
   double hertz = 0;           ///< where it was found [Hz]
   BoundKind kind = BoundKind::estimate;
-  int samples = 0;  ///< transfers of the full factored system that it took
+  int samples = 0;  ///< transfers of the full factored system computed for it
   /// For balanced models: 2 x the sum of the Hankel singular values that were dropped, for the
-  /// worst pair, relative as `pairs`. A theorem, not only for the band but everywhere right of the
-  /// imaginary axis (up to rounding in the Gramians, and not near omitted undamped poles, whose
+  /// worst pair, relative as `pairs`. A proven bound, not only in the band but everywhere right of
+  /// the imaginary axis (up to rounding in the Gramians, and not near omitted undamped poles, whose
   /// effect is below 1e-11 of the peaks); negative if there is none.
   double anywhere = -1;
 };
@@ -30,7 +30,7 @@ struct ReductionStep {
   std::string name;           ///< "structure", "bodies", "symmetry", "whole"; "kept", "balanced"
   int before = 0, after = 0;  ///< second-order coordinates; of "kept" and "balanced": states
   double error = 0;           ///< its error, relative as in Scene; 0: exact
-  std::string text;           ///< in plain words
+  std::string text;           ///< description
 };
 
 /// A coordinate of the reduced system.
@@ -39,7 +39,7 @@ struct KeptMode {
   double damping = 0;     ///< ratio; 0 for motions without stiffness
   bool exact = false;     ///< a mode of the assembled bodies, undamped (of smaller bodies, if
                           ///< these lose modes first); else a static-like vector above the band
-  bool balanced = false;  ///< neither: a pole of the balanced part
+  bool balanced = false;  ///< a pole of the balanced part; `exact` is false
   /// Blocks that take part, with their share of its elastic energy (of balanced models, of its
   /// participation factors, as Pole::blocks), largest first, down to 5 %.
   std::vector<std::pair<std::string, double>> blocks;
@@ -47,7 +47,7 @@ struct KeptMode {
 
 /// Coordinates are mass-normalised, q [kg^1/2 m] or [kg^1/2 m rad]: M is I, K [rad^2/s^2], D
 /// [rad/s]. M qdd + D qd + K q = B u, y = C q + C_rate qd + C_accel qdd + direct u, with M = I, D
-/// symmetric semidefinite (0 if undamped), K diagonal >= 0: stable as the structure is.
+/// symmetric semidefinite (0 if undamped), K diagonal >= 0: stable if the structure is.
 struct SecondOrderModel {
   Eigen::MatrixXd M, D, K;             ///< r x r
   Eigen::MatrixXd B;                   ///< r x inputs
@@ -69,9 +69,9 @@ struct ModalModel {
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
 };
 
-/// A small system that answers a scene, and its error. Inputs and outputs are those of the full
-/// system, in the same order: one can replace the other. Const, cheap to copy. References are valid
-/// during its lifetime; a temporary returns copies, as System does.
+/// The reduced system of a scene, and its error bound. Inputs and outputs are those of the full
+/// system, in the same order, so that it can replace the full one. Const, cheap to copy. References
+/// are valid during its lifetime; a temporary returns copies, as System does.
 class ReducedSystem {
  public:
   explicit ReducedSystem(std::shared_ptr<const detail::ReducedData> data)
@@ -126,20 +126,21 @@ class ReducedSystem {
 /// The steps, the kept modes, and the bound.
 std::string to_string(const ReducedSystem& system);
 
-/// A small model for this scene. The diagram is compiled for the scene's inputs and outputs alone;
-/// motions that symmetry hides are removed exactly; the rest becomes modes of the band and
-/// static-like vectors of the modes above it, with the second-order structure kept. The result is
-/// checked against the full factored system, and its order is raised until the bound is below the
-/// accuracy. Symmetry is detected for bodies added from one and the same body object (two that are
-/// merely equal are not compared), and not for those in closed chains.
+/// The reduced model of this scene. The diagram is compiled for the scene's inputs and outputs
+/// alone; motions that are unreachable or unobservable by symmetry are removed exactly; the rest
+/// becomes modes of the band and static-like vectors of the modes above it, with the second-order
+/// structure kept. The result is checked against the full factored system, and its order is raised
+/// until the bound is below the accuracy. Symmetry is detected for bodies added from one and the
+/// same body object (two that are merely equal are not compared), and not for those in closed
+/// chains.
 ///
 /// If the scene is no passive structure (controllers and filters in the loop, dashpots without
 /// springs; a note names the state), states replace M, D, K. Integrals, poles on the axis (undamped
 /// modes have no Gramian) and poles right of it are kept whole; the well-damped rest is balanced
 /// and reduced, by truncation or by singular perturbation, over the whole axis or with low-passes
-/// at the band's end, whichever needs fewest states; a step names it and the reason. The reduced
-/// part is stable, which is checked; the error is checked as above, and over the whole axis 2 x the
-/// sum of the dropped Hankel singular values bounds it everywhere right of the axis
+/// at the band's end, whichever needs the fewest states; a step contains the choice and its reason.
+/// The reduced part is stable, which is checked; the error is checked as above, and over the whole
+/// axis 2 x the sum of the dropped Hankel singular values bounds it everywhere right of the axis
 /// (ErrorBound::anywhere) [Moore 1981; Enns 1984; Glover 1984].
 ///
 /// Throws the errors of `compile(diagram)`; bad_value for a scene out of range or too large, and if
@@ -155,15 +156,15 @@ struct WhatIf {
   double accuracy = 0;  ///< required
   int order = 0;        ///< states
   double bound = 0;     ///< reached
-  /// Time of one transfer of the reduced system, measured here: the least of nine runs of fifty
-  /// each, since other load on the machine only adds. Figures of other builds and machines differ.
+  /// Time of one transfer of the reduced system [s], measured: the minimum of nine runs of fifty
+  /// transfers each. It depends on the build and the machine.
   double seconds = 0;
   ReducedSystem system;
 };
 
 /// The same scene for several accuracies (Scene::accuracy is not used): one eigenproblem and one
 /// nested sequence for all, so that more accuracy never gives a smaller order. Bodies lose only
-/// modes that the finest of them allows. Accuracies that cannot be met are omitted. In the order
+/// modes that the smallest accuracy allows. Accuracies that cannot be met are omitted. In the order
 /// given. Throws the other errors of `compile`; bad_value for accuracies out of range, all
 /// together.
 std::vector<WhatIf> what_if(const Diagram& diagram, const Scene& scene,

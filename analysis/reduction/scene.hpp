@@ -13,7 +13,7 @@ enum class BoundKind {
   theorem    ///< spaced for every pole of both models: up to rounding no peak is between samples
 };
 
-/// A question: inputs, outputs, band and accuracy.
+/// Requirements on a reduced model: inputs, outputs, band and accuracy.
 ///
 /// The error of a pair (input, output) is the largest difference of the transfer over the band,
 /// over the largest magnitude of the pair itself there. Pairs that are nearly zero, as by
@@ -34,18 +34,19 @@ struct Scene {
   /// resonances, 4e-16 over their damping on the ray.
   double accuracy = 1e-3;
   double damping_floor = 0.002;  ///< zeta, between 1e-6 and 0.5
-  /// A theorem costs many times the samples, and if damping couples modes one eigenproblem of
-  /// O(8 n^3) for their poles.
+  /// BoundKind::theorem takes many times the samples and, if damping couples modes, one
+  /// eigenproblem of O(8 n^3) for their poles.
   BoundKind bound = BoundKind::estimate;
-  /// Up to this many coordinates the whole is reduced, by one symmetric eigenproblem of O(n^3). Of
-  /// more, bodies lose modes first, those with the least effect on the assembled transfer; static
-  /// vectors of their loaded ports replace these. The error is measured, and the bound is an
-  /// estimate, checked against the full system as always. Refused if too many remain.
+  /// Up to this many coordinates the assembled model is reduced, by one symmetric eigenproblem of
+  /// O(n^3). In larger models bodies lose modes first, those with the least effect on the assembled
+  /// transfer; static vectors of their loaded ports replace these. The error is measured, and the
+  /// bound is an estimate, checked against the full system as always. Refused if too many remain.
   int whole_up_to = 2000;
-  /// Passive structures keep M, D, K. False: their states are balanced; with heavy damping
-  /// fewer may suffice.
+  /// Passive structures keep M, D, K. False: their states are balanced, which may need fewer states
+  /// at heavy damping.
   bool keep_structure = true;
-  /// Up to this many states are balanced, at O(100 n^3); of more, bodies lose modes first.
+  /// Largest number of states that are balanced, at O(100 n^3); in larger models bodies lose modes
+  /// first.
   int balance_up_to = 800;
 };
 

@@ -44,8 +44,8 @@ class Excitation {
 /// Method of a step. Cost per step of n states, b bodies; error per unit of time of steps h.
 enum class Stepper {
   automatic,  ///< exact up to 600 states; beyond, and if A and B have lost the digits of slow
-              ///< motion, midpoint at half the step, compared with midpoint at the step, three
-              ///< times the cost of one of them: Trajectory::error
+              ///< motion, midpoint at half the step; its difference from midpoint at the step is
+              ///< Trajectory::error, at three times the cost of midpoint
   exact,      ///< matrix exponential, once O(n^3), then O(n^2): for inputs that are linear in every
               ///< step no error at any step but rounding, that of writing A and B included
   midpoint,   ///< implicit midpoint rule through the factors, O(b), h^2: stable at any step, keeps
@@ -62,7 +62,7 @@ struct Simulation {
   bool keep_states = false;  ///< Trajectory::x at all times
   /// The largest Trajectory::error that the automatic choice accepts; above it the exact stepper is
   /// replaced by midpoint. Use infinity for outputs that no motion has reached yet (far down a
-  /// row): they have no digit.
+  /// chain): no digit of them is correct.
   double accuracy = 0.01;
 };
 
@@ -72,23 +72,23 @@ struct Trajectory {
   Eigen::MatrixXd y;         ///< outputs x times; where an input jumps, just after it (the last
                              ///< time: just before)
   Eigen::MatrixXd x;         ///< states x times, or their last column alone
-  Stepper stepper = Stepper::exact;  ///< the one that was taken
+  Stepper stepper = Stepper::exact;  ///< the stepper used
   /// Estimated error per output, relative to its largest value, or to a millionth of that of the
   /// largest output of its kind (positions, velocities, accelerations, forces) if that is more: an
-  /// output that is 0 by symmetry has no digits. Of the automatic choice's midpoint: the largest
-  /// change from steps of twice the size (an h^2 method: about three times the error). Of the exact
-  /// stepper: the effect of rounding in A and B, from the difference of their xdot from that of the
-  /// factors (sampled at up to a thousand times), propagated by the same steps: its order of
-  /// magnitude. Empty if midpoint or rk4 was chosen by the caller: no second run is made.
+  /// output that is 0 by symmetry has no correct digit. Of the automatic choice's midpoint: the
+  /// largest change from steps of twice the size (an h^2 method: about three times the error). Of
+  /// the exact stepper: the effect of rounding in A and B, from the difference of their xdot from
+  /// that of the factors (sampled at up to a thousand times), propagated by the same steps: its
+  /// order of magnitude. Empty if midpoint or rk4 was chosen by the caller: no second run is made.
   Eigen::VectorXd error;
   std::vector<std::string> states, outputs;
 };
 
 /// The response of the system (its states, before `minimize`: x0 keeps its meaning) from x0 to
 /// `excitation`. Throws bad_value for steps that are not positive or do not divide `until`, and for
-/// an rk4 step beyond the limit of stability, which it names, and if the automatic choice is off
-/// by more than Simulation::accuracy, with the output; size for x0 or inputs of another
-/// size; not_finite if the response overflows (an unstable system), with the time.
+/// an rk4 step beyond the limit of stability, which it names, and if the error of the automatic
+/// choice exceeds Simulation::accuracy, with the output; size for x0 or inputs of another size;
+/// not_finite if the response overflows (an unstable system), with the time.
 ///
 /// Sources: [Hairer, Lubich, Wanner 2006] IV.2 (midpoint), [Van Loan 1978] (exponential).
 Trajectory simulate(const System& system, const Excitation& excitation,

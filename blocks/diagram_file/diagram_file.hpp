@@ -36,7 +36,7 @@ std::string diagram_json(const Diagram& diagram);
 /// last bit, as compiling the diagram that was written. Throws bad_file, with the place in the text
 /// ("blocks[3].mass"), the text found and the text expected; and the errors of `Diagram::add` for
 /// invalid blocks. Later messages have "equations[3] of the diagram file" for a source line.
-Diagram parse_diagram(std::string_view json, const std::string& file = "scene");
+Diagram parse_diagram(std::string_view json, const std::string& file = "diagram");
 
 /// The same with files. Throw bad_file.
 void write_diagram(const Diagram& diagram, const std::filesystem::path& file);

@@ -27,7 +27,8 @@ enum class Definiteness {
   indefinite,  ///< negative beyond the data's digits: modes and D_P contradict each other
 };
 
-/// D_P0 = D_P - L_P'L_P, the mass that the modes leave at P; it must not be negative.
+/// D_P0 = D_P - L_P'L_P, the residual mass at P: the rigid mass without that of the modes; it must
+/// not be negative.
 struct ResidualMass {
   Matrix6 D_P0 = Matrix6::Zero();
   double smallest = 0;  ///< smallest eigenvalue with D_P scaled to a unit diagonal: a fraction
@@ -50,8 +51,10 @@ ChildRank child_rank(const ModalData& data, const ModalChild& child);
 /// "rx", or a combination "y - 0.5 rz".
 std::string combination(const Vector6& w);
 
-/// Digits by which `compile` judges scenes: sizes of ports as above, D_P's fractions by
-/// `data.digits`, those of shapes 1e-11 or more, the rounding of an eigenproblem.
+/// Accuracy of the block's numbers (graph/data_digits.hpp): sizes of a child are its largest row
+/// norms of Phi_C, of translations and of rotations, made comparable by the distance from P; those
+/// of P the square roots of D_P's diagonal; the fraction of `mass` follows from `data.digits`, that
+/// of `shapes` is 1e-11 or more, the rounding of an eigenproblem.
 DataDigits data_digits(const ModalData& data);
 
 /// fraction(k, j) = L_P(k, j)^2 / D_P(j, j): fraction of the rigid mass that moves with mode k if P

@@ -48,8 +48,8 @@ struct Certificate {
   std::complex<double> dense_error_s;  ///< s of the largest error
   /// The same over the size of the output at that same s, also far below the slowest mode: there an
   /// acceleration may fall with s^2, and the digits that A, B, C, D keep of a free motion fall with
-  /// it. It grows towards lower s than those tried. Above 1e-6 the log warns of it, too, if it
-  /// costs another digit.
+  /// it. It grows towards s below the lowest point. Above 1e-6 the log warns, if another digit is
+  /// lost there.
   double dense_error_where_small = -1;
   std::complex<double> dense_error_where_small_s;  ///< s of the largest error
   /// Smallest pivot over the sum of magnitudes of its terms: 1 no cancellation, 1e-16 no digit.
@@ -64,12 +64,12 @@ struct Certificate {
                                 ///< or have no inverse in double (50 digits, or states, decide)
   std::string margin_where;
   int fronts = 0;         ///< of the elimination
-  int fronts_made = 0;    ///< of them, by the last compile or update; the others are shared
+  int fronts_made = 0;    ///< computed by the last compile or update; the others are shared
   int plans_renewed = 0;  ///< updates since compile that recomputed the scaling, or all
   double seconds = 0;     ///< of this check
 };
 
-/// One line per item, in plain words.
+/// One line per item.
 std::string to_string(const Certificate& certificate);
 
 }  // namespace titop

@@ -9,9 +9,9 @@ namespace titop {
 struct DotOptions {
   /// Upper limit, approximate, of the number of blocks; larger subtrees are folded into one box
   /// each, with their number of blocks and states and their types. The parent of a block is the one
-  /// that moves it (of a controller, the first that it reads). The largest subtrees are opened
-  /// first; of one block's children the largest are shown, eight at most, and the others share a
-  /// box. 0: every block.
+  /// that drives its acceleration; of a controller, the first block that it reads. The largest
+  /// subtrees are opened first; of one block's children the largest are shown, eight at most, and
+  /// the others share a box. 0: every block.
   int fold = 0;
 };
 

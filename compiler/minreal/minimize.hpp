@@ -7,7 +7,7 @@
 namespace titop {
 
 struct MinimizeOptions {
-  double resolution = 0;  ///< also drop modes of visibility up to this; 0: only rounding's own
+  double resolution = 0;  ///< also drop modes of visibility up to this; 0: at rounding level only
   int exact_order = -1;   ///< the minimal order, if exact arithmetic has found it; -1: not known
   /// Potential energy x' E x / 2, if it is known (n x n, else empty): it gives the symmetric form
   /// of models whose mass couples the coordinates, as in closed chains. Not used if it does not fit
@@ -29,12 +29,12 @@ struct JudgedMode {
 
 /// Reliability of the order of a model.
 struct OrderVerdict {
-  bool judged = false;  ///< false: `minimize` has not run; only the structure has been looked at
+  bool judged = false;  ///< false: `minimize` has not run; the order is that of the structure
   int order = 0;        ///< of the model
   /// Interval of the minimal order, both ends included; equal: it is decided, as far as double
-  /// precision distinguishes data. Of a system whose self-check reports lost digits, `lowest`
-  /// counts only states of inputs and outputs whose dynamics finer arithmetic confirms; of one
-  /// whose dense model keeps less than 3 digits (Certificate::dense_error), `highest` counts all.
+  /// precision distinguishes data. If the self-check reports lost digits, `lowest` counts only
+  /// states of inputs and outputs whose dynamics finer arithmetic confirms; if the dense model
+  /// keeps less than 3 digits (Certificate::dense_error), `highest` counts all states.
   int lowest = 0, highest = 0;
   bool exact = false;   ///< decided by exact arithmetic (compiler/definition/exact_order.hpp)
   double to_fewer = 1;  ///< least visibility among the kept modes: error of removing the next
@@ -53,11 +53,11 @@ struct OrderVerdict {
 /// this precision, kept 34 modes, ...". One line.
 std::string to_string(const OrderVerdict& verdict);
 
-/// A model without states of no effect on its transfer, and the removed modes.
+/// A model without the states that have no effect on its transfer, and the removed modes.
 struct Minimized {
   StateSpace model;
   OrderVerdict order;
-  std::vector<std::string> notes;  ///< in plain words; the verdict is the first
+  std::vector<std::string> notes;  ///< the first is the verdict
 };
 
 /// Minimal by effect: a removed mode may be present in the last bits of the data, which the verdict

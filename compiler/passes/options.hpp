@@ -8,7 +8,7 @@ namespace titop {
 enum class InternalForces {
   refuse,        ///< outputs and controllers that read one are refused by name
   minimal_norm,  ///< the joint that closes the chain gets the wrench of smallest norm, forces [N]
-                 ///< and torques [N m] with equal weight; the log marks its readers
+                 ///< and torques [N m] with equal weight; the log lists its readers
 };
 
 /// Options of `compile`.

@@ -12,9 +12,9 @@ namespace titop {
 /// A line of the compile log.
 struct Note {
   enum class Kind {
-    info,       ///< a count made by a pass
+    info,       ///< counts of a pass
     inverted,   ///< a channel that is driven on the side that its block gives by default
-    removed,    ///< a part without effect
+    removed,    ///< a part without effect on the outputs
     unchecked,  ///< accepted without a check: frames behind a nameless rotation or a matrix
     warning,    ///< lost digits, with their number; or input that is rarely intended
   };
@@ -68,7 +68,7 @@ struct Origin {
   Eigen::MatrixXd times = {};        ///< rows of it that count (pass `chains`); empty: all
 };
 
-/// Integrators that `lower` adds for motions that are no states.
+/// Integrators that `lower` adds for motions that no state determines.
 struct RigidMotion {
   enum class Half { whole, linear, angular };  ///< whole: of a scalar point
   int signal = -1;                             ///< the acceleration, in Stage::graph
@@ -78,7 +78,7 @@ struct RigidMotion {
   auto operator<=>(const RigidMotion&) const = default;
 };
 
-/// A closing equation that is partly redundant: in these directions the joint is released.
+/// A partly redundant closing equation: the joint is released in these directions.
 struct Released {
   int equation = -1;    ///< of the released force (new), in Stage::graph
   int channel = -1;     ///< whose wrench is not determined there

@@ -29,15 +29,15 @@ std::vector<Pole> poles(const StateSpace& model);
 /// A table: rad/s, Hz, damping, blocks.
 std::string to_string(const std::vector<Pole>& poles);
 
-/// A second-order model hidden in A, if there is one: x = [q; qdot] in some order, qddot = -K q -
-/// Z qdot with K symmetric after the diagonal scaling d (q = d y).
+/// The second-order form of A, if it has one: x = [q; qdot] in some order, qddot = -K q - Z qdot
+/// with K symmetric after the diagonal scaling d (q = d y).
 struct SecondOrder {
   bool found = false;
   std::vector<int> q, qdot;  ///< positions of the pairs among the states
   Eigen::VectorXd d;         ///< scaling
   Eigen::MatrixXd S;         ///< symmetric positive semidefinite: yddot = -S y - Z ydot
   Eigen::MatrixXd Z;         ///< same scaling
-  Eigen::MatrixXd skew;      ///< antisymmetric part removed from S, to be small in its modes, too
+  Eigen::MatrixXd skew;      ///< antisymmetric part, removed from S; small in the modes of S, too
   double asymmetry = 0;      ///< largest |S_ij - S_ji| over sqrt(S_ii S_jj) before; up to 1e-9
 };
 SecondOrder second_order(const Eigen::MatrixXd& A);

@@ -35,20 +35,21 @@ enum class Precision {
   twofold,   ///< the same in double-double: 32 digits, on any machine
   extended,  ///< long double: 19 digits on x86
   digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower
-  as_needed  ///< double, and finer if the weakest pivot has lost more than four digits: refined
-             ///< or twofold if that settles, else 50 digits; if double has no pivot at all
-             ///< though s is no pole, as in wide grids, double-double or 50 digits, unless the
-             ///< last place of the data decides all digits, far below all modes of a closed chain
+  as_needed  ///< double; if its error, estimated from pivots, rounding and refinement, exceeds
+             ///< 1e-12: refined or twofold if they converge, else 50 digits. If double finds no
+             ///< pivot although s is no pole, as in wide grids: double-double or 50 digits;
+             ///< singular if rounding of the data alone changes all digits (far below all modes of
+             ///< a closed chain)
 };
 
 /// Values of parameters by name: {{"k1", 12.0}, {"angle", 0.3}}.
 using ParameterList = std::vector<std::pair<std::string, double>>;
 
 /// A compiled diagram: the elimination plan, the factors and the blocks' data. Const, cheap to
-/// copy, may be shared between threads. (Its worker threads are kept, asleep, for later calls, and
-/// block all signals; a child of fork() has none.) The dense model is written from it on demand.
-/// References are valid during the System's lifetime; a temporary System returns copies: `const
-/// StateSpace& m = compile(d).state_space();`
+/// copy, may be shared between threads. (Its worker threads sleep between calls and block all
+/// signals; a child of fork() has none.) The dense model is written from it on demand. References
+/// are valid during the System's lifetime; a temporary System returns copies: `const StateSpace& m
+/// = compile(d).state_space();`
 class System {
  public:
   explicit System(std::shared_ptr<const detail::SystemData> data) : data_(std::move(data)) {}
@@ -91,7 +92,7 @@ class System {
 
   /// transfer(0), real. Throws singular if the system has a pole at 0 (a free hinge, an
   /// integrator). If a block has a pole at 0 that the system has not (a hinge held by a spring),
-  /// transfer(0) throws, and the gain is that of state_space(): its cost and its digits.
+  /// transfer(0) throws, and the gain is computed from state_space(), at its cost and accuracy.
   Eigen::MatrixXd static_gain() const;
 
   /// The dense model. The first call writes it, O(n^2), and, up to Options::minimize_up_to states,
@@ -100,8 +101,8 @@ class System {
   const StateSpace& state_space() const&;
   StateSpace state_space() const&& { return state_space(); }
 
-  /// Reliability of the order of state_space(), the states removed and the error of that; writes
-  /// the model if that has not been done.
+  /// Reliability of the order of state_space(), the removed states and the error of removing them;
+  /// writes the model if that has not been done.
   const OrderVerdict& order_verdict() const&;
   OrderVerdict order_verdict() const&& { return order_verdict(); }
 
@@ -128,10 +129,10 @@ class System {
   /// time, that of all fronts if pivots have lost half their digits (Certificate::plans_renewed
   /// counts both); the numbers are then those of a fresh compile, to rounding. Pivots are checked
   /// at once; the rest of the certificate, and its warnings, are computed at the first call of
-  /// certificate(), notes(), log() or state_space(): O(bodies). They include a loop that the new
+  /// certificate(), notes(), log() or state_space(): O(bodies). They include loops that the new
   /// values make singular without a small pivot. If a pivot is less than 1e-7 of its terms, and a
   /// tenth of its former ratio, all of it is computed at once. `minimize` is not included:
-  /// state_space() of the new system decides for the new values, and may have another order
+  /// state_space() of the new system runs it for the new values, and may have another order
   /// (Options::minimize_up_to = 0 keeps all states at all values). Throws unknown_name (with the
   /// valid names), duplicate_name (one set twice), not_finite, the errors of blocks for invalid
   /// values (bad_inertia, bad_value), improper and ill_posed.
@@ -173,11 +174,11 @@ class System {
   std::shared_ptr<const detail::SystemData> data_;
 };
 
-/// Compiles a diagram: check, lower, split, chains, match, order, close, solve, certify (see
-/// compiler/system/pipeline.cpp, which reads like this line). Throws Error with all mistakes of the
-/// first pass that finds any, bad_value for options out of their range. Cost: linear in the number
-/// of bodies for trees. From the first compile on, glibc keeps up to 64 MB of freed memory in the
-/// process (see compiler/solve/memory.hpp).
+/// Compiles a diagram: check, lower, split, chains, match, order, close, solve, certify
+/// (docs/architecture.md). Throws Error with all mistakes of the first pass that finds any,
+/// bad_value for options out of their range. Cost: linear in the number of bodies for trees. From
+/// the first compile on, glibc keeps up to 64 MB of freed memory in the process (see
+/// compiler/solve/memory.hpp).
 System compile(const Diagram& diagram, const Options& options = {});
 
 }  // namespace titop

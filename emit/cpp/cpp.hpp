@@ -11,8 +11,8 @@ enum class CppStates {
   automatic,  ///< modes if that takes fewer operations and is as accurate (looked at up to 400
               ///< states), else the model's own
   model,      ///< those of System::state_space(), by name
-  modes,      ///< throws bad_value if modes are not as accurate (free rigid motion), or
-              ///< there is no input or no output to measure it by
+  modes,      ///< throws bad_value if modes are less accurate (free rigid motion), or if there is
+              ///< no input or no output, so that the accuracy cannot be measured
 };
 
 struct CppOptions {
@@ -22,13 +22,13 @@ struct CppOptions {
   CppStates states = CppStates::automatic;
 };
 
-/// A model as C++17 source and the proof of it. Neither needs titop, or anything but the standard
-/// library; the test is for doctest.
+/// A model as C++17 source, and its test. The header needs the standard library only, the test also
+/// doctest.
 struct CppModel {
   std::string name;
   std::string header;      ///< NAME.hpp
   std::string test;        ///< NAME_test.cpp, with doctest's main (or TITOP_TEST_WITHOUT_MAIN)
-  bool modal = false;      ///< the state is the modes'; to_states() gives the model's
+  bool modal = false;      ///< the states are modal; to_states() gives the model's
   double error = 0;        ///< of its transfer against the factored system, at eight s near the
                            ///< poles: worst entry over the largest of its row and column
   long long products = 0;  ///< multiplications of derivative + output (+ step)

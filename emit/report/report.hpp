@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-/// One compiled scene as a document for a review.
+/// A report of a compiled diagram.
 namespace titop {
 
 struct ReportOptions {
