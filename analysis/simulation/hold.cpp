@@ -13,7 +13,7 @@ using Eigen::MatrixXd;
 namespace {
 
 template <class T>
-using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+using DenseMatrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 
 constexpr Index kMostInLongDouble = 128;  // states: some tenths of a second
 
@@ -44,11 +44,11 @@ Eigen::VectorXd similarity_scaling(MatrixXd X, Index n) {
 /// exp(X) - I: Taylor at X / 2^k, then (I + E)^2 - I = 2 E + E^2, k times. Without the I a slow
 /// state keeps its digits if others are fast.
 template <class T>
-Matrix<T> exponential_less_one(Matrix<T> X) {
+DenseMatrix<T> exponential_less_one(DenseMatrix<T> X) {
   const auto norm = static_cast<double>(X.cwiseAbs().colwise().sum().maxCoeff());
   const int k = norm > 0.25 ? static_cast<int>(std::ceil(std::log2(norm / 0.25))) : 0;
   X /= static_cast<T>(std::exp2(k));
-  Matrix<T> E = X, term = X;
+  DenseMatrix<T> E = X, term = X;
   for (int i = 2; i <= 18; ++i) {
     term = (term * X / T(i)).eval();
     E += term;
@@ -59,23 +59,23 @@ Matrix<T> exponential_less_one(Matrix<T> X) {
 
 /// [exp(A h) - I, integral B] as one n x (n + nu) matrix: the exponential of [[A, B], [0, 0]] h.
 template <class T>
-Matrix<T> increments(const MatrixXd& A, const MatrixXd& B, double h) {
+DenseMatrix<T> increments(const MatrixXd& A, const MatrixXd& B, double h) {
   const Index n = A.rows(), m = B.cols();
-  if (n == 0) return Matrix<T>::Zero(0, m);
+  if (n == 0) return DenseMatrix<T>::Zero(0, m);
   MatrixXd X = MatrixXd::Zero(n + m, n + m);
   X << A, B, MatrixXd::Zero(m, n + m);
   const Eigen::VectorXd d = similarity_scaling(X, n);
   const MatrixXd scaled = d.cwiseInverse().asDiagonal() * X * d.asDiagonal();  // exact
-  const Matrix<T> E = exponential_less_one<T>(scaled.cast<T>() * T(h));
+  const DenseMatrix<T> E = exponential_less_one<T>(scaled.cast<T>() * T(h));
   return d.cast<T>().head(n).asDiagonal() * E.topRows(n) * d.cwiseInverse().cast<T>().asDiagonal();
 }
 
 template <class T>
 MatrixXd run(const StateSpace& m, double h, const MatrixXd& inputs) {
   const Index n = m.A.rows();
-  const Matrix<T> step = increments<T>(m.A, m.B, h), u = inputs.cast<T>();
-  const Matrix<T> C = m.C.cast<T>(), D = m.D.cast<T>();
-  Matrix<T> x = Matrix<T>::Zero(n, 1), y(m.C.rows(), inputs.cols());
+  const DenseMatrix<T> step = increments<T>(m.A, m.B, h), u = inputs.cast<T>();
+  const DenseMatrix<T> C = m.C.cast<T>(), D = m.D.cast<T>();
+  DenseMatrix<T> x = DenseMatrix<T>::Zero(n, 1), y(m.C.rows(), inputs.cols());
   for (Index k = 0; k < inputs.cols(); ++k) {
     y.col(k) = C * x + D * u.col(k);
     x += (step.leftCols(n) * x + step.rightCols(u.rows()) * u.col(k)).eval();

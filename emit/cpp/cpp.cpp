@@ -14,7 +14,7 @@
 
 namespace titop {
 
-using emit::Form;
+using emit::ModelForm;
 
 namespace {
 
@@ -37,12 +37,12 @@ void check(const CppOptions& options) {
 }
 
 /// Accurate enough compared with the model's own states: no more than a digit lost.
-bool serves(const Form& modes, const Form& own) {
+bool serves(const ModelForm& modes, const ModelForm& own) {
   return modes.error <= std::max(1e-12, 10 * own.error) &&
          modes.step_error <= std::max(1e-12, 10 * own.step_error);
 }
 
-Form choose(Form own, Form modes, const CppOptions& options) {
+ModelForm choose(ModelForm own, ModelForm modes, const CppOptions& options) {
   if (options.states == CppStates::modes && !serves(modes, own))
     throw Error(Code::bad_value,
                 fmt::format("modes of {} lose digits: error {:.1e}, in the model's own states "
@@ -78,7 +78,7 @@ emit::Expected expectations(const System& system, double sample_time) {
   return e;
 }
 
-void measure(Form& form, const emit::Expected& e, double sample_time) {
+void measure(ModelForm& form, const emit::Expected& e, double sample_time) {
   if (sample_time > 0) emit::add_hold(form, sample_time);
   if (e.points.s.empty()) return;
   form.error = emit::response_error(form, e.points);
@@ -95,7 +95,7 @@ void refuse_unmeasured_modes(const emit::Expected& expected, const CppOptions& o
       "take CppStates::automatic, or declare an input and an output");
 }
 
-void refuse_few_digits(const Form& form, const std::string& name) {
+void refuse_few_digits(const ModelForm& form, const std::string& name) {
   if (emit::is_provable(form.error)) return;
   throw Error(Code::bad_value,
               fmt::format("written as A, B, C, D the model {} is off by {:.1e}", name, form.error),
@@ -113,7 +113,7 @@ CppModel generate_cpp(const System& system, const CppOptions& options) {
                            options.sample_time};
   const emit::Expected expected = expectations(system, options.sample_time);
   refuse_unmeasured_modes(expected, options);
-  Form own = emit::own_form(m), modes = own;
+  ModelForm own = emit::own_form(m), modes = own;
   measure(own, expected, options.sample_time);
   const bool wanted = options.states == CppStates::modes ||
                       (options.states == CppStates::automatic && m.order() <= kMostForModes);
@@ -121,7 +121,7 @@ CppModel generate_cpp(const System& system, const CppOptions& options) {
     modes = emit::modal_form(m);
     measure(modes, expected, options.sample_time);
   }
-  const Form form = choose(std::move(own), std::move(modes), options);
+  const ModelForm form = choose(std::move(own), std::move(modes), options);
   refuse_few_digits(form, options.name);
   return {options.name,
           emit::header_text(names, form),

@@ -23,7 +23,7 @@ bool contains(const std::vector<Index>& list, Index i) {
 }
 
 /// Error of C (s - A)^-1 B + D. HUGE_VAL if s - A is singular in double.
-double difference_at(const Form& form, std::complex<double> s, const MatrixXcd& exact,
+double difference_at(const ModelForm& form, std::complex<double> s, const MatrixXcd& exact,
                      const Points& points) {
   const Index n = form.A.rows();
   linalg::Solution solution{.z = MatrixXcd(n, form.B.cols()), .rcond = 1};
@@ -158,7 +158,7 @@ void find_silent(const System& system, Points& points) {
 
 }  // namespace
 
-TransferDifference difference(const Form& form, const MatrixXcd& X, const MatrixXcd& exact,
+TransferDifference difference(const ModelForm& form, const MatrixXcd& X, const MatrixXcd& exact,
                               const Points& points) {
   constexpr double kTermRounding = 10 * std::numeric_limits<double>::epsilon();
   const MatrixXcd G = form.C * X + form.D;
@@ -205,7 +205,7 @@ Points response_points(const System& system, const std::vector<Pole>& poles) {
   return points;
 }
 
-double response_error(const Form& form, const Points& points) {
+double response_error(const ModelForm& form, const Points& points) {
   double worst = 0;
   for (std::size_t i = 0; i < points.s.size(); ++i)
     worst = std::max(worst, difference_at(form, points.s[i], points.exact[i], points));
@@ -224,11 +224,11 @@ Points at_rest(const Points& points, const MatrixXd& static_gain) {
   return rest;
 }
 
-double static_error(const Form& form, const MatrixXd& exact, const Points& points) {
+double static_error(const ModelForm& form, const MatrixXd& exact, const Points& points) {
   return difference_at(form, 0, exact.cast<std::complex<double>>(), at_rest(points, exact));
 }
 
-double step_error(const Form& form, const MatrixXd& inputs, const MatrixXd& exact,
+double step_error(const ModelForm& form, const MatrixXd& inputs, const MatrixXd& exact,
                   const Points& points) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(form.A.rows());
   Eigen::VectorXd size = Eigen::VectorXd::Zero(exact.rows()), off = size;
@@ -249,16 +249,16 @@ MatrixXd trajectory_inputs(Index inputs, Index steps) {
   return u;
 }
 
-Form own_form(const StateSpace& model) {
-  Form form;
+ModelForm own_form(const StateSpace& model) {
+  ModelForm form;
   form.A = model.A, form.B = model.B, form.C = model.C, form.D = model.D;
   return form;
 }
 
-Form modal_form(const StateSpace& model) {
+ModelForm modal_form(const StateSpace& model) {
   std::optional<BlockDiagonalForm> modes = proportional_modes(model.A);
   if (!modes) modes = general_modes(model.A);
-  Form form;
+  ModelForm form;
   form.modal = true;
   form.A = modes->A.cast<double>();
   form.B = (modes->from_states * model.B.cast<long double>()).cast<double>();
@@ -278,7 +278,7 @@ std::vector<Index> diagonal_blocks(const MatrixXd& A) {
   return first;
 }
 
-void add_hold(Form& form, double h) {
+void add_hold(ModelForm& form, double h) {
   if (!form.modal) {
     Hold all = hold(form.A, form.B, h);
     form.A_h = std::move(all.A), form.B_h = std::move(all.B);

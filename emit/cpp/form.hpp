@@ -11,7 +11,7 @@ namespace titop::emit {
 
 /// The model's matrices in its own states, or in modes: x = to_states z, z = from_states x, with A
 /// in 1 x 1 and 2 x 2 blocks along its diagonal.
-struct Form {
+struct ModelForm {
   bool modal = false;
   Eigen::MatrixXd A, B, C, D;
   Eigen::MatrixXd A_h, B_h;                 ///< held over a sample time; empty without one
@@ -45,22 +45,22 @@ struct TransferDifference {
   double worst = 0;
   double rounding = 0;  ///< possible difference by rounding of the terms on another machine
 };
-TransferDifference difference(const Form& form, const Eigen::MatrixXcd& X,
+TransferDifference difference(const ModelForm& form, const Eigen::MatrixXcd& X,
                               const Eigen::MatrixXcd& exact, const Points& points);
 
 /// The worst difference of C (s - A)^-1 B + D over all points; HUGE_VAL if s - A is singular in
 /// double.
-double response_error(const Form& form, const Points& points);
+double response_error(const ModelForm& form, const Points& points);
 /// The points' silent outputs and inputs, and those that are 0 by nature at rest, such as rates.
 Points at_rest(const Points& points, const Eigen::MatrixXd& static_gain);
 
 /// The difference at s = 0, without rows and columns that are silent at rest.
-double static_error(const Form& form, const Eigen::MatrixXd& exact, const Points& points);
+double static_error(const ModelForm& form, const Eigen::MatrixXd& exact, const Points& points);
 
 /// The same for a trajectory: largest difference of y(k) from x(0) = 0 to `exact` (ny x steps),
 /// each output relative to the largest |C| |x| + |D| |u| that it had.
-double step_error(const Form& form, const Eigen::MatrixXd& inputs, const Eigen::MatrixXd& exact,
-                  const Points& points);
+double step_error(const ModelForm& form, const Eigen::MatrixXd& inputs,
+                  const Eigen::MatrixXd& exact, const Points& points);
 
 /// Worst `off` relative to `size`, by outputs, without the silent.
 double worst_output(const Eigen::VectorXd& off, const Eigen::VectorXd& size, const Points& points);
@@ -69,14 +69,14 @@ double worst_output(const Eigen::VectorXd& off, const Eigen::VectorXd& size, con
 Eigen::MatrixXd trajectory_inputs(Eigen::Index inputs, Eigen::Index steps);
 
 /// The matrices unchanged.
-Form own_form(const StateSpace& model);
+ModelForm own_form(const StateSpace& model);
 
 /// Modes of the second-order form if damping is proportional, of A otherwise. Its error determines
 /// whether it may be used: it is large if A is defective (free rigid motion and modes).
-Form modal_form(const StateSpace& model);
+ModelForm modal_form(const StateSpace& model);
 
 /// Adds A_h, B_h; block by block if the form is modal.
-void add_hold(Form& form, double sample_time);
+void add_hold(ModelForm& form, double sample_time);
 
 /// Ends of the blocks on the diagonal of a block-diagonal A: first rows, and n at the end.
 std::vector<Eigen::Index> diagonal_blocks(const Eigen::MatrixXd& A);

@@ -206,7 +206,7 @@ namespace detail {
 )";
 
 /// The measured errors, as the header's comment.
-std::string errors(const Naming& names, const Form& form) {
+std::string errors(const Naming& names, const ModelForm& form) {
   if (names.inputs.empty() || names.outputs.empty())
     return "Its accuracy was not measured: there are no inputs or no outputs.";
   std::string text = fmt::format(
@@ -218,7 +218,7 @@ std::string errors(const Naming& names, const Form& form) {
   return text;
 }
 
-std::string step_function(const Naming& names, const Form& form) {
+std::string step_function(const Naming& names, const ModelForm& form) {
   if (names.sample_time == 0) return {};
   return fmt::format(
              "\n/// [s]\ninline constexpr double sample_time = {};\n\n"
@@ -227,7 +227,7 @@ std::string step_function(const Naming& names, const Form& form) {
          function("step", "State", form.A_h, "A_h", form.B_h, "B_h");
 }
 
-std::string mode_functions(const Form& form) {
+std::string mode_functions(const ModelForm& form) {
   if (!form.modal) return {};
   return R"(
 /// The model's own states, by their names, from x, and x from them.
@@ -245,7 +245,7 @@ constexpr State from_states(const ModelState& own) {
 )";
 }
 
-std::string matrix_data(const Form& form) {
+std::string matrix_data(const ModelForm& form) {
   Data data;
   data.add(form.A, "A");
   data.add(form.B, "B");
@@ -258,7 +258,7 @@ std::string matrix_data(const Form& form) {
   return data.all();
 }
 
-std::string cost(const Form& form) {
+std::string cost(const ModelForm& form) {
   std::string text = fmt::format("derivative {}, output {}", products(form.A) + products(form.B),
                                  products(form.C) + products(form.D));
   if (form.A_h.size() > 0)
@@ -268,12 +268,12 @@ std::string cost(const Form& form) {
 
 }  // namespace
 
-long long products(const Form& form) {
+long long products(const ModelForm& form) {
   return products(form.A) + products(form.B) + products(form.C) + products(form.D) +
          products(form.A_h) + products(form.B_h);
 }
 
-std::string header_text(const Naming& names, const Form& form) {
+std::string header_text(const Naming& names, const ModelForm& form) {
   const auto count = [](std::size_t n, const char* subject) {
     return fmt::format("{} {}{}", n, subject, n == 1 ? "" : "s");
   };

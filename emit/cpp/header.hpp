@@ -13,9 +13,9 @@ struct Naming {
 };
 
 /// The text of NAME.hpp.
-std::string header_text(const Naming& names, const Form& form);
+std::string header_text(const Naming& names, const ModelForm& form);
 
 /// Multiplications of derivative + output (+ step) as stored.
-long long products(const Form& form);
+long long products(const ModelForm& form);
 
 }  // namespace titop::emit

@@ -68,7 +68,7 @@ struct LuResolvent {
 };
 
 /// The difference that the test will find at s, where it solves without the model's equilibration.
-TransferDifference tested_difference(const Form& form, Complex s, const MatrixXcd& exact,
+TransferDifference tested_difference(const ModelForm& form, Complex s, const MatrixXcd& exact,
                                      const Points& points) {
   const MatrixXcd B = form.B.cast<Complex>();
   return difference(form, form.A.rows() > 0 ? LuResolvent(form.A, s).refined(B) : B, exact, points);
@@ -83,7 +83,7 @@ std::vector<std::size_t> compared(const Points& points) {
   return chosen;
 }
 
-std::string transfer_test(const Naming& names, const Form& form, const Points& points) {
+std::string transfer_test(const Naming& names, const ModelForm& form, const Points& points) {
   TransferDifference worst{form.error, 1e-11};
   std::string checks;
   for (const std::size_t k : compared(points)) {
@@ -103,7 +103,7 @@ std::string transfer_test(const Naming& names, const Form& form, const Points& p
                                      {"CHECKS", checks}});
 }
 
-std::string static_gain_test(const Naming& names, const Form& form, const Expected& expected) {
+std::string static_gain_test(const Naming& names, const ModelForm& form, const Expected& expected) {
   const MatrixXcd exact = expected.static_gain->cast<Complex>();
   const Points rest = at_rest(expected.points, *expected.static_gain);
   const TransferDifference here = tested_difference(form, 0, exact, rest);
@@ -147,7 +147,7 @@ double pole_error(const MatrixXd& A, Complex p) {
   return std::isfinite(off) ? off : HUGE_VAL;
 }
 
-std::string pole_test(const Naming& names, const Form& form, const std::vector<Pole>& poles) {
+std::string pole_test(const Naming& names, const ModelForm& form, const std::vector<Pole>& poles) {
   std::vector<std::string> items, which, lost;
   for (const Pole& p : poles) items.push_back(pair(p.s.real(), p.s.imag()));
   double worst = 0;
@@ -168,7 +168,7 @@ std::string pole_test(const Naming& names, const Form& form, const std::vector<P
   return text;
 }
 
-std::string trajectory_test(const Naming& names, const Form& form, const MatrixXd& outputs) {
+std::string trajectory_test(const Naming& names, const ModelForm& form, const MatrixXd& outputs) {
   std::vector<std::string> rows;
   for (Index k = 0; k < outputs.cols(); ++k) rows.push_back("\n      " + list(outputs.col(k), 7));
   std::string all;
@@ -181,7 +181,7 @@ std::string trajectory_test(const Naming& names, const Form& form, const MatrixX
 }
 
 /// Difference of the test's Taylor series (kTaylor) from `step`.
-double series_error(const Form& form, const Expected& expected, double h, double parts) {
+double series_error(const ModelForm& form, const Expected& expected, double h, double parts) {
   const Eigen::SparseMatrix<double> A = form.A.sparseView();
   const auto by_series = [&](VectorXd x, const VectorXd& u) {
     for (double part = 0; part < parts; ++part) {
@@ -207,7 +207,7 @@ double series_error(const Form& form, const Expected& expected, double h, double
 }
 
 /// A comment in its place if the series would take more than some seconds.
-std::string taylor_test(const Naming& names, const Form& form, const Expected& expected) {
+std::string taylor_test(const Naming& names, const ModelForm& form, const Expected& expected) {
   constexpr const char* subject = "step against derivative";
   double fastest = 0;
   for (const Pole& p : expected.poles) fastest = std::max(fastest, p.omega);
@@ -227,7 +227,7 @@ std::string taylor_test(const Naming& names, const Form& form, const Expected& e
 
 }  // namespace
 
-std::string test_text(const Naming& names, const Form& form, const Expected& expected) {
+std::string test_text(const Naming& names, const ModelForm& form, const Expected& expected) {
   const std::string states = std::to_string(names.states.size());
   std::string text = filled(kHead, {{"DIAGRAM", emit::quoted(names.diagram)},
                                     {"NAME", names.name},

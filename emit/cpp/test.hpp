@@ -17,6 +17,6 @@ struct Expected {
 };
 
 /// The text of NAME_test.cpp.
-std::string test_text(const Naming& names, const Form& form, const Expected& expected);
+std::string test_text(const Naming& names, const ModelForm& form, const Expected& expected);
 
 }  // namespace titop::emit

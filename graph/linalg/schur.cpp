@@ -12,10 +12,10 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXcd;
-using Rotation = Eigen::JacobiRotation<Complex>;
+using GivensRotation = Eigen::JacobiRotation<Complex>;
 
 /// Rows and columns j, j + 1 turned, from column j on.
-void turn(Schur& s, Index j, const Rotation& g) {
+void turn(Schur& s, Index j, const GivensRotation& g) {
   s.T.rightCols(s.T.cols() - j).applyOnTheLeft(j, j + 1, g.adjoint());
   s.T.topRows(j + 2).applyOnTheRight(j, j + 1, g);
   s.Q.applyOnTheRight(j, j + 1, g);
@@ -27,7 +27,7 @@ void split_block(Schur& s, Index j) {
   const Complex a = s.T(j, j), b = s.T(j, j + 1), c = s.T(j + 1, j), d = s.T(j + 1, j + 1);
   const Complex half = (a - d) / 2.0, root = std::sqrt(half * half + b * c);
   const Complex lambda = (a + d) / 2.0 + root;
-  Rotation g;
+  GivensRotation g;
   g.makeGivens(lambda - d, c);
   turn(s, j, g);
   s.T(j, j) = lambda;
@@ -37,7 +37,7 @@ void split_block(Schur& s, Index j) {
 /// Exchanges the eigenvalues at j and j + 1.
 void exchange(Schur& s, Index j) {
   const Complex first = s.T(j, j), second = s.T(j + 1, j + 1);
-  Rotation g;
+  GivensRotation g;
   g.makeGivens(s.T(j, j + 1), second - first);
   turn(s, j, g);
   s.T(j, j) = second;

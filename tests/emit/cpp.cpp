@@ -102,7 +102,7 @@ TEST_CASE("numbers read back to the last bit and are no integers") {
 
 TEST_CASE("tolerances of the test end at 1e-6; checks that need more are replaced by a comment") {
   // xdot = -x + u, y = x.
-  emit::Form form;
+  emit::ModelForm form;
   form.A = -MatrixXd::Identity(1, 1), form.B = form.C = -form.A, form.D = MatrixXd::Zero(1, 1);
   emit::add_hold(form, 0.1);
   const emit::Naming names{"lag", "lag", {"x"}, {"u"}, {"y"}, 0.1};
@@ -207,7 +207,7 @@ TEST_CASE("without a static gain of A alone: no check of it, and the other check
   CHECK(model.test.find("TEST_CASE(\"nilpotent: transfer\")") != std::string::npos);
   CHECK(model.test.find("TEST_CASE(\"nilpotent: static gain\")") == std::string::npos);
 
-  emit::Form form;
+  emit::ModelForm form;
   form.A = MatrixXd::Zero(2, 2), form.A(0, 1) = 1;
   form.B = MatrixXd::Ones(2, 1), form.C = MatrixXd::Ones(1, 2), form.D = MatrixXd::Zero(1, 1);
   emit::Points points;

@@ -113,22 +113,22 @@ class ExactAssembly {
   const Echelon& rows() const { return rows_; }
 
  private:
-  using Block = std::vector<Fractions>;  ///< some rows at once
+  using RowBlock = std::vector<Fractions>;  ///< some rows at once
 
   /// rows += m * (columns from `first` on)
-  static void add(Block& rows, const FractionMatrix& m, int first, int sign = 1) {
+  static void add(RowBlock& rows, const FractionMatrix& m, int first, int sign = 1) {
     for (Index i = 0; i < m.rows; ++i)
       for (Index j = 0; j < m.cols; ++j)
         if (m(i, j) != 0)
           rows[static_cast<std::size_t>(i)][first + static_cast<int>(j)] +=
               sign > 0 ? m(i, j) : -m(i, j);
   }
-  void take(const Block& rows) {
+  void take(const RowBlock& rows) {
     for (const Fractions& row : rows) rows_.add(to_row(row));
   }
 
   /// rows -= factor * terms
-  void subtract(Block& rows, const FractionMatrix& factor, const std::vector<Term>& terms) {
+  void subtract(RowBlock& rows, const FractionMatrix& factor, const std::vector<Term>& terms) {
     for (const Term& t : terms) {
       const FractionMatrix c = factor * exact_coefficient(g_, t, values_);
       const int integral = columns_.first_state() + columns_.integral[at(t.signal)];
@@ -141,7 +141,8 @@ class ExactAssembly {
         subtract_forces(rows, Fraction(-1) * c, drive_[at(g_.signals[at(t.signal)].channel)].added);
     }
   }
-  void subtract_forces(Block& rows, const FractionMatrix& factor, std::span<const int> equations) {
+  void subtract_forces(RowBlock& rows, const FractionMatrix& factor,
+                       std::span<const int> equations) {
     for (const int e : equations) {
       const Part& part = g_.equations[at(e)].part;
       subtract(rows,
@@ -152,7 +153,7 @@ class ExactAssembly {
   }
 
   void define(int column, int size, const std::vector<Term>& terms) {
-    Block rows(at(size));
+    RowBlock rows(at(size));
     add(rows, FractionMatrix::identity(size), column);
     subtract(rows, FractionMatrix::identity(size), terms);
     take(rows);
@@ -165,7 +166,7 @@ class ExactAssembly {
       const Part& part = g_.equations[at(e)].part;
       const FractionMatrix S = part.whole() ? FractionMatrix::identity(channel.size)
                                             : orthonormal_fractions(part.rows(), part.name());
-      Block rows(static_cast<std::size_t>(S.rows));
+      RowBlock rows(static_cast<std::size_t>(S.rows));
       add(rows, S, columns_.of_signal[at(channel.accel)]);
       subtract(rows, FractionMatrix::identity(S.rows), g_.equations[at(e)].terms);
       take(rows);
@@ -173,7 +174,7 @@ class ExactAssembly {
       for (std::size_t i = 0; i < rest.entries.size(); ++i) rest.entries[i] -= projector.entries[i];
     }
     if (drive.free == 0) return;
-    Block rows(at(channel.size));
+    RowBlock rows(at(channel.size));
     add(rows, rest, columns_.of_signal[at(channel.force)]);
     subtract_forces(rows, rest, drive.force);
     subtract_forces(rows, rest, drive.added);
@@ -187,7 +188,7 @@ class ExactAssembly {
     const int end = end_signal(g_, index);
     const auto equation = [&](int column, const Signal* y) {
       const Index row = y ? y->first : 0, size = y ? y->size : d->A.rows();
-      Block rows(static_cast<std::size_t>(size));
+      RowBlock rows(static_cast<std::size_t>(size));
       add(rows, FractionMatrix::identity(size), column);
       if (node.state >= 0)
         add(rows, y ? exact.states(row, size) : fractions(d->A), columns_.of_signal[at(node.state)],
@@ -210,7 +211,7 @@ class ExactAssembly {
     for (std::size_t s = 0; s < columns_.integral.size(); ++s) {
       const int first = columns_.integral[s], size = g_.signals[s].size;
       if (first < 0) continue;
-      Block rows(at(2 * size));
+      RowBlock rows(at(2 * size));
       for (int i = 0; i < size; ++i) {
         rows[at(i)] = {{columns_.first_rate() + first + i, 1}, {columns_.of_signal[s] + i, -1}};
         rows[at(size + i)] = {{columns_.first_rate() + first + size + i, 1},
@@ -237,7 +238,7 @@ std::vector<Fractions> solve(const EquationColumns& c, const Echelon& all) {
     const auto found = all.rows().find(w);
     if (found == all.rows().end())
       throw Undecided{"the equations do not determine all states and outputs"};
-    const Row& row = found->second;
+    const IntegerRow& row = found->second;
     for (auto entry = row.begin() + 1; entry != row.end(); ++entry) {
       const Fraction factor = Fraction(-entry->second) / Fraction(row.front().second);
       if (entry->first >= known) {

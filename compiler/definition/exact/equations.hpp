@@ -9,8 +9,8 @@ namespace titop::exact {
 struct Model {
   int states = 0;
   Square A, A_transposed;
-  std::vector<Row> B;  ///< per input, over states
-  std::vector<Row> C;  ///< per output, over states
+  std::vector<IntegerRow> B;  ///< per input, over states
+  std::vector<IntegerRow> C;  ///< per output, over states
 };
 
 /// From all equations of the graph, in fractions; a position or a rate is a chain of integrators on

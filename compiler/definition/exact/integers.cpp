@@ -7,7 +7,7 @@ namespace titop::exact {
 namespace {
 
 /// Divides a row by the common divisor of its entries.
-void shorten(Row& row) {
+void shorten(IntegerRow& row) {
   Integer common = 0;
   for (const auto& [column, value] : row) {
     common = gcd(common, value);
@@ -17,10 +17,10 @@ void shorten(Row& row) {
 }
 
 /// a * row - b * pivot, both of the same leading column, which cancels.
-Row cancel(const Row& row, const Row& pivot) {
+IntegerRow cancel(const IntegerRow& row, const IntegerRow& pivot) {
   const Integer common = gcd(row.front().second, pivot.front().second);
   const Integer a = pivot.front().second / common, b = row.front().second / common;
-  Row result;
+  IntegerRow result;
   result.reserve(row.size() + pivot.size());
   auto i = row.begin() + 1;
   auto j = pivot.begin() + 1;
@@ -43,17 +43,17 @@ Row cancel(const Row& row, const Row& pivot) {
 
 }  // namespace
 
-Row to_row(const Fractions& entries) {
+IntegerRow to_row(const Fractions& entries) {
   Integer common = 1;
   for (const auto& [column, value] : entries) common = lcm(common, denominator(value));
-  Row row;
+  IntegerRow row;
   for (const auto& [column, value] : entries)
     if (value != 0) row.emplace_back(column, numerator(value) * (common / denominator(value)));
   shorten(row);
   return row;
 }
 
-Row Echelon::reduced(Row row) const {
+IntegerRow Echelon::reduced(IntegerRow row) const {
   while (!row.empty()) {
     const auto pivot = rows_.find(row.front().first);
     if (pivot == rows_.end()) break;
@@ -62,7 +62,7 @@ Row Echelon::reduced(Row row) const {
   return row;
 }
 
-bool Echelon::add(Row row) {
+bool Echelon::add(IntegerRow row) {
   row = reduced(std::move(row));
   if (row.empty()) return false;
   for (const auto& [column, value] : row)
@@ -73,23 +73,23 @@ bool Echelon::add(Row row) {
   return true;
 }
 
-Row Square::times(const Row& v) const {
+IntegerRow Square::times(const IntegerRow& v) const {
   std::map<int, Integer> sum;
   for (const auto& [column, factor] : v)
     for (const auto& [row, value] : columns[static_cast<std::size_t>(column)])
       sum[row] += value * factor;
-  Row result;
+  IntegerRow result;
   for (auto& [row, value] : sum)
     if (value != 0) result.emplace_back(row, std::move(value));
   shorten(result);
   return result;
 }
 
-Echelon krylov(const Square& M, std::vector<Row> start, int bits) {
+Echelon krylov(const Square& M, std::vector<IntegerRow> start, int bits) {
   Echelon space(bits);
   for (std::size_t next = 0; next < start.size(); ++next) {
     // The reduced row spans the same, and is shorter.
-    Row v = space.reduced(start[next]);
+    IntegerRow v = space.reduced(start[next]);
     if (v.empty()) continue;
     start.push_back(M.times(v));
     space.add(std::move(v));
@@ -101,7 +101,7 @@ int rank_of_products(const Echelon& a, const Echelon& b, int bits) {
   Echelon products(bits);
   for (const auto& [leading, row] : a.rows()) {
     std::map<int, Integer> dense(row.begin(), row.end());
-    Row product;
+    IntegerRow product;
     int column = 0;
     for (const auto& [other, entries] : b.rows()) {
       Integer sum = 0;

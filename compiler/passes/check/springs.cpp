@@ -21,10 +21,10 @@ constexpr double kRounding = 1e-12;  ///< of the axes' sizes
 using linalg::at;
 
 /// By channels, force and motion: the wrench that works against the structure.
-using Gains = std::map<std::pair<int, int>, MatrixXd>;
+using ForceGains = std::map<std::pair<int, int>, MatrixXd>;
 
-Gains gains(const Graph& g, ParameterValues values, Term::Of of) {
-  Gains result;
+ForceGains gains(const Graph& g, ParameterValues values, Term::Of of) {
+  ForceGains result;
   for (const Equation& e : g.equations) {
     const int force = g.signals[at(e.target)].channel;
     if (force < 0) continue;
@@ -60,7 +60,7 @@ IntegratedInputs integrated(const Dynamics& d, const Signal& output) {
 }
 
 /// Channels that the gains tie together, in ascending order.
-std::vector<std::vector<int>> tied(const Gains& gains, std::size_t channels) {
+std::vector<std::vector<int>> tied(const ForceGains& gains, std::size_t channels) {
   boost::disjoint_sets_with_storage<> sets(channels);
   std::map<std::size_t, std::vector<int>> by_set;
   std::vector<int> all;
@@ -82,7 +82,7 @@ struct Among {
   MatrixXd K;
   Eigen::VectorXd size;
 
-  Among(const std::vector<int>& channels, const Graph& g, const Gains& gains) {
+  Among(const std::vector<int>& channels, const Graph& g, const ForceGains& gains) {
     std::map<int, Index> first;
     Index rows = 0;
     for (const int c : channels) first[c] = std::exchange(rows, rows + g.channels[at(c)].size);
@@ -140,7 +140,7 @@ std::vector<OfMotion> of_motions(const Graph& g, const Term& t, ParameterValues 
 
 std::string why_no_springs(const Graph& g, ParameterValues values) {
   for (const Term::Of of : {Term::Of::position, Term::Of::rate}) {
-    const Gains all = gains(g, values, of);
+    const ForceGains all = gains(g, values, of);
     for (const std::vector<int>& channels : tied(all, g.channels.size())) {
       if (Among(channels, g, all).symmetric_and_semidefinite()) continue;
       const auto pushed = std::find_if(channels.begin(), channels.end(), [&](int c) {
