@@ -71,7 +71,7 @@ TEST_CASE("static gain: a pole at 0 is refused where rounding has left something
       CAPTURE(h);
       CAPTURE(k);
       const System system = compile(free_by_cancellation(h, k));
-      CHECK(says(error_of([&] { return system.static_gain(); }), Code::singular, {"pole"}));
+      CHECK(says(error_of([&] { return system.static_gain(); }), Code::singular, {"s = 0"}));
       // Near it there is a value: a pole of order one.
       const double at = std::abs(system.transfer(1e-7)(0, 0)),
                    nearer = std::abs(system.transfer(1e-9)(0, 0));
@@ -95,9 +95,10 @@ TEST_CASE("at a pole of a block: the node is named, and the way out has a value"
   for (const Precision p : {Precision::standard, Precision::as_needed, Precision::refined,
                             Precision::twofold, Precision::digits50})
     CHECK(says(error_of([&] { return held.transfer(0, p); }), Code::singular,
-               {"drive: a Hinge has a pole at s = 0", "System::state_space().transfer(s)"}));
+               {"drive", "Hinge", "s = 0", "System::state_space().transfer(s)"}));
   const std::vector<double> omega{0, 1};
-  CHECK(says(error_of([&] { return held.frequency_response(omega); }), Code::singular, {"drive"}));
+  CHECK(says(error_of([&] { return held.frequency_response(omega); }), Code::singular,
+             {"drive", "s = 0"}));
   CHECK(std::abs(held.state_space().transfer(0)(0, 0) - 0.02) <= 1e-15);
 }
 
@@ -107,13 +108,14 @@ TEST_CASE("at an s that is no number: not-finite, not a pole") {
                    infinity = std::numeric_limits<double>::infinity();
   for (const double omega : {nan, infinity, -infinity}) {
     const std::complex<double> s(0, omega);
+    const std::string size = fmt::format("{}j", std::abs(omega));
     for (const Precision p : {Precision::standard, Precision::as_needed, Precision::refined,
                               Precision::twofold, Precision::digits50})
       CHECK(says(error_of([&] { return system.transfer(s, p); }), Code::not_finite,
-                 {"row at s = ", "no number"}));
+                 {"row", "s = 0", size}));
     CHECK(says(error_of([&] { return system.frequency_response(std::vector{omega}); }),
-               Code::not_finite, {"row"}));
+               Code::not_finite, {"row", "s = 0", size}));
     CHECK(says(error_of([&] { return system.state_space().transfer(s); }), Code::not_finite,
-               {"no number"}));
+               {"s = 0", size}));
   }
 }

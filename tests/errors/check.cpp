@@ -1,4 +1,5 @@
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
 #include <fstream>
 #include <limits>
@@ -67,10 +68,9 @@ TEST_CASE("no-equation: an unmounted body, one-way ports, outputs") {
   const Error e = compile_error(d);
   CHECK(e.mistakes().size() == 3);
   CHECK(says(e, Code::no_equation,
-             {"A.parent.accel is not driven", "A was added at", body, "mount(A, B.child(\"C1\")",
-              "A.parent.accel = 0", "A.parent.force = 0"}));
-  CHECK(says(e, Code::no_equation, {"K.in is not driven", gain, "K.in = 0"}));
-  CHECK(says(e, Code::no_equation, {"output y is not set", output, "d.output(\"y\") = "}));
+             {body, "mount(A, B.child(\"C1\")", "A.parent.accel = 0", "A.parent.force = 0"}));
+  CHECK(says(e, Code::no_equation, {gain, "K.in = 0"}));
+  CHECK(says(e, Code::no_equation, {output, "d.output(\"y\") = "}));
 }
 
 TEST_CASE("no-equation: the error of a partly driven channel names the other directions") {
@@ -81,8 +81,7 @@ TEST_CASE("no-equation: the error of a partly driven channel names the other dir
   Diagram half{"half"};
   auto B = half.add("B", brick());
   B.parent.accel.linear = 0;
-  CHECK(says(compile_error(half), Code::no_equation,
-             {"B.parent.accel (3 of 6 degrees of freedom) is not driven"}));
+  CHECK(says(compile_error(half), Code::no_equation, {"B.parent.accel", "3", "6"}));
   CHECK(compile_error(d).has(Code::two_equations));
 }
 
@@ -94,7 +93,7 @@ TEST_CASE("two directions of one point that are not at right angles: which one t
   d.output("a", 6) = A.parent.accel;
   CHECK(says(compile_error(d), Code::two_equations,
              {"A.parent.accel.linear.along(1, 0, 0)", "A.parent.accel.linear.along(1, 1, 0)",
-              "not at right angles", "(0, 1, 0)"}));
+              "(0, 1, 0)"}));
 }
 
 TEST_CASE("two-equations: outputs and one-way ports") {
@@ -113,8 +112,8 @@ TEST_CASE("two-equations: outputs and one-way ports") {
   z = K.out;
   const Error e = compile_error(d);
   CHECK(e.mistakes().size() == 2);
-  CHECK(says(e, Code::two_equations, {"K.in is driven twice", in1, in2, "their sum"}));
-  CHECK(says(e, Code::two_equations, {"output z is set twice", out2}));
+  CHECK(says(e, Code::two_equations, {"K.in", in1, in2}));
+  CHECK(says(e, Code::two_equations, {"z", out2}));
 }
 
 TEST_CASE("size: declarations and matrices of nodes") {
@@ -124,25 +123,25 @@ TEST_CASE("size: declarations and matrices of nodes") {
   const auto output = next_line();
   d.output("y", -1) = 0;
   const Error e = compile_error(d);
-  CHECK(says(e, Code::size, {"input u has size 0", input}));
-  CHECK(says(e, Code::size, {"output y has size -1", output}));
-  CHECK(says(refused(Gain{.size = 0}), Code::size, {"X: a Gain of size 0", "X was added at"}));
-  CHECK(says(refused(Sum{.signs = ""}), Code::size, {"X: a Sum without inputs"}));
-  CHECK(says(refused(MatrixGain{.matrix = {}}), Code::size, {"X: a MatrixGain without entries"}));
-  CHECK(says(refused(Integrator{.size = 0}), Code::size, {"X: an Integrator of size 0"}));
+  CHECK(says(e, Code::size, {"u", "0", input}));
+  CHECK(says(e, Code::size, {"y", "-1", output}));
+  CHECK(says(refused(Gain{.size = 0}), Code::size, {"X", "Gain", "0", "errors/check.cpp"}));
+  CHECK(says(refused(Sum{.signs = ""}), Code::size, {"X", "Sum"}));
+  CHECK(says(refused(MatrixGain{.matrix = {}}), Code::size, {"X", "MatrixGain"}));
+  CHECK(says(refused(Integrator{.size = 0}), Code::size, {"X", "Integrator", "0"}));
   CHECK(says(refused(Lti{.A = Eigen::MatrixXd::Zero(2, 2),
                          .B = Eigen::MatrixXd::Zero(3, 1),
                          .C = Eigen::MatrixXd::Zero(1, 2)}),
-             Code::size, {"X: Lti: A is 2x2, B 3x1, C 1x2", "A must be n x n"}));
+             Code::size, {"X", "Lti", "2x2", "3x1", "1x2"}));
   // A forgotten A is not a gain of D.
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
-  CHECK(says(refused(Lti{.B = one, .C = one, .D = one}), Code::size, {"X: Lti: A is 0x0, B 1x1"}));
-  CHECK(says(refused(Sum{.signs = "+", .size = -1}), Code::size, {"X: a Sum without inputs"}));
+  CHECK(says(refused(Lti{.B = one, .C = one, .D = one}), Code::size, {"X", "Lti", "0x0", "1x1"}));
+  CHECK(says(refused(Sum{.signs = "+", .size = -1}), Code::size, {"X", "Sum"}));
   CHECK(says(
       error_of([] { static_cast<void>(RigidBody{.inertia = Eigen::MatrixXd::Identity(6, 6)}); }),
-      Code::size, {"an inertia of 6 x 6"}));
+      Code::size, {"inertia", "6 x 6"}));
   CHECK(says(error_of([] { static_cast<void>(RigidBody{.inertia = Eigen::MatrixXd::Ones(3, 1)}); }),
-             Code::size, {"an inertia of 3 x 1", "3 x 3"}));
+             Code::size, {"inertia", "3 x 1", "3 x 3"}));
 }
 
 TEST_CASE("size: the part of a signal that has no parts") {
@@ -151,7 +150,7 @@ TEST_CASE("size: the part of a signal that has no parts") {
   ground(z);
   const auto where = next_line();
   d.output("y", 3) = z.parent.reaction.linear();
-  CHECK(says(compile_error(d), Code::size, {".linear is taken of a signal of size 1", where}));
+  CHECK(says(compile_error(d), Code::size, {".linear", "1", where}));
 }
 
 TEST_CASE("unknown-name: names of a model") {
@@ -163,10 +162,9 @@ TEST_CASE("unknown-name: names of a model") {
   d.output("y") = z.stretch;
   const StateSpace m = compile(d).state_space();
   CHECK(m.state("z.stretch_rate") == 1);
-  CHECK(says(error_of([&] { return m.output("x"); }), Code::unknown_name,
-             {"no output \"x\"", "its outputs are: y"}));
-  CHECK(says(error_of([&] { return m.input("x"); }), Code::unknown_name, {"inputs are: u"}));
-  CHECK(says(error_of([&] { return m.state("x"); }), Code::unknown_name, {"z.stretch"}));
+  CHECK(says(error_of([&] { return m.output("x"); }), Code::unknown_name, {"\"x\"", "y"}));
+  CHECK(says(error_of([&] { return m.input("x"); }), Code::unknown_name, {"\"x\"", "u"}));
+  CHECK(says(error_of([&] { return m.state("x"); }), Code::unknown_name, {"\"x\"", "z.stretch"}));
 }
 
 TEST_CASE("duplicate-name: nodes, inputs, outputs, parameters, points of a body") {
@@ -186,14 +184,15 @@ TEST_CASE("duplicate-name: nodes, inputs, outputs, parameters, points of a body"
   d.input("");
   const Error e = compile_error(d);
   CHECK(e.mistakes().size() == 5);
-  CHECK(says(e, Code::duplicate_name, {"two nodes are called z", first, second}));
-  CHECK(says(e, Code::duplicate_name, {"two inputs are called u", third}));
-  CHECK(says(e, Code::duplicate_name, {"two outputs are called y", fourth}));
-  CHECK(says(e, Code::duplicate_name, {"two parameters are called k", fifth}));
-  CHECK(says(e, Code::duplicate_name, {"one input has no name", sixth}));
+  CHECK(says(e, Code::duplicate_name, {"z", first, second}));
+  CHECK(says(e, Code::duplicate_name, {"u", third}));
+  CHECK(says(e, Code::duplicate_name, {"y", fourth}));
+  CHECK(says(e, Code::duplicate_name, {"k", fifth}));
+  CHECK(says(e, Code::duplicate_name, {sixth}));
   CHECK(says(refused(RigidBody{.children = {{"C1"}, {"C1"}}}), Code::duplicate_name,
-             {"X: a second point is called \"C1\""}));
-  CHECK(says(refused(RigidBody{.children = {{"parent"}}}), Code::duplicate_name, {"parent"}));
+             {"X", "\"C1\""}));
+  CHECK(says(refused(RigidBody{.children = {{"parent"}}}), Code::duplicate_name,
+             {"X", "\"parent\""}));
 }
 
 TEST_CASE("duplicate-name: W(3) is the third scalar of W") {
@@ -209,15 +208,15 @@ TEST_CASE("duplicate-name: W(3) is the third scalar of W") {
   d.output("y(1)") = z.stretch;
   const Error e = compile_error(d);
   CHECK(e.mistakes().size() == 1);
-  CHECK(says(e, Code::duplicate_name,
-             {"input W(3) has the name of a scalar of W", vector, scalar, "give each its own"}));
+  CHECK(says(e, Code::duplicate_name, {"W(3)", "W", vector, scalar}));
   Diagram out{"scene"};
   auto b = out.add("b", brick());
   b.parent.force = -out.input("W", 6);
+  const auto six = next_line();
   out.output("a", 6) = b.parent.accel;
+  const auto one = next_line();
   out.output("a(6)") = b.parent.about({0, 0, 1}).accel;
-  CHECK(says(compile_error(out), Code::duplicate_name,
-             {"output a(6) has the name of a scalar of a"}));
+  CHECK(says(compile_error(out), Code::duplicate_name, {"a(6)", six, one}));
 }
 
 TEST_CASE("unknown-name: a parameter that no diagram has made") {
@@ -227,10 +226,10 @@ TEST_CASE("unknown-name: a parameter that no diagram has made") {
   Diagram d{"scene"};
   p.k = d.param("k", 10.0);
   CHECK(says(error_of([&] { d.add("z", SpringMass{.stiffness = p.k, .damping = p.c}); }),
-             Code::unknown_name, {"a parameter that no diagram has made", "d.param("}));
+             Code::unknown_name, {"d.param("}));
   auto z = d.add("z", SpringMass{.stiffness = p.k});
-  CHECK(says(error_of([&] { z.child.force = -p.c * z.stretch; }), Code::unknown_name,
-             {"that no diagram has made"}));
+  CHECK(
+      says(error_of([&] { z.child.force = -p.c * z.stretch; }), Code::unknown_name, {"d.param("}));
 }
 
 TEST_CASE("not-finite: parameters, gains, matrices, blocks") {
@@ -245,14 +244,14 @@ TEST_CASE("not-finite: parameters, gains, matrices, blocks") {
   d.output("m") = Eigen::MatrixXd::Constant(1, 1, kNan) * z.stretch;
   const Error e = compile_error(d);
   CHECK(e.mistakes().size() == 3);
-  CHECK(says(e, Code::not_finite, {"parameter k is nan", param}));
-  CHECK(says(e, Code::not_finite, {"a gain is inf", gain}));
-  CHECK(says(e, Code::not_finite, {"a matrix has entries", matrix}));
-  CHECK(says(refused(SpringMass{.mass = kInf}), Code::not_finite, {"X: SpringMass{mass inf"}));
-  CHECK(says(refused(RigidBody{.mass = kNan}), Code::not_finite, {"X: the mass"}));
-  CHECK(says(refused(RigidBody{.PA = {kNan, 0, 0}}), Code::not_finite, {"X: a position"}));
+  CHECK(says(e, Code::not_finite, {"k", "nan", param}));
+  CHECK(says(e, Code::not_finite, {"inf", gain}));
+  CHECK(says(e, Code::not_finite, {matrix}));
+  CHECK(says(refused(SpringMass{.mass = kInf}), Code::not_finite, {"X", "SpringMass", "mass inf"}));
+  CHECK(says(refused(RigidBody{.mass = kNan}), Code::not_finite, {"X", "mass"}));
+  CHECK(says(refused(RigidBody{.PA = {kNan, 0, 0}}), Code::not_finite, {"X", "PA"}));
   CHECK(says(refused(Lti{.D = Eigen::MatrixXd::Constant(1, 1, kInf)}), Code::not_finite,
-             {"X: Lti: an entry"}));
+             {"X", "Lti"}));
 }
 
 TEST_CASE("not-finite: gains whose product overflows, with the line") {
@@ -270,31 +269,31 @@ TEST_CASE("not-a-rotation") {
   sheared(0, 1) = 1e-6;
   mirror(2, 2) = -1;
   rounded(0, 1) = 1e-10;
-  CHECK(says(error_of([&] { Rotation::matrix(sheared); }), Code::not_a_rotation,
-             {"not orthogonal", "1e-06"}));
-  CHECK(says(error_of([&] { Rotation::matrix(mirror); }), Code::not_a_rotation, {"mirrors"}));
+  CHECK(says(error_of([&] { Rotation::matrix(sheared); }), Code::not_a_rotation, {"1e-06"}));
+  CHECK(says(error_of([&] { Rotation::matrix(mirror); }), Code::not_a_rotation, {"-1"}));
   CHECK(says(error_of([&] { Rotation::matrix(Matrix3d::Constant(kNan)); }), Code::not_a_rotation,
-             {"not orthogonal"}));
+             {"nan"}));
   CHECK(says(error_of([&] {
                Rotation::about({0, 0, 0}, 1);
              }),
-             Code::not_a_rotation, {"(0, 0, 0)", "axis"}));
+             Code::not_a_rotation, {"(0, 0, 0)"}));
   CHECK(says(error_of([&] { Rotation::about({0, 0, 1}, kInf); }), Code::not_a_rotation, {"inf"}));
   const Matrix3d T = Rotation::matrix(rounded).nominal();
   CHECK((T.transpose() * T - Matrix3d::Identity()).cwiseAbs().maxCoeff() <= 1e-15);
 }
 
 TEST_CASE("bad-inertia") {
-  CHECK(says(refused(SpringMass{.mass = -1}), Code::bad_inertia, {"X: SpringMass has mass -1"}));
-  CHECK(says(refused(SpringMass{.parent_mass = -1}), Code::bad_inertia, {"parent_mass -1"}));
-  CHECK(says(refused(RigidBody{.mass = -2}), Code::bad_inertia, {"X: the mass is -2 kg"}));
+  CHECK(says(refused(SpringMass{.mass = -1}), Code::bad_inertia, {"X", "SpringMass", "mass -1"}));
+  CHECK(says(refused(SpringMass{.parent_mass = -1}), Code::bad_inertia,
+             {"X", "SpringMass", "parent_mass -1"}));
+  CHECK(says(refused(RigidBody{.mass = -2}), Code::bad_inertia, {"X", "mass", "-2"}));
   CHECK(says(refused(RigidBody{.inertia = Vector3d(1, 1, 3).asDiagonal()}), Code::bad_inertia,
-             {"X: principal moments 1, 1 and 3", "triangle inequality", "X was added at"}));
+             {"X", "1", "3", "errors/check.cpp"}));
   CHECK(says(refused(RigidBody{.inertia = Vector3d(1, 1, -0.5).asDiagonal()}), Code::bad_inertia,
-             {"X: the inertia is not positive", "-0.5"}));
+             {"X", "inertia", "-0.5"}));
   Matrix3d skew = Matrix3d::Identity();
   skew(0, 1) = 0.1;
-  CHECK(says(refused(RigidBody{.inertia = skew}), Code::bad_inertia, {"not symmetric, by 0.1"}));
+  CHECK(says(refused(RigidBody{.inertia = skew}), Code::bad_inertia, {"X", "inertia", "0.1"}));
 }
 
 TEST_CASE("bad-modes") {
@@ -310,12 +309,11 @@ TEST_CASE("bad-modes") {
   short_of.xi.resize(1);
   still.omega(1) = 0;
   child.children.push_back({"C1", {0, 0, 0}, Eigen::MatrixXd::Zero(6, 3)});
-  CHECK(says(error_of([&] { FlexibleBody{heavy}; }), Code::bad_modes,
-             {"D_P - L_P' L_P is negative in y"}));
-  CHECK(says(error_of([&] { FlexibleBody{short_of}; }), Code::bad_modes, {"xi is 1 x 1 for 2"}));
-  CHECK(says(error_of([&] { FlexibleBody{still}; }), Code::bad_modes, {"mode 2 has omega 0"}));
+  CHECK(says(error_of([&] { FlexibleBody{heavy}; }), Code::bad_modes, {"D_P - L_P' L_P", "y"}));
+  CHECK(says(error_of([&] { FlexibleBody{short_of}; }), Code::bad_modes, {"xi", "1 x 1", "2"}));
+  CHECK(says(error_of([&] { FlexibleBody{still}; }), Code::bad_modes, {"mode 2", "omega 0"}));
   CHECK(says(error_of([&] { FlexibleBody{child}; }), Code::bad_modes,
-             {"Phi_C of C1 is 6 x 3 for 2 modes"}));
+             {"Phi_C", "C1", "6 x 3", "6 x 2"}));
 }
 
 TEST_CASE("bad-value: options") {
@@ -327,10 +325,10 @@ TEST_CASE("bad-value: options") {
   CHECK(refused_with({.minimize_up_to = 0, .resolution = 0.5}).mistakes().empty());
   for (const double resolution : {10.0, 1.0, -1.0, std::nan("")})
     CHECK(says(refused_with({.resolution = resolution}), Code::bad_value,
-               {"Options::resolution is", "from 0 to below 1"}));
+               {"Options::resolution", fmt::format("{}", resolution)}));
   CHECK(says(refused_with({.minimize_up_to = -5}), Code::bad_value,
-             {"Options::minimize_up_to is -5"}));
-  CHECK(says(refused_with({.exact_up_to = -1}), Code::bad_value, {"Options::exact_up_to is -1"}));
+             {"Options::minimize_up_to", "-5"}));
+  CHECK(says(refused_with({.exact_up_to = -1}), Code::bad_value, {"Options::exact_up_to", "-1"}));
 }
 
 TEST_CASE("duplicate-name: a parameter set twice by update") {
@@ -343,7 +341,7 @@ TEST_CASE("duplicate-name: a parameter set twice by update") {
   CHECK(says(error_of([&] {
                system.update({{"k", 3}, {"k", 4}});
              }),
-             Code::duplicate_name, {"parameter k is set twice, the second time to 4"}));
+             Code::duplicate_name, {"k", "4"}));
 }
 
 TEST_CASE("duplicate-name: frames of two nodes of one name are not told apart") {
@@ -354,23 +352,25 @@ TEST_CASE("duplicate-name: frames of two nodes of one name are not told apart") 
   A.child.force += B.parent.force;
   const Error e = compile_error(d);
   CHECK(e.mistakes().size() == 1);
-  CHECK(says(e, Code::duplicate_name, {"two nodes are called hub"}));
+  CHECK(says(e, Code::duplicate_name, {"hub"}));
 }
 
 TEST_CASE("bad-value") {
-  CHECK(says(refused(SpringMass{.stiffness = -3}), Code::bad_value, {"X: SpringMass", "-3"}));
-  CHECK(says(refused(SpringMass{.damping = -3}), Code::bad_value, {"X: SpringMass", "-3"}));
-  CHECK(says(refused(Sum{.signs = "+*"}), Code::bad_value, {"X: Sum: sign '*'"}));
-  CHECK(says(error_of([] { FlexibleBody{Beam{}}; }), Code::bad_value, {"length of the beam is 0"}));
-  CHECK(says(error_of([] { rectangle(-1, 1); }), Code::bad_value, {"width of a rectangle is -1"}));
-  CHECK(says(error_of([] { tube(1, 2); }), Code::bad_value, {"tube", "outer, inner"}));
-  CHECK(says(refused(Hinge{.axis = {0, 0, 0}}), Code::bad_value, {"X: the axis (0, 0, 0)"}));
+  CHECK(says(refused(SpringMass{.stiffness = -3}), Code::bad_value,
+             {"X", "SpringMass", "stiffness -3"}));
+  CHECK(
+      says(refused(SpringMass{.damping = -3}), Code::bad_value, {"X", "SpringMass", "damping -3"}));
+  CHECK(says(refused(Sum{.signs = "+*"}), Code::bad_value, {"X", "Sum", "'*'"}));
+  CHECK(says(error_of([] { FlexibleBody{Beam{}}; }), Code::bad_value, {"length", "0"}));
+  CHECK(says(error_of([] { rectangle(-1, 1); }), Code::bad_value, {"width", "-1"}));
+  CHECK(says(error_of([] { tube(1, 2); }), Code::bad_value, {"1", "2", "tube(outer, inner)"}));
+  CHECK(says(refused(Hinge{.axis = {0, 0, 0}}), Code::bad_value, {"X", "axis", "(0, 0, 0)"}));
   Diagram d{"scene"};
   auto A = d.add("A", brick());
   CHECK(says(error_of([&] {
                A.parent.accel.along({0, 0, 0});
              }),
-             Code::bad_value, {"A.parent.accel.linear.along(0, 0, 0)", "other than 0"}));
+             Code::bad_value, {"A.parent.accel.linear.along(0, 0, 0)"}));
 }
 
 TEST_CASE("all mistakes of the description come together, in one text") {

@@ -6,7 +6,9 @@
 #include <string_view>
 #include <titop/compiler/system/system.hpp>
 
-/// The user's view: the error that is thrown, and whether it has the expected text.
+#include "support/names.hpp"
+
+/// The user's view: the error that is thrown, its code, and the names and numbers in its text.
 namespace titop_test {
 
 /// The error that f() throws; one without mistakes if it throws none.
@@ -24,15 +26,19 @@ inline titop::Error compile_error(const titop::Diagram& d) {
   return error_of([&] { titop::compile(d); });
 }
 
-/// True if one mistake of this code contains all of these texts, in its message, details or hint.
+/// Message, details and hint, without the code.
+inline std::string text_of_mistake(const titop::Mistake& m) {
+  std::string text = m.message;
+  for (const std::string& line : m.details) text += "\n" + line;
+  return text + "\n" + m.hint;
+}
+
+/// True if one mistake of this code has a hint and all of these names and numbers, in its message,
+/// details or hint.
 inline bool says(const titop::Error& error, titop::Code code,
-                 std::initializer_list<std::string_view> parts) {
-  for (const titop::Mistake& m : error.mistakes()) {
-    const std::string text = titop::Error(m).what();
-    bool all = m.code == code && !m.hint.empty();
-    for (const std::string_view part : parts) all = all && text.find(part) != std::string::npos;
-    if (all) return true;
-  }
+                 std::initializer_list<std::string_view> names) {
+  for (const titop::Mistake& m : error.mistakes())
+    if (m.code == code && !m.hint.empty() && has_names(text_of_mistake(m), names)) return true;
   return false;
 }
 
