@@ -42,7 +42,7 @@ TEST_CASE("a second `=` on a port is an error, with both lines") {
   z.child.force = -u;
   const Error e = compile_error(d);
   CHECK(e.mistakes().size() == 1);
-  CHECK(says(e, Code::two_equations, {"z.child.force is driven twice", first, second, "+="}));
+  CHECK(says(e, Code::two_equations, {"z.child.force", first, second, "+="}));
 }
 
 TEST_CASE("`+=` adds to a force, before or after `=`, and `-=` takes away") {
@@ -90,10 +90,9 @@ TEST_CASE("a parent point without an equation is an error; so are both sides by 
   z1.child.force = u;
   const Error e = compile_error(d);
   CHECK(e.mistakes().size() == 3);
-  CHECK(
-      says(e, Code::no_equation, {"z1.parent.accel is not driven", added, "z1.parent.accel = 0"}));
-  CHECK(says(e, Code::two_equations, {"z2.parent is driven on both sides", "z2.parent.force = u"}));
-  CHECK(says(e, Code::two_equations, {"z1.child is driven on both sides"}));
+  CHECK(says(e, Code::no_equation, {added, "z1.parent.accel = 0"}));
+  CHECK(says(e, Code::two_equations, {"z2.parent.accel = 0", "z2.parent.force = u"}));
+  CHECK(says(e, Code::two_equations, {"z1.child.accel = 0", "z1.child.force = u"}));
 }
 
 TEST_CASE("`+=` alone releases a parent point") {
@@ -171,7 +170,7 @@ TEST_CASE("two parts that overlap are an error") {
   b.parent.accel.linear = 0;
   b.parent.force.along({0, 1, 0}) = 0;
   b.parent.accel.angular = 0;
-  CHECK(says(compile_error(d), Code::two_equations, {"b.parent is driven on both sides"}));
+  CHECK(says(compile_error(d), Code::two_equations, {"b.parent.accel", "b.parent.force"}));
 }
 
 TEST_CASE("`= 0` is an equation of ports, one-way ports and outputs") {
@@ -260,14 +259,12 @@ TEST_CASE("child(name) works on every block; .child where there is just one") {
   ground(z), ground(b), h.torque = 0;
   const Error e = compile_error(d);
   CHECK(e.mistakes().size() == 6);
-  CHECK(says(e, Code::unknown_name, {"b has no child point \"C3\"", c3, "C1, C2"}));
-  CHECK(says(e, Code::unknown_name, {"b has no child point \"parent\"", "C1, C2"}));
+  CHECK(says(e, Code::unknown_name, {"b", "\"C3\"", c3, "C1, C2"}));
+  CHECK(says(e, Code::unknown_name, {"b", "\"parent\"", "C1, C2"}));
   for (const auto& line : {written, mounted})
-    CHECK(says(e, Code::unknown_name,
-               {"b.child: b has not exactly one child point", line, "C1, C2"}));
-  CHECK(says(e, Code::unknown_name,
-             {"a.child: a has not exactly one child point", read, "a has no child points"}));
-  CHECK(says(e, Code::unknown_name, {"b has no child point \"C4\"", c4, "C1, C2"}));
+    CHECK(says(e, Code::unknown_name, {"b.child", line, "C1, C2"}));
+  CHECK(says(e, Code::unknown_name, {"a.child", read}));
+  CHECK(says(e, Code::unknown_name, {"b", "\"C4\"", c4, "C1, C2"}));
   CHECK(error_of([&] { transfer(d.graph(), kS); }).mistakes().size() == 6);
   CHECK(to_dot(d).find("a.child") == std::string::npos);  // drawn without it
 }
@@ -288,9 +285,9 @@ TEST_CASE("source lines are the user's, also through mount, ground, release and 
   h.torque = 0;
   h.torque = 0;
   const Error e = compile_error(d);
-  CHECK(says(e, Code::two_equations, {"b2.parent.accel is driven twice", at_mount, at_port}));
-  CHECK(says(e, Code::two_equations, {"b1.parent.accel is driven twice", at_ground}));
-  CHECK(says(e, Code::two_equations, {"h.torque is driven twice", at_force}));
+  CHECK(says(e, Code::two_equations, {"b2.parent.accel", at_mount, at_port}));
+  CHECK(says(e, Code::two_equations, {"b1.parent.accel", at_ground}));
+  CHECK(says(e, Code::two_equations, {"h.torque", at_force}));
   for (const Equation& q : d.graph().equations)
     CHECK(to_string(q.where).starts_with("graph/equations.cpp:"));
   CHECK(to_string(d.graph().nodes.back().where) == at_hinge);

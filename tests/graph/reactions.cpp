@@ -76,8 +76,7 @@ TEST_CASE("a force without effect is refused: at a tied point whose reaction is 
     return d;
   };
   CHECK(says(compile_error(scene(false)), Code::two_equations,
-             {"a force added to b.parent.force has no effect", "b.parent.accel = a.child.accel",
-              "b.parent.force += -u", "pass on the port's reaction"}));
+             {"b.parent.accel = a.child.accel", "b.parent.force += -u", "reaction"}));
   CHECK(compile_error(scene(false, true)).mistakes().empty());  // the ground takes it
   // u at the point of masses 2 and 1.5 between springs of 26 and 7, with another mass of 3 on it.
   const Complex s(0.2, 1.3), t = 7.0 * 3.0 * s * s / (3.0 * s * s + 7.0);
@@ -122,6 +121,7 @@ TEST_CASE("points that are mounted on each other: refused, not written out for e
   Diagram d{"round"};
   auto A = d.add("A", brick()), B = d.add("B", brick());
   mount(A, B.parent), mount(B, A.parent);
+  const auto asked = next_line();
   d.output("r", 6) = A.parent.reaction;
-  CHECK(says(compile_error(d), Code::ill_posed, {"depends on itself", "asked for at"}));
+  CHECK(says(compile_error(d), Code::ill_posed, {"A.parent", asked}));
 }

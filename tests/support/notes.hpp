@@ -1,0 +1,35 @@
+#pragma once
+
+#include <initializer_list>
+#include <string_view>
+#include <titop/compiler/system/system.hpp>
+#include <vector>
+
+#include "support/names.hpp"
+
+/// Lines of the log by kind, pass, names and numbers.
+namespace titop_test {
+
+/// Notes of this kind and pass with all of these names and numbers.
+inline int count_notes(const std::vector<titop::Note>& notes, titop::Note::Kind kind,
+                       std::string_view pass, std::initializer_list<std::string_view> names) {
+  int count = 0;
+  for (const titop::Note& n : notes)
+    count += n.kind == kind && n.pass == pass && has_names(n.text, names);
+  return count;
+}
+
+/// The same among all lines of System::log(): those on the dense model once it has been written.
+inline int count_notes(const titop::System& system, titop::Note::Kind kind, std::string_view pass,
+                       std::initializer_list<std::string_view> names = {}) {
+  return count_notes(system.notes(), kind, pass, names) +
+         count_notes(system.dense_notes(), kind, pass, names);
+}
+
+/// True if there is such a line.
+inline bool noted(const titop::System& system, titop::Note::Kind kind, std::string_view pass,
+                  std::initializer_list<std::string_view> names = {}) {
+  return count_notes(system, kind, pass, names) > 0;
+}
+
+}  // namespace titop_test
