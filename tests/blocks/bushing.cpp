@@ -139,18 +139,17 @@ TEST_CASE("bushing: matrices that no spring has, by name") {
   CHECK(refused({.stiffness = m}).mistakes().empty());
   CHECK(refused({.stiffness = {}}).mistakes().empty());
   CHECK(says(refused({.stiffness = {1, 1, -2, 1, 1, 1}}), Code::bad_value,
-             {"iso: the Bushing's stiffness is -2 on axis z"}));
+             {"iso", "Bushing", "stiffness", "-2", "z"}));
   CHECK(says(refused({.stiffness = m, .damping = {1, 1, 1, 1, -1, 1}}), Code::bad_value,
-             {"iso: the Bushing's damping is -1 on axis ry"}));
+             {"iso", "Bushing", "damping", "-1", "ry"}));
   m(0, 4) = 100;
-  CHECK(says(refused({.stiffness = m}), Code::bad_value, {"iso", "not symmetric", "(1, 5)"}));
+  CHECK(says(refused({.stiffness = m}), Code::bad_value, {"iso", "stiffness", "100", "(1, 5)"}));
   m(0, 4) = m(4, 0) = 1.01 * std::sqrt(kK(0) * kK(4));
-  CHECK(says(refused({.stiffness = m}), Code::bad_value,
-             {"iso", "not positive semidefinite", "-0.01"}));
+  CHECK(says(refused({.stiffness = m}), Code::bad_value, {"iso", "stiffness", "-0.01"}));
   m = kK.asDiagonal();
   m(2, 2) = 0;
   m(2, 3) = m(3, 2) = 5;
-  CHECK(says(refused({.stiffness = m}), Code::bad_value, {"iso", "0 on the diagonal", "(3, 4)"}));
+  CHECK(says(refused({.stiffness = m}), Code::bad_value, {"iso", "stiffness", "0", "5", "(3, 4)"}));
   m(2, 2) = std::nan("");
   CHECK(says(refused({.stiffness = m}), Code::not_finite, {"iso", "stiffness"}));
 
@@ -164,15 +163,14 @@ TEST_CASE("bushing: matrices that no spring has, by name") {
   CHECK(says(error_of([&] {
                system.update({{"k", -1.0}});
              }),
-             Code::bad_value, {"stiffness is -1 on axis x"}));
+             Code::bad_value, {"iso", "stiffness", "-1", "x"}));
 }
 
 TEST_CASE("bushing: an end that nothing holds, a body without mass on it") {
   Diagram d{"open"};
   auto iso = d.add("iso", Bushing{.stiffness = kK});
   ground(iso);
-  CHECK(says(titop_test::compile_error(d), Code::no_equation,
-             {"iso.child.accel is not driven", "iso.child.accel = 0"}));
+  CHECK(says(titop_test::compile_error(d), Code::no_equation, {"iso.child.accel = 0"}));
   auto body = d.add("body", RigidBody{.mass = 0, .inertia = Matrix3d::Zero()});
   mount(body, iso.child);
   iso.child.force += d.input("f", 6);
@@ -183,7 +181,5 @@ TEST_CASE("bushing: an end that nothing holds, a body without mass on it") {
   CHECK(titop_test::matrix_error(system.state_space().D, Matrix6(kK.cwiseInverse().asDiagonal())) <=
         1e-13);
   d.output("a", 6) = body.parent.accel;
-  CHECK(says(titop_test::compile_error(d), Code::improper,
-             {"from f(1) to a(1) the transfer would need 2 derivatives of f(1)",
-              "iso is a massless spring", "give the body on it mass"}));
+  CHECK(says(titop_test::compile_error(d), Code::improper, {"f(1)", "a(1)", "2", "iso"}));
 }

@@ -255,11 +255,10 @@ TEST_CASE("joint: states, ports and errors have the axes' names") {
   for (const char* name : {"gimbal.roll", "gimbal.axis2", "gimbal.roll_rate"})
     CHECK(std::find(names.begin(), names.end(), name) != names.end());
   CHECK(says(error_of([&] { j.axis("yaw"); }), Code::unknown_name,
-             {"gimbal has no axis \"yaw\"", "roll, axis2"}));
+             {"gimbal", "\"yaw\"", "roll, axis2"}));
   const auto line = next_line();
   j.axis("roll").accel = 0;
-  CHECK(says(titop_test::compile_error(scene.d), Code::two_equations,
-             {"gimbal.roll is driven on both sides", line}));
+  CHECK(says(titop_test::compile_error(scene.d), Code::two_equations, {"gimbal.roll", line}));
 }
 
 TEST_CASE("planar: two ways across the normal, right-handed with it, and the turn about it") {
@@ -283,21 +282,22 @@ TEST_CASE("joints refuse axes that are none, and a joint by itself must be drive
       d.add("X", spec);
     });
   };
-  CHECK(says(refused(Slide{.axis = {0, 0, 0}}), Code::bad_value, {"X: the axis (0, 0, 0)"}));
-  CHECK(says(refused(Joint{}), Code::bad_value, {"X: the joint leaves no axis free", "mount"}));
+  CHECK(says(refused(Slide{.axis = {0, 0, 0}}), Code::bad_value, {"X", "axis", "(0, 0, 0)"}));
+  CHECK(says(refused(Joint{}), Code::bad_value, {"X", "axis"}));
   CHECK(says(refused(Joint{{about({1, 0, 0}), about({0, 0, 0})}}), Code::bad_value,
-             {"X: the axis (0, 0, 0)"}));
+             {"X", "axis", "(0, 0, 0)"}));
   CHECK(says(refused(Joint{{about({1, 0, 0}), along({1, 0, 0}), about({0, 1, 0}, "b"),
                             about({1, 1, 0}, "tilt")}}),
-             Code::bad_value, {"X: tilt moves as the axes before it do"}));
+             Code::bad_value, {"X", "tilt"}));
   CHECK(says(refused(Joint{{about({1, 0, 0}, "a"), along({1, 0, 0}, "a")}}), Code::duplicate_name,
-             {"X: a second axis is called \"a\""}));
-  CHECK(says(refused(Joint{{about({1, 0, 0}, "child")}}), Code::duplicate_name, {"\"child\""}));
+             {"X", "\"a\""}));
+  CHECK(
+      says(refused(Joint{{about({1, 0, 0}, "child")}}), Code::duplicate_name, {"X", "\"child\""}));
 
   Setup scene;
   slide(scene.d, "jack", scene.boom, scene.hub.child("C"), mounting(), kR);
   CHECK(says(titop_test::compile_error(scene.d), Code::no_equation,
-             {"jack.accel is not driven", "jack.force = 0", "jack.accel = 0"}));
+             {"jack.force = 0", "jack.accel = 0"}));
 }
 
 TEST_CASE("a force along an axis without mass: the travel follows, its acceleration is refused") {
@@ -311,8 +311,6 @@ TEST_CASE("a force along an axis without mass: the travel follows, its accelerat
   const System system = compile(d);
   CHECK(system.order() == 0);
   CHECK(titop_test::relative(system.transfer({0.3, 2})(0, 0), std::complex<double>(0.1)) <= 1e-15);
-  d.output("a") = load.parent.accel.along({1, 0, 0});
-  CHECK(says(titop_test::compile_error(d), Code::improper,
-             {"from u to a the transfer would need 2 derivatives of u", "jack is a massless joint",
-              "give the body that it carries mass"}));
+  d.output("a_x") = load.parent.accel.along({1, 0, 0});
+  CHECK(says(titop_test::compile_error(d), Code::improper, {"u", "a_x", "2", "jack"}));
 }

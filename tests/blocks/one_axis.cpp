@@ -93,11 +93,10 @@ TEST_CASE("along and about belong to six degrees of freedom; no direction is ref
   CHECK(says(titop_test::error_of([&] {
                h.child.about({0, 0, 0});
              }),
-             Code::bad_value, {"hub.child(\"C\").accel.angular.along(0, 0, 0)", "other than 0"}));
+             Code::bad_value, {"hub.child(\"C\").accel.angular.along(0, 0, 0)"}));
   h.parent.force = 0;
   auto z = d.add("z", SpringMass{});
   const auto line = titop_test::next_line();
   mount(z, h.child("no such").along({1, 0, 0}));
-  CHECK(says(titop_test::compile_error(d), Code::unknown_name,
-             {"hub has no child point \"no such\"", line}));
+  CHECK(says(titop_test::compile_error(d), Code::unknown_name, {"hub", "\"no such\"", line}));
 }

@@ -150,19 +150,18 @@ TEST_CASE("a loop that cannot be closed says by how far") {
                         {.joint = about(z), .guess = 0.2, .link = {1, 0, 0}},
                         {.joint = about(z, "C"), .link = {-3, 0, 0}}});
              }),
-             Code::kinematic_loop,
-             {"the loop of A to C cannot be closed", "stays open by 1 m and", "lengths"}));
+             Code::kinematic_loop, {"A", "C", "1 m"}));
   CHECK(says(error_of([] {
                posture({{.joint = about(z), .given = 0.5, .link = {1, 0, 0}},
                         {.joint = about(z), .given = 2.0, .link = {1, 0, 0}},
                         {.joint = about(z), .given = -2.5, .link = {0, 0, 0}}});
              }),
-             Code::kinematic_loop, {"joint 1 to joint 3"}));
+             Code::kinematic_loop, {"joint 1", "joint 3"}));
   CHECK(says(error_of([] {
                posture({{.joint = about(z), .given = 0.5, .turn = Rotation::about(x, 0.2)},
                         {.joint = about(z), .guess = -0.5}});
              }),
-             Code::kinematic_loop, {"stays open by 0 m and 0.2 rad"}));
+             Code::kinematic_loop, {"0 m", "0.2 rad"}));
 }
 
 TEST_CASE("a bad guess is no refusal: other starts are tried") {
@@ -175,21 +174,21 @@ TEST_CASE("a bad guess is no refusal: other starts are tried") {
 TEST_CASE("a loop that can still move is refused with its joints, at a dead centre too") {
   auto five_bar = four_bar(0.7, -0.5, -1);
   five_bar.insert(five_bar.begin() + 2, {.joint = about(z, "knee"), .link = {0.2, 0, 0}});
-  CHECK(says(error_of([&] { posture(five_bar); }), Code::singular,
-             {"coupler, knee, rocker, frame can still move", "give one of their values"}));
+  CHECK(
+      says(error_of([&] { posture(five_bar); }), Code::singular, {"coupler, knee, rocker, frame"}));
   const std::vector<LoopStep> flat{{.joint = about(z, "A"), .given = 0, .link = {0.5, 0, 0}},
                                    {.joint = about(z, "B"), .guess = 0.1, .link = {1, 0, 0}},
                                    {.joint = about(z, "C"), .guess = pi, .link = {0.5, 0, 0}},
                                    {.joint = about(z, "D"), .guess = pi, .link = {1, 0, 0}}};
-  CHECK(says(error_of([&] { posture(flat); }), Code::singular, {"dead centre"}));
+  CHECK(says(error_of([&] { posture(flat); }), Code::singular, {"B, C, D"}));
 }
 
 TEST_CASE("data that make no loop") {
-  CHECK(says(error_of([] { posture({}); }), Code::bad_value, {"without joints"}));
+  CHECK(says(error_of([] { posture({}); }), Code::bad_value, {}));
   CHECK(says(error_of([] {
                posture({{.joint = about({0, 0, 0})}});
              }),
-             Code::bad_value, {"the axis (0, 0, 0) has no direction"}));
+             Code::bad_value, {"axis", "(0, 0, 0)"}));
   CHECK(says(error_of([] { posture({{.joint = about(z, "A"), .given = std::nan("")}}); }),
-             Code::not_finite, {"the loop's A"}));
+             Code::not_finite, {"A"}));
 }
