@@ -6,6 +6,7 @@
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/titop.hpp>
 
+#include "support/names.hpp"
 #include "support/rng.hpp"
 
 /// Faults that the default certificate must find: signals that break an equation, a block whose A,
@@ -98,7 +99,7 @@ TEST_CASE("a block whose response at s is not that of its matrices is named") {
   CHECK(lag(1).certificate().residual <= 1e-15);
   const Certificate c = lag(-1).certificate();
   CHECK(c.residual >= 0.1);
-  CHECK(c.residual_where == "the response of L");
+  CHECK(titop_test::has_name(c.residual_where, "L"));
 }
 
 namespace {

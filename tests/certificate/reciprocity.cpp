@@ -8,6 +8,7 @@
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"
+#include "support/names.hpp"
 #include "support/rng.hpp"
 
 /// Reciprocity of a structure: the acceleration at force i due to force j equals that at force j
@@ -15,8 +16,13 @@
 
 using namespace titop;
 using Complex = std::complex<double>;
+using titop_test::at_s;
+using titop_test::has_line;
+using titop_test::has_name;
+using titop_test::has_names;
 using titop_test::relative;
 using titop_test::Rng;
+using titop_test::two_digits;
 
 namespace {
 
@@ -125,10 +131,6 @@ struct GyroscopeSpec {
 };
 BlockPtr as_block(const GyroscopeSpec& spec) { return std::make_shared<Gyroscope>(spec.g); }
 
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 }  // namespace
 
 TEST_CASE("a structure is reciprocal; the numbers are those of its springs and masses") {
@@ -140,7 +142,7 @@ TEST_CASE("a structure is reciprocal; the numbers are those of its springs and m
   CHECK(c.reciprocity.why_no_structure.empty());
   CHECK(c.reciprocity.forces == 2);
   CHECK(c.reciprocity.asymmetry <= 1e-14);
-  CHECK(has(to_string(c), "2 forces: reciprocal"));
+  CHECK(has_line(to_string(c), {"2 forces"}));
 }
 
 TEST_CASE("a filter that reads here and pushes there: measured as by hand, and no fault") {
@@ -152,13 +154,12 @@ TEST_CASE("a filter that reads here and pushes there: measured as by hand, and n
     CHECK(c.holds());
     CHECK(r.done);
     CHECK(!r.structure);
-    CHECK(has(r.why_no_structure, "b.child.force is driven by filter.out"));
+    CHECK(has_names(r.why_no_structure, {"b.child.force", "filter.out"}));
     CHECK(((r.first == "f1" && r.second == "f2") || (r.first == "f2" && r.second == "f1")));
     const auto G = [&](Complex s) { return one_way_by_hand(g, s); };
     check_is(r, worst(grid(2, 3), G));
-    const std::string text = to_string(c);
-    CHECK(has(text, "2 forces: not reciprocal"));
-    CHECK(has(text, "not required: b.child.force is driven"));
+    CHECK(has_line(to_string(c), {"2 forces", "f1", "f2", two_digits(r.asymmetry), at_s(r.where),
+                                  r.why_no_structure}));
   }
 }
 
@@ -204,7 +205,7 @@ TEST_CASE(
   CHECK(relative(c.reciprocity.asymmetry, expected.value) <= 0.01);
   bool found = false;
   for (const std::string& fault : c.faults)
-    found = found || (has(fault, "reciprocal") && has(fault, "f1") && has(fault, "f2"));
+    found = found || has_names(fault, {"f1", "f2", two_digits(c.reciprocity.asymmetry)});
   CHECK(found);
 }
 
@@ -224,8 +225,8 @@ TEST_CASE("motion without a reaction is no structure, and energy may be supplied
   CHECK(c.passivity.least <= -0.1);
   CHECK(!c.passivity.structure);
   CHECK(!c.reciprocity.structure);
-  CHECK(has(c.reciprocity.why_no_structure,
-            "upper.parent takes the motion of a point and returns no wrench"));
+  CHECK(has_name(c.reciprocity.why_no_structure, "upper.parent"));
+  CHECK(!has_name(c.reciprocity.why_no_structure, "upper.parent.accel"));  // which is no reason
   const double w1 = std::sqrt(50 / 3.0), w2 = std::sqrt(35.0);  // no share of it comes back
   check_is(c.reciprocity, worst(grid(w1, w2), [](Complex s) { return stack_by_hand(0, s); }));
 }
@@ -243,7 +244,7 @@ TEST_CASE("a gyroscopic block of one's own: passive, not reciprocal, named, and 
   CHECK(c.passivity.structure);
   CHECK(c.passivity.least >= -1e-12);
   CHECK(!c.reciprocity.structure);
-  CHECK(has(c.reciprocity.why_no_structure, "top is not reciprocal by itself: gyroscopic"));
+  CHECK(has_name(c.reciprocity.why_no_structure, "top"));
   const auto G = [&](Complex s) {  // s (s - g J)^-1
     return Eigen::Matrix2cd(s / (s * s + g * g) * Eigen::Matrix2cd{{s, g}, {-g, s}});
   };
@@ -358,7 +359,8 @@ TEST_CASE("nothing to check: said, with the reason") {
   FullCertificate c = certify(compile(d));
   CHECK(!c.reciprocity.done);
   CHECK(c.reciprocity.forces == 1);
-  CHECK(has(to_string(c), "reciprocity not checked: a single force has no other"));
+  const std::string single = c.reciprocity.why_not;
+  CHECK(has_line(to_string(c), {single}));
   Diagram e{"unlike"};
   auto b = e.add("b", SpringMass{.mass = 1, .stiffness = 4});
   ground(b);
@@ -366,8 +368,12 @@ TEST_CASE("nothing to check: said, with the reason") {
   e.output("x") = b.stretch;
   c = certify(compile(e));
   CHECK(!c.reciprocity.done);
-  CHECK(has(to_string(c), "reciprocity not checked: no output is the acceleration where"));
+  CHECK(c.reciprocity.forces == 0);
+  CHECK(c.reciprocity.why_not != single);
+  CHECK(has_line(to_string(c), {c.reciprocity.why_not}));
   Diagram modes{"modes only"};
   ground(modes.add("z", SpringMass{}));
-  CHECK(has(certify(compile(modes)).reciprocity.why_not, "without inputs"));
+  const FullCertificate none = certify(compile(modes));
+  CHECK(!none.reciprocity.why_not.empty());
+  CHECK(none.reciprocity.why_not == none.grid.why_not);
 }

@@ -5,6 +5,7 @@
 #include <titop/titop.hpp>
 
 #include "support/close.hpp"
+#include "support/names.hpp"
 
 /// Springs and dampers that equations make of positions and rates belong to a structure, if they
 /// are such: expected asymmetries are written down from masses and springs.
@@ -12,13 +13,10 @@
 using namespace titop;
 using Complex = std::complex<double>;
 using Eigen::Matrix2d;
+using titop_test::has_names;
 using titop_test::relative;
 
 namespace {
-
-bool has(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
 
 /// Masses 1 and 2 on springs 4 and 18 of their own. Forces -K x - C xd on them by equations, in
 /// units of length of their own: positions of the second one count as `unit` metres.
@@ -144,24 +142,24 @@ TEST_CASE("others are not: by name, as asymmetric as by hand, and no fault") {
   const Matrix2d none = Matrix2d::Zero();
   struct Case {
     Matrix2d K, C;
-    const char* why;
+    const char *force, *follows;
   };
   for (const double unit : {1.0, 1e-7, 1e5})
-    for (const Case& t :
-         {Case{two(30, -29, -30, 30), none, "a.child.force follows positions as"},
-          Case{two(30, -30, -30, 29), none, "a.child.force follows positions as"},
-          Case{two(0, 0, 0, -0.5), none, "b.child.force follows positions as no"},
-          Case{two(0, 0, 1, 0), none, "b.child.force follows positions as no s"},
-          Case{none, two(0.1, 0, 0, -0.1), "b.child.force follows rates as no d"},
-          Case{none, two(0.1, 0.3, 0, 2), "a.child.force follows rates as no da"}}) {
+    for (const Case& t : {Case{two(30, -29, -30, 30), none, "a.child.force", "positions"},
+                          Case{two(30, -30, -30, 29), none, "a.child.force", "positions"},
+                          Case{two(0, 0, 0, -0.5), none, "b.child.force", "positions"},
+                          Case{two(0, 0, 1, 0), none, "b.child.force", "positions"},
+                          Case{none, two(0.1, 0, 0, -0.1), "b.child.force", "rates"},
+                          Case{none, two(0.1, 0.3, 0, 2), "a.child.force", "rates"}}) {
       CAPTURE(unit);
-      CAPTURE(t.why);
+      CAPTURE(t.force);
+      CAPTURE(t.follows);
       const FullCertificate c = certify(compile(tied(t.K, t.C, unit)));
       CAPTURE(to_string(c));
       CHECK(c.holds());
       CHECK(!c.passivity.structure);
       CHECK(!c.reciprocity.structure);
-      CHECK(has(c.reciprocity.why_no_structure, t.why));
+      CHECK(has_names(c.reciprocity.why_no_structure, {t.force, t.follows}));
       if (t.K == t.K.transpose() && t.C == t.C.transpose())
         CHECK(c.reciprocity.asymmetry <= 1e-12);
       else
@@ -180,9 +178,9 @@ TEST_CASE("sprung hinges and control of the attitude where it is measured: a str
   const auto why = [](const Diagram& d) {
     return certify(compile(d), {.points = 2}).reciprocity.why_no_structure;
   };
-  CHECK(has(why(satellite(-1, 0, 100, 60)), "hinge L.torque follows positions as no springs do"));
-  CHECK(has(why(satellite(1, -0.1, 100, 60)), "hinge L.torque follows rates as no dampers do"));
-  CHECK(has(why(satellite(1, 0, -1, 60)), "hub.parent.force follows positions as no springs do"));
+  CHECK(has_names(why(satellite(-1, 0, 100, 60)), {"hinge L.torque", "positions"}));
+  CHECK(has_names(why(satellite(1, -0.1, 100, 60)), {"hinge L.torque", "rates"}));
+  CHECK(has_names(why(satellite(1, 0, -1, 60)), {"hub.parent.force", "positions"}));
 }
 
 TEST_CASE("a spring of six axes between two bodies in frames of any kind") {
@@ -241,5 +239,5 @@ TEST_CASE("a body that a one-way port pushes is no structure, and the port is na
   const FullCertificate c = certify(compile(d), {.points = 2});
   CHECK(c.holds());
   CHECK(!c.passivity.structure);
-  CHECK(c.reciprocity.why_no_structure == "body.push is driven, a one-way port of a body");
+  CHECK(has_names(c.reciprocity.why_no_structure, {"body.push"}));
 }

@@ -109,7 +109,8 @@ TEST_CASE("200 scenes: order, poles and transfer as assembled by hand, or the re
       const Errors e = compare(system, read_json(path), answer);
       CHECK(e.factored <= 1e-10);
       CHECK(e.dense <= 1e-8);
-      closed += system.log().find("close ") != std::string::npos;
+      closed +=
+          std::ranges::any_of(system.notes(), [](const Note& n) { return n.pass == "close"; });
       CHECK(system.state_space().order() == answer["order"].get<int>());
       CHECK(system.order_verdict().decided());
       CHECK(e.poles <= 1e-7);

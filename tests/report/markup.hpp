@@ -79,6 +79,21 @@ inline std::string section(const std::string& page, const std::string& id) {
   return found.size() == 1 ? found.front() : "";
 }
 
+/// One line of the page's head: its class, good, bad or open, and its text.
+struct Verdict {
+  std::string cls, html;
+};
+
+/// The head's lines: the first is on stability, then come all faults, bad, or one line, good; the
+/// order; and warnings of the log.
+inline std::vector<Verdict> verdicts(const std::string& page) {
+  std::vector<Verdict> found;
+  for (const std::string& list : between(page, "<ul class=\"verdicts\">\n", "</ul>"))
+    for (const std::string& line : between(list, "<li class=\"", "</li>"))
+      found.push_back({line.substr(0, line.find('"')), line.substr(line.find('>') + 1)});
+  return found;
+}
+
 inline std::size_t count(const std::string& text, const std::string& part) {
   std::size_t n = 0;
   for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;

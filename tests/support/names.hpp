@@ -1,7 +1,12 @@
 #pragma once
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cctype>
+#include <complex>
 #include <initializer_list>
+#include <string>
 #include <string_view>
 
 /// Names and numbers in the texts of errors, logs and reports. Tests assert these, beside the code
@@ -37,5 +42,23 @@ inline bool has_names(std::string_view text, std::initializer_list<std::string_v
     if (!has_name(text, name)) return false;
   return true;
 }
+
+/// True if one line of the text has all of them.
+inline bool has_line(std::string_view text, std::initializer_list<std::string_view> names) {
+  while (!text.empty()) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    if (has_names(line, names)) return true;
+    text.remove_prefix(std::min(text.size(), line.size() + 1));
+  }
+  return false;
+}
+
+/// "s = 0.3-2j", as texts show a point s.
+inline std::string at_s(std::complex<double> s) {
+  return fmt::format("s = {:.3g}{:+.3g}j", s.real(), s.imag());
+}
+
+/// "1.2e-09", as texts show an error.
+inline std::string two_digits(double error) { return fmt::format("{:.1e}", error); }
 
 }  // namespace titop_test

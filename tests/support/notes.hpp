@@ -32,4 +32,10 @@ inline bool noted(const titop::System& system, titop::Note::Kind kind, std::stri
   return count_notes(system, kind, pass, names) > 0;
 }
 
+/// True if the log warns that outputs lose digits in double, at the s of the certificate.
+inline bool outputs_lose_digits(const titop::System& system) {
+  return noted(system, titop::Note::Kind::warning, "certify",
+               {fmt::format("s = {:.3g}", system.certificate().s)});
+}
+
 }  // namespace titop_test
