@@ -8,6 +8,7 @@
 
 #include "support/five_masses.hpp"
 #include "support/folder.hpp"
+#include "support/names.hpp"
 
 using namespace titop;
 using Json = nlohmann::json;
@@ -166,8 +167,8 @@ TEST_CASE("all checked: every number of the struct, and no null but where nothin
 TEST_CASE("no structure, and why; names with quotes; modes that left") {
   FullCertificate c = certify(compile(two(true)));
   check_same(c);
-  CHECK(parsed(c).at("reciprocity").at("why_no_structure") ==
-        "b.child.force is driven by filter.out");
+  CHECK(titop_test::has_names(parsed(c).at("reciprocity").at("why_no_structure").get<std::string>(),
+                              {"b.child.force", "filter.out"}));
   const auto [f, g] =
       std::pair(parsed(c).at("reciprocity").at("first"), parsed(c).at("reciprocity").at("second"));
   CHECK((f == "\"f\", N" || g == "\"f\", N"));

@@ -5,6 +5,7 @@
 #include <titop/graph/error.hpp>
 
 #include "support/folder.hpp"
+#include "support/mistakes.hpp"
 
 using namespace titop;
 using titop_test::Folder;
@@ -26,10 +27,9 @@ TEST_CASE("a file is replaced whole; one that says the same is left alone") {
 TEST_CASE("a folder, or a folder that is not there, is no file to write: bad_file") {
   const Folder folder;
   std::filesystem::create_directory(folder.path / "sub");
-  CHECK_THROWS_WITH_AS(emit::write_file(folder.path / "sub", "x"),
-                       doctest::Contains("it is a folder"), Error);
-  CHECK_THROWS_WITH_AS(emit::write_file(folder.path / "none" / "a", "x"),
-                       doctest::Contains("cannot be written"), Error);
+  for (const auto& file : {folder.path / "sub", folder.path / "none" / "a"})
+    CHECK(titop_test::says(titop_test::error_of([&] { emit::write_file(file, "x"); }),
+                           Code::bad_file, {file.string()}));
 }
 
 TEST_CASE("where the new file cannot be written whole, the old one stays") {
