@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 
+#include <algorithm>
 #include <numbers>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
@@ -125,9 +126,10 @@ TEST_CASE("poles are the eigenvalues of M and K, with shares of the blocks that 
 TEST_CASE("removed states, with the reason: twin masses swing against each other unseen") {
   Five k = kStiffnesses;
   k[4] = k[3] / kMasses[3] * kMasses[4];
-  const std::string order =
-      section(report_html(compile(third_of_five(kMasses, k)), kNoDiagrams), "order");
-  CHECK(has(order, "Order 8 is minimal"));
+  const System system = compile(third_of_five(kMasses, k));
+  CHECK(system.order_verdict().decided());
+  const std::string order = section(report_html(system, kNoDiagrams), "order");
+  CHECK(has_name(order, "Order 8"));
   const auto rows = cells(between(order, "class=\"modes\">", "</table>").at(0));
   REQUIRE(rows.size() == 1);
   CHECK(relative(std::stod(rows[0][0]), std::sqrt(k[3] / kMasses[3])) <= 5e-6);
@@ -158,15 +160,17 @@ TEST_CASE("the certificate says whether forces are reciprocal, and why nothing a
     for (const auto& row : cells(certificate(pushed)))
       if (has(row[0], "reciprocity")) {
         ++rows;
-        CHECK(has(row[2], "holds") == !pushed);
-        CHECK(has(row[3], "Of 2 forces"));
-        CHECK(has(row[3], "not required: b.child.force is driven") == pushed);
+        CHECK(has(row[2], "class=\"good\"") == !pushed);
+        CHECK(has_name(row[3], "2 forces"));
+        CHECK(has_names(row[3], {"b.child.force", "filter.out"}) == pushed);
       }
   CHECK(rows == 2);
 }
 
 TEST_CASE("the summary begins with the findings: unstable, unchecked, undecided") {
-  CHECK(has(report_html(five_masses(), kNoDiagrams), "10 on the axis (undamped)"));
+  const Verdict undamped = verdicts(report_html(five_masses(), kNoDiagrams)).at(0);
+  CHECK(undamped.cls == "good");
+  CHECK(has_name(undamped.html, "10"));
   Diagram d{"rolls away"};
   auto u = d.input("u");
   auto z = d.add("z", SpringMass{.mass = 1, .stiffness = 4});
@@ -174,15 +178,18 @@ TEST_CASE("the summary begins with the findings: unstable, unchecked, undecided"
   z.child.force = u + 1.0 * z.child.rate;  // damping -1
   d.output("x") = z.position;
   const std::string page = report_html(compile(d), kNoDiagrams);
-  CHECK(has(page, "<b>Unstable</b>: 2 poles right"));
+  const Verdict unstable = verdicts(page).at(0);
+  CHECK(unstable.cls == "bad");
+  CHECK(has_name(unstable.html, "2"));
   const auto rows = cells(section(page, "poles"));
   REQUIRE(rows.size() == 1);
   CHECK(rows[0][3] == "-25");  // s = 1/2 +- j sqrt(4 - 1/4)
   CHECK(rows[0][4] == "0.5");
   const System large = compile(five_masses_scene(kMasses, kStiffnesses), {.minimize_up_to = 0});
-  const std::string unjudged = report_html(large, kNoDiagrams);
-  CHECK(has(unjudged, "by structure only; it may contain"));
-  CHECK(has(unjudged, "<li class=\"open\">Order 10"));
+  CHECK(!large.order_verdict().judged);
+  const Verdict unjudged = verdicts(report_html(large, kNoDiagrams)).at(2);  // all checks hold
+  CHECK(unjudged.cls == "open");
+  CHECK(has_name(unjudged.html, "Order 10"));
 }
 
 TEST_CASE("scenes without inputs, outputs or states have a report") {
@@ -191,7 +198,8 @@ TEST_CASE("scenes without inputs, outputs or states have a report") {
   ground(z);
   std::string page = report_html(compile(modes), kNoDiagrams);
   CHECK(complaint(page) == "");
-  CHECK(has(section(page, "frequency"), "The scene has no inputs"));
+  CHECK(section(page, "frequency") != "");
+  CHECK(count(section(page, "frequency"), "<figure") == 0);
   Diagram rigid{"rigid"};
   auto W = rigid.input("W", 6);
   auto B = rigid.add("B", RigidBody{.mass = 10});
@@ -199,7 +207,8 @@ TEST_CASE("scenes without inputs, outputs or states have a report") {
   rigid.output("a", 6) = B.parent.accel;
   page = report_html(compile(rigid), kNoDiagrams);
   CHECK(complaint(page) == "");
-  CHECK(has(section(page, "poles"), "The model has no states"));
+  CHECK(section(page, "poles") != "");
+  CHECK(cells(section(page, "poles")).empty());
   // Force to acceleration and moment to rotation; the other pairs are 0.
   CHECK(count(section(page, "time"), "<figure") == 2);
   CHECK(count(section(page, "frequency"), "<figure") == 2 + 2);  // singular values, Bode
@@ -212,7 +221,8 @@ TEST_CASE("scenes without inputs, outputs or states have a report") {
   deaf.output("x") = b.position;
   page = report_html(compile(deaf), kNoDiagrams);
   CHECK(complaint(page) == "");
-  CHECK(has(section(page, "time"), "No input reaches any output"));
+  CHECK(section(page, "time") != "");
+  CHECK(count(section(page, "time"), "<figure") == 0);
 }
 
 TEST_CASE("a start far outside of the rest is cut, and the caption says how far it goes") {
@@ -224,8 +234,9 @@ TEST_CASE("a start far outside of the rest is cut, and the caption says how far 
   d.output("a") = z.child.accel;  // 1 at first, less than 1e-4 after a tenth of a second
   d.output("x") = z.position;     // slow: no such start
   const std::string page = report_html(compile(d), kNoDiagrams);
-  CHECK(count(page, "Outside the frame the start goes from") == 1);
-  CHECK(has(page, " to 1 m/s²."));
+  const auto captions = between(section(page, "time"), "<figcaption>", "</figcaption>");
+  REQUIRE(captions.size() == 1);
+  CHECK(has_name(captions.front(), "1 m/s²"));
 }
 
 TEST_CASE("names of any kind are text, nowhere markup") {
@@ -252,15 +263,14 @@ TEST_CASE("without dot, or with one that fails, there is an error with the way o
   const System system = five_masses();
   const Path path;
   Error error = error_of([&] { report_html(system); });
-  CHECK(says(error, Code::bad_file,
-             {"the program dot is not installed", "graphviz", "--no-diagrams"}));
+  CHECK(says(error, Code::bad_file, {"dot", "graphviz", "--no-diagrams"}));
   CHECK(complaint(report_html(system, kNoDiagrams)) == "");
   path.program("dot", "#!/bin/sh\necho 'bad fonts' >&2\nexit 3\n");
   error = error_of([&] { report_html(system); });
-  CHECK(says(error, Code::bad_file, {"dot ends with 3", "bad fonts", "--no-diagrams"}));
-  CHECK_FALSE(has(error.what(), "install"));  // it is there
+  CHECK(says(error, Code::bad_file, {"dot", "3", "bad fonts", "--no-diagrams"}));
+  CHECK_FALSE(has_name(error.what(), "graphviz"));  // the package: it is there
   path.program("dot", "#!/bin/sh\necho '<html/>'\n");
-  CHECK(says(error_of([&] { report_html(system); }), Code::bad_file, {"dot ends with 0"}));
+  CHECK(says(error_of([&] { report_html(system); }), Code::bad_file, {"dot", "0"}));
   path.program("dot", "no program at all");
   CHECK(error_of([&] { report_html(system); }).has(Code::bad_file));
 }
@@ -287,7 +297,7 @@ TEST_CASE("options are looked at: pairs, units, band, end, title") {
   CHECK(refused([](auto& o) { o.pairs = {{"x9", "u"}}; }, Code::unknown_name, {"x9", "x1, x2"}));
   CHECK(refused([](auto& o) { o.pairs = {{"x1", "v"}}; }, Code::unknown_name, {"\"v\"", "u"}));
   CHECK(refused([](auto& o) { o.units = {{"w", "N"}}; }, Code::unknown_name, {"\"w\"", "a3"}));
-  CHECK(refused([](auto& o) { o.band_hz = {3, 1}; }, Code::bad_value, {"3 to 1 Hz"}));
+  CHECK(refused([](auto& o) { o.band_hz = {3, 1}; }, Code::bad_value, {"3", "1 Hz"}));
   CHECK(refused([](auto& o) { o.until = -1; }, Code::bad_value, {"-1 s"}));
 }
 
@@ -322,8 +332,8 @@ TEST_CASE("write_report writes it, and says where it cannot") {
 
 TEST_CASE("numbers inside a sentence are text, too") {
   const std::string certificate = section(report_html(five_masses(), kNoDiagrams), "certificate");
-  CHECK(has(certificate, "Over its size at the same s: "));
-  CHECK(has(certificate, "·10⁻¹"));
+  CHECK(std::ranges::any_of(cells(certificate),
+                            [](const auto& row) { return has(row.at(3), "·10⁻"); }));
   CHECK_FALSE(has(certificate, "&lt;"));
 }
 
