@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <titop/blocks/diagram_file/diagram_file.hpp>
 #include <titop/titop.hpp>
 
 #include "app/shell.hpp"
 #include "support/five_masses.hpp"
+#include "support/names.hpp"
 
 using namespace titop;
 using namespace titop_test;
@@ -31,13 +33,14 @@ TEST_CASE("check and compile print counts and findings") {
   const Shell shell;
   Run r = shell.titop("check masses.json");
   CHECK(r.code == 0);
-  CHECK(r.out == "five masses: 10 states, 1 inputs, 6 outputs\n");
+  CHECK(std::count(r.out.begin(), r.out.end(), '\n') == 1);
+  CHECK(has_names(r.out, {"five masses", "10", "1", "6"}));
   CHECK(r.err.empty());
   r = shell.titop("compile masses.json");
   CHECK(r.code == 0);
   const System system = compile(Shell::diagram());
   CHECK(has(r.out, to_string(system.poles())));
-  CHECK(has(r.out, "equations as written are satisfied to"));
+  CHECK(has(r.out, to_string(system.certificate())));
 }
 
 TEST_CASE("certify: as text and as JSON; exit code 3 where something does not hold") {
@@ -62,8 +65,9 @@ TEST_CASE("certify: as text and as JSON; exit code 3 where something does not ho
   write_diagram(d, shell.folder.path / "ring.json");
   r = shell.titop("certify ring.json -o ring.certificate.json");
   CHECK(r.code == 3);
-  CHECK(has(r.out, "FAULT: the transfer of the dense model differs"));
-  CHECK(has(shell.folder.read("ring.certificate.json"), "\"holds\": false"));
+  const auto ring = nlohmann::json::parse(shell.folder.read("ring.certificate.json"));
+  CHECK(ring.at("holds") == false);
+  CHECK(has_line(r.out, {"FAULT", two_digits(ring.at("grid").at("dense").get<double>())}));
   CHECK(shell.titop("certify none.json").code == 1);
   r = shell.titop("certify masses.json -o none/c.json");
   CHECK(r.code == 1);
@@ -95,12 +99,11 @@ TEST_CASE("draw makes pictures by Graphviz, text for it, and nothing else") {
   CHECK(shell.folder.read("diagram") == to_dot(Shell::diagram()));
   const Run r = shell.titop("draw masses.json a.jpg");
   CHECK(r.code == 2);
-  CHECK(has(r.err, "'a.jpg' has an unknown extension"));
+  CHECK(has_name(r.err, "'a.jpg'"));
   CHECK(!std::filesystem::exists(shell.folder.path / "a.jpg"));
   const std::string without = "PATH=/nowhere '" TITOP_PROGRAM "' draw masses.json none.svg 2>err";
   CHECK(shell.folder.run(without) == 1);
-  CHECK(
-      has(shell.folder.read("err"), "none.svg: cannot be drawn: the program dot is not installed"));
+  CHECK(has_line(shell.folder.read("err"), {"error[bad-file]", "none.svg", "dot"}));
   CHECK(has(shell.folder.read("err"), "dot -Tsvg FILE.dot -o FILE.svg"));
   CHECK(!std::filesystem::exists(shell.folder.path / "none.svg"));
   if (std::system("dot -V >/dev/null 2>&1") != 0) return;
@@ -135,7 +138,7 @@ TEST_CASE("report without dot: exit code 1, and the way out") {
   const Shell shell;
   const std::string command = "PATH=/nowhere '" TITOP_PROGRAM "' report masses.json 2>err";
   CHECK(shell.folder.run(command) == 1);
-  CHECK(has(shell.folder.read("err"), "error[bad-file]: the diagram cannot be drawn"));
+  CHECK(has_line(shell.folder.read("err"), {"error[bad-file]", "dot"}));
   CHECK(has(shell.folder.read("err"), "--no-diagrams"));
 }
 
@@ -220,7 +223,8 @@ TEST_CASE("text that cannot be printed is an error") {
     INFO(words);
     const std::string command = std::string("'" TITOP_PROGRAM "' ") + words + " >/dev/full 2>err";
     CHECK(shell.folder.run(command) == 1);
-    CHECK(has(shell.folder.read("err"), "error[bad-file]: standard output"));
+    CHECK(has_name(shell.folder.read("err"), "error[bad-file]"));
+    CHECK(!has(shell.folder.read("err"), "masses.json"));  // it is not the file's fault
   }
 }
 
@@ -230,7 +234,7 @@ TEST_CASE("a scene that is refused: exit code 1 and the error on stderr") {
   Run r = shell.titop("check broken.json");
   CHECK(r.code == 1);
   CHECK(r.out.empty());
-  CHECK(has(r.err, "error[bad-file]: broken.json"));
+  CHECK(has_line(r.err, {"error[bad-file]", "broken.json"}));
   CHECK(shell.titop("check none.json").code == 1);
   CHECK(shell.titop("export masses.json none/m.json").code == 1);
   Diagram open{"open"};
@@ -238,7 +242,7 @@ TEST_CASE("a scene that is refused: exit code 1 and the error on stderr") {
   write_diagram(open, shell.folder.path / "open.json");
   r = shell.titop("compile open.json");
   CHECK(r.code == 1);
-  CHECK(has(r.err, "error[no-equation]: z.parent"));
+  CHECK(has_line(r.err, {"error[no-equation]", "z.parent"}));
 }
 
 TEST_CASE("who asks for help gets the usage on stdout") {
@@ -306,10 +310,9 @@ TEST_CASE("invalid command lines: exit code 2, and one line on stderr with the r
     CHECK(r.out.empty());
   }
   CHECK(shell.folder.read("masses.html") == scene);
-  CHECK(has(shell.titop("report masses.json --band 1").err, "--band needs more"));
-  CHECK(
-      has(shell.titop("export masses.json g.csv --omega 1 x 3").err, "--omega: 'x' is no number"));
-  CHECK(has(shell.titop("export masses.json m.py --sample-time 0.01").err,
-            "export to a file .py does not have the option --sample-time"));
+  CHECK(has_line(shell.titop("report masses.json --band 1").err, {"titop", "--band"}));
+  CHECK(has_line(shell.titop("export masses.json g.csv --omega 1 x 3").err, {"--omega", "'x'"}));
+  CHECK(has_line(shell.titop("export masses.json m.py --sample-time 0.01").err,
+                 {"export", ".py", "--sample-time"}));
   CHECK(shell.titop("check masses.json").code == 0);  // no scene is written over
 }

@@ -29,12 +29,12 @@ TEST_CASE("a family without a place for the mistake: the error names the option"
     const Run r = shell.titop("generate a.json --family scalar --mistake " + code);
     CHECK(r.code == 2);
     CHECK(has(r.err, "'" + code + "'"));
-    CHECK(has(r.err, "take --family spatial"));
+    CHECK(has(r.err, "--family spatial"));
   }
   Run r = shell.titop("generate a.json --mistake no-equation --bodies 1");
   CHECK(r.code == 2);
-  CHECK(has(r.err, "take more --bodies"));
+  CHECK(has(r.err, "--bodies"));
   r = shell.titop("generate a.json --mistake bad-value --family spatial --twins");
   CHECK(r.code == 2);
-  CHECK(has(r.err, "take --family scalar"));
+  CHECK(has(r.err, "--family scalar"));
 }
