@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dynamics.hpp"
+#include "support/names.hpp"
 
 /// The checks of modal data name the fault and its place.
 
@@ -86,8 +87,7 @@ TEST_CASE("residual mass: singular and negative to the data's digits") {
   CHECK(with_mode_taking(left + 1e-4 * total, 7).verdict == Definiteness::indefinite);
   ModalReport report = modal_report(data);
   report.residual = negative;
-  CHECK(to_string(report).find("residual mass D_P0: NEGATIVE at x, -1e-05 of") !=
-        std::string::npos);
+  CHECK(titop_test::has_line(to_string(report), {"D_P0", "x", "-1e-05"}));
 }
 
 TEST_CASE("verdict does not depend on units; a direction without inertia is singular") {
@@ -105,7 +105,7 @@ TEST_CASE("verdict does not depend on units; a direction without inertia is sing
   CHECK(r.verdict == Definiteness::singular);
   CHECK(r.component == 3);
   ModalReport report = modal_report(data);
-  CHECK(to_string(report).find("singular to the data's digits (1e-14) at rx") != std::string::npos);
+  CHECK(titop_test::has_line(to_string(report), {"D_P0", "1e-14", "rx"}));
 }
 
 TEST_CASE("rank of Phi_C: which degrees of freedom cannot be driven") {
@@ -132,7 +132,7 @@ TEST_CASE("rank of Phi_C: which degrees of freedom cannot be driven") {
   c = child_rank(none, none.children[0]);
   CHECK(c.rank == 0);
   CHECK(c.blocked.size() == 6);
-  CHECK(to_string(modal_report(two)).find("Phi at C: rank 2") != std::string::npos);
+  CHECK(titop_test::has_line(to_string(modal_report(two)), {"C", "rank 2"}));
 }
 
 TEST_CASE("combinations that cannot be driven are told apart, however the modes mix them") {

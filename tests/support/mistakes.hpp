@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <source_location>
 #include <string>
@@ -33,13 +34,21 @@ inline std::string text_of_mistake(const titop::Mistake& m) {
   return text + "\n" + m.hint;
 }
 
-/// True if one mistake of this code has a hint and all of these names and numbers, in its message,
-/// details or hint.
+/// True if one mistake of this code has all of these names and numbers, in its message, details or
+/// hint.
+inline bool has_mistake(const titop::Error& error, titop::Code code,
+                        std::initializer_list<std::string_view> names) {
+  return std::ranges::any_of(error.mistakes(), [&](const titop::Mistake& m) {
+    return m.code == code && has_names(text_of_mistake(m), names);
+  });
+}
+
+/// The same, and it has a hint.
 inline bool says(const titop::Error& error, titop::Code code,
                  std::initializer_list<std::string_view> names) {
-  for (const titop::Mistake& m : error.mistakes())
-    if (m.code == code && !m.hint.empty() && has_names(text_of_mistake(m), names)) return true;
-  return false;
+  return std::ranges::any_of(error.mistakes(), [&](const titop::Mistake& m) {
+    return m.code == code && !m.hint.empty() && has_names(text_of_mistake(m), names);
+  });
 }
 
 /// "graph/ports.cpp:17", the line after that of this call.

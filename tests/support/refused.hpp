@@ -5,7 +5,9 @@
 #include <string>
 #include <titop/graph/error.hpp>
 
-/// Broken input, and the text of its error.
+#include "support/mistakes.hpp"
+
+/// Broken input, and its error.
 namespace titop_test {
 
 /// The text with this part of it, which must be there, replaced once.
@@ -26,13 +28,12 @@ std::string message_of(F f) {
   return "no error";
 }
 
-/// f() is refused, in these words among others.
+/// f() is refused for a mistake of this code with these names and numbers.
 template <class F>
-void check_refused(F f, const std::string& words) {
-  const std::string said = message_of(f);
-  INFO(said);
-  CHECK(said != "no error");
-  CHECK(said.find(words) != std::string::npos);
+void check_refused(F f, titop::Code code, std::initializer_list<std::string_view> names) {
+  const titop::Error error = error_of(f);
+  INFO(error.what());
+  CHECK(has_mistake(error, code, names));
 }
 
 }  // namespace titop_test
