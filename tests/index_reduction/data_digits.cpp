@@ -8,6 +8,7 @@
 #include <titop/titop.hpp>
 
 #include "support/mistakes.hpp"
+#include "support/notes.hpp"
 
 /// Motions that the data's digits cannot determine are refused, in any directions: a parent freed
 /// without remaining mass, a child driven where its modes do not move it.
@@ -77,6 +78,15 @@ double left(const ModalData& data, int set) {
   return Eigen::SelfAdjointEigenSolver<MatrixXd>(part).eigenvalues()(0);
 }
 
+/// Refused by the digits of the data: the mistake names the port. One of an exact 0 names its force
+/// and its acceleration.
+bool by_digits(const Error& e, std::initializer_list<std::string_view> names) {
+  return std::ranges::any_of(e.mistakes(), [&](const Mistake& m) {
+    return m.code == Code::improper && has_name(m.message, "b.parent") &&
+           !has_name(m.message, "b.parent.force") && has_names(text_of_mistake(m), names);
+  });
+}
+
 }  // namespace
 
 TEST_CASE("data digits: a parent freed in each of the 63 sets of directions") {
@@ -93,8 +103,7 @@ TEST_CASE("data digits: a parent freed in each of the 63 sets of directions") {
         const double fraction = left(data, set);
         REQUIRE((zero ? fraction < 1e-6 : fraction > 2e-6));
         const Error e = compile_error(freed(body, set));
-        CHECK(zero ==
-              says(e, Code::improper, {"b.parent", "has no residual mass in", "mass at P"}));
+        CHECK(zero == by_digits(e, {"P"}));
         CHECK(zero != e.mistakes().empty());
         refused += zero;
       }
@@ -114,21 +123,23 @@ TEST_CASE("data digits: freed by joints, along oblique axes, through what has no
     hang(d, hub, b);
     return compile_error(d);
   };
-  CHECK(says(scene([&](Diagram& d, auto& hub, auto& b) {
-               ground(hub);
-               hinge(d, "h", b, hub.child("S"), Rotation::about({0, 1, 0}, 0.7), axis).torque = 0;
-             }),
-             Code::improper, {"b.parent is free", "no residual mass in rx + 2 ry + 3 rz"}));
-  CHECK(says(scene([&](Diagram& d, auto& hub, auto& b) {
-               ground(hub);
-               slide(d, "s", b, hub.child("S"), Rotation::about({0, 1, 0}, 0.7), axis).force = 0;
-             }),
-             Code::improper, {"b.parent is free", "no residual mass in x + 2 y + 3 z"}));
-  CHECK(says(scene([&](Diagram& d, auto& hub, auto& b) {
-               ground(hub);
-               bushing(d, "k", b, hub.child("S"), {}, {.stiffness = {1, 1, 1, 1, 1, 1}});
-             }),
-             Code::improper, {"b.parent is free"}));
+  CHECK(by_digits(
+      scene([&](Diagram& d, auto& hub, auto& b) {
+        ground(hub);
+        hinge(d, "h", b, hub.child("S"), Rotation::about({0, 1, 0}, 0.7), axis).torque = 0;
+      }),
+      {"rx + 2 ry + 3 rz"}));
+  CHECK(
+      by_digits(scene([&](Diagram& d, auto& hub, auto& b) {
+                  ground(hub);
+                  slide(d, "s", b, hub.child("S"), Rotation::about({0, 1, 0}, 0.7), axis).force = 0;
+                }),
+                {"x + 2 y + 3 z"}));
+  CHECK(by_digits(scene([&](Diagram& d, auto& hub, auto& b) {
+                    ground(hub);
+                    bushing(d, "k", b, hub.child("S"), {}, {.stiffness = {1, 1, 1, 1, 1, 1}});
+                  }),
+                  {"P"}));
   // A hub with a mass supplies the missing mass.
   CHECK(scene([&](Diagram&, auto& hub, auto& b) {
           release(hub);
@@ -156,8 +167,7 @@ TEST_CASE("data digits: a child driven where its modes do not move it") {
     d.output("f", 6) = b.child.force;
     const bool still = is_in(set, 0) || is_in(set, 3);
     const Error e = compile_error(d);
-    CHECK(still ==
-          says(e, Code::improper, {"has modes that do not move C in", "residual vectors"}));
+    CHECK(still == says(e, Code::improper, {"b.child(\"C\")"}));
     CHECK(still != e.mistakes().empty());
   }
 }
@@ -170,7 +180,7 @@ TEST_CASE("data digits: a contradictory support that nothing depends on is told"
     b.parent.accel = d.input("u", 6);
     ground(b.child);
     d.output("a", 6) = b.parent.accel;
-    const bool told = compile(d).log().find("these contradict each other") != std::string::npos;
+    const bool told = noted(compile(d), Note::Kind::warning, "digits", {"b.child(\"C\")"});
     CHECK(told == (kept < 6));
   }
 }

@@ -8,6 +8,7 @@
 
 #include "support/close.hpp"
 #include "support/mistakes.hpp"
+#include "support/notes.hpp"
 #include "support/rng.hpp"
 
 /// Loops of gains: near-singular ones keep the reported digits, singular ones are refused by a
@@ -94,15 +95,14 @@ GainNetwork random_gains(std::uint64_t seed, Plant plant) {
   return net;
 }
 
-/// The ports between "through " and " has".
-std::set<std::string> named(const Error& e) {
-  const std::string& text = e.mistakes().front().message;
-  const auto begin = text.find("through ") + 8;
-  std::string list = text.substr(begin, text.find(" has") - begin);
+/// The ports of the network in the message.
+std::set<std::string> named(const GainNetwork& net, const Error& e) {
   std::set<std::string> names;
-  for (std::size_t comma; (comma = list.find(", ")) != std::string::npos; list.erase(0, comma + 2))
-    names.insert(list.substr(0, comma));
-  names.insert(list);
+  for (const int i : net.number)
+    for (const char* port : {"in", "out"})
+      if (const std::string name = fmt::format("g{}.{}", i, port);
+          has_name(e.mistakes().front().message, name))
+        names.insert(name);
   return names;
 }
 
@@ -117,7 +117,8 @@ TEST_CASE(
     const Error e = compile_error(net.diagram());
     REQUIRE(e.has(Code::ill_posed));
     REQUIRE(e.mistakes().size() == 1);
-    const std::set<std::string> names = named(e);
+    const std::set<std::string> names = named(net, e);
+    CHECK(!names.empty());
     for (const std::string& name : names) CHECK(net.planted.contains(name));
     // Rows of these ports: dependent, and without any one of them independent.
     const MatrixXd L = net.loop_matrix();
@@ -144,7 +145,9 @@ TEST_CASE(
     const GainNetwork net = random_gains(seed, Plant::one_but_for_rounding);
     const Error e = compile_error(net.diagram());
     REQUIRE(e.has(Code::ill_posed));
-    for (const std::string& name : named(e)) CHECK(net.planted.contains(name));
+    const std::set<std::string> names = named(net, e);
+    CHECK(!names.empty());
+    for (const std::string& name : names) CHECK(net.planted.contains(name));
   }
 }
 
@@ -169,7 +172,8 @@ TEST_CASE("loops that no input reaches are judged where an output sees them") {
     CAPTURE(apart);
     const Error e = compile_error(resting(2, apart));
     REQUIRE(e.has(Code::ill_posed));
-    CHECK(named(e) == std::set<std::string>{"g.in", "g.out", "h.in", "h.out"});
+    CHECK(says(e, Code::ill_posed, {"g.in", "g.out", "h.in", "h.out"}));
+    CHECK(!has_name(e.mistakes().front().message, "z"));
     const System rests = compile(resting(1, apart));
     const std::complex<double> s{0.5, 3}, y = apart ? 1.0 : s * s / (2.0 * s * s + 8.0);
     CHECK(rests.order() == (apart ? 0 : 2));
@@ -210,14 +214,15 @@ TEST_CASE("1 + d k = delta: solved with the digits that it says, down to one; re
     const double error = relative(system.transfer(0)(0, 0).real(), 1 / delta);
     const int digits = static_cast<int>(std::round(-std::log10(asked)));
     CHECK(error <= 2.3e-16 / asked);
-    CHECK(system.log().find(fmt::format("about {} digits are left", 16 - digits)) !=
-          std::string::npos);
+    CHECK(noted(system, Note::Kind::warning, "certify",
+                {fmt::format("{:.2g}", system.certificate().margin),
+                 fmt::format("{} digits", 16 - digits)}));
     // Four unknowns in a ring: |L^-1| |L| has the spectral radius 2 * 4 / delta.
     CHECK(relative(system.certificate().margin, 8 / delta) <= 0.01);
   }
-  CHECK(compile(ring(1e-5)).log().find("left") == std::string::npos);
-  CHECK(says(compile_error(ring(0)), Code::ill_posed,
-             {"D.in", "D.out", "K.in", "K.out", "a combination of u is 0", "change a gain"}));
+  CHECK(!noted(compile(ring(1e-5)), Note::Kind::warning, "certify"));
+  CHECK(
+      says(compile_error(ring(0)), Code::ill_posed, {"D.in", "D.out", "K.in", "K.out", "u", "0"}));
 }
 
 TEST_CASE("a chain with one gain from 1 to 1e300: never singular, margin 1") {
@@ -251,8 +256,8 @@ TEST_CASE("products that overflow are refused as not finite, not as singular") {
     return d;
   };
   const System open = compile(chain(0));
-  CHECK(says(error_of([&] { open.transfer(1); }), Code::not_finite, {"transfer of overflow"}));
-  CHECK(says(error_of([&] { open.state_space(); }), Code::not_finite, {"dense model", "units"}));
+  CHECK(says(error_of([&] { open.transfer(1); }), Code::not_finite, {"overflow", "s = 1"}));
+  CHECK(says(error_of([&] { open.state_space(); }), Code::not_finite, {"overflow", "1e308"}));
   CHECK(relative(compile(chain(-1e200)).transfer(1)(0, 0).real(), 1e-200) <= 1e-15);
 
   Diagram d{"direct terms"};
@@ -261,7 +266,7 @@ TEST_CASE("products that overflow are refused as not finite, not as singular") {
   z.child.force = 1e200 * w.child.accel + d.input("u");
   w.child.force = 1.0 * z.child.accel;
   d.output("a") = w.child.accel;
-  CHECK(says(compile_error(d), Code::not_finite, {"numbers overflow at", "child", "1e308"}));
+  CHECK(says(compile_error(d), Code::not_finite, {"child", "1e308"}));
 }
 
 TEST_CASE("tridiag(-1, 3, -1) as a graph of 10 to 1000 nodes") {

@@ -41,13 +41,12 @@ Diagram imposed(Cure cure, const char* name = "A", Diagram d = Diagram{"imposed"
 TEST_CASE("structure: equations too many, signals missing, and cures that repair the scene") {
   const Error e = compile_error(imposed(Cure::none));
   REQUIRE(e.mistakes().size() == 1);
-  CHECK(says(e, Code::structure,
-             {"6 equations are too many here: A.child(\"C\").accel, A.parent.accel",
-              "6 are missing there: A.child(\"C\").force, A.parent.force",
-              "too much here:  A.parent.accel = uA", "too much here:  A.child(\"C\").accel = vA",
-              "what A gives at A.child(\"C\").accel",
-              "structure.cpp:", "A.child(\"C\").force instead of A.child(\"C\").accel",
-              "A.parent.force instead of A.parent.accel"}));
+  CHECK(
+      says(e, Code::structure,
+           {"6", "A.child(\"C\").accel, A.parent.accel", "A.child(\"C\").force, A.parent.force",
+            "A.parent.accel = uA", "A.child(\"C\").accel = vA", "index_reduction/structure.cpp"}));
+  CHECK(has_names(e.mistakes().front().hint, {"A.child(\"C\").force", "A.child(\"C\").accel",
+                                              "A.parent.force", "A.parent.accel"}));
   for (const Cure cure : {Cure::child_force, Cure::parent_force})
     CHECK(compile_error(imposed(cure)).mistakes().empty());
 }
@@ -61,10 +60,11 @@ TEST_CASE("structure: the cure names the imposed motion, not the mounts of bodie
   c.child.accel = d.input("U", 6);
   d.output("y", 6) = b.parent.accel;
   const Error e = compile_error(d);
-  CHECK(says(e, Code::structure,
-             {"a.parent.force instead of a.parent.accel",
-              "c.child(\"C\").force instead of c.child(\"C\").accel", "b.parent.accel = a.child"}));
-  CHECK(e.mistakes().front().hint.find("b.parent") == std::string::npos);
+  CHECK(says(e, Code::structure, {"b.parent.accel = a.child"}));
+  const std::string& hint = e.mistakes().front().hint;
+  CHECK(has_names(
+      hint, {"a.parent.force", "a.parent.accel", "c.child(\"C\").force", "c.child(\"C\").accel"}));
+  CHECK(!has_name(hint, "b.parent"));
 }
 
 TEST_CASE("structure: two bodies imposed twice are two mistakes") {
@@ -96,6 +96,7 @@ TEST_CASE("structure: one axis of a joint imposed beside both its ends") {
     return d;
   };
   const Error e = compile_error(scene(false));
-  CHECK(says(e, Code::structure, {"too many here: ", "h.accel", "h.torque instead of h.accel"}));
+  CHECK(says(e, Code::structure, {"h.accel"}));
+  CHECK(has_names(e.mistakes().front().hint, {"h.torque", "h.accel"}));
   CHECK(compile_error(scene(true)).mistakes().empty());
 }

@@ -51,6 +51,15 @@ inline bool says(const titop::Error& error, titop::Code code,
   });
 }
 
+/// True if the transfer from this input to this output is refused, as it needs so many derivatives.
+inline bool needs_derivatives(const titop::Error& error, std::string_view input,
+                              std::string_view output, int count) {
+  return std::ranges::any_of(error.mistakes(), [&](const titop::Mistake& m) {
+    return m.code == titop::Code::improper && !m.hint.empty() &&
+           has_names(m.message, {input, output, std::to_string(count)});
+  });
+}
+
 /// "graph/ports.cpp:17", the line after that of this call.
 inline std::string next_line(std::source_location at = std::source_location::current()) {
   const std::string here = titop::to_string(at);
