@@ -180,7 +180,7 @@ void compare(bool planar, int seeds, int& redundant, int& beams) {
     for (const Complex z : s) by_hand_at.push_back(by_hand::accel_transfer(exact, z));
     CHECK(error_3(responses(system, s), by_hand_at) <= 1e-8);
     CHECK(error_3(responses(system.state_space(), s), by_hand_at) <= 1e-7);
-    redundant += system.log().find("are redundant") != std::string::npos;
+    redundant += !system.stage().released.empty();
     for (const Link& l : chain.links) beams += l.beam;
   }
 }

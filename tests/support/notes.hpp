@@ -38,4 +38,10 @@ inline bool outputs_lose_digits(const titop::System& system) {
                {fmt::format("s = {:.3g}", system.certificate().s)});
 }
 
+/// True if the log says that the dense model was not tried at some |s|, or at any.
+inline bool dense_not_tried(const titop::System& system) {
+  return noted(system, titop::Note::Kind::warning, "dense", {"|s|"}) ||
+         noted(system, titop::Note::Kind::unchecked, "dense", {"|s|"});
+}
+
 }  // namespace titop_test
