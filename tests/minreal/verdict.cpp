@@ -5,10 +5,15 @@
 #include <numbers>
 #include <titop/titop.hpp>
 
+#include "support/names.hpp"
+
 /// The verdict of `minimize` on the order, with the model.
 
 using namespace titop;
 using Eigen::MatrixXd;
+using titop_test::has_name;
+using titop_test::has_names;
+using titop_test::two_digits;
 
 namespace {
 
@@ -50,8 +55,7 @@ TEST_CASE(
   CHECK(r.order.to_more <= 1e-17);
   CHECK(r.order.to_fewer >= 1e-4);
   const std::string text = to_string(r.order);
-  CHECK(text.find("order 4; 2 states taken out, the mode at 5 rad/s") == 0);
-  CHECK(text.find("the next would cost") != std::string::npos);
+  CHECK(has_names(text, {"order 4", "2 states", "5 rad/s", two_digits(r.order.to_fewer)}));
   CHECK(r.notes.front() == text);
 }
 
@@ -93,7 +97,7 @@ TEST_CASE("the exact order decides where visibility does not") {
   const Minimized told = minimize(m, {.exact_order = 4});
   CHECK(told.model.order() == 4);
   CHECK(told.order.exact);
-  CHECK(to_string(told.order).find("exact: order 4") == 0);
+  CHECK(has_names(to_string(told.order), {"exact", "order 4"}));
   // The mode's input and output vectors are each 1e-6: their product is not detected.
   REQUIRE(told.order.removed.size() == 1);
   CHECK(told.order.removed[0].visibility > 1e-14);
@@ -124,8 +128,7 @@ TEST_CASE("a state removed by a wrong exact order is restored, with the change m
     CHECK(r.order.order == 2);
     CHECK(r.order.removed.empty());
     const double missed = std::abs(c / (s + 3.0)) / std::abs(1.0 / (s + 1.0) + c / (s + 3.0));
-    CHECK(r.notes.back() ==
-          fmt::format("nothing was removed, because that changes the transfer by {:.1e}", missed));
+    CHECK(has_name(r.notes.back(), two_digits(missed)));
   }
   // Below 1e-8 it may leave, and the change is reported.
   const Minimized r = minimize(sum(1e-9), {.exact_order = 1});
@@ -185,7 +188,8 @@ TEST_CASE("not judged: larger than Options::minimize_up_to") {
   const System system = compile(d, {.minimize_up_to = 1});
   CHECK(!system.order_verdict().judged);
   CHECK(!system.order_verdict().decided());
-  CHECK(to_string(system.order_verdict()).find("not judged") != std::string::npos);
+  CHECK(has_name(to_string(system.order_verdict()),
+                 fmt::format("order {}", system.order_verdict().order)));
 }
 
 TEST_CASE(
