@@ -41,10 +41,10 @@ TEST_CASE("a reduced system reports its scene, step by step") {
   CHECK(r.scene().accuracy == scene.accuracy);
   CHECK(r.scene().band_hz == scene.band_hz);
   const std::string text = to_string(r);
-  CHECK(text.find("1.0e-03 of each pair's own peak, 0 to 60 Hz, on s = (0.01 + 0.99995 j) omega") !=
-        std::string::npos);
-  CHECK(text.find("whole") != std::string::npos);
-  CHECK(text.find("an estimate") != std::string::npos);
+  CHECK(has_line(text, {"1.0e-03", "0", "60 Hz", "s = (0.01 + 0.99995 j) omega"}));
+  CHECK(has_line(text, {"whole"}));
+  CHECK(r.bound().kind == BoundKind::estimate);
+  CHECK(has_line(text, {two_digits(r.bound().worst), fmt::format("{}", r.bound().samples)}));
   const std::vector<double> both{1e-2, 1e-4};
   for (const WhatIf& w : what_if(boom(), scene, both))
     CHECK(w.system.scene().accuracy == w.accuracy);
@@ -59,9 +59,8 @@ TEST_CASE("a band beyond a body's data is said, with the modes that it would nee
   const ReducedSystem r = compile(boom(4), titop::Scene{.band_hz = {0, 60}});
   REQUIRE(r.notes().size() == 1);
   const std::string& text = r.notes()[0].text;
-  CHECK(text.find("the modes of b end at ") == 0);
-  CHECK(std::abs(std::stod(text.substr(21)) / fourth - 1) <= 5e-3);
-  CHECK(text.find("up to 90 Hz") != std::string::npos);
+  CHECK(has_names(text, {"b", "60 Hz", "90 Hz"}));
+  CHECK(std::abs(std::stod(text.substr(text.find_first_of("0123456789"))) / fourth - 1) <= 5e-3);
   CHECK(to_string(r).find(text) != std::string::npos);
   CHECK(compile(boom(), titop::Scene{.band_hz = {0, 60}}).notes().empty());
   CHECK(compile(boom(4), titop::Scene{.band_hz = {0, 0.9 * fourth / 1.5}}).notes().empty());
@@ -83,8 +82,8 @@ TEST_CASE("a chain without a body that could lose modes is refused by its size a
     compile(d, titop::Scene{.band_hz = {0, 1}, .whole_up_to = 3});
     FAIL("not refused");
   } catch (const Error& error) {
-    CHECK(says(error, Code::bad_value, {"chain has 6 coordinates, more than"}));
-    CHECK(std::string(error.what()).find("bodies") == std::string::npos);
+    CHECK(says(error, Code::bad_value, {"chain", "6", "Scene::whole_up_to = 3"}));
+    CHECK(error.mistakes().front().details.empty());  // no bodies
   }
 }
 
@@ -95,7 +94,7 @@ TEST_CASE("at a pole every form says so") {
   z.parent.force = -U;
   d.output("x") = z.parent.position;
   const ReducedSystem r = compile(d, titop::Scene{.band_hz = {0.1, 2}});
-  CHECK(says(error_of([&] { r.full().transfer(0); }), Code::singular, {"pole at s = 0"}));
+  CHECK(says(error_of([&] { r.full().transfer(0); }), Code::singular, {"s = 0"}));
   CHECK(says(error_of([&] { r.transfer(0); }), Code::singular, {"free", "s = 0"}));
   CHECK(says(error_of([&] { r.second_order().transfer(0); }), Code::singular, {"s = 0"}));
   CHECK(says(error_of([&] { r.modal().transfer(0); }), Code::singular, {"s = 0"}));

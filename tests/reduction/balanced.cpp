@@ -94,7 +94,7 @@ TEST_CASE("undamped modes have no Gramian: they are kept to the last digit, what
   d.output("x") = z.stretch;
   const titop::Scene scene{.band_hz = {0, 2}, .accuracy = 1e-4};
   const ReducedSystem r = compile(d, scene);
-  CHECK(step(r, "kept").text.find("2 states of poles on the axis") != std::string::npos);
+  CHECK(has_name(step(r, "kept").text, "2 states"));
   CHECK(r.order() == 3);  // the fast lag has gone
   double nearest = 1;
   for (const Pole& p : poles(r.state_space()))
@@ -122,7 +122,7 @@ TEST_CASE("free motions are kept as integrals, and refused where the band starts
   d.output("x") = cart.parent.position;
   titop::Scene scene{.band_hz = {0.05, 3}, .accuracy = 1e-2};
   const ReducedSystem r = compile(d, scene);
-  CHECK(step(r, "kept").text.find("2 integrals") != std::string::npos);
+  CHECK(has_name(step(r, "kept").text, "2 integrals"));
   const auto truth = [](Complex s) {
     const Complex spring = 90.0 + 4.0 * s, seen = s * s * spring / (s * s + spring);
     return MatrixXcd::Constant(1, 1,
@@ -138,7 +138,7 @@ TEST_CASE("free motions are kept as integrals, and refused where the band starts
     CHECK(matrix_error(r.state_space().transfer(s), r.transfer(s)) <= 1e-9);
   }
   scene.band_hz[0] = 0;
-  CHECK(says(error_of([&] { compile(d, scene); }), Code::bad_value, {"x reads", "U", "above 0"}));
+  CHECK(says(error_of([&] { compile(d, scene); }), Code::bad_value, {"x", "U", "Scene::band_hz"}));
 }
 
 TEST_CASE("an unstable loop stays unstable: the pole right of the axis is kept") {
@@ -152,7 +152,7 @@ TEST_CASE("an unstable loop stays unstable: the pole right of the axis is kept")
   d.output("x") = z.stretch;
   const titop::Scene scene{.band_hz = {0, 5}, .accuracy = 1e-1};
   const ReducedSystem r = compile(d, scene);
-  CHECK(step(r, "kept").text.find("1 unstable") != std::string::npos);
+  CHECK(has_name(step(r, "kept").text, "1 unstable"));
   const auto loop = [](double s) { return (s * s + 0.5 * s + 4) * (s / 20 + 1) - 30; };
   double low = 0, high = 30;
   for (int i = 0; i < 100; ++i) (loop((low + high) / 2) < 0 ? low : high) = (low + high) / 2;
@@ -178,7 +178,7 @@ TEST_CASE("an oscillation that grows counts as the two states that it is") {
   d.output("x") = z.stretch;
   const titop::Scene scene{.band_hz = {0, 5}, .accuracy = 1e-3};
   const ReducedSystem r = compile(d, scene);
-  CHECK(step(r, "kept").text.find("(2 unstable)") != std::string::npos);
+  CHECK(has_name(step(r, "kept").text, "2 unstable"));
   const auto truth = [&](Complex s) {
     return MatrixXcd::Constant(1, 1, 1.0 / (m * s * s - c * s + k) / (s / 5.0 + 1.0));
   };

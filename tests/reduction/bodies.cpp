@@ -151,7 +151,7 @@ TEST_CASE("too large scenes are refused with the vectors that bodies need, theor
   const Diagram d = frame(slim_beam(6));
   titop::Scene scene{.band_hz = {0, 60}, .accuracy = 1e-2, .whole_up_to = 20};
   const Error error = error_of([&] { compile(d, scene); });
-  CHECK(says(error, Code::bad_value, {"whole_up_to = 20", "b1 and 2 more", "vectors of 36"}));
+  CHECK(says(error, Code::bad_value, {"Scene::whole_up_to = 20", "b1", "2", "36"}));
   scene.bound = BoundKind::theorem;
   CHECK(says(error_of([&] { compile(d, scene); }), Code::bad_value, {"theorem", "whole_up_to"}));
 }

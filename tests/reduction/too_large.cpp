@@ -67,11 +67,11 @@ TEST_CASE("limits of balanced states are refused with the accuracy reached, larg
   CHECK(says(error_of([&] {
                compile(held.diagram(), titop::Scene{.band_hz = {0, 8}, .accuracy = 2e-12});
              }),
-             Code::bad_value, {"cannot be met", "states, from", "z1.parent.position"}));
+             Code::bad_value, {"2.0e-12", "z1.parent.position"}));
   CHECK(says(error_of([&] {
                compile(held.diagram(), titop::Scene{.band_hz = {0, 8}, .balance_up_to = 0});
              }),
-             Code::bad_value, {"balances up to 0 states"}));
+             Code::bad_value, {"0", "Scene::balance_up_to"}));
   CHECK(says(error_of([&] {
                compile(held.diagram(),
                        titop::Scene{
@@ -95,8 +95,7 @@ TEST_CASE(
   auto law = d.add("law", Lti{.A = A, .B = B, .C = C});
   law.in = u;
   d.output("y") = law.out;
-  CHECK(says(error_of([&] {
-               compile(d, titop::Scene{.band_hz = {0.1, 1}});
-             }),
-             Code::singular, {"law.x", "on the axis", "compile(diagram)"}));
+  const Error error = error_of([&] { compile(d, titop::Scene{.band_hz = {0.1, 1}}); });
+  CHECK((says(error, Code::singular, {"law.x1", "compile(diagram)"}) ||
+         says(error, Code::singular, {"law.x2", "compile(diagram)"})));
 }
