@@ -27,41 +27,43 @@ Error refused(const Excitation& e, const Simulation& s) {
 
 TEST_CASE("refused: steps, ends and states that do not fit") {
   const Excitation none = Excitation::none();
-  CHECK(says(refused(none, {.step = 0, .until = 1}), Code::bad_value, {"give a positive step"}));
-  CHECK(says(refused(none, {.step = -0.1, .until = 1}), Code::bad_value,
-             {"Simulation has step -0.1 s until 1 s"}));
   CHECK(
-      says(refused(none, {.step = 0.3, .until = 1}), Code::bad_value, {"a whole number of steps"}));
-  CHECK(says(refused(none, {.step = 1e-10, .until = 1}), Code::bad_value, {"more than 1e9 steps"}));
+      says(refused(none, {.step = 0, .until = 1}), Code::bad_value, {"Simulation", "0 s", "1 s"}));
+  CHECK(says(refused(none, {.step = -0.1, .until = 1}), Code::bad_value,
+             {"Simulation", "-0.1 s", "1 s"}));
+  CHECK(says(refused(none, {.step = 0.3, .until = 1}), Code::bad_value,
+             {"Simulation", "0.3 s", "1 s"}));
+  CHECK(says(refused(none, {.step = 1e-10, .until = 1}), Code::bad_value,
+             {"Simulation", "1e-10 s", "1e9"}));
   CHECK(says(refused(none, {.step = 0.1, .until = 1, .x0 = Eigen::Vector3d(1, 2, 3)}), Code::size,
-             {"mass on a spring has 2 states"}));
+             {"Simulation::x0", "3", "mass on a spring", "2"}));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   CHECK(says(refused(none, {.step = 0.1, .until = 1, .x0 = Eigen::Vector2d(nan, 0)}),
-             Code::not_finite, {"not finite"}));
+             Code::not_finite, {"Simulation::x0"}));
 }
 
 TEST_CASE("refused: inputs of another number, jumps inside a step, records that go back") {
   const Simulation s{.step = 0.1, .until = 1};
   CHECK(says(refused(Excitation::step(Eigen::Vector2d(1, 2)), s), Code::size,
-             {"gives 2 inputs at 0 s"}));
+             {"2 inputs", "0 s", "mass on a spring", "1"}));
   CHECK(says(refused(Excitation::held(Eigen::MatrixXd::Ones(1, 3), 0.25), s), Code::bad_value,
-             {"the step from 0.2 to 0.3"}));
+             {"0.2", "0.25 s"}));
   Eigen::MatrixXd jump(1, 4);
   jump << 0, 0, 1, 1;
   CHECK(says(refused(Excitation::recorded({0, 0.55, 0.55, 1}, jump), s), Code::bad_value,
-             {"jumps at 0.55 s"}));
+             {"0.55 s"}));
   CHECK(says(error_of([&] {
                Excitation::recorded({0, 1, 0.5, 2}, jump);
              }),
-             Code::bad_value, {"time 3 is 0.5"}));
+             Code::bad_value, {"Excitation::recorded", "time 3", "0.5"}));
   CHECK(says(error_of([&] {
                Excitation::recorded({0, 1}, jump);
              }),
-             Code::size, {"2 times and 4 columns"}));
+             Code::size, {"Excitation::recorded", "2", "4"}));
   CHECK(says(error_of([&] { Excitation::held(jump, 0); }), Code::bad_value,
-             {"give a positive period"}));
+             {"Excitation::held", "0 s"}));
   CHECK(says(error_of([&] { Excitation::held(Eigen::MatrixXd(1, 0), 1); }), Code::size,
-             {"no sample"}));
+             {"Excitation::held"}));
 }
 
 TEST_CASE("refused: an overflowing response, with the time") {
@@ -76,6 +78,5 @@ TEST_CASE("refused: an overflowing response, with the time") {
   const Error text = error_of([&] {
     simulate(compile(d), Excitation::step(Eigen::VectorXd::Ones(1)), {.step = 1, .until = 100});
   });
-  CHECK(says(text, Code::not_finite,
-             {"the response of runaway overflows at 15 s"}));  // e^709 is the largest double
+  CHECK(says(text, Code::not_finite, {"runaway", "15 s"}));  // e^709 is the largest double
 }

@@ -313,7 +313,7 @@ TEST_CASE("precision: a refusal names another precision") {
   };
   const Diagram near = loop_in_loop(0x1.5999994333334p+0, 0x1.599999639999ap-26, -0x1.54p-58);
   CHECK(titop_test::says(error(near, 2, Precision::twofold), Code::singular,
-                         {"loops", "12 digits", "Precision::as_needed"}));
+                         {"loops", "s = 2", "12 digits", "Precision::as_needed"}));
   // 1e301 is beyond double-double, not beyond double.
   Diagram d{"units"};
   auto u = d.input("u");
@@ -323,7 +323,7 @@ TEST_CASE("precision: a refusal names another precision") {
   G.in = H.out;
   d.output("y") = G.out;
   CHECK(titop_test::says(error(d, {0, 1}, Precision::twofold), Code::not_finite,
-                         {"units", "range", "Precision::digits50"}));
+                         {"units", "s = 0", "Precision::digits50"}));
   const auto y = [&](Precision p) { return compile(d).transfer({0, 1}, p)(0, 0); };
   CHECK(std::abs(y(Precision::as_needed) - 1.0 / std::complex<double>(kPole, 1)) <= 1e-15);
 }

