@@ -2,8 +2,6 @@
 
 #include <titop/titop.hpp>
 
-#include "support/notes.hpp"
-
 /// A smaller model may be right in exact arithmetic, and cancel more in double.
 
 using namespace titop;
@@ -48,12 +46,15 @@ TEST_CASE("a smaller model keeps the digits that it promises, or all states stay
       const OrderVerdict verdict = system.order_verdict();
       CAPTURE(mass);
       CAPTURE(gain);
-      CHECK(worst_error(system, system.state_space()) <= 1e-9);
-      CHECK(system.state_space().order() == 8);
-      CHECK(titop_test::noted(system, Note::Kind::warning, "minimize",
-                              {to_string(system.order_verdict())}));
-      CHECK(system.order_verdict().removed.empty());
-      CHECK_FALSE(system.order_verdict().decided());
+      CAPTURE(to_string(verdict));
+      CHECK(worst_error(system, system.state_space()) <= 1e-8);
+      CHECK(verdict.lowest <= 5);
+      CHECK(verdict.order >= 5);
+      if (verdict.removed.empty()) {
+        ++put_back;
+        CHECK(system.state_space().order() == 8);
+        CHECK_FALSE(verdict.decided());
+      }
       CHECK(certify(system).holds());
     }
   CHECK(put_back < 9);

@@ -167,7 +167,7 @@ TEST_CASE("two dozen integrators in whole numbers: states removed by rounding ar
         model(A, MatrixXd::NullaryExpr(r + k, 2, sparse), MatrixXd::NullaryExpr(2, r + k, sparse));
     check_nothing_lost(m);
     const Minimized result = minimize(m);
-    if (modes::minimize_unmeasured(m, {}).order.removed.empty()) continue;
+    if (minreal::minimize_unmeasured(m, {}).order.removed.empty()) continue;
     if (!result.order.removed.empty()) continue;  // they may leave
     ++put_back;
     CHECK(result.model.A == m.A);
