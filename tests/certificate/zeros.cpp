@@ -153,7 +153,7 @@ TEST_CASE("a one-way block that grows is no fault of the structure that it reads
     CHECK(c.poles.right == 1);
     CHECK(c.poles.hidden == 0);
     CHECK(has_line(to_string(c), {"1", at_s(c.poles.rightmost)}));
-    CHECK(!full::has_poles_of_bodies_only(d->graph()));
+    CHECK(!certification::has_poles_of_bodies_only(d->graph()));
   }
   // A structure with an integrator on a sensor must still have none on the right.
   Diagram sensed{"sensed"};
