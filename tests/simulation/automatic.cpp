@@ -10,7 +10,7 @@
 /// The automatic stepper reports its accuracy.
 
 using namespace titop;
-using namespace simulate_test;
+using namespace simulation_test;
 using titop_test::error_of;
 using titop_test::has_name;
 using titop_test::says;
