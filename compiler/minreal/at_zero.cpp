@@ -8,7 +8,6 @@
 #include <titop/compiler/minreal/take_out.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/similarity_scaling.hpp>
-#include <titop/graph/support/some_names.hpp>
 
 namespace titop::minreal {
 namespace {
@@ -40,12 +39,6 @@ MatrixXd seen(const StateSpace& m) {
   MatrixXd rows(m.A.cols(), m.A.rows() + m.C.rows());
   rows << m.A.transpose(), m.C.transpose();
   return rows;
-}
-
-std::string names_of(const StateSpace& m, const std::vector<int>& states) {
-  std::vector<std::string> names;
-  for (const int i : states) names.push_back(m.states[at(i)]);
-  return detail::some_names(names);
 }
 
 std::vector<int> rows_of(const std::vector<IndependentRows::RowRemainder>& out) {

@@ -46,12 +46,6 @@ void keep_names(StateSpace& m, const std::vector<int>& keep) {
   m.states = std::move(names);
 }
 
-std::string list(const std::vector<int>& out, const std::vector<std::string>& names) {
-  std::vector<std::string> of;
-  for (const int i : out) of.push_back(names[at(i)]);
-  return detail::some_names(of);
-}
-
 /// Modes that leave a model by one of their sides.
 struct LeavingModes {
   MatrixXd W;  ///< rows: of x, the modes' coordinates up to a factor
@@ -214,11 +208,17 @@ std::vector<int> others(Index states, const std::vector<int>& out) {
 }
 
 std::string note_of_dependent(const StateSpace& m, const std::vector<int>& out) {
-  return "states that follow from the others: " + list(out, m.states);
+  return "states that follow from the others: " + names_of(m, out);
 }
 
 std::string note_of_unseen(const StateSpace& m, const std::vector<int>& out) {
-  return "states that were subtracted from the others: " + list(out, m.states);
+  return "states that were subtracted from the others: " + names_of(m, out);
+}
+
+std::string names_of(const StateSpace& model, const std::vector<int>& states) {
+  std::vector<std::string> names;
+  for (const int i : states) names.push_back(model.states[at(i)]);
+  return detail::some_names(names);
 }
 
 void take_out_dependent(StateSpace& m, const std::vector<int>& out, const MatrixXd& T) {

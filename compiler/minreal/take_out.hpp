@@ -15,6 +15,8 @@ void take_out_dependent(StateSpace& model, const std::vector<int>& out, const Ei
 void take_out_unseen(StateSpace& model, const std::vector<int>& out, const Eigen::MatrixXd& P);
 /// All states but these, which are in ascending order.
 std::vector<int> others(Eigen::Index states, const std::vector<int>& out);
+/// Names of states for a note; of many the first ones and their number.
+std::string names_of(const StateSpace& model, const std::vector<int>& states);
 /// The notes on such states.
 std::string note_of_dependent(const StateSpace& model, const std::vector<int>& out);
 std::string note_of_unseen(const StateSpace& model, const std::vector<int>& out);
