@@ -65,6 +65,6 @@ TEST_CASE("wheels: the model without their momenta has the transfer of the facto
 TEST_CASE("wheels: three or four wheels become code") {
   for (const int count : {3, 4}) {
     const System system = compile(satellite({.count = count}));
-    CHECK(generate_cpp(system, {.sample_time = 0.1}).header.find("struct") != std::string::npos);
+    CHECK(generate_cpp(system, {.sample_time = 0.1}).error <= 1e-6);
   }
 }
