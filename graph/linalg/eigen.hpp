@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <Eigen/SVD>
+#include <titop/graph/linalg/eigen_products.hpp>
 
 // Eigen's decompositions of matrices of any size, compiled once for all files that include this in
 // place of <Eigen/SVD> and so on: a file that compiles its own takes up to a minute. So is `solve`
