@@ -1,11 +1,19 @@
 #include <fmt/format.h>
 
+#include <mutex>
+#include <optional>
+#include <titop/graph/linalg/shifted.hpp>
 #include <titop/graph/nodes/lti.hpp>
+#include <titop/graph/pole.hpp>
 
 namespace titop {
 namespace {
 
 using Eigen::MatrixXd;
+
+/// From so many states on, a Schur form costs less than the dense solutions of the points at which
+/// a model is compiled and certified.
+constexpr Eigen::Index kManyStates = 32;
 
 class LtiBlock : public Block {
  public:
@@ -19,6 +27,21 @@ class LtiBlock : public Block {
   std::string_view type() const override { return type_; }
   const Interface& interface() const override { return face_; }
   std::shared_ptr<const Dynamics> dynamics(ParameterValues) const override { return matrices_; }
+  /// O(states^2) after the first call.
+  Response response(std::complex<double> s, ParameterValues values) const override {
+    if (matrices_->A.rows() < kManyStates) return Block::response(s, values);
+    std::call_once(solver_once_, [&] {
+      try {
+        solver_.emplace(matrices_->A, matrices_->B);
+      } catch (const Error&) {  // no Schur form: point by point
+      }
+    });
+    if (!solver_) return Block::response(s, values);
+    linalg::Solution x = solver_->solve(s);
+    if (!(x.rcond > 0) || !x.z.allFinite()) throw pole_at(s, fmt::format("a {}", type_));
+    Eigen::MatrixXcd Y = matrices_->C * x.z + matrices_->D;
+    return {std::move(x.z), std::move(Y)};
+  }
   /// A controller that was given without a direct term has none: its data are its type.
   Pattern feedthrough() const override {
     return Pattern::Constant(matrices_->D.rows(), matrices_->D.cols(), !matrices_->D.isZero(0));
@@ -31,6 +54,8 @@ class LtiBlock : public Block {
   std::string_view type_;
   Interface face_;
   std::shared_ptr<const Dynamics> matrices_;
+  mutable std::once_flag solver_once_;
+  mutable std::optional<linalg::ShiftedSolver> solver_;
 };
 
 /// y = the integral of u, also of a user's Lti: passes search for these.
