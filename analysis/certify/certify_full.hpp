@@ -17,7 +17,7 @@ struct Full {
   int dense_up_to = 2000;   ///< states; larger models are not written, with a note
   int written_up_to = 300;  ///< scalar signals; larger diagrams are not solved as written
   /// For the order without rounding.
-  ExactOptions exact = {.states = 16, .unknowns = 400, .bits = 20'000};
+  ExactOptions exact = {.states = 100, .unknowns = 1000};
 };
 
 /// One item that may not have been checked, with the reason.

@@ -6,15 +6,15 @@
 namespace titop {
 namespace {
 
-ExactOrder order_of(const exact::Model& m, const ExactOptions& options) {
-  const exact::Echelon reachable = exact::krylov(m.A, m.B, options.bits),
-                       observable = exact::krylov(m.A_transposed, m.C, options.bits);
+ExactOrder order_of(const exact::Model& m) {
+  const exact::Echelon reachable = exact::krylov(m.A, m.B),
+                       observable = exact::krylov(m.A_transposed, m.C);
   ExactOrder r;
   r.decided = true;
   r.states = m.states;
   r.reachable = reachable.rank();
   r.observable = observable.rank();
-  r.order = exact::rank_of_products(observable, reachable, options.bits);
+  r.order = exact::rank_of_products(observable, reachable);
   return r;
 }
 
@@ -26,7 +26,7 @@ ExactOrder exact_order(const Graph& graph, const ExactOptions& options, Paramete
   try {
     if (graph.inputs.empty() || graph.outputs.empty())
       throw exact::Undecided{"without inputs, or without outputs, there is no transfer"};
-    return order_of(exact::model_of(graph, options, values.empty() ? nominal : values), options);
+    return order_of(exact::model_of(graph, options, values.empty() ? nominal : values));
   } catch (const exact::Undecided& u) {
     return {.why_not = u.why};
   }
@@ -39,7 +39,7 @@ ExactOrder exact_order(const StateSpace& model, const ExactOptions& options) {
                                          model.order(), options.states)};
     if (model.B.cols() == 0 || model.C.rows() == 0)
       throw exact::Undecided{"without inputs, or without outputs, there is no transfer"};
-    return order_of(exact::model_of(model), options);
+    return order_of(exact::model_of(model));
   } catch (const exact::Undecided& u) {
     return {.why_not = u.why};
   }

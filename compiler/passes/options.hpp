@@ -22,9 +22,11 @@ struct Options {
   /// only.
   double resolution = 0;
   InternalForces internal_forces = InternalForces::refuse;
-  /// Up to this many states the minimal order is also computed in exact arithmetic, if the data
-  /// allow it (compiler/definition/exact_order.hpp); it then decides which states `minimize`
-  /// removes; `minimize` runs up to the same number of states unless minimize_up_to is 0. 0: never.
+  /// Up to this many states the minimal order of the diagram's numbers as they are given, to the
+  /// last bit, decides which states `minimize` removes, if exact arithmetic can count it
+  /// (compiler/definition/exact_order.hpp); `minimize` runs up to the same number of states unless
+  /// minimize_up_to is 0. 0: exact arithmetic only lowers an order, in small diagrams
+  /// (OrderVerdict).
   int exact_up_to = 0;
 };
 

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include <titop/compiler/definition/exact/coefficients.hpp>
 #include <titop/compiler/definition/exact/equations.hpp>
-#include <titop/compiler/definition/exact/fractions.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/index.hpp>
 
@@ -59,13 +59,13 @@ class ExactBlock {
   explicit ExactBlock(const Dynamics& d) : d_(d) {}
 
   /// Some rows of C.
-  FractionMatrix states(Index row, Index rows) const {
-    if (!d_.modal) return fractions(d_.C.middleRows(row, rows));
+  ExactMatrix states(Index row, Index rows) const {
+    if (!d_.modal) return exact_matrix(d_.C.middleRows(row, rows));
     const Index n = d_.modal->W.rows();
-    const FractionMatrix W = fractions(d_.modal->W.middleCols(row, rows)),
-                         stiffness = fractions(d_.modal->stiffness),
-                         damping = fractions(d_.modal->damping);
-    FractionMatrix C(rows, 2 * n);
+    const ExactMatrix W = exact_matrix(d_.modal->W.middleCols(row, rows)),
+                      stiffness = exact_matrix(d_.modal->stiffness),
+                      damping = exact_matrix(d_.modal->damping);
+    ExactMatrix C(rows, 2 * n);
     for (Index i = 0; i < rows; ++i)
       for (Index k = 0; k < n; ++k) {
         C(i, k) = -W(k, i) * stiffness(k, 0);
@@ -74,13 +74,13 @@ class ExactBlock {
     return C;
   }
   /// A part of D.
-  FractionMatrix direct(Index row, Index col, Index rows, Index cols) const {
+  ExactMatrix direct(Index row, Index col, Index rows, Index cols) const {
     if (!d_.modal)
-      return fractions(d_.direct(static_cast<int>(row), static_cast<int>(col),
-                                 static_cast<int>(rows), static_cast<int>(cols)));
-    FractionMatrix D = fractions(d_.modal->W.middleCols(row, rows)).transposed() *
-                       fractions(d_.modal->W.middleCols(col, cols));
-    const FractionMatrix rigid = fractions(d_.modal->rigid.block(row, col, rows, cols));
+      return exact_matrix(d_.direct(static_cast<int>(row), static_cast<int>(col),
+                                    static_cast<int>(rows), static_cast<int>(cols)));
+    ExactMatrix D = exact_matrix(d_.modal->W.middleCols(row, rows)).transposed() *
+                    exact_matrix(d_.modal->W.middleCols(col, cols));
+    const ExactMatrix rigid = exact_matrix(d_.modal->rigid.block(row, col, rows, cols));
     for (std::size_t i = 0; i < D.entries.size(); ++i) D.entries[i] += rigid.entries[i];
     return D;
   }
@@ -92,7 +92,7 @@ class ExactBlock {
 class ExactAssembly {
  public:
   ExactAssembly(const Graph& g, const ExactOptions& options, ParameterValues values)
-      : g_(g), values_(values), columns_(g), drive_(g), rows_(options.bits) {
+      : g_(g), values_(values), columns_(g), drive_(g) {
     if (columns_.states > options.states)
       throw Undecided{fmt::format("{} states are more than {} (ExactOptions::states)",
                                   columns_.states, options.states)};
@@ -113,10 +113,10 @@ class ExactAssembly {
   const Echelon& rows() const { return rows_; }
 
  private:
-  using RowBlock = std::vector<Fractions>;  ///< some rows at once
+  using RowBlock = std::vector<Entries>;  ///< some rows at once
 
   /// rows += m * (columns from `first` on)
-  static void add(RowBlock& rows, const FractionMatrix& m, int first, int sign = 1) {
+  static void add(RowBlock& rows, const ExactMatrix& m, int first, int sign = 1) {
     for (Index i = 0; i < m.rows; ++i)
       for (Index j = 0; j < m.cols; ++j)
         if (m(i, j) != 0)
@@ -124,13 +124,13 @@ class ExactAssembly {
               sign > 0 ? m(i, j) : -m(i, j);
   }
   void take(const RowBlock& rows) {
-    for (const Fractions& row : rows) rows_.add(to_row(row));
+    for (const Entries& row : rows) rows_.add(to_row(row));
   }
 
   /// rows -= factor * terms
-  void subtract(RowBlock& rows, const FractionMatrix& factor, const std::vector<Term>& terms) {
+  void subtract(RowBlock& rows, const ExactMatrix& factor, const std::vector<Term>& terms) {
     for (const Term& t : terms) {
-      const FractionMatrix c = factor * exact_coefficient(g_, t, values_);
+      const ExactMatrix c = factor * exact_coefficient(g_, t, values_);
       const int integral = columns_.first_state() + columns_.integral[at(t.signal)];
       add(rows, c,
           t.of == Term::Of::rate       ? integral
@@ -138,11 +138,10 @@ class ExactAssembly {
                                        : columns_.of_signal[at(t.signal)],
           -1);
       if (t.of == Term::Of::reaction)
-        subtract_forces(rows, Fraction(-1) * c, drive_[at(g_.signals[at(t.signal)].channel)].added);
+        subtract_forces(rows, Residue(-1) * c, drive_[at(g_.signals[at(t.signal)].channel)].added);
     }
   }
-  void subtract_forces(RowBlock& rows, const FractionMatrix& factor,
-                       std::span<const int> equations) {
+  void subtract_forces(RowBlock& rows, const ExactMatrix& factor, std::span<const int> equations) {
     for (const int e : equations) {
       const Part& part = g_.equations[at(e)].part;
       subtract(rows,
@@ -154,23 +153,23 @@ class ExactAssembly {
 
   void define(int column, int size, const std::vector<Term>& terms) {
     RowBlock rows(at(size));
-    add(rows, FractionMatrix::identity(size), column);
-    subtract(rows, FractionMatrix::identity(size), terms);
+    add(rows, ExactMatrix::identity(size), column);
+    subtract(rows, ExactMatrix::identity(size), terms);
     take(rows);
   }
 
   void add_channel(const Channel& channel, const Drive& drive) {
     // If no acceleration is driven: all of the space, less the driven directions.
-    FractionMatrix rest = FractionMatrix::identity(channel.size);
+    ExactMatrix rest = ExactMatrix::identity(channel.size);
     for (const int e : drive.accel) {
       const Part& part = g_.equations[at(e)].part;
-      const FractionMatrix S = part.whole() ? FractionMatrix::identity(channel.size)
-                                            : orthonormal_fractions(part.rows(), part.name());
+      const ExactMatrix S = part.whole() ? ExactMatrix::identity(channel.size)
+                                         : orthonormal_fractions(part.rows(), part.name());
       RowBlock rows(static_cast<std::size_t>(S.rows));
       add(rows, S, columns_.of_signal[at(channel.accel)]);
-      subtract(rows, FractionMatrix::identity(S.rows), g_.equations[at(e)].terms);
+      subtract(rows, ExactMatrix::identity(S.rows), g_.equations[at(e)].terms);
       take(rows);
-      const FractionMatrix projector = S.transposed() * S;
+      const ExactMatrix projector = S.transposed() * S;
       for (std::size_t i = 0; i < rest.entries.size(); ++i) rest.entries[i] -= projector.entries[i];
     }
     if (drive.free == 0) return;
@@ -189,15 +188,15 @@ class ExactAssembly {
     const auto equation = [&](int column, const Signal* y) {
       const Index row = y ? y->first : 0, size = y ? y->size : d->A.rows();
       RowBlock rows(static_cast<std::size_t>(size));
-      add(rows, FractionMatrix::identity(size), column);
+      add(rows, ExactMatrix::identity(size), column);
       if (node.state >= 0)
-        add(rows, y ? exact.states(row, size) : fractions(d->A), columns_.of_signal[at(node.state)],
-            -1);
+        add(rows, y ? exact.states(row, size) : exact_matrix(d->A),
+            columns_.of_signal[at(node.state)], -1);
       for (int i = node.first_signal; i < end; ++i)
         if (const Signal& u = g_.signals[at(i)]; u.role == Signal::Role::input)
           add(rows,
               y ? exact.direct(y->first, u.first, y->size, u.size)
-                : fractions(d->B.middleCols(u.first, u.size)),
+                : exact_matrix(d->B.middleCols(u.first, u.size)),
               columns_.of_signal[at(i)], -1);
       take(rows);
     };
@@ -229,18 +228,18 @@ class ExactAssembly {
 };
 
 /// Every wanted column as a combination of the known ones, which count from 0.
-std::vector<Fractions> solve(const EquationColumns& c, const Echelon& all) {
+std::vector<Entries> solve(const EquationColumns& c, const Echelon& all) {
   const int first = c.first_rate(), known = c.first_state();
   if (all.rows().lower_bound(known) != all.rows().end())
     throw Undecided{"the equations constrain states or inputs, as those of an improper transfer"};
-  std::vector<Fractions> result(at(known - first));
+  std::vector<Entries> result(at(known - first));
   for (int w = known - 1; w >= first; --w) {
     const auto found = all.rows().find(w);
     if (found == all.rows().end())
       throw Undecided{"the equations do not determine all states and outputs"};
-    const IntegerRow& row = found->second;
+    const SparseRow& row = found->second;
     for (auto entry = row.begin() + 1; entry != row.end(); ++entry) {
-      const Fraction factor = Fraction(-entry->second) / Fraction(row.front().second);
+      const Residue factor = -entry->second;  // of a row whose leading entry is 1
       if (entry->first >= known) {
         result[at(w - first)][entry->first - known] += factor;
         continue;
@@ -252,29 +251,25 @@ std::vector<Fractions> solve(const EquationColumns& c, const Echelon& all) {
   return result;
 }
 
-/// From the rows of [A, B] and of C, in fractions.
-Model model_from(int states, int inputs, const std::vector<Fractions>& rates,
-                 const std::vector<Fractions>& outputs) {
-  Integer common = 1;
-  for (const Fractions& row : rates)
-    for (const auto& [k, value] : row) common = lcm(common, denominator(value));
+/// From the rows of [A, B] and of C.
+Model model_from(int states, int inputs, const std::vector<Entries>& rates,
+                 const std::vector<Entries>& outputs) {
   Model m;
   m.states = states;
   m.A.columns.resize(at(states));
   m.A_transposed.columns.resize(at(states));
-  std::vector<Fractions> B(at(inputs));
+  std::vector<Entries> B(at(inputs));
   for (int i = 0; i < states; ++i)
     for (const auto& [k, value] : rates[at(i)]) {
       if (k >= states) {
         B[at(k - states)][i] = value;
         continue;
       }
-      const Integer entry = numerator(value) * (common / denominator(value));
-      m.A.columns[at(k)].emplace_back(i, entry);
-      m.A_transposed.columns[at(i)].emplace_back(k, entry);
+      m.A.columns[at(k)].emplace_back(i, value);
+      m.A_transposed.columns[at(i)].emplace_back(k, value);
     }
-  for (const Fractions& column : B) m.B.push_back(to_row(column));
-  for (Fractions row : outputs) {
+  for (const Entries& column : B) m.B.push_back(to_row(column));
+  for (Entries row : outputs) {
     row.erase(row.lower_bound(states), row.end());
     m.C.push_back(to_row(row));
   }
@@ -286,15 +281,15 @@ Model model_from(int states, int inputs, const std::vector<Fractions>& rates,
 Model model_of(const Graph& graph, const ExactOptions& options, ParameterValues values) {
   const ExactAssembly a(graph, options, values);
   const EquationColumns& c = a.columns();
-  const std::vector<Fractions> wanted = solve(c, a.rows());
+  const std::vector<Entries> wanted = solve(c, a.rows());
   return model_from(c.states, c.inputs, {wanted.begin(), wanted.begin() + c.states},
                     {wanted.begin() + c.states, wanted.end()});
 }
 
 Model model_of(const StateSpace& model) {
   const auto n = model.A.rows();
-  const FractionMatrix A = fractions(model.A), B = fractions(model.B), C = fractions(model.C);
-  std::vector<Fractions> rates(static_cast<std::size_t>(n)), outputs;
+  const ExactMatrix A = exact_matrix(model.A), B = exact_matrix(model.B), C = exact_matrix(model.C);
+  std::vector<Entries> rates(static_cast<std::size_t>(n)), outputs;
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j)
       if (A(i, j) != 0) rates[static_cast<std::size_t>(i)][static_cast<int>(j)] = A(i, j);

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <titop/compiler/definition/exact/integers.hpp>
+#include <titop/compiler/definition/exact/echelon.hpp>
 #include <titop/compiler/definition/exact_order.hpp>
 
 namespace titop::exact {
@@ -9,11 +9,11 @@ namespace titop::exact {
 struct Model {
   int states = 0;
   Square A, A_transposed;
-  std::vector<IntegerRow> B;  ///< per input, over states
-  std::vector<IntegerRow> C;  ///< per output, over states
+  std::vector<SparseRow> B;  ///< per input, over states
+  std::vector<SparseRow> C;  ///< per output, over states
 };
 
-/// From all equations of the graph, in fractions; a position or a rate is a chain of integrators on
+/// From all equations of the graph; a position or a rate is a chain of integrators on
 /// its acceleration. Throws Undecided.
 Model model_of(const Graph& graph, const ExactOptions& options, ParameterValues values);
 
