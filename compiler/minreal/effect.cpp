@@ -12,8 +12,6 @@ namespace {
 
 using Eigen::MatrixXcd;
 
-constexpr double kUnchanged = 1e-8;  ///< of a transfer
-
 OrderVerdict back_to(int order, double judged, OrderVerdict v) {
   v.order = v.highest = order;
   v.undecided.insert(v.undecided.end(), v.removed.begin(), v.removed.end());

@@ -34,7 +34,10 @@ struct OrderVerdict {
   /// Interval of the minimal order, both ends included; equal: it is decided, as far as double
   /// precision distinguishes data. If the self-check reports lost digits, `lowest` counts only
   /// states of inputs and outputs whose dynamics finer arithmetic confirms; if the dense model
-  /// keeps less than 3 digits (Certificate::dense_error), `highest` counts all states.
+  /// keeps less than 3 digits (Certificate::dense_error), `highest` counts all states. Exact
+  /// arithmetic counts the states of diagrams of up to 100 unknowns, or 1,000 if the order is not
+  /// decided: none needs more for the numbers as given, and `System::state_space` has no more,
+  /// unless its transfer would lose digits.
   int lowest = 0, highest = 0;
   bool exact = false;   ///< decided by exact arithmetic (compiler/definition/exact_order.hpp)
   double to_fewer = 1;  ///< least visibility among the kept modes: error of removing the next

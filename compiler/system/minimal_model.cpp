@@ -5,6 +5,7 @@
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/minreal/effect.hpp>
 #include <titop/compiler/minreal/order_of_stage.hpp>
+#include <titop/compiler/minreal/to_order.hpp>
 #include <titop/compiler/realization/energy.hpp>
 #include <titop/compiler/solve/frequency.hpp>
 #include <titop/compiler/system/elimination_terms.hpp>
@@ -153,6 +154,40 @@ Change change(const System& system, const SystemData& d, const StateSpace& dense
   return worst;
 }
 
+/// Diagrams up to this size are counted without rounding if their order is decided, in half a
+/// millisecond, and if it is not, in ten.
+constexpr ExactOptions kCountedAlways = {.states = 60, .unknowns = 100},
+                       kCountedInDoubt = {.states = 100, .unknowns = 1000};
+
+/// Takes out what exact arithmetic shows to be superfluous: if it counts fewer states for the
+/// diagram's numbers than are kept, and the transfer keeps its digits without them. More states
+/// than are kept may be due to rounding of these numbers.
+void lower_to_exact_order(const System& system, const SystemData& d, const StateSpace& dense,
+                          const StateSpace& judged, Minimized& m) {
+  if (m.order.exact) return;
+  const ExactOrder exact = minreal::order_of_stage(
+      d.skeleton->stage, dense.order(), m.order.decided() ? kCountedAlways : kCountedInDoubt,
+      d.numbers.parameters);
+  if (!exact.decided) return;
+  m.order.lowest = std::min(m.order.lowest, exact.order);
+  if (exact.order >= m.order.order) {
+    m.order.highest = std::min(m.order.highest, exact.order);
+    return;
+  }
+  std::optional<minreal::ModelOfOrder> found = minreal::to_order(judged, exact.order);
+  if (!found) return;
+  Minimized fewer{std::move(found->model), m.order, std::move(found->notes)};
+  fewer.order.order = fewer.order.highest = exact.order;
+  fewer.order.undecided.clear();
+  fewer.order.removed.push_back({0, m.order.order - exact.order, found->tolerance, found->tolerance,
+                                 "exact arithmetic counts it out"});
+  const double allowed = std::max(minreal::kUnchanged, 10 * d.skeleton->options.resolution);
+  const Change by = change(system, d, dense, fewer);
+  if (by.tried.empty() || std::max(by.by_modes, by.in_all) > allowed) return;
+  fewer.notes.insert(fewer.notes.begin(), to_string(fewer.order));
+  m = std::move(fewer);
+}
+
 /// Notes the points at which the change was not measured; without any measurement no mode is
 /// removed.
 void say_left_out(const SystemData& d, const Change& by) {
@@ -179,6 +214,7 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
   doubt_lost_digits(system, d, judged, options, m.order);
   if (d.dense_error.beside_largest.error > kUnclearDigits && !m.order.exact)
     m.order.highest = dense.order();
+  lower_to_exact_order(system, d, dense, judged, m);
   if (!m.notes.empty()) m.notes.front() = to_string(m.order);
   const bool removed = !m.order.removed.empty();
   double lost = 0;
