@@ -198,8 +198,16 @@ void judge(std::vector<std::string>& faults, double value, double allowed, const
   if (!(value <= allowed)) faults.push_back(fmt::format("{} {:.1e}{}", text, value, more));
 }
 
-void list_faults(const Graph& source, FullCertificate& c) {
-  c.faults = certification::basic_faults(c.basic, c.grid.dense);
+/// Without inputs that move an output, transfers are rounding alone and have no digit.
+bool is_zero(const System& system, const ExactOrder& exact) {
+  return exact.decided && exact.order == 0 && system.state_space().D.isZero(0);
+}
+
+void list_faults(const System& system, FullCertificate& c) {
+  const Graph& source = *system.stage().source;
+  Certificate basic = c.basic;
+  if (is_zero(system, c.exact)) basic.dense_error = c.grid.dense = c.grid.written = -1;
+  c.faults = certification::basic_faults(basic, c.grid.dense);
   const auto fault = [&c](double value, double allowed, const std::string& text) {
     judge(c.faults, value, allowed, text);
   };
@@ -294,7 +302,7 @@ FullCertificate certify(const System& system, const Full& subject) {
       c.grid.why_not = "no grid is requested (Full::points)";
     c.passivity.why_not = c.reciprocity.why_not = c.grid.why_not;
   }
-  list_faults(*system.stage().source, c);
+  list_faults(system, c);
   return c;
 }
 

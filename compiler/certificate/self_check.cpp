@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <string_view>
@@ -16,6 +17,7 @@
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/graph/ahead.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 #include <titop/graph/support/steady_random.hpp>
 #include <utility>
 
@@ -70,14 +72,51 @@ void resolve(const Factored& d, double s, double* x) {
   }
 }
 
-/// Largest |value| over `magnitude`, row by row; 1 if it is not finite.
-double relative(const Eigen::VectorXd& value, const Eigen::VectorXd& magnitude) {
+/// Largest |value| beyond `rounding` over `magnitude`, row by row; 1 if it is not finite.
+double relative(const Eigen::VectorXd& value, const Eigen::VectorXd& magnitude,
+                const Eigen::VectorXd& rounding) {
   double worst = 0;
   for (Eigen::Index i = 0; i < value.size(); ++i)
-    if (const double off = std::abs(value(i)); !(off <= kUnderflow))
+    if (const double off = std::abs(value(i)) - rounding(i); !(off <= kUnderflow))
       worst = std::max(worst, std::isfinite(off) ? off / magnitude(i) : 1.0);
   return worst;
 }
+
+/// The response of one block for inputs u by its own formula and by its matrices.
+struct TwoResponses {
+  const Dynamics& m;
+  double s;
+  const Eigen::VectorXd& u;
+  solve::BlockResponse<double> formula;
+  Eigen::VectorXd x;
+
+  /// Largest difference of states and outputs relative to the terms of each.
+  double difference(const Eigen::VectorXd& rounding_of_x) const {
+    const Eigen::VectorXd size = u.cwiseAbs();
+    const double states =
+        relative(formula.X * u - x, formula.X.cwiseAbs() * size + x.cwiseAbs(), rounding_of_x);
+    if (!m.sparse.empty()) return states;
+    return std::max(states, relative(formula.Y * u - (m.C * x + m.D * u),
+                                     formula.Y.cwiseAbs() * size + m.C.cwiseAbs() * x.cwiseAbs() +
+                                         m.D.cwiseAbs() * size,
+                                     m.C.cwiseAbs() * rounding_of_x));
+  }
+  /// Of x, with K = s - A: n units of |K^-1| (|K| |x| + |B| |u|) [Skeel 1979]. A state that is 0,
+  /// as no input reaches it, counts by the largest of the others in the states' own sizes.
+  Eigen::VectorXd rounding() const {
+    constexpr double kUnits = 16;
+    const auto n = m.A.rows();
+    const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(n, n);
+    const Eigen::MatrixXd inverse = Resolvent<double>(m, s).times(one);
+    Eigen::MatrixXd scaled = m.A;
+    const Eigen::VectorXd unit = linalg::similarity_scaling_of_parts(scaled);
+    const double largest = x.cwiseQuotient(unit).cwiseAbs().maxCoeff();
+    const Eigen::VectorXd terms =
+        (s * one - m.A).cwiseAbs() * (largest * unit) + m.B.cwiseAbs() * u.cwiseAbs();
+    return kUnits * static_cast<double>(n) * std::numeric_limits<double>::epsilon() *
+           (inverse.cwiseAbs() * terms);
+  }
+};
 
 /// The blocks' own formulas at s, used by transfers, against their A, B, C, D, for random inputs:
 /// of the first blocks of each type, since a type has one formula. An instant does not use them.
@@ -92,15 +131,12 @@ WrittenResidual check_responses(const Factored& d, double s) {
     const Dynamics& m = *d.numbers.blocks[at(i)];
     auto& of_type = seen[node.block->type()];
     if (of_type.size() == kOfEachType || !of_type.insert(&m).second) continue;
-    const auto r = response<double>(*node.block, m, s, d.numbers.parameters);
     Eigen::VectorXd u(m.B.cols());
     for (double& v : u) v = random.next();
-    const Eigen::VectorXd x = Resolvent<double>(m, s).times(m.B * u), size = u.cwiseAbs();
-    double worst = relative(r.X * u - x, r.X.cwiseAbs() * size + x.cwiseAbs());
-    if (m.sparse.empty())
-      worst = std::max(worst, relative(r.Y * u - (m.C * x + m.D * u),
-                                       r.Y.cwiseAbs() * size + m.C.cwiseAbs() * x.cwiseAbs() +
-                                           m.D.cwiseAbs() * size));
+    const TwoResponses both{m, s, u, response<double>(*node.block, m, s, d.numbers.parameters),
+                            Resolvent<double>(m, s).times(m.B * u)};
+    double worst = both.difference(Eigen::VectorXd::Zero(m.A.rows()));
+    if (worst > kWarn && !m.modal) worst = both.difference(both.rounding());
     if (worst > result.worst) result = {worst, "the response of " + node.name};
   }
   return result;
