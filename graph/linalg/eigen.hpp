@@ -8,8 +8,9 @@
 #include <titop/graph/linalg/eigen_products.hpp>
 
 // Eigen's decompositions of matrices of any size, compiled once for all files that include this in
-// place of <Eigen/SVD> and so on: a file that compiles its own takes up to a minute. So is `solve`
-// of LU and of the orthogonal decomposition if both sides are plain matrices: evaluate expressions.
+// place of <Eigen/SVD> and so on: a file that compiles its own takes up to a minute. So are
+// products of matrices of doubles (graph/linalg/eigen_products.hpp), and `solve` of LU and of the
+// orthogonal decomposition if both sides are plain matrices: evaluate expressions.
 /// @cond
 namespace Eigen {
 

@@ -71,7 +71,7 @@ struct ProductOfDoubles {
   }
   template <class To>
   static void scaleAndAddTo(To& to, const Left& left, const Right& right, const Scalar& factor) {
-    add_scaled(Write::add, to, left, right, factor);
+    write_scaled(Write::add, to, left, right, factor);
   }
 
  private:
@@ -79,7 +79,7 @@ struct ProductOfDoubles {
   static void write(Write write, To& to, const Left& left, const Right& right) {
     if constexpr (OfLeft::HasScalarFactor || OfRight::HasScalarFactor ||
                   !Derived::template in_place<To>)
-      add_scaled(write, to, left, right, Scalar(1));
+      write_scaled(write, to, left, right, Scalar(1));
     else
       multiply(write, to, left, right);
   }
@@ -92,8 +92,8 @@ struct ProductOfDoubles {
   }
 
   template <class To>
-  static void add_scaled(Write write, To& to, const Left& left, const Right& right,
-                         const Scalar& factor) {
+  static void write_scaled(Write write, To& to, const Left& left, const Right& right,
+                           const Scalar& factor) {
     constexpr int rows = To::RowsAtCompileTime, cols = To::ColsAtCompileTime;
     Eigen::Matrix<Scalar, rows, cols, rows == 1 && cols != 1 ? Eigen::RowMajor : Eigen::ColMajor>
         product(to.rows(), to.cols());
