@@ -13,7 +13,8 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// All equations as E z = F u: one column of E per scalar signal, then one per scalar output.
+/// All equations as E z = F u, one column of E per scalar signal; then one row for each scalar
+/// output, y = F u - E z, on which no equation depends.
 struct TransferAssembly {
   const Graph& graph;
   ParameterValues values;
@@ -31,7 +32,7 @@ struct TransferAssembly {
       if (sig.active || sig.role == Signal::Role::external) count += sig.size;
     }
     for (const Output& o : g.outputs) outputs += o.size;
-    E = MatrixXcd::Zero(unknowns + outputs, unknowns + outputs);
+    E = MatrixXcd::Zero(unknowns + outputs, unknowns);
     F = MatrixXcd::Zero(unknowns + outputs, inputs);
   }
 
@@ -127,10 +128,10 @@ void add_channel(TransferAssembly& a, const Channel& channel, const Drive& drive
   a.row += drive.free;
 }
 
-/// signal (or output) = sum of its terms
+/// Signal = sum of its terms; column = -1: an output.
 void add_definition(TransferAssembly& a, int column, int size, const std::vector<Term>& terms) {
   a.need(size);
-  a.E.block(a.row, column, size, size).setIdentity();
+  if (column >= 0) a.E.block(a.row, column, size, size).setIdentity();
   a.subtract(MatrixXd::Identity(size, size), terms);
   a.row += size;
 }
@@ -144,11 +145,7 @@ TransferAssembly assembled(const Graph& graph, std::complex<double> s, Parameter
     if (const Signal& target = graph.signals[at(e.target)];
         (target.channel < 0 || e.of_block) && e.active)
       add_definition(a, a.column[at(e.target)], target.size, e.terms);
-  int column = a.unknowns;
-  for (const Output& o : graph.outputs) {
-    add_definition(a, column, o.size, o.terms);
-    column += o.size;
-  }
+  for (const Output& o : graph.outputs) add_definition(a, -1, o.size, o.terms);
   return a;
 }
 
@@ -164,14 +161,14 @@ MatrixXcd transfer(const Graph& graph, std::complex<double> s, ParameterValues v
         Code::no_equation,
         fmt::format("{}: {} equations for {} unknowns", graph.name, a.row - a.outputs, a.unknowns),
         "compile it: the message names the port that is not driven, or driven twice");
-  const linalg::Solution solution = linalg::solve(a.E, a.F);
+  const linalg::Solution solution = linalg::solve(a.E.topRows(a.unknowns), a.F.topRows(a.unknowns));
   if (!(solution.rcond > 1e-16) || !solution.z.allFinite())
     throw Error(
         Code::singular,
         fmt::format("{}: at s = {}{:+}j the equations have no unique solution (rcond {:.1g})",
                     graph.name, s.real(), s.imag(), solution.rcond),
         "s may be a pole; try another s, or compile it to see what is wrong");
-  return solution.z.bottomRows(a.outputs);
+  return a.F.bottomRows(a.outputs) - a.E.bottomRows(a.outputs) * solution.z;
 }
 
 namespace detail {
@@ -181,10 +178,12 @@ MatrixXd terms(const Graph& graph, const std::vector<std::complex<double>>& poin
   MatrixXd result;
   for (const std::complex<double> s : points) {
     const TransferAssembly a = assembled(graph, s, values);
-    const MatrixXcd z = linalg::solve(a.E, a.F).z,
-                    back = linalg::solve(a.E.reverse(), a.F.colwise().reverse()).z;
-    if (z.size() == 0 || back.size() == 0) continue;  // no unique solution
-    const MatrixXcd off = z.bottomRows(a.outputs) - back.colwise().reverse().bottomRows(a.outputs);
+    const auto E = a.E.topRows(a.unknowns), Y = a.E.bottomRows(a.outputs);
+    const auto F = a.F.topRows(a.unknowns);
+    const linalg::Solution there = linalg::solve(E, F),
+                           back = linalg::solve(E.reverse(), F.colwise().reverse());
+    if (!(there.rcond > 0) || !(back.rcond > 0)) continue;  // no unique solution
+    const MatrixXcd off = Y * there.z - Y.rowwise().reverse() * back.z;
     if (result.size() == 0) result = MatrixXd::Zero(off.rows(), off.cols());
     if (off.allFinite()) result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());
   }
