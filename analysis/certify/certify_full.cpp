@@ -198,20 +198,23 @@ void judge(std::vector<std::string>& faults, double value, double allowed, const
   if (!(value <= allowed)) faults.push_back(fmt::format("{} {:.1e}{}", text, value, more));
 }
 
-/// Without inputs that move an output, transfers are rounding alone and have no digit.
-bool is_zero(const System& system, const ExactOrder& exact) {
-  return exact.decided && exact.order == 0 && system.state_space().D.isZero(0);
+/// The model is 0 to the last bit, and so is the transfer by exact arithmetic: that of the factors,
+/// rounding alone, has no digit to compare.
+bool is_zero(const System& system, const FullCertificate& c) {
+  const StateSpace& model = system.state_space();
+  return c.exact.decided && c.exact.order == 0 && model.order() == 0 && model.D.isZero(0);
 }
 
 void list_faults(const System& system, FullCertificate& c) {
   const Graph& source = *system.stage().source;
+  const bool zero = c.order.judged && is_zero(system, c);
   Certificate basic = c.basic;
-  if (is_zero(system, c.exact)) basic.dense_error = c.grid.dense = c.grid.written = -1;
-  c.faults = certification::basic_faults(basic, c.grid.dense);
+  if (zero) basic.dense_error = -1;
+  c.faults = certification::basic_faults(basic, zero ? -1 : c.grid.dense);
   const auto fault = [&c](double value, double allowed, const std::string& text) {
     judge(c.faults, value, allowed, text);
   };
-  fault(c.grid.written, certification::kHolds,
+  fault(zero ? -1 : c.grid.written, certification::kHolds,
         "the transfer differs from that of the equations as written by");
   if (c.order.removed.empty() &&
       c.order.change > 0)  // put back (compiler/system/minimal_model.cpp)
