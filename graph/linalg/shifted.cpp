@@ -10,8 +10,9 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-/// The error that is left is about the square of the refinement's change: rounding.
-constexpr double kMoved = 1e-8;
+/// The error that is left after a step of refinement is about the square of its change: at most the
+/// rounding unit.
+constexpr double kMoved = 0x1p-26;
 
 double largest_change(const MatrixXcd& change, const MatrixXcd& of) {
   double moved = 0;
