@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <stdexcept>
 #include <vector>
 
 #include "support/rng.hpp"
@@ -28,7 +29,7 @@ std::uint64_t power(std::uint64_t a, std::uint64_t exponent) {
 }
 std::uint64_t residue(double x) {
   const double whole = std::ldexp(std::abs(x), 40);
-  if (whole != std::floor(whole) || whole > 0x1p62) throw "no short fraction";
+  if (whole != std::floor(whole) || whole > 0x1p62) throw std::logic_error("no short fraction");
   const std::uint64_t r =
       product(static_cast<std::uint64_t>(whole) % kPrime, power(power(2, 40), kPrime - 2));
   return x < 0 && r > 0 ? kPrime - r : r;

@@ -10,7 +10,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr int kLargestDenominator = 1000;
-/// Entries up to this denominator lie 1e-6 apart: none is as close as this by accident.
+/// Fractions up to this denominator lie 1e-6 apart: none is as close as this by accident.
 constexpr double kRounding = 4e-16;
 
 /// The fraction of smallest denominator that rounds to x; its own value if there is none.
