@@ -2,14 +2,13 @@
 
 #include <Eigen/LU>
 #include <Eigen/SparseLU>
-#include <boost/multiprecision/cpp_complex.hpp>
-#include <boost/multiprecision/eigen.hpp>
 #include <cmath>
 #include <memory>
 #include <numbers>
 #include <stdexcept>
 
 #include "support/rng.hpp"
+#include "wild/oracle/digits.hpp"
 #include "wild/oracle/equations.hpp"
 
 namespace wild {
@@ -17,10 +16,7 @@ namespace wild {
 namespace {
 
 using Real = Equations::Real;
-using WideComplex = std::complex<Real>;
-using FiftyComplex = boost::multiprecision::number<
-    boost::multiprecision::complex_adaptor<boost::multiprecision::cpp_bin_float<50>>,
-    boost::multiprecision::et_off>;
+static_assert(std::is_same_v<WideComplex, std::complex<Real>>);
 
 double size_of_entry(const WideComplex& z) {
   return static_cast<double>(std::abs(z.real()) + std::abs(z.imag()));

@@ -9,6 +9,7 @@
 #include <titop/titop.hpp>
 
 #include "support/rng.hpp"
+#include "wild/oracle/model.hpp"
 #include "wild/parts/write.hpp"
 
 namespace wild {
@@ -100,35 +101,16 @@ std::string said(const System& system) {
   return text;
 }
 
-using WideC = std::complex<long double>;
-using Wide = Eigen::Matrix<WideC, Eigen::Dynamic, Eigen::Dynamic>;
-
 /// A transfer, and the effect of the last digits of its matrices.
 struct Got {
   std::vector<MatrixXcd> H;
   std::vector<MatrixXcd> rounding = {};
 };
 
-/// |C (s - A)^-1| (|A| |x| + |B|) + |C| |x| + |D| with x = (s - A)^-1 B, times kData: no model
-/// written as A, B, C, D in double is better.
-Got of_model(const titop::StateSpace& m, const std::vector<Complex>& s) {
-  Got got;
-  const Index n = m.A.rows();
-  for (const Complex& point : s) {
-    Wide P = -m.A.cast<WideC>();
-    P.diagonal().array() += WideC(point);
-    Wide x(n, m.B.cols()), left(m.C.rows(), n);
-    if (n > 0) {
-      x = P.partialPivLu().solve(Wide(m.B.cast<WideC>()));
-      P.transposeInPlace();
-      left = P.partialPivLu().solve(Wide(m.C.transpose().cast<WideC>())).transpose();
-    }
-    got.H.push_back((m.C.cast<WideC>() * x + m.D.cast<WideC>()).cast<Complex>());
-    const MatrixXd size = x.cwiseAbs().cast<double>(), weight = left.cwiseAbs().cast<double>();
-    const MatrixXd bound =
-        weight * (m.A.cwiseAbs() * size + m.B.cwiseAbs()) + m.C.cwiseAbs() * size + m.D.cwiseAbs();
-    got.rounding.push_back((kData * bound).cast<Complex>());
-  }
+Got of_model(const titop::StateSpace& m, const std::vector<Complex>& s, Digits digits) {
+  const ModelTransfer t = model_transfer(m.A, m.B, m.C, m.D, s, kData, digits);
+  Got got{.H = t.H};
+  for (const MatrixXd& size : t.rounding) got.rounding.push_back(size.cast<Complex>());
   return got;
 }
 
@@ -271,15 +253,15 @@ Judgement judge(const Scene& scene, unsigned seed, bool with_time, Digits digits
     j.text = exact.none;
     return j;
   }
-  const std::vector<Road> roads = {{"transfer",
-                                    [&] {
-                                      Got got;
-                                      for (const Complex& s : j.s)
-                                        got.H.push_back(system->transfer(s));
-                                      return got;
-                                    }},
-                                   {"apply", [&] { return of_model(through_apply(*system), j.s); }},
-                                   {"dense", [&] { return of_model(system->state_space(), j.s); }}};
+  const std::vector<Road> roads = {
+      {"transfer",
+       [&] {
+         Got got;
+         for (const Complex& s : j.s) got.H.push_back(system->transfer(s));
+         return got;
+       }},
+      {"apply", [&] { return of_model(through_apply(*system), j.s, digits); }},
+      {"dense", [&] { return of_model(system->state_space(), j.s, digits); }}};
   std::string at_road;
   for (const Road& road : roads) {
     try {
@@ -317,7 +299,7 @@ Judgement judge(const Scene& scene, unsigned seed, bool with_time, Digits digits
     }
   }
   if (j.error <= 1) return j;
-  // Rounding of the oracle's long double may stand for a 0.
+  // Long double may have lost the digits, of the truth or of a model's transfer.
   if (digits == Digits::wide) return judge(scene, seed, with_time, Digits::fifty);
   const std::string doubt = said(*system);
   j.verdict = doubt.empty() ? Verdict::wrong_in_silence : Verdict::wrong_but_said;
