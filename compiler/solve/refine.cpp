@@ -28,11 +28,6 @@ constexpr double kShrinks = 0.25;
 /// If the first step changes no block of the unknowns by more, convergence is certain by then;
 /// otherwise a second step must confirm it.
 constexpr double kPlain = 1e-9;
-/// Relative to the entries in the same row and column: level of a 0 after rotations of frames,
-/// cos(pi / 2) = 6e-17. More digits resolve it, but the data do not.
-constexpr double kOfFrames = 1e-15;
-/// Likewise a 0 after sums over many bodies: no reason for more digits.
-constexpr double kOfSums = 1e-13;
 
 }  // namespace
 
@@ -130,18 +125,16 @@ std::vector<Eigen::Index> groups_of_inputs(const Factored& d) {
   return groups(d.graph().inputs, d.layout().input_first, 0, std::ssize(d.layout().inputs));
 }
 
-/// Blocks that are negligible compared with those of other outputs by the same input, and of other
-/// inputs to the same output: `limit` of both. (If all of a row is small, that is its unit, or its
-/// true size.)
-Eigen::MatrixX<bool> nothing_beside(const Eigen::MatrixXd& size, double limit) {
-  if (size.size() == 0) return Eigen::MatrixX<bool>(size.rows(), size.cols());
-  const Eigen::ArrayXXd row = size.rowwise().maxCoeff().replicate(1, size.cols()).array(),
-                        col = size.colwise().maxCoeff().replicate(size.rows(), 1).array();
-  return size.array() <= limit * row.sqrt() * col.sqrt() &&
-         size.array() <= std::sqrt(limit) * row.min(col);
+/// Geometric means of the largest entries in a block's row and column.
+Eigen::MatrixXd beside(const Eigen::MatrixXd& size) {
+  if (size.size() == 0) return size;
+  return size.rowwise().maxCoeff().cwiseSqrt() * size.colwise().maxCoeff().cwiseSqrt();
 }
 
-/// Blocks at the rounding level of T, or of frames; none if T has no digit of any block.
+/// Blocks that the rounding of T, or of the data, changes altogether: zeros by structure, by
+/// symmetry, or by rotations of frames, whose cos(pi / 2) is 6e-17. Of unknowns that are 0 the rows
+/// have no terms, so that their rounding is relative to other blocks. None if T has no digit of any
+/// block.
 template <class T>
 std::optional<Eigen::MatrixX<bool>> zeros_in(const Factored& d) {
   try {
@@ -149,8 +142,13 @@ std::optional<Eigen::MatrixX<bool>> zeros_in(const Factored& d) {
     const auto rows = groups_of_outputs(d), cols = groups_of_inputs(d);
     const Eigen::MatrixXd size = block_sizes(rounded<T>(point.outputs()), rows, cols),
                           off = block_sizes(rounded<T>(point.rounding()), rows, cols);
-    const Eigen::MatrixX<bool> zeros = !(size.array() > kNoise * off.array());
-    if (!zeros.all()) return zeros.array() || nothing_beside(size, kOfFrames).array();
+    const double epsilon = solve::Scalar<T>::epsilon(),
+                 of_data = kRoundings * solve::Scalar<double>::epsilon() / epsilon;
+    const Eigen::ArrayXXd of_rounding = kNoise * off.array();
+    const Eigen::MatrixX<bool> zeros = !(size.array() > of_rounding);
+    if (!zeros.all())
+      return !(size.array() >
+               of_rounding.max(of_data * off.array()).max(kNoise * epsilon * beside(size).array()));
   } catch (const Error&) {  // no pivot, or numbers that T has not
   }
   return {};
@@ -185,17 +183,15 @@ double Evaluation<T>::relative_to_outputs(const solve::RowMatrix<T>& unknowns) c
   const auto rows = groups_of_outputs(data_), cols = groups_of_columns();
   const bool known = !std::is_same_v<T, double> && u_.cols() == u_.rows();
   const Eigen::MatrixXd size = block_sizes(y, rows, cols), off = block_sizes(change, rows, cols);
-  const Eigen::MatrixX<bool> nothing = nothing_beside(size + off, kOfSums);
+  // A block that is 0 by symmetry is rounding alone: it counts relative to its neighbours.
+  const Eigen::MatrixXd around = beside(size);
   double worst = 0;
   for (Eigen::Index i = 0; i < size.rows(); ++i)
     for (Eigen::Index j = 0; j < size.cols(); ++j) {
-      // A block that is 0 by symmetry is rounding alone: it counts relative to its neighbours.
-      const double beside = std::sqrt(size.row(i).maxCoeff()) * std::sqrt(size.col(j).maxCoeff());
       if (off(i, j) <= kUnderflow) continue;
-      const bool noise = size(i, j) <= kNoise * off(i, j) &&
-                         (!known || nothing(i, j) || data_.zero_blocks()(i, j));
+      const bool noise = size(i, j) <= kNoise * off(i, j) && (!known || data_.zero_blocks()(i, j));
       // If all are 0 there is no size to compare with: no digit is known.
-      const double of = noise ? beside : size(i, j);
+      const double of = noise ? around(i, j) : size(i, j);
       worst = std::max(worst, of > 0 ? off(i, j) / of : 1);
     }
   return worst;

@@ -3,7 +3,8 @@
 #include "wild/parts/family.hpp"
 
 TEST_CASE("wild controllers alone and around mechanics are right") {
-  wild::demand_right({.name = "controllers",
-                      .draw = wild::draw_controller,
-                      .pending = "outputs that loops cancel are right to their terms only"});
+  // Chains of seven and more integrators have loop gains of 1e14 and more, of which double leaves
+  // two digits: 6 of 2,000 scenes are refused.
+  wild::demand_right(
+      {.name = "controllers", .draw = wild::draw_controller, .refused_falsely = 0.005});
 }

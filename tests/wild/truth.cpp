@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "wild/oracle/draw.hpp"
+#include "wild/oracle/model.hpp"
 #include "wild/oracle/oracle.hpp"
 
 using namespace wild;
@@ -70,8 +71,13 @@ TEST_CASE("the oracle knows controllers by hand") {
   A << -1, 0, 0, -1, 0, 0, 0, -4, 0;
   B(0) = 1;
   C << 0, 0, 1;
-  for (const Digits digits : {Digits::wide, Digits::fifty})
+  for (const Digits digits : {Digits::wide, Digits::fifty}) {
     CHECK(off(truth(one_lti(A, B, C, false), {1.0}, digits).H[0](0, 0), 2) <= 1e-15);
+    const ModelTransfer model = model_transfer(A, B, C, MatrixXd::Zero(1, 1), {1.0}, 1e-3, digits);
+    CHECK(off(model.H[0](0, 0), 2) <= 1e-15);
+    // x = (1/2, -1/2, 2), left = (2, -4, 1): 2 (1/2 + 1) + 4 (1/2) + 2 + 2, all terms of one sign
+    CHECK(std::abs(model.rounding[0](0, 0) / 9e-3 - 1) <= 1e-14);
+  }
   // G = 0.02 / (s^3 + 2.2 s^2 + 0.41 s + 0.02), closed by +1: G / (1 - G).
   A << -2.2, -0.41, -0.02, 1, 0, 0, 0, 1, 0;
   C << 0, 0, 0.02;

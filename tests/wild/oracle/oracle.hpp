@@ -33,7 +33,7 @@ Scene disturbed(const Scene& scene, double relative, unsigned seed);
 
 /// The response y(t) from rest to input `column` stepping to 1 at time 0, by the inverse
 /// Laplace transform on Talbot's contour [Abate, Whitt 2006, sec. 3]; an entry that two orders of
-/// it do not agree on to 1e-10 is nan.
+/// it do not agree on to 1e-10 is nan, and so are all if no pivot has a digit in 64 bits.
 VectorXd step_response(const Scene& scene, int column, double t);
 
 }  // namespace wild

@@ -132,7 +132,7 @@ titop::StateSpace through_apply(const System& system) {
 
 /// Positions and rates in a row are sums of stretches and of the base's motion: 1e-12 of the
 /// largest term is allowed if these cancel. Returns the largest position of any mass, per column.
-MatrixXd largest_position(Scene scene, const std::vector<Complex>& s) {
+MatrixXd largest_position(Scene scene, const std::vector<Complex>& s, Digits digits) {
   scene.outputs.clear();
   for (int i = 0; i < static_cast<int>(scene.nodes.size()); ++i)
     for (const int site : {-1, 0})
@@ -141,13 +141,13 @@ MatrixXd largest_position(Scene scene, const std::vector<Complex>& s) {
   if (scene.outputs.empty())
     return MatrixXd::Zero(1, static_cast<Index>(input_blocks(scene).size()));
   const MatrixXd all =
-      largest(truth(scene, s).H, nullptr, output_blocks(scene), input_blocks(scene));
+      largest(truth(scene, s, digits).H, nullptr, output_blocks(scene), input_blocks(scene));
   return all.colwise().maxCoeff();
 }
 
 /// The error that this allows, blocks as those of the transfer.
-MatrixXd cancelled(const Scene& scene, const std::vector<Complex>& s) {
-  const MatrixXd position = largest_position(scene, s);
+MatrixXd cancelled(const Scene& scene, const std::vector<Complex>& s, Digits digits) {
+  const MatrixXd position = largest_position(scene, s, digits);
   double fastest = 0;
   for (const Complex& point : s) fastest = std::max(fastest, std::abs(point));
   std::vector<double> factor;
@@ -186,7 +186,8 @@ bool improper(const Scene& scene) {
     fastest = std::max({fastest, std::sqrt(n.k / n.m), n.c / n.m});
   }
   const Truth t =
-      truth(scene, {Complex(fastest * 1e6, fastest * 1e6), Complex(fastest * 1e8, fastest * 1e8)});
+      truth(scene, {Complex(fastest * 1e6, fastest * 1e6), Complex(fastest * 1e8, fastest * 1e8)},
+            Digits::fifty);
   if (t.H.empty()) return false;
   return ((t.H[1].cwiseAbs() - 10 * t.H[0].cwiseAbs()).array() > 1e-12 * t.H[1].norm()).any();
 }
@@ -219,9 +220,7 @@ double time_error(const Scene& scene, const System& system, double fastest) {
   return worst / 1e-7;
 }
 
-}  // namespace
-
-Judgement judge(const Scene& scene, unsigned seed, bool with_time, Digits digits) {
+Judgement judge_in(Digits digits, const Scene& scene, unsigned seed, bool with_time) {
   Judgement j;
   j.s = points_of(scene, seed);
   const Truth exact = truth(scene, j.s, digits);
@@ -269,7 +268,7 @@ Judgement judge(const Scene& scene, unsigned seed, bool with_time, Digits digits
       const MatrixXd error = largest(got.H, &exact.H, b.rows, b.cols);
       MatrixXd allowed = b.allowed;
       if (!got.rounding.empty()) allowed += largest(got.rounding, nullptr, b.rows, b.cols);
-      if ((error.array() > allowed.array()).any()) allowed += cancelled(scene, j.s);
+      if ((error.array() > allowed.array()).any()) allowed += cancelled(scene, j.s, digits);
       for (Index r = 0; r < error.rows(); ++r)
         for (Index c = 0; c < error.cols(); ++c) {
           if (error(r, c) <= j.error * allowed(r, c)) continue;
@@ -299,12 +298,22 @@ Judgement judge(const Scene& scene, unsigned seed, bool with_time, Digits digits
     }
   }
   if (j.error <= 1) return j;
-  // Long double may have lost the digits, of the truth or of a model's transfer.
-  if (digits == Digits::wide) return judge(scene, seed, with_time, Digits::fifty);
   const std::string doubt = said(*system);
   j.verdict = doubt.empty() ? Verdict::wrong_in_silence : Verdict::wrong_but_said;
   j.text = at_road + (doubt.empty() ? "" : "; said: " + doubt);
   return j;
+}
+
+}  // namespace
+
+Judgement judge(const Scene& scene, unsigned seed, bool with_time) {
+  // Long double may have lost the digits, of the truth or of a model's transfer.
+  try {
+    const Judgement j = judge_in(Digits::wide, scene, seed, with_time);
+    if (j.verdict != Verdict::wrong_in_silence && j.verdict != Verdict::wrong_but_said) return j;
+  } catch (const std::domain_error&) {
+  }
+  return judge_in(Digits::fifty, scene, seed, with_time);
 }
 
 }  // namespace wild

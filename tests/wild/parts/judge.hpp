@@ -31,8 +31,7 @@ struct Judgement {
 /// The points at which scenes are judged: three about omega, one of them on the axis.
 std::vector<Complex> points_of(const Scene& scene, unsigned seed);
 
-/// `with_time`: simulate as well. `digits`: of the oracle; in long double an error is judged again
-/// in 50 digits.
-Judgement judge(const Scene& scene, unsigned seed, bool with_time, Digits digits = Digits::wide);
+/// `with_time`: simulate as well. An error found in long double is judged again in 50 digits.
+Judgement judge(const Scene& scene, unsigned seed, bool with_time);
 
 }  // namespace wild
