@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <titop/compiler/minreal/name_order.hpp>
 #include <titop/compiler/minreal/take_out.hpp>
 #include <titop/compiler/minreal/to_order.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -89,7 +90,9 @@ void take_out_side(StateSpace& m, bool by_inputs, double tolerance,
 
 }  // namespace
 
-std::optional<ModelOfOrder> to_order(const StateSpace& model, int order) {
+namespace {
+
+std::optional<ModelOfOrder> to_order_as_listed(const StateSpace& model, int order) {
   for (int power = -16; power <= -6; ++power) {
     ModelOfOrder result{model, {}, std::pow(10, power)};
     take_out_side(result.model, true, result.tolerance, result.notes);
@@ -98,6 +101,16 @@ std::optional<ModelOfOrder> to_order(const StateSpace& model, int order) {
     if (result.model.order() < order) break;
   }
   return {};
+}
+
+}  // namespace
+
+std::optional<ModelOfOrder> to_order(const StateSpace& model, int order) {
+  const std::optional<NameOrder> names = name_order(model);
+  if (!names) return to_order_as_listed(model, order);
+  std::optional<ModelOfOrder> result = to_order_as_listed(by_name(model, *names), order);
+  if (result) result->model = as_before(result->model, model.states, *names);
+  return result;
 }
 
 }  // namespace titop::minreal

@@ -17,8 +17,9 @@ struct ModelOfOrder {
 /// The reachable and observable part of a model whose minimal order is known, by the least
 /// tolerance of a rank, among powers of ten from 1e-16 to 1e-6, that leads to this order; none if
 /// no tolerance does. Orthonormal bases of the spans of [B, A B, ...] and [C; C A; ...]' in the
-/// states' own sizes [Arnoldi 1951, in blocks]; the remaining states keep name and meaning. The
-/// transfer is not compared. O(n^3) per tolerance.
+/// states' own sizes [Arnoldi 1951, in blocks]; the remaining states keep name and meaning. By
+/// name, so that the last bits do not depend on the order of the states. The transfer is not
+/// compared. O(n^3) per tolerance.
 std::optional<ModelOfOrder> to_order(const StateSpace& model, int order);
 
 }  // namespace titop::minreal

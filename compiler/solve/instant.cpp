@@ -138,8 +138,8 @@ Instant Instant::rounding() const {
 Instant Instant::off_by(RowMatrix<double> off, const RowMatrix<double>& magnitudes,
                         int sample) const {
   SteadyRandom random(sample);
-  for (Eigen::Index i = 0; i < off.size(); ++i)
-    off.data()[i] += random.unit() * solve::Scalar<double>::epsilon() * magnitudes.data()[i];
+  for (Eigen::Index i = 0; i < off.rows(); ++i)  // one number for all columns, in whatever order
+    off.row(i) += random.unit() * solve::Scalar<double>::epsilon() * magnitudes.row(i);
   Instant result(*this);
   result.known_.setZero();
   result.unknowns_ = data_.factors->solve(off);

@@ -38,6 +38,21 @@ TEST_CASE("random graphs: units leave verdict and transfer unchanged") {
   }
 }
 
+TEST_CASE("random graphs: powers of ten from 1e-12 to 1e12 in one unit change numbers alone") {
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Scene scene = random_scene(random_options(seed));
+    for (const double factor : {1e-12, 1e-6, 1e6, 1e12})
+      for (const Units& units :
+           {Units{.length = factor}, Units{.mass = factor}, Units{.time = factor}}) {
+        CAPTURE(seed);
+        CAPTURE(factor);
+        double error = 1;
+        CHECK_NOTHROW(error = units_error(scene, units));
+        CHECK(error <= 1e-9);
+      }
+  }
+}
+
 namespace {
 
 /// Poles of scenes without controllers; `zeros` are those below 1e-5 of the largest.
