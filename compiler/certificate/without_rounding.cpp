@@ -4,9 +4,11 @@
 #include <optional>
 #include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/certificate/without_rounding.hpp>
+#include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
 #include <titop/compiler/solve/frequency.hpp>
 #include <titop/compiler/solve/instant.hpp>
+#include <titop/graph/name_order.hpp>
 
 /// Entries of a dense model that are rounding alone.
 namespace titop::detail {
@@ -87,7 +89,7 @@ std::vector<std::complex<double>> points_of(const Factored& d, const MatrixXd& A
 
 std::optional<MatrixXcd> transfer_of(const StateSpace& m, std::complex<double> s) {
   try {
-    return m.transfer(s);
+    return refined_transfers(m, {s}).front();
   } catch (const Error& error) {
     if (!error.has(Code::singular)) throw;
     return {};
@@ -113,8 +115,9 @@ std::optional<Reference> reference(const Factored& d, const StateSpace& written,
     const MatrixXd size = G.cwiseAbs();
     const MatrixXd around = size.rowwise().maxCoeff().cwiseSqrt() *
                             Eigen::RowVectorXd(size.colwise().maxCoeff().cwiseSqrt());
-    MatrixXd allowed = kAnotherDigit * (written.transfer(s) - G).cwiseAbs() + kUnmissed * size +
-                       kNeighbours * around + kNoise * point.rounding().cwiseAbs();
+    MatrixXd allowed = kAnotherDigit * (refined_transfers(written, {s}).front() - G).cwiseAbs() +
+                       kUnmissed * size + kNeighbours * around +
+                       kNoise * point.rounding().cwiseAbs();
     if (!allowed.allFinite()) return {};
     return Reference{std::move(G), std::move(allowed)};
   } catch (const Error& error) {
@@ -130,7 +133,7 @@ bool keeps_transfer(const Factored& d, const StateSpace& written, const StateSpa
   if (written.A == without.A && written.B == without.B && written.C == without.C &&
       written.D == without.D)
     return true;
-  for (const std::complex<double> s : points_of(d, written.A)) {
+  for (const std::complex<double> s : points_of(d, states_by_name(written).A)) {
     const std::optional<Reference> there = reference(d, written, s);
     if (!there) continue;
     const std::optional<MatrixXcd> G = transfer_of(without, s);

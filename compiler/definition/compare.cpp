@@ -1,9 +1,13 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/graph/declared.hpp>
+#include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/name_order.hpp>
 
 namespace titop::detail {
 namespace {
@@ -99,6 +103,21 @@ std::vector<MatrixXcd> transfers(const StateSpace& m,
   return list;
 }
 
+std::vector<MatrixXcd> refined_transfers(const StateSpace& model,
+                                         const std::vector<std::complex<double>>& points) {
+  const StateSpace m = states_by_name(model);
+  const MatrixXcd there = paths(m).cast<std::complex<double>>();
+  std::vector<MatrixXcd> list;
+  for (const std::complex<double> s : points) {
+    const linalg::Solution y = linalg::refined_response(m.A, m.B, m.C, m.D, s);
+    if (!(y.rcond > 0) || !y.z.allFinite())
+      throw Error(Code::singular, fmt::format("s = {}{:+}j is a pole", s.real(), s.imag()),
+                  "evaluate beside it");
+    list.push_back(y.z.cwiseProduct(there));
+  }
+  return list;
+}
+
 namespace {
 
 /// |s I - A|, |(s I - A)^-1 B| and |C (s I - A)^-1|.
@@ -116,7 +135,8 @@ ResolventGain gain(const StateSpace& m, std::complex<double> s) {
 
 }  // namespace
 
-MatrixXd terms(const StateSpace& m, const std::vector<std::complex<double>>& points) {
+MatrixXd terms(const StateSpace& model, const std::vector<std::complex<double>>& points) {
+  const StateSpace m = states_by_name(model);
   MatrixXd result = m.D.cwiseAbs();
   if (m.A.rows() == 0) return result;
   for (const std::complex<double> s : points) {
@@ -146,7 +166,7 @@ MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
                    sum = by.to_outputs * states + rounding.C * by.of_states;
     if (sum.allFinite()) result = result.cwiseMax(rounding.D + sum);
   }
-  return of_nothing(result / std::numeric_limits<double>::epsilon(), transfers(m, points));
+  return of_nothing(result / std::numeric_limits<double>::epsilon(), refined_transfers(m, points));
 }
 
 void add_rounding(Measure& measure, const std::vector<MatrixXcd>& exact, const MatrixXd& terms) {

@@ -25,10 +25,16 @@ struct Measure {
 /// Blocks of a graph's outputs and inputs, as declared: threes if three divides a signal's size.
 Measure measure(const Graph& graph, Eigen::MatrixXd terms);
 
-/// The model's transfers at these points. A pair without a path through nonzero entries of A, B, C
-/// and D is exactly 0, without the rounding of row operations. O(points n^3).
+/// The model's transfers at these points, by StateSpace::transfer. A pair without a path through
+/// nonzero entries of A, B, C and D is exactly 0, without the rounding of row operations. Throws
+/// singular at a pole. O(points n^3).
 std::vector<Eigen::MatrixXcd> transfers(const StateSpace& m,
                                         const std::vector<std::complex<double>>& points);
+
+/// The same to the last places of double (linalg::refined_response), without the rounding of an
+/// evaluation in double. The same bits for any order of the states.
+std::vector<Eigen::MatrixXcd> refined_transfers(const StateSpace& m,
+                                                const std::vector<std::complex<double>>& points);
 
 /// Size of the terms whose sums are the entries of m's transfer, before cancellation: with the
 /// responses X = (s I - A)^-1 B and W = C (s I - A)^-1, which make G = D + W (s I - A) X, the

@@ -28,8 +28,8 @@ OrderVerdict back_to(int order, double judged, OrderVerdict v) {
 /// Relative change of the transfer; 1 if a model has none.
 double change(const StateSpace& whole, const StateSpace& part,
               const std::vector<std::complex<double>>& points) try {
-  const std::vector<MatrixXcd> before = detail::transfers(whole, points),
-                               after = detail::transfers(part, points);
+  const std::vector<MatrixXcd> before = detail::refined_transfers(whole, points),
+                               after = detail::refined_transfers(part, points);
   const detail::Measure by{std::vector<int>(whole.outputs.size(), 1),
                            std::vector<int>(whole.inputs.size(), 1),
                            detail::terms(whole, points).cwiseMax(detail::terms(part, points))};

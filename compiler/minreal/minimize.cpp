@@ -6,9 +6,9 @@
 #include <titop/compiler/minreal/effect.hpp>
 #include <titop/compiler/minreal/integrators.hpp>
 #include <titop/compiler/minreal/minimize.hpp>
-#include <titop/compiler/minreal/name_order.hpp>
 #include <titop/compiler/minreal/take_out.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/name_order.hpp>
 
 namespace titop {
 namespace {

@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <cmath>
-#include <titop/compiler/minreal/name_order.hpp>
 #include <titop/compiler/minreal/take_out.hpp>
 #include <titop/compiler/minreal/to_order.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/similarity_scaling.hpp>
+#include <titop/graph/name_order.hpp>
 
 namespace titop::minreal {
 namespace {

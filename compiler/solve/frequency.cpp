@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <titop/compiler/solve/factored.hpp>
 #include <titop/compiler/solve/frequency.hpp>
@@ -58,7 +59,9 @@ std::vector<double> frequencies_of(const MatrixXd& A) {
 std::complex<double> pick_s(const Factored& d) {
   double log_sum = 0;
   int count = 0;
-  for (const int i : d.layout().state_nodes) {
+  std::vector<int> nodes = d.layout().state_nodes;  // by name, not as declared
+  std::sort(nodes.begin(), nodes.end());
+  for (const int i : nodes) {
     const double w = frequency_of(d.numbers.blocks[at(i)]->A);
     if (w > 0 && std::isfinite(w)) log_sum += std::log(w), ++count;
     if (count >= 64) break;

@@ -11,6 +11,7 @@
 #include <titop/compiler/system/elimination_terms.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/name_order.hpp>
 
 /// The dense model of a system, minimized; the removal is checked on the transfer.
 namespace titop::detail {
@@ -51,7 +52,8 @@ const char* digits_lost(const SystemData& d) {
 StateSpace with_certain_ports(const System& system, const SystemData& d, const StateSpace& m) {
   const std::complex<double> s = pick_s(d);
   const auto transfers = [&](std::complex<double> z) {
-    return std::pair(system.transfer(z, Precision::as_needed), m.transfer(z));
+    return std::pair(system.transfer(z, Precision::as_needed),
+                     detail::refined_transfers(m, {z}).front());
   };
   const auto [exact, dense] = transfers(s);
   Eigen::MatrixX<bool> certain = Eigen::MatrixX<bool>::Zero(exact.rows(), exact.cols());
@@ -115,7 +117,7 @@ struct Change {
 std::vector<std::complex<double>> points_of_change(const SystemData& d, const StateSpace& dense,
                                                    const Minimized& m) {
   std::vector<std::complex<double>> points = minreal::near_modes(m.order.removed, pick_s(d));
-  std::vector<double> omegas = frequencies_of(dense.A);
+  std::vector<double> omegas = frequencies_of(states_by_name(dense).A);
   if (!omegas.empty()) {
     const auto [least, most] = std::minmax_element(omegas.begin(), omegas.end());
     const double below = *least / 10, above = *most * 10;
@@ -134,7 +136,7 @@ Change change(const System& system, const SystemData& d, const StateSpace& dense
     (G ? worst.tried : worst.left_out).push_back(s);
     if (!G) continue;
     const std::vector<std::complex<double>> here{s};
-    const std::vector<MatrixXcd> exact{*G}, minimal = transfers(m.model, here);
+    const std::vector<MatrixXcd> exact{*G}, minimal = refined_transfers(m.model, here);
     const MatrixXd as_written = terms(dense, here);
     const auto off = [&](const std::vector<MatrixXcd>& of, const MatrixXd& terms_there) {
       Measure by = measure(*d.skeleton->stage.source, terms_there);
@@ -148,7 +150,7 @@ Change change(const System& system, const SystemData& d, const StateSpace& dense
       return difference(of, exact, by, system, here).relative;
     };
     const double lost = digits(minimal);
-    if (lost > worst.in_all && lost > kAnotherDigit * digits(transfers(dense, here)))
+    if (lost > worst.in_all && lost > kAnotherDigit * digits(refined_transfers(dense, here)))
       worst.in_all = lost;
   }
   return worst;

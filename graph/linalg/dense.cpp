@@ -56,6 +56,60 @@ Solution solve(const MatrixXcd& E, const MatrixXcd& F) {
   return {scale.cols.asDiagonal() * z, lu.rcond(), moved};
 }
 
+namespace {
+
+using Long = std::complex<long double>;
+using MatrixXcl = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// z += E^-1 (F - E z) by `lu` until nothing changes; the size of the last step relative to z, per
+/// column.
+template <class Lu>
+double refine(const Lu& lu, const MatrixXcl& E, const MatrixXcl& F, MatrixXcl& z) {
+  using Scalar = typename Lu::Scalar;
+  constexpr int kSteps = 12;
+  constexpr double kShrinks = 0.25;  // a slower one is no convergence
+  double before = HUGE_VAL;
+  for (int step = 0; step < kSteps; ++step) {
+    const MatrixXcl more =
+        lu.solve((F - E * z).eval().template cast<Scalar>()).template cast<Long>();
+    z += more;
+    double now = 0;
+    for (Eigen::Index j = 0; j < z.cols(); ++j)
+      if (const auto size = z.col(j).cwiseAbs().maxCoeff(); size > 0)
+        now = std::max(now, static_cast<double>(more.col(j).cwiseAbs().maxCoeff() / size));
+    if (!(now <= kShrinks * before)) return std::min(now, before);
+    before = now;
+    if (now == 0) break;
+  }
+  return before;
+}
+
+}  // namespace
+
+Solution refined_response(const MatrixXd& A, const MatrixXd& B, const MatrixXd& C,
+                          const MatrixXd& D, std::complex<double> s) {
+  if (A.rows() == 0) return {D.cast<std::complex<double>>(), 1, 0};
+  MatrixXcl E = -A.cast<Long>();
+  E.diagonal().array() += Long(s);
+  const Equilibration scale(E.cwiseAbs().cast<double>());
+  E = scale.rows.cast<Long>().asDiagonal() * E * scale.cols.cast<Long>().asDiagonal();
+  const MatrixXcl F = (scale.rows.asDiagonal() * B).cast<Long>();
+  const Eigen::PartialPivLU<MatrixXcd> lu(E.cast<std::complex<double>>());
+  MatrixXcl z = MatrixXcl::Zero(F.rows(), F.cols());
+  Solution result{.z = {}, .rcond = lu.rcond(), .moved = HUGE_VAL};
+  if ((lu.matrixLU().diagonal().array() != 0.0).all()) result.moved = refine(lu, E, F, z);
+  if (!(result.moved <= std::numeric_limits<double>::epsilon())) {
+    const Eigen::PartialPivLU<MatrixXcl> finer(E);
+    result.rcond = static_cast<double>(finer.rcond());
+    if ((finer.matrixLU().diagonal().array() == Long(0)).any()) return {MatrixXcd(), 0, 0};
+    z.setZero();
+    result.moved = refine(finer, E, F, z);
+  }
+  const MatrixXcl y = (C * scale.cols.asDiagonal()).eval().cast<Long>() * z + D.cast<Long>();
+  result.z = y.cast<std::complex<double>>();
+  return result;
+}
+
 Inverse inverse(const MatrixXd& M) {
   if (M.rows() == 0) return {MatrixXd(0, 0), 1};
   const Eigen::PartialPivLU<MatrixXd> lu(M);

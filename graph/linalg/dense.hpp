@@ -18,6 +18,14 @@ struct Solution {
 /// pivoting, one step of refinement. rcond = 0 if a pivot is exactly 0. O(n^3).
 Solution solve(const Eigen::MatrixXcd& E, const Eigen::MatrixXcd& F);
 
+/// C (s - A)^-1 B + D to the last places of double: solved as by `solve`, then refined with
+/// residuals in long double until no step changes more than the rounding of that, and summed in
+/// long double. If the steps do not shrink, the factors are computed in long double, too. rcond = 0
+/// and no z if a pivot is exactly 0. O(n^3).
+Solution refined_response(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
+                          const Eigen::MatrixXd& C, const Eigen::MatrixXd& D,
+                          std::complex<double> s);
+
 /// Inverse of a square matrix and its reciprocal condition number; rcond = 0 if singular. O(n^3).
 struct Inverse {
   Eigen::MatrixXd matrix;

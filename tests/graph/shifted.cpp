@@ -90,6 +90,8 @@ TEST_CASE("(s - A)^-1 B at a pole, and beside one") {
   A.row(3).setZero();  // a pole that is 0
   const ShiftedSolver solver(A, B);
   CHECK(solver.solve(0).rcond <= 1e-14);
+  CHECK(titop::linalg::refined_response(A, B, MatrixXd::Identity(12, 12), MatrixXd::Zero(12, 1), 0)
+            .rcond <= 1e-14);
   for (const double beside : {1e-3, 1e-6, 1e-9, 1e-12})
     CHECK(worst(solver.solve(beside).z, A, B, beside) <= 40);
 }
@@ -109,4 +111,35 @@ TEST_CASE("an Lti of many states has the transfer of its matrices") {
     const MatrixXcd got = system.transfer(s);
     CHECK((got - right).cwiseAbs().maxCoeff() <= 1e-11 * right.cwiseAbs().maxCoeff());
   }
+}
+
+TEST_CASE("C (s - A)^-1 B + D in residuals of 64 bits: a thousandth of what the data allow") {
+  double largest = 0;
+  for (const Index n : {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 40})
+    for (int kind = 0; kind < 4; ++kind) {
+      MatrixXd A = random(n, n) - 2 * MatrixXd::Identity(n, n), B = random(n, 2);
+      if (kind == 3) {  // integrators in a row: no digit in a condition number
+        A.setZero();
+        if (n > 1) A.diagonal(-1).setConstant(20);
+      }
+      if (kind > 0) change_units(A, B);
+      if (kind == 2 && n > 1) A.row(0) = A.row(n - 1);
+      const MatrixXd C = random(3, n), D = random(3, 2);
+      for (const Complex s : {Complex(0, 1e-2), Complex(0, 0.3), Complex(0.2, 40)}) {
+        const MatrixXcd X = in_50_digits(A, B, s), right = C * X + D.cast<Complex>(),
+                        got = titop::linalg::refined_response(A, B, C, D, s).z;
+        const MatrixXd sizes = A.cwiseAbs() + std::abs(s) * MatrixXd::Identity(n, n);
+        const MatrixXd left = in_50_digits(A.transpose(), C.transpose(), s).transpose().cwiseAbs();
+        const MatrixXd of_data = left * (sizes * X.cwiseAbs() + B.cwiseAbs()) +
+                                 C.cwiseAbs() * X.cwiseAbs() + D.cwiseAbs();
+        REQUIRE(got.rows() == 3);
+        REQUIRE(got.allFinite());
+        // `right` has the rounding of C X in double: the terms of that sum, not of the solution.
+        const MatrixXd allowed = 1e-3 * of_data + C.cwiseAbs() * X.cwiseAbs() + D.cwiseAbs();
+        largest =
+            std::max(largest, ((got - right).cwiseAbs().array() / allowed.array()).maxCoeff() /
+                                  std::numeric_limits<double>::epsilon());
+      }
+    }
+  CHECK(largest <= 4);
 }

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <titop/compiler/minreal/name_order.hpp>
 #include <titop/graph/graph.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/name_order.hpp>
 
 namespace titop {
 namespace {
@@ -48,6 +48,13 @@ StateSpace by_name(const StateSpace& m, const NameOrder& order) {
   const auto& [x, u, y] = order;
   return {m.A(x, x),         m.B(x, u),         m.C(y, x),         m.D(y, u),
           pick(m.states, x), pick(m.inputs, u), pick(m.outputs, y)};
+}
+
+StateSpace states_by_name(const StateSpace& m) {
+  std::vector<int> x;
+  if (!order_of(m.states, m.A.rows(), x)) return m;
+  return {m.A(x, x),         m.B(x, Eigen::all), m.C(Eigen::all, x), m.D,
+          pick(m.states, x), m.inputs,           m.outputs};
 }
 
 StateSpace as_before(const StateSpace& m, const std::vector<std::string>& states,

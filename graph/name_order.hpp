@@ -18,6 +18,9 @@ std::optional<NameOrder> name_order(const StateSpace& model);
 /// The model in that order.
 StateSpace by_name(const StateSpace& model, const NameOrder& order);
 
+/// The model with its states in that order, if their names are unique.
+StateSpace states_by_name(const StateSpace& model);
+
 /// Inverse of the reordering: `states` are the names before; those that `model` lacks are omitted.
 StateSpace as_before(const StateSpace& model, const std::vector<std::string>& states,
                      const NameOrder& order);
