@@ -1,6 +1,4 @@
 #include <cstdint>
-#include <cstdlib>
-#include <mutex>
 #include <titop/compiler/solve/memory.hpp>
 #if defined(__GLIBC__)
 #include <sys/mman.h>
@@ -8,20 +6,6 @@
 #endif
 
 namespace titop::detail {
-
-/// glibc adapts its mmap threshold: when a block that was mapped by itself is freed, it keeps twice
-/// as much from then on, for blocks of up to 32 MB (mallopt(3), on M_MMAP_THRESHOLD). So one such
-/// block is allocated and freed; as it is never written to, it uses no memory.
-void keep_memory() {
-#if defined(__GLIBC__)
-  static std::once_flag once;
-  std::call_once(once, [] {
-    constexpr std::size_t kJustBelow = (std::size_t{32} << 20) - (std::size_t{64} << 10);
-    void* volatile block = std::malloc(kJustBelow);  // volatile: else no block is taken
-    std::free(block);
-  });
-#endif
-}
 
 void take_large_pages([[maybe_unused]] void* begin, [[maybe_unused]] std::size_t bytes) {
 #if defined(__GLIBC__) && defined(MADV_HUGEPAGE)

@@ -13,7 +13,6 @@
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/solve/data_digits.hpp>
 #include <titop/compiler/solve/layout.hpp>
-#include <titop/compiler/solve/memory.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/graph/ahead.hpp>
@@ -170,7 +169,6 @@ System compile(const Diagram& diagram, const Options& options) {
 namespace detail {
 
 std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Options& options) {
-  keep_memory();
   return decided([&] { return as_written(graph); }, options, [](SystemData&) {});
 }
 

@@ -46,8 +46,7 @@ enum class Precision {
 using ParameterList = std::vector<std::pair<std::string, double>>;
 
 /// A compiled diagram: the elimination plan, the factors and the blocks' data. Const, cheap to
-/// copy, may be shared between threads. (Its worker threads sleep between calls and block all
-/// signals; a child of fork() has none.) The dense model is written from it on demand. References
+/// copy, may be shared between threads. The dense model is written from it on demand. References
 /// are valid during the System's lifetime; a temporary System returns copies: `const StateSpace& m
 /// = compile(d).state_space();`
 class System {
@@ -176,9 +175,7 @@ class System {
 
 /// Compiles a diagram: check, lower, split, chains, match, order, close, solve, certify
 /// (docs/architecture.md). Throws Error with all mistakes of the first pass that finds any,
-/// bad_value for options out of their range. Cost: linear in the number of bodies for trees. From
-/// the first compile on, glibc keeps up to 64 MB of freed memory in the process (see
-/// compiler/solve/memory.hpp).
+/// bad_value for options out of their range. Cost: linear in the number of bodies for trees.
 System compile(const Diagram& diagram, const Options& options = {});
 
 }  // namespace titop

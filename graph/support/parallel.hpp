@@ -6,7 +6,6 @@
 #include <exception>
 #include <optional>
 #include <thread>
-#include <titop/graph/support/workers.hpp>
 #include <vector>
 
 namespace titop::detail {
@@ -19,10 +18,11 @@ inline int thread_count(int wanted, std::size_t tasks) {
   return std::max(1, std::min(wanted > 0 ? wanted : cores, most));
 }
 
-/// Runs task(i) for i = 0 ... count - 1, in no order, on up to `threads` threads; make() gives each
-/// thread its own task object (its workspace). Tasks must not depend on each other: the results are
-/// then the same for any number of threads. If tasks throw, all threads stop, all tasks before the
-/// lowest failed i are completed, and its exception is rethrown.
+/// Runs task(i) for i = 0 ... count - 1, in no order, on this thread and up to `threads` - 1 more,
+/// which end with the call; make() gives each thread its own task object (its workspace). Tasks
+/// must not depend on each other: the results are then the same for any number of threads. If tasks
+/// throw, all threads stop, all tasks before the lowest failed i are completed, and its exception
+/// is rethrown. If a thread cannot be started, there are fewer.
 template <class Make>
 void parallel(std::size_t count, int threads, Make make) {
   std::atomic<std::size_t> next{0};
@@ -41,7 +41,15 @@ void parallel(std::size_t count, int threads, Make make) {
       }
     }
   };
-  work_together(thread_count(threads, count) - 1, work, [&] { return next + 1 < end; });
+  {
+    std::vector<std::jthread> others;
+    try {
+      for (int k = thread_count(threads, count) - 1; k > 0 && next + 1 < end; --k)
+        others.emplace_back(work);
+    } catch (const std::exception&) {  // no thread, or no memory for one
+    }
+    work();
+  }
   for (const std::exception_ptr& e : failed)
     if (e) std::rethrow_exception(e);
 }

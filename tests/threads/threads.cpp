@@ -1,16 +1,12 @@
 #include <doctest/doctest.h>
-#include <pthread.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
 #include <cmath>
-#include <csignal>
 #include <functional>
-#include <latch>
 #include <thread>
 #include <titop/graph/support/parallel.hpp>
 #include <titop/titop.hpp>
@@ -99,35 +95,6 @@ TEST_CASE("threads: errors of a task, or of its construction, are thrown after a
   }
 }
 
-TEST_CASE("threads: the second thread is there from call to call, and takes no signals") {
-  const auto main = std::this_thread::get_id();
-  int most = 0;
-  bool came = true;
-  for (int call = 0; call < 200 && came; ++call) {  // there may be threads by now that take turns
-    std::latch both(2);
-    detail::parallel(2, 2, [&] {
-      return [&](std::size_t) {
-        both.count_down();  // so that there are two, unless the system refuses one for seconds
-        for (int i = 0; i < 10000 && !both.try_wait(); ++i)
-          std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        if (!both.try_wait()) came = false;
-        if (std::this_thread::get_id() == main) return;
-        static thread_local int calls = 0;
-        most = std::max(most, ++calls);
-        sigset_t blocked;
-        pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
-        CHECK(sigismember(&blocked, SIGINT) == 1);
-        CHECK(sigismember(&blocked, SIGSEGV) == 0);
-      };
-    });
-  }
-  CHECK(came);
-  CHECK(most > 1);
-  sigset_t blocked;
-  pthread_sigmask(SIG_SETMASK, nullptr, &blocked);
-  CHECK(sigismember(&blocked, SIGINT) == 0);
-}
-
 TEST_CASE("threads: tasks may have tasks of their own, on many threads of the caller's") {
   std::array<std::atomic<int>, 3> done{};
   std::vector<std::jthread> callers;
@@ -143,46 +110,7 @@ TEST_CASE("threads: tasks may have tasks of their own, on many threads of the ca
   for (const std::atomic<int>& count : done) CHECK(count == 35);
 }
 
-namespace {
-
-/// Number of others that worked for a call that had ended, by some `late`, when the first of them
-/// returned whether there is more.
-int called_late(int most, std::chrono::milliseconds late) {
-  const auto main = std::this_thread::get_id();
-  std::atomic<bool> begun = false, over = false;
-  std::atomic<int> others = 0;
-  const auto wait_for = [](const std::atomic<bool>& subject) {
-    for (int i = 0; i < 10000 && !subject; ++i)
-      std::this_thread::sleep_for(std::chrono::milliseconds(1));
-  };
-  detail::work_together(
-      most,
-      [&] {
-        if (std::this_thread::get_id() != main)
-          ++others;
-        else
-          wait_for(begun), over = true;
-      },
-      [&] {
-        if (std::this_thread::get_id() == main) return true;
-        begun = true;
-        wait_for(over);
-        std::this_thread::sleep_for(late);
-        return true;
-      });
-  return others;
-}
-
-}  // namespace
-
-TEST_CASE("threads: whoever comes when a call has ended calls nobody else") {
-  using std::chrono::milliseconds;
-  for (const int most : {2, 5})  // a caller that is delayed itself may take longer to end
-    CHECK((called_late(most, milliseconds(20)) == 1 || called_late(most, milliseconds(200)) == 1 ||
-           called_late(most, milliseconds(2000)) == 1));
-}
-
-TEST_CASE("threads: a child process has none and does all by itself") {
+TEST_CASE("threads: a child process starts threads of its own") {
   std::atomic<int> done = 0;
   const auto run = [&] {
     done = 0;
@@ -193,11 +121,8 @@ TEST_CASE("threads: a child process has none and does all by itself") {
   REQUIRE(child >= 0);
   if (child == 0) {
     alarm(30);  // it must not wait for ever
-    bool calls = false;
-    detail::work_together(
-        2, [] {}, [&] { return calls = true; });
     run();
-    _exit(done == 40 && !calls ? 0 : 1);
+    _exit(done == 40 ? 0 : 1);
   }
   int status = -1;
   CHECK(waitpid(child, &status, 0) == child);
