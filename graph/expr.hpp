@@ -13,7 +13,9 @@ namespace titop {
 /// and frames are checked by the compiler, all together, where both sides can be shown.
 ///
 ///  - `-x`, `T_ba * x` and a part of x keep the quantity of x (T_ba also changes the frame);
-///  - `3.0 * x`, `k * x`, `x / 2.0`, `M * x` give a plain signal: gains carry units.
+///  - `3.0 * x`, `k * x`, `x / 2.0`, `M * x` give a plain signal: gains carry units. Parameters p
+///    and q multiply as `p * (q * x)`;
+///  - `x + 2.0`, `x * x`, `x / p` do not compile: the error says what to write.
 class Expr {
  public:
   Expr() = default;
@@ -70,6 +72,48 @@ Expr operator*(const Eigen::MatrixXd& M, const R& r) {
   return r.expr().times(Matrix{std::make_shared<const Eigen::MatrixXd>(M), nullptr});
 }
 
+// What is not linear in the signals is refused, with what to write instead.
+
+template <Readable L, detail::Constant C>
+Expr operator+(const L& l, const C&) {
+  static_assert(detail::never<C>,
+                "titop: a number or parameter cannot be added to a signal. "
+                "Declare the constant as an input, auto c = d.input(\"c\"), and add c.");
+  return l.expr();
+}
+template <detail::Constant C, Readable R>
+Expr operator+(const C& c, const R& r) {
+  return r + c;
+}
+template <Readable L, detail::Constant C>
+Expr operator-(const L& l, const C&) {
+  static_assert(detail::never<C>,
+                "titop: a number or parameter cannot be subtracted from a signal. "
+                "Declare the constant as an input, auto c = d.input(\"c\"), and subtract c.");
+  return l.expr();
+}
+template <detail::Constant C, Readable R>
+Expr operator-(const C&, const R& r) {
+  static_assert(detail::never<C>,
+                "titop: a signal cannot be subtracted from a number or parameter. For 0 - x write "
+                "-x; else declare the constant as an input, auto c = d.input(\"c\").");
+  return r.expr();
+}
+template <Readable L, Readable R>
+Expr operator*(const L& l, const R&) {
+  static_assert(detail::never<L>,
+                "titop: a product of two signals is not linear. "
+                "Write a number, a parameter, a Rotation or a matrix times one signal.");
+  return l.expr();
+}
+template <Readable L, detail::Parametric P>
+Expr operator/(const L& l, const P&) {
+  static_assert(detail::never<P>,
+                "titop: a signal cannot be divided by a parameter p. "
+                "Declare the reciprocal, r = d.param(\"r\", 1 / number), and write r * x.");
+  return l.expr();
+}
+
 /// The literal 0, and nothing else: `= 0` compiles; `= 0.0`, `= false` and `= 3` do not.
 struct Zero {
   std::source_location where;
@@ -87,6 +131,13 @@ class Rhs {
   Rhs(const T& expression, std::source_location at = std::source_location::current())
       : expression_(expression.expr()), where_(at) {}
   Rhs(Zero zero) : where_(zero.where) {}
+  template <detail::Constant C>
+    requires(!std::same_as<C, int>)  // the literal 0 is a Zero
+  Rhs(const C&) {
+    static_assert(detail::never<C>,
+                  "titop: only the literal 0 may stand alone on the right of an equation. "
+                  "Declare another constant as an input, auto c = d.input(\"c\").");
+  }
 
   const Expr& expr() const { return expression_; }
   const std::source_location& where() const { return where_; }

@@ -42,9 +42,6 @@ class SignalRef {
   titop::Part part_;
 };
 
-template <class>
-constexpr bool never = false;
-
 /// Makes a handle's name mean another node (`auto tip = z1; tip = z2;`). Ports cannot be assigned
 /// one by one: `=` on a port writes an equation.
 template <class Handle>

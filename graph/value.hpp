@@ -1,7 +1,9 @@
 #pragma once
 
+#include <concepts>
 #include <span>
 #include <string>
+#include <type_traits>
 
 namespace titop {
 
@@ -38,7 +40,18 @@ class Value {
   int index() const { return index_; }
   const void* owner() const { return owner_; }
 
+  friend Value operator*(double scale, Value v) { return v.times(scale); }
+  friend Value operator*(Value v, double scale) { return v.times(scale); }
+  friend Value operator/(Value v, double divisor) { return v.times(1 / divisor); }
+  friend Value operator-(Value v) { return v.times(-1); }
+
  private:
+  Value times(double scale) const {
+    Value v = *this;
+    (is_parameter() ? v.scale_ : v.number_) *= scale;
+    return v;
+  }
+
   double number_ = 0;
   double scale_ = 1;
   int index_ = -1;
@@ -49,5 +62,60 @@ inline Value operator-(const Param& p) { return {-1, p}; }
 inline Value operator*(double scale, const Param& p) { return {scale, p}; }
 inline Value operator*(const Param& p, double scale) { return {scale, p}; }
 inline Value operator/(const Param& p, double divisor) { return {1 / divisor, p}; }
+
+namespace detail {
+
+template <class>
+constexpr bool never = false;
+
+/// A parameter, or a multiple of one.
+template <class T>
+concept Parametric = std::same_as<T, Param> || std::same_as<T, Value>;
+
+/// Whatever is constant in an equation: a number or a parameter.
+template <class T>
+concept Constant = std::is_arithmetic_v<T> || Parametric<T>;
+
+/// Two constants whose product, sum or quotient would be a function of parameters.
+template <class L, class R>
+concept ConstantsWithParameter = Constant<L> && Constant<R> && (Parametric<L> || Parametric<R>);
+
+}  // namespace detail
+
+// A `Value` is a number, or a number times one parameter: other functions of parameters are
+// refused, with what to write instead.
+
+template <detail::Parametric L, detail::Parametric R>
+Value operator*(const L&, const R&) {
+  static_assert(detail::never<L>,
+                "titop: a product of two parameters p, q is not a parameter. "
+                "For a signal x write p * (q * x); for a block declare d.param(\"pq\", number).");
+  return {};
+}
+template <class L, class R>
+  requires detail::ConstantsWithParameter<L, R>
+Value operator+(const L&, const R&) {
+  static_assert(
+      detail::never<L>,
+      "titop: a sum with a parameter p is not a parameter. "
+      "For a signal x write p * x + q * x; for a block declare d.param(\"sum\", number).");
+  return {};
+}
+template <class L, class R>
+  requires detail::ConstantsWithParameter<L, R>
+Value operator-(const L&, const R&) {
+  static_assert(
+      detail::never<L>,
+      "titop: a difference with a parameter p is not a parameter. "
+      "For a signal x write p * x - q * x; for a block declare d.param(\"diff\", number).");
+  return {};
+}
+template <detail::Constant L, detail::Parametric R>
+Value operator/(const L&, const R&) {
+  static_assert(detail::never<L>,
+                "titop: a quotient by a parameter p is not a parameter. "
+                "Declare the reciprocal, r = d.param(\"r\", 1 / number), and multiply by r.");
+  return {};
+}
 
 }  // namespace titop

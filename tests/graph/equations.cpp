@@ -45,6 +45,16 @@ TEST_CASE("a second `=` on a port is an error, with both lines") {
   CHECK(says(e, Code::two_equations, {"z.child.force", first, second, "+="}));
 }
 
+TEST_CASE("a multiple of a parameter is multiplied, divided and negated like a number") {
+  Diagram d{"multiples"};
+  const Param p = d.param("p", 4);
+  const Value v = -(2 * p) * 3 / 8.0;
+  const std::vector<double> five{5};
+  CHECK((v.is_parameter() && v.scale() == -0.75 && v.nominal() == -3 && v.at(five) == -3.75));
+  CHECK((-Value(2) * 3 / 4.0).nominal() == -1.5);
+  CHECK((0.5 * Value(p)).at(five) == 2.5);
+}
+
 TEST_CASE("`+=` adds to a force, before or after `=`, and `-=` takes away") {
   const auto scene = [](int way) {
     Diagram d{"sums"};

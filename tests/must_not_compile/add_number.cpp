@@ -1,5 +1,6 @@
 #include <titop/blocks/spring_mass.hpp>
 
+// expect: a number or parameter cannot be added to a signal
 // A number cannot be added to a signal: other constants than 0 need an input.
 void scene() {
   using namespace titop;

@@ -1,5 +1,6 @@
 #include <titop/blocks/spring_mass.hpp>
 
+// expect: only the literal 0 may stand alone on the right of an equation
 // Only the literal 0 may be written; 0.0 is a number like any other.
 void scene() {
   using namespace titop;

@@ -1,0 +1,13 @@
+#include <titop/blocks/spring_mass.hpp>
+
+// expect: a sum with a parameter p is not a parameter
+void scene() {
+  using namespace titop;
+  Diagram d{"scene"};
+  [[maybe_unused]] const Param p = d.param("p", 2);
+  auto z = d.add("z", SpringMass{});
+  z.child.force = p * z.stretch + z.stretch;
+#ifdef MUST_NOT_COMPILE
+  z.parent.force = (p + 1.0) * z.stretch;
+#endif
+}

@@ -1,0 +1,13 @@
+#include <titop/blocks/spring_mass.hpp>
+
+// expect: a number or parameter cannot be subtracted from a signal
+void scene() {
+  using namespace titop;
+  Diagram d{"scene"};
+  [[maybe_unused]] const Param p = d.param("p", 2);
+  auto z = d.add("z", SpringMass{});
+  z.child.force = z.stretch - z.stretch;
+#ifdef MUST_NOT_COMPILE
+  z.parent.force = z.stretch - p;
+#endif
+}
