@@ -103,18 +103,6 @@ Components components(const Graph& g, const Arrows& needs) {
   return result;
 }
 
-/// Notes inputs that are not read: a line may have been forgotten.
-void note_unread(Stage& stage, const Arrows& readers) {
-  const Graph& g = stage.graph;
-  std::vector<char> shown(g.signals.size(), 0);
-  for (const Output& o : g.outputs)
-    for (const Term& t : o.terms) shown[at(t.signal)] = 1;
-  for (const Input& input : g.inputs)
-    if (readers.from(input.signal).empty() && !shown[at(input.signal)])
-      stage.notes.push_back(
-          {Note::Kind::info, "order", fmt::format("input {}: nothing reads it", input.name)});
-}
-
 /// Keeps signals that an input (or, without inputs, any state) moves, and that an output (or any
 /// state) sees; sets the others aside. Exception: loops that are seen are kept, since a loop
 /// without input is at rest only if it has one solution.
@@ -133,7 +121,6 @@ void set_aside(Stage& stage, const Arrows& needs, const Components& parts) {
   if (g.inputs.empty()) sources.insert(sources.end(), states.begin(), states.end());
   if (g.outputs.empty()) sinks.insert(sinks.end(), states.begin(), states.end());
   const Arrows readers = needs.reversed();
-  note_unread(stage, readers);
   const std::vector<char> moved = reach(readers, sources), seen = reach(needs, sinks);
   for (int s = 0; s < static_cast<int>(g.signals.size()); ++s) {
     Signal& sig = g.signals[at(s)];

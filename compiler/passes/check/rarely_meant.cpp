@@ -93,6 +93,24 @@ void note_no_outputs(Checker& c) {
                      "size 6, d.output(\"a\", 6) = ..."});
 }
 
+/// An input that is not read: a line may have been forgotten.
+void note_unread_inputs(Checker& c) {
+  const Graph& g = c.graph;
+  std::vector<char> read(g.signals.size(), 0);
+  const auto mark = [&](const std::vector<Term>& terms) {
+    for (const Term& t : terms) read[at(t.signal)] = 1;
+  };
+  for (const Equation& e : g.equations) mark(e.terms);
+  for (const Output& o : g.outputs) mark(o.terms);
+  for (const Input& input : g.inputs)
+    if (!read[at(input.signal)])
+      c.notes.push_back(
+          {Note::Kind::warning, "check",
+           fmt::format("no equation and no output reads the input {} ({}): write it on the right "
+                       "of one, or remove it",
+                       input.name, written(g.inputs, "inputs", input).text())});
+}
+
 /// Angles by more than a turn are degrees: one note for each of them.
 void note_degrees(Checker& c, ParameterValues values) {
   constexpr double kTurn = 2 * std::numbers::pi * (1 + 1e-9);  // a whole turn may be rounded up
@@ -124,6 +142,7 @@ void note_degrees(Checker& c, ParameterValues values) {
 void note_rarely_meant(Checker& c, ParameterValues values) {
   note_negative_springs(c, values);
   note_no_outputs(c);
+  note_unread_inputs(c);
   note_degrees(c, values);
 }
 
