@@ -55,6 +55,27 @@ TEST_CASE("a multiple of a parameter is multiplied, divided and negated like a n
   CHECK((0.5 * Value(p)).at(five) == 2.5);
 }
 
+TEST_CASE(
+    "an acceleration driven twice: a second point closes a chain, by weld as the error says") {
+  Diagram d{"held twice"};
+  auto base = d.add("base", RigidBody{.children = {{"C1"}, {"C2", {1, 0, 0}}}});
+  ground(base);
+  const Vector3d z(0, 0, 1);
+  auto bar = d.add("bar", RigidBody{.mass = 2, .children = {{"C", {1, 0, 0}}}});
+  auto end = d.add("end", Hinge{z});
+  mount(bar, base.child("C1"));
+  mount(end, bar.child);
+  const auto first = next_line();
+  weld(end.child, base.child("C2"));
+  const auto second = next_line();
+  weld(end.child, base.child("C1"));
+  end.torque = 0;
+  const Error e = compile_error(d);
+  CHECK(e.mistakes().size() == 1);
+  CHECK(says(e, Code::two_equations, {first, second, "weld(point, end.child)"}));
+  CHECK_FALSE(has_mistake(e, Code::two_equations, {"+="}));
+}
+
 TEST_CASE("`+=` adds to a force, before or after `=`, and `-=` takes away") {
   const auto scene = [](int way) {
     Diagram d{"sums"};
@@ -295,7 +316,9 @@ TEST_CASE("source lines are the user's, also through mount, ground, release and 
   h.torque = 0;
   h.torque = 0;
   const Error e = compile_error(d);
-  CHECK(says(e, Code::two_equations, {"b2.parent.accel", at_mount, at_port}));
+  CHECK(says(e, Code::two_equations,
+             {"b2.parent.accel", at_mount, at_port, "weld(b2.child(\"C\"), site)"}));
+  CHECK_FALSE(has_mistake(e, Code::two_equations, {"b2.parent.accel", "+="}));
   CHECK(says(e, Code::two_equations, {"b1.parent.accel", at_ground}));
   CHECK(says(e, Code::two_equations, {"h.torque", at_force}));
   for (const Equation& q : d.graph().equations)

@@ -52,6 +52,21 @@ std::string free_way_out(const Graph& graph, const Channel& channel) {
                    accel, accel, force);
 }
 
+/// Forces add up at a point; motions do not: a second one closes a chain.
+std::string twice_way_out(const Graph& g, const Channel& channel, int target) {
+  if (target != channel.accel) return "keep one of them; to add a force write += instead of =";
+  const std::string name = channel_name(g, static_cast<int>(&channel - g.channels.data()));
+  if (channel.takes == Takes::force)
+    return fmt::format(
+        "keep one of them, an acceleration is not summed; to join a second point here (closed "
+        "chain), write weld(point, {}), which drives the other point",
+        name);
+  return fmt::format(
+      "keep one of them, an acceleration is not summed; to hold {0} at a second body too (closed "
+      "chain), give {0} a child point there and write weld({0}.child(\"C\"), site)",
+      g.nodes[at(channel.node)].name);
+}
+
 void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
   const Graph& g = c.graph;
   const int index = static_cast<int>(&channel - g.channels.data());
@@ -80,7 +95,7 @@ void check_channel(Checker& c, const Channel& channel, const Drive& drive) {
                  : fmt::format("{} is driven on both sides, acceleration and force",
                                channel_name(g, index)),
             {line(print(g, b), written(g, b)), line(print(g, a), written(g, a))},
-            same ? "keep one of them; to add a force write += instead of ="
+            same ? twice_way_out(g, channel, a.target)
                  : "keep one of them; the other side can be read");
     }
   }
