@@ -36,7 +36,7 @@ void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, S
            const Rotation& T_ba, const std::source_location& at, double sign) {
   const std::string a = frame_of(child_accel), b = frame_of(site_accel);
   const bool scalar = a.empty() || b.empty();  // no axes to rotate, or one axis of a frame
-  const Rotation T = T_ba.to().empty() && T_ba.from().empty() ? T_ba.named(b, a) : T_ba;
+  const Rotation T = T_ba.nameless() ? T_ba.named(b, a) : T_ba;
   const Expr motion = scalar ? site_accel.expr() : T.inverse() * site_accel;
   const Expr wrench = scalar ? child_force.expr() : T * child_force;
   SettableSignal(child_accel).set(Rhs(motion, at), /*accumulate=*/false, 1);
@@ -47,21 +47,24 @@ void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, S
 
 Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::string& joint,
                   const std::source_location& at) {
-  if (T_ba.to().empty() && T_ba.from().empty()) return T_ba;
+  if (T_ba.nameless()) return T_ba;
   const std::string body = frame_of(body_accel);
   const auto is_it = [&](const Node& node) { return node.name == T_ba.from(); };
   Graph* graph = body_accel.graph();
   // A name that no block has is no frame's: nothing to compare, as in other equations.
-  if (graph && !T_ba.from().empty() && T_ba.from() != body && T_ba.from() != joint &&
-      std::any_of(graph->nodes.begin(), graph->nodes.end(), is_it))
-    graph->mistakes.push_back(
-        {Code::frame,
-         fmt::format("{} takes a rotation from {} to {}, but carries {}", joint, T_ba.from(),
-                     T_ba.to().empty() ? "a frame without a name" : T_ba.to(),
-                     body.empty() ? "without a frame" : body),
-         {"written at " + to_string(at)},
-         "give the rotation of the mounted body, or a rotation without names"});
-  return T_ba.named(T_ba.to(), joint);
+  const bool fits = !graph || T_ba.from().empty() || T_ba.from() == body || T_ba.from() == joint ||
+                    !std::any_of(graph->nodes.begin(), graph->nodes.end(), is_it);
+  if (fits) return T_ba.named(T_ba.to(), joint);
+  graph->mistakes.push_back(
+      {Code::frame,
+       fmt::format("{} takes a rotation from {} to {}, but carries {}", joint, T_ba.from(),
+                   T_ba.to().empty() ? "a frame without a name" : T_ba.to(),
+                   body.empty() ? "without a frame" : body),
+       {"written at " + to_string(at)},
+       !body.empty() && T_ba.to() == body
+           ? fmt::format("exchange its two names: named(\"{}\", \"{}\")", T_ba.from(), body)
+           : "give the rotation of the mounted body, or a rotation without names"});
+  return T_ba.named({}, {});  // its names have been told
 }
 
 void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location& at) {

@@ -36,6 +36,8 @@ class Rotation {
 
   /// The same with frame names: `T.named("B", "A1")` takes components in A1 to components in B.
   Rotation named(std::string to, std::string from) const;
+  /// True if no frame is named.
+  bool nameless() const { return to().empty() && from().empty(); }
 
   /// T_ab from T_ba.
   Rotation inverse() const;

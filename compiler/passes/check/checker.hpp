@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <titop/compiler/passes/passes.hpp>
 #include <unordered_map>
 
@@ -36,6 +37,7 @@ struct Checker {
   std::vector<Mistake> mistakes;
   std::vector<Note> notes;
   std::unordered_map<std::string_view, int> node_index = {};
+  std::set<std::string> reversed = {};  ///< rotations used in the wrong direction, by their lines
 
   explicit Checker(const Graph& g) : graph(g), mistakes(g.mistakes) {}
 

@@ -36,6 +36,28 @@ bool same_frame(const Checker& c, int a, int b) {
   return a == b || c.graph.nodes[at(a)].name == c.graph.nodes[at(b)].name;
 }
 
+/// The rotation does not fit the frame that it meets: told once per line, as `mount` uses T_ba in
+/// both directions.
+void refuse_rotation(Checker& c, const Rotation& T, int frame, const Term& term,
+                     const Written& where) {
+  const std::string place = line(print(c.graph, term), where);
+  const std::string met = frame_name(c.graph, frame);
+  if (const int to = c.find_node(T.to()); to < 0 || !same_frame(c, to, frame))
+    return c.add(Code::frame,
+                 fmt::format("the rotation {}<-{} meets a signal in {}", T.to(), T.from(), met),
+                 {place}, "use its inverse(), or name the frames that it really has");
+  const auto [first, second] = std::minmax(T.to(), T.from());
+  if (!c.reversed.insert(fmt::format("{}\n{}\n{}", where.text(), first, second)).second) return;
+  c.add(Code::frame,
+        fmt::format("the rotation between {0} and {1} is used in the wrong direction: as {0}<-{1} "
+                    "it meets a signal in {2}",
+                    T.to(), T.from(), met),
+        {place},
+        fmt::format("exchange its two names, or use its inverse(): named(\"{0}\", \"{1}\") takes "
+                    "components in {1} to components in {0}",
+                    T.to(), T.from()));
+}
+
 /// One factor of a term; false if the term makes no sense from here on.
 bool apply(Checker& c, TermType& kind, const Factor& factor, const Term& term,
            const Written& where) {
@@ -75,13 +97,9 @@ bool apply(Checker& c, TermType& kind, const Factor& factor, const Term& term,
       return false;
     }
     const int from = c.find_node(T.from()), to = c.find_node(T.to());
-    if (kind.frame >= 0 && from >= 0 && !same_frame(c, from, kind.frame)) {
-      c.add(Code::frame,
-            fmt::format("the rotation {}<-{} meets a signal in {}", T.to(), T.from(),
-                        frame_name(c.graph, kind.frame)),
-            {place()}, "use its inverse(), or name the frames that it really has");
-    }
-    kind.frame = to >= 0 ? to : kUnknownFrame;
+    const bool fits = kind.frame < 0 || from < 0 || same_frame(c, from, kind.frame);
+    if (!fits) refuse_rotation(c, T, kind.frame, term, where);
+    kind.frame = !fits ? kNoFrame : to >= 0 ? to : kUnknownFrame;
   }
   return true;
 }
