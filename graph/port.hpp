@@ -151,7 +151,8 @@ class InputRef : public detail::SignalRef {
 
 /// A two-way port: acceleration and wrench at one point, in its body's frame.
 ///  - child channel: `force` is the wrench applied BY the child ON the body at C;
-///  - parent channel: `force` is the wrench applied BY the body ON its parent at P.
+///  - parent channel: `force` is the wrench applied BY the body ON its parent at P. An external
+///    wrench U on the body is therefore `parent.force = -U`; the compile log notes `= U`.
 /// Exactly one of the two is driven, per degree of freedom; the other one can be read.
 template <int N>
 class DualPort {

@@ -5,9 +5,10 @@
 #include <titop/titop.hpp>
 
 #include "support/names.hpp"
+#include "support/notes.hpp"
 
 /// Legal input that is rarely intended leads to a warning: springs of the wrong sign, inputs
-/// without outputs, degrees for radians.
+/// without outputs, degrees for radians. The sign of an input on a parent is noted.
 
 using namespace titop;
 using titop_test::has_name;
@@ -107,6 +108,34 @@ TEST_CASE("on six degrees of freedom the axes that are driven count, one by one"
           hub.parent.force.angular.along({1, 1, 0}) +=
               3.0 * hub.parent.position.angular().along({1, -1, 0});
         }).empty());
+}
+
+TEST_CASE("an input on a parent's force is noted with its sign on the body, and the other sign") {
+  const auto signs = [](auto drive) {
+    Diagram d{"signs"};
+    auto hub = d.add("hub", RigidBody{.mass = 40, .children = {{"C"}}});
+    drive(hub, d.input("U", 6));
+    d.output("a", 6) = hub.parent.accel;
+    const System system = compile(d);
+    return titop_test::count_notes(system, Note::Kind::info, "check",
+                                   {"hub", "U", "-U", "passes/rarely_meant.cpp"});
+  };
+  CHECK(signs([](auto& hub, auto U) { hub.parent.force = U; }) == 1);
+  CHECK(signs([](auto& hub, auto U) { hub.parent.force = Rotation() * U; }) == 1);
+  CHECK(signs([](auto& hub, auto U) {
+          release(hub);
+          hub.parent.force += U;
+        }) == 1);
+  CHECK(signs([](auto& hub, auto U) { hub.parent.force = -U; }) == 0);
+  CHECK(signs([](auto& hub, auto U) { hub.parent.force = -1.0 * U; }) == 0);
+  CHECK(signs([](auto& hub, auto U) {
+          release(hub);
+          hub.parent.force -= U;
+        }) == 0);
+  CHECK(signs([](auto& hub, auto U) {  // on the body at C
+          release(hub);
+          hub.child.force = U;
+        }) == 0);
 }
 
 TEST_CASE("inputs and no output: the log says how to write one") {

@@ -72,8 +72,8 @@ void check_outputs(Checker& c);
 void check_drives(Checker& c);
 
 /// Warnings of legal input that is rarely intended (rarely_meant.cpp): springs and dampers of wrong
-/// sign, inputs without outputs, inputs that nothing reads, rotations by more than a turn. For a
-/// diagram without mistakes.
+/// sign, inputs without outputs, inputs that nothing reads. Notes inputs on a parent's force with
+/// the sign +. For a diagram without mistakes.
 void note_rarely_meant(Checker& c, ParameterValues values);
 
 /// Child points that the modes of their body leave rigid in some directions, with another body

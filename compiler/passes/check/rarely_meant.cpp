@@ -86,6 +86,35 @@ void note_negative_springs(Checker& c, ParameterValues values) {
   }
 }
 
+/// True if the term is an input as it is, at most rotated, with the sign +.
+bool is_plain_input(const Graph& g, const Term& t) {
+  return g.signals[at(t.signal)].role == Signal::Role::external && t.sign > 0 &&
+         std::none_of(t.factors.begin(), t.factors.end(), [](const Factor& f) {
+           return std::holds_alternative<Value>(f) || std::holds_alternative<Matrix>(f);
+         });
+}
+
+/// A parent's force is the wrench on the parent: an input on the body has the sign -.
+void note_signs_of_inputs(Checker& c) {
+  const Graph& g = c.graph;
+  for (const Equation& e : g.equations) {
+    const Signal& target = g.signals[at(e.target)];
+    if (target.channel < 0 || target.quantity != Quantity::force) continue;
+    const Node& node = g.nodes[at(target.node)];
+    if (node.block->interface().channels[at(target.spec)].name != "parent") continue;
+    for (const Term& t : e.terms) {
+      if (!is_plain_input(g, t)) continue;
+      const std::string port = name_of(g, e.target) + e.part.name(), input = print(g, t);
+      c.notes.push_back(
+          {Note::Kind::info, "check",
+           fmt::format("{} is the wrench that {} exerts on its parent: in {} the input acts on {} "
+                       "as -{}; for {} on {} write {} {} -{} ({})",
+                       port, node.name, print(g, e), node.name, input, input, node.name, port,
+                       e.accumulate ? "+=" : "=", input, written(g, e).text())});
+    }
+  }
+}
+
 void note_no_outputs(Checker& c) {
   if (c.graph.inputs.empty() || !c.graph.outputs.empty()) return;
   c.notes.push_back({Note::Kind::warning, "check",
@@ -141,6 +170,7 @@ void note_degrees(Checker& c, ParameterValues values) {
 
 void note_rarely_meant(Checker& c, ParameterValues values) {
   note_negative_springs(c, values);
+  note_signs_of_inputs(c);
   note_no_outputs(c);
   note_unread_inputs(c);
   note_degrees(c, values);
