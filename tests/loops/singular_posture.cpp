@@ -96,3 +96,31 @@ TEST_CASE("a door on two hinges in one line, held off that line: no warning") {
   CHECK(titop_test::noted(system, Note::Kind::info, "chains", {"5", "6"}));
   CHECK(!warns(system));
 }
+
+TEST_CASE("flexible bodies welded without a joint: the note names those without axial modes") {
+  const auto frame = [](int kept) {
+    const FlexibleBody beam = Beam{.length = 2,
+                                   .section = rectangle(0.06, 0.04),
+                                   .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
+                                   .elements = 2,
+                                   .modes = {.kept = kept}};
+    const Rotation up = Rotation::about({0, 0, 1}, std::numbers::pi / 2);
+    Diagram d{"frame"};
+    auto base = d.add("base", RigidBody{.mass = 10, .children = {{"A"}, {"B", {2, 0, 0}}}});
+    base.parent.force = -d.input("U", 6);
+    auto left = d.add("left", beam), right = d.add("right", beam), top = d.add("top", beam);
+    mount(left, base.child("A"), up);
+    mount(right, base.child("B"), up);
+    mount(top, left.child, up.inverse());
+    weld(top.child, right.child, up.inverse());
+    d.output("a", 6) = top.parent.accel;
+    return compile(d);
+  };
+  const auto names_axial = [](const System& system) {
+    return titop_test::noted(system, Note::Kind::warning, "chains", {"left", "right", "top"});
+  };
+  const System bending = frame(2);
+  CHECK(names_axial(bending));
+  CHECK_FALSE(warns(frame(12)));  // axial modes among them
+  CHECK_FALSE(names_axial(compile(diagram(parallelogram(0)))));
+}
