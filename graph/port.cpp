@@ -21,6 +21,24 @@ const Interface& face_of(const Graph& graph, int node) {
   return graph.nodes[static_cast<std::size_t>(node)].block->interface();
 }
 
+/// The identity without names, alone between two frames, is the rotation from one to the other.
+void name_identity(const Graph& g, Term& term, int target) {
+  const auto frame = [&](int s) {
+    return s < 0 ? kNoFrame : g.signals[static_cast<std::size_t>(s)].frame;
+  };
+  const int to = frame(target), from = frame(term.signal);
+  if (to < 0 || from < 0 || to == from) return;
+  Rotation* alone = nullptr;
+  for (Factor& f : term.factors) {
+    auto* T = std::get_if<Rotation>(&f);
+    if (std::holds_alternative<Matrix>(f) || (T && alone)) return;
+    if (T) alone = T;
+  }
+  if (!alone || !alone->is_identity() || !alone->nameless()) return;
+  const auto name = [&](int node) { return g.nodes[static_cast<std::size_t>(node)].name; };
+  *alone = alone->named(name(to), name(from));
+}
+
 }  // namespace
 
 Expr SignalRef::expr() const {
@@ -45,7 +63,10 @@ void SignalRef::set(const Rhs& rhs, bool accumulate, double sign) const {
                     .part = part_,
                     .terms = rhs.expr().terms(),
                     .where = rhs.where()};
-  for (Term& term : equation.terms) term.sign *= sign;
+  for (Term& term : equation.terms) {
+    term.sign *= sign;
+    name_identity(*graph_, term, signal_);
+  }
   note_foreign_parameters(*graph_, equation.terms, rhs.where());
   graph_->equations.push_back(std::move(equation));
 }

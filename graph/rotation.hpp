@@ -13,7 +13,8 @@ namespace titop {
 ///
 /// It may carry the names of the two frames (the names of their nodes); then its direction is
 /// checked wherever it is used. Without names a rotated signal is in an unknown frame, which is
-/// accepted and listed in the compile log.
+/// accepted and listed in the compile log. The identity `Rotation()` without names, alone between
+/// signals of two bodies, takes the names of their frames in that equation.
 ///
 ///     Rotation T_ba = Rotation::about({0, 0, 1}, pi / 2);
 ///     Rotation T_bc = T_ba * T_ac;            // only b<-a after a<-c, if the names are known

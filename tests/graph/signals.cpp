@@ -78,6 +78,28 @@ TEST_CASE("frames: mount, named and nameless rotations give one model; nameless 
   CHECK(G.imag().isZero(0));
 }
 
+TEST_CASE("frames: the identity between two bodies takes the names of their frames") {
+  Diagram d{"mounted"};
+  auto B = d.add("B", brick()), A = d.add("A", brick());
+  B.parent.force = -d.input("U", 6);
+  mount(A, B.child);
+  d.output("a", 6) = A.parent.accel;
+  const Diagram typed = by_hand(Rotation());
+  const System system = compile(typed);
+  CHECK(unchecked(system) == 0);
+  CHECK(matrix_error(system.transfer(kS), compile(d).transfer(kS)) <= 1e-15);
+  for (const Equation& e : typed.graph().equations)
+    for (const Factor& f : e.terms.front().factors) {
+      const auto& T = std::get<Rotation>(f);
+      const bool motion = name_of(typed.graph(), e.target) == "A.parent.accel";
+      CHECK((T.to() == (motion ? "A" : "B") && T.from() == (motion ? "B" : "A")));
+    }
+  d.output("difference", 6) = A.parent.accel - Rotation() * B.child.accel;
+  CHECK(compile(d).transfer(kS).bottomRows(6).isZero(1e-15));
+  // Names are names of frames, of the identity too.
+  CHECK(compile_error(by_hand(Rotation().named("A", "B"))).has(Code::frame));
+}
+
 TEST_CASE("frames: a named rotation the wrong way round is refused") {
   const Error e = compile_error(by_hand(kTurn.named("A", "B")));
   CHECK(e.mistakes().size() == 2);  // on two lines

@@ -90,7 +90,9 @@ bool apply(Checker& c, TermType& kind, const Factor& factor, const Term& term,
     }
     if (kind.size == 6) kind.half = half_of(*p, kind.quantity);
     kind.size = static_cast<int>(p->rows().rows());
-  } else if (const auto& T = std::get<Rotation>(factor); !T.is_identity() || !T.to().empty()) {
+  } else if (const auto& T = std::get<Rotation>(factor); T.is_identity() && T.nameless()) {
+    if (kind.frame >= 0) kind.frame = kNoFrame;  // the same axes in any frame
+  } else {
     if (kind.size != 3 && kind.size != 6 && !(T.is_identity() && kind.size == 1)) {
       c.add(Code::size, fmt::format("a rotation multiplies a signal of size {}", kind.size),
             {place()}, "rotations act on vectors of 3 and dual vectors of 6");
