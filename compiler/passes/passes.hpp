@@ -34,6 +34,9 @@ struct NumericTerm {
 bool lower_again(const Stage& stage, const std::vector<int>& origins, ParameterValues values,
                  const std::function<bool(int, std::span<const NumericTerm>)>& take);
 
+/// Warnings of angles of more than a turn at these values (angles are in radians): one for each.
+std::vector<Note> degree_notes(const std::vector<RotationAngle>& angles, ParameterValues values);
+
 /// Connected parts (ground not counted) without an output are set aside and listed; if the
 /// diagram has no outputs at all, all states count as observable. O(terms).
 Stage split(Stage stage);

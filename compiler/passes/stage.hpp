@@ -98,6 +98,12 @@ struct Dependent {
   std::vector<Share> of = {};
 };
 
+/// The angle of a rotation in an equation or output, with its place for messages.
+struct RotationAngle {
+  Value angle;
+  std::string where;
+};
+
 /// Data passed from pass to pass: the graph and the results about it so far.
 struct Stage {
   Graph graph;                           ///< after lower
@@ -107,6 +113,7 @@ struct Stage {
   std::shared_ptr<const Drives> drives;  ///< of source, if there are parameters
   std::vector<RigidMotion> motions;      ///< after lower
   std::vector<Note> notes;               ///< the log
+  std::vector<RotationAngle> angles;     ///< after check: those that `degree_notes` looks at
   std::vector<Row> rows;                 ///< after match: all rows
   Matched matched;                       ///< after match
   std::vector<Inversion> inversions;     ///< after match

@@ -134,7 +134,8 @@ class System {
   /// state_space() of the new system runs it for the new values, and may have another order
   /// (Options::minimize_up_to = 0 keeps all states at all values). Throws unknown_name (with the
   /// valid names), duplicate_name (one set twice), not_finite, the errors of blocks for invalid
-  /// values (bad_inertia, bad_value), improper and ill_posed.
+  /// values (bad_inertia, bad_value), improper and ill_posed. Angles of more than a turn are
+  /// warned of, as by `compile`.
   ///
   /// If new values change how a closed chain moves, or add or remove a term, all passes run again,
   /// with the cost and the errors of `compile`; the log reports it, and warns if other states are

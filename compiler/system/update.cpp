@@ -269,6 +269,16 @@ void refactor(const SystemData& old, const std::vector<int>& changed, SystemData
   d.plans_renewed = old.plans_renewed + (rescale || all);
 }
 
+/// The notes of angles in degrees: those of the old values are replaced.
+void renew_degree_notes(const Skeleton& k, ParameterValues before, SystemData& d) {
+  const auto& angles = k.stage.angles;
+  if (angles.empty()) return;
+  for (const Note& old : passes::degree_notes(angles, before))
+    std::erase_if(d.notes, [&](const Note& n) { return n.pass == old.pass && n.text == old.text; });
+  const std::vector<Note> now = passes::degree_notes(angles, d.numbers.parameters);
+  d.notes.insert(d.notes.end(), now.begin(), now.end());
+}
+
 }  // namespace
 }  // namespace detail
 
@@ -299,6 +309,7 @@ System System::update(const ParameterList& list) const {
   if (health.singular) return again(kNoDigit);  // it may reduce: a mass of 0
   d->notes = data_->notes;
   std::erase_if(d->notes, [](const Note& n) { return n.pass == "update" || n.pass == "digits"; });
+  renew_degree_notes(k, data_->numbers.parameters, *d);
   const std::vector<Note> digits = judge_data_digits(*d);
   d->notes.insert(d->notes.end(), digits.begin(), digits.end());
   d->notes.push_back(

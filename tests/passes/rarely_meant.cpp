@@ -169,6 +169,26 @@ TEST_CASE("a rotation by more than a turn is told once, and is that rotation all
   CHECK((Rotation::about({0, 0, 3}, 90).nominal() - T).cwiseAbs().maxCoeff() <= 1e-15);
 }
 
+TEST_CASE("update warns of degrees as compile does, and only while they last") {
+  Diagram d{"turned"};
+  const Param angle = d.param("angle", 0.5);
+  auto hub = d.add("hub", RigidBody{.mass = 40, .children = {{"C", {1, 0, 0}}}});
+  auto wing = d.add("wing", RigidBody{.mass = 3, .PA = {0.5, 0, 0}});
+  hub.parent.force = -d.input("U", 6);
+  mount(wing, hub.child, Rotation::about({0, 0, 1}, angle));
+  d.output("a", 6) = wing.parent.accel;
+  const auto degrees = [](const System& system, const char* size) {
+    return titop_test::count_notes(system, Note::Kind::warning, "check",
+                                   {size, "wing.parent.accel", "passes/rarely_meant.cpp"});
+  };
+  const System radians = compile(d), once = radians.update({{"angle", 30}}),
+               again = once.update({{"angle", -45}}), back = again.update({{"angle", 0.6}});
+  CHECK(degrees(radians, "rad") == 0);
+  CHECK(degrees(once, "30 rad") == 1);
+  CHECK((degrees(again, "45 rad") == 1 && degrees(again, "rad") == 1));
+  CHECK(degrees(back, "rad") == 0);
+}
+
 TEST_CASE("a diagram file keeps the data of the warnings") {
   Diagram d{"file"};
   auto body = d.add("body", RigidBody{.mass = 2}), other = d.add("other", RigidBody{.mass = 3});

@@ -76,6 +76,9 @@ void check_drives(Checker& c);
 /// the sign +. For a diagram without mistakes.
 void note_rarely_meant(Checker& c, ParameterValues values);
 
+/// The angles of rotations that depend on parameters, or exceed a turn (rarely_meant.cpp).
+std::vector<RotationAngle> rotation_angles(const Graph& g, ParameterValues values);
+
 /// Child points that the modes of their body leave rigid in some directions, with another body
 /// mounted there: truncated modes would bend under its loads (stiff_points.cpp).
 void note_stiff_points(Checker& c, ParameterValues values);

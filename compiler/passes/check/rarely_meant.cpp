@@ -140,40 +140,47 @@ void note_unread_inputs(Checker& c) {
                        input.name, written(g.inputs, "inputs", input).text())});
 }
 
-/// Angles by more than a turn are degrees: one note for each of them.
-void note_degrees(Checker& c, ParameterValues values) {
-  constexpr double kTurn = 2 * std::numbers::pi * (1 + 1e-9);  // a whole turn may be rounded up
-  std::map<double, std::string> seen;
+constexpr double kTurn = 2 * std::numbers::pi * (1 + 1e-9);  ///< a whole turn may be rounded up
+
+}  // namespace
+
+std::vector<RotationAngle> rotation_angles(const Graph& g, ParameterValues values) {
+  std::vector<RotationAngle> result;
   const auto look = [&](const std::vector<Term>& terms, const auto& where) {
     for (const Term& t : terms)
       for (const Factor& f : t.factors)
         if (const auto* T = std::get_if<Rotation>(&f))
           for (const Value& angle : T->values())
-            if (const double size = std::abs(angle.at(values)); size > kTurn)
-              seen.emplace(size, where());
+            if (angle.is_parameter() || std::abs(angle.at(values)) > kTurn)
+              result.push_back({angle, where()});
   };
-  for (const Equation& e : c.graph.equations)
-    look(e.terms, [&] { return name_of(c.graph, e.target) + ", " + written(c.graph, e).text(); });
-  for (const Output& o : c.graph.outputs)
+  for (const Equation& e : g.equations)
+    look(e.terms, [&] { return name_of(g, e.target) + ", " + written(g, e).text(); });
+  for (const Output& o : g.outputs)
     look(o.terms, [&] {
-      return fmt::format("output {}, {}", o.name, written(c.graph.outputs, "outputs", o).text());
+      return fmt::format("output {}, {}", o.name, written(g.outputs, "outputs", o).text());
     });
-  for (const auto& [angle, where] : seen)
-    c.notes.push_back(
-        {Note::Kind::warning, "check",
-         fmt::format("a rotation by {0:.6g} rad is more than a turn ({1}): angles are "
-                     "in radians, {0:.6g} degrees are {2:.6g} rad",
-                     angle, where, angle * std::numbers::pi / 180)});
+  return result;
 }
 
-}  // namespace
+std::vector<Note> degree_notes(const std::vector<RotationAngle>& angles, ParameterValues values) {
+  std::map<double, std::string_view> seen;
+  for (const RotationAngle& a : angles)
+    if (const double size = std::abs(a.angle.at(values)); size > kTurn) seen.emplace(size, a.where);
+  std::vector<Note> result;
+  for (const auto& [angle, where] : seen)
+    result.push_back({Note::Kind::warning, "check",
+                      fmt::format("a rotation by {0:.6g} rad is more than a turn ({1}): angles are "
+                                  "in radians, {0:.6g} degrees are {2:.6g} rad",
+                                  angle, where, angle * std::numbers::pi / 180)});
+  return result;
+}
 
 void note_rarely_meant(Checker& c, ParameterValues values) {
   note_negative_springs(c, values);
   note_signs_of_inputs(c);
   note_no_outputs(c);
   note_unread_inputs(c);
-  note_degrees(c, values);
 }
 
 }  // namespace titop::passes
