@@ -121,8 +121,88 @@ TEST_CASE("the oracle knows a body tied by its rotation to another that is pinne
   CHECK((t.H[0].real() - (VectorXd(6) << -1, 0, 0, 0, 0, 1).finished() / 3).norm() <= 1e-15);
 }
 
+namespace {
+
+/// L = 2 m, E I_z = 30, E I_y = 12, G J = 4, E A = 50, rho A = 5, rho I_x = 0.2.
+Beam plain_beam(int elements) {
+  return {.length = 2,
+          .area = 10,
+          .I_y = 2.4,
+          .I_z = 6,
+          .J = 2,
+          .I_x = 0.4,
+          .E = 5,
+          .rho = 0.5,
+          .G = 2,
+          .elements = elements,
+          .residual = {},
+          .xi = {},
+          .sites = {elements}};
+}
+
+Scene on_the_ground(const Beam& beam) {
+  Scene s;
+  Node n;
+  n.beam = beam;
+  n.sites.resize(beam.sites.size());
+  s.nodes = {n};
+  s.ties = {{.a = {0, -1}, .b = {}}};
+  s.inputs = {6};
+  s.loads = {{{0, 0}, 0, {{{.measured = Measured::input}, MatrixXd::Identity(6, 6)}}}};
+  s.outputs = {{.measured = Measured::position, .at = {0, 0}},
+               {.measured = Measured::reaction, .at = {0, -1}}};
+  return s;
+}
+
+}  // namespace
+
+TEST_CASE("the oracle knows the statics of a cantilever, from either end") {
+  for (const int elements : {1, 3})
+    for (const bool from_tip : {false, true}) {
+      Beam b = plain_beam(elements);
+      if (from_tip) b.parent = elements, b.sites = {0};
+      const double sign = from_tip ? -1 : 1, L = 2;
+      MatrixXd right = MatrixXd::Zero(6, 6);
+      right.diagonal() << L / 50, L * L * L / (3 * 30), L * L * L / (3 * 12), L / 4, L / 12, L / 30;
+      right(1, 5) = right(5, 1) = sign * L * L / (2 * 30);
+      right(2, 4) = right(4, 2) = -sign * L * L / (2 * 12);
+      const MatrixXd got = truth(on_the_ground(b), {1e-12}).H[0].real();
+      CHECK((got.topRows(6) - right).norm() <= 1e-13);
+      MatrixXd carried = MatrixXd::Identity(6, 6);  // the load and its moment about the root
+      carried(5, 1) = sign * L, carried(4, 2) = -sign * L;
+      CHECK((got.bottomRows(6) - carried).norm() <= 1e-13);
+    }
+}
+
+TEST_CASE("the oracle knows the first frequencies and the rigid mass of a beam") {
+  const auto pole = [](int component, double right) {
+    // Of the tip's response, 1 / (lambda - w^2) times a constant plus other modes.
+    const double w = right * (1 - 1e-5);
+    const Scene s = on_the_ground(plain_beam(component == 1 || component == 2 ? 12 : 60));
+    const auto at_w = [&](double x) {
+      return truth(s, {Complex(0, x)}).H[0](component, component);
+    };
+    return at_w(w).real() > 0 && at_w(right * (1 + 1e-3)).real() < 0;
+  };
+  const double root = 1.875104068711961 * 1.875104068711961 / 4;
+  CHECK(pole(1, root * std::sqrt(30.0 / 5)));
+  CHECK(pole(2, root * std::sqrt(12.0 / 5)));
+  CHECK(pole(0, std::acos(-1) / 4 * std::sqrt(50.0 / 5)));
+  CHECK(pole(3, std::acos(-1) / 4 * std::sqrt(4 / 0.2)));
+  Scene s = on_the_ground(plain_beam(2));
+  s.ties[0].input = 0;
+  s.loads.clear();
+  const MatrixXd carried = truth(s, {1e-12}).H[0].real().bottomRows(6);
+  // 10 kg at 1 m: reaction of accelerations, and rho A L^3 / 3 about the root.
+  MatrixXd rigid = MatrixXd::Zero(6, 6);
+  rigid.diagonal() << 10, 10, 10, 0.4, 40.0 / 3, 40.0 / 3;
+  rigid(1, 5) = rigid(5, 1) = 10, rigid(2, 4) = rigid(4, 2) = -10;
+  CHECK((carried + rigid).norm() <= 1e-13);
+}
+
 TEST_CASE("64 bits of mantissa and 50 digits agree on all families") {
-  const auto families = {draw_row, draw_tree, draw_loop, draw_half_ties, draw_controller};
+  const auto families = {draw_row,       draw_tree,       draw_loop,
+                         draw_half_ties, draw_controller, draw_beams};
   int compared = 0;
   for (const auto draw : families)
     for (std::uint64_t seed = 0; compared < 1000 && seed < 12; ++seed) {

@@ -71,6 +71,8 @@ Node Draft::body() {
 }
 
 Point Draft::site(int node) {
+  if (const auto& b = scene.nodes[at(node)].beam)
+    return {node, rng.below(static_cast<int>(b->sites.size()))};
   return site_at(node, p_[at(node)] + R_[at(node)] * Vector3d(rng.matrix(3, 1)));
 }
 
@@ -157,11 +159,12 @@ void Draft::base(int node) {
   scene.ties.push_back(t);
 }
 
-void Draft::tree(int bodies) {
+void Draft::tree(int bodies, double beams) {
   std::vector<int> list;
+  const auto one = [&] { return beams > 0 && rng.chance(beams) ? beam() : body(); };
   for (int i = 0; i < bodies; ++i) {
     if (i == 0) {
-      list.push_back(add(body(), rotation()));
+      list.push_back(add(one(), rotation()));
       base(list.back());
       continue;
     }
@@ -171,9 +174,9 @@ void Draft::tree(int bodies) {
       const int j = joint(b, some_axes());
       for (int k = 0; k < static_cast<int>(scene.nodes[at(j)].axes.size()); ++k) mechanism(j, k);
       b = {j, 0};
-      list.push_back(add(body(), frame(j), place(b)));
+      list.push_back(add(one(), frame(j), place(b)));
     } else {
-      list.push_back(add(body(), frame(on) * rotation(), place(b)));
+      list.push_back(add(one(), frame(on) * rotation(), place(b)));
     }
     mount({list.back(), -1}, b);
   }

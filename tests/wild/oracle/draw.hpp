@@ -14,6 +14,7 @@ Scene draw_tree(Rng& rng);        ///< bodies with and without modes, joints
 Scene draw_loop(Rng& rng);        ///< the same, closed
 Scene draw_half_ties(Rng& rng);   ///< bodies tied along some axes only, at one to three places
 Scene draw_controller(Rng& rng);  ///< Lti blocks of 3 to 12 states, alone and around mechanics
+Scene draw_beams(Rng& rng);       ///< trees of bodies and finite-element beams, some closed
 
 /// A scene in the making, with the pose of every node.
 class Draft {
@@ -31,7 +32,9 @@ class Draft {
   Matrix3d rotation();
   /// A body, rigid or with modes, hanging nowhere yet.
   Node body();
-  /// A new site of a body at a place of its own, or at a given global one.
+  /// A beam of 1 to 4 elements, all or some of its modes.
+  Node beam();
+  /// A new site of a body (one that a beam has) at a place of its own, or at a given global one.
   Point site(int node);
   Point site_at(int node, const Vector3d& global);
   Vector3d place(const Point& point) const;
@@ -45,7 +48,8 @@ class Draft {
   int input(int size);
   void load(const Point& at);
   void base(int node);
-  void tree(int bodies);
+  /// `beams`: share of its bodies.
+  void tree(int bodies, double beams = 0);
   void outputs(int count);
   Reading any_motion();
   Node controller(int states, int ins, int outs);

@@ -74,6 +74,9 @@ void Equations::place() {
     z_.push_back(n_);
     if (n.kind == Node::Kind::mass) size_.back() = 2;
     if (n.kind == Node::Kind::body) size_.back() = 6 + n.omega.size();
+    beams_.push_back(n.beam ? beam_model(*n.beam) : BeamModel{});
+    if (n.beam) size_.back() = beams_.back().M.rows();
+    if (n.beam && !beams_.back().none.empty()) none = beams_.back().none;
     if (n.kind == Node::Kind::joint) size_.back() = 6 + static_cast<Index>(n.axes.size());
     n_ += size_.back();
     if (n.kind == Node::Kind::joint) {
@@ -107,7 +110,14 @@ void Equations::node(int i) {
     pair(P[0], n.k);
     pair(P[1], n.c);
   }
-  if (n.kind == Node::Kind::body) body(n, x);
+  if (n.beam) {
+    const BeamModel& b = beams_[at(i)];
+    P[2].block(x, x, b.M.rows(), b.M.cols()) = b.M;
+    P[1].block(x, x, b.M.rows(), b.M.cols()) = b.D;
+    P[0].block(x, x, b.M.rows(), b.M.cols()) = b.K;
+  } else if (n.kind == Node::Kind::body) {
+    body(n, x);
+  }
   if (n.kind == Node::Kind::joint)
     for (Index k = 0; k < size_[at(i)] - 6; ++k) P[0](x + 6 + k, Q_[at(i)] + k) = Real(1);
   if (n.kind == Node::Kind::lti) controller(n, z_[at(i)]);
@@ -165,6 +175,7 @@ Equations::Matrix Equations::jacobian(const Point& p) const {
       J.col(6 + static_cast<Index>(k)) = twist(n.axes[k]).cast<Real>();
     return J;
   }
+  if (n.beam) return beams_[at(p.node)].sites[at(p.site)];
   J.leftCols(6) = tau(n.sites[at(p.site)].PC);
   if (n.omega.size() > 0) J.rightCols(n.omega.size()) = n.sites[at(p.site)].Phi.cast<Real>();
   return J;

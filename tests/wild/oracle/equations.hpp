@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "wild/oracle/beam.hpp"
 #include "wild/oracle/scene.hpp"
 
 /// (P0 + s P1 + s^2 P2) z = R u, y = (Q0 + s Q1 + s^2 Q2) z + E u, of a scene; z: coordinates of
@@ -49,6 +50,7 @@ struct Equations {
   Index n_ = 0, inputs_ = 0;
   std::vector<Index> x_, size_, Q_, z_, lambda_;  ///< places: per node, per tie
   std::vector<Index> input_;
+  std::vector<BeamModel> beams_;  ///< per node; empty of other nodes
   /// Constraint rows in P: the row, whether an input drives it.
   struct Held {
     Index row;

@@ -146,6 +146,13 @@ Scene disturbed(const Scene& scene, double relative, unsigned seed) {
       all(site.PC);
       all(site.Phi);
     }
+    if (n.beam) {
+      Beam& b = *n.beam;
+      for (double* x :
+           {&b.length, &b.area, &b.I_y, &b.I_z, &b.J, &b.I_x, &b.E, &b.rho, &b.nu, &b.G})
+        number(*x);
+      for (double& x : b.xi) number(x);
+    }
     for (MatrixXd* m : {&n.A, &n.B, &n.C, &n.D}) all(*m);
     sum(n.in);
   }

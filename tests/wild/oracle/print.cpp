@@ -1,5 +1,6 @@
 #include "wild/oracle/print.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <sstream>
@@ -58,7 +59,9 @@ class Printer {
     if (n.kind == Node::Kind::mass)
       out_ << " SpringMass mass " << n.m << " stiffness " << n.k << " damping " << n.c
            << " parent_mass " << n.m0;
-    if (n.kind == Node::Kind::body && n.omega.size() == 0) {
+    if (n.beam)
+      beam(*n.beam);
+    else if (n.kind == Node::Kind::body && n.omega.size() == 0) {
       out_ << " RigidBody mass " << n.mass;
       matrix("inertia", n.inertia);
       matrix("PA", n.PA.transpose());
@@ -89,6 +92,22 @@ class Printer {
       sum(n.in);
     }
     out_ << "\n";
+  }
+
+  void beam(const Beam& b) {
+    out_ << " Beam length " << b.length << " area " << b.area << " I_y " << b.I_y << " I_z "
+         << b.I_z << " J " << b.J;
+    if (b.I_x > 0) out_ << " I_x " << b.I_x;
+    out_ << " E " << b.E << " rho " << b.rho << (b.G > 0 ? " G " : " nu ") << (b.G > 0 ? b.G : b.nu)
+         << " elements " << b.elements << " kept " << b.kept;
+    const auto list = [&](const char* what, const auto& values) {
+      if (!values.empty()) out_ << what;
+      for (const auto& x : values) out_ << " " << x;
+    };
+    list(", residual at", b.residual);
+    list(", xi", b.xi);
+    out_ << ", parent " << b.parent;
+    list(", sites", b.sites);
   }
 
   void tie(const Tie& t) {
@@ -176,7 +195,13 @@ void numbers(Scene& s, const Visit& visit) {
   for (Node& n : s.nodes) {
     if (n.kind == Node::Kind::mass)
       for (double* x : {&n.m, &n.k, &n.c, &n.m0}) visit(*x);
-    if (n.kind == Node::Kind::body && n.omega.size() == 0) {
+    if (n.beam) {
+      Beam& b = *n.beam;
+      for (double* x :
+           {&b.length, &b.area, &b.I_y, &b.I_z, &b.J, &b.I_x, &b.E, &b.rho, &b.nu, &b.G})
+        visit(*x);
+      for (double& x : b.xi) visit(x);
+    } else if (n.kind == Node::Kind::body && n.omega.size() == 0) {
       visit(n.mass);
       all(n.PA);
     }
@@ -201,6 +226,29 @@ void drop_state(Node& n, Eigen::Index i) {
     m = t.transpose();
   };
   rows(n.A), cols(n.A), rows(n.B), cols(n.C);
+}
+
+/// The beam with one thing less each: residual vectors, damping, a mode, an element.
+std::vector<Beam> simpler(const Beam& beam) {
+  std::vector<Beam> list(4, beam);
+  list[0].residual.clear();
+  list[1].xi.clear();
+  if (beam.kept > 0) --list[2].kept;
+  Beam& less = list[3];
+  const int last = less.elements--;
+  for (std::vector<int>* points : {&less.residual, &less.sites})
+    for (int& point : *points) point -= point == last;
+  less.parent -= less.parent == last;
+  const auto bad = [](const Beam& b) {
+    return b.elements < 1 || b.kept > 6 * b.elements ||
+           std::find(b.sites.begin(), b.sites.end(), b.parent) != b.sites.end();
+  };
+  std::erase_if(list, bad);
+  return list;
+}
+
+bool same(const Beam& a, const Beam& b) {
+  return a.residual == b.residual && a.xi == b.xi && a.kept == b.kept && a.elements == b.elements;
 }
 
 void drop_mode(Node& n) {
@@ -249,6 +297,12 @@ Scene shrink(Scene scene, const std::function<bool(const Scene&)>& fails, int tr
         drop_state(less.nodes[n], k);
         again |= accept(less);
       }
+      if (scene.nodes[n].beam)
+        for (const Beam& beam : simpler(*scene.nodes[n].beam)) {
+          Scene less = scene;
+          less.nodes[n].beam = beam;
+          again |= !same(beam, *scene.nodes[n].beam) && accept(less);
+        }
       while (scene.nodes[n].omega.size() > 1) {
         Scene less = scene;
         drop_mode(less.nodes[n]);

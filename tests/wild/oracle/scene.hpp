@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -60,6 +61,20 @@ struct Site {
   MatrixXd Phi;  ///< 6 x modes
 };
 
+/// A uniform beam along x of its frame, of elements + 1 points.
+struct Beam {
+  double length = 1, area = 1, I_y = 1, I_z = 1, J = 1;
+  double I_x = 0;  ///< 0: I_y + I_z
+  double E = 1, rho = 1, nu = 0.3;
+  double G = 0;  ///< 0: by nu
+  int elements = 1;
+  int kept = -1;              ///< lowest modes clamped at the parent; -1: all
+  std::vector<int> residual;  ///< points with residual vectors, if not all are kept
+  std::vector<double> xi;     ///< none, one for all, or one per mode kept
+  int parent = 0;             ///< a point
+  std::vector<int> sites;     ///< the point of each site of the node
+};
+
 struct Node {
   enum class Kind { mass, body, joint, lti };
   Kind kind = Kind::body;
@@ -70,10 +85,11 @@ struct Node {
   double mass = 1;  ///< body
   Matrix3d inertia = Matrix3d::Identity();
   Vector3d PA = Vector3d::Zero();
-  VectorXd omega, xi;       ///< no modes: a rigid body of these mass, inertia, PA
-  MatrixXd L_P;             ///< modes x 6
-  Matrix6d D_P;             ///< of a body with modes
-  std::vector<Site> sites;  ///< body
+  VectorXd omega, xi;        ///< no modes: a rigid body of these mass, inertia, PA
+  MatrixXd L_P;              ///< modes x 6
+  Matrix6d D_P;              ///< of a body with modes
+  std::vector<Site> sites;   ///< body
+  std::optional<Beam> beam;  ///< instead of mass ... D_P; sites have no Phi
 
   std::vector<Axis> axes;  ///< joint: its site 0 is where the body is mounted
 

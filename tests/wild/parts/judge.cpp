@@ -9,6 +9,7 @@
 #include <titop/titop.hpp>
 
 #include "support/rng.hpp"
+#include "wild/oracle/beam.hpp"
 #include "wild/oracle/model.hpp"
 #include "wild/parts/write.hpp"
 
@@ -182,6 +183,7 @@ bool improper(const Scene& scene) {
   double fastest = scene.omega;
   for (const Node& n : scene.nodes) {
     if (n.omega.size() > 0) fastest = std::max(fastest, n.omega.maxCoeff());
+    if (n.beam) fastest = std::max(fastest, beam_model(*n.beam).fastest);
     if (n.A.size() > 0) fastest = std::max(fastest, n.A.cwiseAbs().maxCoeff());
     fastest = std::max({fastest, std::sqrt(n.k / n.m), n.c / n.m});
   }

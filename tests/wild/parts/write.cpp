@@ -48,6 +48,7 @@ class Writer {
   }
 
   BodyHandle body(const wild::Node& n) {
+    if (n.beam) return d_.add(n.name, beam(n));
     if (n.omega.size() == 0) {
       RigidBody spec{.mass = n.mass, .inertia = n.inertia, .PA = n.PA};
       for (std::size_t i = 0; i < n.sites.size(); ++i)
@@ -58,6 +59,33 @@ class Writer {
     for (std::size_t i = 0; i < n.sites.size(); ++i)
       data.children.push_back({site_name(i), n.sites[i].PC, n.sites[i].Phi});
     return d_.add(n.name, FlexibleBody(data));
+  }
+
+  /// Its tip, clamped at the other end, is "C"; any other point has its number.
+  static std::string site_name(const wild::Node& n, std::size_t i) {
+    if (!n.beam) return site_name(i);
+    return tip_only(*n.beam) ? "C" : std::to_string(n.beam->sites[i]);
+  }
+  static bool tip_only(const wild::Beam& b) {
+    return b.parent == 0 && b.sites == std::vector{b.elements};
+  }
+
+  static FlexibleBody beam(const wild::Node& n) {
+    const wild::Beam& b = *n.beam;
+    titop::Beam spec{.length = b.length,
+                     .section = {.area = b.area, .I_y = b.I_y, .I_z = b.I_z, .J = b.J},
+                     .material = {.E = b.E, .rho = b.rho},
+                     .elements = b.elements,
+                     .modes = {.xi = b.xi}};
+    if (b.I_x > 0) spec.section.I_x = b.I_x;
+    (b.G > 0 ? spec.material.G : spec.material.nu) = b.G > 0 ? b.G : b.nu;
+    if (b.kept >= 0) spec.modes.kept = b.kept;
+    for (const int point : b.residual) spec.modes.residual.push_back(std::to_string(point));
+    if (tip_only(b)) return FlexibleBody(spec);
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < b.sites.size(); ++i) names.push_back(site_name(n, i));
+    return FlexibleBody(
+        fe::modal_data(beam_mesh(spec), std::to_string(b.parent), names, spec.modes));
   }
 
   static std::string site_name(std::size_t i) { return fmt::format("C{}", i + 1); }
@@ -78,7 +106,7 @@ class Writer {
     if (joints_[at(p.node)])
       return p.site < 0 ? joints_[at(p.node)]->parent : DualPort<6>(joints_[at(p.node)]->child);
     const BodyHandle& b = *bodies_[at(p.node)];
-    return p.site < 0 ? b.parent : b.child(site_name(at(p.site)));
+    return p.site < 0 ? b.parent : b.child(site_name(scene_.nodes[at(p.node)], at(p.site)));
   }
 
   void tie(const Tie& t) {
