@@ -200,9 +200,44 @@ TEST_CASE("the oracle knows the first frequencies and the rigid mass of a beam")
   CHECK((carried + rigid).norm() <= 1e-13);
 }
 
+TEST_CASE("the oracle knows a plate on a bushing by hand") {
+  // 4 kg, inertia 2 kg m^2, centre of mass at the child end; the plate's frame is turned by 90
+  // degrees about z against the bushing's, whose parent end is driven.
+  Node bushing, plate;
+  bushing.kind = Node::Kind::bushing;
+  bushing.stiffness = bushing.damping = Matrix6d::Zero();
+  bushing.stiffness.diagonal() << 8, 18, 50, 4, 10, 20;
+  bushing.stiffness(0, 4) = bushing.stiffness(4, 0) = 2;
+  bushing.damping(2, 2) = 3;
+  plate.mass = 4;
+  plate.inertia *= 2;
+  Scene s;
+  s.nodes = {bushing, plate};
+  s.inputs = {6, 6};
+  s.ties = {{.a = {0, -1}, .b = {}, .input = 0}, {.a = {1, -1}, .b = {0, 0}}};
+  s.ties[1].T << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  s.loads = {{{1, -1}, 0, {{{.measured = Measured::input, .axis = 1}, MatrixXd::Identity(6, 6)}}}};
+  s.outputs = {{.measured = Measured::displacement, .at = {0, -1}},
+               {.measured = Measured::reaction, .at = {0, -1}}};
+  const Complex z(0.3, 2);
+  const Eigen::MatrixXcd H = truth(s, {z}).H[0];
+  // A force F of the plate along its y pushes along -x of the bushing: x and ry are coupled.
+  const Complex det = (4.0 * z * z + 8.0) * (2.0 * z * z + 10.0) - 4.0;
+  CHECK(off(H(0, 7), -(2.0 * z * z + 10.0) / det) <= 1e-14);
+  CHECK(off(H(4, 7), 2.0 / det) <= 1e-14);
+  CHECK(off(H(6, 7), (-8.0 * (2.0 * z * z + 10.0) + 4.0) / det) <= 1e-14);
+  CHECK(off(H(2, 8), 1.0 / (4.0 * z * z + 3.0 * z + 50.0)) <= 1e-14);
+  // Its parent end accelerates along z: q = -4 / (4 s^2 + 3 s + 50).
+  CHECK(off(H(2, 2), -4.0 / (4.0 * z * z + 3.0 * z + 50.0)) <= 1e-14);
+  const MatrixXd still = truth(s, {1e-12}).H[0].real().topRightCorner(6, 6);
+  CHECK(std::abs(still(1, 0) - 1.0 / 18) <= 1e-14);
+  CHECK(std::abs(still(0, 1) + 10.0 / 76) <= 1e-14);
+  CHECK(std::abs(still(4, 1) - 2.0 / 76) <= 1e-14);
+}
+
 TEST_CASE("64 bits of mantissa and 50 digits agree on all families") {
-  const auto families = {draw_row,       draw_tree,       draw_loop,
-                         draw_half_ties, draw_controller, draw_beams};
+  const auto families = {draw_row,        draw_tree,  draw_loop,    draw_half_ties,
+                         draw_controller, draw_beams, draw_bushings};
   int compared = 0;
   for (const auto draw : families)
     for (std::uint64_t seed = 0; compared < 1000 && seed < 12; ++seed) {

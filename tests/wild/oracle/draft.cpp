@@ -201,6 +201,12 @@ Reading Draft::any_motion() {
         r.at.site = rng.below(static_cast<int>(n.sites.size()));
       return r;
     }
+    if (n.kind == Node::Kind::bushing) {
+      r.at.site = rng.below(2) - 1;
+      if (rng.chance(0.5)) r.measured = Measured::displacement;
+      if (rng.chance(0.2)) r.measured = Measured::displacement_rate;
+      return r;
+    }
     if (n.kind == Node::Kind::joint) {
       const int axis = rng.below(static_cast<int>(n.axes.size()));
       return {.measured = of_axis[rng.below(3)], .at = {i, -1}, .axis = axis};

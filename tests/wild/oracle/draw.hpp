@@ -14,6 +14,7 @@ Scene draw_tree(Rng& rng);        ///< bodies with and without modes, joints
 Scene draw_loop(Rng& rng);        ///< the same, closed
 Scene draw_half_ties(Rng& rng);   ///< bodies tied along some axes only, at one to three places
 Scene draw_controller(Rng& rng);  ///< Lti blocks of 3 to 12 states, alone and around mechanics
+Scene draw_bushings(Rng& rng);    ///< bodies on springs and dampers of six axes
 Scene draw_beams(Rng& rng);       ///< trees of bodies and finite-element beams, some closed
 
 /// A scene in the making, with the pose of every node.
@@ -43,6 +44,9 @@ class Draft {
   void mount(const Point& a, const Point& b);
   /// A joint at `b`, in a new frame; returns its node.
   int joint(const Point& b, const std::vector<Axis>& axes);
+  /// A bushing in the frame `in`, or one of its own: its parent end at `b`, or on the ground, held
+  /// or driven there.
+  int bushing(const Point& b, const Vector3d& where, const Matrix3d* in = nullptr);
   std::vector<Axis> some_axes();
   void mechanism(int node, int axis);
   int input(int size);

@@ -77,6 +77,7 @@ void Equations::place() {
     beams_.push_back(n.beam ? beam_model(*n.beam) : BeamModel{});
     if (n.beam) size_.back() = beams_.back().M.rows();
     if (n.beam && !beams_.back().none.empty()) none = beams_.back().none;
+    if (n.kind == Node::Kind::bushing) size_.back() = 12;
     if (n.kind == Node::Kind::joint) size_.back() = 6 + static_cast<Index>(n.axes.size());
     n_ += size_.back();
     if (n.kind == Node::Kind::joint) {
@@ -118,6 +119,11 @@ void Equations::node(int i) {
   } else if (n.kind == Node::Kind::body) {
     body(n, x);
   }
+  if (n.kind == Node::Kind::bushing)
+    for (std::size_t order = 0; order < 2; ++order) {
+      const Matrix m = (order == 0 ? n.stiffness : n.damping).cast<Real>();
+      P[order].block<12, 12>(x, x) << m, -m, -m, m;
+    }
   if (n.kind == Node::Kind::joint)
     for (Index k = 0; k < size_[at(i)] - 6; ++k) P[0](x + 6 + k, Q_[at(i)] + k) = Real(1);
   if (n.kind == Node::Kind::lti) controller(n, z_[at(i)]);
@@ -166,6 +172,10 @@ Equations::Matrix Equations::jacobian(const Point& p) const {
   Matrix J = Matrix::Zero(rows, size_[at(p.node)]);
   if (n.kind == Node::Kind::mass) {
     J(0, p.site + 1) = Real(1);
+    return J;
+  }
+  if (n.kind == Node::Kind::bushing) {
+    J.middleCols(p.site < 0 ? 0 : 6, 6).setIdentity();
     return J;
   }
   J.leftCols(6).setIdentity();
@@ -317,6 +327,13 @@ Equations::Signal Equations::read(const Reading& r) {
       unknown(0, x_[i] + 1);
       s.of[0](0, x_[i]) = Real(-1);
       break;
+    case Measured::displacement:
+    case Measured::displacement_rate: {
+      Matrix& m = s.of[r.measured == Measured::displacement ? 0 : 1];
+      m.middleCols(x_[i] + 6, 6) = half(r.half).transpose();
+      m.middleCols(x_[i], 6) = -half(r.half).transpose();
+      break;
+    }
     case Measured::out: {
       const Node& n = scene_.nodes[i];
       s.of[0].middleCols(z_[i] + n.A.rows() + n.D.cols(), rows).setIdentity();

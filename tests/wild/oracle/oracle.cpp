@@ -153,6 +153,7 @@ Scene disturbed(const Scene& scene, double relative, unsigned seed) {
         number(*x);
       for (double& x : b.xi) number(x);
     }
+    for (Matrix6d* m : {&n.stiffness, &n.damping}) all(*m);
     for (MatrixXd* m : {&n.A, &n.B, &n.C, &n.D}) all(*m);
     sum(n.in);
   }

@@ -82,6 +82,11 @@ class Printer {
       out_ << " Joint";
       for (const Axis& a : n.axes) matrix(a.turns ? "about" : "along", a.r.transpose());
     }
+    if (n.kind == Node::Kind::bushing) {
+      out_ << " Bushing";
+      matrix("stiffness", n.stiffness);
+      matrix("damping", n.damping);
+    }
     if (n.kind == Node::Kind::lti) {
       out_ << " Lti";
       matrix("A", n.A);
@@ -133,8 +138,9 @@ class Printer {
   }
 
   void reading(const Reading& r) {
-    constexpr const char* names[] = {"u",    "accel",    "rate",  "position", "reaction", "accel",
-                                     "rate", "position", "force", "stretch",  "out"};
+    constexpr const char* names[] = {
+        "u",     "accel",   "rate", "position",     "reaction",         "accel", "rate", "position",
+        "force", "stretch", "out",  "displacement", "displacement_rate"};
     if (r.measured == Reading::Measured::input) {
       out_ << "u" << r.axis + 1 << " (size " << scene_.inputs[at(r.axis)] << ")";
       return;
@@ -193,6 +199,9 @@ void numbers(Scene& s, const Visit& visit) {
     for (Eigen::Index i = 0; i < m.size(); ++i) visit(m.data()[i]);
   };
   for (Node& n : s.nodes) {
+    if (n.kind == Node::Kind::bushing)
+      for (Matrix6d* m : {&n.stiffness, &n.damping})
+        if (m->isDiagonal(0)) all(*m);
     if (n.kind == Node::Kind::mass)
       for (double* x : {&n.m, &n.k, &n.c, &n.m0}) visit(*x);
     if (n.beam) {

@@ -27,6 +27,8 @@ int size_of(const Scene& scene, const Reading& reading) {
     case Measured::rate:
     case Measured::position:
     case Measured::reaction: return one_axis(scene, reading.at) ? 1 : reading.half == 0 ? 6 : 3;
+    case Measured::displacement:
+    case Measured::displacement_rate: return reading.half == 0 ? 6 : 3;
     case Measured::out: return static_cast<int>(scene.nodes[at(reading.at.node)].D.rows());
     default: return 1;
   }

@@ -41,7 +41,9 @@ struct Reading {
     axis_position,  ///< likewise
     axis_force,     ///< likewise
     stretch,        ///< of the spring-mass at.node
-    out             ///< of the controller at.node
+    out,            ///< of the controller at.node
+    displacement,   ///< of the bushing at.node, child against parent
+    displacement_rate
   };
   Measured measured = Measured::input;
   Point at = {};
@@ -76,7 +78,7 @@ struct Beam {
 };
 
 struct Node {
-  enum class Kind { mass, body, joint, lti };
+  enum class Kind { mass, body, joint, lti, bushing };
   Kind kind = Kind::body;
   std::string name = {};
 
@@ -92,6 +94,8 @@ struct Node {
   std::optional<Beam> beam;  ///< instead of mass ... D_P; sites have no Phi
 
   std::vector<Axis> axes;  ///< joint: its site 0 is where the body is mounted
+
+  Matrix6d stiffness, damping;  ///< bushing: its site 0 is its child end, which has its frame
 
   MatrixXd A, B, C, D;  ///< lti
   Sum in;               ///< lti

@@ -186,6 +186,9 @@ bool improper(const Scene& scene) {
     if (n.beam) fastest = std::max(fastest, beam_model(*n.beam).fastest);
     if (n.A.size() > 0) fastest = std::max(fastest, n.A.cwiseAbs().maxCoeff());
     fastest = std::max({fastest, std::sqrt(n.k / n.m), n.c / n.m});
+    if (n.kind == Node::Kind::bushing)  // on the smallest body, of 2^-4 kg and 2^-8 kg m^2
+      fastest =
+          std::max({fastest, std::sqrt(n.stiffness.maxCoeff() * 256), n.damping.maxCoeff() * 256});
   }
   const Truth t =
       truth(scene, {Complex(fastest * 1e6, fastest * 1e6), Complex(fastest * 1e8, fastest * 1e8)},

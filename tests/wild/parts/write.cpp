@@ -19,7 +19,8 @@ class Writer {
     for (std::size_t i = 0; i < scene.inputs.size(); ++i)
       inputs_.push_back(d_.input(fmt::format("u{}", i + 1), scene.inputs[i]));
     for (const wild::Node& n : scene.nodes) add(n);
-    for (const Tie& t : scene.ties) tie(t);
+    for (const Tie& t : scene.ties)
+      if (!between_two(t)) tie(t);
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) rest(static_cast<int>(i));
     for (const Load& l : scene.loads) load(l);
     for (std::size_t i = 0; i < scene.outputs.size(); ++i)
@@ -34,6 +35,7 @@ class Writer {
     bodies_.emplace_back();
     joints_.emplace_back();
     ltis_.emplace_back();
+    bushings_.emplace_back();
     switch (n.kind) {
       case wild::Node::Kind::mass:
         masses_.back() = d_.add(
@@ -41,10 +43,40 @@ class Writer {
         break;
       case wild::Node::Kind::body: bodies_.back() = body(n); break;
       case wild::Node::Kind::joint: joints_.back() = d_.add(n.name, joint_of(n)); break;
+      case wild::Node::Kind::bushing: bushings_.back() = bushing(n); break;
       case wild::Node::Kind::lti:
         ltis_.back() = d_.add(n.name, Lti{.A = n.A, .B = n.B, .C = n.C, .D = n.D});
         break;
     }
+  }
+
+  /// The tie of a bushing's end to another body, if it has one.
+  const Tie* tie_of(const Point& end) const {
+    for (const Tie& t : scene_.ties)
+      if (t.a == end && t.b.node >= 0) return &t;
+    return nullptr;
+  }
+  /// True if the function `bushing` between two points writes this tie: both ends are tied to
+  /// nodes before it, and its child's frame is that of the bushing.
+  bool between_two(const Tie& t) const {
+    const int i = t.a.node;
+    if (scene_.nodes[at(i)].kind != wild::Node::Kind::bushing) return false;
+    const Tie *child = tie_of({i, 0}), *parent = tie_of({i, -1});
+    return child && parent && child->b.node < i && parent->b.node < i && child->T.isIdentity(0);
+  }
+
+  Bushing::Handle bushing(const wild::Node& n) {
+    const Bushing spec{.stiffness = six(n.stiffness), .damping = six(n.damping)};
+    const int i = static_cast<int>(bushings_.size()) - 1;
+    const Tie *child = tie_of({i, 0}), *parent = tie_of({i, -1});
+    if (child && between_two(*child))
+      return titop::bushing(d_, n.name, point6(child->b), point6(parent->b),
+                            Rotation::matrix(parent->T), spec);
+    return d_.add(n.name, spec);
+  }
+  static SixAxes six(const Matrix6d& m) {
+    if (m.isDiagonal(0)) return {m(0, 0), m(1, 1), m(2, 2), m(3, 3), m(4, 4), m(5, 5)};
+    return m;
   }
 
   BodyHandle body(const wild::Node& n) {
@@ -105,6 +137,8 @@ class Writer {
   DualPort<6> point6(const Point& p) const {
     if (joints_[at(p.node)])
       return p.site < 0 ? joints_[at(p.node)]->parent : DualPort<6>(joints_[at(p.node)]->child);
+    if (bushings_[at(p.node)])
+      return p.site < 0 ? bushings_[at(p.node)]->parent : bushings_[at(p.node)]->child;
     const BodyHandle& b = *bodies_[at(p.node)];
     return p.site < 0 ? b.parent : b.child(site_name(scene_.nodes[at(p.node)], at(p.site)));
   }
@@ -136,6 +170,8 @@ class Writer {
           weld(a, b, T);
         else if (bodies_[at(t.a.node)])
           mount(*bodies_[at(t.a.node)], b, T);
+        else if (bushings_[at(t.a.node)])
+          mount(*bushings_[at(t.a.node)], b, T);
         else
           mount(*joints_[at(t.a.node)], b, T);
         break;
@@ -229,6 +265,11 @@ class Writer {
     using Measured = Reading::Measured;
     if (r.measured == Measured::input) return inputs_[at(r.axis)].expr();
     if (r.measured == Measured::stretch) return masses_[at(r.at.node)]->stretch.expr();
+    if (r.measured == Measured::displacement || r.measured == Measured::displacement_rate) {
+      const Bushing::Handle& b = *bushings_[at(r.at.node)];
+      const titop::Reading six = r.measured == Measured::displacement ? b.displacement : b.rate;
+      return r.half == 0 ? six.expr() : r.half == 1 ? six.linear().expr() : six.angular().expr();
+    }
     if (r.measured == Measured::out) return ltis_[at(r.at.node)]->out.expr();
     if (r.measured >= Measured::axis_accel) {
       const Joint::AxisPorts axis = joints_[at(r.at.node)]->axis(axis_name(r.axis));
@@ -277,6 +318,7 @@ class Writer {
   std::vector<std::optional<BodyHandle>> bodies_;
   std::vector<std::optional<Joint::Handle>> joints_;
   std::vector<std::optional<Lti::Handle>> ltis_;
+  std::vector<std::optional<Bushing::Handle>> bushings_;
 };
 
 }  // namespace
