@@ -14,6 +14,7 @@ Scene draw_tree(Rng& rng);        ///< bodies with and without modes, joints
 Scene draw_loop(Rng& rng);        ///< the same, closed
 Scene draw_half_ties(Rng& rng);   ///< bodies tied along some axes only, at one to three places
 Scene draw_controller(Rng& rng);  ///< Lti blocks of 3 to 12 states, alone and around mechanics
+Scene draw_gains(Rng& rng);       ///< loops of numbers, alone and around mechanics
 Scene draw_equal(Rng& rng);       ///< a hub with equal appendages at symmetric places
 Scene draw_bushings(Rng& rng);    ///< bodies on springs and dampers of six axes
 Scene draw_beams(Rng& rng);       ///< trees of bodies and finite-element beams, some closed
@@ -58,6 +59,8 @@ class Draft {
   void outputs(int count);
   Reading any_motion();
   Node controller(int states, int ins, int outs);
+  /// out = D in, as a block that can be written so.
+  Node gain(const MatrixXd& D);
 
  private:
   std::vector<Matrix3d> R_;

@@ -88,7 +88,8 @@ class Printer {
       matrix("damping", n.damping);
     }
     if (n.kind == Node::Kind::lti) {
-      out_ << " Lti";
+      constexpr const char* blocks[] = {" Lti", " Gain", " MatrixGain", " Sum"};
+      out_ << blocks[static_cast<std::size_t>(n.written)];
       matrix("A", n.A);
       matrix("B", n.B);
       matrix("C", n.C);

@@ -98,7 +98,9 @@ struct Node {
   Matrix6d stiffness, damping;  ///< bushing: its site 0 is its child end, which has its frame
 
   MatrixXd A, B, C, D;  ///< lti
-  Sum in;               ///< lti
+  enum class Written { lti, gain, matrix, sum };
+  Written written = Written::lti;  ///< the block it is; of no states if none of the first
+  Sum in;                          ///< lti
 };
 
 /// Point a moves as b does (b of the ground: does not move, or by an input), along some axes of a's

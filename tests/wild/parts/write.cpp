@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <memory>
 #include <titop/titop.hpp>
 
 namespace wild {
@@ -36,6 +37,7 @@ class Writer {
     joints_.emplace_back();
     ltis_.emplace_back();
     bushings_.emplace_back();
+    sums_.emplace_back();
     switch (n.kind) {
       case wild::Node::Kind::mass:
         masses_.back() = d_.add(
@@ -45,8 +47,47 @@ class Writer {
       case wild::Node::Kind::joint: joints_.back() = d_.add(n.name, joint_of(n)); break;
       case wild::Node::Kind::bushing: bushings_.back() = bushing(n); break;
       case wild::Node::Kind::lti:
-        ltis_.back() = d_.add(n.name, Lti{.A = n.A, .B = n.B, .C = n.C, .D = n.D});
+        if (n.written == wild::Node::Written::sum)
+          sums_.back() = d_.add(n.name, sum_of(n));
+        else
+          ltis_.back() = std::make_shared<const InOut>(lti(n));
         break;
+    }
+  }
+
+  /// Ports of an Lti, a Gain or a MatrixGain.
+  struct InOut {
+    Port<0, Kind::plain> in;
+    titop::Reading out;
+  };
+
+  InOut lti(const wild::Node& n) {
+    const auto ports = [](const auto& handle) { return InOut{handle.in, handle.out}; };
+    if (n.written == wild::Node::Written::lti)
+      return ports(d_.add(n.name, Lti{.A = n.A, .B = n.B, .C = n.C, .D = n.D}));
+    if (n.written == wild::Node::Written::matrix) return ports(d_.add(n.name, MatrixGain{n.D}));
+    return ports(d_.add(n.name, Gain{.gain = n.D(0, 0), .size = static_cast<int>(n.D.rows())}));
+  }
+
+  /// D is [I or -I, ...].
+  static titop::Sum sum_of(const wild::Node& n) {
+    titop::Sum spec{.signs = "", .size = static_cast<int>(n.D.rows())};
+    for (Eigen::Index j = 0; j < n.D.cols(); j += n.D.rows())
+      spec.signs += n.D(0, j) > 0 ? '+' : '-';
+    return spec;
+  }
+  void sum_inputs(const wild::Node& n, const titop::Sum::Handle& handle) const {
+    const Eigen::Index size = n.D.rows();
+    for (int i = 0; i < static_cast<int>(n.D.cols() / size); ++i) {
+      wild::Sum part;
+      for (const Share& share : n.in) {
+        const MatrixXd rows = share.gain.middleRows(i * size, size);
+        if (!rows.isZero(0)) part.push_back({share.of, rows});
+      }
+      if (part.empty())
+        handle.in(i + 1) = 0;
+      else
+        handle.in(i + 1) = sum(part);
     }
   }
 
@@ -241,7 +282,10 @@ class Writer {
         const int sum = tied({i, site});
         if (sum < 6 && (site < 0 || sum > 0)) release(point6({i, site}));
       }
-    if (n.kind == wild::Node::Kind::lti) ltis_[at(i)]->in = sum(n.in);
+    if (sums_[at(i)])
+      sum_inputs(n, *sums_[at(i)]);
+    else if (n.kind == wild::Node::Kind::lti)
+      ltis_[at(i)]->in = sum(n.in);
     for (int axis = 0; axis < static_cast<int>(n.axes.size()); ++axis) mechanism(i, axis);
   }
 
@@ -270,6 +314,8 @@ class Writer {
       const titop::Reading six = r.measured == Measured::displacement ? b.displacement : b.rate;
       return r.half == 0 ? six.expr() : r.half == 1 ? six.linear().expr() : six.angular().expr();
     }
+    if (r.measured == Measured::out && sums_[at(r.at.node)])
+      return sums_[at(r.at.node)]->out.expr();
     if (r.measured == Measured::out) return ltis_[at(r.at.node)]->out.expr();
     if (r.measured >= Measured::axis_accel) {
       const Joint::AxisPorts axis = joints_[at(r.at.node)]->axis(axis_name(r.axis));
@@ -289,7 +335,7 @@ class Writer {
     return measured == Reading::Measured::position ? p.position : p.reaction;
   }
 
-  Expr sum(const Sum& shares) const {
+  Expr sum(const wild::Sum& shares) const {
     Expr total;
     for (std::size_t i = 0; i < shares.size(); ++i) {
       const Expr term = shares[i].gain * read(shares[i].of);
@@ -317,8 +363,9 @@ class Writer {
   std::vector<std::optional<SpringMass::Handle>> masses_;
   std::vector<std::optional<BodyHandle>> bodies_;
   std::vector<std::optional<Joint::Handle>> joints_;
-  std::vector<std::optional<Lti::Handle>> ltis_;
+  std::vector<std::shared_ptr<const InOut>> ltis_;
   std::vector<std::optional<Bushing::Handle>> bushings_;
+  std::vector<std::optional<titop::Sum::Handle>> sums_;
 };
 
 }  // namespace
