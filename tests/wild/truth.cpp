@@ -200,6 +200,26 @@ TEST_CASE("the oracle knows the first frequencies and the rigid mass of a beam")
   CHECK((carried + rigid).norm() <= 1e-13);
 }
 
+TEST_CASE("the oracle's modes of a beam sum to its elements, and residual shapes to its statics") {
+  Beam b = plain_beam(3);
+  b.xi = {0.01};
+  b.sites = {3, 1};
+  const std::vector<Complex> s = {1e-12, Complex(0.2, 1.3), Complex(0, 40)};
+  const Truth elements = truth(on_the_ground(b), s);
+  b.kept = 18;
+  const Truth modes = truth(on_the_ground(b), s);
+  for (std::size_t k = 0; k < s.size(); ++k)
+    CHECK((modes.H[k] - elements.H[k]).norm() <= 1e-13 * elements.H[k].norm());
+  b.kept = 2;
+  const auto loses = [&] {
+    const Eigen::MatrixXcd off = truth(on_the_ground(b), s).H[0] - elements.H[0];
+    return off.topRows(6).norm() / elements.H[0].topRows(6).norm();
+  };
+  CHECK(loses() > 1e-3);
+  b.residual = {3};
+  CHECK(loses() <= 1e-13);
+}
+
 TEST_CASE("the oracle knows a plate on a bushing by hand") {
   // 4 kg, inertia 2 kg m^2, centre of mass at the child end; the plate's frame is turned by 90
   // degrees about z against the bushing's, whose parent end is driven.
