@@ -147,10 +147,4 @@ Instant Instant::off_by(RowMatrix<double> off, const RowMatrix<double>& magnitud
   return result;
 }
 
-RateColumns rates(const Factored& d, const RowMatrix<double>& known,
-                  const RowMatrix<double>& more) {
-  const Instant now(d, known, more, Refinement::settled);
-  return {now.xdot(), now.outputs()};
-}
-
 }  // namespace titop::detail
