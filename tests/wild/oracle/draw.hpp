@@ -9,15 +9,16 @@ namespace wild {
 
 using titop_test::Rng;
 
-Scene draw_row(Rng& rng);         ///< spring-masses on each other, lossless to very lossy
-Scene draw_tree(Rng& rng);        ///< bodies with and without modes, joints
-Scene draw_loop(Rng& rng);        ///< the same, closed
-Scene draw_half_ties(Rng& rng);   ///< bodies tied along some axes only, at one to three places
-Scene draw_controller(Rng& rng);  ///< Lti blocks of 3 to 12 states, alone and around mechanics
-Scene draw_gains(Rng& rng);       ///< loops of numbers, alone and around mechanics
-Scene draw_equal(Rng& rng);       ///< a hub with equal appendages at symmetric places
-Scene draw_bushings(Rng& rng);    ///< bodies on springs and dampers of six axes
-Scene draw_beams(Rng& rng);       ///< trees of bodies and finite-element beams, some closed
+Scene draw_row(Rng& rng);          ///< spring-masses on each other, lossless to very lossy
+Scene draw_tree(Rng& rng);         ///< bodies with and without modes, joints
+Scene draw_loop(Rng& rng);         ///< the same, closed
+Scene draw_half_ties(Rng& rng);    ///< bodies tied along some axes only, at one to three places
+Scene draw_controller(Rng& rng);   ///< Lti blocks of 3 to 12 states, alone and around mechanics
+Scene draw_gains(Rng& rng);        ///< loops of numbers, alone and around mechanics
+Scene draw_steep_gains(Rng& rng);  ///< the same with loop gains up to 1e-6 from 1
+Scene draw_equal(Rng& rng);        ///< a hub with equal appendages at symmetric places
+Scene draw_bushings(Rng& rng);     ///< bodies on springs and dampers of six axes
+Scene draw_beams(Rng& rng);        ///< trees of bodies and finite-element beams, some closed
 
 /// A scene in the making, with the pose of every node.
 class Draft {

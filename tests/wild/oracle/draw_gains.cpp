@@ -11,20 +11,20 @@ using Measured = Reading::Measured;
 
 Reading out(int node) { return {.measured = Measured::out, .at = {node, -1}}; }
 
-/// 1 + 2^-k or 1 - 2^-k, k from 1 to 6.
-double near_one(Rng& rng) {
-  const double distance = std::ldexp(1.0, -1 - rng.below(6));
+/// 1 + 2^-k or 1 - 2^-k, k from 1 to `nearest`.
+double near_one(Rng& rng, int nearest) {
+  const double distance = std::ldexp(1.0, -1 - rng.below(nearest));
   return rng.chance(0.5) ? 1 + distance : 1 - distance;
 }
 
 /// A ring of gains whose product is near 1, and its input: every node takes the one before.
-std::vector<int> draw_ring(Draft& d, int size) {
+std::vector<int> draw_ring(Draft& d, int size, int nearest) {
   const int count = 1 + d.rng.below(4);
   const auto first = static_cast<int>(d.scene.nodes.size());
   std::vector<int> ring;
   double product = 1;
   for (int i = 0; i < count; ++i) {
-    const double last = near_one(d.rng) / product, any = d.factor(-6, 7);
+    const double last = near_one(d.rng, nearest) / product, any = d.factor(-6, 7);
     const double g = i == count - 1 ? last : d.rng.chance(0.5) ? any : -any;
     product *= g;
     Node n = d.gain(g * MatrixXd::Identity(size, size));
@@ -84,7 +84,7 @@ void feed(Draft& d, int node, const Reading& r, double gain) {
 
 /// A mass or a rigid body whose inertia a force by its own acceleration takes almost away, by a
 /// gain near the mass.
-void draw_almost_massless(Draft& d) {
+void draw_almost_massless(Draft& d, int nearest) {
   Node n;
   const bool one = d.rng.chance(0.5);
   n.kind = one ? Node::Kind::mass : Node::Kind::body;
@@ -94,7 +94,7 @@ void draw_almost_massless(Draft& d) {
   if (one) d.scene.ties.push_back({.a = {node, -1}, .b = {}});
   const Point where = one ? Point{node, 0} : Point{node, -1};
   const int size = one ? 1 : 3;
-  Node g = d.gain(near_one(d.rng) * n.m * MatrixXd::Identity(size, size));
+  Node g = d.gain(near_one(d.rng, nearest) * n.m * MatrixXd::Identity(size, size));
   g.in = {{{.measured = Measured::accel, .at = where, .half = one ? 0 : 1},
            MatrixXd::Identity(size, size)}};
   const int gain = d.add(g);
@@ -121,26 +121,14 @@ void close_around(Draft& d, int node) {
                            {{out(node), d.factor(-6, 3) * d.rng.matrix(one ? 1 : 3, outs)}}});
 }
 
-}  // namespace
-
-Node Draft::gain(const MatrixXd& D) {
-  Node n;
-  n.kind = Node::Kind::lti;
-  n.A = MatrixXd(0, 0), n.B = MatrixXd(0, D.cols()), n.C = MatrixXd(D.rows(), 0);
-  n.D = D;
-  const bool scalar = D.rows() == D.cols() && D == D(0, 0) * MatrixXd::Identity(D.rows(), D.rows());
-  const Node::Written forms[] = {Node::Written::lti, Node::Written::matrix, Node::Written::gain};
-  n.written = forms[rng.below(scalar ? 3 : 2)];
-  return n;
-}
-
-Scene draw_gains(Rng& rng) {
+/// Loop gains are 2^-nearest from 1, or farther.
+Scene draw_loops_of_gains(Rng& rng, int nearest) {
   Draft d(rng);
   const int mechanics = rng.below(3);
   if (mechanics == 1) d.tree(1 + rng.below(2));
-  if (mechanics == 2) draw_almost_massless(d);
+  if (mechanics == 2) draw_almost_massless(d, nearest);
   std::vector<int> gains;
-  if (rng.chance(0.6)) gains = draw_ring(d, 1 + rng.below(3));
+  if (rng.chance(0.6)) gains = draw_ring(d, 1 + rng.below(3), nearest);
   if (gains.empty() || rng.chance(0.3)) {
     const std::vector<int> more = draw_net(d);
     gains.insert(gains.end(), more.begin(), more.end());
@@ -156,5 +144,21 @@ Scene draw_gains(Rng& rng) {
   d.scene.omega = d.factor(-4, 5);
   return d.scene;
 }
+
+}  // namespace
+
+Node Draft::gain(const MatrixXd& D) {
+  Node n;
+  n.kind = Node::Kind::lti;
+  n.A = MatrixXd(0, 0), n.B = MatrixXd(0, D.cols()), n.C = MatrixXd(D.rows(), 0);
+  n.D = D;
+  const bool scalar = D.rows() == D.cols() && D == D(0, 0) * MatrixXd::Identity(D.rows(), D.rows());
+  const Node::Written forms[] = {Node::Written::lti, Node::Written::matrix, Node::Written::gain};
+  n.written = forms[rng.below(scalar ? 3 : 2)];
+  return n;
+}
+
+Scene draw_gains(Rng& rng) { return draw_loops_of_gains(rng, 6); }
+Scene draw_steep_gains(Rng& rng) { return draw_loops_of_gains(rng, 20); }
 
 }  // namespace wild

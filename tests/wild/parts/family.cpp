@@ -13,7 +13,7 @@ namespace wild {
 
 namespace {
 
-constexpr int kFamilies = 9;
+constexpr int kFamilies = 10;
 constexpr int kEveryOther = 10;  ///< one of so many scenes is simulated as well
 
 int number(const char* variable, int otherwise) {
