@@ -91,6 +91,7 @@ Blocks blocks_of(const Scene& scene, const std::vector<MatrixXcd>& exact, const 
 /// Warnings of the default certificate and the log that would make a user doubt.
 std::string said(const System& system) {
   std::string text;
+  system.state_space();  // apply column by column is a model in double, too
   for (const auto& notes : {system.notes(), system.dense_notes()})
     for (const titop::Note& note : notes)
       if (note.kind == titop::Note::Kind::warning) text += note.pass + ": " + note.text + "; ";
@@ -99,6 +100,8 @@ std::string said(const System& system) {
   if (!(c.dense_against_factors <= 1e-8))
     text += fmt::format("dense against factors {:.1e}; ", c.dense_against_factors);
   if (!(c.dense_error <= 1e-9)) text += fmt::format("dense error {:.1e}; ", c.dense_error);
+  if (!(c.dense_error_where_small <= 1e-8))
+    text += fmt::format("below the modes {:.1e}; ", c.dense_error_where_small);
   return text;
 }
 
