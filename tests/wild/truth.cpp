@@ -299,7 +299,7 @@ TEST_CASE("64 bits of mantissa and 50 digits agree on all families") {
       const Truth wide = truth(scene, s), fine = truth(scene, s, Digits::fifty);
       if (!wide.none.empty()) continue;
       const double size = fine.H[0].cwiseAbs().maxCoeff();
-      if (size < 1e-60) continue;  // 0: no input reaches an output, but rounding of 50 digits
+      if (size < 1e-12) continue;  // no input reaches an output but by rounding of the data
       CHECK((wide.H[0] - fine.H[0]).cwiseAbs().maxCoeff() <= 1e-12 * size);
       ++compared;
     }
