@@ -6,6 +6,7 @@
 #include <numbers>
 #include <titop/analysis/reduction/phase_grid.hpp>
 #include <titop/analysis/reduction/ray.hpp>
+#include <titop/graph/paths.hpp>
 #include <titop/graph/support/parallel.hpp>
 
 namespace titop::detail {
@@ -193,10 +194,13 @@ SampledSpectrum::SampledSpectrum(const Whole& w)
       }) {}
 
 SampledSpectrum::SampledSpectrum(const StateSpace& model, const Split& split)
-    : poles(split.poles), by_peaks(true), sizes([&](Complex s) {
+    : poles(split.poles),
+      by_peaks(true),
+      sizes([&](Complex s) {
         const MatrixXd size = detail::terms(model, split, s);
         return PairSizes{size, size};
-      }) {}
+      }),
+      paths(titop::paths(model)) {}
 
 std::vector<double> sample_points(const Scene& scene, const Band& band, const SampledSpectrum& w,
                                   const std::vector<Complex>& small, double step) {
@@ -259,6 +263,8 @@ Samples sample(const System& system, const Scene& scene, const SampledSpectrum& 
   for (const double omega_k : result.omega) result.s.push_back(on_ray(scene, omega_k));
   parallel(result.s.size(), 0,
            [&] { return [&](std::size_t i) { result.H[i] = transfer(system, result.s[i]); }; });
+  if (w.paths.size() > 0)
+    for (MatrixXcd& H : result.H) H = H.cwiseProduct(w.paths.cast<Complex>()).eval();
   const auto outputs = static_cast<Index>(system.outputs().size()),
              inputs = static_cast<Index>(system.inputs().size());
   MatrixXd meant = MatrixXd::Zero(outputs, inputs);

@@ -36,6 +36,8 @@ struct SampledSpectrum {
   bool squared = false;                     ///< the transfer is rational in s^2
   bool by_peaks = false;                    ///< pairs that are 0 are compared with others, too
   std::function<PairSizes(std::complex<double>)> sizes;
+  Eigen::MatrixXd paths =
+      {};  ///< 0: the minimal model has no path, the pair is 0; empty: not known
 
   SampledSpectrum(const Whole& whole);  // NOLINT: a whole is one; it must live as long
   SampledSpectrum(const StateSpace& model, const Split& split);  ///< likewise

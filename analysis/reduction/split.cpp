@@ -267,6 +267,7 @@ VectorXd reading(const StateSpace& m) {
 }
 
 MatrixXd terms(const StateSpace& m, const Split& split, Complex s) {
+  if (m.order() == 0) return m.D.cwiseAbs();
   MatrixXcd stable = split.U.adjoint() * split.stable.B.cast<Complex>(), shifted = -split.T;
   shifted.diagonal().array() += s;
   if (stable.rows() > 0) shifted.triangularView<Eigen::Upper>().solveInPlace(stable);

@@ -8,6 +8,7 @@
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/name_order.hpp>
+#include <titop/graph/paths.hpp>
 
 namespace titop::detail {
 namespace {
@@ -51,30 +52,6 @@ std::vector<int> blocks(const List& list) {
   for (const int i : as_declared(list)) {
     const int size = list[at(i)].size, each = size % 3 == 0 ? 3 : 1;
     result.insert(result.end(), at(size / each), each);
-  }
-  return result;
-}
-
-/// From which inputs a path leads to which outputs: 1, else 0. O(n^2 inputs).
-MatrixXd paths(const StateSpace& m) {
-  MatrixXd result = MatrixXd::Zero(m.D.rows(), m.D.cols());
-  std::vector<Index> next;
-  for (Index j = 0; j < m.D.cols(); ++j) {
-    Eigen::VectorXd moved = Eigen::VectorXd::Zero(m.A.rows());
-    const auto reach = [&](const auto& column) {
-      for (Index i = 0; i < moved.size(); ++i)
-        if (column(i) != 0 && moved(i) == 0) moved(i) = 1, next.push_back(i);
-    };
-    reach(m.B.col(j));
-    while (!next.empty()) {
-      const Index k = next.back();
-      next.pop_back();
-      reach(m.A.col(k));
-    }
-    for (Index i = 0; i < m.D.rows(); ++i) {
-      const bool seen = (m.C.row(i).transpose().array() * moved.array() != 0).any();
-      result(i, j) = m.D(i, j) != 0 || seen;
-    }
   }
   return result;
 }

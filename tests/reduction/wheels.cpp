@@ -27,3 +27,25 @@ TEST_CASE("wheels: the attitude from 0 Hz has the order that it has without whee
       }
   }
 }
+
+TEST_CASE("wheels: with one, the pairs that nothing connects are 0 in the reduced model, too") {
+  const Wheels one{.count = 1};
+  for (const double accuracy : {1e-1, 1e-3, 1e-5}) {
+    CAPTURE(accuracy);
+    const ReducedSystem reduced = compile(
+        satellite(one),
+        Scene{.inputs = {"ref"}, .outputs = {"att"}, .band_hz = {0, 5}, .accuracy = accuracy});
+    CHECK(reduced.order() <= order_by_momentum(one));
+    CHECK(reduced.bound().worst <= accuracy);
+    CHECK(reduced.transfer({0, 0.5}).rightCols(2).isZero(0));
+  }
+  for (const char* ref : {"ref(2)", "ref(3)"})
+    for (const char* att : {"att(1)", "att(2)", "att(3)"}) {
+      CAPTURE(ref);
+      CAPTURE(att);
+      const ReducedSystem nothing =
+          compile(satellite(one), Scene{.inputs = {ref}, .outputs = {att}, .band_hz = {0, 5}});
+      CHECK(nothing.order() == 0);
+      CHECK(nothing.transfer({0, 0.5}).isZero(0));
+    }
+}
