@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <titop/compiler/loops/along.hpp>
+#include <titop/compiler/loops/axial_motion.hpp>
 #include <titop/compiler/loops/gap.hpp>
 #include <titop/compiler/loops/lines.hpp>
 #include <titop/compiler/loops/redundant.hpp>
@@ -259,38 +260,15 @@ std::string direction_names(const MatrixXd& directions) {
   return " (" + text + ")";
 }
 
-/// True if no mode moves some child point of this flexible body along the line from P to it.
-bool rigid_along(const Kinematics& k) {
-  constexpr double kStill = 1e-6;  // of the point's translations
-  for (std::size_t i = 0; i < k.Phi.size(); ++i) {
-    if (static_cast<int>(i) == k.reference || k.Phi[i].rows() != 6) continue;
-    // tau = [[I, (*CP)], [0, I]]
-    const MatrixXd& tau = k.tau[i];
-    const Eigen::Vector3d CP(tau(2, 4), tau(0, 5), tau(1, 3));
-    const MatrixXd shapes = k.Phi[i].topRows<3>();
-    if (CP.norm() > 0 && (CP.normalized().transpose() * shapes).norm() <= kStill * shapes.norm())
-      return true;
-  }
-  return false;
-}
-
 /// Names of the flexible bodies without axial motion, if no joint moves in these chains: the modes
 /// of bodies are their only coordinates.
-std::vector<std::string> rigid_along(const Component& c, const Stage& stage) {
+std::vector<std::string> bodies_without_axial_motion(const Component& c, const Stage& stage) {
   std::set<int> bodies;
   for (const ScalarColumn& s : c.scalars) {
     if (s.column.kind == FormColumn::Kind::angle) return {};
     if (s.column.kind == FormColumn::Kind::states) bodies.insert(s.column.id);
   }
-  std::vector<std::string> names;
-  for (const int i : bodies) {
-    const Node& node = stage.graph.nodes[at(i)];
-    const auto dynamics = node.block->dynamics(stage.values);
-    if (!dynamics->modal || dynamics->modal->W.rows() == 0) return {};
-    const auto k = node.block->kinematics(stage.values);
-    if (k && rigid_along(*k)) names.push_back(node.name);
-  }
-  return names;
+  return without_axial_motion(bodies, stage);
 }
 
 /// Chains in a singular posture have additional first-order motions that second order blocks.
@@ -306,7 +284,7 @@ void warn_of_stops(Stage& stage, const Component& c, const ScaleFactors& factors
   }
   const double part = stopped(c, factors, closings, stage.graph);
   if (!(part > kStops)) return;
-  const std::vector<std::string> rods = rigid_along(c, stage);
+  const std::vector<std::string> rods = bodies_without_axial_motion(c, stage);
   const std::string cause =
       rods.empty() ? "is in a singular posture"
                    : fmt::format(
