@@ -32,7 +32,7 @@ class FinerInstant {
     if (more.size() > 0) rhs += solve::lifted<Twofold>(more);
     unknowns_ = RowMatrix<Twofold>::Zero(rhs.rows(), rhs.cols());
     double before = std::numeric_limits<double>::infinity();
-    for (int step = 0; step < kMostSteps; ++step) {
+    for (int step = 0; rhs.size() > 0 && step < kMostSteps; ++step) {
       const RowMatrix<double> change = d.factors->solve(rounded(rows_.residual(rhs, unknowns_)));
       unknowns_ += solve::lifted<Twofold>(change);
       const double now = change.cwiseAbs().maxCoeff();
