@@ -72,7 +72,7 @@ Expr operator*(const Eigen::MatrixXd& M, const R& r) {
   return r.expr().times(Matrix{std::make_shared<const Eigen::MatrixXd>(M), nullptr});
 }
 
-// What is not linear in the signals is refused, with what to write instead.
+// Terms that are not linear in the signals do not compile; the error names the linear form.
 
 template <Readable L, detail::Constant C>
 Expr operator+(const L& l, const C&) {

@@ -19,7 +19,7 @@ Matrix3d turn(int i, int count) {
   return T;
 }
 
-/// What is mounted at each place, drawn once.
+/// Appendages by their place, each drawn once.
 struct Appendage {
   Node body;
   Matrix3d mounting;
