@@ -247,6 +247,7 @@ std::vector<std::string> certification::basic_faults(const Certificate& c, doubl
       "model of the required band, compile(d, Scene{.band_hz = {low, high}})";
   std::vector<std::string> faults;
   judge(faults, c.residual, kHolds, "equations as written are satisfied only to");
+  judge(faults, c.apply_against_transfer, kHolds, "apply differs from the transfer by");
   judge(faults, c.dense_against_factors, kHolds, "the dense model differs from the factors by");
   judge(faults, c.dense_error, kDenseHolds,
         fmt::format("written as A, B, C, D the model loses digits: at s = {:.3g}{:+.3g}j outputs "

@@ -25,6 +25,14 @@ struct Certificate {
   /// That real s [rad/s]; at an instant, the s of the blocks' responses.
   double s = 0;
   bool at_instant = false;  ///< true: at an instant; false: at s
+  /// Largest difference between the outputs of the transfer at that real s and those of the model
+  /// that System::apply computes, for one random input, over the output's size (of one unit). Up to
+  /// 1e-9 it counts as 0; above, 1e4 times a sample of the rounding of both is subtracted, and up
+  /// to 32 times the digits that double loses there (see the log) it is 0. The two share the
+  /// blocks' matrices and the coefficients; the elimination, the integrals and the map of dependent
+  /// states are others. Negative if not compared: at an instant, where `residual` itself checks the
+  /// signals of apply.
+  double apply_against_transfer = -1;
   /// Largest difference between xdot, y of the dense model and of the factors, for one random x and
   /// for one random u, relative to the sum of the terms: over a block's states, or over the outputs
   /// of one unit. If the factors lose digits, cancelling terms count too. Negative if no dense

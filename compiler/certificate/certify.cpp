@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <titop/compiler/certificate/check.hpp>
+#include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/certificate/self_check.hpp>
 #include <titop/compiler/certificate/weak_pivot.hpp>
 #include <titop/compiler/solve/factored.hpp>
@@ -77,6 +78,12 @@ std::string words_of_residual(const Certificate& c) {
                      c.residual_where.empty() ? "" : " (worst: " + c.residual_where + ")");
 }
 
+std::string words_of_apply(const Certificate& c) {
+  if (c.apply_against_transfer < 0) return {};
+  return fmt::format("apply agrees with the transfer to {:.1e} at s = {:.3g}\n",
+                     std::max(c.apply_against_transfer, detail::kWarn), c.s);
+}
+
 std::string words_of_dense(const Certificate& c) {
   if (c.dense_against_factors < 0) return "dense model not written yet\n";
   std::string text =
@@ -93,7 +100,7 @@ std::string words_of_dense(const Certificate& c) {
 }  // namespace
 
 std::string to_string(const Certificate& c) {
-  std::string text = words_of_residual(c) + words_of_dense(c);
+  std::string text = words_of_residual(c) + words_of_apply(c) + words_of_dense(c);
   text += fmt::format("weakest pivot {:.1e} of its terms{}, growth {:.3g}\n", c.weakest_pivot,
                       c.weakest_where.empty() ? "" : " (" + c.weakest_where + ")", c.pivot_growth);
   text += fmt::format("largest loop margin {:.3g}{}{}\n", c.margin,

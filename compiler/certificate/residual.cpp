@@ -22,9 +22,6 @@ constexpr double kPlain = 1e-12;  ///< rounding up to this needs no explanation
 /// Relative to the largest motion or wrench of its kind, for a 0 enforced by chains: fifty units of
 /// rounding, typical of a sum around a chain of some tens of joints.
 constexpr double kOfLargest = 1e-14;
-/// One sample of rounding may be small by chance, and does not contain rounding of the
-/// coefficients.
-constexpr double kSamples = 1e4;
 
 /// Entries of a signal, and a sample of their rounding if it is known.
 struct Entries {

@@ -8,6 +8,10 @@ namespace titop::detail {
 
 inline constexpr double kWarn = 1e-9;  ///< larger values are reported in the log
 
+/// Factor on a sample of rounding: a difference below may be rounding alone. One sample may be
+/// small by chance, and does not contain rounding of the coefficients.
+inline constexpr double kSamples = 1e4;
+
 /// All signals of one input, at one real s or at one instant.
 struct Signals {
   std::vector<int> first = {};             ///< of every signal in `values`, and the end

@@ -6,11 +6,12 @@
 #include <map>
 #include <set>
 #include <string_view>
+#include <titop/compiler/certificate/apply_check.hpp>
+#include <titop/compiler/certificate/around_states.hpp>
 #include <titop/compiler/certificate/check.hpp>
 #include <titop/compiler/certificate/doubt.hpp>
 #include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/certificate/self_check.hpp>
-#include <titop/compiler/certificate/surroundings.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
 #include <titop/compiler/solve/frequency.hpp>
 #include <titop/compiler/solve/instant.hpp>
@@ -199,66 +200,6 @@ bool check_instant(const Factored& d, const RowMatrix<double>& u, double s, Cert
   return true;
 }
 
-/// Size around the states of all blocks at a real s (see Surroundings).
-class AroundStates {
- public:
-  AroundStates(const Factored& d, const Evaluation<double>& point, double s)
-      : d_(d), point_(point), s_(s), around_(d, point.unknowns()) {}
-
-  /// Row by row, of the states that output o is a sum of.
-  Eigen::VectorXd of_output(std::size_t o) {
-    const Output& output = d_.graph().outputs[o];
-    const int first = d_.skeleton->joint.output_coefficient[o];
-    Eigen::VectorXd sum = Eigen::VectorXd::Zero(output.size);
-    for (std::size_t k = 0; k < output.terms.size(); ++k)
-      if (const int x = output.terms[k].signal; d_.graph().signals[at(x)].role == Role::state)
-        sum += d_.numbers.coefficients[at(first) + k]->cwiseAbs() * of_states(x);
-    return sum;
-  }
-
- private:
-  using Role = Signal::Role;
-
-  /// The block's response to the sizes around its inputs; at least the states themselves.
-  const Eigen::VectorXd& of_states(int states) {
-    const auto [found, added] = sizes_.try_emplace(states);
-    if (!added) return found->second;
-    const int i = d_.graph().signals[at(states)].node;
-    const Node& node = d_.graph().nodes[at(i)];
-    const Dynamics& m = *d_.numbers.blocks[at(i)];
-    Eigen::VectorXd u = Eigen::VectorXd::Zero(m.B.cols());
-    for (int k = node.first_signal; k < node.state; ++k)
-      if (const Signal& in = d_.graph().signals[at(k)]; in.role == Role::input && in.active)
-        for (Eigen::Index j = 0; j < in.size; ++j) u(in.first + j) = around_.size(k, j);
-    const auto X = response<double>(*node.block, m, s_, d_.numbers.parameters).X;
-    found->second = (X.cwiseAbs() * u).cwiseMax(point_.value(states).col(0).cwiseAbs());
-    return found->second;
-  }
-
-  const Factored& d_;
-  const Evaluation<double>& point_;
-  double s_;
-  Surroundings around_;
-  std::map<int, Eigen::VectorXd> sizes_ = {};
-};
-
-/// These differences of the outputs, without outputs that are 0 because states cancel: the rotation
-/// of a body is a sum of angles.
-RowMatrix<double> without_zeros(const Factored& d, AroundStates& around, const RowMatrix<double>& y,
-                                RowMatrix<double> off) {
-  for (std::size_t o = 0; o < d.graph().outputs.size(); ++o) {
-    const int size = d.graph().outputs[o].size, unit = size == 6 ? 3 : 1;
-    for (int i = 0; i < size; i += unit) {
-      auto part = off.middleRows(d.layout().output_first[o] + i, unit);
-      const double value = y.middleRows(d.layout().output_first[o] + i, unit).cwiseAbs().maxCoeff();
-      if ((part.array().abs() <= kWarn * value).all()) continue;
-      const double zero = kLeftOfZero * around.of_output(o).segment(i, unit).maxCoeff();
-      if (value <= zero && (part.array().abs() <= zero).all()) part.setZero();
-    }
-  }
-  return off;
-}
-
 /// Share of the outputs that double loses at a real s. An output that is 0 by cancellation, without
 /// a size to compare with, counts as having lost none: it is rounding only.
 void find_lost(const Factored& d, Evaluation<double>& point, double s, Check& check) {
@@ -269,11 +210,25 @@ void find_lost(const Factored& d, Evaluation<double>& point, double s, Check& ch
   const RowMatrix<double> y = point.outputs();
   AroundStates around(d, point, s);
   const auto lost = [&](const RowMatrix<double>& off) {
-    return lost_of_outputs(d, point.unknowns(), y, without_zeros(d, around, y, off));
+    return lost_of_outputs(d, point.unknowns(), y, around.without_zeros(y, off));
   };
   const double told = std::max(lost(y - before), lost(point.rounding()));
   check.rounding_alone = told < check.lost;
   check.lost = std::min(check.lost, told);
+}
+
+Note note_of(const ApplyDifference& found, double s) {
+  const std::string why =
+      found.prevented.empty()
+          ? "please report this diagram"
+          : fmt::format(
+                "closed chains prevent the motion {}, which an equation prescribes: remove "
+                "that equation, or open the chain",
+                found.prevented);
+  return {Note::Kind::warning, "certify",
+          fmt::format("apply and the transfer differ by {:.1g} at s = {:.3g}, so do A, B, C, D and "
+                      "simulate: {}",
+                      found.worst, s, why)};
 }
 
 /// At one real s: equations that hold for every real s hold for every s, at half the arithmetic.
@@ -288,6 +243,9 @@ void check_at_s(const Factored& d, const RowMatrix<double>& u, double s, Check& 
   check.certificate.residual = written.worst;
   check.certificate.residual_where = written.where;
   find_lost(d, point, s, check);
+  const ApplyDifference found = apply_difference(d, point, u, s, check.lost);
+  check.certificate.apply_against_transfer = found.worst;
+  if (found.worst > kWarn) check.notes.push_back(note_of(found, s));
   if (const double lost = check.lost; lost > kWarn)
     check.notes.push_back(
         {Note::Kind::warning, "certify",

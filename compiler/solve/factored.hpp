@@ -66,10 +66,13 @@ struct Factored {
   const Layout& layout() const { return skeleton->layout; }
   const std::vector<std::string>& state_names() const { return states.names(layout().states); }
   /// Blocks of the transfer, units of outputs x units of inputs, that are 0 by symmetry: in 32
-  /// digits (or 50, if these have none) they are at rounding level, or the last place of the data
-  /// in double changes them altogether, as a 0 after rotations of frames. Found once, at pick_s,
+  /// digits (or 50, if these have none) they are at rounding level, or smaller than in double by as
+  /// much as rounding is, or the last place of the data in double changes them altogether, as a 0
+  /// after rotations of frames. Found once, at pick_s,
   /// when rounding in double is first in doubt: the cost of some ten evaluations in double.
   const Eigen::MatrixX<bool>& zero_blocks() const;
+  /// Sets the outputs to 0 whose zero_blocks() are 0 for all inputs. outputs x columns.
+  void clear_zero_outputs(solve::RowMatrix<double>& outputs) const;
   const std::shared_ptr<const solve::ColumnScale>& scale() const {
     return scale_as_written ? scale_as_written : factors->scale();
   }

@@ -131,10 +131,26 @@ Eigen::MatrixXd beside(const Eigen::MatrixXd& size) {
   return size.rowwise().maxCoeff().cwiseSqrt() * size.colwise().maxCoeff().cwiseSqrt();
 }
 
+/// The share of a block in double that finer arithmetic leaves of a 0, at most: T has 53 bits more,
+/// some of which the elimination may lose.
+constexpr double kLeftOfNoise = 0x1p-40;
+
+/// Sizes of the blocks in double, at pick_s; 0 if double has no pivot.
+Eigen::MatrixXd sizes_in_double(const Factored& d, const std::vector<Eigen::Index>& rows,
+                                const std::vector<Eigen::Index>& cols) {
+  using Double = std::complex<double>;
+  try {
+    return block_sizes(Evaluation<Double>(d, pick_s(d), unit_inputs<Double>(d)).outputs(), rows,
+                       cols);
+  } catch (const Error&) {
+    return Eigen::MatrixXd::Zero(std::ssize(rows) - 1, std::ssize(cols) - 1);
+  }
+}
+
 /// Blocks that the rounding of T, or of the data, changes altogether: zeros by structure, by
 /// symmetry, or by rotations of frames, whose cos(pi / 2) is 6e-17. Of unknowns that are 0 the rows
-/// have no terms, so that their rounding is relative to other blocks. None if T has no digit of any
-/// block.
+/// have no terms: their rounding is relative to other blocks, or they are 0 if they are smaller
+/// than in double by most of the digits that T has more. None if T has no digit of any block.
 template <class T>
 std::optional<Eigen::MatrixX<bool>> zeros_in(const Factored& d) {
   try {
@@ -144,7 +160,8 @@ std::optional<Eigen::MatrixX<bool>> zeros_in(const Factored& d) {
                           off = block_sizes(rounded<T>(point.rounding()), rows, cols);
     const double epsilon = solve::Scalar<T>::epsilon(),
                  of_data = kRoundings * solve::Scalar<double>::epsilon() / epsilon;
-    const Eigen::ArrayXXd of_rounding = kNoise * off.array();
+    const Eigen::ArrayXXd of_rounding =
+        (kNoise * off).cwiseMax(kLeftOfNoise * sizes_in_double(d, rows, cols)).array();
     const Eigen::MatrixX<bool> zeros = !(size.array() > of_rounding);
     if (!zeros.all())
       return !(size.array() >
@@ -166,6 +183,13 @@ const Eigen::MatrixX<bool>& Factored::zero_blocks() const {
                                                    n(groups_of_inputs(*this)), true);
   });
   return zeros;
+}
+
+void Factored::clear_zero_outputs(solve::RowMatrix<double>& outputs) const {
+  const std::vector<Eigen::Index> rows = groups_of_outputs(*this);
+  for (Eigen::Index i = 0; i < zero_blocks().rows(); ++i)
+    if (zero_blocks().row(i).all())
+      outputs.middleRows(rows[at(i)], rows[at(i + 1)] - rows[at(i)]).setZero();
 }
 
 template <class T>

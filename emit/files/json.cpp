@@ -44,6 +44,7 @@ Json certificate(const Certificate& c) {
           {"residual_where", c.residual_where},
           {"s", c.s},
           {"at_instant", c.at_instant},
+          {"apply_against_transfer", found(c.apply_against_transfer)},
           {"dense_against_factors", found(c.dense_against_factors)},
           {"dense_error", found(c.dense_error)},
           {"dense_error_s", complex(c.dense_error_s)},

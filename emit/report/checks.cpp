@@ -43,6 +43,13 @@ void add_basic(std::vector<Item>& items, const Certificate& c) {
              c.at_instant ? "and states as single blocks would have at" : "at", c.s,
              c.residual_where.empty() ? "" : " Worst: " + c.residual_where + "."),
          judged(c.residual, kHolds)});
+  if (c.apply_against_transfer >= 0)
+    items.push_back(
+        {"rates at an instant against the transfer", number(c.apply_against_transfer, 2),
+         fmt::format("The largest relative difference of s x and ẋ, and of the outputs, for one "
+                     "random input at s = {:.3g} rad/s: by two eliminations.",
+                     c.s),
+         judged(c.apply_against_transfer, kHolds)});
   if (c.dense_against_factors >= 0)
     items.push_back(
         {"A, B, C, D against the factored system", number(c.dense_against_factors, 2),

@@ -1,0 +1,62 @@
+#include <doctest/doctest.h>
+
+#include <titop/titop.hpp>
+
+#include "../support/notes.hpp"
+
+/// apply against the transfer, by the default certificate: the scenes in which rates or positions
+/// are integrated, and states follow from others.
+
+using namespace titop;
+
+namespace {
+
+/// A body that turns with another and is held beside it: half of its motion is tied at either end,
+/// and its rates follow from the other body's.
+Diagram turned() {
+  const Rotation I = Rotation::about({0, 0, 1}, 0.0);
+  Diagram d{"turned"};
+  auto T = d.input("T");
+  auto a = d.add("a", RigidBody{.children = {{"e", {1, 0, 0}}, {"k", {0, 1, 0}}}});
+  auto b = d.add("b", RigidBody{.children = {{"k", {0, 0, 0}}}});
+  a.parent.accel.linear = 0;
+  release(a);
+  b.parent.accel.angular = I * a.child("e").accel.angular;
+  a.child("e").force.angular += I * b.parent.reaction.angular();
+  release(b);
+  weld(b.child("k"), a.child("k"), I);
+  b.child("k").force.angular.along({0, 0, 1}) += T;
+  d.output("rate", 6) = b.parent.rate;
+  return d;
+}
+
+}  // namespace
+
+TEST_CASE("states that follow from others: apply and the transfer agree") {
+  const Certificate c = compile(turned()).certificate();
+  CHECK_FALSE(c.at_instant);
+  CHECK(c.apply_against_transfer == 0);
+}
+
+TEST_CASE("a motion that a closed chain prevents and an equation prescribes is warned of") {
+  const Rotation I = Rotation::about({0, 0, 1}, 0.0);
+  Diagram d{"locked"};
+  auto u = d.input("u");
+  auto base = d.add("base", RigidBody{.children = {{"A", {0, 0, 0}}, {"B", {1, 0, 0}}}});
+  ModalData data;  // two bending modes that move the tip, none along the mast
+  data.omega = Eigen::VectorXd{{10, 20}};
+  data.xi = Eigen::VectorXd::Zero(2);
+  data.L_P = Eigen::MatrixXd{{0, 1, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0}};
+  data.D_P = 9 * Matrix6::Identity();
+  data.children = {
+      {"tip", {1, 0, 0}, Eigen::MatrixXd{{0, 0}, {1, 0}, {0, 1}, {0, 0}, {0, 0}, {0, 0}}}};
+  auto mast = d.add("mast", FlexibleBody{data});
+  base.parent.accel = 0;
+  auto jack = slide(d, "jack", mast, base.child("A"), I, {1, 0, 0});
+  weld(mast.child("tip"), base.child("B"), I);
+  jack.accel = u;
+  d.output("x") = jack.travel;
+  const System system = compile(d);
+  CHECK(system.certificate().apply_against_transfer > 0.5);
+  CHECK(titop_test::noted(system, Note::Kind::warning, "certify", {"jack.rate"}));
+}
