@@ -4,6 +4,7 @@
 #include <cmath>
 #include <titop/graph/block.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/paths.hpp>
 #include <titop/graph/pole.hpp>
 #include <unordered_set>
 
@@ -67,7 +68,8 @@ Block::Response Block::response(std::complex<double> s, ParameterValues values) 
   const Eigen::MatrixXcd E = s * Eigen::MatrixXcd::Identity(n, n) - d->A;
   const linalg::Solution x = linalg::solve(E, d->B.cast<std::complex<double>>());
   if (!(x.rcond > 0) || !x.z.allFinite()) throw pole_at(s, fmt::format("a {}", type()));
-  return {x.z, d->C * x.z + d->D};
+  const Eigen::MatrixXcd X = x.z.cwiseProduct(paths(d->A, d->B));
+  return {X, d->C * X + d->D};
 }
 
 Pattern Block::feedthrough() const {

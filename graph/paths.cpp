@@ -3,26 +3,34 @@
 
 namespace titop {
 
-Eigen::MatrixXd paths(const StateSpace& m) {
-  Eigen::MatrixXd result = Eigen::MatrixXd::Zero(m.D.rows(), m.D.cols());
-  std::vector<Eigen::Index> next;
-  for (Eigen::Index j = 0; j < m.D.cols(); ++j) {
-    Eigen::VectorXd moved = Eigen::VectorXd::Zero(m.A.rows());
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+MatrixXd paths(const MatrixXd& A, const MatrixXd& B) {
+  MatrixXd result = MatrixXd::Zero(B.rows(), B.cols());
+  std::vector<Index> next;
+  for (Index j = 0; j < B.cols(); ++j) {
     const auto reach = [&](const auto& column) {
-      for (Eigen::Index i = 0; i < moved.size(); ++i)
-        if (column(i) != 0 && moved(i) == 0) moved(i) = 1, next.push_back(i);
+      for (Index i = 0; i < B.rows(); ++i)
+        if (column(i) != 0 && result(i, j) == 0) result(i, j) = 1, next.push_back(i);
     };
-    reach(m.B.col(j));
+    reach(B.col(j));
     while (!next.empty()) {
-      const Eigen::Index k = next.back();
+      const Index k = next.back();
       next.pop_back();
-      reach(m.A.col(k));
-    }
-    for (Eigen::Index i = 0; i < m.D.rows(); ++i) {
-      const bool seen = (m.C.row(i).transpose().array() * moved.array() != 0).any();
-      result(i, j) = m.D(i, j) != 0 || seen;
+      reach(A.col(k));
     }
   }
+  return result;
+}
+
+MatrixXd paths(const StateSpace& m) {
+  const MatrixXd moved = paths(m.A, m.B);
+  MatrixXd result(m.D.rows(), m.D.cols());
+  for (Index j = 0; j < result.cols(); ++j)
+    for (Index i = 0; i < result.rows(); ++i)
+      result(i, j) =
+          m.D(i, j) != 0 || (m.C.row(i).transpose().array() * moved.col(j).array() != 0).any();
   return result;
 }
 

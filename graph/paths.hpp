@@ -8,4 +8,7 @@ namespace titop {
 /// leads, else 0; outputs x inputs. O(n^2 inputs).
 Eigen::MatrixXd paths(const StateSpace& m);
 
+/// Likewise for every state and column of B; states x columns. O(n^2 columns).
+Eigen::MatrixXd paths(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
+
 }  // namespace titop

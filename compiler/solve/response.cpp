@@ -193,27 +193,60 @@ void swap_rows(Index n, Index columns, T* x, Index a, Index b) {
   for (T* const end = x + columns * n; x != end; x += n) std::swap(x[a], x[b]);
 }
 
+/// States part by part, those that act first; pivots are chosen within a part, as in units in which
+/// its rows and columns have equal norms.
+struct PartOrder {
+  boost::container::small_vector<Index, 4> states;
+  boost::container::small_vector<Index, 4> end;      ///< of the part of each of these
+  boost::container::small_vector<double, 4> weight;  ///< one over the unit of each
+};
+
+PartOrder in_parts(const Eigen::MatrixXd& A) {
+  const Index n = A.rows();
+  if (n < 2) return {{0}, {n}, {1}};
+  if (n == 2 && A(0, 1) != 0)  // many blocks: without a graph
+    return A(1, 0) != 0 ? PartOrder{{0, 1}, {2, 2}, {1, 1}} : PartOrder{{1, 0}, {1, 2}, {1, 1}};
+  PartOrder order;
+  const std::vector<std::vector<int>> parts = linalg::parts(A);
+  for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
+    order.states.insert(order.states.end(), part->begin(), part->end());
+    order.end.resize(order.states.size(), std::ssize(order.states));
+    Eigen::MatrixXd own = A(*part, *part);
+    for (const double unit : linalg::similarity_scaling(own)) order.weight.push_back(1 / unit);
+  }
+  return order;
+}
+
 }  // namespace
 
 template <class T>
 Resolvent<T>::Resolvent(const Dynamics& dynamics, const T& s)
     : modal_(dynamics.modal.get()), s_(s), n_(dynamics.A.rows()) {
   if (modal_) return;
+  PartOrder order = in_parts(dynamics.A);
   lu_.reserve(at(n_ * n_));
-  for (const double& a : dynamics.A.reshaped()) lu_.push_back(-lift<T>(a));
+  for (Index j = 0; j < n_; ++j)
+    for (Index i = 0; i < n_; ++i)
+      lu_.push_back(-lift<T>(dynamics.A(order.states[at(i)], order.states[at(j)])));
   row_.reserve(at(n_));
   T* const lu = lu_.data();
   for (Index i = 0; i < n_; ++i) lu[i + i * n_] += s;
   for (Index k = 0; k < n_; ++k) {
     T* const column = lu + k * n_;
     Index best = k;
-    for (Index i = k + 1; i < n_; ++i)
-      if (solve::size_of(column[i]) > solve::size_of(column[best])) best = i;
+    double most = 0;
+    for (Index i = k; i < order.end[at(k)]; ++i)
+      if (const double size = solve::size_of(column[i]) * order.weight[at(i)]; size > most)
+        best = i, most = size;
     row_.push_back(best);
-    if (best != k) swap_rows(n_, n_, lu, k, best);
+    if (best != k) {
+      swap_rows(n_, n_, lu, k, best);
+      std::swap(order.weight[at(k)], order.weight[at(best)]);
+    }
     for (Index i = k + 1; i < n_; ++i) column[i] /= column[k];
     reduce(n_, lu, k, n_ - k - 1, column + n_);
   }
+  if (n_ > 0 && !std::ranges::is_sorted(order.states)) state_ = std::move(order.states);
 }
 
 template <class T>
@@ -232,6 +265,10 @@ Dense<T> Resolvent<T>::times(Dense<T> r) const {
 template <class T>
 void Resolvent<T>::apply(Index columns, T* r) const {
   if (modal_) return apply_modes(columns, r);
+  if (!state_.empty()) {
+    const solve::Dense<T> given = Eigen::Map<const solve::Dense<T>>(r, n_, columns);
+    Eigen::Map<solve::Dense<T>>(r, n_, columns) = given(state_, Eigen::all);
+  }
   const T* const lu = lu_.data();
   // L is in the last order of the rows: all of them change places first.
   for (Index k = 0; k < n_; ++k)
@@ -242,6 +279,9 @@ void Resolvent<T>::apply(Index columns, T* r) const {
       x[k] /= lu[k + k * n_];
       solve::subtract(k, x[k], lu + k * n_, x);
     }
+  if (state_.empty()) return;
+  const solve::Dense<T> found = Eigen::Map<const solve::Dense<T>>(r, n_, columns);
+  Eigen::Map<solve::Dense<T>>(r, n_, columns)(state_, Eigen::all) = found;
 }
 
 template <class T>

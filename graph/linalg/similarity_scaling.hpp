@@ -18,7 +18,8 @@ Eigen::VectorXd similarity_scaling(Eigen::MatrixXd& A);
 Eigen::VectorXd similarity_scaling_of_parts(Eigen::MatrixXd& A);
 
 /// Sets of states that all act on one another, directly or through others (the strong components of
-/// A's pattern of entries other than 0): the eigenvalues of A are those of its parts. O(n^2).
+/// A's pattern of entries other than 0): the eigenvalues of A are those of its parts. A part acts
+/// only on those before it. O(n^2).
 std::vector<std::vector<int>> parts(const Eigen::MatrixXd& A);
 
 }  // namespace titop::linalg

@@ -4,6 +4,7 @@
 #include <optional>
 #include <titop/graph/linalg/shifted.hpp>
 #include <titop/graph/nodes/lti.hpp>
+#include <titop/graph/paths.hpp>
 #include <titop/graph/pole.hpp>
 
 namespace titop {
@@ -33,14 +34,16 @@ class LtiBlock : public Block {
     std::call_once(solver_once_, [&] {
       try {
         solver_.emplace(matrices_->A, matrices_->B);
+        paths_ = paths(matrices_->A, matrices_->B);
       } catch (const Error&) {  // no Schur form: point by point
       }
     });
     if (!solver_) return Block::response(s, values);
     linalg::Solution x = solver_->solve(s);
     if (!(x.rcond > 0) || !x.z.allFinite()) throw pole_at(s, fmt::format("a {}", type_));
-    Eigen::MatrixXcd Y = matrices_->C * x.z + matrices_->D;
-    return {std::move(x.z), std::move(Y)};
+    Eigen::MatrixXcd X = x.z.cwiseProduct(paths_);
+    Eigen::MatrixXcd Y = matrices_->C * X + matrices_->D;
+    return {std::move(X), std::move(Y)};
   }
   /// A controller that was given without a direct term has none: its data are its type.
   Pattern feedthrough() const override {
@@ -56,6 +59,7 @@ class LtiBlock : public Block {
   std::shared_ptr<const Dynamics> matrices_;
   mutable std::once_flag solver_once_;
   mutable std::optional<linalg::ShiftedSolver> solver_;
+  mutable MatrixXd paths_;  ///< to the states
 };
 
 /// y = the integral of u, also of a user's Lti: passes search for these.
