@@ -96,6 +96,20 @@ std::vector<MatrixXcd> as_written(const Graph& g, const std::vector<double>& val
   return list;
 }
 
+/// The dense model also at the frequencies of its poles, up to as many as the grid has points: a
+/// pole with little effect shows nowhere else.
+void add_poles(const System& system, const std::vector<double>& omegas,
+               std::vector<Complex>& points, std::vector<MatrixXcd>& factored) {
+  const std::size_t most = points.size(), step = most > 0 ? (omegas.size() + most - 1) / most : 1;
+  for (std::size_t k = 0; most > 0 && k < omegas.size(); k += step) {
+    const Complex s(0.05 * omegas[k], omegas[k]);
+    if (std::optional<MatrixXcd> G = detail::transfer_if_any(system, s)) {
+      points.push_back(s);
+      factored.push_back(std::move(*G));
+    }
+  }
+}
+
 /// Each block over its own size, for the error of writing the model. Only blocks that may be
 /// rounding alone, such as zeros by symmetry, are measured by the terms that cancel in them: the
 /// measure's, and, if something differs, those of the elimination and of rounding in the model as
@@ -216,11 +230,6 @@ void list_faults(const System& system, FullCertificate& c) {
   };
   fault(zero ? -1 : c.grid.written, certification::kHolds,
         "the transfer differs from that of the equations as written by");
-  if (c.order.removed.empty() &&
-      c.order.change > 0)  // put back (compiler/system/minimal_model.cpp)
-    c.faults.push_back(
-        fmt::format("removing modes that were judged without effect changes the transfer by {:.1e}",
-                    c.order.change));
   fault(c.poles.error, certification::kPoleHolds,
         "poles of the dense model differ from the factors' by");
   if (c.passivity.structure) {
@@ -293,9 +302,12 @@ FullCertificate certify(const System& system, const Full& subject) {
   if (c.grid.points > 0) {
     detail::Measure measure = detail::measure(*system.stage().source, {});
     if (dense) {
-      measure.terms =
-          detail::terms(before.model, points).cwiseMax(detail::terms(system.state_space(), points));
-      check_dense(system, before, points, factored, measure, c.grid);
+      std::vector<Complex> of_dense = points;
+      std::vector<MatrixXcd> there = factored;
+      add_poles(system, omegas, of_dense, there);
+      measure.terms = detail::terms(before.model, of_dense)
+                          .cwiseMax(detail::terms(system.state_space(), of_dense));
+      check_dense(system, before, of_dense, there, measure, c.grid);
     }
     check_written(system, subject, points, factored, measure, c.grid);
     check_pairs(system, points, factored, growing, c);

@@ -39,7 +39,9 @@ struct FullCertificate {
   struct Grid : Checked {
     int points = 0;  ///< where the factors have a transfer; `why_not`: other requested points
     double lowest = 0, highest = 0;  ///< w [rad/s]
-    double dense = -1;               ///< the minimal dense model against the factors
+    /// The minimal dense model against the factors, also at the frequencies w of its poles (up to
+    /// as many as `points`).
+    double dense = -1;
     std::complex<double> dense_s;
     /// `transfer` of the diagram as written against the factors, over those terms in all blocks
     /// if they are larger, because of its own rounding; -1: too large, or over-constrained.
@@ -113,8 +115,8 @@ struct FullCertificate {
   /// entries of the dense model too, its rounding error (basic.dense_error, grid.dense) to 3e-7,
   /// the limit of generated C++, poles to 1e-6, a structure passive to 1e-9 and reciprocal to 1e-8,
   /// without poles right of the axis (unless one-way blocks that read it have states and are not
-  /// only integrators), the exact order inside the verdict's interval, and no state that the order
-  /// step had to restore.
+  /// only integrators), and the exact order inside the verdict's interval. A removal that changed
+  /// the transfer and was put back is no fault of the model: OrderVerdict::change reports it.
   std::vector<std::string> faults;
   bool holds() const { return faults.empty(); }
 };

@@ -4,16 +4,16 @@
 #include <limits>
 #include <titop/compiler/certificate/dense_check.hpp>
 #include <titop/compiler/certificate/tried_points.hpp>
-#include <titop/compiler/certificate/without_rounding.hpp>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
 #include <titop/compiler/solve/factored.hpp>
-#include <titop/compiler/solve/instant.hpp>
+#include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
-/// The dense model against the factors that it was written from.
+/// The transfer of the dense model against that of the factors, as far as rounding of its entries
+/// changes it.
 namespace titop::detail {
 namespace {
 
@@ -26,114 +26,6 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kDoubted = 1e-9;  ///< a larger error is computed again, at some cost
 
 using linalg::at;
-
-/// Rows of [xdot; y] that share a size, first and count.
-using Groups = std::vector<std::pair<Index, Index>>;
-
-/// Block by block, then unit by unit.
-Groups groups(const Factored& d) {
-  Groups result;
-  const std::vector<int>& kept = d.states.kept();
-  for (const int i : d.layout().state_nodes) {
-    const int begin = d.layout().state_first[at(i)],
-              end = begin + static_cast<int>(d.numbers.blocks[at(i)]->A.rows());
-    const auto first = std::lower_bound(kept.begin(), kept.end(), begin);
-    result.emplace_back(first - kept.begin(), std::lower_bound(first, kept.end(), end) - first);
-  }
-  Index first = d.states.order();
-  for (const int size : measure(d.graph(), {}).rows) {
-    result.emplace_back(first, size);
-    first += size;
-  }
-  return result;
-}
-
-/// Columns of [xdot; y] of the model, and their rounding.
-struct ModelColumns {
-  MatrixXd value, rounding;
-};
-
-ModelColumns by_factors(const Factored& d, const solve::RowMatrix<double>& x,
-                        const solve::RowMatrix<double>& u) {
-  const solve::RowMatrix<double> all = d.states.expanded(x, u);
-  solve::RowMatrix<double> known(all.rows() + u.rows(), u.cols());
-  known << all, u;
-  const Instant now(d, std::move(known));
-  // Cancellation on the way is not contained in the last terms: a sample of rounding gives its
-  // size.
-  const Instant off = now.doubt();
-  const auto both = [&](const solve::RowMatrix<double>& xdot, const solve::RowMatrix<double>& y) {
-    MatrixXd result(x.rows() + y.rows(), u.cols());
-    result << d.states.kept_rows(xdot), y;
-    return result;
-  };
-  const MatrixXd terms = kEpsilon * both(now.xdot_terms(), now.outputs_terms());
-  return {both(now.xdot(), now.outputs()),
-          terms.cwiseMax(both(off.xdot(), off.outputs()).cwiseAbs())};
-}
-
-/// Columns of [xdot; y]: states alone and inputs alone, so that in any units neither hides the
-/// other.
-constexpr Index kAlone = 2;
-
-/// |dA| |x| and the like of a model's entries.
-MatrixXd product(const StateSpace& of, const MatrixXd& x, const MatrixXd& u) {
-  MatrixXd result(of.A.rows() + of.C.rows(), kAlone);
-  result << of.A * x.cwiseAbs() + of.B * u.cwiseAbs(), of.C * x.cwiseAbs() + of.D * u.cwiseAbs();
-  return result;
-}
-
-/// The largest |off| over the terms whose rounding is known; in groups at the level of `noise`,
-/// where it is known, over the larger of rounding and noise.
-double beside_terms(const MatrixXd& off, const ModelColumns& r, const Groups& groups,
-                    const MatrixXd& noise = {}) {
-  if (!off.allFinite() || !r.rounding.allFinite() || !noise.allFinite()) return kInfinity;
-  const auto around = [&r](Index first, Index count, Index j) {
-    return std::sqrt(r.value.middleRows(first, count).cwiseAbs().maxCoeff()) *
-           std::sqrt(r.value.col(j).cwiseAbs().maxCoeff());
-  };
-  double worst = 0;
-  for (const auto& [first, count] : groups)
-    for (Index j = 0; j < kAlone && count > 0; ++j) {
-      const auto largest = [first = first, count = count, j](const MatrixXd& m) {
-        return m.col(j).segment(first, count).cwiseAbs().maxCoeff();
-      };
-      double size = largest(r.rounding);
-      if (noise.size() > 0 && largest(r.value) <= kNoise * largest(noise))
-        size = std::max(size, largest(noise));
-      if (largest(r.value) == 0)  // hit to the last bit, as another order of sums may not
-        size = std::max(size, kEpsilon * kHitBy * around(first, count, j));
-      if (size > 0) worst = std::max(worst, kEpsilon * (largest(off) / size));
-    }
-  return worst;
-}
-
-}  // namespace
-
-double dense_difference(const Factored& d, const StateSpace& m) {
-  const Index n = m.A.rows();
-  solve::RowMatrix<double> x = MatrixXd::Zero(n, kAlone), u = MatrixXd::Zero(m.B.cols(), kAlone);
-  SteadyRandom random;
-  for (Index i = 0; i < n; ++i) x(i, 0) = random.next();
-  for (Index i = 0; i < u.rows(); ++i) u(i, 1) = random.next();
-  ModelColumns r = by_factors(d, x, u);
-  MatrixXd off = r.value, of_model = MatrixXd::Zero(off.rows(), kAlone);
-  const auto take = [&](const MatrixXd& matrix, Index first, Index column, const auto& factors) {
-    for (Index j = 0; j < matrix.cols(); ++j) {  // once through memory
-      const double factor = factors(j, column);
-      off.col(column).segment(first, matrix.rows()) -= matrix.col(j) * factor;
-      of_model.col(column).segment(first, matrix.rows()) +=
-          matrix.col(j).cwiseAbs() * (kEpsilon * std::abs(factor));
-    }
-  };
-  take(m.A, 0, 0, x), take(m.B, 0, 1, u), take(m.C, n, 0, x), take(m.D, n, 1, u);
-  r.rounding = r.rounding.cwiseMax(of_model);
-  const double worst = beside_terms(off, r, groups(d));
-  if (worst <= kDoubted || worst == kInfinity) return worst;
-  return beside_terms(off, r, groups(d), product(rounding_of(d, m), x, u));
-}
-
-namespace {
 
 using T = std::complex<double>;
 
@@ -193,6 +85,21 @@ std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
   return result;
 }
 
+/// C x + D u - y beyond the rounding of both: that of one product is negligible, entries of C and D
+/// that are not those of the factors are not.
+solve::RowMatrix<T> off_by_outputs(const StateSpace& m, const solve::RowMatrix<T>& x,
+                                   const solve::RowMatrix<T>& u, const solve::RowMatrix<T>& y,
+                                   const solve::RowMatrix<T>& rounding) {
+  solve::RowMatrix<T> off = m.C * x + m.D * u - y;
+  const MatrixXd terms =
+      m.C.cwiseAbs() * x.cwiseAbs() + m.D.cwiseAbs() * u.cwiseAbs() + MatrixXd(y.cwiseAbs());
+  for (Index i = 0; i < off.rows(); ++i)
+    for (Index j = 0; j < off.cols(); ++j)
+      if (std::abs(off(i, j)) <= kNoise * (kEpsilon * terms(i, j) + std::abs(rounding(i, j))))
+        off(i, j) = 0;
+  return off;
+}
+
 /// The residual of the factors' states in the equations of the dense model, A x + B u - s x, mapped
 /// to the outputs by the factors. Points where these have no digit (springs along directions that
 /// chains lock, far below all modes) give no verdict on the model: they go to `not_tried`.
@@ -218,9 +125,9 @@ std::vector<Sample> sample(const Factored& d, const StateSpace& m, const solve::
   std::vector<Sample> result;
   for (std::size_t i = 0; i < list.size(); ++i) {
     const solve::RowMatrix<T> left = Ax[i] + m.B * u - list[i] * x[i];
-    // The rounding of C itself is one product: negligible here.
-    const solve::RowMatrix<T> change = points[i].forced(d.states.expanded(left));
     const auto& y = points[i].outputs();
+    const solve::RowMatrix<T> change = points[i].forced(d.states.expanded(left)) +
+                                       off_by_outputs(m, x[i], u, y, points[i].rounding());
     result.push_back({list[i],
                       std::abs(list[i]) < kBelow * where.slowest,
                       y,
@@ -246,6 +153,21 @@ void leave_out_lost(std::vector<Sample>& samples, std::vector<T>& not_tried) {
     for (MatrixXd* m : {&p.off, &p.sizes.value, &p.sizes.rounding}) *m = lost.select(0, *m);
     if (!p.below) not_tried.push_back(p.s);
   }
+}
+
+/// Counts what double gets wrong in the outputs as their rounding: an output that is 0 because
+/// states cancel may be that alone.
+void find_rounding(Sample& p, const Factored& d, const solve::RowMatrix<T>& u,
+                   const std::vector<int>& units) try {
+  using Finer = std::complex<solve::DoubleDouble>;
+  const solve::RowMatrix<Finer> inputs = solve::lifted<Finer>(u);
+  const Evaluation<Finer> point(d, solve::Scalar<Finer>::from(p.s), inputs,
+                                solve::Refinement::settled);
+  const solve::RowMatrix<Finer> y = point.outputs();
+  solve::RowMatrix<T> off = p.y;
+  for (Index i = 0; i < off.size(); ++i) off(i) -= solve::Scalar<Finer>::round(y(i));
+  if (off.allFinite()) p.sizes.rounding = p.sizes.rounding.cwiseMax(by_unit(off, units));
+} catch (const Error&) {  // no digit here either: the estimate by double stays
 }
 
 constexpr Index kAnsweredUpTo = 100;  ///< states
@@ -327,7 +249,10 @@ DenseError dense_error(const Factored& d, const StateSpace& m) {
   DenseError found = worst_of(samples);
   const double worst = std::max(found.beside_largest.error, found.where_small.error);
   if (worst > kDoubted && m.order() <= kAnsweredUpTo) {
-    for (Sample& p : samples) bound_by_answer(p, m, u, units.rows);
+    for (Sample& p : samples) {
+      bound_by_answer(p, m, u, units.rows);
+      find_rounding(p, d, u, units.rows);
+    }
     found = worst_of(samples);
   }
   found = by_input(found, static_cast<int>(units.cols.size()));

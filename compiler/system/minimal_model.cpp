@@ -163,21 +163,21 @@ constexpr ExactOptions kCountedAlways = {.states = 60, .unknowns = 100},
 
 /// Takes out what exact arithmetic shows to be superfluous: if it counts fewer states for the
 /// diagram's numbers than are kept, and the transfer keeps its digits without them. More states
-/// than are kept may be due to rounding of these numbers.
-void lower_to_exact_order(const System& system, const SystemData& d, const StateSpace& dense,
+/// than are kept may be due to rounding of these numbers. False: nothing is taken out.
+bool lower_to_exact_order(const System& system, const SystemData& d, const StateSpace& dense,
                           const StateSpace& judged, Minimized& m) {
-  if (m.order.exact) return;
+  if (m.order.exact) return false;
   const ExactOrder exact = minreal::order_of_stage(
       d.skeleton->stage, dense.order(), m.order.decided() ? kCountedAlways : kCountedInDoubt,
       d.numbers.parameters);
-  if (!exact.decided) return;
+  if (!exact.decided) return false;
   m.order.lowest = std::min(m.order.lowest, exact.order);
   if (exact.order >= m.order.order) {
     m.order.highest = std::min(m.order.highest, exact.order);
-    return;
+    return false;
   }
   std::optional<minreal::ModelOfOrder> found = minreal::to_order(judged, exact.order);
-  if (!found) return;
+  if (!found) return false;
   Minimized fewer{std::move(found->model), m.order, std::move(found->notes)};
   fewer.order.order = fewer.order.highest = exact.order;
   fewer.order.undecided.clear();
@@ -185,9 +185,11 @@ void lower_to_exact_order(const System& system, const SystemData& d, const State
                                  "exact arithmetic counts it out"});
   const double allowed = std::max(minreal::kUnchanged, 10 * d.skeleton->options.resolution);
   const Change by = change(system, d, dense, fewer);
-  if (by.tried.empty() || std::max(by.by_modes, by.in_all) > allowed) return;
+  if (by.tried.empty() || std::max(by.by_modes, by.in_all) > allowed) return false;
+  fewer.order.change = by.by_modes;
   fewer.notes.insert(fewer.notes.begin(), to_string(fewer.order));
   m = std::move(fewer);
+  return true;
 }
 
 /// Notes the points at which the change was not measured; without any measurement no mode is
@@ -232,10 +234,12 @@ void minimize_checked(const System& system, const SystemData& d, StateSpace& den
   if (minreal::put_back(dense, resolution, lost, m)) {
     if (untried)
       m.notes.back() = "nothing was removed: near the removed modes the factors have no digit";
-    d.dense_notes.push_back(
-        {Note::Kind::warning, "minimize", fmt::format("{}: {}", m.notes.back(), m.notes.front())});
-    d.dense_order = std::move(m.order);
-    return;
+    if (!lower_to_exact_order(system, d, dense, judged, m)) {
+      d.dense_notes.push_back({Note::Kind::warning, "minimize",
+                               fmt::format("{}: {}", m.notes.back(), m.notes.front())});
+      d.dense_order = std::move(m.order);
+      return;
+    }
   }
   for (std::string& text : m.notes)
     d.dense_notes.push_back(
