@@ -31,6 +31,7 @@
 #include <titop/compiler/definition/transfer.hpp>
 #include <titop/compiler/diagram/dot.hpp>
 #include <titop/compiler/minreal/minimize.hpp>
+#include <titop/compiler/minreal/poles.hpp>
 #include <titop/compiler/realization/modal.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/emit/cpp/cpp.hpp>

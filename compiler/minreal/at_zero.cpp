@@ -155,4 +155,16 @@ RemovedStates take_out_at_zero(detail::Sampled& s, MatrixXd& energy) {
   return result;
 }
 
+MatrixXd without_poles_at_zero(const StateSpace& model, const MatrixXd& rounding) {
+  const auto n = model.A.rows();
+  const MatrixXd in(n, 0), out(0, n), none(0, 0);
+  detail::Sampled s = detail::sampled({model.A, in, out, none, model.states, {}, {}},
+                                      {rounding, {}, {}, {}, {}, {}, {}});
+  MatrixXd energy;
+  RemovedStates unused;
+  while (s.model.order() > 0 && take_out_once(s, driven, true, energy, unused)) {
+  }
+  return s.model.A;
+}
+
 }  // namespace titop::minreal

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <titop/compiler/certificate/without_rounding.hpp>
 #include <titop/compiler/realization/write_model.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
 #include <titop/compiler/solve/kernels.hpp>
@@ -249,7 +250,11 @@ Descriptor System::descriptor() const {
   return form;
 }
 
-std::vector<Pole> System::poles() const { return titop::poles(state_space()); }
+std::vector<Pole> System::poles() const {
+  const StateSpace& model = state_space();
+  const bool whole = model.order() > 0 && !data_->dense_order.judged;
+  return titop::poles(model, whole ? detail::rounding_of(*data_, model).A : MatrixXd());
+}
 
 namespace {
 

@@ -6,6 +6,7 @@
 #include <string>
 #include <titop/compiler/certificate/certificate.hpp>
 #include <titop/compiler/minreal/minimize.hpp>
+#include <titop/compiler/minreal/poles.hpp>
 #include <titop/compiler/passes/options.hpp>
 #include <titop/compiler/passes/stage.hpp>
 #include <titop/compiler/realization/descriptor.hpp>
@@ -118,7 +119,8 @@ class System {
   /// entries that have become 0 stay as zeros.
   void write(Descriptor& form) const;
 
-  /// Poles of state_space() with frequency, damping and the blocks that take part. O(n^3).
+  /// Poles of state_space() with frequency, damping and the blocks that take part
+  /// (compiler/minreal/poles.hpp). O(n^3).
   std::vector<Pole> poles() const;
 
   /// A new system with other values of parameters (Diagram::param); those not named keep theirs. It

@@ -46,6 +46,31 @@ TEST_CASE("wheels: the order is that of the momenta, and no pole lies right of t
   });
 }
 
+/// The angle of every wheel, the momenta about the axes of the wheels, and about an axis without
+/// one angle and momentum of the whole; without friction also rates of wheels that exert no torque.
+/// Without the law the hub's angles as well.
+int zeros_by_momentum(const Wheels& w) {
+  if (w.count == 0) return 0;
+  const int axes = std::min(w.count, 3), idle = w.count - axes;
+  if (!w.law) return w.count + 6 + (w.friction > 0 ? 0 : w.count);
+  return w.count + axes + 2 * (3 - axes) + (w.friction > 0 ? 0 : idle);
+}
+
+TEST_CASE("wheels: poles of the whole model: at 0 what is conserved, none right of the axis") {
+  all_satellites([](const Wheels& wheels, const System& minimal) {
+    const System whole = compile(satellite(wheels), {.minimize_up_to = 0});
+    int zeros = 0, others = 0;
+    for (const Pole& pole : whole.poles()) {
+      CHECK(pole.s.real() <= 0);
+      // The slowest is that of a wheel's bearing, 1e-6 / 0.08 rad/s.
+      if (pole.omega > 0) CHECK(pole.omega >= 1e-5);
+      (pole.omega == 0 ? zeros : others) += pole.pair ? 2 : 1;
+    }
+    CHECK(zeros == zeros_by_momentum(wheels));
+    CHECK(zeros + others == minimal.order());
+  });
+}
+
 TEST_CASE("wheels: the model without their momenta has the transfer of the factors") {
   all_satellites([](const Wheels& wheels, const System& system) {
     const int speeds = wheels.count;

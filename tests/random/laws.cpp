@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <titop/compiler/realization/modal.hpp>
+#include <titop/compiler/minreal/poles.hpp>
 
 #include "support/random_checks.hpp"
 

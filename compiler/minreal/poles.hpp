@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <string>
+#include <titop/graph/state_space.hpp>
+#include <utility>
+#include <vector>
+
+namespace titop {
+
+/// One pole, or one conjugate pair (then the one with positive imaginary part).
+struct Pole {
+  std::complex<double> s;  ///< [rad/s]
+  bool pair = false;       ///< s and conj(s)
+  double omega = 0;        ///< |s| [rad/s]
+  double hertz = 0;        ///< |s| / 2 pi [Hz]
+  double damping = 0;      ///< -Re(s) / |s| [-]; 0 for s = 0
+  /// Blocks that take part, with their share (participation factors summed over the block's
+  /// states, of total 1), largest first, down to 5 %.
+  std::vector<std::pair<std::string, double>> blocks;
+};
+
+/// Poles sorted by frequency. Undamped and proportionally damped models are solved as symmetric
+/// problems, so that undamped poles lie exactly on the axis and slow ones have as many digits as
+/// fast ones (`eigh_graded`; if a rigid motion is spread over several states, or beyond 400 pairs,
+/// poles slower than 3e-7 of the fastest are returned as 0). States that A couples to no others are
+/// exact poles. Other models: poles at 0 by rows of A that depend on the others up to the rounding
+/// of each entry (minreal/at_zero.hpp): momenta that rotors, joints and controllers conserve; the
+/// others are eigenvalues of the scaled A without these. O(n^3).
+///
+/// `rounding`: of the entries of A, as of a dense model with cancellation; empty: 2.2e-16 of each.
+std::vector<Pole> poles(const StateSpace& model, const Eigen::MatrixXd& rounding = {});
+
+/// A table: rad/s, Hz, damping, blocks.
+std::string to_string(const std::vector<Pole>& poles);
+
+}  // namespace titop
