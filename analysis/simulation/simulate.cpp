@@ -101,7 +101,8 @@ class OutputPeaks {
   void add_off(const Now& now, const VectorXd& off) {
     constexpr double kOfRounding = 1e6;
     const VectorXd rounding = instant(now.x, now.u).rounding().outputs().cwiseAbs();
-    off_ = off_.cwiseMax(off.array().isFinite().select(off.cwiseAbs(), HUGE_VAL).matrix());
+    const VectorXd all = off.cwiseAbs() + by_relations(now);
+    off_ = off_.cwiseMax(all.array().isFinite().select(all, HUGE_VAL).matrix());
     size_ = size_.cwiseMax(kOfRounding * rounding);
   }
   VectorXd outputs(const VectorXd& x, const VectorXd& u) const { return instant(x, u).outputs(); }
@@ -127,8 +128,17 @@ class OutputPeaks {
   }
 
  private:
+  /// Rounding of the states that follow from others: near a singular posture of a closed chain they
+  /// have fewer digits.
+  VectorXd by_relations(const Now& now) const {
+    if (d_.states.trivial()) return VectorXd::Zero(now.y.size());
+    const VectorXd off = d_.states.rounding(d_.states.expanded(now.x, now.u));
+    return instant_of_blocks(off, VectorXd::Zero(now.u.size())).outputs().cwiseAbs();
+  }
   detail::Instant instant(const VectorXd& states, const VectorXd& u) const {
-    const VectorXd all = d_.states.expanded(states, u);
+    return instant_of_blocks(d_.states.expanded(states, u), u);
+  }
+  detail::Instant instant_of_blocks(const VectorXd& all, const VectorXd& u) const {
     solve::RowMatrix<double> known(all.size() + u.size(), 1);
     known << all, u;
     return detail::Instant(d_, std::move(known), {}, solve::Refinement::settled);

@@ -78,8 +78,10 @@ struct Trajectory {
   /// output that is 0 by symmetry has no correct digit. Of the automatic choice's midpoint: the
   /// largest change from steps of twice the size (an h^2 method: about three times the error). Of
   /// the exact stepper: the effect of rounding in A and B, from the difference of their xdot from
-  /// that of the factors (sampled at up to a thousand times), propagated by the same steps: its
-  /// order of magnitude. Empty if midpoint or rk4 was chosen by the caller: no second run is made.
+  /// that of the factors (sampled at up to a thousand times), propagated by the same steps, its
+  /// order of magnitude. Both with the rounding of dependent states, which near a singular posture
+  /// of a closed chain have few digits. Empty if midpoint or rk4 was chosen by the caller: no
+  /// second run is made.
   Eigen::VectorXd error;
   std::vector<std::string> states, outputs;
 };

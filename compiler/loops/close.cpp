@@ -79,9 +79,9 @@ struct Closer {
         const ScalarColumn& s = c.scalars[at(f.dependent)];
         const auto [node, index] = state(s, level);
         Dependent dependent{node, index};
-        for (const auto& [independent, factor] : f.of) {
-          const auto [of, at_index] = state(c.scalars[at(independent)], level);
-          dependent.of.push_back({of, at_index, factor});
+        for (std::size_t k = 0; k < f.of.size(); ++k) {
+          const auto [of, at_index] = state(c.scalars[at(f.of[k].first)], level);
+          dependent.of.push_back({of, at_index, f.of[k].second, f.rounding[k]});
         }
         dependents.push_back(std::move(dependent));
         if (level == ClosureLevel::position) now.push_back(s);

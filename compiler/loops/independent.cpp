@@ -30,6 +30,16 @@ struct PivotRows {
   MatrixXd M;
 };
 
+/// Rounding of the rows of T = -pivots^-1 rest: each entry of both, in rows of norm 1 or less, is a
+/// sum of products of a few rotations and positions, off by a few units of that norm.
+Eigen::VectorXd rounding_by(const MatrixXd& pivots, const MatrixXd& T) {
+  constexpr double kUnits = 4 * 2.2e-16;
+  MatrixXd inverse = MatrixXd::Identity(pivots.rows(), pivots.rows());
+  pivots.triangularView<Eigen::Upper>().solveInPlace(inverse);
+  const double most = T.size() > 0 ? std::max(1.0, T.cwiseAbs().maxCoeff()) : 1;
+  return kUnits * most * inverse.cwiseAbs().rowwise().sum();
+}
+
 struct Fronts {
   std::vector<Role> role;
   Eigen::VectorXd soft;         ///< per column: worth of a pivot
@@ -296,15 +306,20 @@ struct Fronts {
         if (std::find(pivot_places.begin(), pivot_places.end(), i) == pivot_places.end())
           rest_places.push_back(i);
       MatrixXd T = -rows->M(Eigen::all, rest_places);
-      rows->M(Eigen::all, pivot_places).eval().triangularView<Eigen::Upper>().solveInPlace(T);
+      const MatrixXd pivots = rows->M(Eigen::all, pivot_places);
+      pivots.triangularView<Eigen::Upper>().solveInPlace(T);
+      const Eigen::VectorXd off = rounding_by(pivots, T);
       // Clears rounding between uncoupled directions.
       const double noise = kNoise * static_cast<double>(pivot_places.size());
       for (std::size_t k = 0; k < pivot_places.size(); ++k) {
         Independent::Follows f{rows->pivots[k]};
         for (std::size_t i = 0; i < rest_places.size(); ++i) {
           const int c = rows->columns[at(rest_places[i])];
-          if (const double t = T(static_cast<Index>(k), static_cast<Index>(i)); std::abs(t) > noise)
-            f.of.emplace_back(c, t * factor(f.dependent) / factor(c));
+          const double t = T(static_cast<Index>(k), static_cast<Index>(i));
+          if (std::abs(t) <= noise) continue;
+          const double unit = factor(f.dependent) / factor(c);
+          f.of.emplace_back(c, t * unit);
+          f.rounding.push_back(off(static_cast<Index>(k)) * unit);
         }
         result.follow.push_back(std::move(f));
       }

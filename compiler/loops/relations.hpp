@@ -64,6 +64,9 @@ struct Independent {
   struct Follows {
     int dependent = -1;
     std::vector<std::pair<int, double>> of = {};  ///< column, factor
+    /// Of each factor: rounding of the equilibrated relations, times the inverse of their pivots.
+    /// Near a singular posture it grows with 1 / distance.
+    std::vector<double> rounding = {};
   };
   std::vector<Follows> follow = {};
   double weakest = 1;  ///< smallest pivot that decided on a rank

@@ -93,6 +93,7 @@ struct Dependent {
   struct Share {
     int node = -1, state = -1;
     double factor = 0;
+    double rounding = 0;  ///< of the factor
   };
   int node = -1, state = -1;
   std::vector<Share> of = {};

@@ -56,12 +56,24 @@ StateMap::StateMap(const std::vector<Dependent>& dependents, const Layout& l) {
     if (!dependents.empty()) map.names.push_back(l.states[i]);
   }
   for (const Dependent& d : dependents) {
-    DependentRow row{l.state_first[at(d.node)] + d.state, {}};
-    for (const Dependent::Share& s : d.of)
+    DependentRow row{l.state_first[at(d.node)] + d.state, {}, {}};
+    for (const Dependent::Share& s : d.of) {
       row.of.emplace_back(l.state_first[at(s.node)] + s.state, s.factor);
+      row.rounding.push_back(s.rounding);
+    }
     map.rows.push_back(std::move(row));
   }
   map_ = std::make_shared<const Map>(std::move(map));
+}
+
+Eigen::VectorXd StateMap::rounding(const Eigen::VectorXd& all) const {
+  Eigen::VectorXd off = Eigen::VectorXd::Zero(all.size());
+  for (const DependentRow& row : map_->rows)
+    for (std::size_t k = 0; k < row.of.size(); ++k) {
+      const auto& [of, factor] = row.of[k];
+      off(row.state) += row.rounding[k] * std::abs(all(of)) + std::abs(factor) * off(of);
+    }
+  return off;
 }
 
 void StateMap::reduce(StateSpace& m) const {

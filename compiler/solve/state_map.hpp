@@ -39,6 +39,7 @@ class StateMap {
   struct DependentRow {
     int state = -1;
     std::vector<std::pair<int, double>> of;
+    std::vector<double> rounding;  ///< of each factor
   };
   const std::vector<DependentRow>& dependent() const { return map_->rows; }
 
@@ -57,6 +58,8 @@ class StateMap {
     }
     return all;
   }
+  /// Sizes of the rounding of T x, for the states of all blocks; 0 in those that are kept.
+  Eigen::VectorXd rounding(const Eigen::VectorXd& all) const;
   /// T x + R u.
   template <class Matrix>
   Matrix expanded(const Matrix& x, const Matrix& u) const {
