@@ -16,7 +16,8 @@ const Interface& bushing_face() {
       {},
       {{"displacement", 6, Quantity::position}, {"rate", 6, Quantity::velocity}},
       {"x", "y", "z", "rx", "ry", "rz", "x_rate", "y_rate", "z_rate", "rx_rate", "ry_rate",
-       "rz_rate"}};
+       "rz_rate"},
+      rates_follow(6)};
   return shared;
 }
 

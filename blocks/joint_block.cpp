@@ -26,6 +26,7 @@ Interface face_of(const std::vector<AxisNames>& names) {
   for (const AxisNames& n : names) face.outputs.push_back({n.position, 1, Quantity::position});
   for (const AxisNames& n : names) face.outputs.push_back({n.rate, 1, Quantity::velocity});
   for (const PortSpec& p : face.outputs) face.states.push_back(p.name);
+  face.rates = rates_follow(static_cast<int>(names.size()));
   return face;
 }
 

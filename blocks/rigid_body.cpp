@@ -68,6 +68,7 @@ Interface body_interface(const std::vector<std::string>& children, int modes) {
   }
   for (const char* suffix : {"", "_rate"})
     for (int i = 1; i <= modes; ++i) face.states.push_back(fmt::format("eta{}{}", i, suffix));
+  face.rates = rates_follow(modes);
   return face;
 }
 

@@ -14,7 +14,8 @@ const Interface& spring_face() {
   static const Interface shared{{{"child", 1, Takes::force}, {"parent", 1, Takes::accel}},
                                 {},
                                 {{"stretch", 1, Quantity::position}},
-                                {"stretch", "stretch_rate"}};
+                                {"stretch", "stretch_rate"},
+                                rates_follow(1)};
   return shared;
 }
 

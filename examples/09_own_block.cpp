@@ -45,6 +45,7 @@ class ProofMassBlock : public Block {
     face_.inputs = {{"coil", 1}};
     face_.outputs = {{"stroke", 1, titop::Quantity::position}};
     face_.states = {"delta", "deltad"};
+    face_.rates = {1, -1};  // deltad is the rate of delta
     const double m = p.mass, k = p.stiffness, c = p.damping;
     const Vector3d& r = p.axis;
     matrices_->A = (MatrixXd(2, 2) << 0, 1, -k / m, -c / m).finished();

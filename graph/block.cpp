@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <titop/graph/block.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/paths.hpp>
@@ -36,6 +37,12 @@ int Interface::find_channel(std::string_view name) const {
   const auto found = std::lower_bound(by_name.begin(), by_name.end(), name,
                                       [&](int i, std::string_view n) { return name_at(i) < n; });
   return found != by_name.end() && name_at(*found) == name ? *found : -1;
+}
+
+std::vector<int> rates_follow(int n) {
+  std::vector<int> rates(static_cast<std::size_t>(2 * n), -1);
+  std::iota(rates.begin(), rates.begin() + n, n);
+  return rates;
 }
 
 std::span<const Gains> Dynamics::gains_of_row(int row) const {
@@ -80,6 +87,15 @@ Pattern Block::moved_by() const { return Pattern::Constant(1, interface().input_
 
 Pattern Block::seen_by() const { return Pattern::Constant(interface().output_size(), 1, true); }
 
+Eigen::VectorXd stiffness_of(const Block& block, const Dynamics& d, ParameterValues values) {
+  const auto kinematics = block.kinematics(values);
+  if (kinematics && kinematics->stiffness.size() == d.A.rows()) return kinematics->stiffness;
+  Eigen::VectorXd result = Eigen::VectorXd::Zero(d.A.rows());
+  for (int i = 0; i < result.size(); ++i)
+    if (const int rate = block.interface().rate_of(i); rate >= 0) result(i) = -d.A(rate, i);
+  return result;
+}
+
 std::optional<Block::Cause> Block::why_singular(int, ParameterValues) const { return std::nullopt; }
 
 namespace {
@@ -122,6 +138,25 @@ class Inspection {
     if (sized(m, name, rows, columns)) finite(m, name);
   }
 
+  /// Each coordinate moves with its rate alone.
+  void coordinates(const Dynamics& d) {
+    for (Index i = 0; i < d.A.rows(); ++i) {
+      const int rate = block_.interface().rate_of(static_cast<int>(i));
+      if (rate < 0 ||
+          (d.A.row(i).cwiseAbs().sum() == 1 && d.A(i, rate) == 1 && d.B.row(i).isZero(0)))
+        continue;
+      const std::vector<std::string>& states = block_.interface().states;
+      mistakes.push_back(
+          {Code::bad_value,
+           fmt::format("{} of this {} moves with more than its rate {}",
+                       states[static_cast<std::size_t>(i)], block_.type(),
+                       states[static_cast<std::size_t>(rate)]),
+           {},
+           "its row of A has a 1 at its rate, all others and its row of B are 0; or its "
+           "interface() declares no rate for it"});
+    }
+  }
+
   std::vector<Mistake> mistakes;
 
  private:
@@ -139,6 +174,14 @@ std::vector<Mistake> mistakes_of(const Interface& interface, std::string_view ty
                           fmt::format("two states of this {} are called {}", type, state),
                           {},
                           "give every state in its interface() a name of its own"});
+  const auto n = interface.states.size();
+  bool fits = interface.rates.empty() || interface.rates.size() == n;
+  for (const int rate : interface.rates) fits = fits && rate >= -1 && rate < static_cast<int>(n);
+  if (!fits)
+    mistakes.push_back({Code::bad_value,
+                        fmt::format("the rates of this {} are not those of its {} states", type, n),
+                        {},
+                        "give one number per state: the index of its rate, or -1"});
   return mistakes;
 }
 
@@ -158,6 +201,7 @@ std::vector<Mistake> mistakes_of(const Block& block, const Dynamics& d) {
   look.whole(d.A, "A", n, n), look.whole(d.B, "B", n, nu), look.whole(d.C, "C", ny, n);
   if (d.sparse.empty()) look.whole(d.D, "D", ny, nu);
   for (const Gains& g : d.sparse) look.finite(g.gain, "a block of D");
+  if (look.mistakes.empty()) look.coordinates(d);
   return std::move(look.mistakes);
 }
 

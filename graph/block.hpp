@@ -47,13 +47,24 @@ struct Interface {
   std::vector<ChannelSpec> channels;
   std::vector<PortSpec> inputs, outputs;
   std::vector<std::string> states;
+  /// Optional: per state the one that is its rate, -1 if none is; empty: no state has a rate. A
+  /// state with a rate is a coordinate: its row of A has one entry, 1, at its rate, and its row of
+  /// B none. Closed chains need it, and the symmetric form of the whole model.
+  std::vector<int> rates = {};
   std::vector<int> by_name = {};  ///< optional, for very many channels: their indices, by name
 
   int input_size() const;   ///< number of rows of u
   int output_size() const;  ///< number of rows of y
   /// Index of the channel called `name`, -1 if there is none. O(channels), by `by_name` O(log).
   int find_channel(std::string_view name) const;
+  /// The rate of this state, -1 if none is declared.
+  int rate_of(int state) const {
+    return rates.empty() ? -1 : rates[static_cast<std::size_t>(state)];
+  }
 };
+
+/// `Interface::rates` of n coordinates that are followed by their n rates, in the same order.
+std::vector<int> rates_follow(int n);
 
 /// A body by its N modes: etadd = W u - stiffness * eta - damping * etad (entry by entry), and
 /// y = rigid u + W' etadd. States: eta, then etad.
@@ -129,8 +140,7 @@ class Block {
   virtual Pattern moved_by() const;
   virtual Pattern seen_by() const;
   /// Kinematics of the ports, if the block defines them; no chain may close through a block without
-  /// kinematics. A state in Phi needs another state as its rate: one 1 in its row of A, zeros in
-  /// its row of B.
+  /// kinematics. A state in Phi needs another state as its rate: see Interface::rates.
   virtual std::optional<Kinematics> kinematics(ParameterValues) const { return std::nullopt; }
   /// The values that the matrices depend on (only those that are parameters matter).
   virtual std::vector<Value> values() const { return {}; }
@@ -150,11 +160,17 @@ class Block {
 
 using BlockPtr = std::shared_ptr<const Block>;
 
-/// Two states of one name (duplicate_name), which an own block may have. Empty if none are.
+/// Stiffness of every state in the block's potential energy, 0 if it stores none: by its
+/// kinematics; if they do not give it, of coordinates as of modes of mass 1, -A(rate, coordinate).
+Eigen::VectorXd stiffness_of(const Block& block, const Dynamics& dynamics, ParameterValues values);
+
+/// Mistakes of an own block's interface: two states of one name (duplicate_name), rates that are no
+/// states (bad_value). Empty if there are none.
 std::vector<Mistake> mistakes_of(const Interface& interface, std::string_view type);
 /// Mistakes in the matrices of a user's block, as "B of this Rotor is 3 x 0, not 3 x 6": sizes
-/// other than those of its interface (size), entries that are not finite (not_finite). Empty if
-/// there are none. `compile` calls both, `update` this one. O(entries).
+/// other than those of its interface (size), entries that are not finite (not_finite), coordinates
+/// that move with more than their rate (bad_value). Empty if there are none. `compile` calls both,
+/// `update` this one. O(entries).
 std::vector<Mistake> mistakes_of(const Block& block, const Dynamics& dynamics);
 
 std::string_view to_string(Quantity quantity);

@@ -70,6 +70,13 @@ int StateSpace::output(const std::string& name) const { return find(outputs, nam
 int StateSpace::input(const std::string& name) const { return find(inputs, name, "input"); }
 int StateSpace::state(const std::string& name) const { return find(states, name, "state"); }
 
+int unit_entry(const Eigen::MatrixXd& A, Eigen::Index row) {
+  Eigen::Index entry = -1, count = 0;
+  for (Eigen::Index j = 0; j < A.cols() && count < 2; ++j)
+    if (A(row, j) != 0) ++count, entry = j;
+  return count == 1 && entry != row && A(row, entry) == 1 ? static_cast<int>(entry) : -1;
+}
+
 std::string to_string(const StateSpace& m) {
   std::string text = fmt::format("{} states, {} inputs, {} outputs\n", m.states.size(),
                                  m.inputs.size(), m.outputs.size());

@@ -27,6 +27,10 @@ struct StateSpace {
   int state(const std::string& name) const;
 };
 
+/// Column of the only entry in this row of A if it is 1 and off the diagonal, else -1: xdot of the
+/// state is another state.
+int unit_entry(const Eigen::MatrixXd& A, Eigen::Index row);
+
 /// The matrices with their names, for reading; wide models are truncated with a note.
 std::string to_string(const StateSpace& model);
 

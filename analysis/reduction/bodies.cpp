@@ -33,6 +33,7 @@ class FewerModes final : public Block {
     face_.states.clear();
     for (const char* name : {"eta{}", "etad{}"})
       for (int j = 1; j <= r; ++j) face_.states.push_back(fmt::format(fmt::runtime(name), j));
+    face_.rates = rates_follow(r);
     const VectorXd damping = (V.transpose() * m.damping.asDiagonal() * V).diagonal();
     modal_ = {V.transpose() * m.W, m.rigid, stiffness, damping};
     matrices_ = modal_dynamics(modal_);

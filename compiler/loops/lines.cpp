@@ -86,27 +86,16 @@ std::vector<Component> components(const std::vector<RelationRows>& lines,
   return result;
 }
 
-const StateRates::Pairs& StateRates::of(int node) const {
-  const auto [place, added] = pairs_.try_emplace(node);
-  if (!added) return place->second;
-  Pairs& p = place->second;
-  const Block& block = *g_.nodes[at(node)].block;
-  const auto d = block.dynamics(values_);
-  const Index n = d->A.rows();
-  p.rate.assign(at(n), -1);
-  p.weight = Eigen::VectorXd::Zero(n);
-  const auto k = block.kinematics(values_);
-  for (Index i = 0; i < n; ++i) {
-    if (!d->B.row(i).isZero(0)) continue;
-    int found = -1, count = 0;
-    for (Index j = 0; j < n && count < 2; ++j)
-      if (d->A(i, j) != 0) ++count, found = static_cast<int>(j);
-    if (count != 1 || d->A(i, found) != 1 || found == i) continue;
-    p.rate[at(i)] = found;
-    const double stiffness = k && k->stiffness.size() == n ? k->stiffness(i) : -d->A(found, i);
-    if (stiffness > 0) p.weight(i) = 1 / std::sqrt(stiffness);
-  }
-  return p;
+int StateRates::rate_of(int node, int state) const {
+  return g_.nodes[at(node)].block->interface().rate_of(state);
+}
+
+double StateRates::weight(int node, int state) const {
+  const auto [place, added] = stiffness_.try_emplace(node);
+  if (const Block& block = *g_.nodes[at(node)].block; added)
+    place->second = stiffness_of(block, *block.dynamics(values_), values_);
+  const double stiffness = rate_of(node, state) < 0 ? 0 : place->second(state);
+  return stiffness > 0 ? 1 / std::sqrt(stiffness) : 0;
 }
 
 RelationRows line_of(const Closing& closing) {

@@ -44,19 +44,14 @@ class StateRates {
  public:
   StateRates(const Graph& graph, ParameterValues values) : g_(graph), values_(values) {}
   /// State that is the rate of this one, -1 if none is.
-  int rate_of(int node, int state) const { return of(node).rate[static_cast<std::size_t>(state)]; }
+  int rate_of(int node, int state) const;
   /// 1 / sqrt(stiffness), 0 if it stores no energy.
-  double weight(int node, int state) const { return of(node).weight(state); }
+  double weight(int node, int state) const;
 
  private:
-  struct Pairs {
-    std::vector<int> rate;
-    Eigen::VectorXd weight;
-  };
-  const Pairs& of(int node) const;
   const Graph& g_;
   ParameterValues values_;
-  mutable std::map<int, Pairs> pairs_;
+  mutable std::map<int, Eigen::VectorXd> stiffness_;
 };
 
 /// A closing equation as lines of translations and rotations.

@@ -6,6 +6,7 @@
 #include <titop/graph/nodes/lti.hpp>
 #include <titop/graph/paths.hpp>
 #include <titop/graph/pole.hpp>
+#include <titop/graph/state_space.hpp>
 
 namespace titop {
 namespace {
@@ -24,6 +25,8 @@ class LtiBlock : public Block {
     face_.inputs.push_back({"in", static_cast<int>(matrices_->D.cols())});
     face_.outputs.push_back({"out", static_cast<int>(matrices_->D.rows())});
     for (int i = 1; i <= n; ++i) face_.states.push_back(fmt::format("x{}", i));
+    for (int i = 0; i < n; ++i)
+      face_.rates.push_back(matrices_->B.row(i).isZero(0) ? unit_entry(matrices_->A, i) : -1);
   }
   std::string_view type() const override { return type_; }
   const Interface& interface() const override { return face_; }

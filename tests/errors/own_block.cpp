@@ -105,6 +105,26 @@ TEST_CASE("own block: entries that are no numbers, states of one name") {
              Code::duplicate_name, {"wheel", "Wheel", "wx"}));
 }
 
+TEST_CASE("own block: rates that are no rates") {
+  CHECK(says(spoilt([](Interface& f, Dynamics&) {
+               if (!f.states.empty()) f.rates = {1, -1, -1};
+             }),
+             Code::bad_value, {"wheel", "wx", "Wheel", "more than its rate wy"}));
+  CHECK(says(spoilt([](Interface& f, Dynamics& d) {
+               if (!f.states.empty()) f.rates = {1, -1, -1};
+               if (d.A.size()) d.A(0, 1) = 1, d.B(0, 2) = 1;
+             }),
+             Code::bad_value, {"wx", "Wheel", "wy"}));
+  for (const std::vector<int>& none : {std::vector<int>{1}, {1, -1, 3}, {-2, -1, -1}}) {
+    Interface face{.channels = {}, .inputs = {}, .outputs = {}, .states = {"a", "b", "c"}};
+    face.rates = none;
+    CHECK(says(Error(mistakes_of(face, "Wheel")), Code::bad_value, {"Wheel", "3 states"}));
+  }
+  Interface face{.channels = {}, .inputs = {}, .outputs = {}, .states = {"a", "b", "c"}};
+  face.rates = {1, -1, -1};
+  CHECK(mistakes_of(face, "Wheel").empty());
+}
+
 TEST_CASE("own block: of a modal form, the modes are looked at") {
   const auto modal = [](void (*change)(Modal&)) {
     Modal m{.W = MatrixXd::Ones(1, 6),

@@ -26,6 +26,7 @@ class BarBlock : public Block {
     for (const char* suffix : {"", "_rate"})
       for (int i = 0; i < kModes; ++i)
         face_.states.push_back(fmt::format("eta{}{}", i + 1, suffix));
+    face_.rates = rates_follow(kModes);
     m_.W.resize(kModes, 2);
     m_.stiffness.resize(kModes);
     for (int i = 0; i < kModes; ++i) {  // powers of two: dividing by them loses nothing
