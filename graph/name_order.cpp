@@ -21,12 +21,6 @@ bool order_of(const std::vector<std::string>& names, Eigen::Index count, std::ve
                             [&](int a, int b) { return !less(a, b); }) == order.end();
 }
 
-std::vector<std::string> pick(const std::vector<std::string>& names, const std::vector<int>& at_) {
-  std::vector<std::string> result;
-  for (const int i : at_) result.push_back(names[at(i)]);
-  return result;
-}
-
 std::vector<int> inverse(const std::vector<int>& order) {
   std::vector<int> result(order.size());
   for (int i = 0; i < static_cast<int>(order.size()); ++i) result[at(order[at(i)])] = i;
@@ -34,6 +28,14 @@ std::vector<int> inverse(const std::vector<int>& order) {
 }
 
 }  // namespace
+
+std::vector<std::string> pick(const std::vector<std::string>& names,
+                              const std::vector<int>& places) {
+  std::vector<std::string> result;
+  if (!names.empty())
+    for (const int i : places) result.push_back(names[at(i)]);
+  return result;
+}
 
 std::optional<NameOrder> name_order(const StateSpace& m) {
   NameOrder order;
@@ -46,15 +48,15 @@ std::optional<NameOrder> name_order(const StateSpace& m) {
 
 StateSpace by_name(const StateSpace& m, const NameOrder& order) {
   const auto& [x, u, y] = order;
-  return {m.A(x, x),         m.B(x, u),         m.C(y, x),         m.D(y, u),
-          pick(m.states, x), pick(m.inputs, u), pick(m.outputs, y)};
+  return {m.A(x, x),         m.B(x, u),         m.C(y, x),          m.D(y, u),
+          pick(m.states, x), pick(m.inputs, u), pick(m.outputs, y), pick(m.rates, x)};
 }
 
 StateSpace states_by_name(const StateSpace& m) {
   std::vector<int> x;
   if (!order_of(m.states, m.A.rows(), x)) return m;
   return {m.A(x, x),         m.B(x, Eigen::all), m.C(Eigen::all, x), m.D,
-          pick(m.states, x), m.inputs,           m.outputs};
+          pick(m.states, x), m.inputs,           m.outputs,          pick(m.rates, x)};
 }
 
 StateSpace as_before(const StateSpace& m, const std::vector<std::string>& states,

@@ -12,6 +12,10 @@ struct NameOrder {
   std::vector<int> states, inputs, outputs;
 };
 
+/// The names at these places, if there are any.
+std::vector<std::string> pick(const std::vector<std::string>& names,
+                              const std::vector<int>& places);
+
 /// None if the names of rows or of columns are not unique. O(n log n).
 std::optional<NameOrder> name_order(const StateSpace& model);
 

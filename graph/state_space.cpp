@@ -77,6 +77,19 @@ int unit_entry(const Eigen::MatrixXd& A, Eigen::Index row) {
   return count == 1 && entry != row && A(row, entry) == 1 ? static_cast<int>(entry) : -1;
 }
 
+std::vector<int> rates_of(const StateSpace& m) {
+  const bool known = std::ssize(m.rates) == m.A.rows() && m.states.size() == m.rates.size();
+  std::vector<int> result;
+  for (Eigen::Index i = 0; i < m.A.rows(); ++i) {
+    const auto state = static_cast<std::size_t>(i);
+    const int entry = known && m.rates[state].empty() ? -1 : unit_entry(m.A, i);
+    const bool other =
+        known && entry >= 0 && m.rates[state] != m.states[static_cast<std::size_t>(entry)];
+    result.push_back(other ? -1 : entry);
+  }
+  return result;
+}
+
 std::string to_string(const StateSpace& m) {
   std::string text = fmt::format("{} states, {} inputs, {} outputs\n", m.states.size(),
                                  m.inputs.size(), m.outputs.size());

@@ -15,6 +15,9 @@ struct StateSpace {
   Eigen::MatrixXd C;                                 ///< ny x n
   Eigen::MatrixXd D;                                 ///< ny x nu
   std::vector<std::string> states, inputs, outputs;  ///< "z1.stretch", "U(3)", ...
+  /// Per state the name of its rate, "" if it has none; empty: not known. `compile` knows it from
+  /// the blocks (Interface::rates).
+  std::vector<std::string> rates = {};
 
   int order() const { return static_cast<int>(A.rows()); }
 
@@ -30,6 +33,10 @@ struct StateSpace {
 /// Column of the only entry in this row of A if it is 1 and off the diagonal, else -1: xdot of the
 /// state is another state.
 int unit_entry(const Eigen::MatrixXd& A, Eigen::Index row);
+/// Per state the position of its rate, -1 if it is no coordinate: by `rates`, as long as its row of
+/// A is that of a coordinate (after a change of states it may not be); if they are not known (a
+/// model by hand), by its row alone. O(n^2).
+std::vector<int> rates_of(const StateSpace& model);
 
 /// The matrices with their names, for reading; wide models are truncated with a note.
 std::string to_string(const StateSpace& model);

@@ -11,8 +11,7 @@ namespace titop_bench {
 /// it is y' y + yd' S^-1 yd, up to a unit.
 class Energy {
  public:
-  explicit Energy(const titop::StateSpace& m)
-      : form_(titop::second_order(m.A)), inverse_(form_.S) {}
+  explicit Energy(const titop::StateSpace& m) : form_(titop::second_order(m)), inverse_(form_.S) {}
   double operator()(const Eigen::VectorXd& x) const {
     Eigen::VectorXd y(form_.d.size()), rate(form_.d.size());
     for (Eigen::Index i = 0; i < y.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/similarity_scaling.hpp>
+#include <titop/graph/name_order.hpp>
 
 namespace titop::minreal {
 namespace {
@@ -20,6 +21,11 @@ MatrixXd above(const MatrixXd& a, const MatrixXd& b) {
   MatrixXd both(a.rows() + b.rows(), a.cols());
   both << a, b;
   return both;
+}
+
+std::vector<std::string> above(std::vector<std::string> a, const std::vector<std::string>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
 }
 
 }  // namespace
@@ -46,7 +52,8 @@ StateSpace without_integrators(const StateSpace& model, const IntegratorSplit& s
   StateSpace rest;
   rest.A = model.A(states.rest, states.rest);
   rest.B = model.B(states.rest, Eigen::all);
-  for (const int i : states.rest) rest.states.push_back(model.states[at(i)]);
+  rest.states = pick(model.states, states.rest);
+  rest.rates = pick(model.rates, states.rest);
   rest.inputs = model.inputs;
   rest.outputs = model.outputs;
   MatrixXd C = model.C(Eigen::all, states.rest), D = model.D;
@@ -73,8 +80,8 @@ StateSpace with_integrators(const StateSpace& rest, const StateSpace& model,
   m.C.resize(outputs, n + k);
   m.C << rest.C.topRows(outputs), model.C(Eigen::all, states.integrators);
   m.D = rest.D.topRows(outputs);
-  m.states = rest.states;
-  for (const int i : states.integrators) m.states.push_back(model.states[at(i)]);
+  m.states = above(rest.states, pick(model.states, states.integrators));
+  m.rates = above(rest.rates, pick(model.rates, states.integrators));
   m.inputs = model.inputs;
   m.outputs = model.outputs;
   return m;

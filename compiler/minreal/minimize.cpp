@@ -192,6 +192,7 @@ void refuse_sizes(const StateSpace& m) {
   compare("B", m.B, n, nu);
   compare("C", m.C, ny, n);
   compare("D", m.D, ny, nu);
+  if (!m.rates.empty()) compare("rates", Eigen::MatrixXd(std::ssize(m.rates), 1), n, 1);
   if (!mistakes.empty()) throw Error(std::move(mistakes));
 }
 

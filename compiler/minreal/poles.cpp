@@ -131,6 +131,7 @@ void deflate(StateSpace& m, MatrixXd& rounding, std::vector<Pole>& out) {
       m.A = m.A(keep, keep).eval();
       if (rounding.size() > 0) rounding = rounding(keep, keep).eval();
       m.states.erase(m.states.begin() + j);
+      if (j < std::ssize(m.rates)) m.rates.erase(m.rates.begin() + j);
     }
   }
 }
@@ -139,11 +140,11 @@ void deflate(StateSpace& m, MatrixXd& rounding, std::vector<Pole>& out) {
 
 std::vector<Pole> poles(const StateSpace& model, const MatrixXd& rounding) {
   std::vector<Pole> result;
-  StateSpace rest{model.A, {}, {}, {}, model.states, {}, {}};
+  StateSpace rest{model.A, {}, {}, {}, model.states, {}, {}, model.rates};
   MatrixXd of_rest = rounding;
   deflate(rest, of_rest, result);
   std::vector<Pole> others;
-  const SecondOrder form = second_order(rest.A);
+  const SecondOrder form = second_order(rest);
   if (!form.found || !proportional_poles(rest, form, others)) {
     others.clear();
     if (rest.order() > 0) general_poles(rest, of_rest, others);

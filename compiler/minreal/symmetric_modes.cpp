@@ -109,7 +109,7 @@ std::optional<Springs> by_energy(const StateSpace& model, const MatrixXd& energy
 }
 
 std::optional<Springs> springs(const StateSpace& model, const MatrixXd& energy, Symmetric& s) {
-  SecondOrder form = second_order(model.A);
+  SecondOrder form = second_order(model);
   s.q = std::move(form.q);
   s.qdot = std::move(form.qdot);
   if (!form.found && energy.rows() == model.A.rows()) return by_energy(model, energy, s);

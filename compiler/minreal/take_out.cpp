@@ -5,6 +5,7 @@
 #include <titop/compiler/minreal/take_out.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/name_order.hpp>
 #include <titop/graph/support/some_names.hpp>
 
 namespace titop::minreal {
@@ -41,9 +42,8 @@ MatrixXd solve_for(const MatrixXd& W, const std::vector<int>& out, const std::ve
 }
 
 void keep_names(StateSpace& m, const std::vector<int>& keep) {
-  std::vector<std::string> names;
-  for (const int i : keep) names.push_back(m.states[at(i)]);
-  m.states = std::move(names);
+  m.states = pick(m.states, keep);
+  m.rates = pick(m.rates, keep);
 }
 
 /// Modes that leave a model by one of their sides.

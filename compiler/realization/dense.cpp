@@ -269,6 +269,13 @@ class DenseWriter {
 
 void write_dense(const Factored& data, StateSpace& model, int threads) {
   DenseWriter(data, model, threads).write();
+  const std::vector<int> rates = rates_of(data.graph(), data.layout(), model.A);
+  model.rates.resize(rates.size());
+  for (std::size_t i = 0; i < rates.size(); ++i)
+    if (rates[i] < 0)
+      model.rates[i].clear();
+    else
+      model.rates[i] = model.states[at(rates[i])];
   data.states.reduce(model);
 }
 

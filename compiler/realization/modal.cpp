@@ -1,33 +1,27 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/realization/modal.hpp>
+#include <titop/graph/linalg/index.hpp>
 
 namespace titop {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using linalg::at;
 
-/// qdot of each q: rows of A that are one unit vector. Empty if the states do not pair up.
-std::vector<std::pair<int, int>> pairs(const MatrixXd& A) {
-  const int n = static_cast<int>(A.rows());
-  std::vector<int> velocity(static_cast<std::size_t>(n), -1);
-  std::vector<char> is_velocity(static_cast<std::size_t>(n), 0);
-  for (int i = 0; i < n; ++i) {
-    int found = -1, count = 0;
-    for (int j = 0; j < n; ++j)
-      if (A(i, j) != 0) ++count, found = j;
-    if (count == 1 && A(i, found) == 1 && found != i) velocity[static_cast<std::size_t>(i)] = found;
-  }
+/// The coordinates with their rates; empty if a state is neither, or one is the rate of two.
+std::vector<std::pair<int, int>> pairs(const StateSpace& model) {
+  const std::vector<int> rates = rates_of(model);
+  std::vector<char> is_rate(rates.size(), 0);
   std::vector<std::pair<int, int>> result;
-  for (int i = 0; i < n; ++i) {
-    const int v = velocity[static_cast<std::size_t>(i)];
-    if (v < 0 || velocity[static_cast<std::size_t>(v)] >= 0) continue;
-    if (is_velocity[static_cast<std::size_t>(v)]) return {};
-    is_velocity[static_cast<std::size_t>(v)] = 1;
-    result.emplace_back(i, v);
+  for (std::size_t i = 0; i < rates.size(); ++i) {
+    if (rates[i] < 0 || rates[at(rates[i])] >= 0) continue;
+    if (is_rate[at(rates[i])]) return {};
+    is_rate[at(rates[i])] = 1;
+    result.emplace_back(i, rates[i]);
   }
-  return 2 * static_cast<int>(result.size()) == n ? result : std::vector<std::pair<int, int>>{};
+  return 2 * result.size() == rates.size() ? result : std::vector<std::pair<int, int>>{};
 }
 
 /// Squares of a diagonal scaling d that makes K symmetric: d_j^2 / d_i^2 = K_ji / K_ij along the
@@ -56,9 +50,10 @@ VectorXd symmetrizer(const MatrixXd& K) {
 
 }  // namespace
 
-SecondOrder second_order(const MatrixXd& A) {
+SecondOrder second_order(const StateSpace& model) {
+  const MatrixXd& A = model.A;
   SecondOrder result;
-  const auto list = pairs(A);
+  const auto list = pairs(model);
   const auto n = static_cast<Eigen::Index>(list.size());
   if (n == 0 || !A.allFinite()) return result;
   MatrixXd K(n, n), Z(n, n);
@@ -68,9 +63,9 @@ SecondOrder second_order(const MatrixXd& A) {
   }
   for (Eigen::Index i = 0; i < n; ++i)
     for (Eigen::Index j = 0; j < n; ++j) {
-      const auto [q, v] = list[static_cast<std::size_t>(j)];
-      K(i, j) = -A(list[static_cast<std::size_t>(i)].second, q);
-      Z(i, j) = -A(list[static_cast<std::size_t>(i)].second, v);
+      const auto [q, v] = list[at(j)];
+      K(i, j) = -A(list[at(i)].second, q);
+      Z(i, j) = -A(list[at(i)].second, v);
     }
   const VectorXd d2 = symmetrizer(K);
   if (d2.size() == 0) return result;

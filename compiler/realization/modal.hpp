@@ -5,7 +5,8 @@
 
 namespace titop {
 
-/// The second-order form of A, if it has one: x = [q; qdot] in some order, qddot = -K q - Z qdot
+/// The second-order form of a model whose states are coordinates and their rates (rates_of), if it
+/// has one: x = [q; qdot] in some order, qddot = -K q - Z qdot
 /// with K symmetric after the diagonal scaling d (q = d y).
 struct SecondOrder {
   bool found = false;
@@ -16,6 +17,6 @@ struct SecondOrder {
   Eigen::MatrixXd skew;      ///< antisymmetric part, removed from S; small in the modes of S, too
   double asymmetry = 0;      ///< largest |S_ij - S_ji| over sqrt(S_ii S_jj) before; up to 1e-9
 };
-SecondOrder second_order(const Eigen::MatrixXd& A);
+SecondOrder second_order(const StateSpace& model);
 
 }  // namespace titop

@@ -6,6 +6,7 @@
 #include <titop/graph/ahead.hpp>
 #include <titop/graph/declared.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/state_space.hpp>
 
 namespace titop::detail {
 namespace {
@@ -61,6 +62,20 @@ Layout make_layout(const Graph& g) {
     add_names(l.outputs, g.outputs[at(i)].name, g.outputs[at(i)].size);
   }
   return l;
+}
+
+std::vector<int> rates_of(const Graph& g, const Layout& l, const Eigen::MatrixXd& A) {
+  std::vector<int> result(l.states.size(), -1);
+  for (const int node : l.state_nodes) {
+    const Interface& face = g.nodes[at(node)].block->interface();
+    const int first = l.state_first[at(node)];
+    for (int i = 0; i < std::ssize(face.states); ++i)
+      if (const int rate = face.rate_of(i); rate >= 0)
+        result[at(first + i)] = first + rate;
+      else if (face.channels.empty())
+        result[at(first + i)] = unit_entry(A, first + i);
+  }
+  return result;
 }
 
 }  // namespace titop::detail

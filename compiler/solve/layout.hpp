@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <titop/graph/graph.hpp>
 #include <vector>
@@ -20,5 +21,10 @@ struct Layout {
 };
 
 Layout make_layout(const Graph& graph);
+
+/// Per state of all blocks its rate, -1 for none: as blocks declare it (Interface::rates). The
+/// state of a one-way block may integrate a state of another: by its row of A (n x n, of all
+/// blocks' states). O(n), and per state of a one-way block.
+std::vector<int> rates_of(const Graph& graph, const Layout& layout, const Eigen::MatrixXd& A);
 
 }  // namespace titop::detail

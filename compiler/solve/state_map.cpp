@@ -1,6 +1,7 @@
 #include <titop/compiler/solve/layout.hpp>
 #include <titop/compiler/solve/state_map.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/name_order.hpp>
 
 namespace titop::detail {
 namespace {
@@ -86,6 +87,7 @@ void StateMap::reduce(StateSpace& m) const {
   m.B = m.B(kept(), Eigen::all).eval();
   m.C = times_map(m.C, *this);
   m.states = map_->names;
+  m.rates = pick(m.rates, kept());
 }
 
 }  // namespace titop::detail

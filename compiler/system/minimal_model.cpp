@@ -65,7 +65,7 @@ StateSpace with_certain_ports(const System& system, const SystemData& d, const S
     certain = certain.array() ||
               (change.array() > kMoving * size.array() && off.array() <= kCertain * change.array());
   }
-  StateSpace part{m.A, {}, {}, {}, m.states, {}, {}};
+  StateSpace part{m.A, {}, {}, {}, m.states, {}, {}, m.rates};
   std::vector<int> in, out;
   for (int l = 0; l < certain.cols(); ++l)
     if (certain.col(l).any()) in.push_back(l), part.inputs.push_back(m.inputs[at(l)]);

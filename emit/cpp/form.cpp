@@ -48,14 +48,14 @@ struct BlockDiagonalForm {
 
 /// [q; qdot] = scale V [m; mdot] for the modes V of the symmetric form, pairs (m, mdot) one after
 /// the other. None if there is no such form or damping couples its modes.
-std::optional<BlockDiagonalForm> proportional_modes(const MatrixXd& A) {
-  const SecondOrder second = second_order(A);
+std::optional<BlockDiagonalForm> proportional_modes(const StateSpace& model) {
+  const SecondOrder second = second_order(model);
   if (!second.found) return std::nullopt;
   const GradedModes all = eigh_graded(second.S);
   const std::optional<Eigen::VectorXd> Z = diagonal_in(all, second.Z);
   if (!Z || !symmetric_in(all, second.S, second.skew)) return std::nullopt;
   const SymmetricModes& sym = all.modes;
-  const Index n = A.rows(), count = sym.lambda.size();
+  const Index n = model.A.rows(), count = sym.lambda.size();
   BlockDiagonalForm modes{MatrixXl::Zero(n, n), MatrixXl::Zero(n, n), MatrixXl::Zero(n, n)};
   for (Index k = 0; k < count; ++k) {
     modes.A(2 * k, 2 * k + 1) = 1;
@@ -256,7 +256,7 @@ ModelForm own_form(const StateSpace& model) {
 }
 
 ModelForm modal_form(const StateSpace& model) {
-  std::optional<BlockDiagonalForm> modes = proportional_modes(model.A);
+  std::optional<BlockDiagonalForm> modes = proportional_modes(model);
   if (!modes) modes = general_modes(model.A);
   ModelForm form;
   form.modal = true;

@@ -56,7 +56,7 @@ System satellite() {
 struct Invariant {
   SecondOrder form;
   Eigen::LDLT<Eigen::MatrixXd> inverse;
-  explicit Invariant(const StateSpace& m) : form(second_order(m.A)), inverse(form.S) {}
+  explicit Invariant(const StateSpace& m) : form(second_order(m)), inverse(form.S) {}
   double operator()(const Eigen::VectorXd& x) const {
     const Eigen::VectorXd y = x(form.q).cwiseQuotient(form.d),
                           rate = x(form.qdot).cwiseQuotient(form.d);
