@@ -50,20 +50,18 @@ struct StatePairs {
   std::vector<int> position, rate;
 };
 
-/// A state whose derivative is another state is a position.
-StatePairs find_pairs(const StateSpace& m) {
+/// `rate_of`: of each state, -1 for none. One that inputs drive, too, is no position.
+StatePairs find_pairs(const StateSpace& m, std::vector<int> rate_of) {
   const Index n = m.A.rows();
-  std::vector<int> position_of(at(n), -1), rate_of(at(n), -1);
+  std::vector<int> position_of(at(n), -1);
   for (Index i = 0; i < n; ++i) {
-    Index count = 0, found = -1;
-    for (Index j = 0; j < n && count < 2; ++j)
-      if (m.A(i, j) != 0) ++count, found = j;
-    if (count != 1 || m.A(i, found) != 1 || found == i || !m.B.row(i).isZero(0)) continue;
+    if (!m.B.row(i).isZero(0)) rate_of[at(i)] = -1;
+    const int found = rate_of[at(i)];
+    if (found < 0) continue;
     if (position_of[at(found)] >= 0)
       refuse(fmt::format("{} is the rate of {} and of {}", m.states[at(found)],
                          m.states[at(position_of[at(found)])], m.states[at(i)]));
     position_of[at(found)] = static_cast<int>(i);
-    rate_of[at(i)] = static_cast<int>(found);
   }
   StatePairs pairs;
   for (Index i = 0; i < n; ++i) {
@@ -153,7 +151,7 @@ void find_kept(Raw& raw, const StateMap& states) {
 Raw read(const System& system, const SystemData& data) {
   Raw raw;
   raw.m = model_of_blocks(system, data);
-  raw.pairs = find_pairs(raw.m);
+  raw.pairs = find_pairs(raw.m, rates_of(data.graph(), data.layout(), raw.m.A));
   find_owners(raw, data);
   find_kept(raw, data.states);
   std::vector<int> rows;
