@@ -1,7 +1,7 @@
 #pragma once
 
 #include <titop/compiler/solve/backward_error.hpp>
-#include <titop/compiler/solve/factored.hpp>
+#include <titop/compiler/solve/instant_in.hpp>
 
 namespace titop::detail {
 
@@ -16,10 +16,10 @@ class Instant {
           solve::Refinement refinement = solve::Refinement::none);
 
   /// Unknowns of the joint system, in the order of Plan::first.
-  const solve::RowMatrix<double>& unknowns() const { return unknowns_; }
+  const solve::RowMatrix<double>& unknowns() const { return now_.unknowns; }
 
   /// to += the signal, size x columns, row-major.
-  void add_value(int signal, double* to) const;
+  void add_value(int signal, double* to) const { now_.add_value(signal, to); }
 
   /// All signals, one below the other: signal i from row first[i] on; first[signals] is the end.
   solve::RowMatrix<double> values(std::span<const int> first) const;
@@ -48,16 +48,9 @@ class Instant {
   /// Every equation is off by this, and by one unit of the last place of its terms.
   Instant off_by(solve::RowMatrix<double> off, const solve::RowMatrix<double>& magnitudes,
                  int sample) const;
-  /// add(first row of xdot, matrix, its factor), of all products whose sum is xdot.
-  template <class Add>
-  void products_of_xdot(Add add) const;
-  /// Likewise of the outputs.
-  template <class Add>
-  void products_of_outputs(Add add) const;
 
-  const Factored& data_;
-  solve::JointRows<double> rows_;
-  solve::RowMatrix<double> known_, rhs_, unknowns_;
+  InstantIn<double> now_;
+  solve::RowMatrix<double> rhs_;
 };
 
 }  // namespace titop::detail

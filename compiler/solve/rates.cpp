@@ -1,13 +1,11 @@
 #include <limits>
 #include <titop/compiler/solve/instant.hpp>
 #include <titop/compiler/solve/scalar.hpp>
-#include <titop/graph/linalg/index.hpp>
 
 /// xdot and y of given states and inputs: in double, or with unknowns refined in double-double.
 namespace titop::detail {
 namespace {
 
-using linalg::at;
 using solve::RowMatrix;
 using Twofold = std::complex<solve::DoubleDouble>;
 
@@ -23,82 +21,59 @@ RowMatrix<double> rounded(const RowMatrix<Twofold>& m) {
   return m.unaryExpr([](const Twofold& x) { return solve::Scalar<Twofold>::round(x).real(); });
 }
 
-/// All signals at one instant in double-double, with factors in double.
-class FinerInstant {
- public:
-  FinerInstant(const Factored& d, const RowMatrix<double>& known, const RowMatrix<double>& more)
-      : d_(d), known_(solve::lifted<Twofold>(known)), rows_(rows_of(d)) {
-    RowMatrix<Twofold> rhs = rows_.rhs(known_, d.layout().known_first);
-    if (more.size() > 0) rhs += solve::lifted<Twofold>(more);
-    unknowns_ = RowMatrix<Twofold>::Zero(rhs.rows(), rhs.cols());
-    double before = std::numeric_limits<double>::infinity();
-    for (int step = 0; rhs.size() > 0 && step < kMostSteps; ++step) {
-      const RowMatrix<double> change = d.factors->solve(rounded(rows_.residual(rhs, unknowns_)));
-      unknowns_ += solve::lifted<Twofold>(change);
-      const double now = change.cwiseAbs().maxCoeff();
-      if (!(2 * now <= before)) break;  // no digit is left, or nothing
-      before = now;
-    }
-  }
-
-  RateColumns rates() const {
-    RateColumns result{RowMatrix<double>::Zero(d_.layout().order(), known_.cols()),
-                       RowMatrix<double>::Zero(std::ssize(d_.layout().outputs), known_.cols())};
-    for (const int i : d_.layout().state_nodes) add_rates(i, result.xdot);
-    for (std::size_t o = 0; o < d_.graph().outputs.size(); ++o) add_output(o, result.y);
-    return result;
-  }
-
- private:
-  solve::JointRows<Twofold> rows_of(const Factored& d) {
-    direct_.reserve(d.numbers.blocks.size()), output_.reserve(d.numbers.blocks.size());
+/// The rows of the joint system in double-double, and the matrices that they point to.
+struct FinerRows {
+  std::vector<solve::Dense<Twofold>> direct, output;
+  solve::JointRows<Twofold> of(const Factored& d) {
+    direct.reserve(d.numbers.blocks.size()), output.reserve(d.numbers.blocks.size());
     solve::Matrices<Twofold> m;
     for (const auto& block : d.numbers.blocks) {
-      m.direct.push_back(&direct_.emplace_back(solve::lifted<Twofold>(block->D)));
-      m.output.push_back(&output_.emplace_back(solve::lifted<Twofold>(block->C)));
+      m.direct.push_back(&direct.emplace_back(solve::lifted<Twofold>(block->D)));
+      m.output.push_back(&output.emplace_back(solve::lifted<Twofold>(block->C)));
     }
     return {d.skeleton->stage.graph, d.skeleton->joint, d.numbers.coefficients, std::move(m)};
   }
-
-  RowMatrix<Twofold> value(int signal) const {
-    RowMatrix<Twofold> result =
-        RowMatrix<Twofold>::Zero(d_.graph().signals[at(signal)].size, known_.cols());
-    rows_.add_value(signal, unknowns_, known_, d_.layout().known_first, result.data());
-    return result;
-  }
-
-  void add_rates(int i, RowMatrix<double>& xdot) const {
-    const Node& node = d_.graph().nodes[at(i)];
-    const Dynamics& m = *d_.numbers.blocks[at(i)];
-    const Eigen::Index first = d_.layout().state_first[at(i)], n = m.A.rows();
-    RowMatrix<Twofold> sum = solve::lifted<Twofold>(m.A).lazyProduct(known_.middleRows(first, n));
-    for (int s = node.first_signal; s < node.state; ++s)
-      if (const Signal& in = d_.graph().signals[at(s)]; in.role == Signal::Role::input && in.active)
-        sum += solve::lifted<Twofold>(m.B.middleCols(in.first, in.size)).lazyProduct(value(s));
-    xdot.middleRows(first, n) = rounded(sum);
-  }
-
-  void add_output(std::size_t o, RowMatrix<double>& y) const {
-    const Output& output = d_.graph().outputs[o];
-    RowMatrix<Twofold> sum = RowMatrix<Twofold>::Zero(output.size, known_.cols());
-    for (std::size_t k = 0; k < output.terms.size(); ++k) {
-      const auto& by = *d_.numbers.coefficients[at(d_.skeleton->joint.output_coefficient[o]) + k];
-      sum += solve::lifted<Twofold>(by).lazyProduct(value(output.terms[k].signal));
-    }
-    y.middleRows(d_.layout().output_first[o], output.size) = rounded(sum);
-  }
-
-  const Factored& d_;
-  std::vector<solve::Dense<Twofold>> direct_, output_;
-  RowMatrix<Twofold> known_, unknowns_;
-  solve::JointRows<Twofold> rows_;
 };
+
+/// Refines the unknowns with the factors in double.
+void refine(InstantIn<Twofold>& now, const RowMatrix<double>& more) {
+  RowMatrix<Twofold> rhs = now.rhs();
+  if (more.size() > 0) rhs += solve::lifted<Twofold>(more);
+  now.unknowns = RowMatrix<Twofold>::Zero(rhs.rows(), rhs.cols());
+  double before = std::numeric_limits<double>::infinity();
+  for (int step = 0; rhs.size() > 0 && step < kMostSteps; ++step) {
+    const RowMatrix<double> change =
+        now.data.factors->solve(rounded(now.rows.residual(rhs, now.unknowns)));
+    now.unknowns += solve::lifted<Twofold>(change);
+    const double size = change.cwiseAbs().maxCoeff();
+    if (!(2 * size <= before)) break;  // no digit is left, or nothing
+    before = size;
+  }
+}
+
+RateColumns finer_rates(const Factored& d, const RowMatrix<double>& known,
+                        const RowMatrix<double>& more) {
+  FinerRows rows;
+  InstantIn<Twofold> now{d, rows.of(d), solve::lifted<Twofold>(known)};
+  refine(now, more);
+  const auto add_to = [](RowMatrix<Twofold>& to) {
+    return [&to](Eigen::Index first, const auto& m, const Twofold* x) {
+      const Eigen::Map<const RowMatrix<Twofold>> value(x, m.cols(), to.cols());
+      to.middleRows(first, m.rows()) += solve::lifted<Twofold>(m).lazyProduct(value);
+    };
+  };
+  RowMatrix<Twofold> xdot = RowMatrix<Twofold>::Zero(d.layout().order(), known.cols());
+  RowMatrix<Twofold> y = RowMatrix<Twofold>::Zero(std::ssize(d.layout().outputs), known.cols());
+  now.products_of_xdot(add_to(xdot));
+  now.products_of_outputs(add_to(y));
+  return {rounded(xdot), rounded(y)};
+}
 
 }  // namespace
 
 RateColumns rates(const Factored& d, const RowMatrix<double>& known,
                   const RowMatrix<double>& more) {
-  if (d.factors->health().weakest < kLossy) return FinerInstant(d, known, more).rates();
+  if (d.factors->health().weakest < kLossy) return finer_rates(d, known, more);
   const Instant now(d, known, more, solve::Refinement::settled);
   return {now.xdot(), now.outputs()};
 }
