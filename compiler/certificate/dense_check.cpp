@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
-#include <limits>
 #include <titop/compiler/certificate/dense_check.hpp>
+#include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/certificate/tried_points.hpp>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
@@ -10,6 +10,7 @@
 #include <titop/compiler/solve/scalar.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
 /// The transfer of the dense model against that of the factors, as far as rounding of its entries
@@ -21,9 +22,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kDoubted = 1e-9;  ///< a larger error is computed again, at some cost
+using linalg::kEpsilon;
 
 using linalg::at;
 
@@ -137,13 +136,11 @@ std::vector<Sample> sample(const Factored& d, const StateSpace& m, const solve::
   return result;
 }
 
-constexpr double kDigit = 10;  ///< times its rounding: has a digit
-
 /// An output that has digits in the factors at some s gives no verdict where it has none, such as
 /// far below the modes of closed chains: it does not count there, and the s is reported.
 void leave_out_lost(std::vector<Sample>& samples, std::vector<T>& not_tried) {
   const auto known = [](const Sample& p) {
-    return Eigen::ArrayXX<bool>(p.sizes.value.array() > kDigit * p.sizes.rounding.array());
+    return Eigen::ArrayXX<bool>(p.sizes.value.array() > kAnotherDigit * p.sizes.rounding.array());
   };
   Eigen::ArrayXX<bool> anywhere = known(samples.front());
   for (const Sample& p : samples) anywhere = anywhere || known(p);
@@ -189,7 +186,7 @@ void bound_by_answer(Sample& p, const StateSpace& m, const solve::RowMatrix<T>& 
 /// output below `of_neighbours` of those in its row and column.
 DenseError::Worst relative(const MatrixXd& off, const OutputSizes& sizes, double of_neighbours) {
   const MatrixXd& size = sizes.value;
-  if (!off.allFinite() || !size.allFinite()) return {kInfinity};
+  if (!off.allFinite() || !size.allFinite()) return {HUGE_VAL};
   const VectorXd of_row = size.rowwise().maxCoeff(), of_column = size.colwise().maxCoeff();
   DenseError::Worst worst;
   for (Index i = 0; i < off.rows(); ++i)
@@ -248,7 +245,7 @@ DenseError dense_error(const Factored& d, const StateSpace& m) {
   leave_out_lost(samples, not_tried);
   DenseError found = worst_of(samples);
   const double worst = std::max(found.beside_largest.error, found.where_small.error);
-  if (worst > kDoubted && m.order() <= kAnsweredUpTo) {
+  if (worst > kWarn && m.order() <= kAnsweredUpTo) {
     for (Sample& p : samples) {
       bound_by_answer(p, m, u, units.rows);
       find_rounding(p, d, u, units.rows);

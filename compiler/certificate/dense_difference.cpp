@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <titop/compiler/certificate/dense_check.hpp>
+#include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/certificate/without_rounding.hpp>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/solve/factored.hpp>
 #include <titop/compiler/solve/instant.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
 /// The entries of the dense model against the factors that it was written from.
@@ -16,9 +17,7 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-constexpr double kOneUnit = std::numeric_limits<double>::epsilon();
-constexpr double kDoubtedEntry = 1e-9;  ///< a larger difference is measured again, at some cost
-
+using linalg::kEpsilon;
 using linalg::at;
 
 /// Rows of [xdot; y] that share a size, first and count.
@@ -61,7 +60,7 @@ ModelColumns by_factors(const Factored& d, const solve::RowMatrix<double>& x,
     result << d.states.kept_rows(xdot), y;
     return result;
   };
-  const MatrixXd terms = kOneUnit * both(now.xdot_terms(), now.outputs_terms());
+  const MatrixXd terms = kEpsilon * both(now.xdot_terms(), now.outputs_terms());
   return {both(now.xdot(), now.outputs()),
           terms.cwiseMax(both(off.xdot(), off.outputs()).cwiseAbs())};
 }
@@ -96,8 +95,8 @@ double beside_terms(const MatrixXd& off, const ModelColumns& r, const Groups& gr
       if (noise.size() > 0 && largest(r.value) <= kNoise * largest(noise))
         size = std::max(size, largest(noise));
       if (largest(r.value) == 0)  // hit to the last bit, as another order of sums may not
-        size = std::max(size, kOneUnit * kHitBy * around(first, count, j));
-      if (size > 0) worst = std::max(worst, kOneUnit * (largest(off) / size));
+        size = std::max(size, kEpsilon * kHitBy * around(first, count, j));
+      if (size > 0) worst = std::max(worst, kEpsilon * (largest(off) / size));
     }
   return worst;
 }
@@ -117,13 +116,13 @@ double dense_difference(const Factored& d, const StateSpace& m) {
       const double factor = factors(j, column);
       off.col(column).segment(first, matrix.rows()) -= matrix.col(j) * factor;
       of_model.col(column).segment(first, matrix.rows()) +=
-          matrix.col(j).cwiseAbs() * (kOneUnit * std::abs(factor));
+          matrix.col(j).cwiseAbs() * (kEpsilon * std::abs(factor));
     }
   };
   take(m.A, 0, 0, x), take(m.B, 0, 1, u), take(m.C, n, 0, x), take(m.D, n, 1, u);
   r.rounding = r.rounding.cwiseMax(of_model);
   const double worst = beside_terms(off, r, groups(d));
-  if (worst <= kDoubtedEntry || worst == HUGE_VAL) return worst;
+  if (worst <= kWarn || worst == HUGE_VAL) return worst;
   return beside_terms(off, r, groups(d), product(rounding_of(d, m), x, u));
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/certificate/dense_check.hpp>
+#include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/solve/factored.hpp>
 #include <titop/compiler/solve/layout.hpp>
@@ -102,10 +103,8 @@ void require_written(const Factored& d, const StateSpace& m) {
 
 namespace {
 
-constexpr double kLost = 1e-9;  ///< of the outputs: a larger error is reported
 /// The same for small outputs: an acceleration far below the modes always loses some digits.
 constexpr double kLostWhereSmall = 1e-6;
-constexpr double kAnotherDigit = 10;
 
 /// "z", or "U(1) to U(3)" of three that share their unit.
 std::string name_of_unit(const std::vector<std::string>& names, const std::vector<int>& units,
@@ -139,7 +138,7 @@ void warn_of_lost_digits(const Factored& d, const DenseError& e, std::vector<Not
                      fmt::format(fmt::runtime(text), s, digits_of(d, w)) +
                          "; System::transfer and apply keep all digits"});
   };
-  if (e.beside_largest.error > kLost)
+  if (e.beside_largest.error > kWarn)
     warn("written as A, B, C, D the model keeps {1} at s = {0}", e.beside_largest);
   if (e.where_small.error > kLostWhereSmall &&
       e.where_small.error > kAnotherDigit * e.beside_largest.error)

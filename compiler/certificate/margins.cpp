@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <titop/compiler/certificate/check.hpp>
 #include <titop/compiler/solve/factored.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/skeel.hpp>
 #include <utility>
 
@@ -21,7 +21,7 @@ constexpr int kExactUpTo = 120;  ///< unknowns; above it a dense inverse per loo
 
 /// At distance delta from singular a margin is about 4 / delta: above this limit the last two units
 /// of a loop's own numbers determine every digit of the solution.
-constexpr double kWithoutDigit = 2 / std::numeric_limits<double>::epsilon();
+constexpr double kWithoutDigit = 2 / linalg::kEpsilon;
 
 /// Powers of length and of force in a number's unit. Scalars may have any unit: only the power of
 /// force is used.

@@ -2,7 +2,6 @@
 #include <array>
 #include <boost/container/small_vector.hpp>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <span>
 #include <titop/compiler/certificate/residual.hpp>
@@ -17,7 +16,6 @@ namespace {
 using Eigen::MatrixXd;
 using linalg::at;
 
-constexpr double kNotFinite = std::numeric_limits<double>::infinity();
 constexpr double kPlain = 1e-12;  ///< rounding up to this needs no explanation
 /// Relative to the largest motion or wrench of its kind, for a 0 enforced by chains: fifty units of
 /// rounding, typical of a sum around a chain of some tens of joints.
@@ -102,14 +100,14 @@ struct EquationResidual {
   double largest() const {
     double size = 0;
     for (const RowResidual& r : row) {
-      if (!std::isfinite(r.difference)) return kNotFinite;
+      if (!std::isfinite(r.difference)) return HUGE_VAL;
       size = std::max(size, r.off());
     }
     return size;
   }
   /// Largest share of the rows of one unit; 1 if something is not finite.
   double relative() const {
-    if (largest() == kNotFinite) return 1;
+    if (largest() == HUGE_VAL) return 1;
     if (rows() == 1) return row[0].off() == 0 ? 0 : row[0].off() / row[0].magnitude;
     double worst = 0;
     for (std::size_t i = 0; i < rows();) {
@@ -162,7 +160,7 @@ struct Residual {
     if (r <= worst) return;
     const double off = b.largest();
     if (off < kUnderflow) return;
-    if (r > kPlain && off < kNotFinite && signal >= 0 && only_rounding(signal)) return;
+    if (r > kPlain && off < HUGE_VAL && signal >= 0 && only_rounding(signal)) return;
     worst = r, where = name();
   }
   bool only_rounding(int signal) {

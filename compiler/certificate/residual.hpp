@@ -6,7 +6,11 @@
 /// compiler's own files only.
 namespace titop::detail {
 
-inline constexpr double kWarn = 1e-9;  ///< larger values are reported in the log
+/// Larger errors are reported in the log: six digits less than double has. A dense model's are
+/// computed a second time first.
+inline constexpr double kWarn = 1e-9;
+/// Times the rounding of a value: it has a digit; times another error: it is one digit worse.
+inline constexpr double kAnotherDigit = 10;
 
 /// Factor on a sample of rounding: a difference below may be rounding alone. One sample may be
 /// small by chance, and does not contain rounding of the coefficients.

@@ -1,6 +1,6 @@
 #include <cmath>
-#include <limits>
 #include <titop/compiler/certificate/sampled.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
 namespace titop::detail {
@@ -10,7 +10,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 constexpr int kSampleCount = 4;
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -22,7 +21,8 @@ Sampled sampled(const StateSpace& model, const StateSpace& rounding) {
     const auto add = [&](MatrixXd& m, const MatrixXd& sizes) {
       for (Index c = 0; c < m.cols(); ++c)
         for (Index r = 0; r < m.rows(); ++r)
-          m(r, c) += (sizes.size() ? sizes(r, c) : kEps * std::abs(m(r, c))) * random.unit();
+          m(r, c) +=
+              (sizes.size() ? sizes(r, c) : linalg::kEpsilon * std::abs(m(r, c))) * random.unit();
     };
     add(off.A, rounding.A);
     add(off.B, rounding.B);
@@ -48,7 +48,7 @@ void clear_rounding(Sampled& s) {
 MatrixXd jittered(MatrixXd T, int sample) {
   detail::SteadyRandom random(kSampleCount + 1 + sample);
   for (Index c = 0; c < T.cols(); ++c)
-    for (Index r = 0; r < T.rows(); ++r) T(r, c) *= 1 + 4 * kEps * random.unit();
+    for (Index r = 0; r < T.rows(); ++r) T(r, c) *= 1 + 4 * linalg::kEpsilon * random.unit();
   return T;
 }
 

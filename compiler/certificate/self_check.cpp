@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <set>
 #include <string_view>
@@ -18,6 +17,7 @@
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/graph/ahead.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/similarity_scaling.hpp>
 #include <titop/graph/support/steady_random.hpp>
 #include <utility>
@@ -116,8 +116,7 @@ struct TwoResponses {
     const double largest = x.cwiseQuotient(unit).cwiseAbs().maxCoeff();
     const Eigen::VectorXd terms =
         (s * one - m.A).cwiseAbs() * (largest * unit) + m.B.cwiseAbs() * u.cwiseAbs();
-    return kUnits * static_cast<double>(n) * std::numeric_limits<double>::epsilon() *
-           (inverse.cwiseAbs() * terms);
+    return kUnits * static_cast<double>(n) * linalg::kEpsilon * (inverse.cwiseAbs() * terms);
   }
 };
 

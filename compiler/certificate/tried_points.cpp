@@ -51,7 +51,6 @@ std::optional<Complex> slowest_shown(const Factored& d, const Complex s,
 
 /// At the assembly's own frequencies as well, if nothing is tried near them.
 void add_frequencies(const MatrixXd& A, std::vector<Complex>& list) {
-  constexpr double kNear = 3;  // factor within which an s resolves a frequency
   for (const double w : frequencies_of(A)) {
     const auto near = [w](const Complex s) {
       return std::abs(s) <= kNear * w && w <= kNear * std::abs(s);

@@ -6,6 +6,9 @@
 
 namespace titop::detail {
 
+/// Factor within which an s resolves a frequency.
+inline constexpr double kNear = 3;
+
 /// Largest entries of the outputs of one unit, column by column; `units`: sizes of the outputs that
 /// share one.
 Eigen::MatrixXd by_unit(const solve::RowMatrix<std::complex<double>>& y,

@@ -4,6 +4,7 @@
 #include <numeric>
 #include <titop/compiler/certificate/check.hpp>
 #include <titop/compiler/certificate/residual.hpp>
+#include <titop/compiler/certificate/surroundings.hpp>
 #include <titop/compiler/certificate/weak_pivot.hpp>
 #include <titop/compiler/solve/null_rows.hpp>
 #include <titop/compiler/solve/scalar.hpp>
@@ -17,10 +18,6 @@ using linalg::at;
 using solve::Complex50;
 
 constexpr double kMostProducts = 1e7;
-
-/// Zero threshold of an entry after 50 digits have found a singular system: about a hundred units
-/// of rounding, and never more than the cancellation limit of null_rows.
-constexpr double kNothingAtLeast = 1e-13;
 
 bool is_doubtful(const Check& check) {
   const Certificate& c = check.certificate;
@@ -82,7 +79,7 @@ double least_pivot(const Factored& d, Check& check) {
   const Skeleton& k = *d.skeleton;
   if (!is_doubtful(check)) return 0;
   // Not after reduction: loops of the equations as written may then be singular.
-  if (check.loop_without_digit >= 0 && !k.before_reduce) return kNothingAtLeast;
+  if (check.loop_without_digit >= 0 && !k.before_reduce) return kLeftOfZero;
   if (products(*k.joint.plan) > kMostProducts) {
     check.notes.push_back({Note::Kind::warning, "certify",
                            "it is not decided whether the solution of these equations has a digit "
@@ -90,7 +87,7 @@ double least_pivot(const Factored& d, Check& check) {
     return 0;
   }
   if (!singular_in_50_digits(k, d)) return 0;
-  return std::clamp(2 * check.certificate.weakest_pivot, kNothingAtLeast, solve::kCancelled);
+  return std::clamp(2 * check.certificate.weakest_pivot, kLeftOfZero, solve::kCancelled);
 }
 
 Mistake no_digit_left(const Skeleton& k, const Factored& d) {

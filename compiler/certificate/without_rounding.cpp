@@ -1,13 +1,15 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
+#include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/certificate/sampled.hpp>
+#include <titop/compiler/certificate/tried_points.hpp>
 #include <titop/compiler/certificate/without_rounding.hpp>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
 #include <titop/compiler/solve/frequency.hpp>
 #include <titop/compiler/solve/instant.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/name_order.hpp>
 
 /// Entries of a dense model that are rounding alone.
@@ -17,6 +19,7 @@ namespace {
 
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
+using linalg::kEpsilon;
 using solve::RowMatrix;
 
 /// All states and inputs at 1, one after the other.
@@ -31,7 +34,6 @@ Instant one_by_one(const Factored& d, const StateSpace& m) {
 
 /// Rounding of xdot, of all blocks' states, and of y.
 StateSpace rounding(const Factored& d, const StateSpace& m, const Instant& now) {
-  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
   // The largest of several samples estimates rounding: of four, hardly all are small.
   constexpr int kSamples = 4;
   RowMatrix<double> of_x = kEpsilon * now.xdot_terms(), of_y = kEpsilon * now.outputs_terms();
@@ -72,7 +74,6 @@ StateSpace cleared(const StateSpace& m, const StateSpace& rounding) {
 
 /// From the slowest block by itself to the assembly's fastest, each about once.
 std::vector<std::complex<double>> points_of(const Factored& d, const MatrixXd& A) {
-  constexpr double kNear = 3;  // factor within which an s resolves a frequency
   std::vector<double> omegas = frequencies_of(A);
   omegas.push_back(std::abs(pick_s(d)));
   double slowest = omegas.back();
@@ -104,8 +105,6 @@ struct Reference {
 };
 std::optional<Reference> reference(const Factored& d, const StateSpace& written,
                                    std::complex<double> s) {
-  constexpr double kAnotherDigit = 10, kUnmissed = 1e-8;
-  constexpr double kNoise = 1e3;         // times a sample of rounding: may be rounding alone
   constexpr double kNeighbours = 1e-15;  // of those in row and column: rounding of a 0
   using T = std::complex<double>;
   const Eigen::Index inputs = written.B.cols();
@@ -116,7 +115,7 @@ std::optional<Reference> reference(const Factored& d, const StateSpace& written,
     const MatrixXd around = size.rowwise().maxCoeff().cwiseSqrt() *
                             Eigen::RowVectorXd(size.colwise().maxCoeff().cwiseSqrt());
     MatrixXd allowed = kAnotherDigit * (refined_transfers(written, {s}).front() - G).cwiseAbs() +
-                       kUnmissed * size + kNeighbours * around +
+                       kUnchanged * size + kNeighbours * around +
                        kNoise * point.rounding().cwiseAbs();
     if (!allowed.allFinite()) return {};
     return Reference{std::move(G), std::move(allowed)};

@@ -129,7 +129,7 @@ MatrixXd of_nothing(const MatrixXd& terms, const std::vector<MatrixXcd>& exact) 
   const MatrixXd size = largest(exact);
   const MatrixXd around = size.rowwise().maxCoeff().cwiseSqrt() *
                           Eigen::RowVectorXd(size.colwise().maxCoeff().cwiseSqrt());
-  const double limit = kOfNothing / std::numeric_limits<double>::epsilon();
+  const double limit = kOfNothing / linalg::kEpsilon;
   return (around.array() == 0 || terms.array() <= limit * around.array()).select(terms, 0);
 }
 
@@ -143,7 +143,7 @@ MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& rounding,
                    sum = by.to_outputs * states + rounding.C * by.of_states;
     if (sum.allFinite()) result = result.cwiseMax(rounding.D + sum);
   }
-  return of_nothing(result / std::numeric_limits<double>::epsilon(), refined_transfers(m, points));
+  return of_nothing(result / linalg::kEpsilon, refined_transfers(m, points));
 }
 
 void add_rounding(Measure& measure, const std::vector<MatrixXcd>& exact, const MatrixXd& terms) {

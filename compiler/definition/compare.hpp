@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 #include <complex>
-#include <limits>
 #include <titop/graph/graph.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
@@ -56,7 +56,7 @@ Eigen::MatrixXd terms_of_rounding(const StateSpace& m, const StateSpace& roundin
                                   const std::vector<std::complex<double>>& points);
 
 /// Factor on one sample of rounding, taken after a step of refinement, as a bound for many.
-inline constexpr double kTermsPerRounding = 100 / std::numeric_limits<double>::epsilon();
+inline constexpr double kTermsPerRounding = 100 / linalg::kEpsilon;
 
 /// The same of `transfer(graph, s, values)` (compiler/definition/transfer.hpp): all equations
 /// against all in reverse order, likewise. Outputs and inputs in the graph's order. O(points
@@ -81,6 +81,9 @@ struct Difference {
   std::size_t point = 0;  ///< index
 };
 
+/// A smaller change of a transfer, of each entry, is none: a simpler model with it may replace the
+/// other.
+inline constexpr double kUnchanged = 1e-8;
 /// Above it a difference may be rounding of terms that a dense model does not show.
 inline constexpr double kClose = 1e-9;
 

@@ -1,6 +1,7 @@
 #include <titop/compiler/index_reduction/hidden.hpp>
 #include <titop/compiler/loops/lines.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::detail {
 namespace {
@@ -11,8 +12,7 @@ using Eigen::RowVectorXd;
 using linalg::at;
 using solve::CancellingSum;
 
-constexpr double kKeeps = 1e-3;    ///< of the largest: a choice made before may cost three digits
-constexpr double kTie = 1 + 1e-9;  ///< less is rounding: the first is taken
+constexpr double kKeeps = 1e-3;  ///< of the largest: a choice made before may cost three digits
 
 /// Sums of many numbers, entry by entry.
 struct KeptRow {
@@ -109,8 +109,9 @@ int Followers::choose(const Hidden& c) const {
   for (const auto& [i, share] : c.g) {
     if (tier(i) != best_tier) continue;
     const double size = std::abs(share) * (weight_(i) > 0 ? weight_(i) : 1);
-    if (size > kTie * largest) largest = size, best = i;
-    if (before_[at(i)] && size > kTie * largest_before) largest_before = size, best_before = i;
+    if (size > linalg::kTie * largest) largest = size, best = i;
+    if (before_[at(i)] && size > linalg::kTie * largest_before)
+      largest_before = size, best_before = i;
   }
   return largest_before >= kKeeps * largest ? best_before : best;
 }

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
-#include <limits>
 #include <optional>
 #include <titop/compiler/index_reduction/proper.hpp>
 #include <titop/compiler/solve/blame.hpp>
 #include <titop/compiler/solve/instant.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/some_names.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
@@ -15,9 +15,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using linalg::at;
+using linalg::kEpsilon;
 using solve::RowMatrix;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 /// The largest of several samples estimates rounding: of four, hardly all are small.
 constexpr int kSamples = 4;

@@ -5,6 +5,7 @@
 #include <titop/compiler/index_reduction/watched.hpp>
 #include <titop/compiler/solve/null_columns.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::detail {
 namespace {
@@ -14,8 +15,6 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using linalg::at;
 using solve::KeptMatrix;
-
-constexpr double kAlike = 1 + 1e-9;  ///< less is rounding: the first in the graph is taken
 
 /// rows of `to` from `first` on += c * m
 template <class C, class Block>
@@ -161,9 +160,10 @@ class Showing {
       if (g_.signals[at(s)].size != size) continue;
       const Eigen::VectorXd part = motions_.value(s, z).value.col(0).segment(first, count);
       const double length = part.norm();
-      const bool equal = length * kAlike >= most && length <= kAlike * most;
+      const bool equal = length * linalg::kTie >= most && length <= linalg::kTie * most;
       const bool of_body = is_of_body(g_.channels[at(g_.signals[at(s)].channel)]);
-      if (length == 0 || !(length > kAlike * most || (equal && of_body && !best_of_body))) continue;
+      if (length == 0 || !(length > linalg::kTie * most || (equal && of_body && !best_of_body)))
+        continue;
       most = length, best_of_body = of_body;
       best = {s, first, count, RowVectorXd::Zero(size)};
       best.direction.segment(first, count) = part.transpose() / length;

@@ -1,5 +1,6 @@
 #include <titop/compiler/loops/axial_motion.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::passes {
 
@@ -9,14 +10,14 @@ using linalg::at;
 namespace {
 
 bool rigid_along(const Kinematics& k) {
-  constexpr double kStill = 1e-6;  // of the point's translations: the digits of modal data in files
   for (std::size_t i = 0; i < k.Phi.size(); ++i) {
     if (static_cast<int>(i) == k.reference || k.Phi[i].rows() != 6) continue;
     // tau = [[I, (*CP)], [0, I]]
     const MatrixXd& tau = k.tau[i];
     const Eigen::Vector3d CP(tau(2, 4), tau(0, 5), tau(1, 3));
     const MatrixXd shapes = k.Phi[i].topRows<3>();
-    if (CP.norm() > 0 && (CP.normalized().transpose() * shapes).norm() <= kStill * shapes.norm())
+    if (CP.norm() > 0 &&
+        (CP.normalized().transpose() * shapes).norm() <= linalg::kTextDigits * shapes.norm())
       return true;
   }
   return false;

@@ -19,6 +19,7 @@
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/some_names.hpp>
 #include <utility>
 
@@ -31,8 +32,6 @@ using namespace loops;
 using linalg::at;
 
 constexpr double kGap = 1e-6;  ///< a loop that is open by more does not close
-constexpr double kUnit =
-    1e-12;  ///< rounding of a few products: a direction is an axis, or has none of it
 
 // --- is there anything to look at? --------------------------------------------------------------
 
@@ -164,13 +163,13 @@ struct ChainChecker {
 MatrixXd orthonormal_rows(const MatrixXd& m) {
   const Eigen::HouseholderQR<MatrixXd> qr(m.transpose());
   MatrixXd Q = (qr.householderQ() * MatrixXd::Identity(m.cols(), m.rows())).transpose();
-  Q = (Q.array().abs() < kUnit).select(0.0, Q);
+  Q = (Q.array().abs() < linalg::kAxisRounding).select(0.0, Q);
   for (Index i = 0; i < Q.rows(); ++i) Q.row(i).normalize();
   // The span of unit vectors is spanned by them: their zeros and ones stay exact.
   const Eigen::VectorXd share = Q.colwise().squaredNorm();
   MatrixXd units(0, Q.cols());
   for (Index j = 0; j < share.size(); ++j)
-    if (share(j) > 1 - kUnit) {
+    if (share(j) > 1 - linalg::kAxisRounding) {
       units.conservativeResize(units.rows() + 1, Q.cols());
       units.bottomRows(1) = Eigen::RowVectorXd::Unit(Q.cols(), j);
     }
@@ -211,7 +210,7 @@ EquationSplit split(const MatrixXd& scaled, const Eigen::VectorXd& factors) {
   std::erase_if(left, [&](int row) { return r.taken(row); });
   MatrixXd directions =
       r.matrix()(Eigen::all, r.pivots()).eval().triangularView<Eigen::Upper>().solve(r.matrix());
-  directions = (directions.array().abs() < kUnit).select(0.0, directions);
+  directions = (directions.array().abs() < linalg::kAxisRounding).select(0.0, directions);
   directions(Eigen::all, r.pivots()).setIdentity();
   return {orthonormal_rows(directions * factors.asDiagonal()),
           MatrixXd(MatrixXd::Identity(n, n))(left, Eigen::all)};
@@ -254,7 +253,7 @@ std::string direction_names(const MatrixXd& directions) {
   std::string text;
   for (Index i = 0; i < directions.rows(); ++i) {
     Index j = 0;
-    if (!(directions.row(i).cwiseAbs().maxCoeff(&j) > 1 - kUnit)) return {};
+    if (!(directions.row(i).cwiseAbs().maxCoeff(&j) > 1 - linalg::kAxisRounding)) return {};
     text += (i ? ", " : "") + std::string(kNames[j]);
   }
   return " (" + text + ")";

@@ -8,6 +8,7 @@
 #include <titop/compiler/loops/uses.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::loops {
 namespace {
@@ -21,7 +22,6 @@ using linalg::at;
 /// is then at most about ten times those that it depends on, in units of energy, and the model
 /// loses at most a digit.
 constexpr double kShare = 0.1;
-constexpr double kNoise = 64 * 2.2e-16;
 constexpr std::size_t kLookedAt = 8;  ///< neighbours per column, for one to merge with
 
 /// Rows of one front in which coordinates had their pivots: upper triangular in these.
@@ -310,7 +310,7 @@ struct Fronts {
       pivots.triangularView<Eigen::Upper>().solveInPlace(T);
       const Eigen::VectorXd off = rounding_by(pivots, T);
       // Clears rounding between uncoupled directions.
-      const double noise = kNoise * static_cast<double>(pivot_places.size());
+      const double noise = linalg::kProductRounding * static_cast<double>(pivot_places.size());
       for (std::size_t k = 0; k < pivot_places.size(); ++k) {
         Independent::Follows f{rows->pivots[k]};
         for (std::size_t i = 0; i < rest_places.size(); ++i) {

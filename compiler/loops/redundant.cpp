@@ -8,6 +8,7 @@
 #include <titop/compiler/passes/union_find.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::loops {
 namespace {
@@ -17,9 +18,9 @@ using Eigen::MatrixXd;
 using Eigen::RowVectorXd;
 using Eigen::VectorXd;
 using linalg::at;
+using linalg::kProductRounding;
 
-constexpr double kRounding = 64 * 2.2e-16;  ///< per column of an orthonormal basis
-constexpr int kFewColumns = 6;              ///< fewer count as so many
+constexpr int kFewColumns = 6;   ///< fewer count as so many
 constexpr double kMostly = 0.5;  ///< less of a unit vector in the span: no need to look closely
 
 /// Rows, with the columns that no later part has (`own`): in these the rows span the columns of
@@ -31,7 +32,7 @@ struct RedundantPart {
   /// Norm of a vector over `own` outside the span.
   double outside(const VectorXd& v) const { return (v - basis * (basis.transpose() * v)).norm(); }
   double rounding() const {
-    return kRounding * static_cast<double>(std::max<Index>(basis.cols(), kFewColumns));
+    return kProductRounding * static_cast<double>(std::max<Index>(basis.cols(), kFewColumns));
   }
 };
 
@@ -234,7 +235,7 @@ struct RedundancyFinder {
     const VectorXd sizes = part.rest.cwiseAbs().transpose() * y.cwiseAbs();
     for (std::size_t i = 0; i < part.others.size(); ++i) {
       const auto k = static_cast<Index>(i);
-      if (std::abs(others(k)) > kRounding * sizes(k)) left[part.others[i]] -= others(k);
+      if (std::abs(others(k)) > kProductRounding * sizes(k)) left[part.others[i]] -= others(k);
     }
     return sizes.maxCoeff();
   }
@@ -244,7 +245,7 @@ struct RedundancyFinder {
     while (true) {
       int next = -1;
       for (const auto& [c, x] : left) {
-        if (std::abs(x) <= kFewColumns * kRounding * size) continue;
+        if (std::abs(x) <= kFewColumns * kProductRounding * size) continue;
         if (part_of[at(c)] < 0) return false;
         if (next < 0 || part_of[at(c)] < next) next = part_of[at(c)];
       }

@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <limits>
 #include <titop/compiler/loops/sum.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::loops {
 namespace {
@@ -9,8 +9,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using linalg::at;
+using linalg::kEpsilon;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr double kUnits = 32;     ///< of rounding in a product of any two matrices of six
 constexpr double kUnitsEach = 2;  ///< more with every factor: rounding of a product of six sums
 

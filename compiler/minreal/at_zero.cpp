@@ -74,7 +74,7 @@ bool take_out_once(detail::Sampled& s, Rows rows_of_model, bool by_inputs, Matri
                    RemovedStates& result) {
   const MatrixXd M = rows_of_model(s.model);
   const MatrixXd rounding =
-      detail::rounding_of(s.off, M, rows_of_model).cwiseMax(kEps * M.cwiseAbs());
+      detail::rounding_of(s.off, M, rows_of_model).cwiseMax(kEpsilon * M.cwiseAbs());
   const MatrixXd A = by_inputs ? s.model.A : MatrixXd(s.model.A.transpose());
   MatrixXd balanced = A;
   const Eigen::VectorXd unit = linalg::similarity_scaling_of_parts(balanced);

@@ -76,10 +76,10 @@ void measure_change(const StateSpace& whole, Minimized& m) {
 }
 
 bool put_back(const StateSpace& whole, double resolution, double lost, Minimized& m) {
-  const double change = m.order.change, allowed = std::max(kUnchanged, 10 * resolution);
+  const double change = m.order.change, allowed = std::max(detail::kUnchanged, 10 * resolution);
   if (!(change > allowed) && !(lost > allowed)) return false;
   m.model = whole;
-  m.order = back_to(whole.order(), std::max(kUnchanged, resolution), std::move(m.order));
+  m.order = back_to(whole.order(), std::max(detail::kUnchanged, resolution), std::move(m.order));
   m.notes = {
       to_string(m.order),
       change > allowed

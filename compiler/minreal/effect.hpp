@@ -7,8 +7,6 @@
 /// Measures the effect of removed modes on the transfer.
 namespace titop::minreal {
 
-inline constexpr double kUnchanged = 1e-8;  ///< a smaller change of a transfer
-
 /// `minimize` (compiler/minreal/minimize.hpp) except for the measurement, for callers that measure
 /// against more than the model.
 Minimized minimize_unmeasured(const StateSpace& model, const MinimizeOptions& options);

@@ -94,7 +94,7 @@ void find_mixing(const linalg::Eigensystem& e, const VectorXd& left, const Vecto
     for (Index i = 0; i < n; ++i) {
       const double gap = std::abs(e.values(i) - e.values(j));
       m.distance(i, j) = gap;
-      const double noise = kEps * size * left(j) * right(i);
+      const double noise = kEpsilon * size * left(j) * right(i);
       m.mixing(i, j) = gap > 0 ? std::min(1.0, noise / gap) : 1;
     }
 }
@@ -131,7 +131,7 @@ void find_apart(const StateSpace& model, const PoleClusters& p, const VectorXd& 
   const MatrixXcd V = e.scale.cwiseInverse().asDiagonal() * e.V(Eigen::all, apart),
                   W = e.W(apart, Eigen::all) * e.scale.asDiagonal(),
                   b = e.W(apart, Eigen::all) * model.B, c = model.C * e.V(Eigen::all, apart);
-  const double noise = kEps * size;
+  const double noise = kEpsilon * size;
   for (Index j = 0; j < n; ++j) {
     if (!m.apart[at(j)].empty()) continue;
     MatrixXcd R = -p.T(apart, apart);
@@ -156,7 +156,7 @@ General general_modes(const StateSpace& model, double resolution) {
     m.states.push_back(e.values(j).imag() > 0 ? 2 : e.values(j).imag() < 0 ? 0 : 1);
   judge_wholes(model, p, m);
   normalize(m, e);
-  find_clusters(e, p.clusters, 100 * kEps * size, resolution, m);
+  find_clusters(e, p.clusters, 100 * kEpsilon * size, resolution, m);
   const MatrixXd right_sizes = (e.scale.cwiseInverse().asDiagonal() * e.V).cwiseAbs(),
                  left_sizes = (e.W * e.scale.asDiagonal()).cwiseAbs().transpose();
   const Parts parts =

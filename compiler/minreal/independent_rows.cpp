@@ -90,7 +90,7 @@ SeparatedRows separate(const NoisyRows& of) {
 NoisyRows weighted(const std::vector<int>& number, const MatrixXd& scaled, const MatrixXd& rounding,
                    const VectorXd& weight) {
   const VectorXd noise =
-      rounding.rowwise().norm().cwiseMax(kEps * scaled.rowwise().norm()).cwiseProduct(weight);
+      rounding.rowwise().norm().cwiseMax(kEpsilon * scaled.rowwise().norm()).cwiseProduct(weight);
   const MatrixXd rows = weight.asDiagonal() * scaled;
   return {number, rows(number, Eigen::all), noise(number)};
 }
@@ -161,7 +161,7 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
     const int row = others.number[at(k)];
     const double size = scaled.row(row).norm() * weight(row), bound = others.noise(k) / size,
                  own = others.rows.row(k).norm() / size;
-    if (own <= detail::kRoundingFactor * bound && bound <= kFewDigits)
+    if (own <= detail::kRoundingFactor * bound && bound <= kRemovable)
       r.out.push_back({row, own, bound});
     else
       r.keep.push_back(row), r.doubtful.push_back({row, own, bound});

@@ -139,7 +139,7 @@ std::optional<StateSpace> decoupled_rest(const detail::Sampled& s, const Integra
                          s.model.C(Eigen::all, states.integrators).cwiseAbs() * d->X.cwiseAbs();
   const MatrixXd rounding =
       detail::rounding_of(samples, d->C_rest, [](const Decoupled& part) { return part.C_rest; });
-  rest.C = detail::cleared(d->C_rest, rounding.cwiseMax(kEps * terms));
+  rest.C = detail::cleared(d->C_rest, rounding.cwiseMax(kEpsilon * terms));
   rest.D = s.model.D;
   rest.outputs = s.model.outputs;
   return rest;

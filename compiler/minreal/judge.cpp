@@ -17,8 +17,7 @@ constexpr double kNothing = 1e-17;
 /// Rounding's part of a negligible mode: above it, an apparently negligible mode may have an
 /// effect.
 constexpr double kNarrow = 1e-14;
-constexpr double kDoubtful = 1e-9;  ///< above it a mode always stays
-constexpr double kFarOff = 1e-6;    ///< above it not even exact arithmetic removes a mode
+constexpr double kFarOff = 1e-6;  ///< above it not even exact arithmetic removes a mode
 
 using linalg::at;
 
@@ -40,7 +39,7 @@ VectorXd rounding(const MatrixXd& rows, const MatrixXd& apart, const ModeSet& m,
   VectorXd sum = apart.size() > 0 ? VectorXd(apart.row(j)) : VectorXd(VectorXd::Zero(rows.cols()));
   for (Index i = 0; i < rows.rows(); ++i) {
     const bool same = m.cluster[at(i)] == m.cluster[at(j)];
-    sum += (same ? 2 * kEps : mixing(i)) * rows.row(i).transpose();
+    sum += (same ? 2 * kEpsilon : mixing(i)) * rows.row(i).transpose();
   }
   return sum;
 }
@@ -81,10 +80,10 @@ Verdict judge(const ModeSet& m, Index j, double resolution) {
   v.bound = std::max(c.size * b.noise, b.size * c.noise) / (2 * m.lambda(j));
   v.unreachable = inputs && (!outputs || b.size <= c.size);
   const bool nothing = v.visibility <= 10 * v.bound || v.visibility <= kNothing;
-  v.drop =
-      (nothing && v.visibility <= kDoubtful && v.bound <= kDoubtful) || v.visibility <= resolution;
+  v.drop = (nothing && v.visibility <= kRemovable && v.bound <= kRemovable) ||
+           v.visibility <= resolution;
   const bool small =
-      v.visibility <= kDoubtful && v.visibility <= 1e4 * std::max(v.bound, kEps * kEps);
+      v.visibility <= kRemovable && v.visibility <= 1e4 * std::max(v.bound, kEpsilon * kEpsilon);
   v.doubtful = !v.drop && (small || v.visibility <= 10 * v.bound);
   return v;
 }

@@ -18,8 +18,9 @@ using Eigen::VectorXd;
 using linalg::at;
 using Places = std::vector<Index>;
 
-constexpr double kOneNumber = 100 * kEps;  ///< of a matrix's norm: as near as that, poles are one
-constexpr double kWidest = 1e-3;           ///< likewise: spread of a multiple pole by rounding
+constexpr double kOneNumber =
+    100 * kEpsilon;               ///< of a matrix's norm: as near as that, poles are one
+constexpr double kWidest = 1e-3;  ///< likewise: spread of a multiple pole by rounding
 
 std::vector<std::vector<int>> find_components(const MatrixXd& A) {
   std::vector<std::vector<int>> result;
@@ -191,7 +192,7 @@ constexpr int kSamples = 4;
 
 MatrixXd error_like(const MatrixXd& A, int sample) {
   detail::SteadyRandom random(sample);
-  const double size = kEps * A.norm() / std::sqrt(static_cast<double>(A.rows()));
+  const double size = kEpsilon * A.norm() / std::sqrt(static_cast<double>(A.rows()));
   MatrixXd E(A.rows(), A.cols());
   for (Index j = 0; j < E.cols(); ++j)
     for (Index i = 0; i < E.rows(); ++i) E(i, j) = size * random.unit();
@@ -213,8 +214,8 @@ void add_share(const ClusterShare& s, OwnModel& own) {
   m.A_size = std::max(m.A_size, s.A.norm());
   m.B_size += s.B.colwise().norm().transpose();
   m.C_size += s.C.rowwise().norm();
-  Off most{0, kEps * (s.W.cwiseAbs() * s.B.cwiseAbs()).colwise().norm(),
-           kEps * (s.C.cwiseAbs() * s.Q.cwiseAbs()).rowwise().norm()};
+  Off most{0, kEpsilon * (s.W.cwiseAbs() * s.B.cwiseAbs()).colwise().norm(),
+           kEpsilon * (s.C.cwiseAbs() * s.Q.cwiseAbs()).rowwise().norm()};
   for (int sample = 1; sample <= kSamples; ++sample) {
     const Off one = off(s, error_like(s.A, sample));
     most.A = std::max(most.A, one.A);

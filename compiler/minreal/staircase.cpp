@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <limits>
 #include <titop/compiler/certificate/sampled.hpp>
 #include <titop/compiler/minreal/staircase.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <vector>
 
 namespace titop::minreal {
@@ -44,7 +44,7 @@ ScaledPorts first_step(const DrivenSide& d) {
   MatrixXd M = d.B(Eigen::all, ports);
   for (std::size_t l = 0; l < ports.size(); ++l)
     M.col(static_cast<Index>(l)) /=
-        std::max(d.B_noise(ports[l]), std::numeric_limits<double>::epsilon() * d.B_size(ports[l]));
+        std::max(d.B_noise(ports[l]), linalg::kEpsilon * d.B_size(ports[l]));
   return {std::move(M), 1, relative};
 }
 
@@ -58,7 +58,7 @@ Stairs stairs(const DrivenSide& d, double times, bool careful) {
   const double own = A.norm();
   ScaledPorts step = first_step(d);
   while (s.reached < k) {
-    if (careful && step.relative > kFewDigits) {
+    if (careful && step.relative > kRemovable) {
       s.reached = k;
       return s;
     }

@@ -6,8 +6,9 @@
 /// For the compiler's own files.
 namespace titop::minreal {
 
-inline constexpr double kClearly = 1e4;     ///< times rounding: certainly larger
-inline constexpr double kFewDigits = 1e-9;  ///< of a size: with more rounding, nothing is removed
+inline constexpr double kClearly = 1e4;  ///< times rounding: certainly larger
+/// Visibility of a mode, and rounding of a rank relative to its size: above it nothing is removed.
+inline constexpr double kRemovable = 1e-9;
 
 /// xdot = A x + B u, y = C x, and the bound of its rounding.
 struct ClusterModel {

@@ -26,7 +26,7 @@ struct ModeRange {
 /// Modes, by rising lambda, whose frequencies are equal up to rounding and this part of lambda.
 std::vector<ModeRange> equal_frequencies(const GradedModes& e, double same) {
   const VectorXd& lambda = e.modes.lambda;
-  const double all_alike = 100 * kEps * lambda.cwiseAbs().maxCoeff();
+  const double all_alike = 100 * kEpsilon * lambda.cwiseAbs().maxCoeff();
   std::vector<ModeRange> result;
   for (Index i = 0; i < lambda.size(); ++i) {
     const double size = std::abs(lambda(i));
@@ -183,7 +183,7 @@ bool shares_a_pole(const VectorXd& lambda, const VectorXd& z, const ModeSet& m) 
 void find_mixing(const GradedModes& e, const VectorXd& z, ModeSet& m) {
   const VectorXd& lambda = e.modes.lambda;
   const Index n = lambda.size();
-  const double all_alike = std::sqrt(static_cast<double>(n)) * kEps * m.lambda.maxCoeff();
+  const double all_alike = std::sqrt(static_cast<double>(n)) * kEpsilon * m.lambda.maxCoeff();
   m.distance.resize(n, n);
   m.mixing.resize(n, n);
   for (Index j = 0; j < n; ++j)

@@ -135,14 +135,14 @@ Matrix leaving(const ModeVectors<Matrix>& all, const std::vector<Index>& leave,
     const Index j = leave[k];
     // Effect of a share of mode i on the equation of mode j: the smallest solution. Modes of one
     // cluster have been rotated already.
-    VectorXd inverse = m.distance(stay, j).cwiseMax(kEps * noise).cwiseInverse();
+    VectorXd inverse = m.distance(stay, j).cwiseMax(kEpsilon * noise).cwiseInverse();
     for (std::size_t i = 0; i < stay.size(); ++i)
       if (m.cluster[at(stay[i])] == m.cluster[at(j)]) inverse(static_cast<Index>(i)) = 0;
     // A port at rounding level gives no condition.
     std::vector<Index> clear;
     for (Index l = 0; l < ports.cols(); ++l)
       if (std::abs(ports(j, l)) <= kSmallShare) clear.push_back(l);
-    if (clear.empty() || ports(j, clear).norm() <= kEps) continue;
+    if (clear.empty() || ports(j, clear).norm() <= kEpsilon) continue;
     const Matrix moved = (inverse.asDiagonal() * ports(stay, clear)).transpose();
     const Matrix shown = -ports(j, clear).transpose();
     const Matrix error = moved.completeOrthogonalDecomposition().solve(shown);
@@ -263,7 +263,7 @@ void take_out(const Symmetric& s, const std::vector<Verdict>& verdicts, StateSpa
   LeavingSides l{{levels(left), levels(motions(unreachable).transpose()).transpose()},
                  {levels(coordinates(unseen)), levels(right.transpose()).transpose()},
                  VectorXd(states),
-                 64 * kEps};
+                 linalg::kProductRounding};
   for (std::size_t i = 0; i < s.q.size(); ++i)
     l.scale(s.q[i]) = l.scale(s.qdot[i]) = weight(static_cast<Index>(i));
   const std::vector<int> dependent =

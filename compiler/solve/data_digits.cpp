@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <titop/compiler/solve/data_digits.hpp>
+#include <titop/compiler/solve/evaluate.hpp>
 #include <titop/graph/data_digits.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
 /// Motions and forces that the digits of modal data cannot determine. An error e of a block's
@@ -24,18 +25,12 @@ using Eigen::VectorXd;
 using linalg::at;
 using solve::RowMatrix;
 
-/// Less than one digit of the result is determined by the data: noted.
-constexpr double kOneDigit = 0.1;
-
 /// First all blocks by so many random errors at once. At least this share of the effect of one
 /// block's error on its port is visible in one of them, except in one case of 10^4 at the limit.
 constexpr int kSums = 4;
 constexpr double kShows = 0.1;
 
 constexpr std::size_t kMostNamed = 8;
-
-/// Rounding of the products of which W' W is made.
-constexpr double kProducts = 64 * std::numeric_limits<double>::epsilon();
 
 struct DataPort {
   int node = -1, channel = -1;  ///< channel of the node's block
@@ -50,7 +45,7 @@ struct DataPort {
   }
   /// |K| above which the data do not decide.
   double limit() const {
-    return 1 / (by_shapes ? std::max(noise() * noise(), kProducts) : noise());
+    return 1 / (by_shapes ? std::max(noise() * noise(), linalg::kProductRounding) : noise());
   }
 };
 

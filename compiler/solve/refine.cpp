@@ -20,8 +20,6 @@ using solve::lifted;
 
 /// Most steps of refinement: at kShrinks each they lead to 1e-18.
 constexpr int kSteps = 30;
-/// A larger change of the outputs needs another step, for any T.
-constexpr double kSettled = 1e-12;
 /// If steps shrink by less, refinement ends: at the rounding of T, or without a result if that is
 /// not reached.
 constexpr double kShrinks = 0.25;
@@ -300,7 +298,7 @@ void Evaluation<T>::refine(const Evaluation<std::complex<double>>& coarse) {
     if (std::isinf(now) || (step > 0 && !leads)) return;
     // Prediction of the next step's change: this one's, times the same factor.
     const bool settled =
-        now == 0 || (now <= kSettled && now * (now / before) <= solve::Scalar<T>::epsilon());
+        now == 0 || (now <= kEnough && now * (now / before) <= solve::Scalar<T>::epsilon());
     if (leads && (settled || (step > 0 && !(now <= kShrinks * before)))) return;
     before = now;
   }

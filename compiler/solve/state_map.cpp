@@ -1,6 +1,7 @@
 #include <titop/compiler/solve/layout.hpp>
 #include <titop/compiler/solve/state_map.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/name_order.hpp>
 
 namespace titop::detail {
@@ -9,14 +10,13 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using linalg::at;
-
-constexpr double kRounding = 64 * 2.220446049250313e-16;
+using linalg::kProductRounding;
 
 /// to += M R; entries that cancel to rounding become 0.
 void add_product(MatrixXd& to, const MatrixXd& M, const MatrixXd& R) {
   const MatrixXd size = to.cwiseAbs() + M.cwiseAbs() * R.cwiseAbs();
   to += M * R;
-  to = (to.array().abs() <= kRounding * size.array()).select(0, to);
+  to = (to.array().abs() <= kProductRounding * size.array()).select(0, to);
 }
 
 /// M T by columns.
@@ -27,8 +27,8 @@ MatrixXd times_map(const MatrixXd& M, const StateMap& map) {
   // and nonzero entries would be taken for rounding.
   const auto clean = [&](Index j) {
     if (touched[at(j)])
-      all.col(j) =
-          (all.col(j).array().abs() <= kRounding * size.col(j).array()).select(0, all.col(j));
+      all.col(j) = (all.col(j).array().abs() <= kProductRounding * size.col(j).array())
+                       .select(0, all.col(j));
     size.col(j) = all.col(j).cwiseAbs();
   };
   for (auto row = map.dependent().rbegin(); row != map.dependent().rend(); ++row) {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/certificate/without_rounding.hpp>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/minreal/effect.hpp>
@@ -142,7 +143,6 @@ std::vector<std::complex<double>> points_of_change(const SystemData& d, const St
 
 Change change(const System& system, const SystemData& d, const StateSpace& dense,
               const Minimized& m) {
-  constexpr double kAnotherDigit = 10;
   Change worst;
   for (const std::complex<double> s : points_of_change(d, dense, m)) {
     const std::optional<MatrixXcd> G = transfer_if_any(system, s);
@@ -196,7 +196,7 @@ bool lower_to_exact_order(const System& system, const SystemData& d, const State
   fewer.order.undecided.clear();
   fewer.order.removed.push_back({0, m.order.order - exact.order, found->tolerance, found->tolerance,
                                  "exact arithmetic counts it out"});
-  const double allowed = std::max(minreal::kUnchanged, 10 * d.skeleton->options.resolution);
+  const double allowed = std::max(kUnchanged, 10 * d.skeleton->options.resolution);
   const Change by = change(system, d, dense, fewer);
   if (by.tried.empty() || std::max(by.by_modes, by.in_all) > allowed) return false;
   fewer.order.change = by.by_modes;

@@ -47,6 +47,8 @@ MatrixXcd rounded(const solve::RowMatrix<T>& m) {
   return m.unaryExpr([](const T& x) -> Double { return solve::Scalar<T>::round(x); });
 }
 
+using detail::kEnough;
+using detail::kOneDigit;
 using detail::unit_inputs;
 
 template <class T>
@@ -67,9 +69,6 @@ detail::Evaluation<T> refined(const detail::SystemData& d, Double s,
                               const detail::Evaluation<Double>& coarse) {
   return {d, solve::Scalar<T>::from(s), unit_inputs<T>(d), coarse};
 }
-
-/// A larger error of the outputs needs a finer precision, or is refused.
-constexpr double kEnough = 1e-12;
 
 template <class T>
 MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
@@ -109,14 +108,13 @@ MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
 /// of the data decides all digits of the outputs, as at a pole.
 template <class T>
 std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Double s) {
-  constexpr double kNoDigit = 0.1;  // of the outputs, by the last place of the data
   try {
     detail::Evaluation<T> point(d, solve::Scalar<T>::from(s), unit_inputs<T>(d),
                                 solve::Refinement::settled);
     const auto losses = point.losses();
     const double in_double =
         losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
-    if (lost_by(point, losses) <= kEnough && in_double <= kNoDigit)
+    if (lost_by(point, losses) <= kEnough && in_double <= kOneDigit)
       return rounded<T>(point.outputs());
   } catch (const Error&) {  // a pole of a block, or no pivot here either
   }

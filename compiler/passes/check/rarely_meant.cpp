@@ -6,6 +6,7 @@
 #include <titop/compiler/passes/check/dual_pairs.hpp>
 #include <titop/compiler/passes/check/springs.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::passes {
 namespace {
@@ -55,14 +56,13 @@ std::map<int, OwnGains> own_gains(const Graph& g, ParameterValues values) {
 /// True if it is negative along one of the axes that the equation drives, beyond the rounding of a
 /// 0 after rotation, among three translations or rotations.
 bool negative(const MatrixXd& gain, const Equation& e) {
-  constexpr double kRounding = 1e-12;
   if (gain.size() == 0) return false;
   const MatrixXd& rows = e.part.rows();
   const MatrixXd along = e.part.whole() ? gain : MatrixXd(rows * gain * rows.transpose());
   const Eigen::Index half = along.rows() == 6 ? 3 : along.rows();
   for (Eigen::Index first = 0; first < along.rows(); first += half) {
     const auto own = along.block(first, first, half, half);
-    if (own.diagonal().minCoeff() < -kRounding * own.cwiseAbs().maxCoeff()) return true;
+    if (own.diagonal().minCoeff() < -linalg::kAxisRounding * own.cwiseAbs().maxCoeff()) return true;
   }
   return false;
 }

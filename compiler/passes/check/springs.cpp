@@ -7,6 +7,7 @@
 #include <titop/compiler/passes/check/dual_pairs.hpp>
 #include <titop/compiler/passes/check/springs.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 #include <utility>
 
@@ -15,8 +16,6 @@ namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-
-constexpr double kRounding = 1e-12;  ///< of the axes' sizes
 
 using linalg::at;
 
@@ -110,8 +109,8 @@ struct Among {
         return false;
     }
     const MatrixXd S = scale.asDiagonal() * K * scale.asDiagonal();
-    return (S - S.transpose()).cwiseAbs().maxCoeff() <= kRounding &&
-           eigh(S).lambda.minCoeff() >= -kRounding * static_cast<double>(S.rows());
+    return (S - S.transpose()).cwiseAbs().maxCoeff() <= linalg::kAxisRounding &&
+           eigh(S).lambda.minCoeff() >= -linalg::kAxisRounding * static_cast<double>(S.rows());
   }
 };
 

@@ -3,6 +3,7 @@
 #include <titop/compiler/passes/check/checker.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/some_names.hpp>
 #include <utility>
 
@@ -13,21 +14,17 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using linalg::at;
 
-/// Rank of six rows in all units: motions below this fraction of those in the other directions
-/// count as 0, at the digits of a text file.
-constexpr double kStill = 1e-6;
-
 /// In how many directions no mode of these moves the point; Phi: 6 columns, a row per mode.
 int still_directions(MatrixXd Phi) {
   for (const Index half : {Index{0}, Index{3}}) {
     const double largest = Phi.middleCols<3>(half).colwise().norm().maxCoeff();
     for (Index i = half; i < half + 3; ++i) {
       const double norm = Phi.col(i).norm();
-      Phi.col(i) *= norm > kStill * largest ? 1 / norm : 0;
+      Phi.col(i) *= norm > linalg::kTextDigits * largest ? 1 / norm : 0;
     }
   }
   Eigen::ColPivHouseholderQR<MatrixXd> qr(Phi);
-  qr.setThreshold(kStill);
+  qr.setThreshold(linalg::kTextDigits);
   return static_cast<int>(6 - qr.rank());
 }
 

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <limits>
+
+/// Constants of rounding in double that several decisions share (docs/numerics.md).
+namespace titop::linalg {
+
+/// Distance of 1 to the next double, twice the unit roundoff u.
+inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// Rounding of a sum of up to 128 products, of the sum of their magnitudes: gamma_n = n u [Higham,
+/// Accuracy and Stability of Numerical Algorithms, 3.1]. A smaller sum is rounding.
+inline constexpr double kProductRounding = 64 * kEpsilon;
+/// Rounding of a component of an axis (a unit vector) after some rotations, with room for axes of
+/// twelve typed digits: a smaller component is 0.
+inline constexpr double kAxisRounding = 1e-12;
+
+/// Numbers read from a text file have some six digits: a motion of a point below this share of its
+/// others is 0.
+inline constexpr double kTextDigits = 1e-6;
+/// A number is larger than another beyond rounding: otherwise the first in the graph is taken, so
+/// that a choice does not depend on the last bits.
+inline constexpr double kTie = 1 + 1e-9;
+
+}  // namespace titop::linalg
