@@ -4,6 +4,7 @@
 #include <titop/blocks/bushing.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/opened.hpp>
 
 namespace titop {
 namespace {
@@ -90,6 +91,22 @@ class BushingBlock : public Block, public Specified<Bushing> {
     const std::vector<Value> more = spec_.damping.values();
     all.insert(all.end(), more.begin(), more.end());
     return all;
+  }
+  /// z = the displacement or the rate of its axis.
+  std::optional<Opened> opened(ParameterValues values,
+                               std::span<const int> parameters) const override {
+    std::vector<OpenedPair> pairs;
+    Eigen::Index state = 0;
+    for (const Value& v : this->values()) {  // K, then C; or one of them, if the other is full
+      const Eigen::Index axis = state % 6, rate = spec_.stiffness.values().empty() ? 6 : 0;
+      pairs.push_back({v,
+                       {},
+                       Eigen::VectorXd::Unit(24, axis) + Eigen::VectorXd::Unit(24, 6 + axis),
+                       Eigen::RowVectorXd::Unit(12, state + rate),
+                       {}});
+      ++state;
+    }
+    return with_pairs(*dynamics(values), pairs, parameters);
   }
   std::optional<Cause> why_singular(int, ParameterValues) const override {
     return Cause{"is a massless spring",

@@ -7,6 +7,7 @@
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/modal_form.hpp>
+#include <titop/graph/opened.hpp>
 #include <type_traits>
 
 namespace titop {
@@ -245,6 +246,37 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
     for (const auto* list : {&spec_->values.omega, &spec_->values.xi})
       for (const auto& [mode, value] : *list) all.push_back(value);
     return all;
+  }
+  /// With v = omega eta + 2 xi etad and etadd = W u - omega v: omega has z = eta, whose w adds to
+  /// v, and z = v, whose w subtracts from etadd; xi has z = etad, whose w adds twice to v.
+  std::optional<Opened> opened(ParameterValues values,
+                               std::span<const int> parameters) const override {
+    const ModalParameters m = modes_at(values);
+    const Eigen::Index n = m.omega.size();
+    std::vector<OpenedPair> pairs;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const auto value = [&](const std::map<int, Value>& list, double number) {
+        const auto found = list.find(static_cast<int>(i + 1));
+        return found == list.end() ? Value(number) : found->second;
+      };
+      const Value omega = value(spec_->values.omega, m.omega(i)),
+                  xi = value(spec_->values.xi, m.xi(i));
+      const auto acting = [&](const Value& v, double on_mode, Eigen::RowVectorXd z) {
+        return OpenedPair{v,
+                          on_mode * VectorXd::Unit(2 * n, n + i),
+                          on_mode * shapes_->W.row(i).transpose(),
+                          std::move(z),
+                          {}};
+      };
+      const Eigen::RowVectorXd eta = Eigen::RowVectorXd::Unit(2 * n, i),
+                               etad = Eigen::RowVectorXd::Unit(2 * n, n + i);
+      const std::size_t first = pairs.size();
+      pairs.push_back(acting(omega, -m.omega(i), eta));
+      pairs.push_back(acting(xi, -2 * m.omega(i), etad));
+      pairs.push_back(acting(omega, -1, m.omega(i) * eta + 2 * m.xi(i) * etad));
+      pairs.back().of_pairs = {{first, 1}, {first + 1, 2}};
+    }
+    return with_pairs(*dynamics(values), pairs, parameters);
   }
   Response response(std::complex<double> s, ParameterValues values) const override {
     if (const auto d = dynamics(values); d->modal) return modal_response(*d->modal, s, type());

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -8,6 +9,7 @@
 #include <titop/blocks/rigid_body.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/opened.hpp>
 
 namespace titop {
 
@@ -164,6 +166,31 @@ class RigidBodyBlock : public Block, public Specified<RigidBody> {
     std::vector<Value> all = spec_.inertia.values();
     all.push_back(spec_.mass);
     return all;
+  }
+  /// Mass: z = the three linear accelerations of A. Entry ij of the inertia: z = the angular
+  /// accelerations i and j, w the torques about j and i; one of them if i = j.
+  std::optional<Opened> opened(ParameterValues values,
+                               std::span<const int> parameters) const override {
+    std::vector<OpenedPair> pairs;
+    const Matrix6 tau_AP = tau(-spec_.PA);
+    const auto n = static_cast<Eigen::Index>(6 * PC_.size());
+    const auto add = [&](const Value& v, int felt, int acts) {
+      Eigen::RowVectorXd z = Eigen::RowVectorXd::Zero(n + 6);
+      Eigen::VectorXd w = Eigen::VectorXd::Zero(n + 6);
+      z.tail<6>() = tau_AP.row(felt);
+      w.tail<6>() = -tau_AP.row(acts).transpose();
+      pairs.push_back({v, {}, std::move(w), {}, std::move(z)});
+    };
+    for (int i = 0; i < 3; ++i) add(spec_.mass, i, i);
+    const std::vector<Value> I = spec_.inertia.values();
+    constexpr std::array<std::pair<int, int>, 6> kEntries = {
+        {{3, 3}, {4, 4}, {5, 5}, {3, 4}, {3, 5}, {4, 5}}};
+    for (std::size_t e = 0; e < I.size(); ++e) {
+      const auto [i, j] = kEntries[e];
+      add(I[e], i, j);
+      if (i != j) add(I[e], j, i);
+    }
+    return with_pairs(*dynamics(values), pairs, parameters);
   }
   /// A hub of many ports becomes equations: each point moves with P, each wrench acts on P. A hub
   /// of few remains a block, so that its pivots are chosen among all its rows (a digit more).

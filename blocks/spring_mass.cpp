@@ -3,6 +3,7 @@
 #include <cmath>
 #include <titop/blocks/specified.hpp>
 #include <titop/blocks/spring_mass.hpp>
+#include <titop/graph/opened.hpp>
 #include <titop/graph/pole.hpp>
 
 namespace titop {
@@ -77,6 +78,23 @@ class SpringMassBlock : public Block, public Specified<SpringMass> {
     k.Phi[0](0, 0) = 1;  // the stretch
     k.stiffness = Eigen::Vector2d(spec_.stiffness.at(values), 0);
     return k;
+  }
+
+  /// m: z = xdd_C; k: z = stretch; c: z = its rate; m0: z = xdd_P.
+  std::optional<Opened> opened(ParameterValues values,
+                               std::span<const int> parameters) const override {
+    using Row = Eigen::RowVectorXd;
+    const double inverse = 1 / spec_.mass.at(values);
+    const Eigen::VectorXd back = Eigen::Vector2d(0, -inverse);  // on the mass
+    const Eigen::VectorXd mass = Eigen::Vector3d(-inverse, 0, 0),
+                          spring = Eigen::Vector3d(-inverse, 1, 0),
+                          foot = Eigen::Vector3d(0, -1, 0);
+    return with_pairs(*dynamics(values),
+                      {{spec_.mass, back, mass, {}, {}, Row::Unit(3, 0)},
+                       {spec_.stiffness, back, spring, Row::Unit(2, 0), {}},
+                       {spec_.damping, back, spring, Row::Unit(2, 1), {}},
+                       {spec_.parent_mass, {}, foot, {}, Row::Unit(2, 1)}},
+                      parameters);
   }
 
   std::vector<Value> values() const override {

@@ -98,6 +98,14 @@ struct Dynamics {
   Eigen::MatrixXd dense_direct() const;
 };
 
+/// A block with parameters p taken out: `dynamics` has the inputs w after those of the interface
+/// and the outputs z after its outputs. With w_k = d z_k for every pair k of a parameter, it is the
+/// block at the value p + d of that parameter, for any d.
+struct Opened {
+  Dynamics dynamics;           ///< A, B, C, D as matrices; no `modal`, no `sparse`
+  std::vector<int> parameter;  ///< per pair of scalars (w_k, z_k): the index of its parameter
+};
+
 /// Kinematics of the acceleration ports: the position of channel i is
 /// `x_i = tau[i] x_reference + Phi[i] x`, x the block's state vector; Phi[i] is size_i x n.
 struct Kinematics {
@@ -144,6 +152,15 @@ class Block {
   virtual std::optional<Kinematics> kinematics(ParameterValues) const { return std::nullopt; }
   /// The values that the matrices depend on (only those that are parameters matter).
   virtual std::vector<Value> values() const { return {}; }
+  /// The block at these values with the parameters of these indices taken out, each with as few
+  /// pairs as it needs (RigidBody: mass 3, xx 1, xy 2; SpringMass, Bushing and Gain: 1 per axis;
+  /// FlexibleBody: omega 2, xi 1). None (the default): `lft` refuses a parameter of this block by
+  /// name (not_rational). Pairs of other parameters are not there. graph/opened.hpp
+  /// assembles it. The rows of B of states in `kinematics` stay 0 for w.
+  virtual std::optional<Opened> opened(ParameterValues, std::span<const int> parameters) const {
+    static_cast<void>(parameters);
+    return std::nullopt;
+  }
   /// True if the block has no states and its rows become plain equations (a Gain, a Sum, a rigid
   /// hub of many ports).
   virtual bool is_algebraic() const { return false; }

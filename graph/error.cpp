@@ -25,6 +25,7 @@ std::string_view to_string(Code code) {
     case Code::bad_file: return "bad-file";
     case Code::bad_value: return "bad-value";
     case Code::singular: return "singular";
+    case Code::not_rational: return "not-rational";
   }
   return "unknown";
 }

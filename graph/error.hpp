@@ -30,6 +30,7 @@ enum class Code {
   bad_file,        ///< a file that does not contain the expected data
   bad_value,       ///< a number outside its range
   singular,        ///< a matrix that must be inverted is singular, or s is a pole
+  not_rational,    ///< a parameter that `lft` cannot take out of the model
 };
 
 /// "no-equation", "two-equations", ...

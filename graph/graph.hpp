@@ -114,6 +114,8 @@ struct Input {
   int signal = -1, size = 1;
   int declared = 0;  ///< position in the user's order
   std::source_location where = {};
+  int parameter = -1;  ///< w of this opened parameter (compiler/passes/open); its z: the output of
+                       ///< the same name
 };
 
 struct Output {

@@ -40,6 +40,8 @@ room(analysis/sweep            compiler/system)
 room(analysis/certify          compiler/passes compiler/definition compiler/certificate
                                compiler/minreal compiler/system)
 room(analysis/reduction        compiler/system)
+# Deeper than System: it opens parameters, and counts occurrences in exact arithmetic.
+room(analysis/lft              compiler/passes compiler/definition compiler/system)
 room(emit/text)
 # Deeper than System: names of any encoding are cleaned by compiler/diagram.
 room(emit/files                compiler/diagram compiler/system analysis/certify emit/text)
@@ -62,8 +64,8 @@ endfunction()
 internal(compiler/system/system_data.hpp analysis/certify/certify_full.cpp
          analysis/reduction/coordinates.hpp analysis/reduction/reach_of_data.hpp
          analysis/simulation/simulate.cpp emit/cpp/form.cpp)
-# analysis/reduction/ compiles diagrams that it has rewritten.
-internal(compiler/system/compile_graph.hpp analysis/reduction/)
+# analysis/reduction/ compiles diagrams that it has rewritten, analysis/lft/ opened ones.
+internal(compiler/system/compile_graph.hpp analysis/reduction/ analysis/lft/)
 # analysis/certify/ measures differences beside the rounding of the elimination.
 internal(compiler/system/elimination_terms.hpp analysis/certify/)
 

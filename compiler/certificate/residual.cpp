@@ -210,6 +210,9 @@ struct Residual {
   /// Subtracts N * (term); N = nullptr: the identity.
   void subtract(const MatrixXd* N, const Term& t, const Drives& drive) {
     b.known = b.known && known(t.signal);
+    // Positions beyond an opened parameter have inputs of their own: no integrals of accelerations.
+    if (t.of == Term::Of::position || t.of == Term::Of::rate)
+      b.known = b.known && d.skeleton->stage.opened.empty();
     const double factor = t.of == Term::Of::position ? -1.0 / (at_hand.s * at_hand.s)
                           : t.of == Term::Of::rate   ? -1.0 / at_hand.s
                                                      : -1.0;

@@ -16,9 +16,16 @@ struct ExactOrder {
   std::string why_not;
 };
 
+/// Rotations in exact arithmetic.
+enum class ExactRotations {
+  fractions,  ///< entries that are fractions of small denominators; others are refused by name
+  nearest,    ///< else the exact rotation of the rounded quaternion, within rounding of the matrix
+};
+
 struct ExactOptions {
   int states = 200;     ///< larger problems are refused: the cost is that of `exact_order`
   int unknowns = 4000;  ///< scalar port signals and states of a diagram: likewise
+  ExactRotations rotations = ExactRotations::fractions;
 };
 
 /// Minimal order of the graph's equations (those that `transfer(graph, s)` solves) without

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <titop/compiler/passes/lower/amounts.hpp>
 #include <titop/compiler/passes/lower/by_name.hpp>
+#include <titop/compiler/passes/lower/open_motions.hpp>
 #include <titop/compiler/passes/lower/rigid_motions.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -80,6 +81,7 @@ Graph without_equations(const Graph& g) {
 
 Stage lower(Stage stage) {
   Graph source = by_name(stage.written());
+  open_motions(stage, source);
   add_rigid_motions(stage, source);
   stage.source = std::make_shared<const Graph>(std::move(source));
   Graph g = without_equations(*stage.source);

@@ -19,7 +19,8 @@ Stage check(Stage stage);
 /// Sorts nodes, inputs and equations by name, nodes of a tree next to their neighbours; every
 /// driven part gets exactly one equation; `+=`, reactions and positions are expanded; every term
 /// has one numeric coefficient; Gain and Sum become equations. Positions and rates that are no
-/// states get Integrators, listed, once per assembly. Throws not_finite. O(terms).
+/// states get Integrators, listed, once per assembly; beyond opened parameters also pairs of their
+/// own (lower/open_motions.hpp). Throws not_finite. O(terms).
 Stage lower(Stage stage);
 
 /// coefficient * signal.

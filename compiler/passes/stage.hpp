@@ -99,6 +99,16 @@ struct Dependent {
   std::vector<Share> of = {};
 };
 
+/// Pairs (w, z) of an opened parameter, an input and an output of the graph of this name: with w =
+/// d z it is the graph at another value of the parameter, for d the deviation of a number, or the
+/// tangent of half (or of a quarter of) the deviation of an angle.
+struct OpenedPairs {
+  std::string name;
+  int parameter = -1;  ///< of the graph
+  int size = 0;        ///< pairs of scalars
+  std::string where;   ///< "hub", "wing.parent.accel": the block or equation with the parameter
+};
+
 /// The angle of a rotation in an equation or output, with its place for messages.
 struct RotationAngle {
   Value angle;
@@ -113,6 +123,7 @@ struct Stage {
   std::vector<Origin> origins;           ///< after lower: of every equation, then of every output
   std::shared_ptr<const Drives> drives;  ///< of source, if there are parameters
   std::vector<RigidMotion> motions;      ///< after lower
+  std::vector<OpenedPairs> opened;       ///< by open_parameters; after lower: also of positions
   std::vector<Note> notes;               ///< the log
   std::vector<RotationAngle> angles;     ///< after check: those that `degree_notes` looks at
   std::vector<Row> rows;                 ///< after match: all rows

@@ -1,11 +1,19 @@
 #pragma once
 
 #include <memory>
+#include <titop/compiler/passes/open/open.hpp>
 #include <titop/compiler/system/system.hpp>
 
 namespace titop::detail {
 
 /// `compile` for a graph instead of a diagram: for the compiler's own files that rewrite graphs.
 std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Options& options);
+
+/// The system's diagram at its present values with these parameters taken out
+/// (compiler/passes/open/open.hpp): their w are inputs after the diagram's own, their z outputs,
+/// listed in Stage::opened. Its `update` runs all passes. Throws not_rational, also for a parameter
+/// that moves closed chains, and the errors of `compile`. Cost: that of `compile`.
+std::shared_ptr<const SystemData> compile_opened(const System& system,
+                                                 const std::vector<passes::ToOpen>& parameters);
 
 }  // namespace titop::detail

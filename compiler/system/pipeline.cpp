@@ -181,11 +181,52 @@ std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
     stage.values = values;
     stage.before = old.stage.dependents;
     stage.motions = old.stage.motions;
+    stage.opened = old.stage.opened;
     return stage;
   };
   Options options = old.options;
   options.dump_to.clear();
   return decided(begin, options, note);
+}
+
+namespace {
+
+/// Changed values of angles and lengths would close a chain elsewhere.
+void refuse_moving_chains(const Skeleton& k, const std::vector<double>& values,
+                          const std::vector<passes::ToOpen>& parameters) {
+  std::vector<Mistake> mistakes;
+  for (const passes::ToOpen& p : parameters) {
+    std::vector<double> other = values;
+    other[static_cast<std::size_t>(p.parameter)] += 0.1;  // any other value
+    if (!moves_chains(k, {p.parameter}, values, other)) continue;
+    const auto& name = k.stage.graph.parameters[static_cast<std::size_t>(p.parameter)].name;
+    mistakes.push_back(
+        {Code::not_rational,
+         fmt::format("{}: the parameter {} changes how points move in a diagram with "
+                     "closed chains or repeated integrals",
+                     k.stage.graph.name, name),
+         {},
+         "use sweep, which closes the chains anew at each value"});
+  }
+  if (!mistakes.empty()) throw Error(std::move(mistakes));
+}
+
+}  // namespace
+
+std::shared_ptr<const SystemData> compile_opened(const System& system,
+                                                 const std::vector<passes::ToOpen>& parameters) {
+  const SystemData& d = *system.data_;
+  const Skeleton& k = *d.skeleton;
+  refuse_moving_chains(k, d.numbers.parameters, parameters);
+  Stage at;
+  at.source = k.stage.source;
+  at.values = d.numbers.parameters;
+  at.motions = k.stage.motions;
+  at.dependents = k.stage.dependents;
+  Options options = k.options;
+  options.dump_to.clear();
+  return decided([&] { return passes::open_parameters(at, parameters); }, options,
+                 [](SystemData&) {});
 }
 
 }  // namespace detail

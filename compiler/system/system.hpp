@@ -18,9 +18,14 @@
 
 namespace titop {
 
+class System;
+namespace passes {
+struct ToOpen;
+}
 namespace detail {
 struct SystemData;
-}
+std::shared_ptr<const SystemData> compile_opened(const System&, const std::vector<passes::ToOpen>&);
+}  // namespace detail
 class Excitation;
 struct Full;
 struct FullCertificate;
@@ -172,6 +177,8 @@ class System {
  private:
   friend FullCertificate certify(const System&, const Full&);
   friend Trajectory simulate(const System&, const Excitation&, const Simulation&);
+  friend std::shared_ptr<const detail::SystemData> detail::compile_opened(
+      const System&, const std::vector<passes::ToOpen>&);
 
   std::shared_ptr<const detail::SystemData> data_;
 };

@@ -32,6 +32,11 @@ struct SystemData : Factored {
   const Check& checked() const;
 };
 
+/// True if new values of these parameters change the input of pass `close`: the kinematics of a
+/// block, or equations between motions. Masses and stiffnesses do not.
+bool moves_chains(const Skeleton& skeleton, const std::vector<int>& changed, ParameterValues before,
+                  ParameterValues now);
+
 /// The transfer if there is one: none at a pole, without a digit, or if it overflows.
 std::optional<Eigen::MatrixXcd> transfer_if_any(const System& system, std::complex<double> s);
 

@@ -179,8 +179,8 @@ bool remake_coefficients(const Skeleton& k, const std::vector<int>& origins, sol
   return passes::lower_again(k.stage, origins, n.parameters, take);
 }
 
-/// True if new values change the input of pass `close`: the kinematics of a block, or equations
-/// between motions. Masses and stiffnesses do not.
+}  // namespace
+
 bool moves_chains(const Skeleton& k, const std::vector<int>& changed, ParameterValues before,
                   ParameterValues now) {
   const Stage& stage = k.stage;
@@ -203,6 +203,8 @@ bool moves_chains(const Skeleton& k, const std::vector<int>& changed, ParameterV
            (node.lowered || node.block->type() == "Integrator");
   });
 }
+
+namespace {
 
 /// "k = 3, angle = 0.2"
 std::string text_of(const Skeleton& k, const std::vector<int>& changed, ParameterValues values) {
@@ -296,8 +298,10 @@ System System::update(const ParameterList& list) const {
   constexpr const char* kSingular =
       "the equations as written are singular, as where a point has no mass";
   constexpr const char* kOtherTerms = "closed chains or terms of the equations change";
+  constexpr const char* kOpened = "parameters are opened";
   constexpr const char* kNoDigit = "a pivot has no digit left";
   remake_blocks(k, united(k, changed, &Dependents::nodes), d->numbers);
+  if (!k.stage.opened.empty()) return again(kOpened);
   // The reduction depends on all rows and all numbers.
   if (k.before_reduce) return again(kSingular);
   if (moves_chains(k, changed, data_->numbers.parameters, d->numbers.parameters))

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <titop/graph/nodes/gain.hpp>
+#include <titop/graph/opened.hpp>
 
 namespace titop {
 namespace {
@@ -18,6 +19,15 @@ class Algebraic : public Block {
                                                Eigen::MatrixXd(ny, 0), scale_.at(values) * D_});
   }
   std::vector<Value> values() const override { return {scale_}; }
+  /// z = in, one pair per scalar.
+  std::optional<Opened> opened(ParameterValues values,
+                               std::span<const int> parameters) const override {
+    std::vector<OpenedPair> pairs;
+    const auto n = D_.cols();
+    for (Eigen::Index i = 0; i < n; ++i)
+      pairs.push_back({scale_, {}, D_.col(i), {}, Eigen::RowVectorXd::Unit(n, i)});
+    return with_pairs(*dynamics(values), pairs, parameters);
+  }
   bool is_algebraic() const override { return true; }
   bool has_frame() const override { return false; }
 

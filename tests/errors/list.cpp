@@ -137,6 +137,16 @@ void at_a_pole() {
   })).static_gain();
 }
 
+void half_of_a_parameter() {
+  Diagram d{"d"};
+  auto B = d.add("B", brick()), A = d.add("A", brick());
+  const Param tilt = d.param("tilt", 0.2);
+  B.parent.force = -d.input("u", 6);
+  mount(A, B.child, Rotation::about({1, 0, 0}, 0.5 * tilt));
+  d.output("y", 6) = B.parent.accel;
+  lft(compile(d), {{"tilt", between(-1, 1)}});
+}
+
 struct Case {
   Code code;
   void (*provoke)();
@@ -160,7 +170,8 @@ const Case kCases[] = {
     {Code::bad_file,
      [] { parse_diagram(R"({"name": "s", "format": "titop scene 9"})", "scene.json"); }},
     {Code::bad_value, [] { Diagram("d").add("z", SpringMass{.stiffness = -3}); }},
-    {Code::singular, at_a_pole}};
+    {Code::singular, at_a_pole},
+    {Code::not_rational, half_of_a_parameter}};
 
 /// The section of this code, "" if there is none.
 std::string section(const std::string& page, std::string_view code) {

@@ -80,7 +80,55 @@ ExactMatrix orthonormal_fractions(const MatrixXd& rows, const std::string& subje
   return m;
 }
 
-ExactMatrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues values) {
+ExactMatrix nearest_rotation(const Matrix3d& T) {
+  // Four times the squares of w, x, y, z; the largest is at least 1.
+  const Eigen::Vector4d square(1 + T.trace(), 1 + 2 * T(0, 0) - T.trace(),
+                               1 + 2 * T(1, 1) - T.trace(), 1 + 2 * T(2, 2) - T.trace());
+  Index largest = 0;
+  square.maxCoeff(&largest);
+  Eigen::Vector4d q;  // times four times its largest entry
+  if (largest == 0) {
+    q << square(0), T(2, 1) - T(1, 2), T(0, 2) - T(2, 0), T(1, 0) - T(0, 1);
+  } else {
+    const Index i = largest - 1, j = (i + 1) % 3, k = (i + 2) % 3;
+    q(0) = T(k, j) - T(j, k);
+    q(1 + i) = square(largest);
+    q(1 + j) = T(i, j) + T(j, i);
+    q(1 + k) = T(i, k) + T(k, i);
+  }
+  const Residue w(q(0)), v[3] = {Residue(q(1)), Residue(q(2)), Residue(q(3))}, two = 2;
+  const Residue vv = v[0] * v[0] + v[1] * v[1] + v[2] * v[2], ww = w * w,
+                inverse = (ww + vv).inverse();
+  ExactMatrix R(3, 3);
+  for (Index i = 0; i < 3; ++i)
+    for (Index j = 0; j < 3; ++j) {
+      R(i, j) = two * v[i] * v[j];
+      if (i == j) R(i, j) += ww - vv;
+    }
+  for (Index i = 0; i < 3; ++i) {  // 2 w (v x)
+    const Index j = (i + 1) % 3, k = (i + 2) % 3;
+    R(k, j) += two * w * v[i];
+    R(j, k) -= two * w * v[i];
+  }
+  return inverse * std::move(R);
+}
+
+namespace {
+
+ExactMatrix exact_rotation(const Matrix3d& T, ExactRotations rotations, const Graph& graph,
+                           const Term& term) {
+  try {
+    return orthonormal_fractions(T, "the rotation in " + print(graph, term));
+  } catch (const Undecided&) {
+    if (rotations == ExactRotations::fractions) throw;
+    return nearest_rotation(T);
+  }
+}
+
+}  // namespace
+
+ExactMatrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues values,
+                              ExactRotations rotations) {
   ExactMatrix result =
       ExactMatrix::identity(graph.signals[static_cast<std::size_t>(term.signal)].size);
   Residue scale(term.sign);
@@ -92,8 +140,7 @@ ExactMatrix exact_coefficient(const Graph& graph, const Term& term, ParameterVal
     } else if (const auto* p = std::get_if<Part>(&*f)) {
       if (!p->whole()) result = orthonormal_fractions(p->rows(), p->name()) * result;
     } else if (const auto& T = std::get<Rotation>(*f); !T.is_identity()) {
-      const ExactMatrix turn =
-          orthonormal_fractions(T.at(values), "the rotation in " + print(graph, term));
+      const ExactMatrix turn = exact_rotation(T.at(values), rotations, graph, term);
       ExactMatrix both(result.rows, result.rows);
       for (Index i = 0; i < result.rows; ++i)
         for (Index j = i / 3 * 3; j < i / 3 * 3 + 3; ++j) both(i, j) = turn(i % 3, j % 3);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <titop/compiler/definition/exact/echelon.hpp>
+#include <titop/compiler/definition/exact_order.hpp>
 #include <titop/graph/graph.hpp>
 #include <vector>
 
@@ -34,7 +35,13 @@ ExactMatrix exact_matrix(const Eigen::MatrixXd& m);
 /// with `subject`, if there are none, or if they are not orthonormal.
 ExactMatrix orthonormal_fractions(const Eigen::MatrixXd& rows, const std::string& subject);
 
+/// A rotation within rounding of this one (of which T T' = I up to rounding) that is exact: that of
+/// its quaternion in double. Rotations about one axis of the frame keep it; the inverse gives the
+/// inverse.
+ExactMatrix nearest_rotation(const Matrix3d& T);
+
 /// The matrix of a term, as `coefficient` of graph.hpp. Throws Undecided.
-ExactMatrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues values);
+ExactMatrix exact_coefficient(const Graph& graph, const Term& term, ParameterValues values,
+                              ExactRotations rotations = ExactRotations::fractions);
 
 }  // namespace titop::exact

@@ -92,7 +92,7 @@ class ExactBlock {
 class ExactAssembly {
  public:
   ExactAssembly(const Graph& g, const ExactOptions& options, ParameterValues values)
-      : g_(g), values_(values), columns_(g), drive_(g) {
+      : g_(g), values_(values), rotations_(options.rotations), columns_(g), drive_(g) {
     if (columns_.states > options.states)
       throw Undecided{fmt::format("{} states are more than {} (ExactOptions::states)",
                                   columns_.states, options.states)};
@@ -130,7 +130,7 @@ class ExactAssembly {
   /// rows -= factor * terms
   void subtract(RowBlock& rows, const ExactMatrix& factor, const std::vector<Term>& terms) {
     for (const Term& t : terms) {
-      const ExactMatrix c = factor * exact_coefficient(g_, t, values_);
+      const ExactMatrix c = factor * exact_coefficient(g_, t, values_, rotations_);
       const int integral = columns_.first_state() + columns_.integral[at(t.signal)];
       add(rows, c,
           t.of == Term::Of::rate       ? integral
@@ -222,6 +222,7 @@ class ExactAssembly {
 
   const Graph& g_;
   ParameterValues values_;
+  ExactRotations rotations_;
   EquationColumns columns_;
   Drives drive_;
   Echelon rows_;
@@ -270,6 +271,10 @@ Model model_from(int states, int inputs, const std::vector<Entries>& rates,
     }
   for (const Entries& column : B) m.B.push_back(to_row(column));
   for (Entries row : outputs) {
+    Entries direct;
+    for (auto entry = row.lower_bound(states); entry != row.end(); ++entry)
+      direct[entry->first - states] = entry->second;
+    m.D.push_back(to_row(direct));
     row.erase(row.lower_bound(states), row.end());
     m.C.push_back(to_row(row));
   }

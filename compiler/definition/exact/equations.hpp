@@ -5,12 +5,14 @@
 
 namespace titop::exact {
 
-/// xdot = A x + B u, y = C x + D u: the matrices that determine a minimal order.
+/// xdot = A x + B u, y = C x + D u. Inputs in the order of their signals, outputs in that of the
+/// graph.
 struct Model {
   int states = 0;
   Square A, A_transposed;
   std::vector<SparseRow> B;  ///< per input, over states
   std::vector<SparseRow> C;  ///< per output, over states
+  std::vector<SparseRow> D;  ///< per output, over inputs; of a StateSpace: 0
 };
 
 /// From all equations of the graph; a position or a rate is a chain of integrators on

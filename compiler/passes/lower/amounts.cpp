@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/passes/lower/amounts.hpp>
+#include <titop/compiler/passes/lower/open_motions.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
 
@@ -111,7 +112,7 @@ Amount Lowering::integrated(Amount sum, Level level) {
   Amount result;
   for (Summand& p : sum) {
     const Signal& s = g.signals[at(p.signal)];
-    if (s.role == Signal::Role::state) {
+    if (s.role == Signal::Role::state || s.role == Signal::Role::external) {
       result.push_back(std::move(p));
       continue;
     }
@@ -212,10 +213,12 @@ void Lowering::walk(Amount& sum, WayPoint at_channel, Level level) {
       continue;
     }
     std::vector<WayPoint> ties;
-    if (!find_ties(here, ties)) {  // prescribed
+    Amount inputs;
+    if (!find_ties(here, level, ties, inputs)) {  // prescribed
       append(sum, times(here.factor, here.declared, own_motion(here.channel)));
       break;
     }
+    append(sum, std::move(inputs));
     if (ties.size() == 1) next = std::move(ties.front());
     for (WayPoint& tie : ties)
       if (ties.size() > 1) walk(sum, std::move(tie), level);
@@ -223,8 +226,20 @@ void Lowering::walk(Amount& sum, WayPoint at_channel, Level level) {
   for (const int channel : way) visiting[at(channel)] = 0;
 }
 
-/// The points that this one's driven acceleration follows; false if something else drives it.
-bool Lowering::find_ties(const WayPoint& here, std::vector<WayPoint>& ties) {
+/// The rate or position of w of an opened parameter in an acceleration: an input of its own.
+void Lowering::add_opened(const WayPoint& w, Level level, Amount& inputs) {
+  const int twin = opened_motion(g, w.channel, level == Level::position);
+  if (twin >= 0)
+    inputs.push_back({twin, w.factor, w.declared});
+  else
+    unopened.insert({w.channel, level});
+}
+
+/// The points that this one's driven acceleration follows, and the inputs of opened parameters in
+/// it; false if something else drives it.
+bool Lowering::find_ties(const WayPoint& here, Level level, std::vector<WayPoint>& ties,
+                         Amount& inputs) {
+  std::vector<WayPoint> opened;  // their w in place of a channel
   const int n = g.channels[at(here.channel)].size;
   for (const int e : drive[at(here.channel)].accel) {
     const Equation& equation = g.equations[at(e)];
@@ -232,12 +247,15 @@ bool Lowering::find_ties(const WayPoint& here, std::vector<WayPoint>& ties) {
                                                  : MatrixXd(equation.part.rows().transpose());
     for (const Term& t : equation.terms) {
       const Signal& s = g.signals[at(t.signal)];
-      if (s.channel < 0 || s.quantity != Quantity::acceleration || t.of != Term::Of::signal)
+      const bool w = s.role == Signal::Role::external && g.inputs[at(s.spec)].parameter >= 0;
+      if (!w && (s.channel < 0 || s.quantity != Quantity::acceleration || t.of != Term::Of::signal))
         return false;
-      ties.push_back({s.channel, here.factor * embed * coefficient_of(t),
-                      product(here.declared, product(embed, structure(g, t)))});
+      WayPoint next{w ? t.signal : s.channel, here.factor * embed * coefficient_of(t),
+                    product(here.declared, product(embed, structure(g, t)))};
+      (w ? opened : ties).push_back(std::move(next));
     }
   }
+  for (const WayPoint& w : opened) add_opened(w, level, inputs);
   return true;
 }
 

@@ -27,6 +27,7 @@ Amount times(const Eigen::MatrixXd& m, const Pattern& declared, Amount sum);
 
 /// Writes right-hand sides out, for one set of parameter values.
 struct Lowering {
+  enum class Level { position, rate };
   const Graph& g;  ///< as the user wrote it, in the order of by_name
   ParameterValues values;
   std::shared_ptr<const Drives> all_drives;
@@ -39,9 +40,10 @@ struct Lowering {
   std::vector<Mistake> mistakes = {};
   std::vector<RigidMotion> motions;
   std::set<RigidMotion> missing = {};  ///< motions that have no Integrator yet
-  bool numbers_only = false;           ///< structure is known already: none is found
-
-  enum class Level { position, rate };
+  /// Pairs of opened parameters in accelerations whose rates or positions have none yet: the signal
+  /// of w.
+  std::set<std::pair<int, Level>> unopened = {};
+  bool numbers_only = false;  ///< structure is known already: none is found
 
   Lowering(const Graph& graph, ParameterValues v, std::shared_ptr<const Drives> d,
            std::vector<RigidMotion> m)
@@ -85,7 +87,8 @@ struct Lowering {
     Pattern declared;
   };
   void walk(Amount& sum, WayPoint at_channel, Level level);
-  bool find_ties(const WayPoint& here, std::vector<WayPoint>& ties);
+  bool find_ties(const WayPoint& here, Level level, std::vector<WayPoint>& ties, Amount& inputs);
+  void add_opened(const WayPoint& w, Level level, Amount& inputs);
   std::optional<WayPoint> through_body(Amount& sum, const WayPoint& here, Level level);
   Amount own_motion(int channel) const;
   Amount integrated(Amount sum, Level level);

@@ -52,6 +52,7 @@ Graph by_name(const Graph& g) {
     const Input& input = g.inputs[at(i)];
     signal[at(input.signal)] = add_input(out, input.name, input.size, input.where);
     out.inputs.back().declared = input.declared;
+    out.inputs.back().parameter = input.parameter;
   }
   const auto rename = [&](std::vector<Term>& terms) {
     for (Term& t : terms) t.signal = signal[at(t.signal)];

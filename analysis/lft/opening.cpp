@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <titop/analysis/lft/opening.hpp>
+#include <titop/graph/linalg/index.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using linalg::at;
+using Kind = ParameterRange::Kind;
+
+/// Parameters that are angles of rotations in equations and outputs.
+std::vector<char> angles_of(const Graph& g) {
+  std::vector<char> result(g.parameters.size(), 0);
+  const auto look = [&](const std::vector<Term>& terms) {
+    for (const Term& t : terms)
+      for (const Factor& f : t.factors)
+        if (const auto* T = std::get_if<Rotation>(&f))
+          for (const Value& v : T->values())
+            if (v.is_parameter()) result[at(v.index())] = 1;
+  };
+  for (const Equation& e : g.equations) look(e.terms);
+  for (const Output& y : g.outputs) look(y.terms);
+  return result;
+}
+
+/// Reads the ranges one by one; mistakes are collected.
+struct RangeReader {
+  const System& system;
+  const ParameterList all = system.parameters();
+  const std::vector<char> angle = angles_of(*system.stage().source);
+  std::vector<Mistake> mistakes = {};
+
+  void refuse(Code code, std::string message, std::string hint) {
+    mistakes.push_back({code, std::move(message), {}, std::move(hint)});
+  }
+
+  /// -1 if there is no such parameter.
+  int index_of(const std::string& name) {
+    std::string known;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (all[i].first == name) return static_cast<int>(i);
+      known += (known.empty() ? "" : ", ") + all[i].first;
+    }
+    refuse(Code::unknown_name,
+           fmt::format("{} has no parameter {}", system.stage().graph.name, name),
+           known.empty() ? "make one with Diagram::param" : "its parameters are " + known);
+    return -1;
+  }
+
+  /// The block or the passes refuse the value at an end.
+  void try_end(const std::string& name, double value) {
+    try {
+      system.update({{name, value}});
+    } catch (const Error& error) {
+      for (const Mistake& m : error.mistakes())
+        mistakes.push_back(
+            {Code::bad_value,
+             fmt::format("{} = {:.6g}, an end of its range: {}", name, value, m.message), m.details,
+             "give a range all of which makes a model; " + m.hint});
+    }
+  }
+
+  std::optional<ParameterMap> map(const std::string& name, int index, const ParameterRange& r) {
+    const double nominal = all[at(index)].second, pi = std::numbers::pi;
+    const bool turns = angle[at(index)] != 0;
+    if (r.kind == Kind::full_turn) {
+      if (turns)
+        return ParameterMap(ParameterMap::Kind::quarter_angle, nominal, nominal - pi, nominal + pi);
+      refuse(Code::bad_value, fmt::format("{} is no angle of a rotation", name),
+             "full_turn is for angles; give percent or between");
+      return {};
+    }
+    const double part = std::abs(nominal) * r.first / 100;
+    const bool share = r.kind == Kind::percent;
+    const double from = share ? nominal - part : r.first, to = share ? nominal + part : r.second;
+    if (!(from < nominal && nominal < to) || !std::isfinite(to - from)) {
+      refuse(Code::bad_value,
+             fmt::format("{} = {:.6g} is not inside of its range, {:.6g} to {:.6g}", name, nominal,
+                         from, to),
+             "give between(least, largest) around the value that the system has; update the system "
+             "for another one");
+      return {};
+    }
+    if (turns && std::max(to - nominal, nominal - from) >= pi) {
+      refuse(Code::bad_value,
+             fmt::format("{} reaches half a turn from {:.6g} rad: {:.6g} to {:.6g}", name, nominal,
+                         from, to),
+             "give full_turn(), at twice as many occurrences, or a smaller range");
+      return {};
+    }
+    return ParameterMap(turns ? ParameterMap::Kind::half_angle : ParameterMap::Kind::number,
+                        nominal, from, to);
+  }
+};
+
+/// Columns of the input (or rows of the output) of this name.
+std::vector<Index> places(const std::vector<std::string>& names, const std::string& name,
+                          int size) {
+  const std::string first = size == 1 ? name : name + "(1)";
+  const auto found = std::find(names.begin(), names.end(), first) - names.begin();
+  std::vector<Index> result(at(size));
+  std::iota(result.begin(), result.end(), static_cast<Index>(found));
+  return result;
+}
+
+std::vector<std::string> named(const std::vector<std::string>& names,
+                               const std::vector<Index>& order) {
+  std::vector<std::string> result;
+  for (const Index i : order) result.push_back(names[at(i)]);
+  return result;
+}
+
+/// Appends the places that are not in the list.
+void add_others(std::vector<Index>& order, std::size_t all) {
+  std::vector<char> taken(all, 0);
+  for (const Index i : order) taken[at(i)] = 1;
+  for (std::size_t i = 0; i < all; ++i)
+    if (!taken[i]) order.push_back(static_cast<Index>(i));
+}
+
+}  // namespace
+
+std::vector<IsolatedParameter> isolated(const System& system, const ParameterRanges& ranges) {
+  RangeReader reader{system};
+  std::vector<IsolatedParameter> result;
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    const auto& [name, range] = ranges[i];
+    if (std::any_of(ranges.begin(), ranges.begin() + static_cast<std::ptrdiff_t>(i),
+                    [&](const auto& other) { return other.first == name; })) {
+      reader.refuse(Code::duplicate_name, fmt::format("parameter {} has two ranges", name),
+                    "keep one of them");
+      continue;
+    }
+    const int index = reader.index_of(name);
+    if (index < 0) continue;
+    const auto map = reader.map(name, index, range);
+    if (!map) continue;
+    result.push_back({index, *map});
+    if (map->kind != ParameterMap::Kind::number) continue;
+    reader.try_end(name, map->from);
+    reader.try_end(name, map->to);
+  }
+  if (!reader.mistakes.empty()) throw Error(std::move(reader.mistakes));
+  return result;
+}
+
+OpenedMatrices opened_matrices(const System& opened,
+                               const std::vector<IsolatedParameter>& parameters) {
+  StateSpace m;
+  opened.write(m);
+  OpenedMatrices result;
+  std::vector<Index> in, out;
+  for (const IsolatedParameter& p : parameters) {
+    result.sizes.push_back(0);
+    result.where.emplace_back();
+    for (const OpenedPairs& pairs : opened.stage().opened) {
+      if (pairs.parameter != p.index) continue;
+      result.sizes.back() += pairs.size;
+      auto& where = result.where.back();
+      if (std::find(where.begin(), where.end(), pairs.where) == where.end())
+        where.push_back(pairs.where);
+      const auto w = places(m.inputs, pairs.name, pairs.size),
+                 z = places(m.outputs, pairs.name, pairs.size);
+      in.insert(in.end(), w.begin(), w.end());
+      out.insert(out.end(), z.begin(), z.end());
+    }
+  }
+  add_others(in, m.inputs.size());
+  add_others(out, m.outputs.size());
+  result.m.A = m.A;
+  result.m.B = m.B(Eigen::all, in);
+  result.m.C = m.C(out, Eigen::all);
+  result.m.D = m.D(out, in);
+  result.m.states = m.states;
+  result.m.inputs = named(m.inputs, in);
+  result.m.outputs = named(m.outputs, out);
+  return result;
+}
+
+}  // namespace titop::detail

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <titop/analysis/lft/lft.hpp>
+
+/// The opened model of a system, in matrices. For the folder's own files.
+namespace titop::detail {
+
+struct IsolatedParameter {
+  int index = -1;  ///< among those of the diagram
+  ParameterMap map;
+};
+
+/// The parameters of these ranges. Throws as `lft` does, all mistakes together.
+std::vector<IsolatedParameter> isolated(const System& system, const ParameterRanges& ranges);
+
+/// The opened model before `minimize`, inputs [w; u] and outputs [z; y], w in the order of
+/// `parameters`.
+struct OpenedMatrices {
+  StateSpace m;
+  std::vector<int> sizes;                       ///< pairs of each parameter
+  std::vector<std::vector<std::string>> where;  ///< blocks and equations with it
+};
+OpenedMatrices opened_matrices(const System& opened,
+                               const std::vector<IsolatedParameter>& parameters);
+
+}  // namespace titop::detail

@@ -1,0 +1,92 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <titop/compiler/passes/open/opened_block.hpp>
+
+namespace titop::passes {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+
+class OpenedBlock : public Block {
+ public:
+  OpenedBlock(BlockPtr block, const std::vector<OpenedPorts>& ports)
+      : block_(std::move(block)), face_(block_->interface()) {
+    for (const OpenedPorts& p : ports) {
+      face_.inputs.push_back({fmt::format("w{}", p.parameter), p.size});
+      face_.outputs.push_back({fmt::format("z{}", p.parameter), p.size});
+      parameters_.push_back(p.parameter);
+      more_ += p.size;
+    }
+  }
+  std::string_view type() const override { return block_->type(); }
+  const Interface& interface() const override { return face_; }
+  /// The pairs in the order of the ports.
+  std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
+    Opened o = *block_->opened(values, parameters_);
+    const Index nu = o.dynamics.B.cols() - more_, ny = o.dynamics.C.rows() - more_;
+    auto d = std::make_shared<Dynamics>(o.dynamics);
+    Index to = 0;
+    for (const int p : parameters_)
+      for (std::size_t k = 0; k < o.parameter.size(); ++k) {
+        if (o.parameter[k] != p) continue;
+        const Index from = static_cast<Index>(k);
+        d->B.col(nu + to) = o.dynamics.B.col(nu + from);
+        d->C.row(ny + to) = o.dynamics.C.row(ny + from);
+        d->D.col(nu + to) = o.dynamics.D.col(nu + from);
+        ++to;
+      }
+    to = 0;
+    const MatrixXd columns = d->D;
+    for (const int p : parameters_)
+      for (std::size_t k = 0; k < o.parameter.size(); ++k)
+        if (o.parameter[k] == p) d->D.row(ny + to++) = columns.row(ny + static_cast<Index>(k));
+    return d;
+  }
+  Pattern feedthrough() const override { return grown(block_->feedthrough(), more_, more_); }
+  Pattern moved_by() const override { return grown(block_->moved_by(), 0, more_); }
+  Pattern seen_by() const override { return grown(block_->seen_by(), more_, 0); }
+  std::optional<Kinematics> kinematics(ParameterValues values) const override {
+    return block_->kinematics(values);
+  }
+  std::vector<Value> values() const override { return block_->values(); }
+  bool is_algebraic() const override { return block_->is_algebraic(); }
+  bool has_frame() const override { return block_->has_frame(); }
+  std::optional<Cause> why_singular(int channel, ParameterValues values) const override {
+    return block_->why_singular(channel, values);
+  }
+
+ private:
+  /// w may act on everything, and z may depend on it.
+  static Pattern grown(const Pattern& p, Index rows, Index cols) {
+    Pattern result = Pattern::Constant(p.rows() + rows, p.cols() + cols, true);
+    result.topLeftCorner(p.rows(), p.cols()) = p;
+    return result;
+  }
+
+  BlockPtr block_;
+  Interface face_;
+  std::vector<int> parameters_;
+  Index more_ = 0;
+};
+
+}  // namespace
+
+BlockPtr opened_block(BlockPtr block, const std::vector<OpenedPorts>& ports) {
+  return std::make_shared<OpenedBlock>(std::move(block), ports);
+}
+
+std::vector<OpenedPorts> opened_ports(const Block& block, ParameterValues values,
+                                      std::span<const int> parameters) {
+  const auto opened = block.opened(values, parameters);
+  std::vector<OpenedPorts> ports;
+  for (const int p : parameters)
+    if (const auto n =
+            opened ? std::count(opened->parameter.begin(), opened->parameter.end(), p) : 0;
+        n > 0)
+      ports.push_back({p, static_cast<int>(n)});
+  return ports;
+}
+
+}  // namespace titop::passes

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <titop/graph/block.hpp>
+
+/// Assembly of `Block::opened`: pairs of parameters added to the matrices of a block.
+namespace titop {
+
+/// One pair (w, z) of a parameter. Empty vectors are 0.
+///
+///     z = of_states x + of_inputs u + of_outputs y + (coefficients * w of other pairs)
+///     xdot += on_states w,   y += on_outputs w
+struct OpenedPair {
+  Value value;                                                ///< w counts value.scale() times
+  Eigen::VectorXd on_states, on_outputs;                      ///< where w acts
+  Eigen::RowVectorXd of_states, of_inputs;                    ///< x and u of the block
+  Eigen::RowVectorXd of_outputs = {};                         ///< y, with the effect of all w
+  std::vector<std::pair<std::size_t, double>> of_pairs = {};  ///< w of pairs of the list, by index
+};
+
+/// True if this value is one of these parameters, or a multiple of one.
+bool is_opened(const Value& value, std::span<const int> parameters);
+
+/// The matrices with all pairs whose value is one of `parameters`, in the order of the list. The
+/// others are left out: their w is 0. O(entries).
+Opened with_pairs(const Dynamics& dynamics, const std::vector<OpenedPair>& pairs,
+                  std::span<const int> parameters);
+
+}  // namespace titop

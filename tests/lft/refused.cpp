@@ -1,0 +1,153 @@
+#include <doctest/doctest.h>
+
+#include "lft/n17.hpp"
+#include "support/mistakes.hpp"
+
+/// Parameters and ranges that cannot be isolated: each is refused by name.
+
+using namespace lft_test;
+using titop_test::error_of;
+using titop_test::says;
+
+namespace {
+
+Error lft_error(const System& system, const ParameterRanges& ranges) {
+  return error_of([&] { lft(system, ranges); });
+}
+
+/// A block of one gain, which says nothing about its parameter.
+struct Closed {
+  Value gain = 1;
+  using Handle = Gain::Handle;
+};
+
+class ClosedBlock : public Block {
+ public:
+  explicit ClosedBlock(Value gain) : gain_(gain) {
+    face_.inputs = {{"in", 1}};
+    face_.outputs = {{"out", 1}};
+  }
+  std::string_view type() const override { return "Closed"; }
+  const Interface& interface() const override { return face_; }
+  std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
+    auto d = std::make_shared<Dynamics>();
+    d->A.resize(0, 0), d->B.resize(0, 1), d->C.resize(1, 0);
+    d->D = Eigen::MatrixXd::Constant(1, 1, std::exp(gain_.at(values)));
+    return d;
+  }
+  std::vector<Value> values() const override { return {gain_}; }
+
+ private:
+  Interface face_;
+  Value gain_;
+};
+
+BlockPtr as_block(const Closed& spec) { return std::make_shared<ClosedBlock>(spec.gain); }
+
+/// A spring of stiffness k on the ground, whose mass is pushed back by a times its acceleration.
+System spring() {
+  Diagram d{"spring"};
+  const Param k = d.param("k", 4), a = d.param("a", 0.5);
+  auto z = d.add("z", SpringMass{.mass = 2, .stiffness = k});
+  ground(z);
+  z.child.force = d.input("u") - a * z.child.accel;
+  d.output("x") = z.stretch;
+  return compile(d);
+}
+
+}  // namespace
+
+TEST_CASE("names and ranges are refused together, each with its numbers") {
+  const System system = compile(Satellite{}.diagram());
+  const Error e = lft_error(system, {{"m", between(1200, 1500)},
+                                     {"mass", percent(10)},
+                                     {"w", full_turn()},
+                                     {"tilt", between(-3, 3)},
+                                     {"x", percent(10)},
+                                     {"x", percent(20)}});
+  CHECK(e.mistakes().size() == 5);
+  CHECK(says(e, Code::bad_value, {"m", "1000", "1200", "1500"}));
+  CHECK(says(e, Code::unknown_name, {"mass", "m, tilt, w, x"}));
+  CHECK(says(e, Code::bad_value, {"w", "full_turn"}));
+  CHECK(says(e, Code::bad_value, {"tilt", "0.4", "full_turn"}));
+  CHECK(says(e, Code::duplicate_name, {"x"}));
+}
+
+TEST_CASE("a range whose end makes no block") {
+  CHECK(says(lft_error(spring(), {{"k", between(-1, 5)}}), Code::bad_value, {"k", "-1", "z"}));
+}
+
+TEST_CASE("a corner at which the direct terms are singular, though no end of a range is") {
+  Diagram d{"spring"};
+  const Param a = d.param("a", 0.5), b = d.param("b", 0.25);
+  auto z = d.add("z", SpringMass{.mass = 2, .stiffness = 4});
+  ground(z);  // (2 + a + b) xdd = u - 4 x: singular at a = b = -1
+  z.child.force = d.input("u") - a * z.child.accel - b * z.child.accel;
+  d.output("x") = z.stretch;
+  CHECK(says(lft_error(compile(d), {{"a", between(-1, 2)}, {"b", between(-1, 2)}}), Code::ill_posed,
+             {"a = -1", "b = -1"}));
+}
+
+TEST_CASE("values outside of a range, and a pole inside") {
+  const Lft f = lft(spring(), {{"k", percent(10)}, {"a", between(-2.5, 1)}});
+  CHECK(says(error_of([&] { f.at({{"k", 7}}); }), Code::bad_value, {"k", "7", "3.6", "4.4"}));
+  CHECK(says(error_of([&] { f.at({{"b", 7}}); }), Code::unknown_name, {"b", "k, a"}));
+  CHECK(says(error_of([&] { f.at({{"k", 4}, {"k", 4.1}}); }), Code::duplicate_name, {"k"}));
+  CHECK(error_of([&] { f.at({{"a", -2}}); }).has(Code::singular));
+}
+
+TEST_CASE("what is no rational function of its parameter is refused by name") {
+  Diagram d{"own"};
+  const Param p = d.param("p", 0.5);
+  auto u = d.input("u");
+  auto c = d.add("c", Closed{p});
+  c.in = u;
+  d.output("y") = c.out;
+  CHECK(says(lft_error(compile(d), {{"p", percent(10)}}), Code::not_rational,
+             {"c", "Closed", "p", "sweep"}));
+
+  Diagram e{"both"};
+  const Param q = e.param("q", 0.5);
+  auto hub = e.add("hub", RigidBody{.children = {{"C", {1, 0, 0}}}});
+  auto tip = e.add("tip", RigidBody{.mass = q});
+  hub.parent.force = -e.input("U", 6);
+  mount(tip, hub.child, Rotation::about({1, 0, 0}, q));
+  e.output("y", 6) = hub.parent.accel;
+  CHECK(says(lft_error(compile(e), {{"q", between(0.2, 1)}}), Code::not_rational, {"q", "angle"}));
+}
+
+TEST_CASE("an angle that moves a closed chain is refused, a mass in it is not") {
+  // A four-bar linkage: a rhombus of which two bars turn by the same angle.
+  const auto rhombus = [](bool angle) {
+    Diagram d{"rhombus"};
+    const Param tilt = d.param("tilt", 0.6), m = d.param("m", 2);
+    const RigidBody bar{.mass = m,
+                        .inertia = Vector3d(0.1, 1, 1).asDiagonal(),
+                        .PA = Vector3d(0.5, 0, 0),
+                        .children = {{"C", {1, 0, 0}}}};
+    const Vector3d up(0, 0, 1);
+    const Value turn = angle ? Value(tilt) : Value(0.6);
+    auto base = d.add("base", RigidBody{.children = {{"A", {0, 0, 0}}, {"B", {1, 0, 0}}}});
+    base.parent.accel = 0;
+    auto a = d.add("a", bar), b = d.add("b", bar), c = d.add("c", bar);
+    auto ja = hinge(d, "ja", a, base.child("A"), Rotation::about(up, turn), up);
+    auto jc = hinge(d, "jc", c, base.child("B"), Rotation::about(up, turn), up);
+    auto jb = hinge(d, "jb", b, a.child("C"), Rotation::about(up, -1 * turn), up);
+    ja.torque = 3.0 * ja.angle - d.input("u");
+    jc.torque = 0, jb.torque = 0;
+    auto close = d.add("close", Hinge{up});
+    mount(close, b.child("C"));
+    close.torque = 0;
+    weld(close.child("child"), c.child("C"), Rotation::about(up, -1 * turn));
+    d.output("angle") = ja.angle;
+    return compile(d);
+  };
+  CHECK(says(lft_error(rhombus(true), {{"tilt", between(0.4, 0.8)}}), Code::not_rational,
+             {"rhombus", "tilt", "sweep"}));
+  const System system = rhombus(false);
+  const Lft f = lft(system, {{"m", percent(30)}});
+  CHECK(f.not_decided() != "");
+  const std::complex<double> s{0.1, 0.9};
+  const Eigen::MatrixXcd G = system.update({{"m", 2.5}}).transfer(s);
+  CHECK((f.at({{"m", 2.5}}).transfer(s) - G).norm() <= 1e-12 * G.norm());
+}
