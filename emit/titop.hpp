@@ -2,6 +2,7 @@
 
 /// titop: from a block diagram of flexible bodies to one minimal state-space model.
 #include <titop/analysis/certify/certify_full.hpp>
+#include <titop/analysis/lft/derivatives.hpp>
 #include <titop/analysis/lft/lft.hpp>
 #include <titop/analysis/reduction/reduced_system.hpp>
 #include <titop/analysis/simulation/hold.hpp>

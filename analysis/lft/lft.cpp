@@ -101,7 +101,7 @@ detail::Structured small_model(const StateSpace& opened, const std::vector<int>&
   detail::Structured small = detail::reduced(whole, sizes);
   constexpr double kSame = 1e-9;
   if (difference(whole, sizes, small.m, small.sizes) <= kSame) return small;
-  return {whole, sizes, small.gap};
+  return {whole, sizes, small.margin};
 }
 
 }  // namespace
@@ -123,13 +123,13 @@ Lft lft(const System& system, const ParameterRanges& ranges) {
   const bool fewer = std::any_of(f.deltas_.begin(), f.deltas_.end(),
                                  [](const Delta& d) { return d.size < d.at_least; });
   if (fewer || f.m_.order() < f.states_at_least_)  // a rank was taken too low
-    f.take({normalised(opened.m, f.deltas_, opened.sizes), opened.sizes, f.gap_});
+    f.take({normalised(opened.m, f.deltas_, opened.sizes), opened.sizes, f.margin_});
   check_corners(f.m_, f.deltas_);
   return f;
 }
 
 void Lft::take(detail::Structured model) {
-  gap_ = model.gap;
+  margin_ = model.margin;
   m_ = std::move(model.m);
   int first = 0;
   for (std::size_t i = 0; i < deltas_.size(); ++i) {
@@ -141,7 +141,7 @@ void Lft::take(detail::Structured model) {
 }
 
 void Lft::find_lower_bounds(const std::vector<detail::IsolatedParameter>& list) {
-  constexpr int kFew = 100;
+  constexpr int kFew = 60;
   std::vector<int> parameters, sizes;
   for (std::size_t i = 0; i < list.size(); ++i) {
     parameters.push_back(list[i].index);

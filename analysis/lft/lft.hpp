@@ -33,7 +33,7 @@ struct Delta {
 };
 
 /// Singular values on both sides of the rank decisions of the reduction, relative to their rows.
-struct RankGap {
+struct RankMargin {
   double kept = 1;     ///< the smallest one taken for a direction
   double dropped = 0;  ///< the largest one taken for 0
 };
@@ -44,12 +44,12 @@ class Lft {
   const StateSpace& m() const { return m_; }
   const std::vector<Delta>& deltas() const { return deltas_; }
   int occurrences() const;  ///< of all parameters: the size of w
-  /// Lower bound of the order; 0 if it was not computed (more than 100 states and occurrences).
+  /// Lower bound of the order; 0 if it was not computed (more than 60 states and occurrences).
   int states_at_least() const { return states_at_least_; }
   /// The model with its parameters as inputs and outputs before reduction and normalisation: w is
   /// a deviation times z.
   const System& opened() const { return opened_; }
-  const RankGap& gap() const { return gap_; }
+  const RankMargin& rank_margin() const { return margin_; }
   /// Why there are no lower bounds: "" if there are.
   const std::string& not_decided() const { return not_decided_; }
 
@@ -69,7 +69,7 @@ class Lft {
   StateSpace m_;
   std::vector<Delta> deltas_;
   int states_at_least_ = 0;
-  RankGap gap_;
+  RankMargin margin_;
   std::string not_decided_;
 };
 
@@ -81,8 +81,8 @@ class Lft {
 /// changes. The result is minimal among realizations for parameters that may vary in time; for
 /// constant ones fewer may do where the lower bound is smaller [Beck, Doyle 1999; D'Andrea, Khatri
 /// 1997]. Ranks are those of singular values above 1e-9 of their rows, in the invariant subspaces
-/// of the poles (`gap()`); the reduced model is compared with the other one at random points, and
-/// refused if it differs.
+/// of the poles (`rank_margin()`); the reduced model is compared with the other one at random
+/// points, and refused if it differs.
 ///
 /// Throws unknown_name, duplicate_name; bad_value for a range without the nominal value inside, for
 /// one at whose end a block refuses the value, for an angle half a turn away without `full_turn`,

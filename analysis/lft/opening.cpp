@@ -126,6 +126,17 @@ void add_others(std::vector<Index>& order, std::size_t all) {
 
 }  // namespace
 
+IsolatedParameter unranged(const System& system, const std::string& name,
+                           std::vector<Mistake>& mistakes) {
+  RangeReader reader{system};
+  const int index = reader.index_of(name);
+  mistakes.insert(mistakes.end(), reader.mistakes.begin(), reader.mistakes.end());
+  const bool angle = index >= 0 && reader.angle[at(index)];
+  const double nominal = index < 0 ? 0 : reader.all[at(index)].second;
+  return {index, ParameterMap(angle ? ParameterMap::Kind::half_angle : ParameterMap::Kind::number,
+                              nominal, nominal - 1, nominal + 1)};
+}
+
 std::vector<IsolatedParameter> isolated(const System& system, const ParameterRanges& ranges) {
   RangeReader reader{system};
   std::vector<IsolatedParameter> result;
@@ -173,6 +184,7 @@ OpenedMatrices opened_matrices(const System& opened,
   }
   add_others(in, m.inputs.size());
   add_others(out, m.outputs.size());
+  result.in = in, result.out = out;
   result.m.A = m.A;
   result.m.B = m.B(Eigen::all, in);
   result.m.C = m.C(out, Eigen::all);

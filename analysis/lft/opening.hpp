@@ -10,6 +10,10 @@ struct IsolatedParameter {
   ParameterMap map;
 };
 
+/// Index of the parameter and whether it is an angle; notes mistakes.
+IsolatedParameter unranged(const System& system, const std::string& name,
+                           std::vector<Mistake>& mistakes);
+
 /// The parameters of these ranges. Throws as `lft` does, all mistakes together.
 std::vector<IsolatedParameter> isolated(const System& system, const ParameterRanges& ranges);
 
@@ -17,6 +21,7 @@ std::vector<IsolatedParameter> isolated(const System& system, const ParameterRan
 /// `parameters`.
 struct OpenedMatrices {
   StateSpace m;
+  std::vector<Eigen::Index> in, out;            ///< places of its signals in the opened system
   std::vector<int> sizes;                       ///< pairs of each parameter
   std::vector<std::vector<std::string>> where;  ///< blocks and equations with it
 };

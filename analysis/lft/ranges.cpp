@@ -4,12 +4,9 @@
 #include <titop/analysis/lft/ranges.hpp>
 
 namespace titop {
-namespace {
-
-/// Angles are divided by this.
-double divisor(ParameterMap::Kind kind) { return kind == ParameterMap::Kind::half_angle ? 2 : 4; }
-
-}  // namespace
+int ParameterMap::divisor() const {
+  return kind == Kind::number ? 0 : kind == Kind::half_angle ? 2 : 4;
+}
 
 ParameterMap::ParameterMap(Kind k, double n, double least, double largest)
     : kind(k), nominal(n), from(least), to(largest) {
@@ -19,7 +16,7 @@ ParameterMap::ParameterMap(Kind k, double n, double least, double largest)
 }
 
 double ParameterMap::deviation(double p) const {
-  return kind == Kind::number ? p - nominal : std::tan((p - nominal) / divisor(kind));
+  return kind == Kind::number ? p - nominal : std::tan((p - nominal) / divisor());
 }
 
 double ParameterMap::delta(double p) const {
@@ -29,7 +26,7 @@ double ParameterMap::delta(double p) const {
 
 double ParameterMap::value(double delta) const {
   const double d = gain * delta / (1 + shape * delta);
-  return kind == Kind::number ? nominal + d : nominal + divisor(kind) * std::atan(d);
+  return kind == Kind::number ? nominal + d : nominal + divisor() * std::atan(d);
 }
 
 std::string to_string(const ParameterMap& map, const std::string& name) {
@@ -37,7 +34,7 @@ std::string to_string(const ParameterMap& map, const std::string& name) {
                                               : fmt::format("({} - {:.6g})", name, map.nominal);
   const std::string d = map.kind == ParameterMap::Kind::number
                             ? shifted
-                            : fmt::format("tan({} / {})", shifted, divisor(map.kind));
+                            : fmt::format("tan({} / {})", shifted, map.divisor());
   // Rounding of a range given in percent.
   if (std::abs(map.shape) <= 1e-12) return fmt::format("{} / {:.6g}", d, map.gain);
   return fmt::format("Moebius of {}", d);

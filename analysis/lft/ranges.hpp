@@ -45,6 +45,8 @@ struct ParameterMap {
   double deviation(double p) const;  ///< d
   double delta(double p) const;
   double value(double delta) const;  ///< p
+  /// By which the deviation of an angle is divided: 2 or 4; 0 of a number.
+  int divisor() const;
 };
 
 /// "(m - 1000) / 200", or "Moebius of tan((tilt - 0.4) / 2)".

@@ -44,8 +44,8 @@ MatrixXd with_unit_columns(MatrixXd m) {
 /// Least subspaces of the blocks: orthonormal bases.
 class Reach {
  public:
-  Reach(const Cut& m, const std::vector<Block>& blocks, RankGap& gap)
-      : m_(m), blocks_(blocks), gap_(gap) {
+  Reach(const Cut& m, const std::vector<Block>& blocks, RankMargin& margin)
+      : m_(m), blocks_(blocks), margin_(margin) {
     const MatrixXd B = with_unit_columns(m.B);
     for (const Block& b : blocks_) size_.push_back(rows(m_.N, b).norm());
     const double largest = size_.empty() ? 0 : *std::max_element(size_.begin(), size_.end());
@@ -91,9 +91,9 @@ class Reach {
     Index rank = 0;
     for (const double s : svd.singularValues()) {
       if (s > kRank * size && V.cols() + rank < V.rows())
-        ++rank, gap_.kept = std::min(gap_.kept, s / size);
+        ++rank, margin_.kept = std::min(margin_.kept, s / size);
       else
-        gap_.dropped = std::max(gap_.dropped, s / size);
+        margin_.dropped = std::max(margin_.dropped, s / size);
     }
     MatrixXd fresh = svd.matrixU().leftCols(rank);
     for (int twice = 0; twice < 2; ++twice) fresh -= V * MatrixXd(V.transpose() * fresh);
@@ -105,7 +105,7 @@ class Reach {
 
   const Cut& m_;
   const std::vector<Block>& blocks_;
-  RankGap& gap_;
+  RankMargin& margin_;
   std::vector<double> size_;
 };
 
@@ -154,11 +154,11 @@ std::vector<Block> shrunk(const std::vector<Block>& blocks, const std::vector<Ma
 }
 
 /// What u reaches and y sees, until nothing changes.
-void reduce_blocks(Cut m, std::vector<Block>& blocks, Coordinates& c, RankGap& gap) {
+void reduce_blocks(Cut m, std::vector<Block>& blocks, Coordinates& c, RankMargin& margin) {
   for (Index before = -1; before != m.N.rows();) {
     before = m.N.rows();
     for (int side = 0; side < 2; ++side) {
-      const std::vector<MatrixXd> bases = Reach(m, blocks, gap).bases;
+      const std::vector<MatrixXd> bases = Reach(m, blocks, margin).bases;
       const MatrixXd V = block_diagonal(bases), Vt = V.transpose();
       m = restricted(m, Vt, V);
       c.restrict_to(Vt, V);
@@ -220,7 +220,7 @@ Structured reduced(const StateSpace& given, const std::vector<int>& sizes) {
   std::vector<Block> blocks;
   Coordinates c = separated(m.N, n, sizes, blocks);
   Structured result;
-  reduce_blocks(restricted(m, c.L, c.R), blocks, c, result.gap);
+  reduce_blocks(restricted(m, c.L, c.R), blocks, c, result.margin);
   const std::size_t poles = blocks.size() - sizes.size();
   Index states = 0;
   for (std::size_t i = 0; i < poles; ++i) states += blocks[i].size;

@@ -9,7 +9,7 @@ namespace titop::detail {
 struct Structured {
   StateSpace m;            ///< its pairs are all called w and z
   std::vector<int> sizes;  ///< pairs of each parameter, in the order of w
-  RankGap gap;
+  RankMargin margin;
 };
 
 /// The pairs of parameter i are `sizes[i]` neighbours in w and z. Least subspaces of the states and

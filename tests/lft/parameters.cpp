@@ -16,7 +16,7 @@ namespace {
 void check_one(const System& system, const ParameterRange& range, int size, int at_least) {
   const Lft f = lft(system, {{"p", range}});
   const Delta& d = f.deltas()[0];
-  INFO(to_string(f), " gap ", f.gap().kept, " ", f.gap().dropped);
+  INFO(to_string(f), " margin ", f.rank_margin().kept, " ", f.rank_margin().dropped);
   CHECK(f.not_decided() == "");
   CHECK(d.size == size);
   CHECK(d.at_least == at_least);
@@ -245,6 +245,32 @@ TEST_CASE("a turned reading, a gain, and a rate beyond a tilt") {
     // Accelerations 4, wrenches 4, rate 4, angles 2: rotating commutes with integration for a
     // constant tilt only, which the lower bound counts on.
     check_one(compile(d), between(-2, 2), 14, 8);
+  }
+}
+
+TEST_CASE("a law in the loop that reads rate and attitude beyond two tilts") {
+  Diagram d{"law"};
+  const Param p = d.param("p", 0.3);
+  auto b = d.add("hub", hub());
+  auto arm = d.add("arm", RigidBody{.mass = 2, .PA = kPA, .children = {{"E", {0.5, 0.1, 0.2}}}});
+  auto tip = d.add("tip", FlexibleBody{boom()});
+  const Rotation to_hub = Rotation::about({1, 0, 0}, p),
+                 to_arm = Rotation::about({0, 0, 1}, 0.5) * Rotation::about({0, 1, 0}, -1 * p);
+  mount(arm, b.child, to_hub);
+  mount(tip, arm.child, to_arm);
+  b.parent.force = -d.input("U", 6);
+  b.parent.force.angular +=
+      to_hub * to_arm * (3.0 * tip.parent.position.angular() + 5.0 * tip.parent.rate.angular());
+  d.output("y", 6) = b.parent.accel;
+  d.output("angle", 3) = tip.parent.position.angular();
+  const System system = compile(d);
+  const Lft f = lft(system, {{"p", between(-2, 2.5)}});
+  INFO(to_string(f));
+  CHECK(f.deltas()[0].at_least <= f.deltas()[0].size);
+  for (const double value : {-1.9, -0.7, 0.1, 1.4, 2.4}) {
+    const std::complex<double> s{0.2, 1.7};
+    const Eigen::MatrixXcd G = system.update({{"p", value}}).transfer(s, Precision::digits50);
+    CHECK((f.at({{"p", value}}).transfer(s) - G).norm() <= 1e-12 * G.norm());
   }
 }
 

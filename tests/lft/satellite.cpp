@@ -21,7 +21,7 @@ void check_counts(const Satellite& s, const Counts& built, const Counts& small) 
   const System system = compile(s.diagram());
   CHECK(system.order() == built.states);
   const Lft f = lft(system, ranges(s));
-  INFO(to_string(f), " gap ", f.gap().kept, " ", f.gap().dropped);
+  INFO(to_string(f), " margin ", f.rank_margin().kept, " ", f.rank_margin().dropped);
   CHECK(f.m().order() == small.states);
   CHECK(f.states_at_least() == small.states);
   CHECK(f.not_decided() == "");
@@ -56,7 +56,7 @@ TEST_CASE("closing the parameters equals compiling anew") {
     const Satellite s{.rates = rates};
     const System system = compile(s.diagram());
     const Lft f = lft(system, ranges(s));
-    INFO(to_string(f), " gap ", f.gap().kept, " ", f.gap().dropped);
+    INFO(to_string(f), " margin ", f.rank_margin().kept, " ", f.rank_margin().dropped);
     std::mt19937 random(3);
     std::uniform_real_distribution<double> share(-0.999, 0.999);
     double worst = 0;

@@ -1,13 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numeric>
 #include <titop/compiler/passes/open/opened_block.hpp>
 
 namespace titop::passes {
 namespace {
 
 using Eigen::Index;
-using Eigen::MatrixXd;
 
 class OpenedBlock : public Block {
  public:
@@ -24,25 +24,20 @@ class OpenedBlock : public Block {
   const Interface& interface() const override { return face_; }
   /// The pairs in the order of the ports.
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
-    Opened o = *block_->opened(values, parameters_);
-    const Index nu = o.dynamics.B.cols() - more_, ny = o.dynamics.C.rows() - more_;
-    auto d = std::make_shared<Dynamics>(o.dynamics);
-    Index to = 0;
+    const Opened o = *block_->opened(values, parameters_);
+    const Dynamics& from = o.dynamics;
+    std::vector<Index> cols(static_cast<std::size_t>(from.B.cols() - more_)),
+        rows(static_cast<std::size_t>(from.C.rows() - more_));
+    std::iota(cols.begin(), cols.end(), 0);
+    std::iota(rows.begin(), rows.end(), 0);
     for (const int p : parameters_)
       for (std::size_t k = 0; k < o.parameter.size(); ++k) {
         if (o.parameter[k] != p) continue;
-        const Index from = static_cast<Index>(k);
-        d->B.col(nu + to) = o.dynamics.B.col(nu + from);
-        d->C.row(ny + to) = o.dynamics.C.row(ny + from);
-        d->D.col(nu + to) = o.dynamics.D.col(nu + from);
-        ++to;
+        cols.push_back(from.B.cols() - more_ + static_cast<Index>(k));
+        rows.push_back(from.C.rows() - more_ + static_cast<Index>(k));
       }
-    to = 0;
-    const MatrixXd columns = d->D;
-    for (const int p : parameters_)
-      for (std::size_t k = 0; k < o.parameter.size(); ++k)
-        if (o.parameter[k] == p) d->D.row(ny + to++) = columns.row(ny + static_cast<Index>(k));
-    return d;
+    return std::make_shared<Dynamics>(
+        Dynamics{from.A, from.B(Eigen::all, cols), from.C(rows, Eigen::all), from.D(rows, cols)});
   }
   Pattern feedthrough() const override { return grown(block_->feedthrough(), more_, more_); }
   Pattern moved_by() const override { return grown(block_->moved_by(), 0, more_); }

@@ -1,0 +1,143 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <titop/analysis/lft/derivatives.hpp>
+#include <titop/analysis/lft/opening.hpp>
+#include <titop/compiler/system/compile_graph.hpp>
+#include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/schur.hpp>
+
+namespace titop {
+
+using Eigen::Index;
+using Eigen::MatrixXcd;
+using Eigen::MatrixXd;
+using linalg::at;
+
+Derivatives derivatives(const System& system, const std::vector<std::string>& parameters) {
+  std::vector<detail::IsolatedParameter> list;
+  std::vector<passes::ToOpen> to_open;
+  std::vector<Mistake> mistakes;
+  for (std::size_t i = 0; i < parameters.size(); ++i) {
+    const std::string& name = parameters[i];
+    if (std::find(parameters.begin(), parameters.begin() + static_cast<std::ptrdiff_t>(i), name) !=
+        parameters.begin() + static_cast<std::ptrdiff_t>(i))
+      mistakes.push_back({Code::duplicate_name,
+                          fmt::format("parameter {} is named twice", name),
+                          {},
+                          "name it once"});
+    list.push_back(detail::unranged(system, name, mistakes));
+    to_open.push_back({list.back().index});
+  }
+  if (!mistakes.empty()) throw Error(std::move(mistakes));
+  Derivatives g{System(detail::compile_opened(system, to_open))};
+  detail::OpenedMatrices opened = detail::opened_matrices(g.opened_, list);
+  g.m_ = std::move(opened.m);
+  g.in_ = std::move(opened.in), g.out_ = std::move(opened.out);
+  g.names_ = parameters;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const bool angle = list[i].map.kind != ParameterMap::Kind::number;
+    g.pairs_.push_back({g.all_pairs_, opened.sizes[i], angle ? 0.5 : 1.0});
+    g.all_pairs_ += opened.sizes[i];
+  }
+  return g;
+}
+
+const Derivatives::Pairs& Derivatives::pairs_of(const std::string& p) const {
+  std::string known;
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    if (names_[i] == p) return pairs_[i];
+    known += (known.empty() ? "" : ", ") + names_[i];
+  }
+  throw Error(Code::unknown_name, fmt::format("no derivatives by {} were asked for", p),
+              "they are by " + known);
+}
+
+MatrixXcd Derivatives::opened_at(std::complex<double> s) const {
+  const MatrixXcd M = opened_.transfer(s);
+  return M(out_, in_);
+}
+
+MatrixXcd Derivatives::transfer(std::complex<double> s, const std::string& p) const {
+  const Pairs& i = pairs_of(p);
+  const MatrixXcd M = opened_at(s);
+  const Index ny = M.rows() - all_pairs_, nu = M.cols() - all_pairs_;
+  return i.slope * M.bottomRows(ny).middleCols(i.first, i.size) *
+         M.rightCols(nu).middleRows(i.first, i.size);
+}
+
+MatrixXcd Derivatives::transfer(std::complex<double> s, const std::string& p,
+                                const std::string& q) const {
+  const Pairs &i = pairs_of(p), &j = pairs_of(q);
+  const MatrixXcd M = opened_at(s);
+  const Index ny = M.rows() - all_pairs_, nu = M.cols() - all_pairs_;
+  const auto path = [&](const Pairs& last, const Pairs& first) {
+    return MatrixXcd(M.bottomRows(ny).middleCols(last.first, last.size) *
+                     MatrixXcd(M.block(last.first, first.first, last.size, first.size) *
+                               M.rightCols(nu).middleRows(first.first, first.size)));
+  };
+  return i.slope * j.slope * (path(i, j) + path(j, i));
+}
+
+StateSpace Derivatives::matrices(const std::string& p) const {
+  const Pairs& i = pairs_of(p);
+  const Index ny = m_.D.rows() - all_pairs_, nu = m_.D.cols() - all_pairs_;
+  const MatrixXd Bw = i.slope * m_.B.middleCols(i.first, i.size),
+                 Dyw = i.slope * m_.D.bottomRows(ny).middleCols(i.first, i.size),
+                 Cz = m_.C.middleRows(i.first, i.size),
+                 Dzu = m_.D.rightCols(nu).middleRows(i.first, i.size);
+  return {.A = Bw * Cz,
+          .B = Bw * Dzu,
+          .C = Dyw * Cz,
+          .D = Dyw * Dzu,
+          .states = m_.states,
+          .inputs = {m_.inputs.begin() + all_pairs_, m_.inputs.end()},
+          .outputs = {m_.outputs.begin() + all_pairs_, m_.outputs.end()}};
+}
+
+namespace {
+
+/// P of A P + P A' + B B' = 0.
+MatrixXd lyapunov(const MatrixXd& A, const MatrixXd& B) {
+  const linalg::Schur s = linalg::schur(A);
+  const MatrixXcd QU = s.Q * linalg::lyapunov_factor(s.T, s.Q.adjoint() * B);
+  return (QU * QU.adjoint()).real();
+}
+
+void refuse_norm(const std::string& why, const char* way_out) {
+  throw Error(Code::singular, "the H2 norm is infinite: " + why, way_out);
+}
+
+}  // namespace
+
+Slopes Derivatives::h2() const {
+  const Index ny = m_.D.rows() - all_pairs_, nu = m_.D.cols() - all_pairs_;
+  const MatrixXd B = m_.B.rightCols(nu), C = m_.C.bottomRows(ny);
+  if (m_.order() > 0) {
+    const Eigen::VectorXcd poles = linalg::eigenvalues(m_.A);
+    Index worst = 0;
+    poles.real().maxCoeff(&worst);
+    if (!(poles(worst).real() < 0))
+      refuse_norm(fmt::format("the pole {:.6g}{:+.6g}j is not left of the axis",
+                              poles(worst).real(), poles(worst).imag()),
+                  "damp it, or leave out the output that reads its position");
+  }
+  bool direct = !m_.D.bottomRightCorner(ny, nu).isZero(0);
+  for (const std::string& p : names_) direct = direct || !matrices(p).D.isZero(0);
+  if (direct)
+    refuse_norm("there is a direct term",
+                "read rates or positions, or filter the inputs or outputs");
+  const MatrixXd P = lyapunov(m_.A, B), Q = lyapunov(m_.A.transpose(), C.transpose());
+  Slopes result{std::sqrt((C * P * C.transpose()).trace()),
+                Eigen::VectorXd::Zero(static_cast<Index>(names_.size()))};
+  for (std::size_t i = 0; i < names_.size(); ++i) {
+    const StateSpace d = matrices(names_[i]);
+    const double half = (Q * d.A * P).trace() + (Q * d.B * B.transpose()).trace() +
+                        (d.C * P * C.transpose()).trace();
+    result.slopes(static_cast<Index>(i)) = half / result.value;
+  }
+  return result;
+}
+
+}  // namespace titop

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <complex>
+#include <string>
+#include <titop/compiler/system/system.hpp>
+#include <vector>
+
+/// Exact derivatives of a model by its parameters, from the opened model (lft.hpp): with w and z of
+/// parameter i and M(s) from [w; u] to [z; y],
+///
+///     dH/dp_i = M_yw_i M_z_iu,   d2H/dp_i dp_j = M_yw_i M_z_iw_j M_z_ju + M_yw_j M_z_jw_i M_z_iu.
+///
+/// No difference and no eigenvector is differentiated: equal poles are no special case but for the
+/// slopes of the poles themselves.
+namespace titop {
+
+/// A pole, or poles that are equal, and how fast they move with each parameter.
+struct PoleSlopes {
+  std::complex<double> s;  ///< [rad/s]
+  int count = 1;           ///< equal poles
+  /// Per parameter, in the order of Derivatives::parameters(): `count` slopes, those of the poles
+  /// into which the equal ones split. Empty of a defective pole, which has none.
+  std::vector<Eigen::VectorXcd> slopes;
+  bool defective = false;  ///< fewer eigenvectors than poles, as of a double integrator
+};
+
+/// A number and its derivatives by the parameters, in the order of Derivatives::parameters().
+struct Slopes {
+  double value = 0;
+  Eigen::VectorXd slopes;
+};
+
+/// At the values of the system that it was made from. Const, may be shared between threads.
+class Derivatives {
+ public:
+  const std::vector<std::string>& parameters() const { return names_; }
+
+  /// dH/dp at s, outputs x inputs [unit of H per unit of p]. Throws unknown_name, and singular if s
+  /// is a pole. O(bodies (inputs + occurrences)).
+  Eigen::MatrixXcd transfer(std::complex<double> s, const std::string& p) const;
+  /// d2H/dp dq at s; p and q may be the same.
+  Eigen::MatrixXcd transfer(std::complex<double> s, const std::string& p,
+                            const std::string& q) const;
+  /// dA, dB, dC, dD by p of the dense model before `minimize` (System::write).
+  StateSpace matrices(const std::string& p) const;
+  /// Poles of the dense model before `minimize` with their slopes, those of the upper half plane.
+  /// Poles closer than rounding lets tell count as equal: their slopes are the eigenvalues of L' dA
+  /// R, L' R = I, in their invariant subspace. O(states^3).
+  std::vector<PoleSlopes> poles() const;
+  /// H2 norm of the transfer (root mean square of the outputs under white noise of unit intensity),
+  /// by two Lyapunov equations for all parameters together [Z] 4. Throws singular if a pole is not
+  /// left of the axis, or if there is a direct term here or at neighbouring values. O(states^3).
+  Slopes h2() const;
+
+ private:
+  friend Derivatives derivatives(const System&, const std::vector<std::string>&);
+  explicit Derivatives(System opened) : opened_(std::move(opened)) {}
+  struct Pairs {
+    Eigen::Index first = 0, size = 0;
+    double slope = 1;  ///< of the deviation by the parameter: 1, of an angle 1/2
+  };
+  const Pairs& pairs_of(const std::string& p) const;
+  /// M(s), inputs [w; u], outputs [z; y].
+  Eigen::MatrixXcd opened_at(std::complex<double> s) const;
+
+  System opened_;
+  StateSpace m_;                        ///< of `opened_`, inputs [w; u], outputs [z; y]
+  std::vector<Eigen::Index> in_, out_;  ///< places of its inputs and outputs in `opened_`
+  std::vector<std::string> names_;
+  std::vector<Pairs> pairs_;
+  Eigen::Index all_pairs_ = 0;
+};
+
+/// Derivatives by these parameters at the system's present values. Throws unknown_name,
+/// duplicate_name, and not_rational as `lft` does. Cost: that of `compile`, then as each function
+/// says: independent of the number of parameters but for their occurrences.
+///
+///     const Derivatives g = derivatives(system, {"m", "tilt"});
+///     const Eigen::MatrixXcd dH = g.transfer({0, 2.5}, "tilt");
+Derivatives derivatives(const System& system, const std::vector<std::string>& parameters);
+
+}  // namespace titop

@@ -1,0 +1,150 @@
+#include <doctest/doctest.h>
+
+#include "lft/n17.hpp"
+#include "support/mistakes.hpp"
+
+/// Derivatives against closed forms, and against central differences of transfers in 50 digits.
+
+using namespace lft_test;
+using Eigen::MatrixXcd;
+
+namespace {
+
+/// Differences of the transfer in 50 digits, rounded to double: right to about 1e-12.
+struct Differences {
+  System system;
+  std::complex<double> s;
+  std::vector<std::string> names;
+  Eigen::VectorXd nominal, step;
+
+  MatrixXcd at(const Eigen::VectorXd& p) const {
+    ParameterList values;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      values.emplace_back(names[i], p(static_cast<Eigen::Index>(i)));
+    return system.update(values).transfer(s, Precision::digits50);
+  }
+  /// Richardson of two central differences.
+  MatrixXcd first(int i) const {
+    const auto central = [&](double h) {
+      const Eigen::VectorXd d = h * step(i) * Eigen::VectorXd::Unit(nominal.size(), i);
+      return MatrixXcd((at(nominal + d) - at(nominal - d)) / (2 * h * step(i)));
+    };
+    return (4 * central(0.5) - central(1)) / 3;
+  }
+  MatrixXcd second(int i, int j) const {
+    const auto central = [&](double h) {
+      const Eigen::VectorXd a = h * step(i) * Eigen::VectorXd::Unit(nominal.size(), i),
+                            b = h * step(j) * Eigen::VectorXd::Unit(nominal.size(), j);
+      return MatrixXcd(
+          (at(nominal + a + b) - at(nominal + a - b) - at(nominal - a + b) + at(nominal - a - b)) /
+          (4 * h * h * step(i) * step(j)));
+    };
+    return (4 * central(0.5) - central(1)) / 3;
+  }
+};
+
+double error(const MatrixXcd& a, const MatrixXcd& b) { return (a - b).norm() / b.norm(); }
+
+/// m xdd + c xd + k x = u on the ground.
+System oscillator(double m, double c, double k) {
+  Diagram d{"oscillator"};
+  auto z = d.add(
+      "z", SpringMass{
+               .mass = d.param("m", m), .stiffness = d.param("k", k), .damping = d.param("c", c)});
+  ground(z);
+  z.child.force = d.input("u");
+  d.output("x") = z.stretch;
+  return compile(d);
+}
+
+}  // namespace
+
+TEST_CASE("first and second derivatives of the satellite's transfer") {
+  const Satellite s{.rates = true};
+  const System system = compile(s.diagram());
+  const Derivatives g = derivatives(system, s.names);
+  Differences f{system,
+                {0.3, 1.4},
+                s.names,
+                Eigen::Vector4d(1000, 0.4, 1.57, 0.005),
+                Eigen::Vector4d(1, 0.001, 0.001, 0.0001)};
+  for (int i = 0; i < 4; ++i) {
+    CAPTURE(s.names[static_cast<std::size_t>(i)]);
+    CHECK(error(g.transfer(f.s, s.names[static_cast<std::size_t>(i)]), f.first(i)) <= 1e-10);
+  }
+  for (const auto& [i, j] : {std::pair(1, 1), {0, 1}, {2, 1}, {2, 2}, {3, 2}}) {
+    CAPTURE(i);
+    CAPTURE(j);
+    const MatrixXcd H =
+        g.transfer(f.s, s.names[static_cast<std::size_t>(i)], s.names[static_cast<std::size_t>(j)]);
+    CHECK(error(H, f.second(i, j)) <= 1e-8);
+  }
+}
+
+TEST_CASE("an oscillator: transfer, matrices, pole and H2 norm in closed form") {
+  const double m = 2, c = 0.3, k = 8;
+  const Derivatives g = derivatives(oscillator(m, c, k), {"m", "k", "c"});
+  const std::complex<double> s{0.2, 1.5}, H = 1.0 / (m * s * s + c * s + k);
+  CHECK(std::abs(g.transfer(s, "k")(0, 0) + H * H) <= 1e-14 * std::abs(H * H));
+  CHECK(std::abs(g.transfer(s, "m", "c")(0, 0) - 2.0 * s * s * s * H * H * H) <=
+        1e-13 * std::abs(2.0 * s * s * s * H * H * H));
+  CHECK((g.matrices("k").A - Eigen::Matrix2d{{0, 0}, {-1 / m, 0}}).norm() <= 1e-15);
+  CHECK((g.matrices("m").A - Eigen::Matrix2d{{0, 0}, {k / m / m, c / m / m}}).norm() <= 1e-15);
+
+  const auto poles = g.poles();
+  REQUIRE(poles.size() == 1);
+  const std::complex<double> p = poles[0].s, by = -1.0 / (2 * m * p + c);  // d(m p^2 + c p + k) = 0
+  CHECK(std::abs(m * p * p + c * p + k) <= 1e-14 * k);
+  for (const auto& [i, slope] : {std::pair(0u, p * p * by), {1u, by}, {2u, p * by}})
+    CHECK(std::abs(poles[0].slopes[i](0) - slope) <= 1e-13 * std::abs(slope));
+
+  const Slopes n = g.h2();  // |H|^2 = 1 / (2 c k)
+  CHECK(n.value == doctest::Approx(1 / std::sqrt(2 * c * k)).epsilon(1e-13));
+  CHECK(std::abs(n.slopes(0)) <= 1e-14);
+  CHECK(n.slopes(1) == doctest::Approx(-n.value / (2 * k)).epsilon(1e-12));
+  CHECK(n.slopes(2) == doctest::Approx(-n.value / (2 * c)).epsilon(1e-12));
+}
+
+TEST_CASE("equal poles split by the eigenvalues of a small matrix") {
+  // Two oscillators of 3 rad/s on one ground; k of one of them moves: slopes 0 and j omega / 2k.
+  Diagram d{"twins"};
+  const Param k = d.param("k", 18);
+  auto u = d.input("u");
+  auto a = d.add("a", SpringMass{.mass = 2, .stiffness = k});
+  auto b = d.add("b", SpringMass{.mass = 2, .stiffness = 18});
+  ground(a), ground(b);
+  a.child.force = u, b.child.force = u;
+  d.output("x") = a.stretch + b.stretch;
+  const auto poles = derivatives(compile(d), {"k"}).poles();
+  REQUIRE(poles.size() == 1);
+  CHECK(poles[0].count == 2);
+  CHECK(std::abs(poles[0].s - std::complex<double>(0, 3)) <= 1e-14);
+  Eigen::VectorXcd slopes = poles[0].slopes[0];
+  if (std::abs(slopes(0)) > std::abs(slopes(1))) std::swap(slopes(0), slopes(1));
+  CHECK(std::abs(slopes(0)) <= 1e-14);
+  CHECK(std::abs(slopes(1) - std::complex<double>(0, 3.0 / (2 * 18))) <= 1e-14);
+}
+
+TEST_CASE("what has no derivative is refused or marked") {
+  Diagram d{"free"};
+  auto z = d.add("z", SpringMass{.mass = d.param("m", 2), .stiffness = 4, .parent_mass = 1});
+  z.parent.force = -d.input("u");
+  d.output("x") = z.position;
+  const Derivatives g = derivatives(compile(d), {"m"});
+  const auto poles = g.poles();
+  REQUIRE(poles.size() == 2);
+  CHECK(poles[0].defective);  // the double integrator of the free position
+  CHECK(poles[0].slopes.empty());
+  // (1 + m) 4 / m: omega^2 of the free pair
+  const double m = 2, omega = std::sqrt(4 * (1 + m) / m);
+  CHECK(std::abs(poles[1].slopes[0](0) - std::complex<double>(0, -4 / (m * m) / (2 * omega))) <=
+        1e-12);
+  using titop_test::error_of;
+  CHECK(error_of([&] { g.h2(); }).has(Code::singular));
+  CHECK(titop_test::says(error_of([&] { g.transfer(1, "k"); }), Code::unknown_name, {"k", "m"}));
+  CHECK(titop_test::says(error_of([&] {
+                           derivatives(compile(d), {"m", "q", "m"});
+                         }),
+                         Code::unknown_name, {"q", "m"}));
+  CHECK(error_of([&] { derivatives(compile(d), {"m", "m"}); }).has(Code::duplicate_name));
+}
