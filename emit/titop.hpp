@@ -38,6 +38,7 @@
 #include <titop/compiler/system/system.hpp>
 #include <titop/emit/cpp/cpp.hpp>
 #include <titop/emit/files/files.hpp>
+#include <titop/emit/files/lft_files.hpp>
 #include <titop/emit/report/report.hpp>
 #include <titop/graph/diagram.hpp>
 #include <titop/graph/invert.hpp>

@@ -44,7 +44,8 @@ room(analysis/reduction        compiler/system)
 room(analysis/lft              compiler/passes compiler/definition compiler/system)
 room(emit/text)
 # Deeper than System: names of any encoding are cleaned by compiler/diagram.
-room(emit/files                compiler/diagram compiler/system analysis/certify emit/text)
+room(emit/files                compiler/diagram compiler/system analysis/certify analysis/lft
+                               emit/text)
 room(emit/cpp                  compiler/system analysis/simulation analysis/certify emit/text)
 # Deeper than System: it draws System::stage(), a type of compiler/passes.
 room(emit/report               compiler/passes compiler/diagram compiler/system analysis/simulation

@@ -1,5 +1,6 @@
 #include <nlohmann/json.hpp>
 #include <titop/emit/files/files.hpp>
+#include <titop/emit/files/lft_files.hpp>
 #include <titop/emit/text/write_file.hpp>
 
 namespace titop {
@@ -158,6 +159,24 @@ Json exact(const ExactOrder& e) {
           {"states", where(e.decided, e.states)}};
 }
 
+Json parameters(const std::vector<Delta>& list) {
+  Json result = Json::array();
+  for (const Delta& d : list)
+    result.push_back({{"name", d.parameter},
+                      {"first", d.first},
+                      {"size", d.size},
+                      {"at_least", d.at_least},
+                      {"minimal", d.minimal()},
+                      {"nominal", d.map.nominal},
+                      {"from", d.map.from},
+                      {"to", d.map.to},
+                      {"gain", d.map.gain},
+                      {"shape", d.map.shape},
+                      {"divisor", d.map.divisor()},
+                      {"where", d.where}});
+  return result;
+}
+
 /// Names that are no UTF-8 are written with replacement characters.
 std::string text_of(const Json& json) {
   return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -202,6 +221,26 @@ void write_json(const System& system, const std::filesystem::path& file) {
 
 void write_json(const FullCertificate& c, const std::filesystem::path& file) {
   emit::write_file(file, certificate_json(c));
+}
+
+std::string lft_json(const Lft& f) {
+  const StateSpace& m = f.m();
+  const Json json = {{"format", "titop lft 1"},
+                     {"states", m.states},
+                     {"inputs", m.inputs},
+                     {"outputs", m.outputs},
+                     {"A", rows(m.A)},
+                     {"B", rows(m.B)},
+                     {"C", rows(m.C)},
+                     {"D", rows(m.D)},
+                     {"states_at_least", f.states_at_least()},
+                     {"not_decided", where(!f.not_decided().empty(), f.not_decided())},
+                     {"parameters", parameters(f.deltas())}};
+  return text_of(json);
+}
+
+void write_json(const Lft& f, const std::filesystem::path& file) {
+  emit::write_file(file, lft_json(f));
 }
 
 }  // namespace titop

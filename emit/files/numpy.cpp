@@ -4,6 +4,7 @@
 #include <cstring>
 #include <titop/compiler/diagram/text.hpp>
 #include <titop/emit/files/files.hpp>
+#include <titop/emit/files/lft_files.hpp>
 #include <titop/emit/text/identifier.hpp>
 #include <titop/emit/text/literals.hpp>
 #include <titop/emit/text/write_file.hpp>
@@ -71,10 +72,43 @@ def transfer(s):
 def poles():
     """Eigenvalues of A [rad/s]."""
     return np.linalg.eigvals(A)
+@MORE@)";
+
+const char* const kClose = R"(
+
+# delta = d / (gain - shape d), d = value - nominal, or tan((value - nominal) / divisor)
+parameters = [
+@PARAMETERS@]
+
+
+def at(**values):
+    """A, B, C, D with w = Delta z closed at these values, the other parameters at nominal ones."""
+    deltas = []
+    for p in parameters:
+        d = values.pop(p["name"], p["nominal"]) - p["nominal"]
+        d = np.tan(d / p["divisor"]) if p["divisor"] else d
+        deltas += [d / (p["gain"] - p["shape"] * d)] * p["size"]
+    if values:
+        raise KeyError(f"no such parameter: {', '.join(values)}")
+    r = len(deltas)
+    Delta = np.diag(deltas) if r else np.zeros((0, 0))
+    K = Delta.dot(np.linalg.inv(np.eye(r) - D[:r, :r].dot(Delta)))
+    return (A + B[:, :r].dot(K).dot(C[:r]), B[:, r:] + B[:, :r].dot(K).dot(D[:r, r:]),
+            C[r:] + D[r:, :r].dot(K).dot(C[:r]), D[r:, r:] + D[r:, :r].dot(K).dot(D[:r, r:]))
 )";
 
+std::string parameter_line(const Delta& d) {
+  return fmt::format(
+      "    {{\"name\": \"{}\", \"size\": {}, \"at_least\": {}, \"minimal\": {}, \"nominal\": {}, "
+      "\"from\": {},\n     \"to\": {}, \"gain\": {}, \"shape\": {}, \"divisor\": {}}},\n",
+      escaped(d.parameter), d.size, d.at_least, d.minimal() ? "True" : "False", d.map.nominal,
+      d.map.from, d.map.to, d.map.gain, d.map.shape, d.map.divisor());
+}
+
+/// `more`: at the end of the module.
 void write(const StateSpace& model, const std::vector<std::string>& warnings,
-           const std::filesystem::path& folder, const std::string& name) {
+           const std::filesystem::path& folder, const std::string& name,
+           const std::string& more = {}) {
   if (!emit::is_identifier(name, emit::Language::python))
     throw Error(Code::bad_value, fmt::format("\"{}\" cannot be the name of a Python module", name),
                 "give an identifier that is no keyword and no module that numpy imports, such as "
@@ -88,6 +122,7 @@ void write(const StateSpace& model, const std::vector<std::string>& warnings,
   emit::write_file(folder / (name + ".py"),
                    emit::filled(kModule, {{"NAME", name},
                                           {"WARNINGS", comments},
+                                          {"MORE", more},
                                           {"NAMES", list_of_names("states", model.states) +
                                                         list_of_names("inputs", model.inputs) +
                                                         list_of_names("outputs", model.outputs)}}));
@@ -103,6 +138,12 @@ void write_numpy(const StateSpace& model, const std::filesystem::path& folder,
 void write_numpy(const System& system, const std::filesystem::path& folder,
                  const std::string& name) {
   write(system.state_space(), dense_warnings(system), folder, name);
+}
+
+void write_numpy(const Lft& f, const std::filesystem::path& folder, const std::string& name) {
+  std::string lines;
+  for (const Delta& d : f.deltas()) lines += parameter_line(d);
+  write(f.m(), {}, folder, name, emit::filled(kClose, {{"PARAMETERS", lines}}));
 }
 
 }  // namespace titop
