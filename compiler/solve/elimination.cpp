@@ -220,12 +220,11 @@ struct Factors<T>::Work {
     }
   }
 
-  /// Largest ratio of an entry of a remaining row to its terms; 1 unless it is small: ordinary
-  /// losses must not add up along a long chain.
+  /// Largest ratio of an entry of a remaining row to its terms; 1 if it is ordinary.
   double kept(int i) {
     double share = 0;
     for (std::ptrdiff_t j = pivots; j < n; ++j) {
-      if (size_of(row(i)[j]) > 1e-6 * bounds(i)[j]) return 1;
+      if (size_of(row(i)[j]) > kOrdinary * bounds(i)[j]) return 1;
       if (bounds(i)[j] > 0) share = std::max(share, size_of(row(i)[j]) / bounds(i)[j]);
     }
     return share == 0 ? 1 : share;

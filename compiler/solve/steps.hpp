@@ -25,16 +25,28 @@ inline double largest_of(std::ptrdiff_t n, Entry entry) {
   return std::bit_cast<double>(most);
 }
 
+/// Losses up to this are ordinary: they must not add up from row to row of a wide front (as a
+/// product they would grow exponentially with its width), nor along a chain of fronts.
+constexpr double kOrdinary = 1e-6;
+
+/// The factor of the magnitudes of a pivot row's entries in the sums of others: 1, or what the
+/// pivot has lost if that is more than ordinary.
+inline double weight_of_pivot_row(double pivot, double bound) {
+  return pivot > kOrdinary * bound ? 1 : bound / pivot;
+}
+
 /// One step of elimination in a rows x n array: below row k, right of column k up to column `end`.
-/// `bounds` gets the sums of magnitudes.
+/// `bounds` gets the sums of magnitudes |a| + sum |l| |u| [Higham 2002, theorem 9.3].
 template <class T, class Size>
 [[gnu::always_inline]] inline void eliminate_below(std::ptrdiff_t k, std::ptrdiff_t end,
                                                    std::ptrdiff_t rows, std::ptrdiff_t n, T* a,
                                                    double* bounds, Size size) {
   const T* from = a + k * n + k;
   const Divisor<T> over(from[0]);
-  const double* const bound = bounds + k * n + k + 1;
+  double* const bound = bounds + k * n + k + 1;
   const std::ptrdiff_t right = end - k - 1;
+  const double weight = weight_of_pivot_row(size(from[0]), bound[-1]);
+  for (std::ptrdiff_t j = 0; j < right; ++j) bound[j] = weight * size(from[j + 1]);
   for (std::ptrdiff_t i = k + 1; i < rows; ++i) {
     T* to = a + i * n + k;
     if (to[0] == T(0)) continue;
@@ -52,7 +64,7 @@ template <std::size_t N, class T, class Size>
                                                      std::ptrdiff_t rows, std::ptrdiff_t n,
                                                      std::ptrdiff_t j, T* a, double* bounds,
                                                      Size size) {
-  for (std::ptrdiff_t i = k + 1; i < rows; ++i) {
+  for (std::ptrdiff_t i = k; i < rows; ++i) {
     T y[N];
     double bound[N];
     std::copy_n(a + i * n + j, N, y);
@@ -62,6 +74,10 @@ template <std::size_t N, class T, class Size>
       if (l == T(0)) continue;
       subtract(N, l, a + p * n + j, y);
       add(N, size(l), bounds + p * n + j, bound);
+    }
+    if (i < end) {  // a pivot row
+      const double weight = weight_of_pivot_row(size(a[i * n + i]), bounds[i * n + i]);
+      for (std::size_t c = 0; c < N; ++c) bound[c] = weight * size(y[c]);
     }
     std::copy_n(y, N, a + i * n + j);
     std::copy_n(bound, N, bounds + i * n + j);

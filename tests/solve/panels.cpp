@@ -50,15 +50,20 @@ struct Front {
 /// Step by step, all columns at once, entry by entry.
 template <class T>
 void whole_steps(Front<T>& f, std::ptrdiff_t pivots) {
-  for (std::ptrdiff_t k = 0; k < pivots; ++k)
+  using titop::solve::size_of;
+  for (std::ptrdiff_t k = 0; k < pivots; ++k) {
+    const double pivot = size_of(f.at(k, k)), bound = f.bound(k, k);
+    for (std::ptrdiff_t j = k + 1; j < f.n; ++j)
+      f.bound(k, j) = (pivot > 1e-6 * bound ? 1 : bound / pivot) * size_of(f.at(k, j));
     for (std::ptrdiff_t i = k + 1; i < f.rows; ++i) {
       if (f.at(i, k) == T(0)) continue;
       const T l = f.at(i, k) = titop::solve::Divisor<T>(f.at(k, k))(f.at(i, k));
       for (std::ptrdiff_t j = k + 1; j < f.n; ++j) {
         titop::solve::subtract(1, l, &f.at(k, j), &f.at(i, j));
-        f.bound(i, j) += titop::solve::size_of(l) * f.bound(k, j);
+        f.bound(i, j) += size_of(l) * f.bound(k, j);
       }
     }
+  }
 }
 
 template <class T>
@@ -91,7 +96,10 @@ void compare() {
       by_panels(other, pivots, panel);
       CHECK(one.a != start);
       CHECK(one.a == other.a);
-      CHECK(one.bounds == other.bounds);
+      const auto left_over = [&, below = pivots * columns](const Front<T>& f) {
+        return std::vector(f.bounds.begin() + below, f.bounds.end());
+      };
+      CHECK(left_over(one) == left_over(other));
     }
 }
 
