@@ -27,6 +27,7 @@ TEST_CASE("structured Lti: no fault; of planted ones each that changes the trans
   }
   CHECK(count.minimal >= 25);
   CHECK(count.written >= 12);
+  CHECK(count.missed == 0);
 }
 
 TEST_CASE("random scenes: no fault; of planted ones each that changes the transfer is found") {
@@ -37,6 +38,7 @@ TEST_CASE("random scenes: no fault; of planted ones each that changes the transf
                  count);
   }
   CHECK(count.minimal + count.written >= 4);
+  CHECK(count.missed == 0);
 }
 
 /// Structured Lti whose certificates have called right models faulty: outputs that are 0 by

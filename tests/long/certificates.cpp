@@ -25,4 +25,5 @@ TEST_CASE("2,000 structured Lti and 100 random scenes: no fault; 500 planted fau
   CHECK(count.right == 2100);
   CHECK(count.minimal >= 500);
   CHECK(count.written >= 500);
+  CHECK(count.missed * 100 <= count.written);
 }

@@ -56,7 +56,7 @@ TEST_CASE_TEMPLATE("(s - A)^-1 B is 0 to the last bit where no path leads", T, s
                    std::complex<long double>, std::complex<titop::solve::DoubleDouble>,
                    titop::solve::Complex50) {
   int zeros = 0;
-  for (std::uint64_t seed = 0; seed < 60; ++seed) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
     CAPTURE(seed);
     const Dynamics d = dynamics(titop_test::structured_lti(seed, true).lti);
     const MatrixXd there = reached(d.A, d.B);
@@ -64,11 +64,11 @@ TEST_CASE_TEMPLATE("(s - A)^-1 B is 0 to the last bit where no path leads", T, s
     CHECK(noise<T>(resolvent.times(titop::solve::lifted<T>(d.B)), there) == 0);
     zeros += static_cast<int>((there.array() == 0).count());
   }
-  CHECK(zeros >= 60);
+  CHECK(zeros >= 20);
 }
 
 TEST_CASE("the response of an Lti is 0 to the last bit where no path leads, few states and many") {
-  for (std::uint64_t seed = 0; seed < 60; ++seed)
+  for (std::uint64_t seed = 0; seed < 20; ++seed)
     for (const Index copies : {1, 20}) {
       CAPTURE(seed);
       CAPTURE(copies);
