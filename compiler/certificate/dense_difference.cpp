@@ -17,8 +17,8 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 
-using linalg::kEpsilon;
 using linalg::at;
+using linalg::kEpsilon;
 
 /// Rows of [xdot; y] that share a size, first and count.
 using Groups = std::vector<std::pair<Index, Index>>;
