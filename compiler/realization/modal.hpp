@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <titop/graph/state_space.hpp>
 #include <vector>
 
 namespace titop {

@@ -40,10 +40,10 @@ template <int V>
   constexpr std::size_t registers = V;
   Four from[registers], bound[registers];
   load_behind<V>(a + k * n, k, end, from);
-  const double pivot = a[k * n + k];
-  const double weight = weight_of_pivot_row(std::abs(pivot), bounds[k * n + k]);
+  load_behind<V>(bounds + k * n, k, end, bound);
   for (int v = 0; v < V; ++v)
-    for (int e = 0; e < 4; ++e) bound[v][e] = weight * std::abs(from[v][e]);
+    for (int e = 0; e < 4; ++e) bound[v][e] = kept_bound(std::abs(from[v][e]), bound[v][e]);
+  const double pivot = a[k * n + k];
   for (std::ptrdiff_t i = k + 1; i < rows; ++i) {
     double* const row = a + i * n;
     if (row[k] == 0) continue;

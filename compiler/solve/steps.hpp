@@ -29,10 +29,10 @@ inline double largest_of(std::ptrdiff_t n, Entry entry) {
 /// product they would grow exponentially with its width), nor along a chain of fronts.
 constexpr double kOrdinary = 1e-6;
 
-/// The factor of the magnitudes of a pivot row's entries in the sums of others: 1, or what the
-/// pivot has lost if that is more than ordinary.
-inline double weight_of_pivot_row(double pivot, double bound) {
-  return pivot > kOrdinary * bound ? 1 : bound / pivot;
+/// The magnitude of an entry of a pivot row in the sums of others: its own, or that of its terms if
+/// it has lost more than is ordinary.
+inline double kept_bound(double size, double bound) {
+  return size > kOrdinary * bound ? size : bound;
 }
 
 /// One step of elimination in a rows x n array: below row k, right of column k up to column `end`.
@@ -45,8 +45,7 @@ template <class T, class Size>
   const Divisor<T> over(from[0]);
   double* const bound = bounds + k * n + k + 1;
   const std::ptrdiff_t right = end - k - 1;
-  const double weight = weight_of_pivot_row(size(from[0]), bound[-1]);
-  for (std::ptrdiff_t j = 0; j < right; ++j) bound[j] = weight * size(from[j + 1]);
+  for (std::ptrdiff_t j = 0; j < right; ++j) bound[j] = kept_bound(size(from[j + 1]), bound[j]);
   for (std::ptrdiff_t i = k + 1; i < rows; ++i) {
     T* to = a + i * n + k;
     if (to[0] == T(0)) continue;
@@ -75,10 +74,8 @@ template <std::size_t N, class T, class Size>
       subtract(N, l, a + p * n + j, y);
       add(N, size(l), bounds + p * n + j, bound);
     }
-    if (i < end) {  // a pivot row
-      const double weight = weight_of_pivot_row(size(a[i * n + i]), bounds[i * n + i]);
-      for (std::size_t c = 0; c < N; ++c) bound[c] = weight * size(y[c]);
-    }
+    if (i < end)  // a pivot row
+      for (std::size_t c = 0; c < N; ++c) bound[c] = kept_bound(size(y[c]), bound[c]);
     std::copy_n(y, N, a + i * n + j);
     std::copy_n(bound, N, bounds + i * n + j);
   }

@@ -52,9 +52,8 @@ template <class T>
 void whole_steps(Front<T>& f, std::ptrdiff_t pivots) {
   using titop::solve::size_of;
   for (std::ptrdiff_t k = 0; k < pivots; ++k) {
-    const double pivot = size_of(f.at(k, k)), bound = f.bound(k, k);
     for (std::ptrdiff_t j = k + 1; j < f.n; ++j)
-      f.bound(k, j) = (pivot > 1e-6 * bound ? 1 : bound / pivot) * size_of(f.at(k, j));
+      if (size_of(f.at(k, j)) > 1e-6 * f.bound(k, j)) f.bound(k, j) = size_of(f.at(k, j));
     for (std::ptrdiff_t i = k + 1; i < f.rows; ++i) {
       if (f.at(i, k) == T(0)) continue;
       const T l = f.at(i, k) = titop::solve::Divisor<T>(f.at(k, k))(f.at(i, k));
