@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "methods/elimination.hpp"
@@ -40,6 +41,9 @@ struct Chain {
   std::vector<double> m, k;
   double c = 0;
 };
+
+constexpr double kLossyMass = 1, kLossyStiffness = 10, kLossyDamping = 20;
+constexpr int kBeforeTip = 10;
 
 Chain uniform(std::size_t n, double c) {
   Chain chain{std::vector<double>(n), std::vector<double>(n), c};
@@ -105,6 +109,55 @@ Extreme stiffnesses(double ratio) {
 Extreme length(double n) {
   return chain_extreme(uniform(static_cast<std::size_t>(n), 0.1),
                        {{0.5 / n, 10 / n}, {2 / n, 40 / n}, {5 / n, 100 / n}});
+}
+
+/// Dampers far above critical: in a row of n on the wall a motion of the tip fades by a factor per
+/// body, and a recursion from the wall grows by it. A force on the tip, the acceleration there and
+/// ten bodies before.
+Diagram lossy_diagram(int n) {
+  Diagram d{"lossy row"};
+  auto u = d.input("u");
+  std::vector<SpringMass::Handle> z;
+  z.reserve(static_cast<std::size_t>(n));
+  for (int i = 0; i < n; ++i) {
+    z.push_back(d.add(
+        fmt::format("z{}", i + 1),
+        SpringMass{.mass = kLossyMass, .stiffness = kLossyStiffness, .damping = kLossyDamping}));
+    if (i == 0)
+      ground(z[0]);
+    else
+      mount(z.back(), z[z.size() - 2].child);
+  }
+  z.back().child.force += u;
+  d.output("tip") = z.back().child.accel;
+  d.output("before") = z[z.size() - std::min<std::size_t>(z.size(), kBeforeTip)].child.accel;
+  return d;
+}
+
+/// Dynamic stiffness from the wall to the tip, then the motion back from there: both are stable.
+MatrixXcd lossy_by_stiffness(int n, Complex at) {
+  const Number s = number<Number>(at.real(), at.imag());
+  const Number g = number<Number>(kLossyStiffness) + number<Number>(kLossyDamping) * s;
+  const Number own = number<Number>(kLossyMass) * s * s;
+  std::vector<Number> behind;  // stiffness of all up to body i, as body i + 1 feels it
+  Number felt = g;
+  for (int i = 0; i < n; ++i) {
+    behind.push_back(own + felt);
+    felt = g * behind.back() / (g + behind.back());
+  }
+  Number x = number<Number>(1) / behind.back();
+  MatrixXcd result(2, 1);
+  result(0, 0) = rounded(Number(s * s * x));
+  for (int i = 1; i < std::min(n, kBeforeTip); ++i)
+    x *= g / (g + behind[static_cast<std::size_t>(n - 1 - i)]);
+  result(1, 0) = rounded(Number(s * s * x));
+  return result;
+}
+
+Extreme lossy(double n) {
+  Extreme e{lossy_diagram(static_cast<int>(n)), {{0, 8}, {0, 15.93}, {1, 8}}};
+  for (const Complex s : e.s) e.exact.push_back(lossy_by_stiffness(static_cast<int>(n), s));
+  return e;
 }
 
 /// At its highest frequency: A rounded has it elsewhere, and the answer turns on the distance.
@@ -287,6 +340,11 @@ std::vector<Sweep> sweeps() {
        "bodies",
        {3, 10, 30, 100, 300, 1000, 3000, 10000, 30000, 100000},
        length},
+      {"lossy-row",
+       "spring-masses with dampers of 20 N s/m in a row on a wall, pushed at the tip",
+       "bodies",
+       {3, 10, 30, 100, 300, 1000, 3000, 10000, 30000, 100000},
+       lossy},
       {"loop", "an algebraic loop at distance delta from singular", "delta", powers(1, 1e-17, 0.1),
        loop},
       {"light-parent", "a force on a point of mass m0", "m0 [kg]", powers(1, 1e-300, 1e-20),
