@@ -20,7 +20,6 @@ double well_posed(const StateSpace& m, const VectorXd& deltas) {
 }
 
 std::optional<StateSpace> closed(const StateSpace& m, const VectorXd& deltas) {
-  constexpr double kSingular = 1e-13;
   const Index r = deltas.size(), nu = m.D.cols() - r, ny = m.D.rows() - r;
   StateSpace c;
   c.states = m.states;
@@ -29,7 +28,7 @@ std::optional<StateSpace> closed(const StateSpace& m, const VectorXd& deltas) {
   MatrixXd K(r, r);  // w = K (z without w)
   if (r > 0) {
     const linalg::Inverse inverse = loop(m, deltas);
-    if (!(inverse.rcond > kSingular)) return std::nullopt;
+    if (!(inverse.rcond > kWellPosed)) return std::nullopt;
     K = deltas.asDiagonal() * inverse.matrix;
   }
   const MatrixXd to_x = m.B.leftCols(r) * K, to_y = m.D.bottomLeftCorner(ny, r) * K;

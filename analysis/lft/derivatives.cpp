@@ -131,6 +131,9 @@ Slopes Derivatives::h2() const {
   const MatrixXd P = lyapunov(m_.A, B), Q = lyapunov(m_.A.transpose(), C.transpose());
   Slopes result{std::sqrt((C * P * C.transpose()).trace()),
                 Eigen::VectorXd::Zero(static_cast<Index>(names_.size()))};
+  if (!(result.value > 0))
+    throw Error(Code::singular, "the H2 norm is 0, where it has no derivatives",
+                "take inputs and outputs that are connected");
   for (std::size_t i = 0; i < names_.size(); ++i) {
     const StateSpace d = matrices(names_[i]);
     const double half = (Q * d.A * P).trace() + (Q * d.B * B.transpose()).trace() +

@@ -54,13 +54,12 @@ VectorXd at_all_pairs(const std::vector<Delta>& deltas, const VectorXd& of_param
 /// Refuses the first corner of the box at which the direct terms of the loop are singular. Of more
 /// than 2^12 corners those whose last parameters are at their least values.
 void check_corners(const StateSpace& m, const std::vector<Delta>& deltas) {
-  constexpr double kSingular = 1e-12;
   const auto q = static_cast<Index>(deltas.size());
   const long corners = 1L << std::min<Index>(q, 12);
   for (long c = 0; c < corners; ++c) {
     VectorXd d(q);
     for (Index i = 0; i < q; ++i) d(i) = i < 12 && (c >> i & 1) != 0 ? 1 : -1;
-    if (detail::well_posed(m, at_all_pairs(deltas, d)) > kSingular) continue;
+    if (detail::well_posed(m, at_all_pairs(deltas, d)) > detail::kWellPosed) continue;
     std::string where;
     for (Index i = 0; i < q; ++i) {
       const Delta& x = deltas[at(i)];
@@ -72,10 +71,12 @@ void check_corners(const StateSpace& m, const std::vector<Delta>& deltas) {
   }
 }
 
-/// The largest relative difference of two transfers with deltas in [-1, 1], at some points.
+/// The largest relative difference of two transfers with deltas in [-1, 1], at some points;
+/// infinite if they could be compared at none.
 double difference(const StateSpace& a, const std::vector<int>& pairs_a, const StateSpace& b,
                   const std::vector<int>& pairs_b) {
   double worst = 0;
+  bool compared = false;
   for (int point = 1; point <= 6; ++point) {
     const auto deltas = [&](const std::vector<int>& pairs) {
       std::vector<double> all;
@@ -86,12 +87,13 @@ double difference(const StateSpace& a, const std::vector<int>& pairs_a, const St
     };
     const auto x = detail::closed(a, deltas(pairs_a)), y = detail::closed(b, deltas(pairs_b));
     if (!x || !y) continue;
+    compared = true;
     const std::complex<double> s{0.3 * point, std::pow(2.0, point - 3)};
     const Eigen::MatrixXcd G = x->transfer(s), H = y->transfer(s);
     const double size = G.size() > 0 ? G.cwiseAbs().maxCoeff() : 0;
     if (size > 0) worst = std::max(worst, (G - H).cwiseAbs().maxCoeff() / size);
   }
-  return worst;
+  return compared ? worst : HUGE_VAL;
 }
 
 /// Reduced and normalised, with the parameters' pairs; not reduced if that has another transfer.

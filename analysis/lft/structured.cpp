@@ -153,7 +153,7 @@ std::vector<Block> shrunk(const std::vector<Block>& blocks, const std::vector<Ma
   return result;
 }
 
-/// What u reaches and y sees, until nothing changes.
+/// Restricts to the subspaces that u reaches, then to those that y sees, until nothing changes.
 void reduce_blocks(Cut m, std::vector<Block>& blocks, Coordinates& c, RankMargin& margin) {
   for (Index before = -1; before != m.N.rows();) {
     before = m.N.rows();

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <titop/titop.hpp>
 #include <vector>
 
@@ -68,7 +69,7 @@ TEST_CASE("rates: in a closed chain, of the states that are left") {
   CHECK(m.rates == Names{m.states[1], ""});
   const SecondOrder form = second_order(m);
   REQUIRE(form.found);
-  CHECK(form.S(0, 0) == doctest::Approx((4.0 + 5.0) / (1.0 + 3.0)).epsilon(1e-14));
+  CHECK(std::abs(form.S(0, 0) / ((4.0 + 5.0) / (1.0 + 3.0)) - 1) <= 1e-14);
 }
 
 TEST_CASE("rates: positions of a free body are integrals of integrals") {
