@@ -49,7 +49,8 @@ class Derivatives {
   std::vector<PoleSlopes> poles() const;
   /// H2 norm of the transfer (root mean square of the outputs under white noise of unit intensity),
   /// by two Lyapunov equations for all parameters together [Z] 4. Throws singular if a pole is not
-  /// left of the axis, or if there is a direct term here or at neighbouring values. O(states^3).
+  /// left of the axis, or if there is a direct term here or at neighbouring values, or if the norm
+  /// is 0. O(states^3).
   Slopes h2() const;
 
  private:

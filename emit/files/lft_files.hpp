@@ -8,10 +8,9 @@
 /// not take. O((states + occurrences)^2).
 namespace titop {
 
-/// A MATLAB/Octave function.
-///
-///     m = satellite ();           % A, B, C, D with inputs [w; u] and outputs [z; y], and their
-///     names [m, sys] = satellite ();    % sys: uss of ureal, by MATLAB's Robust Control Toolbox
+/// A MATLAB/Octave function: `m = satellite ()` has A, B, C, D with inputs [w; u] and outputs [z;
+/// y], and their names; `[m, sys] = satellite ()` also a uss of ureal, by MATLAB's Robust Control
+/// Toolbox.
 ///
 /// m.parameters is a struct array: name, size, at_least, minimal, nominal, from, to, and the map
 /// delta = d / (gain - shape d), d = value - nominal if divisor is 0, else tan ((value - nominal) /

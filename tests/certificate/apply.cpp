@@ -2,6 +2,7 @@
 
 #include <titop/titop.hpp>
 
+#include "../support/half_ties.hpp"
 #include "../support/notes.hpp"
 
 /// apply against the transfer, by the default certificate: the scenes in which rates or positions
@@ -9,31 +10,8 @@
 
 using namespace titop;
 
-namespace {
-
-/// A body that turns with another and is held beside it: half of its motion is tied at either end,
-/// and its rates follow from the other body's.
-Diagram turned() {
-  const Rotation I = Rotation::about({0, 0, 1}, 0.0);
-  Diagram d{"turned"};
-  auto T = d.input("T");
-  auto a = d.add("a", RigidBody{.children = {{"e", {1, 0, 0}}, {"k", {0, 1, 0}}}});
-  auto b = d.add("b", RigidBody{.children = {{"k", {0, 0, 0}}}});
-  a.parent.accel.linear = 0;
-  release(a);
-  b.parent.accel.angular = I * a.child("e").accel.angular;
-  a.child("e").force.angular += I * b.parent.reaction.angular();
-  release(b);
-  weld(b.child("k"), a.child("k"), I);
-  b.child("k").force.angular.along({0, 0, 1}) += T;
-  d.output("rate", 6) = b.parent.rate;
-  return d;
-}
-
-}  // namespace
-
 TEST_CASE("states that follow from others: apply and the transfer agree") {
-  const Certificate c = compile(turned()).certificate();
+  const Certificate c = compile(half_ties::turned()).certificate();
   CHECK_FALSE(c.at_instant);
   CHECK(c.apply_against_transfer == 0);
 }

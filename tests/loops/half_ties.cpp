@@ -40,20 +40,7 @@ double error(const MatrixXcd& a, const MatrixXcd& exact) {
 }  // namespace
 
 TEST_CASE("a body turned by another, and held at a point beside: velocity = omega x lever") {
-  const Rotation I = Rotation::about({0, 0, 1}, 0.0);
-  Diagram d{"turned"};
-  auto T = d.input("T");
-  auto a = d.add("a", RigidBody{.children = {{"e", {1, 0, 0}}, {"k", {0, 1, 0}}}});
-  auto b = d.add("b", RigidBody{.children = {{"k", {0, 0, 0}}}});
-  a.parent.accel.linear = 0;
-  release(a);
-  b.parent.accel.angular = I * a.child("e").accel.angular;
-  a.child("e").force.angular += I * b.parent.reaction.angular();
-  release(b);
-  weld(b.child("k"), a.child("k"), I);
-  b.child("k").force.angular.along({0, 0, 1}) += T;
-  d.output("rate", 6) = b.parent.rate;
-  const System system = compile(d);
+  const System system = compile(turned());
   // Two inertias of 1 and a mass of 1 at a distance of 1 about z: a torque of 1 for a second turns
   // them by 1/3 rad/s, and b at (0, 1, 0) goes by (0, 0, 1/3) x (0, 1, 0).
   VectorXd exact(6);

@@ -79,4 +79,24 @@ struct Oracle {
 };
 Oracle oracle(const Sketch& sketch);
 
+/// A body that turns with another and is held beside it: half of its motion is tied at either end,
+/// and its rates follow from the other body's. A torque about z; the rate of the second body.
+inline titop::Diagram turned() {
+  using namespace titop;
+  const Rotation I = Rotation::about({0, 0, 1}, 0.0);
+  Diagram d{"turned"};
+  auto T = d.input("T");
+  auto a = d.add("a", RigidBody{.children = {{"e", {1, 0, 0}}, {"k", {0, 1, 0}}}});
+  auto b = d.add("b", RigidBody{.children = {{"k", {0, 0, 0}}}});
+  a.parent.accel.linear = 0;
+  release(a);
+  b.parent.accel.angular = I * a.child("e").accel.angular;
+  a.child("e").force.angular += I * b.parent.reaction.angular();
+  release(b);
+  weld(b.child("k"), a.child("k"), I);
+  b.child("k").force.angular.along({0, 0, 1}) += T;
+  d.output("rate", 6) = b.parent.rate;
+  return d;
+}
+
 }  // namespace half_ties
