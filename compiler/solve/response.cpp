@@ -201,11 +201,7 @@ struct PartOrder {
   boost::container::small_vector<double, 4> weight;  ///< one over the unit of each
 };
 
-PartOrder in_parts(const Eigen::MatrixXd& A) {
-  const Index n = A.rows();
-  if (n < 2) return {{0}, {n}, {1}};
-  if (n == 2 && A(0, 1) != 0)  // many blocks: without a graph
-    return A(1, 0) != 0 ? PartOrder{{0, 1}, {2, 2}, {1, 1}} : PartOrder{{1, 0}, {1, 2}, {1, 1}};
+PartOrder by_graph(const Eigen::MatrixXd& A) {
   PartOrder order;
   const std::vector<std::vector<int>> parts = linalg::parts(A);
   for (auto part = parts.rbegin(); part != parts.rend(); ++part) {
@@ -215,6 +211,14 @@ PartOrder in_parts(const Eigen::MatrixXd& A) {
     for (const double unit : linalg::similarity_scaling(own)) order.weight.push_back(1 / unit);
   }
   return order;
+}
+
+PartOrder in_parts(const Eigen::MatrixXd& A) {
+  const Index n = A.rows();
+  if (n < 2) return {{0}, {n}, {1}};
+  if (n == 2 && A(0, 1) != 0)  // many blocks: without a graph
+    return A(1, 0) != 0 ? PartOrder{{0, 1}, {2, 2}, {1, 1}} : PartOrder{{1, 0}, {1, 2}, {1, 1}};
+  return by_graph(A);
 }
 
 }  // namespace
