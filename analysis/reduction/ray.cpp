@@ -264,7 +264,7 @@ Samples sample(const System& system, const Scene& scene, const SampledSpectrum& 
   parallel(result.s.size(), 0,
            [&] { return [&](std::size_t i) { result.H[i] = transfer(system, result.s[i]); }; });
   if (w.paths.size() > 0)
-    for (MatrixXcd& H : result.H) H = H.cwiseProduct(w.paths.cast<Complex>()).eval();
+    for (Eigen::MatrixXcd& H : result.H) H = H.cwiseProduct(w.paths.cast<Complex>()).eval();
   const auto outputs = static_cast<Index>(system.outputs().size()),
              inputs = static_cast<Index>(system.inputs().size());
   MatrixXd meant = MatrixXd::Zero(outputs, inputs);
