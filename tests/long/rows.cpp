@@ -1,0 +1,56 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "support/lossy_row.hpp"
+
+/// Lossy rows of any length on the whole right half-plane: the product of what elimination does on
+/// each front is neither lost nor grows.
+
+using titop_test::LossyRow;
+using Count = titop_test::LossyRowCount;
+
+namespace {
+
+constexpr double kDampings[] = {0, 0.1, 20, 1e3};
+
+/// Point i of n, from 1e-3 to 1e3 rad/s.
+double spaced(int i, int n) { return std::pow(10, -3 + 6.0 * i / (n - 1)); }
+
+void check(const Count& count) {
+  MESSAGE(count.tried, " tried, ", count.wrong, " wrong, ", count.refused, " refused");
+  CHECK(count.wrong == 0);
+  CHECK(count.refused == 0);
+}
+
+}  // namespace
+
+TEST_CASE("rows up to 1,000 masses at 40 x 40 points of the axis and the right half-plane") {
+  Count count;
+  for (const int n : {10, 100, 1000})
+    for (const double damping : kDampings)
+      for (const LossyRow& row : titop_test::lossy_rows(n, damping)) {
+        // A quarter of the grid for each pair of boundaries of the longest.
+        const int step = n == 1000 ? 2 : 1;
+        const titop::System system = titop::compile(row.diagram());
+        const int first = static_cast<int>(row.tip), second = static_cast<int>(row.base);
+        for (int i = first % step; i < 40; i += step)
+          for (int j = second % step; j < 40; j += step)
+            count.ask(system, row, {i > 0 ? spaced(i - 1, 39) : 0, spaced(j, 40)});
+      }
+  check(count);
+}
+
+TEST_CASE("rows of 10,000 and 100,000 masses at 20 points") {
+  Count count;
+  for (const int n : {10'000, 100'000})
+    for (const double damping : kDampings)
+      for (const LossyRow& row : titop_test::lossy_rows(n, damping)) {
+        const titop::System system = titop::compile(row.diagram());
+        // All 20 points for each row of 10,000, and four for each of 100,000.
+        const int step = n == 100'000 ? 5 : 1;
+        for (int i = 0; i < 20; i += step)
+          count.ask(system, row, {i % 2 == 0 ? 0 : spaced(i, 20), spaced((7 * i) % 20, 20)});
+      }
+  check(count);
+}
