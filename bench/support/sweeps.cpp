@@ -112,8 +112,8 @@ Extreme length(double n) {
 }
 
 /// Dampers far above critical: in a row of n on the wall a motion of the tip fades by a factor per
-/// body, and a recursion from the wall grows by it. A force on the tip, the acceleration there and
-/// ten bodies before.
+/// body, and a recursion from the wall grows by it. A force on the tip, the acceleration ten bodies
+/// before.
 Diagram lossy_diagram(int n) {
   Diagram d{"lossy row"};
   auto u = d.input("u");
@@ -129,7 +129,6 @@ Diagram lossy_diagram(int n) {
       mount(z.back(), z[z.size() - 2].child);
   }
   z.back().child.force += u;
-  d.output("tip") = z.back().child.accel;
   d.output("before") = z[z.size() - std::min<std::size_t>(z.size(), kBeforeTip)].child.accel;
   return d;
 }
@@ -146,12 +145,9 @@ MatrixXcd lossy_by_stiffness(int n, Complex at) {
     felt = g * behind.back() / (g + behind.back());
   }
   Number x = number<Number>(1) / behind.back();
-  MatrixXcd result(2, 1);
-  result(0, 0) = rounded(Number(s * s * x));
   for (int i = 1; i < std::min(n, kBeforeTip); ++i)
     x *= g / (g + behind[static_cast<std::size_t>(n - 1 - i)]);
-  result(1, 0) = rounded(Number(s * s * x));
-  return result;
+  return MatrixXcd::Constant(1, 1, rounded(Number(s * s * x)));
 }
 
 Extreme lossy(double n) {
@@ -341,7 +337,7 @@ std::vector<Sweep> sweeps() {
        {3, 10, 30, 100, 300, 1000, 3000, 10000, 30000, 100000},
        length},
       {"lossy-row",
-       "spring-masses with dampers of 20 N s/m in a row on a wall, pushed at the tip",
+       "spring-masses with dampers of 20 N s/m in a row on a wall: a force on the tip",
        "bodies",
        {3, 10, 30, 100, 300, 1000, 3000, 10000, 30000, 100000},
        lossy},
