@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <titop/blocks/bushing.hpp>
 #include <titop/blocks/specified.hpp>
@@ -87,25 +88,27 @@ class BushingBlock : public Block, public Specified<Bushing> {
     return k;
   }
   std::vector<Value> values() const override {
-    std::vector<Value> all = spec_.stiffness.values();
-    const std::vector<Value> more = spec_.damping.values();
-    all.insert(all.end(), more.begin(), more.end());
+    std::vector<Value> all;
+    for (const SixAxes* m : {&spec_.stiffness, &spec_.damping})
+      for (const SixAxes::Entry& e : m->entries()) all.push_back(e.value);
     return all;
   }
-  /// z = the displacement or the rate of its axis.
+  /// z = the displacement or the rate of axis i, w acts on axis j; and likewise j and i.
   std::optional<Opened> opened(ParameterValues values,
                                std::span<const int> parameters) const override {
     std::vector<OpenedPair> pairs;
-    Eigen::Index state = 0;
-    for (const Value& v : this->values()) {  // K, then C; or one of them, if the other is full
-      const Eigen::Index axis = state % 6, rate = spec_.stiffness.values().empty() ? 6 : 0;
+    const auto add = [&](const Value& v, int of, int on, int rate) {
       pairs.push_back({v,
                        {},
-                       Eigen::VectorXd::Unit(24, axis) + Eigen::VectorXd::Unit(24, 6 + axis),
-                       Eigen::RowVectorXd::Unit(12, state + rate),
+                       Eigen::VectorXd::Unit(24, on) + Eigen::VectorXd::Unit(24, 6 + on),
+                       Eigen::RowVectorXd::Unit(12, of + rate),
                        {}});
-      ++state;
-    }
+    };
+    for (const auto& [m, rate] : {std::pair(&spec_.stiffness, 0), {&spec_.damping, 6}})
+      for (const SixAxes::Entry& e : m->entries()) {
+        add(e.value, e.column, e.row, rate);
+        if (e.row != e.column) add(e.value, e.row, e.column, rate);
+      }
     return with_pairs(*dynamics(values), pairs, parameters);
   }
   std::optional<Cause> why_singular(int, ParameterValues) const override {
@@ -120,23 +123,35 @@ class BushingBlock : public Block, public Specified<Bushing> {
 
 }  // namespace
 
+SixAxes::SixAxes(Value x, Value y, Value z, Value rx, Value ry, Value rz) {
+  int i = 0;
+  for (const Value& v : {x, y, z, rx, ry, rz}) {
+    numbers_(i, i) = v.nominal();
+    if (v.is_parameter()) entries_.push_back({i, i, v});
+    ++i;
+  }
+}
+
+SixAxes SixAxes::with(int row, int column, Value value) const {
+  if (std::min(row, column) < 1 || std::max(row, column) > 6)
+    throw Error(Code::bad_value, fmt::format("entry ({}, {}) of a 6 x 6 matrix", row, column),
+                "rows and columns count from 1 to 6: x, y, z, rx, ry, rz");
+  SixAxes m = *this;
+  const int i = std::min(row, column) - 1, j = std::max(row, column) - 1;
+  std::erase_if(m.entries_, [&](const Entry& e) { return e.row == i && e.column == j; });
+  m.entries_.push_back({i, j, value});
+  m.numbers_(i, j) = m.numbers_(j, i) = value.nominal();
+  m.diagonal_ = m.diagonal_ && i == j;
+  return m;
+}
+
 Matrix6 SixAxes::at(ParameterValues values) const {
-  if (full_) return *full_;
-  Matrix6 m = Matrix6::Zero();
-  for (int i = 0; i < 6; ++i) m(i, i) = diagonal_[static_cast<std::size_t>(i)].at(values);
+  Matrix6 m = numbers_;
+  for (const Entry& e : entries_) m(e.row, e.column) = m(e.column, e.row) = e.value.at(values);
   return m;
 }
 
-Matrix6 SixAxes::nominal() const {
-  if (full_) return *full_;
-  Matrix6 m = Matrix6::Zero();
-  for (int i = 0; i < 6; ++i) m(i, i) = diagonal_[static_cast<std::size_t>(i)].nominal();
-  return m;
-}
-
-std::vector<Value> SixAxes::values() const {
-  return full_ ? std::vector<Value>{} : std::vector<Value>(diagonal_.begin(), diagonal_.end());
-}
+Matrix6 SixAxes::nominal() const { return numbers_; }
 
 BlockPtr as_block(const Bushing& spec) {
   check_matrix(spec.stiffness.nominal(), "stiffness");

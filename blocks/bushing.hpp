@@ -1,19 +1,26 @@
 #pragma once
 
-#include <array>
-#include <memory>
 #include <titop/graph/diagram.hpp>
 #include <titop/graph/mount.hpp>
+#include <vector>
 
 namespace titop {
 
-/// A symmetric matrix on the six degrees of freedom (x, y, z, rx, ry, rz): its diagonal, where
-/// every number may be a parameter, or all of it (6 x 6; a vector of 6 is a diagonal).
+/// A symmetric matrix on the six degrees of freedom (x, y, z, rx, ry, rz): its diagonal, or all of
+/// it (6 x 6; a vector of 6 is a diagonal). Every number may be a parameter:
+///
+///     .stiffness = {k, k, 9e4, 300, 300, 100}
+///     .stiffness = SixAxes(K).with(1, 5, k15)
 class SixAxes {
  public:
+  /// A value at (row, column) and (column, row), from 0.
+  struct Entry {
+    int row, column;
+    Value value;
+  };
+
   SixAxes() : SixAxes(0, 0, 0, 0, 0, 0) {}
-  SixAxes(Value x, Value y, Value z, Value rx, Value ry, Value rz)
-      : diagonal_{x, y, z, rx, ry, rz} {}
+  SixAxes(Value x, Value y, Value z, Value rx, Value ry, Value rz);
   template <class M>
   SixAxes(const Eigen::MatrixBase<M>& m) : SixAxes() {
     static_assert(M::RowsAtCompileTime == 6 || M::RowsAtCompileTime == Eigen::Dynamic);
@@ -26,15 +33,20 @@ class SixAxes {
     else
       for (Eigen::Index j = 0; j < 6; ++j)
         for (Eigen::Index i = 0; i < 6; ++i) K(i, j) = m(i, j);
-    full_ = std::make_shared<const Matrix6>(K);
+    numbers_ = K, diagonal_ = false;
   }
+  /// The same with this value at (row, column) and (column, row), 1 to 6. Throws bad_value.
+  SixAxes with(int row, int column, Value value) const;
   Matrix6 at(ParameterValues values) const;
   Matrix6 nominal() const;
-  std::vector<Value> values() const;
+  /// Those that are parameters, or were given by `with`.
+  const std::vector<Entry>& entries() const { return entries_; }
+  bool is_diagonal() const { return diagonal_; }  ///< given as six values
 
  private:
-  std::array<Value, 6> diagonal_;
-  std::shared_ptr<const Matrix6> full_;  ///< instead of the diagonal
+  Matrix6 numbers_ = Matrix6::Zero();
+  std::vector<Entry> entries_;  ///< in place of numbers
+  bool diagonal_ = true;
 };
 
 /// Spring-damper of six axes between two points (bushing, isolator), massless, in the frame of the

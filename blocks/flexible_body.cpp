@@ -337,8 +337,9 @@ ModalData without_modes(const RigidBody& body) {
   d.xi.resize(0);
   d.L_P.resize(0, 6);
   check_inertia(body.mass.nominal(), body.inertia.nominal());
-  d.D_P = rigid_mass(body.mass.nominal(), body.inertia.nominal(), -body.PA);
-  for (const ChildPoint& c : body.children) d.children.push_back({c.name, c.PC, MatrixXd(6, 0)});
+  d.D_P = rigid_mass(body.mass.nominal(), body.inertia.nominal(), -body.PA.nominal());
+  for (const ChildPoint& c : body.children)
+    d.children.push_back({c.name, c.PC.nominal(), MatrixXd(6, 0)});
   return d;
 }
 

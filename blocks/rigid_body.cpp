@@ -1,15 +1,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numeric>
 #include <set>
 #include <titop/blocks/body_interface.hpp>
+#include <titop/blocks/opened_rigid_body.hpp>
 #include <titop/blocks/rigid_body.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/linalg/eigen.hpp>
-#include <titop/graph/opened.hpp>
 
 namespace titop {
 
@@ -129,7 +128,8 @@ class RigidBodyBlock : public Block, public Specified<RigidBody> {
     std::vector<std::string> names;
     for (const ChildPoint& c : spec.children) {
       names.push_back(c.name);
-      PC_.push_back(c.PC);
+      PC_.push_back(c.PC.nominal());
+      moves_ = moves_ || !c.PC.values().empty();
     }
     face_ = body_interface(names, 0);
   }
@@ -141,11 +141,11 @@ class RigidBodyBlock : public Block, public Specified<RigidBody> {
     const Matrix3d I_A = spec_.inertia.at(values);
     check_inertia(m, I_A);
     auto d = std::make_shared<Dynamics>();
-    const Matrix6 D_P = rigid_mass(m, I_A, -spec_.PA);
+    const Matrix6 D_P = rigid_mass(m, I_A, -spec_.PA.at(values));
     if (is_algebraic())
-      d->sparse = rigid_gains(PC_, D_P);
+      d->sparse = rigid_gains(points(values), D_P);
     else
-      d->D = rigid_part(PC_, D_P);
+      d->D = rigid_part(points(values), D_P);
     const auto n = static_cast<Eigen::Index>(6 * PC_.size() + 6);
     d->A.resize(0, 0);
     d->B.resize(0, n);
@@ -159,38 +159,22 @@ class RigidBodyBlock : public Block, public Specified<RigidBody> {
     p.topLeftCorner(n, n).setConstant(false);
     return p;
   }
-  std::optional<Kinematics> kinematics(ParameterValues) const override {
-    return body_kinematics(PC_, std::vector<MatrixXd>(PC_.size(), MatrixXd(6, 0)));
+  std::optional<Kinematics> kinematics(ParameterValues values) const override {
+    return body_kinematics(points(values), std::vector<MatrixXd>(PC_.size(), MatrixXd(6, 0)));
   }
   std::vector<Value> values() const override {
     std::vector<Value> all = spec_.inertia.values();
     all.push_back(spec_.mass);
+    const auto add = [&](const Position& p) {
+      for (const Value& v : p.values()) all.push_back(v);
+    };
+    add(spec_.PA);
+    for (const ChildPoint& c : spec_.children) add(c.PC);
     return all;
   }
-  /// Mass: z = the three linear accelerations of A. Entry ij of the inertia: z = the angular
-  /// accelerations i and j, w the torques about j and i; one of them if i = j.
   std::optional<Opened> opened(ParameterValues values,
                                std::span<const int> parameters) const override {
-    std::vector<OpenedPair> pairs;
-    const Matrix6 tau_AP = tau(-spec_.PA);
-    const auto n = static_cast<Eigen::Index>(6 * PC_.size());
-    const auto add = [&](const Value& v, int felt, int acts) {
-      Eigen::RowVectorXd z = Eigen::RowVectorXd::Zero(n + 6);
-      Eigen::VectorXd w = Eigen::VectorXd::Zero(n + 6);
-      z.tail<6>() = tau_AP.row(felt);
-      w.tail<6>() = -tau_AP.row(acts).transpose();
-      pairs.push_back({v, {}, std::move(w), {}, std::move(z)});
-    };
-    for (int i = 0; i < 3; ++i) add(spec_.mass, i, i);
-    const std::vector<Value> I = spec_.inertia.values();
-    constexpr std::array<std::pair<int, int>, 6> kEntries = {
-        {{3, 3}, {4, 4}, {5, 5}, {3, 4}, {3, 5}, {4, 5}}};
-    for (std::size_t e = 0; e < I.size(); ++e) {
-      const auto [i, j] = kEntries[e];
-      add(I[e], i, j);
-      if (i != j) add(I[e], j, i);
-    }
-    return with_pairs(*dynamics(values), pairs, parameters);
+    return opened_rigid_body(spec_, *dynamics(values), values, parameters);
   }
   /// A hub of many ports becomes equations: each point moves with P, each wrench acts on P. A hub
   /// of few remains a block, so that its pivots are chosen among all its rows (a digit more).
@@ -206,8 +190,16 @@ class RigidBodyBlock : public Block, public Specified<RigidBody> {
   }
 
  private:
+  std::vector<Vector3d> points(ParameterValues values) const {
+    if (!moves_) return PC_;
+    std::vector<Vector3d> result;
+    for (const ChildPoint& c : spec_.children) result.push_back(c.PC.at(values));
+    return result;
+  }
+
   RigidBody spec_;
-  std::vector<Vector3d> PC_;
+  std::vector<Vector3d> PC_;  ///< at nominal values
+  bool moves_ = false;        ///< some PC has a parameter
   Interface face_;
 };
 
@@ -215,8 +207,8 @@ class RigidBodyBlock : public Block, public Specified<RigidBody> {
 
 BlockPtr as_block(const RigidBody& spec) {
   check_inertia(spec.mass.nominal(), spec.inertia.nominal());
-  bool finite = spec.PA.allFinite();
-  for (const ChildPoint& c : spec.children) finite = finite && c.PC.allFinite();
+  bool finite = spec.PA.nominal().allFinite();
+  for (const ChildPoint& c : spec.children) finite = finite && c.PC.nominal().allFinite();
   if (!finite)
     throw Error(Code::not_finite, "a position is not finite", "check PA and the child points");
   return std::make_shared<RigidBodyBlock>(spec);

@@ -2,6 +2,7 @@
 
 #include <string>
 #include <titop/blocks/inertia.hpp>
+#include <titop/blocks/position.hpp>
 #include <titop/graph/diagram.hpp>
 #include <titop/graph/linalg/kinematics.hpp>
 #include <vector>
@@ -11,7 +12,7 @@ namespace titop {
 /// A point of a body at which a child may be mounted.
 struct ChildPoint {
   std::string name;
-  Vector3d PC = Vector3d::Zero();  ///< from the parent point P to C, in the body's frame [m]
+  Position PC = {};  ///< from the parent point P to C, in the body's frame [m]
 };
 
 /// Ports of a body: one parent point P, any number of child points by name.
@@ -29,7 +30,7 @@ struct BodyHandle {
 ///     F_P   = sum over C of tau_CP' F_C - D_P xdd_P
 ///
 /// No states. Port order: children in the order given, then the parent. Frame: the node's own.
-/// Mass and inertia may be parameters. `add`, and `update` for new values, throw bad_inertia or
+/// Every number may be a parameter. `add`, and `update` for new values, throw bad_inertia or
 /// not_finite for a negative mass and for an inertia that is not symmetric, not positive, or
 /// violates the triangle inequality; `add` throws duplicate_name for two child points of one name.
 /// A mass or inertia of 0 is allowed: a massless link; its motion when freed is undetermined, and
@@ -37,7 +38,7 @@ struct BodyHandle {
 struct RigidBody {
   Value mass = 1;                          ///< [kg]
   Inertia inertia = Matrix3d::Identity();  ///< about the centre of mass A [kg m^2]
-  Vector3d PA = Vector3d::Zero();          ///< from P to the centre of mass [m]
+  Position PA = {};                        ///< from P to the centre of mass [m]
   std::vector<ChildPoint> children = {};
 
   using Handle = BodyHandle;

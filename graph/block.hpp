@@ -98,16 +98,19 @@ struct Dynamics {
   Eigen::MatrixXd dense_direct() const;
 };
 
-/// A block with parameters p taken out: `dynamics` has the inputs w after those of the interface
-/// and the outputs z after its outputs. With w_k = d z_k for every pair k of a parameter, it is the
-/// block at the value p + d of that parameter, for any d.
-struct Opened {
-  Dynamics dynamics;           ///< A, B, C, D as matrices; no `modal`, no `sparse`
-  std::vector<int> parameter;  ///< per pair of scalars (w_k, z_k): the index of its parameter
+/// A parameter in a matrix tau[i] of `Kinematics`, opened: x_i has `by` w more, with z = `of`
+/// x_reference.
+struct OpenedMotion {
+  int channel = -1;       ///< i
+  Eigen::VectorXd by;     ///< size_i
+  Eigen::RowVectorXd of;  ///< size of the reference channel
+  int pair = -1;          ///< index in Opened::parameter
+  int port = -1;          ///< one-way input that has this w; set by the passes
 };
 
 /// Kinematics of the acceleration ports: the position of channel i is
 /// `x_i = tau[i] x_reference + Phi[i] x`, x the block's state vector; Phi[i] is size_i x n.
+/// Rates and accelerations likewise.
 struct Kinematics {
   int reference = 0;  ///< index of the reference channel (the parent)
   std::vector<Eigen::MatrixXd> tau;
@@ -116,6 +119,16 @@ struct Kinematics {
   /// squared]; 0 if it stores none. Empty: states as of modes of mass 1, stiffness = omega^2.
   /// It decides which coordinates of a closed chain depend on the others (soft ones).
   Eigen::VectorXd stiffness = {};
+  std::vector<OpenedMotion> opened = {};  ///< of an opened block: `opened` terms more in x_i
+};
+
+/// A block with parameters p taken out: `dynamics` has the inputs w after those of the interface
+/// and the outputs z after its outputs. With w_k = d z_k for every pair k of a parameter, it is the
+/// block at the value p + d of that parameter, for any d.
+struct Opened {
+  Dynamics dynamics;           ///< A, B, C, D as matrices; no `modal`, no `sparse`
+  std::vector<int> parameter;  ///< per pair of scalars (w_k, z_k): the index of its parameter
+  std::vector<OpenedMotion> motions = {};  ///< pairs of parameters in `Kinematics::tau`
 };
 
 /// Boolean matrix: true if this output may depend directly on this input.
@@ -153,10 +166,11 @@ class Block {
   /// The values that the matrices depend on (only those that are parameters matter).
   virtual std::vector<Value> values() const { return {}; }
   /// The block at these values with the parameters of these indices taken out, each with as few
-  /// pairs as it needs (RigidBody: mass 3, xx 1, xy 2; SpringMass, Bushing and Gain: 1 per axis;
-  /// FlexibleBody: omega 2, xi 1). None (the default): `lft` refuses a parameter of this block by
-  /// name (not_rational). Pairs of other parameters are not there. graph/opened.hpp
-  /// assembles it. The rows of B of states in `kinematics` stay 0 for w.
+  /// pairs as it needs (RigidBody: mass 3, xx 1, xy 2, a component of PC or PA 4; SpringMass,
+  /// Bushing and Gain: 1 per axis; FlexibleBody: omega 2, xi 1). None (the default): `lft` refuses
+  /// a parameter of this block by name (not_rational). Pairs of other parameters are not there.
+  /// graph/opened.hpp assembles it. The rows of B of states in `kinematics` stay 0 for w, and its
+  /// Phi must not depend on the parameter.
   virtual std::optional<Opened> opened(ParameterValues, std::span<const int> parameters) const {
     static_cast<void>(parameters);
     return std::nullopt;

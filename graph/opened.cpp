@@ -40,6 +40,9 @@ Opened with_pairs(const Dynamics& given, const std::vector<OpenedPair>& pairs,
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (place[k] < 0) continue;
     const double scale = pairs[k].value.scale();
+    if (pairs[k].moves >= 0)
+      o.motions.push_back({pairs[k].moves, scale * pairs[k].moved_by, pairs[k].of_motion,
+                           static_cast<int>(place[k])});
     if (pairs[k].on_states.size() > 0) d.B.col(nu + place[k]) = scale * pairs[k].on_states;
     if (pairs[k].on_outputs.size() > 0)
       d.D.col(nu + place[k]).head(ny) = scale * pairs[k].on_outputs;

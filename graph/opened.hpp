@@ -15,6 +15,9 @@ struct OpenedPair {
   Eigen::RowVectorXd of_states, of_inputs;                    ///< x and u of the block
   Eigen::RowVectorXd of_outputs = {};                         ///< y, with the effect of all w
   std::vector<std::pair<std::size_t, double>> of_pairs = {};  ///< w of pairs of the list, by index
+  int moves = -1;                     ///< channel whose position w moves, -1: none (OpenedMotion)
+  Eigen::VectorXd moved_by = {};      ///< OpenedMotion::by
+  Eigen::RowVectorXd of_motion = {};  ///< OpenedMotion::of
 };
 
 /// True if this value is one of these parameters, or a multiple of one.

@@ -9,6 +9,7 @@
 #include <titop/blocks/slide.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/blocks/spring_mass.hpp>
+#include <titop/graph/linalg/index.hpp>
 #include <titop/graph/nodes/gain.hpp>
 #include <titop/graph/nodes/lti.hpp>
 
@@ -65,26 +66,40 @@ Inertia read_inertia(const JsonPlace& p, const ReadValue& value) {
           value(p.item(3)), value(p.item(4)), value(p.item(5))};
 }
 
+/// Three numbers or parameters.
+Json position_json(const Position& position, const WriteValue& value) {
+  const std::vector<Value> components = position.values();
+  if (components.empty()) return list(position.nominal());
+  Json result = Json::array();
+  for (const Value& v : components) result.push_back(value(v));
+  return result;
+}
+
+Position read_position(const JsonPlace& p, const ReadValue& value) {
+  if (p.size() != 3) p.refuse("three numbers or parameters");
+  return {value(p.item(0)), value(p.item(1)), value(p.item(2))};
+}
+
 void write_rigid_body(const Block& b, const WriteValue& value, const NameBody&, Json& j) {
   const auto& spec = spec_of<RigidBody>(b);
   j["mass"] = value(spec.mass);
   j["inertia"] = inertia_json(spec.inertia, value);
-  j["PA"] = list(spec.PA);
+  j["PA"] = position_json(spec.PA, value);
   j["children"] = Json::array();
   for (const ChildPoint& c : spec.children)
-    j["children"].push_back({{"name", c.name}, {"PC", list(c.PC)}});
+    j["children"].push_back({{"name", c.name}, {"PC", position_json(c.PC, value)}});
 }
 
 BlockPtr read_rigid_body(const JsonPlace& p, const ReadValue& value, const FindBody&) {
   p.only({"name", "type", "mass", "inertia", "PA", "children"});
   RigidBody spec{.mass = value(p.at("mass")),
                  .inertia = read_inertia(p.at("inertia"), value),
-                 .PA = p.at("PA").vector(3)};
+                 .PA = read_position(p.at("PA"), value)};
   const JsonPlace children = p.at("children");
   for (std::size_t i = 0; i < children.size(); ++i) {
     const JsonPlace c = children.item(i);
     c.only({"name", "PC"});
-    spec.children.push_back({c.at("name").text(), c.at("PC").vector(3)});
+    spec.children.push_back({c.at("name").text(), read_position(c.at("PC"), value)});
   }
   return as_block(spec);
 }
@@ -164,17 +179,38 @@ BlockPtr read_joint(const JsonPlace& p, const ReadValue&, const FindBody&) {
   return as_block(Joint{read_axes(p)});
 }
 
-/// A diagonal of numbers and parameters, or six rows.
+/// A diagonal, or six rows, of numbers and parameters.
 Json six_axes(const SixAxes& m, const WriteValue& value) {
-  if (m.values().empty()) return rows(m.nominal());
+  Json all = rows(m.nominal());
+  for (const SixAxes::Entry& e : m.entries())
+    all[linalg::at(e.row)][linalg::at(e.column)] = all[linalg::at(e.column)][linalg::at(e.row)] =
+        value(e.value);
+  if (!m.is_diagonal()) return all;
   Json result = Json::array();
-  for (const Value& v : m.values()) result.push_back(value(v));
+  for (std::size_t i = 0; i < 6; ++i) result.push_back(all[i][i]);
   return result;
+}
+
+SixAxes read_rows(const JsonPlace& p, const ReadValue& value) {
+  Matrix6 numbers;
+  std::vector<SixAxes::Entry> entries;
+  for (int i = 0; i < 6; ++i) {
+    const JsonPlace row = p.item(linalg::at(i));
+    if (row.size() != 6) row.refuse("six numbers or parameters");
+    for (int j = 0; j < 6; ++j) {
+      const Value v = value(row.item(linalg::at(j)));
+      numbers(i, j) = v.nominal();
+      if (v.is_parameter() && i <= j) entries.push_back({i, j, v});
+    }
+  }
+  SixAxes m(numbers);
+  for (const SixAxes::Entry& e : entries) m = m.with(e.row + 1, e.column + 1, e.value);
+  return m;
 }
 
 SixAxes read_six_axes(const JsonPlace& p, const ReadValue& value) {
   if (p.size() != 6) p.refuse("six numbers or six rows");
-  if (!p.item(0).is_number() && !p.item(0).has("parameter")) return SixAxes(p.matrix(6, 6));
+  if (!p.item(0).is_number() && !p.item(0).has("parameter")) return read_rows(p, value);
   return {value(p.item(0)), value(p.item(1)), value(p.item(2)),
           value(p.item(3)), value(p.item(4)), value(p.item(5))};
 }
@@ -225,22 +261,47 @@ BlockPtr read_sum(const JsonPlace& p, const ReadValue&, const FindBody&) {
   return as_block(Sum{.signs = p.at("signs").text(), .size = p.at("size").signal_size()});
 }
 
-void write_lti(const Block& b, const WriteValue&, const NameBody&, Json& j) {
-  const auto d = b.dynamics({});
+void write_lti(const Block& b, const WriteValue& value, const NameBody&, Json& j) {
+  const std::vector<Lti::Entry> values = lti_values(b);
+  std::vector<double> nominal;
+  for (const Lti::Entry& e : values) {
+    nominal.resize(std::max(nominal.size(), linalg::at(e.value.index()) + 1));
+    nominal[linalg::at(e.value.index())] = e.value.parameter();
+  }
+  const auto d = b.dynamics(nominal);
   j["A"] = rows(d->A);
   j["B"] = rows(d->B);
   j["C"] = rows(d->C);
   j["D"] = rows(d->D);
+  for (const Lti::Entry& e : values)
+    j["values"].push_back({{"matrix", std::string(1, e.matrix)},
+                           {"row", e.row},
+                           {"column", e.column},
+                           {"value", value(e.value)}});
 }
 
-BlockPtr read_lti(const JsonPlace& p, const ReadValue&, const FindBody&) {
-  p.only({"name", "type", "A", "B", "C", "D"});
+std::vector<Lti::Entry> read_entries(const JsonPlace& p, const ReadValue& value) {
+  std::vector<Lti::Entry> entries;
+  for (std::size_t i = 0; p.has("values") && i < p.at("values").size(); ++i) {
+    const JsonPlace e = p.at("values").item(i);
+    e.only({"matrix", "row", "column", "value"});
+    const std::string matrix = e.at("matrix").text();
+    if (matrix.size() != 1) e.at("matrix").refuse("A, B, C or D");
+    entries.push_back(
+        {matrix[0], e.at("row").integer(), e.at("column").integer(), value(e.at("value"))});
+  }
+  return entries;
+}
+
+BlockPtr read_lti(const JsonPlace& p, const ReadValue& value, const FindBody&) {
+  p.only({"name", "type", "A", "B", "C", "D", "values"});
   const MatrixXd D = p.at("D").matrix(-1, -1);
   const auto n = static_cast<Index>(p.at("A").size());
   return as_block(Lti{.A = p.at("A").matrix(n, n),
                       .B = p.at("B").matrix(n, D.cols()),
                       .C = p.at("C").matrix(D.rows(), n),
-                      .D = D});
+                      .D = D,
+                      .values = read_entries(p, value)});
 }
 
 void write_integrator(const Block& b, const WriteValue&, const NameBody&, Json& j) {

@@ -9,7 +9,7 @@ namespace scenes {
 by_hand::Structure satellite_by_hand(const titop::ModalData& boom) {
   const Eigen::Index N = boom.omega.size(), n = 7 + 2 * N;
   by_hand::Structure a = by_hand::empty(n, 7, 19);
-  const by_hand::Matrix6 tau_AP = by_hand::tau(-hub_spec.PA);
+  const by_hand::Matrix6 tau_AP = by_hand::tau(-hub_spec.PA.nominal());
   by_hand::Matrix6 hub = by_hand::Matrix6::Zero();
   hub.topLeftCorner<3, 3>().diagonal().setConstant(85);
   hub.bottomRightCorner<3, 3>() = hub_spec.inertia.nominal();
@@ -20,8 +20,9 @@ by_hand::Structure satellite_by_hand(const titop::ModalData& boom) {
     const Eigen::Matrix3d T_ba = i == 0 ? Eigen::AngleAxisd(angle1, turn1.normalized()).matrix()
                                         : Eigen::AngleAxisd(angle2, turn2.normalized()).matrix();
     by_hand::MatrixXd Y = by_hand::MatrixXd::Zero(6 + N, n);
-    Y.topLeftCorner<6, 6>() = by_hand::dual(T_ba.transpose()) *
-                              by_hand::tau(-hub_spec.children[static_cast<std::size_t>(i)].PC);
+    Y.topLeftCorner<6, 6>() =
+        by_hand::dual(T_ba.transpose()) *
+        by_hand::tau(-hub_spec.children[static_cast<std::size_t>(i)].PC.nominal());
     if (i == 1) Y.block<3, 1>(3, 6) = hinge_axis;
     Y.block(6, 7 + i * N, N, N).setIdentity();
     a.M += Y.transpose() * own * Y;

@@ -118,7 +118,7 @@ TEST_CASE("RigidBody: of very many points, each with its own lever arm") {
   VectorXd y(u.size());
   Vector3d F = -m * a, torque = -spec.inertia.nominal() * w;
   for (int i = 0; i < points; ++i) {
-    const Vector3d& PC = spec.children[static_cast<std::size_t>(i)].PC;
+    const Vector3d& PC = spec.children[static_cast<std::size_t>(i)].PC.nominal();
     const Vector3d f = u.segment<3>(6 * i);
     y.segment<6>(6 * i) << a + w.cross(PC), w;
     F += f;

@@ -21,8 +21,8 @@ Diagram everything() {
   auto u = d.input("u"), W = d.input("W", 6);
   auto hub = d.add("hub", RigidBody{.mass = 90 * k,
                                     .inertia = Vector3d(9, 11, 13).asDiagonal(),
-                                    .PA = {0.02, -0.01, 0.05},
-                                    .children = {{"C1", {0.3, 0, 0.1}},
+                                    .PA = {0.02, -0.01, 0.3 * k},
+                                    .children = {{"C1", {k, 0, 0.1}},
                                                  {"C2", {-0.3, 0, 0.1}},
                                                  {"C3", {0, 0.4, 0}},
                                                  {"C4", {0, -0.4, 0}}}});
@@ -37,7 +37,8 @@ Diagram everything() {
   auto z = d.add("z", SpringMass{.mass = 2, .stiffness = k, .damping = 0.1});
   auto K = d.add("K", Lti{.A = -Eigen::MatrixXd::Identity(1, 1) / 7,
                           .B = Eigen::MatrixXd::Identity(1, 1),
-                          .C = Eigen::MatrixXd::Identity(1, 1)});
+                          .C = Eigen::MatrixXd::Identity(1, 1),
+                          .values = {{'A', 1, 1, -0.1 * k}, {'C', 1, 1, 3 * k}}});
   auto gain = d.add("gain", Gain{.gain = -2 * k});
   auto matrix = d.add("matrix", MatrixGain{Eigen::RowVector2d(0.1, 0.3)});
   auto sum = d.add("sum", Sum{.signs = "+-"});
@@ -53,7 +54,7 @@ Diagram everything() {
   j.axis("roll").force = 5.0 * j.axis("roll").position;
   bushing(d, "iso", wheel, hub.child("C4"), {},
           {.stiffness = {300 * k, 100, 100, 10, 10, 10},
-           .damping = Matrix6(0.1 * Matrix6::Identity())});
+           .damping = SixAxes(Matrix6(0.1 * Matrix6::Identity())).with(1, 5, 0.03 * k)});
   mount(z, b1.child.along({0, 0.6, 0.8}));
   K.in = gain.out;
   gain.in = h.angle;

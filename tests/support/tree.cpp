@@ -33,10 +33,10 @@ int Tree::add(const titop::RigidBody& r, int on, int port, const Eigen::Matrix3d
   by_hand::Matrix6 own = by_hand::Matrix6::Zero();
   own.topLeftCorner<3, 3>().diagonal().setConstant(r.mass.nominal());
   own.bottomRightCorner<3, 3>() = r.inertia.nominal();
-  const MatrixXl tau = by_hand::tau(-r.PA).cast<long double>();
+  const MatrixXl tau = by_hand::tau(-r.PA.nominal()).cast<long double>();
   b.mass = tau.transpose() * own.cast<long double>() * tau;
   for (const auto& child : r.children)
-    b.ports.emplace_back(by_hand::tau(-child.PC).cast<long double>());
+    b.ports.emplace_back(by_hand::tau(-child.PC.nominal()).cast<long double>());
   return add(std::move(b));
 }
 

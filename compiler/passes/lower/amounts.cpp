@@ -259,6 +259,21 @@ bool Lowering::find_ties(const WayPoint& here, Level level, std::vector<WayPoint
   return true;
 }
 
+/// The opened parameters in the motion of this channel of a body against its reference.
+void Lowering::add_opened_motions(Amount& sum, const Node& node, const Kinematics& k,
+                                  const WayPoint& by, int spec, double sign, Level level) {
+  for (const auto& [port, moving] : opened_ports_of(k)) {
+    MatrixXd all = MatrixXd::Zero(by.factor.cols(), static_cast<Eigen::Index>(moving.size()));
+    bool moves = false;
+    for (std::size_t j = 0; j < moving.size(); ++j)
+      if (moving[j]->channel == spec)
+        all.col(static_cast<Eigen::Index>(j)) = sign * moving[j]->by, moves = true;
+    if (!moves) continue;
+    const int w = opened_input(g, node, port);
+    add_opened({w, by.factor * all, product(by.declared, Pattern(all.array() != 0))}, level, sum);
+  }
+}
+
 /// From a point of a body to its parent point, or from that to another that is driven.
 std::optional<Lowering::WayPoint> Lowering::through_body(Amount& sum, const WayPoint& here,
                                                          Level level) {
@@ -272,9 +287,13 @@ std::optional<Lowering::WayPoint> Lowering::through_body(Amount& sum, const WayP
     sum.push_back({node.state, by.factor * Phi, product(by.declared, Pattern(Phi.array() != 0))});
   };
   if (k) meet_all(*node.block);
+  const auto add_motion = [&](int spec, const WayPoint& by, double sign) {
+    add_deformation(spec, by, sign);
+    add_opened_motions(sum, node, *k, by, spec, sign, level);
+  };
   if (k && c.spec != k->reference) {
     const MatrixXd& tau = k->tau[at(c.spec)];
-    add_deformation(c.spec, here, 1);
+    add_motion(c.spec, here, 1);
     return WayPoint{node.first_channel + k->reference, here.factor * tau,
                     product(here.declared, Pattern(tau.array() != 0))};
   }
@@ -287,7 +306,7 @@ std::optional<Lowering::WayPoint> Lowering::through_body(Amount& sum, const WayP
     if (inverse.rcond == 0) continue;
     WayPoint step{other, here.factor * inverse.matrix,
                   product(here.declared, Pattern(inverse.matrix.array() != 0))};
-    add_deformation(spec, step, -1);
+    add_motion(spec, step, -1);
     return step;
   }
   append(sum, times(here.factor, here.declared, own_motion(here.channel)));

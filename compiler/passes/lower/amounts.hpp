@@ -89,6 +89,8 @@ struct Lowering {
   void walk(Amount& sum, WayPoint at_channel, Level level);
   bool find_ties(const WayPoint& here, Level level, std::vector<WayPoint>& ties, Amount& inputs);
   void add_opened(const WayPoint& w, Level level, Amount& inputs);
+  void add_opened_motions(Amount& sum, const Node& node, const Kinematics& k, const WayPoint& by,
+                          int spec, double sign, Level level);
   std::optional<WayPoint> through_body(Amount& sum, const WayPoint& here, Level level);
   Amount own_motion(int channel) const;
   Amount integrated(Amount sum, Level level);

@@ -30,24 +30,51 @@ struct MotionOpening {
   Stage& stage;
   Graph& g;
 
+  /// z' = `of` times the motion of the reference, for a w of a block that moves points; else none.
+  std::vector<Term> of_reference(const std::vector<Term>& z, bool position) const {
+    if (z.size() != 1 || g.signals[at(z[0].signal)].node < 0) return {};
+    const Signal& out = g.signals[at(z[0].signal)];
+    const Node& node = g.nodes[at(out.node)];
+    if (out.channel >= 0 || out.role != Signal::Role::output) return {};
+    const auto k = node.block->kinematics(stage.values);
+    if (!k) return {};
+    for (const auto& [port, motions] : opened_ports_of(*k)) {
+      // The z of a port stands among the outputs as its w among the inputs, from the end.
+      const Interface& face = node.block->interface();
+      if (face.inputs.size() - at(port) != face.outputs.size() - at(out.spec)) continue;
+      Eigen::MatrixXd of(static_cast<Eigen::Index>(motions.size()), motions[0]->of.size());
+      for (std::size_t j = 0; j < motions.size(); ++j)
+        of.row(static_cast<Eigen::Index>(j)) = motions[j]->of;
+      const Channel& reference = g.channels[at(node.first_channel + k->reference)];
+      return {{.signal = reference.accel,
+               .of = position ? Term::Of::position : Term::Of::rate,
+               .factors = {Matrix{std::make_shared<const Eigen::MatrixXd>(std::move(of))}}}};
+    }
+    return {};
+  }
+
   /// The input of the motion of this w; made, with its output, if it is not there.
   int opened(int w, bool position) {
     if (const int there = opened_motion(g, w, position); there >= 0) return there;
     const Input of = g.inputs[at(g.signals[at(w)].spec)];
     const std::string name = name_of_motion(of.name, position);
-    const int made = add_input(g, name, of.size);
-    g.inputs.back().parameter = of.parameter;
     const auto same = [&](const auto& item) { return item.name == of.name; };
     std::vector<Term> z = std::find_if(g.outputs.begin(), g.outputs.end(), same)->terms;
+    std::vector<Term> moved = of_reference(z, position);
+    const int size = moved.empty() ? of.size : rows_of(g, moved[0]);
+    const int made = add_input(g, name, size);
+    g.inputs.back().parameter = of.parameter;
+    if (!moved.empty()) z.clear();
     for (Term& t : z)
       if (g.signals[at(t.signal)].role == Signal::Role::external)
         t.signal = opened(t.signal, position);
       else
         t.of = position ? Term::Of::position : Term::Of::rate;
-    g.outputs.push_back({.name = name, .size = of.size, .set = true, .terms = std::move(z)});
+    z.insert(z.end(), moved.begin(), moved.end());
+    g.outputs.push_back({.name = name, .size = size, .set = true, .terms = std::move(z)});
     g.outputs.back().declared = static_cast<int>(g.outputs.size()) - 1;
     const auto pairs = std::find_if(stage.opened.begin(), stage.opened.end(), same);
-    const OpenedPairs more{name, of.parameter, of.size, pairs->where};
+    const OpenedPairs more{name, of.parameter, size, pairs->where};
     stage.opened.push_back(more);
     return made;
   }
@@ -60,6 +87,22 @@ int opened_motion(const Graph& g, int w, bool position) {
   for (const Input& u : g.inputs)
     if (u.parameter >= 0 && u.name == name) return u.signal;
   return -1;
+}
+
+std::map<int, std::vector<const OpenedMotion*>> opened_ports_of(const Kinematics& k) {
+  std::map<int, std::vector<const OpenedMotion*>> ports;
+  for (const OpenedMotion& m : k.opened) ports[m.port].push_back(&m);
+  return ports;
+}
+
+int opened_input(const Graph& g, const Node& node, int port) {
+  for (int s = node.first_signal; s < node.end_signal; ++s) {
+    const Signal& u = g.signals[at(s)];
+    if (u.role != Signal::Role::input || u.channel >= 0 || u.spec != port) continue;
+    for (const Equation& e : g.equations)
+      if (e.target == s) return e.terms.at(0).signal;
+  }
+  throw std::logic_error("an opened block without the equation of its w");
 }
 
 void open_motions(Stage& stage, Graph& g) {

@@ -43,7 +43,20 @@ class OpenedBlock : public Block {
   Pattern moved_by() const override { return grown(block_->moved_by(), 0, more_); }
   Pattern seen_by() const override { return grown(block_->seen_by(), more_, 0); }
   std::optional<Kinematics> kinematics(ParameterValues values) const override {
-    return block_->kinematics(values);
+    std::optional<Kinematics> k = block_->kinematics(values);
+    if (!k) return k;
+    const auto opened = block_->opened(values, parameters_);
+    if (!opened) return k;
+    const Opened& o = *opened;
+    k->opened = o.motions;
+    for (OpenedMotion& m : k->opened) {
+      const int p = o.parameter[static_cast<std::size_t>(m.pair)];
+      m.port = static_cast<int>(
+          face_.inputs.size() - parameters_.size() +
+          static_cast<std::size_t>(std::find(parameters_.begin(), parameters_.end(), p) -
+                                   parameters_.begin()));
+    }
+    return k;
   }
   std::vector<Value> values() const override { return block_->values(); }
   bool is_algebraic() const override { return block_->is_algebraic(); }
