@@ -40,8 +40,9 @@ room(analysis/sweep            compiler/system)
 room(analysis/certify          compiler/passes compiler/definition compiler/certificate
                                compiler/minreal compiler/system)
 room(analysis/reduction        compiler/system)
+room(analysis/norms)
 # Deeper than System: it opens parameters, and counts occurrences in exact arithmetic.
-room(analysis/lft              compiler/passes compiler/definition compiler/system)
+room(analysis/lft              compiler/passes compiler/definition compiler/system analysis/norms)
 room(emit/text)
 # Deeper than System: names of any encoding are cleaned by compiler/diagram.
 room(emit/files                compiler/diagram compiler/system analysis/certify analysis/lft

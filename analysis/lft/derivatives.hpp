@@ -2,6 +2,7 @@
 
 #include <complex>
 #include <string>
+#include <titop/analysis/norms/hinf.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <vector>
 
@@ -30,6 +31,11 @@ struct Slopes {
   Eigen::VectorXd slopes;
 };
 
+/// The largest gain over a band, and its derivatives.
+struct PeakSlopes : Slopes {
+  double omega = 0;  ///< where it is reached [rad/s]; infinite: of the direct term
+};
+
 /// At the values of the system that it was made from. Const, may be shared between threads.
 class Derivatives {
  public:
@@ -52,13 +58,19 @@ class Derivatives {
   /// left of the axis, or if there is a direct term here or at neighbouring values, or if the norm
   /// is 0. O(states^3).
   Slopes h2() const;
+  /// The largest singular value of the transfer over a band (norm_hinf), with slopes Re(u^H dH v),
+  /// u and v its singular vectors: the peak's own motion along the frequencies does not matter.
+  /// Throws as norm_hinf does (also for more than 600 states), and bad_value where the peak has no
+  /// derivative: two peaks of one height, or two equal singular values, up to 1e-8. O(200 states^3)
+  /// per level.
+  PeakSlopes peak(const HinfOptions& options = {}) const;
 
  private:
   friend Derivatives derivatives(const System&, const std::vector<std::string>&);
   explicit Derivatives(System opened) : opened_(std::move(opened)) {}
   struct Pairs {
     Eigen::Index first = 0, size = 0;
-    double slope = 1;  ///< of the deviation by the parameter: 1, of an angle 1/2
+    double slope = 1;   ///< of the deviation by the parameter: 1, of an angle 1/2
   };
   const Pairs& pairs_of(const std::string& p) const;
   /// M(s), inputs [w; u], outputs [z; y].

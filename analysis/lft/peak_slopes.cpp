@@ -1,0 +1,59 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <titop/analysis/lft/derivatives.hpp>
+#include <titop/graph/error.hpp>
+
+namespace titop {
+namespace {
+
+using Eigen::Index;
+
+/// Half the digits of double: vectors of singular values closer than this have fewer than eight.
+constexpr double kSimple = 1 - 1e-8;
+
+void require_simple(const HinfNorm& n) {
+  if (!(n.value > 0))
+    throw Error(Code::bad_value, "the largest gain is 0, where it has no derivatives",
+                "take inputs and outputs that are connected");
+  if (!n.others.empty())
+    throw Error(
+        Code::bad_value,
+        fmt::format("two peaks are equal, at {:.9g} and {:.9g} rad/s: the larger one has no "
+                    "derivative there",
+                    n.omega, n.others.front()),
+        "take one of them by band_hz, or both as two bounds");
+  if (n.second >= kSimple * n.value)
+    throw Error(Code::bad_value,
+                fmt::format("two singular values are equal at {:.9g} rad/s, {:.9g} and {:.9g}: the "
+                            "larger one has no derivative there",
+                            n.omega, n.value, n.second),
+                "take fewer inputs or outputs, or h2(), which is smooth");
+}
+
+}  // namespace
+
+PeakSlopes Derivatives::peak(const HinfOptions& options) const {
+  const Index ny = m_.D.rows() - all_pairs_, nu = m_.D.cols() - all_pairs_;
+  StateSpace user;
+  user.A = m_.A, user.B = m_.B.rightCols(nu), user.C = m_.C.bottomRows(ny);
+  user.D = m_.D.bottomRightCorner(ny, nu);
+  const HinfNorm n = norm_hinf(user, options);
+  require_simple(n);
+  const std::complex<double> s{0, n.omega};
+  const Eigen::MatrixXcd M =
+      std::isinf(n.omega) ? Eigen::MatrixXcd(m_.D.cast<std::complex<double>>()) : opened_at(s);
+  const Eigen::RowVectorXcd from_w = n.left.adjoint() * M.bottomLeftCorner(ny, all_pairs_);
+  const Eigen::VectorXcd to_z = M.topRightCorner(all_pairs_, nu) * n.right;
+  PeakSlopes result;
+  result.value = n.value, result.omega = n.omega;
+  result.slopes.resize(static_cast<Index>(pairs_.size()));
+  for (Index i = 0; i < result.slopes.size(); ++i) {
+    const Pairs& p = pairs_[static_cast<std::size_t>(i)];
+    result.slopes(i) =
+        p.slope * (from_w.segment(p.first, p.size) * to_z.segment(p.first, p.size)).value().real();
+  }
+  return result;
+}
+
+}  // namespace titop
