@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <titop/analysis/lft/derivatives.hpp>
 #include <titop/analysis/lft/opening.hpp>
+#include <titop/compiler/passes/open/differences.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -14,6 +15,23 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using linalg::at;
+
+namespace {
+
+/// Blocks with this parameter that do not open it.
+std::vector<std::string> closed_blocks(const Graph& g, ParameterValues values, int parameter) {
+  std::vector<std::string> names;
+  for (const Node& node : g.nodes) {
+    const std::vector<Value> all = node.block->values();
+    if (std::any_of(all.begin(), all.end(),
+                    [&](const Value& v) { return v.index() == parameter; }) &&
+        !passes::is_opened_by(*node.block, values, parameter))
+      names.push_back(node.name);
+  }
+  return names;
+}
+
+}  // namespace
 
 Derivatives derivatives(const System& system, const std::vector<std::string>& parameters) {
   std::vector<detail::IsolatedParameter> list;
@@ -28,7 +46,7 @@ Derivatives derivatives(const System& system, const std::vector<std::string>& pa
                           {},
                           "name it once"});
     list.push_back(detail::unranged(system, name, mistakes));
-    to_open.push_back({list.back().index});
+    to_open.push_back({.parameter = list.back().index, .differences = true});
   }
   if (!mistakes.empty()) throw Error(std::move(mistakes));
   Derivatives g{System(detail::compile_opened(system, to_open))};
@@ -36,9 +54,13 @@ Derivatives derivatives(const System& system, const std::vector<std::string>& pa
   g.m_ = std::move(opened.m);
   g.in_ = std::move(opened.in), g.out_ = std::move(opened.out);
   g.names_ = parameters;
+  const Stage& stage = system.stage();
   for (std::size_t i = 0; i < list.size(); ++i) {
     const bool angle = list[i].map.kind != ParameterMap::Kind::number;
-    g.pairs_.push_back({g.all_pairs_, opened.sizes[i], angle ? 0.5 : 1.0});
+    const auto closed = closed_blocks(*stage.source, stage.values, list[i].index);
+    for (const std::string& block : closed)
+      g.by_differences_.push_back(parameters[i] + " of " + block);
+    g.pairs_.push_back({g.all_pairs_, opened.sizes[i], angle ? 0.5 : 1.0, closed.empty()});
     g.all_pairs_ += opened.sizes[i];
   }
   return g;
@@ -60,16 +82,29 @@ MatrixXcd Derivatives::opened_at(std::complex<double> s) const {
 }
 
 MatrixXcd Derivatives::transfer(std::complex<double> s, const std::string& p) const {
-  const Pairs& i = pairs_of(p);
+  const auto i = static_cast<std::size_t>(&pairs_of(p) - pairs_.data());
+  return transfers(s)[i];
+}
+
+std::vector<MatrixXcd> Derivatives::transfers(std::complex<double> s) const {
   const MatrixXcd M = opened_at(s);
   const Index ny = M.rows() - all_pairs_, nu = M.cols() - all_pairs_;
-  return i.slope * M.bottomRows(ny).middleCols(i.first, i.size) *
-         M.rightCols(nu).middleRows(i.first, i.size);
+  std::vector<MatrixXcd> result;
+  for (const Pairs& i : pairs_)
+    result.emplace_back(i.slope * M.bottomRows(ny).middleCols(i.first, i.size) *
+                        M.rightCols(nu).middleRows(i.first, i.size));
+  return result;
 }
 
 MatrixXcd Derivatives::transfer(std::complex<double> s, const std::string& p,
                                 const std::string& q) const {
   const Pairs &i = pairs_of(p), &j = pairs_of(q);
+  if (!i.exact || !j.exact)
+    throw Error(Code::not_rational,
+                fmt::format("second derivatives by {} and {}: a block gives differences of its "
+                            "matrices only, {}",
+                            p, q, by_differences_.front()),
+                "write Block::opened for it");
   const MatrixXcd M = opened_at(s);
   const Index ny = M.rows() - all_pairs_, nu = M.cols() - all_pairs_;
   const auto path = [&](const Pairs& last, const Pairs& first) {

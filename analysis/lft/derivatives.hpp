@@ -40,11 +40,19 @@ struct PeakSlopes : Slopes {
 class Derivatives {
  public:
   const std::vector<std::string>& parameters() const { return names_; }
+  /// Parameters of blocks without Block::opened, each with its block: "shaft of rotor". Their
+  /// derivatives are those of the block's matrices by differences, to 1e-12 of them, never of the
+  /// solved model.
+  const std::vector<std::string>& by_differences() const { return by_differences_; }
 
   /// dH/dp at s, outputs x inputs [unit of H per unit of p]. Throws unknown_name, and singular if s
   /// is a pole. O(bodies (inputs + occurrences)).
   Eigen::MatrixXcd transfer(std::complex<double> s, const std::string& p) const;
-  /// d2H/dp dq at s; p and q may be the same.
+  /// dH/dp at s for all parameters, in their order, by one factorisation and one solve per input
+  /// and occurrence together.
+  std::vector<Eigen::MatrixXcd> transfers(std::complex<double> s) const;
+  /// d2H/dp dq at s; p and q may be the same. Throws not_rational for a parameter by differences,
+  /// of which only the first derivative is known.
   Eigen::MatrixXcd transfer(std::complex<double> s, const std::string& p,
                             const std::string& q) const;
   /// dA, dB, dC, dD by p of the dense model before `minimize` (System::write).
@@ -71,6 +79,7 @@ class Derivatives {
   struct Pairs {
     Eigen::Index first = 0, size = 0;
     double slope = 1;   ///< of the deviation by the parameter: 1, of an angle 1/2
+    bool exact = true;  ///< all from Block::opened
   };
   const Pairs& pairs_of(const std::string& p) const;
   /// M(s), inputs [w; u], outputs [z; y].
@@ -79,13 +88,14 @@ class Derivatives {
   System opened_;
   StateSpace m_;                        ///< of `opened_`, inputs [w; u], outputs [z; y]
   std::vector<Eigen::Index> in_, out_;  ///< places of its inputs and outputs in `opened_`
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, by_differences_;
   std::vector<Pairs> pairs_;
   Eigen::Index all_pairs_ = 0;
 };
 
 /// Derivatives by these parameters at the system's present values. Throws unknown_name,
-/// duplicate_name, and not_rational as `lft` does. Cost: that of `compile`, then as each function
+/// duplicate_name, and not_rational as `lft` does, but for blocks without `opened`
+/// (Derivatives::by_differences). Cost: that of `compile`, then as each function
 /// says: independent of the number of parameters but for their occurrences.
 ///
 ///     const Derivatives g = derivatives(system, {"m", "tilt"});

@@ -44,12 +44,14 @@ struct Opening {
     const std::vector<int> wanted = opened_of(node);
     ports.emplace_back();
     if (wanted.empty()) return node.block;
-    ports.back() = opened_ports(*node.block, values, wanted);
+    const bool differences = std::any_of(parameters.begin(), parameters.end(),
+                                         [](const ToOpen& p) { return p.differences; });
+    ports.back() = opened_ports(*node.block, values, wanted, differences);
     for (const int p : wanted)
       if (std::none_of(ports.back().begin(), ports.back().end(),
                        [&](const OpenedPorts& o) { return o.parameter == p; }))
         refuse(node, p);
-    return ports.back().empty() ? node.block : opened_block(node.block, ports.back());
+    return ports.back().empty() ? node.block : opened_block(node.block, ports.back(), differences);
   }
 
   void nodes() {

@@ -12,6 +12,9 @@ struct ToOpen {
   /// An angle has the tangent of a quarter of its deviation, which reaches a whole turn with twice
   /// as many pairs; else that of half of it.
   bool full_turn = false;
+  /// First derivatives only: blocks without `opened` by differences of their matrices
+  /// (compiler/passes/open/differences.hpp).
+  bool differences = false;
 };
 
 /// The stage of a graph as `lower` has ordered it (Stage::source, with its motions) with these

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <titop/compiler/passes/open/differences.hpp>
 #include <titop/compiler/passes/open/opened_block.hpp>
 
 namespace titop::passes {
@@ -11,8 +12,8 @@ using Eigen::Index;
 
 class OpenedBlock : public Block {
  public:
-  OpenedBlock(BlockPtr block, const std::vector<OpenedPorts>& ports)
-      : block_(std::move(block)), face_(block_->interface()) {
+  OpenedBlock(BlockPtr block, const std::vector<OpenedPorts>& ports, bool differences)
+      : block_(std::move(block)), face_(block_->interface()), differences_(differences) {
     for (const OpenedPorts& p : ports) {
       face_.inputs.push_back({fmt::format("w{}", p.parameter), p.size});
       face_.outputs.push_back({fmt::format("z{}", p.parameter), p.size});
@@ -24,7 +25,7 @@ class OpenedBlock : public Block {
   const Interface& interface() const override { return face_; }
   /// The pairs in the order of the ports.
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
-    const Opened o = *block_->opened(values, parameters_);
+    const Opened o = *opened_to_first_order(*block_, values, parameters_, differences_);
     const Dynamics& from = o.dynamics;
     std::vector<Index> cols(static_cast<std::size_t>(from.B.cols() - more_)),
         rows(static_cast<std::size_t>(from.C.rows() - more_));
@@ -75,19 +76,20 @@ class OpenedBlock : public Block {
 
   BlockPtr block_;
   Interface face_;
+  bool differences_;
   std::vector<int> parameters_;
   Index more_ = 0;
 };
 
 }  // namespace
 
-BlockPtr opened_block(BlockPtr block, const std::vector<OpenedPorts>& ports) {
-  return std::make_shared<OpenedBlock>(std::move(block), ports);
+BlockPtr opened_block(BlockPtr block, const std::vector<OpenedPorts>& ports, bool differences) {
+  return std::make_shared<OpenedBlock>(std::move(block), ports, differences);
 }
 
 std::vector<OpenedPorts> opened_ports(const Block& block, ParameterValues values,
-                                      std::span<const int> parameters) {
-  const auto opened = block.opened(values, parameters);
+                                      std::span<const int> parameters, bool differences) {
+  const auto opened = opened_to_first_order(block, values, parameters, differences);
   std::vector<OpenedPorts> ports;
   for (const int p : parameters)
     if (const auto n =
