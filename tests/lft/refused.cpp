@@ -1,5 +1,7 @@
 #include <doctest/doctest.h>
 
+#include <functional>
+
 #include "lft/n17.hpp"
 #include "support/mistakes.hpp"
 
@@ -150,4 +152,59 @@ TEST_CASE("an angle that moves a closed chain is refused, a mass in it is not") 
   const std::complex<double> s{0.1, 0.9};
   const Eigen::MatrixXcd G = system.update({{"m", 2.5}}).transfer(s);
   CHECK((f.at({{"m", 2.5}}).transfer(s) - G).norm() <= 1e-12 * G.norm());
+}
+
+namespace {
+
+/// A free hub that carries a rhombus of four bars, on which sits an antenna: the hub carries it
+/// tilted by `carried`, the antenna is tilted by `seated`.
+System with_linkage(const std::function<Value(const Param&)>& carried,
+                    const std::function<Value(const Param&)>& seated) {
+  Diagram d{"linkage"};
+  const Param p = d.param("p", 0.3);
+  const double turn = 0.6;
+  const Vector3d up(0, 0, 1);
+  const RigidBody bar{.mass = 2,
+                      .inertia = Vector3d(0.6, 1, 1.5).asDiagonal(),
+                      .PA = Vector3d(0.5, 0.1, 0.2),
+                      .children = {{"C", {1, 0, 0}}, {"top", {0.4, 0, 0.3}}}};
+  auto hub = d.add("hub", RigidBody{.mass = 20,
+                                    .inertia = Vector3d(5, 6, 7).asDiagonal(),
+                                    .children = {{"L", {0.5, 0.2, 0.1}}}});
+  hub.parent.force = -d.input("U", 6);
+  auto base = d.add("base", RigidBody{.children = {{"A", {0, 0, 0}}, {"B", {1, 0, 0}}}});
+  mount(base, hub.child, Rotation::about({1, 0, 0}, carried(p)));
+  auto a = d.add("a", bar), b = d.add("b", bar), c = d.add("c", bar);
+  auto ja = hinge(d, "ja", a, base.child("A"), Rotation::about(up, turn), up);
+  auto jc = hinge(d, "jc", c, base.child("B"), Rotation::about(up, turn), up);
+  auto jb = hinge(d, "jb", b, a.child("C"), Rotation::about(up, -turn), up);
+  ja.torque = 3.0 * ja.angle;
+  jc.torque = 0, jb.torque = 0;
+  auto close = d.add("close", Hinge{up});
+  mount(close, b.child("C"));
+  close.torque = 0;
+  weld(close.child("child"), c.child("C"), Rotation::about(up, -turn));
+  auto antenna = d.add("antenna", RigidBody{.mass = 1, .PA = {0.3, 0, 0.1}});
+  mount(antenna, b.child("top"), Rotation::about({0, 1, 0}, seated(p)));
+  d.output("angle") = ja.angle;
+  d.output("tip", 6) = antenna.parent.accel;
+  return compile(d);
+}
+
+}  // namespace
+
+TEST_CASE("an angle outside of a closed chain, which it carries or which carries it") {
+  const auto fixed = [](const Param&) { return Value(0.2); };
+  const auto moves = [](const Param& p) { return Value(p); };
+  for (const bool carried : {true, false}) {
+    CAPTURE(carried);
+    const System system = carried ? with_linkage(moves, fixed) : with_linkage(fixed, moves);
+    const Lft f = lft(system, {{"p", between(-1, 1.5)}});
+    INFO(to_string(f));
+    for (const double p : {-0.9, 0.1, 1.4}) {
+      const std::complex<double> s{0.1, 0.9};
+      const Eigen::MatrixXcd G = system.update({{"p", p}}).transfer(s, Precision::digits50);
+      CHECK((f.at({{"p", p}}).transfer(s) - G).norm() <= 1e-11 * G.norm());
+    }
+  }
 }
