@@ -8,6 +8,7 @@
 #include <titop/analysis/lft/opening.hpp>
 #include <titop/analysis/lft/structured.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 namespace titop {
@@ -164,7 +165,7 @@ int Lft::occurrences() const {
   return sum;
 }
 
-StateSpace Lft::at(const ParameterList& values) const {
+VectorXd Lft::deltas_at(const ParameterList& values) const {
   VectorXd d = VectorXd::Zero(static_cast<Index>(deltas_.size()));
   std::vector<Mistake> mistakes;
   std::vector<std::string> seen;
@@ -195,11 +196,37 @@ StateSpace Lft::at(const ParameterList& values) const {
     seen.push_back(name);
   }
   if (!mistakes.empty()) throw Error(std::move(mistakes));
-  auto result = detail::closed(m_, at_all_pairs(deltas_, d));
+  return at_all_pairs(deltas_, d);
+}
+
+StateSpace Lft::at(const ParameterList& values) const {
+  auto result = detail::closed(m_, deltas_at(values));
   if (!result)
     throw Error(Code::singular, "the direct terms of the LFT are singular at these values",
                 "take others: an algebraic loop or a mass matrix has no inverse there");
   return std::move(*result);
+}
+
+std::vector<Eigen::MatrixXcd> Lft::transfers(std::complex<double> s,
+                                             std::span<const ParameterList> values) const {
+  const Eigen::MatrixXcd M = m_.transfer(s);
+  const Index r = occurrences(), nu = M.cols() - r, ny = M.rows() - r;
+  std::vector<Eigen::MatrixXcd> result;
+  for (const ParameterList& list : values) {
+    const VectorXd deltas = deltas_at(list);
+    const Eigen::MatrixXcd E = Eigen::MatrixXcd::Identity(r, r) -
+                               Eigen::MatrixXcd(M.topLeftCorner(r, r) * deltas.asDiagonal());
+    Eigen::MatrixXcd H = M.bottomRightCorner(ny, nu);
+    if (r > 0) {
+      const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(E);
+      const Eigen::MatrixXcd z = lu.solve(Eigen::MatrixXcd(M.topRightCorner(r, nu)));
+      H += M.bottomLeftCorner(ny, r) * Eigen::MatrixXcd(deltas.asDiagonal() * z);
+    }
+    if (!H.allFinite())
+      throw Error(Code::singular, "s is a pole of the model at these values", "take another s");
+    result.push_back(std::move(H));
+  }
+  return result;
 }
 
 }  // namespace titop

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <titop/analysis/lft/ranges.hpp>
 #include <titop/compiler/system/system.hpp>
 
@@ -58,11 +59,17 @@ class Lft {
   /// unknown_name, duplicate_name, bad_value outside of the range, singular at a pole of F(.,
   /// delta) with direct terms (I - D_zw Delta singular). O((states + occurrences)^3).
   StateSpace at(const ParameterList& values) const;
+  /// The transfer at s with Delta closed at each of these values, as of `at`: M(s) once,
+  /// O(occurrences^3) for each. For worst cases over many designs.
+  std::vector<Eigen::MatrixXcd> transfers(std::complex<double> s,
+                                          std::span<const ParameterList> values) const;
 
  private:
   friend Lft lft(const System&, const ParameterRanges&);
   explicit Lft(System opened) : opened_(std::move(opened)) {}
   void take(detail::Structured model);
+  /// At all pairs.
+  Eigen::VectorXd deltas_at(const ParameterList& values) const;
   void find_lower_bounds(const std::vector<detail::IsolatedParameter>& parameters);
 
   System opened_;

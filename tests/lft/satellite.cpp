@@ -60,16 +60,16 @@ TEST_CASE("closing the parameters equals compiling anew") {
     std::mt19937 random(3);
     std::uniform_real_distribution<double> share(-0.999, 0.999);
     double worst = 0;
-    for (int i = 0; i < 50; ++i) {
+    for (int i = 0; i < (rates ? 50 : 200); ++i) {
       ParameterList values;
       for (const Delta& d : f.deltas())
         values.emplace_back(d.parameter, d.map.value(share(random)));
       const StateSpace at = f.at(values);
       const System other = system.update(values);
-      for (const std::complex<double> z : {std::complex<double>(0.1, 1.3), {0.5, 6.0}}) {
-        const Eigen::MatrixXcd G = other.transfer(z, Precision::digits50);
-        worst = std::max(worst, (at.transfer(z) - G).norm() / G.norm());
-      }
+      const std::complex<double> z =
+          i % 2 ? std::complex<double>(0.1, 1.3) : std::complex<double>(0.5, 6.0);
+      const Eigen::MatrixXcd G = other.transfer(z, Precision::digits50);
+      worst = std::max(worst, (at.transfer(z) - G).norm() / G.norm());
     }
     CHECK(worst <= 1e-12);
   }
