@@ -14,6 +14,14 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using linalg::at;
 
+/// Rounding moves the two poles of a defective pair apart by its root, and leaves their vectors
+/// parallel to it [G 7.2]; those of equal poles with vectors of their own by rounding times their
+/// condition number, of which kApart allows 1e4. A reciprocal condition number of the vectors above
+/// 64 roots is none of a defective pair.
+constexpr double kEqual = 0x1p-26, kParallel = 64 * kEqual;
+/// Subspaces are split while that costs less than four digits.
+constexpr double kApart = 1e4;
+
 /// Poles of one invariant subspace: A R = R diag(values), L R = I.
 struct Subspace {
   Eigen::VectorXcd values;
@@ -25,7 +33,6 @@ struct Subspace {
 /// subspace.
 Subspace subspace(const MatrixXd& A, const linalg::Spectrum& s,
                   const linalg::Spectrum::Cluster& c) {
-  constexpr double kParallel = 1e-6;
   const MatrixXcd V = s.V.middleCols(c.first, c.count), W = s.W.middleRows(c.first, c.count);
   if (c.simple) return {s.values.segment(c.first, c.count), W, V};
   MatrixXd both(A.rows(), 2 * c.count);
@@ -41,7 +48,6 @@ Subspace subspace(const MatrixXd& A, const linalg::Spectrum& s,
 
 /// The next places of `todo` whose poles are equal to the first one's.
 std::vector<Index> equal_ones(const Eigen::VectorXcd& values, std::vector<Index>& todo) {
-  constexpr double kEqual = 1e-8;
   const std::complex<double> s = values(todo.front());
   std::vector<Index> equal, others;
   for (const Index i : todo)
@@ -58,7 +64,6 @@ std::vector<PoleSlopes> Derivatives::poles() const {
   if (m_.order() == 0) return result;
   MatrixXd A = m_.A;
   const Eigen::VectorXd d = linalg::similarity_scaling(A);
-  constexpr double kApart = 1e4;
   const linalg::Spectrum s = linalg::spectrum(A, kApart);
   for (const auto& cluster : s.clusters) {
     const Subspace sub = subspace(A, s, cluster);
