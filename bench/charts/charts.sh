@@ -218,6 +218,20 @@ draw_integration() {
     "largest error of a state"
 }
 
+# Derivative of a transfer by a parameter: error against the step of differences, with their time.
+draw_derivatives() {
+  local name=derivatives way points order milliseconds
+  [[ -s $out/derivatives.csv ]] || return 0
+  rm -f "$work/$name.dat"
+  for way in exact "differences in double" "differences in 50 digits"; do
+    points=$(awk -F, -v w="$way" '$1 == w { print $2 "," ($3 < 1e-17 ? 1e-17 : $3) }' "$out/derivatives.csv")
+    milliseconds=$(awk -F, -v w="$way" '$1 == w && (best == "" || $4 < best) { best = $4 }
+      END { printf "%.2g", 1e3 * best }' "$out/derivatives.csv")
+    echo "$points" | block "$name" "$way ($milliseconds ms)"
+  done
+  keyed "$name" "derivative of a transfer by the tilt of two wings" "step [rad]" "relative error"
+}
+
 draw_all() {
   local scene n
   for scene in D F K A BL C; do
@@ -244,6 +258,7 @@ draw_all() {
   draw_drift closure "six masses" closure "six masses between two walls: does the chain stay closed?" \
     "gap over the largest stretch"
   draw_growth_factors
+  draw_derivatives
   draw_integration A 10
   draw_integration D 5
   [[ $mode == quick ]] || draw_integration D 50
