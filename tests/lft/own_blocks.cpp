@@ -1,7 +1,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <titop/graph/opened.hpp>
 #include <titop/titop.hpp>
+#include <tuple>
 
 #include "support/mistakes.hpp"
 
@@ -46,9 +48,11 @@ class CurvedBlock : public Block {
 
 BlockPtr as_block(const Curved& spec) { return std::make_shared<CurvedBlock>(spec.p); }
 
-/// A weightless lever, from its parent to a point at (reach, 0, 0).
+/// A weightless lever, from its parent to a point at (reach, 0, 0), which may open its reach: the
+/// accelerations and wrenches, and, if `moves`, also the place of its point.
 struct Reach {
   Value reach;
+  bool opens = false, moves = false;
   struct Handle {
     Handle(Graph* graph, int node)
         : parent(detail::channel<6>(graph, node, 1)), child(detail::channel<6>(graph, node, 0)) {}
@@ -58,7 +62,7 @@ struct Reach {
 
 class ReachBlock : public Block {
  public:
-  explicit ReachBlock(Value reach) : reach_(reach) {
+  explicit ReachBlock(const Reach& spec) : spec_(spec) {
     face_.channels = {{.name = "child", .size = 6, .takes = Takes::force},
                       {.name = "parent", .size = 6, .takes = Takes::accel}};
   }
@@ -76,19 +80,42 @@ class ReachBlock : public Block {
                       .tau = {at(values), MatrixXd::Identity(6, 6)},
                       .Phi = {MatrixXd(6, 0), MatrixXd(6, 0)}};
   }
-  std::vector<Value> values() const override { return {reach_}; }
+  std::vector<Value> values() const override { return {spec_.reach}; }
+  std::optional<Opened> opened(ParameterValues values,
+                               std::span<const int> parameters) const override {
+    if (!spec_.opens) return std::nullopt;
+    std::vector<OpenedPair> pairs;
+    for (const auto& [linear, angular, sign] : {std::tuple(1, 5, 1.0), {2, 4, -1.0}}) {
+      pairs.push_back({spec_.reach,
+                       {},
+                       Eigen::VectorXd::Unit(12, linear),
+                       {},
+                       sign * Eigen::RowVectorXd::Unit(12, 6 + angular)});
+      if (spec_.moves) {
+        pairs.back().moves = 0;
+        pairs.back().moved_by = Vector6::Unit(linear);
+        pairs.back().of_motion = sign * Vector6::Unit(angular).transpose();
+      }
+      pairs.push_back({spec_.reach,
+                       {},
+                       sign * Eigen::VectorXd::Unit(12, 6 + angular),
+                       {},
+                       Eigen::RowVectorXd::Unit(12, linear)});
+    }
+    return with_pairs(*dynamics(values), pairs, parameters);
+  }
 
  private:
   MatrixXd at(ParameterValues values) const {
     MatrixXd t = MatrixXd::Identity(6, 6);
-    t(1, 5) = reach_.at(values), t(2, 4) = -reach_.at(values);
+    t(1, 5) = spec_.reach.at(values), t(2, 4) = -spec_.reach.at(values);
     return t;
   }
   Interface face_;
-  Value reach_;
+  Reach spec_;
 };
 
-BlockPtr as_block(const Reach& spec) { return std::make_shared<ReachBlock>(spec.reach); }
+BlockPtr as_block(const Reach& spec) { return std::make_shared<ReachBlock>(spec); }
 
 }  // namespace
 
@@ -115,15 +142,40 @@ TEST_CASE("an own block in a loop: derivative in closed form, and what it is sai
   CHECK(error_of([&] { lft(compile(d), {{"p", percent(10)}}); }).has(Code::not_rational));
 }
 
-TEST_CASE("an own block whose points move is refused, also for derivatives") {
+namespace {
+
+/// A lever between two bodies, beyond which a rate and a position are read.
+System with_lever(bool opens, bool moves) {
   Diagram d{"reach"};
-  auto hub = d.add("hub", RigidBody{.children = {{"C", {1, 0, 0}}}});
-  auto lever = d.add("lever", Reach{d.param("p", 0.5)});
-  auto tip = d.add("tip", RigidBody{});
+  auto hub = d.add("hub", RigidBody{.mass = 3, .children = {{"C", {1, 0, 0}}}});
+  auto lever = d.add("lever", Reach{d.param("p", 0.5), opens, moves});
+  auto tip = d.add("tip", RigidBody{.mass = 2, .PA = {0.1, 0.2, 0.3}});
   hub.parent.force = -d.input("U", 6);
   mount(lever, hub.child, Rotation());
   mount(tip, lever.child, Rotation());
   d.output("y", 6) = hub.parent.accel;
-  CHECK(says(error_of([&] { derivatives(compile(d), {"p"}); }), Code::not_rational,
-             {"lever", "Reach", "p"}));
+  d.output("rate", 6) = tip.parent.rate;
+  d.output("place", 6) = tip.parent.position;
+  return compile(d);
+}
+
+}  // namespace
+
+TEST_CASE("an own block whose points move says how, or is refused") {
+  for (const bool opens : {false, true}) {
+    CAPTURE(opens);
+    const System system = with_lever(opens, false);
+    CHECK(says(error_of([&] { derivatives(system, {"p"}); }), Code::not_rational,
+               {"lever", "Reach", "p"}));
+    CHECK(says(error_of([&] {
+                 lft(system, {{"p", percent(50)}});
+               }),
+               Code::not_rational, {"lever", "Reach", "p"}));
+  }
+  const System system = with_lever(true, true);
+  const Lft f = lft(system, {{"p", percent(90)}});
+  for (const double p : {0.1, 0.9}) {
+    const Eigen::MatrixXcd G = system.update({{"p", p}}).transfer({0.3, 1}, Precision::digits50);
+    CHECK((f.at({{"p", p}}).transfer({0.3, 1}) - G).norm() <= 1e-12 * G.norm());
+  }
 }

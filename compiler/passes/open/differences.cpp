@@ -24,13 +24,16 @@ bool moves_points(const Block& block, ParameterValues a, ParameterValues b) {
   return before && (before->tau != now->tau || before->Phi != now->Phi);
 }
 
+constexpr double kStep = 0x1p-8;
+
+double step_of(double value) { return kStep * (value == 0 ? 1 : std::abs(value)); }
+
 /// Derivative of [A, B; C, D] by the parameter; none if it moves points, or if values near it are
 /// refused.
 std::optional<MatrixXd> by_differences(const Block& block, ParameterValues given, int parameter) {
-  constexpr double kStep = 0x1p-8;
   std::vector<double> values(given.begin(), given.end());
   double& p = values[at(parameter)];
-  const double here = p, step = kStep * (here == 0 ? 1 : std::abs(here));
+  const double here = p, step = step_of(here);
   const auto central = [&](double h) {
     p = here + h;
     const bool moves = moves_points(block, given, values);
@@ -68,6 +71,14 @@ void add_pairs(Opened& o, const MatrixXd& derivative, int parameter) {
 }
 
 }  // namespace
+
+bool moves_points_unsaid(const Block& block, ParameterValues given, int parameter) {
+  std::vector<double> values(given.begin(), given.end());
+  values[at(parameter)] += step_of(values[at(parameter)]);
+  if (!moves_points(block, given, values)) return false;
+  const auto o = block.opened(given, std::span(&parameter, 1));
+  return !o || o->motions.empty();
+}
 
 bool is_opened_by(const Block& block, ParameterValues values, int parameter) {
   const auto o = block.opened(values, std::span(&parameter, 1));

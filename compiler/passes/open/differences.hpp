@@ -14,6 +14,10 @@ namespace titop::passes {
 std::optional<Opened> opened_to_first_order(const Block& block, ParameterValues values,
                                             std::span<const int> parameters, bool differences);
 
+/// The parameter moves points of the block's kinematics, and its pairs do not say so
+/// (Opened::motions): positions that are read beyond them would be wrong.
+bool moves_points_unsaid(const Block& block, ParameterValues values, int parameter);
+
 /// The block opens this parameter itself.
 bool is_opened_by(const Block& block, ParameterValues values, int parameter);
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <titop/compiler/passes/open/differences.hpp>
 #include <titop/compiler/passes/open/open.hpp>
 #include <titop/compiler/passes/open/open_terms.hpp>
 #include <titop/compiler/passes/open/opened_block.hpp>
@@ -40,6 +41,17 @@ struct Opening {
          "write Block::opened for it, or leave the parameter out and use sweep"});
   }
 
+  void refuse_motion(const Node& node, int parameter) {
+    mistakes.push_back(
+        {Code::not_rational,
+         fmt::format(
+             "{}: a {} moves its points with the parameter {}, and its opened() does not say "
+             "how",
+             node.name, node.block->type(), from.parameters[at(parameter)].name),
+         {},
+         "give Opened::motions (OpenedPair::moves), or leave the parameter out and use sweep"});
+  }
+
   BlockPtr block_of(const Node& node) {
     const std::vector<int> wanted = opened_of(node);
     ports.emplace_back();
@@ -51,6 +63,8 @@ struct Opening {
       if (std::none_of(ports.back().begin(), ports.back().end(),
                        [&](const OpenedPorts& o) { return o.parameter == p; }))
         refuse(node, p);
+      else if (moves_points_unsaid(*node.block, values, p))
+        refuse_motion(node, p);
     return ports.back().empty() ? node.block : opened_block(node.block, ports.back(), differences);
   }
 
