@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <titop/compiler/solve/kernels.hpp>
 #include <titop/compiler/solve/response.hpp>
 #include <titop/compiler/solve/scalar.hpp>
@@ -136,6 +137,21 @@ double largest_ratio(const Eigen::MatrixXd& terms, const Eigen::MatrixXd& size) 
   return result;
 }
 
+/// Blocks of so many states are looked at part by part.
+constexpr Index kManyStates = 16;
+
+/// States that do not act on each other: all in one part if they are few.
+std::vector<std::vector<int>> uncoupled(const Eigen::MatrixXd& A) {
+  if (A.rows() >= kManyStates) return linalg::uncoupled_parts(A);
+  std::vector<int> all(at(A.rows()));
+  std::iota(all.begin(), all.end(), 0);
+  return {std::move(all)};
+}
+
+Dynamics part_of(const Dynamics& d, const std::vector<int>& states) {
+  return {d.A(states, states), d.B(states, Eigen::all), d.C(Eigen::all, states), d.D};
+}
+
 /// Largest ratio of the terms of an entry of X and Y to the entry; with K = s - A the terms are
 /// |K^-1| |K| |X| and |D| + |C| |X| + |C K^-1| |K| |X|, independent of the units of states and
 /// ports. Infinite if double has less than two digits of K^-1.
@@ -143,18 +159,36 @@ template <class T>
 double cancels(const Dynamics& d, const T& s, const solve::BlockResponse<T>& r) {
   using Eigen::MatrixXcd;
   using Eigen::MatrixXd;
-  const auto n = d.A.rows();
-  const MatrixXcd one = MatrixXcd::Identity(n, n), K = solve::Scalar<T>::round(s) * one - d.A;
-  const linalg::Solution solution = linalg::solve(K, one);
-  const MatrixXcd& inverse = solution.z;
-  const double two_digits = 100 * static_cast<double>(n) * solve::Scalar<double>::epsilon();
-  if (!(solution.rcond > two_digits) || !inverse.allFinite()) return HUGE_VAL;
   const MatrixXd X = sizes(r.X), Y = sizes(r.Y);
   if (!X.allFinite() || !Y.allFinite()) return HUGE_VAL;
-  const MatrixXd right = K.cwiseAbs() * X, of_states = inverse.cwiseAbs() * right;
-  const MatrixXd of_outputs =
-      d.D.cwiseAbs() + d.C.cwiseAbs() * X + (d.C * inverse).cwiseAbs() * right;
-  return std::max(largest_ratio(of_states, X), largest_ratio(of_outputs, Y));
+  MatrixXd of_outputs = d.D.cwiseAbs() + d.C.cwiseAbs() * X;
+  double worst = 0;
+  for (const std::vector<int>& states : uncoupled(d.A)) {
+    const auto n = std::ssize(states);
+    const MatrixXcd one = MatrixXcd::Identity(n, n),
+                    K = solve::Scalar<T>::round(s) * one - d.A(states, states);
+    const linalg::Solution solution = linalg::solve(K, one);
+    const MatrixXcd& inverse = solution.z;
+    const double two_digits = 100 * static_cast<double>(n) * solve::Scalar<double>::epsilon();
+    if (!(solution.rcond > two_digits) || !inverse.allFinite()) return HUGE_VAL;
+    const MatrixXd own = X(states, Eigen::all), right = K.cwiseAbs() * own;
+    worst = std::max(worst, largest_ratio(inverse.cwiseAbs() * right, own));
+    of_outputs += (d.C(Eigen::all, states) * inverse).cwiseAbs() * right;
+  }
+  return std::max(worst, largest_ratio(of_outputs, Y));
+}
+
+/// (s - A)^-1 B. Throws singular.
+template <class T>
+Dense<T> states_at(const Block& block, const Dynamics& d, const T& s) {
+  Dense<T> X(d.A.rows(), d.B.cols());
+  for (const std::vector<int>& states : uncoupled(d.A)) {
+    const Dynamics part = part_of(d, states);
+    const Resolvent<T> resolvent(part, s);
+    if (resolvent.singular()) throw pole_of(block, s);
+    X(states, Eigen::all) = resolvent.times(lifted<T>(part.B));
+  }
+  return X;
 }
 
 /// From the matrices, each entry accurate to `enough`. C X + D cancels, the more the lower s is
@@ -163,9 +197,7 @@ double cancels(const Dynamics& d, const T& s, const solve::BlockResponse<T>& r) 
 template <class T>
 solve::BlockResponse<T> general_response(const Block& block, const Dynamics& d, const T& s,
                                          double enough) {
-  const Resolvent<T> resolvent(d, s);
-  if (resolvent.singular()) throw pole_of(block, s);
-  solve::BlockResponse<T> r{resolvent.times(lifted<T>(d.B)), lifted<T>(d.D)};
+  solve::BlockResponse<T> r{states_at(block, d, s), lifted<T>(d.D)};
   for (Index i = 0; i < r.Y.rows(); ++i)
     for (Index j = 0; j < r.Y.cols(); ++j)
       for (Index k = 0; k < r.X.rows(); ++k) r.Y(i, j) += lift<T>(d.C(i, k)) * r.X(k, j);

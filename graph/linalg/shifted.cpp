@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <titop/graph/linalg/schur.hpp>
 #include <titop/graph/linalg/shifted.hpp>
@@ -24,38 +25,62 @@ double largest_change(const MatrixXcd& change, const MatrixXcd& of) {
 
 }  // namespace
 
-ShiftedSolver::ShiftedSolver(MatrixXd A, MatrixXd B) : A_(std::move(A)), B_(std::move(B)) {
-  MatrixXd scaled = A_;
-  scale_ = similarity_scaling(scaled);
-  Schur form = schur(scaled);
-  T_ = std::move(form.T);
-  Q_ = std::move(form.Q);
-  R_ = Q_.adjoint() * (scale_.cwiseInverse().asDiagonal() * B_);
-  if (T_.size() > 0) size_ = T_.cwiseAbs().maxCoeff();
+ShiftedSolver::ShiftedSolver(const MatrixXd& A, const MatrixXd& B)
+    : n_(A.rows()), columns_(B.cols()) {
+  for (std::vector<int>& states : uncoupled_parts(A)) {
+    Part p;
+    p.A = A(states, states);
+    p.B = B(states, Eigen::all);
+    MatrixXd scaled = p.A;
+    p.scale = similarity_scaling(scaled);
+    Schur form = schur(scaled);
+    p.T = std::move(form.T);
+    p.Q = std::move(form.Q);
+    p.R = p.Q.adjoint() * (p.scale.cwiseInverse().asDiagonal() * p.B);
+    p.size = p.T.cwiseAbs().maxCoeff();
+    p.states = std::move(states);
+    parts_.push_back(std::move(p));
+  }
 }
 
 Solution ShiftedSolver::solve(std::complex<double> s) const {
-  const Index n = A_.rows();
-  if (n == 0) return {MatrixXcd(0, B_.cols()), 1, 0};
-  MatrixXcd shifted = -T_;
+  Solution result{MatrixXcd(n_, columns_), 1, 0};
+  double nearest = HUGE_VAL, farthest = 0;
+  for (const Part& part : parts_) {
+    const Solution own = solve(part, s, nearest, farthest);
+    if (own.z.size() == columns_ * std::ssize(part.states))
+      result.z(part.states, Eigen::all) = own.z;
+    result.rcond = std::min(result.rcond, own.rcond);
+    result.moved = std::max(result.moved, own.moved);
+  }
+  if (farthest > 0) result.rcond = std::min(result.rcond, nearest / farthest);
+  return result;
+}
+
+Solution ShiftedSolver::solve(const Part& p, std::complex<double> s, double& nearest,
+                              double& farthest) {
+  const Index n = p.A.rows();
+  MatrixXcd shifted = -p.T;
   shifted.diagonal().array() += s;
   const Eigen::VectorXd distance = shifted.diagonal().cwiseAbs();
   const double rounding =
-      static_cast<double>(n) * std::numeric_limits<double>::epsilon() * (size_ + std::abs(s));
+      static_cast<double>(n) * std::numeric_limits<double>::epsilon() * (p.size + std::abs(s));
   if (distance.minCoeff() > rounding) {
     const auto upper = shifted.triangularView<Eigen::Upper>();
-    const MatrixXcd z = Q_ * upper.solve(R_);
-    MatrixXcd X = scale_.asDiagonal() * z;
-    const MatrixXcd residual = B_ - (s * X - A_ * X);
-    const MatrixXcd scaled = scale_.cwiseInverse().asDiagonal() * residual;
-    const MatrixXcd change = Q_ * upper.solve(Q_.adjoint() * scaled);
+    const MatrixXcd z = p.Q * upper.solve(p.R);
+    MatrixXcd X = p.scale.asDiagonal() * z;
+    const MatrixXcd residual = p.B - (s * X - p.A * X);
+    const MatrixXcd scaled = p.scale.cwiseInverse().asDiagonal() * residual;
+    const MatrixXcd change = p.Q * upper.solve(p.Q.adjoint() * scaled);
     const double moved = largest_change(change, z);
     if (moved <= kMoved) {
-      X += scale_.asDiagonal() * change;
-      return {std::move(X), distance.minCoeff() / distance.maxCoeff(), moved};
+      X += p.scale.asDiagonal() * change;
+      nearest = std::min(nearest, distance.minCoeff());
+      farthest = std::max(farthest, distance.maxCoeff());
+      return {std::move(X), 1, moved};
     }
   }
-  return linalg::solve(s * MatrixXcd::Identity(n, n) - A_, B_.cast<std::complex<double>>());
+  return linalg::solve(s * MatrixXcd::Identity(n, n) - p.A, p.B.cast<std::complex<double>>());
 }
 
 }  // namespace titop::linalg

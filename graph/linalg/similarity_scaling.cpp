@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <boost/graph/adjacency_list.hpp>
+#include <boost/graph/connected_components.hpp>
 #include <boost/graph/strong_components.hpp>
 #include <cmath>
 #include <titop/graph/linalg/eigen.hpp>
@@ -113,6 +114,24 @@ void fit_between(MatrixXd& A, VectorXd& d, const std::vector<std::vector<int>>& 
   for (int i = 0; i < A.rows(); ++i) scale(A, d, i, power_of_two(t(part[at(i)])));
 }
 
+/// An edge from state j to state i for every entry other than 0.
+template <class Edges>
+void add_entries(const MatrixXd& A, Edges& edges) {
+  for (int j = 0; j < A.cols(); ++j)
+    for (int i = 0; i < A.rows(); ++i)
+      if (i != j && A(i, j) != 0) boost::add_edge(at(j), at(i), edges);
+}
+
+/// The states of each part, by the part of each state.
+std::vector<std::vector<int>> sets_of(const std::vector<int>& part) {
+  std::vector<std::vector<int>> result;
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    if (at(part[i]) >= result.size()) result.resize(at(part[i]) + 1);
+    result[at(part[i])].push_back(static_cast<int>(i));
+  }
+  return result;
+}
+
 }  // namespace
 
 VectorXd similarity_scaling(MatrixXd& A) {
@@ -137,15 +156,20 @@ VectorXd similarity_scaling_of_parts(MatrixXd& A) {
 
 std::vector<std::vector<int>> parts(const MatrixXd& A) {
   boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS> acts(at(A.rows()));
-  for (int j = 0; j < A.cols(); ++j)
-    for (int i = 0; i < A.rows(); ++i)
-      if (i != j && A(i, j) != 0) boost::add_edge(at(j), at(i), acts);
+  add_entries(A, acts);
   std::vector<int> part(at(A.rows()));
-  const int count = boost::strong_components(
+  boost::strong_components(
       acts, boost::make_iterator_property_map(part.begin(), get(boost::vertex_index, acts)));
-  std::vector<std::vector<int>> result(at(count));
-  for (int i = 0; i < A.rows(); ++i) result[at(part[at(i)])].push_back(i);
-  return result;
+  return sets_of(part);
+}
+
+std::vector<std::vector<int>> uncoupled_parts(const MatrixXd& A) {
+  boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS> coupled(at(A.rows()));
+  add_entries(A, coupled);
+  std::vector<int> part(at(A.rows()));
+  boost::connected_components(
+      coupled, boost::make_iterator_property_map(part.begin(), get(boost::vertex_index, coupled)));
+  return sets_of(part);
 }
 
 }  // namespace titop::linalg

@@ -22,4 +22,9 @@ Eigen::VectorXd similarity_scaling_of_parts(Eigen::MatrixXd& A);
 /// only on those before it. O(n^2).
 std::vector<std::vector<int>> parts(const Eigen::MatrixXd& A);
 
+/// Sets of states that do not act on each other in either direction (the connected components of
+/// the same pattern), each ascending, by their first states: A is block diagonal in this order.
+/// O(n^2).
+std::vector<std::vector<int>> uncoupled_parts(const Eigen::MatrixXd& A);
+
 }  // namespace titop::linalg

@@ -85,6 +85,39 @@ TEST_CASE("(s - A)^-1 B by a Schur form: random, scaled, permuted systems of 0 t
   CHECK(largest <= 40);  // about the number of states, in units of the last place
 }
 
+TEST_CASE("(s - A)^-1 B of parts that do not act on each other, in any order of their states") {
+  double largest = 0;
+  for (int kind = 0; kind < 3; ++kind) {
+    const Index n = 30;
+    MatrixXd A = MatrixXd::Zero(n, n), B = random(n, 2);
+    for (Index i = 0; i < 24; i += 2) {
+      const double w = std::pow(10.0, double(i) / 4 - 2);
+      A.block(i, i, 2, 2) << 0, w, -w, -0.01 * w;
+    }
+    A.block(24, 24, 4, 4) = random(4, 4);
+    A(28, 28) = -0.3;  // and a pole at 0
+    if (kind > 0) change_units(A, B);
+    // Sets of states with a path of entries between them, by Warshall's closure.
+    Eigen::MatrixXi joined = (A.array() != 0 || A.transpose().array() != 0).cast<int>();
+    joined.diagonal().setOnes();
+    for (Index k = 0; k < n; ++k) joined = joined.cwiseMax(joined.col(k) * joined.row(k));
+    const auto parts = titop::linalg::uncoupled_parts(A);
+    CHECK(parts.size() == 12 + 1 + 2);
+    Index states = 0;
+    for (const std::vector<int>& part : parts) {
+      states += std::ssize(part);
+      CHECK(joined(part, part).minCoeff() == 1);
+    }
+    CHECK(states == n);
+    CHECK(joined.sum() == 12 * 4 + 16 + 2);
+    const ShiftedSolver solver(A, B);
+    for (const Complex s : {Complex(0, 1e-3), Complex(0, 0.3), Complex(0, 40), Complex(0.2, 1e7)})
+      largest = std::max(largest, worst(solver.solve(s).z, A, B, s));
+    CHECK(solver.solve(0).rcond <= 1e-14);
+  }
+  CHECK(largest <= 40);
+}
+
 TEST_CASE("(s - A)^-1 B at a pole, and beside one") {
   MatrixXd A = random(12, 12), B = random(12, 1);
   A.row(3).setZero();  // a pole that is 0
