@@ -5,6 +5,7 @@
 #include <map>
 #include <optional>
 #include <titop/analysis/reduction/bodies.hpp>
+#include <titop/analysis/reduction/oscillators.hpp>
 #include <titop/analysis/reduction/remove_signals.hpp>
 #include <titop/analysis/reduction/small.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -70,7 +71,7 @@ class FewerModes final : public Block {
 /// All nodes of one block, and the effects of its modes in all of them.
 struct Shared {
   BlockPtr block;
-  std::shared_ptr<const Modal> modal;
+  BlockModes modes;
   std::vector<int> nodes;
   VectorXd cut, corrected;
   std::vector<char> ports, kept;
@@ -86,7 +87,7 @@ std::vector<Shared> by_block(const Graph& g, const std::vector<ModeEffects>& eff
     if (fresh) {
       const VectorXd none = VectorXd::Zero(e.cut.size());
       list.push_back({block,
-                      block->dynamics(values)->modal,
+                      *modes_of(*block, values),
                       {},
                       none,
                       none,
@@ -112,7 +113,7 @@ struct ModeGroup {
 std::vector<ModeGroup> groups(const std::vector<Shared>& bodies) {
   std::vector<ModeGroup> list;
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const VectorXd& k = bodies[b].modal->stiffness;
+    const VectorXd& k = bodies[b].modes.stiffness;
     std::vector<Index> order;
     for (Index j = 0; j < k.size(); ++j) order.push_back(j);
     std::stable_sort(order.begin(), order.end(), [&](Index i, Index j) { return k(i) < k(j); });
@@ -141,11 +142,12 @@ void keep(std::vector<Shared>& bodies, double share) {
 
 /// Static vectors of the modes that go, orthonormal, in those modes.
 MatrixXd static_vectors(const Shared& body, const std::vector<Index>& gone) {
-  std::vector<Index> ports;
+  std::vector<std::size_t> ports;
   for (std::size_t p = 0; p < body.ports.size(); ++p)
-    if (body.ports[p]) ports.push_back(static_cast<Index>(p));
-  MatrixXd S = body.modal->W(gone, ports);
-  const VectorXd k = body.modal->stiffness(gone);
+    if (body.ports[p]) ports.push_back(p);
+  MatrixXd S(std::ssize(gone), std::ssize(ports));
+  for (Index p = 0; p < S.cols(); ++p) S.col(p) = body.modes.ports[ports[at(p)]].column(gone);
+  const VectorXd k = body.modes.stiffness(gone);
   S.array().colwise() /= k.array();
   Index used = 0;
   for (Index p = 0; p < S.cols(); ++p)
@@ -176,14 +178,21 @@ std::optional<BodyBasis> basis(const Shared& body, double share) {
   BodyBasis b{MatrixXd::Zero(body.cut.size(), n + S.cols()), VectorXd(n + S.cols()), S.cols()};
   for (Index i = 0; i < n; ++i) {
     b.V(kept[at(i)], i) = 1;
-    b.stiffness(i) = body.modal->stiffness(kept[at(i)]);
+    b.stiffness(i) = body.modes.stiffness(kept[at(i)]);
   }
   if (S.cols() > 0) {
-    const SymmetricModes own = ritz(body.modal->stiffness(gone), S);
+    const SymmetricModes own = ritz(body.modes.stiffness(gone), S);
     b.V(gone, Eigen::seqN(n, S.cols())) = S * own.V;
     b.stiffness.tail(S.cols()) = own.lambda;
   }
   return b;
+}
+
+BlockPtr in_fewer_modes(const BlockPtr& block, const BodyBasis& b, ParameterValues values) {
+  if (const std::optional<Oscillators> o = oscillators(*block))
+    return lti_of(projected(*o, b.V, b.stiffness));
+  return std::make_shared<const FewerModes>(block, *block->dynamics(values)->modal, b.V,
+                                            b.stiffness);
 }
 
 std::string told(const Graph& g, const Shared& body, const std::optional<BodyBasis>& b) {
@@ -191,7 +200,8 @@ std::string told(const Graph& g, const Shared& body, const std::optional<BodyBas
   if (body.nodes.size() > 1) names += fmt::format(" and {} more", body.nodes.size() - 1);
   const Index all = body.cut.size();
   if (!b) return fmt::format("{}: all {} modes", names, all);
-  if (b->V.cols() == 0) return fmt::format("{}: rigid", names);
+  if (b->V.cols() == 0)
+    return fmt::format("{}: {}", names, oscillators(*body.block) ? "none of its modes" : "rigid");
   return fmt::format("{}: {} modes and {} vectors of {}", names, b->V.cols() - b->vectors,
                      b->vectors, all);
 }
@@ -203,6 +213,7 @@ SmallerBodies smaller_bodies(const Graph& graph, const std::vector<ModeEffects>&
   std::vector<Shared> bodies = by_block(graph, effects);
   keep(bodies, share);
   SmallerBodies result{graph, 0, 0, {}};
+  const std::vector<double> values = nominal_values(graph);
   std::vector<char> gone(graph.signals.size(), 0);
   for (const Shared& body : bodies) {
     const auto count = static_cast<int>(body.nodes.size());
@@ -211,13 +222,13 @@ SmallerBodies smaller_bodies(const Graph& graph, const std::vector<ModeEffects>&
     result.after += count * static_cast<int>(b ? b->V.cols() : body.cut.size());
     result.text.push_back(told(graph, body, b));
     if (!b) continue;
-    const auto block =
-        std::make_shared<const FewerModes>(body.block, *body.modal, b->V, b->stiffness);
+    const BlockPtr block = in_fewer_modes(body.block, *b, values);
+    const auto states = static_cast<int>(block->interface().states.size());
     for (const int i : body.nodes) {
       Node& node = result.graph.nodes[at(i)];
       node.block = block;
-      result.graph.signals[at(node.state)].size = static_cast<int>(2 * b->V.cols());
-      gone[at(node.state)] = b->V.cols() == 0;
+      result.graph.signals[at(node.state)].size = states;
+      gone[at(node.state)] = states == 0;
     }
   }
   remove_signals(result.graph, gone);

@@ -9,7 +9,7 @@ namespace titop::detail {
 /// A graph of smaller bodies, and the changes of each.
 struct SmallerBodies {
   Graph graph;
-  int before = 0, after = 0;      ///< coordinates of all bodies
+  int before = 0, after = 0;      ///< coordinates of all blocks with modes
   std::vector<std::string> text;  ///< "b1 and b2: 12 modes and 9 vectors of 342", one per block
 };
 
@@ -19,7 +19,8 @@ struct SmallerBodies {
 /// either, the body becomes rigid. Then eta = V eta_r with V orthonormal: mass, symmetry and sign
 /// of stiffness and damping are preserved; the damping of the vectors is that of their own
 /// diagonal. Modes of equal frequency are kept or dropped together; nodes that share a block keep
-/// the same modes, so that twins remain twins. O(modes).
+/// the same modes, so that twins remain twins. An Lti keeps oscillators likewise (oscillators.hpp),
+/// with vectors for its outputs, too, and all its other states. O(modes).
 SmallerBodies smaller_bodies(const Graph& graph, const std::vector<ModeEffects>& effects,
                              double share);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <titop/analysis/reduction/bodies.hpp>
+#include <titop/analysis/reduction/oscillators.hpp>
 #include <titop/analysis/reduction/reach_of_data.hpp>
 #include <titop/analysis/reduction/reduction.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
@@ -79,14 +80,34 @@ class SceneReduction {
     });
   }
 
+  /// The model's modes; nothing if it is no structure.
+  std::unique_ptr<Reduction> read_structure(const Graph& graph) {
+    try {
+      return detail::by_modes(setting_, graph);
+    } catch (const detail::NoStructure& error) {
+      setting_.why = error.mistakes().front().message;
+      return nullptr;
+    }
+  }
+
+  /// Likewise, of a graph whose Lti have their oscillators as coordinates and rates; otherwise the
+  /// model stays.
+  std::unique_ptr<Reduction> read_oscillators(const Graph& graph) {
+    const System model = setting_.model;
+    const auto data = setting_.data;
+    compile_model(graph);
+    auto reduction = read_structure(graph);
+    if (!reduction) setting_.model = model, setting_.data = data;
+    return reduction;
+  }
+
   /// The model's modes, or its states if it is no structure; nothing if these are too many and
   /// bodies can still become smaller.
   std::unique_ptr<Reduction> read(const Graph& graph) {
-    if (setting_.scene.keep_structure) try {
-        return detail::by_modes(setting_, graph);
-      } catch (const detail::NoStructure& error) {
-        setting_.why = error.mistakes().front().message;
-      }
+    if (setting_.scene.keep_structure) {
+      const std::optional<Graph> same = detail::in_coordinates(graph);
+      if (auto reduction = same ? read_oscillators(*same) : read_structure(graph)) return reduction;
+    }
     if (setting_.model.order() <= setting_.scene.balance_up_to) return detail::by_states(setting_);
     if (setting_.smaller) refuse_states();
     return nullptr;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <titop/analysis/reduction/oscillators.hpp>
 #include <titop/analysis/reduction/probes.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -22,14 +23,6 @@ constexpr double kLowest = 1e-2;     ///< of the band's upper end: below it vect
 constexpr double kSmallPair = 1e-6;  ///< pairs this far below their row and column are negligible
 
 using linalg::at;
-
-std::shared_ptr<const Modal> modes_of(const Graph& g, int node, ParameterValues values) {
-  const Block& block = *g.nodes[at(node)].block;
-  const auto modal = block.dynamics(values)->modal;
-  if (!modal) return nullptr;
-  const auto kinematics = block.kinematics(values);
-  return kinematics && kinematics->stiffness.size() > 0 ? nullptr : modal;
-}
 
 /// The signals of this role of the node's block, in the order of its u or y.
 std::vector<int> signals_of(const Graph& g, int node, Signal::Role role) {
@@ -115,12 +108,12 @@ Graph driving(const Graph& graph, const std::vector<ModeEffects>& bodies,
 }
 
 /// Points of the ray for smooth functions of the band.
-std::vector<Complex> ray(const Scene& scene, const std::vector<std::shared_ptr<const Modal>>& modes,
-                         double damping) {
+std::vector<Complex> ray(const Scene& scene, const std::vector<BlockModes>& modes, double damping) {
   double high = 2 * std::numbers::pi * scene.band_hz[1];
   if (high == 0) {  // static gain: so far below all modes that nothing moves
     high = HUGE_VAL;
-    for (const auto& m : modes) high = std::min(high, 1e-4 * std::sqrt(m->stiffness.minCoeff()));
+    for (const BlockModes& m : modes)
+      high = std::min(high, 1e-4 * std::sqrt(m.stiffness.minCoeff()));
   }
   const double low = std::max(2 * std::numbers::pi * scene.band_hz[0], kLowest * high);
   const int count = 1 + static_cast<int>(std::ceil(std::log(high / low) / (2 * damping)));
@@ -163,13 +156,14 @@ MatrixXd peaks(const std::vector<MatrixXcd>& H, Index outputs) {
   return (peak.array() > 0).select(peak, all);
 }
 
-/// Adds the modes of one body at s: `in` is the transfer to the body's inputs, `out` that from the
-/// body's outputs.
-void take_in(ModeEffects& body, const Modal& m, const MatrixXcd& in, const MatrixXcd& out,
+/// Adds the modes of one block at s: `in` is the transfer to its inputs, `out` that from its
+/// outputs.
+void take_in(ModeEffects& body, const BlockModes& m, const MatrixXcd& in, const MatrixXcd& out,
              const MatrixXd& peak, Complex s) {
-  const Eigen::MatrixXd moved = (m.W * in).cwiseAbs(), seen = (out * m.W.transpose()).cwiseAbs();
-  for (Index j = 0; j < m.W.rows(); ++j) {
-    const double gain = std::norm(s) / std::abs(s * (s + m.damping(j)) + m.stiffness(j));
+  const MatrixXcd read = m.out_q + s * m.out_v + s * s * m.out_a;
+  const Eigen::MatrixXd moved = (m.b * in).cwiseAbs(), seen = (out * read).cwiseAbs();
+  for (Index j = 0; j < m.stiffness.size(); ++j) {
+    const double gain = 1 / std::abs(s * (s + m.damping(j)) + m.stiffness(j));
     double worst = 0;
     for (Index i = 0; i < seen.rows(); ++i)
       for (Index k = 0; k < moved.cols(); ++k)
@@ -178,22 +172,50 @@ void take_in(ModeEffects& body, const Modal& m, const MatrixXcd& in, const Matri
     body.corrected(j) =
         std::max(body.corrected(j), gain * worst * std::pow(std::norm(s) / m.stiffness(j), 2));
   }
-  for (Index p = 0; p < m.W.cols(); ++p)
-    if (!in.row(p).isZero(0) || !out.col(p).isZero(0)) body.ports[at(p)] = 1;
+  for (std::size_t p = 0; p < m.ports.size(); ++p) {
+    const auto& [column, input, output] = m.ports[p];
+    if ((input >= 0 && !in.row(input).isZero(0)) || (output >= 0 && !out.col(output).isZero(0)))
+      body.ports[p] = 1;
+  }
+}
+
+BlockModes modes_of(const Modal& m) {
+  const MatrixXd none = MatrixXd::Zero(m.W.cols(), m.W.rows());
+  BlockModes modes{m.stiffness, m.damping, m.W, none, none, m.W.transpose(), {}};
+  for (Index p = 0; p < m.W.cols(); ++p) modes.ports.push_back({m.W.col(p), p, p});
+  return modes;
+}
+
+BlockModes modes_of(const Oscillators& o) {
+  const MatrixXd none = MatrixXd::Zero(o.c_q.rows(), o.c_q.cols());
+  BlockModes modes{o.stiffness, o.damping, o.b, o.c_q, o.c_v, none, {}};
+  for (Index p = 0; p < o.b.cols(); ++p) modes.ports.push_back({o.b.col(p), p, -1});
+  for (const MatrixXd* c : {&o.c_q, &o.c_v})
+    for (Index p = 0; p < c->rows(); ++p) modes.ports.push_back({c->row(p), -1, p});
+  return modes;
 }
 
 }  // namespace
+
+std::optional<BlockModes> modes_of(const Block& block, ParameterValues values) {
+  if (const std::optional<Oscillators> o = oscillators(block)) return modes_of(*o);
+  const auto modal = block.dynamics(values)->modal;
+  if (!modal) return std::nullopt;
+  const auto kinematics = block.kinematics(values);
+  if (kinematics && kinematics->stiffness.size() > 0) return std::nullopt;
+  return modes_of(*modal);
+}
 
 std::vector<ModeEffects> mode_effects(const Graph& graph, const Scene& scene,
                                       const Options& options) {
   const std::vector<double> values = nominal_values(graph);
   std::vector<ModeEffects> bodies;
-  std::vector<std::shared_ptr<const Modal>> modes;
+  std::vector<BlockModes> modes;
   for (int i = 0; i < static_cast<int>(graph.nodes.size()); ++i)
-    if (auto modal = modes_of(graph, i, values)) {
-      const Eigen::VectorXd none = Eigen::VectorXd::Zero(modal->stiffness.size());
-      bodies.push_back({i, none, none, std::vector<char>(at(modal->W.cols()), 0)});
-      modes.push_back(std::move(modal));
+    if (auto found = modes_of(*graph.nodes[at(i)].block, values)) {
+      const Eigen::VectorXd none = Eigen::VectorXd::Zero(found->stiffness.size());
+      bodies.push_back({i, none, none, std::vector<char>(found->ports.size(), 0)});
+      modes.push_back(*std::move(found));
     }
   if (bodies.empty()) return bodies;
   const double damping = std::max(kDamping, scene.damping_floor);
@@ -207,11 +229,12 @@ std::vector<ModeEffects> mode_effects(const Graph& graph, const Scene& scene,
   const MatrixXd peak = peaks(H, outputs);
   for (std::size_t k = 0; k < s.size(); ++k) {
     const MatrixXcd out = integrated(G[k], rows, outputs, s[k]);
-    for (Index b = 0, first = 0; b < static_cast<Index>(bodies.size()); ++b) {
-      const Index ports = modes[at(b)]->W.cols();
-      take_in(bodies[at(b)], *modes[at(b)], H[k].middleRows(outputs + first, ports),
-              out.middleCols(inputs + first, ports), peak, s[k]);
-      first += ports;
+    Index input = outputs, output = inputs;
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const Index columns = modes[b].b.cols(), rows_of = modes[b].out_q.rows();
+      take_in(bodies[b], modes[b], H[k].middleRows(input, columns), out.middleCols(output, rows_of),
+              peak, s[k]);
+      input += columns, output += rows_of;
     }
   }
   for (ModeEffects& body : bodies) {

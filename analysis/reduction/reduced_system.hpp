@@ -132,7 +132,8 @@ std::string to_string(const ReducedSystem& system);
 /// structure kept. The result is checked against the full factored system, and its order is raised
 /// until the bound is below the accuracy. Symmetry is detected for bodies added from one and the
 /// same body object (two that are merely equal are not compared), and not for those in closed
-/// chains.
+/// chains. An Lti of uncoupled modal blocks of 2 x 2 with complex poles, [0 w; -w -2 xi w] or
+/// similar to it, is a structure if inputs move each block in one direction, as forces do.
 ///
 /// If the scene is no passive structure (controllers and filters in the loop, dashpots without
 /// springs; a note names the state), states replace M, D, K. Integrals, poles on the axis (undamped

@@ -38,15 +38,16 @@ struct Scene {
   /// eigenproblem of O(8 n^3) for their poles.
   BoundKind bound = BoundKind::estimate;
   /// Up to this many coordinates the assembled model is reduced, by one symmetric eigenproblem of
-  /// O(n^3). In larger models bodies lose modes first, those with the least effect on the assembled
-  /// transfer; static vectors of their loaded ports replace these. The error is measured, and the
-  /// bound is an estimate, checked against the full system as always. Refused if too many remain.
+  /// O(n^3). In larger models bodies, and Lti of modal blocks, lose modes first, those with the
+  /// least effect on the assembled transfer; static vectors of their loaded ports replace these.
+  /// The error is measured, and the bound is an estimate, checked against the full system as
+  /// always. Refused if too many remain.
   int whole_up_to = 2000;
   /// Passive structures keep M, D, K. False: their states are balanced, which may need fewer states
   /// at heavy damping.
   bool keep_structure = true;
-  /// Largest number of states that are balanced, at O(100 n^3); in larger models bodies lose modes
-  /// first.
+  /// Largest number of states that are balanced, at O(100 n^3); in larger models bodies, and Lti of
+  /// modal blocks, lose modes first.
   int balance_up_to = 800;
 };
 

@@ -1,0 +1,153 @@
+#include <cmath>
+#include <titop/analysis/reduction/oscillators.hpp>
+#include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
+#include <titop/graph/nodes/lti.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Eigen::Index;
+using Eigen::Matrix2d;
+using Eigen::MatrixXd;
+using Eigen::RowVector2d;
+using Eigen::VectorXd;
+
+/// Terms of omega^2 = a b - c d over it: more of them would cost it a digit.
+constexpr double kTerms = 10;
+/// Of two columns of B, in roundings of their cross product: they move the part in one direction.
+constexpr double kOneDirection = 8 * linalg::kEpsilon;
+
+/// A part in coordinate and rate, z = T x.
+struct Oscillator {
+  double stiffness = 0, damping = 0;
+  Matrix2d T;
+};
+
+/// A row t with t B = 0: the coordinate that inputs move by its rate only. None if columns of B
+/// have two directions.
+std::optional<RowVector2d> unmoved(const MatrixXd& B) {
+  Index largest = 0;
+  if (B.cwiseAbs().colwise().sum().maxCoeff(&largest) == 0) return RowVector2d(1, 0);
+  const Eigen::Vector2d b = B.col(largest);
+  for (Index j = 0; j < B.cols(); ++j) {
+    const double one = b(0) * B(1, j), other = b(1) * B(0, j);
+    if (std::abs(one - other) > kOneDirection * (std::abs(one) + std::abs(other)))
+      return std::nullopt;
+  }
+  // Of a coordinate as it is, the unit stays.
+  return b(0) == 0 ? RowVector2d(1, 0) : b(1) == 0 ? RowVector2d(0, 1) : RowVector2d(b(1), -b(0));
+}
+
+std::optional<Oscillator> oscillator(const Matrix2d& A, const MatrixXd& B) {
+  const double one = A(0, 0) * A(1, 1), other = A(0, 1) * A(1, 0);
+  Oscillator o{.stiffness = one - other, .damping = -A.trace(), .T = {}};
+  if (!(o.stiffness > 0) || !(o.damping >= 0) || !(o.damping * o.damping < 4 * o.stiffness) ||
+      !(std::abs(one) + std::abs(other) <= kTerms * o.stiffness))
+    return std::nullopt;
+  const std::optional<RowVector2d> t = unmoved(B);
+  if (!t) return std::nullopt;
+  o.T << *t, *t * A;
+  return o;
+}
+
+Oscillators sized(const Dynamics& d, Index count) {
+  return {VectorXd(count),
+          VectorXd(count),
+          MatrixXd(count, d.B.cols()),
+          MatrixXd(d.C.rows(), count),
+          MatrixXd(d.C.rows(), count),
+          {}};
+}
+
+/// Unit of a coordinate, a power of two, in which input and outputs act on it alike, as they do on
+/// the modes of a structure: modes of any units are projected together.
+double unit(const Eigen::RowVectorXd& b, const MatrixXd& C, double stiffness) {
+  const double in = b.norm(),
+               out = std::hypot(C.col(0).norm(), std::sqrt(stiffness) * C.col(1).norm());
+  return in > 0 && out > 0 ? std::exp2(std::round(std::log2(out / in) / 2)) : 1;
+}
+
+struct Found {
+  std::vector<std::pair<std::vector<int>, Oscillator>> parts;
+  std::vector<int> others;
+};
+
+Found find(const Dynamics& d) {
+  Found found;
+  for (std::vector<int>& part : linalg::uncoupled_parts(d.A)) {
+    std::optional<Oscillator> o;
+    if (part.size() == 2) o = oscillator(d.A(part, part), d.B(part, Eigen::all));
+    if (o)
+      found.parts.emplace_back(std::move(part), *o);
+    else
+      found.others.insert(found.others.end(), part.begin(), part.end());
+  }
+  return found;
+}
+
+/// Not a block of one's own by this name.
+bool is_lti(const Block& block) {
+  const Interface& face = block.interface();
+  return block.type() == "Lti" && face.channels.empty() && face.inputs.size() == 1 &&
+         face.outputs.size() == 1 && block.values().empty();
+}
+
+}  // namespace
+
+std::optional<Oscillators> oscillators(const Block& block) {
+  if (!is_lti(block)) return std::nullopt;
+  const auto d = block.dynamics({});
+  const Found found = find(*d);
+  if (found.parts.empty()) return std::nullopt;
+  Oscillators o = sized(*d, std::ssize(found.parts));
+  for (Index j = 0; j < o.stiffness.size(); ++j) {
+    const auto& [states, part] = found.parts[linalg::at(j)];
+    o.stiffness(j) = part.stiffness;
+    o.damping(j) = part.damping;
+    const Eigen::RowVectorXd b = part.T.row(1) * d->B(states, Eigen::all);
+    const MatrixXd C = d->C(Eigen::all, states) * part.T.inverse();
+    const double scale = unit(b, C, part.stiffness);
+    o.b.row(j) = scale * b;
+    o.c_q.col(j) = C.col(0) / scale;
+    o.c_v.col(j) = C.col(1) / scale;
+  }
+  o.rest = {d->A(found.others, found.others), d->B(found.others, Eigen::all),
+            d->C(Eigen::all, found.others), d->D};
+  return o;
+}
+
+BlockPtr lti_of(const Oscillators& o) {
+  const Index n = o.stiffness.size(), first = o.rest.A.rows(), all = first + 2 * n;
+  Lti lti{.A = MatrixXd::Zero(all, all),
+          .B = MatrixXd::Zero(all, o.rest.D.cols()),
+          .C = MatrixXd(o.rest.D.rows(), all),
+          .D = o.rest.D};
+  lti.A.topLeftCorner(first, first) = o.rest.A;
+  lti.A.block(first, first + n, n, n).setIdentity();
+  lti.A.block(first + n, first, n, n) = (-o.stiffness).asDiagonal();
+  lti.A.bottomRightCorner(n, n) = (-o.damping).asDiagonal();
+  lti.B.topRows(first) = o.rest.B;
+  lti.B.bottomRows(n) = o.b;
+  lti.C << o.rest.C, o.c_q, o.c_v;
+  return as_block(lti);
+}
+
+std::optional<Graph> in_coordinates(const Graph& graph) {
+  std::optional<Graph> result;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+    if (const auto o = oscillators(*graph.nodes[i].block)) {
+      if (!result) result = graph;
+      result->nodes[i].block = lti_of(*o);
+    }
+  return result;
+}
+
+Oscillators projected(const Oscillators& o, const MatrixXd& V, const VectorXd& stiffness) {
+  return {stiffness,           (V.transpose() * o.damping.asDiagonal() * V).diagonal(),
+          V.transpose() * o.b, o.c_q * V,
+          o.c_v * V,           o.rest};
+}
+
+}  // namespace titop::detail
