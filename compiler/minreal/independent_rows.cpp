@@ -16,21 +16,31 @@ using Eigen::VectorXd;
 using linalg::at;
 
 /// Weight in pivoting of a row of the next level: integrators leave before other states unless a
-/// coefficient of T would exceed 1 / 0.03. It decides which state leaves, not how many: with 1e-6,
-/// coefficients of 1e3 cost the transfer three digits (tests/minreal/digits.cpp).
-constexpr double kLater = 0.03;
+/// coefficient of T would exceed 1e3. It decides which state leaves, not how many: with 1e-6,
+/// coefficients cost the transfer three digits (tests/minreal/digits.cpp); with 0.03, modes of a
+/// beam leave before rates of its hub, and a rigid motion has five digits at 1e-5 of the first
+/// mode, not fifteen (tests/minreal/axial.cpp).
+constexpr double kLater = 1e-3;
 constexpr double kOfNoise = 1e12;  ///< times rounding: its weight in the scaling of rows
 
 /// Factors that bring the largest entries of all rows and columns to 1 [Ruiz 2001]; rows and
-/// columns of zeros keep theirs.
+/// columns of zeros keep theirs. Which factors these are depends on where the sweeps begin: in the
+/// units of the states, and with columns of ports of size 1, so that they are the same in any
+/// units.
 struct UnitScale {
   VectorXd row, column;
-  explicit UnitScale(MatrixXd sizes)
-      : row(VectorXd::Ones(sizes.rows())), column(VectorXd::Ones(sizes.cols())) {
+  /// `states`: units of the rows, and of as many columns.
+  UnitScale(MatrixXd sizes, const VectorXd& states)
+      : row(states.cwiseInverse()), column(VectorXd::Ones(sizes.cols())) {
     constexpr int kSweeps = 20;
     const auto unit = [](const VectorXd& size) {
       return VectorXd((size.array() > 0).select(size.cwiseSqrt().cwiseInverse(), 1.0));
     };
+    sizes = (row.asDiagonal() * sizes).eval();
+    column.head(states.size()) = states;
+    for (Index j = states.size(); j < sizes.cols(); ++j)
+      if (const double size = sizes.col(j).maxCoeff(); size > 0) column(j) = 1 / size;
+    sizes = (sizes * column.asDiagonal()).eval();
     for (int sweep = 0; sweep < kSweeps; ++sweep) {
       const VectorXd r = unit(sizes.rowwise().maxCoeff()), c = unit(sizes.colwise().maxCoeff());
       sizes = (r.asDiagonal() * sizes * c.asDiagonal()).eval();
@@ -125,11 +135,15 @@ void solve_for(const std::vector<int>& basis, const MatrixXd& scaled, const Vect
   for (const IndependentRows::RowRemainder& o : r.out) out.push_back(o.row);
   const Eigen::ColPivHouseholderQR<MatrixXd> qr(MatrixXd(scaled(basis, Eigen::all).transpose()));
   const MatrixXd share = qr.solve(MatrixXd(scaled(out, Eigen::all).transpose())).transpose();
+  // Of each coefficient per change of the row that it is found from.
+  const VectorXd sensitivity =
+      qr.solve(MatrixXd(MatrixXd::Identity(scaled.cols(), scaled.cols()))).rowwise().norm();
   for (Index k = 0; k < share.cols(); ++k) {
     const int row = basis[at(k)];
     const Index place = std::lower_bound(r.keep.begin(), r.keep.end(), row) - r.keep.begin();
     for (Index i = 0; i < share.rows(); ++i)
-      if (std::abs(share(i, k)) > detail::kRoundingFactor * r.out[at(i)].bound)
+      if (std::abs(share(i, k)) > detail::kRoundingFactor * r.out[at(i)].bound *
+                                      scaled.row(out[at(i)]).norm() * sensitivity(k))
         r.T(i, place) = share(i, k) * row_scale(row) / row_scale(out[at(i)]);
   }
 }
@@ -144,7 +158,7 @@ IndependentRows independent_rows(const MatrixXd& M, const MatrixXd& rounding, co
       (M.array().abs() > detail::kRoundingFactor * rounding.array()).select(M, 0.0);
   // A column that distinguishes some rows may be at rounding level in the others, and large: it
   // must not dominate these.
-  const UnitScale by(clear.cwiseAbs().cwiseMax(kOfNoise * rounding));
+  const UnitScale by(clear.cwiseAbs().cwiseMax(kOfNoise * rounding), unit);
   const MatrixXd scaled = by(clear);
   VectorXd weight(M.rows());
   std::vector<int> open;
