@@ -66,11 +66,32 @@ class SceneReduction {
   std::optional<ReducedSystem> try_reach(double accuracy) {
     std::optional<detail::ReducedData> data = reduction_->reach(accuracy);
     if (!data) return std::nullopt;
+    if (auto fewer = in_fewer_states(*data, accuracy)) data = std::move(fewer);
     data->scene.accuracy = accuracy;
     return ReducedSystem(std::make_shared<const detail::ReducedData>(*std::move(data)));
   }
 
  private:
+  /// Balanced states instead of a structure with more states than the minimal model, such as one
+  /// whose momenta are constant; looked at if the structure has kept most of the full model.
+  std::optional<detail::ReducedData> in_fewer_states(const detail::ReducedData& data,
+                                                     double accuracy) {
+    const int full = setting_.full.order();
+    const auto order = static_cast<int>(2 * data.small.order());
+    if (data.states || 2 * order <= full || full > setting_.options.minimize_up_to)
+      return std::nullopt;
+    const int minimal = setting_.full.state_space().order();
+    if (order <= minimal) return std::nullopt;
+    detail::Setting balanced = setting_;
+    balanced.model = setting_.full;
+    balanced.steps.clear();
+    balanced.why =
+        fmt::format("the second-order form has {} states, the minimal model {}", order, minimal);
+    std::optional<detail::ReducedData> fewer = detail::by_states(balanced)->reach(accuracy);
+    const bool better = fewer && fewer->states->order() <= minimal;
+    return better ? std::move(fewer) : std::nullopt;
+  }
+
   void compile_model(const Graph& graph) {
     setting_.timed("compile", [&] {
       Options options = setting_.options;  // of states, the minimal ones are balanced
