@@ -5,9 +5,12 @@
 #include <titop/titop.hpp>
 #include <vector>
 
+#include "support/rng.hpp"
+
 /// Modes of one frequency that are not one mode: orders from theory, transfers in closed form.
 
 using namespace titop;
+using titop_test::Rng;
 
 namespace {
 
@@ -149,4 +152,30 @@ TEST_CASE("minimal: motion in phase between two springs is seen, motion in oppos
   const auto G = s.state_space().transfer(at);
   CHECK(std::abs(G(0, 0) * (at * at + 4.0) - 1.0) <= 1e-13);
   CHECK(std::abs(G(0, 1) * (at * at + 4.0) / at - 1.0) <= 1e-13);
+}
+
+TEST_CASE("minimal: of three equal modes of one body, the two that move, at any frequency") {
+  // The base turns the second by rz, the third by ry and rz; the first is seen at C, and does not
+  // move. Moments on the base see two directions: two modes, four states.
+  Rng rng(4);
+  for (int trial = 0; trial < 30; ++trial) {
+    CAPTURE(trial);
+    ModalData m;
+    m.omega = Eigen::VectorXd::Constant(3, rng.between(0.5, 200));
+    m.xi = Eigen::VectorXd::Constant(3, rng.between(0.001, 0.3));
+    m.L_P = Eigen::MatrixXd::Zero(3, 6);
+    m.L_P(1, 5) = m.L_P(2, 4) = m.L_P(2, 5) = 1;
+    m.D_P = 10 * Matrix6::Identity();
+    Eigen::MatrixXd Phi = Eigen::MatrixXd::Zero(6, 3);
+    Phi.row(5) = rng.matrix(1, 3);
+    m.children.push_back({"C", {1, 0, 0}, Phi});
+    Diagram d{"prescribed"};
+    auto hub = d.add("hub", RigidBody{.mass = 10, .inertia = {1, 2, 3}, .children = {{"S"}}});
+    auto body = d.add("body", FlexibleBody(m));
+    hub.parent.accel = d.input("a", 6);
+    mount(body, hub.child("S"));
+    d.output("wrench", 6) = hub.parent.force;
+    d.output("motion", 6) = body.child("C").accel;
+    check_order(compile(d), 4);
+  }
 }

@@ -1,6 +1,8 @@
 #include <doctest/doctest.h>
 
 #include "held.hpp"
+#include "support/mistakes.hpp"
+#include "support/rng.hpp"
 
 /// Poles outside the band: at 0, unreachable or unobservable, and modes far below. The reference is
 /// written out by hand.
@@ -126,5 +128,23 @@ TEST_CASE("modes far below the band keep their high-frequency asymptote: a mass,
       CHECK(fine.bound <= 1);
       CHECK(fine.error <= 1.01 * accuracy);
     }
+  }
+}
+
+TEST_CASE("a free body that its own rate brakes has no gain at 0: refused at any mass and gain") {
+  Rng rng(7);
+  for (int trial = 0; trial < 36; ++trial) {
+    CAPTURE(trial);
+    Diagram d{"braked"};
+    auto u = d.input("u");
+    auto body = d.add("body", RigidBody{.mass = rng.between(1, 100), .inertia = {5, 6, 7}});
+    MatrixXd along = MatrixXd::Zero(6, 1);
+    along(trial % 6) = 1;
+    const MatrixXd back = along.transpose();
+    body.parent.force =
+        std::pow(10.0, rng.between(-3, 3)) * along * (back * body.parent.rate) - along * u;
+    d.output("x") = back * body.parent.position;
+    const titop::Scene scene{.band_hz = {0, rng.between(0.1, 10)}};
+    CHECK(says(error_of([&] { compile(d, scene); }), Code::bad_value, {"x", "band_hz", "u"}));
   }
 }
