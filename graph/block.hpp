@@ -141,6 +141,7 @@ class Block {
   virtual ~Block() = default;
   /// Stable type name: "SpringMass", "FlexibleBody", ...
   virtual std::string_view type() const = 0;
+  /// Ports and states; must not change. Checked by `compile` (`mistakes_of`).
   virtual const Interface& interface() const = 0;
   /// The matrices for these parameter values. Called several times per compile: keep them where
   /// they do not depend on parameters.
@@ -163,14 +164,14 @@ class Block {
   /// Kinematics of the ports, if the block defines them; no chain may close through a block without
   /// kinematics. A state in Phi needs another state as its rate: see Interface::rates.
   virtual std::optional<Kinematics> kinematics(ParameterValues) const { return std::nullopt; }
-  /// The values that the matrices depend on (only those that are parameters matter).
+  /// The values on which the matrices depend (only those that are parameters matter).
   virtual std::vector<Value> values() const { return {}; }
   /// The block at these values with the parameters of these indices taken out, each with as few
   /// pairs as it needs (RigidBody: mass 3, xx 1, xy 2, a component of PC or PA 4; SpringMass,
   /// Bushing and Gain: 1 per axis; FlexibleBody: omega 2, xi 1). None (the default): `lft` refuses
-  /// a parameter of this block by name (not_rational). Pairs of other parameters are not there.
-  /// graph/opened.hpp assembles it. The rows of B of states in `kinematics` stay 0 for w, and its
-  /// Phi must not depend on the parameter.
+  /// a parameter of this block by name (not_rational). The result has no pairs of other parameters;
+  /// its rows of B for states in `kinematics` are 0 in the columns of w, and its Phi must not
+  /// depend on the parameter. `with_pairs` (graph/opened.hpp) assembles it.
   virtual std::optional<Opened> opened(ParameterValues, std::span<const int> parameters) const {
     static_cast<void>(parameters);
     return std::nullopt;

@@ -46,6 +46,8 @@ class Diagram {
   Diagram& operator=(Diagram&&) = default;
   Diagram(const Diagram&) = delete;
   Diagram& operator=(const Diagram&) = delete;
+  /// An independent copy; blocks and their data are shared. Handles of the original keep pointing
+  /// into the original. O(size).
   Diagram clone() const;
 
   /// Adds a node; its handle has the block's ports. O(ports); the block's data are shared.
@@ -66,7 +68,8 @@ class Diagram {
   OutputRef output(std::string name, int size = 1,
                    std::source_location at = std::source_location::current());
 
-  /// A number with a name, to be used wherever a block takes a number.
+  /// A parameter: a number with a name and this nominal value, for use wherever a block or an
+  /// equation takes a number. Its unit is that of the number which it replaces.
   Param param(std::string name, double value,
               std::source_location at = std::source_location::current());
 

@@ -15,7 +15,7 @@ namespace titop {
 ///  - `-x`, `T_ba * x` and a part of x keep the quantity of x (T_ba also changes the frame);
 ///  - `3.0 * x`, `k * x`, `x / 2.0`, `M * x` give a plain signal: gains carry units. Parameters p
 ///    and q multiply as `p * (q * x)`;
-///  - `x + 2.0`, `x * x`, `x / p` do not compile: the error says what to write.
+///  - `x + 2.0`, `x * x`, `x / p` do not compile: the error names the linear form.
 class Expr {
  public:
   Expr() = default;
@@ -24,9 +24,9 @@ class Expr {
   Graph* graph() const { return graph_; }
   const std::vector<Term>& terms() const { return terms_; }
 
-  Expr plus(const Expr& other, double sign) const;
-  Expr times(const Factor& factor) const;
-  Expr negated() const;
+  Expr plus(const Expr& other, double sign) const;  ///< this + sign * other, O(terms)
+  Expr times(const Factor& factor) const;  ///< factor * this; a number or parameter: plain signal
+  Expr negated() const;                    ///< -this, of the same quantity
 
  private:
   Graph* graph_ = nullptr;

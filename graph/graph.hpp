@@ -42,6 +42,7 @@ class Part {
   std::shared_ptr<const NamedRows> held_;
 };
 
+/// An input, output or state vector of a node, or an external input of the diagram.
 struct Signal {
   /// Role in its block; external: in the diagram.
   enum class Role : std::int8_t { input, output, state, external };
@@ -71,6 +72,7 @@ struct Channel {
   Takes takes = Takes::force;
 };
 
+/// A block in the diagram, with its name.
 struct Node {
   std::string name = {};
   BlockPtr block = {};
@@ -109,6 +111,7 @@ struct Equation {
   std::source_location where = {};
 };
 
+/// An external input and its signal.
 struct Input {
   std::string name = {};
   int signal = -1, size = 1;
@@ -118,21 +121,24 @@ struct Input {
                        ///< the same name
 };
 
+/// An output of the diagram: the sum of its terms.
 struct Output {
   std::string name = {};
   int size = 1;
-  bool set = false;
+  bool set = false;  ///< it has its equation
   std::vector<Term> terms = {};
   std::source_location where = {};
   int declared = 0;  ///< position in the user's order
 };
 
+/// A parameter of the diagram.
 struct Parameter {
   std::string name = {};
-  double value = 0;
+  double value = 0;  ///< nominal
   std::source_location where = {};
 };
 
+/// A diagram as data; places in these lists are the indices above.
 struct Graph {
   std::string name = {};
   std::vector<Node> nodes;

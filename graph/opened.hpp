@@ -24,7 +24,7 @@ struct OpenedPair {
 bool is_opened(const Value& value, std::span<const int> parameters);
 
 /// The matrices with all pairs whose value is one of `parameters`, in the order of the list. The
-/// others are left out: their w is 0. O(entries).
+/// other pairs are omitted: their w is 0. O(entries).
 Opened with_pairs(const Dynamics& dynamics, const std::vector<OpenedPair>& pairs,
                   std::span<const int> parameters);
 

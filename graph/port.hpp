@@ -8,6 +8,7 @@
 /// them; copying one rebinds nothing: `=` between two ports is always an equation.
 namespace titop {
 
+/// Side of a channel, or a one-way port.
 enum class Kind { accel, force, plain };
 
 namespace detail {

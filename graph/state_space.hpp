@@ -15,7 +15,7 @@ struct StateSpace {
   Eigen::MatrixXd C;                                 ///< ny x n
   Eigen::MatrixXd D;                                 ///< ny x nu
   std::vector<std::string> states, inputs, outputs;  ///< "z1.stretch", "U(3)", ...
-  /// Per state the name of its rate, "" if it has none; empty: not known. `compile` knows it from
+  /// Per state the name of its rate, "" if it has none; empty: not known. `compile` takes it from
   /// the blocks (Interface::rates).
   std::vector<std::string> rates = {};
 

@@ -121,7 +121,8 @@ struct FullCertificate {
   bool holds() const { return faults.empty(); }
 };
 
-/// Writes the dense model, its poles and all that is listed above. O(n^3) in the states, and
+/// Computes all items above, with the dense model and its poles. A check that cannot be made is
+/// reported as `why_not`; throws the errors of System::state_space. O(n^3) in the states, and
 /// points * O(bodies). Does not change the system, except for its dense model, which is kept.
 FullCertificate certify(const System& system, const Full& subject = {});
 

@@ -6,10 +6,11 @@
 
 namespace titop::certification {
 
-/// Below the axis by more than rounding.
+/// A scaled eigenvalue (FullCertificate::Passivity::least) below minus this is no rounding.
 inline constexpr double kPassive = 1e-9;
 
-/// `structure`: see analysis/certify/structure.hpp.
+/// Least scaled eigenvalue of the Hermitian part of G / s over the points of `transfers`.
+/// `structure`: the diagram is a structure (analysis/certify/structure.hpp). O(points forces^3).
 FullCertificate::Passivity check_passivity(const passes::DualPairs& pairs,
                                            const DualTransfers& transfers, bool structure);
 

@@ -11,16 +11,17 @@
 ///
 ///     dH/dp_i = M_yw_i M_z_iu,   d2H/dp_i dp_j = M_yw_i M_z_iw_j M_z_ju + M_yw_j M_z_jw_i M_z_iu.
 ///
-/// No difference and no eigenvector is differentiated: equal poles are no special case but for the
-/// slopes of the poles themselves.
+/// No difference quotient is taken and no eigenvector is differentiated; only the slopes of poles
+/// treat equal poles separately.
 namespace titop {
 
 /// A pole, or poles that are equal, and how fast they move with each parameter.
 struct PoleSlopes {
   std::complex<double> s;  ///< [rad/s]
   int count = 1;           ///< equal poles
-  /// Per parameter, in the order of Derivatives::parameters(): `count` slopes, those of the poles
-  /// into which the equal ones split. Empty of a defective pole, which has none.
+  /// Per parameter, in the order of Derivatives::parameters(): `count` slopes [rad/s per unit of
+  /// the parameter], those of the poles into which the equal ones split. Empty for a defective
+  /// pole, which has none.
   std::vector<Eigen::VectorXcd> slopes;
   bool defective = false;  ///< fewer eigenvectors than poles, as of a double integrator
 };
@@ -36,7 +37,8 @@ struct PeakSlopes : Slopes {
   double omega = 0;  ///< where it is reached [rad/s]; infinite: of the direct term
 };
 
-/// At the values of the system that it was made from. Const, may be shared between threads.
+/// Derivatives at the parameter values of the system from which it was made. Const, may be shared
+/// between threads.
 class Derivatives {
  public:
   const std::vector<std::string>& parameters() const { return names_; }
@@ -51,20 +53,21 @@ class Derivatives {
   /// dH/dp at s for all parameters, in their order, by one factorisation and one solve per input
   /// and occurrence together.
   std::vector<Eigen::MatrixXcd> transfers(std::complex<double> s) const;
-  /// d2H/dp dq at s; p and q may be the same. Throws not_rational for a parameter by differences,
-  /// of which only the first derivative is known.
+  /// d2H/dp dq at s, outputs x inputs; p and q may be the same. Errors and cost as above; throws
+  /// not_rational for a parameter by differences, of which only the first derivative is known.
   Eigen::MatrixXcd transfer(std::complex<double> s, const std::string& p,
                             const std::string& q) const;
-  /// dA, dB, dC, dD by p of the dense model before `minimize` (System::write).
+  /// dA, dB, dC, dD by p of the dense model before `minimize` (System::write), with its names.
+  /// Throws unknown_name. O(states^2 occurrences of p).
   StateSpace matrices(const std::string& p) const;
   /// Poles of the dense model before `minimize` with their slopes, those of the upper half plane.
-  /// Poles closer than rounding lets tell count as equal: their slopes are the eigenvalues of L' dA
-  /// R, L' R = I, in their invariant subspace. O(states^3).
+  /// Poles that rounding does not separate count as equal: their slopes are the eigenvalues of L'
+  /// dA R, L' R = I, in their invariant subspace. O(states^3).
   std::vector<PoleSlopes> poles() const;
   /// H2 norm of the transfer (root mean square of the outputs under white noise of unit intensity),
-  /// by two Lyapunov equations for all parameters together [Z] 4. Throws singular if a pole is not
-  /// left of the axis, or if there is a direct term here or at neighbouring values, or if the norm
-  /// is 0. O(states^3).
+  /// by two Lyapunov equations for all parameters together [Zhou, Doyle, Glover 1996, ch. 4].
+  /// Throws singular if a pole is not left of the axis, or if there is a direct term here or at
+  /// neighbouring values, or if the norm is 0. O(states^3).
   Slopes h2() const;
   /// The largest singular value of the transfer over a band (norm_hinf), with slopes Re(u^H dH v),
   /// u and v its singular vectors: the peak's own motion along the frequencies does not matter.
@@ -95,8 +98,8 @@ class Derivatives {
 
 /// Derivatives by these parameters at the system's present values. Throws unknown_name,
 /// duplicate_name, and not_rational as `lft` does, but for blocks without `opened`
-/// (Derivatives::by_differences). Cost: that of `compile`, then as each function
-/// says: independent of the number of parameters but for their occurrences.
+/// (Derivatives::by_differences). Cost: that of `compile`; then that of each function, which
+/// depends on the occurrences of the parameters, not on their number.
 ///
 ///     const Derivatives g = derivatives(system, {"m", "tilt"});
 ///     const Eigen::MatrixXcd dH = g.transfer({0, 2.5}, "tilt");

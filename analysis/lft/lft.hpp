@@ -9,7 +9,7 @@
 ///     xdot = A x + B [w; u],   [z; y] = C x + D [w; u],   w = Delta z,
 ///
 /// Delta = diag(delta_1 I, ..., delta_q I) with delta_i in [-1, 1] for the range of parameter i, 0
-/// at its nominal value. [Z] 10; co-design as in [Alazard 2015].
+/// at its nominal value [Zhou, Doyle, Glover 1996, ch. 10]; co-design as in [Alazard 2015].
 namespace titop {
 
 namespace detail {
@@ -24,7 +24,7 @@ struct Delta {
   int size = 0;   ///< occurrences: an upper bound of the least possible number
   int built = 0;  ///< occurrences before the reduction
   /// Lower bound of the least number: the degree of the transfer in this parameter at random values
-  /// of the others and of s, in exact arithmetic. 0 if Lft::not_decided says why.
+  /// of the others and of s, in exact arithmetic. 0 if it was not computed (Lft::not_decided).
   int at_least = 0;
   ParameterMap map;
   std::vector<std::string> where;  ///< blocks and equations with it: "hub", "wing.parent.accel"
@@ -39,6 +39,7 @@ struct RankMargin {
   double dropped = 0;  ///< the largest one taken for 0
 };
 
+/// Result of `lft`. Const, cheap to read; may be shared between threads.
 class Lft {
  public:
   /// M in the units of the diagram: inputs [w; u], outputs [z; y].
@@ -89,8 +90,8 @@ class Lft {
 /// constant ones fewer may do where the lower bound is smaller [Beck, Doyle 1999; D'Andrea, Khatri
 /// 1997]. Ranks are those of singular values above 1e-9 of their rows, in the invariant subspaces
 /// of the poles (`rank_margin()`). If the reduced model differs from the other one by 1e-9 at some
-/// points, or has less than a lower bound, the model before reduction is kept: `size` equals
-/// `built` then.
+/// points, or has fewer occurrences than a lower bound, the model before reduction is kept: `size`
+/// equals `built` then.
 ///
 /// Throws unknown_name, duplicate_name; bad_value for a range without the nominal value inside, for
 /// one at whose end a block refuses the value, for an angle half a turn away without `full_turn`,

@@ -32,8 +32,8 @@ using ParameterRanges = std::vector<std::pair<std::string, ParameterRange>>;
 ///
 ///     d = p - nominal,   of an angle   d = tan((p - nominal) / 2),   with full_turn   tan(... / 4)
 ///
-/// it is delta = d / (gain - shape d): -1, 0 and 1 at the least, the nominal and the largest value
-/// [Moebius].
+/// it is the Moebius map delta = d / (gain - shape d), which is -1, 0 and 1 at the least, the
+/// nominal and the largest value. `gain` has the unit of d, `shape` none.
 struct ParameterMap {
   enum class Kind { number, half_angle, quarter_angle };
   Kind kind = Kind::number;
@@ -43,9 +43,9 @@ struct ParameterMap {
   /// For the range [from, to] around `nominal`, which must be inside.
   ParameterMap(Kind kind, double nominal, double from, double to);
   double deviation(double p) const;  ///< d
-  double delta(double p) const;
+  double delta(double p) const;      ///< in [-1, 1] for p in [from, to]
   double value(double delta) const;  ///< p
-  /// By which the deviation of an angle is divided: 2 or 4; 0 of a number.
+  /// Divisor of the deviation of an angle: 2 or 4; 0 for a number.
   int divisor() const;
 };
 

@@ -5,12 +5,16 @@
 
 namespace titop::detail {
 
-/// The same for cancellation inside the elimination, estimated from its rounding: kTermsPerRounding
-/// times double against long double at these points. Slow.
+/// Size of the terms that cancel inside the elimination, outputs x inputs: kTermsPerRounding times
+/// the difference between the transfers in double and in long double, the largest at these points.
+/// A point at which one of the two has no digit is omitted. Complements `terms` of a model or graph
+/// (compiler/definition/compare.hpp). O(bodies) per point, in long double.
 Eigen::MatrixXd terms(const System& system, const std::vector<std::complex<double>>& points);
 
-/// The same for an `exact` that is the system's own at these points. If that is above kClose,
-/// the terms of the elimination, at up to 8 of the points, join the measure first.
+/// Largest difference between the transfers `a` and `exact` at these points, in the blocks of
+/// `measure` (compiler/definition/compare.hpp). `exact` are the system's own transfers. If it
+/// exceeds kClose, the terms of the elimination at up to 8 of the points are added to `measure`,
+/// and the difference is computed again.
 Difference difference(const std::vector<Eigen::MatrixXcd>& a,
                       const std::vector<Eigen::MatrixXcd>& exact, Measure& measure,
                       const System& system, const std::vector<std::complex<double>>& points);

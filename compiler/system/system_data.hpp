@@ -13,6 +13,7 @@
 /// The data behind a System. For the library's own files only.
 namespace titop::detail {
 
+/// Per parameter of the graph the data that depend on it, for `update`. O(terms).
 std::vector<Dependents> find_dependents(const Stage& stage, const solve::JointSystem& joint);
 
 /// Data of a System: the factors, and results that are computed at their first use.

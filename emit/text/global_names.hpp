@@ -3,8 +3,8 @@
 #include <string_view>
 
 /// Names at global scope that the C library and the headers of POSIX and glibc declare, as far as
-/// the C++ library includes them, with their macros and the namespaces of those who may be in the
-/// same program. Words between blanks, with a blank before the first and behind the last.
+/// the C++ library includes them, with their macros and the namespaces of libraries that may be in
+/// the same program. Words between blanks, with a blank before the first and behind the last.
 namespace titop::emit {
 
 /// Functions with sisters for other types: sinf, sinl, sinf128.
