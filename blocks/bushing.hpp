@@ -37,8 +37,8 @@ class SixAxes {
   }
   /// The same with this value at (row, column) and (column, row), 1 to 6. Throws bad_value.
   SixAxes with(int row, int column, Value value) const;
-  Matrix6 at(ParameterValues values) const;
-  Matrix6 nominal() const;
+  Matrix6 at(ParameterValues values) const;  ///< 6 x 6, for these parameter values
+  Matrix6 nominal() const;                   ///< at the parameters' nominal values
   /// Those that are parameters, or were given by `with`.
   const std::vector<Entry>& entries() const { return entries_; }
   bool is_diagonal() const { return diagonal_; }  ///< given as six values

@@ -28,6 +28,7 @@ class Inertia {
   }
   Inertia(Value xx, Value yy, Value zz, Value xy = 0, Value xz = 0, Value yz = 0);
 
+  /// 3 x 3, for these parameter values.
   Matrix3d at(ParameterValues values) const;
   /// Parameters at their nominal values.
   Matrix3d nominal() const { return matrix_; }

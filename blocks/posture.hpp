@@ -18,7 +18,7 @@ struct LoopStep {
   Rotation turn = {};                ///< next joint's frame to the link's frame (nominal values)
 };
 
-/// Per joint, in the order of the loop:
+/// Result of `posture`; lists have one entry per joint, in the order of the loop.
 struct Posture {
   std::vector<double> values;  ///< angle [rad] or travel [m]
   /// Mounting rotation: frame of the link after the joint to frame of the link before it, with the
@@ -30,6 +30,7 @@ struct Posture {
   double gap = 0, gap_angle = 0;  ///< remaining misclosure [m], [rad]
 };
 
+/// Options of `posture`.
 struct PostureOptions {
   /// A loop counts as closed with gaps up to this, of its size [-] and in [rad]: more than the
   /// digits of the data, if it is overconstrained.

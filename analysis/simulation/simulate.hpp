@@ -54,6 +54,7 @@ enum class Stepper {
 };
 const char* to_string(Stepper stepper);
 
+/// Settings of `simulate`.
 struct Simulation {
   double step = 0;   ///< [s]
   double until = 0;  ///< [s]: a whole number of steps
@@ -66,7 +67,7 @@ struct Simulation {
   double accuracy = 0.01;
 };
 
-/// The result, a column per time.
+/// Result of `simulate`, a column per time.
 struct Trajectory {
   std::vector<double> time;  ///< [s]: 0, step, ..., until
   Eigen::MatrixXd y;         ///< outputs x times; where an input jumps, just after it (the last

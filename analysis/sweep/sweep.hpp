@@ -7,6 +7,7 @@
 
 namespace titop {
 
+/// Options of `sweep`.
 struct SweepOptions {
   int threads = 0;  ///< 0: all cores
   /// Called with (done, all) after each point, by one thread at a time: `progress_line()` draws it.
@@ -24,6 +25,7 @@ void sweep(const System& system, std::span<const ParameterList> points,
            const std::function<void(std::size_t, const System&)>& visit,
            const SweepOptions& options = {});
 
+/// Where `progress_line` draws.
 enum class DrawLine {
   on_terminals,  ///< nothing if the file is no terminal: logs stay short
   always,

@@ -17,6 +17,7 @@ struct GridDof {
   auto operator<=>(const GridDof&) const = default;
 };
 
+/// Stiffness and mass with the grid and component of each row; free in space.
 struct GridMatrices {
   std::string name;  ///< for messages
   std::vector<GridDof> dofs;

@@ -9,6 +9,7 @@
 /// Quality of the matrices of a mesh, before any modes are computed.
 namespace titop::fe {
 
+/// Mass properties and rigid-body check of a mesh.
 struct MeshReport {
   MassProperties mass;  ///< from R'MR about the origin: mass properties of M
   /// From the points alone: the mass that M assigns to each (its row sums over one direction) at

@@ -21,6 +21,7 @@ struct MassProperties {
 };
 MassProperties mass_properties(const Matrix6& D_P);
 
+/// Sign of a residual mass, within the digits of the data.
 enum class Definiteness {
   definite,    ///< can be inverted
   singular,    ///< zero to the data's own digits: never to be inverted
@@ -65,6 +66,7 @@ struct EffectiveMass {
 };
 EffectiveMass effective_mass(const ModalData& data);
 
+/// The checks above for one body.
 struct ModalReport {
   Eigen::VectorXd omega;  ///< [rad/s]
   MassProperties mass;

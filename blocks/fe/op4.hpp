@@ -8,6 +8,7 @@
 /// Reader for the matrices that Nastran writes by OUTPUT4 (also DMAP's MATOP4 of EXTSEOUT).
 namespace titop::fe {
 
+/// A matrix of an OP4 file.
 struct Op4Matrix {
   std::string name;  ///< as in the file, in capitals
   int form = 2;      ///< Nastran's: 1 square, 2 rectangular, 6 symmetric

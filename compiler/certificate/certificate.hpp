@@ -65,8 +65,10 @@ struct Certificate {
   double weakest_pivot = 1;
   std::string weakest_where;  ///< signal
   double pivot_growth = 1;    ///< largest ratio of a row's size to its least size before
-  /// Largest margin rho(|L^-1| |L|) of an algebraic loop with matrix L, and its first signal: 1 for
-  /// no loop, 4/delta at distance delta from singular; invariant under any change of units.
+  /// Largest margin rho(|L^-1| |L|) of an algebraic loop with matrix L, and its first signal: the
+  /// factor by which the loop may magnify relative errors of its entries. 1 for no loop, 4/delta at
+  /// relative distance delta from singular; invariant under any change of units. Above 4e7 the log
+  /// warns (docs/errors.md).
   double margin = 1;
   bool margin_is_exact = true;  ///< false if some loops were too large for it (see the notes),
                                 ///< or have no inverse in double (50 digits, or states, decide)

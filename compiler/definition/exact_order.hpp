@@ -22,6 +22,7 @@ enum class ExactRotations {
   nearest,    ///< else the exact rotation of the rounded quaternion, within rounding of the matrix
 };
 
+/// Limits of `exact_order`.
 struct ExactOptions {
   int states = 200;     ///< larger problems are refused: the cost is that of `exact_order`
   int unknowns = 4000;  ///< scalar port signals and states of a diagram: likewise

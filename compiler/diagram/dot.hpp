@@ -6,6 +6,7 @@
 
 namespace titop {
 
+/// Options of `to_dot`.
 struct DotOptions {
   /// Upper limit, approximate, of the number of blocks; larger subtrees are folded into one box
   /// each, with their number of blocks and states and their types. The parent of a block is the one

@@ -6,6 +6,7 @@
 
 namespace titop {
 
+/// Options of `minimize`.
 struct MinimizeOptions {
   double resolution = 0;  ///< also drop modes of visibility up to this; 0: at rounding level only
   int exact_order = -1;   ///< the minimal order, if exact arithmetic has found it; -1: not known

@@ -15,6 +15,7 @@ enum class CppStates {
               ///< no input or no output, so that the accuracy cannot be measured
 };
 
+/// Options of `generate_cpp`.
 struct CppOptions {
   std::string name = "model";  ///< of the namespace and of the files: a C++ identifier
                                ///< other than the C library's (sin, link, NULL)

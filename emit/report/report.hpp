@@ -10,6 +10,7 @@
 /// A report of a compiled diagram.
 namespace titop {
 
+/// Options of `report_html` and `write_report`.
 struct ReportOptions {
   std::string title = {};   ///< empty: the diagram's name
   std::string remark = {};  ///< a paragraph below it: purpose, revision, date
