@@ -1,7 +1,7 @@
 // One plan, many values: a boom of which the tip mass and the spring at its root are parameters.
-// `update` gives the system for other values; `sweep` does so on all cores; every model that comes
-// out is the one that assembly by hand gives for its numbers. Then a wing of which the mode is not
-// known well: its frequency and damping ratio are parameters, as is the inertia of its hub.
+// `update` gives the system for other values; `sweep` does so on all cores; every model agrees with
+// assembly by hand at the same values. Then a wing with one uncertain mode: its frequency and
+// damping ratio are parameters, as is the inertia of its hub.
 #include <cmath>
 #include <cstdio>
 #include <titop/titop.hpp>

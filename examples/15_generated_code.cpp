@@ -1,6 +1,6 @@
 // The demo's satellite as generated C++: examples/CMakeLists.txt calls titop_generate_model, which
 // compiles the diagram during the build and writes satellite.hpp, all that a flight or simulation
-// code needs, and satellite_test.cpp, which proves it. Here: a slew of the driven boom.
+// code needs, and satellite_test.cpp, which checks it. Here: a slew of the driven boom.
 #include <cmath>
 #include <cstdio>
 #include <titop/titop.hpp>

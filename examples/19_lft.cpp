@@ -1,8 +1,8 @@
 // Parameters taken out of a model: a satellite with two wings whose hub mass, tilt of the wings,
 // first frequency and damping are not fixed yet. One compile gives a linear fractional
 // transformation with the least number of occurrences of each; ten thousand designs are then closed
-// without compiling again, and exact derivatives say which way to go. Every model that comes out is
-// the one that assembly by hand gives for its numbers.
+// without compiling again, and exact derivatives give the effect of each parameter. Every model
+// agrees with assembly by hand at the same values.
 #include <Eigen/Geometry>
 #include <cstdio>
 #include <numbers>
