@@ -77,9 +77,9 @@ class SceneReduction {
   std::optional<detail::ReducedData> in_fewer_states(const detail::ReducedData& data,
                                                      double accuracy) {
     const int full = setting_.full.order();
-    const auto order = static_cast<int>(2 * data.small.order());
-    if (data.states || 2 * order <= full || full > setting_.options.minimize_up_to)
-      return std::nullopt;
+    if (data.states) return std::nullopt;
+    const int order = data.small.states();
+    if (2 * order <= full || full > setting_.options.minimize_up_to) return std::nullopt;
     const int minimal = setting_.full.state_space().order();
     if (order <= minimal) return std::nullopt;
     detail::Setting balanced = setting_;
@@ -87,9 +87,13 @@ class SceneReduction {
     balanced.steps.clear();
     balanced.why =
         fmt::format("the second-order form has {} states, the minimal model {}", order, minimal);
-    std::optional<detail::ReducedData> fewer = detail::by_states(balanced)->reach(accuracy);
-    const bool better = fewer && fewer->states->order() <= minimal;
-    return better ? std::move(fewer) : std::nullopt;
+    try {
+      std::optional<detail::ReducedData> fewer = detail::by_states(balanced)->reach(accuracy);
+      const bool better = fewer && fewer->states->order() <= minimal;
+      return better ? std::move(fewer) : std::nullopt;
+    } catch (const Error&) {  // states cannot be balanced: the structure stays
+      return std::nullopt;
+    }
   }
 
   void compile_model(const Graph& graph) {

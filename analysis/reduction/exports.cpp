@@ -16,9 +16,6 @@ using Eigen::MatrixXd;
 
 namespace {
 
-/// False for a motion without stiffness whose position is not read: it has a rate only.
-bool has_position(const detail::Small& m, Index j) { return m.k(j) != 0 || !m.cq.col(j).isZero(0); }
-
 MatrixXd damping(const detail::Small& m) {
   return m.Z.size() ? m.Z : MatrixXd(MatrixXd::Zero(m.order(), m.order()));
 }
@@ -74,7 +71,7 @@ StateSpace ReducedSystem::state_space() const {
   std::vector<Index> kept;
   std::vector<std::string> names;
   for (Index j = 0; j < m.order(); ++j)
-    if (has_position(m, j)) {
+    if (m.has_position(j)) {
       kept.push_back(j);
       names.push_back(fmt::format("mode{}", j + 1));
     }

@@ -49,6 +49,12 @@ void find_poles(Small& m) {
 
 }  // namespace
 
+int Small::states() const {
+  Index count = order();
+  for (Index j = 0; j < order(); ++j) count += has_position(j);
+  return static_cast<int>(count);
+}
+
 MatrixXcd Small::transfer(Complex s) const {
   if (order() == 0) return D0.cast<Complex>();
   if (Z.size() == 0 || own == order() || pole.size() == 0) {

@@ -27,6 +27,10 @@ struct Small {
   Eigen::MatrixXd instant;       ///< its direct term
 
   Eigen::Index order() const { return k.size(); }
+  /// False for a motion without stiffness whose position is not read: it has a rate only.
+  bool has_position(Eigen::Index j) const { return k(j) != 0 || !cq.col(j).isZero(0); }
+  /// Of the model: the rates, and the positions that it has.
+  int states() const;
   /// Outputs x inputs. O(r), O((r - own)^3) without `pole`.
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
   /// Responses of the coordinates to input m at s.

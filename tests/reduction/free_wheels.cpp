@@ -27,3 +27,15 @@ TEST_CASE("wheels: in free motion, no more states than the momenta leave, to any
       }
     }
 }
+
+// Six rates, of motions without stiffness whose positions nobody reads: as many states as the
+// minimal model has.
+TEST_CASE("a free body whose rates are read keeps its second-order form") {
+  Diagram d{"free"};
+  auto hub = d.add("hub", RigidBody{.mass = 3, .inertia = Eigen::Vector3d(1, 2, 2.5).asDiagonal()});
+  hub.parent.force = -d.input("U", 6);
+  d.output("v", 6) = hub.parent.rate;
+  const ReducedSystem r = compile(d, Scene{.band_hz = {0.1, 1}, .accuracy = 1e-3});
+  CHECK(r.order() == 6);
+  CHECK(r.second_order().M.rows() == 6);
+}
