@@ -1,4 +1,6 @@
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <titop/analysis/reduction/oscillators.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
@@ -14,10 +16,13 @@ using Eigen::MatrixXd;
 using Eigen::RowVector2d;
 using Eigen::VectorXd;
 
-/// Terms of omega^2 = a b - c d over it: more of them would cost it a digit.
+/// Terms of omega^2 = a b - c d, and of det T, over it: more of them would cost it a digit.
 constexpr double kTerms = 10;
 /// Of two columns of B, in roundings of their cross product: they move the part in one direction.
 constexpr double kOneDirection = 8 * linalg::kEpsilon;
+
+/// The least number of full precision.
+constexpr double kLeast = std::numeric_limits<double>::min();
 
 /// A part in coordinate and rate, z = T x.
 struct Oscillator {
@@ -30,9 +35,11 @@ struct Oscillator {
 std::optional<RowVector2d> unmoved(const MatrixXd& B) {
   Index largest = 0;
   if (B.cwiseAbs().colwise().sum().maxCoeff(&largest) == 0) return RowVector2d(1, 0);
-  const Eigen::Vector2d b = B.col(largest);
+  const Eigen::Vector2d b = B.col(largest) / B.col(largest).cwiseAbs().maxCoeff();
   for (Index j = 0; j < B.cols(); ++j) {
-    const double one = b(0) * B(1, j), other = b(1) * B(0, j);
+    // Columns of any size, whose product may be no number.
+    const Eigen::Vector2d c = B.col(j) / std::max(B.col(j).cwiseAbs().maxCoeff(), kLeast);
+    const double one = b(0) * c(1), other = b(1) * c(0);
     if (std::abs(one - other) > kOneDirection * (std::abs(one) + std::abs(other)))
       return std::nullopt;
   }
@@ -40,15 +47,20 @@ std::optional<RowVector2d> unmoved(const MatrixXd& B) {
   return b(0) == 0 ? RowVector2d(1, 0) : b(1) == 0 ? RowVector2d(0, 1) : RowVector2d(b(1), -b(0));
 }
 
+/// True if these two terms leave all digits but one of their difference.
+bool differ(double one, double other) {
+  return std::abs(one) + std::abs(other) <= kTerms * std::abs(one - other);
+}
+
 std::optional<Oscillator> oscillator(const Matrix2d& A, const MatrixXd& B) {
   const double one = A(0, 0) * A(1, 1), other = A(0, 1) * A(1, 0);
   Oscillator o{.stiffness = one - other, .damping = -A.trace(), .T = {}};
-  if (!(o.stiffness > 0) || !(o.damping >= 0) || !(o.damping * o.damping < 4 * o.stiffness) ||
-      !(std::abs(one) + std::abs(other) <= kTerms * o.stiffness))
-    return std::nullopt;
+  if (!(o.stiffness > 0) || !(o.damping >= 0) || !differ(one, other)) return std::nullopt;
   const std::optional<RowVector2d> t = unmoved(B);
   if (!t) return std::nullopt;
   o.T << *t, *t * A;
+  // The rate is another combination than the coordinate: t is no left eigenvector.
+  if (!differ(o.T(0, 0) * o.T(1, 1), o.T(0, 1) * o.T(1, 0))) return std::nullopt;
   return o;
 }
 
@@ -66,7 +78,7 @@ Oscillators sized(const Dynamics& d, Index count) {
 double unit(const Eigen::RowVectorXd& b, const MatrixXd& C, double stiffness) {
   const double in = b.norm(),
                out = std::hypot(C.col(0).norm(), std::sqrt(stiffness) * C.col(1).norm());
-  return in > 0 && out > 0 ? std::exp2(std::round(std::log2(out / in) / 2)) : 1;
+  return in > 0 && out > 0 ? std::exp2(std::round((std::log2(out) - std::log2(in)) / 2)) : 1;
 }
 
 struct Found {
@@ -112,7 +124,10 @@ std::optional<Oscillators> oscillators(const Block& block) {
     o.b.row(j) = scale * b;
     o.c_q.col(j) = C.col(0) / scale;
     o.c_v.col(j) = C.col(1) / scale;
+    o.q.push_back(states.front());
+    o.v.push_back(states.back());
   }
+  o.others = found.others;
   o.rest = {d->A(found.others, found.others), d->B(found.others, Eigen::all),
             d->C(Eigen::all, found.others), d->D};
   return o;
@@ -120,17 +135,27 @@ std::optional<Oscillators> oscillators(const Block& block) {
 
 BlockPtr lti_of(const Oscillators& o) {
   const Index n = o.stiffness.size(), first = o.rest.A.rows(), all = first + 2 * n;
+  const bool in_place = std::ssize(o.q) == n;
+  const auto places = [&](const std::vector<int>& given, Index from, Index count) {
+    std::vector<int> result(linalg::at(count));
+    std::iota(result.begin(), result.end(), static_cast<int>(from));
+    return in_place ? given : result;
+  };
+  const std::vector<int> rest = places(o.others, 0, first), q = places(o.q, first, n),
+                         v = places(o.v, first + n, n);
   Lti lti{.A = MatrixXd::Zero(all, all),
           .B = MatrixXd::Zero(all, o.rest.D.cols()),
           .C = MatrixXd(o.rest.D.rows(), all),
           .D = o.rest.D};
-  lti.A.topLeftCorner(first, first) = o.rest.A;
-  lti.A.block(first, first + n, n, n).setIdentity();
-  lti.A.block(first + n, first, n, n) = (-o.stiffness).asDiagonal();
-  lti.A.bottomRightCorner(n, n) = (-o.damping).asDiagonal();
-  lti.B.topRows(first) = o.rest.B;
-  lti.B.bottomRows(n) = o.b;
-  lti.C << o.rest.C, o.c_q, o.c_v;
+  lti.A(rest, rest) = o.rest.A;
+  lti.A(q, v) = MatrixXd::Identity(n, n);
+  lti.A(v, q) = (-o.stiffness).asDiagonal().toDenseMatrix();
+  lti.A(v, v) = (-o.damping).asDiagonal().toDenseMatrix();
+  lti.B(rest, Eigen::all) = o.rest.B;
+  lti.B(v, Eigen::all) = o.b;
+  lti.C(Eigen::all, rest) = o.rest.C;
+  lti.C(Eigen::all, q) = o.c_q;
+  lti.C(Eigen::all, v) = o.c_v;
   return as_block(lti);
 }
 

@@ -2,6 +2,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <numeric>
 
 #include "held.hpp"
@@ -195,13 +197,28 @@ TEST_CASE(
     "a modal block that inputs move in two directions is no structure, and reduced as states") {
   const Modes modes(6);
   Lti lti = modes.lti(Form::real);
-  lti.B(0, 1) += 0.5;
+  lti.B(6, 1) += 0.5;  // of the fourth mode
   const titop::Scene scene{.band_hz = {0, 3}, .accuracy = 1e-2};
   const ReducedSystem r = compile(alone(lti), scene);
-  CHECK(says(error_of([&] { r.second_order(); }), Code::bad_value, {"structure.x1"}));
+  CHECK(says(error_of([&] { r.second_order(); }), Code::bad_value, {"structure.x7"}));
   const auto exact = [&](Complex s) {
     const MatrixXcd K = s * MatrixXcd::Identity(12, 12) - lti.A;
     return MatrixXcd(lti.C * K.fullPivLu().solve(MatrixXcd(lti.B.cast<Complex>())));
   };
   check_beside(r, scene, with_poles(r, exact));
+}
+
+TEST_CASE("an overdamped block among modal blocks is a coordinate like the others") {
+  Modes modes(6);
+  Lti lti = modes.lti(Form::frequency);
+  const double w = modes.omega(2);
+  lti.A(5, 5) = -2 * 1.2 * w;
+  const titop::Scene scene{.band_hz = {0, 10}, .accuracy = 1e-9};
+  const ReducedSystem r = compile(alone(lti), scene);
+  CHECK(r.second_order().M.rows() == 6);
+  for (const Complex s : {Complex(0, 1), Complex(0.1, 2 * w), Complex(0, 30)}) {
+    const MatrixXcd K = s * MatrixXcd::Identity(12, 12) - lti.A;
+    const MatrixXcd exact = lti.C * K.fullPivLu().solve(MatrixXcd(lti.B.cast<Complex>()));
+    CHECK((r.transfer(s) - exact).cwiseAbs().maxCoeff() <= 1e-10 * exact.cwiseAbs().maxCoeff());
+  }
 }
