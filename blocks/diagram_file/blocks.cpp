@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <titop/blocks/bushing.hpp>
 #include <titop/blocks/diagram_file/blocks.hpp>
 #include <titop/blocks/flexible_body.hpp>
@@ -191,16 +192,26 @@ Json six_axes(const SixAxes& m, const WriteValue& value) {
   return result;
 }
 
+bool same(const Value& a, const Value& b) {
+  return a.index() == b.index() && a.scale() == b.scale() && a.nominal() == b.nominal();
+}
+
+/// Symmetric: parameters are the same on both sides of the diagonal.
 SixAxes read_rows(const JsonPlace& p, const ReadValue& value) {
   Matrix6 numbers;
   std::vector<SixAxes::Entry> entries;
-  for (int i = 0; i < 6; ++i) {
-    const JsonPlace row = p.item(linalg::at(i));
+  std::array<std::array<Value, 6>, 6> all;
+  for (std::size_t i = 0; i < 6; ++i) {
+    const JsonPlace row = p.item(i);
     if (row.size() != 6) row.refuse("six numbers or parameters");
-    for (int j = 0; j < 6; ++j) {
-      const Value v = value(row.item(linalg::at(j)));
-      numbers(i, j) = v.nominal();
-      if (v.is_parameter() && i <= j) entries.push_back({i, j, v});
+    for (std::size_t j = 0; j < 6; ++j) {
+      const Value v = all[i][j] = value(row.item(j));
+      const int r = static_cast<int>(i), c = static_cast<int>(j);
+      numbers(r, c) = v.nominal();
+      if (v.is_parameter() && i <= j) entries.push_back({r, c, v});
+      if (i > j && (v.is_parameter() || all[j][i].is_parameter()) && !same(v, all[j][i]))
+        row.item(j).refuse(
+            fmt::format("as in row {}, column {}: the matrix is symmetric", j + 1, i + 1));
     }
   }
   SixAxes m(numbers);

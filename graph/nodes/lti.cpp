@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <titop/graph/linalg/shifted.hpp>
 #include <titop/graph/nodes/lti.hpp>
 #include <titop/graph/opened.hpp>
@@ -30,14 +31,21 @@ double* entry_of(Dynamics& d, const Lti::Entry& e) {
   return &(*m)(e.row - 1, e.column - 1);
 }
 
-/// Puts the nominal values into the matrices. Throws bad_value for a place that is none.
+/// Puts the nominal values into the matrices. Throws bad_value for a place that is none, and for
+/// two values at one place.
 void fill(Dynamics& d, const std::vector<Lti::Entry>& entries) {
+  std::set<const double*> filled;
   for (const Lti::Entry& e : entries) {
     double* number = entry_of(d, e);
     if (!number)
       throw Error(Code::bad_value,
                   fmt::format("Lti: a value is given for {}({}, {})", e.matrix, e.row, e.column),
                   "matrices are A, B, C and D, rows and columns count from 1");
+    if (!filled.insert(number).second)
+      throw Error(
+          Code::bad_value,
+          fmt::format("Lti: two values are given for {}({}, {})", e.matrix, e.row, e.column),
+          "give one value per place: a sum of parameters is a parameter of its own");
     *number = e.value.nominal();
   }
 }

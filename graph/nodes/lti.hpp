@@ -5,15 +5,15 @@
 namespace titop {
 
 /// A controller or filter: xdot = A x + B in, out = C x + D in; plain signals without frames. `add`
-/// checks shapes (code size), entries (not_finite) and places of values (bad_value). With A = 0, B
-/// = C = 1 and D = 0 it is an Integrator; an integral that is already a state of a body adds no
-/// state. One transfer costs O(n^2) for each uncoupled part of A (modal blocks: O(n)), after O(n^3)
-/// once.
+/// checks shapes (code size), entries (not_finite) and places of values (bad_value: outside of the
+/// matrix, or given twice). With A = 0, B = C = 1 and D = 0 it is an Integrator; an integral that
+/// is already a state of a body adds no state. One transfer costs O(n^2) for each uncoupled part of
+/// A (modal blocks: O(n)), after O(n^3) once; with parameters among `values` O(n^3).
 ///
 ///     auto K = d.add("K", Lti{.A = a, .B = b, .C = c, .D = Eigen::MatrixXd::Zero(1, 1)});
 ///     K.in = h.rate;   h.torque = K.out;
 struct Lti {
-  /// A value in place of a number of a matrix.
+  /// A value in place of a number of a matrix, one per place.
   struct Entry {
     char matrix = 'A';        ///< 'A', 'B', 'C' or 'D'
     int row = 1, column = 1;  ///< from 1

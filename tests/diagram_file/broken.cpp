@@ -166,6 +166,25 @@ TEST_CASE("values of modes and entries of an inertia are refused with their plac
   rigid("[1, 1, 1]", {"blocks[0].inertia[0]", "1", "3"});
 }
 
+TEST_CASE("parameters of a matrix of six axes are the same on both sides of its diagonal") {
+  // The stiffness with these values at (1, 2) and (2, 1), counted from 1.
+  const auto with = [](const std::string& upper, const std::string& lower) {
+    return replaced(kGood, "\"blocks\": [",
+                    R"("blocks": [{"name": "b", "type": "Bushing", "damping": [0, 0, 0, 0, 0, 0],
+      "stiffness": [[50, )" +
+                        upper + ", 0, 0, 0, 0], [" + lower + R"(, 50, 0, 0, 0, 0],
+      [0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, 0, 0, 0, 1]]}, )");
+  };
+  const std::string k = R"({"parameter": "k"})", twice = R"({"parameter": "k", "scale": 2})";
+  CHECK_NOTHROW(parse_diagram(with(k, k)));
+  CHECK_NOTHROW(parse_diagram(with(twice, twice)));
+  for (const auto& [upper, lower] :
+       {std::pair<std::string, std::string>{"10", k}, {k, "10"}, {k, twice}, {"0", k}, {k, "0"}})
+    titop_test::check_refused([&] { parse_diagram(with(upper, lower), "cart.json"); },
+                              Code::bad_file,
+                              {"cart.json", "blocks[0].stiffness[1][0]", "row 1, column 2"});
+}
+
 TEST_CASE("numbers that make no block are refused with the block's name") {
   refused("\"mass\": 1", "\"mass\": -1", {"cart.json", "blocks[0]", "z", "SpringMass", "mass -1"},
           Code::bad_inertia);

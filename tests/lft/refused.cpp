@@ -98,6 +98,23 @@ TEST_CASE("values outside of a range, and a pole inside") {
   CHECK(error_of([&] { f.at({{"a", -2}}); }).has(Code::singular));
 }
 
+TEST_CASE("two values at one place of an Lti") {
+  Diagram d{"twice"};
+  const Param p = d.param("p", 0.5), q = d.param("q", 0.25);
+  const auto lti = [&](std::vector<Lti::Entry> values) {
+    return Lti{.A = Eigen::Matrix2d{{-1, 2}, {-2, -3}},
+               .B = Eigen::Vector2d(1, 0),
+               .C = Eigen::RowVector2d(0, 1),
+               .values = std::move(values)};
+  };
+  for (const Value& second : {Value(q), Value(p), Value(3)})
+    CHECK(says(error_of([&] {
+                 as_block(lti({{'A', 2, 1, p}, {'A', 2, 1, second}}));
+               }),
+               Code::bad_value, {"A(2, 1)"}));
+  CHECK_NOTHROW(as_block(lti({{'A', 2, 1, p}, {'A', 1, 2, q}, {'B', 2, 1, p}})));
+}
+
 TEST_CASE("what is no rational function of its parameter is refused by name") {
   Diagram d{"own"};
   const Param p = d.param("p", 0.5);
