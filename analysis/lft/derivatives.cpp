@@ -49,7 +49,7 @@ Derivatives derivatives(const System& system, const std::vector<std::string>& pa
     to_open.push_back({.parameter = list.back().index, .differences = true});
   }
   if (!mistakes.empty()) throw Error(std::move(mistakes));
-  Derivatives g{System(detail::compile_opened(system, to_open))};
+  Derivatives g{system, System(detail::compile_opened(system, to_open))};
   detail::OpenedMatrices opened = detail::opened_matrices(g.opened_, list);
   g.m_ = std::move(opened.m);
   g.in_ = std::move(opened.in), g.out_ = std::move(opened.out);

@@ -71,14 +71,17 @@ class Derivatives {
   Slopes h2() const;
   /// The largest singular value of the transfer over a band (norm_hinf), with slopes Re(u^H dH v),
   /// u and v its singular vectors: the peak's own motion along the frequencies does not matter.
-  /// Throws as norm_hinf does (also for more than 600 states), and bad_value where the peak has no
-  /// derivative: two peaks of one height, or two equal singular values, up to 1e-8. O(200 states^3)
-  /// per level.
+  /// Found on System::state_space(): poles on the axis that no input reaches or no output sees do
+  /// not count, unless omega itself is one. Throws as norm_hinf does (also for more than 600
+  /// states), and bad_value where the peak has no derivative: two peaks of one height, or two equal
+  /// singular values, up to 1e-8, or a gain that is constant over the band. Cost: that of
+  /// state_space() once, and O(200 states^3) per level.
   PeakSlopes peak(const HinfOptions& options = {}) const;
 
  private:
   friend Derivatives derivatives(const System&, const std::vector<std::string>&);
-  explicit Derivatives(System opened) : opened_(std::move(opened)) {}
+  Derivatives(System system, System opened)
+      : system_(std::move(system)), opened_(std::move(opened)) {}
   struct Pairs {
     Eigen::Index first = 0, size = 0;
     double slope = 1;   ///< of the deviation by the parameter: 1, of an angle 1/2
@@ -88,7 +91,7 @@ class Derivatives {
   /// M(s), inputs [w; u], outputs [z; y].
   Eigen::MatrixXcd opened_at(std::complex<double> s) const;
 
-  System opened_;
+  System system_, opened_;
   StateSpace m_;                        ///< of `opened_`, inputs [w; u], outputs [z; y]
   std::vector<Eigen::Index> in_, out_;  ///< places of its inputs and outputs in `opened_`
   std::vector<std::string> names_, by_differences_;

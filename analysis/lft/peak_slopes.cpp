@@ -35,10 +35,7 @@ void require_simple(const HinfNorm& n) {
 
 PeakSlopes Derivatives::peak(const HinfOptions& options) const {
   const Index ny = m_.D.rows() - all_pairs_, nu = m_.D.cols() - all_pairs_;
-  StateSpace user;
-  user.A = m_.A, user.B = m_.B.rightCols(nu), user.C = m_.C.bottomRows(ny);
-  user.D = m_.D.bottomRightCorner(ny, nu);
-  const HinfNorm n = norm_hinf(user, options);
+  const HinfNorm n = norm_hinf(system_.state_space(), options);
   require_simple(n);
   const std::complex<double> s{0, n.omega};
   const Eigen::MatrixXcd M =
@@ -46,7 +43,8 @@ PeakSlopes Derivatives::peak(const HinfOptions& options) const {
   const Eigen::RowVectorXcd from_w = n.left.adjoint() * M.bottomLeftCorner(ny, all_pairs_);
   const Eigen::VectorXcd to_z = M.topRightCorner(all_pairs_, nu) * n.right;
   PeakSlopes result;
-  result.value = n.value, result.omega = n.omega;
+  result.omega = n.omega;
+  result.value = (n.left.adjoint() * M.bottomRightCorner(ny, nu) * n.right).value().real();
   result.slopes.resize(static_cast<Index>(pairs_.size()));
   for (Index i = 0; i < result.slopes.size(); ++i) {
     const Pairs& p = pairs_[static_cast<std::size_t>(i)];

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <titop/analysis/norms/hinf.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
@@ -92,7 +93,7 @@ std::vector<double> crossings(const StateSpace& m, double gamma, double from, do
   return result;
 }
 
-/// One point of each interval between neighbours.
+/// One point of each interval between neighbours; none of an interval that rounding has closed.
 std::vector<double> midpoints(const std::vector<double>& ends) {
   std::vector<double> result;
   for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
@@ -116,19 +117,37 @@ HinfNorm first(const Gain& gain, const Eigen::VectorXcd& poles, double from, dou
   return best;
 }
 
-/// The intervals of these frequencies in which the largest singular value exceeds the level.
+/// The intervals of these frequencies in which the largest singular value exceeds the level; of
+/// width 0 if it does so at one of them only, whose neighbours rounding has merged with it.
 std::vector<std::array<double, 2>> above(const Gain& gain, const std::vector<double>& ends,
                                          double level) {
   std::vector<std::array<double, 2>> result;
   bool inside = false;
-  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-    if (!(ends[i + 1] > ends[i])) continue;
-    const bool now = gain.at(midpoints({ends[i], ends[i + 1]}).front()).value > level;
-    if (now && inside) result.back()[1] = ends[i + 1];
-    if (now && !inside) result.push_back({ends[i], ends[i + 1]});
+  const auto take = [&](double from, double to, double omega) {
+    const bool now = gain.at(omega).value > level;
+    if (now && inside) result.back()[1] = to;
+    if (now && !inside) result.push_back({from, to});
     inside = now;
+  };
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    take(ends[i], ends[i], ends[i]);
+    if (i + 1 == ends.size()) break;
+    for (const double omega : midpoints({ends[i], ends[i + 1]})) take(ends[i], ends[i + 1], omega);
   }
   return result;
+}
+
+/// The end of the band at which the gain is still that of `best`, if the farther end of the
+/// interval around it is one. A singular value that is constant somewhere is constant everywhere,
+/// since it is analytic: a plateau reaches both ends of the band. A single peak ends at crossings
+/// of the level, kEqual lower; one that the band cuts off does so at the farther end.
+std::optional<double> plateau(const Gain& gain, const HinfNorm& best,
+                              const std::array<double, 2>& around,
+                              const std::array<double, 2>& band) {
+  const double end = around[1] - best.omega > best.omega - around[0] ? around[1] : around[0];
+  const bool of_band = end == band[0] || end == band[1];
+  if (!of_band || end == best.omega || gain.at(end).value < best.value * (1 - kAbove)) return {};
+  return end;
 }
 
 /// Where the slope is 0 in the interval around `best`: Newton's step, with the curvature of the
@@ -145,6 +164,14 @@ HinfNorm refined(const Gain& gain, HinfNorm best, const std::array<double, 2>& a
     best = std::move(next);
   }
   return best;
+}
+
+void check_finite(const StateSpace& m) {
+  for (const MatrixXd* matrix : {&m.A, &m.B, &m.C, &m.D})
+    if (!matrix->allFinite())
+      throw Error(Code::not_finite,
+                  "an entry of the model is not finite: it has no H-infinity norm",
+                  "check the source of its matrices");
 }
 
 void check(const StateSpace& m, const Eigen::VectorXcd& poles, double from, double to) {
@@ -172,6 +199,7 @@ HinfNorm norm_hinf(const StateSpace& model, const HinfOptions& options) {
                 fmt::format("reduce it to {} states or fewer: compile(diagram, Scene{{...}}), or "
                             "take frequency_response",
                             kMostStatesOfHinf));
+  check_finite(model);
   const double from = 2 * std::numbers::pi * options.band_hz[0],
                to = 2 * std::numbers::pi * options.band_hz[1];
   const StateSpace m = scaled(model);
@@ -183,17 +211,25 @@ HinfNorm norm_hinf(const StateSpace& model, const HinfOptions& options) {
   for (bool larger = true; larger;) {
     const double level = best.value * (1 + kAbove);
     larger = false;
-    for (const double omega : midpoints(crossings(m, level, from, to)))
+    std::vector<double> points = crossings(m, level, from, to);
+    const std::vector<double> between = midpoints(points);
+    points.insert(points.end(), between.begin(), between.end());
+    for (const double omega : points)
       if (HinfNorm p = gain.at(omega); p.value > best.value)
         larger = larger || p.value > level, best = std::move(p);
   }
   const double level = best.value * (1 - kEqual);
+  std::vector<double> ends = crossings(m, level, from, to);
+  ends.insert(std::upper_bound(ends.begin(), ends.end(), best.omega), best.omega);
+  const double found = best.omega;  // in one of the intervals: its gain is above the level
   std::vector<double> others;
-  for (const auto& interval : above(gain, crossings(m, level, from, to), level)) {
-    if (interval[0] <= best.omega && best.omega <= interval[1])
+  for (const auto& interval : above(gain, ends, level)) {
+    if (interval[0] <= found && found <= interval[1]) {
+      if (const auto end = plateau(gain, best, interval, {from, to})) others.push_back(*end);
       best = refined(gain, std::move(best), interval);
-    else
+    } else {
       others.push_back((interval[0] + interval[1]) / 2);
+    }
   }
   best.others = std::move(others);
   return best;

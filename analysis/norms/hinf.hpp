@@ -20,7 +20,9 @@ struct HinfNorm {
   double omega = 0;              ///< [rad/s]; infinite: of the direct term
   Eigen::VectorXcd left, right;  ///< its singular vectors, of norm 1
   double second = 0;             ///< second singular value of H there; 0 of one input or output
-  /// Frequencies apart from omega at which the largest singular value is as large, up to 1e-8.
+  /// Frequencies apart from omega at which the largest singular value is as large, up to 1e-8; of
+  /// neighbouring peaks between which it falls by less only one counts. Where it is constant: the
+  /// farther end of the band.
   std::vector<double> others;
 };
 
@@ -30,13 +32,15 @@ inline constexpr int kMostStatesOfHinf = 600;
 /// The H-infinity norm by level sets [Bruinsma, Steinbuch 1990; Boyd, Balakrishnan, Kabamba 1989]:
 /// a singular value of H(j omega) is gamma where the Hamiltonian matrix of gamma has the eigenvalue
 /// j omega; the largest singular value at the midpoints of these frequencies is the next gamma,
-/// until none is larger. All eigenvalues count, also those off the axis: at worst a point more is
-/// evaluated, and no tolerance decides. omega is then refined to where the slope of the singular
-/// value is 0. Poles right of the axis are allowed: the result is then the L-infinity norm.
+/// until none is larger by 1e-10. All eigenvalues count, also those off the axis, and the gain is
+/// evaluated at them, too, since rounding may merge neighbours: at worst a point more is evaluated,
+/// and no tolerance decides which ones are on the axis. omega is then refined to where the slope of
+/// the singular value is 0. Poles right of the axis are allowed: the result is then the L-infinity
+/// norm.
 ///
 /// Throws singular if a pole lies on the axis inside of the band (the norm is infinite), bad_value
-/// for a band that is none and for a model of more than kMostStatesOfHinf states, not_finite.
-/// O(200 states^3) per level, of which there are 3 to 6.
+/// for a band that is none and for a model of more than kMostStatesOfHinf states, not_finite for an
+/// entry of the model that is not. O(200 states^3) per level, of which there are 3 to 6.
 ///
 ///     const HinfNorm n = norm_hinf(system.state_space(), {.band_hz = {0, 10}});
 HinfNorm norm_hinf(const StateSpace& model, const HinfOptions& options = {});

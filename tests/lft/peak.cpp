@@ -39,6 +39,44 @@ TEST_CASE("the peak of an oscillator in closed form") {
   CHECK(off(p.slopes(2), -P / c + P * c / (4 * m * m * r * r)) <= 1e-10);
 }
 
+TEST_CASE("a peak at an end of the band, and at infinity") {
+  // 1 / sqrt(N), N = (k - m w^2)^2 + c^2 w^2, rising up to the resonance at 2 rad/s
+  const double m = 2, k = 8, c = 0.3, w = 2 * std::numbers::pi * 0.2, stiff = k - m * w * w,
+               P = 1 / std::hypot(stiff, c * w);
+  const PeakSlopes low = derivatives(pair(1, 500, 1), {"m", "k", "c"}).peak({.band_hz = {0, 0.2}});
+  CHECK(off(low.value, P) <= 1e-13);
+  CHECK(off(low.omega, w) <= 1e-15);
+  CHECK(off(low.slopes(0), P * P * P * stiff * w * w) <= 1e-12);
+  CHECK(off(low.slopes(1), -P * P * P * stiff) <= 1e-12);
+  CHECK(off(low.slopes(2), -P * P * P * c * w * w) <= 1e-12);
+
+  Diagram d{"lead"};  // (p s + 1) / (s + 1)
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
+  auto high = d.add("high", Lti{.A = -one, .B = one, .C = -one, .D = one});
+  auto rest = d.add("rest", Lti{.A = -one, .B = one, .C = one});
+  const auto u = d.input("u");
+  high.in = u, rest.in = u;
+  d.output("y") = d.param("p", 3) * high.out + rest.out;
+  const PeakSlopes end = derivatives(compile(d), {"p"}).peak();
+  CHECK(std::isinf(end.omega));
+  CHECK(off(end.value, 3) <= 1e-15);
+  CHECK(off(end.slopes(0), 1) <= 1e-15);
+}
+
+TEST_CASE("a pole on the axis that no output sees is none of the peak") {
+  Diagram d{"beside"};  // beside the oscillator of the closed form: one without damping, not read
+  auto hidden = d.add("hidden", SpringMass{.mass = 1, .stiffness = 9});
+  auto seen = d.add("seen", SpringMass{.mass = 2, .stiffness = d.param("k", 8), .damping = 0.3});
+  ground(hidden), ground(seen);
+  const auto u = d.input("u");
+  hidden.child.force = u, seen.child.force = u;
+  d.output("x") = seen.stretch;
+  const double r = std::sqrt(4 - 0.3 * 0.3 / 16), P = 1 / (0.3 * r);
+  const PeakSlopes p = derivatives(compile(d), {"k"}).peak();
+  CHECK(off(p.value, P) <= 1e-13);
+  CHECK(off(p.slopes(0), -P / (2 * r * r * 2)) <= 1e-10);
+}
+
 TEST_CASE("the satellite's peak in a band against differences of the norm") {
   const Satellite s{.xi = 0.02};
   const System system = compile(s.diagram());
@@ -73,6 +111,19 @@ TEST_CASE("a peak without a derivative is refused with both of what is equal") {
   // The same oscillator twice: two equal singular values.
   CHECK(says(error_of([] { derivatives(pair(2, 8, 0.3), {"k"}).peak(); }), Code::bad_value,
              {"1.9971"}));
+  // (s + p - 2) / (s + p) with p = 1: 1 everywhere, of slope -1 at 0 and 0 at infinity.
+  Diagram d{"pass"};
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
+  auto f = d.add("f", Lti{.A = -one,
+                          .B = one,
+                          .C = -2 * one,
+                          .D = one,
+                          .values = {{'A', 1, 1, -1 * d.param("p", 1)}}});
+  f.in = d.input("u");
+  d.output("y") = f.out;
+  const Derivatives pass = derivatives(compile(d), {"p"});
+  CHECK(says(error_of([&] { pass.peak(); }), Code::bad_value, {"rad/s"}));
+  CHECK(says(error_of([&] { pass.peak({.band_hz = {0.1, 3}}); }), Code::bad_value, {"rad/s"}));
   const Derivatives undamped = derivatives(pair(2, 9, 0), {"k"});
   CHECK(says(error_of([&] { undamped.peak(); }), Code::singular, {"2.1213"}));
 }

@@ -93,6 +93,48 @@ TEST_CASE("direct terms and poles on the right") {
   CHECK(off(norm_hinf(gain).value, 5) <= 1e-15);
 }
 
+TEST_CASE("a constant gain is no single peak, a flat one is") {
+  // (s - 1) / (s + 1), and (s^2 - 0.6 s + 9) / (s^2 + 0.6 s + 9): 1 everywhere.
+  CHECK(norm_hinf(direct(-1, 1, -2, 1)).others.size() == 1);
+  StateSpace pass = one_mode(3, 0.1);
+  pass.C = MatrixXd{{0, -1.2}}, pass.D = MatrixXd::Ones(1, 1);
+  for (const HinfOptions& band : {HinfOptions{}, {.band_hz = {0.1, 2}}, {.band_hz = {1, 1e9}}}) {
+    const HinfNorm n = norm_hinf(pass, band);
+    CHECK(off(n.value, 1) <= 1e-12);
+    CHECK(n.others.size() == 1);
+  }
+  // 1 / (s + 1) and (3 s + 1) / (s + 1), at ends of bands, too.
+  for (const double low : {0.0, 0.2}) {
+    CHECK(norm_hinf(direct(-1, 1, 1, 0), {.band_hz = {low, 5}}).others.empty());
+    CHECK(norm_hinf(direct(-1, -2, 1, 3), {.band_hz = {low, 5}}).others.empty());
+    CHECK(norm_hinf(direct(-1, -2, 1, 3), {.band_hz = {low, HUGE_VAL}}).others.empty());
+  }
+  // A peak 1e-7 of its frequency from an end of the band; it has fallen by 1e-8 at 1e-5 of that.
+  const double top = 3 * std::sqrt(1 - 2 * 0.01) / (2 * pi);
+  CHECK(norm_hinf(one_mode(3, 0.1), {.band_hz = {0.1, top * (1 + 1e-7)}}).others.empty());
+  CHECK(norm_hinf(one_mode(3, 0.1), {.band_hz = {top * (1 - 1e-7), 2}}).others.empty());
+  // Butterworth's low pass of order 4: |H|^2 = 1 / (1 + omega^8).
+  StateSpace flat;
+  const double a = 2 * (std::cos(pi / 8) + std::cos(3 * pi / 8)), b = 2 + std::sqrt(2.0);
+  flat.A = MatrixXd{{0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}, {-1, -a, -b, -a}};
+  flat.B = MatrixXd{{0}, {0}, {0}, {1}}, flat.C = MatrixXd{{1, 0, 0, 0}};
+  flat.D = MatrixXd::Zero(1, 1);
+  const HinfNorm n = norm_hinf(flat);
+  CHECK(off(n.value, 1) <= 1e-12);
+  CHECK(n.others.empty());
+}
+
+TEST_CASE("a peak so narrow that rounding merges its crossings") {
+  // Half bandwidth 1e-12 of omega: the peak falls by 1e-8 within the rounding of omega.
+  const double xi = 1e-12;
+  for (const double omega : {1e-3, 1.0, 7.3, 2e4}) {
+    CAPTURE(omega);
+    const HinfNorm n = norm_hinf(one_mode(omega, xi));
+    CHECK(off(n.value, peak_of(omega, xi)) <= 1e-14 / xi);
+    CHECK(n.others.empty());
+  }
+}
+
 TEST_CASE("matrices: singular values and vectors of turned channels") {
   // y = Q diag(g1, g2) R u with orthogonal Q and R.
   const auto turn = [](double a) {
@@ -158,6 +200,13 @@ TEST_CASE("what has no norm is refused") {
   CHECK(std::string(undamped.what()).find("+10j") != std::string::npos);
   CHECK(error_of([] { norm_hinf(direct(0, 1, 1, 0)); }).has(Code::singular));
   CHECK(error_of([] { norm_hinf(one_mode(1, 0.1), {.band_hz = {3, 2}}); }).has(Code::bad_value));
+  for (MatrixXd StateSpace::*matrix :
+       {&StateSpace::A, &StateSpace::B, &StateSpace::C, &StateSpace::D})
+    for (const double bad : {std::nan(""), HUGE_VAL}) {
+      StateSpace broken = one_mode(1, 0.1);
+      (broken.*matrix)(0, 0) = bad;
+      CHECK(says(error_of([&] { norm_hinf(broken); }), Code::not_finite, {"finite"}));
+    }
   StateSpace large;
   large.A = -MatrixXd::Identity(601, 601);
   large.B = MatrixXd::Ones(601, 1), large.C = MatrixXd::Ones(1, 601),
