@@ -43,8 +43,9 @@ class Derivatives {
  public:
   const std::vector<std::string>& parameters() const { return names_; }
   /// Parameters of blocks without Block::opened, each with its block: "shaft of rotor". Their
-  /// derivatives are those of the block's matrices by differences, to 1e-12 of them, never of the
-  /// solved model.
+  /// derivatives are those of the block's matrices by differences, never of the solved model: right
+  /// to 1e-12 of an entry that changes by its own size over p, at worst to 1e-9 of the derivative's
+  /// row or to 1e-11 of the matrices' row over p (compiler/passes/open/differences.hpp).
   const std::vector<std::string>& by_differences() const { return by_differences_; }
 
   /// dH/dp at s, outputs x inputs [unit of H per unit of p]. Throws unknown_name, and singular if s
@@ -100,9 +101,10 @@ class Derivatives {
 };
 
 /// Derivatives by these parameters at the system's present values. Throws unknown_name,
-/// duplicate_name, and not_rational as `lft` does, but for blocks without `opened`
-/// (Derivatives::by_differences). Cost: that of `compile`; then that of each function, which
-/// depends on the occurrences of the parameters, not on their number.
+/// duplicate_name, and not_rational as `lft` does; for blocks without `opened` only if their
+/// derivative is not known (Derivatives::by_differences): values near the present one are refused,
+/// or the matrices are not smooth there. Cost: that of `compile`; then that of each
+/// function, which depends on the occurrences of the parameters, not on their number.
 ///
 ///     const Derivatives g = derivatives(system, {"m", "tilt"});
 ///     const Eigen::MatrixXcd dH = g.transfer({0, 2.5}, "tilt");

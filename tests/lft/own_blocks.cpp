@@ -144,6 +144,83 @@ TEST_CASE("an own block in a loop: derivative in closed form, and what it is sai
 
 namespace {
 
+/// xdot = -x + in, out = f(p) x, of which some values may be refused.
+struct Shaped {
+  Value p;
+  double (*f)(double);
+  using Handle = Lti::Handle;
+};
+
+class ShapedBlock : public Block {
+ public:
+  explicit ShapedBlock(const Shaped& spec) : spec_(spec) {
+    face_.inputs = {{"in", 1}};
+    face_.outputs = {{"out", 1}};
+    face_.states = {"x"};
+  }
+  std::string_view type() const override { return "Shaped"; }
+  const Interface& interface() const override { return face_; }
+  std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
+    const auto one = [](double x) { return MatrixXd::Constant(1, 1, x); };
+    return std::make_shared<Dynamics>(
+        Dynamics{one(-1), one(1), one(spec_.f(spec_.p.at(values))), one(0)});
+  }
+  std::vector<Value> values() const override { return {spec_.p}; }
+  bool has_frame() const override { return false; }
+
+ private:
+  Interface face_;
+  Shaped spec_;
+};
+
+BlockPtr as_block(const Shaped& spec) { return std::make_shared<ShapedBlock>(spec); }
+
+/// One of them, with its parameter at this value.
+System shaped(double p, double (*f)(double)) {
+  Diagram d{"shaped"};
+  auto c = d.add("c", Shaped{d.param("p", p), f});
+  c.in = d.input("u");
+  d.output("y") = c.out;
+  return compile(d);
+}
+
+}  // namespace
+
+TEST_CASE("a derivative by differences that is 0") {
+  const Complex s{0.3, 1.1};
+  for (const auto& [p, f] :
+       {std::pair<double, double (*)(double)>{0, [](double x) { return 1 - x * x; }},
+        {0.7, [](double) { return 2.0; }}}) {
+    const Derivatives g = derivatives(shaped(p, f), {"p"});
+    CHECK(g.by_differences() == std::vector<std::string>{"p of c"});
+    CHECK(g.transfer(s, "p").isZero(0));
+    CHECK(g.poles()[0].slopes[0].isZero(0));
+    CHECK(g.peak().slopes(0) == 0);
+  }
+}
+
+TEST_CASE("differences that do not converge, and values that the block refuses") {
+  const auto error = [](double p, double (*f)(double)) {
+    return error_of([&] { derivatives(shaped(p, f), {"p"}); });
+  };
+  const auto kink = [](double x) { return std::abs(x - 1.001); };
+  CHECK(says(error(1, kink), Code::not_rational, {"c", "Shaped", "p", "0.00391"}));
+  const auto wave = [](double x) { return std::sin(200 * x); };  // 0.8 rad per step
+  CHECK(says(error(1, wave), Code::not_rational, {"c", "Shaped", "p", "0.00391"}));
+  const auto short_of = [](double x) {
+    if (x > 1.001) throw Error(Code::bad_value, "the reach is at most 1.001", "take a shorter one");
+    return x;
+  };
+  CHECK(says(error(1, short_of), Code::not_rational,
+             {"c", "Shaped", "p", "the reach is at most 1.001", "take a shorter one"}));
+  // Of a large number with a small part that changes only the rounding of the number is lost.
+  const auto small_part = [](double x) { return 1e4 + std::exp(x); };
+  const Eigen::MatrixXcd dH = derivatives(shaped(1, small_part), {"p"}).transfer(1, "p");
+  CHECK(std::abs(dH(0, 0) - std::exp(1) / 2) <= 1e-11 * 1e4);
+}
+
+namespace {
+
 /// A lever between two bodies, beyond which a rate and a position are read.
 System with_lever(bool opens, bool moves) {
   Diagram d{"reach"};

@@ -1,8 +1,10 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/passes/open/differences.hpp>
-#include <titop/graph/error.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/opened.hpp>
 
 namespace titop::passes {
@@ -26,28 +28,65 @@ bool moves_points(const Block& block, ParameterValues a, ParameterValues b) {
 
 constexpr double kStep = 0x1p-8;
 
-double step_of(double value) { return kStep * (value == 0 ? 1 : std::abs(value)); }
+/// A power of two: value + step and value - step are then exact.
+double step_of(double value) { return value == 0 ? kStep : std::ldexp(kStep, std::ilogb(value)); }
 
-/// Derivative of [A, B; C, D] by the parameter; none if it moves points, or if values near it are
-/// refused.
-std::optional<MatrixXd> by_differences(const Block& block, ParameterValues given, int parameter) {
+/// Largest error of a row of the derivative by the estimate of extrapolation, relative to the row.
+constexpr double kSmooth = 1e-9;
+
+/// A derivative of [A, B; C, D], or why it is not known.
+struct BlockDerivative {
+  MatrixXd derivative;
+  std::optional<Mistake> why_not;
+};
+
+BlockDerivative unknown(std::string why, std::string hint) {
+  return {{}, Mistake{Code::not_rational, std::move(why), {}, std::move(hint)}};
+}
+
+/// `error` is small for each row of the derivative, or as small as rounding of the block's own row
+/// makes it at this step.
+bool is_small(const MatrixXd& error, const MatrixXd& derivative, const MatrixXd& matrix,
+              double step) {
+  for (Index i = 0; i < error.rows(); ++i)
+    if (!(error.row(i).norm() <= kSmooth * derivative.row(i).norm() +
+                                     linalg::kProductRounding * matrix.row(i).norm() / step))
+      return false;
+  return true;
+}
+
+/// Derivative of [A, B; C, D] by the parameter; unknown if it moves points, if values near it are
+/// refused, or if the extrapolation does not converge.
+BlockDerivative by_differences(const Block& block, ParameterValues given, int parameter) {
   std::vector<double> values(given.begin(), given.end());
   double& p = values[at(parameter)];
   const double here = p, step = step_of(here);
+  bool moves = false;
   const auto central = [&](double h) {
     p = here + h;
-    const bool moves = moves_points(block, given, values);
+    moves = moves || moves_points(block, given, values);
     const MatrixXd more = matrices(*block.dynamics(values));
     p = here - h;
-    if (moves) throw Error(Code::not_rational, "", "");
     return MatrixXd((more - matrices(*block.dynamics(values))) / (2 * h));
   };
   try {
     const MatrixXd a = central(step), b = central(step / 2), c = central(step / 4);
-    const MatrixXd ab = (4 * b - a) / 3, bc = (4 * c - b) / 3;
-    return (16 * bc - ab) / 15;
-  } catch (const Error&) {
-    return std::nullopt;
+    const MatrixXd ab = (4 * b - a) / 3, bc = (4 * c - b) / 3, all = (16 * bc - ab) / 15;
+    if (moves)
+      return unknown("it moves the block's points",
+                     "give Opened::motions (OpenedPair::moves), or use sweep");
+    if (is_small(all - bc, all, matrices(*block.dynamics(given)), step / 4)) return {all, {}};
+    return unknown(
+        fmt::format("its matrices are not smooth in it: differences at steps of {:.3g}, {:.3g} and "
+                    "{:.3g} do not agree to {:.0e}",
+                    step, step / 2, step / 4, kSmooth),
+        "write Block::opened for it, or use sweep");
+  } catch (const Error& error) {
+    const Mistake& m = error.mistakes().front();
+    return unknown(
+        fmt::format("at a distance of {:.3g} or less from {:.6g} it is refused: {}", step, here,
+                    m.message),
+        "write Block::opened for it, or take a value farther inside of its range; " + m.hint);
   }
 }
 
@@ -92,8 +131,14 @@ std::optional<Opened> opened_to_first_order(const Block& block, ParameterValues 
   if (!o) o = with_pairs(*block.dynamics(values), {}, parameters);
   for (const int p : parameters)
     if (std::find(o->parameter.begin(), o->parameter.end(), p) == o->parameter.end())
-      if (const auto derivative = by_differences(block, values, p)) add_pairs(*o, *derivative, p);
+      if (const BlockDerivative d = by_differences(block, values, p); !d.why_not)
+        add_pairs(*o, d.derivative, p);
   return o;
+}
+
+std::optional<Mistake> why_no_differences(const Block& block, ParameterValues values,
+                                          int parameter) {
+  return by_differences(block, values, parameter).why_not;
 }
 
 }  // namespace titop::passes

@@ -41,6 +41,18 @@ struct Opening {
          "write Block::opened for it, or leave the parameter out and use sweep"});
   }
 
+  /// Refuses the parameter if its derivative is not known; one of 0 has no pairs.
+  void check_difference(const Node& node, int parameter) {
+    const auto why = why_no_differences(*node.block, values, parameter);
+    if (!why) return;
+    mistakes.push_back(
+        {Code::not_rational,
+         fmt::format("{}: a {} has no derivative by the parameter {}: {}", node.name,
+                     node.block->type(), from.parameters[at(parameter)].name, why->message),
+         {},
+         why->hint});
+  }
+
   void refuse_motion(const Node& node, int parameter) {
     mistakes.push_back(
         {Code::not_rational,
@@ -62,7 +74,7 @@ struct Opening {
     for (const int p : wanted)
       if (std::none_of(ports.back().begin(), ports.back().end(),
                        [&](const OpenedPorts& o) { return o.parameter == p; }))
-        refuse(node, p);
+        differences ? check_difference(node, p) : refuse(node, p);
       else if (moves_points_unsaid(*node.block, values, p))
         refuse_motion(node, p);
     return ports.back().empty() ? node.block : opened_block(node.block, ports.back(), differences);
