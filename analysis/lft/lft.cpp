@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <titop/analysis/lft/close.hpp>
 #include <titop/analysis/lft/lft.hpp>
 #include <titop/analysis/lft/lower_bounds.hpp>
@@ -10,11 +11,13 @@
 #include <titop/compiler/system/compile_graph.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/similarity_scaling.hpp>
 
 namespace titop {
 namespace {
 
 using Eigen::Index;
+using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using linalg::at;
@@ -72,6 +75,14 @@ void check_corners(const StateSpace& m, const std::vector<Delta>& deltas) {
   }
 }
 
+/// "k = 4.1, a = -2"
+std::string to_text(const ParameterList& values) {
+  std::string text;
+  for (const auto& [name, value] : values)
+    text += fmt::format("{}{} = {:.6g}", text.empty() ? "" : ", ", name, value);
+  return text.empty() ? "nominal values" : text;
+}
+
 /// The largest relative difference of two transfers with deltas in [-1, 1], at some points;
 /// infinite if they could be compared at none.
 double difference(const StateSpace& a, const std::vector<int>& pairs_a, const StateSpace& b,
@@ -105,6 +116,19 @@ detail::Structured small_model(const StateSpace& opened, const std::vector<int>&
   constexpr double kSame = 1e-9;
   if (difference(whole, sizes, small.m, small.sizes) <= kSame) return small;
   return {whole, sizes, small.margin};
+}
+
+/// The largest sum of magnitudes of a column.
+double norm1(const MatrixXcd& m) { return m.cwiseAbs().colwise().sum().maxCoeff(); }
+
+/// z of (I - loop) z = F; none if that is singular: if it is as small as the rounding of I and loop
+/// would make it, or its reciprocal condition number is (kWellPosed).
+std::optional<MatrixXcd> solved_loop(const MatrixXcd& loop, const MatrixXcd& F) {
+  if (loop.size() == 0) return F;
+  const MatrixXcd E = MatrixXcd::Identity(loop.rows(), loop.rows()) - loop;
+  const Eigen::PartialPivLU<MatrixXcd> lu(E);
+  if (!(lu.rcond() * norm1(E) > detail::kWellPosed * (1 + norm1(loop)))) return std::nullopt;
+  return MatrixXcd(lu.solve(F));
 }
 
 }  // namespace
@@ -207,24 +231,26 @@ StateSpace Lft::at(const ParameterList& values) const {
   return std::move(*result);
 }
 
-std::vector<Eigen::MatrixXcd> Lft::transfers(std::complex<double> s,
-                                             std::span<const ParameterList> values) const {
-  const Eigen::MatrixXcd M = m_.transfer(s);
+std::vector<MatrixXcd> Lft::transfers(std::complex<double> s,
+                                      std::span<const ParameterList> values) const {
+  MatrixXcd M = m_.transfer(s);
   const Index r = occurrences(), nu = M.cols() - r, ny = M.rows() - r;
-  std::vector<Eigen::MatrixXcd> result;
+  MatrixXd sizes = M.topLeftCorner(r, r).cwiseAbs();
+  const VectorXd d = linalg::similarity_scaling(sizes);  // of w and z, for any units
+  M.topRows(r) = MatrixXcd(d.cwiseInverse().asDiagonal() * M.topRows(r));
+  M.leftCols(r) = MatrixXcd(M.leftCols(r) * d.asDiagonal());
+  std::vector<MatrixXcd> result;
   for (const ParameterList& list : values) {
     const VectorXd deltas = deltas_at(list);
-    const Eigen::MatrixXcd E = Eigen::MatrixXcd::Identity(r, r) -
-                               Eigen::MatrixXcd(M.topLeftCorner(r, r) * deltas.asDiagonal());
-    Eigen::MatrixXcd H = M.bottomRightCorner(ny, nu);
-    if (r > 0) {
-      const Eigen::PartialPivLU<Eigen::MatrixXcd> lu(E);
-      const Eigen::MatrixXcd z = lu.solve(Eigen::MatrixXcd(M.topRightCorner(r, nu)));
-      H += M.bottomLeftCorner(ny, r) * Eigen::MatrixXcd(deltas.asDiagonal() * z);
-    }
-    if (!H.allFinite())
-      throw Error(Code::singular, "s is a pole of the model at these values", "take another s");
-    result.push_back(std::move(H));
+    const MatrixXcd loop = M.topLeftCorner(r, r) * deltas.asDiagonal();
+    const auto z = solved_loop(loop, M.topRightCorner(r, nu));
+    if (!z)
+      throw Error(Code::singular,
+                  fmt::format("s = {:.6g}{:+.6g}j is a pole of the LFT at {}", s.real(), s.imag(),
+                              to_text(list)),
+                  "take another s, or damp the model");
+    result.emplace_back(M.bottomRightCorner(ny, nu) +
+                        M.bottomLeftCorner(ny, r) * MatrixXcd(deltas.asDiagonal() * *z));
   }
   return result;
 }

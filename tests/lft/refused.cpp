@@ -96,6 +96,15 @@ TEST_CASE("values outside of a range, and a pole inside") {
   CHECK(says(error_of([&] { f.at({{"b", 7}}); }), Code::unknown_name, {"b", "k, a"}));
   CHECK(says(error_of([&] { f.at({{"k", 4}, {"k", 4.1}}); }), Code::duplicate_name, {"k"}));
   CHECK(error_of([&] { f.at({{"a", -2}}); }).has(Code::singular));
+  // (2 + a) s^2 + k = 0 at s = 2j, a = -1: exactly on the pole
+  const std::vector<ParameterList> values{{{"k", 4.1}}, {{"k", 4}, {"a", -1}}};
+  const Error both = error_of([&] { f.transfers({0, 2}, values); });
+  CHECK(says(both, Code::singular, {"0+2j", "k = 4", "a = -1"}));
+  // The same with one occurrence.
+  const Lft one = lft(spring(), {{"k", percent(30)}});
+  const std::vector<ParameterList> stiff{{{"k", 5}}};  // 2.5 s^2 + 5 = 0
+  const Error alone = error_of([&] { one.transfers({0, std::sqrt(2.0)}, stiff); });
+  CHECK(says(alone, Code::singular, {"0+1.41421j", "k = 5"}));
 }
 
 TEST_CASE("two values at one place of an Lti") {
