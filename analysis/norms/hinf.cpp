@@ -52,7 +52,8 @@ class Gain {
     return std::move(x.z);
   }
   static HinfNorm of(const MatrixXcd& H, double omega) {
-    HinfNorm p{.omega = omega};
+    HinfNorm p;
+    p.omega = omega;
     if (H.size() == 0) return p;
     const Eigen::JacobiSVD<MatrixXcd> svd(H, Eigen::ComputeThinU | Eigen::ComputeThinV);
     p.value = svd.singularValues()(0);
