@@ -205,7 +205,7 @@ int main() {
                         "place of the wing [m]", "gain of the angle [N m/rad]",
                         "gain of the rate [N m s/rad]"};
   for (int i = 0; i < kVariables; ++i)
-    std::printf("  %-34s %9.3f\n", what[i], x(i) * kReference(i));
+    std::printf("  %-34s %9.4g\n", what[i], x(i) * kReference(i));
   const char* bounds[] = {"pointing", "sensitivity", "frequency"};
   for (int i = 0; i < kConstraints; ++i)
     std::printf("  %-12s %s\n", bounds[i], c.g(i) > -1e-8 ? "at its bound" : "below its bound");
