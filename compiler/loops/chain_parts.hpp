@@ -5,7 +5,7 @@
 
 namespace titop::loops {
 
-/// What lies on the ways round the closed chains, after all passes.
+/// Ties and bodies on the ways round the closed chains, after all passes.
 struct ChainParts {
   std::vector<int> equations;  ///< of Stage::graph: ties
   std::vector<int> nodes;      ///< bodies
