@@ -137,11 +137,12 @@ double largest_ratio(const Eigen::MatrixXd& terms, const Eigen::MatrixXd& size) 
   return result;
 }
 
-/// Blocks of so many states are looked at part by part.
+/// Fewer states are solved in one part: their n^3 steps cost no more than the search for parts.
 constexpr Index kManyStates = 16;
 
 /// States that do not act on each other: all in one part if they are few.
-std::vector<std::vector<int>> uncoupled(const Eigen::MatrixXd& A) {
+using Parts = std::vector<std::vector<int>>;
+Parts uncoupled(const Eigen::MatrixXd& A) {
   if (A.rows() >= kManyStates) return linalg::uncoupled_parts(A);
   std::vector<int> all(at(A.rows()));
   std::iota(all.begin(), all.end(), 0);
@@ -156,14 +157,15 @@ Dynamics part_of(const Dynamics& d, const std::vector<int>& states) {
 /// |K^-1| |K| |X| and |D| + |C| |X| + |C K^-1| |K| |X|, independent of the units of states and
 /// ports. Infinite if double has less than two digits of K^-1.
 template <class T>
-double cancels(const Dynamics& d, const T& s, const solve::BlockResponse<T>& r) {
+double cancels(const Dynamics& d, const Parts& parts, const T& s,
+               const solve::BlockResponse<T>& r) {
   using Eigen::MatrixXcd;
   using Eigen::MatrixXd;
   const MatrixXd X = sizes(r.X), Y = sizes(r.Y);
   if (!X.allFinite() || !Y.allFinite()) return HUGE_VAL;
   MatrixXd of_outputs = d.D.cwiseAbs() + d.C.cwiseAbs() * X;
   double worst = 0;
-  for (const std::vector<int>& states : uncoupled(d.A)) {
+  for (const std::vector<int>& states : parts) {
     const auto n = std::ssize(states);
     const MatrixXcd one = MatrixXcd::Identity(n, n),
                     K = solve::Scalar<T>::round(s) * one - d.A(states, states);
@@ -180,9 +182,9 @@ double cancels(const Dynamics& d, const T& s, const solve::BlockResponse<T>& r) 
 
 /// (s - A)^-1 B. Throws singular.
 template <class T>
-Dense<T> states_at(const Block& block, const Dynamics& d, const T& s) {
+Dense<T> states_at(const Block& block, const Dynamics& d, const Parts& parts, const T& s) {
   Dense<T> X(d.A.rows(), d.B.cols());
-  for (const std::vector<int>& states : uncoupled(d.A)) {
+  for (const std::vector<int>& states : parts) {
     const Dynamics part = part_of(d, states);
     const Resolvent<T> resolvent(part, s);
     if (resolvent.singular()) throw pole_of(block, s);
@@ -197,13 +199,14 @@ Dense<T> states_at(const Block& block, const Dynamics& d, const T& s) {
 template <class T>
 solve::BlockResponse<T> general_response(const Block& block, const Dynamics& d, const T& s,
                                          double enough) {
-  solve::BlockResponse<T> r{states_at(block, d, s), lifted<T>(d.D)};
+  const Parts parts = uncoupled(d.A);
+  solve::BlockResponse<T> r{states_at(block, d, parts, s), lifted<T>(d.D)};
   for (Index i = 0; i < r.Y.rows(); ++i)
     for (Index j = 0; j < r.Y.cols(); ++j)
       for (Index k = 0; k < r.X.rows(); ++k) r.Y(i, j) += lift<T>(d.C(i, k)) * r.X(k, j);
   using More = typename Finer<T>::type;
   if constexpr (!std::is_void_v<More>)
-    if (d.A.rows() > 0 && !(cancels(d, s, r) * solve::Scalar<T>::epsilon() <= enough)) {
+    if (d.A.rows() > 0 && !(cancels(d, parts, s, r) * solve::Scalar<T>::epsilon() <= enough)) {
       const solve::BlockResponse<More> finer = general_response(block, d, as<More>(s), enough);
       return {as<T>(finer.X), as<T>(finer.Y)};
     }

@@ -1,7 +1,8 @@
 #include <algorithm>
 #include <boost/graph/adjacency_list.hpp>
-#include <boost/graph/connected_components.hpp>
 #include <boost/graph/strong_components.hpp>
+#include <boost/pending/disjoint_sets.hpp>
+#include <boost/property_map/property_map.hpp>
 #include <cmath>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -114,14 +115,6 @@ void fit_between(MatrixXd& A, VectorXd& d, const std::vector<std::vector<int>>& 
   for (int i = 0; i < A.rows(); ++i) scale(A, d, i, power_of_two(t(part[at(i)])));
 }
 
-/// An edge from state j to state i for every entry other than 0.
-template <class Edges>
-void add_entries(const MatrixXd& A, Edges& edges) {
-  for (int j = 0; j < A.cols(); ++j)
-    for (int i = 0; i < A.rows(); ++i)
-      if (i != j && A(i, j) != 0) boost::add_edge(at(j), at(i), edges);
-}
-
 /// The states of each part, by the part of each state.
 std::vector<std::vector<int>> sets_of(const std::vector<int>& part) {
   std::vector<std::vector<int>> result;
@@ -156,7 +149,9 @@ VectorXd similarity_scaling_of_parts(MatrixXd& A) {
 
 std::vector<std::vector<int>> parts(const MatrixXd& A) {
   boost::adjacency_list<boost::vecS, boost::vecS, boost::directedS> acts(at(A.rows()));
-  add_entries(A, acts);
+  for (int j = 0; j < A.cols(); ++j)
+    for (int i = 0; i < A.rows(); ++i)
+      if (i != j && A(i, j) != 0) boost::add_edge(at(j), at(i), acts);
   std::vector<int> part(at(A.rows()));
   boost::strong_components(
       acts, boost::make_iterator_property_map(part.begin(), get(boost::vertex_index, acts)));
@@ -164,11 +159,22 @@ std::vector<std::vector<int>> parts(const MatrixXd& A) {
 }
 
 std::vector<std::vector<int>> uncoupled_parts(const MatrixXd& A) {
-  boost::adjacency_list<boost::vecS, boost::vecS, boost::undirectedS> coupled(at(A.rows()));
-  add_entries(A, coupled);
-  std::vector<int> part(at(A.rows()));
-  boost::connected_components(
-      coupled, boost::make_iterator_property_map(part.begin(), get(boost::vertex_index, coupled)));
+  const auto n = static_cast<int>(A.rows());
+  std::vector<std::size_t> rank(at(n)), parent(at(n));
+  const boost::typed_identity_property_map<std::size_t> places;
+  boost::disjoint_sets joined(boost::make_iterator_property_map(rank.begin(), places),
+                              boost::make_iterator_property_map(parent.begin(), places));
+  for (int i = 0; i < n; ++i) joined.make_set(at(i));
+  for (int j = 0; j < n; ++j)
+    for (int i = 0; i < n; ++i)
+      if (i != j && A(i, j) != 0) joined.union_set(at(i), at(j));
+  std::vector<int> part(at(n)), number(at(n), -1);
+  int count = 0;
+  for (int i = 0; i < n; ++i) {
+    int& own = number[joined.find_set(at(i))];
+    if (own < 0) own = count++;
+    part[at(i)] = own;
+  }
   return sets_of(part);
 }
 
