@@ -8,14 +8,13 @@
 #include <titop/compiler/loops/axial_motion.hpp>
 #include <titop/compiler/loops/gap.hpp>
 #include <titop/compiler/loops/lines.hpp>
+#include <titop/compiler/loops/may_close.hpp>
 #include <titop/compiler/loops/redundant.hpp>
 #include <titop/compiler/loops/reflections.hpp>
 #include <titop/compiler/loops/second_order.hpp>
 #include <titop/compiler/loops/still.hpp>
 #include <titop/compiler/passes/lower/amounts.hpp>
 #include <titop/compiler/passes/passes.hpp>
-#include <titop/compiler/passes/union_find.hpp>
-#include <titop/graph/ahead.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -32,62 +31,6 @@ using namespace loops;
 using linalg::at;
 
 constexpr double kGap = 1e-6;  ///< a loop that is open by more does not close
-
-// --- is there anything to look at? --------------------------------------------------------------
-
-/// Union-find of points and the ground over possible ties: `closes` is false if nothing is tied
-/// twice.
-struct Quick {
-  const Graph& g;
-  UnionFind joined = UnionFind(static_cast<int>(g.channels.size()) + 1);
-  int ground = static_cast<int>(g.channels.size());
-
-  void bodies(ParameterValues values) {
-    const Block* met = nullptr;  // nodes that share a block often stand side by side
-    std::optional<Kinematics> k;
-    std::size_t turn = 0;
-    for (const Node& node : g.nodes) {
-      fetch_ahead(g, turn++);
-      const auto& channels = node.block->interface().channels;
-      if (channels.empty()) continue;
-      if (node.block.get() != met)
-        k = channels.size() < 2 ? std::nullopt : node.block->kinematics(values);
-      met = node.block.get();
-      for (int i = 1; i < static_cast<int>(channels.size()); ++i)
-        if (!k) joined.unite(node.first_channel, node.first_channel + i);
-      for (int i = 0; k && i < static_cast<int>(channels.size()); ++i)
-        if (i != k->reference)
-          joined.unite(node.first_channel + i,
-                       k->tau[at(i)].isZero(0) ? ground : node.first_channel + k->reference);
-    }
-  }
-
-  bool tied_twice(const Equation& e) {
-    const Signal& target = g.signals[at(e.target)];
-    if (!e.active || e.of_block || target.channel < 0 || target.quantity != Quantity::acceleration)
-      return false;
-    bool points = false;
-    for (const Term& t : e.terms) {
-      const Signal& s = g.signals[at(t.signal)];
-      if (s.channel < 0 && s.node >= 0 && g.nodes[at(s.node)].lowered) return true;
-      if (s.channel < 0 || s.quantity != Quantity::acceleration) continue;
-      points = true;
-      if (!joined.unite(target.channel, s.channel)) return true;
-    }
-    return !points && !joined.unite(target.channel, ground);
-  }
-
-  bool closes(ParameterValues values) {
-    std::size_t turn = 0;
-    for (const Node& node : g.nodes) {
-      fetch_ahead(g, turn++);
-      if (node.block->type() == "Integrator") return true;
-    }
-    bodies(values);
-    return std::any_of(g.equations.begin(), g.equations.end(),
-                       [&](const Equation& e) { return tied_twice(e); });
-  }
-};
 
 // --- geometry -----------------------------------------------------------------------------------
 
@@ -387,7 +330,7 @@ void check_chains(Stage& stage, const SumExpander& sums, const Motion& motion,
 }  // namespace
 
 Stage chains(Stage stage) {
-  if (!Quick{stage.graph}.closes(stage.values)) return stage;
+  if (!may_close(stage.graph, stage.values)) return stage;
   stage.closes = true;
   const SumExpander sums(stage.graph);
   const Motion motion(stage.graph, stage.values, sums);
