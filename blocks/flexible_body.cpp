@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include <cmath>
 #include <mutex>
 #include <titop/blocks/body_interface.hpp>
+#include <titop/blocks/check_modal_data.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/specified.hpp>
@@ -16,42 +16,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-void check_shapes(const ModalData& d) {
-  const auto n = d.omega.size();
-  const auto refuse = [&](const std::string& subject, Eigen::Index rows, Eigen::Index cols,
-                          const std::string& expected) {
-    throw Error(Code::bad_modes, fmt::format("{} is {} x {} for {} modes", subject, rows, cols, n),
-                fmt::format("it must be {}", expected));
-  };
-  if (d.xi.size() != n) refuse("xi", d.xi.size(), 1, fmt::format("{} x 1", n));
-  if (d.L_P.rows() != n || (n > 0 && d.L_P.cols() != 6))
-    refuse("L_P", d.L_P.rows(), d.L_P.cols(), fmt::format("{} x 6, a row per mode", n));
-  for (const ModalChild& c : d.children)
-    if (c.Phi_C.cols() != n || (n > 0 && c.Phi_C.rows() != 6))
-      refuse("Phi_C of " + c.name, c.Phi_C.rows(), c.Phi_C.cols(),
-             fmt::format("6 x {}, a column per mode", n));
-}
-
-struct ModalParameters {
-  VectorXd omega, xi;  // N each, [rad/s] and [-]
-};
-
-void check_modes(const ModalParameters& m) {
-  for (Eigen::Index i = 0; i < m.omega.size(); ++i) {
-    const auto refuse = [&](Code code, const char* hint) {
-      throw Error(code,
-                  fmt::format("mode {} has omega {} rad/s and damping ratio {}", i + 1, m.omega(i),
-                              m.xi(i)),
-                  hint);
-    };
-    if (!std::isfinite(m.omega(i)) || !std::isfinite(m.xi(i)))
-      refuse(Code::not_finite, "give finite numbers");
-    if (!(m.omega(i) > 0) || m.xi(i) < 0)
-      refuse(Code::bad_modes,
-             "omega must be positive (modes clamped at P have no rigid motion), xi 0 or more");
-  }
-}
 
 /// The numbers of all modes with these values in place; number(value) converts a value.
 template <class Number>
@@ -67,124 +31,14 @@ VectorXd replaced(VectorXd numbers, const std::map<int, Value>& values, Number n
 }
 
 template <class Number>
-ModalParameters modes_of(const FlexibleBody::Spec& spec, Number number) {
-  ModalParameters m{replaced(spec.data->omega, spec.values.omega, number),
-                    replaced(spec.data->xi, spec.values.xi, number)};
-  check_modes(m);
+detail::ModalParameters modes_of(const FlexibleBody::Spec& spec, Number number) {
+  detail::ModalParameters m{replaced(spec.data->omega, spec.values.omega, number),
+                            replaced(spec.data->xi, spec.values.xi, number)};
+  detail::check_modes(m);
   return m;
 }
 
 double nominal_of(const Value& value) { return value.nominal(); }
-
-std::string entry(int i, int j) {
-  return fmt::format("({}, {})", component_name(i), component_name(j));
-}
-
-void require_finite(const MatrixXd& m, const std::string& name) {
-  for (Eigen::Index i = 0; i < m.rows(); ++i)
-    for (Eigen::Index j = 0; j < m.cols(); ++j)
-      if (!std::isfinite(m(i, j)))
-        throw Error(Code::not_finite,
-                    fmt::format("{} of the modal data has {} in row {}, column {}", name, m(i, j),
-                                i + 1, j + 1),
-                    "give finite numbers");
-}
-
-/// Modes of a structure with much damping in proportion to stiffness are above 1 if they are
-/// fast, or if they are slow with damping in proportion to mass; but some of them do oscillate.
-constexpr double kMostDamped = 1;
-
-void check_values(const ModalData& d) {
-  if (!(d.digits > 0) || !std::isfinite(d.digits))
-    throw Error(Code::bad_value, fmt::format("the modal data have {} digits", d.digits),
-                "digits is how many decimal digits the numbers carry: 15 for doubles, 7 or so for "
-                "those of a text file");
-  check_modes({d.omega, d.xi});
-  require_finite(d.L_P, "L_P");
-  require_finite(d.D_P, "D_P");
-  for (const ModalChild& c : d.children) {
-    require_finite(c.PC, "PC of " + c.name);
-    require_finite(c.Phi_C, "Phi_C of " + c.name);
-  }
-  if (d.xi.size() > 0 && d.xi.minCoeff() > kMostDamped)
-    throw Error(Code::bad_modes,
-                fmt::format("no mode oscillates: the least damping ratio is {}", d.xi.minCoeff()),
-                "xi is a fraction of critical damping, not percent: 0.005 for 0.5 %");
-}
-
-void check_entries(const Matrix6& D_P) {
-  Eigen::Index i = 0, j = 0;
-  const double off = (D_P - D_P.transpose()).cwiseAbs().maxCoeff(&i, &j);
-  const int row = static_cast<int>(std::min(i, j)), column = static_cast<int>(std::max(i, j));
-  if (off > 1e-9 * D_P.cwiseAbs().maxCoeff())
-    throw Error(
-        Code::bad_inertia,
-        fmt::format("D_P is not symmetric, by {:.2g}: {:.6g} at {}, {:.6g} at {}", off,
-                    D_P(row, column), entry(row, column), D_P(column, row), entry(column, row)),
-        "give the full symmetric 6 x 6 mass matrix about P");
-  for (int k = 0; k < 6; ++k)
-    if (D_P(k, k) < 0)
-      throw Error(Code::bad_inertia, fmt::format("D_P has {} at {}", D_P(k, k), component_name(k)),
-                  "masses and inertias about P must be 0 or more");
-}
-
-/// Relative deviation of D_P from a rigid body's mass matrix. Finite-element models neglect some
-/// rotary inertia and lump masses off their place: about 0.01 is usual. A larger deviation than
-/// this is a mistake.
-constexpr double kRigidMisfit = 0.05;
-
-Matrix6 rotations_first(const Matrix6& D_P) {
-  Matrix6 swapped;
-  swapped << D_P.bottomRightCorner<3, 3>(), D_P.bottomLeftCorner<3, 3>(),
-      D_P.topRightCorner<3, 3>(), D_P.topLeftCorner<3, 3>();
-  return swapped;
-}
-
-/// Refuses a mass matrix that no rigid body has.
-void check_rigid(const ModalData& d) {
-  const MassProperties p = mass_properties(d.D_P);
-  const double noise = std::max(kRigidMisfit, residual_mass(d).noise);
-  if (p.misfit <= noise) return;
-  const Matrix6 rigid = rigid_mass(p.mass.mean(), p.inertia, -p.centre);
-  Eigen::Index i = 0, j = 0;
-  (d.D_P - rigid).cwiseAbs().maxCoeff(&i, &j);
-  throw Error(
-      Code::bad_inertia,
-      fmt::format("D_P is not the mass matrix of a rigid body, by {:.2g} of it: it has {:.6g} at "
-                  "{}, a body of {:.6g} kg around ({:.4g}, {:.4g}, {:.4g}) has {:.6g}",
-                  p.misfit, d.D_P(i, j), entry(static_cast<int>(i), static_cast<int>(j)),
-                  p.mass.mean(), p.centre.x() + 0.0, p.centre.y() + 0.0, p.centre.z() + 0.0,
-                  rigid(i, j)),  // + 0.0: no -0
-      mass_properties(rotations_first(d.D_P)).misfit <= noise
-          ? "its rotations come first: D_P, L_P and Phi_C have x, y, z, rx, ry, rz"
-          : "the masses along x, y and z are the same, the products with the centre of mass turn "
-            "sign from one corner to the other; look at the order and the units");
-}
-
-void check_mass(const ModalData& d) {
-  check_entries(d.D_P);
-  check_rigid(d);
-  const ResidualMass r = residual_mass(d);
-  if (r.verdict != Definiteness::indefinite) return;
-  ModalData whole;
-  whole.L_P.resize(0, 6);
-  whole.D_P = d.D_P;
-  whole.digits = d.digits;
-  const ResidualMass all = residual_mass(whole);
-  if (all.verdict == Definiteness::indefinite)
-    throw Error(Code::bad_inertia,
-                fmt::format("D_P is negative in {}, by {:.2g} of its entry there (noise of the "
-                            "data: {:.1g})",
-                            component_name(all.component), -all.smallest, all.noise),
-                "the inertia in D_P is about P: that about the centre of mass and what the mass "
-                "there adds");
-  throw Error(
-      Code::bad_modes,
-      fmt::format("the modes carry more mass than there is: D_P - L_P' L_P is negative in {}, "
-                  "by {:.2g} of D_P there (noise of the data: {:.1g})",
-                  component_name(r.component), -r.smallest, r.noise),
-      "check units and signs of L_P against D_P, or ModalData::digits");
-}
 
 /// Common to bodies of the same data, independent of the values of their modes.
 struct Shapes {
@@ -225,7 +79,7 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   /// All nodes of one body share the last result, which is cached.
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
     if (spec_->values.empty()) return made_;
-    ModalParameters m = modes_at(values);
+    detail::ModalParameters m = modes_at(values);
     {
       const std::scoped_lock lock(keeping_);
       if (made_ && m.omega == made_for_.omega && m.xi == made_for_.xi) return made_;
@@ -251,7 +105,7 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   /// v, and z = v, whose w subtracts from etadd; xi has z = etad, whose w adds twice to v.
   std::optional<Opened> opened(ParameterValues values,
                                std::span<const int> parameters) const override {
-    const ModalParameters m = modes_at(values);
+    const detail::ModalParameters m = modes_at(values);
     const Eigen::Index n = m.omega.size();
     std::vector<OpenedPair> pairs;
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -317,10 +171,10 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   }
 
  private:
-  ModalParameters modes_at(ParameterValues values) const {
+  detail::ModalParameters modes_at(ParameterValues values) const {
     return modes_of(*spec_, [&](const Value& v) { return v.at(values); });
   }
-  Modal modal(const ModalParameters& m) const {
+  Modal modal(const detail::ModalParameters& m) const {
     return {shapes_->W, shapes_->rigid, m.omega.cwiseAbs2(), 2 * m.xi.cwiseProduct(m.omega)};
   }
 
@@ -328,7 +182,7 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   std::shared_ptr<const Shapes> shapes_;
   mutable std::mutex keeping_;
   mutable std::shared_ptr<const Dynamics> made_;
-  mutable ModalParameters made_for_;
+  mutable detail::ModalParameters made_for_;
 };
 
 ModalData without_modes(const RigidBody& body) {
@@ -371,9 +225,7 @@ MatrixXd modal_input(const ModalData& d) {
 FlexibleBody::FlexibleBody(ModalData given, std::source_location at) {
   const auto data = std::make_shared<const ModalData>(std::move(given));
   told_at(at, [&] {
-    check_shapes(*data);
-    check_values(*data);
-    check_mass(*data);
+    detail::check_modal_data(*data);
     spec_ = std::make_shared<const Spec>(Spec{data});
     block_ = std::make_shared<const FlexibleBodyBlock>(spec_, shapes_of(*data));
   });
@@ -394,7 +246,7 @@ FlexibleBody::FlexibleBody(const RigidBody& body, std::source_location at)
     : FlexibleBody(told_at(at, [&] { return without_modes(body); }), at) {}
 
 ModalData FlexibleBody::nominal() const {
-  ModalParameters m = modes_of(*spec_, nominal_of);
+  detail::ModalParameters m = modes_of(*spec_, nominal_of);
   ModalData result = data();
   result.omega = std::move(m.omega);
   result.xi = std::move(m.xi);
