@@ -4,6 +4,7 @@
 #include <Eigen/QR>
 #include <titop/titop.hpp>
 
+#include "support/alone.hpp"
 #include "support/rng.hpp"
 
 /// Certificates of right models given as one dense Lti.
@@ -12,17 +13,10 @@ using namespace titop;
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+using titop_test::alone;
 using titop_test::Rng;
 
 namespace {
-
-Diagram alone(const Lti& lti) {
-  Diagram d{"alone"};
-  auto k = d.add("k", lti);
-  k.in = d.input("u", static_cast<int>(lti.B.cols()));
-  d.output("y", static_cast<int>(lti.C.rows())) = k.out;
-  return d;
-}
 
 /// A building of eight floors, three motions each, as [Chahlaoui, Van Dooren, SLICOT Working Note
 /// 2002-2] has one: its natural frequencies [rad/s] and its damping, a + b omega^2, in random

@@ -1,3 +1,4 @@
+#include "support/alone.hpp"
 #include "support/certified.hpp"
 #include "support/random_scene.hpp"
 #include "support/structured_lti.hpp"
@@ -5,19 +6,8 @@
 /// Faults planted in models, in number: each is found, and the models without one have none.
 
 using namespace titop;
+using titop_test::alone;
 using titop_test::structured_lti;
-
-namespace {
-
-Diagram alone(const Lti& lti) {
-  Diagram d{"alone"};
-  auto k = d.add("k", lti);
-  k.in = d.input("u", static_cast<int>(lti.B.cols()));
-  d.output("y", static_cast<int>(lti.C.rows())) = k.out;
-  return d;
-}
-
-}  // namespace
 
 TEST_CASE("structured Lti: no fault; of planted ones each that changes the transfer is found") {
   titop_test::FaultCount count;

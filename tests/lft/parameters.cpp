@@ -1,9 +1,4 @@
-#include <doctest/doctest.h>
-
-#include <functional>
-#include <random>
-
-#include "lft/n17.hpp"
+#include "lft/one_parameter.hpp"
 
 /// The least number of occurrences of each kind of parameter, in a scene of its own.
 
@@ -11,62 +6,6 @@ using namespace lft_test;
 using Eigen::MatrixXd;
 
 namespace {
-
-/// The counts of parameter p; that the LFT equals `update` at random values.
-void check_one(const System& system, const ParameterRange& range, int size, int at_least) {
-  const Lft f = lft(system, {{"p", range}});
-  const Delta& d = f.deltas()[0];
-  INFO(to_string(f), " margin ", f.rank_margin().kept, " ", f.rank_margin().dropped);
-  CHECK(f.not_decided() == "");
-  CHECK(d.size == size);
-  CHECK(d.at_least == at_least);
-  CHECK(d.minimal() == (size == at_least));
-  for (const double delta : {-0.9, -0.3, 0.5, 0.99}) {
-    const double p = d.map.value(delta);
-    const std::complex<double> s{0.2, 1.7};
-    const Eigen::MatrixXcd G = system.update({{"p", p}}).transfer(s);
-    CHECK((f.at({{"p", p}}).transfer(s) - G).norm() <= 1e-12 * G.norm());
-  }
-}
-
-void check_one(const System& system, const ParameterRange& range, int least) {
-  check_one(system, range, least, least);
-}
-
-const Vector3d kPA(0.1, -0.2, 0.3), kPC(0.7, 0.4, -0.3);
-
-/// Two bodies: of the first, free, the wrench is the input; `second` hangs on it.
-System two_bodies(const RigidBody& first, const RigidBody& second, Diagram d,
-                  const Rotation& T = {}) {
-  auto hub = d.add("hub", first), tip = d.add("tip", second);
-  hub.parent.force = -d.input("U", 6);
-  mount(tip, hub.child, T);
-  d.output("y", 6) = hub.parent.accel;
-  return compile(d);
-}
-
-RigidBody hub() {
-  return {.mass = 9,
-          .inertia = (Matrix3d() << 5, 0.5, -0.25, 0.5, 6, 0.75, -0.25, 0.75, 7).finished(),
-          .PA = kPA,
-          .children = {{"C", kPC}}};
-}
-
-System with_tip(const std::function<RigidBody(const Param&)>& tip, double nominal) {
-  Diagram d{"scene"};
-  const Param p = d.param("p", nominal);
-  return two_bodies(hub(), tip(p), std::move(d), Rotation::about({0, 0, 1}, 0.5));
-}
-
-ModalData boom() {
-  ModalData data;
-  data.omega = Vector3d(2, 5, 9);
-  data.xi = Vector3d(0.01, 0.02, 0.03);
-  data.L_P = MatrixXd::Zero(3, 6);
-  data.L_P << 0.2, 1, 0.3, -0.1, 0.2, 0.9, 0.1, -0.2, 0.8, 0.3, -0.5, 0.1, 0.5, 0.1, 0.2, 0.4, 0, 0;
-  data.D_P = rigid_mass(6, 4 * Matrix3d::Identity(), Vector3d(-0.5, 0, 0));
-  return data;
-}
 
 System with_boom(const std::function<ModeValues(const Param&)>& values, double nominal) {
   Diagram d{"scene"};
@@ -95,79 +34,6 @@ TEST_CASE("mass and inertia") {
                 },
                 1.5),
             percent(50), 6);
-}
-
-TEST_CASE("positions: centre of mass, port, length of a rigid boom") {
-  const auto skew = [](Position PA) {
-    return RigidBody{.mass = 2, .inertia = {3, 4, 5, 0.5, 0.25, 0}, .PA = PA};
-  };
-  check_one(with_tip([&](const Param& p) { return skew({0.1, p, 0.3}); }, 0.5), between(-1, 2), 4);
-  check_one(with_tip(
-                [&](const Param& p) {
-                  return skew({p, 2 * p, -1 * p});
-                },
-                0.5),
-            between(-1, 2), 4);
-  const auto with_port = [](const std::function<Position(const Param&)>& PC, const RigidBody& tip) {
-    Diagram d{"port"};
-    RigidBody carrier = hub();
-    carrier.children = {{"C", PC(d.param("p", 0.7))}};
-    return two_bodies(carrier, tip, std::move(d), Rotation::about({0, 0, 1}, 0.5));
-  };
-  const auto one = [](const Param& p) { return Position(0.2, p, -0.3); };
-  check_one(with_port(one, skew(kPA)), between(-1, 2), 4);
-  check_one(with_port(one, RigidBody{.mass = 2, .inertia = Matrix3d::Zero()}), between(-1, 2), 4);
-  check_one(with_port([](const Param& p) { return Position(p, -1 * p, 0.5 * p); }, skew(kPA)),
-            between(-1, 2), 4);
-}
-
-TEST_CASE("a mass and the position of its centre together") {
-  Diagram d{"both"};
-  const Param m = d.param("m", 3), x = d.param("x", 0.2);
-  const System system = two_bodies(
-      hub(), RigidBody{.mass = m, .inertia = {3, 4, 5, 0.5, 0.25, 0}, .PA = {x, 0.1, 0.4}},
-      std::move(d), Rotation::about({0, 0, 1}, 0.5));
-  const Lft f = lft(system, {{"m", percent(60)}, {"x", between(-1, 1.5)}});
-  INFO(to_string(f));
-  CHECK(f.deltas()[0].size == 3);
-  CHECK(f.deltas()[1].size == 4);
-  CHECK(f.deltas()[0].minimal());
-  CHECK(f.deltas()[1].minimal());
-  for (const auto& [mass, place] : {std::pair(1.5, -0.9), {4.5, 1.4}, {3.0, 0.7}}) {
-    const ParameterList values = {{"m", mass}, {"x", place}};
-    const Eigen::MatrixXcd G = system.update(values).transfer({0.2, 1.7}, Precision::digits50);
-    CHECK((f.at(values).transfer({0.2, 1.7}) - G).norm() <= 1e-12 * G.norm());
-  }
-}
-
-TEST_CASE("a position read beyond a port that moves, and a law that uses it") {
-  // Rate and position of the tip: through the moved port to the hub's own Integrators.
-  Diagram d{"read"};
-  const Param p = d.param("p", 0.7);
-  RigidBody carrier = hub();
-  carrier.children = {{"C", {0.2, p, 2 * p}}, {"D", {0, 0, 1}}};
-  auto b = d.add("hub", carrier);
-  auto arm = d.add("arm", RigidBody{.mass = 2, .PA = kPA, .children = {{"E", {-1 * p, 0.1, 0.2}}}});
-  auto tip = d.add("tip", FlexibleBody{boom()});
-  const Rotation to_hub = Rotation::about({0, 0, 1}, 0.5),
-                 to_arm = Rotation::about({1, 0, 0}, -0.3);
-  mount(arm, b.child("C"), to_hub);
-  mount(tip, arm.child, to_arm);
-  b.parent.force = -d.input("U", 6);
-  b.child("D").force +=
-      -1.0 * (2.0 * b.child("C").rate + 3.0 * (to_hub * (to_arm * tip.parent.position)));
-  d.output("rate", 6) = tip.parent.rate;
-  d.output("place", 6) = tip.parent.position;
-  d.output("linear", 3) = arm.child("E").position.linear();
-  const System system = compile(d);
-  const Lft f = lft(system, {{"p", between(-1, 2)}});
-  INFO(to_string(f));
-  CHECK(f.deltas()[0].at_least <= f.deltas()[0].size);
-  for (const double value : {-0.9, 0.0, 0.4, 1.9}) {
-    const Eigen::MatrixXcd G =
-        system.update({{"p", value}}).transfer({0.2, 1.7}, Precision::digits50);
-    CHECK((f.at({{"p", value}}).transfer({0.2, 1.7}) - G).norm() <= 1e-12 * G.norm());
-  }
 }
 
 TEST_CASE("entries of a controller's matrices") {

@@ -8,6 +8,7 @@
 
 #include "held.hpp"
 #include "scenes.hpp"
+#include "support/alone.hpp"
 #include "support/mistakes.hpp"
 #include "support/rng.hpp"
 
@@ -89,14 +90,6 @@ struct Modes {
     return m;
   }
 };
-
-Diagram alone(const Lti& lti) {
-  Diagram d{"modal"};
-  auto k = d.add("structure", lti);
-  k.in = d.input("U", static_cast<int>(lti.B.cols()));
-  d.output("y", static_cast<int>(lti.C.rows())) = k.out;
-  return d;
-}
 
 /// A law from the displacement of the first point to the force there: gain (1 + s / 20) / (1 + s /
 /// 200), with the sign of a damper; and its disturbance.
@@ -200,7 +193,7 @@ TEST_CASE(
   lti.B(6, 1) += 0.5;  // of the fourth mode
   const titop::Scene scene{.band_hz = {0, 3}, .accuracy = 1e-2};
   const ReducedSystem r = compile(alone(lti), scene);
-  CHECK(says(error_of([&] { r.second_order(); }), Code::bad_value, {"structure.x7"}));
+  CHECK(says(error_of([&] { r.second_order(); }), Code::bad_value, {"k.x7"}));
   const auto exact = [&](Complex s) {
     const MatrixXcd K = s * MatrixXcd::Identity(12, 12) - lti.A;
     return MatrixXcd(lti.C * K.fullPivLu().solve(MatrixXcd(lti.B.cast<Complex>())));
