@@ -82,18 +82,20 @@ MatrixXcd Derivatives::opened_at(std::complex<double> s) const {
 }
 
 MatrixXcd Derivatives::transfer(std::complex<double> s, const std::string& p) const {
-  const auto i = static_cast<std::size_t>(&pairs_of(p) - pairs_.data());
-  return transfers(s)[i];
+  return slope_of(pairs_of(p), opened_at(s));
 }
 
 std::vector<MatrixXcd> Derivatives::transfers(std::complex<double> s) const {
   const MatrixXcd M = opened_at(s);
-  const Index ny = M.rows() - all_pairs_, nu = M.cols() - all_pairs_;
   std::vector<MatrixXcd> result;
-  for (const Pairs& i : pairs_)
-    result.emplace_back(i.slope * M.bottomRows(ny).middleCols(i.first, i.size) *
-                        M.rightCols(nu).middleRows(i.first, i.size));
+  for (const Pairs& i : pairs_) result.push_back(slope_of(i, M));
   return result;
+}
+
+MatrixXcd Derivatives::slope_of(const Pairs& i, const MatrixXcd& M) const {
+  const Index ny = M.rows() - all_pairs_, nu = M.cols() - all_pairs_;
+  return i.slope * M.bottomRows(ny).middleCols(i.first, i.size) *
+         M.rightCols(nu).middleRows(i.first, i.size);
 }
 
 MatrixXcd Derivatives::transfer(std::complex<double> s, const std::string& p,

@@ -75,7 +75,7 @@ class Derivatives {
   /// Found on System::state_space(): poles on the axis that no input reaches or no output sees do
   /// not count, unless omega itself is one. Throws as norm_hinf does (also for more than 600
   /// states), and bad_value where the peak has no derivative: two peaks of one height, or two equal
-  /// singular values, up to 1e-8, or a gain that is constant over the band. Cost: that of
+  /// singular values, up to 1.5e-8, or a gain that is constant over the band. Cost: that of
   /// state_space() once, and O(200 states^3) per level.
   PeakSlopes peak(const HinfOptions& options = {}) const;
 
@@ -91,6 +91,8 @@ class Derivatives {
   const Pairs& pairs_of(const std::string& p) const;
   /// M(s), inputs [w; u], outputs [z; y].
   Eigen::MatrixXcd opened_at(std::complex<double> s) const;
+  /// dH/dp from M(s).
+  Eigen::MatrixXcd slope_of(const Pairs& p, const Eigen::MatrixXcd& M) const;
 
   System system_, opened_;
   StateSpace m_;                        ///< of `opened_`, inputs [w; u], outputs [z; y]

@@ -226,7 +226,7 @@ VectorXd Lft::deltas_at(const ParameterList& values) const {
 StateSpace Lft::at(const ParameterList& values) const {
   auto result = detail::closed(m_, deltas_at(values));
   if (!result)
-    throw Error(Code::singular, "the direct terms of the LFT are singular at these values",
+    throw Error(Code::singular, "the direct terms of the LFT are singular at " + to_text(values),
                 "take others: an algebraic loop or a mass matrix has no inverse there");
   return std::move(*result);
 }

@@ -3,14 +3,12 @@
 #include <cmath>
 #include <titop/analysis/lft/derivatives.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop {
 namespace {
 
 using Eigen::Index;
-
-/// Half the digits of double: vectors of singular values closer than this have fewer than eight.
-constexpr double kSimple = 1 - 1e-8;
 
 void require_simple(const HinfNorm& n) {
   if (!(n.value > 0))
@@ -23,7 +21,7 @@ void require_simple(const HinfNorm& n) {
                     "derivative there",
                     n.omega, n.others.front()),
         "take one of them by band_hz, or both as two bounds");
-  if (n.second >= kSimple * n.value)
+  if (n.second >= (1 - linalg::kHalfDigits) * n.value)  // their vectors have no digits
     throw Error(Code::bad_value,
                 fmt::format("two singular values are equal at {:.9g} rad/s, {:.9g} and {:.9g}: the "
                             "larger one has no derivative there",

@@ -4,6 +4,7 @@
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/spectral.hpp>
 
 namespace titop {
@@ -18,7 +19,7 @@ using linalg::at;
 /// parallel to it [G 7.2]; those of equal poles with vectors of their own by rounding times their
 /// condition number, of which kApart allows 1e4. A reciprocal condition number of the vectors above
 /// 64 roots is none of a defective pair.
-constexpr double kEqual = 0x1p-26, kParallel = 64 * kEqual;
+constexpr double kEqual = linalg::kHalfDigits, kParallel = 64 * kEqual;
 /// Subspaces are split while that costs less than four digits.
 constexpr double kApart = 1e4;
 

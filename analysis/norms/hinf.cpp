@@ -19,11 +19,8 @@ using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using Complex = std::complex<double>;
 
-/// Half the digits of double: singular values closer than this have no vectors of their own to
-/// eight digits, and peaks closer than this in height are equal.
-constexpr double kEqual = 1e-8;
-/// A level is above the largest value found by this: eigenvalues of the Hamiltonian matrix are
-/// right to the root of the rounding where two of them meet.
+/// A level is above the largest value found by this: its crossings are then 1e-5 half bandwidths
+/// apart, the root, of which kHalfDigits leave three digits.
 constexpr double kAbove = 1e-10;
 
 /// Singular values of H(j omega), with the slope of the largest one.
@@ -141,7 +138,7 @@ std::vector<std::array<double, 2>> above(const Gain& gain, const std::vector<dou
 /// The end of the band at which the gain is still that of `best`, if the farther end of the
 /// interval around it is one. A singular value that is constant somewhere is constant everywhere,
 /// since it is analytic: a plateau reaches both ends of the band. A single peak ends at crossings
-/// of the level, kEqual lower; one that the band cuts off does so at the farther end.
+/// of the level, kHalfDigits lower; one that the band cuts off does so at the farther end.
 std::optional<double> plateau(const Gain& gain, const HinfNorm& best,
                               const std::array<double, 2>& around,
                               const std::array<double, 2>& band) {
@@ -219,7 +216,7 @@ HinfNorm norm_hinf(const StateSpace& model, const HinfOptions& options) {
       if (HinfNorm p = gain.at(omega); p.value > best.value)
         larger = larger || p.value > level, best = std::move(p);
   }
-  const double level = best.value * (1 - kEqual);
+  const double level = best.value * (1 - linalg::kHalfDigits);
   std::vector<double> ends = crossings(m, level, from, to);
   ends.insert(std::upper_bound(ends.begin(), ends.end(), best.omega), best.omega);
   const double found = best.omega;  // in one of the intervals: its gain is above the level

@@ -20,9 +20,9 @@ struct HinfNorm {
   double omega = 0;              ///< [rad/s]; infinite: of the direct term
   Eigen::VectorXcd left, right;  ///< its singular vectors, of norm 1
   double second = 0;             ///< second singular value of H there; 0 of one input or output
-  /// Frequencies apart from omega at which the largest singular value is as large, up to 1e-8; of
-  /// neighbouring peaks between which it falls by less only one counts. Where it is constant: the
-  /// farther end of the band.
+  /// Frequencies apart from omega at which the largest singular value is as large, up to half the
+  /// digits of double, 1.5e-8; of neighbouring peaks between which it falls by less only one
+  /// counts. Where it is constant: the farther end of the band.
   std::vector<double> others;
 };
 

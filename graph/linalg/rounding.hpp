@@ -10,6 +10,10 @@ inline constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Rounding of a sum of up to 128 products, of the sum of their magnitudes: gamma_n = n u [Higham,
 /// Accuracy and Stability of Numerical Algorithms, 3.1]. A smaller sum is rounding.
 inline constexpr double kProductRounding = 64 * kEpsilon;
+/// Half the digits of double, the root of its rounding: two equal eigenvalues or singular values,
+/// and the place of a maximum, are known no better from matrices with all their digits [Golub, Van
+/// Loan 7.2].
+inline constexpr double kHalfDigits = 0x1p-26;
 /// Rounding of a component of an axis (a unit vector) after some rotations, with room for axes of
 /// twelve typed digits: a smaller component is 0.
 inline constexpr double kAxisRounding = 1e-12;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/schur.hpp>
 #include <titop/graph/linalg/shifted.hpp>
 
@@ -13,7 +14,7 @@ using Eigen::MatrixXd;
 
 /// The error that is left after a step of refinement is about the square of its change: at most the
 /// rounding unit.
-constexpr double kMoved = 0x1p-26;
+constexpr double kMoved = kHalfDigits;
 
 double largest_change(const MatrixXcd& change, const MatrixXcd& of) {
   double moved = 0;
