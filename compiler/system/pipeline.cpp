@@ -1,17 +1,14 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <numeric>
-#include <optional>
 #include <system_error>
 #include <titop/compiler/diagram/dot.hpp>
 #include <titop/compiler/index_reduction/reduce.hpp>
-#include <titop/compiler/loops/chain_parts.hpp>
 #include <titop/compiler/loops/internal_forces.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/solve/data_digits.hpp>
@@ -172,7 +169,7 @@ System compile(const Diagram& diagram, const Options& options) {
 namespace detail {
 
 std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Options& options) {
-  return decided([&] { return as_written(graph); }, options, [](SystemData&) {});
+  return compile_stage([&] { return as_written(graph); }, options);
 }
 
 std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
@@ -192,70 +189,9 @@ std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
   return decided(begin, options, note);
 }
 
-namespace {
-
-/// The parameter is in an equation or a body on the way round a closed chain, or integrals are
-/// repeated. Internal forces that are read are found in the opened diagram itself.
-bool on_chains(const Skeleton& k, const loops::ChainParts& parts, int parameter,
-               ParameterValues before, ParameterValues now) {
-  const Stage& stage = k.stage;
-  const Dependents& d = k.dependents[static_cast<std::size_t>(parameter)];
-  const auto integrates = [&](const Dependent& x) {
-    return stage.graph.nodes[static_cast<std::size_t>(x.node)].block->interface().channels.empty();
-  };
-  if (!stage.chained || std::any_of(stage.dependents.begin(), stage.dependents.end(), integrates))
-    return true;
-  const auto in = [](const std::vector<int>& list, int x) {
-    return std::binary_search(list.begin(), list.end(), x);
-  };
-  return std::any_of(d.origins.begin(), d.origins.end(),
-                     [&](int o) { return in(parts.equations, o); }) ||
-         std::any_of(d.nodes.begin(), d.nodes.end(), [&](int i) {
-           const Block& block = *stage.graph.nodes[static_cast<std::size_t>(i)].block;
-           const auto a = block.kinematics(before), b = block.kinematics(now);
-           return in(parts.nodes, i) && a && (a->tau != b->tau || a->Phi != b->Phi);
-         });
-}
-
-/// Changed values of angles and lengths would close a chain elsewhere.
-void refuse_moving_chains(const Skeleton& k, const std::vector<double>& values,
-                          const std::vector<passes::ToOpen>& parameters) {
-  std::vector<Mistake> mistakes;
-  std::optional<loops::ChainParts> parts;
-  for (const passes::ToOpen& p : parameters) {
-    std::vector<double> other = values;
-    other[static_cast<std::size_t>(p.parameter)] += 0.1;  // any other value
-    if (!moves_chains(k, {p.parameter}, values, other)) continue;
-    if (!parts) parts = loops::parts_of_chains(k.stage);
-    if (!on_chains(k, *parts, p.parameter, values, other)) continue;
-    const auto& name = k.stage.graph.parameters[static_cast<std::size_t>(p.parameter)].name;
-    mistakes.push_back(
-        {Code::not_rational,
-         fmt::format("{}: the parameter {} changes how the points of a closed chain move, or of "
-                     "repeated integrals",
-                     k.stage.graph.name, name),
-         {},
-         "use sweep, which closes the chains anew at each value"});
-  }
-  if (!mistakes.empty()) throw Error(std::move(mistakes));
-}
-
-}  // namespace
-
-std::shared_ptr<const SystemData> compile_opened(const System& system,
-                                                 const std::vector<passes::ToOpen>& parameters) {
-  const SystemData& d = *system.data_;
-  const Skeleton& k = *d.skeleton;
-  refuse_moving_chains(k, d.numbers.parameters, parameters);
-  Stage at;
-  at.source = k.stage.source;
-  at.values = d.numbers.parameters;
-  at.motions = k.stage.motions;
-  at.dependents = k.stage.dependents;
-  Options options = k.options;
-  options.dump_to.clear();
-  return decided([&] { return passes::open_parameters(at, parameters); }, options,
-                 [](SystemData&) {});
+std::shared_ptr<const SystemData> compile_stage(const std::function<Stage()>& begin,
+                                                const Options& options) {
+  return decided(begin, options, [](SystemData&) {});
 }
 
 }  // namespace detail

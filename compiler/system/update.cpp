@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/certificate/weak_pivot.hpp>
+#include <titop/compiler/passes/moves_points.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/solve/data_digits.hpp>
 #include <titop/compiler/system/system_data.hpp>
@@ -185,11 +186,8 @@ bool moves_chains(const Skeleton& k, const std::vector<int>& changed, ParameterV
                   ParameterValues now) {
   const Stage& stage = k.stage;
   if (!stage.chained && stage.dependents.empty()) return false;
-  for (const int i : united(k, changed, &Dependents::nodes)) {
-    const auto a = stage.graph.nodes[at(i)].block->kinematics(before),
-               b = stage.graph.nodes[at(i)].block->kinematics(now);
-    if (a && (a->tau != b->tau || a->Phi != b->Phi)) return true;
-  }
+  for (const int i : united(k, changed, &Dependents::nodes))
+    if (passes::moves_points(*stage.graph.nodes[at(i)].block, before, now)) return true;
   const auto origins = united(k, changed, &Dependents::origins);
   if (!stage.released.empty() && !origins.empty()) return true;  // may read internal forces
   return std::any_of(origins.begin(), origins.end(), [&](int o) {

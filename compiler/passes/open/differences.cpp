@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <titop/compiler/passes/moves_points.hpp>
 #include <titop/compiler/passes/open/differences.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
@@ -19,11 +20,6 @@ MatrixXd matrices(const Dynamics& d) {
   MatrixXd m(d.A.rows() + d.C.rows(), d.A.cols() + d.B.cols());
   m << d.A, d.B, d.C, d.dense_direct();
   return m;
-}
-
-bool moves_points(const Block& block, ParameterValues a, ParameterValues b) {
-  const auto before = block.kinematics(a), now = block.kinematics(b);
-  return before && (before->tau != now->tau || before->Phi != now->Phi);
 }
 
 constexpr double kStep = 0x1p-8;
