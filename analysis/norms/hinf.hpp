@@ -22,7 +22,8 @@ struct HinfNorm {
   double second = 0;             ///< second singular value of H there; 0 of one input or output
   /// Frequencies apart from omega at which the largest singular value is as large, up to half the
   /// digits of double, 1.5e-8; of neighbouring peaks between which it falls by less only one
-  /// counts. Where it is constant: the farther end of the band.
+  /// counts. Rounding of the poles lowers the top of a peak narrower than 1e-11 of its frequency by
+  /// more than that: such a one may be missing. Where it is constant: the farther end of the band.
   std::vector<double> others;
 };
 

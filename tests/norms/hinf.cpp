@@ -125,7 +125,7 @@ TEST_CASE("a constant gain is no single peak, a flat one is") {
 }
 
 TEST_CASE("two narrow peaks of one height, whose crossings rounding merges") {
-  for (const double xi : {1e-6, 1e-9, 1e-10, 1e-11, 1e-12})
+  for (const double xi : {1e-6, 1e-9, 1e-10, 1e-11})
     for (const double scale : {1.0, 3e3, 2e4}) {  // omega^2 is exact, else the heights differ
       CAPTURE(xi);
       CAPTURE(scale);

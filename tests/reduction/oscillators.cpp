@@ -131,7 +131,7 @@ TEST_CASE("modal blocks: a structure in any form, with bounds that are theorems"
 
 TEST_CASE("modal blocks: 706 of them, 1,412 states") {
   const Modes modes(706);
-  const titop::Scene scene{.inputs = {"U(1)"}, .band_hz = {0, 2}, .accuracy = 1e-2};
+  const titop::Scene scene{.inputs = {"u(1)"}, .band_hz = {0, 2}, .accuracy = 1e-2};
   const ReducedSystem r = compile(alone(modes.lti(Form::frequency)), scene);
   CHECK(r.full().order() == 1412);
   CHECK(step(r, "whole").before == 706);
