@@ -43,6 +43,8 @@ constexpr double kRight = 1e-8;     ///< required accuracy of a block of the tra
 constexpr double kData = 1e-15;     ///< the change of data that is tried
 constexpr double kRounding = 100;   ///< errors worth so many such changes are the scene's own
 constexpr double kNothing = 1e-13;  ///< a block that rounding alone fills
+/// Of the largest block: the square of the 50 digits' rounding, which may fill a block that is 0.
+constexpr double kSquared = 1e-90;
 
 struct Blocks {
   MatrixXd size, allowed;
@@ -75,7 +77,9 @@ Blocks blocks_of(const Scene& scene, const std::vector<MatrixXcd>& exact, const 
   b.allowed = b.size;
   // The change by rounding is about as large as rounding itself: one sample is right within a
   // factor of 1e4.
-  const MatrixXd real = (moved.array() < 1e-4 * b.size.array()).select(b.size, 0.0);
+  const double least = kSquared * b.size.maxCoeff();
+  const MatrixXd real =
+      (moved.array() < 1e-4 * b.size.array() && b.size.array() > least).select(b.size, 0.0);
   const double all = real.maxCoeff();
   for (Index i = 0; i < b.size.rows(); ++i)
     for (Index j = 0; j < b.size.cols(); ++j) {
