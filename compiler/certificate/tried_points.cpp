@@ -18,12 +18,12 @@ using Complex = std::complex<double>;
 /// before: below all modes with an effect.
 bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers) {
   constexpr double kWhole = 0.03;  // a mode a decade off changes a size by some 1 %: 0.004
-  const MatrixXd p = (here.array() / below.array()).log10();
-  const MatrixXd whole = p.array().round();
   const auto shows = here.array() > kUnderflow && below.array() > kUnderflow;
+  const MatrixXd p = shows.select((here.array() / below.array()).log10(), 0.0);
+  const MatrixXd whole = p.array().round();
   const bool same =
       whole.size() == powers.size() &&
-      (!shows || ((p - whole).array().abs() < kWhole && (whole - powers).array() == 0)).all();
+      ((p - whole).array().abs() < kWhole && (!shows || whole.array() == powers.array())).all();
   powers = whole;
   return same;
 }

@@ -163,6 +163,7 @@ TEST_CASE(
     pin.torque = k * pin.angle;
     beam.child("C").force += d.input("F", 6);
     d.output("a", 6) = beam.child("C").accel;
+    d.output("held", 6) = frame.child("c").accel;  // 0
     const System system = compile(d);
     const StateSpace m = system.state_space();
     CHECK(!has_line(system.log(), {"dense", "warning"}));
