@@ -24,6 +24,13 @@ Vector3d unit_direction(const Axis& axis) {
   return r / length;
 }
 
+std::pair<Vector3d, Vector3d> across(const Vector3d& a) {
+  Eigen::Index farthest = 0;
+  a.cwiseAbs().minCoeff(&farthest);
+  const Vector3d e = Vector3d::Unit(farthest), b = (e - a * a.dot(e)).normalized();
+  return {b, a.cross(b)};
+}
+
 Vector6 twist(const Axis& axis) {
   Vector6 s = Vector6::Zero();
   (axis.kind == Axis::Kind::prismatic ? s.head<3>() : s.tail<3>()) = unit_direction(axis);

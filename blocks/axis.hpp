@@ -2,6 +2,7 @@
 
 #include <string>
 #include <titop/graph/linalg/kinematics.hpp>
+#include <utility>
 
 namespace titop {
 
@@ -20,6 +21,9 @@ Axis along(const Vector3d& r, std::string name = {});
 
 /// The unit vector along r. Throws bad_value if it has none.
 Vector3d unit_direction(const Axis& axis);
+/// Two unit vectors across the unit vector a, b x c = a: b is the coordinate axis farthest from a,
+/// less its part along a.
+std::pair<Vector3d, Vector3d> across(const Vector3d& a);
 /// Its motion at value 1, (linear; angular): [r; 0] or [0; r], r a unit vector. Throws bad_value.
 Vector6 twist(const Axis& axis);
 

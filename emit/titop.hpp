@@ -25,9 +25,11 @@
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/hinge.hpp>
 #include <titop/blocks/joint.hpp>
+#include <titop/blocks/momentum.hpp>
 #include <titop/blocks/port_hamiltonian.hpp>
 #include <titop/blocks/posture.hpp>
 #include <titop/blocks/rigid_body.hpp>
+#include <titop/blocks/rotor.hpp>
 #include <titop/blocks/slide.hpp>
 #include <titop/blocks/spring_mass.hpp>
 #include <titop/compiler/definition/exact_order.hpp>

@@ -11,6 +11,10 @@
 
 namespace titop {
 
+bool is_outward(const ChannelSpec& channel) {
+  return channel.takes == Takes::accel && channel.name != "child";
+}
+
 int Interface::input_size() const {
   int n = 0;
   for (const ChannelSpec& c : channels) n += c.size;

@@ -31,6 +31,10 @@ struct ChannelSpec {
   std::string accel_name = "accel", force_name = "force";  ///< names of the two signals
 };
 
+/// True if a channel's force acts from its block on its surroundings: at a parent point and about
+/// the axis of a joint or a rotor. At a child point, also of a bushing, it acts on the block.
+bool is_outward(const ChannelSpec& channel);
+
 /// A one-way port.
 struct PortSpec {
   std::string name;

@@ -50,13 +50,16 @@ class Diagram {
   /// into the original. O(size).
   Diagram clone() const;
 
-  /// Adds a node; its handle has the block's ports. O(ports); the block's data are shared.
+  /// Adds a node; its handle has the block's ports. O(ports); the block's data are shared. A spec
+  /// with `connect(handle, at)` writes equations of its own there (Rotor).
   template <BlockSpec Spec>
   typename Spec::Handle add(std::string name, const Spec& spec,
                             std::source_location at = std::source_location::current()) {
     const int node = add_block(
         std::move(name), [&] { return as_block(spec); }, at);
-    return {graph_.get(), node};
+    const typename Spec::Handle handle{graph_.get(), node};
+    if constexpr (requires { spec.connect(handle, at); }) spec.connect(handle, at);
+    return handle;
   }
 
   /// External input: `size` plain scalars; quantity and frame are those of the signals that it

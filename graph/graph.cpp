@@ -35,6 +35,12 @@ std::string channel_name(const Graph& graph, int channel) {
   return fmt::format("{}.{}", node.name, spec.name);
 }
 
+bool is_outward(const Graph& g, int channel) {
+  const Channel& c = g.channels[static_cast<std::size_t>(channel)];
+  const Node& node = g.nodes[static_cast<std::size_t>(c.node)];
+  return is_outward(node.block->interface().channels[static_cast<std::size_t>(c.spec)]);
+}
+
 std::string frame_name(const Graph& graph, int frame) {
   if (frame == kNoFrame) return "no frame";
   if (frame == kUnknownFrame) return "an unknown frame";

@@ -155,6 +155,8 @@ struct Graph {
 std::string name_of(const Graph& graph, int signal);
 /// "A1.parent", "B.C1".
 std::string channel_name(const Graph& graph, int channel);
+/// See is_outward(ChannelSpec).
+bool is_outward(const Graph& graph, int channel);
 /// "frame A1", "no frame", "an unknown frame".
 std::string frame_name(const Graph& graph, int frame);
 /// The nominal values of all parameters.

@@ -67,7 +67,7 @@ internal(compiler/system/system_data.hpp analysis/certify/certify_full.cpp
          analysis/reduction/coordinates.hpp analysis/reduction/reach_of_data.hpp
          analysis/simulation/simulate.cpp emit/cpp/form.cpp)
 # analysis/reduction/ compiles diagrams that it has rewritten, analysis/lft/ opened ones.
-internal(compiler/system/compile_graph.hpp analysis/reduction/ analysis/lft/)
+internal(compiler/system/compile_graph.hpp analysis/certify/ analysis/reduction/ analysis/lft/)
 # analysis/certify/ measures differences beside the rounding of the elimination.
 internal(compiler/system/elimination_terms.hpp analysis/certify/)
 

@@ -7,6 +7,7 @@
 #include <titop/analysis/certify/passivity.hpp>
 #include <titop/analysis/certify/poles.hpp>
 #include <titop/analysis/certify/reciprocity.hpp>
+#include <titop/analysis/certify/reversed_momenta.hpp>
 #include <titop/analysis/certify/structure.hpp>
 #include <titop/compiler/certificate/without_rounding.hpp>
 #include <titop/compiler/definition/compare.hpp>
@@ -173,6 +174,8 @@ void check_pairs(const System& system, std::vector<Complex> points, std::vector<
       }
   const std::string no_structure = certification::why_no_structure(g, values);
   certification::DualTransfers transfers = certification::dual_transfers(pairs, points, factored);
+  if (no_structure.empty() && pairs.in.size() > 1)
+    transfers.reversed = certification::with_reversed_momenta(g, values, pairs, points);
   const auto check = [&] {
     c.passivity = certification::check_passivity(pairs, transfers, no_structure.empty());
     c.reciprocity =
@@ -373,6 +376,7 @@ std::string to_string(const FullCertificate::Reciprocity& r) {
   std::string text =
       fmt::format("{} forces: {}", r.forces,
                   r.asymmetry <= certification::kReciprocal ? "reciprocal" : "not reciprocal");
+  if (r.reversed) text += " if all momenta are reversed";
   if (r.asymmetry > 0)
     text +=
         fmt::format(" (the accelerations at {} and {} due to the other force differ by {:.1e}, {})",

@@ -91,9 +91,11 @@ struct FullCertificate {
   /// held.
   ///
   /// All bodies and joints of the library are reciprocal: their masses, stiffnesses and dampings
-  /// are symmetric (to 1e-9, or refused when they are added), modes are damped one by one, and none
-  /// has gyroscopic terms. A user's block may have some: then reciprocity of the whole is not
-  /// required.
+  /// are symmetric (to 1e-9, or refused when they are added), and modes are damped one by one. With
+  /// gyroscopic terms (`Rotor`, `momentum`, antisymmetric gains from rates to forces) G_ji is that
+  /// of the same structure with all momenta h reversed, G(s; h)' = G(s; -h) [Casimir 1945], by a
+  /// second compile. A user's block may have gyroscopic terms inside: then reciprocity of the whole
+  /// is not required.
   struct Reciprocity : Checked {
     int forces = 0;  ///< scalar
     double asymmetry = 0;
@@ -104,6 +106,7 @@ struct FullCertificate {
     /// fault.
     bool structure = false;
     std::string why_no_structure;  ///< "hub.parent.force is driven by K.out"
+    bool reversed = false;         ///< compared with reversed momenta
   } reciprocity;
 
   /// Verdict on the minimal dense model. If exact arithmetic finds states that were removed as

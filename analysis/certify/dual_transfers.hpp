@@ -13,6 +13,8 @@ struct DualTransfers {
   std::vector<std::complex<double>> points;
   std::vector<Eigen::MatrixXcd> G;  ///< forces x forces
   detail::Measure by;               ///< the same blocks of rows and of columns
+  /// G of the structure with all momenta reversed; empty if it has none.
+  std::vector<Eigen::MatrixXcd> reversed = {};
 
   /// Possible rounding of a 0 in this block of rows and columns; 0 if it is not known.
   double floor(Eigen::Index row, Eigen::Index column, Eigen::Index rows,

@@ -26,21 +26,23 @@ struct Asymmetry {
   Index row = 0, column = 0;
 };
 
-/// |G_ij - G_ji| block by block (entries of one block share their unit) over the largest of
-/// sqrt(|G_ii| |G_jj|), the blocks themselves, and the possible rounding of a 0.
+/// |G_ij - G_ji|, the latter with momenta reversed if there are any, block by block (entries of one
+/// block share their unit) over the largest of sqrt(|G_ii| |G_jj|), the blocks themselves, and the
+/// possible rounding of a 0.
 void add_asymmetry(const DualTransfers& t, std::size_t k, Asymmetry& found) {
-  const MatrixXcd& G = t.G[k];
+  const MatrixXcd &G = t.G[k], &R = t.reversed.empty() ? G : t.reversed[k];
   const auto largest = [](const auto& m) { return m.cwiseAbs().maxCoeff(); };
-  if (!G.allFinite()) {
+  if (!G.allFinite() || !R.allFinite()) {
     found = {HUGE_VAL, k, 0, 0};
     return;
   }
   const Eigen::VectorXd diagonal = G.diagonal().cwiseAbs();
   const std::vector<int>& sizes = t.by.rows;
   for (Index i = 0, r = 0; i < static_cast<Index>(sizes.size()); r += sizes[at(i++)])
-    for (Index j = 0, c = 0; j <= i; c += sizes[at(j++)]) {
+    for (Index j = 0, c = 0; j <= (t.reversed.empty() ? i : std::ssize(sizes) - 1);
+         c += sizes[at(j++)]) {
       const Index m = sizes[at(i)], n = sizes[at(j)];
-      const auto a = G.block(r, c, m, n), b = G.block(c, r, n, m);
+      const auto a = G.block(r, c, m, n), b = R.block(c, r, n, m);
       Index row = 0, column = 0;
       const double off = (a - b.transpose()).cwiseAbs().maxCoeff(&row, &column);
       if (off == 0) continue;
@@ -76,7 +78,7 @@ bool is_reciprocal(const Block& block, ParameterValues values, Complex s) {
   DualTransfers own{{s}, {}, {}};
   std::vector<double> signs;
   for (const ChannelSpec& c : block.interface().channels) {
-    const bool inward = c.takes == Takes::accel && !passes::is_outward(c);
+    const bool inward = c.takes == Takes::accel && !is_outward(c);
     signs.insert(signs.end(), at(c.size), inward ? -1 : 1);
     const int each = c.size % 3 == 0 ? 3 : 1;
     own.by.rows.insert(own.by.rows.end(), at(c.size / each), each);
@@ -118,6 +120,7 @@ FullCertificate::Reciprocity check_reciprocity(const System& system, const passe
   if (no_structure.empty())
     no_structure = exception_among(*system.stage().source, values, points[points.size() / 2]);
   r.structure = no_structure.empty();
+  r.reversed = !transfers.reversed.empty();
   r.why_no_structure = std::move(no_structure);
   const Asymmetry found = asymmetry(transfers);
   if (found.worst == 0) return r;

@@ -71,7 +71,7 @@ class Connections {
     double all = 0, magnitudes = 0;
     for (std::size_t c = 0; c < size(); ++c) {
       const VectorXd each = force_[c].cwiseProduct(accel_[c]);
-      all += passes::is_outward(g_, static_cast<int>(c)) ? -each.sum() : each.sum();
+      all += is_outward(g_, static_cast<int>(c)) ? -each.sum() : each.sum();
       magnitudes += each.cwiseAbs().sum();
     }
     return magnitudes > 0 ? std::abs(all) / magnitudes : 0;

@@ -7,6 +7,7 @@
 #include <titop/blocks/hinge.hpp>
 #include <titop/blocks/joint.hpp>
 #include <titop/blocks/rigid_body.hpp>
+#include <titop/blocks/rotor.hpp>
 #include <titop/blocks/slide.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/blocks/spring_mass.hpp>
@@ -103,6 +104,25 @@ BlockPtr read_rigid_body(const JsonPlace& p, const ReadValue& value, const FindB
     spec.children.push_back({c.at("name").text(), read_position(c.at("PC"), value)});
   }
   return as_block(spec);
+}
+
+void write_rotor(const Block& b, const WriteValue& value, const NameBody&, Json& j) {
+  const auto& spec = spec_of<Rotor>(b);
+  j["mass"] = value(spec.mass);
+  j["axial"] = value(spec.axial);
+  j["transverse"] = value(spec.transverse);
+  j["axis"] = list(spec.axis);
+  j["PA"] = list(spec.PA);
+}
+
+/// The momentum is in the diagram's equations.
+BlockPtr read_rotor(const JsonPlace& p, const ReadValue& value, const FindBody&) {
+  p.only({"name", "type", "mass", "axial", "transverse", "axis", "PA"});
+  return as_block(Rotor{.mass = value(p.at("mass")),
+                        .axial = value(p.at("axial")),
+                        .transverse = value(p.at("transverse")),
+                        .axis = p.at("axis").vector(3),
+                        .PA = p.at("PA").vector(3)});
 }
 
 /// Values of some modes, by their numbers.
@@ -326,6 +346,7 @@ BlockPtr read_integrator(const JsonPlace& p, const ReadValue&, const FindBody&) 
 
 constexpr Type kTypes[] = {{"SpringMass", write_spring_mass, read_spring_mass},
                            {"RigidBody", write_rigid_body, read_rigid_body},
+                           {"Rotor", write_rotor, read_rotor},
                            {"FlexibleBody", write_flexible_body, read_flexible_body},
                            {"Hinge", write_joint, read_hinge},
                            {"Slide", write_joint, read_slide},

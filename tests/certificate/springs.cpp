@@ -150,7 +150,7 @@ TEST_CASE("others are not: by name, as asymmetric as by hand, and no fault") {
                           Case{two(0, 0, 0, -0.5), none, "b.child.force", "positions"},
                           Case{two(0, 0, 1, 0), none, "b.child.force", "positions"},
                           Case{none, two(0.1, 0, 0, -0.1), "b.child.force", "rates"},
-                          Case{none, two(0.1, 0.3, 0, 2), "a.child.force", "rates"}}) {
+                          Case{none, two(0.1, 1.3, 0, 2), "a.child.force", "rates"}}) {
       CAPTURE(unit);
       CAPTURE(t.force);
       CAPTURE(t.follows);
@@ -164,6 +164,21 @@ TEST_CASE("others are not: by name, as asymmetric as by hand, and no fault") {
         CHECK(c.reciprocity.asymmetry <= 1e-12);
       else
         CHECK(relative(c.reciprocity.asymmetry, by_hand(t.K, t.C, c.reciprocity.where)) <= 1e-9);
+    }
+}
+
+TEST_CASE("an antisymmetric part of dampers is gyroscopic: reciprocal with its sign changed") {
+  for (const double unit : {1.0, 1e-7, 1e5})
+    for (const Matrix2d& C : {two(0.1, 0.3, 0, 2), two(0, 4, -4, 0)}) {
+      CAPTURE(unit);
+      const FullCertificate c = certify(compile(tied(Matrix2d::Zero(), C, unit)));
+      CAPTURE(to_string(c));
+      CHECK(c.holds());
+      CHECK(c.passivity.structure);
+      CHECK(c.passivity.least >= -1e-12);
+      CHECK(c.reciprocity.structure);
+      CHECK(c.reciprocity.reversed);
+      CHECK(c.reciprocity.asymmetry <= 1e-12);
     }
 }
 

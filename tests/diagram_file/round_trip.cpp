@@ -23,6 +23,7 @@ Diagram everything() {
                                     .inertia = Vector3d(9, 11, 13).asDiagonal(),
                                     .PA = {0.02, -0.01, 0.3 * k},
                                     .children = {{"C1", {k, 0, 0.1}},
+                                                 {"W", {0, 0, 0.2}},
                                                  {"C2", {-0.3, 0, 0.1}},
                                                  {"C3", {0, 0.4, 0}},
                                                  {"C4", {0, -0.4, 0}}}});
@@ -56,6 +57,13 @@ Diagram everything() {
           {.stiffness = {300 * k, 100, 100, 10, 10, 10},
            .damping = SixAxes(Matrix6(0.1 * Matrix6::Identity())).with(1, 5, 0.03 * k)});
   mount(z, b1.child.along({0, 0.6, 0.8}));
+  auto rotor = d.add("rotor", Rotor{.mass = 2 * k,
+                                    .axial = 0.1 * k,
+                                    .transverse = 0.2,
+                                    .axis = {0, 1, 1},
+                                    .momentum = 9 * k});
+  mount(rotor, hub.child("W"), Rotation::about({1, 0, 0}, 0.2));
+  rotor.torque = 0.1 * rotor.speed;
   K.in = gain.out;
   gain.in = h.angle;
   sum.in(1) = h.rate;

@@ -77,15 +77,6 @@ void add_pair(const Input& input, int column, int row, DualPairs& pairs) {
 
 }  // namespace
 
-bool is_outward(const ChannelSpec& channel) {
-  return channel.takes == Takes::accel && channel.name != "child";
-}
-
-bool is_outward(const Graph& g, int channel) {
-  const Channel& c = g.channels[at(channel)];
-  return is_outward(g.nodes[at(c.node)].block->interface().channels[at(c.spec)]);
-}
-
 DualPairs dual_pairs(const Graph& g, ParameterValues values) {
   DualPairs pairs;
   const std::vector<int> columns = detail::first_as_declared(g.inputs),

@@ -8,11 +8,6 @@
 /// compiler's own files.
 namespace titop::passes {
 
-/// True if a channel's force acts from its block on its surroundings: at a parent point and about
-/// the axis of a joint. At a child point, also of a bushing, it acts on the block.
-bool is_outward(const ChannelSpec& channel);
-bool is_outward(const Graph& graph, int channel);
-
 /// Both are in the declared order, scalar by scalar: row out[k] of a transfer is the motion along
 /// which the force of column in[k] works.
 struct DualPairs {

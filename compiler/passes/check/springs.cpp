@@ -19,9 +19,6 @@ using Eigen::MatrixXd;
 
 using linalg::at;
 
-/// By channels, force and motion: the wrench that works against the structure.
-using ForceGains = std::map<std::pair<int, int>, MatrixXd>;
-
 ForceGains gains(const Graph& g, ParameterValues values, Term::Of of) {
   ForceGains result;
   for (const Equation& e : g.equations) {
@@ -80,6 +77,7 @@ std::vector<std::vector<int>> tied(const ForceGains& gains, std::size_t channels
 struct Among {
   MatrixXd K;
   Eigen::VectorXd size;
+  std::vector<Index> units;  ///< axes that share one, in the order of the rows
 
   Among(const std::vector<int>& channels, const Graph& g, const ForceGains& gains) {
     std::map<int, Index> first;
@@ -95,8 +93,25 @@ struct Among {
       for (Index i = row; i < row + g.channels[at(c)].size; i += each) {
         auto unit = size.segment(i, each);
         unit.setConstant(unit.maxCoeff());
+        units.push_back(each);
       }
     }
+  }
+
+  /// For the gains of rates: the rest is gyroscopic. Rounding of its rotations is 0.
+  void leave_symmetric_part() {
+    const MatrixXd whole = K;
+    K = (whole + whole.transpose()) / 2;
+    for (Index i = 0, row = 0; i < std::ssize(units); row += units[at(i++)])
+      for (Index j = 0, column = 0; j < std::ssize(units); column += units[at(j++)]) {
+        const double largest =
+            whole.block(row, column, units[at(i)], units[at(j)]).cwiseAbs().maxCoeff();
+        auto block = K.block(row, column, units[at(i)], units[at(j)]);
+        block = (block.array().abs() > linalg::kAxisRounding * largest).select(block, 0.0).eval();
+      }
+    for (Index i = 0, row = 0; i < std::ssize(units); row += units[at(i++)])
+      size.segment(row, units[at(i)])
+          .setConstant(K.diagonal().segment(row, units[at(i)]).maxCoeff());
   }
 
   bool symmetric_and_semidefinite() const {
@@ -141,7 +156,9 @@ std::string why_no_springs(const Graph& g, ParameterValues values) {
   for (const Term::Of of : {Term::Of::position, Term::Of::rate}) {
     const ForceGains all = gains(g, values, of);
     for (const std::vector<int>& channels : tied(all, g.channels.size())) {
-      if (Among(channels, g, all).symmetric_and_semidefinite()) continue;
+      Among among(channels, g, all);
+      if (of == Term::Of::rate) among.leave_symmetric_part();
+      if (among.symmetric_and_semidefinite()) continue;
       const auto pushed = std::find_if(channels.begin(), channels.end(), [&](int c) {
         return all.lower_bound({c, 0}) != all.lower_bound({c + 1, 0});
       });
@@ -151,6 +168,24 @@ std::string why_no_springs(const Graph& g, ParameterValues values) {
     }
   }
   return "";
+}
+
+ForceGains gyroscopic_gains(const Graph& g, ParameterValues values) {
+  const ForceGains all = gains(g, values, Term::Of::rate);
+  ForceGains result;
+  for (const auto& [pair, gain] : all) {
+    const auto back = all.find({pair.second, pair.first});
+    MatrixXd skew = gain / 2;
+    double size = gain.cwiseAbs().maxCoeff();
+    if (back != all.end()) {
+      skew -= back->second.transpose() / 2;
+      size = std::max(size, back->second.cwiseAbs().maxCoeff());
+    }
+    if (skew.cwiseAbs().maxCoeff() <= linalg::kAxisRounding * size) continue;
+    result[pair] = skew;
+    if (back == all.end()) result[{pair.second, pair.first}] = -skew.transpose();
+  }
+  return result;
 }
 
 }  // namespace titop::passes

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <string>
 #include <titop/graph/graph.hpp>
+#include <utility>
 #include <vector>
 
 /// Springs and dampers written as equations: `h.torque = k * h.angle + c * h.rate`.
@@ -20,11 +22,19 @@ struct OfMotion {
 /// displacement; by its matrices). Empty if it is anything else.
 std::vector<OfMotion> of_motions(const Graph& graph, const Term& term, ParameterValues values);
 
-/// Checks that forces by positions and rates are those of springs and dampers: the gains from
-/// all positions to all forces, in the signs of work, are symmetric and positive semidefinite, and
-/// so are those from rates. To 1e-12 of their diagonal, in all units. Empty if they are, else the
-/// first force of those that are not. O(terms), and m^3 for m degrees of freedom that such springs
-/// tie together.
+/// Gains from motions to forces, by the channels (force, motion), in the signs of work: of the
+/// wrench that works against the structure.
+using ForceGains = std::map<std::pair<int, int>, Eigen::MatrixXd>;
+
+/// Checks that forces by positions and rates are those of springs, dampers and gyroscopes: the
+/// gains from all positions to all forces, in the signs of work, are symmetric and positive
+/// semidefinite, and so is the symmetric part of those from rates. To 1e-12 of their diagonal, in
+/// all units. Empty if they are, else the first force of those that are not. O(terms), and m^3 for
+/// m degrees of freedom that such springs tie together.
 std::string why_no_springs(const Graph& graph, ParameterValues values);
+
+/// The antisymmetric part of the gains from rates to forces: gyroscopic terms, which do no work.
+/// Empty if there is none, beyond 1e-12 of the gains. O(terms).
+ForceGains gyroscopic_gains(const Graph& graph, ParameterValues values);
 
 }  // namespace titop::passes

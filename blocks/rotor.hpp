@@ -1,0 +1,73 @@
+#pragma once
+
+#include <titop/blocks/inertia.hpp>
+#include <titop/blocks/momentum.hpp>
+
+namespace titop {
+
+/// Rotor on a carrier: reaction wheel, momentum wheel, disk on a shaft; axisymmetric and balanced
+/// about the unit vector a along `axis` through its centre of mass A. It spins at a constant speed
+/// Omega relative to the carrier, with momentum = I_a Omega, plus a small change nu of that speed:
+///
+///     F_P = -D_P xdd_P - [0; a] I_a nud + [0; h a x omega_P]
+///     C_m = -I_a (a' omegad_P + nud)                          the 7th channel
+///
+/// with D_P = tau_AP' diag(m I, I_t (I - a a') + I_a a a') tau_AP and h = momentum. The last term
+/// of F_P is written by `add` as equations, if the momentum is not 0 or a parameter: see
+/// `momentum`. States: the integral of nu, and nu; they leave the model if nobody reads them.
+///
+/// Sign of the torque as with Hinge: C_m is the torque of the rotor ON its carrier about a, so a
+/// motor that exerts tau on the rotor is `torque = -tau`, and friction is `torque = c * speed`.
+/// Exactly one of `torque` and `accel` is driven: torque = 0 is a free rotor, accel = 0 one whose
+/// speed is held. A control moment gyroscope is a rotor on a `hinge`.
+///
+/// The model is of constant coefficients only if the rotor is axisymmetric: bodies with unequal
+/// transverse inertias, or flexible ones, cannot spin. All numbers but axis and PA may be
+/// parameters. Throws bad_inertia for a negative mass or inertia and for axial > 2 transverse,
+/// which no body has; bad_value for an axis without direction; not_finite.
+///
+///     auto wheel = d.add("wheel", Rotor{.mass = 6, .axial = 0.05, .transverse = 0.03,
+///                                       .axis = {0, 1, 0}, .momentum = 20});
+///     mount(wheel, hub.child("W"), T_wb);
+///     wheel.torque = -d.input("motor");
+///     d.output("speed") = wheel.speed;
+struct Rotor {
+  Value mass = 1;                     ///< [kg]
+  Value axial = 1;                    ///< I_a about the spin axis [kg m^2]
+  Value transverse = 1;               ///< I_t about the centre of mass, across the axis [kg m^2]
+  Vector3d axis = Vector3d::UnitZ();  ///< a, any length but 0, in the rotor's frame
+  Value momentum = 0;                 ///< h = I_a Omega [N m s]
+  Vector3d PA = Vector3d::Zero();     ///< from P to the centre of mass [m]
+
+  struct Handle {
+    Handle(Graph* graph, int node);
+    Handle(const Handle&) = default;
+    Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
+    DualPort<6> parent;           ///< P, on the carrier
+    Port<1, Kind::accel> accel;   ///< nud, relative to the carrier [rad/s^2]
+    Port<1, Kind::force> torque;  ///< C_m [N m]
+    Reading angle;                ///< integral of nu [rad]
+    Reading speed;                ///< nu, change of the speed [rad/s]
+  };
+  /// The gyroscopic term.
+  void connect(const Handle& rotor, std::source_location at) const;
+};
+BlockPtr as_block(const Rotor& spec);
+
+/// Imbalance of a rotor, both in one plane through the axis.
+struct Imbalance {
+  double static_kgm = 0;    ///< mass times its distance from the axis [kg m]
+  double dynamic_kgm2 = 0;  ///< product of inertia in that plane [kg m^2]
+};
+
+/// Input `name` with the components cos(Omega t) and sin(Omega t) of an imbalance that turns with
+/// the rotor at Omega = speed [rad/s]: force static Omega^2 along the turning direction at P, and
+/// torque dynamic Omega^2 about it. b and c, at cos = 1 and sin = 1, are two unit vectors with b x
+/// c = a; b is the coordinate axis farthest from a, less its part along a. Answers at s = j Omega
+/// are the vibration at that speed.
+///
+///     unbalance(d, wheel, "imbalance", {.static_kgm = 7e-6, .dynamic_kgm2 = 2e-7}, 300.0);
+void unbalance(Diagram& d, const Rotor::Handle& rotor, std::string name, const Imbalance& imbalance,
+               double speed, std::source_location at = std::source_location::current());
+
+}  // namespace titop
