@@ -25,7 +25,7 @@ room(compiler/loops            compiler/passes compiler/solve)
 room(compiler/realization      compiler/passes compiler/solve)
 room(compiler/certificate      compiler/passes compiler/definition compiler/solve
                                compiler/realization)
-room(compiler/index_reduction  compiler/passes compiler/solve compiler/loops compiler/certificate)
+room(compiler/index_reduction  compiler/passes compiler/solve compiler/loops)
 room(compiler/minreal          compiler/passes compiler/definition compiler/solve
                                compiler/realization compiler/certificate)
 room(compiler/system           compiler/passes compiler/diagram compiler/definition compiler/solve

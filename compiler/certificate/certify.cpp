@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
 #include <titop/compiler/certificate/check.hpp>
 #include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/certificate/self_check.hpp>
-#include <titop/compiler/certificate/weak_pivot.hpp>
 #include <titop/compiler/solve/factored.hpp>
+#include <titop/compiler/solve/margins.hpp>
+#include <titop/compiler/solve/weak_pivot.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 namespace titop::detail {
@@ -26,6 +28,23 @@ std::string variable_name(const Factored& d, int variable) {
   return signal < 0 ? "a sum of many terms" : name_of(d.graph(), signal);
 }
 
+/// The largest margin of a loop, and the loops whose margins are not computed.
+void take_margins(const Factored& d, std::span<const double> margins, Check& check) {
+  Certificate& c = check.certificate;
+  const LoopMargins found = judge_margins(d.skeleton->stage, margins);
+  c.margin = found.largest;
+  if (found.largest_loop >= 0)
+    c.margin_where =
+        name_of(d.graph(), d.skeleton->stage.loops[at(found.largest_loop)].signals.front());
+  c.margin_is_exact = found.too_large == 0 && found.without_inverse == 0;
+  if (const int n = found.too_large; n > 0)
+    check.notes.push_back(
+        {Note::Kind::info, "certify",
+         fmt::format("{} loop{} of more than {} unknowns: checked by {} pivots, not by {} margin",
+                     n, n == 1 ? "" : "s", kMarginUpTo, n == 1 ? "its" : "their",
+                     n == 1 ? "its" : "their")});
+}
+
 }  // namespace
 
 Check certify(const Factored& d) {
@@ -41,9 +60,13 @@ Check certify(const Factored& d) {
   c.plans_renewed = d.plans_renewed;
   std::vector<double> margins = *d.margins;
   find_margins(d, d.changed_loops, margins);
-  worst_margin(d, margins, check);
+  take_margins(d, margins, check);
   self_check(d, check);
-  check.least = least_pivot(d, check);
+  const WeakPivots weak = d.weak_pivots ? *d.weak_pivots : judge_weak_pivots(d, margins);
+  if (weak.undecided)
+    check.notes.push_back({Note::Kind::warning, "certify",
+                           "it is not decided whether the solution of these equations has a digit "
+                           "left: the diagram is too large for an elimination in 50 digits"});
   c.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   // At distance delta from singular the margin is about 4/delta, and a pivot keeps delta/2.
   const double by_margin = 4 / c.margin, by_pivot = 2 * c.weakest_pivot;
@@ -59,7 +82,7 @@ Check certify(const Factored& d) {
     check.notes.push_back(
         {Note::Kind::warning, "certify",
          fmt::format("{} is satisfied only to {:.1g}", c.residual_where, c.residual)});
-  if (check.least > 0)
+  if (weak.least > 0)
     check.notes.push_back(
         {Note::Kind::warning, "certify", "no digit is left: in double a pivot is rounding alone"});
   return check;

@@ -1,15 +1,15 @@
 #pragma once
 
 #include <titop/compiler/solve/factored.hpp>
+#include <titop/compiler/solve/null_rows.hpp>
 #include <vector>
 
 /// Sizes of the unknowns that are eliminated together with an unknown: the scale of its rounding.
 /// For the compiler's own files only.
 namespace titop::detail {
 
-/// Possible rounding of a 0, relative to its Surroundings: some hundred units of the last place,
-/// since it comes from sums over a front.
-inline constexpr double kLeftOfZero = 1e-13;
+/// Times its Surroundings: possible rounding of a 0.
+using solve::kLeftOfZero;
 
 /// Size around an unknown in the elimination, in the unknown's own unit (by the scaling of the
 /// fronts' columns): the largest of its front; if all that the front shares with its parent is

@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <titop/compiler/certificate/weak_pivot.hpp>
 #include <titop/compiler/index_reduction/new_rows.hpp>
 #include <titop/compiler/index_reduction/proper.hpp>
 #include <titop/compiler/index_reduction/reduce.hpp>
 #include <titop/compiler/solve/blame.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
+#include <titop/compiler/solve/weak_pivot.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/some_names.hpp>
 
@@ -34,7 +34,7 @@ class Reducer {
     k_.before_reduce = k_.joint;
     factor();
     d_.scale_as_written = d_.factors->scale();
-    if (held_.empty() && d_.factors->patches().empty()) throw Error(no_digit_left(k_, d_));
+    if (held_.empty() && d_.factors->patches().empty()) throw Error(no_digit_left(d_));
     while (!d_.factors->patches().empty())
       if (!step()) return false;
     if (!constraints_.empty()) finish();
@@ -44,7 +44,7 @@ class Reducer {
  private:
   bool step() {
     const std::vector<Hidden> found = constraints();
-    if (found.empty()) throw Error(no_digit_left(k_, d_));
+    if (found.empty()) throw Error(no_digit_left(d_));
     if (const std::vector<Hidden> rest = followers_.add(found); !rest.empty()) {
       hold_or_refuse(rest);
       return false;
@@ -263,11 +263,48 @@ class Reducer {
   std::vector<Hidden> constraints_;
 };
 
-}  // namespace
-
-void reduce(Skeleton& k, Factored& d, double least) {
+void reduce_with(double least, Skeleton& k, Factored& d) {
   std::set<std::pair<int, int>> held;
   while (!Reducer(k, d, least, held).run()) {
+  }
+  d.weak_pivots = judge_weak_pivots(d, *d.margins);
+}
+
+/// All that the reduction changes, as it was before.
+class AsWritten {
+ public:
+  AsWritten(const Skeleton& k, const Factored& d)
+      : joint_(k.joint),
+        dependents_(k.stage.dependents),
+        notes_(k.stage.notes.size()),
+        coefficients_(d.numbers.coefficients.size()),
+        states_(d.states) {}
+
+  void restore(Skeleton& k, Factored& d) && {
+    k.joint = std::move(joint_);
+    k.stage.dependents = std::move(dependents_);
+    k.stage.notes.resize(notes_);
+    d.numbers.coefficients.resize(coefficients_);
+    d.states = std::move(states_);
+  }
+
+ private:
+  JointSystem joint_;
+  std::vector<Dependent> dependents_;
+  std::size_t notes_, coefficients_;  ///< appended to
+  StateMap states_;
+};
+
+}  // namespace
+
+void reduce(Skeleton& k, Factored& d) {
+  if (const double least = d.weak_pivots ? d.weak_pivots->least : 0; least > 0)
+    return reduce_with(least, k, d);
+  AsWritten before(k, d);
+  reduce_with(0, k, d);
+  if (const double least = d.weak_pivots->least; least > 0) {
+    std::move(before).restore(k, d);
+    reduce_with(least, k, d);
   }
 }
 

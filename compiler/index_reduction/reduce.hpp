@@ -17,13 +17,15 @@
 /// no output or state depends (undetermined.hpp), it is set to 0 instead, and noted.
 namespace titop::detail {
 
-/// Replaces k.joint and d.factors, which are singular, by regular ones (`least`: smallest ratio of
-/// a pivot to its terms, see least_pivot); completes k.stage.dependents and d.states; keeps the
-/// equations as written, undetermined motions at 0, in k.before_reduce. Throws improper (input,
-/// output, number of derivatives and the equation that causes it), or the errors of solve::blame if
-/// a constraint is redundant or contradictory (with the signals that depend on an undetermined
-/// motion), not_finite. O(bodies) per derivative, and for each missing pivot the reach of its
-/// constraint: of a point without mass its neighbours.
-void reduce(Skeleton& k, Factored& d, double least);
+/// Replaces k.joint and d.factors, which are singular, by regular ones; completes
+/// k.stage.dependents and d.states; keeps the equations as written, undetermined motions at 0, in
+/// k.before_reduce. A pivot below d.weak_pivots->least of its terms is 0. If no pivot was judged as
+/// rounding before, and one of the regular system is, the reduction is done once more from the
+/// equations as written, with that threshold; d.weak_pivots is then that of the result. Throws
+/// improper (input, output, number of derivatives and the equation that causes it), or the errors
+/// of solve::blame if a constraint is redundant or contradictory (with the signals that depend on
+/// an undetermined motion), not_finite. O(bodies) per derivative, and for each missing pivot the
+/// reach of its constraint: of a point without mass its neighbours.
+void reduce(Skeleton& k, Factored& d);
 
 }  // namespace titop::detail

@@ -22,6 +22,12 @@ struct Dependents {
   std::vector<int> loops;    ///< Stage::loops with one of these rows
 };
 
+/// Whether pivots are rounding alone: judge_weak_pivots.
+struct WeakPivots {
+  double least = 0;  ///< share of its terms below which a pivot counts as 0; 0: all have digits
+  bool undecided = false;  ///< in doubt, and too large for an elimination in 50 digits
+};
+
 struct Writing;
 
 /// The data that do not depend on numbers: shared by all systems that `update` makes of one
@@ -52,6 +58,8 @@ struct Factored {
   std::shared_ptr<const solve::ColumnScale> scale_as_written;
   /// Per loop of the stage as compiled; 0 if it was not found.
   std::shared_ptr<const std::vector<double>> margins;
+  /// None: not judged, of an update without a pivot weaker than before.
+  std::optional<WeakPivots> weak_pivots;
   std::vector<int> changed_loops;                       ///< by updates since
   int plans_renewed = 0;                                ///< by updates since
   std::vector<double> scaled_at;                        ///< parameters when the scaling was found

@@ -10,6 +10,9 @@ namespace titop::solve {
 
 /// Sums below this share of their terms are 0 in decisions on rank.
 constexpr double kCancelled = 1e-11;
+/// Possible rounding of a 0, relative to the sizes around it: some hundred units of the last place,
+/// since it comes from sums over a front.
+constexpr double kLeftOfZero = 1e-13;
 
 /// Sums of numbers that may cancel, each with the size of its terms.
 struct CancellingSum {

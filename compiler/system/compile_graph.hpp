@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <titop/compiler/passes/open/open.hpp>
 #include <titop/compiler/system/system.hpp>
@@ -10,10 +9,8 @@ namespace titop::detail {
 /// `compile` for a graph instead of a diagram: for the compiler's own files that rewrite graphs.
 std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Options& options);
 
-/// All passes and the certificate on the stage that `begin` makes; it is called a second time if
-/// the certificate finds that double took rounding for a pivot.
-std::shared_ptr<const SystemData> compile_stage(const std::function<Stage()>& begin,
-                                                const Options& options);
+/// All passes and the certificate from this stage on.
+std::shared_ptr<const SystemData> compile_stage(Stage begin, const Options& options);
 
 /// The system's diagram at its present values with these parameters taken out
 /// (compiler/passes/open/open.hpp): their w are inputs after the diagram's own, their z outputs,

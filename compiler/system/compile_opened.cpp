@@ -73,7 +73,7 @@ std::shared_ptr<const SystemData> compile_opened(const System& system,
   begin.dependents = k.stage.dependents;
   Options options = k.options;
   options.dump_to.clear();
-  return compile_stage([&] { return passes::open_parameters(begin, parameters); }, options);
+  return compile_stage(passes::open_parameters(begin, parameters), options);
 }
 
 }  // namespace titop::detail

@@ -13,6 +13,8 @@
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/solve/data_digits.hpp>
 #include <titop/compiler/solve/layout.hpp>
+#include <titop/compiler/solve/margins.hpp>
+#include <titop/compiler/solve/weak_pivot.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/graph/ahead.hpp>
@@ -68,8 +70,7 @@ void timed(detail::SystemData& data, const char* name, F f) {
       name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 
-/// `least`: see least_pivot.
-void solve_joint(detail::Skeleton& k, detail::SystemData& d, double least) {
+void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
   k.layout = detail::make_layout(k.stage.graph);
   d.states = detail::StateMap(k.stage.dependents, k.layout);
   d.numbers.parameters = k.stage.values;
@@ -86,7 +87,16 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d, double least) {
       k.stage.notes.push_back(
           {Note::Kind::info, "solve",
            fmt::format("parameter {}: nothing depends on it", k.stage.graph.parameters[i].name)});
-  if (d.factors->health().singular || least > 0) detail::reduce(k, d, least);
+  d.changed_loops.resize(k.stage.loops.size());
+  std::iota(d.changed_loops.begin(), d.changed_loops.end(), 0);
+  detail::update_margins(d);
+  const bool singular = d.factors->health().singular;
+  if (!singular) d.weak_pivots = detail::judge_weak_pivots(d, *d.margins);
+  if (singular || d.weak_pivots->least > 0) {
+    // Pivots may be rounding because the data have no digit there: that is told first.
+    if (!singular) detail::judge_data_digits(d);
+    detail::reduce(k, d);
+  }
   detail::judge_internal_forces(k, d);
   const std::vector<Note> digits = detail::judge_data_digits(d);
   k.stage.notes.insert(k.stage.notes.end(), digits.begin(), digits.end());
@@ -95,7 +105,7 @@ void solve_joint(detail::Skeleton& k, detail::SystemData& d, double least) {
                                        k.joint.plan->fronts.size())});
 }
 
-std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options, double least = 0) {
+std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options) {
   auto data = std::make_shared<detail::SystemData>();
   auto skeleton = std::make_shared<detail::Skeleton>();
   data->skeleton = skeleton;
@@ -112,38 +122,20 @@ std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options, d
     });
     dump(options, ++number, pass.name, stage);
   }
-  timed(*data, "solve", [&] { solve_joint(*skeleton, *data, least); });
+  timed(*data, "solve", [&] { solve_joint(*skeleton, *data); });
   data->notes = stage.notes;
   data->scaled_at = data->numbers.parameters;
   data->scaled_health = data->factors->health();
-  data->margins = std::make_shared<const std::vector<double>>(stage.loops.size(), 0.0);
-  data->changed_loops.resize(stage.loops.size());
-  std::iota(data->changed_loops.begin(), data->changed_loops.end(), 0);
   return data;
 }
 
-/// The margins are stored in the system, so that an update computes only those that it changes.
-void certify_now(detail::SystemData& data) {
-  std::vector<double> margins;
-  detail::find_margins(data, data.changed_loops, margins);
-  data.margins = std::make_shared<const std::vector<double>>(std::move(margins));
-  data.changed_loops.clear();
-  data.checked();
-}
-
-/// All passes and the certificate; a second time with a larger least pivot if the certificate finds
-/// that double took rounding for a pivot. `note` adds to the notes of the result.
-template <class Begin, class Note>
-std::shared_ptr<const detail::SystemData> decided(Begin begin, const Options& options, Note note) {
-  const auto made = [&](double least) {
-    auto data = run(begin(), options, least);
-    note(*data);
-    timed(*data, "certify", [&] { certify_now(*data); });
-    return data;
-  };
-  auto data = made(0);
-  const double least = data->checked().least;
-  return least > 0 ? made(least) : data;
+/// The certificate; `note` adds to the notes of the result before.
+template <class Note>
+std::shared_ptr<const detail::SystemData> certified(std::shared_ptr<detail::SystemData> data,
+                                                    Note note) {
+  note(*data);
+  timed(*data, "certify", [&] { data->checked(); });
+  return data;
 }
 
 void check_options(const Options& o) {
@@ -169,29 +161,25 @@ System compile(const Diagram& diagram, const Options& options) {
 namespace detail {
 
 std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Options& options) {
-  return compile_stage([&] { return as_written(graph); }, options);
+  return compile_stage(as_written(graph), options);
 }
 
 std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
                                                 const std::vector<double>& values,
                                                 const std::function<void(SystemData&)>& note) {
-  const auto begin = [&] {
-    Stage stage;
-    stage.source = old.stage.source;
-    stage.values = values;
-    stage.before = old.stage.dependents;
-    stage.motions = old.stage.motions;
-    stage.opened = old.stage.opened;
-    return stage;
-  };
+  Stage begin;
+  begin.source = old.stage.source;
+  begin.values = values;
+  begin.before = old.stage.dependents;
+  begin.motions = old.stage.motions;
+  begin.opened = old.stage.opened;
   Options options = old.options;
   options.dump_to.clear();
-  return decided(begin, options, note);
+  return certified(run(std::move(begin), options), note);
 }
 
-std::shared_ptr<const SystemData> compile_stage(const std::function<Stage()>& begin,
-                                                const Options& options) {
-  return decided(begin, options, [](SystemData&) {});
+std::shared_ptr<const SystemData> compile_stage(Stage begin, const Options& options) {
+  return certified(run(std::move(begin), options), [](SystemData&) {});
 }
 
 }  // namespace detail

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <titop/compiler/certificate/weak_pivot.hpp>
 #include <titop/compiler/passes/moves_points.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/compiler/solve/data_digits.hpp>
+#include <titop/compiler/solve/margins.hpp>
+#include <titop/compiler/solve/weak_pivot.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <unordered_set>
@@ -323,11 +324,13 @@ System System::update(const ParameterList& list) const {
   d->changed_loops.insert(d->changed_loops.end(), data_->changed_loops.begin(),
                           data_->changed_loops.end());
   sort_unique(d->changed_loops);
-  // A pivot about as weak as before (within a digit) has been checked then.
+  // A pivot about as weak as before (within a digit) has been judged then.
   constexpr double kWeaker = 0.1;
-  if (health.weakest < std::min(kFewDigits, kWeaker * data_->scaled_health.weakest) &&
-      d->checked().least > 0)
-    return again(kNoDigit);
+  if (health.weakest < std::min(kFewDigits, kWeaker * data_->scaled_health.weakest)) {
+    update_margins(*d);
+    d->weak_pivots = judge_weak_pivots(*d, *d->margins);
+    if (d->weak_pivots->least > 0) return again(kNoDigit);
+  }
   return System(std::move(d));
 }
 

@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
-#include <titop/compiler/certificate/check.hpp>
-#include <titop/compiler/certificate/residual.hpp>
-#include <titop/compiler/certificate/surroundings.hpp>
-#include <titop/compiler/certificate/weak_pivot.hpp>
+#include <titop/compiler/solve/margins.hpp>
 #include <titop/compiler/solve/null_rows.hpp>
 #include <titop/compiler/solve/scalar.hpp>
+#include <titop/compiler/solve/weak_pivot.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/some_names.hpp>
 
@@ -16,14 +13,9 @@ namespace {
 
 using linalg::at;
 using solve::Complex50;
+using solve::kLeftOfZero;
 
 constexpr double kMostProducts = 1e7;
-
-bool is_doubtful(const Check& check) {
-  const Certificate& c = check.certificate;
-  return c.weakest_pivot < kFewDigits || c.margin > 10 / kFewDigits ||
-         check.loop_without_digit >= 0 || c.residual > kWarn || check.lost > 1e-3;
-}
 
 double products(const solve::Plan& plan) {
   double sum = 0;
@@ -33,7 +25,8 @@ double products(const solve::Plan& plan) {
 }
 
 /// Cancelled entries are exact zeros, so that no rounding is taken for a pivot further up.
-bool singular_in_50_digits(const Skeleton& k, const Factored& d) {
+bool singular_in_50_digits(const Factored& d) {
+  const Skeleton& k = *d.skeleton;
   std::vector<solve::Dense<Complex50>> direct;
   solve::Matrices<Complex50> m;
   direct.reserve(d.numbers.blocks.size());
@@ -50,20 +43,11 @@ bool singular_in_50_digits(const Skeleton& k, const Factored& d) {
   return h.finite && (!factors.patches().empty() || h.weakest < rounding);
 }
 
-/// The loop without a digit, by its margin.
-const Loop* loop_without_digit(const Skeleton& k, const Factored& d) {
-  std::vector<int> all(k.stage.loops.size());
-  std::iota(all.begin(), all.end(), 0);
-  std::vector<double> margins;
-  find_margins(d, all, margins);
-  Check check;
-  worst_margin(d, margins, check);
-  return check.loop_without_digit < 0 ? nullptr : &k.stage.loops[at(check.loop_without_digit)];
-}
-
 /// Signals of the loop without a digit, or of the weakest pivot's; empty if there is neither.
-std::vector<int> signals_without_digit(const Skeleton& k, const Factored& d) {
-  if (const Loop* const loop = loop_without_digit(k, d)) return loop->signals;
+std::vector<int> signals_without_digit(const Factored& d) {
+  const Skeleton& k = *d.skeleton;
+  if (const int loop = judge_margins(k.stage, *d.margins).without_digit; loop >= 0)
+    return k.stage.loops[at(loop)].signals;
   const int variable = d.factors->health().weakest_variable;
   const int signal = variable < 0 ? -1 : k.joint.variables[at(variable)];
   if (signal < 0) return {};
@@ -75,24 +59,22 @@ std::vector<int> signals_without_digit(const Skeleton& k, const Factored& d) {
 
 }  // namespace
 
-double least_pivot(const Factored& d, Check& check) {
+WeakPivots judge_weak_pivots(const Factored& d, std::span<const double> margins) {
   const Skeleton& k = *d.skeleton;
-  if (!is_doubtful(check)) return 0;
+  const double weakest = d.factors->health().weakest;
+  const LoopMargins loops = judge_margins(k.stage, margins);
+  if (!(weakest < kFewDigits || loops.largest > 10 / kFewDigits || loops.without_digit >= 0))
+    return {};
   // Not after reduction: loops of the equations as written may then be singular.
-  if (check.loop_without_digit >= 0 && !k.before_reduce) return kLeftOfZero;
-  if (products(*k.joint.plan) > kMostProducts) {
-    check.notes.push_back({Note::Kind::warning, "certify",
-                           "it is not decided whether the solution of these equations has a digit "
-                           "left: the diagram is too large for an elimination in 50 digits"});
-    return 0;
-  }
-  if (!singular_in_50_digits(k, d)) return 0;
-  return std::clamp(2 * check.certificate.weakest_pivot, kLeftOfZero, solve::kCancelled);
+  if (loops.without_digit >= 0 && !k.before_reduce) return {.least = kLeftOfZero};
+  if (products(*k.joint.plan) > kMostProducts) return {.undecided = true};
+  if (!singular_in_50_digits(d)) return {};
+  return {.least = std::clamp(2 * weakest, kLeftOfZero, solve::kCancelled)};
 }
 
-Mistake no_digit_left(const Skeleton& k, const Factored& d) {
+Mistake no_digit_left(const Factored& d) {
   std::vector<std::string> ports;
-  for (const int s : signals_without_digit(k, d)) ports.push_back(name_of(k.stage.graph, s));
+  for (const int s : signals_without_digit(d)) ports.push_back(name_of(d.graph(), s));
   return {Code::ill_posed,
           fmt::format("the algebraic loop through {} has no unique solution, or none with a digit "
                       "in double",

@@ -1,23 +1,18 @@
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <titop/compiler/certificate/check.hpp>
-#include <titop/compiler/solve/factored.hpp>
+#include <titop/compiler/solve/margins.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/linalg/skeel.hpp>
 #include <utility>
 
-/// Well-posedness of the algebraic loops, in a number that no change of units moves.
+/// The margin of a loop is a number that no change of units moves.
 namespace titop::detail {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
 using linalg::at;
-
-constexpr int kExactUpTo = 120;  ///< unknowns; above it a dense inverse per loop costs too much
 
 /// At distance delta from singular a margin is about 4 / delta: above this limit the last two units
 /// of a loop's own numbers determine every digit of the solution.
@@ -158,7 +153,7 @@ void to_own_units(const Factored& d, const Loop& loop, MatrixXd& L) {
 /// has no inverse in double.
 double margin(const Factored& d, const Loop& loop, LoopRoom& room) {
   if (loop.unknowns == 1) return 1;
-  if (loop.unknowns > kExactUpTo || !take_loop_matrix(d, loop, room)) return 0;
+  if (loop.unknowns > kMarginUpTo || !take_loop_matrix(d, loop, room)) return 0;
   return linalg::skeel_radius(room.L, [&](MatrixXd& M) { to_own_units(d, loop, M); });
 }
 
@@ -172,29 +167,28 @@ void find_margins(const Factored& d, std::span<const int> loops, std::vector<dou
   for (const int i : loops) margins[at(i)] = margin(d, all[at(i)], room);
 }
 
-void worst_margin(const Factored& d, std::span<const double> margins, Check& check) {
-  Certificate& c = check.certificate;
-  const std::vector<Loop>& loops = d.skeleton->stage.loops;
-  int skipped = 0, without = 0;
-  for (std::size_t i = 0; i < loops.size(); ++i) {
-    if (loops[i].unknowns > kExactUpTo) {
-      ++skipped;
+void update_margins(Factored& d) {
+  std::vector<double> margins = d.margins ? *d.margins : std::vector<double>();
+  find_margins(d, d.changed_loops, margins);
+  d.margins = std::make_shared<const std::vector<double>>(std::move(margins));
+  d.changed_loops.clear();
+}
+
+LoopMargins judge_margins(const Stage& stage, std::span<const double> margins) {
+  LoopMargins result;
+  for (std::size_t i = 0; i < stage.loops.size(); ++i) {
+    if (stage.loops[i].unknowns > kMarginUpTo) {
+      ++result.too_large;
       continue;
     }
-    without += margins[i] == 0;
-    if ((margins[i] == 0 || margins[i] > kWithoutDigit) && check.loop_without_digit < 0)
-      check.loop_without_digit = static_cast<int>(i);
-    if (margins[i] <= c.margin) continue;
-    c.margin = margins[i];
-    c.margin_where = name_of(d.graph(), loops[i].signals.front());
+    result.without_inverse += margins[i] == 0;
+    if ((margins[i] == 0 || margins[i] > kWithoutDigit) && result.without_digit < 0)
+      result.without_digit = static_cast<int>(i);
+    if (margins[i] <= result.largest) continue;
+    result.largest = margins[i];
+    result.largest_loop = static_cast<int>(i);
   }
-  c.margin_is_exact = skipped == 0 && without == 0;
-  if (skipped > 0)
-    check.notes.push_back(
-        {Note::Kind::info, "certify",
-         fmt::format("{} loop{} of more than {} unknowns: checked by {} pivots, not by {} margin",
-                     skipped, skipped == 1 ? "" : "s", kExactUpTo, skipped == 1 ? "its" : "their",
-                     skipped == 1 ? "its" : "their")});
+  return result;
 }
 
 }  // namespace titop::detail
