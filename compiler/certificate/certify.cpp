@@ -50,7 +50,7 @@ void take_margins(const Factored& d, std::span<const double> margins, Check& che
 Check certify(const Factored& d) {
   const auto start = std::chrono::steady_clock::now();
   const solve::Health h = d.factors->health();
-  Check check{{}, d.notes};
+  Check check;
   Certificate& c = check.certificate;
   c.weakest_pivot = h.weakest;
   if (h.weakest_variable >= 0) c.weakest_where = variable_name(d, h.weakest_variable);

@@ -9,7 +9,7 @@ namespace titop::detail {
 /// Result of `certify`.
 struct Check {
   Certificate certificate;
-  std::vector<Note> notes;  ///< all of the system, its own at the end
+  std::vector<Note> notes;  ///< its own
   double lost = 0;          ///< of the outputs, by rounding, in double; 0 if it was not computed
   bool rounding_alone = false;  ///< some output is at rounding level, as far as computed
 };

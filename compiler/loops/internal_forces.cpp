@@ -135,7 +135,7 @@ struct ForceJudge {
       const std::string name = channel_name(g, r.channel);
       if (joints.find(name) == std::string::npos) joints += (joints.empty() ? "" : ", ") + name;
     }
-    notes.push_back({Note::Kind::warning, "solve",
+    notes.push_back({Note::Kind::warning, "forces",
                      fmt::format("{} reads {}, an internal force that motion does not determine: "
                                  "the wrench of minimal norm at {} is used",
                                  reader, name_of(g, signal), joints)});
@@ -231,10 +231,11 @@ struct ForceJudge {
 
 }  // namespace
 
-void judge_internal_forces(Skeleton& k, const Factored& d) {
-  if (k.stage.released.empty()) return;
+std::vector<Note> judge_internal_forces(const Factored& d) {
+  const Skeleton& k = *d.skeleton;
+  if (k.stage.released.empty()) return {};
   SelfStress stress(k, d);
-  if (stress.empty()) return;
+  if (stress.empty()) return {};
   ForceJudge judge{k, d, stress};
   for (int i = 0; judge.finds() && i < kRefinements; ++i) {
     stress.refine();
@@ -243,11 +244,12 @@ void judge_internal_forces(Skeleton& k, const Factored& d) {
   if (!judge.mistakes.empty() && k.options.internal_forces == InternalForces::refuse)
     throw Error(std::move(judge.mistakes));
   if (stress.summed())
-    k.stage.notes.push_back({Note::Kind::info, "solve",
-                             fmt::format("readers of undetermined internal forces are found from "
-                                         "{} random sums of the {} forces",
-                                         kSums, stress.directions())});
-  k.stage.notes.insert(k.stage.notes.end(), judge.notes.begin(), judge.notes.end());
+    judge.notes.insert(judge.notes.begin(),
+                       {Note::Kind::info, "forces",
+                        fmt::format("readers of undetermined internal forces are found from {} "
+                                    "random sums of the {} forces",
+                                    kSums, stress.directions())});
+  return std::move(judge.notes);
 }
 
 }  // namespace titop::detail

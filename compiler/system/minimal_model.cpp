@@ -10,7 +10,7 @@
 #include <titop/compiler/realization/energy.hpp>
 #include <titop/compiler/solve/frequency.hpp>
 #include <titop/compiler/system/elimination_terms.hpp>
-#include <titop/compiler/system/system_data.hpp>
+#include <titop/compiler/system/steps.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/name_order.hpp>
 
@@ -23,13 +23,13 @@ using Eigen::MatrixXd;
 using linalg::at;
 
 /// The minimal order if exact arithmetic is enabled and has found it; else -1.
-int exact_order_of(const SystemData& d, int states) {
+int exact_order_of(const SystemData& d, int states, std::vector<Note>& notes) {
   if (states > d.skeleton->options.exact_up_to) return -1;
   // Blocks' states that follow from others count there, and so do integrators of positions.
   const ExactOrder exact = minreal::order_of_stage(d.skeleton->stage, states,
                                                    {.states = 4 * d.skeleton->options.exact_up_to},
                                                    d.numbers.parameters);
-  d.dense_notes.push_back({Note::Kind::info, "minimize", to_string(exact)});
+  notes.push_back({Note::Kind::info, "minimize", to_string(exact)});
   return exact.decided ? exact.order : -1;
 }
 
@@ -97,7 +97,7 @@ constexpr double kUnclearDigits = 1e-3;
 /// digits are lost, only states that the other ports need are certain: part of the inputs and
 /// outputs needs no more states than all of them.
 void doubt_lost_digits(const System& system, const SystemData& d, const StateSpace& dense,
-                       MinimizeOptions options, OrderVerdict& v) {
+                       MinimizeOptions options, OrderVerdict& v, std::vector<Note>& notes) {
   if (v.exact || v.lowest == 0 || dense.inputs.empty() || dense.outputs.empty()) return;
   const char* lost = digits_lost(d);
   if (!lost && has_output_of_rounding(system, d, dense)) lost = "some output is rounding alone";
@@ -112,7 +112,7 @@ void doubt_lost_digits(const System& system, const SystemData& d, const StateSpa
   }
   if (certain >= v.lowest) return;
   v.lowest = certain;
-  d.dense_notes.push_back(
+  notes.push_back(
       {Note::Kind::warning, "minimize",
        fmt::format("{}: of {} states, only {} are certainly needed", lost, v.order, certain)});
 }
@@ -213,10 +213,10 @@ void doubt_unmeasured(OrderVerdict& v) {
 
 /// Notes the points at which the change was not measured; without any measurement no mode is
 /// removed.
-void say_left_out(const SystemData& d, const Change& by) {
+void say_left_out(const Change& by, std::vector<Note>& notes) {
   if (by.left_out.empty()) return;
   const auto smaller = [](const auto& a, const auto& b) { return std::abs(a) < std::abs(b); };
-  d.dense_notes.push_back(
+  notes.push_back(
       {Note::Kind::unchecked, "minimize",
        fmt::format("the change of the transfer is measured at {} of {} points: at the others, the "
                    "lowest |s| = {:.3g}, the factors have no digit",
@@ -224,48 +224,69 @@ void say_left_out(const SystemData& d, const Change& by) {
                    std::abs(*std::min_element(by.left_out.begin(), by.left_out.end(), smaller)))});
 }
 
-}  // namespace
-
-void minimize_checked(const System& system, const SystemData& d, StateSpace& dense) {
+/// Replaces the dense model by the minimal one, if its transfer keeps its digits.
+void minimize_checked(const System& system, const SystemData& d, DenseModel& m) {
+  StateSpace& dense = m.model;
   const double resolution = d.skeleton->options.resolution;
   const auto [judged, rounding] = without_rounding(d, dense);
   const MinimizeOptions options{.resolution = resolution,
-                                .exact_order = exact_order_of(d, dense.order()),
+                                .exact_order = exact_order_of(d, dense.order(), m.notes),
                                 .energy = d.states.trivial() ? MatrixXd() : potential_energy(d),
                                 .rounding = rounding};
-  Minimized m = minreal::minimize_unmeasured(judged, options);
-  doubt_lost_digits(system, d, judged, options, m.order);
-  if (d.dense_error.beside_largest.error > kUnclearDigits && !m.order.exact)
-    m.order.highest = dense.order();
-  lower_to_exact_order(system, d, dense, judged, m);
-  if (dense.inputs.empty() || dense.outputs.empty()) doubt_unmeasured(m.order);
-  if (!m.notes.empty()) m.notes.front() = to_string(m.order);
-  const bool removed = !m.order.removed.empty();
+  Minimized minimal = minreal::minimize_unmeasured(judged, options);
+  doubt_lost_digits(system, d, judged, options, minimal.order, m.notes);
+  if (m.error.beside_largest.error > kUnclearDigits && !minimal.order.exact)
+    minimal.order.highest = dense.order();
+  lower_to_exact_order(system, d, dense, judged, minimal);
+  if (dense.inputs.empty() || dense.outputs.empty()) doubt_unmeasured(minimal.order);
+  if (!minimal.notes.empty()) minimal.notes.front() = to_string(minimal.order);
+  const bool removed = !minimal.order.removed.empty();
   double lost = 0;
   bool untried = false;
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
-    const Change by = change(system, d, dense, m);
-    m.order.change = by.by_modes;
-    m.notes.front() = to_string(m.order);
+    const Change by = change(system, d, dense, minimal);
+    minimal.order.change = by.by_modes;
+    minimal.notes.front() = to_string(minimal.order);
     untried = by.tried.empty();
     lost = untried ? 1 : by.in_all;  // not measured: put all back
-    say_left_out(d, by);
+    say_left_out(by, m.notes);
   }
-  if (minreal::put_back(dense, resolution, lost, m)) {
+  if (minreal::put_back(dense, resolution, lost, minimal)) {
     if (untried)
-      m.notes.back() = "nothing was removed: near the removed modes the factors have no digit";
-    if (!lower_to_exact_order(system, d, dense, judged, m)) {
-      d.dense_notes.push_back({Note::Kind::warning, "minimize",
-                               fmt::format("{}: {}", m.notes.back(), m.notes.front())});
-      d.dense_order = std::move(m.order);
+      minimal.notes.back() =
+          "nothing was removed: near the removed modes the factors have no digit";
+    if (!lower_to_exact_order(system, d, dense, judged, minimal)) {
+      m.notes.push_back({Note::Kind::warning, "minimize",
+                         fmt::format("{}: {}", minimal.notes.back(), minimal.notes.front())});
+      m.order = std::move(minimal.order);
       return;
     }
   }
-  for (std::string& text : m.notes)
-    d.dense_notes.push_back(
+  for (std::string& text : minimal.notes)
+    m.notes.push_back(
         {removed ? Note::Kind::removed : Note::Kind::info, "minimize", std::move(text)});
-  d.dense_order = std::move(m.order);
-  if (removed) dense = std::move(m.model);
+  m.order = std::move(minimal.order);
+  if (removed) dense = std::move(minimal.model);
 }
 
+}  // namespace
+
 }  // namespace titop::detail
+
+titop::detail::DenseModel titop::steps::minimize(const System& system,
+                                                 const detail::SystemData& data,
+                                                 detail::DenseModel m) {
+  const Options& options = data.skeleton->options;
+  const int states = m.model.order();
+  m.order.order = m.order.highest = states;
+  m.order.judged = states == 0;
+  const int up_to =
+      options.minimize_up_to > 0 ? std::max(options.minimize_up_to, options.exact_up_to) : 0;
+  if (states > up_to)
+    m.notes.push_back({Note::Kind::info, "minimize",
+                       fmt::format("not run: {} states are more than {} (Options::minimize_up_to)",
+                                   states, up_to)});
+  else if (states > 0)
+    detail::minimize_checked(system, data, m);
+  return m;
+}

@@ -4,39 +4,92 @@
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
-#include <numeric>
 #include <system_error>
 #include <titop/compiler/diagram/dot.hpp>
-#include <titop/compiler/index_reduction/reduce.hpp>
-#include <titop/compiler/loops/internal_forces.hpp>
 #include <titop/compiler/passes/passes.hpp>
-#include <titop/compiler/solve/data_digits.hpp>
-#include <titop/compiler/solve/layout.hpp>
-#include <titop/compiler/solve/margins.hpp>
-#include <titop/compiler/solve/weak_pivot.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
-#include <titop/compiler/system/system_data.hpp>
-#include <titop/graph/ahead.hpp>
+#include <titop/compiler/system/pipeline.hpp>
+#include <titop/compiler/system/steps.hpp>
+#include <variant>
 
 namespace titop {
 
 namespace {
 
+using detail::DenseModel;
+using detail::SystemData;
+using steps::Compiled;
+
+using OnGraph = Stage (*)(Stage);          ///< compiler/passes/passes.hpp
+using OnNumbers = Compiled (*)(Compiled);  ///< compiler/system/steps.hpp
+using OnDense = DenseModel (*)(const System&, const SystemData&, DenseModel);  ///< the same
+
 struct Pass {
-  const char* name;
-  Stage (*run)(Stage);
+  CompilerPass is;
+  std::variant<OnGraph, OnNumbers, OnDense> run;
+  bool (*runs)(const Compiled&) = nullptr;  ///< CompilerPass::when; none: always
 };
 
-/// The passes on the graph, top to bottom; then solve and certify work with numbers.
+/// The compiler, top to bottom. A pass reads results of those above, and of no other.
 constexpr Pass kPasses[] = {
-    {"check", passes::check},  // mistakes in the user's words, before any change
-    {"lower", passes::lower},  // one numeric coefficient per term; names decide the order from here
-    {"split", passes::split},  // parts without output: no later pass need look at them
-    {"chains", passes::chains},  // redundant closures are released: no rank can fail below
-    {"match", passes::match},    // which row determines which signal: finds channel inversions
-    {"order", passes::order},    // loops; rows that no input reaches or no output sees
-    {"close", passes::close},    // dependent coordinates, among the remaining states
+    // Mistakes in the user's words, before any change.
+    {{"check",
+      "sizes, quantities and frames agree; each channel is driven once; all mistakes are "
+      "reported together"},
+     passes::check},
+    // One numeric coefficient per term; names decide the order from here.
+    {{"lower", "sums, gains and rotations are coefficients of equations; names decide the order"},
+     passes::lower},
+    // No later pass need look at parts without output.
+    {{"split", "connected parts without output are removed and listed"}, passes::split},
+    // Redundant closures are released: no rank can fail below.
+    {{"chains",
+      "closed kinematic chains meet; redundant loop constraints are dropped and listed; "
+      "points fully held by a loop have zero motion"},
+     passes::chains},
+    {{"match", "every equation has its unknown; channel inversions are known"}, passes::match},
+    {{"order",
+      "algebraic loops are known; signals that no input reaches or no output sees are "
+      "removed and listed"},
+     passes::order},
+    // Among the remaining states.
+    {{"close", "dependent states (closed chains, duplicate integrators) are known and eliminated"},
+     passes::close},
+    // From here on with numbers.
+    {{"layout", "every state, input and output has its name and its row in the model"},
+     steps::layout},
+    {{"blocks", "the matrices of all blocks are known at the parameters' values"}, steps::blocks},
+    {{"join", "all interface unknowns have their equations, and a plan of their elimination"},
+     steps::join},
+    {{"depend", "the numbers that depend on each parameter are known", "there are parameters"},
+     steps::depend,
+     steps::has_parameters},
+    {{"solve", "all interface unknowns are eliminated, junction by junction: the factored system"},
+     steps::solve},
+    {{"pivots", "the margin of every algebraic loop is known, and pivots that are rounding alone"},
+     steps::pivots},
+    {{"reduce", "singular scenes (points without mass) are reduced to their proper model",
+      "the equations are singular"},
+     steps::reduce,
+     steps::has_no_pivot},
+    // By the factors.
+    {{"forces", "no internal force is read that the motion does not determine, or it is noted",
+      "closed chains are over-constrained"},
+     steps::forces,
+     steps::has_released},
+    {{"digits", "no motion or force depends on digits that the data do not have",
+      "there are bodies from data files"},
+     steps::digits,
+     steps::has_data},
+    {{"certify", "the checks that were made, and how well the equations are satisfied"},
+     steps::certify},
+    // When the dense model is asked for.
+    {{"dense", "A, B, C, D are written from the factors; the digits lost in them are known",
+      "state_space() is called"},
+     steps::dense},
+    {{"minimize", "modes without effect are removed; the minimal order and its interval are known",
+      "state_space() is called"},
+     steps::minimize},
 };
 
 /// Invariants are checked after every pass, so that a fault of the library is reported at its pass.
@@ -63,79 +116,38 @@ void dump(const Options& options, int number, const char* name, const Stage& sta
 
 /// Runs f and adds its seconds to the list.
 template <class F>
-void timed(detail::SystemData& data, const char* name, F f) {
+void timed(std::vector<std::pair<std::string, double>>& seconds, const char* name, F f) {
   const auto start = std::chrono::steady_clock::now();
   f();
-  data.seconds.emplace_back(
+  seconds.emplace_back(
       name, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }
 
-void solve_joint(detail::Skeleton& k, detail::SystemData& d) {
-  k.layout = detail::make_layout(k.stage.graph);
-  d.states = detail::StateMap(k.stage.dependents, k.layout);
-  d.numbers.parameters = k.stage.values;
-  for (const Node& node : k.stage.graph.nodes) {
-    fetch_ahead(k.stage.graph, d.numbers.blocks.size());
-    d.numbers.blocks.push_back(node.block->dynamics(k.stage.values));
-  }
-  k.joint = solve::joint(k.stage, d.numbers.coefficients);
-  d.factors =
-      std::make_unique<const solve::Factors<double>>(k.joint.plan, detail::real_rows(k, d.numbers));
-  k.dependents = detail::find_dependents(k.stage, k.joint);
-  for (std::size_t i = 0; i < k.dependents.size(); ++i)
-    if (k.dependents[i].nodes.empty() && k.dependents[i].origins.empty())
-      k.stage.notes.push_back(
-          {Note::Kind::info, "solve",
-           fmt::format("parameter {}: nothing depends on it", k.stage.graph.parameters[i].name)});
-  d.changed_loops.resize(k.stage.loops.size());
-  std::iota(d.changed_loops.begin(), d.changed_loops.end(), 0);
-  detail::update_margins(d);
-  const bool singular = d.factors->health().singular;
-  if (!singular) d.weak_pivots = detail::judge_weak_pivots(d, *d.margins);
-  if (singular || d.weak_pivots->least > 0) {
-    // Pivots may be rounding because the data have no digit there: that is told first.
-    if (!singular) detail::judge_data_digits(d);
-    detail::reduce(k, d);
-  }
-  detail::judge_internal_forces(k, d);
-  const std::vector<Note> digits = detail::judge_data_digits(d);
-  k.stage.notes.insert(k.stage.notes.end(), digits.begin(), digits.end());
-  k.stage.notes.push_back({Note::Kind::info, "solve",
-                           fmt::format("{} unknowns in {} fronts", k.joint.plan->unknowns,
-                                       k.joint.plan->fronts.size())});
+void run_on_graph(OnGraph pass, Stage& stage) {
+  stage = pass(std::move(stage));
+  if (kVerifyEach || pass == passes::lower || pass == passes::close) passes::verify(stage);
 }
 
-std::shared_ptr<detail::SystemData> run(Stage stage_0, const Options& options) {
-  auto data = std::make_shared<detail::SystemData>();
-  auto skeleton = std::make_shared<detail::Skeleton>();
-  data->skeleton = skeleton;
-  skeleton->options = options;
-  Stage& stage = skeleton->stage;
-  stage = std::move(stage_0);
-  dump(options, 0, "diagram", stage);
+/// All passes but those on the dense model. `plans_renewed`: by updates before.
+std::shared_ptr<SystemData> run(Stage begin, const Options& options, int plans_renewed = 0) {
+  Compiled c{std::make_shared<detail::Skeleton>(), std::make_shared<SystemData>()};
+  c.data->skeleton = c.skeleton;
+  c.data->plans_renewed = plans_renewed;
+  c.skeleton->options = options;
+  c.skeleton->stage = std::move(begin);
+  dump(options, 0, "diagram", c.skeleton->stage);
+  auto& seconds = c.data->seconds;
   int number = 0;
   for (const Pass& pass : kPasses) {
-    timed(*data, pass.name, [&] {
-      stage = pass.run(std::move(stage));
-      if (kVerifyEach || pass.run == passes::lower || &pass == std::prev(std::end(kPasses)))
-        passes::verify(stage);
-    });
-    dump(options, ++number, pass.name, stage);
+    if (pass.runs && !pass.runs(c)) continue;
+    if (const auto* on_graph = std::get_if<OnGraph>(&pass.run)) {
+      timed(seconds, pass.is.name, [&] { run_on_graph(*on_graph, c.skeleton->stage); });
+      dump(options, ++number, pass.is.name, c.skeleton->stage);
+    } else if (const auto* on_numbers = std::get_if<OnNumbers>(&pass.run)) {
+      timed(seconds, pass.is.name, [&] { c = (*on_numbers)(std::move(c)); });
+    }
   }
-  timed(*data, "solve", [&] { solve_joint(*skeleton, *data); });
-  data->notes = stage.notes;
-  data->scaled_at = data->numbers.parameters;
-  data->scaled_health = data->factors->health();
-  return data;
-}
-
-/// The certificate; `note` adds to the notes of the result before.
-template <class Note>
-std::shared_ptr<const detail::SystemData> certified(std::shared_ptr<detail::SystemData> data,
-                                                    Note note) {
-  note(*data);
-  timed(*data, "certify", [&] { data->checked(); });
-  return data;
+  return c.data;
 }
 
 void check_options(const Options& o) {
@@ -153,6 +165,15 @@ void check_options(const Options& o) {
 
 }  // namespace
 
+std::span<const CompilerPass> compiler_passes() {
+  static const std::vector<CompilerPass> all = [] {
+    std::vector<CompilerPass> list;
+    for (const Pass& pass : kPasses) list.push_back(pass.is);
+    return list;
+  }();
+  return all;
+}
+
 System compile(const Diagram& diagram, const Options& options) {
   check_options(options);
   return System(detail::compile_graph(diagram.graph(), options));
@@ -164,22 +185,32 @@ std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Option
   return compile_stage(as_written(graph), options);
 }
 
-std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
-                                                const std::vector<double>& values,
-                                                const std::function<void(SystemData&)>& note) {
+std::shared_ptr<SystemData> compile_again(const SystemData& old,
+                                          const std::vector<double>& values) {
+  const Stage& stage = old.skeleton->stage;
   Stage begin;
-  begin.source = old.stage.source;
+  begin.source = stage.source;
   begin.values = values;
-  begin.before = old.stage.dependents;
-  begin.motions = old.stage.motions;
-  begin.opened = old.stage.opened;
-  Options options = old.options;
+  begin.before = stage.dependents;
+  begin.motions = stage.motions;
+  begin.opened = stage.opened;
+  Options options = old.skeleton->options;
   options.dump_to.clear();
-  return certified(run(std::move(begin), options), note);
+  return run(std::move(begin), options, old.plans_renewed + 1);
 }
 
 std::shared_ptr<const SystemData> compile_stage(Stage begin, const Options& options) {
-  return certified(run(std::move(begin), options), [](SystemData&) {});
+  return run(std::move(begin), options);
+}
+
+DenseModel dense_model(const System& system, const SystemData& data) {
+  DenseModel m;
+  std::vector<std::pair<std::string, double>> seconds;
+  for (const Pass& pass : kPasses)
+    if (const auto* on_dense = std::get_if<OnDense>(&pass.run))
+      timed(seconds, pass.is.name, [&] { m = (*on_dense)(system, data, std::move(m)); });
+  m.seconds = std::move(seconds);
+  return m;
 }
 
 }  // namespace detail

@@ -23,7 +23,7 @@ const std::vector<std::string>& System::states() const& { return data_->state_na
 const std::vector<std::string>& System::inputs() const& { return data_->layout().inputs; }
 const std::vector<std::string>& System::outputs() const& { return data_->layout().outputs; }
 const Stage& System::stage() const& { return data_->skeleton->stage; }
-const std::vector<Note>& System::notes() const& { return data_->checked().notes; }
+const std::vector<Note>& System::notes() const& { return data_->noted(); }
 
 System::Rates System::apply(const VectorXd& x, const VectorXd& u) const {
   if (x.size() != order() || u.size() != static_cast<Eigen::Index>(inputs().size()))
@@ -157,17 +157,12 @@ MatrixXcd transfer_with(const detail::SystemData& d, Double s, Precision precisi
   return {};
 }
 
-void refuse_overflow(const std::string& subject) {
-  throw Error(Code::not_finite, subject + " overflows",
-              "take other units, or smaller gains: all numbers must stay below 1e308");
-}
-
 }  // namespace
 
 MatrixXcd System::transfer(std::complex<double> s, Precision precision) const {
   MatrixXcd G = transfer_with(*data_, s, precision);
   if (!G.allFinite())
-    refuse_overflow(
+    detail::refuse_overflow(
         fmt::format("the transfer of {} at s = {}{:+}j", data_->graph().name, s.real(), s.imag()));
   return G;
 }
@@ -200,40 +195,20 @@ MatrixXd System::static_gain() const {
   }
 }
 
-const StateSpace& System::state_space() const& {
+const detail::DenseModel& System::dense() const {
   std::call_once(data_->dense_once, [&] {
-    const detail::SystemData& d = *data_;
-    const Options& options = d.skeleton->options;
-    d.dense_notes.clear();  // of an attempt that threw
-    d.dense_order = {};
-    StateSpace dense;
-    detail::write_dense(d, dense, 0);
-    for (const MatrixXd* m : {&dense.A, &dense.B, &dense.C, &dense.D})
-      if (!m->allFinite()) refuse_overflow("the dense model of " + d.graph().name);
-    d.dense_against_factors = detail::dense_difference(d, dense);
-    d.dense_error = detail::dense_error(d, dense);
-    detail::warn_of_lost_digits(d, d.dense_error, d.dense_notes);
-    d.dense_order.order = d.dense_order.highest = dense.order();
-    d.dense_order.judged = dense.order() == 0;
-    const int judged_up_to =
-        options.minimize_up_to > 0 ? std::max(options.minimize_up_to, options.exact_up_to) : 0;
-    if (dense.order() > 0 && dense.order() <= judged_up_to) {
-      detail::minimize_checked(*this, d, dense);
-    } else if (dense.order() > 0) {
-      d.dense_notes.push_back(
-          {Note::Kind::info, "minimize",
-           fmt::format("not run: {} states are more than {} (Options::minimize_up_to)",
-                       dense.order(), judged_up_to)});
-    }
-    d.dense = std::move(dense);
-    d.dense_ready.store(true, std::memory_order_release);
+    data_->dense = detail::dense_model(*this, *data_);
+    data_->dense_ready.store(true, std::memory_order_release);
   });
   return data_->dense;
 }
 
-const OrderVerdict& System::order_verdict() const& {
-  state_space();
-  return data_->dense_order;
+const StateSpace& System::state_space() const& { return dense().model; }
+
+const OrderVerdict& System::order_verdict() const& { return dense().order; }
+
+const std::vector<std::pair<std::string, double>>& System::dense_seconds() const& {
+  return dense().seconds;
 }
 
 void System::write(StateSpace& model, int threads) const {
@@ -250,7 +225,7 @@ Descriptor System::descriptor() const {
 
 std::vector<Pole> System::poles() const {
   const StateSpace& model = state_space();
-  const bool whole = model.order() > 0 && !data_->dense_order.judged;
+  const bool whole = model.order() > 0 && !order_verdict().judged;
   return titop::poles(model, whole ? detail::rounding_of(*data_, model).A : MatrixXd());
 }
 
@@ -270,7 +245,7 @@ Certificate with_dense(Certificate c, double against_factors, const detail::Dens
 Certificate System::certificate() const {
   const Certificate& c = data_->checked().certificate;
   if (!data_->dense_ready.load(std::memory_order_acquire)) return c;
-  return with_dense(c, data_->dense_against_factors, data_->dense_error);
+  return with_dense(c, dense().against_factors, dense().error);
 }
 
 Certificate System::certificate(const StateSpace& written) const {
@@ -297,7 +272,7 @@ std::string System::log() const {
 
 std::vector<Note> System::dense_notes() const {
   if (!data_->dense_ready.load(std::memory_order_acquire)) return {};
-  return data_->dense_notes;
+  return dense().notes;
 }
 
 const std::vector<std::pair<std::string, double>>& System::seconds() const& {
@@ -307,6 +282,14 @@ const std::vector<std::pair<std::string, double>>& System::seconds() const& {
 const detail::Check& detail::SystemData::checked() const {
   std::call_once(check_once, [&] { check = certify(*this); });
   return check;
+}
+
+const std::vector<Note>& detail::SystemData::noted() const {
+  std::call_once(notes_once, [&] {
+    all_notes = notes;
+    all_notes.insert(all_notes.end(), checked().notes.begin(), checked().notes.end());
+  });
+  return all_notes;
 }
 
 }  // namespace titop

@@ -11,6 +11,7 @@
 #include <titop/compiler/passes/stage.hpp>
 #include <titop/compiler/realization/descriptor.hpp>
 #include <titop/compiler/realization/modal.hpp>
+#include <titop/compiler/system/pipeline.hpp>
 #include <titop/graph/diagram.hpp>
 #include <titop/graph/state_space.hpp>
 #include <utility>
@@ -23,6 +24,7 @@ namespace passes {
 struct ToOpen;
 }
 namespace detail {
+struct DenseModel;
 struct SystemData;
 std::shared_ptr<const SystemData> compile_opened(const System&, const std::vector<passes::ToOpen>&);
 }  // namespace detail
@@ -166,15 +168,21 @@ class System {
   std::string log() const;
   /// Notes on writing and minimizing the dense model; empty before the first state_space().
   std::vector<Note> dense_notes() const;
-  /// Seconds per pass, in their order. Not part of log(), which is the same on every machine.
+  /// Seconds per pass of `compile`, in their order: of those of compiler_passes() that have run.
+  /// Not part of log(), which is the same on every machine.
   const std::vector<std::pair<std::string, double>>& seconds() const&;
   std::vector<std::pair<std::string, double>> seconds() const&& { return seconds(); }
+  /// The same of the passes that have made state_space().
+  const std::vector<std::pair<std::string, double>>& dense_seconds() const&;
+  std::vector<std::pair<std::string, double>> dense_seconds() const&& { return dense_seconds(); }
   /// The graph after the passes (for diagrams: `to_dot(system.stage())`). Its values and
   /// coefficients are those of the last compile: an `update` on the same plan does not change them.
   const Stage& stage() const&;
   Stage stage() const&& { return stage(); }
 
  private:
+  const detail::DenseModel& dense() const;
+
   friend FullCertificate certify(const System&, const Full&);
   friend Trajectory simulate(const System&, const Excitation&, const Simulation&);
   friend std::shared_ptr<const detail::SystemData> detail::compile_opened(
@@ -183,9 +191,9 @@ class System {
   std::shared_ptr<const detail::SystemData> data_;
 };
 
-/// Compiles a diagram: check, lower, split, chains, match, order, close, solve, certify
-/// (docs/architecture.md). Throws Error with all mistakes of the first pass that finds any,
-/// bad_value for options out of their range. Cost: linear in the number of bodies for trees.
+/// Compiles a diagram by the passes of compiler_passes() (docs/architecture.md). Throws Error with
+/// all mistakes of the first pass that finds any, bad_value for options out of their range. Cost:
+/// linear in the number of bodies for trees.
 System compile(const Diagram& diagram, const Options& options = {});
 
 }  // namespace titop

@@ -1,13 +1,12 @@
 #pragma once
 
 #include <atomic>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <titop/compiler/certificate/check.hpp>
-#include <titop/compiler/certificate/dense_check.hpp>
 #include <titop/compiler/solve/factored.hpp>
+#include <titop/compiler/system/dense_model.hpp>
 #include <titop/compiler/system/system.hpp>
 
 /// The data behind a System. For the library's own files only.
@@ -21,16 +20,17 @@ struct SystemData : Factored {
   mutable std::once_flag check_once;
   mutable Check check;
 
+  mutable std::once_flag notes_once;
+  mutable std::vector<Note> all_notes;
+
   mutable std::once_flag dense_once;
-  mutable StateSpace dense;
-  mutable double dense_against_factors = -1;
-  mutable DenseError dense_error{{-1}, {-1}};
-  mutable std::vector<Note> dense_notes;
-  mutable OrderVerdict dense_order;
-  mutable std::atomic<bool> dense_ready = false;  ///< all of the above may be read
+  mutable DenseModel dense;
+  mutable std::atomic<bool> dense_ready = false;  ///< `dense` may be read
 
   /// The certificate: computed by `compile`; of an updated system at the first call.
   const Check& checked() const;
+  /// Those of the passes, of updates and of the certificate.
+  const std::vector<Note>& noted() const;
 };
 
 /// True if new values of these parameters change the input of pass `close`: the kinematics of a
@@ -38,17 +38,14 @@ struct SystemData : Factored {
 bool moves_chains(const Skeleton& skeleton, const std::vector<int>& changed, ParameterValues before,
                   ParameterValues now);
 
+/// Throws not_finite.
+[[noreturn]] void refuse_overflow(const std::string& subject);
+
 /// The transfer if there is one: none at a pole, without a digit, or if it overflows.
 std::optional<Eigen::MatrixXcd> transfer_if_any(const System& system, std::complex<double> s);
 
-/// All passes and the certificate once more for these values of the parameters. States that
-/// followed from the others still do, if that keeps the digits. `note` adds to the notes.
-std::shared_ptr<const SystemData> compile_again(const Skeleton& old,
-                                                const std::vector<double>& values,
-                                                const std::function<void(SystemData&)>& note);
-
-/// Replaces the dense model by the minimal one if the change of its transfer near the removed modes
-/// is below 1e-8 (or ten times Options::resolution); reports it in dense_order and dense_notes.
-void minimize_checked(const System& system, const SystemData& data, StateSpace& dense);
+/// All passes of `compile` once more for these values of the parameters. States that followed from
+/// the others still do, if that keeps the digits.
+std::shared_ptr<SystemData> compile_again(const SystemData& old, const std::vector<double>& values);
 
 }  // namespace titop::detail

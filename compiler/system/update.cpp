@@ -217,16 +217,15 @@ std::string text_of(const Skeleton& k, const std::vector<int>& changed, Paramete
 /// All passes again; notes it, and whether the states have changed.
 System compiled_again(const SystemData& old, const std::vector<int>& changed,
                       const std::vector<double>& values, const char* why) {
-  return System(compile_again(*old.skeleton, values, [&](SystemData& d) {
-    d.plans_renewed = old.plans_renewed + 1;
-    d.notes.push_back({Note::Kind::info, "update",
-                       fmt::format("{}: {}, all passes run again",
-                                   text_of(*old.skeleton, changed, values), why)});
-    if (d.state_names() != old.state_names())
-      d.notes.push_back(
-          {Note::Kind::warning, "update",
-           "the dependent states have changed: the model has other states than before"});
-  }));
+  const std::shared_ptr<SystemData> d = compile_again(old, values);
+  d->notes.push_back(
+      {Note::Kind::info, "update",
+       fmt::format("{}: {}, all passes run again", text_of(*old.skeleton, changed, values), why)});
+  if (d->state_names() != old.state_names())
+    d->notes.push_back(
+        {Note::Kind::warning, "update",
+         "the dependent states have changed: the model has other states than before"});
+  return System(d);
 }
 
 /// True if a value has moved so far that the scaling found for another one may not serve.

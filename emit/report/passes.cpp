@@ -1,38 +1,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <string_view>
 #include <titop/emit/report/html.hpp>
 #include <titop/emit/report/subject.hpp>
 
 namespace titop::report {
 namespace {
 
-/// State of the diagram after each pass, for readers without the manual.
-struct Promise {
-  std::string_view pass, text;
-};
-constexpr Promise kPromises[] = {
-    {"check", "sizes, quantities and frames agree; each channel is driven once"},
-    {"lower", "sums, gains and rotations are coefficients of equations"},
-    {"split", "parts without output are set aside"},
-    {"chains", "closed chains meet; redundant loop constraints are released"},
-    {"match", "every row has its unknown; channel inversions are known"},
-    {"order", "algebraic loops are known; unreachable and unobservable signals are set aside"},
-    {"close", "dependent states are known and eliminated"},
-    {"solve", "all interface unknowns, junction by junction: the factored system"},
-    {"certify", "the checks and their residuals"},
-    {"minimize", "A, B, C, D written from the factors; modes without effect are removed"},
-};
-
-std::string promise(const std::string& pass) {
-  for (const Promise& p : kPromises)
-    if (p.pass == pass) return std::string(p.text);
+std::string promise(const std::string& name) {
+  for (const CompilerPass& pass : compiler_passes())
+    if (pass.name == name) return pass.promise;
   return {};
 }
-
-/// Asking for a dense model that is there already takes less [s].
-constexpr double kLook = 1e-5;
 
 std::string duration(double seconds) {
   return seconds < 1e-3 ? fmt::format("{:.0f} µs", 1e6 * seconds)
@@ -45,7 +24,7 @@ std::string notes(const Subject& s, const std::string& pass) {
   std::vector<std::string> lines;
   for (const auto& list : {s.system.notes(), s.system.dense_notes()})
     for (const Note& n : list)
-      if (n.pass == pass || (n.pass == "dense" && pass == "minimize"))
+      if (n.pass == pass)
         lines.push_back(n.kind == Note::Kind::info
                             ? escaped(n.text)
                             : fmt::format("<b>{}</b> {}", to_string(n.kind), escaped(n.text)));
@@ -61,7 +40,7 @@ std::string notes(const Subject& s, const std::string& pass) {
 
 std::string passes_section(const Subject& s, const FullCertificate* full) {
   auto times = s.system.seconds();
-  times.emplace_back("minimize", s.dense_seconds);
+  for (const auto& of_dense : s.system.dense_seconds()) times.push_back(of_dense);
   double all = 0, longest = 0;
   for (const auto& [pass, t] : times) all += t, longest = std::max(longest, t);
   std::string text =
@@ -69,8 +48,7 @@ std::string passes_section(const Subject& s, const FullCertificate* full) {
       row({"pass", "promise afterwards", "what it did", "time", ""}, {"", "", "", "n", ""}, "th") +
       "</thead>\n<tbody>\n";
   for (const auto& [pass, t] : times)
-    text += row({diagram::html(pass), escaped(promise(pass)), notes(s, pass),
-                 pass == "minimize" && t < kLook ? "made before" : duration(t),
+    text += row({diagram::html(pass), escaped(promise(pass)), notes(s, pass), duration(t),
                  fmt::format(R"(<i class="bar" style="width:{:.0f}px"></i>)",
                              longest > 0 ? 80 * t / longest : 0)},
                 {"name fit", "", "wide", "n", "fit"});

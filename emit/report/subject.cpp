@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <titop/emit/report/subject.hpp>
 
@@ -37,7 +36,7 @@ void check_numbers(const ReportOptions& o) {
 
 Subject subject(const System& system, const ReportOptions& options) {
   check_numbers(options);
-  Subject s{system, options, scalar_inputs(system.stage()), scalar_outputs(system.stage()), {}, 0};
+  Subject s{system, options, scalar_inputs(system.stage()), scalar_outputs(system.stage()), {}};
   for (const auto& [name, unit] : options.units) {
     const bool in = set_unit(s.inputs, name, unit), out = set_unit(s.outputs, name, unit);
     if (!in && !out)
@@ -45,9 +44,6 @@ Subject subject(const System& system, const ReportOptions& options) {
                   fmt::format("ReportOptions::units: \"{}\" is no input or output", name),
                   fmt::format("inputs: {}; outputs: {}", names(s.inputs), names(s.outputs)));
   }
-  const auto start = std::chrono::steady_clock::now();
-  system.state_space();
-  s.dense_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   s.poles = system.poles();
   return s;
 }

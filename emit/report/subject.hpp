@@ -13,7 +13,6 @@ struct Subject {
   const ReportOptions& options;
   std::vector<ScalarSignal> inputs, outputs;
   std::vector<Pole> poles;
-  double dense_seconds = 0;  ///< that writing and minimizing the dense model took, here
 };
 
 /// Throws unknown_name, bad_value for invalid options.

@@ -90,7 +90,7 @@ TEST_CASE("internal forces: refused by name, or the smallest at the closing join
              {"inner", "B.parent.force", "B.child(\"far\")", "InternalForces::minimal_norm",
               "loops/redundant.cpp"}));
   const System system = compile(welded(true), {.internal_forces = InternalForces::minimal_norm});
-  CHECK(noted(system, Note::Kind::warning, "solve", {"inner", "B.parent.force"}));
+  CHECK(noted(system, Note::Kind::warning, "forces", {"inner", "B.parent.force"}));
   // With nothing at the closing weld the first one carries all: F = -D_B a.
   const MatrixXcd G = system.transfer({0, 1});
   const by_hand::Matrix6 D = mass(3, Vector3d(0.5, 0.25, 0.1) / 3);

@@ -145,7 +145,7 @@ TEST_CASE("a truss of rigid bars: who reads an internal force is found by a few 
     // A hinge constrains five directions; round each of 24 triangles the three out of the plane are
     // held already.
     const System system = compile(truss({12, false, read}), {.minimize_up_to = 0});
-    CHECK(noted(system, Note::Kind::info, "solve", {"32", "72"}));
+    CHECK(noted(system, Note::Kind::info, "forces", {"32", "72"}));
     const std::string force = "B" + std::to_string(read) + ".parent.force";
     CHECK(says(compile_error(truss({12, false, read, false})), Code::kinematic_loop, {"F", force}));
     CHECK(says(compile_error(truss({12, true, read})), Code::kinematic_loop, {"F", force}));

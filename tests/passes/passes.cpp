@@ -80,14 +80,6 @@ TEST_CASE("every pass keeps the transfer, and so do the system and its dense mod
     CHECK(system.certificate().residual <= 1e-14);
     CHECK(system.certificate().dense_against_factors <= 1e-13);
     CHECK(system.certificate().seconds > 0);  // the check's seconds are reported
-    std::vector<std::string> passes;
-    for (const auto& [pass, seconds] : system.seconds()) {
-      passes.push_back(pass);
-      CHECK(seconds >= 0);
-    }
-    for (const char* pass :
-         {"check", "lower", "split", "chains", "match", "order", "close", "solve", "certify"})
-      CHECK(std::count(passes.begin(), passes.end(), pass) == 1);
   }
 }
 

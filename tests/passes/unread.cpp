@@ -23,12 +23,12 @@ TEST_CASE("the log names inputs that nothing reads and parameters that nothing d
   d.output("through") = 2 * shown;
   const System system = compile(d);
   CHECK(noted(system, Note::Kind::warning, "check", {"T2", "passes/unread.cpp"}));
-  CHECK(noted(system, Note::Kind::info, "solve", {"tilt"}));
+  CHECK(noted(system, Note::Kind::info, "depend", {"tilt"}));
   for (const char* used : {"u", "shown"}) {
     CAPTURE(used);
     CHECK_FALSE(noted(system, Note::Kind::warning, "check", {used}));
   }
-  CHECK_FALSE(noted(system, Note::Kind::info, "solve", {"mass"}));
+  CHECK_FALSE(noted(system, Note::Kind::info, "depend", {"mass"}));
   (void)tilt;
 }
 

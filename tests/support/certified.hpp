@@ -43,9 +43,9 @@ inline void check_faults(const titop::Diagram& d, std::uint64_t seed, int tries,
   for (int k = 0; k < tries; ++k) {
     if (const auto faulty = with_fault(minimal, rng, /*dropping=*/true); changed(minimal, faulty)) {
       CAPTURE(faulty->fault);
-      data->dense = faulty->model;
+      data->dense.model = faulty->model;
       CHECK(!certify(system).holds());
-      data->dense = minimal;
+      data->dense.model = minimal;
       ++count.minimal;
     }
     if (const auto faulty = with_fault(written, rng, false); changed(written, faulty)) {
