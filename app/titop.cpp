@@ -165,7 +165,9 @@ void check(const Arguments& a) {
 void show(const Arguments& a) {
   const System system = compiled(a);
   const std::string poles = to_string(system.poles());
-  std::fputs((system.log() + poles + to_string(system.certificate())).c_str(), stdout);
+  std::fputs(
+      (system.log() + system.dense_log() + poles + to_string(system.dense_certificate())).c_str(),
+      stdout);
 }
 
 /// Returns 3 if the certificate fails, as against the exit code of a scene that is refused.

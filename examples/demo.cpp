@@ -210,11 +210,11 @@ int main() {
   const Diagram d = satellite(boom);
   const System system = compile(d);
   const StateSpace& model = system.state_space();
-  std::printf("%s", system.log().c_str());
+  std::printf("%s", (system.log() + system.dense_log()).c_str());
   std::printf("\nmodel: %d states, %zu inputs, %zu outputs; poles\n%s", model.order(),
               model.inputs.size(), model.outputs.size(), to_string(system.poles()).c_str());
 
-  const Certificate cert = system.certificate();
+  const Certificate cert = system.dense_certificate();
   std::printf("\ncertificate (numbers in certificate.txt)\n");
   bool ok = by_hand::agrees("  every equation as written", cert.residual, 1e-11);
   ok &= by_hand::agrees("  dense model against the factors", cert.dense_against_factors, 1e-12);

@@ -293,7 +293,7 @@ FullCertificate certify(const System& system, const Full& subject) {
                                                    system.order(), subject.dense_up_to);
     c.order.order = c.order.highest = system.order();
   }
-  c.basic = system.certificate();
+  c.basic = dense ? system.dense_certificate() : system.certificate();
   c.exact =
       minreal::order_of_stage(system.stage(), system.order(), subject.exact, values_of(system));
   reach_up_to(c.exact, c.order);

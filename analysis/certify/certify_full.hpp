@@ -29,7 +29,7 @@ struct Checked {
 /// The certificate on request: each item has its own oracle against the factored system. Every
 /// number is dimensionless.
 struct FullCertificate {
-  Certificate basic;  ///< as by System::certificate(), with the dense model's part
+  Certificate basic;  ///< as by System::dense_certificate() if the dense model is checked
 
   /// Over a grid s = (0.05 + j) w, w from a tenth of the lowest to ten times the highest pole:
   /// largest difference of transfers, per block of output and input (three translations or

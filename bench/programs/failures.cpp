@@ -87,9 +87,8 @@ void tell(const Sweep& sweep, double value, const System& system) {
       fmt::print(stderr, "{} {:.3g}: {}\n", sweep.name, value, note.text);
 }
 
-/// Notes of state_space() are in the log alone.
 std::string said_of_dense(const System& system) {
-  return system.log().find(" warning ") != std::string::npos ? "warned" : said(system);
+  return system.dense_log().find(" warning ") != std::string::npos ? "warned" : said(system);
 }
 
 /// True if the library meets its promise.

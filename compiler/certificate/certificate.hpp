@@ -35,8 +35,8 @@ struct Certificate {
   double apply_against_transfer = -1;
   /// Largest difference between xdot, y of the dense model and of the factors, for one random x and
   /// for one random u, relative to the sum of the terms: over a block's states, or over the outputs
-  /// of one unit. If the factors lose digits, cancelling terms count too. Negative if no dense
-  /// model has been written.
+  /// of one unit. If the factors lose digits, cancelling terms count too. Negative in a
+  /// certificate of the factors alone, as by System::certificate().
   double dense_against_factors = -1;
   /// Error of the dense model due to rounding of its entries: largest change of an output over the
   /// output's largest size, for s from the slowest mode that the outputs show (if unknown, from far
@@ -49,9 +49,10 @@ struct Certificate {
   /// column (a 0 after a rotation of frames), is measured relative to its neighbours. Independent
   /// of the units of inputs and outputs; in other units of states and time other entries are
   /// rounded. Above 1e-9 and up to 100 states it is at most 30 times the error of the model's own
-  /// outputs, as the residual itself is rounded at a point of very small mass. Negative if no dense
-  /// model has been written, if it has no states, no inputs or no outputs, and if the factors have
-  /// no digit at any s. Above 1e-9 the log warns, with output and input (up to eight units).
+  /// outputs, as the residual itself is rounded at a point of very small mass. Negative in a
+  /// certificate of the factors alone, if the model has no states, no inputs or no outputs, and if
+  /// the factors have no digit at any s. Above 1e-9 the log warns, with output and input (up to
+  /// eight units).
   double dense_error = -1;
   std::complex<double> dense_error_s;  ///< s of the largest error
   /// The same over the size of the output at that same s, also far below the slowest mode that

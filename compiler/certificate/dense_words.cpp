@@ -29,9 +29,9 @@ void refuse_counts(const Factored& d, const StateSpace& m) {
       Code::size,
       fmt::format("certificate: a model of {} is not one of {}",
                   counts(m.states.size(), m.inputs.size(), m.outputs.size()), d.graph().name),
-      fmt::format(
-          "pass a model made by System::write: {}; the model of state_space() is in certificate()",
-          counts(states.size(), l.inputs.size(), l.outputs.size())));
+      fmt::format("pass a model made by System::write: {}; the model of state_space() is in "
+                  "dense_certificate()",
+                  counts(states.size(), l.inputs.size(), l.outputs.size())));
 }
 
 /// The first name that differs.

@@ -196,10 +196,7 @@ MatrixXd System::static_gain() const {
 }
 
 const detail::DenseModel& System::dense() const {
-  std::call_once(data_->dense_once, [&] {
-    data_->dense = detail::dense_model(*this, *data_);
-    data_->dense_ready.store(true, std::memory_order_release);
-  });
+  std::call_once(data_->dense_once, [&] { data_->dense = detail::dense_model(*this, *data_); });
   return data_->dense;
 }
 
@@ -242,38 +239,41 @@ Certificate with_dense(Certificate c, double against_factors, const detail::Dens
 
 }  // namespace
 
-Certificate System::certificate() const {
-  const Certificate& c = data_->checked().certificate;
-  if (!data_->dense_ready.load(std::memory_order_acquire)) return c;
-  return with_dense(c, dense().against_factors, dense().error);
+Certificate System::certificate() const { return data_->checked().certificate; }
+
+Certificate System::dense_certificate() const {
+  return with_dense(certificate(), dense().against_factors, dense().error);
 }
 
 Certificate System::certificate(const StateSpace& written) const {
   detail::require_written(*data_, written);
-  return with_dense(data_->checked().certificate, detail::dense_difference(*data_, written),
+  return with_dense(certificate(), detail::dense_difference(*data_, written),
                     detail::dense_error(*data_, written));
 }
+
+namespace {
+
+std::string lines_of(const std::vector<Note>& notes) {
+  std::string text;
+  for (const Note& n : notes)
+    text += fmt::format("  {:<9} {:<10} {}\n", n.pass, to_string(n.kind), n.text);
+  return text;
+}
+
+}  // namespace
 
 std::string System::log() const {
   const auto count = [](std::size_t n, const char* subject) {
     return fmt::format("{} {}{}", n, subject, n == 1 ? "" : "s");
   };
-  std::string text =
-      fmt::format("{}: {}, {}, {}\n", data_->graph().name, count(states().size(), "state"),
-                  count(inputs().size(), "input"), count(outputs().size(), "output"));
-  const auto add = [&](const std::vector<Note>& list) {
-    for (const Note& n : list)
-      text += fmt::format("  {:<9} {:<10} {}\n", n.pass, to_string(n.kind), n.text);
-  };
-  add(notes());
-  add(dense_notes());
-  return text;
+  return fmt::format("{}: {}, {}, {}\n", data_->graph().name, count(states().size(), "state"),
+                     count(inputs().size(), "input"), count(outputs().size(), "output")) +
+         lines_of(notes());
 }
 
-std::vector<Note> System::dense_notes() const {
-  if (!data_->dense_ready.load(std::memory_order_acquire)) return {};
-  return dense().notes;
-}
+const std::vector<Note>& System::dense_notes() const& { return dense().notes; }
+
+std::string System::dense_log() const { return lines_of(dense_notes()); }
 
 const std::vector<std::pair<std::string, double>>& System::seconds() const& {
   return data_->seconds;

@@ -54,7 +54,8 @@ enum class Precision {
 using ParameterList = std::vector<std::pair<std::string, double>>;
 
 /// A compiled diagram: the elimination plan, the factors and the blocks' data. Const, cheap to
-/// copy, may be shared between threads. The dense model is written from it on demand. References
+/// copy, may be shared between threads. The dense model is written from it on demand. No result
+/// depends on the functions that were called before. References
 /// are valid during the System's lifetime; a temporary System returns copies: `const StateSpace& m
 /// = compile(d).state_space();`
 class System {
@@ -103,8 +104,8 @@ class System {
   Eigen::MatrixXd static_gain() const;
 
   /// The dense model. The first call writes it, O(n^2), and, up to Options::minimize_up_to states,
-  /// minimizes it, O(n^3); otherwise log() reports that it did not. Later calls return the same.
-  /// Throws not_finite if numbers overflow.
+  /// minimizes it, O(n^3); otherwise dense_notes() reports that it did not. Later calls return the
+  /// same. Throws not_finite if numbers overflow.
   const StateSpace& state_space() const&;
   StateSpace state_space() const&& { return state_space(); }
 
@@ -155,19 +156,28 @@ class System {
   /// All parameters and their values here, in the order of creation.
   ParameterList parameters() const;
 
+  /// The checks of the factored system; its `dense_...` fields are not evaluated.
   Certificate certificate() const;
+  /// The same with the `dense_...` fields of the model before `minimize` from which state_space()
+  /// is made; makes it if that has not been done.
+  Certificate dense_certificate() const;
   /// The certificate whose `dense_...` fields refer to this model, made by write(): its rounding
   /// error. O(n^2), some products with A. Throws size if names or matrices are not those of a model
   /// of this system before `minimize`, not_finite if an entry is not. A model of other values has a
   /// large dense_against_factors.
   Certificate certificate(const StateSpace& written) const;
-  /// Results of the passes: counts, inversions, removed and unchecked parts.
+  /// Results of the passes of `compile` and of `update`: counts, inversions, removed and unchecked
+  /// parts.
   const std::vector<Note>& notes() const&;
   std::vector<Note> notes() const&& { return notes(); }
-  /// The notes as text, one per line; after state_space() also those of `minimize`.
+  /// The name, the numbers of states, inputs and outputs, and the notes as text, one per line.
   std::string log() const;
-  /// Notes on writing and minimizing the dense model; empty before the first state_space().
-  std::vector<Note> dense_notes() const;
+  /// Notes on writing and minimizing the model of state_space(); makes it if that has not been
+  /// done.
+  const std::vector<Note>& dense_notes() const&;
+  std::vector<Note> dense_notes() const&& { return dense_notes(); }
+  /// The same as text, one per line.
+  std::string dense_log() const;
   /// Seconds per pass of `compile`, in their order: of those of compiler_passes() that have run.
   /// Not part of log(), which is the same on every machine.
   const std::vector<std::pair<std::string, double>>& seconds() const&;

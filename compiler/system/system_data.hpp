@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -25,7 +24,6 @@ struct SystemData : Factored {
 
   mutable std::once_flag dense_once;
   mutable DenseModel dense;
-  mutable std::atomic<bool> dense_ready = false;  ///< `dense` may be read
 
   /// The certificate: computed by `compile`; of an updated system at the first call.
   const Check& checked() const;

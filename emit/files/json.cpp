@@ -196,7 +196,7 @@ std::string model_json(const System& system) {
                      {"C", rows(m.C)},
                      {"D", rows(m.D)},
                      {"poles", poles(system.poles())},
-                     {"certificate", certificate(system.certificate())},
+                     {"certificate", certificate(system.dense_certificate())},
                      {"notes", notes(system)}};
   return text_of(json);
 }

@@ -299,7 +299,7 @@ std::string what_holds(const Certificate& c, const FullCertificate* full) {
 
 std::string certificate_section(const Subject& s, const FullCertificate* full) {
   std::vector<Item> items;
-  add_basic(items, s.system.certificate());
+  add_basic(items, s.system.dense_certificate());
   if (full) add_full(items, *full);
   const std::vector<std::string> classes = {"", "n", "fit", "wide"};
   std::string text =
@@ -358,7 +358,7 @@ std::string order_section(const Subject& s, const FullCertificate* full) {
 }
 
 std::string summary(const Subject& s, const FullCertificate* full) {
-  const Certificate c = s.system.certificate();
+  const Certificate c = s.system.dense_certificate();
   const OrderVerdict& v = order_of(s, full);
   std::string text = tiles(s) + "<ul class=\"verdicts\">\n" + stability(s, full);
   const std::vector<std::string> faults = full ? full->faults : certification::basic_faults(c);

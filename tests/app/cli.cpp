@@ -40,7 +40,7 @@ TEST_CASE("check and compile print counts and findings") {
   CHECK(r.code == 0);
   const System system = compile(Shell::diagram());
   CHECK(has(r.out, to_string(system.poles())));
-  CHECK(has(r.out, to_string(system.certificate())));
+  CHECK(has(r.out, to_string(system.dense_certificate())));
 }
 
 TEST_CASE("certify: as text and as JSON; exit code 3 where something does not hold") {

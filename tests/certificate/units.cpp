@@ -244,13 +244,13 @@ TEST_CASE("errors of the dense model are the same in all units, for few inputs a
     CAPTURE(inputs);
     const System in_m = chain(masses, inputs, [] { return 1.0; });
     in_m.state_space();
-    const Certificate right = in_m.certificate();
+    const Certificate right = in_m.dense_certificate();
     CHECK(right.dense_error <= 1e-11);              // no significant loss
     CHECK(right.dense_error_where_small >= 1e-13);  // a number to compare
     for (int i = 0; i < 10; ++i) {
       const System system = chain(masses, inputs, [&] { return unit(random); });
       system.state_space();
-      const Certificate c = system.certificate();
+      const Certificate c = system.dense_certificate();
       check_alike(c.dense_error, right.dense_error);
       check_alike(c.dense_error_where_small, right.dense_error_where_small);
       // No loss beside the largest outputs: at most that of the small ones is told.
@@ -264,7 +264,7 @@ TEST_CASE("an entry of 1e-17 of its row and column is no loss of digits") {
   // A 0 after a rotation of frames has digits in the factors, and others in A, B, C, D.
   const System system = compile(titop_test::random_scene(titop_test::random_options(186)).build());
   const StateSpace& dense = system.state_space();
-  const Certificate c = system.certificate();
+  const Certificate c = system.dense_certificate();
   CHECK(c.dense_error <= 1e-12);
   for (const Complex s : {Complex(1e-4, 3e-4), Complex(1, 3)}) {
     const MatrixXcd right = system.transfer(s, Precision::digits50);

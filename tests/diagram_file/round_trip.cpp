@@ -85,6 +85,7 @@ void check_round_trip(const Diagram& diagram) {
   const System a = compile(diagram), b = compile(again);
   CHECK(difference(a.state_space(), b.state_space()) == "");
   CHECK(a.log() == b.log());
+  CHECK(a.dense_log() == b.dense_log());
   CHECK(b.parameters() == a.parameters());
 }
 

@@ -65,7 +65,8 @@ TEST_CASE("digits lost by A, B, C, D are reported at the head of files and in th
   const System system = compile(chain(kFarApart));
   const std::vector<std::string> warnings = dense_warnings(system);
   REQUIRE(!warnings.empty());
-  CHECK(has_names(warnings[0], {"A, B, C, D", "u", at_s(system.certificate().dense_error_s)}));
+  CHECK(
+      has_names(warnings[0], {"A, B, C, D", "u", at_s(system.dense_certificate().dense_error_s)}));
   const Files files(system);
   for (const std::string& text : warnings) {
     CHECK(lines_with(files.matlab, text) == std::vector{"  % Warning: " + text});

@@ -112,7 +112,7 @@ namespace {
 
 /// True if the certificate or the log reports lost digits of the model.
 bool told(const System& system) {
-  const Certificate c = system.certificate();
+  const Certificate c = system.dense_certificate();
   return std::max(c.dense_error, c.dense_error_where_small) > 1e-6 ||
          titop_test::dense_not_tried(system);
 }

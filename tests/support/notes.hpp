@@ -19,11 +19,11 @@ inline int count_notes(const std::vector<titop::Note>& notes, titop::Note::Kind 
   return count;
 }
 
-/// The same among all lines of System::log(): those on the dense model once it has been written.
+/// The same among the notes of the system, and of its dense model if it is one of its passes.
 inline int count_notes(const titop::System& system, titop::Note::Kind kind, std::string_view pass,
                        std::initializer_list<std::string_view> names = {}) {
-  return count_notes(system.notes(), kind, pass, names) +
-         count_notes(system.dense_notes(), kind, pass, names);
+  const bool of_dense = pass == "dense" || pass == "minimize";
+  return count_notes(of_dense ? system.dense_notes() : system.notes(), kind, pass, names);
 }
 
 /// True if there is such a line.

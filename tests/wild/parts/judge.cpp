@@ -95,11 +95,11 @@ Blocks blocks_of(const Scene& scene, const std::vector<MatrixXcd>& exact, const 
 /// Warnings of the default certificate and the log that would make a user doubt.
 std::string said(const System& system) {
   std::string text;
-  system.state_space();  // apply column by column is a model in double, too
+  // Apply column by column is a model in double, too.
   for (const auto& notes : {system.notes(), system.dense_notes()})
     for (const titop::Note& note : notes)
       if (note.kind == titop::Note::Kind::warning) text += note.pass + ": " + note.text + "; ";
-  const titop::Certificate c = system.certificate();
+  const titop::Certificate c = system.dense_certificate();
   if (!(c.residual <= 1e-8)) text += fmt::format("residual {:.1e}; ", c.residual);
   if (!(c.dense_against_factors <= 1e-8))
     text += fmt::format("dense against factors {:.1e}; ", c.dense_against_factors);
