@@ -3,6 +3,7 @@
 #include <deque>
 #include <titop/compiler/certificate/dense_check.hpp>
 #include <titop/compiler/certificate/residual.hpp>
+#include <titop/compiler/certificate/surroundings.hpp>
 #include <titop/compiler/certificate/tried_points.hpp>
 #include <titop/compiler/definition/compare.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
@@ -29,9 +30,6 @@ using linalg::at;
 using T = std::complex<double>;
 
 constexpr Index kColumns = 8;  ///< inputs are tried one by one up to this many
-/// Relative to neighbours in row and column: level of a 0 after rotations, cos(pi / 2) = 6e-17. It
-/// has digits in the factors, but is meant as 0.
-constexpr double kOfNeighbours = 1e-14;
 
 constexpr double kBelow = 0.5;  ///< of the slowest mode that shows, known to a decade
 
@@ -232,7 +230,7 @@ DenseError worst_of(const std::vector<Sample>& samples) {
     if (found.error > so_far.error) so_far = found, so_far.s = s;
   };
   for (const Sample& p : samples) {
-    if (counts(p)) keep(relative(p.off, largest, kOfNeighbours), p.s, worst.beside_largest);
+    if (counts(p)) keep(relative(p.off, largest, kOfLargest), p.s, worst.beside_largest);
     const OutputSizes in_use{p.sizes.value.cwiseProduct(p.growth), p.sizes.rounding};
     keep(relative(p.off, in_use, 0), p.s, worst.where_small);
   }

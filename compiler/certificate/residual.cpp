@@ -16,11 +16,6 @@ namespace {
 using Eigen::MatrixXd;
 using linalg::at;
 
-constexpr double kPlain = 1e-12;  ///< rounding up to this needs no explanation
-/// Relative to the largest motion or wrench of its kind, for a 0 enforced by chains: fifty units of
-/// rounding, typical of a sum around a chain of some tens of joints.
-constexpr double kOfLargest = 1e-14;
-
 /// Entries of a signal, and a sample of their rounding if it is known.
 struct Entries {
   std::span<const double> value, rounding = {};
@@ -160,13 +155,13 @@ struct Residual {
     if (r <= worst) return;
     const double off = b.largest();
     if (off < kUnderflow) return;
-    if (r > kPlain && off < HUGE_VAL && signal >= 0 && only_rounding(signal)) return;
+    if (r > kEnough && off < HUGE_VAL && signal >= 0 && only_rounding(signal)) return;
     worst = r, where = name();
   }
   bool only_rounding(int signal) {
     for (std::size_t i = 0; i < b.rows(); ++i)
       if (const double off = b.row[i].off();
-          off > kPlain * b.row[i].magnitude &&
+          off > kEnough * b.row[i].magnitude &&
           off > kLeftOfZero * around.size(signal, b.entry(i)) &&
           !(off <= kOfLargest * size_of_kind(signal, b.entry(i))))
         return false;

@@ -11,6 +11,11 @@ namespace titop::detail {
 /// Times its Surroundings: possible rounding of a 0.
 using solve::kLeftOfZero;
 
+/// Times the largest of its kind, or the geometric mean of the largest in its row and column:
+/// possible rounding of a 0 that chains enforce, or rotations (cos(pi / 2) = 6e-17). Fifty units of
+/// rounding, typical of a sum around a chain of some tens of joints.
+inline constexpr double kOfLargest = 1e-14;
+
 /// Size around an unknown in the elimination, in the unknown's own unit (by the scaling of the
 /// fronts' columns): the largest of its front; if all that the front shares with its parent is
 /// rounding of a 0 there, as behind a gain of 0, the front may be rounding, too, and the parent's
