@@ -49,10 +49,11 @@ Derivatives derivatives(const System& system, const std::vector<std::string>& pa
     to_open.push_back({.parameter = list.back().index, .differences = true});
   }
   if (!mistakes.empty()) throw Error(std::move(mistakes));
-  Derivatives g{system, System(detail::compile_opened(system, to_open))};
-  detail::OpenedMatrices opened = detail::opened_matrices(g.opened_, list);
+  Derivatives g{system, detail::compile_opened(system, to_open)};
+  detail::OpenedMatrices opened = detail::opened_matrices(System(g.opened_), list);
   g.m_ = std::move(opened.m);
   g.in_ = std::move(opened.in), g.out_ = std::move(opened.out);
+  g.inputs_ = opened.ports.back().inputs, g.outputs_ = opened.ports.back().outputs;
   g.names_ = parameters;
   const Stage& stage = system.stage();
   for (std::size_t i = 0; i < list.size(); ++i) {
@@ -60,65 +61,15 @@ Derivatives derivatives(const System& system, const std::vector<std::string>& pa
     const auto closed = closed_blocks(*stage.source, stage.values, list[i].index);
     for (const std::string& block : closed)
       g.by_differences_.push_back(parameters[i] + " of " + block);
-    g.pairs_.push_back({g.all_pairs_, opened.sizes[i], angle ? 0.5 : 1.0, closed.empty()});
+    g.pairs_.push_back({g.all_pairs_, opened.sizes[i], angle ? 0.5 : 1.0, closed.empty(),
+                        opened.ports[i].inputs, opened.ports[i].outputs});
     g.all_pairs_ += opened.sizes[i];
   }
   return g;
 }
 
-const Derivatives::Pairs& Derivatives::pairs_of(const std::string& p) const {
-  std::string known;
-  for (std::size_t i = 0; i < names_.size(); ++i) {
-    if (names_[i] == p) return pairs_[i];
-    known += (known.empty() ? "" : ", ") + names_[i];
-  }
-  throw Error(Code::unknown_name, fmt::format("no derivatives by {} were asked for", p),
-              "they are by " + known);
-}
-
-MatrixXcd Derivatives::opened_at(std::complex<double> s) const {
-  const MatrixXcd M = opened_.transfer(s);
-  return M(out_, in_);
-}
-
-MatrixXcd Derivatives::transfer(std::complex<double> s, const std::string& p) const {
-  return slope_of(pairs_of(p), opened_at(s));
-}
-
-std::vector<MatrixXcd> Derivatives::transfers(std::complex<double> s) const {
-  const MatrixXcd M = opened_at(s);
-  std::vector<MatrixXcd> result;
-  for (const Pairs& i : pairs_) result.push_back(slope_of(i, M));
-  return result;
-}
-
-MatrixXcd Derivatives::slope_of(const Pairs& i, const MatrixXcd& M) const {
-  const Index ny = M.rows() - all_pairs_, nu = M.cols() - all_pairs_;
-  return i.slope * M.bottomRows(ny).middleCols(i.first, i.size) *
-         M.rightCols(nu).middleRows(i.first, i.size);
-}
-
-MatrixXcd Derivatives::transfer(std::complex<double> s, const std::string& p,
-                                const std::string& q) const {
-  const Pairs &i = pairs_of(p), &j = pairs_of(q);
-  if (!i.exact || !j.exact)
-    throw Error(Code::not_rational,
-                fmt::format("second derivatives by {} and {}: a block gives differences of its "
-                            "matrices only, {}",
-                            p, q, by_differences_.front()),
-                "write Block::opened for it");
-  const MatrixXcd M = opened_at(s);
-  const Index ny = M.rows() - all_pairs_, nu = M.cols() - all_pairs_;
-  const auto path = [&](const Pairs& last, const Pairs& first) {
-    return MatrixXcd(M.bottomRows(ny).middleCols(last.first, last.size) *
-                     MatrixXcd(M.block(last.first, first.first, last.size, first.size) *
-                               M.rightCols(nu).middleRows(first.first, first.size)));
-  };
-  return i.slope * j.slope * (path(i, j) + path(j, i));
-}
-
 StateSpace Derivatives::matrices(const std::string& p) const {
-  const Pairs& i = pairs_of(p);
+  const Pairs& i = pairs_[at(index_of(p))];
   const Index ny = m_.D.rows() - all_pairs_, nu = m_.D.cols() - all_pairs_;
   const MatrixXd Bw = i.slope * m_.B.middleCols(i.first, i.size),
                  Dyw = i.slope * m_.D.bottomRows(ny).middleCols(i.first, i.size),

@@ -4,6 +4,7 @@
 #include <string>
 #include <titop/analysis/norms/hinf.hpp>
 #include <titop/compiler/system/system.hpp>
+#include <titop/compiler/system/transfer_part.hpp>
 #include <vector>
 
 /// Exact derivatives of a model by its parameters, from the opened model (lft.hpp): with w and z of
@@ -48,14 +49,21 @@ class Derivatives {
   /// row or to 1e-11 of the matrices' row over p (compiler/passes/open/differences.hpp).
   const std::vector<std::string>& by_differences() const { return by_differences_; }
 
-  /// dH/dp at s, outputs x inputs [unit of H per unit of p]. Throws unknown_name, and singular if s
-  /// is a pole. O(bodies (inputs + occurrences)).
-  Eigen::MatrixXcd transfer(std::complex<double> s, const std::string& p) const;
-  /// dH/dp at s for all parameters, in their order, by one factorisation and one solve per input
-  /// and occurrence together.
-  std::vector<Eigen::MatrixXcd> transfers(std::complex<double> s) const;
-  /// d2H/dp dq at s, outputs x inputs; p and q may be the same. Errors and cost as above; throws
-  /// not_rational for a parameter by differences, of which only the first derivative is known.
+  /// dH/dp at s, outputs x inputs [unit of H per unit of p]: the product of M_yw and M_zu, each
+  /// accurate to 1e-12 of its blocks as System::transfer is. Throws unknown_name, and singular if s
+  /// is a pole. One factorisation, then solves of O(bodies) each: for M_zu one per input, or one
+  /// per occurrence through the transposed factors, whichever are fewer; for M_yw one per output
+  /// through the transposed factors, or one per occurrence. `cost`, if given, becomes what it has
+  /// cost.
+  Eigen::MatrixXcd transfer(std::complex<double> s, const std::string& p,
+                            TransferCost* cost = nullptr) const;
+  /// dH/dp at s for all parameters, in their order. One factorisation, and at most as many solves
+  /// as inputs and outputs together, however many parameters there are.
+  std::vector<Eigen::MatrixXcd> transfers(std::complex<double> s,
+                                          TransferCost* cost = nullptr) const;
+  /// d2H/dp dq at s, outputs x inputs; p and q may be the same. Errors as above; one solve per
+  /// occurrence of both more. Throws not_rational for a parameter by differences, of which only the
+  /// first derivative is known.
   Eigen::MatrixXcd transfer(std::complex<double> s, const std::string& p,
                             const std::string& q) const;
   /// dA, dB, dC, dD by p of the dense model before `minimize` (System::write), with its names.
@@ -81,24 +89,26 @@ class Derivatives {
 
  private:
   friend Derivatives derivatives(const System&, const std::vector<std::string>&);
-  Derivatives(System system, System opened)
+  Derivatives(System system, std::shared_ptr<const detail::SystemData> opened)
       : system_(std::move(system)), opened_(std::move(opened)) {}
   struct Pairs {
     Eigen::Index first = 0, size = 0;
-    double slope = 1;   ///< of the deviation by the parameter: 1, of an angle 1/2
-    bool exact = true;  ///< all from Block::opened
+    double slope = 1;                  ///< of the deviation by the parameter: 1, of an angle 1/2
+    bool exact = true;                 ///< all from Block::opened
+    std::vector<int> inputs, outputs;  ///< ports of the opened graph
   };
-  const Pairs& pairs_of(const std::string& p) const;
-  /// M(s), inputs [w; u], outputs [z; y].
-  Eigen::MatrixXcd opened_at(std::complex<double> s) const;
-  /// dH/dp from M(s).
-  Eigen::MatrixXcd slope_of(const Pairs& p, const Eigen::MatrixXcd& M) const;
+  struct Paths;
+  int index_of(const std::string& p) const;
+  Paths paths(std::complex<double> s, const std::vector<int>& parameters, bool both = false,
+              bool direct = false) const;
 
-  System system_, opened_;
+  System system_;
+  std::shared_ptr<const detail::SystemData> opened_;
   StateSpace m_;                        ///< of `opened_`, inputs [w; u], outputs [z; y]
   std::vector<Eigen::Index> in_, out_;  ///< places of its inputs and outputs in `opened_`
   std::vector<std::string> names_, by_differences_;
   std::vector<Pairs> pairs_;
+  std::vector<int> inputs_, outputs_;  ///< ports of u and y in the opened graph
   Eigen::Index all_pairs_ = 0;
 };
 

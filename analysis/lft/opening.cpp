@@ -116,6 +116,29 @@ std::vector<std::string> named(const std::vector<std::string>& names,
   return result;
 }
 
+/// The port of this name.
+template <class List>
+int port(const List& list, const std::string& name) {
+  return static_cast<int>(
+      std::find_if(list.begin(), list.end(), [&](const auto& p) { return p.name == name; }) -
+      list.begin());
+}
+
+/// The ports that are in none of these lists, in declared order.
+template <class List>
+std::vector<int> other_ports(const List& list, const std::vector<OpenedPorts>& taken,
+                             std::vector<int> OpenedPorts::*of) {
+  std::vector<char> is_taken(list.size(), 0);
+  for (const OpenedPorts& p : taken)
+    for (const int i : p.*of) is_taken[at(i)] = 1;
+  std::vector<int> result;
+  for (int i = 0; i < static_cast<int>(list.size()); ++i)
+    if (!is_taken[at(i)]) result.push_back(i);
+  std::sort(result.begin(), result.end(),
+            [&](int a, int b) { return list[at(a)].declared < list[at(b)].declared; });
+  return result;
+}
+
 /// Appends the places that are not in the list.
 void add_others(std::vector<Index>& order, std::size_t all) {
   std::vector<char> taken(all, 0);
@@ -167,21 +190,27 @@ OpenedMatrices opened_matrices(const System& opened,
   opened.write(m);
   OpenedMatrices result;
   std::vector<Index> in, out;
+  const Graph& g = opened.stage().graph;
   for (const IsolatedParameter& p : parameters) {
     result.sizes.push_back(0);
     result.where.emplace_back();
+    result.ports.emplace_back();
     for (const OpenedPairs& pairs : opened.stage().opened) {
       if (pairs.parameter != p.index) continue;
       result.sizes.back() += pairs.size;
       auto& where = result.where.back();
       if (std::find(where.begin(), where.end(), pairs.where) == where.end())
         where.push_back(pairs.where);
+      result.ports.back().inputs.push_back(port(g.inputs, pairs.name));
+      result.ports.back().outputs.push_back(port(g.outputs, pairs.name));
       const auto w = places(m.inputs, pairs.name, pairs.size),
                  z = places(m.outputs, pairs.name, pairs.size);
       in.insert(in.end(), w.begin(), w.end());
       out.insert(out.end(), z.begin(), z.end());
     }
   }
+  result.ports.push_back({other_ports(g.inputs, result.ports, &OpenedPorts::inputs),
+                          other_ports(g.outputs, result.ports, &OpenedPorts::outputs)});
   add_others(in, m.inputs.size());
   add_others(out, m.outputs.size());
   result.in = in, result.out = out;

@@ -17,6 +17,11 @@ IsolatedParameter unranged(const System& system, const std::string& name,
 /// The parameters of these ranges. Throws as `lft` does, all mistakes together.
 std::vector<IsolatedParameter> isolated(const System& system, const ParameterRanges& ranges);
 
+/// Inputs and outputs of the opened graph, in the order of their scalars in `in` and `out`.
+struct OpenedPorts {
+  std::vector<int> inputs, outputs;
+};
+
 /// The opened model before `minimize`, inputs [w; u] and outputs [z; y], w in the order of
 /// `parameters`.
 struct OpenedMatrices {
@@ -24,6 +29,7 @@ struct OpenedMatrices {
   std::vector<Eigen::Index> in, out;            ///< places of its signals in the opened system
   std::vector<int> sizes;                       ///< pairs of each parameter
   std::vector<std::vector<std::string>> where;  ///< blocks and equations with it
+  std::vector<OpenedPorts> ports;               ///< of each parameter, then those of u and y
 };
 OpenedMatrices opened_matrices(const System& opened,
                                const std::vector<IsolatedParameter>& parameters);

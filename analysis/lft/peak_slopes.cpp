@@ -1,7 +1,8 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <titop/analysis/lft/derivatives.hpp>
+#include <numeric>
+#include <titop/analysis/lft/paths.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 
@@ -35,14 +36,20 @@ PeakSlopes Derivatives::peak(const HinfOptions& options) const {
   const Index ny = m_.D.rows() - all_pairs_, nu = m_.D.cols() - all_pairs_;
   const HinfNorm n = norm_hinf(system_.state_space(), options);
   require_simple(n);
-  const std::complex<double> s{0, n.omega};
-  const Eigen::MatrixXcd M =
-      std::isinf(n.omega) ? Eigen::MatrixXcd(m_.D.cast<std::complex<double>>()) : opened_at(s);
-  const Eigen::RowVectorXcd from_w = n.left.adjoint() * M.bottomLeftCorner(ny, all_pairs_);
-  const Eigen::VectorXcd to_z = M.topRightCorner(all_pairs_, nu) * n.right;
+  Paths M;
+  if (std::isinf(n.omega)) {
+    M.yw = m_.D.bottomLeftCorner(ny, all_pairs_), M.zu = m_.D.topRightCorner(all_pairs_, nu);
+    M.yu = m_.D.bottomRightCorner(ny, nu);
+  } else {
+    std::vector<int> all(pairs_.size());
+    std::iota(all.begin(), all.end(), 0);
+    M = paths({0, n.omega}, all, false, true);
+  }
+  const Eigen::RowVectorXcd from_w = n.left.adjoint() * M.yw;
+  const Eigen::VectorXcd to_z = M.zu * n.right;
   PeakSlopes result;
   result.omega = n.omega;
-  result.value = (n.left.adjoint() * M.bottomRightCorner(ny, nu) * n.right).value().real();
+  result.value = (n.left.adjoint() * M.yu * n.right).value().real();
   result.slopes.resize(static_cast<Index>(pairs_.size()));
   for (Index i = 0; i < result.slopes.size(); ++i) {
     const Pairs& p = pairs_[static_cast<std::size_t>(i)];

@@ -15,6 +15,10 @@ inline constexpr double kUnderflow = 1e-290;
 template <class T>
 double backward_error(const Plan& plan, const RowMatrix<T>& residual,
                       const RowMatrix<double>& magnitudes);
+/// The same of the transposed system, whose rows are the unknowns.
+template <class T>
+double transposed_backward_error(const Plan& plan, const RowMatrix<T>& residual,
+                                 const RowMatrix<double>& magnitudes);
 
 /// Its possible value by rounding alone: 8 (k + 8) units of rounding, k scalars in the longest row.
 /// A row of k products, each of up to three factors, has an error of up to (k + 4) units of its
@@ -22,6 +26,8 @@ double backward_error(const Plan& plan, const RowMatrix<T>& residual,
 /// N. J. Higham, Accuracy and Stability of Numerical Algorithms, 3.1 and 12.1]; a complex product
 /// has up to 2 sqrt(2) units.
 double backward_error_of_rounding(const Plan& plan, double epsilon);
+/// The same of the transposed system, k scalars in the longest column.
+double transposed_backward_error_of_rounding(const Plan& plan, double epsilon);
 
 /// Solution by the factors alone, if the caller measures its losses; or refined.
 enum class Refinement { none, settled };
@@ -30,8 +36,14 @@ enum class Refinement { none, settled };
 /// to half of its last value or less, five times at most (as LAPACK's xGERFS does). The backward
 /// error alone is no reason to refuse: rows between unknowns that are 0 up to rounding, as at
 /// points that closed chains immobilise, have a residual as large as their terms. Callers judge the
-/// outputs (Evaluation::losses). O(front sizes^2) and the rows once, per column.
+/// outputs (Evaluation::losses). O(front sizes^2) and the rows once, per column. Adds the columns
+/// solved for to `columns`, if it is given.
 template <class T>
-RowMatrix<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const RowMatrix<T>& rhs);
+RowMatrix<T> settled(const JointRows<T>& rows, const Factors<T>& factors, const RowMatrix<T>& rhs,
+                     int* columns = nullptr);
+/// The same of the transposed system.
+template <class T>
+RowMatrix<T> transposed_settled(const JointRows<T>& rows, const Factors<T>& factors,
+                                const RowMatrix<T>& rhs, int* columns = nullptr);
 
 }  // namespace titop::solve

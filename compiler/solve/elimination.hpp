@@ -96,6 +96,10 @@ class Factors {
   /// Solves for right-hand sides (unknowns x m, in the order of Plan::row_first); returns the
   /// unknowns (in the order of Plan::first). O(sum of front sizes^2) per column.
   RowMatrix<T> solve(const RowMatrix<T>& rhs) const;
+  /// Solves with the transposed matrix, by the same fronts walked the other way: right-hand sides
+  /// in the order of the unknowns (Plan::first), solutions in the order of the rows
+  /// (Plan::row_first). The same cost.
+  RowMatrix<T> solve_transposed(const RowMatrix<T>& rhs) const;
 
   Health health() const;
   const Plan& plan() const { return *plan_; }

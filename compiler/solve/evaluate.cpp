@@ -87,29 +87,33 @@ solve::Matrices<T> Evaluation<T>::respond(const T& s) {
 }
 
 template <class T>
-Evaluation<T>::Evaluation(Driven, const Factored& data, const T& s, const solve::RowMatrix<T>& u)
+Evaluation<T>::Evaluation(Driven, const Factored& data, const T& s, const solve::RowMatrix<T>& u,
+                          std::optional<std::vector<int>> ports)
     : data_(data),
       s_(s),
       u_(u),
+      ports_(std::move(ports)),
       first_(data.graph().signals.size(), -1),
       rows_(data.graph(), data.skeleton->as_written(), data.numbers.coefficients, respond(s)) {
   const int states = static_cast<int>(data.layout().states.size());
   for (const Input& i : data.graph().inputs)
     first_[at(i.signal)] = data.layout().known_first[at(i.signal)] - states;
+  if (!ports_ && u_.rows() == u_.cols()) ports_ = all_inputs(data);
   rhs_ = rows_.rhs(u_, first_);
 }
 
 template <class T>
 Evaluation<T>::Evaluation(const Factored& data, const T& s, const solve::RowMatrix<T>& u,
-                          const Evaluation<std::complex<double>>& coarse)
-    : Evaluation(Driven(), data, s, u) {
-  refine(coarse);
+                          const Evaluation<std::complex<double>>& coarse,
+                          std::optional<std::vector<int>> ports)
+    : Evaluation(Driven(), data, s, u, std::move(ports)) {
+  this->refine(coarse);
 }
 
 template <class T>
 Evaluation<T>::Evaluation(const Factored& data, const T& s, const solve::RowMatrix<T>& u,
-                          solve::Refinement refinement)
-    : Evaluation(Driven(), data, s, u) {
+                          solve::Refinement refinement, std::optional<std::vector<int>> ports)
+    : Evaluation(Driven(), data, s, u, std::move(ports)) {
   factors_ = std::make_unique<const solve::Factors<T>>(data.skeleton->as_written().plan, rows_,
                                                        data.scale());
   if (const solve::Health h = factors_->health(); h.singular) {
@@ -121,8 +125,12 @@ Evaluation<T>::Evaluation(const Factored& data, const T& s, const solve::RowMatr
           "take an s of smaller or larger modulus, or other units");
     throw no_digit_left(data, z);
   }
-  unknowns_ = refinement == solve::Refinement::none ? factors_->solve(rhs_)
-                                                    : solve::settled(rows_, *factors_, rhs_);
+  if (refinement == solve::Refinement::settled) {
+    unknowns_ = solve::settled(rows_, *factors_, rhs_, &columns_solved_);
+  } else {
+    unknowns_ = factors_->solve(rhs_);
+    columns_solved_ = static_cast<int>(rhs_.cols());
+  }
 }
 
 template <class T>

@@ -5,7 +5,9 @@
 #include <mutex>
 #include <titop/compiler/solve/backward_error.hpp>
 #include <titop/compiler/solve/factored.hpp>
+#include <titop/compiler/solve/refined_solution.hpp>
 #include <titop/compiler/solve/response.hpp>
+#include <titop/compiler/solve/transfer_blocks.hpp>
 
 namespace titop::detail {
 
@@ -26,29 +28,49 @@ constexpr double kOneDigit = 0.1;
 /// been up to this factor larger.
 constexpr double kRoundings = 4;
 
-/// One column per input: unit vectors.
+/// Unit vectors of the scalars of these ports, inputs or outputs of the graph (`list`, with their
+/// first places), in this order, among `all` scalars.
+template <class T, class List>
+solve::RowMatrix<T> unit_vectors(const List& list, const std::vector<int>& first, std::size_t all,
+                                 const std::vector<int>& ports) {
+  Eigen::Index columns = 0, column = 0;
+  for (const int p : ports) columns += list[static_cast<std::size_t>(p)].size;
+  solve::RowMatrix<T> u = solve::RowMatrix<T>::Zero(static_cast<Eigen::Index>(all), columns);
+  for (const int p : ports)
+    for (int i = 0; i < list[static_cast<std::size_t>(p)].size; ++i)
+      u(first[static_cast<std::size_t>(p)] + i, column++) = T(1);
+  return u;
+}
+
+template <class T>
+solve::RowMatrix<T> unit_inputs(const Factored& data, const std::vector<int>& ports) {
+  const Layout& l = data.layout();
+  return unit_vectors<T>(data.graph().inputs, l.input_first, l.inputs.size(), ports);
+}
+
+/// One column per input.
 template <class T>
 solve::RowMatrix<T> unit_inputs(const Factored& data) {
-  const auto m = static_cast<Eigen::Index>(data.layout().inputs.size());
-  solve::RowMatrix<T> u = solve::RowMatrix<T>::Zero(m, m);
-  for (Eigen::Index i = 0; i < m; ++i) u(i, i) = T(1);
-  return u;
+  return unit_inputs<T>(data, all_inputs(data));
 }
 
 /// A compiled diagram at one s, driven by its external inputs: every signal on demand. T is a
 /// complex scalar of any precision, or double for a real s at less than half the cost; blocks that
 /// are the same object are evaluated once.
 template <class T>
-class Evaluation {
+class Evaluation final : public RefinedSolution<T> {
  public:
-  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block.
+  /// u: inputs x columns. Throws singular if s is a pole of the system or of a block. `ports`: the
+  /// inputs of the graph whose unit vectors these are (unit_inputs); all if u is square.
   Evaluation(const Factored& data, const T& s, const solve::RowMatrix<T>& u,
-             solve::Refinement refinement = solve::Refinement::none);
+             solve::Refinement refinement = solve::Refinement::none,
+             std::optional<std::vector<int>> ports = {});
   /// `coarse`: the same s and u in double, whose factors are reused. Iterative refinement with
   /// blocks and residuals in T, until the outputs have settled or their changes shrink no more: see
   /// refinement_error().
   Evaluation(const Factored& data, const T& s, const solve::RowMatrix<T>& u,
-             const Evaluation<std::complex<double>>& coarse);
+             const Evaluation<std::complex<double>>& coarse,
+             std::optional<std::vector<int>> ports = {});
 
   /// signal size x columns.
   solve::RowMatrix<T> value(int signal) const;
@@ -68,38 +90,22 @@ class Evaluation {
   /// All blocks' states forced alone, inputs at 0: (s - A)^-1 r. O(bodies).
   solve::RowMatrix<T> forced_states(const solve::RowMatrix<T>& r) const;
 
-  const solve::RowMatrix<T>& unknowns() const { return unknowns_; }
-  solve::RowMatrix<T> solve(const solve::RowMatrix<T>& rhs) const { return factors_->solve(rhs); }
-  /// With `coarse`: approximate upper bound of the error of the outputs: their change by the last
-  /// step of refinement. 1 if a step did not reduce the error of some unknown, infinite if numbers
-  /// have overflown. Measured per block of the transfer (a port by a port, dual vectors in halves),
-  /// over the block's largest entry; if the change is more than 1e-3 of that and finer arithmetic
-  /// confirms that the block is a 0 with rounding (Factored::zero_blocks), over the geometric
-  /// mean of the largest entries of the block's row and column. (At a real s in double, and if
-  /// columns are not one per input, every block that small counts as such a 0.)
-  double refinement_error() const { return refinement_error_; }
-  /// One step of refinement, residual and all in T: removes the error of the elimination itself
-  /// (growth that no single pivot shows). Returns the change of the outputs, measured as above.
-  double improve();
-  /// Estimated errors of double (or another T).
-  struct Losses {
-    double change = 0;    ///< improve()
-    double rounding = 0;  ///< the change of the outputs, measured as above, if every equation is
-                          ///< off by about one unit of the last place of its terms, up or down in a
-                          ///< fixed random order: an estimate of the error, not a bound
-  };
-  /// improve(), and the error by rounding. One solution of two columns per column.
-  Losses losses();
-  /// The change of the outputs by rounding as above, outputs x columns.
+  solve::RowMatrix<T> solve(const solve::RowMatrix<T>& rhs) const override {
+    return factors_->solve(rhs);
+  }
+  double weakest_pivot() const override { return factors_->health().weakest; }
+
+  /// The change of the outputs by rounding (Losses::rounding), outputs x columns.
   solve::RowMatrix<T> rounding() const;
   /// Likewise of all signals, as values().
   solve::RowMatrix<T> rounding_of_values(std::span<const int> first) const;
-  /// Weakest pivot of the elimination: see Certificate::weakest_pivot.
-  double weakest_pivot() const { return factors_->health().weakest; }
 
  private:
+  template <class>
+  friend class TransposedEvaluation;
   struct Driven {};  ///< rows and right-hand sides only
-  Evaluation(Driven, const Factored& data, const T& s, const solve::RowMatrix<T>& u);
+  Evaluation(Driven, const Factored& data, const T& s, const solve::RowMatrix<T>& u,
+             std::optional<std::vector<int>> ports);
   /// Outputs from unknowns; the states' own parts are added if they are given.
   solve::RowMatrix<T> outputs_of(const solve::RowMatrix<T>& unknowns,
                                  const solve::RowMatrix<T>& inputs,
@@ -107,21 +113,19 @@ class Evaluation {
   solve::RowMatrix<T> values_of(const solve::RowMatrix<T>& unknowns,
                                 const solve::RowMatrix<T>& inputs,
                                 std::span<const int> first) const;
-  /// Change of the unknowns by rounding.
-  solve::RowMatrix<T> change_by_rounding() const;
   solve::RowMatrix<T> value_of(int signal, const solve::RowMatrix<T>& unknowns,
                                const solve::RowMatrix<T>& inputs) const;
-  void refine(const Evaluation<std::complex<double>>& coarse);
-  solve::RowMatrix<std::complex<double>> change_by(const Evaluation<std::complex<double>>& coarse,
-                                                   double* rounding) const;
-  /// Largest entries of unknowns that share a unit, variable by variable, for each group of
-  /// columns.
-  Eigen::ArrayXd sizes_of_unknowns(const solve::RowMatrix<std::complex<double>>& unknowns) const;
-  /// The columns' groups, an input each, dual vectors in halves: their first ones, and the end.
-  std::vector<Eigen::Index> groups_of_columns() const;
-  /// One unit of the last place of these, up or down in a fixed random order, row by row.
-  static solve::RowMatrix<T> rounding_of(const solve::RowMatrix<double>& magnitudes);
-  double relative_to_outputs(const solve::RowMatrix<T>& change_of_unknowns) const;
+  using RefinedSolution<T>::unknowns_;
+  using RefinedSolution<T>::columns_solved_;
+  using RefinedSolution<T>::change_by_rounding;
+  solve::RowMatrix<T> residual(solve::RowMatrix<double>* magnitudes) const override {
+    return rows_.residual(rhs_, unknowns_, magnitudes);
+  }
+  double relative_to_results(const solve::RowMatrix<T>& change_of_unknowns) const override;
+  Eigen::ArrayXd sizes_of_unknowns(
+      const solve::RowMatrix<std::complex<double>>& unknowns) const override;
+  /// The columns' groups.
+  PortGroups groups_of_columns() const;
   /// (s - A)^-1 of this node's block.
   const Resolvent<T>& resolvent(int node) const;
   /// (s - A)^-1 r of every block by itself.
@@ -134,6 +138,7 @@ class Evaluation {
   const Factored& data_;
   T s_;
   solve::RowMatrix<T> u_;
+  std::optional<std::vector<int>> ports_;
   std::vector<int> first_;  ///< per signal: first row of u
   std::map<std::pair<const Block*, const Dynamics*>, solve::BlockResponse<T>> responses_;
   std::vector<const solve::BlockResponse<T>*> of_node_;
@@ -141,8 +146,7 @@ class Evaluation {
   mutable std::map<const Dynamics*, Resolvent<T>> resolvents_;
   solve::JointRows<T> rows_;
   std::unique_ptr<const solve::Factors<T>> factors_;
-  solve::RowMatrix<T> rhs_, unknowns_;
-  double refinement_error_ = 0;
+  solve::RowMatrix<T> rhs_;
 };
 
 }  // namespace titop::detail

@@ -50,6 +50,21 @@ class JointRows : public Rows<T> {
   RowMatrix<T> residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns,
                         RowMatrix<double>* magnitudes = nullptr) const;
 
+  /// The same of the transposed system, whose rows are the unknowns: rhs - (these rows)' *
+  /// solutions.
+  RowMatrix<T> transposed_residual(const RowMatrix<T>& rhs, const RowMatrix<T>& solutions,
+                                   RowMatrix<double>* magnitudes = nullptr) const;
+
+  /// known += (the matrix of `rhs`)' * solutions: what right-hand sides that are weighted so depend
+  /// on. At one s.
+  void add_transposed_rhs(const RowMatrix<T>& solutions, std::span<const int> first,
+                          RowMatrix<T>& known) const;
+
+  /// unknowns and known += (the matrix of `add_value`)' * weights; signal size x columns,
+  /// row-major.
+  void add_transposed_value(int signal, const T* weights, std::span<const int> first,
+                            RowMatrix<T>& unknowns, RowMatrix<T>& known) const;
+
   /// signal += its meaning in unknowns and known signals; `to`: signal size x columns, row-major.
   void add_value(int signal, const RowMatrix<T>& unknowns, const RowMatrix<T>& known,
                  std::span<const int> first, T* to) const;

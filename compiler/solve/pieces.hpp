@@ -22,6 +22,11 @@ struct View {
   }
 };
 
+template <class T>
+View<T> transposed(const View<T>& v) {
+  return {v.data, v.cols, v.rows, v.right, v.down};
+}
+
 inline View<double> view(const RowMatrix<double>& m) {
   return {m.data(), m.rows(), m.cols(), m.cols(), 1};
 }

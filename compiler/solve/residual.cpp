@@ -133,9 +133,80 @@ RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>&
   return result;
 }
 
+namespace {
+
+/// to -= sign * right' * left' * x, x with m columns; left or right nullptr: 1. left' * x has
+/// `size` numbers, for which there is `room`.
+template <class T, class Left>
+void subtract_transposed_products(double sign, const Left* left, const RowMatrix<double>* right,
+                                  const T* x, std::ptrdiff_t size, std::ptrdiff_t m, T* to,
+                                  std::vector<T>& room) {
+  if (left && right) {
+    room.assign(static_cast<std::size_t>(size), T(0));
+    subtract_product(-1, transposed(*left), x, m, room.data());
+    x = room.data();
+  }
+  if (right) return subtract_product(sign, transposed(view(*right)), x, m, to);
+  if (left) return subtract_product(sign, transposed(*left), x, m, to);
+  for (std::ptrdiff_t i = 0; i < size; ++i) to[i] -= times(x[i], sign);
+}
+
+/// to += |right|' |left|' x, likewise.
+template <class Left>
+void add_sizes_of_transposed_products(const Left* left, const RowMatrix<double>* right,
+                                      const double* x, std::ptrdiff_t size, std::ptrdiff_t m,
+                                      double* to, std::vector<double>& room) {
+  if (left && right) {
+    room.assign(static_cast<std::size_t>(size), 0);
+    add_sizes(transposed(*left), x, m, room.data());
+    x = room.data();
+  }
+  if (right) return add_sizes(transposed(view(*right)), x, m, to);
+  if (left) return add_sizes(transposed(*left), x, m, to);
+  for (std::ptrdiff_t i = 0; i < size; ++i) to[i] += x[i];
+}
+
+}  // namespace
+
+template <class T>
+RowMatrix<T> JointRows<T>::transposed_residual(const RowMatrix<T>& rhs,
+                                               const RowMatrix<T>& solutions,
+                                               RowMatrix<double>* magnitudes) const {
+  const Plan& plan = *joint_.plan;
+  const std::ptrdiff_t m = rhs.cols();
+  const auto sizes = [](const RowMatrix<T>& x) -> RowMatrix<double> {
+    return x.unaryExpr([](const T& entry) { return size_of(entry); });
+  };
+  RowMatrix<T> result = rhs;
+  RowMatrix<double> x_sizes;
+  if (magnitudes) *magnitudes = sizes(rhs), x_sizes = sizes(solutions);
+  std::vector<T> room;
+  std::vector<double> room_of_sizes;
+  const auto product = [&](int row, double sign, const auto* left, const RowMatrix<double>* right,
+                           int v) {
+    const std::ptrdiff_t from = row * m, to = plan.first[at(v)] * m;
+    const std::ptrdiff_t size = (right ? right->rows() : plan.structure.variable_size[at(v)]) * m;
+    subtract_transposed_products(sign, left, right, solutions.data() + from, size, m,
+                                 result.data() + to, room);
+    if (magnitudes)
+      add_sizes_of_transposed_products(left, right, x_sizes.data() + from, size, m,
+                                       magnitudes->data() + to, room_of_sizes);
+  };
+  by_products(product, [&](int row, double sign, double size, const T& c, int v) {
+    if (c == T(0)) return;
+    const std::ptrdiff_t from = row * m, to = plan.first[at(v)] * m;
+    const T by = times(c, sign);
+    subtract_rows(1, &by, solutions.data() + from, m, result.data() + to);
+    if (magnitudes) solve::add(m, size, x_sizes.data() + from, magnitudes->data() + to);
+  });
+  return result;
+}
+
 #define TITOP_INSTANTIATE(T)                                                             \
   template RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>&, const RowMatrix<T>&, \
-                                               RowMatrix<double>*) const;
+                                               RowMatrix<double>*) const;                \
+  template RowMatrix<T> JointRows<T>::transposed_residual(                               \
+      const RowMatrix<T>&, const RowMatrix<T>&, RowMatrix<double>*) const;
 TITOP_INSTANTIATE(double)
 TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
 #undef TITOP_INSTANTIATE

@@ -5,11 +5,10 @@
 #include <optional>
 #include <titop/compiler/certificate/without_rounding.hpp>
 #include <titop/compiler/realization/write_model.hpp>
-#include <titop/compiler/solve/evaluate.hpp>
-#include <titop/compiler/solve/kernels.hpp>
-#include <titop/compiler/solve/scalar.hpp>
+#include <titop/compiler/solve/transfer_blocks.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/compiler/system/system_data.hpp>
+#include <titop/compiler/system/transfer_part.hpp>
 #include <titop/graph/support/parallel.hpp>
 
 namespace titop {
@@ -36,138 +35,11 @@ System::Rates System::apply(const VectorXd& x, const VectorXd& u) const {
   return {data_->states.kept_rows(VectorXd(r.xdot)), r.y};
 }
 
-namespace {
-
-using Double = std::complex<double>;
-using Extended = std::complex<long double>;
-using Twofold = std::complex<solve::DoubleDouble>;
-
-template <class T>
-MatrixXcd rounded(const solve::RowMatrix<T>& m) {
-  return m.unaryExpr([](const T& x) -> Double { return solve::Scalar<T>::round(x); });
-}
-
-using detail::kEnough;
-using detail::kOneDigit;
-using detail::unit_inputs;
-
-template <class T>
-MatrixXcd transfer_in(const detail::SystemData& d, Double s, solve::Refinement refinement) {
-  return rounded<T>(
-      detail::Evaluation<T>(d, solve::Scalar<T>::from(s), unit_inputs<T>(d), refinement).outputs());
-}
-
-MatrixXcd standard_transfer(const detail::SystemData& d, Double s) {
-  detail::Evaluation<Double> point(d, s, unit_inputs<Double>(d));
-  point.improve();
-  return rounded<Double>(point.outputs());
-}
-
-/// The factors of `coarse`, all else in T.
-template <class T>
-detail::Evaluation<T> refined(const detail::SystemData& d, Double s,
-                              const detail::Evaluation<Double>& coarse) {
-  return {d, solve::Scalar<T>::from(s), unit_inputs<T>(d), coarse};
-}
-
-template <class T>
-MatrixXcd refined_transfer(const detail::SystemData& d, Double s) {
-  const detail::Evaluation<Double> coarse(d, s, unit_inputs<Double>(d));
-  const auto result = refined<T>(d, s, coarse);
-  if (const double error = result.refinement_error(); !(error <= kEnough))
-    throw detail::not_refined(d, s, error);
-  return rounded<T>(result.outputs());
-}
-
-/// Relative error in T after one step of refinement, whose change was `losses`: the largest of
-/// those by the weakest pivot, by rounding of the outputs, and by the remainder after that step,
-/// which takes another step to compute.
-template <class T>
-double lost_by(detail::Evaluation<T>& e, const typename detail::Evaluation<T>::Losses& losses) {
-  const double left = losses.change <= kEnough ? 0 : e.improve();
-  if (std::isnan(left) || std::isnan(losses.rounding)) return HUGE_VAL;
-  return std::max({solve::Scalar<T>::epsilon() / e.weakest_pivot(),
-                   detail::kRoundings * losses.rounding, left});
-}
-
-/// Finer than double, whose error is `lost`: refined if its own rounding (2000 times finer) is
-/// small enough and it converges, else refined in double-double if that converges, else 50 digits.
-MatrixXcd finer_transfer(const detail::SystemData& d, Double s,
-                         const detail::Evaluation<Double>& plain, double lost) {
-  const double kFiner = solve::Scalar<Extended>::epsilon() / solve::Scalar<Double>::epsilon();
-  if (lost * kFiner <= kEnough) {
-    const auto once = refined<Extended>(d, s, plain);
-    if (once.refinement_error() <= kEnough) return rounded<Extended>(once.outputs());
-  }
-  const auto twice = refined<Twofold>(d, s, plain);
-  if (twice.refinement_error() <= kEnough) return rounded<Twofold>(twice.outputs());
-  return transfer_in<solve::Complex50>(d, s, solve::Refinement::settled);
-}
-
-/// In T, if double has no pivot; none if T has too few digits for it, or if the last place
-/// of the data decides all digits of the outputs, as at a pole.
-template <class T>
-std::optional<MatrixXcd> transfer_without_pivot(const detail::SystemData& d, Double s) {
-  try {
-    detail::Evaluation<T> point(d, solve::Scalar<T>::from(s), unit_inputs<T>(d),
-                                solve::Refinement::settled);
-    const auto losses = point.losses();
-    const double in_double =
-        losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
-    if (lost_by(point, losses) <= kEnough && in_double <= kOneDigit)
-      return rounded<T>(point.outputs());
-  } catch (const Error&) {  // a pole of a block, or no pivot here either
-  }
-  return {};
-}
-
-/// The coarsest precision whose rounding changes the outputs by no more than kEnough. Intermediate
-/// results of grids lose more digits than the outputs: the last pivots of a wide front may have
-/// none in double, far from any pole.
-MatrixXcd transfer_as_needed(const detail::SystemData& d, Double s) {
-  std::optional<detail::Evaluation<Double>> plain;
-  try {
-    plain.emplace(d, s, unit_inputs<Double>(d), solve::Refinement::settled);
-  } catch (const Error& error) {
-    if (!error.has(Code::singular)) throw;
-    auto G = transfer_without_pivot<Twofold>(d, s);
-    if (!G) G = transfer_without_pivot<solve::Complex50>(d, s);
-    if (!G) throw;
-    return *G;
-  }
-  const double lost = lost_by(*plain, plain->losses());
-  if (lost <= kEnough) return rounded<Double>(plain->outputs());
-  return finer_transfer(d, s, *plain, lost);
-}
-
-}  // namespace
-
-namespace {
-
-MatrixXcd transfer_with(const detail::SystemData& d, Double s, Precision precision) {
-  switch (precision) {
-    case Precision::standard: return standard_transfer(d, s);
-    case Precision::refined: return refined_transfer<Extended>(d, s);
-    case Precision::twofold: return refined_transfer<Twofold>(d, s);
-    case Precision::extended: return transfer_in<Extended>(d, s, solve::Refinement::none);
-    case Precision::digits50:
-      return transfer_in<solve::Complex50>(d, s, solve::Refinement::settled);
-    case Precision::as_needed: return transfer_as_needed(d, s);
-  }
-  return {};
-}
-
-}  // namespace
-
 MatrixXcd System::transfer(std::complex<double> s, Precision precision) const {
-  MatrixXcd G = transfer_with(*data_, s, precision);
-  if (!G.allFinite())
-    detail::refuse_overflow(
-        fmt::format("the transfer of {} at s = {}{:+}j", data_->graph().name, s.real(), s.imag()));
-  return G;
+  return detail::transfer_part(*data_, s, {detail::all_inputs(*data_), {}}, precision).columns;
 }
 
-std::optional<MatrixXcd> detail::transfer_if_any(const System& system, Double s) {
+std::optional<MatrixXcd> detail::transfer_if_any(const System& system, std::complex<double> s) {
   try {
     return system.transfer(s);
   } catch (const Error& error) {

@@ -1,0 +1,192 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <titop/compiler/solve/scalar.hpp>
+#include <titop/compiler/solve/transposed_evaluation.hpp>
+#include <titop/compiler/system/system_data.hpp>
+#include <titop/compiler/system/transfer_part.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Double = std::complex<double>;
+using Extended = std::complex<long double>;
+using Twofold = std::complex<solve::DoubleDouble>;
+
+template <class T>
+Eigen::MatrixXcd in_double(const solve::RowMatrix<T>& m) {
+  return m.unaryExpr([](const T& x) -> Double { return solve::Scalar<T>::round(x); });
+}
+
+/// NaN if one of them is.
+double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }
+
+struct Asked {
+  const Factored& data;
+  Double s;
+  const PartOfTransfer& part;
+  TransferCost& cost;
+};
+
+/// The part of the transfer in T; its end adds to the cost.
+template <class T>
+class Answer {
+ public:
+  Answer(const Asked& a, solve::Refinement refinement)
+      : asked_(a), forward_(a.data, point(), unit_columns(), refinement, a.part.inputs) {
+    if (!a.part.outputs.empty()) transposed_.emplace(forward_, a.part.outputs, refinement);
+    ++a.cost.factorisations;
+  }
+  /// The factors of `coarse`, all else in T.
+  Answer(const Asked& a, const Answer<Double>& coarse)
+      : asked_(a), forward_(a.data, point(), unit_columns(), coarse.forward_, a.part.inputs) {
+    if (coarse.transposed_) transposed_.emplace(forward_, a.part.outputs, *coarse.transposed_);
+  }
+  Answer(const Answer&) = delete;
+  ~Answer() {
+    asked_.cost.columns += forward_.columns_solved();
+    if (transposed_) asked_.cost.rows += transposed_->columns_solved();
+  }
+
+  double improve() {
+    const double change = forward_.improve();
+    return transposed_ ? worse(change, transposed_->improve()) : change;
+  }
+  typename RefinedSolution<T>::Losses losses() {
+    const auto f = forward_.losses();
+    if (!transposed_) return f;
+    const auto t = transposed_->losses();
+    return {worse(f.change, t.change), worse(f.rounding, t.rounding)};
+  }
+  double refinement_error() const {
+    const double error = forward_.refinement_error();
+    return transposed_ ? worse(error, transposed_->refinement_error()) : error;
+  }
+  double weakest_pivot() const { return forward_.weakest_pivot(); }
+
+  TransferPart rounded() const {
+    TransferPart part{in_double<T>(forward_.outputs()), {}, {}};
+    if (transposed_) part.rows = in_double<T>(transposed_->inputs()).transpose();
+    return part;
+  }
+
+ private:
+  template <class>
+  friend class Answer;
+  T point() const { return solve::Scalar<T>::from(asked_.s); }
+  solve::RowMatrix<T> unit_columns() const {
+    return unit_inputs<T>(asked_.data, asked_.part.inputs);
+  }
+
+  Asked asked_;
+  Evaluation<T> forward_;
+  std::optional<TransposedEvaluation<T>> transposed_;
+};
+
+template <class T>
+TransferPart in_precision(const Asked& a, solve::Refinement refinement) {
+  return Answer<T>(a, refinement).rounded();
+}
+
+TransferPart standard(const Asked& a) {
+  Answer<Double> point(a, solve::Refinement::none);
+  point.improve();
+  return point.rounded();
+}
+
+template <class T>
+TransferPart refined(const Asked& a) {
+  const Answer<Double> coarse(a, solve::Refinement::none);
+  const Answer<T> result(a, coarse);
+  if (const double error = result.refinement_error(); !(error <= kEnough))
+    throw not_refined(a.data, a.s, error);
+  return result.rounded();
+}
+
+/// Relative error in T after one step of refinement, whose change was `losses`: the largest of
+/// those by the weakest pivot, by rounding of the results, and by the remainder after that step,
+/// which takes another step to compute.
+template <class T>
+double lost_by(Answer<T>& e, const typename RefinedSolution<T>::Losses& losses) {
+  const double left = losses.change <= kEnough ? 0 : e.improve();
+  if (std::isnan(left) || std::isnan(losses.rounding)) return HUGE_VAL;
+  return std::max(
+      {solve::Scalar<T>::epsilon() / e.weakest_pivot(), kRoundings * losses.rounding, left});
+}
+
+/// Finer than double, whose error is `lost`: refined if its own rounding (2000 times finer) is
+/// small enough and it converges, else refined in double-double if that converges, else 50 digits.
+TransferPart finer(const Asked& a, const Answer<Double>& plain, double lost) {
+  const double kFiner = solve::Scalar<Extended>::epsilon() / solve::Scalar<Double>::epsilon();
+  if (lost * kFiner <= kEnough) {
+    const Answer<Extended> once(a, plain);
+    if (once.refinement_error() <= kEnough) return once.rounded();
+  }
+  const Answer<Twofold> twice(a, plain);
+  if (twice.refinement_error() <= kEnough) return twice.rounded();
+  return in_precision<solve::Complex50>(a, solve::Refinement::settled);
+}
+
+/// In T, if double has no pivot; none if T has too few digits for it, or if the last place
+/// of the data decides all digits of the results, as at a pole.
+template <class T>
+std::optional<TransferPart> without_pivot(const Asked& a) {
+  try {
+    Answer<T> point(a, solve::Refinement::settled);
+    const auto losses = point.losses();
+    const double in_double =
+        losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
+    if (lost_by(point, losses) <= kEnough && in_double <= kOneDigit) return point.rounded();
+  } catch (const Error&) {  // a pole of a block, or no pivot here either
+  }
+  return {};
+}
+
+/// The coarsest precision whose rounding changes the results by no more than kEnough. Intermediate
+/// results of grids lose more digits than the outputs: the last pivots of a wide front may have
+/// none in double, far from any pole.
+TransferPart as_needed(const Asked& a) {
+  std::optional<Answer<Double>> plain;
+  try {
+    plain.emplace(a, solve::Refinement::settled);
+  } catch (const Error& error) {
+    if (!error.has(Code::singular)) throw;
+    auto part = without_pivot<Twofold>(a);
+    if (!part) part = without_pivot<solve::Complex50>(a);
+    if (!part) throw;
+    return *part;
+  }
+  const double lost = lost_by(*plain, plain->losses());
+  if (lost <= kEnough) return plain->rounded();
+  return finer(a, *plain, lost);
+}
+
+TransferPart with(const Asked& a, Precision precision) {
+  switch (precision) {
+    case Precision::standard: return standard(a);
+    case Precision::refined: return refined<Extended>(a);
+    case Precision::twofold: return refined<Twofold>(a);
+    case Precision::extended: return in_precision<Extended>(a, solve::Refinement::none);
+    case Precision::digits50: return in_precision<solve::Complex50>(a, solve::Refinement::settled);
+    case Precision::as_needed: return as_needed(a);
+  }
+  return {};
+}
+
+}  // namespace
+
+TransferPart transfer_part(const SystemData& data, Double s, const PartOfTransfer& part,
+                           Precision precision) {
+  TransferCost cost;
+  TransferPart result = with({data, s, part, cost}, precision);
+  result.cost = cost;
+  for (const Eigen::MatrixXcd* m : {&result.columns, &result.rows})
+    if (!m->allFinite())
+      refuse_overflow(
+          fmt::format("the transfer of {} at s = {}{:+}j", data.graph().name, s.real(), s.imag()));
+  return result;
+}
+
+}  // namespace titop::detail

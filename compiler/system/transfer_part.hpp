@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <titop/compiler/system/system.hpp>
+#include <vector>
+
+namespace titop {
+
+/// What a transfer at one s has cost.
+struct TransferCost {
+  int factorisations = 0;
+  int columns =
+      0;         ///< right-hand sides solved for, steps of refinement and error estimates included
+  int rows = 0;  ///< the same through the transposed factors
+};
+
+}  // namespace titop
+
+/// Columns and rows of a transfer at one s, in any precision.
+namespace titop::detail {
+
+/// Inputs whose columns and outputs whose rows are asked for: indices in the graph.
+struct PartOfTransfer {
+  std::vector<int> inputs, outputs;
+};
+
+/// The answer, in the order of the question.
+struct TransferPart {
+  Eigen::MatrixXcd columns;  ///< all outputs x scalars of the inputs
+  Eigen::MatrixXcd rows;     ///< scalars of the outputs x all inputs
+  TransferCost cost;
+};
+
+/// By one factorisation, a solve per column and a transposed one per row, each O(bodies). Judged,
+/// refined and refused as System::transfer, whose columns and rows these are to 1e-12 of each
+/// block. Throws also not_finite if numbers overflow.
+TransferPart transfer_part(const SystemData& data, std::complex<double> s,
+                           const PartOfTransfer& part, Precision precision = Precision::as_needed);
+}  // namespace titop::detail
