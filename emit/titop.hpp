@@ -4,6 +4,7 @@
 #include <titop/analysis/certify/certify_full.hpp>
 #include <titop/analysis/lft/derivatives.hpp>
 #include <titop/analysis/lft/lft.hpp>
+#include <titop/analysis/lft/reduced_lft.hpp>
 #include <titop/analysis/norms/hinf.hpp>
 #include <titop/analysis/reduction/reduced_system.hpp>
 #include <titop/analysis/simulation/hold.hpp>

@@ -42,7 +42,8 @@ room(analysis/certify          compiler/passes compiler/definition compiler/cert
 room(analysis/reduction        compiler/system)
 room(analysis/norms)
 # Deeper than System: it opens parameters, and counts occurrences in exact arithmetic.
-room(analysis/lft              compiler/passes compiler/definition compiler/system analysis/norms)
+room(analysis/lft              compiler/passes compiler/definition compiler/system analysis/norms
+                               analysis/reduction)
 room(emit/text)
 # Deeper than System: names of any encoding are cleaned by compiler/diagram.
 room(emit/files                compiler/diagram compiler/system analysis/certify analysis/lft

@@ -167,6 +167,13 @@ void Lft::take(detail::Structured model) {
   name_pairs(m_, deltas_);
 }
 
+void Lft::take_reduced(StateSpace m) {
+  m_ = std::move(m);
+  states_at_least_ = 0;
+  for (Delta& d : deltas_) d.at_least = 0;
+  not_decided_ = "M is reduced";
+}
+
 void Lft::find_lower_bounds(const std::vector<detail::IsolatedParameter>& list) {
   constexpr int kFew = 60;
   std::vector<int> parameters, sizes;

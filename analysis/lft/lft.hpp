@@ -17,6 +17,9 @@ struct IsolatedParameter;
 struct Structured;
 }  // namespace detail
 
+class ReducedLft;
+struct Scene;
+
 /// A parameter in an Lft.
 struct Delta {
   std::string parameter;
@@ -71,8 +74,12 @@ class Lft {
 
  private:
   friend Lft lft(const System&, const ParameterRanges&);
+  friend ReducedLft reduce(const Lft&, const Scene&, const Options&);
+  friend class ReducedLft;
   explicit Lft(System opened) : opened_(std::move(opened)) {}
   void take(detail::Structured model);
+  /// M with fewer states, its pairs as they are.
+  void take_reduced(StateSpace m);
   /// At all pairs.
   Eigen::VectorXd deltas_at(const ParameterList& values) const;
   void find_lower_bounds(const std::vector<detail::IsolatedParameter>& parameters);
