@@ -48,6 +48,9 @@ class Derivatives {
   /// to 1e-12 of an entry that changes by its own size over p, at worst to 1e-9 of the derivative's
   /// row or to 1e-11 of the matrices' row over p (compiler/passes/open/differences.hpp).
   const std::vector<std::string>& by_differences() const { return by_differences_; }
+  /// The system with w and z among its inputs and outputs, from which all derivatives follow: its
+  /// certificate() is theirs, and its notes() name what is by differences (pass "open").
+  System opened() const { return System(opened_); }
 
   /// dH/dp at s, outputs x inputs [unit of H per unit of p]: the product of M_yw and M_zu, each
   /// accurate to 1e-12 of its blocks as System::transfer is. Throws unknown_name, and singular if s

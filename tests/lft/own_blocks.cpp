@@ -127,6 +127,11 @@ TEST_CASE("an own block in a loop: derivative in closed form, and what it is sai
   d.output("y") = c.out;
   const Derivatives g = derivatives(compile(d), {"k", "p"});
   CHECK(g.by_differences() == std::vector<std::string>{"p of c"});
+  const std::vector<Note> notes = g.opened().notes();
+  CHECK(std::count_if(notes.begin(), notes.end(), [](const Note& n) {
+          return n.pass == "open" && titop_test::has_names(n.text, {"c", "p", "Curved"});
+        }) == 1);
+  CHECK(g.opened().certificate().residual <= 1e-12);
   // y = G / (1 + k G), G = e^q / (q (s + q^2)) + sin(q), q = 2 p
   const Complex s{0.3, 1.1};
   const double q = 1.4, e = std::exp(q);
@@ -255,4 +260,37 @@ TEST_CASE("an own block whose points move says how, or is refused") {
     const Eigen::MatrixXcd G = system.update({{"p", p}}).transfer({0.3, 1}, Precision::digits50);
     CHECK((f.at({{"p", p}}).transfer({0.3, 1}) - G).norm() <= 1e-12 * G.norm());
   }
+}
+
+TEST_CASE("opened blocks and blocks by differences in one scene, with a parameter in both") {
+  // m xdd + c xd + k x = u - G(s) x: the controller's parameter p is also the spring's stiffness.
+  Diagram d{"mix"};
+  const Param p = d.param("p", 0.7), m = d.param("m", 2), q = d.param("q", 0.3);
+  auto z = d.add("z", SpringMass{.mass = m, .stiffness = 5 * p, .damping = 0.2});
+  auto c = d.add("c", Curved{p});
+  auto e = d.add("e", Curved{q});
+  ground(z);
+  c.in = z.stretch;
+  e.in = c.out;
+  z.child.force = d.input("u") - e.out;
+  d.output("x") = z.stretch;
+  const Derivatives g = derivatives(compile(d), {"p", "m", "q"});
+  CHECK(g.by_differences() == std::vector<std::string>{"p of c", "q of e"});
+  const Complex s{0.3, 1.1};
+  const auto G = [&](double v) { return std::exp(v) / (v * (s + v * v)) + std::sin(v); };
+  const auto dG = [&](double v) {
+    const Complex r = s + v * v;
+    return std::exp(v) * (1.0 / (v * r) - 1.0 / (v * v * r) - 2.0 / (r * r)) + std::cos(v);
+  };
+  const Complex H = 1.0 / (2.0 * s * s + 0.2 * s + 3.5 + G(0.7) * G(0.3));
+  const auto off = [&](const char* name, Complex by) {
+    const Complex want = -H * H * by;
+    return std::abs(g.transfer(s, name)(0, 0) - want) / std::abs(want);
+  };
+  CHECK(off("p", 5.0 + dG(0.7) * G(0.3)) <= 1e-11);
+  CHECK(off("q", G(0.7) * dG(0.3)) <= 1e-11);
+  CHECK(off("m", s * s) <= 1e-13);
+  CHECK(error_of([&] { g.transfer(s, "m", "p"); }).has(Code::not_rational));
+  CHECK(std::abs(g.transfer(s, "m", "m")(0, 0) - 2.0 * H * H * H * s * s * s * s) <=
+        1e-12 * std::abs(H * H * H * s * s * s * s));
 }

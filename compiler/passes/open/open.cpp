@@ -21,6 +21,7 @@ struct Opening {
   std::vector<int> signal = {};                      ///< of each signal in `from`
   std::vector<std::vector<OpenedPorts>> ports = {};  ///< per node
   std::vector<Mistake> mistakes = {};
+  std::vector<Note> notes = {};
 
   std::vector<int> opened_of(const Node& node) const {
     std::vector<int> result;
@@ -53,6 +54,14 @@ struct Opening {
          why->hint});
   }
 
+  void note_difference(const Node& node, int parameter) {
+    notes.push_back(
+        {Note::Kind::unchecked, "open",
+         fmt::format("{}: the derivative by {} is that of the {}'s matrices by "
+                     "differences, to 1e-12 of entries that change by their own size",
+                     node.name, from.parameters[at(parameter)].name, node.block->type())});
+  }
+
   void refuse_motion(const Node& node, int parameter) {
     mistakes.push_back(
         {Code::not_rational,
@@ -77,6 +86,8 @@ struct Opening {
         differences ? check_difference(node, p) : refuse(node, p);
       else if (moves_points_unsaid(*node.block, values, p))
         refuse_motion(node, p);
+      else if (differences && !is_opened_by(*node.block, values, p))
+        note_difference(node, p);
     return ports.back().empty() ? node.block : opened_block(node.block, ports.back(), differences);
   }
 
@@ -190,6 +201,7 @@ Stage open_parameters(const Stage& stage, std::span<const ToOpen> parameters) {
   o.pairs_of_blocks(terms);
   if (!terms.mistakes.empty()) throw Error(std::move(terms.mistakes));
   for (RigidMotion& m : result.motions) m.signal = o.signal[at(m.signal)];
+  result.notes = std::move(o.notes);
   result.source = std::make_shared<const Graph>(std::move(o.to));
   return result;
 }

@@ -30,7 +30,7 @@ struct ToOpen {
 /// At w = 0 it is the graph as it was. Rates and positions beyond an opened rotation get pairs of
 /// their own in `lower` (lower/open_motions.hpp). Throws not_rational for a block without `opened`,
 /// for an angle of a fraction of the parameter, and for a parameter that is both an angle and a
-/// number. O(terms).
+/// number. Parameters by differences are noted (Stage::notes, pass "open"). O(terms).
 Stage open_parameters(const Stage& stage, std::span<const ToOpen> parameters);
 
 }  // namespace titop::passes
