@@ -61,10 +61,9 @@ class Lft {
   /// The model with Delta closed at these values; parameters not named are at their nominal ones.
   /// Equal to System::update(values).state_space() as a transfer, computed another way. Throws
   /// unknown_name, duplicate_name, bad_value outside of the range, singular at a pole of F(.,
-  /// delta) with direct terms (I - D_zw Delta singular). What a block refuses for several
-  /// parameters together (an indefinite stiffness of a Bushing, axes of inertia that violate the
-  /// triangle inequality) is not refused here: `lft` tries the ends of one range at a time.
-  /// O((states + occurrences)^3).
+  /// delta) with direct terms (I - D_zw Delta singular). Blocks do not judge the values here: `lft`
+  /// has tried the corners of the box, between which a matrix that depends on the parameters
+  /// linearly is definite if it is so at the corners. O((states + occurrences)^3).
   StateSpace at(const ParameterList& values) const;
   /// The transfer at s with Delta closed at each of these values, as of `at`: M(s) once,
   /// O(occurrences^3) for each. For worst cases over many designs. Throws as `at`, and singular if
@@ -105,13 +104,14 @@ class Lft {
 /// equals `built` then.
 ///
 /// Throws unknown_name, duplicate_name; bad_value for a range without the nominal value inside, for
-/// one at whose end a block refuses the value (the others at nominal ones), for an angle half a
-/// turn away without `full_turn`, and for `full_turn` of a number; not_rational for a block without
-/// `opened`, an angle or a length that moves a closed chain, an angle that is a fraction of its
-/// parameter; ill_posed if I - D_zw Delta is singular at a corner of the box (the first twelve
-/// parameters at all their ends, more ones at their least values). Cost: that of `compile`,
-/// O((states + occurrences)^3), and for the lower bounds some solutions of that size in exact
-/// arithmetic: 0.1 s for 12 states and 25 occurrences.
+/// one at whose end a block refuses the value (the others at nominal ones), for corners that a
+/// block of several parameters refuses (the first twelve at all their ends, more ones at their
+/// least values), for an angle half a turn away without `full_turn`, and for `full_turn` of a
+/// number; not_rational for a block without `opened`, an angle or a length that moves a closed
+/// chain, an angle that is a fraction of its parameter; ill_posed if I - D_zw Delta is singular at
+/// a corner of the box (the first twelve parameters at all their ends, more ones at their least
+/// values). Cost: that of `compile`, O((states + occurrences)^3), and for the lower bounds some
+/// solutions of that size in exact arithmetic: 0.1 s for 12 states and 25 occurrences.
 ///
 ///     const Lft f = lft(compile(d), {{"m", percent(20)}, {"tilt", between(-1.2, 1.9)}});
 Lft lft(const System& system, const ParameterRanges& ranges);

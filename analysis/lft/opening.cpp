@@ -147,6 +147,62 @@ void add_others(std::vector<Index>& order, std::size_t all) {
     if (!taken[i]) order.push_back(static_cast<Index>(i));
 }
 
+/// Corners of the box in the parameters of one block that it refuses, though it takes each end by
+/// itself: two products of inertia that are too large together. The first of every block. Of more
+/// than 2^12 corners those whose last parameters are at their least values.
+class Corners {
+ public:
+  Corners(const System& system, const std::vector<IsolatedParameter>& ranged)
+      : names_(system.parameters()), ranged_(ranged) {
+    for (const auto& [name, value] : names_) nominal_.push_back(value);
+    for (const Node& node : system.stage().source->nodes) try_block(node);
+  }
+  std::vector<Mistake> mistakes;
+
+ private:
+  std::vector<const IsolatedParameter*> of_block(const Block& block) const {
+    const std::vector<Value> all = block.values();
+    std::vector<const IsolatedParameter*> result;
+    for (const IsolatedParameter& p : ranged_)
+      if (std::any_of(all.begin(), all.end(),
+                      [&](const Value& v) { return v.is_parameter() && v.index() == p.index; }))
+        result.push_back(&p);
+    return result;
+  }
+
+  void try_block(const Node& node) {
+    constexpr std::size_t kMost = 12;
+    const auto own = of_block(*node.block);
+    if (own.size() < 2) return;  // its ends have been tried
+    const long corners = 1L << std::min(own.size(), kMost);
+    for (long c = 0; c < corners; ++c) {
+      std::vector<double> values = nominal_;
+      std::string where;
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        const ParameterMap& map = own[i]->map;
+        const double value = i < kMost && (c >> i & 1) != 0 ? map.to : map.from;
+        values[at(own[i]->index)] = value;
+        where +=
+            fmt::format("{}{} = {:.6g}", i > 0 ? ", " : "", names_[at(own[i]->index)].first, value);
+      }
+      try {
+        node.block->dynamics(values);
+      } catch (const Error& error) {
+        const Mistake& m = error.mistakes().front();
+        mistakes.push_back(
+            {Code::bad_value,
+             fmt::format("{}, ends of their ranges together: {}: {}", where, node.name, m.message),
+             m.details, "give smaller ranges, all of which make a model; " + m.hint});
+        return;
+      }
+    }
+  }
+
+  const ParameterList names_;
+  const std::vector<IsolatedParameter>& ranged_;
+  std::vector<double> nominal_;
+};
+
 }  // namespace
 
 IsolatedParameter unranged(const System& system, const std::string& name,
@@ -180,6 +236,7 @@ std::vector<IsolatedParameter> isolated(const System& system, const ParameterRan
     reader.try_end(name, map->from);
     reader.try_end(name, map->to);
   }
+  if (reader.mistakes.empty()) reader.mistakes = Corners(system, result).mistakes;
   if (!reader.mistakes.empty()) throw Error(std::move(reader.mistakes));
   return result;
 }

@@ -79,6 +79,22 @@ TEST_CASE("a range whose end makes no block") {
   CHECK(says(lft_error(spring(), {{"k", between(-1, 5)}}), Code::bad_value, {"k", "-1", "z"}));
 }
 
+TEST_CASE("ranges of two parameters whose ends are fine one by one and make no block together") {
+  // I = [4 xy xz; xy 5 0; xz 0 6] belongs to a mass distribution if tr(I)/2 - I is positive: its
+  // determinant is 13.125 - 1.5 xy^2 - 2.5 xz^2, for one of them 2 at least 3, for both -2.9.
+  Diagram d{"inertia"};
+  const Param xy = d.param("xy", 0.1), xz = d.param("xz", 0.2), m = d.param("m", 9);
+  auto body = d.add("body", RigidBody{.mass = m, .inertia = {4, 5, 6, xy, xz, 0}});
+  body.parent.force = -d.input("U", 6);
+  d.output("y", 6) = body.parent.accel;
+  const System system = compile(d);
+  const auto up_to = [](double most) { return between(-most, most); };
+  CHECK_NOTHROW(lft(system, {{"xy", up_to(2)}, {"m", percent(10)}}));
+  CHECK_NOTHROW(lft(system, {{"xz", up_to(2)}, {"m", percent(10)}}));
+  const Error e = lft_error(system, {{"xy", up_to(2)}, {"m", percent(10)}, {"xz", up_to(2)}});
+  CHECK(says(e, Code::bad_value, {"xy = ", "xz = ", "body", "m = ", "triangle"}));
+}
+
 TEST_CASE("a corner at which the direct terms are singular, though no end of a range is") {
   Diagram d{"spring"};
   const Param a = d.param("a", 0.5), b = d.param("b", 0.25);
