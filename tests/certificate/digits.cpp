@@ -166,8 +166,8 @@ TEST_CASE(
     d.output("held", 6) = frame.child("c").accel;  // 0
     const System system = compile(d);
     const StateSpace m = system.state_space();
-    CHECK(!has_line(system.log(), {"dense", "warning"}));
-    CHECK(system.certificate().dense_error_where_small <= 1e-6);
+    CHECK(!has_line(system.dense_log(), {"dense", "warning"}));
+    CHECK(system.dense_certificate().dense_error_where_small <= 1e-6);
     // At a tenth of the slowest mode: s^2 times the compliance of pin and beam, and (1/10)^2 of it.
     double slowest = HUGE_VAL;
     for (const Complex p : m.A.eigenvalues()) slowest = std::min(slowest, std::abs(p));
