@@ -20,7 +20,9 @@ namespace titop {
 ///     port.force.angular.along(c) += h * port.rate.angular().along(b);
 ///     port.force.angular.along(b) += -h * port.rate.angular().along(c);
 /// with the other signs at a parent point.
-/// Throws bad_value for an axis without direction.
+/// `port.reaction` contains it, `port.force` of a parent point does not. As any `+=` it leaves a
+/// parent point free that no equation drives. Throws bad_value for an axis without direction,
+/// unknown_name for a port of no diagram.
 ///
 ///     momentum(hub.child("B"), 50.0, {0, 1, 0});  // 50 N m s about the hub's y axis
 void momentum(const DualPort<6>& port, const Value& h, const Vector3d& axis,

@@ -131,8 +131,11 @@ Rotor::Handle::Handle(Graph* graph, int node)
       speed(graph, detail::port_signal(*graph, node, "speed")) {}
 
 void Rotor::connect(const Handle& rotor, std::source_location at) const {
-  if (momentum.is_parameter() || momentum.nominal() != 0)
-    titop::momentum(rotor.parent, momentum, axis, at);
+  if (!momentum.is_parameter() && momentum.nominal() == 0) return;
+  Graph& g = *rotor.parent.accel.graph();
+  const std::size_t first = g.equations.size();
+  titop::momentum(rotor.parent, momentum, axis, at);
+  for (std::size_t i = first; i < g.equations.size(); ++i) g.equations[i].of_spec = true;
 }
 
 BlockPtr as_block(const Rotor& spec) {
@@ -146,20 +149,26 @@ BlockPtr as_block(const Rotor& spec) {
 void unbalance(Diagram& d, const Rotor::Handle& rotor, std::string name, const Imbalance& imbalance,
                double speed, std::source_location at) {
   const Graph& g = d.graph();
+  if (rotor.speed.graph() != &g)
+    throw Error(Code::unknown_name,
+                fmt::format("{} has no such rotor: it is of another diagram", g.name),
+                "pass the rotor that `add` of this diagram has returned");
   const Node& node = g.nodes[linalg::at(g.signals[linalg::at(rotor.speed.signal())].node)];
   const Rotor& spec = dynamic_cast<const Specified<Rotor>&>(*node.block).spec();
-  if (!std::isfinite(imbalance.static_kgm * imbalance.dynamic_kgm2 * speed))
+  const double square = speed * speed, force = imbalance.static_kgm * square,
+               torque = imbalance.dynamic_kgm2 * square;
+  if (!std::isfinite(force) || !std::isfinite(torque))
     throw Error(Code::not_finite, fmt::format("the imbalance of {} is not finite", node.name),
                 "give finite numbers");
   const auto [b, c] = across(unit_direction(about(spec.axis)));
-  MatrixXd turning(3, 2);
+  MatrixXd turning(3, 2), ahead(3, 2);  // u and a x u, per cos and sin
   turning << b, c;
+  ahead << c, -b;
+  const MatrixXd moment = force * cross(spec.PA) * turning + torque * ahead;  // about P
   const InputRef wave = d.input(std::move(name), 2, at);
-  // On the rotor from outside: with the sign - at a parent point.
-  const double square = speed * speed;
-  rotor.parent.force.linear += Rhs(MatrixXd(-imbalance.static_kgm * square * turning) * wave, at);
-  rotor.parent.force.angular +=
-      Rhs(MatrixXd(-imbalance.dynamic_kgm2 * square * turning) * wave, at);
+  // From outside on the body: with the sign - at a parent point.
+  rotor.parent.force.linear += Rhs(MatrixXd(-force * turning) * wave, at);
+  rotor.parent.force.angular += Rhs(MatrixXd(-moment) * wave, at);
 }
 
 }  // namespace titop

@@ -19,7 +19,8 @@ namespace titop {
 /// Sign of the torque as with Hinge: C_m is the torque of the rotor ON its carrier about a, so a
 /// motor that exerts tau on the rotor is `torque = -tau`, and friction is `torque = c * speed`.
 /// Exactly one of `torque` and `accel` is driven: torque = 0 is a free rotor, accel = 0 one whose
-/// speed is held. A control moment gyroscope is a rotor on a `hinge`.
+/// speed is held. F_P is `parent.reaction`; `parent.force`, the block's own output, is without the
+/// gyroscopic term. A control moment gyroscope is a rotor on a `hinge`.
 ///
 /// The model is of constant coefficients only if the rotor is axisymmetric: bodies with unequal
 /// transverse inertias, or flexible ones, cannot spin. All numbers but axis and PA may be
@@ -54,17 +55,19 @@ struct Rotor {
 };
 BlockPtr as_block(const Rotor& spec);
 
-/// Imbalance of a rotor, both in one plane through the axis.
+/// Imbalance of a rotor, both in one plane through the axis: masses m at e u + z a from the centre
+/// of mass A, u a unit vector across the axis.
 struct Imbalance {
-  double static_kgm = 0;    ///< mass times its distance from the axis [kg m]
-  double dynamic_kgm2 = 0;  ///< product of inertia in that plane [kg m^2]
+  double static_kgm = 0;    ///< sum of m e [kg m]
+  double dynamic_kgm2 = 0;  ///< sum of m e z: product of inertia about A [kg m^2]
 };
 
 /// Input `name` with the components cos(Omega t) and sin(Omega t) of an imbalance that turns with
-/// the rotor at Omega = speed [rad/s]: force static Omega^2 along the turning direction at P, and
-/// torque dynamic Omega^2 about it. b and c, at cos = 1 and sin = 1, are two unit vectors with b x
-/// c = a; b is the coordinate axis farthest from a, less its part along a. Answers at s = j Omega
-/// are the vibration at that speed.
+/// the rotor at Omega = `speed` [rad/s], a number of its own beside the rotor's momentum: on the
+/// rotor act the force static Omega^2 u at A and the torque dynamic Omega^2 a x u, with u = b cos +
+/// c sin and the vectors b, c of `across(a)`. The vibration at that speed is G(j Omega) [1; -j], G
+/// the transfer from this input: its amplitudes and phases. Throws unknown_name for a rotor of
+/// another diagram, not_finite.
 ///
 ///     unbalance(d, wheel, "imbalance", {.static_kgm = 7e-6, .dynamic_kgm2 = 2e-7}, 300.0);
 void unbalance(Diagram& d, const Rotor::Handle& rotor, std::string name, const Imbalance& imbalance,

@@ -3,7 +3,7 @@
 namespace titop {
 
 /// A block that keeps its spec, for the diagram file. Spec: SpringMass, RigidBody,
-/// FlexibleBody::Spec, Bushing, or the axes of a joint.
+/// Rotor, FlexibleBody::Spec, Bushing, or the axes of a joint.
 template <class Spec>
 class Specified {
  public:

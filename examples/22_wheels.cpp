@@ -60,7 +60,7 @@ Diagram satellite(double momentum, bool law) {
                                    .momentum = momentum});
     mount(wheel, hub.child("wheels"));
     const Eigen::MatrixXd row = share.row(i);
-    if (law)  // the rotor turns the hub by -torque
+    if (law)  // `torque` is that of the rotor on the hub
       wheel.torque = friction * wheel.speed +
                      Eigen::MatrixXd(-law_k * row) * hub.parent.position.angular() +
                      Eigen::MatrixXd(-law_c * row) * hub.parent.rate.angular();

@@ -106,6 +106,7 @@ struct Equation {
   bool accumulate = false;
   bool active = true;
   bool of_block = false;  ///< a row of a block that `lower` has turned into equations
+  bool of_spec = false;   ///< written by `add`: it drives no point by itself
   Part part = {};
   std::vector<Term> terms = {};
   std::source_location where = {};

@@ -161,7 +161,8 @@ void check_written(const System& system, const Full& subject, const std::vector<
 
 /// Passivity and reciprocity of forces and the accelerations at their points, over the grid and
 /// around unstable poles. A failed check is repeated with rounding.
-void check_pairs(const System& system, std::vector<Complex> points, std::vector<MatrixXcd> factored,
+void check_pairs(const System& system, const Options& options, std::vector<Complex> points,
+                 std::vector<MatrixXcd> factored,
                  const std::vector<certification::FoundPoles::Right>& growing, FullCertificate& c) {
   const Graph& g = *system.stage().source;
   const std::vector<double> values = values_of(system);
@@ -173,13 +174,17 @@ void check_pairs(const System& system, std::vector<Complex> points, std::vector<
         factored.push_back(std::move(*G));
       }
   const std::string no_structure = certification::why_no_structure(g, values);
+  std::string not_reciprocal = no_structure;
   certification::DualTransfers transfers = certification::dual_transfers(pairs, points, factored);
-  if (no_structure.empty() && pairs.in.size() > 1)
-    transfers.reversed = certification::with_reversed_momenta(g, values, pairs, points);
+  if (no_structure.empty() && pairs.in.size() > 1) try {
+      transfers.reversed = certification::with_reversed_momenta(g, values, options, pairs, points);
+    } catch (const Error& error) {
+      not_reciprocal = "with all momenta reversed: " + error.mistakes().front().message;
+    }
   const auto check = [&] {
     c.passivity = certification::check_passivity(pairs, transfers, no_structure.empty());
     c.reciprocity =
-        certification::check_reciprocity(system, pairs, transfers, no_structure, values);
+        certification::check_reciprocity(system, pairs, transfers, not_reciprocal, values);
   };
   check();
   if (c.passivity.least >= -certification::kPassive && c.reciprocity.asymmetry <= detail::kClose)
@@ -313,7 +318,7 @@ FullCertificate certify(const System& system, const Full& subject) {
       check_dense(system, before, of_dense, there, measure, c.grid);
     }
     check_written(system, subject, points, factored, measure, c.grid);
-    check_pairs(system, points, factored, growing, c);
+    check_pairs(system, system.data_->skeleton->options, points, factored, growing, c);
   } else {
     if (!transfers)
       c.grid.why_not = "without inputs, or without outputs, there is no transfer";

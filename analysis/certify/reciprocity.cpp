@@ -120,7 +120,7 @@ FullCertificate::Reciprocity check_reciprocity(const System& system, const passe
   if (no_structure.empty())
     no_structure = exception_among(*system.stage().source, values, points[points.size() / 2]);
   r.structure = no_structure.empty();
-  r.reversed = !transfers.reversed.empty();
+  r.reversed = r.structure && !transfers.reversed.empty();
   r.why_no_structure = std::move(no_structure);
   const Asymmetry found = asymmetry(transfers);
   if (found.worst == 0) return r;

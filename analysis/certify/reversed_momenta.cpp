@@ -27,11 +27,13 @@ std::optional<Graph> reversed_momenta(const Graph& graph, ParameterValues values
 }
 
 std::vector<Eigen::MatrixXcd> with_reversed_momenta(
-    const Graph& graph, ParameterValues values, const passes::DualPairs& pairs,
+    const Graph& graph, ParameterValues values, Options options, const passes::DualPairs& pairs,
     const std::vector<std::complex<double>>& points) {
   const std::optional<Graph> reversed = reversed_momenta(graph, values);
   if (!reversed) return {};
-  const System system(detail::compile_graph(*reversed, {.minimize_up_to = 0}));
+  options.minimize_up_to = 0;
+  options.dump_to.clear();
+  const System system(detail::compile_graph(*reversed, options));
   std::vector<Eigen::MatrixXcd> transfers;
   for (const std::complex<double> s : points) transfers.push_back(system.transfer(s));
   return dual_transfers(pairs, points, transfers).G;

@@ -3,6 +3,7 @@
 #include <complex>
 #include <optional>
 #include <titop/compiler/passes/check/dual_pairs.hpp>
+#include <titop/compiler/system/system.hpp>
 #include <vector>
 
 namespace titop::certification {
@@ -11,10 +12,11 @@ namespace titop::certification {
 /// None if it has no such terms.
 std::optional<Graph> reversed_momenta(const Graph& graph, ParameterValues values);
 
-/// The transfers between these forces and motions of that diagram, compiled anew. Empty if it has
-/// no gyroscopic terms. Throws the errors of `compile` and `System::transfer`.
+/// The transfers between these forces and motions of that diagram, compiled anew with these
+/// options. Empty if it has no gyroscopic terms. Throws the errors of `compile` and
+/// `System::transfer`.
 std::vector<Eigen::MatrixXcd> with_reversed_momenta(
-    const Graph& graph, ParameterValues values, const passes::DualPairs& pairs,
+    const Graph& graph, ParameterValues values, Options options, const passes::DualPairs& pairs,
     const std::vector<std::complex<double>>& points);
 
 }  // namespace titop::certification

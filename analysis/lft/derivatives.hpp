@@ -60,8 +60,9 @@ class Derivatives {
   /// cost.
   Eigen::MatrixXcd transfer(std::complex<double> s, const std::string& p,
                             TransferCost* cost = nullptr) const;
-  /// dH/dp at s for all parameters, in their order. One factorisation, and at most as many solves
-  /// as inputs and outputs together, however many parameters there are.
+  /// dH/dp at s for all parameters, in their order, however many there are: one factorisation and
+  /// three solves per input and per output (two of them estimate errors), more where digits are
+  /// lost; factored again in finer arithmetic if double has no pivot.
   std::vector<Eigen::MatrixXcd> transfers(std::complex<double> s,
                                           TransferCost* cost = nullptr) const;
   /// d2H/dp dq at s, outputs x inputs; p and q may be the same. Errors as above; one solve per

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <titop/analysis/lft/close.hpp>
 #include <titop/analysis/lft/reduced_lft.hpp>
+#include <titop/analysis/reduction/scene.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -23,12 +24,15 @@ using linalg::at;
 /// Places of these signals among the names from `first` on: "U" has all of "U(1)", "U(2)", ...
 std::vector<Index> places(const std::vector<std::string>& names, Index first,
                           const std::vector<std::string>& asked, const char* kind) {
-  std::vector<char> taken(names.size(), asked.empty());
+  std::vector<char> taken(names.size(), asked.empty() ? 1 : 0);
   std::vector<Mistake> mistakes;
   for (const std::string& a : asked) {
     bool found = false;
     for (std::size_t i = at(first); i < names.size(); ++i)
-      if (names[i] == a || names[i].starts_with(a + "(")) found = taken[i] = true;
+      if (names[i] == a || names[i].starts_with(a + "(")) {
+        found = true;
+        taken[i] = 1;
+      }
     if (!found)
       mistakes.push_back({Code::unknown_name,
                           fmt::format("the LFT has no {} {}", kind, a),
@@ -72,14 +76,16 @@ bool has_pole_at_0(const StateSpace& m) {
 }
 
 ReducedSystem reduced_block(const StateSpace& m, const Scene& scene, const Options& options) {
+  detail::check(scene);
   try {
     return compile(one_block(m), scene, options);
-  } catch (const Error&) {
+  } catch (const Error& error) {
     if (scene.band_hz[0] > 0 || !has_pole_at_0(m)) throw;
     throw Error(Code::singular,
                 "M of the LFT has a pole at 0, where the band begins: a free position or rate",
                 "let Scene::band_hz begin above 0, or leave out the outputs that read it "
-                "(Scene::outputs)");
+                "(Scene::outputs)",
+                {"the reduction: " + error.mistakes().front().message});
   }
 }
 

@@ -7,10 +7,10 @@ namespace titop {
 
 /// An Lft whose M has fewer states, and the error of M. Const.
 ///
-/// On the scene's ray, at frequencies of its band, every entry of E = M - M_r is bounded,
-/// |E| <= bound().pairs * bound().peak, by samples or by theorem (ErrorBound::kind): M from [w; u]
-/// to [z; y], w and z of the normalised deltas. What follows for the closed model H (`error`) is
-/// exact algebra on that bound:
+/// On the scene's ray, at frequencies of its band, |E| <= bound().pairs * bound().peak for every
+/// entry of E = M - M_r, by theorem or, by default, as an estimate between samples
+/// (ErrorBound::kind): M from [w; u] to [z; y], w and z of the normalised deltas. The bound of the
+/// closed model H (`error`) follows from it by algebra, and is an estimate if it is one:
 ///
 ///     H - H_r = [M_r,yw Delta N_r, I] E [Delta N M_zu; I],  N = (I - M_zw Delta)^-1, N_r likewise,
 ///
@@ -32,7 +32,7 @@ class ReducedLft {
   /// 1: the parameters' loop gain is too large there for a statement about all of them. Throws
   /// bad_value for an omega outside of the band. O(occurrences^3).
   Eigen::MatrixXd error(double omega) const;
-  /// The same at these values alone, with N_r as it is: of E, not of Delta, the series is taken.
+  /// The same at these values alone, with N_r as it is: Neumann's series is that of Delta N_r E.
   /// Infinite if its spectral radius is not below 1. Throws as Lft::at, and singular if that s is a
   /// pole there.
   Eigen::MatrixXd error(double omega, const ParameterList& values) const;

@@ -80,12 +80,16 @@ MatrixXcd Derivatives::transfer(std::complex<double> s, const std::string& p,
                                 const std::string& q) const {
   const int a = index_of(p), b = index_of(q);
   const Pairs &i = pairs_[at(a)], &j = pairs_[at(b)];
-  if (!i.exact || !j.exact)
+  if (!i.exact || !j.exact) {
+    const auto named = std::ranges::find_if(by_differences_, [&](const std::string& text) {
+      return text.starts_with((i.exact ? q : p) + " ");
+    });
     throw Error(Code::not_rational,
                 fmt::format("second derivatives by {} and {}: a block gives differences of its "
                             "matrices only, {}",
-                            p, q, by_differences_.front()),
+                            p, q, named == by_differences_.end() ? "" : *named),
                 "write Block::opened for it");
+  }
   const Paths m = paths(s, a == b ? std::vector{a} : std::vector{a, b}, true);
   const Index second = m.first.back();
   const auto path = [&](Index last, Index last_size, Index first, Index first_size) {

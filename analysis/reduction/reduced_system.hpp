@@ -135,8 +135,8 @@ std::string to_string(const ReducedSystem& system);
 /// chains. An Lti of uncoupled modal blocks of 2 x 2 with complex poles, [0 w; -w -2 xi w] or
 /// similar to it, is a structure if inputs move each block in one direction, as forces do.
 ///
-/// If the scene is no passive structure (controllers and filters in the loop, dashpots without
-/// springs; a note names the state), states replace M, D, K. Integrals, poles on the axis (undamped
+/// If the scene is no passive structure (controllers and filters in the loop, momenta of rotors,
+/// dashpots without springs; a note names the state), states replace M, D, K. Integrals, poles on the axis (undamped
 /// modes have no Gramian) and poles right of it are kept whole; the well-damped rest is balanced
 /// and reduced, by truncation or by singular perturbation, over the whole axis or with low-passes
 /// at the band's end, whichever needs the fewest states; a step contains the choice and its reason.

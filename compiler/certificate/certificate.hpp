@@ -42,8 +42,8 @@ struct Certificate {
   /// output's largest size, for s from the slowest mode that the outputs show (if unknown, from far
   /// below the blocks' frequencies) to above the frequencies of the blocks and of the assembly
   /// (products of two entries of A). Points s at which the factors have no digit, at all or of that
-  /// output, are left out (the log lists them). Computed as the residual of the factors' states in
-  /// the dense model, mapped to the outputs by the factors. Inputs are grouped by unit: random
+  /// output, are left out (dense_log() lists them). Computed as the residual of the factors' states
+  /// in the dense model, mapped to the outputs by the factors. Inputs are grouped by unit: random
   /// combinations of the three translations or rotations of a port; from the ninth unit on some
   /// share a column. Outputs likewise; an output at rounding level, or at 1e-14 of its row and
   /// column (a 0 after a rotation of frames), is measured relative to its neighbours. Independent
@@ -51,14 +51,14 @@ struct Certificate {
   /// rounded. Above 1e-9 and up to 100 states it is at most 30 times the error of the model's own
   /// outputs, as the residual itself is rounded at a point of very small mass. Negative in a
   /// certificate of the factors alone, if the model has no states, no inputs or no outputs, and if
-  /// the factors have no digit at any s. Above 1e-9 the log warns, with output and input (up to
+  /// the factors have no digit at any s. Above 1e-9 dense_log() warns, with output and input (up to
   /// eight units).
   double dense_error = -1;
   std::complex<double> dense_error_s;  ///< s of the largest error
   /// The same over the size of the output at that same s, also far below the slowest mode that
   /// shows: the digits that A, B, C, D keep of a free motion fall with s there. An output that is 0
   /// at s = 0, such as the acceleration of a point on a spring, counts relative to its size at the
-  /// slowest mode. Above 1e-6 the log warns, if another digit is lost there.
+  /// slowest mode. Above 1e-6 dense_log() warns, if another digit is lost there.
   double dense_error_where_small = -1;
   std::complex<double> dense_error_where_small_s;  ///< s of the largest error
   /// Smallest pivot over the sum of magnitudes of its terms: 1 no cancellation, 1e-16 no digit.

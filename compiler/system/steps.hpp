@@ -55,7 +55,8 @@ bool has_released(const Compiled& c);
 Compiled digits(Compiled c);
 bool has_data(const Compiled& c);
 
-/// The certificate: a function of all the others, on which nothing depends.
+/// The certificate: a function of all the others. No pass before it depends on it; `minimize`
+/// reads its warnings.
 Compiled certify(Compiled c);
 
 /// DenseModel::model, error: A, B, C, D are written from the factors and compared with them.

@@ -140,12 +140,12 @@ class System {
   /// at once; the rest of the certificate, and its warnings, are computed at the first call of
   /// certificate(), notes(), log() or state_space(): O(bodies). They include loops that the new
   /// values make singular without a small pivot. If a pivot is less than 1e-7 of its terms, and a
-  /// tenth of its former ratio, all of it is computed at once. `minimize` is not included:
-  /// state_space() of the new system runs it for the new values, and may have another order
-  /// (Options::minimize_up_to = 0 keeps all states at all values). Throws unknown_name (with the
-  /// valid names), duplicate_name (one set twice), not_finite, the errors of blocks for invalid
-  /// values (bad_inertia, bad_value), improper and ill_posed. Angles of more than a turn are
-  /// warned of, as by `compile`.
+  /// tenth of its former ratio, the margins are computed and the pivots judged at once. `minimize`
+  /// is not included: state_space() of the new system runs it for the new values, and may have
+  /// another order (Options::minimize_up_to = 0 keeps all states at all values). Throws
+  /// unknown_name (with the valid names), duplicate_name (one set twice), not_finite, the errors of
+  /// blocks for invalid values (bad_inertia, bad_value), improper and ill_posed. Angles of more
+  /// than a turn are warned of, as by `compile`.
   ///
   /// If new values change how a closed chain moves, or add or remove a term, all passes run again,
   /// with the cost and the errors of `compile`; the log reports it, and warns if other states are
@@ -156,10 +156,11 @@ class System {
   /// All parameters and their values here, in the order of creation.
   ParameterList parameters() const;
 
-  /// The checks of the factored system; its `dense_...` fields are not evaluated.
+  /// The checks of the factored system; its `dense_...` fields are not evaluated. O(bodies) at the
+  /// first call after `update`.
   Certificate certificate() const;
   /// The same with the `dense_...` fields of the model before `minimize` from which state_space()
-  /// is made; makes it if that has not been done.
+  /// is made; makes it if that has not been done, at the cost and with the errors of state_space().
   Certificate dense_certificate() const;
   /// The certificate whose `dense_...` fields refer to this model, made by write(): its rounding
   /// error. O(n^2), some products with A. Throws size if names or matrices are not those of a model
@@ -173,7 +174,7 @@ class System {
   /// The name, the numbers of states, inputs and outputs, and the notes as text, one per line.
   std::string log() const;
   /// Notes on writing and minimizing the model of state_space(); makes it if that has not been
-  /// done.
+  /// done, at the cost and with the errors of state_space(). So do the next two.
   const std::vector<Note>& dense_notes() const&;
   std::vector<Note> dense_notes() const&& { return dense_notes(); }
   /// The same as text, one per line.

@@ -9,8 +9,8 @@ namespace titop {
 /// What a transfer at one s has cost.
 struct TransferCost {
   int factorisations = 0;
-  int columns =
-      0;         ///< right-hand sides solved for, steps of refinement and error estimates included
+  /// Right-hand sides solved for, steps of refinement and error estimates included.
+  int columns = 0;
   int rows = 0;  ///< the same through the transposed factors
 };
 

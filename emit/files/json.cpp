@@ -122,6 +122,7 @@ Json reciprocity(const FullCertificate::Reciprocity& r) {
                         {"first", where(off, r.first)},
                         {"second", where(off, r.second)},
                         {"structure", where(r.done, r.structure)},
+                        {"reversed", where(r.done, r.reversed)},
                         {"why_no_structure", where(r.done && !r.structure, r.why_no_structure)}});
 }
 

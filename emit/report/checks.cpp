@@ -84,8 +84,9 @@ void add_reciprocity(std::vector<Item>& items, const FullCertificate::Reciprocit
   if (!r.done) return add_not_done(items, "reciprocity", r.why_not);
   items.push_back({"reciprocity", number(r.asymmetry, 2),
                    fmt::format("Of {}: the largest |G_ij - G_ji| over sqrt(|G_ii| |G_jj|), G_ij "
-                               "the acceleration at force i due to force j{}{}.",
+                               "the acceleration at force i due to force j{}{}{}.",
                                count(static_cast<std::size_t>(r.forces), "force"),
+                               r.reversed ? ", G_ji with all momenta reversed" : "",
                                r.first.empty() ? "" : fmt::format("; {} and {}", r.first, r.second),
                                r.structure ? "" : "; not required: " + r.why_no_structure),
                    r.structure ? judged(r.asymmetry, certification::kReciprocal) : Mark::none});

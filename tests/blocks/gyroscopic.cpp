@@ -7,6 +7,7 @@
 #include <titop/titop.hpp>
 
 #include "lft/n17.hpp"
+#include "support/notes.hpp"
 #include "support/rng.hpp"
 
 using namespace titop;
@@ -28,7 +29,7 @@ std::vector<double> frequencies(const System& system) {
 
 void check_frequencies(const System& system, const std::vector<double>& expected, double within) {
   const std::vector<double> found = frequencies(system);
-  REQUIRE(found.size() >= expected.size());
+  REQUIRE(found.size() == expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) {
     CAPTURE(i);
     CHECK(std::abs(found[i] - expected[i]) <= within * expected[i]);
@@ -235,8 +236,7 @@ TEST_CASE("a satellite with two wings and bias momentum") {
   check_gyroscopic(fast);
 }
 
-TEST_CASE(
-    "wheels anywhere in trees and closed chains: passive, and reciprocal with momenta reversed") {
+TEST_CASE("wheels anywhere in trees: passive, and reciprocal with momenta reversed") {
   Rng random(20261129);
   const auto vector = [&] {
     return Vector3d(random.between(-1, 1), random.between(-1, 1), random.between(0.2, 1));
@@ -260,7 +260,7 @@ TEST_CASE(
     auto h = hinge(d, "h", boom, hub.child("A"), turn, vector());
     h.torque = 40.0 * h.angle + 0.5 * h.rate;
     mount(tip, boom.child, Rotation::about(vector(), 0.4));
-    if (i % 2)  // a strut that closes a chain: one axis of the tip is held to the ground
+    if (i % 2)  // one axis of the tip on a spring to the ground
       tip.child("C").force.linear.along(y) += -300.0 * tip.child("C").position.linear().along(y);
     for (const bool on_hub : {true, false}) {
       auto wheel = d.add(on_hub ? "w1" : "w2", Rotor{.mass = 2,
@@ -276,6 +276,8 @@ TEST_CASE(
     tip.child("C").force += d.input("F", 6);
     d.output("of U", 6) = hub.parent.accel;
     d.output("of F", 6) = tip.child("C").accel;
-    check_gyroscopic(compile(d));
+    const System system = compile(d);
+    check_gyroscopic(system);
+    CHECK(count_notes(system, Note::Kind::warning, "check") == 0);  // no rounding is a damper
   }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <titop/titop.hpp>
+#include <tuple>
 
 #include "support/mistakes.hpp"
 
@@ -83,19 +84,65 @@ TEST_CASE("rotors: parameters with the least occurrences, and mistakes with the 
              Code::no_equation, {"w.torque"}));
 }
 
-TEST_CASE("imbalance: force and torque that turn with the rotor") {
-  const double speed = 30, across = 7e-3, product = 2e-3;
+TEST_CASE("imbalance: as two masses off the axis, at any point of the rotor") {
+  // Masses m1 at (e, 0, z1) and m2 at (-e, 0, z2) from A turn about z: force m e Omega^2 of each,
+  // and its moment about P.
+  const double speed = 30, e = 0.1, m1 = 3e-3, m2 = 1e-3, z1 = 0.05, z2 = -0.02;
+  const Vector3d PA(0.04, 0.07, 0.2);
+  const double across = (m1 - m2) * e, product = m1 * e * z1 - m2 * e * z2;
+  const auto wrench = [&](double angle) {
+    Vector6 sum = Vector6::Zero();
+    for (const auto& [m, side, up] : {std::tuple(m1, 1.0, z1), std::tuple(m2, -1.0, z2)}) {
+      const Vector3d out = side * Vector3d(std::cos(angle), std::sin(angle), 0);
+      const Vector3d force = m * e * speed * speed * out;
+      sum.head<3>() += force;
+      sum.tail<3>() += (PA + e * out + up * z).cross(force);
+    }
+    return sum;
+  };
   Diagram d{"imbalance"};
-  auto wheel = d.add("wheel", Rotor{.mass = 6, .axial = 0.05, .transverse = 0.03, .axis = z});
-  release(wheel);
+  auto wheel =
+      d.add("wheel", Rotor{.mass = 6, .axial = 0.05, .transverse = 0.03, .axis = z, .PA = PA});
+  ground(wheel);
   wheel.accel = 0;
   unbalance(d, wheel, "turning", {.static_kgm = across, .dynamic_kgm2 = product}, speed);
-  d.output("a", 6) = wheel.parent.accel;
+  d.output("load", 6) = wheel.parent.reaction;
   const Eigen::MatrixXcd H = compile(d).transfer({0, speed});
-  // b = x, c = y: [cos; sin] to forces and torques along them.
-  const double force = across * speed * speed / 6, torque = product * speed * speed / 0.03;
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(6, 2);
-  right.topRows(2).diagonal().setConstant(force);
-  right.middleRows(3, 2).diagonal().setConstant(torque);
-  CHECK((H - right).norm() <= 1e-13 * right.norm());
+  for (const double angle : {0.0, 1.0, 2.5}) {
+    const Eigen::Vector2cd wave(std::cos(angle), std::sin(angle));
+    const Vector6 right = wrench(angle);
+    CHECK((H * wave - right).norm() <= 1e-13 * right.norm());
+  }
+  CHECK(says(error_of([&] {
+               Diagram other{"other"};
+               unbalance(other, wheel, "turning", {.static_kgm = 1}, speed);
+             }),
+             Code::unknown_name, {"other"}));
+}
+
+TEST_CASE("a rotor with momentum that is not mounted is not driven") {
+  Diagram d{"forgotten"};
+  auto wheel = d.add("wheel", Rotor{.momentum = 40});
+  wheel.torque = 0;
+  d.output("accel", 6) = wheel.parent.accel;
+  CHECK(says(error_of([&] { compile(d); }), Code::no_equation, {"wheel.parent"}));
+  release(wheel);
+  CHECK(compile(d).outputs().size() == 6);
+}
+
+TEST_CASE("momentum as a parameter: from 0 and back") {
+  const auto satellite = [](double h) {
+    Diagram d{"bias"};
+    const Param bias = d.param("h", h);
+    auto hub = d.add("hub", RigidBody{.mass = 9, .inertia = Vector3d(4, 5, 6).asDiagonal()});
+    hub.parent.force = -d.input("U", 6);
+    momentum(hub.parent, bias, {1, 2, 3});
+    d.output("rate", 3) = hub.parent.rate.angular();
+    return compile(d);
+  };
+  const System at_0 = satellite(0), at_40 = satellite(40);
+  const std::complex<double> s(0.3, 2);
+  const Eigen::MatrixXcd with = at_40.transfer(s), without = at_0.transfer(s);
+  CHECK((at_0.update({{"h", 40}}).transfer(s) - with).norm() <= 1e-13 * with.norm());
+  CHECK((at_40.update({{"h", 0}}).transfer(s) - without).norm() <= 1e-13 * without.norm());
 }

@@ -60,9 +60,10 @@ bool negative(const MatrixXd& gain, const Equation& e) {
   const MatrixXd& rows = e.part.rows();
   const MatrixXd along = e.part.whole() ? gain : MatrixXd(rows * gain * rows.transpose());
   const Eigen::Index half = along.rows() == 6 ? 3 : along.rows();
+  const double largest = gain.cwiseAbs().maxCoeff();
   for (Eigen::Index first = 0; first < along.rows(); first += half) {
     const auto own = along.block(first, first, half, half);
-    if (own.diagonal().minCoeff() < -linalg::kAxisRounding * own.cwiseAbs().maxCoeff()) return true;
+    if (own.diagonal().minCoeff() < -linalg::kAxisRounding * largest) return true;
   }
   return false;
 }

@@ -176,12 +176,18 @@ ForceGains gyroscopic_gains(const Graph& g, ParameterValues values) {
   for (const auto& [pair, gain] : all) {
     const auto back = all.find({pair.second, pair.first});
     MatrixXd skew = gain / 2;
-    double size = gain.cwiseAbs().maxCoeff();
-    if (back != all.end()) {
-      skew -= back->second.transpose() / 2;
-      size = std::max(size, back->second.cwiseAbs().maxCoeff());
-    }
-    if (skew.cwiseAbs().maxCoeff() <= linalg::kAxisRounding * size) continue;
+    if (back != all.end()) skew -= back->second.transpose() / 2;
+    const bool dual = skew.size() == 36;  // forces and torques have units of their own
+    const Index each = dual ? 3 : skew.rows(), width = dual ? 3 : skew.cols();
+    for (Index row = 0; row < skew.rows(); row += each)
+      for (Index column = 0; column < skew.cols(); column += width) {
+        auto block = skew.block(row, column, each, width);
+        double size = gain.block(row, column, each, width).cwiseAbs().maxCoeff();
+        if (back != all.end())
+          size = std::max(size, back->second.block(column, row, width, each).cwiseAbs().maxCoeff());
+        if (block.cwiseAbs().maxCoeff() <= linalg::kAxisRounding * size) block.setZero();
+      }
+    if (skew.isZero(0)) continue;
     result[pair] = skew;
     if (back == all.end()) result[{pair.second, pair.first}] = -skew.transpose();
   }
