@@ -133,10 +133,10 @@ std::complex<double> ReducedLft::on_ray(double omega) const {
 }
 
 ReducedLft::Sizes ReducedLft::sizes(double omega) const {
-  constexpr double kRounding = 1e-12;  // of the band's ends
+  const double rounding = 4 * linalg::kEpsilon;  // of the band's ends in rad/s
   const double hz = omega / (2 * std::numbers::pi);
   const auto& [low, high] = scene_.band_hz;
-  if (!(hz >= low * (1 - kRounding) && hz <= high * (1 + kRounding)))
+  if (!(hz >= low * (1 - rounding) && hz <= high * (1 + rounding)))
     throw Error(
         Code::bad_value,
         fmt::format("{:.6g} rad/s is outside of the band, {:.6g} to {:.6g} Hz", omega, low, high),

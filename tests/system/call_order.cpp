@@ -73,7 +73,7 @@ std::string of_apply(const System& s) {
   return bits(rates.xdot) + bits(rates.y);
 }
 
-/// The same parameter values: no front is made anew, but the certificate is.
+/// Every value of a parameter times 1.25.
 std::string of_update(const System& s) {
   ParameterList list = s.parameters();
   for (auto& [name, value] : list) value *= 1.25;
