@@ -136,13 +136,13 @@ std::string to_string(const ReducedSystem& system);
 /// similar to it, is a structure if inputs move each block in one direction, as forces do.
 ///
 /// If the scene is no passive structure (controllers and filters in the loop, momenta of rotors,
-/// dashpots without springs; a note names the state), states replace M, D, K. Integrals, poles on the axis (undamped
-/// modes have no Gramian) and poles right of it are kept whole; the well-damped rest is balanced
-/// and reduced, by truncation or by singular perturbation, over the whole axis or with low-passes
-/// at the band's end, whichever needs the fewest states; a step contains the choice and its reason.
-/// The reduced part is stable, which is checked; the error is checked as above, and over the whole
-/// axis 2 x the sum of the dropped Hankel singular values bounds it everywhere right of the axis
-/// (ErrorBound::anywhere) [Moore 1981; Enns 1984; Glover 1984].
+/// dashpots without springs; a note names the state), states replace M, D, K. Integrals, poles on
+/// the axis (undamped modes have no Gramian) and poles right of it are kept whole; the well-damped
+/// rest is balanced and reduced, by truncation or by singular perturbation, over the whole axis or
+/// with low-passes at the band's end, whichever needs the fewest states; a step contains the choice
+/// and its reason. The reduced part is stable, which is checked; the error is checked as above, and
+/// over the whole axis 2 x the sum of the dropped Hankel singular values bounds it everywhere right
+/// of the axis (ErrorBound::anywhere) [Moore 1981; Enns 1984; Glover 1984].
 ///
 /// Throws the errors of `compile(diagram)`; bad_value for a scene out of range or too large, and if
 /// the accuracy cannot be met, with the best one and its place; unknown_name for unknown inputs and

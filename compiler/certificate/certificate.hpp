@@ -55,10 +55,10 @@ struct Certificate {
   /// eight units).
   double dense_error = -1;
   std::complex<double> dense_error_s;  ///< s of the largest error
-  /// The same over the size of the output at that same s, also far below the slowest mode that
-  /// shows: the digits that A, B, C, D keep of a free motion fall with s there. An output that is 0
-  /// at s = 0, such as the acceleration of a point on a spring, counts relative to its size at the
-  /// slowest mode. Above 1e-6 dense_log() warns, if another digit is lost there.
+  /// The same over the size of the output at that same s, also far below the slowest mode: there an
+  /// acceleration may fall with s^2, and the digits that A, B, C, D keep of a free motion fall with
+  /// it. It grows towards s below the lowest point. Above 1e-6 dense_log() warns, if another digit
+  /// is lost there.
   double dense_error_where_small = -1;
   std::complex<double> dense_error_where_small_s;  ///< s of the largest error
   /// Smallest pivot over the sum of magnitudes of its terms: 1 no cancellation, 1e-16 no digit.

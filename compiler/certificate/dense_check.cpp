@@ -64,18 +64,7 @@ struct Sample {
   solve::RowMatrix<T> y;  ///< by the factors
   OutputSizes sizes;
   MatrixXd off;
-  MatrixXd growth;  ///< of outputs from s to the slowest mode that shows, at least 1
 };
-
-/// Below all modes that show an output with a zero at s = 0 falls with a power of s, and is last of
-/// use at the slowest of them: this is how much larger it is there. 1 elsewhere.
-MatrixXd growth_to_slowest(const Tried& where, const T s, const MatrixXd& outputs) {
-  MatrixXd growth = MatrixXd::Ones(outputs.rows(), outputs.cols());
-  if (const double ratio = where.slowest / std::abs(s); ratio > 1)
-    growth =
-        where.powers.unaryExpr([ratio](double p) { return std::pow(ratio, std::max(p, 0.0)); });
-  return growth;
-}
 
 /// A x of all of these: once through memory.
 std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
@@ -140,8 +129,7 @@ std::vector<Sample> sample(const Factored& d, const StateSpace& m, const solve::
                       std::abs(list[i]) < kBelow * where.slowest,
                       y,
                       {by_unit(y, units.rows), by_unit(points[i].rounding(), units.rows)},
-                      by_unit(change, units.rows),
-                      growth_to_slowest(where, list[i], by_unit(y, units.rows))});
+                      by_unit(change, units.rows)});
   }
   return result;
 }
@@ -214,7 +202,7 @@ DenseError::Worst relative(const MatrixXd& off, const OutputSizes& sizes, double
 
 /// Below all visible modes an output of free motion grows, or falls, with a power of s without
 /// limit, and so does the error of the dense model: there only the error relative to the output at
-/// the same s counts, or at the slowest of these modes if the output falls to 0 below it.
+/// the same s counts.
 DenseError worst_of(const std::vector<Sample>& samples) {
   DenseError worst;
   OutputSizes largest{MatrixXd::Zero(samples.front().off.rows(), samples.front().off.cols()),
@@ -231,8 +219,7 @@ DenseError worst_of(const std::vector<Sample>& samples) {
   };
   for (const Sample& p : samples) {
     if (counts(p)) keep(relative(p.off, largest, kOfLargest), p.s, worst.beside_largest);
-    const OutputSizes in_use{p.sizes.value.cwiseProduct(p.growth), p.sizes.rounding};
-    keep(relative(p.off, in_use, 0), p.s, worst.where_small);
+    keep(relative(p.off, p.sizes, 0), p.s, worst.where_small);
   }
   return worst;
 }

@@ -18,12 +18,12 @@ using Complex = std::complex<double>;
 /// before: below all modes with an effect.
 bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers) {
   constexpr double kWhole = 0.03;  // a mode a decade off changes a size by some 1 %: 0.004
-  const auto shows = here.array() > kUnderflow && below.array() > kUnderflow;
-  const MatrixXd p = shows.select((here.array() / below.array()).log10(), 0.0);
+  const MatrixXd p = (here.array() / below.array()).log10();
   const MatrixXd whole = p.array().round();
+  const auto shows = here.array() > kUnderflow && below.array() > kUnderflow;
   const bool same =
       whole.size() == powers.size() &&
-      ((p - whole).array().abs() < kWhole && (!shows || whole.array() == powers.array())).all();
+      (!shows || ((p - whole).array().abs() < kWhole && (whole - powers).array() == 0)).all();
   powers = whole;
   return same;
 }
@@ -33,11 +33,11 @@ bool whole_powers(const MatrixXd& here, const MatrixXd& below, MatrixXd& powers)
 /// rounding, or the factors have no digits so far below. O(bodies) per decade.
 std::optional<Complex> slowest_shown(const Factored& d, const Complex s,
                                      const solve::RowMatrix<Complex>& u,
-                                     const std::vector<int>& units, MatrixXd& powers) {
+                                     const std::vector<int>& units) {
   constexpr int kDecades = 10;  // below them double has no digits of slow motion
   try {
     Complex at = s;
-    MatrixXd here = by_unit(Evaluation<Complex>(d, at, u).outputs(), units);
+    MatrixXd here = by_unit(Evaluation<Complex>(d, at, u).outputs(), units), powers;
     for (int k = 1; k <= kDecades; ++k) {
       at *= 0.1;
       MatrixXd below = by_unit(Evaluation<Complex>(d, at, u).outputs(), units);
@@ -79,7 +79,7 @@ Tried tried(const Factored& d, const MatrixXd& A, const solve::RowMatrix<Complex
       slowest = std::min(slowest, w);
   const Complex of_blocks = slowest / std::abs(s) * s;
   if (slowest < 1e-2 * std::abs(s)) result.s.push_back(1e-2 * of_blocks);
-  const std::optional<Complex> shown = slowest_shown(d, of_blocks, u, units, result.powers);
+  const std::optional<Complex> shown = slowest_shown(d, of_blocks, u, units);
   if (!shown) return result;
   result.slowest = std::abs(*shown);
   if (result.slowest < 0.5 * std::abs(s)) result.s.push_back(*shown);

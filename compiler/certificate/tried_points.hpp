@@ -14,13 +14,11 @@ inline constexpr double kNear = 3;
 Eigen::MatrixXd by_unit(const solve::RowMatrix<std::complex<double>>& y,
                         const std::vector<int>& units);
 
-/// Points at which the dense model is tried.
+/// Points at which the dense model is tried, and the limit below which |s| no mode shows; 0: not
+/// known.
 struct Tried {
   std::vector<std::complex<double>> s;
-  double slowest = 0;  ///< no mode shows at an |s| below it; 0: not known
-  /// Below it outputs change with these powers of s, by unit and column of inputs: 2 of an
-  /// acceleration that a spring holds, -2 of the position of a free body.
-  Eigen::MatrixXd powers = {};
+  double slowest = 0;
 };
 
 /// Far below, at and above the blocks' frequencies, and at the assembly's; below the slowest of the

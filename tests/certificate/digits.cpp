@@ -147,35 +147,6 @@ TEST_CASE("digits lost far below the modes of a floating frame are reported, and
                                       at_s(c.basic.dense_error_where_small_s)}));
 }
 
-TEST_CASE(
-    "accelerations on springs count from the slowest mode on: a beam on a pin is not warned of") {
-  for (const double k : {1e2, 1e6}) {
-    CAPTURE(k);
-    const double length = 3, E = 70e9, I = 1e-8;
-    Diagram d{"pinned"};
-    auto frame = d.add("frame", RigidBody{.children = {{"c"}}});
-    ground(frame);
-    auto beam = d.add("beam", FlexibleBody{Beam{.length = length,
-                                                .section = {1e-3, I, I, 2e-8},
-                                                .material = {.E = E, .nu = 0.33, .rho = 2700},
-                                                .elements = 3}});
-    auto pin = hinge(d, "pin", beam, frame.child("c"), {}, {0, 0, 1});
-    pin.torque = k * pin.angle;
-    beam.child("C").force += d.input("F", 6);
-    d.output("a", 6) = beam.child("C").accel;
-    d.output("held", 6) = frame.child("c").accel;  // 0
-    const System system = compile(d);
-    const StateSpace m = system.state_space();
-    CHECK(!has_line(system.dense_log(), {"dense", "warning"}));
-    CHECK(system.dense_certificate().dense_error_where_small <= 1e-6);
-    // At a tenth of the slowest mode: s^2 times the compliance of pin and beam, and (1/10)^2 of it.
-    double slowest = HUGE_VAL;
-    for (const Complex p : m.A.eigenvalues()) slowest = std::min(slowest, std::abs(p));
-    const Complex s(0, 0.1 * slowest), turn = s * s * (1 / k + length / (E * I));
-    CHECK(std::abs(m.transfer(s)(5, 5) - turn) <= 0.03 * std::abs(turn));
-  }
-}
-
 TEST_CASE("a pole that grows shows that a force is not passive, if it is in its motion") {
   // Two free masses that repel each other with 13 - 1 N/m: s^2 = 12 / (3 * 1 / (3 + 1)) = 16.
   Diagram d{"repelled"};

@@ -245,8 +245,8 @@ TEST_CASE("errors of the dense model are the same in all units, for few inputs a
     const System in_m = chain(masses, inputs, [] { return 1.0; });
     in_m.state_space();
     const Certificate right = in_m.dense_certificate();
-    CHECK(right.dense_error <= 1e-11);              // no significant loss
-    CHECK(right.dense_error_where_small >= 1e-13);  // a number to compare
+    CHECK(right.dense_error <= 1e-11);  // no significant loss
+    CHECK(right.dense_error_where_small >= 1e-9);
     for (int i = 0; i < 10; ++i) {
       const System system = chain(masses, inputs, [&] { return unit(random); });
       system.state_space();

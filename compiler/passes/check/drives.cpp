@@ -139,9 +139,9 @@ void check_added(Checker& c, const Channel& channel, const Drive& drive) {
   const auto says = [&](int e) { return !g.equations[at(e)].terms.empty(); };
   const auto tied = [&](int e) {
     const Equation& q = g.equations[at(e)];
-    return std::any_of(q.terms.begin(), q.terms.end(), [&](const Term& t) {
-      return t.signal >= 0 && g.signals[at(t.signal)].channel >= 0;
-    });
+    return q.part.whole() && std::any_of(q.terms.begin(), q.terms.end(), [&](const Term& t) {
+             return t.signal >= 0 && g.signals[at(t.signal)].channel >= 0;
+           });
   };
   const auto added = std::find_if(drive.added.begin(), drive.added.end(), says);
   const auto tie = std::find_if(drive.accel.begin(), drive.accel.end(), tied);
