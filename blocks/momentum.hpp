@@ -22,7 +22,8 @@ namespace titop {
 /// with the other signs at a parent point.
 /// `port.reaction` contains it, `port.force` of a parent point does not. As any `+=` it leaves a
 /// parent point free that no equation drives. Throws bad_value for an axis without direction,
-/// unknown_name for a port of no diagram.
+/// not_finite for an h or an axis that is
+/// not, unknown_name for a port of no diagram. O(1).
 ///
 ///     momentum(hub.child("B"), 50.0, {0, 1, 0});  // 50 N m s about the hub's y axis
 void momentum(const DualPort<6>& port, const Value& h, const Vector3d& axis,

@@ -24,8 +24,9 @@ namespace titop {
 ///
 /// The model is of constant coefficients only if the rotor is axisymmetric: bodies with unequal
 /// transverse inertias, or flexible ones, cannot spin. All numbers but axis and PA may be
-/// parameters. Throws bad_inertia for a negative mass or inertia and for axial > 2 transverse,
-/// which no body has; bad_value for an axis without direction; not_finite.
+/// parameters. O(1) [Meirovitch 2001, ch. 3, for the gyroscopic torque]. Throws bad_inertia for a
+/// negative mass or inertia and for axial > 2 transverse, which no body has; bad_value for an axis
+/// without direction; not_finite.
 ///
 ///     auto wheel = d.add("wheel", Rotor{.mass = 6, .axial = 0.05, .transverse = 0.03,
 ///                                       .axis = {0, 1, 0}, .momentum = 20});
@@ -67,7 +68,7 @@ struct Imbalance {
 /// rotor act the force static Omega^2 u at A and the torque dynamic Omega^2 a x u, with u = b cos +
 /// c sin and the vectors b, c of `across(a)`. The vibration at that speed is G(j Omega) [1; -j], G
 /// the transfer from this input: its amplitudes and phases. Throws unknown_name for a rotor of
-/// another diagram, not_finite.
+/// another diagram, not_finite. O(1).
 ///
 ///     unbalance(d, wheel, "imbalance", {.static_kgm = 7e-6, .dynamic_kgm2 = 2e-7}, 300.0);
 void unbalance(Diagram& d, const Rotor::Handle& rotor, std::string name, const Imbalance& imbalance,

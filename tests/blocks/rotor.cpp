@@ -120,6 +120,15 @@ TEST_CASE("imbalance: as two masses off the axis, at any point of the rotor") {
              Code::unknown_name, {"other"}));
 }
 
+TEST_CASE("momentum without a direction or a number is refused at its port") {
+  Diagram d{"wrong"};
+  auto hub = d.add("hub", RigidBody{.children = {{"B"}}});
+  CHECK(says(error_of([&] { momentum(hub.child("B"), 4, Vector3d::Zero()); }), Code::bad_value,
+             {"hub", "B"}));
+  CHECK(says(error_of([&] { momentum(hub.parent, NAN, z); }), Code::not_finite, {"hub.parent"}));
+  CHECK(says(error_of([&] { momentum(DualPort<6>{}, 4, z); }), Code::unknown_name, {"momentum"}));
+}
+
 TEST_CASE("a rotor with momentum that is not mounted is not driven") {
   Diagram d{"forgotten"};
   auto wheel = d.add("wheel", Rotor{.momentum = 40});
