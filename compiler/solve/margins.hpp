@@ -15,7 +15,7 @@ void find_margins(const Factored& data, std::span<const int> loops, std::vector<
 /// The same for the changed loops of the data, in Factored::margins.
 void update_margins(Factored& data);
 
-/// What the margins of all loops of the stage say.
+/// Summary of the margins of all loops of the stage.
 struct LoopMargins {
   double largest = 1;
   int largest_loop = -1;    ///< whose margin it is; -1: none exceeds 1

@@ -40,7 +40,8 @@ TransposedEvaluation<T>::TransposedEvaluation(Weighted, const Evaluation<T>& poi
     }
 }
 
-/// What the outputs depend on by this signal; a state by the inputs of its block.
+/// Adds the outputs' gains on this signal to the right-hand side; those on a state by way of the
+/// inputs of its block.
 template <class T>
 void TransposedEvaluation<T>::add_weighted(int signal, const solve::RowMatrix<T>& weights) {
   const Graph& g = point_.data_.graph();
@@ -82,8 +83,8 @@ solve::RowMatrix<T> TransposedEvaluation<T>::inputs_of(const solve::RowMatrix<T>
   return own;
 }
 
-/// Inputs that no output sees have rows of 0 here, and rounding in them: v is nowhere 0 to the last
-/// bit.
+/// Inputs that no output sees have rows of 0 here, filled with rounding: the unknowns v are not
+/// exactly 0 there.
 template <class T>
 double TransposedEvaluation<T>::relative_to_results(const solve::RowMatrix<T>& change) const {
   const Factored& d = point_.data_;

@@ -6,7 +6,7 @@
 
 namespace titop {
 
-/// What a transfer at one s has cost.
+/// Cost of a transfer at one s.
 struct TransferCost {
   int factorisations = 0;
   /// Right-hand sides solved for, steps of refinement and error estimates included.

@@ -1,4 +1,4 @@
-// What a function of System returns does not depend on the functions that were called before.
+// Results of System's functions do not depend on the functions that were called before.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
