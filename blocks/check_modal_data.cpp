@@ -3,6 +3,7 @@
 #include <cmath>
 #include <titop/blocks/check_modal_data.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
+#include <titop/graph/linalg/symmetric.hpp>
 
 namespace titop::detail {
 namespace {
@@ -151,6 +152,31 @@ void check_modes(const ModalParameters& m) {
       refuse(Code::bad_modes,
              "omega must be positive (modes clamped at P have no rigid motion), xi 0 or more");
   }
+}
+
+void check_damping(const MatrixXd& Z, Eigen::Index n) {
+  if (Z.rows() != n || Z.cols() != n)
+    throw Error(Code::size,
+                fmt::format("a damping matrix is {} x {} for {} modes", Z.rows(), Z.cols(), n),
+                fmt::format("it must be {} x {}", n, n));
+  require_finite(Z, "the damping matrix");
+  if (n == 0) return;
+  const Eigen::VectorXd size =
+      Z.diagonal().unaryExpr([](double z) { return z != 0 ? 1 / std::sqrt(std::abs(z)) : 1.0; });
+  const MatrixXd scaled = size.asDiagonal() * Z * size.asDiagonal();
+  constexpr double rounding = 1e-9;
+  if ((scaled - scaled.transpose()).cwiseAbs().maxCoeff() > rounding)
+    throw Error(Code::bad_modes, "the damping matrix of the modes is not symmetric",
+                "a force in proportion to rates is gyroscopic if it is not: see momentum()");
+  const SymmetricModes m = eigh(scaled);
+  if (m.lambda(0) >= -rounding * static_cast<double>(n)) return;
+  Eigen::Index mode = 0;
+  m.V.col(0).cwiseAbs().maxCoeff(&mode);
+  throw Error(Code::bad_modes,
+              fmt::format("the damping matrix of the modes is negative, by {:.2g} of its diagonal, "
+                          "mostly in mode {}",
+                          -m.lambda(0), mode + 1),
+              "it must take energy from every motion: a positive semidefinite matrix");
 }
 
 void check_modal_data(const ModalData& data) {

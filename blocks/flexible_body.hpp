@@ -52,13 +52,23 @@ class FlexibleBody {
   FlexibleBody(const Beam& beam, std::source_location at = std::source_location::current());
   /// No modes; parameters at their nominal values.
   FlexibleBody(const RigidBody& body, std::source_location at = std::source_location::current());
-  /// Values of `body` are kept for modes that `values` does not name.
+  /// Values of `body` are kept for modes that `values` does not name. Throws bad_modes for one that
+  /// is damped by a matrix.
   FlexibleBody(const FlexibleBody& body, const ModeValues& values);
+
+  /// The same body with -Z etad in place of -diag(2 xi omega) etad: damping that couples the modes
+  /// clamped at P, such as that of the modes of a free body (analysis/damping). Z: N x N,
+  /// symmetric, positive semidefinite [rad/s]. Throws size, not_finite, and bad_modes for a Z that
+  /// is not, or if modes have other values. O(N^3).
+  FlexibleBody damped_by(const Eigen::MatrixXd& Z) const;
+  /// Z, or diag(2 xi omega): the modes' damping matrix, N x N, parameters at their nominal values.
+  Eigen::MatrixXd damping() const;
 
   /// Data from which its block is made.
   struct Spec {
     std::shared_ptr<const ModalData> data;
     ModeValues values = {};
+    Eigen::MatrixXd damping = {};  ///< Z of `damped_by`; 0 x 0: by xi
   };
   const Spec& spec() const { return *spec_; }
   const ModalData& data() const { return *spec_->data; }  ///< as given, without other values

@@ -58,7 +58,7 @@ PortHamiltonian port_hamiltonian(const FlexibleBody& body) {
   VectorXd stiffness = VectorXd::Ones(2 * n);
   stiffness.head(n) = d.omega.cwiseAbs2();
   s.Q = stiffness.asDiagonal();
-  set_structure(s, (2 * d.xi.cwiseProduct(d.omega)).asDiagonal());
+  set_structure(s, body.damping());
   s.G = MatrixXd::Zero(2 * n, W.cols());
   s.G.bottomRows(n) = W;
   s.N = W.transpose();

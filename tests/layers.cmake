@@ -40,6 +40,8 @@ room(analysis/sweep            compiler/system)
 room(analysis/certify          compiler/passes compiler/definition compiler/certificate
                                compiler/minreal compiler/system)
 room(analysis/reduction        compiler/system)
+# Above blocks: it makes bodies of parts of a scene.
+room(analysis/damping          blocks/fe blocks compiler/system analysis/reduction)
 room(analysis/norms)
 # Deeper than System: it opens parameters, and counts occurrences in exact arithmetic.
 room(analysis/lft              compiler/passes compiler/definition compiler/system analysis/norms
@@ -67,8 +69,10 @@ endfunction()
 internal(compiler/system/system_data.hpp analysis/certify/certify_full.cpp
          analysis/reduction/coordinates.hpp analysis/reduction/reach_of_data.hpp
          analysis/simulation/simulate.cpp emit/cpp/form.cpp)
-# analysis/reduction/ compiles diagrams that it has rewritten, analysis/lft/ opened ones.
-internal(compiler/system/compile_graph.hpp analysis/certify/ analysis/reduction/ analysis/lft/)
+# analysis/reduction/ compiles diagrams that it has rewritten, analysis/lft/ opened ones,
+# analysis/damping/ parts of them.
+internal(compiler/system/compile_graph.hpp analysis/certify/ analysis/reduction/ analysis/lft/
+         analysis/damping/)
 # analysis/certify/ measures differences beside the rounding of the elimination.
 internal(compiler/system/elimination_terms.hpp analysis/certify/)
 

@@ -91,7 +91,7 @@ struct FullCertificate {
   /// held.
   ///
   /// All bodies and joints of the library are reciprocal: their masses, stiffnesses and dampings
-  /// are symmetric (to 1e-9, or refused when they are added), and modes are damped one by one. With
+  /// are symmetric (to 1e-9, or refused when they are added). With
   /// gyroscopic terms (`Rotor`, `momentum`, antisymmetric gains from rates to forces) G_ji is that
   /// of the same structure with all momenta h reversed, G(s; h)' = G(s; -h) [Casimir 1945], by a
   /// second compile. A user's block may have gyroscopic terms inside: then reciprocity of the whole

@@ -150,13 +150,15 @@ void write_flexible_body(const Block& b, const WriteValue& value, const NameBody
   j["body"] = body(*spec.data);
   if (!spec.values.omega.empty()) j["omega"] = modes_json(spec.values.omega, value);
   if (!spec.values.xi.empty()) j["xi"] = modes_json(spec.values.xi, value);
+  if (spec.damping.size() > 0) j["damping"] = rows(spec.damping);
 }
 
 BlockPtr read_flexible_body(const JsonPlace& p, const ReadValue& value, const FindBody& body) {
-  p.only({"name", "type", "body", "omega", "xi"});
+  p.only({"name", "type", "body", "omega", "xi", "damping"});
   const FlexibleBody shared = body(p.at("body"));
   const ModeValues values{.omega = read_modes(p, "omega", value), .xi = read_modes(p, "xi", value)};
-  return as_block(values.empty() ? shared : FlexibleBody(shared, values));
+  FlexibleBody own = values.empty() ? shared : FlexibleBody(shared, values);
+  return as_block(p.has("damping") ? own.damped_by(p.at("damping").matrix(-1, -1)) : own);
 }
 
 // --- joints --------------------------------------------------------------------------------------

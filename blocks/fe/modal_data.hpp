@@ -21,7 +21,7 @@ struct ModalChild {
 struct ModalData {
   Eigen::VectorXd omega;             ///< N, natural frequencies [rad/s], > 0
   Eigen::VectorXd xi;                ///< N, damping ratios [-], >= 0, of the modes clamped at P;
-                                     ///< those of an assembly differ (docs/guide/4_spacecraft.md)
+                                     ///< those of an assembly differ: see damping_of_assembly
   Eigen::MatrixXd L_P;               ///< N x 6, participation factors at P [sqrt(kg), sqrt(kg) m]
   Matrix6 D_P = Matrix6::Zero();     ///< rigid mass matrix about P [kg, kg m, kg m^2]
   std::vector<ModalChild> children;  ///< the child points, none for an appendage

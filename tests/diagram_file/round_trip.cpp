@@ -33,7 +33,9 @@ Diagram everything() {
                                .elements = 1,
                                .modes = {.xi = {0.004}}});
   const FlexibleBody softer(boom, {.omega = {{1, 400 * k}}, .xi = {{2, 0.03 * k}, {3, 0.1}}});
-  auto b1 = d.add("b1", boom), b2 = d.add("b2", boom), b3 = d.add("b3", softer);
+  const Eigen::MatrixXd Z =
+      Eigen::MatrixXd::Identity(6, 6) / 7 + Eigen::MatrixXd::Constant(6, 6, 0.03);
+  auto b1 = d.add("b1", boom), b2 = d.add("b2", boom.damped_by(Z)), b3 = d.add("b3", softer);
   auto wheel = d.add("wheel", RigidBody{.mass = 4, .inertia = {1, 2 * k, 1, 0, 0.1 * k, 0}});
   auto z = d.add("z", SpringMass{.mass = 2, .stiffness = k, .damping = 0.1});
   auto K = d.add("K", Lti{.A = -Eigen::MatrixXd::Identity(1, 1) / 7,

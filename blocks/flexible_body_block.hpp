@@ -1,0 +1,19 @@
+#pragma once
+
+#include <titop/blocks/check_modal_data.hpp>
+#include <titop/blocks/flexible_body.hpp>
+
+/// The block of a FlexibleBody. For the folder's own files.
+namespace titop::detail {
+
+/// Frequencies and damping ratios of all modes with the spec's values in place, parameters at their
+/// nominal ones. Throws bad_modes, not_finite.
+ModalParameters nominal_modes(const FlexibleBody::Spec& spec);
+
+/// The block of this spec, whose data have been checked. `like`: another block of the same data,
+/// with which it shares all that does not depend on the values of modes, or none. O(N^2 + N
+/// inputs^2).
+BlockPtr flexible_body_block(std::shared_ptr<const FlexibleBody::Spec> spec,
+                             const BlockPtr& like = nullptr);
+
+}  // namespace titop::detail
