@@ -156,14 +156,21 @@ std::vector<Pole> poles(const StateSpace& model, const MatrixXd& rounding) {
   return result;
 }
 
+std::string xi_of_bodies(const Pole& p) {
+  const std::string least = fmt::format("{:.4g}", p.least_xi),
+                    largest = fmt::format("{:.4g}", p.largest_xi);
+  return least == largest ? least : least + " to " + largest;
+}
+
 std::string to_string(const std::vector<Pole>& list) {
   std::string text = fmt::format("{:>14} {:>14} {:>12}  {}\n", "rad/s", "Hz", "damping", "blocks");
   for (const Pole& p : list) {
     std::string blocks;
     for (const auto& [name, share] : p.blocks)
       blocks += fmt::format("{}{} {:.0f} %", blocks.empty() ? "" : ", ", name, 100 * share);
-    text += fmt::format("{:>14.7g} {:>14.7g} {:>12.4g}  {}{}\n", p.omega, p.hertz, p.damping,
-                        blocks, p.pair ? "" : "  (real)");
+    text += fmt::format("{:>14.7g} {:>14.7g} {:>12.4g}  {}{}{}\n", p.omega, p.hertz, p.damping,
+                        blocks, p.pair ? "" : "  (real)",
+                        p.unlike_bodies() ? fmt::format("  (bodies: xi {})", xi_of_bodies(p)) : "");
   }
   return text;
 }

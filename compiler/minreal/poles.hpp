@@ -19,7 +19,18 @@ struct Pole {
   /// Blocks that take part, with their share (participation factors summed over the block's
   /// states, of total 1), largest first, down to 5 %.
   std::vector<std::pair<std::string, double>> blocks;
+  /// Least and largest damping ratio of the modes, clamped at P, of the bodies among `blocks`, if
+  /// `unlike_bodies`; else -1. Set by System::poles.
+  double least_xi = -1, largest_xi = -1;
+
+  /// An assembled mode that is damped otherwise than its bodies: less than a fifth of the least xi,
+  /// of bodies that have half of it or more, or more than five times the largest, if no other block
+  /// takes part, no equation reads a rate and no one-way block has states (dampers, controllers).
+  bool unlike_bodies() const { return largest_xi >= 0; }
 };
+
+/// "0.003", "0.003 to 0.005": of a mode that is damped unlike its bodies.
+std::string xi_of_bodies(const Pole& pole);
 
 /// Poles sorted by frequency. Undamped and proportionally damped models are solved as symmetric
 /// problems, so that undamped poles lie exactly on the axis and slow ones have as many digits as
@@ -32,7 +43,8 @@ struct Pole {
 /// `rounding`: of the entries of A, as of a dense model with cancellation; empty: 2.2e-16 of each.
 std::vector<Pole> poles(const StateSpace& model, const Eigen::MatrixXd& rounding = {});
 
-/// A table: rad/s, Hz, damping, blocks.
+/// A table: rad/s, Hz, damping, blocks; behind modes that are damped unlike their bodies the xi of
+/// these.
 std::string to_string(const std::vector<Pole>& poles);
 
 }  // namespace titop

@@ -6,6 +6,7 @@
 #include <titop/compiler/certificate/without_rounding.hpp>
 #include <titop/compiler/realization/write_model.hpp>
 #include <titop/compiler/solve/transfer_blocks.hpp>
+#include <titop/compiler/system/damping_of_bodies.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/compiler/system/transfer_part.hpp>
@@ -95,7 +96,10 @@ Descriptor System::descriptor() const {
 std::vector<Pole> System::poles() const {
   const StateSpace& model = state_space();
   const bool whole = model.order() > 0 && !order_verdict().judged;
-  return titop::poles(model, whole ? detail::rounding_of(*data_, model).A : MatrixXd());
+  std::vector<Pole> list =
+      titop::poles(model, whole ? detail::rounding_of(*data_, model).A : MatrixXd());
+  detail::compare_with_bodies(*data_, list);
+  return list;
 }
 
 namespace {
@@ -143,7 +147,22 @@ std::string System::log() const {
          lines_of(notes());
 }
 
-const std::vector<Note>& System::dense_notes() const& { return dense().notes; }
+const std::vector<Note>& System::dense_notes() const& {
+  const detail::DenseModel& m = dense();
+  std::call_once(data_->dense_notes_once, [&] {
+    std::vector<Note>& all = data_->all_dense_notes = m.notes;
+    if (!m.order.judged || !detail::has_damped_bodies(*data_)) return;
+    try {
+      const std::vector<Note> more = detail::damping_notes(poles());
+      all.insert(all.end(), more.begin(), more.end());
+    } catch (const Error&) {
+      all.push_back(
+          {Note::Kind::unchecked, "dense",
+           "the damping of modes is not compared with that of bodies: no poles are found"});
+    }
+  });
+  return data_->all_dense_notes;
+}
 
 std::string System::dense_log() const { return lines_of(dense_notes()); }
 

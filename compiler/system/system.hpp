@@ -173,8 +173,10 @@ class System {
   std::vector<Note> notes() const&& { return notes(); }
   /// The name, the numbers of states, inputs and outputs, and the notes as text, one per line.
   std::string log() const;
-  /// Notes on writing and minimizing the model of state_space(); makes it if that has not been
-  /// done, at the cost and with the errors of state_space(). So do the next two.
+  /// Notes on writing and minimizing the model of state_space(), and, if that has been minimized,
+  /// on modes that are damped unlike their bodies (Pole::unlike_bodies); makes it if that has not
+  /// been done, at the cost of state_space() and poles() and the errors of the former. So do the
+  /// next two.
   const std::vector<Note>& dense_notes() const&;
   std::vector<Note> dense_notes() const&& { return dense_notes(); }
   /// The same as text, one per line.

@@ -25,6 +25,9 @@ struct SystemData : Factored {
   mutable std::once_flag dense_once;
   mutable DenseModel dense;
 
+  mutable std::once_flag dense_notes_once;
+  mutable std::vector<Note> all_dense_notes;
+
   /// The certificate: computed by `compile`; of an updated system at the first call.
   const Check& checked() const;
   /// Those of the passes, of updates and of the certificate.

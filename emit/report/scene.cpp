@@ -140,6 +140,7 @@ std::string poles_section(const Subject& s) {
       shares += fmt::format(
           R"(<span class="share"><i class="bar" style="width:{:.0f}px"></i>{} {:.0f} %</span> )",
           60 * share, diagram::html(name), 100 * share);
+    if (p.unlike_bodies()) shares += fmt::format("(bodies: xi {})", xi_of_bodies(p));
     text += row({fmt::format("{}{}", i + 1, p.pair ? "" : " (real)"), number(p.hertz, 6),
                  number(p.omega, 6), p.omega > 0 ? number(100 * p.damping, 4) : "–",
                  number(p.s.real(), 4), shares},
