@@ -66,6 +66,13 @@ std::array<Eigen::Index, 6> interface_rows(const Mesh& mesh, const std::string& 
 /// (translations, rotations). Rows of tau_{point,P}; P in the body's frame [m].
 Eigen::MatrixXd rigid_motions(const Mesh& mesh, const Vector3d& P);
 
+/// Damping matrix mass M + stiffness K of a mesh [Craig and Kurdila 2006, 10.3]. It acts on motions
+/// relative to the parent, whose rigid motion is undamped.
+struct Rayleigh {
+  double mass = 0;       ///< alpha [1/s]
+  double stiffness = 0;  ///< beta [s]
+};
+
 /// Selection of the modes of a mesh.
 struct ModeOptions {
   /// Number of lowest clamped modes; all of them if absent.
@@ -77,6 +84,9 @@ struct ModeOptions {
   /// Damping ratios: none (undamped), one (for all), one per kept mode (a residual vector takes
   /// that of the highest kept mode) or one per mode with the residual ones.
   std::vector<double> xi = {};
+  /// In place of xi: each clamped mode and residual vector, at its omega, gets the damping ratio
+  /// (mass / omega + stiffness omega) / 2.
+  std::optional<Rayleigh> rayleigh = {};
 };
 
 /// Modes of the mesh clamped at `parent`, in the form of [Alazard 2015] eqs (9) to (14). With f all
@@ -100,7 +110,8 @@ struct ModeOptions {
 /// digit; `rigid_stiffness`): data of a supported structure, or positions in another unit; if K
 /// clamped at the parent is not positive definite (a mechanism: names a degree of freedom), if M is
 /// not positive semidefinite, or if all modes are kept and a child has a massless degree of
-/// freedom; `bad_value` for more modes than there are; `size` for a wrong number of damping ratios.
+/// freedom; `bad_value` for more modes than there are, and for damping that is negative, not finite
+/// or given twice; `size` for a wrong number of damping ratios.
 /// Cost about 20 n^3.
 ModalData modal_data(const Mesh& mesh, const std::string& parent,
                      const std::vector<std::string>& children, const ModeOptions& options = {});

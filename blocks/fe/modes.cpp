@@ -7,6 +7,7 @@
 #include <set>
 #include <titop/blocks/fe/mesh.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
+#include <titop/blocks/fe/mode_damping.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
@@ -240,26 +241,6 @@ void add_residual(const Clamped& c, const std::string& parent, const ModeOptions
   modes.V.rightCols(total - N) = more.V;
 }
 
-VectorXd damping(const Mesh& mesh, const std::vector<double>& xi, Index kept, Index total) {
-  for (const double x : xi)
-    if (!(x >= 0) || !std::isfinite(x))
-      throw Error(Code::bad_value,
-                  fmt::format("damping ratio {} of mesh {} is not a number >= 0", x, mesh.name),
-                  "give fractions of critical damping: 0.005 is half a percent");
-  const auto given = static_cast<Index>(xi.size());
-  if (given == 0) return VectorXd::Zero(total);
-  if (given != 1 && given != kept && given != total)
-    throw Error(Code::size,
-                fmt::format("{} damping ratios given for mesh {}, which has {} kept modes and {} "
-                            "residual vectors",
-                            given, mesh.name, kept, total - kept),
-                "give one for all, one per kept mode, or one for each including the residual "
-                "vectors");
-  VectorXd result = VectorXd::Constant(total, xi.back());
-  if (given > 1) result.head(given) = Eigen::Map<const VectorXd>(xi.data(), given);
-  return result;
-}
-
 void require_distinct(const Mesh& mesh, const std::vector<std::string>& children) {
   std::set<std::string> seen;
   for (const std::string& child : children)
@@ -284,7 +265,7 @@ ModalData modal_data(const Mesh& mesh, const std::string& parent,
 
   ModalData data;
   data.omega = modes.lambda.cwiseSqrt();
-  data.xi = damping(mesh, options.xi, kept, modes.lambda.size());
+  data.xi = damping_ratios(mesh, options, kept, data.omega);
   data.L_P = modes.V.transpose() * c.M_rf.transpose();
   data.D_P = c.D_P;
   data.digits = mesh.digits;
