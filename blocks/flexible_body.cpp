@@ -1,3 +1,6 @@
+#include <fmt/format.h>
+
+#include <cmath>
 #include <titop/blocks/flexible_body_block.hpp>
 #include <type_traits>
 
@@ -33,6 +36,21 @@ std::invoke_result_t<Make> told_at(const std::source_location& at, Make make) {
   }
 }
 
+/// A body's damping is of one kind.
+void require_damped_by_xi(const FlexibleBody::Spec& spec, const char* given) {
+  if (spec.damping.size() == 0 && spec.loss_factor == 0) return;
+  throw Error(Code::bad_modes,
+              fmt::format("a body with {} is given {}",
+                          spec.loss_factor > 0 ? "a loss factor" : "a damping matrix", given),
+              "begin with the body before that: its damping is of one kind");
+}
+
+void require_no_values(const FlexibleBody::Spec& spec, const char* given) {
+  if (spec.values.empty()) return;
+  throw Error(Code::bad_modes, fmt::format("a body with values of its modes is given {}", given),
+              "put their nominal values into its data: FlexibleBody{body.nominal()}");
+}
+
 }  // namespace
 
 MatrixXd modal_input(const ModalData& d) {
@@ -54,9 +72,7 @@ FlexibleBody::FlexibleBody(ModalData given, std::source_location at) {
 }
 
 FlexibleBody::FlexibleBody(const FlexibleBody& body, const ModeValues& values) {
-  if (body.spec_->damping.size() > 0)
-    throw Error(Code::bad_modes, "values are given for modes of a body that is damped by a matrix",
-                "give the values to the body before, or change its data");
+  require_damped_by_xi(*body.spec_, "values of its modes");
   Spec spec{body.spec_->data, values};
   spec.values.omega.insert(body.spec_->values.omega.begin(), body.spec_->values.omega.end());
   spec.values.xi.insert(body.spec_->values.xi.begin(), body.spec_->values.xi.end());
@@ -66,16 +82,28 @@ FlexibleBody::FlexibleBody(const FlexibleBody& body, const ModeValues& values) {
 
 FlexibleBody FlexibleBody::damped_by(const MatrixXd& Z) const {
   detail::check_damping(Z, data().omega.size());
-  if (!spec_->values.empty())
-    throw Error(Code::bad_modes, "a damping matrix is given to a body with values of its modes",
-                "put their nominal values into its data: FlexibleBody{body.nominal()}");
+  require_damped_by_xi(*spec_, "a damping matrix");
+  require_no_values(*spec_, "a damping matrix");
   FlexibleBody result = *this;
   result.spec_ = std::make_shared<const Spec>(Spec{spec_->data, {}, (Z + Z.transpose()) / 2});
   result.block_ = detail::flexible_body_block(result.spec_, block_);
   return result;
 }
 
+FlexibleBody FlexibleBody::with_loss_factor(double eta) const {
+  if (!(eta > 0) || !std::isfinite(eta))
+    throw Error(Code::bad_value, fmt::format("a body is given the loss factor {}", eta),
+                "give a number above 0: 0.01 is about 0.5 % of critical damping");
+  require_damped_by_xi(*spec_, "a loss factor");
+  require_no_values(*spec_, "a loss factor");
+  FlexibleBody result = *this;
+  result.spec_ = std::make_shared<const Spec>(Spec{spec_->data, {}, {}, eta});
+  result.block_ = detail::flexible_body_block(result.spec_, block_);
+  return result;
+}
+
 MatrixXd FlexibleBody::damping() const {
+  if (spec_->loss_factor > 0) throw detail::no_state_space(spec_->loss_factor);
   if (spec_->damping.size() > 0) return spec_->damping;
   const detail::ModalParameters m = detail::nominal_modes(*spec_);
   return MatrixXd((2 * m.xi.cwiseProduct(m.omega)).asDiagonal());

@@ -53,7 +53,7 @@ class FlexibleBody {
   /// No modes; parameters at their nominal values.
   FlexibleBody(const RigidBody& body, std::source_location at = std::source_location::current());
   /// Values of `body` are kept for modes that `values` does not name. Throws bad_modes for one that
-  /// is damped by a matrix.
+  /// is damped by a matrix or has a loss factor.
   FlexibleBody(const FlexibleBody& body, const ModeValues& values);
 
   /// The same body with -Z etad in place of -diag(2 xi omega) etad: damping that couples the modes
@@ -62,13 +62,22 @@ class FlexibleBody {
   /// is not, or if modes have other values. O(N^3).
   FlexibleBody damped_by(const Eigen::MatrixXd& Z) const;
   /// Z, or diag(2 xi omega): the modes' damping matrix, N x N, parameters at their nominal values.
+  /// Throws not_rational for a body with a loss factor.
   Eigen::MatrixXd damping() const;
+  /// The same body with structural damping in place of xi: its stiffness at s = j omega is
+  /// (1 + j eta sign(omega)) diag(omega^2) [Craig and Kurdila 2006, 4]. That is no rational
+  /// function of s, and has no state-space model: `compile` throws not_rational;
+  /// `frequency_response` of the diagram (analysis/damping/structural_damping.hpp) takes it. At
+  /// resonances it is modal damping of xi = eta / 2. Throws bad_value unless eta > 0 and finite,
+  /// bad_modes if the body has a damping matrix or modes have other values.
+  FlexibleBody with_loss_factor(double eta) const;
 
   /// Data from which its block is made.
   struct Spec {
     std::shared_ptr<const ModalData> data;
     ModeValues values = {};
     Eigen::MatrixXd damping = {};  ///< Z of `damped_by`; 0 x 0: by xi
+    double loss_factor = 0;        ///< eta of `with_loss_factor`; 0: by xi
   };
   const Spec& spec() const { return *spec_; }
   const ModalData& data() const { return *spec_->data; }  ///< as given, without other values

@@ -78,7 +78,7 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   FlexibleBodyBlock(std::shared_ptr<const FlexibleBody::Spec> spec,
                     std::shared_ptr<const Shapes> shapes)
       : spec_(std::move(spec)), shapes_(std::move(shapes)) {
-    if (!spec_->values.empty()) return;
+    if (!spec_->values.empty() || spec_->loss_factor > 0) return;
     Modal m = modal({spec_->data->omega, spec_->data->xi});
     made_ = spec_->damping.size() > 0 ? coupled_dynamics(std::move(m), spec_->damping)
                                       : modal_dynamics(std::move(m));
@@ -89,6 +89,7 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   const Interface& interface() const override { return shapes_->face; }
   /// All nodes of one body share the last result, which is cached.
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
+    if (spec_->loss_factor > 0) throw no_state_space(spec_->loss_factor);
     if (spec_->values.empty()) return made_;
     ModalParameters m = modes_at(values);
     {
@@ -201,6 +202,17 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
 
 ModalParameters nominal_modes(const FlexibleBody::Spec& spec) {
   return modes_of(spec, [](const Value& value) { return value.nominal(); });
+}
+
+Error no_state_space(double loss_factor) {
+  return {
+      Code::not_rational,
+      fmt::format("a loss factor of {} has no state-space model: the stiffness (1 + {}j) K at s = "
+                  "j omega is no rational function of s",
+                  loss_factor, loss_factor),
+      fmt::format("frequency_response(diagram, omega) takes it; for a state space take modal "
+                  "damping of xi = {}, equal at resonances (ModeOptions::xi, ModalData::xi)",
+                  loss_factor / 2)};
 }
 
 BlockPtr flexible_body_block(std::shared_ptr<const FlexibleBody::Spec> spec, const BlockPtr& like) {

@@ -10,6 +10,9 @@ namespace titop::detail {
 /// nominal ones. Throws bad_modes, not_finite.
 ModalParameters nominal_modes(const FlexibleBody::Spec& spec);
 
+/// not_rational: a body of this loss factor has no state-space model.
+Error no_state_space(double loss_factor);
+
 /// The block of this spec, whose data have been checked. `like`: another block of the same data,
 /// with which it shares all that does not depend on the values of modes, or none. O(N^2 + N
 /// inputs^2).

@@ -30,7 +30,8 @@ enum class Code {
   bad_file,        ///< a file that does not contain the expected data
   bad_value,       ///< a number outside its range
   singular,        ///< a matrix that must be inverted is singular, or s is a pole
-  not_rational,    ///< a parameter that `lft` cannot take out of the model
+  not_rational,    ///< a parameter that `lft` cannot take out of the model; a loss factor, which
+                   ///< has no state-space model
 };
 
 /// "no-equation", "two-equations", ...

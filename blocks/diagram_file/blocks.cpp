@@ -151,14 +151,17 @@ void write_flexible_body(const Block& b, const WriteValue& value, const NameBody
   if (!spec.values.omega.empty()) j["omega"] = modes_json(spec.values.omega, value);
   if (!spec.values.xi.empty()) j["xi"] = modes_json(spec.values.xi, value);
   if (spec.damping.size() > 0) j["damping"] = rows(spec.damping);
+  if (spec.loss_factor > 0) j["loss_factor"] = spec.loss_factor;
 }
 
 BlockPtr read_flexible_body(const JsonPlace& p, const ReadValue& value, const FindBody& body) {
-  p.only({"name", "type", "body", "omega", "xi", "damping"});
+  p.only({"name", "type", "body", "omega", "xi", "damping", "loss_factor"});
   const FlexibleBody shared = body(p.at("body"));
   const ModeValues values{.omega = read_modes(p, "omega", value), .xi = read_modes(p, "xi", value)};
   FlexibleBody own = values.empty() ? shared : FlexibleBody(shared, values);
-  return as_block(p.has("damping") ? own.damped_by(p.at("damping").matrix(-1, -1)) : own);
+  if (p.has("damping")) own = own.damped_by(p.at("damping").matrix(-1, -1));
+  if (p.has("loss_factor")) own = own.with_loss_factor(p.at("loss_factor").number());
+  return as_block(own);
 }
 
 // --- joints --------------------------------------------------------------------------------------
