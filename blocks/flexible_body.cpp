@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <titop/blocks/flexible_body_block.hpp>
+#include <titop/blocks/mode_values.hpp>
 #include <type_traits>
 
 namespace titop {
@@ -51,6 +53,19 @@ void require_no_values(const FlexibleBody::Spec& spec, const char* given) {
               "put their nominal values into its data: FlexibleBody{body.nominal()}");
 }
 
+double nominal_of(const Value& value) { return value.nominal(); }
+
+/// Adds those of `before` whose entry is not among `entries`.
+void keep_others(std::vector<ModeValues::Entry>& entries,
+                 const std::vector<ModeValues::Entry>& before) {
+  const std::vector<ModeValues::Entry> given = entries;
+  for (const ModeValues::Entry& e : before)
+    if (std::ranges::none_of(given, [&](const ModeValues::Entry& g) {
+          return g.mode == e.mode && g.component == e.component;
+        }))
+      entries.push_back(e);
+}
+
 }  // namespace
 
 MatrixXd modal_input(const ModalData& d) {
@@ -74,8 +89,11 @@ FlexibleBody::FlexibleBody(ModalData given, std::source_location at) {
 FlexibleBody::FlexibleBody(const FlexibleBody& body, const ModeValues& values) {
   require_damped_by_xi(*body.spec_, "values of its modes");
   Spec spec{body.spec_->data, values};
-  spec.values.omega.insert(body.spec_->values.omega.begin(), body.spec_->values.omega.end());
-  spec.values.xi.insert(body.spec_->values.xi.begin(), body.spec_->values.xi.end());
+  const ModeValues& before = body.spec_->values;
+  spec.values.omega.insert(before.omega.begin(), before.omega.end());
+  spec.values.xi.insert(before.xi.begin(), before.xi.end());
+  keep_others(spec.values.L_P, before.L_P);
+  for (const auto& [child, entries] : before.Phi_C) keep_others(spec.values.Phi_C[child], entries);
   spec_ = std::make_shared<const Spec>(std::move(spec));
   block_ = detail::flexible_body_block(spec_, body.block_);
 }
@@ -105,7 +123,7 @@ FlexibleBody FlexibleBody::with_loss_factor(double eta) const {
 MatrixXd FlexibleBody::damping() const {
   if (spec_->loss_factor > 0) throw detail::no_state_space(spec_->loss_factor);
   if (spec_->damping.size() > 0) return spec_->damping;
-  const detail::ModalParameters m = detail::nominal_modes(*spec_);
+  const auto m = detail::modes_with(data(), spec_->values, nominal_of);
   return MatrixXd((2 * m.xi.cwiseProduct(m.omega)).asDiagonal());
 }
 
@@ -115,15 +133,11 @@ FlexibleBody::FlexibleBody(const RigidBody& body, std::source_location at)
     : FlexibleBody(told_at(at, [&] { return without_modes(body); }), at) {}
 
 ModalData FlexibleBody::nominal() const {
-  detail::ModalParameters m = detail::nominal_modes(*spec_);
-  ModalData result = data();
-  result.omega = std::move(m.omega);
-  result.xi = std::move(m.xi);
-  return result;
+  return detail::data_with(data(), spec_->values, nominal_of);
 }
 
 BlockPtr as_block(const FlexibleBody& body) {
-  if (!body.spec().values.empty()) detail::nominal_modes(body.spec());  // throws for invalid values
+  if (!body.spec().values.empty()) body.nominal();  // throws for invalid values
   return body.block();
 }
 

@@ -9,13 +9,22 @@
 
 namespace titop {
 
-/// Frequencies and damping ratios, numbers or parameters, in place of those of the data, by the
-/// number of the mode: 1 is that of eta1.
+/// Numbers or parameters in place of some of a body's modal data. Modes count from 1, as in eta1;
+/// components from 1: x, y, z, rx, ry, rz.
 struct ModeValues {
-  std::map<int, Value> omega = {};  ///< natural frequencies [rad/s], > 0
-  std::map<int, Value> xi = {};     ///< damping ratios [-], >= 0
+  /// An entry of L_P or of a Phi_C.
+  struct Entry {
+    int mode = 0, component = 0;
+    Value value;
+  };
+  std::map<int, Value> omega = {};  ///< natural frequencies by mode [rad/s], > 0
+  std::map<int, Value> xi = {};     ///< damping ratios by mode [-], >= 0
+  std::vector<Entry> L_P = {};      ///< participations [sqrt(kg), m sqrt(kg)]
+  std::map<std::string, std::vector<Entry>> Phi_C = {};  ///< shapes at a child, by its name
+                                                         ///< [1/sqrt(kg), 1/(m sqrt(kg))]
 
-  bool empty() const { return omega.empty() && xi.empty(); }
+  bool empty() const { return omega.empty() && xi.empty() && !of_shapes(); }
+  bool of_shapes() const { return !L_P.empty() || !Phi_C.empty(); }
 };
 
 /// Flexible body, the two-port M_PC and its N-port form: [Alazard 2015] eq. (14). With N
@@ -24,7 +33,7 @@ struct ModeValues {
 ///     etadd = -diag(omega^2) eta - diag(2 xi omega) etad + W u        u = [F_C; ...; xdd_P]
 ///     y     = W' (etadd) + [[0, tau_CP], [tau_CP', -D_P]] u           y = [xdd_C; ...; F_P]
 ///
-/// with the direct terms of (14): between two children Phi_C Phi_C'', from P (tau_CP - Phi_C L_P),
+/// with the direct terms of (14): between two children Phi_C1 Phi_C2', from P (tau_CP - Phi_C L_P),
 /// at P -D_P0 with the residual mass D_P0 = D_P - L_P' L_P. States: eta1 ... etaN [m sqrt(kg)],
 /// then their rates. Frame: the node's own. No child: the clamped-free appendage of Fig. 15.
 ///
@@ -39,12 +48,14 @@ struct ModeValues {
 ///
 ///     FlexibleBody{boom, {.omega = {{1, w1}, {3, 2.0 * w1}}, .xi = {{1, z}}}}
 ///
-/// is boom with other frequencies and damping ratios for some modes, w1 and z being parameters.
-/// Shapes, participations and masses are boom's, and shared with it. Values are checked when it is
-/// added, and by `update` for new ones: bad_modes (no such mode, omega <= 0, xi < 0), not_finite.
-/// New values cost O(N^2 + N inputs^2), once for all nodes that use the same FlexibleBody. A beam
-/// of another E has all its omegas times one parameter, sqrt(E / E0); of another density or length
-/// it has other shapes too.
+/// is boom with other frequencies and damping ratios for some modes, w1 and z being parameters;
+/// `.L_P = {{.mode = 1, .component = 5, .value = l}}` replaces one participation, and `.Phi_C =
+/// {{"tip", {{1, 5, p}}}}` one entry of the shapes at the child "tip". All else is boom's, and
+/// shared with it. Values are checked when it is added, and by `update` for new ones: bad_modes (no
+/// such mode or component, an entry given twice, omega <= 0, xi < 0, more mass in the modes than
+/// D_P has), not_found (no such child), not_finite. New values cost O(N^2 + N inputs^2), once for
+/// all nodes that use the same FlexibleBody. A beam of another E has all its omegas times one
+/// parameter, sqrt(E / E0); of another density or length it has other shapes too.
 class FlexibleBody {
  public:
   FlexibleBody(ModalData data, std::source_location at = std::source_location::current());

@@ -4,9 +4,10 @@
 #include <titop/blocks/body_interface.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/flexible_body_block.hpp>
+#include <titop/blocks/mode_values.hpp>
+#include <titop/blocks/opened_flexible_body.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/modal_form.hpp>
-#include <titop/graph/opened.hpp>
 
 namespace titop::detail {
 
@@ -16,28 +17,7 @@ using Eigen::VectorXd;
 
 namespace {
 
-/// The numbers of all modes with these values in place; number(value) converts a value.
-template <class Number>
-VectorXd replaced(VectorXd numbers, const std::map<int, Value>& values, Number number) {
-  for (const auto& [mode, value] : values) {
-    if (mode < 1 || mode > numbers.size())
-      throw Error(Code::bad_modes,
-                  fmt::format("a value is given for mode {} of {}", mode, numbers.size()),
-                  "modes count from 1, as in eta1");
-    numbers(mode - 1) = number(value);
-  }
-  return numbers;
-}
-
-template <class Number>
-ModalParameters modes_of(const FlexibleBody::Spec& spec, Number number) {
-  ModalParameters m{replaced(spec.data->omega, spec.values.omega, number),
-                    replaced(spec.data->xi, spec.values.xi, number)};
-  check_modes(m);
-  return m;
-}
-
-/// Common to bodies of the same data, independent of the values of their modes.
+/// Of the data, independent of frequencies and damping ratios.
 struct Shapes {
   std::vector<Vector3d> PC;
   Interface face;
@@ -78,76 +58,34 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   FlexibleBodyBlock(std::shared_ptr<const FlexibleBody::Spec> spec,
                     std::shared_ptr<const Shapes> shapes)
       : spec_(std::move(spec)), shapes_(std::move(shapes)) {
-    if (!spec_->values.empty() || spec_->loss_factor > 0) return;
-    Modal m = modal({spec_->data->omega, spec_->data->xi});
-    made_ = spec_->damping.size() > 0 ? coupled_dynamics(std::move(m), spec_->damping)
-                                      : modal_dynamics(std::move(m));
+    if (spec_->values.empty() && spec_->loss_factor == 0)
+      made_ = made({}, [](const Value& value) { return value.nominal(); });
   }
   const FlexibleBody::Spec& spec() const override { return *spec_; }
   const std::shared_ptr<const Shapes>& shapes() const { return shapes_; }
   std::string_view type() const override { return "FlexibleBody"; }
   const Interface& interface() const override { return shapes_->face; }
-  /// All nodes of one body share the last result, which is cached.
   std::shared_ptr<const Dynamics> dynamics(ParameterValues values) const override {
-    if (spec_->loss_factor > 0) throw no_state_space(spec_->loss_factor);
-    if (spec_->values.empty()) return made_;
-    ModalParameters m = modes_at(values);
-    {
-      const std::scoped_lock lock(keeping_);
-      if (made_ && m.omega == made_for_.omega && m.xi == made_for_.xi) return made_;
-    }
-    auto made = modal_dynamics(modal(m));
-    const std::scoped_lock lock(keeping_);
-    made_ = made;
-    made_for_ = std::move(m);
-    return made;
+    return made_at(values)->dynamics;
   }
-  std::optional<Kinematics> kinematics(ParameterValues) const override {
+  std::optional<Kinematics> kinematics(ParameterValues values) const override {
+    const auto shapes = spec_->values.of_shapes() ? made_at(values)->shapes : shapes_;
     std::vector<MatrixXd> Phi;
-    for (const ModalChild& c : spec_->data->children) Phi.push_back(c.Phi_C);
-    return body_kinematics(shapes_->PC, Phi);
+    for (std::size_t c = 0; c < shapes->PC.size(); ++c)
+      Phi.push_back(shapes->W.middleCols<6>(static_cast<Eigen::Index>(6 * c)).transpose());
+    return body_kinematics(shapes->PC, Phi);
   }
-  std::vector<Value> values() const override {
-    std::vector<Value> all;
-    for (const auto* list : {&spec_->values.omega, &spec_->values.xi})
-      for (const auto& [mode, value] : *list) all.push_back(value);
-    return all;
-  }
-  /// With v = omega eta + 2 xi etad and etadd = W u - omega v: omega has z = eta, whose w adds to
-  /// v, and z = v, whose w subtracts from etadd; xi has z = etad, whose w adds twice to v.
+  std::vector<Value> values() const override { return list_of(spec_->values); }
   std::optional<Opened> opened(ParameterValues values,
                                std::span<const int> parameters) const override {
-    const ModalParameters m = modes_at(values);
-    const Eigen::Index n = m.omega.size();
-    std::vector<OpenedPair> pairs;
-    for (Eigen::Index i = 0; i < n; ++i) {
-      const auto value = [&](const std::map<int, Value>& list, double number) {
-        const auto found = list.find(static_cast<int>(i + 1));
-        return found == list.end() ? Value(number) : found->second;
-      };
-      const Value omega = value(spec_->values.omega, m.omega(i)),
-                  xi = value(spec_->values.xi, m.xi(i));
-      const auto acting = [&](const Value& v, double on_mode, Eigen::RowVectorXd z) {
-        return OpenedPair{v,
-                          on_mode * VectorXd::Unit(2 * n, n + i),
-                          on_mode * shapes_->W.row(i).transpose(),
-                          std::move(z),
-                          {}};
-      };
-      const Eigen::RowVectorXd eta = Eigen::RowVectorXd::Unit(2 * n, i),
-                               etad = Eigen::RowVectorXd::Unit(2 * n, n + i);
-      const std::size_t first = pairs.size();
-      pairs.push_back(acting(omega, -m.omega(i), eta));
-      pairs.push_back(acting(xi, -2 * m.omega(i), etad));
-      pairs.push_back(acting(omega, -1, m.omega(i) * eta + 2 * m.xi(i) * etad));
-      pairs.back().of_pairs = {{first, 1}, {first + 1, 2}};
-    }
-    return with_pairs(*dynamics(values), pairs, parameters);
+    const auto at = made_at(values);
+    return opened_flexible_body(*spec_, at->modes, at->shapes->W, *at->dynamics, parameters);
   }
   Response response(std::complex<double> s, ParameterValues values) const override {
     if (spec_->damping.size() > 0) return Block::response(s, values);
-    if (const auto d = dynamics(values); d->modal) return modal_response(*d->modal, s, type());
-    return modal_response({shapes_->W, shapes_->rigid, {}, {}}, s, type());
+    const auto at = made_at(values);
+    if (at->dynamics->modal) return modal_response(*at->dynamics->modal, s, type());
+    return modal_response({at->shapes->W, at->shapes->rigid, {}, {}}, s, type());
   }
   const DataDigits& digits() const override { return shapes_->digits; }
   Cause beyond_digits(int channel, const VectorXd& direction, double left) const override {
@@ -164,8 +102,8 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
                         spec_->data->children[c].name, where, left, shapes_->digits.shapes),
             kKeepMore};
   }
-  std::optional<Cause> why_singular(int channel, ParameterValues) const override {
-    const ModalData& data = *spec_->data;
+  std::optional<Cause> why_singular(int channel, ParameterValues values) const override {
+    const ModalData data = data_with(*spec_->data, spec_->values, at(values));
     if (channel == static_cast<int>(data.children.size())) {
       const ResidualMass r = residual_mass(data);
       return Cause{
@@ -184,25 +122,57 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
   }
 
  private:
-  ModalParameters modes_at(ParameterValues values) const {
-    return modes_of(*spec_, [&](const Value& v) { return v.at(values); });
+  /// All that depends on the values.
+  struct Made {
+    std::vector<double> numbers;  ///< of the values
+    ModalParameters modes;
+    std::shared_ptr<const Shapes> shapes;
+    std::shared_ptr<const Dynamics> dynamics;
+  };
+
+  static NumberOf at(ParameterValues values) {
+    return [values](const Value& v) { return v.at(values); };
   }
-  Modal modal(const ModalParameters& m) const {
-    return {shapes_->W, shapes_->rigid, m.omega.cwiseAbs2(), 2 * m.xi.cwiseProduct(m.omega)};
+
+  std::shared_ptr<const Made> made(std::vector<double> numbers, const NumberOf& number) const {
+    Made m{std::move(numbers), {}, shapes_, {}};
+    if (spec_->values.of_shapes()) {
+      ModalData data = data_with(*spec_->data, spec_->values, number);
+      m.shapes = shapes_of(data);
+      m.modes = {std::move(data.omega), std::move(data.xi)};
+    } else {
+      m.modes = modes_with(*spec_->data, spec_->values, number);
+    }
+    Modal modal{m.shapes->W, m.shapes->rigid, m.modes.omega.cwiseAbs2(),
+                2 * m.modes.xi.cwiseProduct(m.modes.omega)};
+    m.dynamics = spec_->damping.size() > 0 ? coupled_dynamics(std::move(modal), spec_->damping)
+                                           : modal_dynamics(std::move(modal));
+    return std::make_shared<const Made>(std::move(m));
+  }
+
+  /// All nodes of one body share the last result, which is cached.
+  std::shared_ptr<const Made> made_at(ParameterValues values) const {
+    if (spec_->loss_factor > 0) throw no_state_space(spec_->loss_factor);
+    if (spec_->values.empty()) return made_;
+    std::vector<double> numbers;
+    for (const Value& v : this->values()) numbers.push_back(v.at(values));
+    {
+      const std::scoped_lock lock(keeping_);
+      if (made_ && numbers == made_->numbers) return made_;
+    }
+    auto result = made(std::move(numbers), at(values));
+    const std::scoped_lock lock(keeping_);
+    made_ = result;
+    return result;
   }
 
   std::shared_ptr<const FlexibleBody::Spec> spec_;
   std::shared_ptr<const Shapes> shapes_;
   mutable std::mutex keeping_;
-  mutable std::shared_ptr<const Dynamics> made_;
-  mutable ModalParameters made_for_;
+  mutable std::shared_ptr<const Made> made_;
 };
 
 }  // namespace
-
-ModalParameters nominal_modes(const FlexibleBody::Spec& spec) {
-  return modes_of(spec, [](const Value& value) { return value.nominal(); });
-}
 
 Error no_state_space(double loss_factor) {
   return {

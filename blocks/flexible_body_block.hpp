@@ -1,14 +1,9 @@
 #pragma once
 
-#include <titop/blocks/check_modal_data.hpp>
 #include <titop/blocks/flexible_body.hpp>
 
 /// The block of a FlexibleBody. For the folder's own files.
 namespace titop::detail {
-
-/// Frequencies and damping ratios of all modes with the spec's values in place, parameters at their
-/// nominal ones. Throws bad_modes, not_finite.
-ModalParameters nominal_modes(const FlexibleBody::Spec& spec);
 
 /// not_rational: a body of this loss factor has no state-space model.
 Error no_state_space(double loss_factor);

@@ -102,14 +102,15 @@ struct Dynamics {
   Eigen::MatrixXd dense_direct() const;
 };
 
-/// A parameter in a matrix tau[i] of `Kinematics`, opened: x_i has `by` w more, with z = `of`
-/// x_reference.
+/// A parameter in a matrix tau[i] or Phi[i] of `Kinematics`, opened: x_i has `by` w more, with z =
+/// `of` x_reference + `of_states` x. Empty vectors are 0.
 struct OpenedMotion {
-  int channel = -1;       ///< i
-  Eigen::VectorXd by;     ///< size_i
-  Eigen::RowVectorXd of;  ///< size of the reference channel
-  int pair = -1;          ///< index in Opened::parameter
-  int port = -1;          ///< one-way input that has this w; set by the passes
+  int channel = -1;                   ///< i
+  Eigen::VectorXd by;                 ///< size_i
+  Eigen::RowVectorXd of;              ///< size of the reference channel
+  Eigen::RowVectorXd of_states = {};  ///< n
+  int pair = -1;                      ///< index in Opened::parameter
+  int port = -1;                      ///< one-way input that has this w; set by the passes
 };
 
 /// Kinematics of the acceleration ports: the position of channel i is
@@ -132,7 +133,7 @@ struct Kinematics {
 struct Opened {
   Dynamics dynamics;           ///< A, B, C, D as matrices; no `modal`, no `sparse`
   std::vector<int> parameter;  ///< per pair of scalars (w_k, z_k): the index of its parameter
-  std::vector<OpenedMotion> motions = {};  ///< pairs of parameters in `Kinematics::tau`
+  std::vector<OpenedMotion> motions = {};  ///< pairs of parameters in `Kinematics`
 };
 
 /// Boolean matrix: true if this output may depend directly on this input.

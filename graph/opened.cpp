@@ -20,6 +20,8 @@ MatrixXd grown(const MatrixXd& m, Index rows, Index cols) {
   return result;
 }
 
+double w_scale(const OpenedPair& pair) { return pair.scale_z ? 1 : pair.value.scale(); }
+
 }  // namespace
 
 Opened with_pairs(const Dynamics& given, const std::vector<OpenedPair>& pairs,
@@ -39,10 +41,10 @@ Opened with_pairs(const Dynamics& given, const std::vector<OpenedPair>& pairs,
   d.C = grown(given.C, more, 0), d.D = grown(D, more, more);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     if (place[k] < 0) continue;
-    const double scale = pairs[k].value.scale();
+    const double scale = w_scale(pairs[k]);
     if (pairs[k].moves >= 0)
       o.motions.push_back({pairs[k].moves, scale * pairs[k].moved_by, pairs[k].of_motion,
-                           static_cast<int>(place[k])});
+                           pairs[k].of_motion_states, static_cast<int>(place[k])});
     if (pairs[k].on_states.size() > 0) d.B.col(nu + place[k]) = scale * pairs[k].on_states;
     if (pairs[k].on_outputs.size() > 0)
       d.D.col(nu + place[k]).head(ny) = scale * pairs[k].on_outputs;
@@ -58,7 +60,10 @@ Opened with_pairs(const Dynamics& given, const std::vector<OpenedPair>& pairs,
       d.D.row(row) += p.of_outputs * d.D.topRows(ny);
     }
     for (const auto& [other, factor] : p.of_pairs)
-      if (place[other] >= 0) d.D(row, nu + place[other]) += factor * pairs[other].value.scale();
+      if (place[other] >= 0) d.D(row, nu + place[other]) += factor * w_scale(pairs[other]);
+    if (!p.scale_z) continue;
+    d.C.row(row) *= p.value.scale();
+    d.D.row(row) *= p.value.scale();
   }
   return o;
 }

@@ -18,6 +18,10 @@ struct OpenedPair {
   int moves = -1;                     ///< channel whose position w moves, -1: none (OpenedMotion)
   Eigen::VectorXd moved_by = {};      ///< OpenedMotion::by
   Eigen::RowVectorXd of_motion = {};  ///< OpenedMotion::of
+  Eigen::RowVectorXd of_motion_states = {};  ///< OpenedMotion::of_states
+  /// value.scale() multiplies z, and not w: where the products with `on_...` would be rounded, and
+  /// several pairs that act alike would no longer be found to be one. Not for pairs that move.
+  bool scale_z = false;
 };
 
 /// True if this value is one of these parameters, or a multiple of one.

@@ -3,6 +3,7 @@
 #include <array>
 #include <titop/blocks/bushing.hpp>
 #include <titop/blocks/diagram_file/blocks.hpp>
+#include <titop/blocks/diagram_file/mode_values.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/hinge.hpp>
 #include <titop/blocks/joint.hpp>
@@ -125,39 +126,18 @@ BlockPtr read_rotor(const JsonPlace& p, const ReadValue& value, const FindBody&)
                         .PA = p.at("PA").vector(3)});
 }
 
-/// Values of some modes, by their numbers.
-Json modes_json(const std::map<int, Value>& modes, const WriteValue& value) {
-  Json result = Json::array();
-  for (const auto& [mode, of] : modes) result.push_back({{"mode", mode}, {"value", value(of)}});
-  return result;
-}
-
-std::map<int, Value> read_modes(const JsonPlace& p, const char* key, const ReadValue& value) {
-  std::map<int, Value> modes;
-  if (!p.has(key)) return modes;
-  const JsonPlace list = p.at(key);
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    const JsonPlace item = list.item(i);
-    item.only({"mode", "value"});
-    if (!modes.emplace(item.at("mode").integer(), value(item.at("value"))).second)
-      item.at("mode").refuse("a mode that no value before is for");
-  }
-  return modes;
-}
-
 void write_flexible_body(const Block& b, const WriteValue& value, const NameBody& body, Json& j) {
   const auto& spec = spec_of<FlexibleBody::Spec>(b);
   j["body"] = body(*spec.data);
-  if (!spec.values.omega.empty()) j["omega"] = modes_json(spec.values.omega, value);
-  if (!spec.values.xi.empty()) j["xi"] = modes_json(spec.values.xi, value);
+  write_mode_values(spec.values, value, j);
   if (spec.damping.size() > 0) j["damping"] = rows(spec.damping);
   if (spec.loss_factor > 0) j["loss_factor"] = spec.loss_factor;
 }
 
 BlockPtr read_flexible_body(const JsonPlace& p, const ReadValue& value, const FindBody& body) {
-  p.only({"name", "type", "body", "omega", "xi", "damping", "loss_factor"});
+  p.only({"name", "type", "body", "omega", "xi", "L_P", "Phi_C", "damping", "loss_factor"});
   const FlexibleBody shared = body(p.at("body"));
-  const ModeValues values{.omega = read_modes(p, "omega", value), .xi = read_modes(p, "xi", value)};
+  const ModeValues values = read_mode_values(p, value);
   FlexibleBody own = values.empty() ? shared : FlexibleBody(shared, values);
   if (p.has("damping")) own = own.damped_by(p.at("damping").matrix(-1, -1));
   if (p.has("loss_factor")) own = own.with_loss_factor(p.at("loss_factor").number());
@@ -189,17 +169,23 @@ std::vector<Axis> read_axes(const JsonPlace& p) {
   return axes;
 }
 
-Vector3d read_axis(const JsonPlace& p) {
+/// The one axis of a hinge or slide, which has no name.
+Vector3d read_axis(const JsonPlace& p, Axis::Kind kind) {
   const std::vector<Axis> axes = read_axes(p);
   if (axes.size() != 1) p.at("axes").refuse("one axis");
+  const JsonPlace axis = p.at("axes").item(0);
+  if (axes[0].kind != kind)
+    axis.at("kind").refuse(kind == Axis::Kind::revolute ? "about, of a Hinge"
+                                                        : "along, of a Slide");
+  if (!axes[0].name.empty()) axis.at("name").refuse("an empty name: only axes of a Joint have one");
   return axes[0].direction;
 }
 
 BlockPtr read_hinge(const JsonPlace& p, const ReadValue&, const FindBody&) {
-  return as_block(Hinge{read_axis(p)});
+  return as_block(Hinge{read_axis(p, Axis::Kind::revolute)});
 }
 BlockPtr read_slide(const JsonPlace& p, const ReadValue&, const FindBody&) {
-  return as_block(Slide{read_axis(p)});
+  return as_block(Slide{read_axis(p, Axis::Kind::prismatic)});
 }
 BlockPtr read_joint(const JsonPlace& p, const ReadValue&, const FindBody&) {
   return as_block(Joint{read_axes(p)});

@@ -30,8 +30,36 @@ struct MotionOpening {
   Stage& stage;
   Graph& g;
 
-  /// z' = `of` times the motion of the reference, for a w of a block that moves points; else none.
-  std::vector<Term> of_reference(const std::vector<Term>& z, bool position) const {
+  /// z' = `of` times the motion of the reference and `of_states` times that of the states.
+  std::vector<Term> motion_terms(const Node& node, const Kinematics& k,
+                                 const std::vector<const OpenedMotion*>& motions,
+                                 bool position) const {
+    const Channel& reference = g.channels[at(node.first_channel + k.reference)];
+    const Eigen::Index n = k.Phi[0].cols(), rows = std::ssize(motions);
+    Eigen::MatrixXd of = Eigen::MatrixXd::Zero(rows, reference.size),
+                    of_states = Eigen::MatrixXd::Zero(rows, n);
+    for (Eigen::Index j = 0; j < rows; ++j) {
+      const OpenedMotion& m = *motions[at(j)];
+      if (m.of.size() > 0) of.row(j) = m.of;
+      if (m.of_states.size() > 0) of_states.row(j) = m.of_states;
+    }
+    std::vector<Term> terms;
+    const auto add = [&](Term term, Eigen::MatrixXd factor) {
+      if (factor.isZero(0)) return;
+      term.factors = {Matrix{std::make_shared<const Eigen::MatrixXd>(std::move(factor))}};
+      terms.push_back(std::move(term));
+    };
+    add({.signal = reference.accel, .of = position ? Term::Of::position : Term::Of::rate},
+        std::move(of));
+    if (node.state >= 0)
+      add({.signal = node.state},
+          position ? of_states
+                   : Eigen::MatrixXd(of_states * node.block->dynamics(stage.values)->A));
+    return terms;
+  }
+
+  /// motion_terms of a w of a block that moves points; else none.
+  std::vector<Term> of_block(const std::vector<Term>& z, bool position) const {
     if (z.size() != 1 || g.signals[at(z[0].signal)].node < 0) return {};
     const Signal& out = g.signals[at(z[0].signal)];
     const Node& node = g.nodes[at(out.node)];
@@ -42,13 +70,7 @@ struct MotionOpening {
       // The z of a port stands among the outputs as its w among the inputs, from the end.
       const Interface& face = node.block->interface();
       if (face.inputs.size() - at(port) != face.outputs.size() - at(out.spec)) continue;
-      Eigen::MatrixXd of(static_cast<Eigen::Index>(motions.size()), motions[0]->of.size());
-      for (std::size_t j = 0; j < motions.size(); ++j)
-        of.row(static_cast<Eigen::Index>(j)) = motions[j]->of;
-      const Channel& reference = g.channels[at(node.first_channel + k->reference)];
-      return {{.signal = reference.accel,
-               .of = position ? Term::Of::position : Term::Of::rate,
-               .factors = {Matrix{std::make_shared<const Eigen::MatrixXd>(std::move(of))}}}};
+      return motion_terms(node, *k, motions, position);
     }
     return {};
   }
@@ -60,7 +82,7 @@ struct MotionOpening {
     const std::string name = name_of_motion(of.name, position);
     const auto same = [&](const auto& item) { return item.name == of.name; };
     std::vector<Term> z = std::find_if(g.outputs.begin(), g.outputs.end(), same)->terms;
-    std::vector<Term> moved = of_reference(z, position);
+    std::vector<Term> moved = of_block(z, position);
     const int size = moved.empty() ? of.size : rows_of(g, moved[0]);
     const int made = add_input(g, name, size);
     g.inputs.back().parameter = of.parameter;
