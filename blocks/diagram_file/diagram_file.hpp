@@ -35,10 +35,11 @@ std::string diagram_json(const Diagram& diagram);
 /// The diagram of such a text; `file` is for messages. Compiling it gives the same model, to the
 /// last bit, as compiling the diagram that was written. Throws bad_file, with the place in the text
 /// ("blocks[3].mass"), the text found and the text expected; and the errors of `Diagram::add` for
-/// invalid blocks. Later messages have "equations[3] of the diagram file" for a source line.
+/// invalid blocks. Later messages have "equations[3] of the diagram file" for a source line, those
+/// after pass check "a diagram file".
 Diagram parse_diagram(std::string_view json, const std::string& file = "diagram");
 
-/// The same with files. Throw bad_file.
+/// The same with files. Throw bad_file, and the errors of diagram_json or parse_diagram.
 void write_diagram(const Diagram& diagram, const std::filesystem::path& file);
 Diagram read_diagram(const std::filesystem::path& file);
 

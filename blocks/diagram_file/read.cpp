@@ -184,6 +184,11 @@ class DiagramReader {
       const Signal& s = graph_->signals[static_cast<std::size_t>(term.signal)];
       if (term.of != Term::Of::signal && s.channel < 0)
         p.at("read").refuse("nothing: only channels have reactions, positions and rates");
+      if (term.of == Term::Of::reaction && s.quantity != Quantity::force)
+        p.at("read").refuse("position or rate: the reaction of a channel is read from its force");
+      if ((term.of == Term::Of::position || term.of == Term::Of::rate) &&
+          s.quantity != Quantity::acceleration)
+        p.at("read").refuse("reaction: positions and rates are read from the acceleration");
       if (p.has("sign")) term.sign = p.at("sign").number();
       if (std::abs(term.sign) != 1) p.at("sign").refuse("1 or -1; other numbers are factors");
       if (p.has("factors"))
@@ -194,7 +199,7 @@ class DiagramReader {
   }
 
   void read_equation(const JsonPlace& p) {
-    p.only({"of", "part", "add", "terms"});
+    p.only({"of", "part", "add", "of_spec", "terms"});
     Equation e{.target = read_signal(p.at("of"))};
     const Signal& s = graph_->signals[static_cast<std::size_t>(e.target)];
     if (s.channel < 0 && s.role != Signal::Role::input)
@@ -205,6 +210,7 @@ class DiagramReader {
     e.accumulate = p.has("add") && p.at("add").yes();
     if (e.accumulate && s.quantity != Quantity::force)
       p.at("add").refuse("forces only to be added to");
+    e.of_spec = p.has("of_spec") && p.at("of_spec").yes();
     e.terms = read_terms(p.at("terms"));
     graph_->equations.push_back(std::move(e));
   }

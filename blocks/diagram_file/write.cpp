@@ -134,6 +134,7 @@ class DiagramWriter {
     Json json = {{"of", signal(e.target)}};
     if (!e.part.whole()) json["part"] = part(e.part);
     if (e.accumulate) json["add"] = true;
+    if (e.of_spec) json["of_spec"] = true;
     json["terms"] = terms(e.terms);
     return json;
   }

@@ -91,6 +91,19 @@ TEST_CASE("data that a reader would ignore silently are refused with their place
   refused("\"blocks\": [", R"("blocks": [{"name": "J", "type": "Joint", "axes":
       [{"kind": "about", "direction": [0, 0, 1], "name": "", "angle": 1}]}, )",
           {"blocks[0].axes[0]", "\"angle\"", "kind, direction, name"});
+  const auto joint = [](const std::string& type, const std::string& kind, const std::string& name) {
+    return R"("blocks": [{"name": "J", "type": ")" + type + R"(", "axes": [{"kind": ")" + kind +
+           R"(", "direction": [0, 0, 1], "name": ")" + name + R"("}]}, )";
+  };
+  refused("\"blocks\": [", joint("Hinge", "along", ""), {"blocks[0].axes[0].kind", "about"});
+  refused("\"blocks\": [", joint("Slide", "about", ""), {"blocks[0].axes[0].kind", "along"});
+  refused("\"blocks\": [", joint("Hinge", "about", "x"), {"blocks[0].axes[0].name", "\"x\""});
+  parse_diagram(replaced(kGood, "\"blocks\": [", joint("Slide", "along", "")));
+  const std::string accel = R"({"signal": ["z", "parent", "accel"])";
+  refused(accel, accel + R"(, "read": "reaction")", {"outputs[0].terms[0].read", "force"});
+  refused("{\"signal\": [\"z\", \"stretch\"]",
+          R"({"signal": ["z", "parent", "force"], "read": "rate")",
+          {"equations[2].terms[0].read", "acceleration"});
 }
 
 TEST_CASE("mistakes of a scene's equations are told with their place in the file") {

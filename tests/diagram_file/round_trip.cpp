@@ -7,6 +7,7 @@
 #include "support/close.hpp"
 #include "support/five_masses.hpp"
 #include "support/folder.hpp"
+#include "support/mistakes.hpp"
 #include "support/random_scene.hpp"
 
 using namespace titop;
@@ -32,7 +33,12 @@ Diagram everything() {
                                .material = {.E = 70e9, .nu = 0.3, .rho = 2700},
                                .elements = 1,
                                .modes = {.xi = {0.004}}});
-  const FlexibleBody softer(boom, {.omega = {{1, 400 * k}}, .xi = {{2, 0.03 * k}, {3, 0.1}}});
+  int axial = 0;  // a mode that has less mass with a smaller entry
+  boom.data().L_P.col(0).cwiseAbs().maxCoeff(&axial);
+  const FlexibleBody softer(boom, {.omega = {{1, 400 * k}},
+                                   .xi = {{2, 0.03 * k}, {3, 0.1}},
+                                   .L_P = {{axial + 1, 1, 1.5 * boom.data().L_P(axial, 0) * k}},
+                                   .Phi_C = {{"C", {{1, 2, 0.02 * k}, {2, 6, 0.1}}}}});
   const Eigen::MatrixXd Z =
       Eigen::MatrixXd::Identity(6, 6) / 7 + Eigen::MatrixXd::Constant(6, 6, 0.03);
   auto b1 = d.add("b1", boom), b2 = d.add("b2", boom.damped_by(Z)), b3 = d.add("b3", softer);
@@ -124,6 +130,13 @@ TEST_CASE("a file is the text, in the order in which it was written") {
   CHECK(diagram_json(read_diagram(folder.path / "masses.json")) == diagram_json(d));
   CHECK_THROWS_AS(write_diagram(d, folder.path / "none" / "masses.json"), Error);
   CHECK_THROWS_AS(read_diagram(folder.path / "none.json"), Error);
+}
+
+TEST_CASE("a rotor that nothing carries is refused after a round trip as before") {
+  Diagram d{"rotor"};
+  d.add("wheel", Rotor{.mass = 1, .axial = 0.1, .transverse = 0.06, .momentum = 5}).torque = 0;
+  CHECK(error_of([&] { compile(d); }).has(Code::no_equation));
+  CHECK(error_of([&] { compile(parse_diagram(diagram_json(d))); }).has(Code::no_equation));
 }
 
 TEST_CASE("scenes that cannot be written are refused") {
