@@ -23,15 +23,35 @@ bool pole_at_zero(const linalg::Solution& x) { return x.rcond < kSingular || x.m
 
 }  // namespace
 
+void require_fitting(const StateSpace& m, const std::string& user) {
+  const Eigen::Index n = m.A.rows(), nu = m.B.cols(), ny = m.C.rows();
+  std::vector<Mistake> mistakes;
+  const auto compare = [&](const char* subject, const Eigen::MatrixXd& entries, Eigen::Index rows,
+                           Eigen::Index columns) {
+    if (entries.rows() == rows && entries.cols() == columns) return;
+    mistakes.push_back({Code::size,
+                        fmt::format("{}: {} of the model is {} x {}, beside the others {} x {}",
+                                    user, subject, entries.rows(), entries.cols(), rows, columns),
+                        {},
+                        "A is n x n, B n x nu, C ny x n, D ny x nu"});
+  };
+  compare("A", m.A, n, n);
+  compare("B", m.B, n, nu);
+  compare("C", m.C, ny, n);
+  compare("D", m.D, ny, nu);
+  if (!mistakes.empty()) throw Error(std::move(mistakes));
+}
+
 Eigen::MatrixXcd StateSpace::transfer(std::complex<double> s) const {
   check_finite(s, "the model");
+  require_fitting(*this, "transfer");
   const auto n = A.rows();
   if (n == 0) return D.cast<std::complex<double>>();
   const linalg::Solution x =
       linalg::solve(s * Eigen::MatrixXcd::Identity(n, n) - A, B.cast<std::complex<double>>());
   if (!(x.rcond > 0) || !x.z.allFinite() || (s == 0.0 && pole_at_zero(x)))
     throw Error(Code::singular, fmt::format("s = {}{:+}j is a pole", s.real(), s.imag()),
-                "evaluate beside it");
+                "evaluate at another s");
   return C * x.z + D;
 }
 

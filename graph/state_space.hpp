@@ -21,7 +21,8 @@ struct StateSpace {
 
   int order() const { return static_cast<int>(A.rows()); }
 
-  /// C (s - A)^-1 B + D, ny x nu. Throws singular if s is a pole. O(n^3).
+  /// C (s - A)^-1 B + D, ny x nu. Throws singular if s is a pole, size if A, B, C, D do not fit
+  /// each other. O(n^3).
   Eigen::MatrixXcd transfer(std::complex<double> s) const;
   /// Row of the output / column of the input / position of the state of this name; throws
   /// unknown_name with the valid ones.
@@ -29,6 +30,10 @@ struct StateSpace {
   int input(const std::string& name) const;
   int state(const std::string& name) const;
 };
+
+/// Throws size, with all matrices that do not fit: A must be n x n, B n x nu, C ny x n, D ny x nu,
+/// with n the rows of A, nu the columns of B and ny the rows of C. `user`: for the message.
+void require_fitting(const StateSpace& model, const std::string& user);
 
 /// Column of the only entry in this row of A if it is 1 and off the diagonal, else -1: xdot of the
 /// state is another state.

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <titop/analysis/lft/derivatives.hpp>
 #include <titop/analysis/lft/opening.hpp>
-#include <titop/compiler/passes/open/differences.hpp>
+#include <titop/analysis/norms/scaled.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -15,23 +15,6 @@ using Eigen::Index;
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 using linalg::at;
-
-namespace {
-
-/// Blocks with this parameter that do not open it.
-std::vector<std::string> closed_blocks(const Graph& g, ParameterValues values, int parameter) {
-  std::vector<std::string> names;
-  for (const Node& node : g.nodes) {
-    const std::vector<Value> all = node.block->values();
-    if (std::any_of(all.begin(), all.end(),
-                    [&](const Value& v) { return v.index() == parameter; }) &&
-        !passes::is_opened_by(*node.block, values, parameter))
-      names.push_back(node.name);
-  }
-  return names;
-}
-
-}  // namespace
 
 Derivatives derivatives(const System& system, const std::vector<std::string>& parameters) {
   std::vector<detail::IsolatedParameter> list;
@@ -55,13 +38,16 @@ Derivatives derivatives(const System& system, const std::vector<std::string>& pa
   g.in_ = std::move(opened.in), g.out_ = std::move(opened.out);
   g.inputs_ = opened.ports.back().inputs, g.outputs_ = opened.ports.back().outputs;
   g.names_ = parameters;
-  const Stage& stage = system.stage();
+  const System of_all(g.opened_);
+  const std::vector<ByDifferences>& by_differences = of_all.stage().by_differences;
+  for (const ByDifferences& b : by_differences)
+    g.by_differences_.push_back(of_all.stage().graph.parameters[at(b.parameter)].name + " of " +
+                                b.block);
   for (std::size_t i = 0; i < list.size(); ++i) {
     const bool angle = list[i].map.kind != ParameterMap::Kind::number;
-    const auto closed = closed_blocks(*stage.source, stage.values, list[i].index);
-    for (const std::string& block : closed)
-      g.by_differences_.push_back(parameters[i] + " of " + block);
-    g.pairs_.push_back({g.all_pairs_, opened.sizes[i], angle ? 0.5 : 1.0, closed.empty(),
+    const auto closed =
+        std::ranges::count(by_differences, list[i].index, &ByDifferences::parameter);
+    g.pairs_.push_back({g.all_pairs_, opened.sizes[i], angle ? 0.5 : 1.0, closed == 0,
                         opened.ports[i].inputs, opened.ports[i].outputs});
     g.all_pairs_ += opened.sizes[i];
   }
@@ -97,35 +83,44 @@ void refuse_norm(const std::string& why, const char* way_out) {
   throw Error(Code::singular, "the H2 norm is infinite: " + why, way_out);
 }
 
+/// Throws singular for a pole on the axis or right of it, as far as rounding lets it be known.
+void require_stable(const StateSpace& scaled) {
+  if (scaled.order() == 0) return;
+  const Eigen::VectorXcd poles = linalg::eigenvalues(scaled.A);
+  Index worst = 0;
+  poles.real().maxCoeff(&worst);
+  if (!(poles(worst).real() < -detail::rounding_of_poles(scaled)))
+    refuse_norm(fmt::format("the pole {:.6g}{:+.6g}j is not left of the axis, beyond rounding",
+                            poles(worst).real(), poles(worst).imag()),
+                "damp it, or leave out the output that reads its position");
+}
+
 }  // namespace
 
 Slopes Derivatives::h2() const {
   const Index ny = m_.D.rows() - all_pairs_, nu = m_.D.cols() - all_pairs_;
-  const MatrixXd B = m_.B.rightCols(nu), C = m_.C.bottomRows(ny);
-  if (m_.order() > 0) {
-    const Eigen::VectorXcd poles = linalg::eigenvalues(m_.A);
-    Index worst = 0;
-    poles.real().maxCoeff(&worst);
-    if (!(poles(worst).real() < 0))
-      refuse_norm(fmt::format("the pole {:.6g}{:+.6g}j is not left of the axis",
-                              poles(worst).real(), poles(worst).imag()),
-                  "damp it, or leave out the output that reads its position");
-  }
-  bool direct = !m_.D.bottomRightCorner(ny, nu).isZero(0);
+  const StateSpace m = detail::scaled(m_);
+  require_stable(m);
+  bool direct = !m.D.bottomRightCorner(ny, nu).isZero(0);
   for (const std::string& p : names_) direct = direct || !matrices(p).D.isZero(0);
   if (direct)
     refuse_norm("there is a direct term",
                 "read rates or positions, or filter the inputs or outputs");
-  const MatrixXd P = lyapunov(m_.A, B), Q = lyapunov(m_.A.transpose(), C.transpose());
+  const MatrixXd B = m.B.rightCols(nu), C = m.C.bottomRows(ny);
+  const MatrixXd P = lyapunov(m.A, B), Q = lyapunov(m.A.transpose(), C.transpose());
   Slopes result{std::sqrt((C * P * C.transpose()).trace()),
                 Eigen::VectorXd::Zero(static_cast<Index>(names_.size()))};
   if (!(result.value > 0))
     throw Error(Code::singular, "the H2 norm is 0, where it has no derivatives",
                 "take inputs and outputs that are connected");
   for (std::size_t i = 0; i < names_.size(); ++i) {
-    const StateSpace d = matrices(names_[i]);
-    const double half = (Q * d.A * P).trace() + (Q * d.B * B.transpose()).trace() +
-                        (d.C * P * C.transpose()).trace();
+    const Pairs& p = pairs_[i];
+    const MatrixXd Bw = p.slope * m.B.middleCols(p.first, p.size),
+                   Dyw = p.slope * m.D.bottomRows(ny).middleCols(p.first, p.size),
+                   Cz = m.C.middleRows(p.first, p.size),
+                   Dzu = m.D.rightCols(nu).middleRows(p.first, p.size);
+    const double half = ((Cz * P) * (Q * Bw)).trace() + ((Q * Bw) * (Dzu * B.transpose())).trace() +
+                        ((Dyw * Cz) * (P * C.transpose())).trace();
     result.slopes(static_cast<Index>(i)) = half / result.value;
   }
   return result;

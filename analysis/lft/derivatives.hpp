@@ -49,15 +49,15 @@ class Derivatives {
   /// row or to 1e-11 of the matrices' row over p (compiler/passes/open/differences.hpp).
   const std::vector<std::string>& by_differences() const { return by_differences_; }
   /// The system with w and z among its inputs and outputs, from which all derivatives follow: its
-  /// certificate() is theirs, and its notes() name what is by differences (pass "open").
+  /// certificate() is theirs, with the list of by_differences().
   System opened() const { return System(opened_); }
 
   /// dH/dp at s, outputs x inputs [unit of H per unit of p]: the product of M_yw and M_zu, each
   /// accurate to 1e-12 of its blocks as System::transfer is. Throws unknown_name, and singular if s
-  /// is a pole. One factorisation, then solves of O(bodies) each: for M_zu one per input, or one
-  /// per occurrence through the transposed factors, whichever are fewer; for M_yw one per output
-  /// through the transposed factors, or one per occurrence. `cost`, if given, becomes what it has
-  /// cost.
+  /// is a pole. (At s = 0, if a block has a pole there, from the dense model.) One factorisation,
+  /// then solves of O(bodies) each: for M_zu one per input, or one per occurrence through the
+  /// transposed factors, whichever are fewer; for M_yw one per output through the transposed
+  /// factors, or one per occurrence. `cost`, if given, receives the counts.
   Eigen::MatrixXcd transfer(std::complex<double> s, const std::string& p,
                             TransferCost* cost = nullptr) const;
   /// dH/dp at s for all parameters, in their order, however many there are: one factorisation and
@@ -105,6 +105,9 @@ class Derivatives {
   int index_of(const std::string& p) const;
   Paths paths(std::complex<double> s, const std::vector<int>& parameters, bool both = false,
               bool direct = false) const;
+  Paths paths_of_factors(std::complex<double> s, const std::vector<int>& parameters, bool both,
+                         bool direct) const;
+  Paths paths_of_model(std::complex<double> s, const std::vector<int>& parameters) const;
 
   System system_;
   std::shared_ptr<const detail::SystemData> opened_;

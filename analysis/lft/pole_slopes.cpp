@@ -47,6 +47,9 @@ Subspace subspace(const MatrixXd& A, const linalg::Spectrum& s,
   return {e.values, e.W * left, U * e.V, !(e.rcond_V > kParallel)};
 }
 
+/// Rounding moves two equal real poles off the axis.
+bool is_real(const std::complex<double>& s) { return std::abs(s.imag()) <= kEqual * std::abs(s); }
+
 /// The next places of `todo` whose poles are equal to the first one's.
 std::vector<Index> equal_ones(const Eigen::VectorXcd& values, std::vector<Index>& todo) {
   const std::complex<double> s = values(todo.front());
@@ -70,13 +73,14 @@ std::vector<PoleSlopes> Derivatives::poles() const {
     const Subspace sub = subspace(A, s, cluster);
     std::vector<Index> todo;
     for (Index i = 0; i < sub.values.size(); ++i)
-      if (sub.values(i).imag() >= 0) todo.push_back(i);
+      if (sub.values(i).imag() >= 0 || is_real(sub.values(i))) todo.push_back(i);
     while (!todo.empty()) {
       const std::vector<Index> own = equal_ones(sub.values, todo);
       PoleSlopes p{.s = sub.values(own.front()),
                    .count = static_cast<int>(own.size()),
                    .slopes = {},
                    .defective = sub.defective};
+      if (is_real(p.s)) p.s.imag(0);
       for (const Pairs& pairs : pairs_) {
         if (sub.defective) break;
         const MatrixXd Bw =

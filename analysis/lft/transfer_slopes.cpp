@@ -22,9 +22,40 @@ int Derivatives::index_of(const std::string& p) const {
               "they are by " + known);
 }
 
-/// M_zu by columns of u or rows of z, M_yw by rows of y or columns of w, whichever are fewer.
+/// From the dense model.
+Derivatives::Paths Derivatives::paths_of_model(std::complex<double> s,
+                                               const std::vector<int>& parameters) const {
+  Paths result;
+  std::vector<Index> pairs;
+  for (const int i : parameters) {
+    const Pairs& p = pairs_[at(i)];
+    result.first.push_back(std::ssize(pairs));
+    for (Index k = 0; k < p.size; ++k) pairs.push_back(p.first + k);
+  }
+  const MatrixXcd M = m_.transfer(s);
+  const Index ny = M.rows() - all_pairs_, nu = M.cols() - all_pairs_;
+  result.yw = M.bottomRows(ny)(Eigen::all, pairs);
+  result.zu = M.rightCols(nu)(pairs, Eigen::all);
+  result.zw = M(pairs, pairs);
+  result.yu = M.bottomRightCorner(ny, nu);
+  return result;
+}
+
 Derivatives::Paths Derivatives::paths(std::complex<double> s, const std::vector<int>& parameters,
                                       bool both, bool direct) const {
+  try {
+    return paths_of_factors(s, parameters, both, direct);
+  } catch (const Error& error) {
+    // A block may have a pole at 0 that the system has not: a hinge with a spring.
+    if (s != 0.0 || !error.has(Code::singular)) throw;
+    return paths_of_model(s, parameters);
+  }
+}
+
+/// M_zu by columns of u or rows of z, M_yw by rows of y or columns of w, whichever are fewer.
+Derivatives::Paths Derivatives::paths_of_factors(std::complex<double> s,
+                                                 const std::vector<int>& parameters, bool both,
+                                                 bool direct) const {
   Paths result;
   detail::PartOfTransfer part;
   std::vector<Index> z, w;  // scalars of the opened transfer

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <optional>
 #include <titop/analysis/norms/hinf.hpp>
+#include <titop/analysis/norms/scaled.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -62,14 +63,6 @@ class Gain {
   const StateSpace& m_;
   linalg::ShiftedSolver x_, z_;
 };
-
-/// In the states' own sizes, by powers of two.
-StateSpace scaled(StateSpace m) {
-  const Eigen::VectorXd d = linalg::similarity_scaling(m.A);
-  m.B = d.cwiseInverse().asDiagonal() * m.B;
-  m.C = m.C * d.asDiagonal();
-  return m;
-}
 
 /// Candidates for the frequencies at which a singular value is gamma: the imaginary parts of the
 /// eigenvalues of the Hamiltonian matrix in [from, to], ascending, with both ends.
@@ -176,8 +169,7 @@ void check(const StateSpace& m, const Eigen::VectorXcd& poles, double from, doub
   if (!(from >= 0 && from < to))
     throw Error(Code::bad_value, "the band of the H-infinity norm is empty or negative",
                 "give band_hz = {lowest, highest} in Hz");
-  // Rounding of eigenvalues: that of A in the states' own sizes [G 7.2].
-  const double rounding = static_cast<double>(m.order()) * linalg::kEpsilon * m.A.norm();
+  const double rounding = detail::rounding_of_poles(m);
   for (const Complex& s : poles)
     if (s.imag() >= 0 && std::abs(s.real()) <= rounding && s.imag() >= from - rounding &&
         s.imag() <= to + rounding)
@@ -197,10 +189,11 @@ HinfNorm norm_hinf(const StateSpace& model, const HinfOptions& options) {
                 fmt::format("reduce it to {} states or fewer: compile(diagram, Scene{{...}}), or "
                             "take frequency_response",
                             kMostStatesOfHinf));
+  require_fitting(model, "norm_hinf");
   check_finite(model);
   const double from = 2 * std::numbers::pi * options.band_hz[0],
                to = 2 * std::numbers::pi * options.band_hz[1];
-  const StateSpace m = scaled(model);
+  const StateSpace m = detail::scaled(model);
   const Eigen::VectorXcd poles = m.order() > 0 ? linalg::eigenvalues(m.A) : Eigen::VectorXcd();
   check(m, poles, from, to);
   const Gain gain(m);

@@ -9,6 +9,7 @@
 /// The H-infinity norm of a model, over all frequencies or over a band.
 namespace titop {
 
+/// Options of norm_hinf.
 struct HinfOptions {
   /// Frequencies that count [Hz]; the second may be infinite.
   std::array<double, 2> band_hz = {0, std::numeric_limits<double>::infinity()};
@@ -27,7 +28,7 @@ struct HinfNorm {
   std::vector<double> others;
 };
 
-/// Most states of a model that norm_hinf takes: twice as many eigenvalues take half a minute.
+/// Largest number of states of norm_hinf: 1200 eigenvalues of the Hamiltonian take half a minute.
 inline constexpr int kMostStatesOfHinf = 600;
 
 /// The H-infinity norm by level sets [Bruinsma, Steinbuch 1990; Boyd, Balakrishnan, Kabamba 1989]:
@@ -40,8 +41,9 @@ inline constexpr int kMostStatesOfHinf = 600;
 /// norm.
 ///
 /// Throws singular if a pole lies on the axis inside of the band (the norm is infinite), bad_value
-/// for a band that is none and for a model of more than kMostStatesOfHinf states, not_finite for an
-/// entry of the model that is not. O(200 states^3) per level, of which there are 3 to 6.
+/// for a band that is none and for a model of more than kMostStatesOfHinf states, size for matrices
+/// that do not fit each other, not_finite for an entry of the model that is not. O(200 states^3)
+/// per level, of which there are 3 to 6.
 ///
 ///     const HinfNorm n = norm_hinf(system.state_space(), {.band_hz = {0, 10}});
 HinfNorm norm_hinf(const StateSpace& model, const HinfOptions& options = {});

@@ -108,6 +108,7 @@ Hold hold(const MatrixXd& A, const MatrixXd& B, double h) {
 
 MatrixXd held_response(const StateSpace& model, double h, const MatrixXd& inputs) {
   check_step(h);
+  require_fitting(model, "held_response");
   if (inputs.rows() != model.B.cols())
     throw Error(Code::size, fmt::format("held_response: {} rows of inputs", inputs.rows()),
                 fmt::format("the model has {} inputs, one row each", model.B.cols()));

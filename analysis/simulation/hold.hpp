@@ -19,8 +19,8 @@ struct Hold {
 Hold hold(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, double h);
 
 /// Outputs at t = 0, h, 2 h, ... from x(0) = 0 for inputs held over each step (columns of `inputs`,
-/// nu x steps): column k is y at t = k h with u = inputs.col(k). Precision and cost as `hold`, and
-/// O(n^2) per step.
+/// nu x steps): column k is y at t = k h with u = inputs.col(k). Precision, errors and cost as
+/// `hold`, size for inputs of other than nu rows, and O(n^2) per step.
 Eigen::MatrixXd held_response(const StateSpace& model, double h, const Eigen::MatrixXd& inputs);
 
 }  // namespace titop

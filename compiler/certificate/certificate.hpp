@@ -2,6 +2,7 @@
 
 #include <complex>
 #include <string>
+#include <vector>
 
 namespace titop {
 
@@ -58,7 +59,7 @@ struct Certificate {
   /// The same over the size of the output at that same s, also far below the slowest mode: there an
   /// acceleration may fall with s^2, and the digits that A, B, C, D keep of a free motion fall with
   /// it. It grows towards s below the lowest point. Above 1e-6 dense_log() warns, if another digit
-  /// is lost there.
+  /// is lost there, from half the slowest pole on: below all poles it is quiet.
   double dense_error_where_small = -1;
   std::complex<double> dense_error_where_small_s;  ///< s of the largest error
   /// Smallest pivot over the sum of magnitudes of its terms: 1 no cancellation, 1e-16 no digit.
@@ -74,6 +75,9 @@ struct Certificate {
   bool margin_is_exact = true;  ///< false if some loops were too large for it (see the notes),
                                 ///< or have no inverse in double (50 digits, or states, decide)
   std::string margin_where;
+  /// "p of c": the derivative of block c by p is that of its matrices by differences, as c has no
+  /// Block::opened. In the certificate of Derivatives::opened(); else empty.
+  std::vector<std::string> by_differences = {};
   int fronts = 0;         ///< of the elimination
   int fronts_made = 0;    ///< computed by the last compile or update; the others are shared
   int plans_renewed = 0;  ///< updates since compile that recomputed the scaling, or all

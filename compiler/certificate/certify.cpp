@@ -58,6 +58,9 @@ Check certify(const Factored& d) {
   c.fronts = static_cast<int>(d.skeleton->joint.plan->fronts.size());
   c.fronts_made = d.factors->fronts_made();
   c.plans_renewed = d.plans_renewed;
+  for (const ByDifferences& b : d.skeleton->stage.by_differences)
+    c.by_differences.push_back(
+        fmt::format("{} of {}", d.graph().parameters[at(b.parameter)].name, b.block));
   std::vector<double> margins = *d.margins;
   find_margins(d, d.changed_loops, margins);
   take_margins(d, margins, check);
@@ -129,6 +132,8 @@ std::string to_string(const Certificate& c) {
   text += fmt::format("largest loop margin {:.3g}{}{}\n", c.margin,
                       c.margin_where.empty() ? "" : " (at " + c.margin_where + ")",
                       c.margin_is_exact ? "" : "; larger loops are checked by their pivots");
+  for (const std::string& name : c.by_differences)
+    text += fmt::format("derivative by {}: by differences of the block's matrices\n", name);
   return text;
 }
 

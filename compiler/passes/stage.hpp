@@ -109,6 +109,13 @@ struct OpenedPairs {
   std::string where;   ///< "hub", "wing.parent.accel": the block or equation with the parameter
 };
 
+/// A block without Block::opened, whose derivative by a parameter is that of its matrices by
+/// differences (compiler/passes/open/differences.hpp).
+struct ByDifferences {
+  int parameter = -1;  ///< of the graph
+  std::string block;
+};
+
 /// The angle of a rotation in an equation or output, with its place for messages.
 struct RotationAngle {
   Value angle;
@@ -124,13 +131,14 @@ struct Stage {
   std::shared_ptr<const Drives> drives;  ///< of source, if there are parameters
   std::vector<RigidMotion> motions;      ///< after lower
   std::vector<OpenedPairs> opened;       ///< by open_parameters; after lower: also of positions
-  std::vector<Note> notes;               ///< the log
-  std::vector<RotationAngle> angles;     ///< after check: those that `degree_notes` looks at
-  std::vector<Row> rows;                 ///< after match: all rows
-  Matched matched;                       ///< after match
-  std::vector<Inversion> inversions;     ///< after match
-  std::vector<Loop> loops;               ///< after order: dependencies first
-  bool chained = false;                  ///< after chains: some chain is closed
+  std::vector<ByDifferences> by_differences;  ///< by open_parameters
+  std::vector<Note> notes;                    ///< the log
+  std::vector<RotationAngle> angles;          ///< after check: those that `degree_notes` looks at
+  std::vector<Row> rows;                      ///< after match: all rows
+  Matched matched;                            ///< after match
+  std::vector<Inversion> inversions;          ///< after match
+  std::vector<Loop> loops;                    ///< after order: dependencies first
+  bool chained = false;                       ///< after chains: some chain is closed
   bool closes = false;             ///< after chains: chains close, or Integrators may repeat states
   std::vector<Released> released;  ///< after chains
   std::vector<Dependent> dependents;  ///< after close: of chains, in turn; after solve: all

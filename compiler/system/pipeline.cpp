@@ -78,7 +78,7 @@ constexpr Pass kPasses[] = {
      steps::forces,
      steps::has_released},
     {{"digits", "no motion or force depends on digits that the data do not have",
-      "there are bodies from data files"},
+      "there are flexible bodies"},
      steps::digits,
      steps::has_data},
     {{"certify", "the checks that were made, and how well the equations are satisfied"},
@@ -194,6 +194,9 @@ std::shared_ptr<SystemData> compile_again(const SystemData& old,
   begin.before = stage.dependents;
   begin.motions = stage.motions;
   begin.opened = stage.opened;
+  begin.by_differences = stage.by_differences;
+  std::ranges::copy_if(old.notes, std::back_inserter(begin.notes),
+                       [](const Note& n) { return n.pass == "open"; });
   Options options = old.skeleton->options;
   options.dump_to.clear();
   return run(std::move(begin), options, old.plans_renewed + 1);

@@ -57,6 +57,7 @@ Json certificate(const Certificate& c) {
           {"margin", c.margin},
           {"margin_is_exact", c.margin_is_exact},
           {"margin_where", c.margin_where},
+          {"by_differences", c.by_differences},
           {"fronts", c.fronts},
           {"fronts_made", c.fronts_made},
           {"plans_renewed", c.plans_renewed}};

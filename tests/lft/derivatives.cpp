@@ -1,5 +1,9 @@
 #include <doctest/doctest.h>
 
+#include <Eigen/LU>
+#include <cmath>
+#include <random>
+
 #include "lft/n17.hpp"
 #include "support/mistakes.hpp"
 
@@ -7,6 +11,7 @@
 
 using namespace lft_test;
 using Eigen::MatrixXcd;
+using titop_test::error_of;
 
 namespace {
 
@@ -140,7 +145,6 @@ TEST_CASE("what has no derivative is refused or marked") {
   const double m = 2, omega = std::sqrt(4 * (1 + m) / m);
   CHECK(std::abs(poles[1].slopes[0](0) - std::complex<double>(0, -4 / (m * m) / (2 * omega))) <=
         1e-12);
-  using titop_test::error_of;
   CHECK(error_of([&] { g.h2(); }).has(Code::singular));
   CHECK(titop_test::says(error_of([&] { g.transfer(1, "k"); }), Code::unknown_name, {"k", "m"}));
   CHECK(titop_test::says(error_of([&] {
@@ -158,5 +162,114 @@ TEST_CASE("an H2 norm of 0 has no derivatives") {
   pushed.child.force += d.input("u");
   d.output("x") = seen.stretch;
   const Derivatives g = derivatives(compile(d), {"k"});
-  CHECK(titop_test::says(titop_test::error_of([&] { g.h2(); }), Code::singular, {"0"}));
+  CHECK(titop_test::says(error_of([&] { g.h2(); }), Code::singular, {"0"}));
+}
+
+namespace {
+
+/// The H2 norm of (b3 s^3 + ... + b0) / (a4 s^4 + ... + a0) [Newton, Gould, Kaiser 1957, app. E].
+long double h2_of_fourth_order(const std::array<long double, 4>& b,
+                               const std::array<long double, 5>& a) {
+  const long double up = b[3] * b[3] * (a[0] * a[1] * a[2] - a[0] * a[0] * a[3]) +
+                         (b[2] * b[2] - 2 * b[1] * b[3]) * a[0] * a[1] * a[4] +
+                         (b[1] * b[1] - 2 * b[0] * b[2]) * a[0] * a[3] * a[4] +
+                         b[0] * b[0] * (a[2] * a[3] * a[4] - a[1] * a[4] * a[4]);
+  const long double down =
+      2 * a[0] * a[4] * (a[1] * a[2] * a[3] - a[0] * a[3] * a[3] - a[1] * a[1] * a[4]);
+  return std::sqrt(up / down);
+}
+
+}  // namespace
+
+TEST_CASE("the H2 norm of a slow mode beside a fast one") {
+  // A heavy mass on a soft spring (0.01 rad/s) carries a light one on a stiff spring.
+  for (const double fast : {1e2, 1e4, 1e6, 3e6}) {
+    CAPTURE(fast);
+    const double M = 1000, k = 0.1, c = 0.02, m = 1, kf = m * fast * fast, cf = 0.004 * m * fast;
+    Diagram d{"graded"};
+    auto heavy = d.add("heavy", SpringMass{.mass = M, .stiffness = d.param("k", k), .damping = c});
+    auto light = d.add("light", SpringMass{.mass = m, .stiffness = kf, .damping = cf});
+    ground(heavy);
+    mount(light, heavy.child);
+    heavy.child.force += d.input("u");
+    d.output("x") = heavy.stretch;
+    const auto norm = [&](long double k0) {
+      return h2_of_fourth_order(
+          {kf, cf, m, 0},
+          {k0 * kf, c * static_cast<long double>(kf) + cf * k0,
+           static_cast<long double>(M) * kf + m * (k0 + kf) + static_cast<long double>(c) * cf,
+           static_cast<long double>(M) * cf + m * (static_cast<long double>(c) + cf),
+           static_cast<long double>(M) * m});
+    };
+    const Slopes n = derivatives(compile(d), {"k"}).h2();
+    CHECK(std::abs(n.value / static_cast<double>(norm(k)) - 1) <= 1e-11 * std::max(1.0, fast));
+    const auto slope = static_cast<double>((norm(1.001L * k) - norm(0.999L * k)) / (0.002L * k));
+    CHECK(std::abs(n.slopes(0) / slope - 1) <= 1e-5);
+  }
+}
+
+TEST_CASE("an undamped structure has no H2 norm, whatever rounding makes of its poles") {
+  std::mt19937_64 random(5);
+  const auto draw = [&] { return 0.5 + static_cast<double>(random() % 1000) / 250.0; };
+  for (int i = 0; i < 100; ++i) {
+    CAPTURE(i);
+    Diagram d{"undamped"};
+    auto a = d.add("a", SpringMass{.mass = draw(), .stiffness = d.param("k", 10 * draw())});
+    auto b = d.add("b", SpringMass{.mass = draw(), .stiffness = 10 * draw()});
+    ground(a);
+    mount(b, a.child);
+    b.child.force += d.input("u");
+    d.output("x") = a.stretch;
+    CHECK(error_of([&] { derivatives(compile(d), {"k"}).h2(); }).has(Code::singular));
+  }
+}
+
+TEST_CASE("two equal real poles that rounding splits are one pole with two slopes") {
+  // A = T diag(-5, -5, -1) T^-1, of which the entry A11 moves: the slopes of the pair are 0 and the
+  // entry 11 of its projector.
+  std::mt19937_64 random(3);
+  const auto draw = [&] { return static_cast<double>(random() % 2001) / 1000.0 - 1; };
+  for (int i = 0; i < 100; ++i) {
+    CAPTURE(i);
+    const Eigen::Matrix3d T =
+        2 * Eigen::Matrix3d::Identity() + Eigen::Matrix3d::NullaryExpr([&] { return draw(); });
+    const Eigen::Matrix3d inverse = T.inverse();
+    const Eigen::MatrixXd A = T * Eigen::Vector3d(-5, -5, -1).asDiagonal() * inverse;
+    Diagram d{"pair"};
+    auto K = d.add("K", Lti{.A = A,
+                            .B = Eigen::Vector3d(1, 2, 3),
+                            .C = Eigen::RowVector3d(1, 1, 1),
+                            .values = {{'A', 1, 1, d.param("p", A(0, 0))}}});
+    K.in = d.input("u");
+    d.output("y") = K.out;
+    const auto poles = derivatives(compile(d), {"p"}).poles();
+    REQUIRE(poles.size() == 2);
+    CHECK(poles[1].count == 2);
+    CHECK(poles[1].s.imag() == 0);
+    CHECK(std::abs(poles[1].s + 5.0) <= 1e-12);
+    REQUIRE(!poles[1].defective);
+    const Eigen::VectorXcd slopes = poles[1].slopes[0];
+    const double all = T.row(0).head<2>() * inverse.col(0).head<2>();
+    CHECK(std::abs(slopes.sum() - all) <= 1e-11);
+    CHECK(slopes.cwiseAbs().minCoeff() <= 1e-11);
+  }
+}
+
+TEST_CASE("a derivative at s = 0, where a hinge alone has a pole") {
+  // J thetadd = u - k theta - c thetad: 1 / k at 0, the largest gain as c^2 > 2 k J.
+  Diagram d{"pendulum"};
+  auto base = d.add("base", RigidBody{.children = {{"C", {0, 0, 0}}}});
+  auto arm = d.add("arm", RigidBody{.mass = 1, .inertia = {2, 2, 1, 0, 0, 0}});
+  ground(base);
+  auto h = hinge(d, "hinge", arm, base.child, {}, {0, 0, 1});
+  h.torque = d.param("k", 4) * h.angle + 5 * h.rate - d.input("u");
+  d.output("angle") = h.angle;
+  const Derivatives g = derivatives(compile(d), {"k"});
+  CHECK(std::abs(g.transfer(0, "k")(0, 0) + 1.0 / 16) <= 1e-15);
+  CHECK(std::abs(g.transfer(0, "k", "k")(0, 0) - 2.0 / 64) <= 1e-15);
+  CHECK(std::abs(g.transfers(0)[0](0, 0) + 1.0 / 16) <= 1e-15);
+  const PeakSlopes peak = g.peak();
+  CHECK(peak.omega == 0);
+  CHECK(std::abs(peak.value - 0.25) <= 1e-15);
+  CHECK(std::abs(peak.slopes(0) + 1.0 / 16) <= 1e-15);
 }

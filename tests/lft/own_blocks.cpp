@@ -131,7 +131,14 @@ TEST_CASE("an own block in a loop: derivative in closed form, and what it is sai
   CHECK(std::count_if(notes.begin(), notes.end(), [](const Note& n) {
           return n.pass == "open" && titop_test::has_names(n.text, {"c", "p", "Curved"});
         }) == 1);
-  CHECK(g.opened().certificate().residual <= 1e-12);
+  const Certificate certificate = g.opened().certificate();
+  CHECK(certificate.residual <= 1e-12);
+  CHECK(certificate.by_differences == g.by_differences());
+  CHECK(to_string(certificate).find("derivative by p of c") != std::string::npos);
+  const System later = g.opened().update({{"p", 0.71}});
+  CHECK(later.certificate().by_differences == g.by_differences());
+  CHECK(later.log().find("Curved's matrices") != std::string::npos);
+  CHECK(derivatives(compile(d), {"k"}).opened().certificate().by_differences.empty());
   // y = G / (1 + k G), G = e^q / (q (s + q^2)) + sin(q), q = 2 p
   const Complex s{0.3, 1.1};
   const double q = 1.4, e = std::exp(q);

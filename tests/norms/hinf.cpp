@@ -195,6 +195,14 @@ TEST_CASE("two peaks of one height are both named") {
   CHECK(off(high, 7 * std::sqrt(1 - 2 * 0.0009)) <= 1e-5);
 }
 
+TEST_CASE("matrices that do not fit each other are refused") {
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
+  const StateSpace m{.A = -one, .B = Eigen::MatrixXd::Ones(2, 1), .C = one, .D = one};
+  CHECK(titop_test::says(titop_test::error_of([&] { norm_hinf(m); }), Code::size, {"B", "2 x 1"}));
+  CHECK(
+      titop_test::says(titop_test::error_of([&] { m.transfer(1.0); }), Code::size, {"B", "1 x 1"}));
+}
+
 TEST_CASE("what has no norm is refused") {
   using titop_test::error_of;
   using titop_test::says;

@@ -22,6 +22,7 @@ struct Opening {
   std::vector<std::vector<OpenedPorts>> ports = {};  ///< per node
   std::vector<Mistake> mistakes = {};
   std::vector<Note> notes = {};
+  std::vector<ByDifferences> by_differences = {};
 
   std::vector<int> opened_of(const Node& node) const {
     std::vector<int> result;
@@ -55,6 +56,7 @@ struct Opening {
   }
 
   void note_difference(const Node& node, int parameter) {
+    by_differences.push_back({parameter, node.name});
     notes.push_back(
         {Note::Kind::unchecked, "open",
          fmt::format("{}: the derivative by {} is that of the {}'s matrices by "
@@ -202,6 +204,7 @@ Stage open_parameters(const Stage& stage, std::span<const ToOpen> parameters) {
   if (!terms.mistakes.empty()) throw Error(std::move(terms.mistakes));
   for (RigidMotion& m : result.motions) m.signal = o.signal[at(m.signal)];
   result.notes = std::move(o.notes);
+  result.by_differences = std::move(o.by_differences);
   result.source = std::make_shared<const Graph>(std::move(o.to));
   return result;
 }
