@@ -8,15 +8,36 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-linalg::Inverse loop(const StateSpace& m, const VectorXd& deltas) {
+/// The largest sum of magnitudes of a column.
+double norm1(const MatrixXd& m) { return m.cwiseAbs().colwise().sum().maxCoeff(); }
+
+/// I - D_zw Delta and its inverse.
+struct Loop {
+  MatrixXd inverse;
+  double margin = 0;  ///< see well_posed
+  double determinant = 1;
+};
+
+/// With w and z in sizes that give rows and columns of D_zw equal norms: the margin then depends on
+/// no units.
+Loop loop(const StateSpace& m, const VectorXd& deltas) {
   const Index r = deltas.size();
-  return linalg::inverse(MatrixXd::Identity(r, r) - m.D.topLeftCorner(r, r) * deltas.asDiagonal());
+  MatrixXd scaled = m.D.topLeftCorner(r, r);
+  const VectorXd d = linalg::similarity_scaling(scaled);
+  scaled = scaled * deltas.asDiagonal();
+  const MatrixXd E = MatrixXd::Identity(r, r) - scaled;
+  const linalg::Inverse inverse = linalg::inverse(E);
+  if (inverse.rcond == 0) return {MatrixXd(), 0, 0};
+  return {d.asDiagonal() * inverse.matrix * d.cwiseInverse().asDiagonal(),
+          inverse.rcond * norm1(E) / (1 + norm1(scaled)), E.determinant()};
 }
 
 }  // namespace
 
 double well_posed(const StateSpace& m, const VectorXd& deltas) {
-  return deltas.size() == 0 ? 1 : loop(m, deltas).rcond;
+  if (deltas.size() == 0) return 1;
+  const Loop l = loop(m, deltas);
+  return l.determinant < 0 ? -l.margin : l.margin;
 }
 
 std::optional<StateSpace> closed(const StateSpace& m, const VectorXd& deltas) {
@@ -27,9 +48,9 @@ std::optional<StateSpace> closed(const StateSpace& m, const VectorXd& deltas) {
   c.outputs.assign(m.outputs.begin() + r, m.outputs.end());
   MatrixXd K(r, r);  // w = K (z without w)
   if (r > 0) {
-    const linalg::Inverse inverse = loop(m, deltas);
-    if (!(inverse.rcond > kWellPosed)) return std::nullopt;
-    K = deltas.asDiagonal() * inverse.matrix;
+    const Loop l = loop(m, deltas);
+    if (!(l.margin > kWellPosed)) return std::nullopt;
+    K = deltas.asDiagonal() * l.inverse;
   }
   const MatrixXd to_x = m.B.leftCols(r) * K, to_y = m.D.bottomLeftCorner(ny, r) * K;
   const MatrixXd of_x = m.C.topRows(r), of_u = m.D.topRightCorner(r, nu);

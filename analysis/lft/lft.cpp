@@ -55,23 +55,28 @@ VectorXd at_all_pairs(const std::vector<Delta>& deltas, const VectorXd& of_param
   return result;
 }
 
-/// Refuses the first corner of the box at which the direct terms of the loop are singular. Of more
-/// than 2^12 corners those whose last parameters are at their least values.
+/// Refuses the first corner of the box at which the direct terms of the loop are singular, or
+/// between which and the nominal values they are. Of more than 2^12 corners those whose last
+/// parameters are at their least values.
 void check_corners(const StateSpace& m, const std::vector<Delta>& deltas) {
   const auto q = static_cast<Index>(deltas.size());
   const long corners = 1L << std::min<Index>(q, 12);
   for (long c = 0; c < corners; ++c) {
     VectorXd d(q);
     for (Index i = 0; i < q; ++i) d(i) = i < 12 && (c >> i & 1) != 0 ? 1 : -1;
-    if (detail::well_posed(m, at_all_pairs(deltas, d)) > detail::kWellPosed) continue;
+    const double margin = detail::well_posed(m, at_all_pairs(deltas, d));
+    if (margin > detail::kWellPosed) continue;
     std::string where;
     for (Index i = 0; i < q; ++i) {
       const Delta& x = deltas[at(i)];
       where += fmt::format("{}{} = {:.6g}", i > 0 ? ", " : "", x.parameter,
                            d(i) > 0 ? x.map.to : x.map.from);
     }
-    throw Error(Code::ill_posed, fmt::format("the direct terms are singular at {}", where),
-                "give a smaller range: an algebraic loop or a mass matrix has no inverse there");
+    throw Error(
+        Code::ill_posed,
+        fmt::format("the direct terms are singular {} {}",
+                    margin < -detail::kWellPosed ? "between the nominal values and" : "at", where),
+        "give a smaller range: an algebraic loop or a mass matrix has no inverse there");
   }
 }
 

@@ -27,7 +27,8 @@ struct Delta {
   int size = 0;   ///< occurrences: an upper bound of the least possible number
   int built = 0;  ///< occurrences before the reduction
   /// Lower bound of the least number: the degree of the transfer in this parameter at random values
-  /// of the others and of s, in exact arithmetic. 0 if it was not computed (Lft::not_decided).
+  /// of the others and of s, in exact arithmetic. 0 if it was not computed (Lft::not_decided): a
+  /// closed chain, more than 200 states or 4000 unknowns.
   int at_least = 0;
   ParameterMap map;
   std::vector<std::string> where;  ///< blocks and equations with it: "hub", "wing.parent.accel"
@@ -110,8 +111,9 @@ class Lft {
 /// number; not_rational for a block without `opened`, an angle or a length that moves a closed
 /// chain, an angle that is a fraction of its parameter; ill_posed if I - D_zw Delta is singular at
 /// a corner of the box (the first twelve parameters at all their ends, more ones at their least
-/// values). Cost: that of `compile`, O((states + occurrences)^3), and for the lower bounds some
-/// solutions of that size in exact arithmetic: 0.1 s for 12 states and 25 occurrences.
+/// values), or has a negative determinant there: it is singular between, then. Cost: that of
+/// `compile`, O((states + occurrences)^3), and for the lower bounds some solutions of that size in
+/// exact arithmetic: 0.1 s for 12 states and 25 occurrences.
 ///
 ///     const Lft f = lft(compile(d), {{"m", percent(20)}, {"tilt", between(-1.2, 1.9)}});
 Lft lft(const System& system, const ParameterRanges& ranges);

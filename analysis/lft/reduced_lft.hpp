@@ -15,8 +15,8 @@ namespace titop {
 ///     H - H_r = [M_r,yw Delta N_r, I] E [Delta N M_zu; I],  N = (I - M_zw Delta)^-1, N_r likewise,
 ///
 /// taken entry by entry with Neumann's series for N [small gain theorem: Zhou, Doyle, Glover 1996,
-/// ch. 9]. It says nothing where the series does not converge, such as near poles that the
-/// parameters move through the frequency, and nothing outside of the band.
+/// ch. 9]. It is infinite where the series does not converge, such as near poles that the
+/// parameters move through the frequency, and not valid outside of the band.
 class ReducedLft {
  public:
   /// The one with the reduced M: occurrences, maps and names as before; without lower bounds.
