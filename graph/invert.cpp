@@ -45,13 +45,17 @@ struct EquilibratedMatrix {
       : matrix(std::move(m)),
         rows(Eigen::VectorXd::Ones(matrix.rows())),
         cols(Eigen::VectorXd::Ones(matrix.cols())) {
-    for (int sweep = 0; sweep < 5; ++sweep)
+    if (matrix.size() == 0) return;
+    for (int sweep = 0; sweep < 5; ++sweep) {
       for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
         const double row = by_two(matrix.row(i).cwiseAbs().maxCoeff());
         matrix.row(i) *= row, rows(i) *= row;
-        const double col = by_two(matrix.col(i).cwiseAbs().maxCoeff());
-        matrix.col(i) *= col, cols(i) *= col;
       }
+      for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
+        const double col = by_two(matrix.col(j).cwiseAbs().maxCoeff());
+        matrix.col(j) *= col, cols(j) *= col;
+      }
+    }
   }
 
  private:
@@ -82,13 +86,41 @@ StateSpace model_of(const BlockPtr& block) {
   return m;
 }
 
+namespace {
+
+/// Throws for a number that is none of the model's, or that is named twice.
+void check_numbers(std::vector<int> numbers, Eigen::Index size, const char* subject) {
+  std::sort(numbers.begin(), numbers.end());
+  for (const int i : numbers)
+    if (i < 0 || i >= size)
+      throw Error(Code::bad_value, fmt::format("{} {} of a model of {}", subject, i, size),
+                  "numbers count from 0, in the order of StateSpace::inputs and outputs");
+  const auto twice = std::adjacent_find(numbers.begin(), numbers.end());
+  if (twice != numbers.end())
+    throw Error(Code::bad_value, fmt::format("{} {} is in two pairs", subject, *twice),
+                "exchange each input with one output");
+}
+
+/// True if a pivot of these rows and columns of D is rounding of the others in them, as of a 0
+/// after a rotation of frames.
+bool is_rounding(const MatrixXd& D, const std::vector<int>& rows, const std::vector<int>& columns) {
+  if (rows.empty()) return false;
+  const MatrixXd part = EquilibratedMatrix(D).matrix(rows, columns);
+  const Eigen::FullPivLU<MatrixXd> lu(part);
+  return !(lu.matrixLU().diagonal().cwiseAbs().minCoeff() > 1e-14);
+}
+
+}  // namespace
+
 StateSpace invert(const StateSpace& model, const std::vector<std::pair<int, int>>& pairs) {
   std::vector<int> in, out;
   for (const auto& [i, o] : pairs) in.push_back(i), out.push_back(o);
+  check_numbers(in, model.D.cols(), "input");
+  check_numbers(out, model.D.rows(), "output");
   const EquilibratedMatrix D_oi(model.D(out, in));
   Eigen::FullPivLU<MatrixXd> lu(D_oi.matrix);
   lu.setThreshold(1e-13);
-  if (!lu.isInvertible())
+  if (!lu.isInvertible() || is_rounding(model.D, out, in))
     throw Error(Code::improper,
                 fmt::format("the direct term from {} to {} has rank {} of {}",
                             in.empty() ? "" : model.inputs[static_cast<std::size_t>(in.front())],

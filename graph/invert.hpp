@@ -10,7 +10,7 @@
 namespace titop {
 
 /// A block alone, by its ports' names: inputs "child.force", "parent.accel(3)", ... at the nominal
-/// parameter values.
+/// parameter values. O(size^2).
 StateSpace model_of(const BlockPtr& block);
 
 /// The block with input and output exchanged in some channels: "parent" (all of it), "C1.angular",
@@ -20,7 +20,8 @@ StateSpace model_of(const BlockPtr& block);
 /// the direct term of the exchanged channels is singular. O(size^3).
 StateSpace invert(const BlockPtr& block, const std::vector<std::string>& channels);
 
-/// The same for a model, input and output numbers given pair by pair.
+/// The same for a model: pairs {input, output}, counted from 0, each number once. Throws improper,
+/// and bad_value for a number that is not there or named twice. O(n^2 + pairs^3).
 StateSpace invert(const StateSpace& model, const std::vector<std::pair<int, int>>& pairs);
 
 template <BlockSpec Spec>
