@@ -33,6 +33,8 @@ constexpr Index kColumns = 8;  ///< inputs are tried one by one up to this many
 
 constexpr double kBelow = 0.5;  ///< of the slowest mode that shows, known to a decade
 
+constexpr Index kPolesUpTo = 600;  ///< states; a second of eigenvalues
+
 /// Inputs of one unit side by side in one column, at random; in two if they are few: by chance one
 /// sample of rounding may be small. Those of many units must share columns, scaled so that they
 /// have effects of like size on the states.
@@ -224,9 +226,24 @@ DenseError worst_of(const std::vector<Sample>& samples) {
   return worst;
 }
 
+/// The worst error relative to the output at the same s, for |s| from half the slowest pole of A
+/// on: below all poles an output falls with a power of s, and no motion of the model is there. With
+/// a pole at 0 (free motion, integrals) all s count, and so they do if the poles are too many.
+DenseError::Worst where_used(const std::vector<Sample>& samples, const MatrixXd& A) {
+  double lowest = 0;
+  if (A.rows() <= kPolesUpTo) lowest = kBelow * linalg::eigenvalues(A).cwiseAbs().minCoeff();
+  DenseError::Worst worst;
+  for (const Sample& p : samples) {
+    if (std::abs(p.s) < lowest) continue;
+    const DenseError::Worst found = relative(p.off, p.sizes, 0);
+    if (found.error > worst.error) worst = found, worst.s = p.s;
+  }
+  return worst;
+}
+
 /// Columns of the inputs tried become units of inputs.
 DenseError by_input(DenseError e, int units) {
-  for (DenseError::Worst* w : {&e.beside_largest, &e.where_small})
+  for (DenseError::Worst* w : {&e.beside_largest, &e.where_small, &e.where_used})
     w->input = units <= kColumns && w->input >= 0 ? w->input % units : -1;
   return e;
 }
@@ -239,7 +256,8 @@ DenseError dense_error(const Factored& d, const StateSpace& m) {
   const solve::RowMatrix<T> u = tried_inputs(m, units.cols);
   std::vector<T> not_tried;
   std::vector<Sample> samples = sample(d, m, u, units, not_tried);
-  if (samples.empty()) return {{-1}, {-1}, std::move(not_tried)};
+  if (samples.empty())
+    return {.beside_largest = {-1}, .where_small = {-1}, .not_tried = std::move(not_tried)};
   leave_out_lost(samples, not_tried);
   DenseError found = worst_of(samples);
   const double worst = std::max(found.beside_largest.error, found.where_small.error);
@@ -250,6 +268,7 @@ DenseError dense_error(const Factored& d, const StateSpace& m) {
     }
     found = worst_of(samples);
   }
+  if (found.where_small.error > kLostWhereSmall) found.where_used = where_used(samples, m.A);
   found = by_input(found, static_cast<int>(units.cols.size()));
   found.not_tried = std::move(not_tried);
   return found;

@@ -103,9 +103,6 @@ void require_written(const Factored& d, const StateSpace& m) {
 
 namespace {
 
-/// The same for small outputs: an acceleration far below the modes always loses some digits.
-constexpr double kLostWhereSmall = 1e-6;
-
 /// "z", or "U(1) to U(3)" of three that share their unit.
 std::string name_of_unit(const std::vector<std::string>& names, const std::vector<int>& units,
                          int unit) {
@@ -140,10 +137,9 @@ void warn_of_lost_digits(const Factored& d, const DenseError& e, std::vector<Not
   };
   if (e.beside_largest.error > kWarn)
     warn("written as A, B, C, D the model keeps {1} at s = {0}", e.beside_largest);
-  if (e.where_small.error > kLostWhereSmall &&
-      e.where_small.error > kAnotherDigit * e.beside_largest.error)
-    warn("at s = {0}, below the modes or where outputs are small, A, B, C, D keep {1}",
-         e.where_small);
+  if (e.where_used.error > kLostWhereSmall &&
+      e.where_used.error > kAnotherDigit * e.beside_largest.error)
+    warn("at s = {0}, where outputs are small, A, B, C, D keep {1}", e.where_used);
   if (e.not_tried.empty()) return;
   const bool none = e.beside_largest.error < 0;
   notes.push_back({none ? Note::Kind::unchecked : Note::Kind::warning, "dense",
