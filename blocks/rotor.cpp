@@ -61,6 +61,8 @@ class RotorBlock : public Block, public Specified<Rotor> {
   Pattern feedthrough() const override {
     Pattern p = Pattern::Constant(9, 7, true);
     p.bottomRows<2>().setConstant(false);
+    p.block<3, 1>(0, kSpin).setConstant(false);  // it spins about its centre of mass
+    p.block<1, 3>(kSpin, 0).setConstant(false);
     return p;
   }
   Pattern moved_by() const override {

@@ -21,7 +21,7 @@ struct Section {
 /// precision. Dimensions in m. Throws `bad_value` unless positive.
 Section rectangle(double width_y, double height_z);
 
-/// Solid circle. [m]
+/// Solid circle. [m] Throws `bad_value` unless positive.
 Section circle(double diameter);
 
 /// Circular tube. [m] Throws `bad_value` unless outer > inner >= 0.

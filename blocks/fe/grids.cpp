@@ -64,6 +64,15 @@ void turn(const GridMatrices& m, const Grid& grid, Mesh& mesh) {
   }
 }
 
+void require_sizes(const GridMatrices& m) {
+  const auto n = std::ssize(m.dofs);
+  if (m.K.rows() != n || m.K.cols() != n || m.M.rows() != n || m.M.cols() != n)
+    throw Error(Code::size,
+                fmt::format("{}: K is {} x {}, M is {} x {}, for {} degrees of freedom", m.name,
+                            m.K.rows(), m.K.cols(), m.M.rows(), m.M.cols(), n),
+                "one row and column of both per entry of GridMatrices::dofs");
+}
+
 }  // namespace
 
 GridMatrices grid_matrices(std::string name, const MatrixXd& K, const MatrixXd& M,
@@ -83,6 +92,7 @@ GridMatrices grid_matrices(std::string name, const MatrixXd& K, const MatrixXd& 
 }
 
 Mesh to_mesh(const GridMatrices& m, const std::vector<Grid>& grids) {
+  require_sizes(m);
   require_same_grids(m, grids);
   Mesh mesh;
   mesh.name = m.name;
@@ -109,6 +119,7 @@ Mesh to_mesh(const GridMatrices& m, const std::vector<Grid>& grids) {
 }
 
 MatrixXd rigid_motions_by_statics(const GridMatrices& m, int grid) {
+  require_sizes(m);
   std::vector<Index> r, f;
   for (Index i = 0; i < m.K.rows(); ++i) {
     const GridDof& dof = m.dofs[static_cast<std::size_t>(i)];

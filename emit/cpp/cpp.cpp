@@ -70,6 +70,14 @@ emit::Expected expectations(const System& system, double sample_time) {
   e.poles = system.poles();
   if (m.inputs.empty() || m.outputs.empty()) return e;
   e.points = emit::response_points(system, e.poles);
+  if (e.points.s.empty())
+    throw Error(
+        Code::bad_value,
+        fmt::format("the accuracy of the code of {} cannot be measured: its transfer has no "
+                    "digit at any of the points",
+                    system.stage().source->name),
+        "look at the warnings of the log, or reduce the model to the band that matters: "
+        "compile(d, Scene{.band_hz = {low, high}})");
   e.static_gain = static_gain(system);
   if (sample_time > 0) {
     e.inputs = emit::trajectory_inputs(m.B.cols(), 60);

@@ -82,9 +82,10 @@ std::string parameter(const Delta& d) {
 /// Every delta is one ureal, as often as it occurs.
 const char* const kUncertain = R"(  if (nargout > 1)
     blocks = {};
-    for p = m.parameters
-      delta = ureal (matlab.lang.makeValidName (p.name), 0, 'Range', [-1, 1]);
-      blocks{end + 1} = delta * eye (p.size);
+    names = matlab.lang.makeUniqueStrings (matlab.lang.makeValidName ({m.parameters.name}));
+    for i = 1:numel (names)
+      delta = ureal (names{i}, 0, 'Range', [-1, 1]);
+      blocks{end + 1} = delta * eye (m.parameters(i).size);
     end
     M = ss (m.A, m.B, m.C, m.D);
     sys = lft (blkdiag (blocks{:}), M);

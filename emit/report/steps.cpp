@@ -76,6 +76,16 @@ Steps steps(const Subject& s, const std::vector<IoPair>& pairs, const Clock& c) 
   return result;
 }
 
+/// Of steps by the matrix exponential: of A, B, C, D, whose entries are rounded.
+std::string exact_text(double error) {
+  constexpr double kNone = 1e-9;
+  if (error <= kNone) return "by the matrix exponential: exact at every step.";
+  return fmt::format(
+      "by the matrix exponential of A, B, C, D, whose rounding changes the outputs by up to {:.1e} "
+      "of their largest values.",
+      error);
+}
+
 /// If the start is far larger than the rest, the frame shows the rest, and the caption gives the
 /// start's range.
 void cut_start(Plot& plot) {
@@ -135,7 +145,7 @@ std::string step_plots(const Subject& s, const std::vector<IoPair>& pairs) {
       "<div class=\"figures\">\n",
       c.steps, c.until / c.steps,
       all.stepper == Stepper::exact
-          ? "by the matrix exponential: exact at every step."
+          ? exact_text(all.error)
           : fmt::format(
                 "by the implicit midpoint rule through the factors, of half that size: steps "
                 "of twice the size change the outputs by up to {:.1e} of their largest "
