@@ -304,7 +304,7 @@ int run(const std::vector<std::string>& all) {
     return 0;
   }
   Arguments a = parse(all);
-  if (a.words.empty()) throw Misuse{"what is to be done?"};
+  if (a.words.empty()) throw Misuse{"no command given"};
   for (const Command& command : kCommands) {
     if (a.words[0] != command.name) continue;
     if (a.words[0] == "report" && a.words.size() == 2 && a.to.empty())

@@ -13,7 +13,7 @@ namespace titop {
 ///     .stiffness = SixAxes(K).with(1, 5, k15)
 class SixAxes {
  public:
-  /// A value at (row, column) and (column, row), from 0.
+  /// A value at (row, column) and (column, row), counted from 0 (`with` counts from 1).
   struct Entry {
     int row, column;
     Value value;
@@ -61,8 +61,8 @@ class SixAxes {
 /// In the posture both ends coincide, and K and C are about that point, K from static tests or from
 /// its elastic centre E by tau_EC' K_E tau_EC. Preloads are not modelled.
 ///
-/// K and C are symmetric and positive semidefinite, checked when it is added (bad_value;
-/// not_finite); an axis without stiffness is a free one.
+/// K and C are symmetric and positive semidefinite, checked by `add`, and by `update` for new
+/// values (bad_value; not_finite); an axis without stiffness is a free one.
 struct Bushing {
   SixAxes stiffness;     ///< K [N/m, N, N m/rad]
   SixAxes damping = {};  ///< C [N s/m, N s, N m s/rad]

@@ -10,7 +10,7 @@ namespace titop {
 ///
 ///     xdd_C = xdd_P + [0; r] thetadd
 ///     F_P   = F_C                          (F_C: wrench by the carried body on the joint)
-///     C_m   = r' T_C                       the 13th channel
+///     C_m   = r' T_C                       the 13th pair of scalars
 ///
 /// With a body mounted on its child point this is G_PC = E M_PC E'. States: angle and rate; small
 /// angles about the posture given by the mounting rotation.
@@ -42,7 +42,8 @@ BlockPtr as_block(const Hinge& spec);
 /// The hinge's torque or acceleration must still be driven.
 ///
 ///     auto h = hinge(d, "drive", wing, hub.child("C1"), T_ba, {0, 1, 0});
-///     h.torque = k * h.angle + c * h.rate - u;  // spring-damper; a motor turns the wing by u
+///     h.torque = k * h.angle + c * h.rate - u;  // spring-damper; a motor exerts the torque u on
+///     the wing
 template <class Handle>
   requires HasParent<Handle, 6>
 Hinge::Handle hinge(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,

@@ -22,14 +22,16 @@ struct PortHamiltonian {
   Eigen::MatrixXd P;  ///< outputs x inputs
 
   double energy(const Eigen::VectorXd& x) const;  ///< H [J]
-  /// dH/dt = supplied power - dissipated power [W].
+  /// Power at the ports, (Q x)' G u [W]; dH/dt = supplied - dissipated.
   double supplied(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const;
+  /// (Q x)' R (Q x) >= 0 [W].
   double dissipated(const Eigen::VectorXd& x) const;
   /// A, B, C, D of the same system in the coordinates x, without names.
   StateSpace state_space() const;
 };
 
-/// Eq. (7): q = stretch, p = m times its rate. Parameters at their nominal values.
+/// Eq. (7): q = stretch, p = m times its rate. Parameters at their nominal values; the spec is not
+/// checked.
 PortHamiltonian port_hamiltonian(const SpringMass& spec);
 /// Eq. (17) in modal coordinates. Parameters at their nominal values.
 PortHamiltonian port_hamiltonian(const FlexibleBody& body);

@@ -10,7 +10,7 @@ namespace titop {
 /// Omega relative to the carrier, with momentum = I_a Omega, plus a small change nu of that speed:
 ///
 ///     F_P = -D_P xdd_P - [0; a] I_a nud + [0; h a x omega_P]
-///     C_m = -I_a (a' omegad_P + nud)                          the 7th channel
+///     C_m = -I_a (a' omegad_P + nud)                          the 7th pair of scalars
 ///
 /// with D_P = tau_AP' diag(m I, I_t (I - a a') + I_a a a') tau_AP and h = momentum. The last term
 /// of F_P is written by `add` as equations, if the momentum is not 0 or a parameter: see

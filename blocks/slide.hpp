@@ -10,7 +10,7 @@ namespace titop {
 ///
 ///     xdd_C = xdd_P + [r; 0] xdd
 ///     F_P   = F_C                          (F_C: wrench by the carried body on the joint)
-///     f     = r' f_C                       the 13th channel
+///     f     = r' f_C                       the 13th pair of scalars
 ///
 /// States: travel x and rate; small motions about the posture. C and P coincide in it: the travel
 /// of the slide at the posture belongs to the geometry, to the child point of the parent body or to
@@ -43,7 +43,8 @@ BlockPtr as_block(const Slide& spec);
 /// slide's force or acceleration must still be driven.
 ///
 ///     auto s = slide(d, "jack", mast, hub.child("C1"), T_ba, {1, 0, 0});
-///     s.force = k * s.travel + c * s.rate - u;  // spring-damper; an actuator pushes the mast by u
+///     s.force = k * s.travel + c * s.rate - u;  // spring-damper; an actuator exerts the force u
+///     on the mast
 template <class Handle>
   requires HasParent<Handle, 6>
 Slide::Handle slide(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,

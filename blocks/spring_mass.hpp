@@ -17,8 +17,9 @@ namespace titop {
 ///     f_P   = k δx + c δẋ − m0 ẍ_P
 ///
 /// Port order: y = [ẍ_C; f_P], u = [f_C; ẍ_P]. Every number may be a parameter.
-/// mass > 0, stiffness and damping >= 0, parent_mass >= 0, checked when it is added (bad_inertia,
-/// bad_value). With parent_mass = 0 no force can be imposed at P (improper).
+/// mass > 0, stiffness and damping >= 0, parent_mass >= 0, checked by `add`, and by `update` for
+/// new values (bad_inertia, bad_value). With parent_mass = 0 no force can be imposed at P
+/// (improper).
 struct SpringMass {
   Value mass = 1;         ///< m [kg]
   Value stiffness = 1;    ///< k [N/m]

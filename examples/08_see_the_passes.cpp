@@ -1,5 +1,5 @@
-// How to inspect every pass of the compiler: one Graphviz file for the diagram as written and one
-// after each pass, and a log of the results of each.
+// How to inspect the compiler: one Graphviz file for the diagram as written and one after each of
+// the seven graph passes, and the log of all passes.
 #include <cstdio>
 #include <filesystem>
 #include <fstream>

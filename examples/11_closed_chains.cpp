@@ -1,7 +1,7 @@
 // Closed chains: a four-bar mechanism of three flexible links on free pins, its crank turned by a
 // motor through a shaft. The last joint closes the chain: coordinates that follow from the others
 // are no states of the model, but can still be read by name. Then the same chain of rigid links
-// with 6-dof pins, whose constraints are redundant.
+// on hinges with six-component ports, of whose six closing equations three are redundant.
 #include <cmath>
 #include <cstdio>
 #include <numbers>

@@ -1,5 +1,5 @@
-/// Time responses: a boom on a hub is turned by 14 degrees with a torque of two pulses, recorded as
-/// a table, then without torque. Three ways to step, and the error for a step that is too long.
+/// Time responses: a boom on a hub is turned by 14.5 degrees with a torque of two pulses, recorded
+/// as a table, then without torque. Three ways to step, and the error for a step that is too long.
 #include <fmt/format.h>
 
 #include <titop/titop.hpp>

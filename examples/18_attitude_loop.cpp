@@ -2,9 +2,9 @@
 // scenes/satellite.cpp whose hub is controlled by a law with an actuator and a delay. With the
 // controller it is no passive structure and has no M, D, K form, so its states are balanced
 // instead: states on the imaginary axis (here the hub's free translation, if an output needs it)
-// are kept, the rest truncated to those that a disturbance and a command need for the attitude, the
-// law's torque and one tip, up to 20 Hz. With a bound on the error, and compared with the loop
-// closed by hand.
+// are kept, the rest balanced and reduced to those that a disturbance and a command need for the
+// attitude, the law's torque and one tip, up to 20 Hz. With a bound on the error, and compared with
+// the loop closed by hand.
 #include <Eigen/LU>
 #include <cstdio>
 #include <titop/titop.hpp>

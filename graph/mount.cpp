@@ -64,7 +64,7 @@ Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::
        !body.empty() && T_ba.to() == body
            ? fmt::format("exchange its two names: named(\"{}\", \"{}\")", T_ba.from(), body)
            : "give the rotation of the mounted body, or a rotation without names"});
-  return T_ba.named({}, {});  // its names have been told
+  return T_ba.named({}, {});  // already reported
 }
 
 void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location& at) {

@@ -110,7 +110,8 @@ class Port<3, K> : public PortBase<3, K> {
   Port& operator=(const Port&)
     requires detail::never<Port>
   = delete;
-  /// The component along the vector r (any length but 0), in the port's frame.
+  /// The component along the vector r (any length but 0), in the port's frame. Throws bad_value for
+  /// r = 0.
   Port<1, K> along(const Vector3d& r) const { return Port<1, K>(detail::SignalRef::along(r)); }
 };
 
@@ -126,9 +127,9 @@ class Port<6, K> : public PortBase<6, K> {
   Port& operator=(const Port&)
     requires detail::never<Port>
   = delete;
-  /// The linear component along the vector r (any length but 0).
+  /// The linear component along the vector r (any length but 0). Throws bad_value for r = 0.
   Port<1, K> along(const Vector3d& r) const { return linear.along(r); }
-  /// The angular component about the vector r (any length but 0).
+  /// The angular component about the vector r (any length but 0). Throws bad_value for r = 0.
   Port<1, K> about(const Vector3d& r) const { return angular.along(r); }
 
   Port<3, K> linear, angular;

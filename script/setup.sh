@@ -1,4 +1,4 @@
-# Sourced by script/test, script/demo, script/nightly and .ci/run: Debian packages, quiet builds with a log.
+# Sourced by script/test, demo, docs, nightly, .ci/run and .ci/stages/consumer: Debian packages, quiet builds with a log.
 # shellcheck shell=bash disable=SC2034
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."

@@ -396,7 +396,7 @@ std::string to_string(const FullCertificate& c) {
   std::string text = to_string(c.basic) + to_string(c.grid) + to_string(c.poles) +
                      to_string(c.passivity) + to_string(c.reciprocity) + to_string(c.order) + "\n" +
                      to_string(c.exact) + "\n";
-  if (c.holds()) return text + "no fault found in what was checked\n";
+  if (c.holds()) return text + "all checks that were made have passed\n";
   for (const std::string& fault : c.faults) text += "FAULT: " + fault + "\n";
   return text;
 }

@@ -127,7 +127,7 @@ struct FullCertificate {
 /// Computes all items above, with the dense model and its poles. A check that cannot be made is
 /// reported as `why_not`; throws the errors of System::state_space. O(n^3) in the states, and
 /// points * O(bodies). Does not change the system, except for its dense model, which is kept.
-FullCertificate certify(const System& system, const Full& subject = {});
+FullCertificate certify(const System& system, const Full& options = {});
 
 /// One line per item; for a check that was not made, the reason.
 std::string to_string(const FullCertificate& certificate);

@@ -91,7 +91,8 @@ struct Trajectory {
 /// `excitation`. Throws bad_value for steps that are not positive or do not divide `until`, and for
 /// an rk4 step beyond the limit of stability, which it names, and if the error of the automatic
 /// choice exceeds Simulation::accuracy, with the output; size for x0 or inputs of another size;
-/// not_finite if the response overflows (an unstable system), with the time.
+/// not_finite if the response overflows (an unstable system), with the time. Cost: that of the
+/// Stepper, and of its step times the number of steps.
 ///
 /// Sources: [Hairer, Lubich, Wanner 2006] IV.2 (midpoint), [Van Loan 1978] (exponential).
 Trajectory simulate(const System& system, const Excitation& excitation,
@@ -99,7 +100,8 @@ Trajectory simulate(const System& system, const Excitation& excitation,
 
 /// The largest step [s] that rk4 may take: where h * (every stable pole) stays in its region of
 /// stability |1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 (2.83 / omega of an undamped pole, 2.79 / sigma
-/// of a real one); infinite without poles. Unstable poles do not count. O(n^3).
+/// of a real one); infinite without poles. Unstable poles do not count. Throws the errors of
+/// System::write. O(n^3).
 double rk4_limit(const System& system);
 
 }  // namespace titop

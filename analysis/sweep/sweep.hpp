@@ -16,8 +16,9 @@ struct SweepOptions {
 
 /// Calls visit(i, system.update(points[i])) for every i, each on one of the threads: `visit` must
 /// only touch data of i. Its arguments are the same to the last bit for any number of threads. Of
-/// several errors that of the first point is thrown, with the point's number. Threads but the
-/// caller's are kept for later calls, with their thread_local objects.
+/// several errors of `update` or `visit` that of the first point is thrown, with the point's
+/// number. Cost: one update and visit per point. Threads but the caller's are kept for later calls,
+/// with their thread_local objects.
 ///
 ///     std::vector<double> hz(points.size());
 ///     sweep(s, points, [&](std::size_t i, const System& at) { hz[i] = at.poles()[0].hertz; });

@@ -89,7 +89,7 @@ std::vector<MatrixXcd> refined_transfers(const StateSpace& model,
     const linalg::Solution y = linalg::refined_response(m.A, m.B, m.C, m.D, s);
     if (!(y.rcond > 0) || !y.z.allFinite())
       throw Error(Code::singular, fmt::format("s = {}{:+}j is a pole", s.real(), s.imag()),
-                  "evaluate beside it");
+                  "evaluate at another s");
     list.push_back(y.z.cwiseProduct(there));
   }
   return list;

@@ -239,7 +239,7 @@ void warn_of_stops(Stage& stage, const Component& c, const ScaleFactors& factors
                    "they allow to first order (relative residual {:.1e}), and the model contains "
                    "these motions; {}",
                    detail::some_names(names), cause, part,
-                   rods.empty() ? "take a posture beside it, or lock a joint"
+                   rods.empty() ? "change the posture slightly, or lock a joint"
                                 : "keep modes with axial motion, or residual vectors")});
 }
 

@@ -7,7 +7,7 @@
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/steady_random.hpp>
 
-/// Closed chains that hold more than once: which internal forces the motion does not determine.
+/// Over-constrained closed chains: internal forces that the motion does not determine.
 namespace titop::detail {
 namespace {
 

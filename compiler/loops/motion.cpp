@@ -78,7 +78,8 @@ void Motion::add_ties(const SumExpander& sums, Ground ground) {
     if (q.of_block || target.channel < 0 || target.quantity != Quantity::acceleration) continue;
     ties_.push_back(tie_of(q, e, sums, ground));
   }
-  std::sort(ties_.begin(), ties_.end(), [](const Tie& a, const Tie& b) { return a.turn < b.turn; });
+  std::sort(ties_.begin(), ties_.end(),
+            [](const Tie& a, const Tie& b) { return a.order < b.order; });
   find_rotations(ties_);
 }
 
@@ -113,7 +114,7 @@ Tie Motion::tie_of(const Equation& q, int index, const SumExpander& sums, Ground
   const auto all = static_cast<int>(g_.equations.size());
   const bool inverted = g_.channels[at(target.channel)].takes != Takes::accel;
   tie.late = ground == Ground::last && tie.points.empty();
-  tie.turn = index + (inverted ? all : 0) + (tie.late ? 2 * all : 0);
+  tie.order = index + (inverted ? all : 0) + (tie.late ? 2 * all : 0);
   return tie;
 }
 

@@ -24,12 +24,12 @@ struct Tie {
   std::optional<Matrix3d> rotation = {};
   bool closes = false;  ///< no edge of the tree: it closes a chain
   bool late = false;    ///< from the ground, and that comes last
-  int turn = 0;         ///< when the spanning forest comes to it
+  int order = 0;        ///< position in the traversal of the spanning forest
   int length = 0;       ///< edges of the tree's way round, if it closes one
 
   /// A tie that closes a chain may go through those of lower rank.
   using Rank = std::tuple<bool, int, int>;
-  Rank rank() const { return {late, length, turn}; }
+  Rank rank() const { return {late, length, order}; }
 };
 
 /// A closing equation: form + gap * (position of the meeting point) = 0, where `gap` is 0 if the

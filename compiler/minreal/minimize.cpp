@@ -209,14 +209,15 @@ std::string to_string(const OrderVerdict& v) {
   if (!v.removed.empty()) {
     const int left = states_of(v.removed);
     text +=
-        fmt::format("; {} state{} taken out, {}", left, left == 1 ? "" : "s", describe(v.removed));
+        fmt::format("; {} state{} removed, {}", left, left == 1 ? "" : "s", describe(v.removed));
   }
-  if (v.to_fewer < 1) text += fmt::format("; the next would cost {:.1e}", v.to_fewer);
+  if (v.to_fewer < 1)
+    text += fmt::format("; removing the next mode would change the transfer by {:.1e}", v.to_fewer);
   if (v.change >= 0)
-    text += fmt::format(
-        "; {} {:.1e}",
-        v.removed.empty() ? "put back what changed the transfer by" : "transfer changed by",
-        v.change);
+    text += fmt::format("; {} {:.1e}",
+                        v.removed.empty() ? "no mode removed: removal changed the transfer by"
+                                          : "transfer changed by",
+                        v.change);
   return text;
 }
 

@@ -52,9 +52,9 @@ struct OrderVerdict {
   bool decided() const { return judged && lowest == highest; }
 };
 
-/// "order 8; 2 states taken out, the mode at 11.4 rad/s: no output sees it (visibility 2e-33,
-/// rounding 8e-32); the next would cost 3.8e-03", or "order 162, undecided between 94 and 162 at
-/// this precision, kept 34 modes, ...". One line.
+/// "order 8; 2 states removed, the mode at 11.4 rad/s: no output sees it (visibility 2e-33,
+/// rounding 8e-32); removing the next mode would change the transfer by 3.8e-03", or "order 162,
+/// undecided between 94 and 162 at this precision, kept 34 modes, ...". One line.
 std::string to_string(const OrderVerdict& verdict);
 
 /// A model without the states that have no effect on its transfer, and the removed modes.
@@ -73,8 +73,8 @@ struct Minimized {
 ///
 /// Without it the transfer changes by at most v_j / zeta_j of the other modes' part there. A mode
 /// is dropped if its v is below ten times its own rounding bound or 1e-17, and both below 1e-9, or
-/// if v is below the resolution; in doubt it stays. Modes of equal frequency and damping are
-/// rotated among themselves first, so that unreachable ones are separate. An unreachable mode
+/// if v is below the resolution; an undecided mode is kept. Modes of equal frequency and damping
+/// are rotated among themselves first, so that unreachable ones are separate. An unreachable mode
 /// becomes a relation between states, an unobservable one likewise: the others keep name and
 /// meaning.
 ///

@@ -135,7 +135,7 @@ struct Singular {
 
   std::string describe(const Row& row) const {
     if (row.equation < 0)
-      return fmt::format("what {} gives at {}", g.nodes[at(row.node)].name, name_of(g, row.output));
+      return fmt::format("output {} of {}", name_of(g, row.output), g.nodes[at(row.node)].name);
     const Equation& e = g.equations[at(row.equation)];
     return fmt::format("{:<50} {}", print(g, e), to_string(e.where));
   }
@@ -146,19 +146,19 @@ struct Singular {
     for (const int r : p.rows) {
       const Row& row = inc.rows[at(r)];
       here.insert(name_of(g, row.equation < 0 ? row.output : g.equations[at(row.equation)].target));
-      result.details.push_back("too much here:  " + describe(row));
+      result.details.push_back("surplus equation:  " + describe(row));
     }
     for (const int s : p.signals) {
       there.insert(name_of(g, s));
-      result.details.push_back("nothing determines:  " + name_of(g, s));
+      result.details.push_back("undetermined:  " + name_of(g, s));
     }
     if (p.too_many > 0)
-      result.message += p.too_many == 1 ? "one equation is too many here: " + joined(here)
-                                        : fmt::format("{} equations are too many here: {}",
-                                                      p.too_many, joined(here));
+      result.message += p.too_many == 1
+                            ? "one surplus equation at " + joined(here)
+                            : fmt::format("{} surplus equations at {}", p.too_many, joined(here));
     if (p.too_few > 0)
       result.message +=
-          fmt::format("{}{} missing there: {}", p.too_many > 0 ? "; " : "",
+          fmt::format("{}{} missing at {}", p.too_many > 0 ? "; " : "",
                       p.too_few == 1 ? "one is" : fmt::format("{} are", p.too_few), joined(there));
     const bool imposed =
         std::any_of(p.cures.begin(), p.cures.end(), [&](int e) { return imposes(e); });
@@ -166,8 +166,8 @@ struct Singular {
       if (imposes(e) || !imposed)
         sides.insert(fmt::format("{} instead of {}", name_of(g, other_side(e)),
                                  name_of(g, g.equations[at(e)].target)));
-    result.hint = sides.empty() ? "leave out one of these equations, or give the blocks between "
-                                  "them modes or joints to move by"
+    result.hint = sides.empty() ? "remove one of these equations, or add a joint or modes between "
+                                  "their blocks"
                                 : "drive the other side of one of these channels: " + joined(sides);
     return result;
   }

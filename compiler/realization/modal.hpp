@@ -18,6 +18,8 @@ struct SecondOrder {
   Eigen::MatrixXd skew;      ///< antisymmetric part, removed from S; small in the modes of S, too
   double asymmetry = 0;      ///< largest |S_ij - S_ji| over sqrt(S_ii S_jj) before; up to 1e-9
 };
+/// `found` is false if a state is neither coordinate nor rate, an entry is not finite, or the
+/// asymmetry is above 1e-9. Throws nothing. O(n^2).
 SecondOrder second_order(const StateSpace& model);
 
 }  // namespace titop

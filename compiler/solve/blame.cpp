@@ -172,7 +172,7 @@ Mistake blame(const Stage& stage, const std::vector<std::shared_ptr<const Dynami
   m.details.push_back(
       inputs.empty()
           ? "these equations do not determine the ports: one of them follows from the others"
-          : fmt::format("these equations require a combination of {} to be 0", driven));
+          : fmt::format("these equations are consistent only if a combination of {} is 0", driven));
   m.details.push_back("without any one of these ports the others would be determined");
   m.hint = fmt::format(
       "break the direct feedthrough around {}: give one block of the loop a state, or "

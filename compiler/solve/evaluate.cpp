@@ -28,7 +28,8 @@ Error named(const Error& error, const Node& node) {
     m.message = fmt::format("{}: {}", node.name, m.message);
     if (m.code == Code::singular)
       m.hint =
-          "evaluate beside it; where the system has no pole, System::state_space().transfer(s) has "
+          "evaluate at another s; where the system has no pole, System::state_space().transfer(s) "
+          "has "
           "a value there";
   }
   return Error(std::move(mistakes));
@@ -50,7 +51,7 @@ Error no_digit_left(const Factored& data, std::complex<double> s) {
   return {Code::singular,
           fmt::format("{} has a pole at s = {}{:+}j, or no digit is left there in this precision",
                       data.graph().name, s.real(), s.imag()),
-          "evaluate beside it, or with Precision::digits50"};
+          "evaluate at another s, or with Precision::digits50"};
 }
 
 Error not_refined(const Factored& data, std::complex<double> s, double error) {

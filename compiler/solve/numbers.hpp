@@ -55,8 +55,7 @@ class JointRows : public Rows<T> {
   RowMatrix<T> transposed_residual(const RowMatrix<T>& rhs, const RowMatrix<T>& solutions,
                                    RowMatrix<double>* magnitudes = nullptr) const;
 
-  /// known += (the matrix of `rhs`)' * solutions: what right-hand sides that are weighted so depend
-  /// on. At one s.
+  /// known += (the matrix of `rhs`)' * solutions, at one s.
   void add_transposed_rhs(const RowMatrix<T>& solutions, std::span<const int> first,
                           RowMatrix<T>& known) const;
 

@@ -1,6 +1,6 @@
 #include <titop/compiler/solve/pieces.hpp>
 
-/// Transposed right-hand sides and values: what outputs, weighted, depend on.
+/// Products with the transposed matrices of right-hand sides and values.
 namespace titop::solve {
 
 template <class T>

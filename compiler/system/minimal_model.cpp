@@ -174,9 +174,9 @@ Change change(const System& system, const SystemData& d, const StateSpace& dense
 constexpr ExactOptions kCountedAlways = {.states = 60, .unknowns = 100},
                        kCountedInDoubt = {.states = 100, .unknowns = 1000};
 
-/// Takes out what exact arithmetic shows to be superfluous: if it counts fewer states for the
+/// Removes states that exact arithmetic shows to be redundant: if it counts fewer states for the
 /// diagram's numbers than are kept, and the transfer keeps its digits without them. More states
-/// than are kept may be due to rounding of these numbers. False: nothing is taken out.
+/// than are kept may be due to rounding of these numbers. False: nothing is removed.
 bool lower_to_exact_order(const System& system, const SystemData& d, const StateSpace& dense,
                           const StateSpace& judged, Minimized& m) {
   if (m.order.exact) return false;
@@ -205,7 +205,7 @@ bool lower_to_exact_order(const System& system, const SystemData& d, const State
   return true;
 }
 
-/// Without a transfer no change is measured: what rounding may have hidden is not decided.
+/// Without a transfer no change is measured: modes within rounding stay undecided.
 void doubt_unmeasured(OrderVerdict& v) {
   for (const JudgedMode& mode : v.removed)
     if (mode.bound > 0 && !v.exact) v.highest += mode.states;

@@ -7,7 +7,7 @@ namespace titop {
 /// A pass of the compiler.
 struct CompilerPass {
   const char* name;
-  const char* promise;    ///< what holds afterwards
+  const char* promise;    ///< property of the result
   const char* when = "";  ///< it runs only then; "": always
 };
 

@@ -63,6 +63,8 @@ class System {
   explicit System(std::shared_ptr<const detail::SystemData> data) : data_(std::move(data)) {}
 
   int order() const;  ///< states, before `minimize`
+  /// Names of the states of `apply`, `write` and `simulate`, in their order; state_space() has
+  /// fewer after `minimize`.
   const std::vector<std::string>& states() const&;
   std::vector<std::string> states() const&& { return states(); }
   const std::vector<std::string>& inputs() const&;  ///< "u", or "U(1)" ... "U(6)"
@@ -70,8 +72,8 @@ class System {
   const std::vector<std::string>& outputs() const&;
   std::vector<std::string> outputs() const&& { return outputs(); }
 
-  /// xdot and y of x (as states() lists them) and u (as inputs()), through the factors: O(bodies).
-  /// Throws size if x or u has another size.
+  /// xdot and y of x (as states() lists them) and u (as inputs()), in SI units and the frames of
+  /// the ports, through the factors: O(bodies). Throws size if x or u has another size.
   struct Rates {
     Eigen::VectorXd xdot, y;
   };
@@ -133,19 +135,19 @@ class System {
 
   /// A new system with other values of parameters (Diagram::param); those not named keep theirs. It
   /// shares the plan with this one, and all fronts of the elimination that do not depend on them:
-  /// O(those fronts) and one pointer per block. States keep number and meaning. The scaling of
-  /// these fronts is recomputed if a value has changed by more than a factor of 8 since the last
-  /// time, that of all fronts if pivots have lost half their digits (Certificate::plans_renewed
-  /// counts both); the numbers are then those of a fresh compile, to rounding. Pivots are checked
-  /// at once; the rest of the certificate, and its warnings, are computed at the first call of
-  /// certificate(), notes(), log() or state_space(): O(bodies). They include loops that the new
-  /// values make singular without a small pivot. If a pivot is less than 1e-7 of its terms, and a
-  /// tenth of its former ratio, the margins are computed and the pivots judged at once. `minimize`
-  /// is not included: state_space() of the new system runs it for the new values, and may have
-  /// another order (Options::minimize_up_to = 0 keeps all states at all values). Throws
-  /// unknown_name (with the valid names), duplicate_name (one set twice), not_finite, the errors of
-  /// blocks for invalid values (bad_inertia, bad_value), improper and ill_posed. Angles of more
-  /// than a turn are warned of, as by `compile`.
+  /// O(those fronts) and one pointer per block. States keep number and meaning, except as below.
+  /// The scaling of these fronts is recomputed if a value has changed by more than a factor of 8
+  /// since the last time, that of all fronts if pivots have lost half their digits
+  /// (Certificate::plans_renewed counts both); the numbers are then those of a fresh compile, to
+  /// rounding. Pivots are checked at once; the rest of the certificate, and its warnings, are
+  /// computed at the first call of certificate(), notes(), log() or state_space(): O(bodies). They
+  /// include loops that the new values make singular without a small pivot. If a pivot is less than
+  /// 1e-7 of its terms, and a tenth of its former ratio, the margins are computed and the pivots
+  /// judged at once. `minimize` is not included: state_space() of the new system runs it for the
+  /// new values, and may have another order (Options::minimize_up_to = 0 keeps all states at all
+  /// values). Throws unknown_name (with the valid names), duplicate_name (one set twice),
+  /// not_finite, the errors of blocks for invalid values (bad_inertia, bad_value), improper and
+  /// ill_posed. Angles of more than a turn are warned of, as by `compile`.
   ///
   /// If new values change how a closed chain moves, or add or remove a term, all passes run again,
   /// with the cost and the errors of `compile`; the log reports it, and warns if other states are

@@ -168,7 +168,7 @@ std::string as_range(const OrderVerdict& v) {
         v.highest > v.order
             ? "; the removed modes have no effect that this precision distinguishes from 0"
             : "",
-        v.lowest < v.order ? "; modes in doubt are kept" : "");
+        v.lowest < v.order ? "; undecided modes are kept" : "");
   return fmt::format("Order {} is minimal{}.", v.order,
                      v.exact ? ", decided in exact arithmetic" : ", decided beyond rounding");
 }
@@ -273,7 +273,7 @@ std::string stability(const Subject& s, const FullCertificate* full) {
   const int zero = p.zero + p.near;
   std::string text =
       unseen ? "<b>No pole</b> of the minimal model lies right of the imaginary axis; those of the "
-               "modes that were taken out were not looked at"
+               "removed modes were not checked"
       : zero + p.axis > 0 ? "<b>No pole</b> lies right of the imaginary axis"
                           : "<b>Stable</b>: all poles lie left of the imaginary axis";
   if (zero > 0) text += fmt::format("; {} at 0 (free motion, integrators)", zero);

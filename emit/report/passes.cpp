@@ -45,7 +45,7 @@ std::string passes_section(const Subject& s, const FullCertificate* full) {
   for (const auto& [pass, t] : times) all += t, longest = std::max(longest, t);
   std::string text =
       "<div class=\"table\"><table class=\"passes\">\n<thead>" +
-      row({"pass", "promise afterwards", "what it did", "time", ""}, {"", "", "", "n", ""}, "th") +
+      row({"pass", "property afterwards", "result", "time", ""}, {"", "", "", "n", ""}, "th") +
       "</thead>\n<tbody>\n";
   for (const auto& [pass, t] : times)
     text += row({diagram::html(pass), escaped(promise(pass)), notes(s, pass), duration(t),

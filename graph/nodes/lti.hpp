@@ -7,8 +7,9 @@ namespace titop {
 /// A controller or filter: xdot = A x + B in, out = C x + D in; plain signals without frames. `add`
 /// checks shapes (code size), entries (not_finite) and places of values (bad_value: outside of the
 /// matrix, or given twice). With A = 0, B = C = 1 and D = 0 it is an Integrator; an integral that
-/// is already a state of a body adds no state. One transfer costs O(n^2) for each uncoupled part of
-/// A (modal blocks: O(n)), after O(n^3) once; with parameters among `values` O(n^3).
+/// is already a state of a body adds no state. One transfer costs O(n^3) below 32 states or with
+/// parameters among `values`; from 32 states O(n^2) for each uncoupled part of A (2 x 2 modal
+/// blocks: O(n)), after O(n^3) once.
 ///
 ///     auto K = d.add("K", Lti{.A = a, .B = b, .C = c, .D = Eigen::MatrixXd::Zero(1, 1)});
 ///     K.in = h.rate;   h.torque = K.out;

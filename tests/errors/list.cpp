@@ -194,6 +194,6 @@ TEST_CASE("docs/errors.md lists every code with the library's message and the wa
     INFO(said);
     CHECK(said.starts_with(fmt::format("error[{}]: ", to_string(c.code))));
     CHECK(text.find("\n" + said.substr(0, said.find('\n')) + "\n") != std::string::npos);
-    CHECK(text.find("Way out: ") != std::string::npos);
+    CHECK(text.find("Correction: ") != std::string::npos);
   }
 }

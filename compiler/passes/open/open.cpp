@@ -46,7 +46,10 @@ struct Opening {
   /// Refuses the parameter if its derivative is not known; one of 0 has no pairs.
   void check_difference(const Node& node, int parameter) {
     const auto why = why_no_differences(*node.block, values, parameter);
-    if (!why) return;
+    if (!why) {
+      by_differences.push_back({parameter, node.name});
+      return;
+    }
     mistakes.push_back(
         {Code::not_rational,
          fmt::format("{}: a {} has no derivative by the parameter {}: {}", node.name,
