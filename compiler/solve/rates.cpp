@@ -1,6 +1,6 @@
 #include <limits>
 #include <titop/compiler/solve/instant.hpp>
-#include <titop/compiler/solve/scalar.hpp>
+#include <titop/compiler/solve/lifted_rows.hpp>
 
 /// xdot and y of given states and inputs: in double, or with unknowns refined in double-double.
 namespace titop::detail {
@@ -21,20 +21,6 @@ RowMatrix<double> rounded(const RowMatrix<Twofold>& m) {
   return m.unaryExpr([](const Twofold& x) { return solve::Scalar<Twofold>::round(x).real(); });
 }
 
-/// The rows of the joint system in double-double, and the matrices that they point to.
-struct FinerRows {
-  std::vector<solve::Dense<Twofold>> direct, output;
-  solve::JointRows<Twofold> of(const Factored& d) {
-    direct.reserve(d.numbers.blocks.size()), output.reserve(d.numbers.blocks.size());
-    solve::Matrices<Twofold> m;
-    for (const auto& block : d.numbers.blocks) {
-      m.direct.push_back(&direct.emplace_back(solve::lifted<Twofold>(block->D)));
-      m.output.push_back(&output.emplace_back(solve::lifted<Twofold>(block->C)));
-    }
-    return {d.skeleton->stage.graph, d.skeleton->joint, d.numbers.coefficients, std::move(m)};
-  }
-};
-
 /// Refines the unknowns with the factors in double.
 void refine(InstantIn<Twofold>& now, const RowMatrix<double>& more) {
   RowMatrix<Twofold> rhs = now.rhs();
@@ -53,8 +39,8 @@ void refine(InstantIn<Twofold>& now, const RowMatrix<double>& more) {
 
 RateColumns finer_rates(const Factored& d, const RowMatrix<double>& known,
                         const RowMatrix<double>& more) {
-  FinerRows rows;
-  InstantIn<Twofold> now{d, rows.of(d), solve::lifted<Twofold>(known)};
+  const LiftedRows<Twofold> lifted(d);
+  InstantIn<Twofold> now{d, lifted.rows(), solve::lifted<Twofold>(known)};
   refine(now, more);
   const auto add_to = [](RowMatrix<Twofold>& to) {
     return [&to](Eigen::Index first, const auto& m, const Twofold* x) {

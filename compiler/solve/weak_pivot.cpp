@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <titop/compiler/solve/known_solution.hpp>
 #include <titop/compiler/solve/margins.hpp>
 #include <titop/compiler/solve/null_rows.hpp>
-#include <titop/compiler/solve/scalar.hpp>
 #include <titop/compiler/solve/weak_pivot.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/support/some_names.hpp>
@@ -12,35 +12,27 @@ namespace titop::detail {
 namespace {
 
 using linalg::at;
-using solve::Complex50;
 using solve::kLeftOfZero;
 
-constexpr double kMostProducts = 1e7;
-
-double products(const solve::Plan& plan) {
-  double sum = 0;
-  for (const solve::Front& f : plan.fronts)
-    sum += static_cast<double>(f.row_count) * f.pivot_count * f.columns();
-  return sum;
+/// The errors concern an unknown of this loop.
+bool without_digit(const Factored& d, const Loop& loop, const Eigen::ArrayXd& errors) {
+  const solve::JointSystem& joint = d.skeleton->joint;
+  const solve::Plan& plan = *joint.plan;
+  for (const int signal : loop.signals)
+    if (const int v = joint.variable_of[at(signal)]; v >= 0)
+      if (!(errors.segment(plan.first[at(v)], plan.structure.variable_size[at(v)]) <= kKnown).all())
+        return true;
+  return false;
 }
 
-/// Cancelled entries are exact zeros, so that no rounding is taken for a pivot further up.
-bool singular_in_50_digits(const Factored& d) {
-  const Skeleton& k = *d.skeleton;
-  std::vector<solve::Dense<Complex50>> direct;
-  solve::Matrices<Complex50> m;
-  direct.reserve(d.numbers.blocks.size());
-  for (const auto& block : d.numbers.blocks) {
-    direct.push_back(solve::lifted<Complex50>(block->D));
-    m.direct.push_back(&direct.back());
-  }
-  const solve::JointRows<Complex50> rows(k.stage.graph, k.joint, d.numbers.coefficients,
-                                         std::move(m));
-  const solve::Factors<Complex50> factors(k.joint.plan, rows, d.factors->scale(),
-                                          solve::NoPivot::patch);
-  const double rounding = solve::kNothingLeft * solve::Scalar<double>::epsilon();
-  const solve::Health h = factors.health();
-  return h.finite && (!factors.patches().empty() || h.weakest < rounding);
+/// An unknown of a loop too large for a margin may have no digit.
+bool large_loop_in_doubt(const Factored& d) {
+  const auto is_large = [](const Loop& loop) { return loop.unknowns > kMarginUpTo; };
+  const std::vector<Loop>& loops = d.skeleton->stage.loops;
+  if (std::ranges::none_of(loops, is_large)) return false;
+  const Eigen::ArrayXd errors = errors_of_known_solution(d);
+  return std::ranges::any_of(
+      loops, [&](const Loop& loop) { return is_large(loop) && without_digit(d, loop, errors); });
 }
 
 /// Signals of the loop without a digit, or of the weakest pivot's; empty if there is neither.
@@ -48,6 +40,9 @@ std::vector<int> signals_without_digit(const Factored& d) {
   const Skeleton& k = *d.skeleton;
   if (const int loop = judge_margins(k.stage, *d.margins).without_digit; loop >= 0)
     return k.stage.loops[at(loop)].signals;
+  const Eigen::ArrayXd errors = errors_left_of_known_solution(d);
+  for (const Loop& loop : k.stage.loops)
+    if (without_digit(d, loop, errors)) return loop.signals;
   const int variable = d.factors->health().weakest_variable;
   const int signal = variable < 0 ? -1 : k.joint.variables[at(variable)];
   if (signal < 0) return {};
@@ -63,12 +58,12 @@ WeakPivots judge_weak_pivots(const Factored& d, std::span<const double> margins)
   const Skeleton& k = *d.skeleton;
   const double weakest = d.factors->health().weakest;
   const LoopMargins loops = judge_margins(k.stage, margins);
-  if (!(weakest < kFewDigits || loops.largest > 10 / kFewDigits || loops.without_digit >= 0))
+  if (!(weakest < kFewDigits || loops.largest > 10 / kFewDigits || loops.without_digit >= 0 ||
+        large_loop_in_doubt(d)))
     return {};
   // Not after reduction: loops of the equations as written may then be singular.
   if (loops.without_digit >= 0 && !k.before_reduce) return {.least = kLeftOfZero};
-  if (products(*k.joint.plan) > kMostProducts) return {.undecided = true};
-  if (!singular_in_50_digits(d)) return {};
+  if ((errors_left_of_known_solution(d) <= kKnown).all()) return {};
   return {.least = std::clamp(2 * weakest, kLeftOfZero, solve::kCancelled)};
 }
 
