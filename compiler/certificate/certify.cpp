@@ -66,10 +66,6 @@ Check certify(const Factored& d) {
   take_margins(d, margins, check);
   self_check(d, check);
   const WeakPivots weak = d.weak_pivots ? *d.weak_pivots : judge_weak_pivots(d, margins);
-  if (weak.undecided)
-    check.notes.push_back({Note::Kind::warning, "certify",
-                           "it is not decided whether the solution of these equations has a digit "
-                           "left: the diagram is too large for an elimination in 50 digits"});
   c.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   // At distance delta from singular the margin is about 4/delta, and a pivot keeps delta/2.
   const double by_margin = 4 / c.margin, by_pivot = 2 * c.weakest_pivot;

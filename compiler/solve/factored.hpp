@@ -25,7 +25,6 @@ struct Dependents {
 /// Whether pivots are rounding alone: judge_weak_pivots.
 struct WeakPivots {
   double least = 0;  ///< share of its terms below which a pivot counts as 0; 0: all have digits
-  bool undecided = false;  ///< in doubt, and too large for an elimination in 50 digits
 };
 
 struct Writing;

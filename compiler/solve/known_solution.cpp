@@ -9,6 +9,7 @@ namespace {
 
 using linalg::at;
 using solve::Complex50;
+using solve::in_double;
 using solve::RowMatrix;
 
 /// Steps of refinement; of a regular system each must shrink the error by half at least.
@@ -20,10 +21,6 @@ RowMatrix<double> known_solution(const Factored& d) {
   for (Eigen::Index i = 0; i < x.size(); ++i)
     x(i) = std::ldexp(random.unit(), d.factors->scale()->of_unknowns[at(i)]);
   return x;
-}
-
-RowMatrix<double> real_part(const RowMatrix<Complex50>& m) {
-  return m.unaryExpr([](const Complex50& x) { return solve::Scalar<Complex50>::round(x).real(); });
 }
 
 /// L x
@@ -49,8 +46,9 @@ Eigen::ArrayXd errors_left_of_known_solution(const Factored& d) {
   RowMatrix<Complex50> found = RowMatrix<Complex50>::Zero(x.rows(), x.cols());
   Eigen::ArrayXd errors = Eigen::ArrayXd::Ones(x.rows());
   for (int step = 0; step < kMostRefined && !(errors <= kKnown).all(); ++step) {
-    found += solve::lifted<Complex50>(d.factors->solve(real_part(rows.residual(rhs, found))));
-    errors = real_part(found - goal).cwiseQuotient(x).cwiseAbs().reshaped();
+    found +=
+        solve::lifted<Complex50>(d.factors->solve(in_double(rows.residual(rhs, found)).real()));
+    errors = in_double(found - goal).real().cwiseQuotient(x).cwiseAbs().reshaped();
   }
   return errors;
 }

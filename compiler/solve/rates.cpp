@@ -6,6 +6,7 @@
 namespace titop::detail {
 namespace {
 
+using solve::in_double;
 using solve::RowMatrix;
 using Twofold = std::complex<solve::DoubleDouble>;
 
@@ -17,10 +18,6 @@ constexpr double kLossy = 0x1p-10;
 /// Steps until the unknowns have 1e-16, at three digits of the factors each.
 constexpr int kMostSteps = 8;
 
-RowMatrix<double> rounded(const RowMatrix<Twofold>& m) {
-  return m.unaryExpr([](const Twofold& x) { return solve::Scalar<Twofold>::round(x).real(); });
-}
-
 /// Refines the unknowns with the factors in double.
 void refine(InstantIn<Twofold>& now, const RowMatrix<double>& more) {
   RowMatrix<Twofold> rhs = now.rhs();
@@ -29,7 +26,7 @@ void refine(InstantIn<Twofold>& now, const RowMatrix<double>& more) {
   double before = std::numeric_limits<double>::infinity();
   for (int step = 0; rhs.size() > 0 && step < kMostSteps; ++step) {
     const RowMatrix<double> change =
-        now.data.factors->solve(rounded(now.rows.residual(rhs, now.unknowns)));
+        now.data.factors->solve(in_double(now.rows.residual(rhs, now.unknowns)).real());
     now.unknowns += solve::lifted<Twofold>(change);
     const double size = change.cwiseAbs().maxCoeff();
     if (!(2 * size <= before)) break;  // no digit is left, or nothing
@@ -52,7 +49,7 @@ RateColumns finer_rates(const Factored& d, const RowMatrix<double>& known,
   RowMatrix<Twofold> y = RowMatrix<Twofold>::Zero(std::ssize(d.layout().outputs), known.cols());
   now.products_of_xdot(add_to(xdot));
   now.products_of_outputs(add_to(y));
-  return {rounded(xdot), rounded(y)};
+  return {in_double(xdot).real(), in_double(y).real()};
 }
 
 }  // namespace

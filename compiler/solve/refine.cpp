@@ -29,11 +29,6 @@ solve::RowMatrix<T> Evaluation<T>::rounding_of_values(std::span<const int> first
 
 namespace {
 
-template <class T>
-Eigen::MatrixXcd rounded(const solve::RowMatrix<T>& m) {
-  return m.unaryExpr([](const T& x) -> std::complex<double> { return solve::Scalar<T>::round(x); });
-}
-
 /// The share of a block in double that finer arithmetic leaves of a 0, at most: T has 53 bits more,
 /// some of which the elimination may lose.
 constexpr double kLeftOfNoise = 0x1p-40;
@@ -59,8 +54,8 @@ std::optional<Eigen::MatrixX<bool>> zeros_in(const Factored& d) {
     const Evaluation<T> point(d, solve::Scalar<T>::from(pick_s(d)), unit_inputs<T>(d));
     const auto rows = groups_of_outputs(d, all_outputs(d)),
                cols = groups_of_inputs(d, all_inputs(d));
-    const Eigen::MatrixXd size = block_sizes(rounded<T>(point.outputs()), rows, cols),
-                          off = block_sizes(rounded<T>(point.rounding()), rows, cols);
+    const Eigen::MatrixXd size = block_sizes(solve::in_double(point.outputs()), rows, cols),
+                          off = block_sizes(solve::in_double(point.rounding()), rows, cols);
     const double epsilon = solve::Scalar<T>::epsilon(),
                  of_data = kRoundings * solve::Scalar<double>::epsilon() / epsilon;
     const Eigen::ArrayXXd of_rounding =
@@ -106,13 +101,13 @@ double Evaluation<T>::relative_to_results(const solve::RowMatrix<T>& change) con
   const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(u_.rows(), u_.cols());
   const bool known = !std::is_same_v<T, double> && ports_;
   const PortGroups rows = groups_of_outputs(data_, all_outputs(data_)), cols = groups_of_columns();
-  return relative_change(rounded<T>(outputs()), rounded<T>(outputs_of(change, none, nullptr)), rows,
-                         cols, [&](Eigen::Index i, Eigen::Index j) {
-                           return !known ||
-                                          data_.zero_blocks()(rows.index[at(i)], cols.index[at(j)])
-                                      ? ZeroBlock::assumed
-                                      : ZeroBlock::no;
-                         });
+  return relative_change(
+      solve::in_double(outputs()), solve::in_double(outputs_of(change, none, nullptr)), rows, cols,
+      [&](Eigen::Index i, Eigen::Index j) {
+        return !known || data_.zero_blocks()(rows.index[at(i)], cols.index[at(j)])
+                   ? ZeroBlock::assumed
+                   : ZeroBlock::no;
+      });
 }
 
 template <class T>

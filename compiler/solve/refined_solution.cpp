@@ -9,6 +9,7 @@
 namespace titop::detail {
 namespace {
 
+using solve::in_double;
 using solve::lifted;
 
 /// Most steps of refinement: at kShrinks each they lead to 1e-18.
@@ -73,17 +74,13 @@ solve::RowMatrix<T> RefinedSolution<T>::change_by_rounding() const {
 template <class T>
 solve::RowMatrix<std::complex<double>> RefinedSolution<T>::change_by(
     const RefinedSolution<Double>& coarse, double* rounding) {
-  const auto down = [](const solve::RowMatrix<T>& m) {
-    return solve::RowMatrix<Double>(
-        m.unaryExpr([](const T& x) -> Double { return solve::Scalar<T>::round(x); }));
-  };
   columns_solved_ += static_cast<int>((rounding ? 2 : 1) * unknowns_.cols());
-  if (!rounding) return coarse.solve(down(residual(nullptr)));
+  if (!rounding) return coarse.solve(in_double(residual(nullptr)));
   solve::RowMatrix<double> magnitudes;
   const solve::RowMatrix<T> off = residual(&magnitudes);
   const auto m = off.cols();
   solve::RowMatrix<Double> both(off.rows(), 2 * m);
-  both << down(off), down(rounding_of(magnitudes));
+  both << in_double(off), in_double(rounding_of(magnitudes));
   const solve::RowMatrix<Double> changes = coarse.solve(both);
   *rounding = kRoundings * relative_to_results(lifted<T>(changes.rightCols(m)));
   return changes.leftCols(m);

@@ -77,6 +77,13 @@ auto lifted(const Matrix& m) {
   return m.unaryExpr([](const typename Matrix::Scalar& x) -> T { return lift<T>(x); });
 }
 
+/// The matrix m rounded to complex numbers of double.
+template <class Matrix>
+auto in_double(const Matrix& m) {
+  using T = typename Matrix::Scalar;
+  return m.unaryExpr([](const T& x) -> std::complex<double> { return Scalar<T>::round(x); });
+}
+
 template <class T>
 double size_of(const T& x) {
   return Scalar<T>::size(x);

@@ -14,11 +14,6 @@ solve::RowMatrix<T> unit_outputs(const Factored& d, const std::vector<int>& port
   return unit_vectors<T>(d.graph().outputs, l.output_first, l.outputs.size(), ports);
 }
 
-template <class T>
-Eigen::MatrixXcd in_double(const solve::RowMatrix<T>& m) {
-  return m.unaryExpr([](const T& x) -> std::complex<double> { return solve::Scalar<T>::round(x); });
-}
-
 }  // namespace
 
 template <class T>
@@ -90,8 +85,8 @@ double TransposedEvaluation<T>::relative_to_results(const solve::RowMatrix<T>& c
   const Factored& d = point_.data_;
   const PortGroups rows = groups_of_inputs(d, all_inputs(d)), cols = groups_of_outputs(d, ports_);
   const solve::RowMatrix<T> none = solve::RowMatrix<T>::Zero(own_.rows(), own_.cols());
-  return relative_change(in_double<T>(inputs()), in_double<T>(inputs_of(change, none)), rows, cols,
-                         [&](Index i, Index j) {
+  return relative_change(solve::in_double(inputs()), solve::in_double(inputs_of(change, none)),
+                         rows, cols, [&](Index i, Index j) {
                            const Eigen::MatrixX<bool>& zeros = d.zero_blocks();
                            if (!zeros(cols.index[at(j)], rows.index[at(i)])) return ZeroBlock::no;
                            return zeros.all() ? ZeroBlock::assumed : ZeroBlock::confirmed;

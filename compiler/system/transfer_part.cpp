@@ -15,11 +15,6 @@ using Double = std::complex<double>;
 using Extended = std::complex<long double>;
 using Twofold = std::complex<solve::DoubleDouble>;
 
-template <class T>
-Eigen::MatrixXcd in_double(const solve::RowMatrix<T>& m) {
-  return m.unaryExpr([](const T& x) -> Double { return solve::Scalar<T>::round(x); });
-}
-
 /// NaN if one of them is.
 double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
@@ -67,8 +62,8 @@ class Answer {
   double weakest_pivot() const { return forward_.weakest_pivot(); }
 
   TransferPart rounded() const {
-    TransferPart part{in_double<T>(forward_.outputs()), {}, {}};
-    if (transposed_) part.rows = in_double<T>(transposed_->inputs()).transpose();
+    TransferPart part{solve::in_double(forward_.outputs()), {}, {}};
+    if (transposed_) part.rows = solve::in_double(transposed_->inputs()).transpose();
     return part;
   }
 
