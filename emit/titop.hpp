@@ -34,6 +34,7 @@
 #include <titop/blocks/rigid_body.hpp>
 #include <titop/blocks/rotor.hpp>
 #include <titop/blocks/slide.hpp>
+#include <titop/blocks/slosh.hpp>
 #include <titop/blocks/spring_mass.hpp>
 #include <titop/compiler/definition/exact_order.hpp>
 #include <titop/compiler/definition/transfer.hpp>
