@@ -167,7 +167,7 @@ void check_damping(const MatrixXd& Z, Eigen::Index n) {
   constexpr double rounding = 1e-9;
   if ((scaled - scaled.transpose()).cwiseAbs().maxCoeff() > rounding)
     throw Error(Code::bad_modes, "the damping matrix of the modes is not symmetric",
-                "a force in proportion to rates is gyroscopic if it is not: see momentum()");
+                "give (Z + Z') / 2; a skew part is gyroscopic: write it with momentum()");
   const SymmetricModes m = eigh(scaled);
   if (m.lambda(0) >= -rounding * static_cast<double>(n)) return;
   Eigen::Index mode = 0;

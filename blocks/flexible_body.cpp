@@ -41,10 +41,12 @@ std::invoke_result_t<Make> told_at(const std::source_location& at, Make make) {
 /// A body's damping is of one kind.
 void require_damped_by_xi(const FlexibleBody::Spec& spec, const char* given) {
   if (spec.damping.size() == 0 && spec.loss_factor == 0) return;
-  throw Error(Code::bad_modes,
-              fmt::format("a body with {} is given {}",
-                          spec.loss_factor > 0 ? "a loss factor" : "a damping matrix", given),
-              "begin with the body before that: its damping is of one kind");
+  throw Error(
+      Code::bad_modes,
+      fmt::format("a body with {} is given {}",
+                  spec.loss_factor > 0 ? "a loss factor" : "a damping matrix", given),
+      "take FlexibleBody{body.data()}: a body has xi, a damping matrix or a loss factor, not two "
+      "of them");
 }
 
 void require_no_values(const FlexibleBody::Spec& spec, const char* given) {

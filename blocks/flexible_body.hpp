@@ -53,8 +53,8 @@ struct ModeValues {
 /// {{"tip", {{1, 5, p}}}}` one entry of the shapes at the child "tip". All else is boom's, and
 /// shared with it. Values are checked when it is added, and by `update` for new ones: bad_modes (no
 /// such mode or component, an entry given twice, omega <= 0, xi < 0, more mass in the modes than
-/// D_P has), not_found (no such child), not_finite. New values cost O(N^2 + N inputs^2), once for
-/// all nodes that use the same FlexibleBody. A beam of another E has all its omegas times one
+/// D_P has), unknown_name (no such child), not_finite. New values cost O(N^2 + N inputs^2), once
+/// for all nodes that use the same FlexibleBody. A beam of another E has all its omegas times one
 /// parameter, sqrt(E / E0); of another density or length it has other shapes too.
 class FlexibleBody {
  public:
@@ -91,8 +91,13 @@ class FlexibleBody {
     double loss_factor = 0;        ///< eta of `with_loss_factor`; 0: by xi
   };
   const Spec& spec() const { return *spec_; }
-  const ModalData& data() const { return *spec_->data; }  ///< as given, without other values
-  ModalData nominal() const;  ///< with the spec's values, parameters at their nominal ones
+  const ModalData& data() const {
+    return *spec_->data;
+  }  ///< as given, without other values,
+     ///< damping matrix and loss factor
+  /// With the spec's values, parameters at their nominal ones; xi is not the damping of a body with
+  /// a damping matrix or a loss factor.
+  ModalData nominal() const;
   const BlockPtr& block() const { return block_; }
 
   using Handle = BodyHandle;

@@ -57,7 +57,8 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
  public:
   FlexibleBodyBlock(std::shared_ptr<const FlexibleBody::Spec> spec,
                     std::shared_ptr<const Shapes> shapes)
-      : spec_(std::move(spec)), shapes_(std::move(shapes)) {
+      : spec_(std::move(spec)), shapes_(std::move(shapes)), digits_(shapes_->digits) {
+    size_entries();
     if (spec_->values.empty() && spec_->loss_factor == 0)
       made_ = made({}, [](const Value& value) { return value.nominal(); });
   }
@@ -87,19 +88,19 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
     if (at->dynamics->modal) return modal_response(*at->dynamics->modal, s, type());
     return modal_response({at->shapes->W, at->shapes->rigid, {}, {}}, s, type());
   }
-  const DataDigits& digits() const override { return shapes_->digits; }
+  const DataDigits& digits() const override { return digits_; }
   Cause beyond_digits(int channel, const VectorXd& direction, double left) const override {
     const std::string where = combination(direction);
     const auto c = static_cast<std::size_t>(channel);
     if (c == spec_->data->children.size())
       return {fmt::format("has no residual mass in {}: of D_P its modes leave {:.1e} there, the "
                           "noise of the data is {:.0e}",
-                          where, left, shapes_->digits.mass),
+                          where, left, digits_.mass),
               fmt::format("keep fewer modes, add the mass at P, or impose the motion of P in {}",
                           where)};
     return {fmt::format("has modes that do not move {} in {}: by {:.1e} of its other motions, the "
                         "noise of the data is {:.0e}",
-                        spec_->data->children[c].name, where, left, shapes_->digits.shapes),
+                        spec_->data->children[c].name, where, left, digits_.shapes),
             kKeepMore};
   }
   std::optional<Cause> why_singular(int channel, ParameterValues values) const override {
@@ -129,6 +130,23 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
     std::shared_ptr<const Shapes> shapes;
     std::shared_ptr<const Dynamics> dynamics;
   };
+
+  /// Rows of Phi_C that are 0 in the data are exact, unless a value stands there: its row then has
+  /// the size of the others of its kind, or its own.
+  void size_entries() {
+    for (std::size_t c = 0; c < spec_->data->children.size(); ++c) {
+      const auto of = spec_->values.Phi_C.find(spec_->data->children[c].name);
+      if (of == spec_->values.Phi_C.end()) continue;
+      for (const ModeValues::Entry& e : of->second) {
+        if (e.component < 1 || e.component > 6) continue;  // refused by as_block
+        const Index first = static_cast<Index>(6 * c) + (e.component > 3 ? 3 : 0),
+                    row = static_cast<Index>(6 * c) + e.component - 1;
+        double& size = digits_.size(row);
+        if (size == 0) size = shapes_->digits.size.segment<3>(first).maxCoeff();
+        if (size == 0) size = std::abs(e.value.nominal());
+      }
+    }
+  }
 
   static NumberOf at(ParameterValues values) {
     return [values](const Value& v) { return v.at(values); };
@@ -168,6 +186,7 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
 
   std::shared_ptr<const FlexibleBody::Spec> spec_;
   std::shared_ptr<const Shapes> shapes_;
+  DataDigits digits_;  ///< of the shapes, and of values in place of some
   mutable std::mutex keeping_;
   mutable std::shared_ptr<const Made> made_;
 };

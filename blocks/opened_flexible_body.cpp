@@ -17,6 +17,7 @@ class ModalPairs {
              const MatrixXd& W)
       : spec_(spec), modes_(modes), W_(W), n_(modes.omega.size()) {
     for (Index i = 0; i < n_; ++i) {
+      if (!has_values(i)) continue;
       frequency_and_damping(i);
       entries(i);
     }
@@ -32,6 +33,12 @@ class ModalPairs {
     double sign;
     int child;
   };
+
+  bool has_values(Index i) const {
+    const int mode = static_cast<int>(i + 1);
+    return spec_.values.omega.contains(mode) || spec_.values.xi.contains(mode) ||
+           !places(i).empty();
+  }
 
   RowVectorXd state(Index k) const { return RowVectorXd::Unit(2 * n_, k); }
 

@@ -33,7 +33,8 @@ struct PortHamiltonian {
 /// Eq. (7): q = stretch, p = m times its rate. Parameters at their nominal values; the spec is not
 /// checked.
 PortHamiltonian port_hamiltonian(const SpringMass& spec);
-/// Eq. (17) in modal coordinates. Parameters at their nominal values.
+/// Eq. (17) in modal coordinates. Parameters at their nominal values. Throws not_rational for a
+/// body with a loss factor.
 PortHamiltonian port_hamiltonian(const FlexibleBody& body);
 
 }  // namespace titop

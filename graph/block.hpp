@@ -93,6 +93,9 @@ struct Dynamics {
   Eigen::MatrixXd A, B, C, D;
   std::shared_ptr<const Modal> modal = {};
   std::vector<Gains> sparse = {};
+  /// W, rigid and stiffness of a body by modes; `modal` is the same, but empty if the damping
+  /// couples the modes (Modal::damping does not count then).
+  std::shared_ptr<const Modal> modes = {};
 
   /// The entries of `sparse` that start at this row.
   std::span<const Gains> gains_of_row(int row) const;

@@ -101,18 +101,29 @@ void check_numbers(std::vector<int> numbers, Eigen::Index size, const char* subj
                 "exchange each input with one output");
 }
 
-/// True if a pivot of these rows and columns of D is rounding of the others in them, as of a 0
-/// after a rotation of frames.
-bool is_rounding(const MatrixXd& D, const std::vector<int>& rows, const std::vector<int>& columns) {
-  if (rows.empty()) return false;
+/// Rank of these rows and columns of D, without pivots that are rounding of the other entries in
+/// them, as of a 0 after a rotation of frames.
+Eigen::Index rank_beyond_rounding(const MatrixXd& D, const std::vector<int>& rows,
+                                  const std::vector<int>& columns) {
+  if (rows.empty()) return 0;
   const MatrixXd part = EquilibratedMatrix(D).matrix(rows, columns);
   const Eigen::FullPivLU<MatrixXd> lu(part);
-  return !(lu.matrixLU().diagonal().cwiseAbs().minCoeff() > 1e-14);
+  return (lu.matrixLU().diagonal().cwiseAbs().array() > 1e-14).count();
+}
+
+void check_names(const StateSpace& m) {
+  require_fitting(m, "invert");
+  if (std::ssize(m.inputs) == m.D.cols() && std::ssize(m.outputs) == m.D.rows()) return;
+  throw Error(Code::size,
+              fmt::format("invert: {} names of inputs and {} of outputs for D of {} x {}",
+                          m.inputs.size(), m.outputs.size(), m.D.rows(), m.D.cols()),
+              "name every input and output in StateSpace::inputs and outputs");
 }
 
 }  // namespace
 
 StateSpace invert(const StateSpace& model, const std::vector<std::pair<int, int>>& pairs) {
+  check_names(model);
   std::vector<int> in, out;
   for (const auto& [i, o] : pairs) in.push_back(i), out.push_back(o);
   check_numbers(in, model.D.cols(), "input");
@@ -120,12 +131,13 @@ StateSpace invert(const StateSpace& model, const std::vector<std::pair<int, int>
   const EquilibratedMatrix D_oi(model.D(out, in));
   Eigen::FullPivLU<MatrixXd> lu(D_oi.matrix);
   lu.setThreshold(1e-13);
-  if (!lu.isInvertible() || is_rounding(model.D, out, in))
+  const Eigen::Index rank = std::min(lu.rank(), rank_beyond_rounding(model.D, out, in));
+  if (rank < std::ssize(pairs))
     throw Error(Code::improper,
                 fmt::format("the direct term from {} to {} has rank {} of {}",
                             in.empty() ? "" : model.inputs[static_cast<std::size_t>(in.front())],
                             out.empty() ? "" : model.outputs[static_cast<std::size_t>(out.front())],
-                            lu.rank(), pairs.size()),
+                            rank, pairs.size()),
                 "invert fewer degrees of freedom: the inverse would need derivatives");
   // u_i = R (y_o - C_o x - D_or u_r); the rest follows by substitution.
   const MatrixXd R = D_oi.cols.asDiagonal() * lu.inverse() * D_oi.rows.asDiagonal();

@@ -28,7 +28,7 @@ std::shared_ptr<const Dynamics> modal_dynamics(Modal m) {
       d->D(i, j) += both;
       if (j < i) d->D(j, i) += both;
     }
-  d->modal = std::make_shared<const Modal>(std::move(m));
+  d->modes = d->modal = std::make_shared<const Modal>(std::move(m));
   return d;
 }
 

@@ -186,8 +186,8 @@ MatrixXd mass_normalised(const Whole& w, const std::string& name) {
     const double mass = moved.dot(read) / moved.squaredNorm();
     if (!(mass > 0) || (read - mass * moved).norm() > kStructure * mass * moved.norm())
       refuse(
-          fmt::format("{} is not passive: its mode at {:.4g} rad/s is moved by other forces than "
-                      "those of its own points",
+          fmt::format("{} is not reciprocal: forces at its ports excite the mode at {:.4g} rad/s "
+                      "otherwise than their motions show it",
                       name, std::sqrt(w.lambda(j))),
           "keep controllers and gains outside of the part");
     W.row(j) = std::sqrt(mass) * w.b.row(j);

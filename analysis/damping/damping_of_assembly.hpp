@@ -11,8 +11,9 @@ namespace titop {
 
 /// A row of a table of damping ratios.
 struct DampingPoint {
-  double hertz = 0;  ///< frequency of an assembled mode [Hz]
-  double xi = 0;     ///< its damping ratio [-]
+  double hertz;  ///< frequency of an assembled mode [Hz]
+  double xi;     ///< its damping ratio [-]
+  DampingPoint(double frequency, double ratio) : hertz(frequency), xi(ratio) {}
 };
 
 /// Damping ratios of assembled modes: one number, or a table over their undamped frequencies.
@@ -54,7 +55,8 @@ struct AssemblyPort {
 ///     D = M Phi diag(2 xi w) Phi' M
 ///
 /// so that each of these modes has exactly its xi; rigid motion is undamped [Craig and Kurdila
-/// 2006, 10.3]. D replaces all damping of the part, that of its bodies' modes and of its joints.
+/// 2006, 10.3]. D replaces all damping of the part, that of its bodies' modes and of its joints. (A
+/// body with a loss factor is refused, not_rational: give FlexibleBody{body.data()} to the part.)
 ///
 ///     Diagram part{"wing"};
 ///     auto boom = part.add("boom", FlexibleBody{data});                  // 0.3 %: ignored here

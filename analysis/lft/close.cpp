@@ -1,5 +1,8 @@
+#include <algorithm>
+#include <cmath>
 #include <titop/analysis/lft/close.hpp>
 #include <titop/graph/linalg/dense.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::detail {
 namespace {
@@ -14,8 +17,7 @@ double norm1(const MatrixXd& m) { return m.cwiseAbs().colwise().sum().maxCoeff()
 /// I - D_zw Delta and its inverse.
 struct Loop {
   MatrixXd inverse;
-  double margin = 0;  ///< see well_posed
-  double determinant = 1;
+  double margin = 0;  ///< see well_posed, without its sign
 };
 
 /// With w and z in sizes that give rows and columns of D_zw equal norms: the margin then depends on
@@ -27,17 +29,28 @@ Loop loop(const StateSpace& m, const VectorXd& deltas) {
   scaled = scaled * deltas.asDiagonal();
   const MatrixXd E = MatrixXd::Identity(r, r) - scaled;
   const linalg::Inverse inverse = linalg::inverse(E);
-  if (inverse.rcond == 0) return {MatrixXd(), 0, 0};
+  if (inverse.rcond == 0) return {};
   return {d.asDiagonal() * inverse.matrix * d.cwiseInverse().asDiagonal(),
-          inverse.rcond * norm1(E) / (1 + norm1(scaled)), E.determinant()};
+          inverse.rcond * norm1(E) / (1 + norm1(scaled))};
+}
+
+/// I - t D_zw Delta is singular for a t in (0, 1): D_zw Delta has a real eigenvalue above 1.
+bool singular_between(const StateSpace& m, const VectorXd& deltas) {
+  constexpr double kReal = 64 * linalg::kHalfDigits;  // rounding splits equal ones
+  MatrixXd scaled = m.D.topLeftCorner(deltas.size(), deltas.size());
+  linalg::similarity_scaling(scaled);
+  const Eigen::VectorXcd values = linalg::eigenvalues(scaled * deltas.asDiagonal());
+  return std::any_of(values.begin(), values.end(), [](const std::complex<double>& z) {
+    return z.real() > 1 && std::abs(z.imag()) <= kReal * std::abs(z);
+  });
 }
 
 }  // namespace
 
 double well_posed(const StateSpace& m, const VectorXd& deltas) {
   if (deltas.size() == 0) return 1;
-  const Loop l = loop(m, deltas);
-  return l.determinant < 0 ? -l.margin : l.margin;
+  const double margin = loop(m, deltas).margin;
+  return singular_between(m, deltas) ? -margin : margin;
 }
 
 std::optional<StateSpace> closed(const StateSpace& m, const VectorXd& deltas) {

@@ -111,7 +111,7 @@ class Lft {
 /// number; not_rational for a block without `opened`, an angle or a length that moves a closed
 /// chain, an angle that is a fraction of its parameter; ill_posed if I - D_zw Delta is singular at
 /// a corner of the box (the first twelve parameters at all their ends, more ones at their least
-/// values), or has a negative determinant there: it is singular between, then. Cost: that of
+/// values), or on the line from the nominal values to it. Cost: that of
 /// `compile`, O((states + occurrences)^3), and for the lower bounds some solutions of that size in
 /// exact arithmetic: 0.1 s for 12 states and 25 occurrences.
 ///

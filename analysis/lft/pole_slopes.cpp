@@ -55,7 +55,7 @@ std::vector<Index> equal_ones(const Eigen::VectorXcd& values, std::vector<Index>
   const std::complex<double> s = values(todo.front());
   std::vector<Index> equal, others;
   for (const Index i : todo)
-    (std::abs(values(i) - s) <= kEqual * std::abs(s) || values(i) == s ? equal : others)
+    (std::abs(values(i) - s) <= 2 * kEqual * std::abs(s) || values(i) == s ? equal : others)
         .push_back(i);
   todo = std::move(others);
   return equal;

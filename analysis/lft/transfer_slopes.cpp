@@ -117,8 +117,8 @@ MatrixXcd Derivatives::transfer(std::complex<double> s, const std::string& p,
     });
     throw Error(Code::not_rational,
                 fmt::format("second derivatives by {} and {}: a block gives differences of its "
-                            "matrices only, {}",
-                            p, q, named == by_differences_.end() ? "" : *named),
+                            "matrices only{}",
+                            p, q, named == by_differences_.end() ? "" : ", " + *named),
                 "write Block::opened for it");
   }
   const Paths m = paths(s, a == b ? std::vector{a} : std::vector{a, b}, true);

@@ -110,7 +110,7 @@ void find_owners(Raw& raw, const SystemData& data) {
     const Dynamics& d = *data.numbers.blocks[at(i)];
     const int first = l.state_first[at(i)];
     for (Index k = 0; k < d.A.rows(); ++k) node_of[at(first + k)] = i;
-    if (d.modal) stiffness.segment(first, d.modal->stiffness.size()) = d.modal->stiffness;
+    if (d.modes) stiffness.segment(first, d.modes->stiffness.size()) = d.modes->stiffness;
   }
   raw.known = VectorXd::Zero(raw.all());
   for (Index i = 0; i < raw.all(); ++i) {

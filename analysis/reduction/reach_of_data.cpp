@@ -17,8 +17,8 @@ std::vector<Note> reach_of_data(const SystemData& data, const Scene& scene) {
   for (const int i : data.layout().state_nodes) {
     const auto node = static_cast<std::size_t>(i);
     const Dynamics& m = *data.numbers.blocks[node];
-    if (!m.modal || m.modal->stiffness.size() == 0) continue;
-    const double highest = std::sqrt(m.modal->stiffness.maxCoeff()) / (2 * std::numbers::pi);
+    if (!m.modes || m.modes->stiffness.size() == 0) continue;
+    const double highest = std::sqrt(m.modes->stiffness.maxCoeff()) / (2 * std::numbers::pi);
     if (highest < needed)
       notes.push_back(
           {Note::Kind::warning, "reduction",

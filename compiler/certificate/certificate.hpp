@@ -59,7 +59,8 @@ struct Certificate {
   /// The same over the size of the output at that same s, also far below the slowest mode: there an
   /// acceleration may fall with s^2, and the digits that A, B, C, D keep of a free motion fall with
   /// it. It grows towards s below the lowest point. Above 1e-6 dense_log() warns, if another digit
-  /// is lost there, from half the slowest pole on: below all poles it is quiet.
+  /// is lost there, from half the slowest pole on; at all s with a
+  /// pole at 0 or more than 600 states.
   double dense_error_where_small = -1;
   std::complex<double> dense_error_where_small_s;  ///< s of the largest error
   /// Smallest pivot over the sum of magnitudes of its terms: 1 no cancellation, 1e-16 no digit.
@@ -73,7 +74,8 @@ struct Certificate {
   /// warns (docs/errors.md).
   double margin = 1;
   bool margin_is_exact = true;  ///< false if some loops were too large for it (see the notes),
-                                ///< or have no inverse in double (50 digits, or states, decide)
+                                ///< or have no inverse in double (the refinement of a known
+                                ///< solution decides)
   std::string margin_where;
   /// "p of c": the derivative of block c by p is that of its matrices by differences, as c has no
   /// Block::opened. In the certificate of Derivatives::opened(); else empty.

@@ -40,9 +40,9 @@ void take_margins(const Factored& d, std::span<const double> margins, Check& che
   if (const int n = found.too_large; n > 0)
     check.notes.push_back(
         {Note::Kind::info, "certify",
-         fmt::format("{} loop{} of more than {} unknowns: checked by {} pivots, not by {} margin",
-                     n, n == 1 ? "" : "s", kMarginUpTo, n == 1 ? "its" : "their",
-                     n == 1 ? "its" : "their")});
+         fmt::format("{} loop{} of more than {} unknowns: checked by a known solution, not by {} "
+                     "margin",
+                     n, n == 1 ? "" : "s", kMarginUpTo, n == 1 ? "its" : "their")});
 }
 
 }  // namespace
@@ -127,7 +127,7 @@ std::string to_string(const Certificate& c) {
                       c.weakest_where.empty() ? "" : " (" + c.weakest_where + ")", c.pivot_growth);
   text += fmt::format("largest loop margin {:.3g}{}{}\n", c.margin,
                       c.margin_where.empty() ? "" : " (at " + c.margin_where + ")",
-                      c.margin_is_exact ? "" : "; larger loops are checked by their pivots");
+                      c.margin_is_exact ? "" : "; larger loops are checked by a known solution");
   for (const std::string& name : c.by_differences)
     text += fmt::format("derivative by {}: by differences of the block's matrices\n", name);
   return text;

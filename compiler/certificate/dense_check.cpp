@@ -33,7 +33,7 @@ constexpr Index kColumns = 8;  ///< inputs are tried one by one up to this many
 
 constexpr double kBelow = 0.5;  ///< of the slowest mode that shows, known to a decade
 
-constexpr Index kPolesUpTo = 600;  ///< states; a second of eigenvalues
+constexpr Index kPolesUpTo = 600;  ///< states; more take seconds
 
 /// Inputs of one unit side by side in one column, at random; in two if they are few: by chance one
 /// sample of rounding may be small. Those of many units must share columns, scaled so that they
@@ -231,7 +231,10 @@ DenseError worst_of(const std::vector<Sample>& samples) {
 /// a pole at 0 (free motion, integrals) all s count, and so they do if the poles are too many.
 DenseError::Worst where_used(const std::vector<Sample>& samples, const MatrixXd& A) {
   double lowest = 0;
-  if (A.rows() <= kPolesUpTo) lowest = kBelow * linalg::eigenvalues(A).cwiseAbs().minCoeff();
+  try {
+    if (A.rows() <= kPolesUpTo) lowest = kBelow * linalg::eigenvalues(A).cwiseAbs().minCoeff();
+  } catch (const Error&) {  // no poles: all s count
+  }
   DenseError::Worst worst;
   for (const Sample& p : samples) {
     if (std::abs(p.s) < lowest) continue;

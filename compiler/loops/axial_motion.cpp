@@ -30,7 +30,7 @@ std::vector<std::string> without_axial_motion(const std::set<int>& nodes, const 
   for (const int i : nodes) {
     const Node& node = stage.graph.nodes[at(i)];
     const auto dynamics = node.block->dynamics(stage.values);
-    if (!dynamics->modal || dynamics->modal->W.rows() == 0) return {};
+    if (!dynamics->modes || dynamics->modes->W.rows() == 0) return {};
     const auto k = node.block->kinematics(stage.values);
     if (k && rigid_along(*k)) names.push_back(node.name);
   }

@@ -82,7 +82,7 @@ class DigitJudge {
     for (int n = 0; n < static_cast<int>(g_.nodes.size()); ++n) {
       const Node& node = g_.nodes[at(n)];
       const auto* const block = dynamic_cast<const FromData*>(node.block.get());
-      if (!block || !d_.numbers.blocks[at(n)]->modal) continue;
+      if (!block || !d_.numbers.blocks[at(n)]->modes) continue;
       const int channels = static_cast<int>(node.block->interface().channels.size());
       for (const bool by_shapes : {true, false})
         for (int i = 0; i < channels; ++i) {
@@ -115,7 +115,7 @@ class DigitJudge {
   void note_contradiction(int n, const FromData& block) {
     const Node& node = g_.nodes[at(n)];
     const int channels = static_cast<int>(node.block->interface().channels.size());
-    const Modal* const modal = d_.numbers.blocks[at(n)]->modal.get();
+    const Modal* const modal = d_.numbers.blocks[at(n)]->modes.get();
     std::vector<int> driven;
     bool prescribed = false;
     for (int i = 0; i < channels; ++i) {
@@ -244,7 +244,7 @@ class DigitJudge {
 
   /// |W u| of these ports, u times their sizes.
   double moved(const std::vector<int>& ports, const VectorXd& sizes, const VectorXd& u) const {
-    const MatrixXd& W = d_.numbers.blocks[at(ports_[at(ports.front())].node)]->modal->W;
+    const MatrixXd& W = d_.numbers.blocks[at(ports_[at(ports.front())].node)]->modes->W;
     VectorXd sum = VectorXd::Zero(W.rows());
     Index first = 0;
     for (const int p : ports) {

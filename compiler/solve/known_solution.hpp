@@ -8,8 +8,7 @@
 /// only.
 namespace titop::detail {
 
-/// The largest relative error of an unknown that has not one digit, or three: see
-/// errors_of_known_solution.
+/// An unknown is found if its relative error is at most this: three digits.
 constexpr double kKnown = 1e-3;
 
 /// Relative errors of all unknowns, if the factors F solve for the known solution x of L x = b:

@@ -77,7 +77,7 @@ void add_basic(std::vector<Item>& items, const Certificate& c) {
        fmt::format("1 without a loop, about 4/δ at a relative distance δ from a loop without a "
                    "solution{}.{}",
                    c.margin_where.empty() ? "" : "; here at " + c.margin_where,
-                   c.margin_is_exact ? "" : " Larger loops are checked by their pivots.")});
+                   c.margin_is_exact ? "" : " Larger loops are checked by a known solution.")});
 }
 
 void add_reciprocity(std::vector<Item>& items, const FullCertificate::Reciprocity& r) {

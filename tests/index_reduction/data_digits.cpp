@@ -172,6 +172,25 @@ TEST_CASE("data digits: a child driven where its modes do not move it") {
   }
 }
 
+TEST_CASE("data digits: of a body with a damping matrix, and of values in rows of zeros") {
+  const ModalData none = bare(7);
+  const auto n = none.omega.size();
+  const FlexibleBody damped = FlexibleBody{none}.damped_by(0.1 * MatrixXd::Identity(n, n));
+  for (const int set : {1, 8, 63}) CHECK(by_digits(compile_error(freed(damped, set)), {"P"}));
+  ModalData data = modal_data(boom(4));
+  for (const int row : {0, 3}) data.children[0].Phi_C.row(row).setZero();
+  for (const double entry : {1e-14, 0.3}) {
+    CAPTURE(entry);
+    Diagram d{"driven"};
+    auto b = d.add("b", FlexibleBody{FlexibleBody{data}, {.Phi_C = {{"C", {{1, 1, entry}}}}}});
+    ground(b);
+    b.child.accel.linear.along({1, 0, 0}) = d.input("u");
+    release(b.child);
+    d.output("f", 6) = b.child.force;
+    CHECK((entry < 1e-3) == says(compile_error(d), Code::improper, {"b.child(\"C\")"}));
+  }
+}
+
 TEST_CASE("data digits: a contradictory support that nothing depends on is told") {
   for (const int kept : {2, 4, 20}) {
     CAPTURE(kept);

@@ -110,6 +110,17 @@ TEST_CASE("a range in which the direct terms are singular, though at no end") {
   // (2 + a) xdd = u - k x: singular at a = -2
   CHECK(says(lft_error(spring(), {{"a", between(-2.5, 1)}}), Code::ill_posed, {"a = -2.5"}));
   CHECK_NOTHROW(lft(spring(), {{"a", between(-1.99, 1)}}));
+  // At two places alike: the determinant has no other sign beyond.
+  Diagram twice{"twice"};
+  const Param both = twice.param("a", 0.5);
+  for (const char* name : {"1", "2"}) {
+    const std::string number = name;
+    auto z = twice.add("z" + number, SpringMass{.mass = 2, .stiffness = 4});
+    ground(z);
+    z.child.force = twice.input("u" + number) - both * z.child.accel;
+    twice.output("x" + number) = z.stretch;
+  }
+  CHECK(says(lft_error(compile(twice), {{"a", between(-2.5, 1)}}), Code::ill_posed, {"a = -2.5"}));
   // The difference 1.1 - 11 * 0.1 is rounding alone: with one occurrence, too.
   Diagram d{"rounded"};
   const Param a = d.param("a", 0.01);

@@ -110,6 +110,27 @@ TEST_CASE("shapes: LFT, update and a body of other data agree, positions and rat
   }
 }
 
+TEST_CASE("shapes: one parameter in a frequency and in scaled entries of the same mode") {
+  Diagram d{"scene"};
+  const Param p = d.param("p", 0.9);
+  const FlexibleBody body(with_child(), {.omega = {{1, 2 * p}},
+                                         .L_P = {{1, 5, 0.2 * p}},
+                                         .Phi_C = {{"tip", {{1, 2, 0.8 * p}, {1, 5, -0.2 * p}}}}});
+  const System system = compile(scene(body, std::move(d)));
+  const Lft f = lft(system, {{"p", between(0.5, 1.2)}});
+  for (const double value : {0.55, 0.8, 1.0, 1.19}) {
+    ModalData data = with_child();
+    data.omega(0) = 2 * value;
+    data.L_P(0, 4) = 0.2 * value;
+    data.children[0].Phi_C(1, 0) = 0.8 * value;
+    data.children[0].Phi_C(4, 0) = -0.2 * value;
+    const Eigen::MatrixXcd G =
+        compile(scene(FlexibleBody{data}, Diagram{"scene"})).transfer(kS, Precision::digits50);
+    CHECK((system.update({{"p", value}}).transfer(kS) - G).norm() <= 1e-12 * G.norm());
+    CHECK((f.at({{"p", value}}).transfer(kS) - G).norm() <= 1e-11 * G.norm());
+  }
+}
+
 TEST_CASE("shapes: derivatives equal differences of bodies of other data") {
   const Derivatives g = derivatives(with_parameters(), {"l", "phi"});
   const auto of = [](double l, double phi) {

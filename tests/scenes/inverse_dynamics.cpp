@@ -50,8 +50,9 @@ TEST_CASE(
 TEST_CASE("inverse of a model: numbers that are not there, and a direct term of rounding") {
   using titop_test::error_of;
   using titop_test::says;
-  StateSpace m{
-      .D = Eigen::Matrix2d{{1e-17, 1}, {1, 1}}, .inputs = {"u", "v"}, .outputs = {"x", "y"}};
+  StateSpace m;
+  m.D = Eigen::Matrix2d{{1e-17, 1}, {1, 1}};
+  m.inputs = {"u", "v"}, m.outputs = {"x", "y"};
   m.A.resize(0, 0), m.B.resize(0, 2), m.C.resize(2, 0);
   const auto refused = [&](const std::vector<std::pair<int, int>>& pairs) {
     return error_of([&] { (void)invert(m, pairs); });
@@ -59,7 +60,10 @@ TEST_CASE("inverse of a model: numbers that are not there, and a direct term of 
   CHECK(says(refused({{0, 3}}), Code::bad_value, {"output 3", "2"}));
   CHECK(says(refused({{-1, 0}}), Code::bad_value, {"input -1"}));
   CHECK(says(refused({{0, 0}, {0, 1}}), Code::bad_value, {"input 0", "two"}));
-  CHECK(says(refused({{0, 0}}), Code::improper, {"u", "x"}));  // 1e-17 is a 0
+  CHECK(says(refused({{0, 0}}), Code::improper, {"u", "x", "0 of 1"}));  // 1e-17 is a 0
+  StateSpace unnamed = m;
+  unnamed.inputs.clear();
+  CHECK(says(error_of([&] { (void)invert(unnamed, {{0, 0}}); }), Code::size, {"0 names", "2 x 2"}));
   const StateSpace both = invert(m, {{0, 0}, {1, 1}});
   CHECK((both.D * m.D - Eigen::Matrix2d::Identity()).norm() <= 1e-15);
 }

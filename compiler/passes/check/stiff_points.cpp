@@ -39,7 +39,7 @@ class StiffPoints {
     if (c.takes != Takes::force) return 0;
     const auto [known, is_new] = still_.try_emplace({block(c), c.spec}, 0);
     if (!is_new) return known->second;
-    if (block(c) != last_) last_ = block(c), modes_ = last_->dynamics(values_)->modal;
+    if (block(c) != last_) last_ = block(c), modes_ = last_->dynamics(values_)->modes;
     if (modes_ && modes_->W.rows() > 0)
       known->second = still_directions(modes_->W.middleCols<6>(g_.signals[at(c.force)].first));
     return known->second;
@@ -64,7 +64,7 @@ class StiffPoints {
         g_.channels[at(node.first_channel + static_cast<int>(parent - specs.begin()))];
     const int row = g_.signals[at(c.force)].first, column = g_.signals[at(c.accel)].first;
     const auto d = node.block->dynamics(values_);
-    return !(d->modal ? MatrixXd(d->modal->rigid.block<6, 6>(row, column))
+    return !(d->modes ? MatrixXd(d->modes->rigid.block<6, 6>(row, column))
                       : d->direct(row, column, 6, 6))
                 .isZero(0);
   }
