@@ -16,7 +16,8 @@ double norm1(const MatrixXd& m) { return m.cwiseAbs().colwise().sum().maxCoeff()
 
 /// I - D_zw Delta and its inverse.
 struct Loop {
-  MatrixXd inverse;
+  MatrixXd product;   ///< D_zw Delta, with w and z scaled
+  MatrixXd inverse;   ///< of I - D_zw Delta, not scaled; empty if that is singular
   double margin = 0;  ///< see well_posed, without its sign
 };
 
@@ -24,22 +25,24 @@ struct Loop {
 /// no units.
 Loop loop(const StateSpace& m, const VectorXd& deltas) {
   const Index r = deltas.size();
-  MatrixXd scaled = m.D.topLeftCorner(r, r);
-  const VectorXd d = linalg::similarity_scaling(scaled);
-  scaled = scaled * deltas.asDiagonal();
-  const MatrixXd E = MatrixXd::Identity(r, r) - scaled;
+  Loop l{m.D.topLeftCorner(r, r), {}};
+  const VectorXd d = linalg::similarity_scaling(l.product);
+  l.product = l.product * deltas.asDiagonal();
+  const MatrixXd E = MatrixXd::Identity(r, r) - l.product;
   const linalg::Inverse inverse = linalg::inverse(E);
-  if (inverse.rcond == 0) return {};
-  return {d.asDiagonal() * inverse.matrix * d.cwiseInverse().asDiagonal(),
-          inverse.rcond * norm1(E) / (1 + norm1(scaled))};
+  if (inverse.rcond == 0) return l;
+  l.inverse = d.asDiagonal() * inverse.matrix * d.cwiseInverse().asDiagonal();
+  l.margin = inverse.rcond * norm1(E) / (1 + norm1(l.product));
+  return l;
 }
 
-/// I - t D_zw Delta is singular for a t in (0, 1): D_zw Delta has a real eigenvalue above 1.
-bool singular_between(const StateSpace& m, const VectorXd& deltas) {
-  constexpr double kReal = 64 * linalg::kHalfDigits;  // rounding splits equal ones
-  MatrixXd scaled = m.D.topLeftCorner(deltas.size(), deltas.size());
-  linalg::similarity_scaling(scaled);
-  const Eigen::VectorXcd values = linalg::eigenvalues(scaled * deltas.asDiagonal());
+/// I - t D_zw Delta is singular for a t in (0, 1): D_zw Delta has a real eigenvalue above 1; none
+/// if its norm is below 1. Rounding splits equal ones into pairs of half the digits; a pair so near
+/// the axis comes within 1e-6 of singular.
+bool singular_between(const Loop& l) {
+  constexpr double kReal = 64 * linalg::kHalfDigits;
+  if (norm1(l.product) < 1) return false;
+  const Eigen::VectorXcd values = linalg::eigenvalues(l.product);
   return std::any_of(values.begin(), values.end(), [](const std::complex<double>& z) {
     return z.real() > 1 && std::abs(z.imag()) <= kReal * std::abs(z);
   });
@@ -49,8 +52,8 @@ bool singular_between(const StateSpace& m, const VectorXd& deltas) {
 
 double well_posed(const StateSpace& m, const VectorXd& deltas) {
   if (deltas.size() == 0) return 1;
-  const double margin = loop(m, deltas).margin;
-  return singular_between(m, deltas) ? -margin : margin;
+  const Loop l = loop(m, deltas);
+  return singular_between(l) ? -l.margin : l.margin;
 }
 
 std::optional<StateSpace> closed(const StateSpace& m, const VectorXd& deltas) {
