@@ -49,14 +49,21 @@ bool has_dampers(const Graph& g) {
          });
 }
 
-/// With their damping and that of their bodies.
+/// "boom, tip"
+std::string names_of(const Pole& p) {
+  std::string names;
+  for (const auto& [name, share] : p.blocks) names += (names.empty() ? "" : ", ") + name;
+  return names;
+}
+
+/// With their damping, their blocks, and the xi of the bodies among these.
 std::string modes_of(const std::vector<const Pole*>& list) {
   constexpr std::size_t most = 3;
   std::string text;
   for (std::size_t i = 0; i < std::min(most, list.size()); ++i)
-    text +=
-        fmt::format("{}the mode at {:.4g} rad/s has damping {:.2g} (its bodies: xi {})",
-                    i == 0 ? "" : ", ", list[i]->omega, list[i]->damping, xi_of_bodies(*list[i]));
+    text += fmt::format("{}the mode at {:.4g} rad/s of {} has damping {:.2g} (its bodies: xi {})",
+                        i == 0 ? "" : ", ", list[i]->omega, names_of(*list[i]), list[i]->damping,
+                        xi_of_bodies(*list[i]));
   if (list.size() > most) text += fmt::format(", and {} more", list.size() - most);
   return text;
 }
