@@ -47,21 +47,23 @@ int find_port(const Graph& g, const std::string& name) {
               fmt::format("take one of {}", some_names(valid)));
 }
 
+/// Refuses an equation that drives one of these signals.
+void refuse_driven(const Graph& g, std::initializer_list<int> signals, const std::string& message,
+                   const char* hint) {
+  for (const Equation& e : g.equations)
+    if (std::ranges::find(signals, e.target) != signals.end())
+      refuse(message, hint, {fmt::format("its equation is at {}", to_string(e.where))});
+}
+
 int find_root(const Graph& g, const std::string& name) {
   const int c = find_port(g, name);
   const Channel& root = g.channels[at(c)];
   if (root.takes != Takes::accel || root.size != 6)
     refuse(fmt::format("{} is no root: it is no parent port of six degrees of freedom", name),
            "take the parent port of the body by which the part hangs");
-  const auto driven = [&](const Equation& e) {
-    return e.target == root.accel || e.target == root.force;
-  };
-  const auto found = std::find_if(g.equations.begin(), g.equations.end(), driven);
-  if (found != g.equations.end())
-    refuse(fmt::format("the root {} is driven", name),
-           "leave it free: the scene drives it where the body is mounted; the diagram holds the "
-           "part alone",
-           {fmt::format("its equation is at {}", to_string(found->where))});
+  refuse_driven(g, {root.accel, root.force}, fmt::format("the root {} is driven", name),
+                "leave it free: the scene drives it where the body is mounted; the diagram holds "
+                "the part alone");
   return c;
 }
 
@@ -71,11 +73,8 @@ int find_child(const Graph& g, const std::string& name) {
   if (child.takes != Takes::force || child.size != 6)
     refuse(fmt::format("{} is no child port of six degrees of freedom", name),
            "take a child port of a body; a joint that the scene drives stays outside of the part");
-  const auto driven = [&](const Equation& e) { return e.target == child.accel; };
-  const auto found = std::find_if(g.equations.begin(), g.equations.end(), driven);
-  if (found != g.equations.end())
-    refuse(fmt::format("the motion of port {} is imposed", name), "impose it at the body's child",
-           {fmt::format("its equation is at {}", to_string(found->where))});
+  refuse_driven(g, {child.accel}, fmt::format("the motion of port {} is imposed", name),
+                "impose it at the body's child");
   return c;
 }
 
