@@ -105,10 +105,11 @@ void check_numbers(std::vector<int> numbers, Eigen::Index size, const char* subj
 /// them, as of a 0 after a rotation of frames.
 Eigen::Index rank_beyond_rounding(const MatrixXd& D, const std::vector<int>& rows,
                                   const std::vector<int>& columns) {
+  constexpr double kRounding = 1e-14;  // of the largest entry: some fifty roundings
   if (rows.empty()) return 0;
   const MatrixXd part = EquilibratedMatrix(D).matrix(rows, columns);
   const Eigen::FullPivLU<MatrixXd> lu(part);
-  return (lu.matrixLU().diagonal().cwiseAbs().array() > 1e-14).count();
+  return (lu.matrixLU().diagonal().cwiseAbs().array() > kRounding).count();
 }
 
 void check_names(const StateSpace& m) {
