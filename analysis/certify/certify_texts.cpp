@@ -8,7 +8,9 @@
 namespace titop {
 namespace {
 
-std::string at_s(std::complex<double> s) { return fmt::format("s = {:.3g}{:+.3g}j", s.real(), s.imag()); }
+std::string at_s(std::complex<double> s) {
+  return fmt::format("s = {:.3g}{:+.3g}j", s.real(), s.imag());
+}
 
 std::string to_string(const FullCertificate::Grid& g) {
   std::string text =
