@@ -43,8 +43,10 @@ void demand_lowered(const Stage& stage) {
   }
   for (const Output& o : g.outputs)
     demand(lowered(o.terms), "one coefficient per term in " + o.name);
+  // The equations of a block that became equations drive the other side of each of its channels.
   for (const Channel& c : g.channels)
-    demand(driven[at(c.accel)] + driven[at(c.force)] == c.size,
+    demand(driven[at(c.accel)] + driven[at(c.force)] ==
+               (g.nodes[at(c.node)].lowered ? 2 * c.size : c.size),
            "every degree of freedom of a channel is driven once");
 }
 
@@ -127,6 +129,7 @@ struct Constraints {
   }
 
   void body(const Node& node, ParameterValues values) {
+    if (node.lowered) return;  // its relations stand among the equations
     const auto k = node.block->kinematics(values);
     if (node.state >= 0) pair_up(node, values);
     for (int i = 0; k && i < static_cast<int>(k->tau.size()); ++i) {

@@ -89,11 +89,12 @@ PassError pass_error(const Scene& scene) {
 
 namespace {
 
-/// Largest difference over the largest sum of magnitudes that forms an entry.
+/// Largest difference over the largest sum of magnitudes that forms an entry; 0 where both are
+/// rounding of the data, whose sizes are near 1.
 double relative(const VectorXd& a, const VectorXd& b, const VectorXd& size) {
   if (a.size() == 0) return 0;
   const double largest = (a - b).cwiseAbs().maxCoeff();
-  return largest > 0 ? largest / size.maxCoeff() : 0;
+  return largest > 1e-15 ? largest / size.maxCoeff() : 0;
 }
 
 double rates_error(const System& system, const StateSpace& m, std::uint64_t seed) {
@@ -123,6 +124,8 @@ SystemError system_error(const Scene& scene) {
   error.factored = transfer_error(factored, exact, rows, cols);
   error.dense = transfer_error(dense, exact, rows, cols);
   error.apply = rates_error(system, model, 3);
+  const Certificate certificate = system.dense_certificate();
+  error.stated = std::max(certificate.dense_error, certificate.dense_error_where_small);
   return error;
 }
 

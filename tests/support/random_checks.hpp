@@ -25,9 +25,10 @@ struct PassError {
 };
 PassError pass_error(const Scene& scene);
 
-/// System and dense model against transfer(diagram.graph(), s); apply against the dense model.
+/// System and dense model against transfer(diagram.graph(), s); apply against the dense model; the
+/// error of the dense model that its certificate states, also beside small outputs.
 struct SystemError {
-  double factored = 0, dense = 0, apply = 0;
+  double factored = 0, dense = 0, apply = 0, stated = 0;
 };
 SystemError system_error(const Scene& scene);
 
