@@ -64,7 +64,6 @@ void add_library(std::vector<Entry>& list, const System& system) {
   add("double", Precision::standard);
   add("refined", Precision::refined);
   add("twofold", Precision::twofold);
-  add("long double", Precision::extended);
   add("50 digits", Precision::digits50);
   add("as needed", Precision::as_needed);
 }
@@ -190,7 +189,6 @@ void responses(Case c, int n) {
   factored("double", Precision::standard);
   factored("refined", Precision::refined);
   factored("twofold", Precision::twofold);
-  factored("long double", Precision::extended);
   factored("as needed", Precision::as_needed);
   response(c, n, "dense model and LU", "double", exact, [&] {
     StateSpace m;

@@ -13,8 +13,7 @@ MatrixXd terms(const System& system, const std::vector<std::complex<double>>& po
   MatrixXd result = MatrixXd::Zero(static_cast<Index>(system.outputs().size()),
                                    static_cast<Index>(system.inputs().size()));
   for (const std::complex<double> s : points) try {
-      const MatrixXcd off =
-          system.transfer(s, Precision::standard) - system.transfer(s, Precision::extended);
+      const MatrixXcd off = system.transfer(s, Precision::standard) - in_long_double(system, s);
       result = result.cwiseMax(kTermsPerRounding * off.cwiseAbs());
     } catch (const Error&) {
       // No digit there in one of the two: other points must suffice.

@@ -27,6 +27,7 @@ namespace detail {
 struct DenseModel;
 struct SystemData;
 std::shared_ptr<const SystemData> compile_opened(const System&, const std::vector<passes::ToOpen>&);
+Eigen::MatrixXcd in_long_double(const System&, std::complex<double>);
 }  // namespace detail
 class Excitation;
 struct Full;
@@ -41,7 +42,6 @@ enum class Precision {
   refined,   ///< factors in double, blocks and residuals in long double: refined until the outputs
              ///< settle, or refused; see System::transfer
   twofold,   ///< the same in double-double: 32 digits, on any machine
-  extended,  ///< long double: 19 digits on x86
   digits50,  ///< 50 digits (Boost.Multiprecision), some hundred times slower
   as_needed  ///< double; if its error, estimated from pivots, rounding and refinement, exceeds
              ///< 1e-12: refined or twofold if they converge, else 50 digits. If double finds no
@@ -202,6 +202,7 @@ class System {
   friend Trajectory simulate(const System&, const Excitation&, const Simulation&);
   friend std::shared_ptr<const detail::SystemData> detail::compile_opened(
       const System&, const std::vector<passes::ToOpen>&);
+  friend Eigen::MatrixXcd detail::in_long_double(const System&, std::complex<double>);
 
   std::shared_ptr<const detail::SystemData> data_;
 };

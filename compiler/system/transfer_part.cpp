@@ -163,7 +163,6 @@ TransferPart with(const Asked& a, Precision precision) {
     case Precision::standard: return standard(a);
     case Precision::refined: return refined<Extended>(a);
     case Precision::twofold: return refined<Twofold>(a);
-    case Precision::extended: return in_precision<Extended>(a, solve::Refinement::none);
     case Precision::digits50: return in_precision<solve::Complex50>(a, solve::Refinement::settled);
     case Precision::as_needed: return as_needed(a);
   }
@@ -182,6 +181,12 @@ TransferPart transfer_part(const SystemData& data, Double s, const PartOfTransfe
       refuse_overflow(
           fmt::format("the transfer of {} at s = {}{:+}j", data.graph().name, s.real(), s.imag()));
   return result;
+}
+
+Eigen::MatrixXcd in_long_double(const System& system, Double s) {
+  TransferCost cost;
+  const PartOfTransfer all{all_inputs(*system.data_), {}};
+  return in_precision<Extended>({*system.data_, s, all, cost}, solve::Refinement::none).columns;
 }
 
 }  // namespace titop::detail

@@ -36,4 +36,8 @@ struct TransferPart {
 /// block. Throws also not_finite if numbers overflow.
 TransferPart transfer_part(const SystemData& data, std::complex<double> s,
                            const PartOfTransfer& part, Precision precision = Precision::as_needed);
+
+/// The transfer by an elimination in long double, neither refined nor judged: its difference to
+/// Precision::standard is the rounding of the elimination. Throws as System::transfer. O(bodies).
+Eigen::MatrixXcd in_long_double(const System& system, std::complex<double> s);
 }  // namespace titop::detail
