@@ -13,18 +13,13 @@ class Energy {
  public:
   explicit Energy(const titop::StateSpace& m) : form_(titop::second_order(m)), inverse_(form_.S) {}
   double operator()(const Eigen::VectorXd& x) const {
-    Eigen::VectorXd y(form_.d.size()), rate(form_.d.size());
-    for (Eigen::Index i = 0; i < y.size(); ++i) {
-      y(i) = x(form_.q[static_cast<std::size_t>(i)]) / form_.d(i);
-      rate(i) = x(form_.qdot[static_cast<std::size_t>(i)]) / form_.d(i);
-    }
+    const Eigen::VectorXd y = form_.D_inverse * x(form_.q), rate = form_.D_inverse * x(form_.qdot);
     return y.dot(y) + rate.dot(inverse_.solve(rate));
   }
   /// All coordinates with the same energy.
   Eigen::VectorXd bent(Eigen::Index states) const {
     Eigen::VectorXd x = Eigen::VectorXd::Zero(states);
-    for (Eigen::Index i = 0; i < form_.d.size(); ++i)
-      x(form_.q[static_cast<std::size_t>(i)]) = form_.d(i);
+    x(form_.q) = form_.D.diagonal();
     return x;
   }
   double fastest() const {

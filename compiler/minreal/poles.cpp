@@ -57,10 +57,10 @@ bool proportional_poles(const StateSpace& model, const SecondOrder& form, std::v
   const std::optional<VectorXd> Z = diagonal_in(all, form.Z);
   if (!Z || !symmetric_in(all, form.S, form.skew)) return false;
   const auto& [lambda, V] = all.modes;
+  const MatrixXd right = form.D * V, left = form.D_inverse.transpose() * V;
   for (Eigen::Index k = 0; k < lambda.size(); ++k) {
     VectorXd share = VectorXd::Zero(model.A.rows());
-    for (Eigen::Index i = 0; i < V.rows(); ++i)
-      share(form.q[static_cast<std::size_t>(i)]) = V(i, k) * V(i, k);
+    share(form.q) = right.col(k).cwiseProduct(left.col(k)).cwiseAbs();
     for (Pole& p : roots(lambda(k), (*Z)(k))) {
       set_blocks(p, model, share);
       out.push_back(std::move(p));
@@ -111,7 +111,7 @@ void general_poles(const StateSpace& model, const MatrixXd& rounding, std::vecto
 /// States that no state depends on through A, or that depend on no state (a free hinge's angle,
 /// then its rate; an integrator): exact poles at A(j, j), mostly 0, that a numerical eigenvalue
 /// routine would smear. Takes them out of the model, one after the other.
-void deflate(StateSpace& m, MatrixXd& rounding, std::vector<Pole>& out) {
+void deflate(StateSpace& m, MatrixXd& rounding, MatrixXd& energy, std::vector<Pole>& out) {
   for (bool found = true; found;) {
     found = false;
     for (Eigen::Index j = 0; j < m.A.rows() && !found; ++j) {
@@ -129,7 +129,8 @@ void deflate(StateSpace& m, MatrixXd& rounding, std::vector<Pole>& out) {
       for (Eigen::Index i = 0; i < m.A.rows(); ++i)
         if (i != j) keep.push_back(i);
       m.A = m.A(keep, keep).eval();
-      if (rounding.size() > 0) rounding = rounding(keep, keep).eval();
+      for (MatrixXd* of : {&rounding, &energy})
+        if (of->size() > 0) *of = (*of)(keep, keep).eval();
       m.states.erase(m.states.begin() + j);
       if (j < std::ssize(m.rates)) m.rates.erase(m.rates.begin() + j);
     }
@@ -138,13 +139,13 @@ void deflate(StateSpace& m, MatrixXd& rounding, std::vector<Pole>& out) {
 
 }  // namespace
 
-std::vector<Pole> poles(const StateSpace& model, const MatrixXd& rounding) {
+std::vector<Pole> poles(const StateSpace& model, const MatrixXd& rounding, const MatrixXd& energy) {
   std::vector<Pole> result;
   StateSpace rest{model.A, {}, {}, {}, model.states, {}, {}, model.rates};
-  MatrixXd of_rest = rounding;
-  deflate(rest, of_rest, result);
+  MatrixXd of_rest = rounding, energy_of_rest = energy;
+  deflate(rest, of_rest, energy_of_rest, result);
   std::vector<Pole> others;
-  const SecondOrder form = second_order(rest);
+  const SecondOrder form = second_order(rest, energy_of_rest);
   if (!form.found || !proportional_poles(rest, form, others)) {
     others.clear();
     if (rest.order() > 0) general_poles(rest, of_rest, others);

@@ -41,7 +41,10 @@ std::string xi_of_bodies(const Pole& pole);
 /// others are eigenvalues of the scaled A without these. O(n^3).
 ///
 /// `rounding`: of the entries of A, as of a dense model with cancellation; empty: 2.2e-16 of each.
-std::vector<Pole> poles(const StateSpace& model, const Eigen::MatrixXd& rounding = {});
+/// `energy`: potential energy x' E x / 2, if known; models whose coordinates share springs and
+/// masses (closed chains) are solved as symmetric problems by it.
+std::vector<Pole> poles(const StateSpace& model, const Eigen::MatrixXd& rounding = {},
+                        const Eigen::MatrixXd& energy = {});
 
 /// A table: rad/s, Hz, damping, blocks; behind modes that are damped unlike their bodies the xi of
 /// these.

@@ -14,7 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kAsymmetry = 1e-9;  ///< of matrices that must be symmetric, over the diagonal
+constexpr double kAsymmetry = 1e-9;  ///< of a damping that must be symmetric, over its size
 constexpr double kNoTerm = 1e-12;    ///< of the terms of a sum: a smaller sum is rounding
 
 using linalg::at;
@@ -86,37 +86,6 @@ Ports ports(const StateSpace& model, const Symmetric& s) {
   return {s.D_inverse * model.B(s.qdot, Eigen::all), s.D_inverse * model.B(s.q, Eigen::all),
           (model.C(Eigen::all, s.q) * s.D).transpose(),
           (model.C(Eigen::all, s.qdot) * s.D).transpose()};
-}
-
-/// yddot = -(S + skew) y - Z ydot: S is symmetric, Z if it is diagonal in the modes.
-struct Springs {
-  MatrixXd S, skew, Z;
-};
-
-/// By the energy E = L L' of the positions: y = L' q.
-std::optional<Springs> by_energy(const StateSpace& model, const MatrixXd& energy, Symmetric& s) {
-  const Eigen::LLT<MatrixXd> factors(energy(s.q, s.q));
-  if (s.q.empty() || factors.info() != Eigen::Success) return std::nullopt;
-  s.D_inverse = factors.matrixU();
-  s.D = factors.matrixU().solve(MatrixXd::Identity(s.D_inverse.rows(), s.D_inverse.cols()));
-  const MatrixXd S = -s.D_inverse * model.A(s.qdot, s.q) * s.D;
-  const VectorXd size = S.diagonal().cwiseAbs().cwiseSqrt();
-  for (Index i = 0; i < S.rows(); ++i)
-    for (Index j = 0; j < i; ++j)
-      if (!(std::abs(S(i, j) - S(j, i)) <= kAsymmetry * size(i) * size(j))) return std::nullopt;
-  return Springs{(S + S.transpose()) / 2, (S - S.transpose()) / 2,
-                 -s.D_inverse * model.A(s.qdot, s.qdot) * s.D};
-}
-
-std::optional<Springs> springs(const StateSpace& model, const MatrixXd& energy, Symmetric& s) {
-  SecondOrder form = second_order(model);
-  s.q = std::move(form.q);
-  s.qdot = std::move(form.qdot);
-  if (!form.found && energy.rows() == model.A.rows()) return by_energy(model, energy, s);
-  if (!form.found) return std::nullopt;
-  s.D = form.d.asDiagonal();
-  s.D_inverse = form.d.cwiseInverse().asDiagonal();
-  return Springs{std::move(form.S), std::move(form.skew), std::move(form.Z)};
 }
 
 void turn_clusters(const Ports& p, const ModeSet& m, MatrixXd& Q) {
@@ -219,21 +188,23 @@ void find_rigid(const Ports& p, const MatrixXd& Q, ModeSet& m) {
 
 std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolution,
                                          const MatrixXd& energy) {
+  SecondOrder form = second_order(model, energy);
+  if (!form.found) return std::nullopt;
   Symmetric s;
-  const std::optional<Springs> form = springs(model, energy, s);
-  if (!form) return std::nullopt;
+  s.q = std::move(form.q), s.qdot = std::move(form.qdot);
+  s.D = std::move(form.D), s.D_inverse = std::move(form.D_inverse);
   const Ports p = ports(model, s);
   if (p.bq.size() && p.bq.cwiseAbs().maxCoeff() > 0) return std::nullopt;
-  GradedModes e = eigh_graded(form->S);
-  std::optional<VectorXd> z = diagonal_in(e, form->Z);
-  if (!z) z = diagonal_in(turn_by_damping(form->Z, e), form->Z);
-  if (!z || !symmetric_in(e, form->S, form->skew)) return std::nullopt;
+  GradedModes e = eigh_graded(form.S);
+  std::optional<VectorXd> z = diagonal_in(e, form.Z);
+  if (!z) z = diagonal_in(turn_by_damping(form.Z, e), form.Z);
+  if (!z || !symmetric_in(e, form.S, form.skew)) return std::nullopt;
   ModeSet& m = s.modes;
   find_clusters(e, *z, resolution, m);
   if (mixes_levels(e, *z, p, m) || shares_a_pole(e.modes.lambda, *z, m)) return std::nullopt;
   s.Q = e.modes.V;
   m.lambda = e.modes.lambda.cwiseAbs();
-  const Parts parts = find_parts(form->S, s.Q.cwiseAbs(), m);
+  const Parts parts = find_parts(form.S, s.Q.cwiseAbs(), m);
   keep_to_parts(parts, s.Q);
   turn_clusters(p, m, s.Q);
   m.omega = m.lambda.cwiseSqrt();

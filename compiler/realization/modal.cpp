@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <titop/compiler/realization/modal.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 namespace titop {
@@ -48,41 +49,57 @@ VectorXd symmetrizer(const MatrixXd& K) {
   return d2.allFinite() && (d2.array() > 0).all() ? d2 : VectorXd();
 }
 
+constexpr double kAsymmetry = 1e-9;  ///< largest one of a matrix that is symmetric up to rounding
+
+/// Sets S, skew, asymmetry and found.
+void set_stiffness(const MatrixXd& S, SecondOrder& form) {
+  const VectorXd size = S.diagonal().cwiseAbs().cwiseSqrt();
+  form.asymmetry = 0;
+  for (Eigen::Index i = 0; i < S.rows(); ++i)
+    for (Eigen::Index j = 0; j < i; ++j) {
+      const double scale = size(i) * size(j);
+      const double off = std::abs(S(i, j) - S(j, i));
+      if (off > 0) form.asymmetry = std::max(form.asymmetry, scale > 0 ? off / scale : 1);
+    }
+  form.S = (S + S.transpose()) / 2;
+  form.skew = (S - S.transpose()) / 2;
+  form.found = form.asymmetry <= kAsymmetry;
+}
+
+void by_diagonal(const MatrixXd& K, const MatrixXd& Z, SecondOrder& form) {
+  const VectorXd d2 = symmetrizer(K);
+  if (d2.size() == 0) return;
+  const VectorXd d = d2.cwiseSqrt(), inverse = d.cwiseInverse();
+  form.D = d.asDiagonal();
+  form.D_inverse = inverse.asDiagonal();
+  form.Z = inverse.asDiagonal() * Z * d.asDiagonal();
+  set_stiffness(inverse.asDiagonal() * K * d.asDiagonal(), form);
+}
+
+/// E = L L', y = L' q.
+void by_energy(const MatrixXd& K, const MatrixXd& Z, const MatrixXd& energy, SecondOrder& form) {
+  const Eigen::LLT<MatrixXd> factors(energy(form.q, form.q));
+  if (factors.info() != Eigen::Success) return;
+  form.D_inverse = factors.matrixU();
+  form.D = factors.matrixU().solve(MatrixXd::Identity(K.rows(), K.cols()));
+  form.Z = form.D_inverse * Z * form.D;
+  set_stiffness(form.D_inverse * K * form.D, form);
+}
+
 }  // namespace
 
-SecondOrder second_order(const StateSpace& model) {
+SecondOrder second_order(const StateSpace& model, const MatrixXd& energy) {
   const MatrixXd& A = model.A;
   SecondOrder result;
   const auto list = pairs(model);
-  const auto n = static_cast<Eigen::Index>(list.size());
-  if (n == 0 || !A.allFinite()) return result;
-  MatrixXd K(n, n), Z(n, n);
+  if (list.empty() || !A.allFinite()) return result;
   for (const auto& [q, v] : list) {
     result.q.push_back(q);
     result.qdot.push_back(v);
   }
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < n; ++j) {
-      const auto [q, v] = list[at(j)];
-      K(i, j) = -A(list[at(i)].second, q);
-      Z(i, j) = -A(list[at(i)].second, v);
-    }
-  const VectorXd d2 = symmetrizer(K);
-  if (d2.size() == 0) return result;
-  result.d = d2.cwiseSqrt();
-  const MatrixXd S = result.d.cwiseInverse().asDiagonal() * K * result.d.asDiagonal();
-  result.Z = result.d.cwiseInverse().asDiagonal() * Z * result.d.asDiagonal();
-  VectorXd size = S.diagonal().cwiseAbs().cwiseSqrt();
-  result.asymmetry = 0;
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j < i; ++j) {
-      const double scale = size(i) * size(j);
-      const double off = std::abs(S(i, j) - S(j, i));
-      if (off > 0) result.asymmetry = std::max(result.asymmetry, scale > 0 ? off / scale : 1);
-    }
-  result.S = (S + S.transpose()) / 2;
-  result.skew = (S - S.transpose()) / 2;
-  result.found = result.asymmetry <= 1e-9;
+  const MatrixXd K = -A(result.qdot, result.q), Z = -A(result.qdot, result.qdot);
+  by_diagonal(K, Z, result);
+  if (!result.found && energy.rows() == A.rows()) by_energy(K, Z, energy, result);
   return result;
 }
 

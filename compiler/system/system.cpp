@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <titop/compiler/certificate/without_rounding.hpp>
+#include <titop/compiler/realization/energy.hpp>
 #include <titop/compiler/realization/write_model.hpp>
 #include <titop/compiler/solve/transfer_blocks.hpp>
 #include <titop/compiler/system/damping_of_bodies.hpp>
@@ -96,8 +97,10 @@ Descriptor System::descriptor() const {
 std::vector<Pole> System::poles() const {
   const StateSpace& model = state_space();
   const bool whole = model.order() > 0 && !order_verdict().judged;
+  const bool chains = model.order() == order() && !data_->states.trivial();
   std::vector<Pole> list =
-      titop::poles(model, whole ? detail::rounding_of(*data_, model).A : MatrixXd());
+      titop::poles(model, whole ? detail::rounding_of(*data_, model).A : MatrixXd(),
+                   chains ? detail::potential_energy(*data_) : MatrixXd());
   detail::compare_with_bodies(*data_, list);
   return list;
 }

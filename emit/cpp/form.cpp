@@ -55,6 +55,7 @@ std::optional<BlockDiagonalForm> proportional_modes(const StateSpace& model) {
   const std::optional<Eigen::VectorXd> Z = diagonal_in(all, second.Z);
   if (!Z || !symmetric_in(all, second.S, second.skew)) return std::nullopt;
   const SymmetricModes& sym = all.modes;
+  const Eigen::VectorXd scale = second.D.diagonal();  // diagonal without an energy
   const Index n = model.A.rows(), count = sym.lambda.size();
   BlockDiagonalForm modes{MatrixXl::Zero(n, n), MatrixXl::Zero(n, n), MatrixXl::Zero(n, n)};
   for (Index k = 0; k < count; ++k) {
@@ -65,8 +66,8 @@ std::optional<BlockDiagonalForm> proportional_modes(const StateSpace& model) {
       const Index rows[] = {second.q[static_cast<std::size_t>(i)],
                             second.qdot[static_cast<std::size_t>(i)]};
       for (Index half = 0; half < 2; ++half) {
-        modes.to_states(rows[half], 2 * k + half) = second.d(i) * sym.V(i, k);
-        modes.from_states(2 * k + half, rows[half]) = sym.V(i, k) / second.d(i);
+        modes.to_states(rows[half], 2 * k + half) = scale(i) * sym.V(i, k);
+        modes.from_states(2 * k + half, rows[half]) = sym.V(i, k) / scale(i);
       }
     }
   }
