@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -159,6 +161,30 @@ TEST_CASE("export writes by the file's ending") {
   const std::vector<double> omega = {1, 10, 100};
   write_csv(system, omega, shell.folder.path / "expected.csv");
   CHECK(shell.folder.read("g.csv") == shell.folder.read("expected.csv"));
+}
+
+TEST_CASE("export of a frequency response: a block of three states without modal form, by hand") {
+  const Shell shell;
+  Diagram d{"filter"};
+  const auto u = d.input("u");
+  const Eigen::Matrix3d A{{-1, 0, 0}, {-1, 0, 0}, {0, -4, 0}};
+  const auto K =
+      d.add("K", Lti{.A = A, .B = Eigen::Vector3d(1, 0, 0), .C = Eigen::RowVector3d(0, 0, 1)});
+  K.in = u;
+  d.output("y") = K.out;
+  write_diagram(d, shell.folder.path / "filter.json");
+  CHECK(shell.titop("export filter.json g.csv --omega 0.5 2 3").code == 0);
+  std::istringstream lines(shell.folder.read("g.csv"));
+  std::string line;
+  int rows = 0;
+  while (std::getline(lines, line)) {
+    double omega = 0, re = 0, im = 0;
+    if (std::sscanf(line.c_str(), "%lf,%lf,%lf", &omega, &re, &im) != 3) continue;
+    ++rows;
+    const std::complex<double> s(0, omega), exact = 4.0 / (s * s * (s + 1.0));
+    CHECK(std::abs(std::complex<double>(re, im) - exact) <= 1e-14 * std::abs(exact));
+  }
+  CHECK(rows == 3);
 }
 
 TEST_CASE("export reports on stderr the digits lost by A, B, C, D, and how to keep them") {

@@ -60,6 +60,72 @@ TEST_CASE("a smaller model keeps the digits that it promises, or all states stay
   CHECK(put_back < 9);
 }
 
+namespace {
+
+/// Four integrators that leak at rates near 1e-9 rad/s, in series, beside a mode that no output
+/// sees.
+struct SlowSeries {
+  bool filtered;  ///< behind 1 / (s^2 + 2 s + 5)
+
+  static double rate(int k) { return 1e-9 * (1 + k / 7.0); }
+  System system() const {
+    Diagram d{"slow"};
+    const auto u = d.input("u");
+    const auto lag = [](double p) {
+      return Lti{.A = Eigen::MatrixXd::Constant(1, 1, -p),
+                 .B = Eigen::MatrixXd::Ones(1, 1),
+                 .C = Eigen::MatrixXd::Ones(1, 1)};
+    };
+    auto before = d.add("p1", lag(rate(1)));
+    if (filtered) {
+      Eigen::Matrix2d A{{0, 1}, {-5, -2}};
+      auto f = d.add("f", Lti{.A = A, .B = Eigen::Vector2d(0, 1), .C = Eigen::RowVector2d(1, 0)});
+      f.in = u;
+      before.in = f.out;
+    } else {
+      before.in = u;
+    }
+    for (int k = 2; k <= 4; ++k) {
+      auto next = d.add("p" + std::to_string(k), lag(rate(k)));
+      next.in = before.out;
+      before = next;
+    }
+    auto unseen = d.add("unseen", lag(3));
+    unseen.in = before.out;
+    d.output("y") = before.out;
+    d.output("none") = unseen.out - unseen.out;
+    return compile(d);
+  }
+  std::complex<double> exact(std::complex<double> s) const {
+    std::complex<double> G = filtered ? 1.0 / (s * (s + 2.0) + 5.0) : 1.0;
+    for (int k = 1; k <= 4; ++k) G /= s + rate(k);
+    return G;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("slow integrators in series keep their digits above and at their rates") {
+  for (const bool filtered : {false, true}) {
+    const SlowSeries series{filtered};
+    const System system = series.system();
+    StateSpace written;
+    system.write(written);
+    const StateSpace& model = system.state_space();
+    CHECK(model.order() == (filtered ? 6 : 4));
+    for (const std::complex<double> s :
+         {std::complex<double>(0, 3.7), {0, 30}, {0, 1e-9}, {1e-4, 1e-3}}) {
+      CAPTURE(s);
+      const std::complex<double> exact = series.exact(s);
+      const auto error = [&](const StateSpace& m) {
+        return std::abs(m.transfer(s)(0, 0) - exact) / std::abs(exact);
+      };
+      CHECK(error(written) <= 1e-13);
+      CHECK(error(model) <= 1e-9);
+    }
+  }
+}
+
 TEST_CASE("states leave where that costs no digits") {
   const System system = compile(nearly_equal_poles(2, 0.1));
   StateSpace written;

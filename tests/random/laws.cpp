@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <titop/compiler/minreal/poles.hpp>
 
@@ -52,6 +53,96 @@ TEST_CASE("random graphs: powers of ten from 1e-12 to 1e12 in one unit change nu
         CHECK_NOTHROW(error = units_error(scene, units));
         CHECK(error <= 1e-9);
       }
+  }
+}
+
+namespace {
+
+/// Units of length, mass and time in which the same numbers are written.
+struct InUnits {
+  double length = 1, mass = 1, time = 1;
+  double force() const { return mass * length / (time * time); }
+
+  /// A steel rod of one element on a wall, a rigid tip on a ball joint, a force across it.
+  titop::Diagram rod() const {
+    using namespace titop;
+    const double pressure = force() / (length * length);
+    Diagram d{"rod"};
+    auto u = d.input("u");
+    auto rod =
+        d.add("rod", FlexibleBody(Beam{.length = 2 * length,
+                                       .section = rectangle(0.06 * length, 0.04 * length),
+                                       .material = {.E = 210e9 * pressure,
+                                                    .nu = 0.3,
+                                                    .rho = 7850 * mass / std::pow(length, 3)},
+                                       .elements = 1}));
+    const double inertia = mass * length * length;
+    auto tip = d.add("tip", RigidBody{.mass = 3 * mass,
+                                      .inertia = {0.2 * inertia, 0.3 * inertia, 0.25 * inertia},
+                                      .PA = {0.1 * length, 0, 0},
+                                      .children = {{"C", {0.4 * length, 0, 0}}}});
+    ground(rod);
+    joint(d, "ball", tip, rod.child, Rotation(), ball());
+    tip.child.force.linear.along({0, 1, 0}) += u;
+    d.output("a", 6) = tip.child.accel;
+    return d;
+  }
+  /// A hub in free space with two rods of rigid bodies: no chain is closed.
+  titop::Diagram tree() const {
+    using namespace titop;
+    const double inertia = mass * length * length;
+    const auto link = [&](double m) {
+      return RigidBody{.mass = m * mass,
+                       .inertia = {0.2 * inertia, 0.3 * inertia, 0.25 * inertia},
+                       .PA = {0.1 * length, 0.2 * length, 0},
+                       .children = {{"A", {0.4 * length, 0, 0}}, {"B", {0, 0.5 * length, 0}}}};
+    };
+    Diagram d{"tree"};
+    auto hub = d.add("hub", link(20)), left = d.add("left", link(2)),
+         right = d.add("right", link(3));
+    hub.parent.force = -d.input("U", 6);
+    hinge(d, "h1", left, hub.child("A"), Rotation(), {0, 0, 1}).torque = 0;
+    hinge(d, "h2", right, hub.child("B"), Rotation(), {1, 0, 0}).torque = 0;
+    d.output("a", 6) = hub.parent.accel;
+    return d;
+  }
+};
+
+/// The largest error of the transfer, per unit of translations and of rotations.
+double error_in(const InUnits& units, titop::Diagram (InUnits::*scene)() const) {
+  const titop::System ours = compile((InUnits{}.*scene)()), theirs = compile((units.*scene)());
+  CHECK(theirs.log().find("singular posture") == std::string::npos);
+  double worst = 0;
+  for (const std::complex<double> s : {std::complex<double>(3, 40), {0.2, 1}, {100, 5000}}) {
+    Eigen::MatrixXcd G = theirs.transfer(s / units.time);
+    const Eigen::MatrixXcd exact = ours.transfer(s);
+    const double t2 = units.time * units.time;
+    G.topRows(3) *= t2 / units.length, G.bottomRows(3) *= t2;
+    G.leftCols(std::min<Eigen::Index>(3, G.cols())) *= units.force();
+    if (G.cols() == 6) G.rightCols(3) *= units.force() * units.length;
+    worst = std::max(worst, (G - exact).cwiseAbs().maxCoeff() / exact.cwiseAbs().maxCoeff());
+  }
+  return worst;
+}
+
+}  // namespace
+
+TEST_CASE(
+    "units: a rod of one element and a tree, in units of 1e-12 to 1e12 and all three at once") {
+  std::vector<InUnits> all;
+  for (const double factor : {1e-12, 1e-9, 1e9, 1e12}) {
+    all.insert(all.end(), {{.length = factor}, {.mass = factor}, {.time = factor}});
+    if (factor == 1e-9 || factor == 1e9) all.push_back({factor, factor, factor});
+  }
+  for (const InUnits& units : all) {
+    CAPTURE(units.length);
+    CAPTURE(units.mass);
+    CAPTURE(units.time);
+    for (const auto scene : {&InUnits::rod, &InUnits::tree}) {
+      double error = 1;
+      CHECK_NOTHROW(error = error_in(units, scene));
+      CHECK(error <= 1e-9);
+    }
   }
 }
 

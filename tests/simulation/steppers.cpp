@@ -104,6 +104,31 @@ TEST_CASE("midpoint: through the factors as from the dense matrices") {
   CHECK(difference_to_matrices(loaded_point(), Eigen::Vector2d(0.3, -1.1)) <= 1e-13);
 }
 
+namespace {
+
+/// A filter of three states without modal form, alone or with its output added to its input.
+System filter_of_three(const Eigen::Matrix3d& A, const Eigen::RowVector3d& C, bool closed) {
+  Diagram d{"filter"};
+  auto u = d.input("u");
+  auto K = d.add("K", Lti{.A = A, .B = Eigen::Vector3d(1, 0, 0), .C = C});
+  if (closed)
+    K.in = u + K.out;
+  else
+    K.in = u;
+  d.output("y") = K.out;
+  return compile(d);
+}
+
+}  // namespace
+
+TEST_CASE("midpoint: blocks without modal form, whose pivots lie in other rows") {
+  const Eigen::Matrix3d chain{{-1, 0, 0}, {-1, 0, 0}, {0, -4, 0}};
+  const Eigen::Matrix3d companion{{-2.2, -0.41, -0.02}, {1, 0, 0}, {0, 1, 0}};
+  const Eigen::Vector3d x0(0.3, -1.1, 0.7);
+  CHECK(difference_to_matrices(filter_of_three(chain, {0, 0, 1}, false), x0) <= 1e-13);
+  CHECK(difference_to_matrices(filter_of_three(companion, {0, 0, 0.02}, true), x0) <= 1e-13);
+}
+
 TEST_CASE("energy: midpoint and exact keep it over 100,000 steps, Runge-Kutta loses it") {
   const System s = compile(row_of_masses(kMass, kStiffness));
   const double before = energy(kMass, kStiffness, let_go());

@@ -53,6 +53,50 @@ TEST_CASE("lossy rows: every precision is right or says that it is not") {
   CHECK(count.refused == 0);
 }
 
+TEST_CASE("lossy rows: after an update from a thousand times the damping, and back") {
+  Count count;
+  const auto [held, driven, free, free_driven] = titop_test::lossy_rows(300, 20);
+  for (const LossyRow& row : {held, driven, free, free_driven}) {
+    LossyRow strong = row;
+    strong.damping = 2e4;
+    const System first = compile(strong.diagram("c"));
+    const System second = first.update({{"c", 20.0}}), third = second.update({{"c", 2e4}});
+    for (const Double s : {Double(0, 15.93), Double(0, 8), Double(2.19, 2.23)}) {
+      count.ask(second, row, s);
+      count.ask(third, strong, s);
+    }
+  }
+  CHECK(count.tried == 24);
+  CHECK(count.wrong == 0);
+  CHECK(count.refused == 0);
+}
+
+TEST_CASE("lossy rows: A, B, C, D, and the steps of apply, of sixty masses") {
+  Count by_model, by_apply;
+  for (const double damping : {0.1, 20.0})
+    for (const LossyRow& row : titop_test::lossy_rows(60, damping)) {
+      const System system = compile(row.diagram(), {.minimize_up_to = 0});
+      const StateSpace& m = system.state_space();
+      StateSpace read = m;  // column by column from apply
+      const Eigen::Index n = m.order();
+      for (Eigen::Index j = 0; j <= n; ++j) {
+        const Eigen::VectorXd all = Eigen::VectorXd::Unit(n + 1, j);
+        const System::Rates r = system.apply(all.head(n), all.tail(1));
+        if (j < n)
+          read.A.col(j) = r.xdot, read.C.col(j) = r.y;
+        else
+          read.B.col(0) = r.xdot, read.D.col(0) = r.y;
+      }
+      for (const Double s : {Double(2.19, 2.23), Double(0, 0.31)}) {
+        by_model.judge(m.transfer(s), row, s);
+        by_apply.judge(read.transfer(s), row, s);
+      }
+    }
+  CHECK(by_model.tried == 16);
+  CHECK(by_model.wrong == 0);
+  CHECK(by_apply.wrong == 0);
+}
+
 TEST_CASE("backward error: the worst row by its own terms, threes of a vector together") {
   using titop::solve::RowMatrix;
   titop::solve::Structure structure;

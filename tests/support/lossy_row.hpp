@@ -2,6 +2,7 @@
 
 #include <array>
 #include <complex>
+#include <string>
 #include <titop/titop.hpp>
 
 /// Rows of equal masses in which waves decay: the effect of elimination on one front is harmless,
@@ -21,6 +22,8 @@ struct LossyRow {
   /// Inputs: the force on the tip, or its acceleration. Outputs: "base", the force on the wall or
   /// the acceleration of the free base of 2 kg; "tip", the other one of the tip's two.
   titop::Diagram diagram() const;
+  /// The same; the damping is a parameter of this name.
+  titop::Diagram diagram(const std::string& damping_name) const;
 };
 
 /// The four pairs of what is prescribed at the base and at the tip, with this length and damping.
@@ -34,6 +37,8 @@ struct LossyRowCount {
   /// 1e-290 numbers have not all their digits.
   void ask(const titop::System& system, const LossyRow& row, std::complex<double> s,
            titop::Precision precision = titop::Precision::as_needed);
+  /// Of a transfer found in another way.
+  void judge(const Eigen::MatrixXcd& found, const LossyRow& row, std::complex<double> s);
 };
 
 }  // namespace titop_test
