@@ -62,8 +62,8 @@ int find_root(const Graph& g, const std::string& name) {
     refuse(fmt::format("{} is no root: it is no parent port of six degrees of freedom", name),
            "take the parent port of the body by which the part hangs");
   refuse_driven(g, {root.accel, root.force}, fmt::format("the root {} is driven", name),
-                "leave it free: the scene drives it where the body is mounted; the diagram holds "
-                "the part alone");
+                "leave it free: the scene drives it where the body is mounted; the diagram "
+                "contains the part alone");
   return c;
 }
 

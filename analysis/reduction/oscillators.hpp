@@ -4,7 +4,7 @@
 #include <titop/graph/graph.hpp>
 #include <vector>
 
-/// An Lti that holds modes, as a structure given by its modal blocks. For the library's own files.
+/// An Lti that contains modes, as a structure of modal blocks. For the library's own files.
 namespace titop::detail {
 
 /// An Lti in second order, as far as it has one: out = out of `rest` + c_q q + c_v q', with

@@ -151,7 +151,7 @@ class System {
   ///
   /// If new values change how a closed chain moves, or add or remove a term, all passes run again,
   /// with the cost and the errors of `compile`; the log reports it, and warns if other states are
-  /// kept than before. The same holds for every update of a scene whose equations as written are
+  /// kept than before. The same is true of every update of a scene whose equations as written are
   /// singular, such as one with a point without mass (its log has notes of pass `reduce`).
   System update(const ParameterList& values) const;
 

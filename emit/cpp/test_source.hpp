@@ -124,7 +124,7 @@ namespace {
 
 using Indices = std::vector<std::size_t>;
 
-/// What is 0 by nature, so that only rounding is left of it: not compared.
+/// Rows and columns of the transfer that are 0 up to rounding: not compared.
 const Indices silent_outputs = @SILENT_OUTPUTS@;
 const Indices silent_inputs = @SILENT_INPUTS@;
 [[maybe_unused]] bool contains(const Indices& list, std::size_t i) {
