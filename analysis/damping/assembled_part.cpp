@@ -113,7 +113,7 @@ Diagram with_ports(const Diagram& part, const std::string& root,
   return d;
 }
 
-struct Compiled {
+struct CompiledPart {
   std::shared_ptr<const SystemData> data;
   Whole modes;
 };
@@ -147,8 +147,8 @@ std::vector<std::string> removed_states(const Graph& g, const std::vector<std::s
   return removed;
 }
 
-Compiled compile_part(const Diagram& d) {
-  Compiled c{compile_graph(d.graph(), {.minimize_up_to = 0}), {}};
+CompiledPart compile_part(const Diagram& d) {
+  CompiledPart c{compile_graph(d.graph(), {.minimize_up_to = 0}), {}};
   const System system(c.data);
   for (const Note& n : system.notes())
     if (n.kind == Note::Kind::removed && n.pass == "split")
@@ -225,7 +225,7 @@ double digits_of(const Graph& g) {
 
 ModalData assembled_part(const Diagram& part, const std::string& root,
                          const std::vector<AssemblyPort>& ports) {
-  const Compiled c = compile_part(with_ports(part, root, ports));
+  const CompiledPart c = compile_part(with_ports(part, root, ports));
   const Whole& w = c.modes;
   const MatrixXd W = mass_normalised(w, part.name());
   ModalData data;

@@ -15,7 +15,7 @@ using Eigen::VectorXd;
 double norm1(const MatrixXd& m) { return m.cwiseAbs().colwise().sum().maxCoeff(); }
 
 /// I - D_zw Delta and its inverse.
-struct Loop {
+struct LoopMatrix {
   MatrixXd product;   ///< D_zw Delta, with w and z scaled
   MatrixXd inverse;   ///< of I - D_zw Delta, not scaled; empty if that is singular
   double margin = 0;  ///< see well_posed, without its sign
@@ -23,9 +23,9 @@ struct Loop {
 
 /// With w and z in sizes that give rows and columns of D_zw equal norms: the margin then depends on
 /// no units.
-Loop loop(const StateSpace& m, const VectorXd& deltas) {
+LoopMatrix loop(const StateSpace& m, const VectorXd& deltas) {
   const Index r = deltas.size();
-  Loop l{m.D.topLeftCorner(r, r), {}};
+  LoopMatrix l{m.D.topLeftCorner(r, r), {}};
   const VectorXd d = linalg::similarity_scaling(l.product);
   l.product = l.product * deltas.asDiagonal();
   const MatrixXd E = MatrixXd::Identity(r, r) - l.product;
@@ -39,7 +39,7 @@ Loop loop(const StateSpace& m, const VectorXd& deltas) {
 /// I - t D_zw Delta is singular for a t in (0, 1): D_zw Delta has a real eigenvalue above 1; none
 /// if its norm is below 1. Rounding splits equal ones into pairs of half the digits; a pair so near
 /// the axis comes within 1e-6 of singular.
-bool singular_between(const Loop& l) {
+bool singular_between(const LoopMatrix& l) {
   constexpr double kReal = 64 * linalg::kHalfDigits;
   if (norm1(l.product) < 1) return false;
   const Eigen::VectorXcd values = linalg::eigenvalues(l.product);
@@ -52,7 +52,7 @@ bool singular_between(const Loop& l) {
 
 double well_posed(const StateSpace& m, const VectorXd& deltas) {
   if (deltas.size() == 0) return 1;
-  const Loop l = loop(m, deltas);
+  const LoopMatrix l = loop(m, deltas);
   return singular_between(l) ? -l.margin : l.margin;
 }
 
@@ -64,7 +64,7 @@ std::optional<StateSpace> closed(const StateSpace& m, const VectorXd& deltas) {
   c.outputs.assign(m.outputs.begin() + r, m.outputs.end());
   MatrixXd K(r, r);  // w = K (z without w)
   if (r > 0) {
-    const Loop l = loop(m, deltas);
+    const LoopMatrix l = loop(m, deltas);
     if (!(l.margin > kWellPosed)) return std::nullopt;
     K = deltas.asDiagonal() * l.inverse;
   }

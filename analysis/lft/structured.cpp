@@ -20,18 +20,19 @@ constexpr double kRank = 1e-9;           ///< of a row block: smaller singular v
 constexpr double kSmallRows = 1e-5;      ///< of the largest ones: smaller rows may be rounding
 constexpr double kIllConditioned = 1e3;  ///< poles are not separated beyond this
 
-struct Block {
+/// Rows and columns of one part of the coordinates.
+struct MatrixBlock {
   Index first = 0, size = 0;
   bool pole = false;  ///< an invariant subspace of A: others of its kind do not act on it
 };
 
-/// The square part of a model over states and pairs, with its inputs and outputs.
-struct Cut {
+/// The square part N of a model over states and pairs, with its inputs B and outputs C.
+struct LftMatrices {
   MatrixXd N, B, C;
 };
 
 /// N restricted to the columns of R, with L R = I.
-Cut restricted(const Cut& m, const MatrixXd& L, const MatrixXd& R) {
+LftMatrices restricted(const LftMatrices& m, const MatrixXd& L, const MatrixXd& R) {
   return {L * m.N * R, L * m.B, m.C * R};
 }
 
@@ -44,14 +45,14 @@ MatrixXd with_unit_columns(MatrixXd m) {
 /// Least subspaces of the blocks: orthonormal bases.
 class Reach {
  public:
-  Reach(const Cut& m, const std::vector<Block>& blocks, RankMargin& margin)
+  Reach(const LftMatrices& m, const std::vector<MatrixBlock>& blocks, RankMargin& margin)
       : m_(m), blocks_(blocks), margin_(margin) {
     const MatrixXd B = with_unit_columns(m.B);
-    for (const Block& b : blocks_) size_.push_back(rows(m_.N, b).norm());
+    for (const MatrixBlock& b : blocks_) size_.push_back(rows(m_.N, b).norm());
     const double largest = size_.empty() ? 0 : *std::max_element(size_.begin(), size_.end());
     for (double& size : size_) size = std::max(size, kSmallRows * largest);
     std::vector<MatrixXd> found;
-    for (const Block& b : blocks_) {
+    for (const MatrixBlock& b : blocks_) {
       bases.emplace_back(b.size, 0);
       found.push_back(added(bases.size() - 1, rows(B, b), 1));
     }
@@ -62,15 +63,17 @@ class Reach {
   std::vector<MatrixXd> bases;
 
  private:
-  static MatrixXd rows(const MatrixXd& m, const Block& b) { return m.middleRows(b.first, b.size); }
+  static MatrixXd rows(const MatrixXd& m, const MatrixBlock& b) {
+    return m.middleRows(b.first, b.size);
+  }
 
   std::vector<MatrixXd> next(const std::vector<MatrixXd>& found) {
     std::vector<MatrixXd> result;
     for (std::size_t i = 0; i < blocks_.size(); ++i) {
-      const Block& to = blocks_[i];
+      const MatrixBlock& to = blocks_[i];
       MatrixXd all(to.size, 0);
       for (std::size_t j = 0; j < blocks_.size(); ++j) {
-        const Block& from = blocks_[j];
+        const MatrixBlock& from = blocks_[j];
         if (found[j].cols() == 0 || (to.pole && from.pole && i != j)) continue;
         const MatrixXd more = m_.N.block(to.first, from.first, to.size, from.size) * found[j];
         all.conservativeResize(to.size, all.cols() + more.cols());
@@ -103,8 +106,8 @@ class Reach {
     return fresh;
   }
 
-  const Cut& m_;
-  const std::vector<Block>& blocks_;
+  const LftMatrices& m_;
+  const std::vector<MatrixBlock>& blocks_;
   RankMargin& margin_;
   std::vector<double> size_;
 };
@@ -122,7 +125,7 @@ MatrixXd block_diagonal(const std::vector<MatrixXd>& list) {
 }
 
 /// Real bases of the invariant subspaces of A, side by side, with their blocks.
-MatrixXd pole_bases(const MatrixXd& A, std::vector<Block>& blocks) {
+MatrixXd pole_bases(const MatrixXd& A, std::vector<MatrixBlock>& blocks) {
   const Index n = A.rows();
   if (n == 0) return MatrixXd(0, 0);
   const linalg::Spectrum s = linalg::spectrum(A, kIllConditioned);
@@ -138,13 +141,14 @@ MatrixXd pole_bases(const MatrixXd& A, std::vector<Block>& blocks) {
 }
 
 /// Transformations to fewer coordinates and back, L R = I.
-struct Coordinates {
+struct Projection {
   MatrixXd L, R;
   void restrict_to(const MatrixXd& left, const MatrixXd& right) { L = left * L, R = R * right; }
 };
 
-std::vector<Block> shrunk(const std::vector<Block>& blocks, const std::vector<MatrixXd>& bases) {
-  std::vector<Block> result;
+std::vector<MatrixBlock> shrunk(const std::vector<MatrixBlock>& blocks,
+                                const std::vector<MatrixXd>& bases) {
+  std::vector<MatrixBlock> result;
   Index first = 0;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     result.push_back({first, bases[i].cols(), blocks[i].pole});
@@ -154,7 +158,8 @@ std::vector<Block> shrunk(const std::vector<Block>& blocks, const std::vector<Ma
 }
 
 /// Restricts to the subspaces that u reaches, then to those that y sees, until nothing changes.
-void reduce_blocks(Cut m, std::vector<Block>& blocks, Coordinates& c, RankMargin& margin) {
+void reduce_blocks(LftMatrices m, std::vector<MatrixBlock>& blocks, Projection& c,
+                   RankMargin& margin) {
   for (Index before = -1; before != m.N.rows();) {
     before = m.N.rows();
     for (int side = 0; side < 2; ++side) {
@@ -170,8 +175,8 @@ void reduce_blocks(Cut m, std::vector<Block>& blocks, Coordinates& c, RankMargin
 
 /// Coordinates in which poles are apart and rows and columns of like size, with their blocks: those
 /// of the poles, then those of the parameters.
-Coordinates separated(MatrixXd N, Index states, const std::vector<int>& sizes,
-                      std::vector<Block>& blocks) {
+Projection separated(MatrixXd N, Index states, const std::vector<int>& sizes,
+                     std::vector<MatrixBlock>& blocks) {
   const Index n = N.rows();
   const VectorXd d = linalg::similarity_scaling_of_parts(N);
   MatrixXd P = MatrixXd::Identity(n, n), inverse = P;
@@ -183,14 +188,14 @@ Coordinates separated(MatrixXd N, Index states, const std::vector<int>& sizes,
 }
 
 /// The block from `column` on is the one from `row` on, as it was.
-void keep(Coordinates& c, Index row, Index column, Index size) {
+void keep(Projection& c, Index row, Index column, Index size) {
   c.L.middleRows(column, size).setZero(), c.R.middleCols(column, size).setZero();
   c.L.block(column, row, size, size).setIdentity();
   c.R.block(row, column, size, size).setIdentity();
 }
 
 /// The first `states` of N are states, the others pairs.
-StateSpace model_of(const Cut& f, Index states, const StateSpace& given) {
+StateSpace model_of(const LftMatrices& f, Index states, const StateSpace& given) {
   const Index q = f.N.rows() - states, nu = f.B.cols(), ny = f.C.rows();
   const Index r = given.B.cols() - nu;  // pairs before
   StateSpace s;
@@ -213,12 +218,12 @@ StateSpace model_of(const Cut& f, Index states, const StateSpace& given) {
 Structured reduced(const StateSpace& given, const std::vector<int>& sizes) {
   const Index n = given.order(), r = std::accumulate(sizes.begin(), sizes.end(), Index{0}),
               nu = given.B.cols() - r, ny = given.C.rows() - r;
-  Cut m{MatrixXd(n + r, n + r), MatrixXd(n + r, nu), MatrixXd(ny, n + r)};
+  LftMatrices m{MatrixXd(n + r, n + r), MatrixXd(n + r, nu), MatrixXd(ny, n + r)};
   m.N << given.A, given.B.leftCols(r), given.C.topRows(r), given.D.topLeftCorner(r, r);
   m.B << given.B.rightCols(nu), given.D.topRightCorner(r, nu);
   m.C << given.C.bottomRows(ny), given.D.bottomLeftCorner(ny, r);
-  std::vector<Block> blocks;
-  Coordinates c = separated(m.N, n, sizes, blocks);
+  std::vector<MatrixBlock> blocks;
+  Projection c = separated(m.N, n, sizes, blocks);
   Structured result;
   reduce_blocks(restricted(m, c.L, c.R), blocks, c, result.margin);
   const std::size_t poles = blocks.size() - sizes.size();
@@ -226,7 +231,7 @@ Structured reduced(const StateSpace& given, const std::vector<int>& sizes) {
   for (std::size_t i = 0; i < poles; ++i) states += blocks[i].size;
   if (states == n) keep(c, 0, 0, n);
   for (std::size_t i = 0, first = at(n); i < sizes.size(); first += at(sizes[i++])) {
-    const Block& b = blocks[poles + i];
+    const MatrixBlock& b = blocks[poles + i];
     result.sizes.push_back(static_cast<int>(b.size));
     if (b.size == sizes[i]) keep(c, static_cast<Index>(first), b.first, b.size);
   }

@@ -25,9 +25,10 @@ using Complex = std::complex<double>;
 constexpr double kAbove = 1e-10;
 
 /// Singular values of H(j omega), with the slope of the largest one.
-class Gain {
+class SingularValues {
  public:
-  explicit Gain(const StateSpace& m) : m_(m), x_(m.A, m.B), z_(m.A.transpose(), m.C.transpose()) {}
+  explicit SingularValues(const StateSpace& m)
+      : m_(m), x_(m.A, m.B), z_(m.A.transpose(), m.C.transpose()) {}
 
   HinfNorm at(double omega) const {
     return of(std::isinf(omega) ? MatrixXcd(m_.D.cast<Complex>())
@@ -96,7 +97,7 @@ std::vector<double> midpoints(const std::vector<double>& ends) {
 
 /// The largest value at the ends of the band, at the poles, and of the direct term if the band
 /// reaches it.
-HinfNorm first(const Gain& gain, const Eigen::VectorXcd& poles, double from, double to) {
+HinfNorm first(const SingularValues& gain, const Eigen::VectorXcd& poles, double from, double to) {
   HinfNorm best = gain.at(from);
   const auto look = [&](double omega) {
     HinfNorm p = gain.at(omega);
@@ -110,8 +111,8 @@ HinfNorm first(const Gain& gain, const Eigen::VectorXcd& poles, double from, dou
 
 /// The intervals of these frequencies in which the largest singular value exceeds the level; of
 /// width 0 if it does so at one of them only, whose neighbours rounding has merged with it.
-std::vector<std::array<double, 2>> above(const Gain& gain, const std::vector<double>& ends,
-                                         double level) {
+std::vector<std::array<double, 2>> above(const SingularValues& gain,
+                                         const std::vector<double>& ends, double level) {
   std::vector<std::array<double, 2>> result;
   bool inside = false;
   const auto take = [&](double from, double to, double omega) {
@@ -132,7 +133,7 @@ std::vector<std::array<double, 2>> above(const Gain& gain, const std::vector<dou
 /// interval around it is one. A singular value that is constant somewhere is constant everywhere,
 /// since it is analytic: a plateau reaches both ends of the band. A single peak ends at crossings
 /// of the level, kHalfDigits lower; one that the band cuts off does so at the farther end.
-std::optional<double> plateau(const Gain& gain, const HinfNorm& best,
+std::optional<double> plateau(const SingularValues& gain, const HinfNorm& best,
                               const std::array<double, 2>& around,
                               const std::array<double, 2>& band) {
   const double end = around[1] - best.omega > best.omega - around[0] ? around[1] : around[0];
@@ -143,7 +144,7 @@ std::optional<double> plateau(const Gain& gain, const HinfNorm& best,
 
 /// Where the slope is 0 in the interval around `best`: Newton's step, with the curvature of the
 /// slopes at the interval's ends, twice. At an end of the band it stays.
-HinfNorm refined(const Gain& gain, HinfNorm best, const std::array<double, 2>& around) {
+HinfNorm refined(const SingularValues& gain, HinfNorm best, const std::array<double, 2>& around) {
   const double left = around[0], right = around[1];
   if (best.omega <= left || best.omega >= right || std::isinf(right)) return best;
   const double bend = (gain.slope(gain.at(right)) - gain.slope(gain.at(left))) / (right - left);
@@ -196,7 +197,7 @@ HinfNorm norm_hinf(const StateSpace& model, const HinfOptions& options) {
   const StateSpace m = detail::scaled(model);
   const Eigen::VectorXcd poles = m.order() > 0 ? linalg::eigenvalues(m.A) : Eigen::VectorXcd();
   check(m, poles, from, to);
-  const Gain gain(m);
+  const SingularValues gain(m);
   HinfNorm best = first(gain, poles, from, to);
   if (m.order() == 0 || !(best.value > 0)) return best;
   for (bool larger = true; larger;) {

@@ -81,13 +81,13 @@ double unit(const Eigen::RowVectorXd& b, const MatrixXd& C, double stiffness) {
   return in > 0 && out > 0 ? std::exp2(std::round((std::log2(out) - std::log2(in)) / 2)) : 1;
 }
 
-struct Found {
+struct OscillatorParts {
   std::vector<std::pair<std::vector<int>, Oscillator>> parts;
   std::vector<int> others;
 };
 
-Found find(const Dynamics& d) {
-  Found found;
+OscillatorParts find(const Dynamics& d) {
+  OscillatorParts found;
   for (std::vector<int>& part : linalg::uncoupled_parts(d.A)) {
     std::optional<Oscillator> o;
     if (part.size() == 2) o = oscillator(d.A(part, part), d.B(part, Eigen::all));
@@ -111,7 +111,7 @@ bool is_lti(const Block& block) {
 std::optional<Oscillators> oscillators(const Block& block) {
   if (!is_lti(block)) return std::nullopt;
   const auto d = block.dynamics({});
-  const Found found = find(*d);
+  const OscillatorParts found = find(*d);
   if (found.parts.empty()) return std::nullopt;
   Oscillators o = sized(*d, std::ssize(found.parts));
   for (Index j = 0; j < o.stiffness.size(); ++j) {

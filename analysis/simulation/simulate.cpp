@@ -159,10 +159,10 @@ class TimeStepping {
   virtual VectorXd error() const { return {}; }
 };
 
-/// A stepper chosen by the caller.
-class Asked : public TimeStepping {
+/// Steps by a rule that the caller chose.
+class RuleStepping : public TimeStepping {
  public:
-  explicit Asked(std::unique_ptr<detail::StepRule> rule) : rule_(std::move(rule)) {}
+  explicit RuleStepping(std::unique_ptr<detail::StepRule> rule) : rule_(std::move(rule)) {}
   VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) override {
     return rule_->step(x, u0, u1);
   }
@@ -257,10 +257,10 @@ std::unique_ptr<TimeStepping> motion_of(const System& system, const detail::Fact
                                         const Simulation& s, Stepper stepper, Index steps,
                                         const VectorXd& x0) {
   switch (stepper) {
-    case Stepper::rk4: return std::make_unique<Asked>(detail::rk4_rule(system, s.step));
+    case Stepper::rk4: return std::make_unique<RuleStepping>(detail::rk4_rule(system, s.step));
     case Stepper::midpoint:
       if (s.stepper == Stepper::midpoint)
-        return std::make_unique<Asked>(detail::midpoint_rule(d, s.step));
+        return std::make_unique<RuleStepping>(detail::midpoint_rule(d, s.step));
       return std::make_unique<Halved>(d, s.step, x0);
     default: return std::make_unique<Exact>(system, d, s.step, steps);
   }

@@ -30,7 +30,7 @@ struct DmigEntry {
 };
 
 /// The data in the file under one name.
-struct Found {
+struct DmigMatrix {
   int form = 0, type = 0;
   int digits = 0;  ///< of its longest number
   std::map<std::pair<GridDof, GridDof>, DmigEntry> entries;
@@ -81,7 +81,7 @@ int significant_digits(std::string_view text) {
 
 /// Decimal digits of the entries: as printed, at most those of their precision. No program prints
 /// fewer than five: shorter numbers ("2.", "1.+6") were typed by hand and are taken as exact.
-int digits_of(const Found& found) {
+int digits_of(const DmigMatrix& found) {
   const int most = found.type == 1 ? 7 : 15;
   return found.digits < 5 ? most : std::min(most, found.digits);
 }
@@ -118,7 +118,7 @@ class DmigReader {
     mistakes_.finish();
   }
 
-  std::map<std::string, Found> matrices;
+  std::map<std::string, DmigMatrix> matrices;
 
  private:
   void mistake(const Field& field, const std::string& expected) {
@@ -139,7 +139,7 @@ class DmigReader {
   }
 
   void read_header(const DmigCard& card, const std::string& name) {
-    Found& found = matrices[name];
+    DmigMatrix& found = matrices[name];
     if (!parse(card.fields[2].text, found.form)) mistake(card.fields[2], "a form: 1, 6, 2 or 9");
     if (!parse(card.fields[3].text, found.type)) mistake(card.fields[3], "a type from 1 to 4");
   }
@@ -158,7 +158,7 @@ class DmigReader {
   }
 
   /// Rows come in fours: grid, component, real and imaginary part.
-  void read_column(const DmigCard& card, Found& found) {
+  void read_column(const DmigCard& card, DmigMatrix& found) {
     GridDof column;
     if (!read_dof(card.fields[1], card.fields[2], column)) return;
     for (std::size_t i = 4; i + 3 < card.fields.size(); i += 4) {
@@ -176,7 +176,7 @@ class DmigReader {
     }
   }
 
-  void put(Found& found, const GridDof& row, const GridDof& column, const DmigEntry& entry) {
+  void put(DmigMatrix& found, const GridDof& row, const GridDof& column, const DmigEntry& entry) {
     const auto [at, is_new] = found.entries.insert({{row, column}, entry});
     const auto mirror = found.form == 6 ? found.entries.find({column, row}) : found.entries.end();
     const DmigEntry* other = !is_new                         ? &at->second
@@ -193,7 +193,7 @@ class DmigReader {
   FileMistakes mistakes_;
 };
 
-const Found& chosen(const TextFile& file, const DmigReader& reader, const std::string& name) {
+const DmigMatrix& chosen(const TextFile& file, const DmigReader& reader, const std::string& name) {
   const auto at = reader.matrices.find(name);
   if (at == reader.matrices.end()) {
     std::string all;
@@ -201,7 +201,7 @@ const Found& chosen(const TextFile& file, const DmigReader& reader, const std::s
     throw Error(Code::unknown_name, fmt::format("{} has no DMIG matrix {}", file.name, name),
                 all.empty() ? "it has none at all" : "its matrices are " + all);
   }
-  const Found& found = at->second;
+  const DmigMatrix& found = at->second;
   if (found.form != 1 && found.form != 6)
     throw Error(Code::bad_file, fmt::format("{}: {} has form {}", file.name, name, found.form),
                 "a square (1) or symmetric (6) matrix is needed");
@@ -214,7 +214,7 @@ const Found& chosen(const TextFile& file, const DmigReader& reader, const std::s
   return found;
 }
 
-Eigen::MatrixXd filled(const Found& found, const std::map<GridDof, Eigen::Index>& row) {
+Eigen::MatrixXd filled(const DmigMatrix& found, const std::map<GridDof, Eigen::Index>& row) {
   const auto n = static_cast<Eigen::Index>(row.size());
   Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n, n);
   for (const auto& [place, entry] : found.entries) {
@@ -231,9 +231,9 @@ GridMatrices read_dmig(const std::filesystem::path& path, const std::string& sti
                        const std::string& mass) {
   const TextFile file = read_text(path);
   const DmigReader reader(file);
-  const Found &K = chosen(file, reader, stiffness), &M = chosen(file, reader, mass);
+  const DmigMatrix &K = chosen(file, reader, stiffness), &M = chosen(file, reader, mass);
   std::map<GridDof, Eigen::Index> row;
-  for (const Found* found : {&K, &M})
+  for (const DmigMatrix* found : {&K, &M})
     for (const auto& [place, entry] : found->entries) row[place.first] = row[place.second] = 0;
   if (row.size() > 10000)
     throw Error(Code::bad_file, fmt::format("{}: {} degrees of freedom", file.name, row.size()),

@@ -65,7 +65,7 @@ RateColumns rates_at(const Factored& d, RowMatrix<double> known, const RowMatrix
 /// With xi' = A xi + E_0 u the kept states are xi + E_1 u + E_2 u' + ..., from the highest on down:
 /// E_j is the rate due to E_(j+1), its dependent states, and u^(j). With a sample every number is
 /// perturbed by about one rounding.
-Expansion expand(const Factored& d, const Derivatives& v, std::optional<int> sample = {}) {
+Expansion expand(const Factored& d, const InputDerivatives& v, std::optional<int> sample = {}) {
   const Index n = d.layout().order();
   const auto inputs = static_cast<Index>(d.layout().inputs.size());
   const std::size_t most = std::max(v.by_input.size(), v.forcing.size() + 1);
@@ -91,7 +91,8 @@ Expansion expand(const Factored& d, const Derivatives& v, std::optional<int> sam
 }
 
 /// Possible error of each P_j by rounding.
-std::vector<MatrixXd> rounding_of(const Factored& d, const Derivatives& v, const Expansion& e) {
+std::vector<MatrixXd> rounding_of(const Factored& d, const InputDerivatives& v,
+                                  const Expansion& e) {
   std::vector<MatrixXd> result(e.P.size());
   for (int sample = 0; sample < kSamples; ++sample) {
     const Expansion other = expand(d, v, sample);
@@ -103,7 +104,7 @@ std::vector<MatrixXd> rounding_of(const Factored& d, const Derivatives& v, const
   return result;
 }
 
-const Hidden* first_with(const Derivatives& v, Index input) {
+const Hidden* first_with(const InputDerivatives& v, Index input) {
   for (const Hidden& c : v.constraints)
     for (const auto& h : c.h)
       if (h(input) != 0) return &c;
@@ -119,7 +120,7 @@ Mistake improper(const Skeleton& k, const Factored& d, const Hidden* c, Index ou
   return m;
 }
 
-void refuse_derivatives(const Skeleton& k, const Factored& d, const Derivatives& v,
+void refuse_derivatives(const Skeleton& k, const Factored& d, const InputDerivatives& v,
                         const Expansion& e) {
   bool any = false;
   for (std::size_t j = 1; j < e.P.size(); ++j) any = any || !e.P[j].isZero(0);
@@ -147,7 +148,7 @@ void refuse_derivatives(const Skeleton& k, const Factored& d, const Derivatives&
 
 }  // namespace
 
-void make_proper(Skeleton& k, Factored& d, const Derivatives& v) {
+void make_proper(Skeleton& k, Factored& d, const InputDerivatives& v) {
   bool by_inputs = false;
   for (const MatrixXd& m : v.by_input) by_inputs = by_inputs || !m.isZero(0);
   for (const auto& m : v.forcing) by_inputs = by_inputs || !m.isZero(0);

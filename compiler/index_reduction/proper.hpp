@@ -5,7 +5,7 @@
 namespace titop::detail {
 
 /// Effects of the derivatives of inputs.
-struct Derivatives {
+struct InputDerivatives {
   /// by_input[j]: contribution of u^(j) to the blocks' dependent states, blocks' states x inputs.
   std::vector<Eigen::MatrixXd> by_input;
   /// forcing[j]: contribution of u^(j + 1) to the rows of the joint system, rows x inputs.
@@ -17,6 +17,6 @@ struct Derivatives {
 /// themselves remain in it (StateMap::set_inputs, noted). Throws improper if a derivative still
 /// reaches an output, by more than the rounding of a 0: its share of the output at some s does not
 /// matter. O(bodies) per input and derivative.
-void make_proper(Skeleton& k, Factored& d, const Derivatives& derivatives);
+void make_proper(Skeleton& k, Factored& d, const InputDerivatives& derivatives);
 
 }  // namespace titop::detail

@@ -18,7 +18,7 @@ using Twofold = std::complex<solve::DoubleDouble>;
 /// NaN if one of them is.
 double worse(double a, double b) { return std::isnan(a) || a > b ? a : b; }
 
-struct Asked {
+struct TransferRequest {
   const Factored& data;
   Double s;
   const PartOfTransfer& part;
@@ -29,20 +29,20 @@ struct Asked {
 template <class T>
 class Answer {
  public:
-  Answer(const Asked& a, solve::Refinement refinement)
-      : asked_(a), forward_(a.data, point(), unit_columns(), refinement, a.part.inputs) {
-    if (!a.part.outputs.empty()) transposed_.emplace(forward_, a.part.outputs, refinement);
-    ++a.cost.factorisations;
+  Answer(const TransferRequest& r, solve::Refinement refinement)
+      : request_(r), forward_(r.data, point(), unit_columns(), refinement, r.part.inputs) {
+    if (!r.part.outputs.empty()) transposed_.emplace(forward_, r.part.outputs, refinement);
+    ++r.cost.factorisations;
   }
   /// The factors of `coarse`, all else in T.
-  Answer(const Asked& a, const Answer<Double>& coarse)
-      : asked_(a), forward_(a.data, point(), unit_columns(), coarse.forward_, a.part.inputs) {
-    if (coarse.transposed_) transposed_.emplace(forward_, a.part.outputs, *coarse.transposed_);
+  Answer(const TransferRequest& r, const Answer<Double>& coarse)
+      : request_(r), forward_(r.data, point(), unit_columns(), coarse.forward_, r.part.inputs) {
+    if (coarse.transposed_) transposed_.emplace(forward_, r.part.outputs, *coarse.transposed_);
   }
   Answer(const Answer&) = delete;
   ~Answer() {
-    asked_.cost.columns += forward_.columns_solved();
-    if (transposed_) asked_.cost.rows += transposed_->columns_solved();
+    request_.cost.columns += forward_.columns_solved();
+    if (transposed_) request_.cost.rows += transposed_->columns_solved();
   }
 
   double improve() {
@@ -70,33 +70,33 @@ class Answer {
  private:
   template <class>
   friend class Answer;
-  T point() const { return solve::Scalar<T>::from(asked_.s); }
+  T point() const { return solve::Scalar<T>::from(request_.s); }
   solve::RowMatrix<T> unit_columns() const {
-    return unit_inputs<T>(asked_.data, asked_.part.inputs);
+    return unit_inputs<T>(request_.data, request_.part.inputs);
   }
 
-  Asked asked_;
+  TransferRequest request_;
   Evaluation<T> forward_;
   std::optional<TransposedEvaluation<T>> transposed_;
 };
 
 template <class T>
-TransferPart in_precision(const Asked& a, solve::Refinement refinement) {
-  return Answer<T>(a, refinement).rounded();
+TransferPart in_precision(const TransferRequest& r, solve::Refinement refinement) {
+  return Answer<T>(r, refinement).rounded();
 }
 
-TransferPart standard(const Asked& a) {
-  Answer<Double> point(a, solve::Refinement::none);
+TransferPart standard(const TransferRequest& r) {
+  Answer<Double> point(r, solve::Refinement::none);
   point.improve();
   return point.rounded();
 }
 
 template <class T>
-TransferPart refined(const Asked& a) {
-  const Answer<Double> coarse(a, solve::Refinement::none);
-  const Answer<T> result(a, coarse);
+TransferPart refined(const TransferRequest& r) {
+  const Answer<Double> coarse(r, solve::Refinement::none);
+  const Answer<T> result(r, coarse);
   if (const double error = result.refinement_error(); !(error <= kEnough))
-    throw not_refined(a.data, a.s, error);
+    throw not_refined(r.data, r.s, error);
   return result.rounded();
 }
 
@@ -113,23 +113,23 @@ double lost_by(Answer<T>& e, const typename RefinedSolution<T>::Losses& losses) 
 
 /// Finer than double, whose error is `lost`: refined if its own rounding (2000 times finer) is
 /// small enough and it converges, else refined in double-double if that converges, else 50 digits.
-TransferPart finer(const Asked& a, const Answer<Double>& plain, double lost) {
+TransferPart finer(const TransferRequest& r, const Answer<Double>& plain, double lost) {
   const double kFiner = solve::Scalar<Extended>::epsilon() / solve::Scalar<Double>::epsilon();
   if (lost * kFiner <= kEnough) {
-    const Answer<Extended> once(a, plain);
+    const Answer<Extended> once(r, plain);
     if (once.refinement_error() <= kEnough) return once.rounded();
   }
-  const Answer<Twofold> twice(a, plain);
+  const Answer<Twofold> twice(r, plain);
   if (twice.refinement_error() <= kEnough) return twice.rounded();
-  return in_precision<solve::Complex50>(a, solve::Refinement::settled);
+  return in_precision<solve::Complex50>(r, solve::Refinement::settled);
 }
 
 /// In T, if double has no pivot; none if T has too few digits for it, or if the last place
 /// of the data decides all digits of the results, as at a pole.
 template <class T>
-std::optional<TransferPart> without_pivot(const Asked& a) {
+std::optional<TransferPart> without_pivot(const TransferRequest& r) {
   try {
-    Answer<T> point(a, solve::Refinement::settled);
+    Answer<T> point(r, solve::Refinement::settled);
     const auto losses = point.losses();
     const double in_double =
         losses.rounding / solve::Scalar<T>::epsilon() * solve::Scalar<Double>::epsilon();
@@ -142,29 +142,29 @@ std::optional<TransferPart> without_pivot(const Asked& a) {
 /// The coarsest precision whose rounding changes the results by no more than kEnough. Intermediate
 /// results of grids lose more digits than the outputs: the last pivots of a wide front may have
 /// none in double, far from any pole.
-TransferPart as_needed(const Asked& a) {
+TransferPart as_needed(const TransferRequest& r) {
   std::optional<Answer<Double>> plain;
   try {
-    plain.emplace(a, solve::Refinement::settled);
+    plain.emplace(r, solve::Refinement::settled);
   } catch (const Error& error) {
     if (!error.has(Code::singular)) throw;
-    auto part = without_pivot<Twofold>(a);
-    if (!part) part = without_pivot<solve::Complex50>(a);
+    auto part = without_pivot<Twofold>(r);
+    if (!part) part = without_pivot<solve::Complex50>(r);
     if (!part) throw;
     return *part;
   }
   const double lost = lost_by(*plain, plain->losses());
   if (lost <= kEnough) return plain->rounded();
-  return finer(a, *plain, lost);
+  return finer(r, *plain, lost);
 }
 
-TransferPart with(const Asked& a, Precision precision) {
+TransferPart with(const TransferRequest& r, Precision precision) {
   switch (precision) {
-    case Precision::standard: return standard(a);
-    case Precision::refined: return refined<Extended>(a);
-    case Precision::twofold: return refined<Twofold>(a);
-    case Precision::digits50: return in_precision<solve::Complex50>(a, solve::Refinement::settled);
-    case Precision::as_needed: return as_needed(a);
+    case Precision::standard: return standard(r);
+    case Precision::refined: return refined<Extended>(r);
+    case Precision::twofold: return refined<Twofold>(r);
+    case Precision::digits50: return in_precision<solve::Complex50>(r, solve::Refinement::settled);
+    case Precision::as_needed: return as_needed(r);
   }
   return {};
 }

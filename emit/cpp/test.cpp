@@ -51,8 +51,8 @@ std::string indices(const std::vector<Index>& list) {
 }
 
 /// s - A as the test factors it (kHead).
-struct LuResolvent {
-  explicit LuResolvent(const MatrixXd& A, Complex s)
+struct TestedResolvent {
+  explicit TestedResolvent(const MatrixXd& A, Complex s)
       : R(s * MatrixXcd::Identity(A.rows(), A.rows()) - A),
         scale(R.cwiseAbs().rowwise().maxCoeff().cwiseInverse().cast<Complex>()),
         lu(scale.asDiagonal() * R) {}
@@ -71,7 +71,8 @@ struct LuResolvent {
 TransferDifference tested_difference(const ModelForm& form, Complex s, const MatrixXcd& exact,
                                      const Points& points) {
   const MatrixXcd B = form.B.cast<Complex>();
-  return difference(form, form.A.rows() > 0 ? LuResolvent(form.A, s).refined(B) : B, exact, points);
+  return difference(form, form.A.rows() > 0 ? TestedResolvent(form.A, s).refined(B) : B, exact,
+                    points);
 }
 
 /// Points that the test compares: a file of some megabytes is still compiled in seconds.
@@ -133,7 +134,7 @@ std::vector<std::size_t> poles_to_find(const std::vector<Pole>& poles, Index n) 
 /// Distance of the eigenvalue of A that the test's search (kPoles) finds next to p, relative.
 double pole_error(const MatrixXd& A, Complex p) {
   const Complex shift = p + 1e-10 * std::abs(p) * Complex(0.6, 0.8);
-  const LuResolvent resolvent(A, shift);
+  const TestedResolvent resolvent(A, shift);
   Eigen::VectorXcd x(A.rows());
   for (Index i = 0; i < x.size(); ++i) x(i) = 1 + 0.1 * static_cast<double>(i * i % 7);
   Complex found;

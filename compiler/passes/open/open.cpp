@@ -18,8 +18,8 @@ struct Opening {
   ParameterValues values;
   std::span<const ToOpen> parameters;
   Graph to = {};
-  std::vector<int> signal = {};                      ///< of each signal in `from`
-  std::vector<std::vector<OpenedPorts>> ports = {};  ///< per node
+  std::vector<int> signal = {};                         ///< of each signal in `from`
+  std::vector<std::vector<ParameterPorts>> ports = {};  ///< per node
   std::vector<Mistake> mistakes = {};
   std::vector<Note> notes = {};
   std::vector<ByDifferences> by_differences = {};
@@ -87,7 +87,7 @@ struct Opening {
     ports.back() = opened_ports(*node.block, values, wanted, differences);
     for (const int p : wanted)
       if (std::none_of(ports.back().begin(), ports.back().end(),
-                       [&](const OpenedPorts& o) { return o.parameter == p; }))
+                       [&](const ParameterPorts& o) { return o.parameter == p; }))
         differences ? check_difference(node, p) : refuse(node, p);
       else if (moves_points_unsaid(*node.block, values, p))
         refuse_motion(node, p);
@@ -140,7 +140,7 @@ struct Opening {
                 inputs = static_cast<int>(face.inputs.size()) - more,
                 outputs = static_cast<int>(face.outputs.size()) - more;
       for (int p = 0; p < more; ++p) {
-        const OpenedPorts& port = ports[at(n)][at(p)];
+        const ParameterPorts& port = ports[at(n)][at(p)];
         const int w = terms.pair(port.parameter, port.size, to.nodes[at(n)].name);
         to.outputs.back().terms = {{.signal = port_signal(n, Signal::Role::output, outputs + p)}};
         to.equations.push_back(

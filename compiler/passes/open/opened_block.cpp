@@ -12,9 +12,9 @@ using Eigen::Index;
 
 class OpenedBlock : public Block {
  public:
-  OpenedBlock(BlockPtr block, const std::vector<OpenedPorts>& ports, bool differences)
+  OpenedBlock(BlockPtr block, const std::vector<ParameterPorts>& ports, bool differences)
       : block_(std::move(block)), face_(block_->interface()), differences_(differences) {
-    for (const OpenedPorts& p : ports) {
+    for (const ParameterPorts& p : ports) {
       face_.inputs.push_back({fmt::format("w{}", p.parameter), p.size});
       face_.outputs.push_back({fmt::format("z{}", p.parameter), p.size});
       parameters_.push_back(p.parameter);
@@ -83,14 +83,14 @@ class OpenedBlock : public Block {
 
 }  // namespace
 
-BlockPtr opened_block(BlockPtr block, const std::vector<OpenedPorts>& ports, bool differences) {
+BlockPtr opened_block(BlockPtr block, const std::vector<ParameterPorts>& ports, bool differences) {
   return std::make_shared<OpenedBlock>(std::move(block), ports, differences);
 }
 
-std::vector<OpenedPorts> opened_ports(const Block& block, ParameterValues values,
-                                      std::span<const int> parameters, bool differences) {
+std::vector<ParameterPorts> opened_ports(const Block& block, ParameterValues values,
+                                         std::span<const int> parameters, bool differences) {
   const auto opened = opened_to_first_order(block, values, parameters, differences);
-  std::vector<OpenedPorts> ports;
+  std::vector<ParameterPorts> ports;
   for (const int p : parameters)
     if (const auto n =
             opened ? std::count(opened->parameter.begin(), opened->parameter.end(), p) : 0;
