@@ -118,6 +118,22 @@ Sketch draw(Rng& rng, bool flexible) {
   return s;
 }
 
+void draw_momenta(Rng& rng, Sketch& s, double size) {
+  for (std::size_t i = 0; i < s.bodies.size(); ++i) {
+    if (i > 0 && rng.chance(0.5)) continue;
+    Body& b = s.bodies[i];
+    const int point = rng.below(static_cast<int>(b.points.size()) + 1) - 1;
+    const double h = (rng.chance(0.5) ? 1 : -1) * rng.between(0.2, 1) * size;
+    b.momenta.push_back({point, h, vector(rng, 1)});
+  }
+}
+
+Sketch reversed(Sketch s) {
+  for (Body& b : s.bodies)
+    for (Momentum& m : b.momenta) m.h = -m.h;
+  return s;
+}
+
 Diagram diagram(const Sketch& s) {
   Diagram d{"half ties"};
   const auto U = d.input("U", 6);
@@ -156,16 +172,73 @@ Diagram diagram(const Sketch& s) {
   }
   for (std::size_t i = 0; i < held.size(); ++i)
     if (!held[i]) release(handles[i]);
+  for (std::size_t i = 0; i < s.bodies.size(); ++i)
+    for (const Momentum& m : s.bodies[i].momenta)
+      titop::momentum(port(static_cast<int>(i), m.point), m.h, m.axis);
   port(s.load, s.load_point).force += U;
   d.output("rate", 6) = port(s.seen, s.seen_point).rate;
   return d;
 }
 
-Oracle oracle(const Sketch& s) {
+namespace {
+
+/// First row of each body's coordinates: motion of its parent point, modes; and their number.
+std::vector<Index> first_rows(const Sketch& s) {
   std::vector<Index> first{0};
   for (const Body& b : s.bodies) first.push_back(first.back() + 6 + b.modes());
+  return first;
+}
+
+MatrixXd motion(const Sketch& s, const std::vector<Index>& first, int i, int point) {
+  const Index f = first[static_cast<std::size_t>(i)];
+  MatrixXd X = MatrixXd::Zero(6, first.back());
+  X.block(0, f, 6, 6).setIdentity();
+  if (point < 0) return X;
+  const titop::ModalChild& c = body(s, i).points[static_cast<std::size_t>(point)];
+  for (Index k = 0; k < 3; ++k)  // v_C = v_P + w x PC
+    X.block(0, f + 3 + k, 3, 1) = Vector3d(Vector3d::Unit(k)).cross(c.PC);
+  X.block(0, f + 6, 6, body(s, i).modes()) = c.Phi_C;
+  return X;
+}
+
+/// The torques h a x omega on the bodies, on the left side of the equations.
+MatrixXd gyroscopic(const Sketch& s, const std::vector<Index>& first) {
+  MatrixXd G = MatrixXd::Zero(first.back(), first.back());
+  for (std::size_t i = 0; i < s.bodies.size(); ++i)
+    for (const Momentum& m : s.bodies[i].momenta) {
+      const MatrixXd omega = motion(s, first, static_cast<int>(i), m.point).bottomRows(3);
+      const Vector3d h = m.h * m.axis.normalized();
+      for (Index k = 0; k < G.cols(); ++k)
+        G.col(k) -= omega.transpose() * h.cross(Vector3d(omega.col(k)));
+    }
+  return G;
+}
+
+/// One row per direction that is tied.
+MatrixXd constraints(const Sketch& s, const std::vector<Index>& first) {
+  MatrixXd J(0, first.back());
+  for (const HalfTie& t : s.ties) {
+    MatrixXd X = motion(s, first, t.target, t.target_point);
+    if (t.source >= 0) {
+      const MatrixXd Y = motion(s, first, t.source, t.source_point);
+      X.topRows(3) -= turn(s, t) * Y.topRows(3);
+      X.bottomRows(3) -= turn(s, t) * Y.bottomRows(3);
+    }
+    for (int i = 0; i < 6; ++i) {
+      if (!t.ties(i)) continue;
+      J.conservativeResize(J.rows() + 1, J.cols());
+      J.bottomRows(1) = X.row(i);
+    }
+  }
+  return J;
+}
+
+}  // namespace
+
+Oracle oracle(const Sketch& s) {
+  const std::vector<Index> first = first_rows(s);
   const Index n = first.back();
-  MatrixXd M = MatrixXd::Zero(n, n), K = M, J(0, n);
+  MatrixXd M = MatrixXd::Zero(n, n), K = M;
   for (std::size_t i = 0; i < s.bodies.size(); ++i) {
     const Body& b = s.bodies[i];
     const Index f = first[i], modes = b.modes();
@@ -175,38 +248,16 @@ Oracle oracle(const Sketch& s) {
     M.block(f + 6, f + 6, modes, modes).setIdentity();
     K.block(f + 6, f + 6, modes, modes) = b.omega.cwiseAbs2().asDiagonal();
   }
-  const auto motion = [&](int i, int point) {
-    const Index f = first[static_cast<std::size_t>(i)];
-    MatrixXd X = MatrixXd::Zero(6, n);
-    X.block(0, f, 6, 6).setIdentity();
-    if (point < 0) return X;
-    const titop::ModalChild& c = body(s, i).points[static_cast<std::size_t>(point)];
-    for (Index k = 0; k < 3; ++k)  // v_C = v_P + w x PC
-      X.block(0, f + 3 + k, 3, 1) = Vector3d(Vector3d::Unit(k)).cross(c.PC);
-    X.block(0, f + 6, 6, body(s, i).modes()) = c.Phi_C;
-    return X;
-  };
-  for (const HalfTie& t : s.ties) {
-    MatrixXd X = motion(t.target, t.target_point);
-    if (t.source >= 0) {
-      const MatrixXd Y = motion(t.source, t.source_point);
-      X.topRows(3) -= turn(s, t) * Y.topRows(3);
-      X.bottomRows(3) -= turn(s, t) * Y.bottomRows(3);
-    }
-    for (int i = 0; i < 6; ++i) {
-      if (!t.ties(i)) continue;
-      J.conservativeResize(J.rows() + 1, n);
-      J.bottomRows(1) = X.row(i);
-    }
-  }
-  const Eigen::JacobiSVD<MatrixXd> svd(J, Eigen::ComputeFullV);
+  const MatrixXd G = gyroscopic(s, first);
+  const Eigen::JacobiSVD<MatrixXd> svd(constraints(s, first), Eigen::ComputeFullV);
   const VectorXd& sigma = svd.singularValues();
   const Index rank = (sigma.array() > 1e-9 * sigma(0)).count();
   const MatrixXd Z = svd.matrixV().rightCols(n - rank);
   return {.M = Z.transpose() * M * Z,
+          .G = Z.transpose() * G * Z,
           .K = Z.transpose() * K * Z,
-          .B = Z.transpose() * motion(s.load, s.load_point).transpose(),
-          .C = motion(s.seen, s.seen_point) * Z,
+          .B = Z.transpose() * motion(s, first, s.load, s.load_point).transpose(),
+          .C = motion(s, first, s.seen, s.seen_point) * Z,
           .gap = sigma(rank - 1) / sigma(0)};
 }
 

@@ -24,6 +24,13 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 using titop_test::Rng;
 
+/// Angular momentum of a body at a point, about an axis in the body's frame. Point -1: the parent.
+struct Momentum {
+  int point = -1;
+  double h = 0;
+  Vector3d axis = Vector3d::UnitZ();
+};
+
 /// At its place in the world: components of its frame to those of the world, parent point.
 struct Body {
   Matrix3d turn = Matrix3d::Identity();
@@ -35,6 +42,7 @@ struct Body {
   VectorXd omega = {};
   MatrixXd L_P = {};
   std::vector<titop::ModalChild> points = {};
+  std::vector<Momentum> momenta = {};
 
   Index modes() const { return omega.size(); }
 };
@@ -64,16 +72,20 @@ inline Matrix3d turn(const Sketch& s, const HalfTie& t) {
 
 /// A tree of two to five bodies, closed once or twice; ties of any directions at any place.
 Sketch draw(Rng& rng, bool flexible);
+/// A momentum of up to `size` at the parent or at a point of every other body, and of the first.
+void draw_momenta(Rng& rng, Sketch& sketch, double size);
+/// The same with all momenta reversed.
+Sketch reversed(Sketch sketch);
 /// Output: the rate of a point, six; input: a wrench on another.
 titop::Diagram diagram(const Sketch& sketch);
 
 /// All motions that the ties allow, by an orthonormal basis.
 struct Oracle {
-  MatrixXd M, K, B, C;
+  MatrixXd M, G, K, B, C;
   double gap = 1;  ///< smallest singular value of the ties that counts, over the largest
 
   MatrixXcd rate(std::complex<double> s) const {
-    const MatrixXcd Z = s * s * M + K;
+    const MatrixXcd Z = s * s * M + s * G + K;
     return s * (C * Z.partialPivLu().solve(MatrixXcd(B.cast<std::complex<double>>())));
   }
 };
