@@ -9,70 +9,18 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
-#include <string>
 #include <titop/titop.hpp>
 
 #include "by_hand/by_hand.hpp"
+#include "scenes/solar_array_drive.hpp"
 
 using namespace titop;
+using namespace scenes::solar_array_drive;
 
 namespace {
 
-const Vector3d hub_inertia{200, 180, 220}, array_at{0, 0.8, 0};
-constexpr double hub_mass = 400;                                         // [kg]
-constexpr double panel_mass = 8, panel_width = 1.6, panel_length = 1.2;  // [kg], [m]: along y, x
-constexpr double panel_k = 1500, panel_c = 1.5;  // hinges of the panels, [N m/rad], [N m s/rad]
-const Vector3d panel_centre{0.15, panel_width / 2, 0};  // off the drive's axis [m]
-constexpr double detent_k = 0.8, detent_c = 2e-4;       // of the motor, [N m/rad], [N m s/rad]
-constexpr double step = 1.8 * std::numbers::pi / 180;   // of the motor [rad]
-constexpr int kPanels = 3;
-
-/// A plate in the x-y plane about its centre.
-Vector3d panel_inertia() {
-  const double x = panel_length * panel_length / 12, y = panel_width * panel_width / 12;
-  return panel_mass * Vector3d(y, x, x + y);
-}
-
-struct Design {
-  double tilt = 0, gear = 100, motor_inertia = 2e-5;  // [rad], N [-], J_m [kg m^2]
-  ParameterList list() const { return {{"tilt", tilt}, {"N", gear}, {"J_m", motor_inertia}}; }
-};
-
-/// Turned about y by the tilt; the panels bend about their hinges along x.
-Diagram satellite() {
-  Diagram d{"satellite"};
-  const Design nominal;
-  const Param tilt = d.param("tilt", nominal.tilt), N = d.param("N", nominal.gear),
-              J_m = d.param("J_m", nominal.motor_inertia);
-  auto command = d.input("command");  // angle of the motor [rad]
-  auto hub = d.add("hub", RigidBody{.mass = hub_mass,
-                                    .inertia = hub_inertia.asDiagonal(),
-                                    .children = {{"array", array_at}}});
-  hub.parent.force = 0;
-  const RigidBody panel{.mass = panel_mass,
-                        .inertia = panel_inertia().asDiagonal(),
-                        .PA = panel_centre,
-                        .children = {{"next", {0, panel_width, 0}}}};
-  auto inner = d.add("panel1", panel);
-  auto drive =
-      hinge(d, "drive", inner, hub.child("array"), Rotation::about({0, 1, 0}, tilt), {0, 1, 0});
-  // Of the motor, which turns with the hub and N times the drive: its inertia and its detent.
-  const auto inertia = J_m * (hub.parent.accel.angular.along({0, 1, 0}) + N * drive.accel);
-  const auto detent = N * (detent_c * drive.rate + detent_k * drive.angle) - detent_k * command;
-  drive.torque = N * (inertia + detent);
-  hub.parent.force.angular.along({0, 1, 0}) += inertia;
-  for (int i = 2; i <= kPanels; ++i) {
-    auto outer = d.add("panel" + std::to_string(i), panel);
-    auto joint = hinge(d, "hinge" + std::to_string(i), outer, inner.child("next"), {}, {1, 0, 0});
-    joint.torque = panel_k * joint.angle + panel_c * joint.rate;
-    inner = outer;
-  }
-  d.output("turn", 3) = hub.parent.accel.angular;
-  return d;
-}
-
 /// Coordinates: hub 0 to 5, drive 6, hinges 7 and 8.
-by_hand::Structure satellite_by_hand(const Design& design) {
+by_hand::Structure satellite_by_hand(const ArrayDrive& design) {
   constexpr by_hand::Index n = 9, drive = 6;
   const double N = design.gear;
   by_hand::Structure a = by_hand::empty(n, 1, 3);
@@ -102,7 +50,7 @@ by_hand::Structure satellite_by_hand(const Design& design) {
   return a;
 }
 
-double error_by_hand(const System& system, const Design& design) {
+double error_by_hand(const System& system, const ArrayDrive& design) {
   std::vector<by_hand::MatrixXcd> ours, right;
   for (const by_hand::Complex s : by_hand::ray(0.01, 100, 12)) {
     ours.push_back(system.transfer(s));
@@ -126,14 +74,14 @@ int main() {
   for (int n = 1; n <= 4; ++n) std::printf(" %9d", n);
   double off = 0;
   for (const double tilt : {0.0, 0.6, 1.2}) {
-    const Design design{.tilt = tilt};
+    const ArrayDrive design{.tilt = tilt};
     const System system = flat.update(design.list());
     std::printf("\n%10.1f", tilt);
     for (int n = 1; n <= 4; ++n)
       std::printf(" %9.4g", 1e6 * pointing(system, 2 * std::numbers::pi * 1.6, n));
     off = std::max(off, error_by_hand(system, design));
   }
-  const Design other{.tilt = 0.6, .gear = 80, .motor_inertia = 3e-5};
+  const ArrayDrive other{.tilt = 0.6, .gear = 80, .motor_inertia = 3e-5};
   off = std::max(off, error_by_hand(flat.update(other.list()), other));
   std::printf("\n");
   return by_hand::agrees("transfers, also at another N and J_m", off, 1e-9) ? 0 : 1;

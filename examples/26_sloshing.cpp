@@ -8,42 +8,12 @@
 #include <titop/titop.hpp>
 
 #include "by_hand/by_hand.hpp"
+#include "scenes/sloshing.hpp"
 
 using namespace titop;
+using namespace scenes::sloshing;
 
 namespace {
-
-const Vector3d hub_inertia{400, 420, 300}, liquid_at{0.1, 0, -0.4};  // centre of the liquid at rest
-constexpr double hub_mass = 500, m = 60, g = 0.05, l = 0.3;          // [kg], [m/s^2], [m]
-constexpr double k = m * g / l, xi = 0.005;                          // [N/m]
-const double c = 2 * xi * std::sqrt(k * m);                          // [N s/m]
-
-/// A pendulum that hangs from `site`, a length l ahead of the liquid.
-void pendulum(Diagram& d, const DualPort<6>& site) {
-  auto bob = d.add("bob", RigidBody{.mass = m, .inertia = Matrix3d::Zero(), .PA = {0, 0, -l}});
-  auto pivot = joint(d, "pivot", bob, site, {}, {about({1, 0, 0}, "x"), about({0, 1, 0}, "y")});
-  for (const char* axis : {"x", "y"})
-    pivot.axis(axis).force =
-        k * l * l * pivot.axis(axis).position + c * l * l * pivot.axis(axis).rate;
-}
-
-enum class Model { springs, pendulum };
-
-Diagram satellite(Model model) {
-  Diagram d{"satellite"};
-  auto U = d.input("U", 6);
-  auto hub = d.add("hub", RigidBody{.mass = hub_mass,
-                                    .inertia = hub_inertia.asDiagonal(),
-                                    .children = {{"liquid", liquid_at},
-                                                 {"pivot", liquid_at + Vector3d(0, 0, l)}}});
-  hub.parent.force = -U;
-  if (model == Model::springs)
-    slosh(d, "liquid", hub.child("liquid"), {.mass = m, .stiffness = k, .damping = c});
-  else
-    pendulum(d, hub.child("pivot"));
-  d.output("accel", 6) = hub.parent.accel;
-  return d;
-}
 
 /// Coordinates: hub 0 to 5, liquid against the tank along x and y 6 and 7.
 by_hand::Structure satellite_by_hand() {
@@ -76,7 +46,7 @@ int main() {
   std::printf("liquid in a tank at rest: %.4f rad/s\n", std::sqrt(g / l));
   bool ok = true;
   for (const auto& [name, model] :
-       {std::pair("springs", Model::springs), {"pendulum", Model::pendulum}}) {
+       {std::pair("springs", Liquid::springs), {"pendulum", Liquid::pendulum}}) {
     const System system = compile(satellite(model));
     std::printf("%s: order %d, with the free satellite", name, system.state_space().order());
     for (const Pole& p : system.poles()) std::printf(" %.4f", p.omega);
