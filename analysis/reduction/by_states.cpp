@@ -25,6 +25,7 @@ class ByStates : public Reduction {
       setting_.band = band_of(setting_.full, setting_.scene, split_.poles, split_.integrals);
     });
     setting_.take_samples(spectrum());
+    refuse_growing(setting_.full, setting_.scene, setting_.band, setting_.samples);
   }
 
   SampledSpectrum spectrum() const override { return {dense_, split_}; }

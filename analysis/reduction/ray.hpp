@@ -67,6 +67,11 @@ Eigen::MatrixXd rounding(const Samples& samples, double nearest);
 /// entries in turn, so that units cancel. Rows and columns of 0 have size 1.
 std::pair<Eigen::VectorXd, Eigen::RowVectorXd> port_sizes(const Eigen::MatrixXd& peak);
 
+/// Throws bad_value for a band from 0 if a pair's peak is its first sample and grows towards 0 like
+/// a pole there: an integral that rounding or a law spreads over several states. One transfer.
+void refuse_growing(const System& system, const Scene& scene, const Band& band,
+                    const Samples& samples);
+
 /// (zeta + j sqrt(1 - zeta^2)) omega.
 std::complex<double> on_ray(const Scene& scene, double omega);
 
