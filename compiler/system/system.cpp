@@ -11,6 +11,7 @@
 #include <titop/compiler/system/system.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/compiler/system/transfer_part.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <titop/graph/support/parallel.hpp>
 
 namespace titop {
@@ -97,9 +98,13 @@ Descriptor System::descriptor() const {
 std::vector<Pole> System::poles() const {
   const StateSpace& model = state_space();
   const bool whole = model.order() > 0 && !order_verdict().judged;
+  // Each state that `minimize` has removed added a product to the entries of A.
+  const double sums = 1.0 + order() - model.order();
   const bool chains = model.order() == order() && !data_->states.trivial();
   std::vector<Pole> list =
-      titop::poles(model, whole ? detail::rounding_of(*data_, model).A : MatrixXd(),
+      titop::poles(model,
+                   whole ? detail::rounding_of(*data_, model).A
+                         : MatrixXd(sums * linalg::kEpsilon * model.A.cwiseAbs()),
                    chains ? detail::potential_energy(*data_) : MatrixXd());
   detail::compare_with_bodies(*data_, list);
   return list;

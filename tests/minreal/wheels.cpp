@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <titop/titop.hpp>
 
+#include "../../examples/scenes/wheels.hpp"
+
 /// Reaction wheels on a free satellite: orders by momentum, counted by hand.
 
 using namespace titop;
@@ -40,7 +42,10 @@ TEST_CASE("wheels: the order is that of the momenta, and no pole lies right of t
     if (wheels.count != 1) {  // one wheel: the boom's two bending modes share a frequency
       CHECK(verdict.order == order);
       CHECK(verdict.highest - verdict.lowest <= 1);
-      for (const Pole& pole : system.poles()) CHECK(pole.s.real() <= 0);
+      for (const Pole& pole : system.poles()) {
+        CHECK(pole.s.real() <= 0);
+        if (pole.omega > 0) CHECK(pole.omega >= 1e-5);  // a wheel's bearing: 1e-6 / 0.08 rad/s
+      }
     }
     CHECK(certify(system).holds());
   });
@@ -69,6 +74,16 @@ TEST_CASE("wheels: poles of the whole model: at 0 what is conserved, none right 
     CHECK(zeros == zeros_by_momentum(wheels));
     CHECK(zeros + others == minimal.order());
   });
+}
+
+TEST_CASE("wheels: three poles of a minimal model at 0, as speeds integrate the torques on a hub") {
+  for (const double h : {0.0, 0.1, 5.0, 40.0}) {
+    CAPTURE(h);
+    const std::vector<Pole> poles = compile(scenes::wheels::satellite(h, true)).poles();
+    CHECK(std::count_if(poles.begin(), poles.end(), [](const Pole& p) { return p.omega == 0; }) ==
+          3);
+    CHECK(poles[3].omega > 0.01);  // the attitude under the law
+  }
 }
 
 TEST_CASE("wheels: the model without their momenta has the transfer of the factors") {
