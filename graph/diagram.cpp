@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <titop/graph/diagram.hpp>
+#include <titop/graph/nodes/gain.hpp>
 
 namespace titop {
 namespace {
@@ -71,6 +73,18 @@ Param Diagram::param(std::string name, double value, std::source_location at) {
          "give it a finite value", at);
   graph_->parameters.push_back({std::move(name), value, at});
   return {static_cast<int>(graph_->parameters.size()) - 1, value, graph_.get()};
+}
+
+Reading Diagram::loop_point(std::string name, const Rhs& signal) {
+  const std::vector<Term>& terms = signal.expr().terms();
+  const bool known = !terms.empty() && terms.front().signal >= 0;
+  const int rows = known ? rows_of(*graph_, terms.front()) : 1;
+  const int node = add_block(
+      std::move(name), [&] { return as_block(LoopPoint{.size = std::max(rows, 1)}); },
+      signal.where());
+  const Gain::Handle handle{graph_.get(), node};
+  handle.in = signal;
+  return handle.out;
 }
 
 void OutputRef::operator=(const Rhs& rhs) const {

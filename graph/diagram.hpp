@@ -78,6 +78,14 @@ class Diagram {
   Param param(std::string name, double value,
               std::source_location at = std::source_location::current());
 
+  /// A loop point: returns `signal`, as a plain signal, for use in its place. It changes nothing
+  /// until `loop(system, "name")` (analysis/control/loop.hpp) cuts the loop there, for S, T, L and
+  /// margins. A node named `name` of the size of the signal. Throws unknown_name for a signal of
+  /// another diagram. O(terms).
+  ///
+  ///     hub.parent.force.angular = -d.loop_point("attitude", law.out);
+  Reading loop_point(std::string name, const Rhs& signal);
+
   const std::string& name() const { return graph_->name; }
   const Graph& graph() const { return *graph_; }
 

@@ -43,6 +43,9 @@ room(analysis/reduction        compiler/system)
 # Above blocks: it makes bodies of parts of a scene.
 room(analysis/damping          blocks/fe blocks compiler/system analysis/reduction)
 room(analysis/norms)
+# Deeper than System: it cuts diagrams at loop points.
+room(analysis/control          compiler/passes compiler/minreal compiler/system analysis/norms
+                               analysis/simulation analysis/reduction)
 # Deeper than System: it opens parameters, and counts occurrences in exact arithmetic.
 room(analysis/lft              compiler/passes compiler/definition compiler/system analysis/norms
                                analysis/reduction)
@@ -70,9 +73,9 @@ internal(compiler/system/system_data.hpp analysis/certify/certify_full.cpp
          analysis/reduction/coordinates.hpp analysis/reduction/reach_of_data.hpp
          analysis/simulation/simulate.cpp emit/cpp/form.cpp)
 # analysis/reduction/ compiles diagrams that it has rewritten, analysis/lft/ opened ones,
-# analysis/damping/ parts of them.
+# analysis/damping/ parts of them, analysis/control/ diagrams cut at loop points.
 internal(compiler/system/compile_graph.hpp analysis/certify/ analysis/reduction/ analysis/lft/
-         analysis/damping/)
+         analysis/damping/ analysis/control/)
 # analysis/certify/ measures differences beside the rounding of the elimination.
 internal(compiler/system/elimination_terms.hpp analysis/certify/)
 

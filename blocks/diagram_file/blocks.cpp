@@ -260,6 +260,15 @@ BlockPtr read_gain(const JsonPlace& p, const ReadValue& value, const FindBody&) 
   return as_block(Gain{.gain = value(p.at("gain")), .size = p.at("size").signal_size()});
 }
 
+void write_loop_point(const Block& b, const WriteValue&, const NameBody&, Json& j) {
+  j["size"] = b.interface().input_size();
+}
+
+BlockPtr read_loop_point(const JsonPlace& p, const ReadValue&, const FindBody&) {
+  p.only({"name", "type", "size"});
+  return as_block(LoopPoint{p.at("size").signal_size()});
+}
+
 void write_matrix_gain(const Block& b, const WriteValue&, const NameBody&, Json& j) {
   j["matrix"] = rows(b.dynamics({})->D);
 }
@@ -346,6 +355,7 @@ constexpr Type kTypes[] = {{"SpringMass", write_spring_mass, read_spring_mass},
                            {"Gain", write_gain, read_gain},
                            {"MatrixGain", write_matrix_gain, read_matrix_gain},
                            {"Sum", write_sum, read_sum},
+                           {"LoopPoint", write_loop_point, read_loop_point},
                            {"Lti", write_lti, read_lti},
                            {"Integrator", write_integrator, read_integrator}};
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <titop/compiler/passes/open/open.hpp>
 #include <titop/compiler/system/system.hpp>
@@ -11,6 +12,12 @@ std::shared_ptr<const SystemData> compile_graph(const Graph& graph, const Option
 
 /// All passes and the certificate from this stage on.
 std::shared_ptr<const SystemData> compile_stage(Stage begin, const Options& options);
+
+/// All passes on the stage that `rewrite` makes of the system's diagram at its present values:
+/// Stage::source, values, motions and dependents, with the system's options. Cost: that of
+/// `compile`.
+std::shared_ptr<const SystemData> compile_rewritten(
+    const System& system, const std::function<Stage(const Stage&)>& rewrite);
 
 /// The system's diagram at its present values with these parameters taken out
 /// (compiler/passes/open/open.hpp): their w are inputs after the diagram's own, their z outputs,

@@ -8,7 +8,8 @@
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/graph/linalg/index.hpp>
 
-/// A system whose parameters are taken out: which of them it refuses, and the passes on the rest.
+/// A system whose diagram is rewritten. Parameters are taken out: which of them it refuses, and the
+/// passes on the rest.
 namespace titop::detail {
 namespace {
 
@@ -61,11 +62,10 @@ void refuse_moving_chains(const Skeleton& k, const std::vector<double>& values,
 
 }  // namespace
 
-std::shared_ptr<const SystemData> compile_opened(const System& system,
-                                                 const std::vector<passes::ToOpen>& parameters) {
+std::shared_ptr<const SystemData> compile_rewritten(
+    const System& system, const std::function<Stage(const Stage&)>& rewrite) {
   const SystemData& d = *system.data_;
   const Skeleton& k = *d.skeleton;
-  refuse_moving_chains(k, d.numbers.parameters, parameters);
   Stage begin;
   begin.source = k.stage.source;
   begin.values = d.numbers.parameters;
@@ -73,7 +73,15 @@ std::shared_ptr<const SystemData> compile_opened(const System& system,
   begin.dependents = k.stage.dependents;
   Options options = k.options;
   options.dump_to.clear();
-  return compile_stage(passes::open_parameters(begin, parameters), options);
+  return compile_stage(rewrite(begin), options);
+}
+
+std::shared_ptr<const SystemData> compile_opened(const System& system,
+                                                 const std::vector<passes::ToOpen>& parameters) {
+  const SystemData& d = *system.data_;
+  refuse_moving_chains(*d.skeleton, d.numbers.parameters, parameters);
+  return compile_rewritten(
+      system, [&](const Stage& stage) { return passes::open_parameters(stage, parameters); });
 }
 
 }  // namespace titop::detail

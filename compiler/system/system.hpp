@@ -1,6 +1,7 @@
 #pragma once
 
 #include <complex>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -28,6 +29,8 @@ struct DenseModel;
 struct SystemData;
 std::shared_ptr<const SystemData> compile_opened(const System&, const std::vector<passes::ToOpen>&);
 Eigen::MatrixXcd in_long_double(const System&, std::complex<double>);
+std::shared_ptr<const SystemData> compile_rewritten(const System&,
+                                                    const std::function<Stage(const Stage&)>&);
 }  // namespace detail
 class Excitation;
 struct Full;
@@ -203,6 +206,8 @@ class System {
   friend std::shared_ptr<const detail::SystemData> detail::compile_opened(
       const System&, const std::vector<passes::ToOpen>&);
   friend Eigen::MatrixXcd detail::in_long_double(const System&, std::complex<double>);
+  friend std::shared_ptr<const detail::SystemData> detail::compile_rewritten(
+      const System&, const std::function<Stage(const Stage&)>&);
 
   std::shared_ptr<const detail::SystemData> data_;
 };

@@ -6,6 +6,8 @@
 namespace titop {
 namespace {
 
+constexpr std::string_view kLoopPoint = "LoopPoint";
+
 /// y = D u with every port plain.
 class Algebraic : public Block {
  public:
@@ -63,6 +65,17 @@ BlockPtr as_block(const MatrixGain& spec) {
                                                {}},
                                      spec.matrix);
 }
+
+BlockPtr as_block(const LoopPoint& spec) {
+  if (spec.size < 1)
+    throw Error(Code::size, fmt::format("a LoopPoint of size {}", spec.size),
+                "give it a size of 1 or more");
+  return std::make_shared<Algebraic>(kLoopPoint,
+                                     Interface{{}, {{"in", spec.size}}, {{"out", spec.size}}, {}},
+                                     Eigen::MatrixXd::Identity(spec.size, spec.size));
+}
+
+bool is_loop_point(const Block& block) { return block.type() == kLoopPoint; }
 
 Port<0, Kind::plain> Sum::Handle::in(int i) const {
   return Port<0, Kind::plain>(

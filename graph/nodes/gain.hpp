@@ -28,6 +28,17 @@ struct MatrixGain {
 };
 BlockPtr as_block(const MatrixGain& spec);
 
+/// out = in: a place at which `loop` (analysis/control/loop.hpp) cuts the diagram; everywhere else
+/// an identity that `lower` makes a coefficient. Diagram::loop_point writes it. `add` throws size
+/// for a size below 1.
+struct LoopPoint {
+  int size = 1;
+  using Handle = Gain::Handle;
+};
+BlockPtr as_block(const LoopPoint& spec);
+/// True for a block made from a LoopPoint.
+bool is_loop_point(const Block& block);
+
 /// out = +-in1 +-in2 ..., one sign per input: Sum{.signs = "+-"}. Ports in1, in2, ... `add` throws
 /// bad_value for other signs, size for none of them and for a size below 1.
 struct Sum {

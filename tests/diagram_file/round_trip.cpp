@@ -72,7 +72,7 @@ Diagram everything() {
                                     .momentum = 9 * k});
   mount(rotor, hub.child("W"), Rotation::about({1, 0, 0}, 0.2));
   rotor.torque = 0.1 * rotor.speed;
-  K.in = gain.out;
+  K.in = d.loop_point("cut", gain.out);
   gain.in = h.angle;
   sum.in(1) = h.rate;
   sum.in(2) = matrix.out;
