@@ -3,6 +3,8 @@
 /// titop: from a block diagram of flexible bodies to one minimal state-space model.
 #include <titop/analysis/certify/certify_full.hpp>
 #include <titop/analysis/control/loop.hpp>
+#include <titop/analysis/control/margins.hpp>
+#include <titop/analysis/control/zeros.hpp>
 #include <titop/analysis/damping/damping_of_assembly.hpp>
 #include <titop/analysis/damping/structural_damping.hpp>
 #include <titop/analysis/lft/derivatives.hpp>

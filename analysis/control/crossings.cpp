@@ -1,0 +1,135 @@
+#include <algorithm>
+#include <boost/math/tools/toms748_solve.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <titop/analysis/control/crossings.hpp>
+#include <titop/analysis/control/zeros.hpp>
+#include <titop/graph/linalg/rounding.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Function = std::function<double(double)>;
+
+/// A gain margin of more is not looked for in the endless turns of a delay.
+constexpr double kMostGain = 1e3;
+
+/// Frequencies are bracketed to half the digits first, then to all but two.
+constexpr int kBits = 50;
+
+void add(std::vector<Complex>& list, const Eigen::VectorXcd& more) {
+  list.insert(list.end(), more.begin(), more.end());
+}
+
+/// L(s) L(-s) - 1, with the states of L and of its mirror image.
+StateSpace unit_circle(const StateSpace& L) {
+  const Index n = L.A.rows();
+  StateSpace f;
+  f.A = MatrixXd::Zero(2 * n, 2 * n), f.B = MatrixXd(2 * n, 1), f.C = MatrixXd(1, 2 * n);
+  f.A << L.A, MatrixXd::Zero(n, n), L.B * L.C, -L.A;
+  f.B << L.B, L.B * L.D;
+  f.C << L.D * L.C, -L.C;
+  f.D = L.D * L.D - MatrixXd::Ones(1, 1);
+  return f;
+}
+
+/// L(s) - L(-s): 2 j Im L on the axis.
+StateSpace real_axis(const StateSpace& L) {
+  const Index n = L.A.rows();
+  StateSpace f;
+  f.A = MatrixXd::Zero(2 * n, 2 * n), f.B = MatrixXd(2 * n, 1), f.C = MatrixXd(1, 2 * n);
+  f.A.topLeftCorner(n, n) = L.A, f.A.bottomRightCorner(n, n) = -L.A;
+  f.B << L.B, L.B;
+  f.C << L.C, L.C;
+  f.D = MatrixXd::Zero(1, 1);
+  return f;
+}
+
+/// Roots of f between neighbours of the list by its changes of sign; jumps (poles on the axis) are
+/// none. A candidate at which f is 0 to half the digits, without a change of sign near it, is a
+/// root, too: there the curve touches.
+std::vector<double> roots_of(const Function& f, const std::vector<double>& list,
+                             const std::vector<Complex>& candidates) {
+  std::vector<double> roots;
+  double last = list.front(), at_last = f(last);
+  for (const double omega : list) {
+    const double value = f(omega);
+    if (value == 0) roots.push_back(omega);
+    if (value * at_last < 0) {
+      std::uintmax_t steps = 200;
+      const auto [a, b] = boost::math::tools::toms748_solve(
+          f, last, omega, at_last, value, boost::math::tools::eps_tolerance<double>(kBits), steps);
+      const double root = std::abs(f(a)) < std::abs(f(b)) ? a : b;
+      if (std::abs(f(root)) < 1e-3) roots.push_back(root);
+    }
+    last = omega, at_last = value;
+  }
+  for (const Complex& s : candidates) {
+    const double omega = std::abs(s.imag());
+    const bool found = std::any_of(roots.begin(), roots.end(),
+                                   [&](double r) { return std::abs(r - omega) <= 1e-6 * omega; });
+    if (omega > 0 && !found && std::abs(f(omega)) <= linalg::kHalfDigits) roots.push_back(omega);
+  }
+  std::sort(roots.begin(), roots.end());
+  return roots;
+}
+
+std::vector<Complex> roots_of_model(const StateSpace& L) {
+  std::vector<Complex> roots = all_poles(L);
+  add(roots, transmission_zeros(L));
+  return roots;
+}
+
+/// The frequency beyond which |L| < 1 / kMostGain, after all poles and zeros; at most 2^40 of them
+/// (a direct term).
+double end_of(const LoopResponse& response, const std::vector<Complex>& roots) {
+  double end = 1;
+  for (const Complex& s : roots) end = std::max(end, 10 * std::abs(s));
+  for (int k = 0; k < 20 && std::abs(response.at(end)) * kMostGain > 1; ++k) end *= 2;
+  return end;
+}
+
+}  // namespace
+
+std::vector<LoopCrossing> unit_crossings(const StateSpace& L, const LoopResponse& response) {
+  const Eigen::VectorXcd zeros = transmission_zeros(unit_circle(L));
+  std::vector<Complex> candidates(zeros.begin(), zeros.end()), roots = roots_of_model(L);
+  roots.insert(roots.end(), candidates.begin(), candidates.end());
+  const Function f = [&](double omega) {
+    const double size = std::abs(response.at(omega));
+    return std::isfinite(size) ? (size * size - 1) / (size * size + 1) : 1;
+  };
+  std::vector<LoopCrossing> result;
+  for (const double omega : roots_of(f, structured(roots, 0, 0), candidates))
+    result.push_back({omega, response.at(omega)});
+  return result;
+}
+
+std::vector<LoopCrossing> negative_crossings(const StateSpace& L, const LoopResponse& response) {
+  const bool delayed = response.delay() > 0;
+  std::vector<Complex> candidates, roots = roots_of_model(L);
+  if (!delayed) add(candidates, transmission_zeros(real_axis(L)));
+  roots.insert(roots.end(), candidates.begin(), candidates.end());
+  // The sine of the angle: no size, and no pole.
+  const Function f = [&](double omega) {
+    const Complex value = response.at(omega);
+    return std::isfinite(std::abs(value)) && value != 0.0 ? value.imag() / std::abs(value) : 0.5;
+  };
+  const double end = delayed ? end_of(response, roots) : 0;
+  std::vector<LoopCrossing> result;
+  const auto look = [&](double omega) {
+    const Complex value = response.at(omega);
+    if (std::isfinite(std::abs(value)) && value.real() < 0) result.push_back({omega, value});
+  };
+  look(0);
+  for (const double omega : roots_of(f, structured(roots, response.delay(), end), candidates))
+    look(omega);
+  if (!delayed) look(std::numeric_limits<double>::infinity());
+  return result;
+}
+
+}  // namespace titop::detail

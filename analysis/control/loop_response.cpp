@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <titop/analysis/control/loop_response.hpp>
+#include <titop/analysis/norms/scaled.hpp>
+#include <titop/compiler/minreal/poles.hpp>
+
+namespace titop::detail {
+
+LoopResponse::LoopResponse(const StateSpace& L, double delay)
+    : C_(L.C), D_(L.D), solver_(L.A, L.B), delay_(delay) {}
+
+Eigen::MatrixXcd LoopResponse::at(std::complex<double> s) const {
+  const linalg::Solution x = solver_.solve(s);
+  if (!(x.rcond > 0) || !x.z.allFinite())
+    return Eigen::MatrixXcd::Constant(D_.rows(), D_.cols(),
+                                      std::numeric_limits<double>::infinity());
+  return (C_ * x.z + D_) * std::exp(-s * delay_);
+}
+
+std::complex<double> LoopResponse::at(double omega) const {
+  return std::isinf(omega) ? std::complex<double>(D_(0, 0))
+                           : at(std::complex<double>(0, omega))(0, 0);
+}
+
+std::vector<std::complex<double>> all_poles(const StateSpace& model) {
+  StateSpace m = model;
+  if (m.states.size() != static_cast<std::size_t>(m.order())) {
+    m.states.assign(static_cast<std::size_t>(m.order()), "x");
+    m.rates.clear();
+  }
+  std::vector<std::complex<double>> all;
+  for (const Pole& p : poles(m)) {
+    all.push_back(p.s);
+    if (p.pair) all.push_back(std::conj(p.s));
+  }
+  return all;
+}
+
+std::vector<SidedPole> sided_poles(const StateSpace& model) {
+  const double rounding = rounding_of_poles(scaled(model));
+  std::vector<SidedPole> result;
+  for (const std::complex<double>& s : all_poles(model))
+    result.push_back({s, std::abs(s.real()) <= rounding ? Side::axis
+                         : s.real() > 0                 ? Side::right
+                                                        : Side::left});
+  return result;
+}
+
+std::vector<double> structured(const std::vector<std::complex<double>>& roots, double delay,
+                               double end) {
+  std::vector<double> list;
+  const auto add = [&](double omega) {
+    if (omega > 0 && std::isfinite(omega)) list.push_back(omega);
+  };
+  for (const std::complex<double>& s : roots) add(std::abs(s)), add(std::abs(s.imag()));
+  if (list.empty()) list.push_back(1);
+  std::sort(list.begin(), list.end());
+  list.push_back(list.back() * 10), list.push_back(list.back() * 10);
+  list.push_back(list.front() / 10), list.push_back(list.front() / 100);
+  if (const double step = std::numbers::pi / 2 / delay; delay > 0)
+    for (double k = 1; k * step <= end; ++k) list.push_back(k * step);
+  std::sort(list.begin(), list.end());
+  const std::size_t count = list.size();
+  for (std::size_t i = 0; i + 1 < count; ++i) add(std::sqrt(list[i]) * std::sqrt(list[i + 1]));
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
+}  // namespace titop::detail

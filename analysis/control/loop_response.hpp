@@ -1,0 +1,46 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <complex>
+#include <titop/graph/linalg/shifted.hpp>
+#include <titop/graph/state_space.hpp>
+#include <vector>
+
+/// L along the imaginary axis, and the frequencies that structure it. For the folder's own files.
+namespace titop::detail {
+
+/// L(s) e^(-delay s) of a model at many s.
+class LoopResponse {
+ public:
+  LoopResponse(const StateSpace& L, double delay);
+
+  /// n x n; not finite at a pole.
+  Eigen::MatrixXcd at(std::complex<double> s) const;
+  /// The only entry at s = j omega, of one loop; infinite omega: the direct term.
+  std::complex<double> at(double omega) const;
+  double delay() const { return delay_; }
+
+ private:
+  Eigen::MatrixXd C_, D_;
+  linalg::ShiftedSolver solver_;
+  double delay_;
+};
+
+/// Poles of a model [rad/s], each of a pair: those at 0 exactly (compiler/minreal/poles.hpp).
+std::vector<std::complex<double>> all_poles(const StateSpace& model);
+
+/// Right of the axis, on it (up to the rounding of the model's poles), or left of it.
+enum class Side { left, axis, right };
+struct SidedPole {
+  std::complex<double> s;
+  Side side = Side::left;
+};
+std::vector<SidedPole> sided_poles(const StateSpace& model);
+
+/// Frequencies [rad/s], ascending and different, above 0, at which or between which |L| and arg L
+/// change: |s| and Im s of the roots given, the geometric means between neighbours, a decade beyond
+/// both ends, and with a delay steps of a quarter turn up to `end`.
+std::vector<double> structured(const std::vector<std::complex<double>>& roots, double delay,
+                               double end);
+
+}  // namespace titop::detail

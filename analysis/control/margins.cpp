@@ -1,0 +1,163 @@
+#include <boost/math/tools/minima.hpp>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <titop/analysis/control/crossings.hpp>
+#include <titop/analysis/control/feedback.hpp>
+#include <titop/analysis/control/margins.hpp>
+#include <titop/analysis/control/nyquist.hpp>
+#include <titop/analysis/control/zeros.hpp>
+#include <titop/analysis/norms/hinf.hpp>
+#include <titop/graph/error.hpp>
+#include <titop/graph/linalg/index.hpp>
+
+namespace titop {
+namespace {
+
+using detail::LoopResponse;
+using Eigen::MatrixXd;
+using std::numbers::pi;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Least values, and where they are, of distances along the axis.
+struct Distances {
+  MarginAt nearest;  ///< of |1 + L|
+  DiskMargin disk;   ///< alpha = 2 |1 + L| / |1 - L|
+};
+
+/// By norms: no delay.
+Distances by_norms(const StateSpace& L) {
+  StateSpace S = detail::sensitivity(L);
+  const HinfNorm nearest = norm_hinf(S);
+  S.C *= 2;
+  S.D = 2 * S.D - MatrixXd::Identity(S.D.rows(), S.D.cols());  // S - T
+  const HinfNorm disk = norm_hinf(S);
+  return {{1 / nearest.value, nearest.omega}, {2 / disk.value, disk.omega}};
+}
+
+/// The least f(omega) over the list and between its neighbours.
+template <class F>
+MarginAt least(const F& f, const std::vector<double>& list) {
+  MarginAt best{kInfinity, 0};
+  std::vector<double> values;
+  for (const double omega : list) values.push_back(f(omega));
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    if (values[i] < best.value) best = {values[i], list[i]};
+    if (i == 0 || i + 1 == list.size() || values[i] > values[i - 1] || values[i] > values[i + 1])
+      continue;
+    const auto [omega, value] =
+        boost::math::tools::brent_find_minima(f, list[i - 1], list[i + 1], 40);
+    if (value < best.value) best = {value, omega};
+  }
+  return best;
+}
+
+/// On a grid: of one loop with a delay.
+Distances on_grid(const StateSpace& L, const LoopResponse& response,
+                  const std::vector<LoopCrossing>& unit) {
+  std::vector<std::complex<double>> roots = detail::all_poles(L);
+  const Eigen::VectorXcd zeros = transmission_zeros(L);
+  roots.insert(roots.end(), zeros.begin(), zeros.end());
+  double end = 1;
+  for (const auto& s : roots) end = std::max(end, 10 * std::abs(s));
+  for (const LoopCrossing& c : unit)
+    roots.emplace_back(0, c.omega), end = std::max(end, 10 * c.omega);
+  std::vector<double> list = detail::structured(roots, 8 * response.delay(), end);
+  const auto distance = [&](double w) { return std::abs(1.0 + response.at(w)); };
+  const MarginAt nearest =
+      least([&](double w) { return std::isfinite(distance(w)) ? distance(w) : kInfinity; }, list);
+  const MarginAt disk = least(
+      [&](double w) {
+        return std::isfinite(distance(w)) ? 2 * distance(w) / std::abs(1.0 - response.at(w)) : 2;
+      },
+      list);
+  return {nearest.value < 1 ? nearest : MarginAt{1, kInfinity},
+          disk.value < 2 ? DiskMargin{disk.value, disk.omega} : DiskMargin{2, kInfinity}};
+}
+
+void gain_margins(LoopMargins& m) {
+  m.larger_gain = {kInfinity, 0}, m.smaller_gain = {0, 0};
+  for (const LoopCrossing& c : m.negative) {
+    const double factor = 1 / std::abs(c.L);
+    if (factor >= 1 && factor < m.larger_gain.value) m.larger_gain = {factor, c.omega};
+    if (factor <= 1 && factor > m.smaller_gain.value) m.smaller_gain = {factor, c.omega};
+  }
+}
+
+void phase_margins(LoopMargins& m) {
+  m.phase = {kInfinity, 0}, m.delay = {kInfinity, 0};
+  for (const LoopCrossing& c : m.unit) {
+    const double ahead = std::arg(-c.L);  // of -1, from -pi to pi
+    if (std::abs(ahead) < m.phase.value) m.phase = {std::abs(ahead), c.omega};
+    const double lag = ahead < 0 ? ahead + 2 * pi : ahead;
+    if (lag / c.omega < m.delay.value) m.delay = {lag / c.omega, c.omega};
+  }
+}
+
+LoopMargins of_one(const StateSpace& L, double delay, bool stable, std::string name) {
+  const LoopResponse response(L, delay);
+  LoopMargins m;
+  m.point = std::move(name);
+  m.unit = detail::unit_crossings(L, response);
+  m.negative = detail::negative_crossings(L, response);
+  if (!stable) return m;
+  gain_margins(m);
+  phase_margins(m);
+  const Distances d = delay > 0 ? on_grid(L, response, m.unit) : by_norms(L);
+  m.nearest = d.nearest, m.disk = d.disk;
+  return m;
+}
+
+void check(const StateSpace& L, double delay) {
+  require_fitting(L, "margins");
+  if (L.D.rows() != L.D.cols() || L.D.rows() == 0)
+    throw Error(Code::size,
+                "margins of a model with " + std::to_string(L.D.cols()) + " inputs and " +
+                    std::to_string(L.D.rows()) + " outputs",
+                "a loop transfer is square: loop(system, \"name\").L");
+  for (const MatrixXd* matrix : {&L.A, &L.B, &L.C, &L.D})
+    if (!matrix->allFinite())
+      throw Error(Code::not_finite, "an entry of the loop transfer is not finite",
+                  "check the source of its matrices");
+  if (!(delay >= 0) || std::isinf(delay) || (delay > 0 && L.D.rows() > 1))
+    throw Error(
+        Code::bad_value,
+        "a delay of " + std::to_string(delay) + " s in " + std::to_string(L.D.rows()) + " loops",
+        "give MarginOptions::delay in seconds, 0 or more, and for one loop only; for "
+        "several put Pade approximations into the diagram");
+  if (L.order() > kMostStatesOfHinf)
+    throw Error(Code::bad_value,
+                "margins of a loop transfer of " + std::to_string(L.order()) + " states",
+                "reduce it to " + std::to_string(kMostStatesOfHinf) +
+                    " states or fewer: compile(diagram, Scene{...})");
+}
+
+std::string point_name(const StateSpace& L, int i) {
+  return linalg::at(i) < L.outputs.size() ? L.outputs[linalg::at(i)] : std::to_string(i + 1);
+}
+
+}  // namespace
+
+Margins margins(const StateSpace& L, const MarginOptions& options) {
+  check(L, options.delay);
+  Margins m;
+  m.nyquist = detail::nyquist_count(L, LoopResponse(L, options.delay));
+  m.stable = m.nyquist.closed_right == 0 && m.nyquist.closed_on_axis == 0 && m.nyquist.agree;
+  const int count = static_cast<int>(L.D.rows());
+  for (int i = 0; i < count; ++i)
+    m.loops.push_back(
+        of_one(count == 1 ? L : detail::alone(L, i), options.delay, m.stable, point_name(L, i)));
+  if (count == 1) {
+    m.disk = m.loops[0].disk, m.nearest = m.loops[0].nearest;
+  } else if (m.stable) {
+    const Distances d = by_norms(L);
+    m.disk = d.disk, m.nearest = d.nearest;
+  }
+  return m;
+}
+
+Margins margins(const ControlLoop& loop, const MarginOptions& options) {
+  return margins(loop.L.state_space(), options);
+}
+
+}  // namespace titop

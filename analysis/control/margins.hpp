@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cmath>
+#include <complex>
+#include <string>
+#include <titop/analysis/control/loop.hpp>
+#include <titop/graph/state_space.hpp>
+#include <vector>
+
+/// Stability margins of a loop transfer L whose closed loop is 1 + L = 0
+/// (analysis/control/loop.hpp).
+namespace titop {
+
+/// A margin and the frequency at which it is reached [rad/s].
+struct MarginAt {
+  double value = 0;
+  double omega = 0;  ///< infinite: at high frequencies, of the direct term
+};
+
+/// A point of L(j omega) on the unit circle, or on the negative real axis.
+struct LoopCrossing {
+  double omega = 0;  ///< [rad/s]
+  std::complex<double> L;
+};
+
+/// The largest disk of gains and phases, the same for all frequencies, that may be multiplied to
+/// every input of the loop, independently of each other, before it becomes unstable: alpha =
+/// 2/||S - T||_inf, gains (1 + delta) / (1 - delta) with |delta| < alpha / 2 [Blight, Dailey,
+/// Gangsaas, Int. J. Control 59 (1994); Seiler, Packard, Gahinet, IEEE Control Syst. 40 (2020)].
+struct DiskMargin {
+  double alpha = 0;  ///< 0 to 2
+  double omega = 0;  ///< where ||S - T|| is reached [rad/s]
+  double least_gain() const { return (2 - alpha) / (2 + alpha); }
+  double largest_gain() const { return (2 + alpha) / (2 - alpha); }  ///< infinite of alpha = 2
+  double phase() const { return 2 * std::atan(alpha / 2); }          ///< [rad], at a gain of 1
+};
+
+/// Margins of one loop, all others closed. Infinite: nothing of this kind makes it unstable. All
+/// are 0 if the closed loop is not stable.
+struct LoopMargins {
+  std::string point;      ///< "attitude(2)"
+  MarginAt larger_gain;   ///< least factor above 1 that brings L to -1; see `decibels`
+  MarginAt smaller_gain;  ///< largest factor below 1 that does; 0: none
+  MarginAt phase;         ///< least turn of L, in either direction, that does [rad]; see `degrees`
+  MarginAt delay;         ///< least additional delay that does [s]
+  MarginAt nearest;       ///< least distance of L(j omega) to -1: 1/||S||_inf
+  DiskMargin disk;
+  std::vector<LoopCrossing> unit;      ///< all crossings of |L| = 1, by frequency
+  std::vector<LoopCrossing> negative;  ///< all crossings of the negative real axis, by frequency
+};
+
+/// Stability of a loop by two counts: closed-loop poles, and the Nyquist curve.
+struct NyquistCount {
+  int open_right = 0;      ///< P: poles of L right of the axis
+  int closed_right = 0;    ///< Z: closed-loop poles right of the axis; with a delay P + N
+  int closed_on_axis = 0;  ///< closed-loop poles on the axis, up to the rounding of their matrix
+  /// N: clockwise turns of det(1 + L(s)) about 0 as s goes up the imaginary axis, right of poles on
+  /// it. Not counted (0) with closed-loop poles on the axis.
+  int encirclements = 0;
+  bool agree = false;  ///< N = Z - P
+};
+
+/// Margins of a loop.
+struct Margins {
+  bool stable = false;  ///< no closed-loop pole right of the axis or on it, and the counts agree
+  NyquistCount nyquist;
+  DiskMargin disk;                 ///< of all loops at once: at most that of each alone
+  MarginAt nearest;                ///< 1/||S||_inf, of all loops at once
+  std::vector<LoopMargins> loops;  ///< of each loop alone, the others closed
+};
+
+/// Options of `margins`.
+struct MarginOptions {
+  /// A delay in the loop [s], exact: L(s) e^(-delay s). One loop only. Margins are then found on a
+  /// grid that follows the delay's phase, and refined.
+  double delay = 0;
+};
+
+/// Margins of a loop by its state-space model L (n x n). Frequencies at which |L| = 1, or at which
+/// L is real, are zeros of L(s) L(-s) - 1 and of L(s) - L(-s) (transmission_zeros), refined on L
+/// itself by bracketing [Alefeld, Potra, Shi 1995], and searched for between all poles and zeros of
+/// L, too, so that rounding of a zero loses none: 1e-12 of a frequency, or 1e-8 where two of them
+/// merge (the curve touches the circle or the axis). Norms by `norm_hinf`.
+///
+/// Modes that the loop does not move, or does not see, are not in L: their stability is that of
+/// System::poles(). A margin holds for changes of this loop alone.
+///
+/// Throws size for L that is not square or does not fit itself, not_finite, ill_posed if 1 + L is
+/// singular at high frequencies, bad_value for a delay that is negative or not finite, or in more
+/// than one loop, and for more than kMostStatesOfHinf states (norm_hinf). O(1000 n^3).
+Margins margins(const StateSpace& L, const MarginOptions& options = {});
+/// Of ControlLoop::L.state_space(): of the minimal L, with the names of the loop points.
+Margins margins(const ControlLoop& loop, const MarginOptions& options = {});
+
+/// A table, with dB and degrees; says so if the loop is not stable.
+std::string to_string(const Margins& margins);
+
+/// 20 log10 of a gain.
+double decibels(double gain);
+/// An angle in degrees.
+double degrees(double radians);
+
+}  // namespace titop

@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <numbers>
+#include <titop/analysis/control/feedback.hpp>
+#include <titop/analysis/control/nyquist.hpp>
+#include <titop/graph/linalg/eigen.hpp>
+
+namespace titop::detail {
+namespace {
+
+using Complex = std::complex<double>;
+using Eigen::MatrixXcd;
+using std::numbers::pi;
+
+constexpr double kMostTurn = 0.5;  ///< [rad] of the determinant in half a step
+constexpr int kHalvings = 40;
+
+/// A piece of the path: s of t from 0 to 1.
+using Path = std::function<Complex(double)>;
+
+class Winding {
+ public:
+  explicit Winding(const LoopResponse& response) : response_(response) {}
+
+  /// The turn of det(1 + L) along the path [rad].
+  double along(const Path& path) const {
+    return turn(path, 0, at(path(0)), 1, at(path(1)), kHalvings);
+  }
+  Complex at(Complex s) const {
+    const MatrixXcd L = response_.at(s);
+    if (!L.allFinite()) return 0;
+    const MatrixXcd F = MatrixXcd::Identity(L.rows(), L.cols()) + L;
+    return F.size() == 1 ? F(0, 0) : Eigen::PartialPivLU<MatrixXcd>(F).determinant();
+  }
+
+ private:
+  double turn(const Path& path, double t0, Complex f0, double t1, Complex f1, int left) const {
+    const double t = (t0 + t1) / 2;
+    const Complex f = at(path(t));
+    const double first = std::arg(f / f0), second = std::arg(f1 / f);
+    if (left == 0 || (std::abs(first) < kMostTurn && std::abs(second) < kMostTurn))
+      return std::isfinite(first + second) ? first + second : 0;
+    return turn(path, t0, f0, t, f, left - 1) + turn(path, t, f, t1, f1, left - 1);
+  }
+
+  const LoopResponse& response_;
+};
+
+/// The poles of L on the axis, upper half, each location once.
+std::vector<double> on_axis(const std::vector<SidedPole>& open) {
+  std::vector<double> list;
+  for (const SidedPole& p : open)
+    if (p.side == Side::axis && p.s.imag() >= 0) list.push_back(p.s.imag());
+  std::sort(list.begin(), list.end());
+  list.erase(
+      std::unique(list.begin(), list.end(), [](double a, double b) { return b - a <= 1e-9 * b; }),
+      list.end());
+  return list;
+}
+
+/// A third of the distance to the next pole elsewhere.
+double radius(double omega, const std::vector<Complex>& poles, const LoopResponse& response) {
+  double nearest = omega > 0 ? omega : HUGE_VAL;
+  for (const Complex& s : poles)
+    if (const double d = std::abs(s - Complex(0, omega)); d > 1e-9 * std::abs(s) && d > 0)
+      nearest = std::min(nearest, d);
+  double r = std::isinf(nearest) ? 1 : nearest / 3;
+  // Closed-loop poles with a delay are not known: none is where |L| is large.
+  for (int k = 0; response.delay() > 0 && k < 60; ++k, r /= 4)
+    if (response.at(Complex(r, omega)).norm() > 10) break;
+  return r;
+}
+
+/// Frequencies between `from` and `to` at which steps begin.
+std::vector<double> steps(double from, double to, const std::vector<Complex>& poles, double delay) {
+  std::vector<double> list{from, to};
+  const auto add = [&](double omega) {
+    if (omega > from && omega < to) list.push_back(omega);
+  };
+  for (const Complex& s : poles) {
+    add(s.imag());
+    const double size = std::max(std::abs(s.real()), 1e-12 * std::abs(s));
+    for (double d = size; d > 0 && d < 4 * std::abs(s); d *= 4)
+      add(s.imag() + d), add(s.imag() - d);
+  }
+  if (const double step = pi / 4 / delay; delay > 0)
+    for (double omega = from + step; omega < to; omega += step) list.push_back(omega);
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+  return list;
+}
+
+/// Beyond it L is its direct term; with a delay, where |L| stays below 1.
+double end_of_steps(const LoopResponse& response, const std::vector<Complex>& poles) {
+  double end = 1;
+  for (const Complex& s : poles) end = std::max(end, 1e3 * std::abs(s));
+  for (int k = 0; response.delay() > 0 && k < 20 && response.at(Complex(0, end)).norm() > 0.5; ++k)
+    end *= 2;
+  return end;
+}
+
+/// The turn of det(1 + L) from s = 0 (or right of it) up the axis to infinity.
+double turn_of_half(const StateSpace& L, const LoopResponse& response,
+                    const std::vector<SidedPole>& open, const std::vector<Complex>& poles) {
+  const Winding winding(response);
+  const double end = end_of_steps(response, poles);
+  double sum = 0, from = 0;
+  const auto straight = [&](double to) {
+    const std::vector<double> list = steps(from, to, poles, response.delay());
+    for (std::size_t i = 0; i + 1 < list.size(); ++i)
+      sum += winding.along(
+          [&](double t) { return Complex(0, list[i] + t * (list[i + 1] - list[i])); });
+  };
+  for (const double omega : on_axis(open)) {
+    const double r = radius(omega, poles, response), first = omega > 0 ? -pi / 2 : 0;
+    if (omega > 0) straight(omega - r);
+    sum += winding.along(
+        [&](double t) { return Complex(0, omega) + std::polar(r, first + t * (pi / 2 - first)); });
+    from = omega + r;
+  }
+  straight(end);
+  const double last = (Eigen::MatrixXd::Identity(L.D.rows(), L.D.cols()) + L.D).determinant();
+  if (response.delay() > 0) return sum - std::arg(winding.at({0, end}));  // |L| < 1: nearest to 0
+  return sum + std::arg(last / winding.at({0, end}));
+}
+
+}  // namespace
+
+NyquistCount nyquist_count(const StateSpace& L, const LoopResponse& response) {
+  NyquistCount count;
+  const std::vector<SidedPole> open = sided_poles(L);
+  std::vector<Complex> poles;
+  for (const SidedPole& p : open) {
+    count.open_right += p.side == Side::right;
+    poles.push_back(p.s);
+  }
+  if (response.delay() == 0) {
+    for (const SidedPole& p : sided_poles(sensitivity(L))) {
+      count.closed_right += p.side == Side::right;
+      count.closed_on_axis += p.side == Side::axis;
+      poles.push_back(p.s);
+    }
+    if (count.closed_on_axis > 0) return count;
+  }
+  const double turns = -2 * turn_of_half(L, response, open, poles) / (2 * pi);
+  count.encirclements = static_cast<int>(std::lround(turns));
+  if (response.delay() > 0) count.closed_right = count.open_right + count.encirclements;
+  count.agree = std::abs(turns - count.encirclements) < 0.1 && count.closed_right >= 0 &&
+                count.encirclements == count.closed_right - count.open_right;
+  return count;
+}
+
+}  // namespace titop::detail

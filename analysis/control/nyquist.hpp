@@ -1,0 +1,16 @@
+#pragma once
+
+#include <titop/analysis/control/loop_response.hpp>
+#include <titop/analysis/control/margins.hpp>
+
+/// The two counts of unstable closed-loop poles. For the folder's own files.
+namespace titop::detail {
+
+/// Poles of L and of the closed loop, and the turns of det(1 + L) along the axis: right of poles
+/// of L on the axis by half circles of a third of the distance to the next pole, open or closed;
+/// with a delay, whose closed-loop poles are not known, smaller ones, on which |L| > 10.
+/// Steps along the axis are halved until the determinant turns by less than half a radian in each
+/// half; they begin at each pole and at distances from it that grow by 4.
+NyquistCount nyquist_count(const StateSpace& L, const LoopResponse& response);
+
+}  // namespace titop::detail

@@ -1,0 +1,249 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <titop/titop.hpp>
+
+#include "control/transfer_functions.hpp"
+#include "support/mistakes.hpp"
+
+/// Margins of textbook loops against closed forms: some fifty loops.
+
+using namespace titop;
+using namespace titop_test;
+using std::numbers::pi;
+
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr double kClose = 1e-9;
+
+bool close(const MarginAt& m, double value, double omega) {
+  const bool right = std::isinf(value) ? m.value == value : std::abs(m.value / value - 1) <= kClose;
+  return right &&
+         (std::isnan(omega) || m.omega == omega || std::abs(m.omega - omega) <= kClose * omega);
+}
+
+LoopMargins one(const StateSpace& L, double delay = 0) {
+  const Margins m = margins(L, {.delay = delay});
+  CHECK(m.stable);
+  CHECK(m.nyquist.agree);
+  REQUIRE(m.loops.size() == 1);
+  return m.loops[0];
+}
+
+}  // namespace
+
+TEST_CASE("an integrator: only its phase margin is finite") {
+  for (const double k : {1e-3, 0.7, 1.0, 40.0}) {
+    const LoopMargins m = one(ratio({k}, {1, 0}));
+    CHECK(m.larger_gain.value == kNone);
+    CHECK(m.smaller_gain.value == 0);
+    CHECK(close(m.phase, pi / 2, k));
+    CHECK(close(m.delay, pi / 2 / k, k));
+    CHECK(close(m.nearest, 1, NAN));
+    CHECK(std::abs(m.disk.alpha - 2) <= kClose);
+  }
+}
+
+TEST_CASE("an integrator with an exact delay") {
+  for (const double k : {0.2, 1.0, 3.0})
+    for (const double tau : {0.05, 0.3, 0.45}) {
+      CAPTURE(k);
+      CAPTURE(tau);
+      const LoopMargins m = one(ratio({k}, {1, 0}), tau);
+      CHECK(close(m.larger_gain, pi / 2 / (k * tau), pi / 2 / tau));
+      CHECK(m.smaller_gain.value == 0);
+      CHECK(close(m.phase, pi / 2 - k * tau, k));
+      CHECK(close(m.delay, pi / 2 / k - tau, k));
+    }
+  const Margins late = margins(ratio({1}, {1, 0}), {.delay = 1.7});  // above pi / 2
+  CHECK(!late.stable);
+  CHECK(late.nyquist.closed_right == 2);
+  CHECK(late.nyquist.encirclements == 2);
+}
+
+TEST_CASE("the second-order standard loop: w^2 / (s (s + 2 z w))") {
+  for (const double z : {0.05, 0.3, 0.7, 1.0, 2.0})
+    for (const double w : {0.01, 1.0, 300.0}) {
+      const LoopMargins m = one(ratio({w * w}, {1, 2 * z * w, 0}));
+      const double crossing = std::sqrt(std::sqrt(1 + 4 * z * z * z * z) - 2 * z * z);
+      CHECK(m.larger_gain.value == kNone);
+      CHECK(close(m.phase, std::atan(2 * z / crossing), w * crossing));
+      CHECK(close(m.delay, std::atan(2 * z / crossing) / (w * crossing), w * crossing));
+    }
+}
+
+TEST_CASE("three lags and an integrator with two: the gain margin of Routh") {
+  for (const double k : {0.1, 1.0, 7.9}) {
+    const double a = 1.3, at = std::sqrt(3.0) * a;
+    const LoopMargins m = one(ratio({k * a * a * a}, {1, 3 * a, 3 * a * a, a * a * a}));
+    CHECK(close(m.larger_gain, 8 / k, at));
+    if (k > 1) {
+      const double w = a * std::sqrt(std::pow(k, 2.0 / 3) - 1);
+      CHECK(close(m.phase, pi - 3 * std::atan(w / a), w));
+    } else {
+      CHECK(m.phase.value == (k < 1 ? kNone : m.phase.value));
+    }
+  }
+  for (const double a : {0.5, 2.0})
+    for (const double b : {1.0, 30.0}) {
+      const double limit = a * b * (a + b), k = limit / 5;
+      const LoopMargins m = one(ratio({k}, {1, a + b, a * b, 0}));
+      CHECK(close(m.larger_gain, 5, std::sqrt(a * b)));
+    }
+}
+
+TEST_CASE("a double integrator with a PD law") {
+  for (const double k : {0.04, 1.0, 25.0})
+    for (const double T : {0.2, 1.5, 6.0}) {
+      const LoopMargins m = one(ratio({k * T, k}, {1, 0, 0}));
+      const double t = k * T * T, w = std::sqrt(k * (t + std::sqrt(t * t + 4)) / 2);
+      CHECK(m.larger_gain.value == kNone);
+      CHECK(m.smaller_gain.value == 0);
+      CHECK(close(m.phase, std::atan(T * w), w));
+      CHECK(close(m.delay, std::atan(T * w) / w, w));
+      // |S|^2 = w^4 / ((k - w^2)^2 + (k T w)^2): largest at w^2 = 2 k / (2 - t), if t < 2.
+      if (t < 2)
+        CHECK(close(m.nearest, std::sqrt(t * (1 - t / 4)), std::sqrt(2 * k / (2 - t))));
+      else
+        CHECK(close(m.nearest, 1, NAN));
+    }
+}
+
+TEST_CASE("an unstable plant: the gain may also become too small") {
+  for (const double a : {0.1, 2.0})
+    for (const double k : {1.2, 3.0, 50.0}) {
+      const LoopMargins m = one(ratio({k * a}, {1, -a}));
+      const double w = a * std::sqrt(k * k - 1);
+      CHECK(close(m.smaller_gain, 1 / k, 0));
+      CHECK(m.larger_gain.value == kNone);
+      CHECK(close(m.phase, std::acos(1 / k), w));
+      CHECK(std::abs(m.disk.alpha / (2 * (k - 1) / (k + 1)) - 1) <= kClose);
+      CHECK(std::abs(m.disk.least_gain() - 1 / k) <= kClose);  // both are reached at 0
+    }
+  // k (s + 1) / (s (s - 1)): stable for k > 1, phase crossing at 1 with |L| = k.
+  const LoopMargins m = one(ratio({3, 3}, {1, -1, 0}));
+  CHECK(close(m.smaller_gain, 1.0 / 3, 1));
+}
+
+TEST_CASE("a conditionally stable loop: both gain margins") {
+  // k (s + 1)^2 / s^3 is stable for k > 1/2; with lags (s / 20 + 1)^2 also below an upper limit.
+  const LoopMargins m = one(ratio({1, 2, 1}, {1, 0, 0, 0}));
+  CHECK(close(m.smaller_gain, 0.5, 1));
+  CHECK(m.larger_gain.value == kNone);
+  const double T = 0.05;  // Im = 0: 2 atan w - 2 atan(w T) = pi / 2
+  const double root = std::sqrt((1 - T) * (1 - T) - 4 * T);
+  const double slow = ((1 - T) - root) / (2 * T), fast = ((1 - T) + root) / (2 * T);
+  const auto size = [&](double w) { return (1 + w * w) / (w * w * w * (1 + T * T * w * w)); };
+  const LoopMargins l = one(ratio({1, 2, 1}, {T * T, 2 * T, 1, 0, 0, 0}));
+  CHECK(close(l.smaller_gain, 1 / size(slow), slow));
+  CHECK(close(l.larger_gain, 1 / size(fast), fast));
+}
+
+TEST_CASE("a pure gain and a lag with a direct term") {
+  const LoopMargins m = one(ratio({0.5}, {1}));
+  CHECK(m.larger_gain.value == kNone);
+  CHECK(m.phase.value == kNone);
+  CHECK(std::abs(m.nearest.value - 1.5) <= kClose);
+  // -(s + 1) / (2 s + 8): -1/8 at 0, -1/2 at infinity.
+  const LoopMargins l = one(ratio({-1, -1}, {2, 8}));
+  CHECK(close(l.larger_gain, 2, NAN));
+  CHECK(l.larger_gain.omega == kNone);
+  CHECK(std::abs(l.nearest.value - 0.5) <= kClose);
+}
+
+TEST_CASE("unstable loops have no margins, and say so") {
+  const Margins m = margins(ratio({60}, {1, 3, 2, 0}));  // limit 6
+  CHECK(!m.stable);
+  CHECK(m.nyquist.closed_right == 2);
+  CHECK(m.nyquist.open_right == 0);
+  CHECK(m.nyquist.encirclements == 2);
+  CHECK(m.nyquist.agree);
+  CHECK(m.loops[0].phase.value == 0);
+  CHECK(m.loops[0].larger_gain.value == 0);
+  CHECK(m.disk.alpha == 0);
+  CHECK(to_string(m).find("not stable") != std::string::npos);
+  const Margins edge = margins(ratio({6}, {1, 3, 2, 0}));  // poles at +-sqrt(2) j
+  CHECK(!edge.stable);
+  CHECK(edge.nyquist.closed_on_axis == 2);
+  const Margins sign = margins(ratio({-1}, {1, 0}));
+  CHECK(!sign.stable);
+  CHECK(sign.nyquist.closed_right == 1);
+  CHECK(sign.nyquist.encirclements == 1);
+}
+
+TEST_CASE("two loops: each alone, and both at once") {
+  // The spinning satellite of Doyle: K = 1, G = [s - a^2, a (s + 1); -a (s + 1), s - a^2] / (s^2 +
+  // a^2). Each loop alone is 1 / s: infinite gain margins, 90 degrees; both at once a tenth.
+  constexpr double a = 10;
+  StateSpace L;
+  L.A = MatrixXd(2, 2), L.B = MatrixXd::Identity(2, 2), L.C = MatrixXd(2, 2);
+  L.A << 0, a, -a, 0;
+  L.C << 1, a, -a, 1;
+  L.D = MatrixXd::Zero(2, 2);
+  L.inputs = L.outputs = {"roll", "pitch"};
+  const Margins m = margins(L);
+  CHECK(m.stable);
+  CHECK(m.nyquist.encirclements == 0);
+  REQUIRE(m.loops.size() == 2);
+  for (const LoopMargins& l : m.loops) {
+    CHECK(l.larger_gain.value == kNone);
+    CHECK(l.smaller_gain.value == 0);
+    CHECK(close(l.phase, pi / 2, 1));
+    CHECK(std::abs(l.disk.alpha - 2) <= kClose);
+  }
+  CHECK(m.loops[0].point == "roll");
+  // S = s/(s+1) [1, -a/s; a/s, 1] (by hand from T = [1, a; -a, 1] / (s + 1)): singular values
+  // |s -+ j a| / |s + 1|, largest sqrt(1 + a^2) at w = 1 / a.
+  CHECK(close(m.nearest, 1 / std::sqrt(1 + a * a), 1 / a));
+  // S - T = [s - 1, -2 a; 2 a, s - 1] / (s + 1): |s - 1 -+ 2 j a|^2 = 1 + (w + 2 a)^2.
+  const double w = -a + std::sqrt(a * a + 1);
+  const double norm = std::sqrt((1 + (w + 2 * a) * (w + 2 * a)) / (1 + w * w));
+  CHECK(std::abs(m.disk.alpha / (2 / norm) - 1) <= kClose);
+  CHECK(std::abs(m.disk.omega / w - 1) <= 1e-6);
+}
+
+TEST_CASE("poles on the axis: an undamped mode, controlled by a rate") {
+  // k s / (s^2 + w^2): phase from 90 to -90, closed loop damped; |L| = 1 at two frequencies.
+  const double w = 7, k = 0.02;
+  const LoopMargins m = one(ratio({k, 0}, {1, 0, w * w}));
+  CHECK(m.larger_gain.value == kNone);
+  CHECK(m.unit.size() == 2);
+  const double root = std::sqrt(k * k + 4 * w * w);
+  CHECK(std::abs(m.unit[0].omega / ((root - k) / 2) - 1) <= 1e-12);
+  CHECK(std::abs(m.unit[1].omega / ((root + k) / 2) - 1) <= 1e-12);
+  CHECK(close(m.phase, pi / 2, NAN));
+  const Margins wrong = margins(ratio({-k, 0}, {1, 0, w * w}));
+  CHECK(!wrong.stable);
+  CHECK(wrong.nyquist.closed_right == 2);
+  CHECK(wrong.nyquist.encirclements == 2);
+  CHECK(wrong.nyquist.agree);
+}
+
+TEST_CASE("mistakes") {
+  StateSpace wide = ratio({1}, {1, 1});
+  wide.B = MatrixXd::Ones(1, 2), wide.D = MatrixXd::Zero(1, 2);
+  CHECK(has_mistake(error_of([&] { margins(wide); }), Code::size, {"2", "1"}));
+  CHECK(error_of([&] { margins(ratio({-1}, {1})); }).has(Code::ill_posed));
+  CHECK(error_of([&] { margins(ratio({1}, {1, 1}), {.delay = -1}); }).has(Code::bad_value));
+  CHECK(error_of([&] { margins(ratio({NAN}, {1, 1})); }).has(Code::not_finite));
+  CHECK(std::abs(decibels(10) - 20) <= 1e-14);
+  CHECK(std::abs(degrees(pi) - 180) <= 1e-12);
+}
+
+TEST_CASE("of a diagram's loop point") {
+  Diagram d{"lag"};
+  auto r = d.input("r");
+  auto x = d.add("x", Integrator{});
+  const auto u = d.loop_point("law", 3.0 * r - 3.0 * x.out);
+  x.in = u;
+  d.output("y") = x.out;
+  const Margins m = margins(loop(compile(d), "law"));
+  CHECK(m.stable);
+  CHECK(m.loops.at(0).point == "law");
+  CHECK(close(m.loops.at(0).phase, pi / 2, 3));
+  CHECK(to_string(m).find("90.00 deg") != std::string::npos);
+}

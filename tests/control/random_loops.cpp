@@ -1,0 +1,43 @@
+#include <doctest/doctest.h>
+
+#include "control/grid_margins.hpp"
+
+/// Margins of random single loops against a fine grid of their factors: poles near the axis
+/// (damping ratios down to 1e-6), unstable plants.
+
+using namespace titop;
+using namespace titop_test;
+
+TEST_CASE("160 random single loops") {
+  Rng rng(71);
+  int done = 0, open_unstable = 0, refused = 0;
+  double largest = 0;
+  while (done < 160) {
+    const bool unstable_plant = rng.chance(0.4);
+    const auto parts =
+        random_parts(rng, unstable_plant, rng.chance(0.4), std::pow(10, rng.between(-2, 0.5)));
+    const StateSpace L = model_of(parts);
+    const Margins m = margins(L);
+    CHECK(m.nyquist.agree);
+    CHECK(m.nyquist.closed_right == unstable(L));
+    CHECK(m.stable == (unstable(L) == 0));
+    if (!m.stable) {
+      ++refused;
+      continue;
+    }
+    ++done, open_unstable += m.nyquist.open_right > 0;
+    const auto at = [&](Real w) {
+      Complex sum = 0;
+      for (const Fraction& p : parts) sum += p.at(w);
+      return sum;
+    };
+    const double error = worst(m.loops[0], expected(at, grid(parts), at(0)));
+    if (error > 1e-6) MESSAGE(done, ": ", error, "\n", to_string(m));
+    largest = std::max(largest, error);
+  }
+  MESSAGE("largest difference ", largest, ", unstable plants ", open_unstable, ", refused ",
+          refused);
+  CHECK(largest <= 1e-6);
+  CHECK(open_unstable >= 20);
+  CHECK(refused >= 10);
+}
