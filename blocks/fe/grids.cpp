@@ -115,7 +115,7 @@ Mesh to_mesh(const GridMatrices& m, const std::vector<Grid>& grids) {
   }
   for (const Grid& g : grids) turn(m, g, mesh);
   check(mesh);
-  return mesh;
+  return symmetrised(std::move(mesh));
 }
 
 MatrixXd rigid_motions_by_statics(const GridMatrices& m, int grid) {

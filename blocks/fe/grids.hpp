@@ -40,7 +40,7 @@ struct Grid {
 
 /// The mesh, with all displacements rotated into body axes. Scalar points are generalised
 /// coordinates, independent of rigid motion. Units are those of the data: scale the modal data
-/// (`scaled`).
+/// (`scaled`). K and M are `symmetrised`: `digits` may be fewer than those of the matrices.
 ///
 /// Throws, all together, unknown_name for a grid that only the matrices or only the list contains,
 /// and the errors of `check(mesh)`. Cost n^2 per rotated grid.

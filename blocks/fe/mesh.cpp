@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <titop/blocks/fe/mesh.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::fe {
 
@@ -13,6 +15,26 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 namespace {
+
+/// Largest |S - S'| relative to sqrt(S_ii S_jj), and its place. In a semidefinite matrix no entry
+/// exceeds the geometric mean of its two diagonals: a scale that does not mix units.
+struct Skewness {
+  double size = 0;
+  Index row = 0, column = 0;
+};
+
+Skewness skewness(const MatrixXd& S) {
+  const Eigen::VectorXd root = S.diagonal().cwiseAbs().cwiseSqrt();
+  Skewness worst;
+  for (Index j = 0; j < S.cols(); ++j)
+    for (Index i = j + 1; i < S.rows(); ++i) {
+      const double off = std::abs(S(i, j) - S(j, i));
+      if (off <= worst.size * root(i) * root(j)) continue;
+      const double size = root(i) * root(j);
+      worst = {size > 0 ? off / size : std::numeric_limits<double>::infinity(), i, j};
+    }
+  return worst;
+}
 
 void check_matrix(const Mesh& mesh, const MatrixXd& S, char name, std::vector<Mistake>& mistakes) {
   const auto n = static_cast<Index>(mesh.dofs.size());
@@ -24,10 +46,9 @@ void check_matrix(const Mesh& mesh, const MatrixXd& S, char name, std::vector<Mi
                         "M and K have one row and one column per degree of freedom"});
     return;
   }
-  const double tolerance = 10 * std::pow(10, -mesh.digits);
-  for (Index j = 0; j < n; ++j) {
-    for (Index i = j; i < n; ++i) {
-      if (!std::isfinite(S(i, j)) || !std::isfinite(S(j, i))) {
+  for (Index j = 0; j < n; ++j)
+    for (Index i = 0; i < n; ++i)
+      if (!std::isfinite(S(i, j))) {
         mistakes.push_back({Code::not_finite,
                             fmt::format("{}({}, {}) of mesh {} is not finite", name,
                                         dof_name(mesh, i), dof_name(mesh, j), mesh.name),
@@ -35,21 +56,20 @@ void check_matrix(const Mesh& mesh, const MatrixXd& S, char name, std::vector<Mi
                             "give finite numbers"});
         return;
       }
-      // In a semidefinite matrix no entry exceeds the geometric mean of its two diagonals: a scale
-      // for smallness that does not mix units.
-      const double size = std::sqrt(std::abs(S(i, i) * S(j, j)));
-      if (std::abs(S(i, j) - S(j, i)) <= tolerance * size) continue;
-      mistakes.push_back(
-          {Code::bad_value,
-           fmt::format("{} of mesh {} is not symmetric: {} at ({}, {}), {} at ({}, "
-                       "{})",
-                       name, mesh.name, S(i, j), dof_name(mesh, i), dof_name(mesh, j), S(j, i),
-                       dof_name(mesh, j), dof_name(mesh, i)),
-           {},
-           "give both triangles, or raise the tolerance by Mesh::digits"});
-      return;
-    }
-  }
+  const Skewness found = skewness(S);
+  const double most = std::max(10 * std::pow(10, -mesh.digits), linalg::kHalfDigits);
+  if (found.size <= most) return;
+  const Index i = found.row, j = found.column;
+  mistakes.push_back(
+      {Code::bad_value,
+       fmt::format("{} of mesh {} is not symmetric: {} at ({}, {}), {} at ({}, {}), by {:.2g} of "
+                   "its diagonal there",
+                   name, mesh.name, S(i, j), dof_name(mesh, i), dof_name(mesh, j), S(j, i),
+                   dof_name(mesh, j), dof_name(mesh, i), found.size),
+       {},
+       fmt::format("give both triangles; rounding of a static reduction is up to {:.2g}, data with "
+                   "fewer digits have a smaller Mesh::digits",
+                   most)});
 }
 
 /// Returns false if an index is out of range, so that nothing may be named.
@@ -115,6 +135,18 @@ void check(const Mesh& mesh) {
                             "give finite coordinates [m]"});
   }
   if (!mistakes.empty()) throw Error(std::move(mistakes));
+}
+
+double asymmetry(const Mesh& mesh) {
+  return std::max(skewness(mesh.K).size, skewness(mesh.M).size);
+}
+
+Mesh symmetrised(Mesh mesh) {
+  const double found = asymmetry(mesh);
+  if (found == 0) return mesh;
+  for (MatrixXd* S : {&mesh.K, &mesh.M}) *S = ((*S + S->transpose()) / 2).eval();
+  mesh.digits = std::min(mesh.digits, 1 - std::log10(found));
+  return mesh;
 }
 
 std::string dof_name(const Mesh& mesh, Index row) {

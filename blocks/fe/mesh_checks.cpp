@@ -80,6 +80,7 @@ MeshReport mesh_report(const Mesh& mesh) {
   const MatrixXd R = rigid_motions(mesh, Vector3d::Zero());
   report.mass = mass_properties(R.transpose() * (mesh.M * R));
   report.geometry = from_geometry(mesh);
+  report.asymmetry = asymmetry(mesh);
   if (mesh.K.size() == 0) return report;
   RigidStiffness held = rigid_stiffness(mesh);
   report.KR = held.of_largest;
@@ -97,11 +98,14 @@ std::string to_string(const MeshReport& report) {
       "stiffness against rigid motions {:.1e} of the largest, {:.1e} of its terms, "
       "worst at {}\n",
       report.KR, report.KR_terms, report.KR_worst);
+  if (report.asymmetry > 0)
+    text += fmt::format("asymmetry of K and M {:.1e} of their diagonals\n", report.asymmetry);
   return text;
 }
 
-VectorXd omega_uncertainty(const Mesh& mesh, const std::string& parent, int count) {
-  check(mesh);
+VectorXd omega_uncertainty(const Mesh& given, const std::string& parent, int count) {
+  check(given);
+  const Mesh mesh = symmetrised(given);
   const auto rows = interface_rows(mesh, parent);
   std::vector<Index> f;
   for (Index i = 0; i < mesh.M.rows(); ++i)

@@ -22,6 +22,7 @@ struct MeshReport {
                          ///< R(j) counted as sqrt(K(i, i) K(j, j)) |R(j)|: independent of units; at
                          ///< the data's digits if the positions fit the matrices of a free mesh
   std::string KR_worst;  ///< degree of freedom of that entry
+  double asymmetry = 0;  ///< `asymmetry(mesh)`
 };
 
 /// Resistance of K to rigid motion, which should be 0: KR, KR_terms and KR_worst of the report.

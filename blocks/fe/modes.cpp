@@ -252,9 +252,10 @@ void require_distinct(const Mesh& mesh, const std::vector<std::string>& children
 
 }  // namespace
 
-ModalData modal_data(const Mesh& mesh, const std::string& parent,
+ModalData modal_data(const Mesh& given, const std::string& parent,
                      const std::vector<std::string>& children, const ModeOptions& options) {
-  check(mesh);
+  check(given);
+  const Mesh mesh = symmetrised(given);
   require_distinct(mesh, children);
   require_distinct(mesh, options.residual);
   const Clamped c = clamp(mesh, parent);

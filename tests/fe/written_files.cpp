@@ -1,0 +1,93 @@
+// Matrices as programs write them: asymmetric in their last digits. Small files of a beam, whose
+// matrices are known without the file.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include <titop/blocks/fe/beam.hpp>
+#include <titop/blocks/fe/grids.hpp>
+#include <titop/blocks/fe/mesh_checks.hpp>
+#include <titop/blocks/fe/op4.hpp>
+#include <titop/graph/error.hpp>
+
+#include "dynamics.hpp"
+#include "support/folder.hpp"
+#include "support/names.hpp"
+#include "support/refused.hpp"
+
+using namespace titop;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using fe_test::relative;
+using titop_test::check_refused;
+using titop_test::Folder;
+
+namespace {
+
+/// Two elements: grids 1, 2, 3 at 0, 1, 2 m.
+fe::Mesh beam() {
+  return beam_mesh({.length = 2.0,
+                    .section = rectangle(0.06, 0.04),
+                    .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
+                    .elements = 2});
+}
+
+/// One matrix of a text OP4, dense, in the format 1P,3E22.15.
+std::string op4(const std::string& name, const MatrixXd& S, int type = 2) {
+  std::string text =
+      fmt::format("{:8}{:8}{:8}{:8}{:8}1P,3E22.15\n", S.cols(), S.rows(), 6, type, name);
+  for (Index j = 0; j < S.cols(); ++j) {
+    text += fmt::format("{:8}{:8}{:8}\n", j + 1, 1, S.rows());
+    for (Index i = 0; i < S.rows(); ++i)
+      text += fmt::format("{:22.15E}{}", S(i, j), i % 3 == 2 || i + 1 == S.rows() ? "\n" : "");
+  }
+  return text + fmt::format("{:8}{:8}{:8}\n{:22.15E}\n", S.cols() + 1, 1, 1, 1.0);
+}
+
+fe::GridMatrices read(const std::string& text) {
+  const Folder folder;
+  folder.write("beam.op4", text);
+  const auto all = fe::read_op4(folder.path / "beam.op4");
+  const fe::Op4Matrix& K = fe::find_matrix(all, "KAA");
+  return fe::grid_matrices("beam", K.value, fe::find_matrix(all, "MAA").value, {1, 2, 3}, K.digits);
+}
+
+const std::vector<fe::Grid> kGrids = {
+    {1, {0, 0, 0}, {}, "P"}, {2, {1, 0, 0}, {}, ""}, {3, {2, 0, 0}, {}, "C"}};
+
+}  // namespace
+
+TEST_CASE("matrices asymmetric by a reduction's rounding are symmetrised, with fewer digits") {
+  const fe::Mesh exact = beam();
+  MatrixXd K = exact.K;
+  const double off = 1e-12 * std::sqrt(K(1, 1) * K(11, 11));
+  K(1, 11) += off;
+  const fe::Mesh mesh = fe::to_mesh(read(op4("KAA", K) + op4("MAA", exact.M)), kGrids);
+  CHECK(mesh.K == mesh.K.transpose());
+  CHECK(std::abs(mesh.K(1, 11) - exact.K(1, 11) - off / 2) <= 1e-3 * off);
+  CHECK(mesh.digits <= 13.001);
+  CHECK(mesh.digits >= 12.9);
+  const ModalData data = fe::modal_data(mesh, "P", {"C"}),
+                  right = fe::modal_data(exact, "P", {"C"});
+  CHECK(data.digits == mesh.digits);
+  for (Index k = 0; k < 12; ++k) CHECK(relative(data.omega(k), right.omega(k)) <= 1e-9);
+
+  // A mesh made by hand: the same, and its report has the asymmetry.
+  fe::Mesh skew = exact;
+  skew.K = K;
+  CHECK(relative(fe::asymmetry(skew), 1e-12) <= 1e-2);
+  CHECK(titop_test::has_name(to_string(fe::mesh_report(skew)), "1.0e-12"));
+  CHECK(fe::modal_data(skew, "P", {"C"}).omega ==
+        fe::modal_data(fe::symmetrised(skew), "P", {"C"}).omega);
+  CHECK(fe::asymmetry(exact) == 0);
+}
+
+TEST_CASE("one triangle, or half the digits, is no rounding of a reduction") {
+  const fe::Mesh exact = beam();
+  MatrixXd K = exact.K;
+  K(1, 11) += 1e-6 * std::sqrt(K(1, 1) * K(11, 11));
+  check_refused([&] { fe::to_mesh(read(op4("KAA", K) + op4("MAA", exact.M)), kGrids); },
+                Code::bad_value, {"K", "beam", "P.y", "2.rz", "1e-06", "1.5e-08"});
+  K = exact.K.triangularView<Eigen::Lower>();
+  check_refused([&] { fe::to_mesh(read(op4("KAA", K) + op4("MAA", exact.M)), kGrids); },
+                Code::bad_value, {"K", "beam"});
+}
