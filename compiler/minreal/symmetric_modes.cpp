@@ -14,8 +14,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr double kAsymmetry = 1e-9;  ///< of a damping that must be symmetric, over its size
-constexpr double kNoTerm = 1e-12;    ///< of the terms of a sum: a smaller sum is rounding
+constexpr double kNoTerm = 1e-12;  ///< of the terms of a sum: a smaller sum is rounding
 
 using linalg::at;
 

@@ -49,8 +49,6 @@ VectorXd symmetrizer(const MatrixXd& K) {
   return d2.allFinite() && (d2.array() > 0).all() ? d2 : VectorXd();
 }
 
-constexpr double kAsymmetry = 1e-9;  ///< largest one of a matrix that is symmetric up to rounding
-
 /// Sets S, skew, asymmetry and found.
 void set_stiffness(const MatrixXd& S, SecondOrder& form) {
   const VectorXd size = S.diagonal().cwiseAbs().cwiseSqrt();
