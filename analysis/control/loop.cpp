@@ -124,7 +124,7 @@ std::vector<std::string> loop_points(const System& system) {
   return names;
 }
 
-ControlLoop loops(const System& system, const std::vector<std::string>& names) {
+ControlLoop mimo_loop(const System& system, const std::vector<std::string>& names) {
   std::vector<Mistake> mistakes;
   std::vector<int> nodes;
   for (const std::string& name : names) {
@@ -145,6 +145,8 @@ ControlLoop loops(const System& system, const std::vector<std::string>& names) {
           compiled(system, nodes, Wanted::T)};
 }
 
-ControlLoop loop(const System& system, const std::string& name) { return loops(system, {name}); }
+ControlLoop loop(const System& system, const std::string& name) {
+  return mimo_loop(system, {name});
+}
 
 }  // namespace titop

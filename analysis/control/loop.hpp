@@ -38,8 +38,8 @@ ControlLoop loop(const System& system, const std::string& name);
 /// The loop cut at several points at once, rows and columns in this order. Throws duplicate_name
 /// for a name given twice, bad_value for none.
 ///
-///     const ControlLoop both = loops(system, {"roll", "yaw"});
-ControlLoop loops(const System& system, const std::vector<std::string>& names);
+///     const ControlLoop both = mimo_loop(system, {"roll", "yaw"});
+ControlLoop mimo_loop(const System& system, const std::vector<std::string>& names);
 
 /// Names of the diagram's loop points, in the order of their declaration.
 std::vector<std::string> loop_points(const System& system);

@@ -102,14 +102,14 @@ TEST_CASE("three axes at once, and one of two cuts") {
     Eigen::Matrix2cd flip;
     flip << 0, 1, 1, 0;
     const Eigen::Matrix2cd L = K * M.inverse();
-    const Eigen::MatrixXcd both = loops(system, {"y", "x"}).L.transfer(s);
+    const Eigen::MatrixXcd both = mimo_loop(system, {"y", "x"}).L.transfer(s);
     CHECK((both - flip * L * flip).norm() <= 1e-13 * L.norm());
     // With y closed: eliminated by hand.
     const Complex a = both(1, 1), alone = a - both(1, 0) / (1.0 + both(0, 0)) * both(0, 1);
     const Complex one = loop(system, "x").L.transfer(s)(0, 0);
     CHECK(std::abs(one - alone) <= 1e-12 * std::abs(one));
-    const Eigen::MatrixXcd S = loops(system, {"y", "x"}).S.transfer(s),
-                           T = loops(system, {"y", "x"}).T.transfer(s),
+    const Eigen::MatrixXcd S = mimo_loop(system, {"y", "x"}).S.transfer(s),
+                           T = mimo_loop(system, {"y", "x"}).T.transfer(s),
                            I = Eigen::MatrixXcd::Identity(2, 2);
     CHECK((S * (I + both) - I).norm() <= 1e-12);
     CHECK((T - (I - S)).norm() <= 1e-12);
@@ -129,7 +129,7 @@ TEST_CASE("a chain of cuts: each return reads the next cut") {
   for (const Complex s : kPoints) {
     CHECK(std::abs(scalar(loop(system, "a").L, s) - 6.0 / s) <= 1e-13 * std::abs(6.0 / s));
     CHECK(std::abs(scalar(loop(system, "b").L, s) - 6.0 / s) <= 1e-13 * std::abs(6.0 / s));
-    const Eigen::MatrixXcd L = loops(system, {"a", "b"}).L.transfer(s);
+    const Eigen::MatrixXcd L = mimo_loop(system, {"a", "b"}).L.transfer(s);
     CHECK(std::abs(L(0, 0)) == 0);
     CHECK(std::abs(L(1, 1)) == 0);
     CHECK(std::abs(L(0, 1) + 2.0) <= 1e-13);
@@ -144,10 +144,10 @@ TEST_CASE("mistakes: unknown names, none, twice, no size") {
   CHECK(has_mistake(error_of([&] { loop(system, "hub"); }), Code::unknown_name, {"hub", "torque"}));
   CHECK(
       has_mistake(error_of([&] { loop(bare, "a"); }), Code::unknown_name, {"d.loop_point(\"a\""}));
-  CHECK(has_mistake(error_of([&] { loops(system, std::vector<std::string>{}); }), Code::bad_value,
-                    {"loop point"}));
+  CHECK(has_mistake(error_of([&] { mimo_loop(system, std::vector<std::string>{}); }),
+                    Code::bad_value, {"loop point"}));
   CHECK(has_mistake(error_of([&] {
-                      loops(system, {"torque", "torque"});
+                      mimo_loop(system, {"torque", "torque"});
                     }),
                     Code::duplicate_name, {"torque"}));
   Diagram d{"nothing"};
