@@ -2,14 +2,17 @@
 
 /// titop: from a block diagram of flexible bodies to one minimal state-space model.
 #include <titop/analysis/certify/certify_full.hpp>
+#include <titop/analysis/control/discrete.hpp>
 #include <titop/analysis/control/loop.hpp>
 #include <titop/analysis/control/margins.hpp>
+#include <titop/analysis/control/response.hpp>
 #include <titop/analysis/control/zeros.hpp>
 #include <titop/analysis/damping/damping_of_assembly.hpp>
 #include <titop/analysis/damping/structural_damping.hpp>
 #include <titop/analysis/lft/derivatives.hpp>
 #include <titop/analysis/lft/lft.hpp>
 #include <titop/analysis/lft/reduced_lft.hpp>
+#include <titop/analysis/norms/h2.hpp>
 #include <titop/analysis/norms/hinf.hpp>
 #include <titop/analysis/reduction/reduced_system.hpp>
 #include <titop/analysis/simulation/hold.hpp>

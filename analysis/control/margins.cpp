@@ -8,6 +8,7 @@
 #include <titop/analysis/control/nyquist.hpp>
 #include <titop/analysis/control/zeros.hpp>
 #include <titop/analysis/norms/hinf.hpp>
+#include <titop/analysis/norms/scaled.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/index.hpp>
 
@@ -115,10 +116,7 @@ void check(const StateSpace& L, double delay) {
                 "margins of a model with " + std::to_string(L.D.cols()) + " inputs and " +
                     std::to_string(L.D.rows()) + " outputs",
                 "a loop transfer is square: loop(system, \"name\").L");
-  for (const MatrixXd* matrix : {&L.A, &L.B, &L.C, &L.D})
-    if (!matrix->allFinite())
-      throw Error(Code::not_finite, "an entry of the loop transfer is not finite",
-                  "check the source of its matrices");
+  detail::require_finite(L, "margins");
   if (!(delay >= 0) || std::isinf(delay) || (delay > 0 && L.D.rows() > 1))
     throw Error(
         Code::bad_value,

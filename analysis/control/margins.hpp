@@ -4,6 +4,7 @@
 #include <complex>
 #include <string>
 #include <titop/analysis/control/loop.hpp>
+#include <titop/analysis/control/response.hpp>
 #include <titop/graph/state_space.hpp>
 #include <vector>
 
@@ -94,10 +95,5 @@ Margins margins(const ControlLoop& loop, const MarginOptions& options = {});
 
 /// A table, with dB and degrees; says so if the loop is not stable.
 std::string to_string(const Margins& margins);
-
-/// 20 log10 of a gain.
-double decibels(double gain);
-/// An angle in degrees.
-double degrees(double radians);
 
 }  // namespace titop

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
 #include <titop/analysis/control/margins.hpp>
 
 namespace titop {
@@ -41,10 +40,6 @@ std::string text_of(const LoopMargins& m) {
 }
 
 }  // namespace
-
-double decibels(double gain) { return 20 * std::log10(gain); }
-
-double degrees(double radians) { return radians * 180 / std::numbers::pi; }
 
 std::string to_string(const Margins& m) {
   const NyquistCount& n = m.nyquist;

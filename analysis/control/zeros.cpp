@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <titop/analysis/control/zeros.hpp>
 #include <titop/analysis/norms/scaled.hpp>
-#include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/rounding.hpp>
@@ -72,10 +71,7 @@ double common_scale(Matrices& m) {
 
 Eigen::VectorXcd transmission_zeros(const StateSpace& model) {
   require_fitting(model, "transmission_zeros");
-  for (const MatrixXd* matrix : {&model.A, &model.B, &model.C, &model.D})
-    if (!matrix->allFinite())
-      throw Error(Code::not_finite, "an entry of the model is not finite: it has no zeros",
-                  "check the source of its matrices");
+  detail::require_finite(model, "zeros");
   const StateSpace s = detail::scaled(model);
   Matrices m{s.A, s.B, s.C, s.D};
   const double size = common_scale(m);

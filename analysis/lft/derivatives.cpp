@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <titop/analysis/lft/derivatives.hpp>
 #include <titop/analysis/lft/opening.hpp>
+#include <titop/analysis/norms/gramian.hpp>
 #include <titop/analysis/norms/scaled.hpp>
 #include <titop/compiler/system/compile_graph.hpp>
 #include <titop/graph/linalg/dense.hpp>
@@ -70,44 +71,15 @@ StateSpace Derivatives::matrices(const std::string& p) const {
           .outputs = {m_.outputs.begin() + all_pairs_, m_.outputs.end()}};
 }
 
-namespace {
-
-/// P of A P + P A' + B B' = 0.
-MatrixXd lyapunov(const MatrixXd& A, const MatrixXd& B) {
-  const linalg::Schur s = linalg::schur(A);
-  const MatrixXcd QU = s.Q * linalg::lyapunov_factor(s.T, s.Q.adjoint() * B);
-  return (QU * QU.adjoint()).real();
-}
-
-void refuse_norm(const std::string& why, const char* way_out) {
-  throw Error(Code::singular, "the H2 norm is infinite: " + why, way_out);
-}
-
-/// Throws singular for a pole on the axis or right of it, as far as rounding lets it be known.
-void require_stable(const StateSpace& scaled) {
-  if (scaled.order() == 0) return;
-  const Eigen::VectorXcd poles = linalg::eigenvalues(scaled.A);
-  Index worst = 0;
-  poles.real().maxCoeff(&worst);
-  if (!(poles(worst).real() < -detail::rounding_of_poles(scaled)))
-    refuse_norm(fmt::format("the pole {:.6g}{:+.6g}j is not left of the axis, beyond rounding",
-                            poles(worst).real(), poles(worst).imag()),
-                "damp it, or leave out the output that reads its position");
-}
-
-}  // namespace
-
 Slopes Derivatives::h2() const {
   const Index ny = m_.D.rows() - all_pairs_, nu = m_.D.cols() - all_pairs_;
   const StateSpace m = detail::scaled(m_);
-  require_stable(m);
+  detail::require_stable_h2(m);
   bool direct = !m.D.bottomRightCorner(ny, nu).isZero(0);
   for (const std::string& p : names_) direct = direct || !matrices(p).D.isZero(0);
-  if (direct)
-    refuse_norm("there is a direct term",
-                "read rates or positions, or filter the inputs or outputs");
+  if (direct) detail::refuse_direct_h2();
   const MatrixXd B = m.B.rightCols(nu), C = m.C.bottomRows(ny);
-  const MatrixXd P = lyapunov(m.A, B), Q = lyapunov(m.A.transpose(), C.transpose());
+  const MatrixXd P = detail::gramian(m.A, B), Q = detail::gramian(m.A.transpose(), C.transpose());
   Slopes result{std::sqrt((C * P * C.transpose()).trace()),
                 Eigen::VectorXd::Zero(static_cast<Index>(names_.size()))};
   if (!(result.value > 0))

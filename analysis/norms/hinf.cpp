@@ -158,14 +158,6 @@ HinfNorm refined(const SingularValues& gain, HinfNorm best, const std::array<dou
   return best;
 }
 
-void check_finite(const StateSpace& m) {
-  for (const MatrixXd* matrix : {&m.A, &m.B, &m.C, &m.D})
-    if (!matrix->allFinite())
-      throw Error(Code::not_finite,
-                  "an entry of the model is not finite: it has no H-infinity norm",
-                  "check the source of its matrices");
-}
-
 void check(const StateSpace& m, const Eigen::VectorXcd& poles, double from, double to) {
   if (!(from >= 0 && from < to))
     throw Error(Code::bad_value, "the band of the H-infinity norm is empty or negative",
@@ -191,7 +183,7 @@ HinfNorm norm_hinf(const StateSpace& model, const HinfOptions& options) {
                             "take frequency_response",
                             kMostStatesOfHinf));
   require_fitting(model, "norm_hinf");
-  check_finite(model);
+  detail::require_finite(model, "H-infinity norm");
   const double from = 2 * std::numbers::pi * options.band_hz[0],
                to = 2 * std::numbers::pi * options.band_hz[1];
   const StateSpace m = detail::scaled(model);

@@ -5,6 +5,9 @@
 /// Models as norms are computed from them.
 namespace titop::detail {
 
+/// Throws not_finite if an entry is not. `user`: "H2 norm", "zeros", for the message.
+void require_finite(const StateSpace& model, const char* user);
+
 /// The model in its states' own sizes, by powers of two. O(n^2).
 StateSpace scaled(StateSpace model);
 

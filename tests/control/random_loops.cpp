@@ -8,11 +8,11 @@
 using namespace titop;
 using namespace titop_test;
 
-TEST_CASE("160 random single loops") {
+TEST_CASE("170 random single loops") {
   Rng rng(71);
   int done = 0, open_unstable = 0, refused = 0;
   double largest = 0;
-  while (done < 160) {
+  while (done < 170) {
     const bool unstable_plant = rng.chance(0.4);
     const auto parts =
         random_parts(rng, unstable_plant, rng.chance(0.4), std::pow(10, rng.between(-2, 0.5)));

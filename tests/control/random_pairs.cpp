@@ -7,11 +7,11 @@
 using namespace titop;
 using namespace titop_test;
 
-TEST_CASE("40 random pairs of loops") {
+TEST_CASE("30 random pairs of loops") {
   Rng rng(72);
   int done = 0;
   double largest = 0, at_once = 0;
-  while (done < 40) {
+  while (done < 30) {
     std::vector<Fraction> entry[2][2], all;
     StateSpace L;
     std::vector<StateSpace> models;

@@ -1,0 +1,73 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <titop/analysis/control/response.hpp>
+
+namespace titop {
+namespace {
+
+/// The names alone, for their places.
+StateSpace names_of(const System& system) {
+  StateSpace m;
+  m.inputs = system.inputs(), m.outputs = system.outputs();
+  return m;
+}
+
+}  // namespace
+
+double decibels(double gain) { return 20 * std::log10(gain); }
+
+double degrees(double radians) { return radians * 180 / std::numbers::pi; }
+
+std::vector<double> decibels(std::span<const std::complex<double>> values) {
+  std::vector<double> result;
+  for (const auto& value : values) result.push_back(decibels(std::abs(value)));
+  return result;
+}
+
+std::vector<double> degrees(std::span<const std::complex<double>> values) {
+  std::vector<double> result;
+  double last = -90;
+  for (const auto& value : values) {
+    if (!std::isfinite(std::abs(value)) || value == 0.0) {
+      result.push_back(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    double now = degrees(std::arg(value));
+    now += 360 * std::round((last - now) / 360);
+    if (std::abs(now - last) > 179) {
+      const double other = now > last ? now - 360 : now + 360;
+      if (std::abs(other + 90) < std::abs(now + 90)) now = other;
+    }
+    result.push_back(last = now);
+  }
+  return result;
+}
+
+BodeResponse bode(const System& system, const std::string& output, const std::string& input,
+                  std::span<const double> omega) {
+  const StateSpace names = names_of(system);
+  const int row = names.output(output), column = names.input(input);
+  std::vector<std::complex<double>> values;
+  for (const Eigen::MatrixXcd& G : system.frequency_response(omega))
+    values.push_back(G(row, column));
+  return {{omega.begin(), omega.end()}, decibels(values), degrees(values)};
+}
+
+Eigen::VectorXd input_values(const System& system, const ParameterList& values) {
+  const StateSpace names = names_of(system);
+  Eigen::VectorXd u = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(names.inputs.size()));
+  std::vector<int> set;
+  for (const auto& [name, value] : values) {
+    const int i = names.input(name);
+    if (std::find(set.begin(), set.end(), i) != set.end())
+      throw Error(Code::duplicate_name, "input " + name + " is given twice",
+                  "give each input one value");
+    set.push_back(i);
+    u(i) = value;
+  }
+  return u;
+}
+
+}  // namespace titop
