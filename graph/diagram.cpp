@@ -77,7 +77,8 @@ Param Diagram::param(std::string name, double value, std::source_location at) {
 
 Reading Diagram::loop_point(std::string name, const Rhs& signal) {
   const std::vector<Term>& terms = signal.expr().terms();
-  const bool known = !terms.empty() && terms.front().signal >= 0;
+  const bool known =
+      !terms.empty() && terms.front().signal >= 0 && signal.expr().graph() == graph_.get();
   const int rows = known ? rows_of(*graph_, terms.front()) : 1;
   const int node = add_block(
       std::move(name), [&] { return as_block(LoopPoint{.size = std::max(rows, 1)}); },

@@ -15,11 +15,10 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Function = std::function<double(double)>;
 
-/// A gain margin of more is not looked for in the endless turns of a delay.
-constexpr double kMostGain = 1e3;
+constexpr int kBits = 50;  ///< of a frequency: all but three
 
-/// Frequencies are bracketed to half the digits first, then to all but two.
-constexpr int kBits = 50;
+/// Candidates below this share of the slowest root of L are rounding of the point at 0.
+constexpr double kAtZero = 1e-6;
 
 void add(std::vector<Complex>& list, const Eigen::VectorXcd& more) {
   list.insert(list.end(), more.begin(), more.end());
@@ -50,15 +49,15 @@ StateSpace real_axis(const StateSpace& L) {
 }
 
 /// Roots of f between neighbours of the list by its changes of sign; jumps (poles on the axis) are
-/// none. A candidate at which f is 0 to half the digits, without a change of sign near it, is a
-/// root, too: there the curve touches.
+/// none, nor are intervals in which f is 0. A candidate at which f is 0 to half the digits, without
+/// a change of sign near it, is a root, too: there the curve touches.
 std::vector<double> roots_of(const Function& f, const std::vector<double>& list,
                              const std::vector<Complex>& candidates) {
   std::vector<double> roots;
   double last = list.front(), at_last = f(last);
   for (const double omega : list) {
     const double value = f(omega);
-    if (value == 0) roots.push_back(omega);
+    if (value == 0) continue;
     if (value * at_last < 0) {
       std::uintmax_t steps = 200;
       const auto [a, b] = boost::math::tools::toms748_solve(
@@ -78,19 +77,20 @@ std::vector<double> roots_of(const Function& f, const std::vector<double>& list,
   return roots;
 }
 
+/// Takes out candidates that are rounding of a root of f at 0. `roots`: of L.
+void drop_at_zero(std::vector<Complex>& candidates, const std::vector<Complex>& roots,
+                  const Function& f) {
+  if (!(std::abs(f(0)) <= linalg::kHalfDigits)) return;
+  double slowest = 0;
+  for (const Complex& s : roots)
+    if (s != 0.0 && (slowest == 0 || std::abs(s) < slowest)) slowest = std::abs(s);
+  std::erase_if(candidates, [&](const Complex& s) { return std::abs(s) < kAtZero * slowest; });
+}
+
 std::vector<Complex> roots_of_model(const StateSpace& L) {
   std::vector<Complex> roots = all_poles(L);
   add(roots, transmission_zeros(L));
   return roots;
-}
-
-/// The frequency beyond which |L| < 1 / kMostGain, after all poles and zeros; at most 2^40 of them
-/// (a direct term).
-double end_of(const LoopResponse& response, const std::vector<Complex>& roots) {
-  double end = 1;
-  for (const Complex& s : roots) end = std::max(end, 10 * std::abs(s));
-  for (int k = 0; k < 20 && std::abs(response.at(end)) * kMostGain > 1; ++k) end *= 2;
-  return end;
 }
 
 }  // namespace
@@ -98,11 +98,12 @@ double end_of(const LoopResponse& response, const std::vector<Complex>& roots) {
 std::vector<LoopCrossing> unit_crossings(const StateSpace& L, const LoopResponse& response) {
   const Eigen::VectorXcd zeros = transmission_zeros(unit_circle(L));
   std::vector<Complex> candidates(zeros.begin(), zeros.end()), roots = roots_of_model(L);
-  roots.insert(roots.end(), candidates.begin(), candidates.end());
   const Function f = [&](double omega) {
     const double size = std::abs(response.at(omega));
     return std::isfinite(size) ? (size * size - 1) / (size * size + 1) : 1;
   };
+  drop_at_zero(candidates, roots, f);
+  roots.insert(roots.end(), candidates.begin(), candidates.end());
   std::vector<LoopCrossing> result;
   for (const double omega : roots_of(f, structured(roots, 0, 0), candidates))
     result.push_back({omega, response.at(omega)});
@@ -113,19 +114,22 @@ std::vector<LoopCrossing> negative_crossings(const StateSpace& L, const LoopResp
   const bool delayed = response.delay() > 0;
   std::vector<Complex> candidates, roots = roots_of_model(L);
   if (!delayed) add(candidates, transmission_zeros(real_axis(L)));
-  roots.insert(roots.end(), candidates.begin(), candidates.end());
   // The sine of the angle: no size, and no pole.
   const Function f = [&](double omega) {
     const Complex value = response.at(omega);
     return std::isfinite(std::abs(value)) && value != 0.0 ? value.imag() / std::abs(value) : 0.5;
   };
-  const double end = delayed ? end_of(response, roots) : 0;
+  drop_at_zero(candidates, roots, f);
+  roots.insert(roots.end(), candidates.begin(), candidates.end());
+  if (delayed)
+    for (const LoopCrossing& c : unit_crossings(L, response)) roots.emplace_back(0, c.omega);
+  const double end = delayed ? end_of_turns(response, roots) : 0;
   std::vector<LoopCrossing> result;
   const auto look = [&](double omega) {
     const Complex value = response.at(omega);
     if (std::isfinite(std::abs(value)) && value.real() < 0) result.push_back({omega, value});
   };
-  look(0);
+  if (std::find(roots.begin(), roots.end(), Complex(0)) == roots.end()) look(0);
   for (const double omega : roots_of(f, structured(roots, response.delay(), end), candidates))
     look(omega);
   if (!delayed) look(std::numeric_limits<double>::infinity());

@@ -11,8 +11,8 @@ namespace titop::detail {
 std::vector<LoopCrossing> unit_crossings(const StateSpace& L, const LoopResponse& response);
 
 /// Where L is real and negative, by frequency: 0 (if L has no pole there) and infinity (if it has a
-/// direct term and no delay) included. With a delay: up to the frequency beyond which |L| stays so
-/// small that no gain margin below 1e3 is there.
+/// direct term and no delay) included. With a delay: up to end_of_turns, beyond which L is smaller
+/// than at one of these.
 std::vector<LoopCrossing> negative_crossings(const StateSpace& L, const LoopResponse& response);
 
 }  // namespace titop::detail

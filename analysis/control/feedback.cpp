@@ -22,7 +22,8 @@ StateSpace with_closed(const StateSpace& L, const std::vector<int>& closed) {
     throw Error(Code::ill_posed,
                 "the closed loop has no unique solution: 1 + L is singular at high "
                 "frequencies",
-                "give the law or the actuator its dynamics: a loop without delay has none of 1");
+                "an algebraic loop of gain exactly -1 has no solution: add the dynamics of the "
+                "actuator or of the sensor");
   StateSpace c = L;
   c.A -= Bk * M.matrix * Ck;
   c.B -= Bk * M.matrix * Dku;

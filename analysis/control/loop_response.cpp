@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -5,6 +7,8 @@
 #include <titop/analysis/control/loop_response.hpp>
 #include <titop/analysis/norms/scaled.hpp>
 #include <titop/compiler/minreal/poles.hpp>
+#include <titop/graph/error.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::detail {
 
@@ -55,18 +59,39 @@ std::vector<double> structured(const std::vector<std::complex<double>>& roots, d
     if (omega > 0 && std::isfinite(omega)) list.push_back(omega);
   };
   for (const std::complex<double>& s : roots) add(std::abs(s)), add(std::abs(s.imag()));
-  if (list.empty()) list.push_back(1);
-  std::sort(list.begin(), list.end());
-  list.push_back(list.back() * 10), list.push_back(list.back() * 10);
-  list.push_back(list.front() / 10), list.push_back(list.front() / 100);
   if (const double step = std::numbers::pi / 2 / delay; delay > 0)
     for (double k = 1; k * step <= end; ++k) list.push_back(k * step);
+  if (list.empty()) list.push_back(1);
+  const auto [low, high] = std::minmax_element(list.begin(), list.end());
+  for (const double omega : {*low / 10, *low / 100, *high * 10, *high * 100}) list.push_back(omega);
   std::sort(list.begin(), list.end());
   const std::size_t count = list.size();
   for (std::size_t i = 0; i + 1 < count; ++i) add(std::sqrt(list[i]) * std::sqrt(list[i + 1]));
   std::sort(list.begin(), list.end());
   list.erase(std::unique(list.begin(), list.end()), list.end());
   return list;
+}
+
+double end_of_turns(const LoopResponse& response, const std::vector<std::complex<double>>& roots) {
+  const double turn = 2 * std::numbers::pi / response.delay();
+  const std::vector<double> list = structured(roots, 0, 0);
+  const auto size = [&](double omega) { return std::abs(response.at(omega)); };
+  double last = 0;  // |L| = 1 or more
+  for (const double omega : list)
+    if (size(omega) >= 1 - linalg::kHalfDigits) last = omega;
+  double least = HUGE_VAL;
+  for (int k = 1; k <= 8; ++k) least = std::min(least, size(last + k * turn / 4));
+  double end = last;
+  for (const double omega : list)
+    if (size(omega) >= least) end = std::max(end, omega);
+  end += 2 * turn;
+  if (4 * end > 1e5 * turn)
+    throw Error(Code::bad_value,
+                fmt::format("a delay of {:g} s is {:.2g} turns at {:.3g} rad/s, where the loop "
+                            "still matters",
+                            response.delay(), end / turn, end),
+                "check the unit of the delay (seconds); reduce the gain at high frequencies");
+  return end;
 }
 
 }  // namespace titop::detail

@@ -14,7 +14,7 @@ class LoopResponse {
  public:
   LoopResponse(const StateSpace& L, double delay);
 
-  /// n x n; not finite at a pole.
+  /// n x n; not finite if s - A is singular, very large near a pole.
   Eigen::MatrixXcd at(std::complex<double> s) const;
   /// The only entry at s = j omega, of one loop; infinite omega: the direct term.
   std::complex<double> at(double omega) const;
@@ -38,9 +38,14 @@ struct SidedPole {
 std::vector<SidedPole> sided_poles(const StateSpace& model);
 
 /// Frequencies [rad/s], ascending and different, above 0, at which or between which |L| and arg L
-/// change: |s| and Im s of the roots given, the geometric means between neighbours, a decade beyond
-/// both ends, and with a delay steps of a quarter turn up to `end`.
+/// change: |s| and Im s of the roots given, with a delay steps of a quarter turn up to `end`, two
+/// decades beyond both ends, and the geometric means between neighbours.
 std::vector<double> structured(const std::vector<std::complex<double>>& roots, double delay,
                                double end);
+
+/// The frequency [rad/s] up to which the turns of a delay count, of a loop without a direct term:
+/// beyond it |L| < 1, and |L| is less than in two whole turns below it. `roots`: poles and zeros
+/// of L, and frequencies at which |L| = 1. Throws bad_value for more than 1e5 quarter turns.
+double end_of_turns(const LoopResponse& response, const std::vector<std::complex<double>>& roots);
 
 }  // namespace titop::detail

@@ -9,8 +9,10 @@
 #include <titop/analysis/control/zeros.hpp>
 #include <titop/analysis/norms/hinf.hpp>
 #include <titop/analysis/norms/scaled.hpp>
+#include <titop/compiler/minreal/minimize.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop {
 namespace {
@@ -33,7 +35,9 @@ Distances by_norms(const StateSpace& L) {
   S.C *= 2;
   S.D = 2 * S.D - MatrixXd::Identity(S.D.rows(), S.D.cols());  // S - T
   const HinfNorm disk = norm_hinf(S);
-  return {{1 / nearest.value, nearest.omega}, {2 / disk.value, disk.omega}};
+  const MarginAt inside{1 / nearest.value, nearest.omega};
+  return {inside, disk.value > 1 ? DiskMargin{2 / disk.value, disk.omega}
+                                 : DiskMargin{2, std::numeric_limits<double>::infinity()}};
 }
 
 /// The least f(omega) over the list and between its neighbours.
@@ -53,17 +57,15 @@ MarginAt least(const F& f, const std::vector<double>& list) {
   return best;
 }
 
-/// On a grid: of one loop with a delay.
+/// On a grid: of one loop with a delay, and no direct term.
 Distances on_grid(const StateSpace& L, const LoopResponse& response,
                   const std::vector<LoopCrossing>& unit) {
   std::vector<std::complex<double>> roots = detail::all_poles(L);
   const Eigen::VectorXcd zeros = transmission_zeros(L);
   roots.insert(roots.end(), zeros.begin(), zeros.end());
-  double end = 1;
-  for (const auto& s : roots) end = std::max(end, 10 * std::abs(s));
-  for (const LoopCrossing& c : unit)
-    roots.emplace_back(0, c.omega), end = std::max(end, 10 * c.omega);
-  std::vector<double> list = detail::structured(roots, 8 * response.delay(), end);
+  for (const LoopCrossing& c : unit) roots.emplace_back(0, c.omega);
+  const std::vector<double> list =
+      detail::structured(roots, 8 * response.delay(), detail::end_of_turns(response, roots));
   const auto distance = [&](double w) { return std::abs(1.0 + response.at(w)); };
   const MarginAt nearest =
       least([&](double w) { return std::isfinite(distance(w)) ? distance(w) : kInfinity; }, list);
@@ -85,14 +87,21 @@ void gain_margins(LoopMargins& m) {
   }
 }
 
-void phase_margins(LoopMargins& m) {
+/// `direct`: |L| at infinite frequency. From 1 on, any delay turns L there past -1 again and again.
+void phase_margins(LoopMargins& m, double direct) {
   m.phase = {kInfinity, 0}, m.delay = {kInfinity, 0};
+  if (direct >= 1) m.delay = {0, kInfinity};
   for (const LoopCrossing& c : m.unit) {
     const double ahead = std::arg(-c.L);  // of -1, from -pi to pi
     if (std::abs(ahead) < m.phase.value) m.phase = {std::abs(ahead), c.omega};
     const double lag = ahead < 0 ? ahead + 2 * pi : ahead;
     if (lag / c.omega < m.delay.value) m.delay = {lag / c.omega, c.omega};
   }
+}
+
+double nearest_with_delay(const StateSpace& L, double delay) {
+  const LoopResponse response(L, delay);
+  return on_grid(L, response, detail::unit_crossings(L, response)).nearest.value;
 }
 
 LoopMargins of_one(const StateSpace& L, double delay, bool stable, std::string name) {
@@ -103,7 +112,7 @@ LoopMargins of_one(const StateSpace& L, double delay, bool stable, std::string n
   m.negative = detail::negative_crossings(L, response);
   if (!stable) return m;
   gain_margins(m);
-  phase_margins(m);
+  phase_margins(m, std::abs(L.D(0, 0)));
   const Distances d = delay > 0 ? on_grid(L, response, m.unit) : by_norms(L);
   m.nearest = d.nearest, m.disk = d.disk;
   return m;
@@ -123,6 +132,10 @@ void check(const StateSpace& L, double delay) {
         "a delay of " + std::to_string(delay) + " s in " + std::to_string(L.D.rows()) + " loops",
         "give MarginOptions::delay in seconds, 0 or more, and for one loop only; for "
         "several put Pade approximations into the diagram");
+  if (delay > 0 && L.D(0, 0) != 0)
+    throw Error(Code::bad_value, "a delay in a loop with a direct term",
+                "give the actuator or the sensor its dynamics: without, the loop does not become "
+                "small at high frequencies, and the delay turns it past -1 at all of them");
   if (L.order() > kMostStatesOfHinf)
     throw Error(Code::bad_value,
                 "margins of a loop transfer of " + std::to_string(L.order()) + " states",
@@ -131,7 +144,8 @@ void check(const StateSpace& L, double delay) {
 }
 
 std::string point_name(const StateSpace& L, int i) {
-  return linalg::at(i) < L.outputs.size() ? L.outputs[linalg::at(i)] : std::to_string(i + 1);
+  return linalg::at(i) < L.outputs.size() ? L.outputs[linalg::at(i)]
+                                          : "loop " + std::to_string(i + 1);
 }
 
 }  // namespace
@@ -140,6 +154,8 @@ Margins margins(const StateSpace& L, const MarginOptions& options) {
   check(L, options.delay);
   Margins m;
   m.nyquist = detail::nyquist_count(L, LoopResponse(L, options.delay));
+  if (options.delay > 0 && nearest_with_delay(L, options.delay) <= linalg::kHalfDigits)
+    m.nyquist.closed_on_axis = 1;
   m.stable = m.nyquist.closed_right == 0 && m.nyquist.closed_on_axis == 0 && m.nyquist.agree;
   const int count = static_cast<int>(L.D.rows());
   for (int i = 0; i < count; ++i)
@@ -155,7 +171,9 @@ Margins margins(const StateSpace& L, const MarginOptions& options) {
 }
 
 Margins margins(const ControlLoop& loop, const MarginOptions& options) {
-  return margins(loop.L.state_space(), options);
+  const StateSpace& L = loop.L.state_space();
+  // Modes that the loop does not move or see would count as poles of the closed loop.
+  return margins(loop.L.order_verdict().judged ? L : minimize(L).model, options);
 }
 
 }  // namespace titop

@@ -24,9 +24,10 @@ struct LoopCrossing {
   std::complex<double> L;
 };
 
-/// The largest disk of gains and phases, the same for all frequencies, that may be multiplied to
-/// every input of the loop, independently of each other, before it becomes unstable: alpha =
-/// 2/||S - T||_inf, gains (1 + delta) / (1 - delta) with |delta| < alpha / 2 [Blight, Dailey,
+/// A disk of gains and phases, the same for all frequencies, that may be multiplied to every input
+/// of the loop, independently of each other, without making it unstable: alpha = 2/||S - T||_inf,
+/// at most 2; gains (1 + delta) / (1 - delta) with |delta| < alpha / 2. Of one loop it is the
+/// largest; of several a lower bound, which depends on the units of their signals [Blight, Dailey,
 /// Gangsaas, Int. J. Control 59 (1994); Seiler, Packard, Gahinet, IEEE Control Syst. 40 (2020)].
 struct DiskMargin {
   double alpha = 0;  ///< 0 to 2
@@ -43,8 +44,8 @@ struct LoopMargins {
   MarginAt larger_gain;   ///< least factor above 1 that brings L to -1; see `decibels`
   MarginAt smaller_gain;  ///< largest factor below 1 that does; 0: none
   MarginAt phase;         ///< least turn of L, in either direction, that does [rad]; see `degrees`
-  MarginAt delay;         ///< least additional delay that does [s]
-  MarginAt nearest;       ///< least distance of L(j omega) to -1: 1/||S||_inf
+  MarginAt delay;    ///< least additional delay that does [s]; 0 if |L| >= 1 at high frequencies
+  MarginAt nearest;  ///< least distance of L(j omega) to -1: 1/||S||_inf
   DiskMargin disk;
   std::vector<LoopCrossing> unit;      ///< all crossings of |L| = 1, by frequency
   std::vector<LoopCrossing> negative;  ///< all crossings of the negative real axis, by frequency
@@ -54,11 +55,12 @@ struct LoopMargins {
 struct NyquistCount {
   int open_right = 0;      ///< P: poles of L right of the axis
   int closed_right = 0;    ///< Z: closed-loop poles right of the axis; with a delay P + N
-  int closed_on_axis = 0;  ///< closed-loop poles on the axis, up to the rounding of their matrix
+  int closed_on_axis = 0;  ///< closed-loop poles on the axis, up to the rounding of their matrix;
+                           ///< with a delay 1 if L comes closer to -1 than 1.5e-8
   /// N: clockwise turns of det(1 + L(s)) about 0 as s goes up the imaginary axis, right of poles on
   /// it. Not counted (0) with closed-loop poles on the axis.
   int encirclements = 0;
-  bool agree = false;  ///< N = Z - P
+  bool agree = false;  ///< N = Z - P; with a delay, for which Z is not counted: N is whole
 };
 
 /// Margins of a loop.
@@ -72,8 +74,8 @@ struct Margins {
 
 /// Options of `margins`.
 struct MarginOptions {
-  /// A delay in the loop [s], exact: L(s) e^(-delay s). One loop only. Margins are then found on a
-  /// grid that follows the delay's phase, and refined.
+  /// A delay in the loop [s], exact: L(s) e^(-delay s). One loop without a direct term. Margins are
+  /// then found on a grid that follows the delay's phase, and refined.
   double delay = 0;
 };
 
@@ -87,8 +89,9 @@ struct MarginOptions {
 /// System::poles(). A margin holds for changes of this loop alone.
 ///
 /// Throws size for L that is not square or does not fit itself, not_finite, ill_posed if 1 + L is
-/// singular at high frequencies, bad_value for a delay that is negative or not finite, or in more
-/// than one loop, and for more than kMostStatesOfHinf states (norm_hinf). O(1000 n^3).
+/// singular at high frequencies, bad_value for a delay that is negative or not finite, in more than
+/// one loop, in a loop with a direct term, or of more than 1e5 quarter turns where L matters, and
+/// for more than kMostStatesOfHinf states (norm_hinf). O(1000 n^3).
 Margins margins(const StateSpace& L, const MarginOptions& options = {});
 /// Of ControlLoop::L.state_space(): of the minimal L, with the names of the loop points.
 Margins margins(const ControlLoop& loop, const MarginOptions& options = {});

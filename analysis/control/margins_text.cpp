@@ -46,11 +46,12 @@ std::string to_string(const Margins& m) {
   if (!m.stable)
     return fmt::format(
         "the closed loop is not stable, and has no margins: {} poles right of the axis, {} on it "
-        "(of L {}; encirclements of -1: {}{})\n",
+        "up "
+        "to rounding (L has {} poles right of it; encirclements of -1: {}{})\n",
         n.closed_right, n.closed_on_axis, n.open_right, n.encirclements,
         n.agree || n.closed_on_axis > 0 ? "" : ", which does not agree");
   std::string text = fmt::format(
-      "stable: no closed-loop pole right of the axis, of L {}, encirclements of -1: {}\n",
+      "stable: no closed-loop pole right of the axis (L has {}; encirclements of -1: {})\n",
       n.open_right, n.encirclements);
   if (m.loops.size() > 1)
     text += "all loops at once\n" + disk_text(m.disk) + nearest_text(m.nearest);

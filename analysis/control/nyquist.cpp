@@ -2,6 +2,7 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
+#include <titop/analysis/control/crossings.hpp>
 #include <titop/analysis/control/feedback.hpp>
 #include <titop/analysis/control/nyquist.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -92,11 +93,15 @@ std::vector<double> steps(double from, double to, const std::vector<Complex>& po
 }
 
 /// Beyond it L is its direct term; with a delay, where |L| stays below 1.
-double end_of_steps(const LoopResponse& response, const std::vector<Complex>& poles) {
+double end_of_steps(const StateSpace& L, const LoopResponse& response,
+                    const std::vector<Complex>& poles) {
+  if (response.delay() > 0) {
+    std::vector<Complex> roots = poles;
+    for (const LoopCrossing& c : unit_crossings(L, response)) roots.emplace_back(0, c.omega);
+    return end_of_turns(response, roots);
+  }
   double end = 1;
   for (const Complex& s : poles) end = std::max(end, 1e3 * std::abs(s));
-  for (int k = 0; response.delay() > 0 && k < 20 && response.at(Complex(0, end)).norm() > 0.5; ++k)
-    end *= 2;
   return end;
 }
 
@@ -104,7 +109,7 @@ double end_of_steps(const LoopResponse& response, const std::vector<Complex>& po
 double turn_of_half(const StateSpace& L, const LoopResponse& response,
                     const std::vector<SidedPole>& open, const std::vector<Complex>& poles) {
   const Winding winding(response);
-  const double end = end_of_steps(response, poles);
+  const double end = end_of_steps(L, response, poles);
   double sum = 0, from = 0;
   const auto straight = [&](double to) {
     const std::vector<double> list = steps(from, to, poles, response.delay());

@@ -29,7 +29,7 @@ Skewness skewness(const MatrixXd& S) {
   for (Index j = 0; j < S.cols(); ++j)
     for (Index i = j + 1; i < S.rows(); ++i) {
       const double off = std::abs(S(i, j) - S(j, i));
-      if (off <= worst.size * root(i) * root(j)) continue;
+      if (off == 0 || off <= worst.size * root(i) * root(j)) continue;
       const double size = root(i) * root(j);
       worst = {size > 0 ? off / size : std::numeric_limits<double>::infinity(), i, j};
     }

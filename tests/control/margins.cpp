@@ -85,7 +85,7 @@ TEST_CASE("three lags and an integrator with two: the gain margin of Routh") {
       const double w = a * std::sqrt(std::pow(k, 2.0 / 3) - 1);
       CHECK(close(m.phase, pi - 3 * std::atan(w / a), w));
     } else {
-      CHECK(m.phase.value == (k < 1 ? kNone : m.phase.value));
+      CHECK(m.phase.value == kNone);  // k = 1: |L| is 1 at 0 alone
     }
   }
   for (const double a : {0.5, 2.0})
@@ -141,6 +141,64 @@ TEST_CASE("a conditionally stable loop: both gain margins") {
   const LoopMargins l = one(ratio({1, 2, 1}, {T * T, 2 * T, 1, 0, 0, 0}));
   CHECK(close(l.smaller_gain, 1 / size(slow), slow));
   CHECK(close(l.larger_gain, 1 / size(fast), fast));
+}
+
+TEST_CASE("an integrator with a lag and a delay, the lag from slower to far faster") {
+  for (const double a : {0.3, 3.0, 30.0, 300.0, 2000.0, 1e4, 1e6})
+    for (const double k : {0.5, 3.0}) {
+      const double tau = 0.1;
+      if (k > 1 && a < 1) continue;
+      CAPTURE(a);
+      CAPTURE(k);
+      // k a / (s (s + a)) e^(-s tau) is real and negative where atan(w / a) + w tau = pi / 2.
+      double low = 0, high = pi / 2 / tau;
+      for (int i = 0; i < 200; ++i)
+        (std::atan((low + high) / 2 / a) + (low + high) / 2 * tau < pi / 2 ? low : high) =
+            (low + high) / 2;
+      const LoopMargins m = one(ratio({k * a}, {1, a, 0}), tau);
+      CHECK(close(m.larger_gain, low * std::hypot(low, a) / (k * a), low));
+      const double w = std::sqrt(2.0) * k / std::sqrt(1 + std::sqrt(1 + 4 * k * k / (a * a)));
+      CHECK(close(m.phase, pi / 2 - std::atan(w / a) - w * tau, w));
+      CHECK(close(m.delay, (pi / 2 - std::atan(w / a)) / w - tau, w));
+    }
+}
+
+TEST_CASE("with a delay and a pole on the axis, or a direct term") {
+  const Margins m = margins(ratio({1}, {1, 0}), {.delay = pi / 2});  // -1 at 1 rad/s
+  CHECK(!m.stable);
+  CHECK(m.nyquist.closed_on_axis == 1);
+  for (const StateSpace& direct :
+       {ratio({2, 1}, {1, 1}), ratio({0.9, 0.9}, {1, 2}), ratio({1}, {1})})
+    CHECK(says(error_of([&] { margins(direct, {.delay = 1e-9}); }), Code::bad_value,
+               {"direct term", "actuator"}));
+  CHECK(says(error_of([&] {
+               margins(ratio({1e6}, {1, 0}), {.delay = 5});
+             }),
+             Code::bad_value, {"delay of 5 s", "turns"}));
+}
+
+TEST_CASE("the delay margin of a loop that is not small at high frequencies is 0") {
+  for (const double b : {0.5, 1.5}) {
+    const LoopMargins m = one(ratio({2, b}, {1, 1}));
+    CHECK(m.delay.value == 0);
+    CHECK(m.delay.omega == kNone);
+  }
+  CHECK(one(ratio({0.9, 0.5}, {1, 1})).delay.value == kNone);
+}
+
+TEST_CASE("the unit circle touched at 0 alone, or everywhere, is not crossed") {
+  CHECK(one(ratio({1}, {1, 1})).unit.empty());
+  CHECK(one(ratio({1}, {1})).unit.empty());
+  CHECK(one(ratio({2, 3}, {1, 4, 3})).phase.value == kNone);  // 1 at 0, falling
+}
+
+TEST_CASE("a disk margin is 2 at most") {
+  for (const StateSpace& L : {ratio({0.5}, {1}), ratio({1, 2}, {1, 1}), ratio({1}, {1})}) {
+    const DiskMargin disk = one(L).disk;
+    CHECK(disk.alpha == 2);
+    CHECK(disk.least_gain() == 0);
+    CHECK(disk.largest_gain() == kNone);
+  }
 }
 
 TEST_CASE("a pure gain and a lag with a direct term") {

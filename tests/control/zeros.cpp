@@ -62,8 +62,7 @@ TEST_CASE("single loops: the roots of the numerator, of any relative degree") {
 }
 
 TEST_CASE("two inputs and outputs: the zero of no entry") {
-  // 1 / ((s + 1) (s + 2)) [s - 1, s; -6, s - 2]: det = (s^2 + 3 s + 2) / ((s + 1) (s + 2))^2 has no
-  // zero that is not a pole; [2 / (s + 1), 3 / (s + 2); 1 / (s + 1), 1 / (s + 1)] has one at +1.
+  // [2 / (s + 1), 3 / (s + 2); 1 / (s + 1), 1 / (s + 1)] has a zero at +1.
   StateSpace m;  // states: 1/(s+1) of u1, 1/(s+2) of u2, 1/(s+1) of u2
   m.A = Eigen::Vector3d(-1, -2, -1).asDiagonal();
   m.B = MatrixXd(3, 2), m.C = MatrixXd(2, 3), m.D = MatrixXd::Zero(2, 2);
