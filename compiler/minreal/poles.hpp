@@ -42,7 +42,8 @@ std::string xi_of_bodies(const Pole& pole);
 ///
 /// `rounding`: of the entries of A, as of a dense model with cancellation; empty: 2.2e-16 of each.
 /// `energy`: potential energy x' E x / 2, if known; models whose coordinates share springs and
-/// masses (closed chains) are solved as symmetric problems by it.
+/// masses (closed chains) are solved as symmetric problems by it, if every coordinate has
+/// stiffness and no state has been removed.
 std::vector<Pole> poles(const StateSpace& model, const Eigen::MatrixXd& rounding = {},
                         const Eigen::MatrixXd& energy = {});
 

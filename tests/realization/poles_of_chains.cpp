@@ -2,6 +2,8 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <complex>
+#include <string>
 #include <titop/titop.hpp>
 #include <vector>
 
@@ -44,6 +46,51 @@ Eigen::VectorXd frequencies() {
 }
 
 }  // namespace
+
+namespace {
+
+/// Two beams in a row, held at both ends.
+System two_in_a_row() {
+  Diagram d{"two in a row"};
+  Beam second = beam();
+  second.length = 1.3;
+  auto left = d.add("left", FlexibleBody(beam())), right = d.add("right", FlexibleBody(second));
+  ground(left);
+  mount(right, left.child, Rotation());
+  ground(right.child);
+  d.output("a", 6) = right.parent.accel;
+  return compile(d, {.minimize_up_to = 0});
+}
+
+/// The share of the states of `block` in the mode of A at j omega: |v_i w_i|, of total 1.
+double share(const StateSpace& m, const std::string& block, double omega) {
+  const Eigen::EigenSolver<MatrixXd> e(m.A);
+  const Eigen::MatrixXcd V = e.eigenvectors(), W = V.inverse();
+  Index k = 0;
+  (e.eigenvalues().array() - std::complex<double>(0, omega)).abs().minCoeff(&k);
+  double sum = 0, all = 0;
+  for (Index i = 0; i < m.A.rows(); ++i) {
+    const double part = std::abs(V(i, k) * W(k, i));
+    all += part;
+    if (m.states[static_cast<std::size_t>(i)].rfind(block + ".", 0) == 0) sum += part;
+  }
+  return sum / all;
+}
+
+}  // namespace
+
+TEST_CASE("poles: shares of two bodies in a closed chain are those of the eigenvectors of A") {
+  const System system = two_in_a_row();
+  int compared = 0;
+  for (const Pole& p : system.poles())
+    for (const auto& [block, part] : p.blocks)
+      if (p.omega < 3000 && part < 1) {
+        CAPTURE(p.omega);
+        CHECK(std::abs(part - share(system.state_space(), block, p.omega)) <= 1e-5);
+        ++compared;
+      }
+  CHECK(compared >= 4);
+}
 
 TEST_CASE("poles: a beam held at both ends is undamped, at the frequencies of its mesh") {
   const Eigen::VectorXd exact = frequencies();
