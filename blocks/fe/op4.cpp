@@ -14,6 +14,7 @@ namespace detail {
 namespace {
 
 constexpr long long kMostEntries = 100'000'000;  // of a file: 800 MB
+constexpr long long kMostOfMatrix = 25'000'000;
 
 }  // namespace
 
@@ -23,27 +24,41 @@ std::string capitals(std::string_view text) {
   return result;
 }
 
+namespace {
+
+/// Why a matrix of this header is not read; empty if it is.
+std::string unread(const Op4Header& h, const Op4Taken& taken) {
+  if (!taken.only.empty() && !taken.only.contains(h.name)) return "was not asked for";
+  if (h.type == 3 || h.type == 4)
+    return "is complex: write the real stiffness and mass, without structural damping (PARAM,G)";
+  if (h.columns > kMostOfMatrix / h.rows)
+    return fmt::format(
+        "has {} rows and {} columns, more than 25 million entries: reduce the model in Nastran "
+        "(Craig-Bampton)",
+        h.rows, h.columns);
+  if (taken.entries + h.columns * h.rows > kMostEntries)
+    return "comes after 100 million entries of the file: ask for it alone, by its name";
+  return {};
+}
+
+}  // namespace
+
 Op4Matrix make_matrix(const Op4Header& h, Op4Taken& taken, const Refuse& refuse) {
-  if (h.columns < 1 || h.rows < 1 || h.columns > 25'000'000 || h.rows > 25'000'000 ||
-      h.columns * h.rows > 25'000'000)
-    refuse(fmt::format("a matrix of {} rows and {} columns", h.rows, h.columns),
-           "1 to 25 million entries: reduce larger models in Nastran (Craig-Bampton)");
-  if (h.type == 3 || h.type == 4) refuse("a complex matrix", "a real one, type 1 or 2");
-  if (h.type != 1 && h.type != 2)
-    refuse(fmt::format("type {}", h.type), "1 (real single) or 2 (real double)");
-  if (!taken.names.insert(h.name).second)
-    refuse(fmt::format("matrix {} a second time", h.name),
-           "each once: write one file per run (ASSIGN OUTPUT4=..., DELETE)");
+  if (h.columns < 1 || h.rows < 1)
+    refuse(fmt::format("a matrix of {} rows and {} columns", h.rows, h.columns), "1 or more");
+  if (h.type < 1 || h.type > 4)
+    refuse(fmt::format("type {}", h.type), "1 (real single), 2 (real double), 3 or 4 (complex)");
+  Op4Matrix matrix{
+      h.name, static_cast<int>(h.form), {}, h.type == 1 ? 7.0 : 15.0, unread(h, taken)};
+  if (!matrix.unread.empty()) return matrix;
   taken.entries += h.columns * h.rows;
-  if (taken.entries > kMostEntries)
-    refuse(fmt::format("{} entries in all matrices together", taken.entries),
-           "at most 100 million: write them to several files");
-  return {h.name, static_cast<int>(h.form), Eigen::MatrixXd::Zero(h.rows, h.columns),
-          h.type == 1 ? 7.0 : 15.0};
+  matrix.value.setZero(h.rows, h.columns);
+  return matrix;
 }
 
 void put_values(Op4Matrix& matrix, long long row, long long column, std::span<const double> values,
                 const Refuse& refuse) {
+  if (!matrix.unread.empty()) return;
   const auto count = static_cast<long long>(values.size());
   if (column < 0 || column >= matrix.value.cols())
     refuse(fmt::format("column {}", column + 1), fmt::format("1 to {}", matrix.value.cols()));
@@ -67,21 +82,37 @@ void require_ascending(long long column, long long& last, const Refuse& refuse) 
 
 }  // namespace detail
 
-std::vector<Op4Matrix> read_op4(const std::filesystem::path& path) {
+std::vector<Op4Matrix> read_op4(const std::filesystem::path& path,
+                                const std::vector<std::string>& only) {
   const TextFile file = read_text(path);
+  detail::Op4Taken taken;
+  for (const std::string& name : only) taken.only.insert(detail::capitals(name));
   // A binary file starts with the length of its first record, 24 or 48 bytes, as four bytes.
   const bool binary = file.content.size() >= 4 &&
                       std::count(file.content.begin(), file.content.begin() + 4, '\0') == 3;
-  return binary ? detail::read_op4_binary(file.name, file.content) : detail::read_op4_text(path);
+  return binary ? detail::read_op4_binary(file.name, file.content, std::move(taken))
+                : detail::read_op4_text(file, std::move(taken));
 }
 
 const Op4Matrix& find_matrix(const std::vector<Op4Matrix>& matrices, const std::string& name) {
   const std::string wanted = detail::capitals(name);
+  const Op4Matrix* found = nullptr;
   std::string all;
   for (const Op4Matrix& matrix : matrices) {
-    if (matrix.name == wanted) return matrix;
     all += (all.empty() ? "" : ", ") + matrix.name;
+    if (matrix.name != wanted) continue;
+    if (!matrix.unread.empty())
+      throw Error(Code::bad_file, fmt::format("matrix {} was not read", wanted),
+                  "it " + matrix.unread);
+    if (found && (found->value.rows() != matrix.value.rows() ||
+                  found->value.cols() != matrix.value.cols() || found->value != matrix.value))
+      throw Error(Code::bad_file,
+                  fmt::format("the file has several matrices {} with different values", wanted),
+                  "write one file per run (ASSIGN OUTPUT4=..., DELETE) and loop, or take one of "
+                  "the list that read_op4 returns by its place");
+    if (!found) found = &matrix;
   }
+  if (found) return *found;
   throw Error(Code::unknown_name, fmt::format("the file has no matrix {}", wanted),
               "its matrices are " + all);
 }

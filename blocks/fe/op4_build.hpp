@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 #include <titop/blocks/fe/op4.hpp>
+#include <titop/blocks/fe/text_file.hpp>
 
 /// Common to the readers of text and binary OP4.
 namespace titop::fe::detail {
@@ -23,26 +24,31 @@ struct Op4Header {
   bool bigmat = false;  ///< rows was negative, or 65536 and more
 };
 
-/// Matrices read so far from a file.
+/// What was asked of a file, and what has been taken of it so far.
 struct Op4Taken {
-  std::set<std::string> names;
+  std::set<std::string> only;  ///< names in capitals; empty: all
   long long entries = 0;
 };
 
-/// The empty matrix of this header. Before it allocates, it refuses invalid headers, a repeated
-/// name and too many entries in total.
+/// The empty matrix of this header; `unread` says why it is not to be filled. Refuses invalid
+/// headers.
 Op4Matrix make_matrix(const Op4Header& header, Op4Taken& taken, const Refuse& refuse);
 
 /// Puts values into a column from a row on (both from 0); refuses rows outside, values that are not
-/// finite.
+/// finite. Does nothing for a matrix that is not to be read.
 void put_values(Op4Matrix& matrix, long long row, long long column, std::span<const double> values,
                 const Refuse& refuse);
 
 /// Columns come in ascending order, each once; `last` is the one before and becomes this one.
 void require_ascending(long long column, long long& last, const Refuse& refuse);
 
-/// Words per value: 1 single, 2 double (of 4 bytes).
-inline int words_per_value(long long type) { return type == 1 ? 1 : 2; }
+/// Words of 4 bytes per real number, and numbers per value: types 1 real single, 2 real double, 3
+/// complex single, 4 complex double.
+inline int words_per_number(long long type) { return type == 1 || type == 3 ? 1 : 2; }
+inline int numbers_per_value(long long type) { return type <= 2 ? 1 : 2; }
+inline int words_per_value(long long type) {
+  return words_per_number(type) * numbers_per_value(type);
+}
 
 /// The head of a string in a column of a sparse matrix.
 struct Op4String {
@@ -52,7 +58,8 @@ struct Op4String {
 /// Without BIGMAT both are packed into one integer.
 inline Op4String unpacked(long long is) { return {(is & 0xffff) - 1, (is >> 16) - 1}; }
 
-std::vector<Op4Matrix> read_op4_binary(const std::string& name, std::span<const char> bytes);
-std::vector<Op4Matrix> read_op4_text(const std::filesystem::path& path);
+std::vector<Op4Matrix> read_op4_binary(const std::string& name, std::span<const char> bytes,
+                                       Op4Taken taken);
+std::vector<Op4Matrix> read_op4_text(const TextFile& file, Op4Taken taken);
 
 }  // namespace titop::fe::detail

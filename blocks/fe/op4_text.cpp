@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <titop/blocks/fe/fortran.hpp>
 #include <titop/blocks/fe/op4_build.hpp>
 #include <titop/blocks/fe/text_file.hpp>
@@ -111,9 +112,10 @@ void read_sparse_column(Lines& lines, const Op4Header& h, long long column, long
     words -= s.words + (h.bigmat ? 2 : 1);
     if (s.words < 1 || s.words % per_value != 0 || words < 0)
       refuse(fmt::format("a string of {} words", s.words), "as many as the column has left");
-    if (s.words / per_value > matrix.value.rows())
+    if (s.words / per_value > h.rows)
       refuse(fmt::format("a string of {} values", s.words / per_value), "at most one per row");
-    put_values(matrix, s.row, column, values_in(lines, s.words / per_value, f), refuse);
+    put_values(matrix, s.row, column, values_in(lines, s.words / words_per_number(h.type), f),
+               refuse);
   }
 }
 
@@ -131,6 +133,20 @@ Op4Header header_in(Lines& lines, Format& f) {
   return h;
 }
 
+/// Digits of the format, those of single precision for type 1. Its format is 5E16.9; a wider one
+/// holds doubles if any number is none of single precision.
+double digits_of(const Op4Matrix& matrix, long long type, const Format& f) {
+  const double printed = std::min(15.0, 1.0 + f.decimals);
+  const double unit = std::pow(10.0, -f.decimals);
+  const auto is_single = [&](double x) {
+    return std::abs(x - static_cast<double>(static_cast<float>(x))) <= unit * std::abs(x);
+  };
+  if (type != 1) return printed;
+  if (f.decimals <= 9 || std::ranges::all_of(matrix.value.reshaped(), is_single))
+    return std::min(7.0, printed);
+  return printed;
+}
+
 Op4Matrix read_matrix(Lines& lines, Op4Taken& taken) {
   const Refuse refuse = [&](const std::string& found, const std::string& expected) {
     lines.refuse(found, expected);
@@ -138,11 +154,11 @@ Op4Matrix read_matrix(Lines& lines, Op4Taken& taken) {
   Format f;
   const Op4Header h = header_in(lines, f);
   Op4Matrix matrix = make_matrix(h, taken, refuse);
-  matrix.digits = std::min(matrix.digits, 1.0 + f.decimals);
   for (long long last = 0;;) {
     const auto head = integers(lines, lines.next(), 3);
     if (head[0] > h.columns) {
       values_in(lines, 1, f);  // follows the last column, without meaning
+      matrix.digits = digits_of(matrix, h.type, f);
       return matrix;
     }
     require_ascending(head[0], last, refuse);
@@ -150,7 +166,8 @@ Op4Matrix read_matrix(Lines& lines, Op4Taken& taken) {
     if (head[1] == 0) {
       read_sparse_column(lines, h, head[0] - 1, head[2], f, matrix, refuse);
     } else {
-      if (head[2] > h.rows) refuse(fmt::format("a column of {} values", head[2]), "one per row");
+      if (head[2] > h.rows * numbers_per_value(h.type))
+        refuse(fmt::format("a column of {} values", head[2]), "one per row");
       put_values(matrix, head[1] - 1, head[0] - 1, values_in(lines, head[2], f), refuse);
     }
   }
@@ -158,11 +175,9 @@ Op4Matrix read_matrix(Lines& lines, Op4Taken& taken) {
 
 }  // namespace
 
-std::vector<Op4Matrix> read_op4_text(const std::filesystem::path& path) {
-  const TextFile file = read_text(path);
+std::vector<Op4Matrix> read_op4_text(const TextFile& file, Op4Taken taken) {
   Lines lines(file);
   std::vector<Op4Matrix> matrices;
-  Op4Taken taken;
   while (!lines.at_end()) matrices.push_back(read_matrix(lines, taken));
   return matrices;
 }
