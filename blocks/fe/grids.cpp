@@ -64,7 +64,9 @@ void turn(const GridMatrices& m, const Grid& grid, Mesh& mesh) {
   }
 }
 
-void require_sizes(const GridMatrices& m) {
+}  // namespace
+
+void check(const GridMatrices& m) {
   const auto n = std::ssize(m.dofs);
   if (m.K.rows() != n || m.K.cols() != n || m.M.rows() != n || m.M.cols() != n)
     throw Error(Code::size,
@@ -72,8 +74,6 @@ void require_sizes(const GridMatrices& m) {
                             m.K.rows(), m.K.cols(), m.M.rows(), m.M.cols(), n),
                 "one row and column of both per entry of GridMatrices::dofs");
 }
-
-}  // namespace
 
 GridMatrices grid_matrices(std::string name, const MatrixXd& K, const MatrixXd& M,
                            const std::vector<int>& grids, double digits) {
@@ -92,7 +92,7 @@ GridMatrices grid_matrices(std::string name, const MatrixXd& K, const MatrixXd& 
 }
 
 Mesh to_mesh(const GridMatrices& m, const std::vector<Grid>& grids) {
-  require_sizes(m);
+  check(m);
   require_same_grids(m, grids);
   Mesh mesh;
   mesh.name = m.name;
@@ -104,6 +104,7 @@ Mesh to_mesh(const GridMatrices& m, const std::vector<Grid>& grids) {
     point[g.id] = mesh.points.size();
     if (!g.name.empty()) mesh.interfaces.push_back({g.name, mesh.points.size()});
     mesh.points.push_back({std::to_string(g.id), g.position});
+    mesh.position_noise = std::max(mesh.position_noise, g.noise);
   }
   for (const GridDof& dof : m.dofs) {
     if (dof.component > 0) {
@@ -118,30 +119,37 @@ Mesh to_mesh(const GridMatrices& m, const std::vector<Grid>& grids) {
   return symmetrised(std::move(mesh));
 }
 
-MatrixXd rigid_motions_by_statics(const GridMatrices& m, int grid) {
-  require_sizes(m);
-  std::vector<Index> r, f;
-  for (Index i = 0; i < m.K.rows(); ++i) {
-    const GridDof& dof = m.dofs[static_cast<std::size_t>(i)];
-    (dof.grid == grid && dof.component > 0 ? r : f).push_back(i);
+std::vector<GridDof> empty_rows(const GridMatrices& m) {
+  check(m);
+  std::vector<GridDof> result;
+  for (Index i = 0; i < m.K.rows(); ++i)
+    if (m.K.row(i).isZero(0) && m.M.row(i).isZero(0) && m.K.col(i).isZero(0) &&
+        m.M.col(i).isZero(0))
+      result.push_back(m.dofs[static_cast<std::size_t>(i)]);
+  return result;
+}
+
+GridMatrices without(GridMatrices m, const std::vector<GridDof>& rows) {
+  check(m);
+  const std::set<GridDof> there(m.dofs.begin(), m.dofs.end());
+  for (const GridDof& dof : rows)
+    if (!there.contains(dof))
+      throw Error(Code::unknown_name,
+                  fmt::format("the matrices of {} have no component {} of grid {}", m.name,
+                              dof.component, dof.grid),
+                  "take it out of the list");
+  std::vector<Index> kept;
+  std::vector<GridDof> dofs;
+  const std::set<GridDof> dropped(rows.begin(), rows.end());
+  for (std::size_t i = 0; i < m.dofs.size(); ++i) {
+    if (dropped.contains(m.dofs[i])) continue;
+    kept.push_back(static_cast<Index>(i));
+    dofs.push_back(m.dofs[i]);
   }
-  if (r.size() != 6)
-    throw Error(Code::bad_modes,
-                fmt::format("grid {} of {} has {} components", grid, m.name, r.size()),
-                "rigid motions need a grid with all six");
-  const MatrixXd K_ff = m.K(f, f);
-  if (const Index row = weak_pivot(K_ff); row >= 0) {
-    const GridDof& dof = m.dofs[static_cast<std::size_t>(f[static_cast<std::size_t>(row)])];
-    throw Error(
-        Code::bad_modes,
-        fmt::format("{} clamped at grid {} moves without stiffness at grid {}, component {}",
-                    m.name, grid, dof.grid, dof.component),
-        "clamp it at another grid, or leave out degrees of freedom without stiffness");
-  }
-  MatrixXd R = MatrixXd::Zero(m.K.rows(), 6);
-  R(r, Eigen::all) = MatrixXd::Identity(6, 6);
-  R(f, Eigen::all) = -solve_definite(K_ff, m.K(f, r));
-  return R;
+  m.K = m.K(kept, kept).eval();
+  m.M = m.M(kept, kept).eval();
+  m.dofs = std::move(dofs);
+  return m;
 }
 
 }  // namespace titop::fe

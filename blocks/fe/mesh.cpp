@@ -171,27 +171,6 @@ std::size_t find_point(const Mesh& mesh, const std::string& name) {
                             : "its interfaces are " + known);
 }
 
-std::array<Index, 6> interface_rows(const Mesh& mesh, const std::string& name) {
-  const std::size_t point = find_point(mesh, name);
-  std::array<Index, 6> rows;
-  rows.fill(-1);
-  for (std::size_t i = 0; i < mesh.dofs.size(); ++i)
-    if (mesh.dofs[i].point == point && mesh.dofs[i].component < kGeneralised)
-      rows.at(static_cast<std::size_t>(mesh.dofs[i].component)) = static_cast<Index>(i);
-  std::string missing;
-  for (std::size_t c = 0; c < 6; ++c)
-    if (rows.at(c) < 0)
-      missing += std::string(missing.empty() ? "" : ", ") + component_name(int(c));
-  if (!missing.empty())
-    throw Error(Code::bad_modes,
-                fmt::format("point {} of mesh {} cannot be an interface: it has no degree of "
-                            "freedom {}",
-                            name, mesh.name, missing),
-                "tie it to a node with rotations (a rigid body element) in the finite-element "
-                "program");
-  return rows;
-}
-
 MatrixXd rigid_motions(const Mesh& mesh, const Vector3d& P) {
   MatrixXd R = MatrixXd::Zero(static_cast<Index>(mesh.dofs.size()), 6);
   for (std::size_t i = 0; i < mesh.dofs.size(); ++i) {
@@ -200,6 +179,46 @@ MatrixXd rigid_motions(const Mesh& mesh, const Vector3d& P) {
       R.row(static_cast<Index>(i)) = tau(P - mesh.points.at(dof.point).position).row(dof.component);
   }
   return R;
+}
+
+std::array<bool, 6> still_directions(const Mesh& mesh, const Vector3d& P) {
+  const MatrixXd R = rigid_motions(mesh, P);
+  std::array<bool, 6> still{};
+  if (R.rows() == 0) return still;
+  const double length = R.cwiseAbs().maxCoeff();
+  for (int c = 0; c < 6; ++c)
+    still.at(static_cast<std::size_t>(c)) =
+        R.col(c).cwiseAbs().maxCoeff() <= linalg::kAxisRounding * length;
+  return still;
+}
+
+std::array<Index, 6> interface_rows(const Mesh& mesh, const std::string& name,
+                                    const std::array<bool, 6>& rigid) {
+  const std::size_t point = find_point(mesh, name);
+  std::array<Index, 6> rows;
+  rows.fill(-1);
+  for (std::size_t i = 0; i < mesh.dofs.size(); ++i)
+    if (mesh.dofs[i].point == point && mesh.dofs[i].component < kGeneralised)
+      rows.at(static_cast<std::size_t>(mesh.dofs[i].component)) = static_cast<Index>(i);
+  const std::array<bool, 6> still = still_directions(mesh, mesh.points[point].position);
+  std::string missing;
+  bool planar = true;
+  for (std::size_t c = 0; c < 6; ++c) {
+    if (rows.at(c) >= 0 || rigid.at(c)) continue;
+    missing += std::string(missing.empty() ? "" : ", ") + component_name(int(c));
+    planar = planar && still.at(c);
+  }
+  if (missing.empty()) return rows;
+  const char* hint = planar ? "the whole mesh leaves these directions out: give the rigid mass "
+                              "matrix about the parent (ModeOptions::rigid), and the body is rigid "
+                              "in them"
+                            : "tie it to a node with rotations (a rigid body element) in the "
+                              "finite-element program";
+  throw Error(Code::bad_modes,
+              fmt::format("point {} of mesh {} cannot be an interface: it has no degree of "
+                          "freedom {}",
+                          name, mesh.name, missing),
+              hint);
 }
 
 }  // namespace titop::fe

@@ -28,7 +28,8 @@ struct Dof {
   int component = 0;      ///< 0..5, or kGeneralised
 };
 
-/// A point under a second name, where other bodies may be attached; it must have all six dofs.
+/// A point under a second name, where other bodies may be attached. It must have all six dofs, but
+/// for directions in which the whole mesh is rigid (`ModeOptions::rigid`).
 struct MeshInterface {
   std::string name;
   std::size_t point = 0;  ///< index into Mesh::points
@@ -40,10 +41,11 @@ struct Mesh {
   std::vector<MeshPoint> points;  ///< names differ
   std::vector<Dof> dofs;          ///< n, one per row of M and K
   std::vector<MeshInterface>
-      interfaces;      ///< names differ from each other and from the points' names
-  Eigen::MatrixXd M;   ///< n x n, symmetric, semidefinite [kg, kg m, kg m^2]
-  Eigen::MatrixXd K;   ///< n x n, symmetric, semidefinite [N/m, N, N m]
-  double digits = 15;  ///< decimal digits that M and K carry
+      interfaces;             ///< names differ from each other and from the points' names
+  Eigen::MatrixXd M;          ///< n x n, symmetric, semidefinite [kg, kg m, kg m^2]
+  Eigen::MatrixXd K;          ///< n x n, symmetric, semidefinite [N/m, N, N m]
+  double digits = 15;         ///< decimal digits that M and K carry
+  double position_noise = 0;  ///< relative error of the positions (`grids_by_statics`)
 };
 
 /// Throws, all together: inconsistent sizes of M and K (`size`), entries that are not finite
@@ -68,9 +70,15 @@ std::string dof_name(const Mesh& mesh, Eigen::Index row);
 /// list of interfaces.
 std::size_t find_point(const Mesh& mesh, const std::string& name);
 
-/// The rows of x, y, z, rx, ry, rz of the interface or point of this name; throws `unknown_name`,
-/// or `bad_modes` if one of the six is missing.
-std::array<Eigen::Index, 6> interface_rows(const Mesh& mesh, const std::string& name);
+/// Directions x, y, z, rx, ry, rz in which no row moves with a rigid motion of P: those that a
+/// planar model, or one of a torsion bar, leaves out. [m]
+std::array<bool, 6> still_directions(const Mesh& mesh, const Vector3d& P);
+
+/// The rows of x, y, z, rx, ry, rz of the interface or point of this name, -1 for those that it
+/// does not have. Throws `unknown_name`, or `bad_modes` if one of the six is missing, but for
+/// `rigid` ones.
+std::array<Eigen::Index, 6> interface_rows(const Mesh& mesh, const std::string& name,
+                                           const std::array<bool, 6>& rigid = {});
 
 /// R (n x 6): displacement of every degree of freedom per unit rigid motion in each component of P
 /// (translations, rotations). Rows of tau_{point,P}; P in the body's frame [m].
@@ -97,6 +105,11 @@ struct ModeOptions {
   /// In place of xi: each clamped mode and residual vector, at its omega, gets the damping ratio
   /// (mass / omega + stiffness omega) / 2.
   std::optional<Rayleigh> rayleigh = {};
+  /// Of models that move in some directions only, such as a beam with z, rx, ry: the mass matrix
+  /// about P of the whole body, `rigid_mass(m, inertia, from the centre of mass to P)`. D_P has
+  /// its rows and columns in the still directions, in which the body is rigid; interfaces need no
+  /// degrees of freedom there. Without it such models are refused.
+  std::optional<Matrix6> rigid = {};
 };
 
 /// Modes of the mesh clamped at `parent`, in the form of [Alazard 2015] eqs (9) to (14). With f all
@@ -116,13 +129,14 @@ struct ModeOptions {
 /// given, they are truncated like other high modes, and residual vectors contain their static part.
 ///
 /// Throws the errors of `check` and `interface_rows`; `duplicate_name` for a child named twice;
+/// `bad_value` for `rigid` if the mesh moves in all six directions;
 /// `bad_modes` if K resists rigid motion by more than 1e-6 of its terms (or 100 units of its last
-/// digit; `rigid_stiffness`): data of a supported structure, or positions in another unit; if K
-/// clamped at the parent is not positive definite (a mechanism: names a degree of freedom), if M is
-/// not positive semidefinite, or if all modes are kept and a child has a massless degree of
-/// freedom; `bad_value` for more modes than there are, and for damping that is negative, not finite
-/// or given twice; `size` for a wrong number of damping ratios.
-/// Cost about 20 n^3.
+/// digit, or ten times the positions' error; `rigid_stiffness`): data of a supported structure, or
+/// positions in another unit; if K clamped at the parent is not positive definite (a mechanism:
+/// names a degree of freedom), if M is not positive semidefinite, or if all modes are kept and a
+/// child has a massless degree of freedom; `bad_value` for more modes than there are, and for
+/// damping that is negative, not finite or given twice; `size` for a wrong number of damping
+/// ratios. Cost about 20 n^3.
 ModalData modal_data(const Mesh& mesh, const std::string& parent,
                      const std::vector<std::string>& children, const ModeOptions& options = {});
 

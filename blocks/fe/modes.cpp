@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 #include <set>
+#include <titop/blocks/fe/clamped.hpp>
 #include <titop/blocks/fe/mesh.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/blocks/fe/mode_damping.hpp>
@@ -23,7 +24,7 @@ namespace {
 /// Throws bad_modes if K resists rigid motion by more than its digits explain.
 void require_free(const Mesh& mesh) {
   const RigidStiffness held = rigid_stiffness(mesh);
-  const double noise = std::max(1e-6, 100 * std::pow(10, -mesh.digits));
+  const double noise = std::max({1e-6, 100 * std::pow(10, -mesh.digits), 10 * mesh.position_noise});
   if (held.of_terms <= noise) return;
   throw Error(
       Code::bad_modes,
@@ -31,44 +32,8 @@ void require_free(const Mesh& mesh) {
                   mesh.name, held.worst, held.of_terms),
       fmt::format("the data contain supports (*BOUNDARY, SPC, springs to ground): remove them, the "
                   "diagram supports the body; or positions have another unit than the matrices, or "
-                  "a grid its own frame. Rounding of {} digits gives {:.0e}",
+                  "a grid its own frame. Rounding of {:.3g} digits gives {:.0e}",
                   mesh.digits, noise));
-}
-
-/// A mesh clamped at its parent. f: all rows but the parent's.
-struct Clamped {
-  const Mesh& mesh;
-  std::vector<Index> f;  ///< n_f rows of the mesh
-  MatrixXd M, K;         ///< n_f x n_f
-  MatrixXd M_rf;         ///< 6 x n_f
-  Matrix6 D_P;
-};
-
-Clamped clamp(const Mesh& mesh, const std::string& parent) {
-  const auto rows = interface_rows(mesh, parent);
-  Clamped c{mesh, {}, {}, {}, {}, {}};
-  for (Index i = 0; i < mesh.M.rows(); ++i)
-    if (std::find(rows.begin(), rows.end(), i) == rows.end()) c.f.push_back(i);
-  const MatrixXd R = rigid_motions(mesh, mesh.points[find_point(mesh, parent)].position);
-  const MatrixXd MR = mesh.M * R;
-  const Matrix6 D_P = R.transpose() * MR;
-  c.D_P = (D_P + D_P.transpose()) / 2;
-  c.M_rf = MR(c.f, Eigen::all).transpose();
-  c.M = mesh.M(c.f, c.f);
-  c.K = mesh.K(c.f, c.f);
-  return c;
-}
-
-std::string name_of(const Clamped& c, Index row) {
-  return dof_name(c.mesh, c.f[static_cast<std::size_t>(row)]);
-}
-
-[[noreturn]] void refuse_mechanism(const Clamped& c, Index row) {
-  throw Error(Code::bad_modes,
-              fmt::format("mesh {} clamped at its parent moves without stiffness at {}",
-                          c.mesh.name, name_of(c, row)),
-              "a part is loose, or K was assembled with supports missing: modes of a mechanism "
-              "have no natural frequency");
 }
 
 /// A mode whose strain energy is within the rounding of K is a mechanism that the Cholesky
@@ -82,17 +47,6 @@ void require_stiffness(const Clamped& c, const SymmetricModes& modes) {
     modes.V.col(k).cwiseAbs().maxCoeff(&row);
     refuse_mechanism(c, row);
   }
-}
-
-/// Rows of f at which one of the children has a degree of freedom.
-std::vector<Index> loaded_rows(const Clamped& c, const std::vector<std::string>& children) {
-  std::vector<Index> loaded;
-  for (const std::string& child : children)
-    for (const Index row : interface_rows(c.mesh, child)) {
-      const auto at = std::find(c.f.begin(), c.f.end(), row);
-      if (at != c.f.end()) loaded.push_back(at - c.f.begin());
-    }
-  return loaded;
 }
 
 /// M = E-part + Z-part in coordinates scaled to a unit diagonal: x = scale (E a + Z b), with
@@ -258,7 +212,7 @@ ModalData modal_data(const Mesh& given, const std::string& parent,
   const Mesh mesh = symmetrised(given);
   require_distinct(mesh, children);
   require_distinct(mesh, options.residual);
-  const Clamped c = clamp(mesh, parent);
+  const Clamped c = clamp(mesh, parent, options);
   SymmetricModes modes = clamped_modes(c, children, options.kept);
   require_free(mesh);  // after the check for mechanisms
   const Index kept = modes.lambda.size();
@@ -275,7 +229,12 @@ ModalData modal_data(const Mesh& given, const std::string& parent,
   const Vector3d P = mesh.points[find_point(mesh, parent)].position;
   for (const std::string& child : children)
     data.children.push_back({child, mesh.points[find_point(mesh, child)].position - P,
-                             Phi(interface_rows(mesh, child), Eigen::all)});
+                             MatrixXd::Zero(6, modes.V.cols())});
+  for (ModalChild& child : data.children) {
+    const auto rows = interface_rows(mesh, child.name, c.rigid);
+    for (std::size_t i = 0; i < 6; ++i)
+      if (rows.at(i) >= 0) child.Phi_C.row(static_cast<Index>(i)) = Phi.row(rows.at(i));
+  }
   return data;
 }
 
