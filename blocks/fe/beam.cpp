@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <titop/blocks/fe/beam.hpp>
+#include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/graph/error.hpp>
 #include <utility>
 #include <vector>
@@ -148,6 +149,10 @@ fe::Mesh beam_mesh(const Beam& beam) {
     add_bending(mesh, first, 2, 4, -1, beam.material.E * beam.section.I_y, mass, h);
   }
   return mesh;
+}
+
+std::vector<std::string> implausible(const Beam& beam) {
+  return implausible_modulus(beam.material.E);
 }
 
 ModalData modal_data(const Beam& beam) {

@@ -4,6 +4,7 @@
 #include <string>
 #include <titop/blocks/fe/mesh.hpp>
 #include <titop/blocks/fe/modal_data.hpp>
+#include <vector>
 
 namespace titop {
 
@@ -52,6 +53,9 @@ struct Beam {
 /// one element, a Poisson's ratio of -1 or less or above 0.5, a material with both or neither of nu
 /// and G.
 void check(const Beam& beam);
+
+/// What is legal but rarely meant, one line each, with its number: E below 1e8 Pa (data in MPa).
+std::vector<std::string> implausible(const Beam& beam);
 
 /// Free mesh of elements + 1 points "0", "1", ... along x, six degrees of freedom each, and the
 /// interfaces "P" (first) and "C" (last). Linear shapes for axial and torsion, cubic ones for

@@ -4,6 +4,7 @@
 #include <limits>
 #include <titop/blocks/fe/calculix.hpp>
 #include <titop/blocks/fe/text_file.hpp>
+#include <titop/graph/support/some_names.hpp>
 #include <utility>
 
 namespace titop::fe {
@@ -24,6 +25,7 @@ struct Label {
 /// Every line has content: an empty one is a mistake, and a last line without line end may be a
 /// truncated number.
 std::vector<TextLine> data_lines(const TextFile& file, FileMistakes& mistakes) {
+  require_text(file);
   require_line_end(file, mistakes);
   return lines_of(file);
 }
@@ -116,9 +118,15 @@ void place_labels(const TextFile& file, const std::vector<Label>& labels, const 
     const int node = rotates ? rotation->second : labels[i].node;
     const auto position = deck.nodes.find(node);
     if (position == deck.nodes.end()) {
-      mistakes.add(bad_line(
+      Mistake mistake = bad_line(
           file, static_cast<int>(i) + 1, fmt::format("{}.{}", labels[i].node, labels[i].dof),
-          fmt::format("a node of {}, which has no position of node {}", deck_name, node)));
+          fmt::format("a node of {}, which has no position of node {}", deck_name, node));
+      if (!deck.makes_nodes.empty() && mistakes.empty())
+        mistake.hint = fmt::format(
+            "CalculiX makes nodes of its own for {}: write *RIGID BODY with REF NODE and ROT NODE "
+            "in place of couplings, solid elements (C3D20) in place of beams and shells",
+            titop::detail::some_names(deck.makes_nodes));
+      mistakes.add(std::move(mistake));
       continue;
     }
     const auto [at, is_new] = point_of.insert({node, mesh.points.size()});

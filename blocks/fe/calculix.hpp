@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <titop/blocks/fe/mesh.hpp>
 #include <vector>
@@ -11,7 +12,8 @@
 /// To have a structure with places where other bodies attach: make each place a `*RIGID BODY` with
 /// a REF NODE (its three displacements) and a ROT NODE (whose "displacements" 1..3 are the
 /// rotations of the body), leave it free (no `*BOUNDARY`), and run the deck. The deck must be in SI
-/// units.
+/// units. Of `*COUPLING`, beams and shells CalculiX makes nodes of its own, whose rows have no
+/// position: write rigid bodies and solid elements.
 namespace titop::fe {
 
 /// The four files of one run.
@@ -39,6 +41,10 @@ struct CalculixDeck {
     int line = 0;
   };
   std::map<int, Vector3d> nodes;  ///< positions [m] by node number
+  /// Keywords for which CalculiX makes nodes that the deck does not have: `*COUPLING`, elements
+  /// that it expands (beams, shells, trusses, plane ones), with their lines.
+  std::vector<std::string> makes_nodes = {};
+  std::optional<double> least_E = {};  ///< smallest Young's modulus of its isotropic materials
   std::vector<RigidConstraint> rigid_bodies;
 };
 
@@ -48,6 +54,9 @@ struct CalculixDeck {
 /// or ROT NODE), and for a bad node number, a bad number, a missing coordinate, two positions of
 /// one node.
 CalculixDeck read_calculix_deck(const std::filesystem::path& path);
+
+/// What is legal but rarely meant: `implausible_modulus` of its materials.
+std::vector<std::string> implausible(const CalculixDeck& deck);
 
 /// The free mesh: one point per node with degrees of freedom, named by its number; a rigid body is
 /// one point, named by its reference node, with displacements and rotations at that node's

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <titop/blocks/fe/calculix.hpp>
+#include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/fe/text_file.hpp>
 
 /// read_calculix_deck: node and degree of freedom of the matrices' rows.
@@ -25,6 +26,14 @@ std::string normal(std::string_view text) {
   return result;
 }
 
+/// Element types that CalculiX expands to solids: B31, S8R, M3D4, T3D2, CPS4, CPE4, CAX4, ...
+bool is_expanded(std::string_view type) {
+  for (const char* kind :
+       {"B2", "B3", "S3", "S4", "S6", "S8", "M3D", "T2D", "T3D", "CPS", "CPE", "CAX"})
+    if (type.starts_with(kind)) return true;
+  return false;
+}
+
 bool is_comment(std::string_view text) { return text.starts_with("**"); }
 
 class DeckReader {
@@ -33,6 +42,7 @@ class DeckReader {
       : file_(read_text(path)), lines_(lines_of(file_)) {}
 
   CalculixDeck read() {
+    require_text(file_);
     Card card;
     while (at_ < lines_.size()) {
       const TextLine line = lines_[at_++];
@@ -40,8 +50,11 @@ class DeckReader {
       if (line.text.starts_with('*')) {
         card = read_card(line);
         if (card.keyword == "*RIGIDBODY") read_rigid_body(card);
+        note_own_nodes(card);
       } else if (card.keyword == "*NODE") {
         read_node(line);
+      } else if (card.keyword == "*ELASTIC") {
+        read_elastic(card, line);
       }
     }
     if (deck_.nodes.empty() && mistakes_.empty())
@@ -73,6 +86,27 @@ class DeckReader {
           mistakes_.add(bad_line(file_, card.line, fmt::format("*NODE parameter {}", name),
                                  "NSET only: this reader does not know what others do"));
     return card;
+  }
+
+  void note_own_nodes(const Card& card) {
+    const auto type = card.parameters.find("TYPE");
+    const bool expanded =
+        card.keyword == "*ELEMENT" && type != card.parameters.end() && is_expanded(type->second);
+    if (expanded)
+      deck_.makes_nodes.push_back(
+          fmt::format("*ELEMENT, TYPE={} (line {})", type->second, card.line));
+    if (card.keyword.ends_with("COUPLING"))
+      deck_.makes_nodes.push_back(fmt::format("{} (line {})", card.keyword, card.line));
+  }
+
+  /// E, nu, temperature; for other types of elasticity another order.
+  void read_elastic(const Card& card, const TextLine& line) {
+    const auto type = card.parameters.find("TYPE");
+    double E = 0;
+    if ((type != card.parameters.end() && type->second != "ISO" && type->second != "ISOTROPIC") ||
+        !parse(comma_fields(line.text).front(), E))
+      return;
+    deck_.least_E = std::min(E, deck_.least_E.value_or(E));
   }
 
   void read_node(const TextLine& line) {
@@ -128,6 +162,10 @@ class DeckReader {
 };
 
 }  // namespace
+
+std::vector<std::string> implausible(const CalculixDeck& deck) {
+  return deck.least_E ? implausible_modulus(*deck.least_E) : std::vector<std::string>{};
+}
 
 CalculixDeck read_calculix_deck(const std::filesystem::path& path) {
   return DeckReader(path).read();

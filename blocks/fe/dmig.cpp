@@ -227,9 +227,19 @@ Eigen::MatrixXd filled(const DmigMatrix& found, const std::map<GridDof, Eigen::I
 
 }  // namespace
 
+std::vector<std::string> dmig_names(const std::filesystem::path& path) {
+  const TextFile file = read_text(path);
+  require_text(file);
+  const DmigReader reader(file);
+  std::vector<std::string> names;
+  for (const auto& [name, found] : reader.matrices) names.push_back(name);
+  return names;
+}
+
 GridMatrices read_dmig(const std::filesystem::path& path, const std::string& stiffness,
                        const std::string& mass) {
   const TextFile file = read_text(path);
+  require_text(file);
   const DmigReader reader(file);
   const DmigMatrix &K = chosen(file, reader, stiffness), &M = chosen(file, reader, mass);
   std::map<GridDof, Eigen::Index> row;

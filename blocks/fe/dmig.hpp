@@ -3,10 +3,14 @@
 #include <filesystem>
 #include <string>
 #include <titop/blocks/fe/grids.hpp>
+#include <vector>
 
 /// Reader for direct matrix input at grids (DMIG), which Nastran writes by EXTSEOUT(DMIGPCH) or
 /// PUNCH.
 namespace titop::fe {
+
+/// Names of the matrices of a file. Throws the errors of `read_dmig` for broken cards.
+std::vector<std::string> dmig_names(const std::filesystem::path& path);
 
 /// The stiffness and mass of these names, e.g. "KAAX", "MAAX". Rows: all degrees of freedom that
 /// either has, by grid and component; if only one has them the other is 0 there.

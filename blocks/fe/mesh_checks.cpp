@@ -33,6 +33,8 @@ MatrixXd point_masses(const Mesh& mesh) {
 }
 
 std::optional<MassProperties> from_geometry(const Mesh& mesh) {
+  for (const Dof& dof : mesh.dofs)
+    if (dof.component == kGeneralised) return std::nullopt;
   const MatrixXd masses = point_masses(mesh);
   const double tolerance = 1e-6 * std::abs(masses.col(0).sum());
   Matrix6 D = Matrix6::Zero();
@@ -45,13 +47,34 @@ std::optional<MassProperties> from_geometry(const Mesh& mesh) {
   return mass_properties(D);
 }
 
-std::string print(const char* source, const MassProperties& m) {
+std::string print(const char* source, const MassProperties& m,
+                  const std::optional<DataUnits>& units) {
+  const auto [L, M, T] = units.value_or(DataUnits{});
+  const Vector3d c = L * m.centre, I = M * L * L * m.inertia.diagonal();
   return fmt::format(
-      "{}: mass {:.8g} kg, centre of mass {:.6g} {:.6g} {:.6g} m, inertia there {:.6g} {:.6g} "
-      "{:.6g} "
-      "kg m^2\n",
-      source, m.mass.mean(), m.centre.x(), m.centre.y(), m.centre.z(), m.inertia(0, 0),
-      m.inertia(1, 1), m.inertia(2, 2));
+      "{}: mass {:.8g}{}, centre of mass {:.6g} {:.6g} {:.6g}{}, inertia there {:.6g} {:.6g} "
+      "{:.6g}{}\n",
+      source, M * m.mass.mean(), units ? " kg" : "", c.x(), c.y(), c.z(), units ? " m" : "", I(0),
+      I(1), I(2), units ? " kg m^2" : " (units of the mesh)");
+}
+
+constexpr double kSameCentre = 0.01;  ///< lumping moves mass by a part of an element
+
+}  // namespace
+
+namespace {
+
+/// |R| of each row's point, translations and rotations apart: the same in all frames of the grids.
+MatrixXd sizes_at_points(const Mesh& mesh, const MatrixXd& R) {
+  const auto points = static_cast<Index>(mesh.points.size());
+  MatrixXd squares = MatrixXd::Zero(2 * points, R.cols()), result(R.rows(), R.cols());
+  const auto place = [&](Index i) {
+    const Dof& dof = mesh.dofs[static_cast<std::size_t>(i)];
+    return static_cast<Index>(dof.point) + (dof.component < 3 ? 0 : points);
+  };
+  for (Index i = 0; i < R.rows(); ++i) squares.row(place(i)) += R.row(i).cwiseAbs2();
+  for (Index i = 0; i < R.rows(); ++i) result.row(i) = squares.row(place(i)).cwiseSqrt();
+  return result;
 }
 
 }  // namespace
@@ -65,7 +88,7 @@ RigidStiffness rigid_stiffness(const Mesh& mesh) {
   // sqrt(K(i, i) K(j, j)).
   const VectorXd root = mesh.K.diagonal().cwiseAbs().cwiseSqrt();
   const MatrixXd pattern = (mesh.K.array() != 0).cast<double>();
-  const MatrixXd terms = root.asDiagonal() * pattern * root.asDiagonal() * R.cwiseAbs();
+  const MatrixXd terms = root.asDiagonal() * pattern * root.asDiagonal() * sizes_at_points(mesh, R);
   if (largest > 0) result.of_largest = KR.maxCoeff() / largest;
   Index row = 0, column = 0;
   result.of_terms =
@@ -89,10 +112,26 @@ MeshReport mesh_report(const Mesh& mesh) {
   return report;
 }
 
-std::string to_string(const MeshReport& report) {
-  std::string text = print("from M", report.mass);
-  text += report.geometry ? print("from the points", *report.geometry)
-                          : "from the points: some have different masses along x, y and z\n";
+std::vector<std::string> implausible(const MeshReport& report) {
+  std::vector<std::string> lines;
+  if (!report.geometry) return lines;
+  const double m = report.mass.mass.mean();
+  // The radius of gyration is the size of a body.
+  const double size = std::sqrt(std::max(report.mass.inertia.trace(), 0.0) / std::abs(m));
+  const double apart = (report.mass.centre - report.geometry->centre).norm();
+  if (apart > kSameCentre * size)
+    lines.push_back(
+        fmt::format("centre of mass of M {:.3g} from that of its points, of a radius of "
+                    "gyration of {:.3g}",
+                    apart, size));
+  return lines;
+}
+
+std::string to_string(const MeshReport& report, const std::optional<DataUnits>& units) {
+  std::string text = print("from M", report.mass, units);
+  text += report.geometry ? print("from the points", *report.geometry, units)
+                          : "from the points: not known, as some have different masses along x, y "
+                            "and z, or there are generalised coordinates\n";
   text += fmt::format("misfit of R'MR to a rigid body {:.1e}\n", report.mass.misfit);
   text += fmt::format(
       "stiffness against rigid motions {:.1e} of the largest, {:.1e} of its terms, "
@@ -100,6 +139,7 @@ std::string to_string(const MeshReport& report) {
       report.KR, report.KR_terms, report.KR_worst);
   if (report.asymmetry > 0)
     text += fmt::format("asymmetry of K and M {:.1e} of their diagonals\n", report.asymmetry);
+  for (const std::string& line : implausible(report)) text += "warning: " + line + "\n";
   return text;
 }
 

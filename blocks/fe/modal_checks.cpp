@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <numeric>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/graph/linalg/eigen.hpp>
@@ -173,9 +174,31 @@ EffectiveMass effective_mass(const ModalData& data) {
   return result;
 }
 
+std::vector<std::string> implausible(const ModalData& data) {
+  constexpr double most_damped = 0.2, slowest = 1e-4, fastest = 1e6;
+  std::vector<std::string> lines;
+  Index mode = 0;
+  if (data.xi.size() > 0 && data.xi.maxCoeff(&mode) > most_damped)
+    lines.push_back(fmt::format("damping ratio {:.3g} of mode {}, above {}: percent?",
+                                data.xi(mode), mode + 1, most_damped));
+  if (data.omega.size() == 0) return lines;
+  const double lowest = data.omega.minCoeff() / (2 * std::numbers::pi);
+  if (lowest < slowest || lowest > fastest)
+    lines.push_back(fmt::format("lowest frequency {:.3g} Hz, {} {:g} Hz: units?", lowest,
+                                lowest < slowest ? "below" : "above",
+                                lowest < slowest ? slowest : fastest));
+  return lines;
+}
+
+std::vector<std::string> implausible_modulus(double E) {
+  constexpr double least = 1e8;
+  if (E >= least) return {};
+  return {fmt::format("Young's modulus {:.3g} Pa, below {:g} Pa: in MPa?", E, least)};
+}
+
 ModalReport modal_report(const ModalData& data) {
-  ModalReport report{
-      data.omega, mass_properties(data.D_P), residual_mass(data), {}, effective_mass(data)};
+  ModalReport report{data.omega, mass_properties(data.D_P), residual_mass(data),
+                     {},         effective_mass(data),      implausible(data)};
   for (const ModalChild& child : data.children) report.children.push_back(child_rank(data, child));
   return report;
 }
@@ -241,6 +264,7 @@ std::string to_string(const ModalReport& report) {
     text += fmt::format("  {:4} {:9.6g}", k + 1, report.omega(k)) +
             print(Vector6(report.effective.fraction.row(k)));
   text += fmt::format("  all {:10}", report.omega.size()) + print(report.effective.total);
+  for (const std::string& line : report.implausible) text += "warning: " + line + "\n";
   return text;
 }
 

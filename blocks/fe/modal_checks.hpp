@@ -66,6 +66,13 @@ struct EffectiveMass {
 };
 EffectiveMass effective_mass(const ModalData& data);
 
+/// What is legal but rarely meant, one line each, with its number: a damping ratio above 0.2, a
+/// lowest frequency below 1e-4 Hz or above 1e6 Hz.
+std::vector<std::string> implausible(const ModalData& data);
+
+/// The same of a Young's modulus below 1e8 Pa: one in MPa, of data in mm, t, s.
+std::vector<std::string> implausible_modulus(double E);
+
 /// The checks above for one body.
 struct ModalReport {
   Eigen::VectorXd omega;  ///< [rad/s]
@@ -73,6 +80,7 @@ struct ModalReport {
   ResidualMass residual;
   std::vector<ChildRank> children;
   EffectiveMass effective;
+  std::vector<std::string> implausible;
 };
 /// All of the above. Cost 100 N.
 ModalReport modal_report(const ModalData& data);

@@ -156,6 +156,7 @@ class ModalReader {
 
 ModalData read_modal_csv(const std::filesystem::path& path) {
   const TextFile file = read_text(path);
+  require_text(file);
   return ModalReader(file).data();
 }
 

@@ -88,11 +88,34 @@ bool parse(std::string_view text, double& value) {
 
 bool parse(std::string_view text, int& value) { return parse_whole(text, value); }
 
+void require_text(const TextFile& file) {
+  const auto at = file.content.find('\0');
+  if (at == std::string::npos) return;
+  throw Error(Code::bad_file,
+              fmt::format("{}: found a NUL byte at byte {}, expected text", file.name, at),
+              "binary files of Nastran: read_op4 reads those of OUTPUT4");
+}
+
+namespace {
+
+std::string printable(std::string text) {
+  constexpr std::size_t most = 2000;
+  if (text.size() > most) text = text.substr(0, most) + "...";
+  for (char& c : text)
+    if ((c >= 0 && c < ' ') || c == 0x7f) c = '?';
+  return text;
+}
+
+}  // namespace
+
 Mistake bad_line(const TextFile& file, int line, const std::string& found,
                  const std::string& expected) {
   const std::string where =
       line > 0 ? fmt::format("{}:{}", file.name, line) : std::string(file.name);
-  return {Code::bad_file, fmt::format("{}: found {}, expected {}", where, found, expected), {}, {}};
+  return {Code::bad_file,
+          fmt::format("{}: found {}, expected {}", where, printable(found), expected),
+          {},
+          {}};
 }
 
 void FileMistakes::add(Mistake mistake) {

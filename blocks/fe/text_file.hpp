@@ -26,6 +26,9 @@ struct TextFile {
 /// Throws `bad_file` if the file cannot be opened or read, or is empty.
 TextFile read_text(const std::filesystem::path& path);
 
+/// Throws bad_file for a file with NUL bytes, such as binary OP4, and names its reader.
+void require_text(const TextFile& file);
+
 /// All lines, views into file.content: keep the file alive.
 std::vector<TextLine> lines_of(const TextFile& file);
 
@@ -44,7 +47,8 @@ bool parse(std::string_view text, double& value);
 bool parse(std::string_view text, int& value);
 
 /// `bad_file`, "beam.sti:12: found ..., expected ...": the expected text is the way out. Line 0:
-/// the whole file.
+/// the whole file. Control characters of the found text become ?, beyond 2000 characters it is cut
+/// short.
 Mistake bad_line(const TextFile& file, int line, const std::string& found,
                  const std::string& expected);
 
