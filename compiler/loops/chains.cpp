@@ -31,6 +31,9 @@ using namespace loops;
 using linalg::at;
 
 constexpr double kGap = 1e-6;  ///< a loop that is open by more does not close
+/// The same of one through a bushing, which constrains nothing: the moment arms of its force are
+/// off by this share.
+constexpr double kGapOfSpring = 1e-3;
 
 // --- geometry -----------------------------------------------------------------------------------
 
@@ -44,6 +47,12 @@ std::string way(const Motion& motion, const Closing& c) {
     text += (i ? " - " : "") + motion.name(c.chain[i]);
   }
   return text;
+}
+
+/// "4.0e-07 m", "1.0e-03 rad".
+std::string gap_size(const Closing& c, double gap) {
+  return c.gap_length > 0 ? fmt::format("{:.1e} m", gap * c.gap_length)
+                          : fmt::format("{:.1e} rad", gap);
 }
 
 struct ChainChecker {
@@ -88,16 +97,18 @@ struct ChainChecker {
   }
 
   void check_gap(const Closing& c) {
-    if (c.gap > kGap)
+    const double most = c.gap > kGap && has_spring(c.form) ? kGapOfSpring : kGap;
+    if (c.gap > most)
       refuse(c,
-             fmt::format("{} closes a chain whose ends do not meet: gap {:.1e} of its size",
-                         target(c), c.gap),
+             fmt::format("{} closes a chain whose ends do not meet: gap {}, {:.1e} of its size, "
+                         "more than {}",
+                         target(c), gap_size(c, c.gap), c.gap, gap_size(c, most)),
              "check the lengths and rotations around the chain; the mounting rotations give the "
              "joints' posture");
     else if (c.gap > kExactGap)
-      notes.push_back(
-          {Note::Kind::warning, "chains",
-           fmt::format("{} closes its chain only to {:.1e} of its size", target(c), c.gap)});
+      notes.push_back({Note::Kind::warning, "chains",
+                       fmt::format("{} closes its chain only to {:.1e} of its size, {}", target(c),
+                                   c.gap, gap_size(c, c.gap))});
   }
 };
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <titop/compiler/loops/gap.hpp>
+#include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 namespace titop::loops {
@@ -37,12 +38,23 @@ Gap gap_of(const MatrixXd& gap, const Form& form, const std::vector<int>& units,
   const MatrixXd scaled = rows.asDiagonal() * gap * columns.asDiagonal();
   const MatrixXd basis = moved_by_angles(form, rows);
   const MatrixXd taken = basis.transpose() * (basis * scaled);
-  Gap result{.off = (scaled - taken).cwiseAbs().maxCoeff()};
+  Gap result;
+  Index worst = 0, column = 0;
+  result.off = (scaled - taken).cwiseAbs().maxCoeff(&worst, &column);
+  if (units[at(worst)] == 0) result.length = length;
   // Rounding must not become a constraint on the meeting point.
   const MatrixXd exact = (taken.array().abs() <= kExactGap).select(0.0, taken);
   if (!exact.isZero(0))
     result.taken = rows.cwiseInverse().asDiagonal() * exact * columns.cwiseInverse().asDiagonal();
   return result;
+}
+
+bool has_spring(const Form& form) {
+  return std::ranges::any_of(form, [](const auto& term) {
+    const auto& [column, matrix] = term;
+    return column.kind == FormColumn::Kind::states && matrix.rows() == 6 &&
+           Eigen::ColPivHouseholderQR<MatrixXd>(matrix).rank() == 6;
+  });
 }
 
 }  // namespace titop::loops

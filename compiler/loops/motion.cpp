@@ -336,6 +336,7 @@ Closing Motion::closing(const Tie& tie) const {
   if (to_ground) return result;
   const Gap found = gap_of(gap, result.form, units_of_rows(tie.S), sum.lever());
   result.gap = found.off;
+  result.gap_length = found.length;
   if (found.taken.size() == 0) return result;
   add_gap(sum, found.taken, there.to, result);
   result.form = sum.cleaned();

@@ -39,6 +39,7 @@ struct Closing {
   const Tie* tie = nullptr;
   Form form = {};
   double gap = 0;               ///< relative to 1, or to the longest lever; 0 if the ground is met
+  double gap_length = 0;        ///< 1 of `gap` in metres; 0: it is an angle [rad]
   std::vector<int> chain = {};  ///< points on the way round, for messages
   std::vector<int> equations = {};  ///< ties on the way round, this one too
 };
