@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <titop/blocks/fe/grids.hpp>
+#include <vector>
+
+/// Reader for positions and frames of grids in Nastran bulk data: `.dat`, `.bdf`, and the `.asm`
+/// that EXTSEOUT writes beside an OP4.
+namespace titop::fe {
+
+/// The GRIDs of a file by ascending number, which is the order of the rows of its matrices:
+/// positions in the basic frame, and the rotation from each grid's displacement frame to it. All
+/// other cards are ignored.
+///
+/// Cards are in fields of 8 or 16 columns or separated by commas, with continuations. Coordinate
+/// systems are CORD2R, also relative to others. In the data's unit of length.
+///
+/// Throws bad_file, all mistakes together, with file and line: a field that is no number, a grid or
+/// a coordinate system twice with different data, a coordinate system that is not there or refers
+/// to itself, one of another kind that a grid uses (CORD1R, CORD2C, CORD2S, ...), axes without
+/// directions, INCLUDE and GRDSET (their effect would be missing), no GRID at all.
+std::vector<Grid> read_grids(const std::filesystem::path& path);
+
+}  // namespace titop::fe
