@@ -1,0 +1,140 @@
+// OP2: the real cantilever against its tables as another program has read them (README.md there),
+// and small files in every byte order and word size.
+#include <doctest/doctest.h>
+
+#include <cstring>
+#include <titop/blocks/fe/modal_csv.hpp>
+#include <titop/blocks/fe/op2.hpp>
+#include <titop/blocks/fe/op2_results.hpp>
+#include <titop/blocks/fe/scaled.hpp>
+#include <titop/graph/error.hpp>
+
+#include "fe/op2_writer.hpp"
+#include "support/folder.hpp"
+#include "support/refused.hpp"
+
+using namespace titop;
+using Eigen::MatrixXd;
+using fe_test::Op2Style;
+using fe_test::Op2Writer;
+using titop_test::check_refused;
+
+namespace {
+
+const std::string kFolder = TITOP_DATA_DIR "/nastran_cantilever/";
+
+fe::Op2File read(const std::string& bytes) {
+  const titop_test::Folder folder;
+  folder.write("m.op2", bytes);
+  return fe::read_op2(folder.path / "m.op2");
+}
+
+/// One mode of grids 7 and 9; grid 9 is at (5, 0, 0) in system 3, which lies at (0, 0, 2) and is
+/// turned: its z along the basic x, its x along the basic y.
+std::string modes(Op2Style style, bool wide) {
+  Op2Writer w(style);
+  const auto real = [&](double x) { return wide ? w.wide(x) : w.real(x); };
+  const auto reals = [&](const std::vector<double>& values) {
+    std::string all;
+    for (const double x : values) all += real(x);
+    return all;
+  };
+  w.label();
+  w.table("GEOM1", {w.integers({2101, 21, wide ? 220 : 8}) + w.integers({3, 1, 2, 0}) +
+                        reals({0, 0, 2, 1, 0, 2, 0, 1, 2}),
+                    w.integers({4501, 45, wide ? 1120001 : 1}) + w.integers({7, 0}) +
+                        reals({1, 2, 3}) + w.integers({0, 0, 0}) + w.integers({9, 3}) +
+                        reals({5, 0, 0}) + w.integers({3, 0, 0})});
+  const auto singles = [&](const std::vector<double>& values) {
+    std::string all;
+    for (const double x : values) all += w.real(x);
+    return all;
+  };
+  w.table("LAMA", {std::string(w.integers(std::vector<std::int64_t>(146, 0))),
+                   w.integers({1, 1}) + singles({100, 10, 1.5, 4, 400})});
+  std::vector<std::int64_t> ident(146, 0);
+  ident[9] = 8;
+  w.table("OUGV1", {w.integers(ident), w.integers({71, 1}) + singles({0, 0, 0, 0, 0, 0}) +
+                                           w.integers({91, 1}) + singles({2, 4, 6, 8, 10, 12})});
+  w.matrix("RBMASSS", 8 * MatrixXd::Identity(6, 6), 2);
+  MatrixXd L = MatrixXd::Zero(6, 1);
+  L(0) = 3, L(1) = -1, L(5) = 0.5;
+  w.matrix("MPFACS", L, 1);
+  w.end();
+  return w.bytes;
+}
+
+}  // namespace
+
+TEST_CASE("cantilever: the OP2 has the body of its CSV tables") {
+  const fe::Op2File file = fe::read_op2(kFolder + "pn_mwe_s-solution_1.op2");
+  CHECK(file.tables.size() > 20);
+  const ModalData data = scaled(fe::op2_modal_data(file, "1", {"3"}), {.length = 1e-3});
+  ModalData right = fe::read_modal_csv(kFolder + "cantilever.csv");
+  right.D_P.diagonal().head<3>().array() -= 0.00851685768388;  // at P: not in RBMASSS
+  CHECK((data.omega - right.omega).cwiseAbs().maxCoeff() <= 6e-8 * 6565);
+  CHECK((data.D_P - right.D_P).cwiseAbs().maxCoeff() <= 1e-12 * 6);
+  // LAMA's generalised masses are 1 to 6e-8, and divide MPFACS and OUGV1.
+  CHECK((data.L_P - right.L_P).cwiseAbs().maxCoeff() <= 1e-7 * 2.3);
+  REQUIRE(data.children.size() == 1);
+  CHECK((data.children[0].PC - right.children[0].PC).norm() <= 1e-15);
+  CHECK((data.children[0].Phi_C - right.children[0].Phi_C).cwiseAbs().maxCoeff() <= 1e-7 * 6.6);
+}
+
+TEST_CASE("modes and geometry in every byte order, word size and precision") {
+  for (const bool big_endian : {false, true})
+    for (const bool long_words : {false, true})
+      for (const bool wide : {false, true}) {
+        CAPTURE(big_endian);
+        CAPTURE(long_words);
+        CAPTURE(wide);
+        const fe::Op2File file = read(modes({big_endian, long_words}, wide));
+        const std::vector<fe::Grid> grids = fe::op2_grids(file);
+        REQUIRE(grids.size() == 2);
+        CHECK(grids[0].position == Vector3d(1, 2, 3));
+        CHECK(grids[1].position == Vector3d(0, 5, 2));
+        Matrix3d T;
+        T << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+        CHECK(grids[1].frame.nominal() == T);
+        const ModalData data = fe::op2_modal_data(file, "7", {"9"});
+        CHECK(data.omega == Eigen::VectorXd::Constant(1, 10));
+        CHECK(data.D_P == Matrix6(8 * Matrix6::Identity()));
+        // The generalised mass 4 is brought to 1.
+        CHECK(data.L_P == (MatrixXd(1, 6) << 1.5, -0.5, 0, 0, 0, 0.25).finished());
+        CHECK(data.children[0].PC == Vector3d(-1, 3, -1));
+        CHECK(data.children[0].Phi_C == (MatrixXd(6, 1) << 3, 1, 2, 6, 4, 5).finished());
+      }
+}
+
+TEST_CASE("what is missing is named, with the line that writes it") {
+  Op2Writer w({});
+  w.matrix("KAA", MatrixXd::Identity(2, 2), 2);
+  w.end();
+  const fe::Op2File file = read(w.bytes);
+  CHECK(fe::find_matrix(file.matrices, "KAA").value == MatrixXd::Identity(2, 2));
+  check_refused([&] { fe::op2_modes(file); }, Code::bad_file,
+                {"m.op2", "LAMA", "VECTOR(SORT1,REAL)=ALL"});
+  check_refused([&] { fe::op2_grids(file); }, Code::bad_file, {"GEOM1", "PARAM,POSTEXT,YES"});
+  std::string other = modes({}, false);
+  for (std::size_t at; (at = other.find("MPFACS")) != std::string::npos;)
+    other.replace(at, 6, "MPFACX");
+  check_refused([&] { fe::op2_modal_data(read(other), "7", {}); }, Code::bad_file,
+                {"MPFACS", "GRID=7", "PARTFAC"});
+  check_refused([&] { fe::op2_modal_data(read(modes({}, false)), "7", {"8"}); }, Code::unknown_name,
+                {"grid 8"});
+}
+
+TEST_CASE("broken OP2 files are refused with data block, record and byte") {
+  const std::string good = modes({}, false);
+  const auto with = [&](std::size_t at, std::int32_t value) {
+    std::string bytes = good;
+    std::memcpy(&bytes[at], &value, 4);
+    return [bytes] { read(bytes); };
+  };
+  check_refused(with(0, 5), Code::bad_file, {"m.op2", "byte 0", "5", "4", "8"});
+  check_refused(with(4, 2), Code::bad_file, {"m.op2", "12 bytes"});
+  check_refused([&] { read(good.substr(0, 300)); }, Code::bad_file, {"m.op2", "GEOM1"});
+  const std::size_t lama = good.find("LAMA");
+  check_refused(with(lama + 16, -5), Code::bad_file, {"LAMA", "marker -5", "-1"});
+  check_refused([&] { read(std::string(7, '\0')); }, Code::bad_file, {"m.op2"});
+}
