@@ -38,10 +38,24 @@ constexpr const char* kUsage = R"(usage:
       NAME.py      Python module, and its arrays NAME_A.npy ...
       FILE.json    the model with its poles, certificate and notes
       FILE.csv     frequency response; needs --omega
+  titop import FILE                        what is in a file of a finite-element program, its checks
+                                           and ports: OP4, DMIG punch, CSV of modes, CalculiX;
+                                           with -o and --parent a body: BODY.json, a diagram of it
+                                           alone, or BODY.csv, its modal data
 options:
   --fold COUNT                             draw, report: at most so many boxes, each whole subtrees;
                                            draw: all if left out; report: 40, 0 for all
-  -o FILE                                  report: the HTML file; certify: also writes JSON
+  -o FILE                                  report: the HTML file; certify: also writes JSON;
+                                           import: the body
+  --parent PORT --children PORT,PORT       import: ports of the body
+  --grids FILE                             import: bulk data with positions, FILE.asm if left out
+  --matrices K,M                           import: names of stiffness and mass
+  --units METRE KILOGRAM SECOND            import: of the file, 1e-3 1 1 for mm, kg, s
+  --mass M X Y Z JX JY JZ                  import: of a planar model, the whole body's mass, centre of
+                                           mass from the parent and inertia there, in units of FILE
+  --modes COUNT                            import: lowest modes that are kept, and residual vectors
+                                           of all ports; all modes if left out
+  --xi RATIO                               import: damping ratio of all modes
   --band LOW HIGH                          report: of the frequency responses, Hz
   --until SECONDS                          report: of the step responses
   --no-diagrams                            report: without drawings, which need Graphviz
@@ -58,6 +72,10 @@ struct Arguments {
   bool compiled = false, diagrams = true;
   int fold = -1;  ///< not given
   std::string to;
+  std::string parent, children, grids, matrices;
+  std::vector<double> units, mass;
+  int modes = -1;  ///< not given
+  double xi = 0;
   std::vector<double> band;  ///< LOW HIGH
   double until = 0;
   double sample_time = 0;
@@ -137,6 +155,22 @@ Arguments parse(const std::vector<std::string>& all) {
       const double low = next(), high = next();
       if (!(low > 0 && high >= low)) throw Misuse{"--omega needs 0 < LOW <= HIGH"};
       a.omega = logarithmic(low, high, count("COUNT of --omega", next(), 1));
+    } else if (option == "--parent") {
+      a.parent = word();
+    } else if (option == "--children") {
+      a.children = word();
+    } else if (option == "--grids") {
+      a.grids = word();
+    } else if (option == "--matrices") {
+      a.matrices = word();
+    } else if (option == "--units") {
+      a.units = {next(), next(), next()};
+    } else if (option == "--mass") {
+      for (int k = 0; k < 7; ++k) a.mass.push_back(next());
+    } else if (option == "--modes") {
+      a.modes = count(option, next());
+    } else if (option == "--xi") {
+      a.xi = next();
     } else if (option.starts_with("--")) {
       throw Misuse{fmt::format("there is no option {}", option)};
     } else {
@@ -237,6 +271,47 @@ void export_model(const Arguments& a) {
   write(generate_cpp(system, {.name = name, .sample_time = a.sample_time}), folder);
 }
 
+std::vector<std::string> separated(const std::string& list) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at < list.size();) {
+    const std::size_t end = std::min(list.find(',', at), list.size());
+    words.push_back(list.substr(at, end - at));
+    at = end + 1;
+  }
+  return words;
+}
+
+fe::ImportOptions import_options(const Arguments& a) {
+  fe::ImportOptions options{
+      .parent = a.parent, .children = separated(a.children), .grids = a.grids};
+  if (!a.units.empty()) options.units = {a.units[0], a.units[1], a.units[2]};
+  if (a.xi != 0) options.modes.xi = {a.xi};
+  if (const auto& m = a.mass; !m.empty())
+    options.modes.rigid =
+        rigid_mass(m[0], Vector3d(m[4], m[5], m[6]).asDiagonal(), -Vector3d(m[1], m[2], m[3]));
+  if (a.modes >= 0) {
+    options.modes.kept = a.modes;
+    options.modes.residual = options.children;
+    options.modes.residual.push_back(a.parent);
+  }
+  const std::vector<std::string> names = separated(a.matrices);
+  if (!names.empty() && names.size() != 2) throw Misuse{"--matrices needs two names, K,M"};
+  if (names.size() == 2) options.stiffness = names[0], options.mass = names[1];
+  return options;
+}
+
+void import_file(const Arguments& a) {
+  const std::string kind = fs::path(a.to).extension().string();
+  if (!a.to.empty() && kind != ".json" && kind != ".csv")
+    throw Misuse{fmt::format("'{}' has an unknown extension: .json or .csv", a.to)};
+  const fe::Import found = fe::import_body(a.words[1], import_options(a));
+  std::fputs(found.text.c_str(), stdout);
+  if (a.to.empty()) return;
+  if (!found.body) throw Misuse{"a body needs --parent, one of the ports above"};
+  if (kind == ".csv") return emit::write_file(a.to, fe::modal_csv(*found.body));
+  write_diagram(diagram_of_body(*found.body), a.to);
+}
+
 void generate_scene(const std::vector<std::string>& words) try {
   generate::command(words);
 } catch (const std::invalid_argument& misuse) {
@@ -269,7 +344,7 @@ void check_words(const Command& command, const Arguments& a) {
   if (!a.to.empty()) written.push_back(a.to);
   for (const std::string& to : written)
     if (std::error_code none; fs::equivalent(to, a.words[1], none))
-      throw Misuse{fmt::format("{} is the diagram's own file: write to another one", to)};
+      throw Misuse{fmt::format("{} is the file that is read: write to another one", to)};
 }
 
 template <void (*F)(const Arguments&)>
@@ -283,7 +358,9 @@ constexpr Command kCommands[] = {
     {"certify", 2, certify_scene, " --minimize-up-to -o "},
     {"draw", 3, done<draw>, " --compiled --fold --minimize-up-to "},
     {"report", 2, done<report>, " --fold -o --band --until --no-diagrams --minimize-up-to "},
-    {"export", 3, done<export_model>, kModel}};
+    {"export", 3, done<export_model>, kModel},
+    {"import", 2, done<import_file>,
+     " -o --parent --children --grids --matrices --units --mass --modes --xi "}};
 
 bool asks_for_help(const std::vector<std::string>& all) {
   const auto typed = [&](const char* word) {

@@ -109,6 +109,13 @@ class FlexibleBody {
 
 BlockPtr as_block(const FlexibleBody& body);
 
+/// A diagram of this body alone, to be read, checked and copied from: one block `name`, whose
+/// parent has the acceleration "a_P" as input and its force "F_P" as output; each child C has the
+/// force "F_C" as input and the acceleration "a_C" as output, 6 components each. This is the block
+/// as it stands in [Alazard 2015] eq. (14), so that it always compiles. Throws the errors of
+/// `FlexibleBody`.
+Diagram diagram_of_body(const ModalData& data, const std::string& name = "body");
+
 /// The modes' input matrix W = [Phi_C' ..., -L_P], N x (6 children + 6).
 Eigen::MatrixXd modal_input(const ModalData& data);
 

@@ -25,6 +25,7 @@
 #include <titop/blocks/fe/calculix.hpp>
 #include <titop/blocks/fe/dmig.hpp>
 #include <titop/blocks/fe/grids.hpp>
+#include <titop/blocks/fe/import.hpp>
 #include <titop/blocks/fe/mesh.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>

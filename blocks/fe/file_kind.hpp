@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+/// Kinds of files that a body can be made of. For the folder's own files.
+namespace titop::fe {
+
+enum class FileKind { op4, op2, dmig, modal_csv, calculix };
+
+/// By extension (CalculiX) or content. Throws bad_file for another kind, with what to ask of the
+/// program that wrote it.
+FileKind kind_of_file(const std::filesystem::path& file);
+
+}  // namespace titop::fe

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <titop/blocks/fe/mesh.hpp>
+#include <titop/blocks/fe/modal_data.hpp>
+#include <titop/blocks/fe/scaled.hpp>
+#include <vector>
+
+/// From a file of a finite-element program to a flexible body, with all checks on the way.
+namespace titop::fe {
+
+/// What the file itself does not say.
+struct ImportOptions {
+  /// Parent port, one of `Import::ports`; empty: the file is only looked into.
+  std::string parent = {};
+  std::vector<std::string> children = {};  ///< child ports, of `Import::ports`
+  DataUnits units = {};                    ///< of the file
+  ModeOptions modes = {};                  ///< of the mesh, in the file's units of mass and length
+  /// Positions and frames of the grids of an OP4 or DMIG file: bulk data (`read_grids`). Empty: the
+  /// file of the same name with the extension .asm, or, without it, by statics from the parent.
+  std::filesystem::path grids = {};
+  /// Names of stiffness and mass; empty: the one pair of KAA, MAA; KXX, MXX; KAAX, MAAX; KGG, MGG;
+  /// K, M that the file has.
+  std::string stiffness = {}, mass = {};
+};
+
+/// What was found.
+struct Import {
+  std::string text;                ///< one fact per line: contents, checks, warnings, ports
+  std::vector<std::string> ports;  ///< grids or points that may be parent or child
+  std::optional<ModalData> body;   ///< in SI, if a parent was named, or the file has modal data
+};
+
+/// Reads a file by its content: OP4 (text or binary), OP2, DMIG punch, modal data as CSV, or one of
+/// the four files of CalculiX (.sti, .mas, .dof, .inp). Rows without stiffness and mass are dropped
+/// and listed; the matrices are symmetrised. `text` has the matrices with sizes and digits, the
+/// asymmetry, the mass properties, the stiffness against rigid motions, and of a body its
+/// `modal_report`.
+///
+/// Rows of an OP4 are six for each grid of the bulk data, in ascending order, then scalar points;
+/// of stiffness and mass in an OP2 those of its own GEOM1. An OP2 without them gives the modes of
+/// its run (`op2_modal_data`), clamped at the parent by the run.
+///
+/// Throws the errors of the readers, of `to_mesh` and `modal_data`; bad_file for a file of another
+/// kind, with what to ask of the program; unknown_name for matrices or ports that are not there.
+Import import_body(const std::filesystem::path& file, const ImportOptions& options = {});
+
+}  // namespace titop::fe
