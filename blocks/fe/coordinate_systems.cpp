@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <titop/blocks/fe/coordinate_systems.hpp>
 
