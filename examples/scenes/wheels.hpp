@@ -15,7 +15,12 @@ inline constexpr double hub_mass = 300, wheel_mass = 5, axial = 0.08,
                         transverse = 0.05;                 // [kg], [kg m^2]
 inline constexpr double boom_length = 4, friction = 1e-3;  // [m], [N m s/rad]
 inline constexpr double law_k = 4, law_c = 40;             // [N m/rad], [N m s/rad]
+inline constexpr double dumped = 0.01;  // torquers: torque per momentum of the wheels [1/s]
 inline constexpr int kWheels = 4;
+// A plate of the wheels on springs [kg], [kg m^2]; [N/m], [N m/rad].
+inline constexpr double plate_mass = 10, plate_inertia = 0.4, mount_k = 2e5, mount_turn_k = 2e4;
+inline constexpr double mount_c = 100, mount_turn_c = 4;  // [N s/m], [N m s/rad]
+inline constexpr Imbalance imbalance{.static_kgm = 7e-6, .dynamic_kgm2 = 2e-7};
 
 inline Vector3d spin_axis(int i) {  // pyramid about z, 35 degrees above the x-y plane
   const double azimuth = (2 * i + 1) * std::numbers::pi / 4, up = 35 * std::numbers::pi / 180;
@@ -30,9 +35,52 @@ inline Eigen::MatrixXd allocation() {
   return A.transpose() * (A * A.transpose()).diagonal().cwiseInverse().asDiagonal();
 }
 
-/// `momentum` of each wheel [N m s]; `law`: else the motors' torques are inputs.
-inline Diagram satellite(double momentum, bool law) {
+enum class Motors {
+  off,
+  law,     ///< turn the hub back
+  dumping  ///< the law, and torquers on the hub that take momentum out of the wheels
+};
+
+/// A wheel at `site`: its motor; its speed is an output, or its imbalance at 1 rad/s an input.
+inline void add_wheel(Diagram& d, int i, const BodyHandle& hub, const DualPort<6>& site,
+                      const Value& momentum, Motors motors, bool vibration) {
+  const std::string number = std::to_string(i + 1);
+  auto wheel = d.add("w" + number, Rotor{.mass = wheel_mass,
+                                         .axial = axial,
+                                         .transverse = transverse,
+                                         .axis = spin_axis(i),
+                                         .momentum = momentum});
+  mount(wheel, site);
+  wheel.torque = friction * wheel.speed;  // `torque` is that of the rotor on its carrier
+  if (motors != Motors::off) {
+    const Eigen::MatrixXd share = allocation().row(i);
+    wheel.torque += Eigen::MatrixXd(-law_k * share) * hub.parent.position.angular() +
+                    Eigen::MatrixXd(-law_c * share) * hub.parent.rate.angular();
+  }
+  if (motors == Motors::dumping)
+    hub.parent.force.angular += Eigen::MatrixXd(dumped * axial * spin_axis(i)) * wheel.speed;
+  if (vibration)
+    unbalance(d, wheel, "imbalance" + number, imbalance, 1);
+  else
+    d.output("speed" + number) = wheel.speed;
+}
+
+/// The wheels' plate on its springs.
+inline BodyHandle isolated_plate(Diagram& d, const BodyHandle& hub) {
+  auto plate = d.add("plate", RigidBody{.mass = plate_mass,
+                                        .inertia = plate_inertia * Matrix3d::Identity(),
+                                        .children = {{"wheels"}}});
+  bushing(d, "isolator", plate, hub.child("wheels"), {},
+          {.stiffness = {mount_k, mount_k, mount_k, mount_turn_k, mount_turn_k, mount_turn_k},
+           .damping = {mount_c, mount_c, mount_c, mount_turn_c, mount_turn_c, mount_turn_c}});
+  return plate;
+}
+
+/// The parameter h is the momentum of each wheel [N m s]. `vibration`: the wheels stand on a plate
+/// on springs; inputs are their imbalances, and their speeds are no outputs.
+inline Diagram satellite(double momentum, Motors motors, bool vibration = false) {
   Diagram d{"satellite"};
+  const Param h = d.param("h", momentum);
   auto U = d.input("U", 3);  // torque of disturbances
   auto hub = d.add("hub", RigidBody{.mass = hub_mass,
                                     .inertia = hub_inertia.asDiagonal(),
@@ -44,24 +92,9 @@ inline Diagram satellite(double momentum, bool law) {
   mount(boom, hub.child("boom"));
   hub.parent.force.angular += -U;
   release(hub);
-  const Eigen::MatrixXd share = allocation();
-  for (int i = 0; i < kWheels; ++i) {
-    const std::string name = "w" + std::to_string(i + 1);
-    auto wheel = d.add(name, Rotor{.mass = wheel_mass,
-                                   .axial = axial,
-                                   .transverse = transverse,
-                                   .axis = spin_axis(i),
-                                   .momentum = momentum});
-    mount(wheel, hub.child("wheels"));
-    const Eigen::MatrixXd row = share.row(i);
-    if (law)  // `torque` is that of the rotor on the hub
-      wheel.torque = friction * wheel.speed +
-                     Eigen::MatrixXd(-law_k * row) * hub.parent.position.angular() +
-                     Eigen::MatrixXd(-law_c * row) * hub.parent.rate.angular();
-    else
-      wheel.torque = friction * wheel.speed;
-    d.output("speed" + std::to_string(i + 1)) = wheel.speed;
-  }
+  const DualPort<6> site =
+      vibration ? isolated_plate(d, hub).child("wheels") : DualPort<6>(hub.child("wheels"));
+  for (int i = 0; i < kWheels; ++i) add_wheel(d, i, hub, site, h, motors, vibration);
   d.output("turn", 3) = hub.parent.accel.angular;
   return d;
 }

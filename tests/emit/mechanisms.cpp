@@ -67,9 +67,10 @@ TEST_CASE("a wheel with momentum in header, report and drawing") {
 }
 
 TEST_CASE("the mechanisms of the examples compile without a warning, and are handed on") {
-  check_handed_on(scenes::wheels::satellite(0, true));
-  check_handed_on(scenes::wheels::satellite(40, false));
-  check_handed_on(scenes::wheels::satellite(40, true));
+  check_handed_on(scenes::wheels::satellite(0, scenes::wheels::Motors::law));
+  check_handed_on(scenes::wheels::satellite(40, scenes::wheels::Motors::off));
+  check_handed_on(scenes::wheels::satellite(40, scenes::wheels::Motors::law));
+  check_handed_on(scenes::wheels::satellite(40, scenes::wheels::Motors::dumping));
   check_handed_on(scenes::cmg::cluster());
   check_handed_on(scenes::solar_array_drive::satellite());
   for (const auto model : {scenes::sloshing::Liquid::springs, scenes::sloshing::Liquid::pendulum})

@@ -79,7 +79,8 @@ TEST_CASE("wheels: poles of the whole model: at 0 what is conserved, none right 
 TEST_CASE("wheels: three poles of a minimal model at 0, as speeds integrate the torques on a hub") {
   for (const double h : {0.0, 0.1, 5.0, 40.0}) {
     CAPTURE(h);
-    const std::vector<Pole> poles = compile(scenes::wheels::satellite(h, true)).poles();
+    const std::vector<Pole> poles =
+        compile(scenes::wheels::satellite(h, scenes::wheels::Motors::law)).poles();
     CHECK(std::count_if(poles.begin(), poles.end(), [](const Pole& p) { return p.omega == 0; }) ==
           3);
     CHECK(poles[3].omega > 0.01);  // the attitude under the law

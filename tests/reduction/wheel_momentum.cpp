@@ -14,7 +14,7 @@ using namespace titop_test;
 TEST_CASE("wheels with momentum under a law: the bound holds at any wheel speed, poles stay left") {
   for (const double h : {0.0, 5.0, 20.0, 40.0, 100.0}) {
     CAPTURE(h);
-    const Diagram d = scenes::wheels::satellite(h, true);
+    const Diagram d = scenes::wheels::satellite(h, scenes::wheels::Motors::law);
     const Scene scene{.outputs = {"turn"}, .band_hz = {0, 5}, .accuracy = 1e-3};
     const ReducedSystem reduced = compile(d, scene);
     const ErrorBound& bound = reduced.bound();
