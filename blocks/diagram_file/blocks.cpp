@@ -386,6 +386,12 @@ void write_block(const Block& block, const WriteValue& value, const NameBody& bo
 BlockPtr read_block(const JsonPlace& place, const ReadValue& value, const FindBody& body) {
   const Type* type = find_type(place.at("type").text());
   if (!type) place.at("type").refuse("one of " + all_types());
+  if (place.has("momentum"))  // of a Rotor in C++, which writes the equations
+    place.at("momentum")
+        .refuse(
+            "none: a momentum h about a is the two equations that momentum(port, h, a) writes, for "
+            "any "
+            "body: torque h a x rate at the port, with \"add\": true");
   return type->read(place, value, body);
 }
 

@@ -220,3 +220,19 @@ TEST_CASE("numbers that make no block are refused with the block's name") {
       parse_diagram(replaced(kGood, "[\"K\", \"in\"]", "[\"z\", \"child\", \"accel\"]"));
   CHECK_THROWS_AS(compile(d), Error);
 }
+
+TEST_CASE("a momentum or a spin of a body in a file is refused, and its equations are named") {
+  const std::string rigid = R"("mass": 1, "inertia": [1, 1, 1, 0, 0, 0], "PA": [0, 0, 0])",
+                    rotor = R"("mass": 1, "axial": 1, "transverse": 1, "axis": [0, 0, 1],
+                               "PA": [0, 0, 0])",
+                    wing = R"("body": "wing")";
+  const std::vector<std::pair<std::string, std::string>> blocks = {
+      {"RigidBody", rigid + R"(, "children": [])"}, {"Rotor", rotor}, {"FlexibleBody", wing}};
+  for (const auto& [type, members] : blocks) {
+    CAPTURE(type);
+    const std::string block = R"("blocks": [{"name": "b", "type": ")" + type + "\", " + members;
+    refused("\"blocks\": [", block + ", \"momentum\": 40}, ",
+            {"cart.json", "blocks[0].momentum", "40", "momentum(port, h, a)"});
+    refused("\"blocks\": [", block + ", \"spin\": 40}, ", {"cart.json", "blocks[0]"});
+  }
+}
