@@ -12,7 +12,8 @@ namespace titop {
 ///     T = -omega x (h a) = h a x omega       [N m]
 ///
 /// with omega the body's angular rate, `port.rate.angular()`. The torque acts at a child point or
-/// at the parent point; a torque may be moved freely within a rigid body. The rotor's mass and
+/// at the parent point; a torque may be moved freely within a rigid body. At a child point of a
+/// flexible body omega is the rate there, with that of its modes. The rotor's mass and
 /// transverse inertia are those of the body; `Rotor` adds its own. h [N m s], positive by the right
 /// hand about `axis`; it may be a parameter (two occurrences in `lft`). Rates that no state
 /// determines add integrators, as with every reading of a rate. Writes two equations, with b x c =
