@@ -16,6 +16,8 @@ using std::numbers::pi;
 
 constexpr double kMostTurn = 0.5;  ///< [rad] of the determinant in half a step
 constexpr int kHalvings = 40;
+/// Of a determinant that is rounding alone no step is small enough: the count then does not agree.
+constexpr int kSplits = 1000;  ///< of one piece
 
 /// A piece of the path: s of t from 0 to 1.
 using Path = std::function<Complex(double)>;
@@ -26,6 +28,7 @@ class Winding {
 
   /// The turn of det(1 + L) along the path [rad].
   double along(const Path& path) const {
+    splits_ = kSplits;
     return turn(path, 0, at(path(0)), 1, at(path(1)), kHalvings);
   }
   Complex at(Complex s) const {
@@ -40,12 +43,14 @@ class Winding {
     const double t = (t0 + t1) / 2;
     const Complex f = at(path(t));
     const double first = std::arg(f / f0), second = std::arg(f1 / f);
-    if (left == 0 || (std::abs(first) < kMostTurn && std::abs(second) < kMostTurn))
+    if (left == 0 || splits_ == 0 || (std::abs(first) < kMostTurn && std::abs(second) < kMostTurn))
       return std::isfinite(first + second) ? first + second : 0;
+    --splits_;
     return turn(path, t0, f0, t, f, left - 1) + turn(path, t, f, t1, f1, left - 1);
   }
 
   const LoopResponse& response_;
+  mutable int splits_ = 0;  ///< that are left
 };
 
 /// The poles of L on the axis, upper half, each location once.
