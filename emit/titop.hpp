@@ -53,6 +53,7 @@
 #include <titop/emit/cpp/cpp.hpp>
 #include <titop/emit/files/files.hpp>
 #include <titop/emit/files/lft_files.hpp>
+#include <titop/emit/report/plots.hpp>
 #include <titop/emit/report/report.hpp>
 #include <titop/graph/diagram.hpp>
 #include <titop/graph/invert.hpp>

@@ -56,7 +56,7 @@ room(emit/files                compiler/diagram compiler/system analysis/certify
 room(emit/cpp                  compiler/system analysis/simulation analysis/certify emit/text)
 # Deeper than System: it draws System::stage(), a type of compiler/passes.
 room(emit/report               compiler/passes compiler/diagram compiler/system analysis/simulation
-                               analysis/certify analysis/reduction emit/text)
+                               analysis/certify analysis/reduction analysis/control emit/text)
 
 # Headers with the data behind System: internal(HEADER USER...), the only files or folders outside of
 # its room that may include it.

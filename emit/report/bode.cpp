@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <titop/analysis/control/response.hpp>
 #include <titop/emit/report/figures.hpp>
 #include <titop/emit/report/plot.hpp>
 #include <titop/graph/linalg/index.hpp>
@@ -19,27 +19,15 @@ std::vector<double> magnitude(const Sweep& w, const IoPair& p) {
   return y;
 }
 
-/// In degrees, without jumps; if it turns by 180 at once, towards -90.
 std::vector<double> phase(const Sweep& w, const IoPair& p) {
-  std::vector<double> y;
-  double last = -90;
-  for (const MatrixXcd& G : w.G) {
-    if (G.size() == 0 || std::abs(G(p.output, p.input)) == 0) {
-      y.push_back(kNone);
-      continue;
-    }
-    double now = std::arg(G(p.output, p.input)) * 180 / std::numbers::pi;
-    now += 360 * std::round((last - now) / 360);
-    if (std::abs(now - last) > 179) {
-      const double other = now > last ? now - 360 : now + 360;
-      if (std::abs(other + 90) < std::abs(now + 90)) now = other;
-    }
-    y.push_back(last = now);
-  }
-  return y;
+  std::vector<std::complex<double>> values;
+  for (const MatrixXcd& G : w.G) values.push_back(G.size() ? G(p.output, p.input) : 0.0);
+  return degrees(values);
 }
 
-std::string bode(const Subject& s, const Sweep& w, const std::vector<IoPair>& pairs) {
+}  // namespace
+
+Plot bode_plot(const Subject& s, const Sweep& w, const std::vector<IoPair>& pairs) {
   const ScalarSignal& input = s.inputs[at(pairs.front().input)];
   const ScalarSignal& output = s.outputs[at(pairs.front().output)];
   Plot plot{
@@ -63,10 +51,8 @@ std::string bode(const Subject& s, const Sweep& w, const std::vector<IoPair>& pa
     turn.curves.push_back(phase(w, p));
   }
   plot.frames = {std::move(size), std::move(turn)};
-  return figure(plot);
+  return plot;
 }
-
-}  // namespace
 
 std::string bode_plots(const Subject& s, const Sweep& w, const std::vector<IoPair>& pairs) {
   std::string text = "<h3>Bode plots</h3>\n";
@@ -80,7 +66,8 @@ std::string bode_plots(const Subject& s, const Sweep& w, const std::vector<IoPai
               : "</p>\n";
   const auto figures = by_figure(s, pairs);
   text += "<div class=\"figures\">\n";
-  for (std::size_t i = 0; i < figures.size() && i < kFigures; ++i) text += bode(s, w, figures[i]);
+  for (std::size_t i = 0; i < figures.size() && i < kFigures; ++i)
+    text += figure(bode_plot(s, w, figures[i]));
   return text + "</div>\n" + left_out(figures.size(), "ask for pairs by ReportOptions::pairs");
 }
 

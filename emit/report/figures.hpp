@@ -1,11 +1,13 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <titop/emit/report/pairs.hpp>
+#include <titop/emit/report/plot.hpp>
 #include <titop/emit/report/sweep.hpp>
 #include <vector>
 
-/// The figures of the section on responses: HTML.
+/// The figures of the section on responses: HTML, and one by one.
 namespace titop::report {
 
 /// Gains from vectors of inputs to vectors of outputs; empty if all are scalars or zero.
@@ -17,5 +19,12 @@ std::string bode_plots(const Subject& subject, const Sweep& sweep,
 
 /// Responses to unit steps, by `simulate`.
 std::string step_plots(const Subject& subject, const std::vector<IoPair>& pairs);
+
+/// One figure of these pairs, which share it (by_figure); of all singular values, none if all are
+/// zero.
+Plot bode_plot(const Subject& subject, const Sweep& sweep, const std::vector<IoPair>& pairs);
+Plot step_plot(const Subject& subject, const std::vector<IoPair>& pairs);
+std::optional<Plot> sigma_plot(const Sweep& sweep, const std::vector<UnitGroup>& outputs,
+                               const std::vector<UnitGroup>& inputs);
 
 }  // namespace titop::report

@@ -166,6 +166,21 @@ std::string curve_path(const std::vector<double>& x, const std::vector<double>& 
   return path.text();
 }
 
+/// Points one by one, those outside of the frame left out.
+std::string marks_path(const std::vector<double>& x, const std::vector<double>& y,
+                       const Scale& across, const Scale& up, int height, PointStyle mark) {
+  std::string text;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double a = across.place(x[i]), b = up.place(y[i]);
+    if (!(a >= 0 && a <= 1 && b >= 0 && b <= 1)) continue;
+    const double px = kInner * a, py = height * (1 - b);
+    text += mark == PointStyle::cross
+                ? fmt::format("M{:.1f} {:.1f}l8 8m0 -8l-8 8", px - 4, py - 4)
+                : fmt::format("M{:.1f} {:.1f}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0", px - 4, py);
+  }
+  return text;
+}
+
 std::string line(const char* cls, double x1, double y1, double x2, double y2) {
   return fmt::format(R"(<path class="{}" d="M{:.1f} {:.1f}L{:.1f} {:.1f}"/>)", cls, x1, y1, x2, y2);
 }
@@ -192,9 +207,15 @@ std::string draw(const Plot& plot, const Frame& frame, const Scale& across, doub
   std::string text = grid(across, up, top, frame.height);
   text += fmt::format(R"(<svg x="{}" y="{}" width="{}" height="{}">)", kLeft, top, kInner,
                       frame.height);
-  for (std::size_t i = 0; i < frame.curves.size(); ++i)
-    text += fmt::format(R"(<path class="{}" d="{}"/>)", style(i),
-                        curve_path(plot.x_data[i], frame.curves[i], across, up, frame.height));
+  for (std::size_t i = 0; i < frame.curves.size(); ++i) {
+    const PointStyle mark = i < frame.marks.size() ? frame.marks[i] : PointStyle::line;
+    const std::string path =
+        mark == PointStyle::line
+            ? curve_path(plot.x_data[i], frame.curves[i], across, up, frame.height)
+            : marks_path(plot.x_data[i], frame.curves[i], across, up, frame.height, mark);
+    text += fmt::format(R"(<path class="{}" d="{}"/>)",
+                        mark == PointStyle::line ? style(i) : "curve mark", path);
+  }
   text += fmt::format(R"(</svg><rect class="frame" x="{}" y="{}" width="{}" height="{}"/>)", kLeft,
                       top, kInner, frame.height);
   for (const Tick& t : up.ticks())
@@ -238,7 +259,7 @@ Ticks linear_ticks(double low, double high, bool degrees) {
   return t;
 }
 
-std::string figure(const Plot& plot) {
+Drawn drawn(const Plot& plot) {
   const Scale across = scale_of(plot.x, plot.x_data);
   std::string frames;
   double top = kTop;
@@ -252,11 +273,16 @@ std::string figure(const Plot& plot) {
                           kLeft + kInner * across.place(t.value), bottom + 16, t.text);
   frames += fmt::format(R"(<text class="x-label" x="{}" y="{}" text-anchor="middle">{}</text>)",
                         kLeft + kInner / 2, bottom + 34, diagram::html(across.title()));
+  return {std::move(frames), kWidth, bottom + kBottom};
+}
+
+std::string figure(const Plot& plot) {
+  const Drawn d = drawn(plot);
   const std::string name = diagram::html(plot.title);
   return fmt::format(
       R"(<figure class="plot"><h4>{0}</h4>{1}<svg role="img" aria-label="{0}" viewBox="0 0 {2} {3}">{4}</svg>{5}</figure>)"
       "\n",
-      name, legend(plot.labels), kWidth, bottom + kBottom, frames,
+      name, legend(plot.labels), d.width, d.height, d.svg,
       plot.caption.empty() ? "" : "<figcaption>" + diagram::html(plot.caption) + "</figcaption>");
 }
 

@@ -15,11 +15,15 @@ struct PlotAxis {
   double low = 0, high = 0;  ///< equal: from the data
 };
 
+/// How the points of a curve are drawn: joined, or each by itself.
+enum class PointStyle { line, cross, circle };
+
 /// Curves in one frame.
 struct Frame {
   PlotAxis y;
   std::vector<std::vector<double>> curves;  ///< y of each, over its x
   int height = 190;
+  std::vector<PointStyle> marks = {};  ///< of each curve; fewer: lines
 };
 
 /// Frames below each other over one x axis.
@@ -35,6 +39,16 @@ struct Plot {
 /// A `<figure>`: title, legend, one `<svg>`, caption. Every curve keeps its peaks: all values in
 /// one column of pixels are drawn as a line from the smallest to the largest.
 std::string figure(const Plot& plot);
+
+/// The inside of the `<svg>`, and its size.
+struct Drawn {
+  std::string svg;
+  double width = 0, height = 0;
+};
+Drawn drawn(const Plot& plot);
+
+/// The same as an SVG file by itself, in the page's light colours, title and legend inside.
+std::string standalone(const Plot& plot);
 
 constexpr std::size_t kStyles = 6;  ///< line styles of curves; further curves repeat them
 

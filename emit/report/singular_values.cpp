@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <titop/emit/report/figures.hpp>
 #include <titop/emit/report/plot.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
@@ -65,8 +66,8 @@ void drop_zero(std::vector<std::vector<double>>& curves) {
   while (!curves.empty() && peak(curves.back()) <= 1e-11 * largest) curves.pop_back();
 }
 
-/// Empty if all are zero.
-std::string singular_values(const Sweep& w, const Alike& outputs, const Alike& inputs) {
+/// None if all are zero.
+std::optional<Plot> singular_values(const Sweep& w, const Alike& outputs, const Alike& inputs) {
   const std::size_t count = std::min({outputs.at.size(), inputs.at.size(), kStyles});
   std::vector<std::vector<double>> curves(count);
   for (const MatrixXcd& G : w.G) {
@@ -92,10 +93,19 @@ std::string singular_values(const Sweep& w, const Alike& outputs, const Alike& i
   for (std::size_t k = 0; k < curves.size(); ++k) plot.labels.push_back(fmt::format("σ{}", k + 1));
   plot.labels.front() += curves.size() > 1 ? " (largest)" : " (largest gain)";
   plot.frames.front().curves = std::move(curves);
-  return figure(plot);
+  return plot;
 }
 
 }  // namespace
+
+std::optional<Plot> sigma_plot(const Sweep& w, const std::vector<UnitGroup>& outputs,
+                               const std::vector<UnitGroup>& inputs) {
+  Alike out, in;
+  for (const UnitGroup& g : outputs) out.at.insert(out.at.end(), g.at.begin(), g.at.end());
+  for (const UnitGroup& g : inputs) in.at.insert(in.at.end(), g.at.begin(), g.at.end());
+  out.names = "all outputs", in.names = "all inputs";
+  return singular_values(w, out, in);
+}
 
 std::string singular_value_plots(const Sweep& w, const std::vector<UnitGroup>& outputs,
                                  const std::vector<UnitGroup>& inputs) {
@@ -104,9 +114,10 @@ std::string singular_value_plots(const Sweep& w, const std::vector<UnitGroup>& o
   for (const Alike& in : alike(inputs))
     for (const Alike& out : alike(outputs)) {
       if (in.at.size() * out.at.size() == 1) continue;
-      const std::string one = number < kFigures ? singular_values(w, out, in) : "";
-      if (!one.empty() || number >= kFigures) ++number;
-      figures += one;
+      std::optional<Plot> one;
+      if (number < kFigures) one = singular_values(w, out, in);
+      if (one || number >= kFigures) ++number;
+      if (one) figures += figure(*one);
     }
   if (figures.empty()) return {};
   const std::string text =

@@ -105,7 +105,7 @@ void cut_start(Plot& plot) {
                              high, plot.frames.front().y.unit);
 }
 
-std::string step_figure(const Subject& s, const Steps& all, const std::vector<IoPair>& pairs) {
+Plot step_plot(const Subject& s, const Steps& all, const std::vector<IoPair>& pairs) {
   const ScalarSignal& input = s.inputs[at(pairs.front().input)];
   const ScalarSignal& output = s.outputs[at(pairs.front().output)];
   Plot plot{.title = fmt::format("{} [{}] to a step of 1 {} on {}",
@@ -127,10 +127,14 @@ std::string step_figure(const Subject& s, const Steps& all, const std::vector<Io
     plot.frames.front().curves.emplace_back(row.begin(), row.end());
   }
   cut_start(plot);
-  return figure(plot);
+  return plot;
 }
 
 }  // namespace
+
+Plot step_plot(const Subject& s, const std::vector<IoPair>& pairs) {
+  return step_plot(s, steps(s, pairs, clock(s)), pairs);
+}
 
 std::string step_plots(const Subject& s, const std::vector<IoPair>& pairs) {
   auto figures = by_figure(s, pairs);
@@ -154,7 +158,7 @@ std::string step_plots(const Subject& s, const std::vector<IoPair>& pairs) {
       c.coarse ? " The fastest modes turn more than once in twelve steps: the plots show their "
                  "range, not every swing."
                : "");
-  for (const auto& f : figures) text += step_figure(s, all, f);
+  for (const auto& f : figures) text += figure(step_plot(s, all, f));
   return text + "</div>\n" + left_out(count, "ask for pairs by ReportOptions::pairs");
 }
 

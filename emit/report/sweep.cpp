@@ -59,6 +59,8 @@ std::vector<Pole> moving(const std::vector<Pole>& poles) {
   return list;
 }
 
+std::vector<double> sweep_frequencies(const Subject& s) { return grid(s); }
+
 Sweep sweep(const Subject& s) {
   Sweep result;
   result.omega = grid(s);

@@ -23,5 +23,7 @@ struct Sweep {
 /// Over ReportOptions::band_hz, or from a tenth of the slowest pole to four times the fastest;
 /// closer at lightly damped poles, and near those on the axis.
 Sweep sweep(const Subject& subject);
+/// Its frequencies alone [rad/s].
+std::vector<double> sweep_frequencies(const Subject& subject);
 
 }  // namespace titop::report
