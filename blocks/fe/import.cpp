@@ -240,6 +240,11 @@ class Importer {
       result_.text += to_string(mesh_report(mesh), options_.units);
       return;
     }
+    const Eigen::MatrixXd R = rigid_motions(mesh, origin);
+    for (int c = 0; c < 3; ++c)
+      if (!still.at(static_cast<std::size_t>(c)))
+        tell("mass along {}: {:.8g} (units of the file)", component_name(c),
+             R.col(c).dot(mesh.M * R.col(c)));
     const RigidStiffness held = rigid_stiffness(mesh);
     tell(
         "it does not move in {}: a body needs its rigid mass (ModeOptions::rigid; titop import "

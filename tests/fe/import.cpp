@@ -82,6 +82,7 @@ TEST_CASE("rows without stiffness and mass are dropped and listed") {
   const fe::Import found = fe::import_body(folder.path / "rod.pch");
   CHECK(has_line(found.text, {"1 rows", "scalar 9"}));
   CHECK(has_line(found.text, {"y, z, rx, ry, rz", "ModeOptions::rigid"}));
+  CHECK(has_line(found.text, {"mass along x", "6"}));
   CHECK(found.ports == std::vector<std::string>{"1", "2"});
 }
 
