@@ -31,9 +31,9 @@ using namespace loops;
 using linalg::at;
 
 constexpr double kGap = 1e-6;  ///< a loop that is open by more does not close
-/// The same of one through a bushing, which constrains nothing: the moment arms of its force are
-/// off by this share.
-constexpr double kGapOfSpring = 1e-3;
+/// The same of one through a body with springs along all six axes, which constrains nothing: its
+/// force leaves a torque of force times gap, and momentum is lost by this share.
+constexpr double kGapOfSpring = 1e-5;
 
 // --- geometry -----------------------------------------------------------------------------------
 
@@ -107,8 +107,9 @@ struct ChainChecker {
              "joints' posture");
     else if (c.gap > kExactGap)
       notes.push_back({Note::Kind::warning, "chains",
-                       fmt::format("{} closes its chain only to {:.1e} of its size, {}", target(c),
-                                   c.gap, gap_size(c, c.gap))});
+                       fmt::format("{} closes its chain only to {:.1e} of its size, {}: a force "
+                                   "across it leaves a torque of force times gap",
+                                   target(c), c.gap, gap_size(c, c.gap))});
   }
 };
 

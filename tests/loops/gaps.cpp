@@ -53,8 +53,8 @@ TEST_CASE("a bushing between points 4e-7 m apart is the one between coinciding p
     CHECK((a - b).cwiseAbs().maxCoeff() <= 1e-5 * b.cwiseAbs().maxCoeff());
   }
   CHECK(noted(off, Note::Kind::warning, "chains", {"4.0e-07 m"}));
-  // A gap of a centimetre is a mistake, of 0.2 m or so.
-  CHECK(says(compile_error(plate(1e-2, Far::bushing)), Code::kinematic_loop, {"1.0e-02 m"}));
+  // A gap of a hundredth of a millimetre, of 0.2 m or so, is a mistake.
+  CHECK(says(compile_error(plate(1e-5, Far::bushing)), Code::kinematic_loop, {"1.0e-05 m"}));
 }
 
 TEST_CASE("a weld across the same gap is refused in metres, with the limit") {
