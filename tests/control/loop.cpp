@@ -150,6 +150,10 @@ TEST_CASE("mistakes: unknown names, none, twice, no size") {
                       mimo_loop(system, {"torque", "torque"});
                     }),
                     Code::duplicate_name, {"torque"}));
+  Diagram wide{"wide"}, other{"other"};
+  const auto x = wide.input("x", 2001);
+  CHECK(has_mistake(error_of([&] { other.loop_point("p", x); }), Code::unknown_name,
+                    {"another diagram"}));
   Diagram d{"nothing"};
   CHECK(has_mistake(error_of([&] { d.add("none", LoopPoint{.size = 0}); }), Code::size,
                     {"none", "LoopPoint"}));
