@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <cmath>
 #include <titop/blocks/fe/op2_results.hpp>
 #include <titop/graph/error.hpp>
@@ -32,13 +30,27 @@ struct Words {
   throw Error(Code::bad_file, fmt::format("{}: {}", file.name, found), hint);
 }
 
-/// The table of one of these names.
-const Op2Table& table(const Op2File& file, std::initializer_list<const char*> names,
-                      const char* hint) {
-  for (const char* name : names)
-    for (const Op2Table& t : file.tables)
-      if (t.name == name && t.records.size() > 1) return t;
-  refuse(file, fmt::format("it has no table {}", *names.begin()), hint);
+/// What the run must ask for.
+std::string ask(const std::string& parent = "g") {
+  return fmt::format(
+      "SOL 103, clamped at one grid {0}; VECTOR(SORT1,REAL)=ALL, SPCFORCES(SORT1,REAL)=ALL, "
+      "MEFFMASS(PLOT,GRID={0},SUMMARY,PARTFAC)=YES in the case control, PARAM,POST,-2 and "
+      "PARAM,POSTEXT,YES in the bulk data",
+      parent);
+}
+
+/// The only table of this name.
+const Op2Table& table(const Op2File& file, const std::string& name) {
+  const Op2Table* found = nullptr;
+  for (const Op2Table& t : file.tables) {
+    if (t.name != name || t.records.size() < 2) continue;
+    if (found)
+      refuse(file, fmt::format("it has several tables {}", name),
+             "run one METHOD in one subcase, and write it to a file of its own");
+    found = &t;
+  }
+  if (!found) refuse(file, fmt::format("it has no table {}", name), ask());
+  return *found;
 }
 
 int grid_number(long long number, const Op2File& file) {
@@ -54,47 +66,71 @@ double finite(double value, const Op2File& file, const Op2Table& t) {
   return value;
 }
 
-constexpr const char* kAskModes =
-    "write VECTOR(SORT1,REAL)=ALL in the case control, PARAM,POST,-1 in the bulk data, and run SOL "
-    "103";
-
-/// Mode, order, eigenvalue, omega, frequency, generalised mass and stiffness of each mode.
-void read_lama(const Op2File& file, Op2Modes& modes) {
-  const Op2Table& t = table(file, {"LAMA", "LAMAS", "BLAMA"}, kAskModes);
+/// Mode, order, eigenvalue, omega, frequency, generalised mass and stiffness of each mode. Returns
+/// the numbers of the modes.
+std::vector<long long> read_lama(const Op2File& file, Op2Modes& modes) {
+  const Op2Table& t = table(file, "LAMA");
   if (t.records.size() != 3)
     refuse(file, fmt::format("table {} has {} records", t.name, t.records.size()),
            "one subcase of normal modes has three: run one METHOD in one subcase");
   const Words words{t.records[2], file.layout};
+  if (words.size() % 7 != 0)
+    refuse(file, fmt::format("table {} has {} words", t.name, words.size()), "7 for each mode");
   const auto n = static_cast<Index>(words.size() / 7);
   modes.omega.resize(n), modes.mass.resize(n);
+  std::vector<long long> numbers;
   for (Index k = 0; k < n; ++k) {
     const auto first = 7 * static_cast<std::size_t>(k);
+    numbers.push_back(words.integer(first));
     modes.omega(k) = finite(words.real(first + 3), file, t);
     modes.mass(k) = finite(words.real(first + 5), file, t);
   }
+  return numbers;
 }
 
-/// Ident and data of each mode: 8 words per grid, its number times 10 and a device, a type, and six
-/// components.
-void read_shapes(const Op2File& file, Op2Modes& modes) {
-  const Op2Table& t = table(file, {"OUGV1", "OPHIG", "BOPHIG"}, kAskModes);
-  const Index n = modes.omega.size();
-  if (static_cast<Index>(t.records.size()) != 1 + 2 * n)
-    refuse(file, fmt::format("table {} has {} records for {} modes", t.name, t.records.size(), n),
-           kAskModes);
-  for (Index k = 0; k < n; ++k) {
-    const Words ident{t.records[static_cast<std::size_t>(1 + 2 * k)], file.layout};
-    const Words words{t.records[static_cast<std::size_t>(2 + 2 * k)], file.layout};
-    if (ident.size() < 10 || ident.integer(9) != 8 || words.size() % 8 != 0)
-      refuse(file, fmt::format("table {} has no real shapes of 8 words per grid", t.name),
-             kAskModes);
+constexpr long long kEigenvectors = 7, kSupportForces = 3;  ///< codes of tables
+
+/// Approach 2 (real eigenvalues), with a device as last digit; code of the table, which tells also
+/// SORT2 and complex data; mode; words per grid.
+void check_ident(const Op2File& file, const Op2Table& t, const Words& ident, long long code,
+                 long long mode) {
+  if (ident.size() < 10 || ident.integer(0) / 10 != 2 || ident.integer(1) != code ||
+      ident.integer(9) != 8)
+    refuse(file, fmt::format("table {} has no real values of modes, 8 words per grid", t.name),
+           ask());
+  if (ident.integer(4) != mode)
+    refuse(file,
+           fmt::format("table {} has mode {} where LAMA has {}", t.name, ident.integer(4), mode),
+           ask());
+}
+
+/// Six components by grid, a column per mode. Ident and data of each mode: 8 words per point, its
+/// number times 10 and a device, its type (1 for a grid, 2 for a scalar point), the components.
+std::map<int, MatrixXd> values_at_grids(const Op2File& file, const std::string& name,
+                                        long long code, const std::vector<long long>& modes) {
+  const Op2Table& t = table(file, name);
+  if (t.records.size() != 1 + 2 * modes.size())
+    refuse(
+        file,
+        fmt::format("table {} has {} records for {} modes", name, t.records.size(), modes.size()),
+        ask());
+  std::map<int, MatrixXd> values;
+  for (std::size_t k = 0; k < modes.size(); ++k) {
+    check_ident(file, t, {t.records[1 + 2 * k], file.layout}, code, modes[k]);
+    const Words words{t.records[2 + 2 * k], file.layout};
+    if (words.size() % 8 != 0)
+      refuse(file, fmt::format("table {} has {} words in a mode", name, words.size()),
+             "8 for each grid");
     for (std::size_t i = 0; i < words.size(); i += 8) {
-      MatrixXd& shape = modes.shapes[grid_number(words.integer(i) / 10, file)];
-      if (shape.size() == 0) shape.setZero(6, n);
+      if (words.integer(i + 1) != 1) continue;
+      MatrixXd& value = values[grid_number(words.integer(i) / 10, file)];
+      if (value.size() == 0) value.setZero(6, std::ssize(modes));
       for (Index c = 0; c < 6; ++c)
-        shape(c, k) = finite(words.real(i + 2 + static_cast<std::size_t>(c)), file, t);
+        value(c, static_cast<Index>(k)) =
+            finite(words.real(i + 2 + static_cast<std::size_t>(c)), file, t);
     }
   }
+  return values;
 }
 
 /// A matrix of the modes' rigid-body results.
@@ -102,10 +138,7 @@ const Op4Matrix& summary_matrix(const Op2File& file, const std::string& name,
                                 const std::string& parent) {
   for (const Op4Matrix& m : file.matrices)
     if (m.name == name) return find_matrix(file.matrices, name);
-  refuse(file, fmt::format("it has no matrix {}", name),
-         fmt::format("write MEFFMASS(PLOT,GRID={},SUMMARY,PARTFAC,MEFFM,MEFFW,FRACSUM)=YES in the "
-                     "case control, and PARAM,POST,-2 in the bulk data",
-                     parent));
+  refuse(file, fmt::format("it has no matrix {}", name), ask(parent));
 }
 
 const Grid& find_grid(const std::vector<Grid>& grids, const Op2File& file,
@@ -116,19 +149,77 @@ const Grid& find_grid(const std::vector<Grid>& grids, const Op2File& file,
               "take the number of a GRID");
 }
 
+/// From the grid's displacement frame to the basic one.
+MatrixXd in_basic(const Grid& grid, MatrixXd values) {
+  const Matrix3d T = grid.frame.nominal();
+  values.topRows<3>() = (T * values.topRows<3>()).eval();
+  values.bottomRows<3>() = (T * values.bottomRows<3>()).eval();
+  return values;
+}
+
+constexpr double kSameMotion = 1e-3;  ///< of supports' forces, relative to the rigid mass
+
+/// A body accelerated by P alone has f = -omega^2 L_P' as support forces of each mode, about P: not
+/// if the run has other supports, or if L_P is about another grid.
+void require_support(const Op2File& file, const Op2Modes& modes, const MatrixXd& forces,
+                     const ModalData& data, const std::string& parent) {
+  for (Index k = 0; k < modes.omega.size(); ++k)
+    for (Index c = 0; c < 6; ++c) {
+      const double square = modes.omega(k) * modes.omega(k);
+      const double size = std::sqrt(data.D_P.diagonal().segment<3>(c < 3 ? 0 : 3).maxCoeff());
+      if (std::abs(forces(c, k) + square * data.L_P(k, c)) <= kSameMotion * square * size) continue;
+      refuse(file,
+             fmt::format("the support forces of grid {} in mode {} are not those of MPFACS", parent,
+                         k + 1),
+             fmt::format("the run has more supports than grid {}, or MEFFMASS refers to another "
+                         "grid: {}",
+                         parent, ask(parent)));
+    }
+}
+
+void require_unit_masses(const Op2File& file, const Op2Modes& modes) {
+  for (Index k = 0; k < modes.mass.size(); ++k)
+    if (!(std::abs(modes.mass(k) - 1) <= 1e-5))
+      refuse(file,
+             fmt::format("mode {} has the generalised mass {:.6g}, not 1", k + 1, modes.mass(k)),
+             "normalise the modes to MASS, in EIGRL or EIGR");
+}
+
 }  // namespace
 
 Op2Modes op2_modes(const Op2File& file) {
   Op2Modes modes;
-  read_lama(file, modes);
-  read_shapes(file, modes);
+  modes.numbers = read_lama(file, modes);
+  modes.shapes = values_at_grids(file, "OUGV1", kEigenvectors, modes.numbers);
   return modes;
+}
+
+std::vector<int> grids_at_rest(const Op2Modes& modes) {
+  const Index n = modes.omega.size();
+  MatrixXd largest = MatrixXd::Zero(2, n);
+  const auto sizes = [](const MatrixXd& shape) {
+    MatrixXd size(2, shape.cols());
+    size << shape.topRows<3>().cwiseAbs().colwise().maxCoeff(),
+        shape.bottomRows<3>().cwiseAbs().colwise().maxCoeff();
+    return size;
+  };
+  for (const auto& [grid, shape] : modes.shapes) largest = largest.cwiseMax(sizes(shape));
+  std::vector<int> grids;
+  for (const auto& [grid, shape] : modes.shapes)
+    if ((sizes(shape).array() <= 1e-6 * largest.array()).all()) grids.push_back(grid);
+  return grids;
 }
 
 ModalData op2_modal_data(const Op2File& file, const std::string& parent,
                          const std::vector<std::string>& children) {
   const Op2Modes modes = op2_modes(file);
   const Index n = modes.omega.size();
+  const std::vector<Grid> grids = op2_grids(file);
+  const Grid& P = find_grid(grids, file, parent);
+  if (const auto rest = grids_at_rest(modes); std::ranges::find(rest, P.id) == rest.end())
+    throw Error(Code::bad_value, fmt::format("{}: grid {} moves in the modes", file.name, parent),
+                fmt::format("SPC1 123456 at it, or take the clamped grid; at rest are {}",
+                            fmt::join(rest, ", ")));
   const Op4Matrix& D = summary_matrix(file, "RBMASSS", parent);
   const Op4Matrix& L = summary_matrix(file, "MPFACS", parent);
   if (D.value.rows() != 6 || D.value.cols() != 6 || L.value.rows() != 6 || L.value.cols() != n)
@@ -136,28 +227,25 @@ ModalData op2_modal_data(const Op2File& file, const std::string& parent,
            fmt::format("RBMASSS is {} x {}, MPFACS {} x {}, for {} modes", D.value.rows(),
                        D.value.cols(), L.value.rows(), L.value.cols(), n),
            "they are 6 x 6 and 6 by the number of modes");
-  const VectorXd root = modes.mass.cwiseSqrt();
-  if (!(modes.mass.array() > 0).all())
-    refuse(file, "a generalised mass in LAMA is not positive", kAskModes);
-  const std::vector<Grid> grids = op2_grids(file);
-  const Grid& P = find_grid(grids, file, parent);
+  require_unit_masses(file, modes);
   ModalData data;
   data.omega = modes.omega;
   data.xi = VectorXd::Zero(n);
-  data.L_P = (L.value * root.cwiseInverse().asDiagonal()).transpose();
+  data.L_P = L.value.transpose();
   data.D_P = D.value;
   data.digits = 7;
+  const auto forces = values_at_grids(file, "OQG1", kSupportForces, modes.numbers);
+  const auto held = forces.find(P.id);
+  require_support(file, modes,
+                  held == forces.end() ? MatrixXd::Zero(6, n) : in_basic(P, held->second), data,
+                  parent);
   for (const std::string& child : children) {
     const Grid& C = find_grid(grids, file, child);
     const auto shape = modes.shapes.find(C.id);
     if (shape == modes.shapes.end())
       throw Error(Code::unknown_name, fmt::format("{} has no shapes of grid {}", file.name, child),
-                  kAskModes);
-    const Matrix3d T = C.frame.nominal();
-    MatrixXd Phi = shape->second * root.cwiseInverse().asDiagonal();
-    Phi.topRows<3>() = (T * Phi.topRows<3>()).eval();
-    Phi.bottomRows<3>() = (T * Phi.bottomRows<3>()).eval();
-    data.children.push_back({child, C.position - P.position, std::move(Phi)});
+                  ask(parent));
+    data.children.push_back({child, C.position - P.position, in_basic(C, shape->second)});
   }
   return data;
 }

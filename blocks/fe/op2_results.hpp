@@ -11,29 +11,37 @@
 /// Results of a normal modes analysis (SOL 103) in an OP2, in the data's own units.
 namespace titop::fe {
 
-/// Tables LAMA and OUGV1 (or OPHIG).
+/// Tables LAMA and OUGV1.
 struct Op2Modes {
   Eigen::VectorXd omega;                  ///< N [rad/unit of time]
   Eigen::VectorXd mass;                   ///< N, generalised masses
+  std::vector<long long> numbers;         ///< N, of the modes
   std::map<int, Eigen::MatrixXd> shapes;  ///< 6 x N by grid, in its displacement frame
 };
 
-/// The modes. Throws bad_file for a table that is not there, with the case-control or bulk line
-/// that writes it, that has several subcases, complex shapes, or modes that differ from LAMA's.
+/// The modes, without scalar points. BOPHIG and OPHIG are not read: their frame is the basic one,
+/// or not known. Throws bad_file for a table that is not there, with the lines that write it, or
+/// there twice, that has several subcases, SORT2, complex shapes, or other modes than LAMA.
 Op2Modes op2_modes(const Op2File& file);
+
+/// Grids that no mode moves by more than 1e-6 of its largest displacement and rotation: those that
+/// may be clamped.
+std::vector<int> grids_at_rest(const Op2Modes& modes);
 
 /// Positions and frames of all grids by ascending number, from GEOM1 (GRID, CORD2R, single or
 /// double precision), in the basic frame. Throws bad_file for a missing table or coordinate system.
 std::vector<Grid> op2_grids(const Op2File& file);
 
-/// Modal data of a body clamped at grid `parent` by the run itself, mass-normalised: omega from
-/// LAMA, Phi of the children (grid numbers, as names) from OUGV1, L_P from MPFACS, D_P from
-/// RBMASSS. Nastran computes these about the grid of MEFFMASS's GRID, which must be the parent.
-/// `digits`: 7, those of OUGV1 and LAMA. D_P leaves out the mass that is lumped at the clamped
-/// grid. Undamped.
+/// Modal data of a body clamped at grid `parent` alone by the run itself, with modes of generalised
+/// mass 1: omega from LAMA, Phi of the children (grid numbers, as names) from OUGV1, L_P from
+/// MPFACS, D_P from RBMASSS. Nastran computes these in the basic frame about the grid of MEFFMASS's
+/// GRID, which must be the parent: its forces in OQG1 are compared with -omega^2 L_P to 1e-3 of the
+/// rigid mass. `digits`: 7, those of OUGV1 and LAMA. D_P leaves out the mass that is lumped at the
+/// clamped grid. Undamped.
 ///
-/// Throws bad_file for what is missing, with the line that writes it; unknown_name for grids
-/// without position or shapes.
+/// Throws bad_file for what is missing, with the lines that write it, for generalised masses that
+/// differ from 1 by more than 1e-5, and for support forces that contradict MPFACS; bad_value for a
+/// parent that moves in the modes; unknown_name for grids without position or shapes.
 ModalData op2_modal_data(const Op2File& file, const std::string& parent,
                          const std::vector<std::string>& children);
 

@@ -29,9 +29,22 @@ fe::Op2File read(const std::string& bytes) {
   return fe::read_op2(folder.path / "m.op2");
 }
 
-/// One mode of grids 7 and 9; grid 9 is at (5, 0, 0) in system 3, which lies at (0, 0, 2) and is
-/// turned: its z along the basic x, its x along the basic y.
-std::string modes(Op2Style style, bool wide) {
+/// What a run may do otherwise.
+struct Run {
+  double mass = 1;                                         ///< generalised
+  std::vector<double> forces = {100, 0, -200, 0, -50, 0};  ///< of the support at grid 7
+  std::vector<double> at_7 = {0, 0, 0, 0, 0, 0};           ///< shape
+  const char* shapes = "OUGV1";                            ///< table
+  std::int64_t code = 7, mode = 1;                         ///< of it
+  bool twice = false;                                      ///< two tables LAMA
+  bool words_missing = false;                              ///< in LAMA
+};
+
+/// One mode, of 10 rad/s, of grids 7 and 9 and a scalar point 11. Grid 9 is at (5, 0, 0) in system
+/// 3, which lies at (0, 0, 2) and is turned: its z along the basic x, its x along the basic y. Both
+/// move in that system. About grid 7 in the basic frame MPFACS is (2, -1, 0, 0, 0, 0.5): its
+/// support forces are -100 times this, (100, 0, -200), (0, -50, 0) in system 3.
+std::string modes(Op2Style style, bool wide, const Run& run = {}) {
   Op2Writer w(style);
   const auto real = [&](double x) { return wide ? w.wide(x) : w.real(x); };
   const auto reals = [&](const std::vector<double>& values) {
@@ -43,22 +56,31 @@ std::string modes(Op2Style style, bool wide) {
   w.table("GEOM1", {w.integers({2101, 21, wide ? 220 : 8}) + w.integers({3, 1, 2, 0}) +
                         reals({0, 0, 2, 1, 0, 2, 0, 1, 2}),
                     w.integers({4501, 45, wide ? 1120001 : 1}) + w.integers({7, 0}) +
-                        reals({1, 2, 3}) + w.integers({0, 0, 0}) + w.integers({9, 3}) +
+                        reals({1, 2, 3}) + w.integers({3, 0, 0}) + w.integers({9, 3}) +
                         reals({5, 0, 0}) + w.integers({3, 0, 0})});
   const auto singles = [&](const std::vector<double>& values) {
     std::string all;
     for (const double x : values) all += w.real(x);
     return all;
   };
-  w.table("LAMA", {std::string(w.integers(std::vector<std::int64_t>(146, 0))),
-                   w.integers({1, 1}) + singles({100, 10, 1.5, 4, 400})});
-  std::vector<std::int64_t> ident(146, 0);
-  ident[9] = 8;
-  w.table("OUGV1", {w.integers(ident), w.integers({71, 1}) + singles({0, 0, 0, 0, 0, 0}) +
-                                           w.integers({91, 1}) + singles({2, 4, 6, 8, 10, 12})});
+  for (int i = 0; i < (run.twice ? 2 : 1); ++i)
+    w.table("LAMA", {std::string(w.integers(std::vector<std::int64_t>(146, 0))),
+                     w.integers({1, 1}) + singles({100, 10, 1.5, run.mass}) +
+                         (run.words_missing ? std::string() : singles({100 * run.mass}))});
+  const auto ident = [&](std::int64_t code, std::int64_t mode) {
+    std::vector<std::int64_t> words(146, 0);
+    words[0] = 22, words[1] = code, words[4] = mode, words[9] = 8;
+    return w.integers(words);
+  };
+  w.table(run.shapes,
+          {ident(run.code, run.mode), w.integers({71, 1}) + singles(run.at_7) +
+                                          w.integers({91, 1}) + singles({1, 2, 3, 4, 5, 6}) +
+                                          w.integers({111, 2}) + singles({9, 0, 0, 0, 0, 0})});
+  if (!run.forces.empty())
+    w.table("OQG1", {ident(3, 1), w.integers({71, 1}) + singles(run.forces)});
   w.matrix("RBMASSS", 8 * MatrixXd::Identity(6, 6), 2);
   MatrixXd L = MatrixXd::Zero(6, 1);
-  L(0) = 3, L(1) = -1, L(5) = 0.5;
+  L(0) = 2, L(1) = -1, L(5) = 0.5;
   w.matrix("MPFACS", L, 1);
   w.end();
   return w.bytes;
@@ -74,8 +96,7 @@ TEST_CASE("cantilever: the OP2 has the body of its CSV tables") {
   right.D_P.diagonal().head<3>().array() -= 0.00851685768388;  // at P: not in RBMASSS
   CHECK((data.omega - right.omega).cwiseAbs().maxCoeff() <= 6e-8 * 6565);
   CHECK((data.D_P - right.D_P).cwiseAbs().maxCoeff() <= 1e-12 * 6);
-  // LAMA's generalised masses are 1 to 6e-8, and divide MPFACS and OUGV1.
-  CHECK((data.L_P - right.L_P).cwiseAbs().maxCoeff() <= 1e-7 * 2.3);
+  CHECK((data.L_P - right.L_P).cwiseAbs().maxCoeff() <= 1e-15 * 2.3);
   REQUIRE(data.children.size() == 1);
   CHECK((data.children[0].PC - right.children[0].PC).norm() <= 1e-15);
   CHECK((data.children[0].Phi_C - right.children[0].Phi_C).cwiseAbs().maxCoeff() <= 1e-7 * 6.6);
@@ -99,11 +120,43 @@ TEST_CASE("modes and geometry in every byte order, word size and precision") {
         const ModalData data = fe::op2_modal_data(file, "7", {"9"});
         CHECK(data.omega == Eigen::VectorXd::Constant(1, 10));
         CHECK(data.D_P == Matrix6(8 * Matrix6::Identity()));
-        // The generalised mass 4 is brought to 1.
-        CHECK(data.L_P == (MatrixXd(1, 6) << 1.5, -0.5, 0, 0, 0, 0.25).finished());
+        CHECK(data.L_P == (MatrixXd(1, 6) << 2, -1, 0, 0, 0, 0.5).finished());
         CHECK(data.children[0].PC == Vector3d(-1, 3, -1));
         CHECK(data.children[0].Phi_C == (MatrixXd(6, 1) << 3, 1, 2, 6, 4, 5).finished());
+        CHECK(fe::op2_modes(file).shapes.size() == 2);  // not the scalar point
       }
+}
+
+TEST_CASE("cantilever: the parent is the grid that the run clamps") {
+  const fe::Op2File file = fe::read_op2(kFolder + "pn_mwe_s-solution_1.op2");
+  // Grid 2, at the tip, belongs to no element, and thus rests.
+  CHECK(fe::grids_at_rest(fe::op2_modes(file)) == std::vector<int>{1, 2});
+  check_refused([&] { fe::op2_modal_data(file, "3", {"5"}); }, Code::bad_value,
+                {"pn_mwe_s-solution_1.op2", "grid 3", "SPC1", "1, 2"});
+  check_refused([&] { fe::op2_modal_data(file, "2", {"3"}); }, Code::bad_file,
+                {"grid 2", "mode 1", "MPFACS", "SPCFORCES"});
+}
+
+TEST_CASE("runs whose results are no clamped modes of mass 1 are refused") {
+  const auto refused = [](const Run& run, Code code,
+                          std::initializer_list<std::string_view> names) {
+    check_refused([&] { fe::op2_modal_data(read(modes({}, false, run)), "7", {"9"}); }, code,
+                  names);
+  };
+  refused({.mass = 4}, Code::bad_file, {"mode 1", "4", "MASS"});
+  refused({.at_7 = {0, 0, 0, 0, 0, 1e-4}}, Code::bad_value, {"grid 7", "SPC1"});
+  refused({.forces = {}}, Code::bad_file, {"OQG1", "SPCFORCES(SORT1,REAL)=ALL"});
+  // The support takes half: there is another one.
+  refused({.forces = {50, 0, -100, 0, -25, 0}}, Code::bad_file, {"grid 7", "MPFACS"});
+  // MPFACS about a grid elsewhere.
+  refused({.forces = {100, 0, -200, 0, -50, 30}}, Code::bad_file, {"grid 7", "MEFFMASS"});
+  for (const char* name : {"BOPHIG", "OPHIG"})
+    refused({.shapes = name}, Code::bad_file, {"OUGV1", "VECTOR(SORT1,REAL)=ALL"});
+  refused({.twice = true}, Code::bad_file, {"several", "LAMA"});
+  refused({.words_missing = true}, Code::bad_file, {"LAMA", "6 words", "7"});
+  for (const std::int64_t code : {1, 1007, 2007})  // displacements, complex, SORT2
+    refused({.code = code}, Code::bad_file, {"OUGV1", "SORT1"});
+  refused({.mode = 2}, Code::bad_file, {"OUGV1", "mode 2", "LAMA"});
 }
 
 TEST_CASE("what is missing is named, with the line that writes it") {
