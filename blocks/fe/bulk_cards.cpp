@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cctype>
 #include <titop/blocks/fe/bulk_cards.hpp>
@@ -12,23 +14,47 @@ std::string upper(std::string_view text) {
   return result;
 }
 
-/// Fields of a line without the first, the card's name or a continuation mark: eight or four.
-void add_line(std::string_view text, BulkCard& card) {
-  const std::string_view head = text.substr(0, std::min<std::size_t>(text.size(), 8));
-  if (text.find(',') != std::string_view::npos) {
-    std::vector<std::string_view> fields = comma_fields(text);
-    const std::size_t count = head.find('*') != std::string_view::npos ? 4 : 8;
-    fields.erase(fields.begin());
-    fields.resize(count);  // the mark of the continuation goes
-    card.fields.insert(card.fields.end(), fields.begin(), fields.end());
-    return;
-  }
-  const bool wide = head.find('*') != std::string_view::npos;
-  const std::size_t width = wide ? 16 : 8, count = wide ? 4 : 8;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = 8 + i * width;
-    card.fields.push_back(at < text.size() ? trim(text.substr(at, width)) : std::string_view());
-  }
+/// A continuation's mark without blanks, + and *.
+std::string mark_in(std::string_view text) {
+  text = trim(text);
+  if (text.starts_with('+') || text.starts_with('*')) text.remove_prefix(1);
+  return upper(trim(text));
+}
+
+/// A line in fields of columns: its first one, then eight or four.
+std::vector<std::string_view> column_fields(std::string_view text, std::size_t count) {
+  const auto piece = [&](std::size_t at, std::size_t width) {
+    return at < text.size() ? trim(text.substr(at, width)) : std::string_view();
+  };
+  std::vector<std::string_view> fields = {piece(0, 8)};
+  for (std::size_t i = 0; i < count; ++i) fields.push_back(piece(8 + i * 64 / count, 64 / count));
+  fields.push_back(piece(72, 8));
+  return fields;
+}
+
+/// Data behind the eight or four fields of a line, where a mark may be.
+std::string_view data_behind(const std::vector<std::string_view>& fields, std::size_t count) {
+  for (std::size_t i = count + 1; i < fields.size(); ++i)
+    if (!fields[i].empty() &&
+        (i > count + 1 || std::string_view("+*").find(fields[i][0]) == std::string_view::npos))
+      return fields[i];
+  return {};
+}
+
+/// Fields of a line: its first one is the card's name, or the mark of a continuation.
+void add_line(std::string_view text, BulkCard& card, bool continuation) {
+  const bool wide = text.substr(0, 8).find('*') != std::string_view::npos;
+  const std::size_t count = wide ? 4 : 8;
+  const bool free = text.find(',') != std::string_view::npos;
+  std::vector<std::string_view> fields = free ? comma_fields(text) : column_fields(text, count);
+  if (const std::string_view data = data_behind(fields, count); free && !data.empty())
+    card.mistake = fmt::format("'{}' behind {} fields", data, count);
+  if (const std::string mark = mark_in(fields[0]);
+      continuation && !mark.empty() && mark != card.mark)
+    card.mistake = fmt::format("the continuation '{}' behind the mark '{}'", mark, card.mark);
+  fields.resize(count + 2);
+  card.mark = mark_in(fields[count + 1]);
+  card.fields.insert(card.fields.end(), fields.begin() + 1, fields.end() - 1);
 }
 
 /// Blank or a mark in the first field.
@@ -56,7 +82,7 @@ std::vector<BulkCard> bulk_cards(const TextFile& file) {
     const std::string_view text = line.text.substr(0, line.text.find('$'));
     if (trim(text).empty()) continue;
     if (continues(text)) {
-      if (open) add_line(text, cards.back());
+      if (open) add_line(text, cards.back(), true);
       continue;
     }
     const std::string name = name_of_card(text);
@@ -64,7 +90,7 @@ std::vector<BulkCard> bulk_cards(const TextFile& file) {
     open = std::isalpha(static_cast<unsigned char>(text[0])) != 0;
     if (!open) continue;
     cards.push_back({name, {}, line.number});
-    add_line(text, cards.back());
+    add_line(text, cards.back(), false);
   }
   return cards;
 }

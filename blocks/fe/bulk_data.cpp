@@ -53,11 +53,24 @@ class BulkReader {
     return p;
   }
 
+  /// The last one of those that are read and must be there.
+  static std::size_t last_field(const BulkCard& card) {
+    if (card.name == "CORD2R") return 8;
+    return card.name == "GRID" && !card.mark.empty() ? 4 : 0;
+  }
+
   void sort(BulkCard card) {
     if (card.name == "INCLUDE" || card.name == "GRDSET")
       return mistake(card, card.name, "its text, or its effect, in the GRIDs of this file");
     const bool grid = card.name == "GRID";
     if (!grid && !card.name.starts_with("CORD")) return;
+    if (!card.mistake.empty())
+      mistakes_.add(bad_line(file_, card.line, fmt::format("{} in {}", card.mistake, card.name),
+                             "each line with its fields alone, each continuation right behind its "
+                             "line, with the same mark"));
+    if (card.fields.size() <= last_field(card))
+      mistakes_.add(bad_line(file_, card.line, fmt::format("no continuation of {}", card.name),
+                             "it right behind its line"));
     const int id = integer(card, 0);
     if (id < 1) return mistake(card, card.field(0), "a number above 0");
     const auto [at, is_new] = (grid ? grid_cards_ : system_cards_).insert({id, card});

@@ -16,9 +16,11 @@ namespace titop::fe {
 /// systems are CORD2R, also relative to others. In the data's unit of length.
 ///
 /// Throws bad_file, all mistakes together, with file and line: a field that is no number, a grid or
-/// a coordinate system twice with different data, a coordinate system that is not there or refers
-/// to itself, one of another kind that a grid uses (CORD1R, CORD2C, CORD2S, ...), axes without
-/// directions, INCLUDE and GRDSET (their effect would be missing), no GRID at all.
+/// a coordinate system twice with different data, a coordinate system that is not there, refers to
+/// itself or over more than 1000 others to the basic one, one of another kind that a grid uses
+/// (CORD1R, CORD2C, CORD2S, ...), axes without directions, INCLUDE and GRDSET (their effect would
+/// be missing), data behind the last field of a line, a continuation whose mark is not that of its
+/// card or that is missing, no GRID at all.
 std::vector<Grid> read_grids(const std::filesystem::path& path);
 
 }  // namespace titop::fe

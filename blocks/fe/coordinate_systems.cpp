@@ -6,6 +6,12 @@
 
 namespace titop::fe::detail {
 
+namespace {
+
+constexpr std::size_t kMostNested = 1000;  ///< the search is recursive
+
+}  // namespace
+
 const Axes* CoordinateSystems::find(int id, std::string& why) {
   if (const auto known = found_.find(id); known != found_.end()) return &known->second;
   const auto at = rectangular.find(id);
@@ -18,6 +24,11 @@ const Axes* CoordinateSystems::find(int id, std::string& why) {
   const Cord2r& card = at->second;
   if (!open_.insert(id).second) {
     why = fmt::format("coordinate system {}, which refers to itself", id);
+    return nullptr;
+  }
+  if (open_.size() > kMostNested) {
+    open_.erase(id);
+    why = fmt::format("coordinate system {}, behind {} others in each other", id, kMostNested);
     return nullptr;
   }
   const Axes* in = find(card.in, why);

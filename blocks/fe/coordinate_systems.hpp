@@ -27,7 +27,7 @@ class CoordinateSystems {
   std::map<int, std::string> others;  ///< names of cards of other kinds, "CORD2C"
 
   /// Null, and the reason in `why`, for one that is not there, of another kind, that refers to
-  /// itself, or whose points are on a line.
+  /// itself or over more than 1000 others to the basic one, or whose points are on a line.
   const Axes* find(int id, std::string& why);
 
  private:

@@ -80,5 +80,39 @@ TEST_CASE("mistakes in bulk data, with their lines") {
   refused(replaced(kText, "GRID    9 ", "GRID    12"), {"m.bdf:11", "'12'", "line 10"});
   refused(replaced(kText, "$ systems", "INCLUDE 'more.bdf'"), {"m.bdf:4", "INCLUDE"});
   refused(replaced(kText, "$ systems", "GRDSET          3"), {"m.bdf:4", "GRDSET"});
-  refused("CORD2R  3\n", {"m.bdf", "GRID", "EXTSEOUT"});
+  refused("CBAR    3\n", {"m.bdf", "GRID", "EXTSEOUT"});
+}
+
+TEST_CASE("no data of a line are lost, and no continuation goes to another card") {
+  const std::string grid = "GRID    9       10      1.      2.      3.\n";
+  refused("CORD2R,10,0,0.,0.,2.,1.,0.,2.,0.,1.,2.\n" + grid, {"m.bdf:1", "'0.'", "CORD2R"});
+  refused("CORD2R,10,0,0.,0.,2.,1.,0.,2.,+A,1.\n+A,0.,1.,2.\n" + grid, {"m.bdf:1", "'1.'"});
+  refused("CORD2R,10,0,0.,0.,2.,1.,0.,2.\n" + grid, {"m.bdf:1", "CORD2R", "continuation"});
+  CHECK(read("CORD2R,10,0,0.,0.,2.,1.,0.,2.,+A,,\n+A,0.,1.,2.\n" + grid)[0].position ==
+        Vector3d(3, 1, 4));
+  const std::string system =
+      "CORD2R  10      0       0.      0.      2.      1.      0.      2.      ";
+  CHECK(read(system + "+A\n+A      0.      1.      2.\n" + grid)[0].position == Vector3d(3, 1, 4));
+  CHECK(read(system + "\n        0.      1.      2.\n" + grid)[0].position == Vector3d(3, 1, 4));
+  const std::string stolen = system + "+A\n" + grid + "+A      0.      1.      2.\n";
+  refused(stolen, {"m.bdf:1", "CORD2R", "continuation"});
+  refused(stolen, {"m.bdf:2", "GRID", "'A'"});
+  refused(system + "+A\n+B      0.      1.      2.\n" + grid, {"m.bdf:1", "'A'", "'B'"});
+  refused(
+      "GRID*   9                               1.              2.              *A\n"
+      "CBAR    1\n*A      3.\n",
+      {"m.bdf:1", "GRID", "continuation"});
+}
+
+TEST_CASE("systems in systems: 1000 of them, no more") {
+  const auto nested = [](int count) {  // each one 1 m above the last
+    std::string text;
+    for (int i = 1; i <= count; ++i)
+      text += "CORD2R," + std::to_string(i) + "," + std::to_string(i - 1) +
+              ",0.,0.,1.,0.,0.,2.\n,1.,0.,1.\n";
+    return text + "GRID,1," + std::to_string(count) + ",,,1.\n";
+  };
+  CHECK(read(nested(1000))[0].position == Vector3d(0, 0, 1001));
+  refused(nested(1001), {"m.bdf:2003", "coordinate system 1", "1000"});
+  refused(nested(100'001), {"coordinate system", "1000"});
 }
