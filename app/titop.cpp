@@ -39,7 +39,7 @@ constexpr const char* kUsage = R"(usage:
       FILE.json    the model with its poles, certificate and notes
       FILE.csv     frequency response; needs --omega
   titop import FILE                        what is in a file of a finite-element program, its checks
-                                           and ports: OP4, DMIG punch, CSV of modes, CalculiX;
+                                           and ports: OP4, OP2, DMIG punch, CSV of modes, CalculiX;
                                            with -o and --parent a body: BODY.json, a diagram of it
                                            alone, or BODY.csv, its modal data
 options:

@@ -9,6 +9,7 @@
 #include <titop/blocks/fe/dmig.hpp>
 #include <titop/blocks/fe/file_kind.hpp>
 #include <titop/blocks/fe/import.hpp>
+#include <titop/blocks/fe/import_options.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/fe/modal_csv.hpp>
@@ -24,29 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 using Names = std::vector<std::string>;
-
-/// Names of stiffness and mass among those of the file.
-std::pair<std::string, std::string> chosen_pair(const ImportOptions& options, const Names& there) {
-  if (!options.stiffness.empty() || !options.mass.empty()) return {options.stiffness, options.mass};
-  constexpr std::array<std::pair<const char*, const char*>, 5> pairs = {
-      {{"KAA", "MAA"}, {"KXX", "MXX"}, {"KAAX", "MAAX"}, {"KGG", "MGG"}, {"K", "M"}}};
-  const auto has = [&](const char* name) { return std::ranges::find(there, name) != there.end(); };
-  Names found;
-  std::pair<std::string, std::string> result;
-  for (const auto& [K, M] : pairs)
-    if (has(K) && has(M)) {
-      found.push_back(fmt::format("{} and {}", K, M));
-      result = {K, M};
-    }
-  if (found.size() == 1) return result;
-  throw Error(
-      Code::unknown_name,
-      found.empty() ? "the file has no pair of stiffness and mass that is known by name"
-                    : "the file has more than one pair of stiffness and mass",
-      fmt::format("name them (ImportOptions::stiffness, mass; titop import --matrices K,M); "
-                  "its matrices are {}",
-                  titop::detail::some_names(there)));
-}
 
 /// One import: what it reads is told in `result.text`.
 class Importer {
@@ -72,6 +50,10 @@ class Importer {
     result_.text += fmt::format(text, std::forward<T>(values)...) + "\n";
   }
 
+  void refuse(const TakenOptions& taken) const {
+    refuse_others(options_, taken, file_.filename().string());
+  }
+
   fs::path bulk_file() const {
     if (!options_.grids.empty()) return options_.grids;
     const fs::path beside = fs::path(file_).replace_extension(".asm");
@@ -93,7 +75,10 @@ class Importer {
   }
 
   Mesh grids_of_op4() {
-    const std::vector<Op4Matrix> all = read_op4(file_);
+    Names only;
+    if (!options_.stiffness.empty() && !options_.mass.empty())
+      only = {options_.stiffness, options_.mass};
+    const std::vector<Op4Matrix> all = read_op4(file_, only);
     const Names names = list(all);
     const auto [stiffness, mass] = chosen_pair(options_, names);
     const Op4Matrix &K = find_matrix(all, stiffness), &M = find_matrix(all, mass);
@@ -128,18 +113,27 @@ class Importer {
     if (asked || std::ranges::any_of(names, [](const std::string& name) {
           return name == "KAA" || name == "KXX" || name == "KGG";
         })) {
+      refuse({.ports = true, .units = true, .matrices = true, .modes = true, .xi = true});
       const auto [stiffness, mass] = chosen_pair(options_, names);
       const std::vector<Grid> grids = op2_grids(all);
       return use(mesh_of(six_rows_each(find_matrix(all.matrices, stiffness),
                                        find_matrix(all.matrices, mass), grids),
                          grids));
     }
-    for (const auto& [grid, shape] : op2_modes(all).shapes)
-      result_.ports.push_back(std::to_string(grid));
+    op2_modes_alone(all);
+  }
+
+  void op2_modes_alone(const Op2File& all) {
+    refuse({.ports = true, .units = true, .xi = true});
+    const Op2Modes modes = op2_modes(all);
+    for (const auto& [grid, shape] : modes.shapes) result_.ports.push_back(std::to_string(grid));
+    tell("at rest in all modes, for the parent: {}", fmt::join(grids_at_rest(modes), ", "));
     if (options_.parent.empty()) return;
     ModalData data = op2_modal_data(all, options_.parent, options_.children);
-    if (options_.modes.xi.size() == 1) data.xi.setConstant(options_.modes.xi[0]);
+    set_damping(options_.modes.xi, data);
     take(scaled(std::move(data), options_.units));
+    tell("D_P leaves out the mass that is lumped at grid {}: add it as a rigid body there",
+         options_.parent);
   }
 
   Mesh grids_of_dmig() {
@@ -151,11 +145,15 @@ class Importer {
     tell("{}, {}: {} rows, {:.3g} digits", stiffness, mass, m.dofs.size(), m.digits);
     if (bulk.empty()) return mesh_of(m, {});
     std::vector<Grid> grids = read_grids(bulk);
-    std::erase_if(grids, [&](const Grid& g) {
-      return std::ranges::none_of(m.dofs, [&](const GridDof& dof) { return dof.grid == g.id; });
-    });
+    std::erase_if(grids, [&](const Grid& g) { return !has_rows(m, g); });
     tell("grids from {}: {}", bulk.filename().string(), grids.size());
     return mesh_of(m, grids);
+  }
+
+  /// A scalar point may have the number of a grid.
+  static bool has_rows(const GridMatrices& m, const Grid& grid) {
+    return std::ranges::any_of(
+        m.dofs, [&](const GridDof& dof) { return dof.component > 0 && dof.grid == grid.id; });
   }
 
   /// Positions by statics if there are no grids.
@@ -170,9 +168,7 @@ class Importer {
            titop::detail::some_names(dropped));
     m = without(std::move(m), empty);
     if (grids.empty()) grids = by_statics(m);
-    std::erase_if(grids, [&](const Grid& g) {
-      return std::ranges::none_of(m.dofs, [&](const GridDof& dof) { return dof.grid == g.id; });
-    });
+    std::erase_if(grids, [&](const Grid& g) { return !has_rows(m, g); });
     return to_mesh(m, grids);
   }
 
@@ -181,7 +177,9 @@ class Importer {
     const std::vector<int> from = references(m);
     for (std::size_t i = 0;; ++i) try {
         std::vector<Grid> grids = grids_by_statics(m, from.at(i));
-        tell("positions by statics, from grid {}", from[i]);
+        const Grid& worst = *std::ranges::max_element(grids, {}, &Grid::noise);
+        tell("positions by statics, from grid {}: not rigid by {:.1e}, at grid {}", from[i],
+             worst.noise, worst.id);
         return grids;
       } catch (const Error&) {
         constexpr std::size_t most = 10;
@@ -208,8 +206,12 @@ class Importer {
   }
 
   Mesh calculix() {
+    refuse({.ports = true, .units = true, .modes = true, .xi = true});
     const CalculixFiles files = calculix_files(fs::path(file_).replace_extension());
-    warn(implausible(read_calculix_deck(files.deck)));
+    CalculixDeck deck = read_calculix_deck(files.deck);
+    const auto& [length, mass, time] = options_.units;
+    if (deck.least_E) *deck.least_E *= mass / (length * time * time);
+    warn(implausible(deck));
     return read_calculix(files);
   }
 
@@ -265,12 +267,8 @@ class Importer {
   }
 
   void modal_data_alone() {
-    if (!options_.parent.empty() || !options_.children.empty())
-      throw Error(
-          Code::bad_value,
-          fmt::format("{} has modal data, which have their ports", file_.filename().string()),
-          "name no parent and no children");
-    ModalData data = scaled(read_modal_csv(file_), options_.units);
+    refuse({});
+    ModalData data = read_modal_csv(file_);
     result_.ports.push_back("P");
     for (const ModalChild& child : data.children) result_.ports.push_back(child.name);
     take(std::move(data));

@@ -16,10 +16,11 @@ struct ImportOptions {
   /// Parent port, one of `Import::ports`; empty: the file is only looked into.
   std::string parent = {};
   std::vector<std::string> children = {};  ///< child ports, of `Import::ports`
-  DataUnits units = {};                    ///< of the file
+  DataUnits units = {};                    ///< of the file; a CSV has its own line of them
   ModeOptions modes = {};                  ///< of the mesh, in the file's units of mass and length
   /// Positions and frames of the grids of an OP4 or DMIG file: bulk data (`read_grids`). Empty: the
-  /// file of the same name with the extension .asm, or, without it, by statics from the parent.
+  /// file of the same name with the extension .asm, or, without it, by statics from the parent,
+  /// whose displacement frame is then the body's.
   std::filesystem::path grids = {};
   /// Names of stiffness and mass; empty: the one pair of KAA, MAA; KXX, MXX; KAAX, MAAX; KGG, MGG;
   /// K, M that the file has.
@@ -43,7 +44,9 @@ struct Import {
 /// of stiffness and mass in an OP2 those of its own GEOM1. An OP2 without them gives the modes of
 /// its run (`op2_modal_data`), clamped at the parent by the run.
 ///
-/// Throws the errors of the readers, of `to_mesh` and `modal_data`; bad_file for a file of another
+/// Throws the errors of the readers, of `to_mesh` and `modal_data`; bad_value for options that the
+/// kind of file does not take (a CSV of modes: any; the modes of an OP2: grids, modes but for xi;
+/// an OP2's matrices: grids; CalculiX: grids, stiffness, mass); bad_file for a file of another
 /// kind, with what to ask of the program; unknown_name for matrices or ports that are not there.
 Import import_body(const std::filesystem::path& file, const ImportOptions& options = {});
 

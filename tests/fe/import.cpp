@@ -25,6 +25,10 @@ TEST_CASE("OP4 with its .asm: contents, checks, ports, and the body of tests/fe/
   CHECK(found.ports == std::vector<std::string>{"3", "11", "19", "27"});
   CHECK(!found.body);
   CHECK(has_line(found.text, {"KXX", "46 x 46", "15 digits"}));
+  // Of matrices that are named no others are read.
+  const fe::ImportOptions named{.stiffness = "KXX", .mass = "MXX"};
+  CHECK(has_line(fe::import_body(kOp4, named).text, {"was not asked for"}));
+  CHECK(!has_line(found.text, {"was not asked for"}));
   const fe::Import made =
       fe::import_body(kOp4, {.parent = "3", .children = {"11", "27"}, .units = {.length = 1e-3}});
   REQUIRE(made.body);
@@ -43,7 +47,7 @@ TEST_CASE("DMIG without positions, CalculiX and CSV") {
       wing, {.parent = "1010", .units = {.length = 0.0254, .mass = 175.12683524647636}});
   REQUIRE(punch.body);
   CHECK(punch.ports.size() == 71);
-  CHECK(has_line(punch.text, {"statics", "1010"}));
+  CHECK(has_line(punch.text, {"statics", "1010", "not rigid by"}));
 
   const std::string beam = kData + "/calculix_beam/beam_free_mat.sti";
   const fe::Import calculix = fe::import_body(beam, {.parent = "900001", .children = {"900003"}});
@@ -53,8 +57,40 @@ TEST_CASE("DMIG without positions, CalculiX and CSV") {
 
   const std::string csv = kData + "/nastran_cantilever/cantilever.csv";
   CHECK(fe::import_body(csv).body->omega.size() == 3);
-  check_refused([&] { fe::import_body(csv, {.parent = "P"}); }, Code::bad_value,
-                {"cantilever.csv"});
+}
+
+TEST_CASE("options without effect on a kind of file are refused by name") {
+  const auto refused = [](const std::string& file, const fe::ImportOptions& options,
+                          std::initializer_list<std::string_view> names) {
+    check_refused([&] { fe::import_body(file, options); }, Code::bad_value, names);
+  };
+  const std::string csv = kData + "/nastran_cantilever/cantilever.csv";
+  const std::string beam = kData + "/calculix_beam/beam_free_mat.sti";
+  refused(csv, {.parent = "P", .children = {"C"}}, {"cantilever.csv", "--parent", "--children"});
+  refused(csv, {.units = {.length = 1e-3}}, {"cantilever.csv", "--units"});
+  refused(csv,
+          {.modes = {.residual = {"C"}, .xi = {0.01}, .rayleigh = fe::Rayleigh{1, 1}},
+           .grids = "m.asm",
+           .stiffness = "K"},
+          {"--grids", "--matrices", "--modes", "rayleigh", "--xi"});
+  refused(csv, {.modes = {.rigid = Matrix6::Identity()}}, {"--mass"});
+  refused(kOp2, {.parent = "1", .modes = {.kept = 2}}, {"pn_mwe_s-solution_1.op2", "--modes"});
+  refused(kOp2, {.parent = "1", .modes = {.rigid = Matrix6::Identity()}, .grids = "m.asm"},
+          {"--mass", "--grids"});
+  refused(beam, {.grids = "m.asm", .stiffness = "K", .mass = "M"},
+          {"beam_free_mat.sti", "--grids", "--matrices"});
+}
+
+TEST_CASE("CalculiX: Young's modulus in the units of the file") {
+  const titop_test::Folder folder;
+  const std::string from = kData + "/calculix_beam/beam_free_mat";
+  for (const char* ending : {".sti", ".mas", ".dof", ".inp"})
+    std::filesystem::copy_file(from + ending, folder.path / ("beam" + std::string(ending)));
+  const std::string warning = "Young's modulus";
+  const auto file = folder.path / "beam.sti";
+  CHECK(fe::import_body(file).text.find(warning) == std::string::npos);
+  // 70e9 of a unit of pressure of 1e-3 Pa: 70 MPa.
+  CHECK(fe::import_body(file, {.units = {.mass = 1e-3}}).text.find(warning) != std::string::npos);
 }
 
 TEST_CASE("OP2 of a normal modes analysis") {
@@ -63,7 +99,27 @@ TEST_CASE("OP2 of a normal modes analysis") {
   REQUIRE(found.body);
   CHECK(found.ports.size() == 7);
   CHECK(has_line(found.text, {"MPFACS", "6 x 3"}));
+  CHECK(has_line(found.text, {"at rest", "1, 2"}));
+  CHECK(has_line(found.text, {"D_P", "lumped", "grid 1"}));
   CHECK(found.body->children[0].name == "3");
+  // Its tables as another program has read them, in SI.
+  const ModalData right = fe::read_modal_csv(kData + "/nastran_cantilever/cantilever.csv");
+  Matrix6 D_P = right.D_P;
+  D_P.diagonal().head<3>().array() -= 0.00851685768388;  // at P: not in RBMASSS
+  CHECK((found.body->omega - right.omega).cwiseAbs().maxCoeff() <= 6e-8 * 6565);
+  CHECK((found.body->L_P - right.L_P).cwiseAbs().maxCoeff() <= 1e-15 * 2.3);
+  CHECK((found.body->D_P - D_P).cwiseAbs().maxCoeff() <= 1e-12 * 6);
+  CHECK((found.body->children[0].PC - Vector3d(0.1, 0, 0)).norm() <= 1e-15);
+  CHECK(found.body->xi.isZero(0));
+
+  const fe::ImportOptions each{.parent = "1", .modes = {.xi = {0.01, 0.02, 0.03}}};
+  CHECK(fe::import_body(kOp2, each).body->xi == Vector3d(0.01, 0.02, 0.03));
+  check_refused(
+      [&] {
+        fe::import_body(kOp2, {.parent = "1", .modes = {.xi = {0.01, 0.02}}});
+      },
+      Code::size, {"2", "3 modes"});
+  CHECK_NOTHROW(fe::import_body(kOp2, {.parent = "1", .modes = {.xi = {0.01}}}));
 }
 
 TEST_CASE("rows without stiffness and mass are dropped and listed") {
@@ -83,6 +139,26 @@ TEST_CASE("rows without stiffness and mass are dropped and listed") {
   CHECK(has_line(found.text, {"1 rows", "scalar 9"}));
   CHECK(has_line(found.text, {"y, z, rx, ry, rz", "ModeOptions::rigid"}));
   CHECK(has_line(found.text, {"mass along x", "6"}));
+  CHECK(found.ports == std::vector<std::string>{"1", "2"});
+}
+
+TEST_CASE("a scalar point with the number of a grid is not that grid") {
+  const titop_test::Folder folder;
+  std::string text = "DMIG    KAAX    0       6       2       0\n";
+  const auto entry = [&](const char* name, int g, int c, int h, int d, const char* value) {
+    text += std::string("DMIG    ") + name + "    " + std::to_string(g) + "       " +
+            std::to_string(c) + "               " + std::to_string(h) + "       " +
+            std::to_string(d) + "       " + value + "\n";
+  };
+  entry("KAAX", 1, 1, 1, 1, "2.0"), entry("KAAX", 1, 1, 2, 1, "-2.0");
+  entry("KAAX", 2, 1, 2, 1, "2.0"), entry("KAAX", 9, 0, 9, 0, "5.0");
+  text += "DMIG    MAAX    0       6       2       0\n";
+  entry("MAAX", 1, 1, 1, 1, "3.0"), entry("MAAX", 2, 1, 2, 1, "3.0");
+  entry("MAAX", 9, 0, 9, 0, "1.0");
+  folder.write("rod.pch", text);
+  folder.write("rod.asm", "GRID,1,,0.\nGRID,2,,1.\nGRID,9,,2.\n");
+  const fe::Import found = fe::import_body(folder.path / "rod.pch");
+  CHECK(has_line(found.text, {"rod.asm", "2"}));
   CHECK(found.ports == std::vector<std::string>{"1", "2"});
 }
 
