@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <titop/blocks/fe/clamped.hpp>
+#include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/support/some_names.hpp>
 
@@ -11,6 +13,8 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 
 namespace {
+
+constexpr double kSameMass = 1e-3;  ///< of three printed digits
 
 /// The directions in which the mesh is rigid, if that is wanted.
 std::array<bool, 6> rigid_directions(const Mesh& mesh, const Vector3d& P,
@@ -23,6 +27,26 @@ std::array<bool, 6> rigid_directions(const Mesh& mesh, const Vector3d& P,
                             mesh.name),
                 "leave it out: the mass comes from M");
   return still;
+}
+
+/// Throws unless the rigid mass that is given is that of M in the directions in which M moves.
+void require_same_mass(const Mesh& mesh, const Clamped& c, const Matrix6& given) {
+  for (Index i = 0; i < 6; ++i)
+    for (Index j = 0; j <= i; ++j) {
+      if (c.rigid.at(static_cast<std::size_t>(i)) || c.rigid.at(static_cast<std::size_t>(j)))
+        continue;
+      const double size = std::sqrt(std::abs(c.D_P(i, i) * c.D_P(j, j)));
+      if (std::abs(c.D_P(i, j) - given(i, j)) <= kSameMass * size) continue;
+      const auto name = [](Index k) { return component_name(static_cast<int>(k)); };
+      throw Error(
+          Code::bad_value,
+          fmt::format("ModeOptions::rigid has the mass {:.6g} for {}, {} about the parent, where "
+                      "mesh {} has "
+                      "{:.6g}",
+                      given(i, j), name(i), name(j), mesh.name, c.D_P(i, j)),
+          "give mass, centre of mass and inertia of the whole body, in the units of the mesh, as "
+          "its M has them");
+    }
 }
 
 /// Names of all rows without stiffness and mass.
@@ -45,6 +69,7 @@ Clamped clamp(const Mesh& mesh, const std::string& parent, const ModeOptions& op
   const MatrixXd MR = mesh.M * R;
   const Matrix6 D_P = R.transpose() * MR;
   c.D_P = (D_P + D_P.transpose()) / 2;
+  if (options.rigid) require_same_mass(mesh, c, *options.rigid);
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j)
       if (c.rigid.at(static_cast<std::size_t>(i)) || c.rigid.at(static_cast<std::size_t>(j)))

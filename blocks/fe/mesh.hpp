@@ -108,7 +108,8 @@ struct ModeOptions {
   /// Of models that move in some directions only, such as a beam with z, rx, ry: the mass matrix
   /// about P of the whole body, `rigid_mass(m, inertia, from the centre of mass to P)`. D_P has
   /// its rows and columns in the still directions, in which the body is rigid; interfaces need no
-  /// degrees of freedom there. Without it such models are refused.
+  /// degrees of freedom there. In the other directions it must agree with R'MR to 1e-3 of its
+  /// diagonal. Without it such models are refused.
   std::optional<Matrix6> rigid = {};
 };
 
@@ -129,7 +130,8 @@ struct ModeOptions {
 /// given, they are truncated like other high modes, and residual vectors contain their static part.
 ///
 /// Throws the errors of `check` and `interface_rows`; `duplicate_name` for a child named twice;
-/// `bad_value` for `rigid` if the mesh moves in all six directions;
+/// `bad_value` for `rigid` if the mesh moves in all six directions, or has another mass in those in
+/// which it moves;
 /// `bad_modes` if K resists rigid motion by more than 1e-6 of its terms (or 100 units of its last
 /// digit, or ten times the positions' error; `rigid_stiffness`): data of a supported structure, or
 /// positions in another unit; if K clamped at the parent is not positive definite (a mechanism:

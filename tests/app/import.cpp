@@ -72,6 +72,9 @@ TEST_CASE("import: a planar model takes the mass of the whole body") {
   r = shell.titop("import rod.pch --parent 1 --children 2 --mass 6 0.5 0 0 1 2 3 -o rod.json");
   CHECK(r.code == 0);
   CHECK(shell.titop("check rod.json").code == 0);
+  r = shell.titop("import rod.pch --parent 1 --children 2 --mass 60 0.5 0 0 1 2 3 -o rod.json");
+  CHECK(r.code == 1);
+  CHECK(has_names(r.err, {"60", "6", "x, x", "ModeOptions::rigid"}));
 }
 
 TEST_CASE("import: what is not understood, and what is refused") {
@@ -83,4 +86,13 @@ TEST_CASE("import: what is not understood, and what is refused") {
   const Run r = shell.titop("import nothing.op4");
   CHECK(r.code == 1);
   CHECK(has_names(r.err, {"nothing.op4"}));
+  const std::string cantilever = TITOP_DATA_DIR "/nastran_cantilever/";
+  const Run tip =
+      shell.titop("import " + cantilever + "pn_mwe_s-solution_1.op2 --parent 3 --children 5");
+  CHECK(tip.code == 1);
+  CHECK(has_names(tip.err, {"grid 3", "SPC1"}));
+  const Run twice = shell.titop("import " + cantilever + "cantilever.csv --units 1e-3 1 1 --xi 1");
+  CHECK(twice.code == 1);
+  CHECK(has_names(twice.err, {"cantilever.csv", "--units", "--xi"}));
+  CHECK(app_test::has(shell.titop("--help").out, "OP4, OP2, DMIG"));
 }

@@ -124,6 +124,19 @@ TEST_CASE("a planar model is rigid in the other directions, with the mass that i
     CHECK(data.children[0].Phi_C.row(still).isZero(0));
   }
   CHECK(data.L_P.col(2).norm() > 1);
+  // Another mass, centre or inertia than those of M.
+  check_refused([&] { fe::modal_data(mesh, "P", {"C"}, {.rigid = Matrix6(10 * rod())}); },
+                Code::bad_value, {"ModeOptions::rigid", "z, z", "beam"});
+  for (const int turn : {3, 4}) {
+    Matrix6 other = rod();
+    other(turn, turn) *= 1.01;
+    check_refused([&] { fe::modal_data(mesh, "P", {"C"}, {.rigid = other}); }, Code::bad_value,
+                  {"ModeOptions::rigid", turn == 3 ? "rx, rx" : "ry, ry"});
+  }
+  Matrix6 other = rod();
+  other(2, 4) *= 1.01, other(4, 2) *= 1.01;
+  check_refused([&] { fe::modal_data(mesh, "P", {"C"}, {.rigid = other}); }, Code::bad_value,
+                {"ModeOptions::rigid", "ry, z"});
   CHECK(FlexibleBody{data}.data().omega.size() == 6);
 
   // Not for grids that merely have no rotations: the body turns there.
