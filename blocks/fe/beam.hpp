@@ -54,7 +54,8 @@ struct Beam {
 /// and G.
 void check(const Beam& beam);
 
-/// What is legal but rarely meant, one line each, with its number: E below 1e8 Pa (data in MPa).
+/// Legal values that are probably mistakes, one line each, with its number: E below 1e8 Pa (data in
+/// MPa).
 std::vector<std::string> implausible(const Beam& beam);
 
 /// Free mesh of elements + 1 points "0", "1", ... along x, six degrees of freedom each, and the

@@ -55,7 +55,7 @@ struct CalculixDeck {
 /// one node.
 CalculixDeck read_calculix_deck(const std::filesystem::path& path);
 
-/// What is legal but rarely meant: `implausible_modulus` of its materials.
+/// Legal values that are probably mistakes: `implausible_modulus` of its materials.
 std::vector<std::string> implausible(const CalculixDeck& deck);
 
 /// The free mesh: one point per node with degrees of freedom, named by its number; a rigid body is

@@ -11,7 +11,7 @@
 /// From a file of a finite-element program to a flexible body, with all checks on the way.
 namespace titop::fe {
 
-/// What the file itself does not say.
+/// Data that the file itself does not contain.
 struct ImportOptions {
   /// Parent port, one of `Import::ports`; empty: the file is only looked into.
   std::string parent = {};
@@ -27,7 +27,7 @@ struct ImportOptions {
   std::string stiffness = {}, mass = {};
 };
 
-/// What was found.
+/// Contents of the file, its checks, and the body.
 struct Import {
   std::string text;                ///< one fact per line: contents, checks, warnings, ports
   std::vector<std::string> ports;  ///< grids or points that may be parent or child

@@ -40,8 +40,8 @@ RigidStiffness rigid_stiffness(const Mesh& mesh);
 /// Checks the mesh and computes its mass properties. Throws the errors of `check`. Cost 12 n^2.
 MeshReport mesh_report(const Mesh& mesh);
 
-/// What is legal but rarely meant, one line each, with its number: a centre of mass of M that
-/// differs from that of the points by more than 1 % of the radius of gyration.
+/// Legal values that are probably mistakes, one line each, with its number: a centre of mass of M
+/// that differs from that of the points by more than 1 % of the radius of gyration.
 std::vector<std::string> implausible(const MeshReport& report);
 
 /// One fact per line, `implausible` at the end. In SI if `units`, those of the mesh, are given; the

@@ -66,8 +66,8 @@ struct EffectiveMass {
 };
 EffectiveMass effective_mass(const ModalData& data);
 
-/// What is legal but rarely meant, one line each, with its number: a damping ratio above 0.2, a
-/// lowest frequency below 1e-4 Hz or above 1e6 Hz.
+/// Legal values that are probably mistakes, one line each, with its number: a damping ratio above
+/// 0.2, a lowest frequency below 1e-4 Hz or above 1e6 Hz.
 std::vector<std::string> implausible(const ModalData& data);
 
 /// The same of a Young's modulus below 1e8 Pa: one in MPa, of data in mm, t, s.

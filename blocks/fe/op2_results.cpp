@@ -30,7 +30,7 @@ struct Words {
   throw Error(Code::bad_file, fmt::format("{}: {}", file.name, found), hint);
 }
 
-/// What the run must ask for.
+/// Case control and parameters with which a run writes these tables.
 std::string ask(const std::string& parent = "g") {
   return fmt::format(
       "SOL 103, clamped at one grid {0}; VECTOR(SORT1,REAL)=ALL, SPCFORCES(SORT1,REAL)=ALL, "

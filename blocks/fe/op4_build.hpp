@@ -24,7 +24,7 @@ struct Op4Header {
   bool bigmat = false;  ///< rows was negative, or 65536 and more
 };
 
-/// What was asked of a file, and what has been taken of it so far.
+/// The matrices asked for by name, and those read so far.
 struct Op4Taken {
   std::set<std::string> only;  ///< names in capitals; empty: all
   long long entries = 0;
