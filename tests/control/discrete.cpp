@@ -100,7 +100,7 @@ TEST_CASE("Pade's approximation: all-pass, its phase, and in a diagram") {
     }
   }
   const Lti one = pade(0.5, 1);  // (1 - s / 4) / (1 + s / 4)
-  CHECK(one.A(0, 0) == doctest::Approx(-4).epsilon(1e-15));
+  CHECK(std::abs(one.A(0, 0) / -4 - 1) <= 1e-15);
   Diagram d{"late"};
   auto u = d.input("u");
   auto late = d.add("late", pade(0.5, 1));

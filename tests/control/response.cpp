@@ -53,7 +53,7 @@ TEST_CASE("angles of an undamped mode, of zeros and of poles") {
   CHECK(std::isnan(d[2]));
   CHECK(std::isnan(d[3]));
   CHECK(d[4] == -90);
-  CHECK(decibels(values)[4] == doctest::Approx(20 * std::log10(2.0)).epsilon(1e-15));
+  CHECK(std::abs(decibels(values)[4] / (20 * std::log10(2.0)) - 1) <= 1e-15);
 }
 
 TEST_CASE("inputs by name, and a step of them") {
