@@ -1,0 +1,40 @@
+#pragma once
+
+#include <string>
+#include <titop/titop.hpp>
+#include <vector>
+
+/// The words and options of the command line.
+namespace titop::command_line {
+
+/// Words and options as typed; options that were left out have the values below.
+struct Arguments {
+  std::vector<std::string> words;  ///< without options
+  bool compiled = false, diagrams = true;
+  int fold = -1;  ///< not given
+  std::string to;
+  std::string parent, children, grids, matrices;
+  std::vector<double> units, mass;
+  int modes = -1;  ///< not given
+  double xi = 0;
+  std::vector<double> band;  ///< LOW HIGH
+  double until = 0;
+  double sample_time = 0;
+  std::vector<double> omega;       ///< all frequencies
+  std::vector<std::string> given;  ///< options, as typed
+  int minimize_up_to = Options{}.minimize_up_to;
+};
+
+/// The command line is not valid: description of the mistake.
+struct Misuse {
+  std::string subject;
+};
+
+/// Reads all words behind the program's name. Throws Misuse for an option that does not exist, is
+/// there twice, lacks a value or has a wrong one.
+Arguments parse(const std::vector<std::string>& all);
+
+/// The text of titop --help, without that of `generate`.
+extern const char* const kUsage;
+
+}  // namespace titop::command_line
