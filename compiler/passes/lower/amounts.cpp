@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <titop/compiler/passes/lower/amounts.hpp>
 #include <titop/compiler/passes/lower/open_motions.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 
 namespace titop::passes {
 namespace {
@@ -67,23 +69,39 @@ std::shared_ptr<const Pattern> kept(Pattern p) {
 
 }  // namespace
 
+namespace {
+
+/// The sum of terms of one signal; an entry whose terms cancel up to their rounding is 0: momenta
+/// of wheels that balance each other leave no coupling.
+Summand total_of(std::span<Summand> terms) {
+  Summand total = std::move(terms.front());
+  if (terms.size() == 1) return total;
+  MatrixXd sizes = total.c.cwiseAbs();
+  for (const Summand& t : terms.subspan(1)) {
+    total.c += t.c;
+    sizes += t.c.cwiseAbs();
+    if (total.p.size() == 0 || t.p.size() == 0)
+      total.p.resize(0, 0);
+    else
+      total.p = total.p.array() || t.p.array();
+  }
+  total.c = (total.c.array().abs() < linalg::kProductRounding * sizes.array()).select(0, total.c);
+  return total;
+}
+
+}  // namespace
+
 Amount summed(Amount sum) {
   if (sum.size() < 2) return sum;
   std::sort(sum.begin(), sum.end(), less);
-  std::size_t last = 0;
-  for (std::size_t i = 1; i < sum.size(); ++i) {
-    Summand& total = sum[last];
-    if (sum[i].signal != total.signal) {
-      if (++last != i) sum[last] = std::move(sum[i]);
-      continue;
-    }
-    total.c += sum[i].c;
-    if (total.p.size() == 0 || sum[i].p.size() == 0)
-      total.p.resize(0, 0);
-    else
-      total.p = total.p.array() || sum[i].p.array();
+  auto last = sum.begin();
+  for (auto first = sum.begin(); first != sum.end(); ++last) {
+    const auto end =
+        std::find_if(first, sum.end(), [&](const Summand& t) { return t.signal != first->signal; });
+    *last = total_of({first, end});
+    first = end;
   }
-  sum.resize(last + 1);
+  sum.erase(last, sum.end());
   return sum;
 }
 
