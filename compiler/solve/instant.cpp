@@ -86,7 +86,7 @@ RowMatrix<double> Instant::outputs_terms() const {
 
 Instant Instant::doubt(int sample) const {
   RowMatrix<double> magnitudes, left = now_.rows.residual(rhs_, now_.unknowns, &magnitudes);
-  return off_by(std::move(left), magnitudes, sample);
+  return off_by(std::move(left), std::move(magnitudes), sample);
 }
 
 Instant Instant::doubt_of_vectors(int sample) const {
@@ -99,17 +99,19 @@ Instant Instant::doubt_of_vectors(int sample) const {
       part.rowwise() = part.colwise().maxCoeff().eval();
     }
   now_.rows.residual(rhs_, lengths, &magnitudes);
-  return off_by(now_.rows.residual(rhs_, now_.unknowns, nullptr), magnitudes, sample);
+  return off_by(now_.rows.residual(rhs_, now_.unknowns, nullptr), std::move(magnitudes), sample);
 }
 
 Instant Instant::rounding() const {
-  RowMatrix<double> magnitudes;
-  now_.rows.residual(rhs_, now_.unknowns, &magnitudes);
-  return off_by(RowMatrix<double>::Zero(magnitudes.rows(), magnitudes.cols()), magnitudes, 0);
+  RowMatrix<double> magnitudes, off = now_.rows.residual(rhs_, now_.unknowns, &magnitudes);
+  off.setZero();
+  return off_by(std::move(off), std::move(magnitudes), 0);
 }
 
-Instant Instant::off_by(RowMatrix<double> off, const RowMatrix<double>& magnitudes,
-                        int sample) const {
+Instant Instant::off_by(RowMatrix<double> off, RowMatrix<double> magnitudes, int sample) const {
+  // Terms of known signals that cancel in the right-hand sides, as momenta of wheels that sum to 0.
+  magnitudes += (now_.rows.rhs_terms(now_.known, now_.data.layout().known_first) - rhs_.cwiseAbs())
+                    .cwiseMax(0);
   SteadyRandom random(sample);
   for (Eigen::Index i = 0; i < off.rows(); ++i)  // one number for all columns, in whatever order
     off.row(i) += random.unit() * solve::Scalar<double>::epsilon() * magnitudes.row(i);

@@ -46,7 +46,7 @@ class Instant {
 
  private:
   /// Every equation is off by this, and by one unit of the last place of its terms.
-  Instant off_by(solve::RowMatrix<double> off, const solve::RowMatrix<double>& magnitudes,
+  Instant off_by(solve::RowMatrix<double> off, solve::RowMatrix<double> magnitudes,
                  int sample) const;
 
   InstantIn<double> now_;

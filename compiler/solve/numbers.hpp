@@ -40,6 +40,9 @@ class JointRows : public Rows<T> {
   /// these are known): signal i has the rows of `known` from first[i] on. O(rows) per column.
   RowMatrix<T> rhs(const RowMatrix<T>& known, std::span<const int> first) const;
 
+  /// Sums of the magnitudes of the terms of `rhs`, to which its rounding is relative. O(rows).
+  RowMatrix<double> rhs_terms(const RowMatrix<T>& known, std::span<const int> first) const;
+
   /// Right-hand sides of all rows for given parts of the states (C of every block in `output`),
   /// whether or not states are otherwise substituted: the effect of forced states. O(rows).
   RowMatrix<T> rhs_of_states(const RowMatrix<T>& states, std::span<const int> first,

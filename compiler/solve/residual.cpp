@@ -99,6 +99,44 @@ void JointRows<T>::by_products(Take take, TakeNumber take_number) const {
   }
 }
 
+template <class T>
+RowMatrix<double> JointRows<T>::rhs_terms(const RowMatrix<T>& known,
+                                          std::span<const int> first) const {
+  const Plan& plan = *joint_.plan;
+  const std::ptrdiff_t m = known.cols();
+  const RowMatrix<double> x =
+      known.unaryExpr([](const T& entry) -> double { return size_of(entry); });
+  RowMatrix<double> result = RowMatrix<double>::Zero(plan.unknowns, m);
+  for (int r = 0; r < static_cast<int>(joint_.rows.size()); ++r) {
+    double* const to = result.data() + plan.row_first[at(r)] * m;
+    const auto size_of_signal = [&](int signal) { return x.data() + first[at(signal)] * m; };
+    const auto add = [&](const Dense<T>& c, int signal) {
+      add_sizes(view(c, 0, static_cast<int>(c.rows()), 0, static_cast<int>(c.cols())),
+                size_of_signal(signal), m, to);
+    };
+    for (const Piece& p : joint_.row(r)) {
+      if (p.entry >= 0) continue;
+      if (!written_out(p) && p.right < 0)
+        with_left(
+            p, m_, coefficients_,
+            [&](const auto& left) { add_sizes(left, size_of_signal(p.signal), m, to); },
+            [&] { solve::add(p.size * m, 1.0, size_of_signal(p.signal), to); });
+      else if (!written_out(p))
+        add(dense(p, m_, coefficients_), p.signal);
+      else if (p.of != Piece::Left::state)
+        by_inputs(p, [&](const Dense<T>& by_u, const SignalTerm& meaning) {
+          if (joint_.variable_of[at(meaning.signal)] >= 0) return;
+          if (meaning.coefficient < 0)
+            add(by_u, meaning.signal);
+          else
+            add(by_u.lazyProduct(lifted<T>(*coefficients_[at(meaning.coefficient)])),
+                meaning.signal);
+        });
+    }
+  }
+  return result;
+}
+
 /// Magnitudes are |left| |right| |x|, not |left * right| |x|: the product rounds as well.
 template <class T>
 RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>& rhs, const RowMatrix<T>& unknowns,
@@ -202,10 +240,12 @@ RowMatrix<T> JointRows<T>::transposed_residual(const RowMatrix<T>& rhs,
   return result;
 }
 
-#define TITOP_INSTANTIATE(T)                                                             \
-  template RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>&, const RowMatrix<T>&, \
-                                               RowMatrix<double>*) const;                \
-  template RowMatrix<T> JointRows<T>::transposed_residual(                               \
+#define TITOP_INSTANTIATE(T)                                                                    \
+  template RowMatrix<double> JointRows<T>::rhs_terms(const RowMatrix<T>&, std::span<const int>) \
+      const;                                                                                    \
+  template RowMatrix<T> JointRows<T>::residual(const RowMatrix<T>&, const RowMatrix<T>&,        \
+                                               RowMatrix<double>*) const;                       \
+  template RowMatrix<T> JointRows<T>::transposed_residual(                                      \
       const RowMatrix<T>&, const RowMatrix<T>&, RowMatrix<double>*) const;
 TITOP_INSTANTIATE(double)
 TITOP_COMPLEX_SCALARS(TITOP_INSTANTIATE)
