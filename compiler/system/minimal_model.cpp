@@ -125,13 +125,14 @@ struct Change {
   std::vector<std::complex<double>> tried, left_out;  ///< where the factors have digits, and not
 };
 
-/// Near the removed modes and at the assembly's frequencies (the pole of a slow block may be at a
-/// frequency where rigid bodies have no digits), and a decade beyond these, where a model that was
-/// written relative to fewer states may cancel more.
-std::vector<std::complex<double>> points_of_change(const SystemData& d, const StateSpace& dense,
+/// Near the removed modes and at the assembly's frequencies without rounding: entries that may be
+/// rounding alone have frequencies of 1e-16 rad/s, where only they count. (The pole of a slow block
+/// may be at a frequency where rigid bodies have no digits.) And a decade beyond these, where a
+/// model that was written relative to fewer states may cancel more.
+std::vector<std::complex<double>> points_of_change(const SystemData& d, const StateSpace& judged,
                                                    const Minimized& m) {
   std::vector<std::complex<double>> points = minreal::near_modes(m.order.removed, pick_s(d));
-  std::vector<double> omegas = frequencies_of(states_by_name(dense).A);
+  std::vector<double> omegas = frequencies_of(states_by_name(judged).A);
   if (!omegas.empty()) {
     const auto [least, most] = std::minmax_element(omegas.begin(), omegas.end());
     const double below = *least / 10, above = *most * 10;
@@ -141,10 +142,11 @@ std::vector<std::complex<double>> points_of_change(const SystemData& d, const St
   return points;
 }
 
+/// `judged`: the dense model without rounding.
 Change change(const System& system, const SystemData& d, const StateSpace& dense,
-              const Minimized& m) {
+              const StateSpace& judged, const Minimized& m) {
   Change worst;
-  for (const std::complex<double> s : points_of_change(d, dense, m)) {
+  for (const std::complex<double> s : points_of_change(d, judged, m)) {
     const std::optional<MatrixXcd> G = transfer_if_any(system, s);
     (G ? worst.tried : worst.left_out).push_back(s);
     if (!G) continue;
@@ -197,7 +199,7 @@ bool lower_to_exact_order(const System& system, const SystemData& d, const State
   fewer.order.removed.push_back({0, m.order.order - exact.order, found->tolerance, found->tolerance,
                                  "exact arithmetic counts it out"});
   const double allowed = std::max(kUnchanged, 10 * d.skeleton->options.resolution);
-  const Change by = change(system, d, dense, fewer);
+  const Change by = change(system, d, dense, judged, fewer);
   if (by.tried.empty() || std::max(by.by_modes, by.in_all) > allowed) return false;
   fewer.order.change = by.by_modes;
   fewer.notes.insert(fewer.notes.begin(), to_string(fewer.order));
@@ -244,7 +246,7 @@ void minimize_checked(const System& system, const SystemData& d, DenseModel& m) 
   double lost = 0;
   bool untried = false;
   if (removed && !dense.inputs.empty() && !dense.outputs.empty()) {
-    const Change by = change(system, d, dense, minimal);
+    const Change by = change(system, d, dense, judged, minimal);
     minimal.order.change = by.by_modes;
     minimal.notes.front() = to_string(minimal.order);
     untried = by.tried.empty();

@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <string>
 #include <titop/titop.hpp>
@@ -19,6 +20,7 @@ struct FreeRotors {
   std::vector<double> h;  ///< of each rotor [N m s]
   double friction = 0;    ///< [N m s/rad]
   Vector3d at{0.25, 0.5, -0.125};
+  bool apart = false;  ///< each at a point of its own, in a frame of its own
 };
 
 /// Inputs: torque on the hub, or of the motors. Outputs: rates of the hub, its angular
@@ -29,19 +31,23 @@ struct Asked {
 
 System system_of(const FreeRotors& rotors, const Asked& asked) {
   Diagram d{"rotors"};
-  auto hub = d.add("hub", RigidBody{.mass = 100,
-                                    .inertia = Vector3d(4, 5, 7).asDiagonal(),
-                                    .children = {{"R", rotors.at}}});
+  RigidBody body{.mass = 100, .inertia = Vector3d(4, 5, 7).asDiagonal(), .children = {}};
+  for (std::size_t i = 0; i < (rotors.apart ? rotors.axes.size() : 1); ++i)
+    body.children.push_back(
+        {"R" + std::to_string(i), (1 + 0.3 * static_cast<double>(i)) * rotors.at});
+  auto hub = d.add("hub", body);
   release(hub);
   if (asked.torque) hub.parent.force.angular += -d.input("U", 3);
   for (std::size_t i = 0; i < rotors.axes.size(); ++i) {
     const std::string number = std::to_string(i + 1);
+    const Rotation turned =
+        rotors.apart ? Rotation::about({1, 2, 3}, 0.3 + static_cast<double>(i)) : Rotation();
     auto rotor = d.add("r" + number, Rotor{.mass = 2,
                                            .axial = 0.25,
                                            .transverse = 0.1875,
-                                           .axis = rotors.axes[i],
+                                           .axis = turned.nominal().transpose() * rotors.axes[i],
                                            .momentum = rotors.h[i]});
-    mount(rotor, hub.child);
+    mount(rotor, hub.child("R" + std::to_string(rotors.apart ? i : 0)), turned);
     rotor.torque = rotors.friction * rotor.speed;
     if (asked.motors) rotor.torque += -d.input("u" + number);
     if (asked.speeds) d.output("speed" + number) = rotor.speed;
@@ -72,7 +78,38 @@ FreeRotors balanced(double friction) {
   return {{{3, 0, 4}, {-3, 0, 4}, {0, 3, -4}, {0, -3, -4}}, {5, 5, 5, 5}, friction};
 }
 
+/// Rotors whose momenta sum to 0 but for the last digits of h.
+FreeRotors balanced_by_numbers(double friction, bool apart) {
+  FreeRotors r = skew(4, friction);
+  const auto det = [&](int i, int j, int k) {  // of the unit vectors
+    const auto a = [&](int n) { return r.axes[static_cast<std::size_t>(n)].normalized(); };
+    return a(i).cross(a(j)).dot(a(k));
+  };
+  const double scale = -r.h[3] / det(0, 1, 2);  // Cramer's rule
+  r.h = {scale * det(3, 1, 2), scale * det(0, 3, 2), scale * det(0, 1, 3), r.h[3]};
+  r.apart = apart;
+  return r;
+}
+
 }  // namespace
+
+TEST_CASE("rotors: momenta that sum to 0 up to rounding are 0, wherever the rotors are") {
+  for (const double friction : {0.0, 0.125})
+    for (const bool apart : {false, true}) {
+      CAPTURE(friction);
+      CAPTURE(apart);
+      const FreeRotors rotors = balanced_by_numbers(friction, apart);
+      check_order(rotors, {.motors = true, .rates = true, .speeds = true}, 4);
+      if (friction == 0) check_order(rotors, {.torque = true, .accels = true}, 0);
+    }
+  FreeRotors pairs{{{0.1, 0.2, 0.97}, {-0.1, -0.2, -0.97}, {0.3, 0.7, 0.1}, {-0.3, -0.7, -0.1}},
+                   {5, 5, 5, 5}};
+  for (const bool apart : {false, true}) {
+    pairs.apart = apart;
+    // Two axes: the motors turn the hub in their plane, a wheel follows from its opposite.
+    check_order(pairs, {.motors = true, .rates = true, .speeds = true}, 4);
+  }
+}
 
 TEST_CASE("rotors: torques on the hub and of motors reach all rates, speeds see them") {
   for (const int count : {1, 2, 3, 4})
