@@ -42,8 +42,7 @@ BlockPtr as_block(const Hinge& spec);
 /// The hinge's torque or acceleration must still be driven.
 ///
 ///     auto h = hinge(d, "drive", wing, hub.child("C1"), T_ba, {0, 1, 0});
-///     h.torque = k * h.angle + c * h.rate - u;  // spring-damper; a motor exerts the torque u on
-///     the wing
+///     h.torque = k * h.angle + c * h.rate - u;  // u: motor's torque on the wing
 template <class Handle>
   requires HasParent<Handle, 6>
 Hinge::Handle hinge(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,

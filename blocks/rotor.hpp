@@ -13,8 +13,9 @@ namespace titop {
 ///     C_m = -I_a (a' omegad_P + nud)                          the 7th pair of scalars
 ///
 /// with D_P = tau_AP' diag(m I, I_t (I - a a') + I_a a a') tau_AP and h = momentum. The last term
-/// of F_P is written by `add` as equations, if the momentum is not 0 or a parameter: see
-/// `momentum`. States: the integral of nu, and nu; they leave the model if nobody reads them.
+/// of F_P is written by `add` as equations, if the momentum is a parameter or a number other than
+/// 0: see `momentum`. States: the integral of nu, and nu; they are removed if no output and no
+/// equation reads them.
 ///
 /// Sign of the torque as with Hinge: C_m is the torque of the rotor ON its carrier about a, so a
 /// motor that exerts tau on the rotor is `torque = -tau`, and friction is `torque = c * speed`.

@@ -43,8 +43,7 @@ BlockPtr as_block(const Slide& spec);
 /// slide's force or acceleration must still be driven.
 ///
 ///     auto s = slide(d, "jack", mast, hub.child("C1"), T_ba, {1, 0, 0});
-///     s.force = k * s.travel + c * s.rate - u;  // spring-damper; an actuator exerts the force u
-///     on the mast
+///     s.force = k * s.travel + c * s.rate - u;  // u: actuator's force on the mast
 template <class Handle>
   requires HasParent<Handle, 6>
 Slide::Handle slide(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,

@@ -21,8 +21,9 @@ struct Slosh {
 /// the liquid's motion against the tank [m]. Values may be parameters. Throws bad_value for an axis
 /// without direction and bad_inertia for a negative mass; `compile` reports duplicate_name. O(1).
 ///
-///     auto fuel = slosh(d, "fuel", hub.child("tank"), {.mass = 60, .stiffness = 10, .damping =
-///     0.2}); d.output("level") = fuel.axis("b").position;
+///     auto fuel = slosh(d, "fuel", hub.child("tank"),
+///                       {.mass = 60, .stiffness = 10, .damping = 0.2});
+///     d.output("level") = fuel.axis("b").position;
 Joint::Handle slosh(Diagram& d, const std::string& name, const DualPort<6>& site, const Slosh& spec,
                     std::source_location at = std::source_location::current());
 

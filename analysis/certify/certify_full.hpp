@@ -43,8 +43,10 @@ struct FullCertificate {
     /// as many as `points`).
     double dense = -1;
     std::complex<double> dense_s;
-    /// `transfer` of the diagram as written against the factors, over those terms in all blocks
-    /// if they are larger, because of its own rounding; -1: too large, or over-constrained.
+    /// `transfer` of the diagram as written against the factors. Here every block is measured by
+    /// 1e-3 of the terms that cancel in it if these are larger, because that solution has rounding
+    /// of its own. -1: more than Full::written_up_to signals, or not solvable as written
+    /// (over-constrained chains).
     double written = -1;
     std::complex<double> written_s;
   } grid;
@@ -77,8 +79,9 @@ struct FullCertificate {
     int pairs = 0;
     double least = 0;
     std::complex<double> where;
-    /// A negative value is a fault: no one-way block adds energy, forces follow motions as those of
-    /// springs and dampers do, and every point that moves with another returns its wrench there.
+    /// True for a passive structure: then a negative `least` is a fault. Conditions: no one-way
+    /// block drives a body, forces that depend on motions are those of springs, dampers and
+    /// gyroscopes, and every point that moves with another returns its wrench there.
     bool structure = false;
   } passivity;
 
@@ -101,9 +104,9 @@ struct FullCertificate {
     double asymmetry = 0;
     std::complex<double> where;
     std::string first, second;  ///< the two, as System::inputs() calls them; empty at 0
-    /// A structure, as for passivity, of blocks of which each is reciprocal (their responses
-    /// at one s, to 1e-12; data symmetric to 1e-9 only are none): an asymmetry above 1e-8 is a
-    /// fault.
+    /// A structure, as for passivity, whose blocks are all reciprocal: their responses at one s are
+    /// symmetric to 1e-12 (blocks symmetric only to 1e-9 do not count). Then an asymmetry above
+    /// 1e-8 is a fault.
     bool structure = false;
     std::string why_no_structure;  ///< "hub.parent.force is driven by K.out"
     bool reversed = false;         ///< compared with reversed momenta

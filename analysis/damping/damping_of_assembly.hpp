@@ -62,8 +62,9 @@ struct AssemblyPort {
 ///     auto boom = part.add("boom", FlexibleBody{data});                  // 0.3 %: ignored here
 ///     auto tip = part.add("tip", RigidBody{.mass = 12, .children = {{"C1", {0, 0, 0.1}}}});
 ///     mount(tip, boom.child("C"), T_bt);
-///     auto wing = d.add("wing", damping_of_assembly(part, "boom.parent", {{"C", "tip.C1"}},
-///     0.003)); mount(wing, hub.child("W"), T_hw);
+///     auto wing = d.add("wing",
+///                       damping_of_assembly(part, "boom.parent", {{"C", "tip.C1"}}, 0.003));
+///     mount(wing, hub.child("W"), T_hw);
 ///
 /// `part`: bodies, joints on springs and closed chains, without inputs and outputs; parameters at
 /// their nominal values. `root`: the parent port of a body, driven by nothing, where the part
@@ -74,7 +75,7 @@ struct AssemblyPort {
 /// the frame of the root.
 ///
 /// Throws, with the names of the ports and states: unknown_name (with the valid names), bad_value
-/// (a root that is driven or no parent, a port that is none of six degrees of freedom; inputs or
+/// (a root that is driven or is no parent port, a port without six degrees of freedom; inputs or
 /// outputs; motions without stiffness; controllers, momenta, dampers without a spring: no symmetric
 /// second-order form; a part that is not passive), duplicate_name, the errors of `compile` and of
 /// `FlexibleBody`: bad_inertia where the mass of a part is not that of a rigid body (a SpringMass

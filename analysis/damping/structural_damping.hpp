@@ -14,10 +14,11 @@ namespace titop {
 /// real; at -omega the transfer is the conjugate. Without loss factors these are the transfers of
 /// `compile`.
 ///
-/// The response in time that belongs to structural damping begins before its cause: it is for
-/// harmonic motion. Parameters are at their nominal values; on `threads` threads (0: all cores),
-/// the same to the last bit for any number. Throws the errors of `compile` and `System::transfer`.
-/// Cost: a compile, and per omega an update of the bodies with loss factors, O(N^2) each.
+/// Structural damping is not causal (its impulse response begins before the impulse): use it for
+/// harmonic motion only. Parameters are at their nominal values; on `threads` threads (0: all
+/// cores), the same to the last bit for any number. Throws the errors of `compile` and
+/// `System::transfer`. Cost: a compile, and per omega an update of the bodies with loss factors,
+/// O(N^2) each.
 ///
 ///     auto wing = d.add("wing", FlexibleBody{beam}.with_loss_factor(0.02));
 ///     const auto H = frequency_response(d, omega);

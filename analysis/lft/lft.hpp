@@ -62,9 +62,10 @@ class Lft {
   /// The model with Delta closed at these values; parameters not named are at their nominal ones.
   /// Equal to System::update(values).state_space() as a transfer, computed another way. Throws
   /// unknown_name, duplicate_name, bad_value outside of the range, singular at a pole of F(.,
-  /// delta) with direct terms (I - D_zw Delta singular). Blocks do not judge the values here: `lft`
-  /// has tried the corners of the box, between which a matrix that depends on the parameters
-  /// linearly is definite if it is so at the corners. O((states + occurrences)^3).
+  /// delta) with direct terms (I - D_zw Delta singular). Values are not checked by the blocks:
+  /// `lft` has checked the corners of the ranges, and a matrix that depends linearly on the
+  /// parameters is definite between the corners if it is definite at all of them. O((states +
+  /// occurrences)^3).
   StateSpace at(const ParameterList& values) const;
   /// The transfer at s with Delta closed at each of these values, as of `at`: M(s) once,
   /// O(occurrences^3) for each. For worst cases over many designs. Throws as `at`, and singular if
@@ -110,7 +111,7 @@ class Lft {
 /// least values), for an angle half a turn away without `full_turn`, and for `full_turn` of a
 /// number; not_rational for a block without `opened`, an angle or a length that moves a closed
 /// chain, an angle that is a fraction of its parameter; ill_posed if I - D_zw Delta is singular at
-/// a corner of the box (the first twelve parameters at all their ends, more ones at their least
+/// a corner of the ranges (the first twelve parameters at all their ends, more ones at their least
 /// values), or on the line from the nominal values to it. Cost: that of
 /// `compile`, O((states + occurrences)^3), and for the lower bounds some solutions of that size in
 /// exact arithmetic: 0.1 s for 12 states and 25 occurrences.

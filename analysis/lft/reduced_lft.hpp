@@ -10,7 +10,7 @@ namespace titop {
 /// On the scene's ray, at frequencies of its band, |E| <= bound().pairs * bound().peak for every
 /// entry of E = M - M_r, by theorem or, by default, as an estimate between samples
 /// (ErrorBound::kind): M from [w; u] to [z; y], w and z of the normalised deltas. The bound of the
-/// closed model H (`error`) follows from it by algebra, and is an estimate if it is one:
+/// closed model H (`error`) follows from it by algebra, and is an estimate if bound() is:
 ///
 ///     H - H_r = [M_r,yw Delta N_r, I] E [Delta N M_zu; I],  N = (I - M_zw Delta)^-1, N_r likewise,
 ///

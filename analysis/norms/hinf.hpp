@@ -20,7 +20,7 @@ struct HinfNorm {
   double value = 0;              ///< largest singular value of H over the band
   double omega = 0;              ///< [rad/s]; infinite: of the direct term
   Eigen::VectorXcd left, right;  ///< its singular vectors, of norm 1
-  double second = 0;             ///< second singular value of H there; 0 of one input or output
+  double second = 0;  ///< second singular value of H there; 0 for a single input or output
   /// Frequencies apart from omega at which the largest singular value is as large, up to half the
   /// digits of double, 1.5e-8; of neighbouring peaks between which it falls by less only one
   /// counts. Rounding of the poles lowers the top of a peak narrower than 1e-11 of its frequency by
@@ -41,9 +41,9 @@ inline constexpr int kMostStatesOfHinf = 600;
 /// norm.
 ///
 /// Throws singular if a pole lies on the axis inside of the band (the norm is infinite), bad_value
-/// for a band that is none and for a model of more than kMostStatesOfHinf states, size for matrices
-/// that do not fit each other, not_finite for an entry of the model that is not. O(200 states^3)
-/// per level, of which there are 3 to 6.
+/// for an invalid band and for a model of more than kMostStatesOfHinf states, size for matrices
+/// that do not fit each other, not_finite for entries that are not finite. O(200 states^3) per
+/// level, of which there are 3 to 6.
 ///
 ///     const HinfNorm n = norm_hinf(system.state_space(), {.band_hz = {0, 10}});
 HinfNorm norm_hinf(const StateSpace& model, const HinfOptions& options = {});

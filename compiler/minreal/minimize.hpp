@@ -32,13 +32,15 @@ struct JudgedMode {
 struct OrderVerdict {
   bool judged = false;  ///< false: `minimize` has not run; the order is that of the structure
   int order = 0;        ///< of the model
-  /// Interval of the minimal order, both ends included; equal: it is decided, as far as double
-  /// precision distinguishes data. If the self-check reports lost digits, `lowest` counts only
-  /// states of inputs and outputs whose dynamics finer arithmetic confirms; if the dense model
-  /// keeps less than 3 digits (Certificate::dense_error), `highest` counts all states. Exact
-  /// arithmetic counts the states of diagrams of up to 100 unknowns, or 1,000 if the order is not
-  /// decided: none needs more for the numbers as given, and `System::state_space` has no more,
-  /// unless its transfer would lose digits.
+  /// Interval of the minimal order, both ends included; equal: it is decided, up to rounding of the
+  /// data. If the self-check reports lost digits, `lowest` counts only states of inputs and outputs
+  /// whose dynamics finer arithmetic confirms; if the dense model keeps less than 3 digits
+  /// (Certificate::dense_error), `highest` counts all states.
+  ///
+  /// `System::state_space` also counts small diagrams in exact arithmetic: those of up to 60 states
+  /// and 100 unknowns, or, if the order is not decided, up to 100 states and 1,000 unknowns. That
+  /// count limits `highest`; if it is below the order, more states are removed, unless the transfer
+  /// would lose digits.
   int lowest = 0, highest = 0;
   bool exact = false;   ///< decided by exact arithmetic (compiler/definition/exact_order.hpp)
   double to_fewer = 1;  ///< least visibility among the kept modes: error of removing the next
@@ -66,17 +68,20 @@ struct Minimized {
 
 /// Minimal by effect: a removed mode may be present in the last bits of the data, which the verdict
 /// reports. Each mode has a visibility v: the relative half-bandwidth in which it exceeds the rest
-/// of the transfer, a pure number, independent of the units of inputs, outputs and states:
+/// of the transfer, a pure number, independent of the units of inputs, outputs and states. With the
+/// eigenvalue l_j of mode j (below), b_jm its row of B for input m, c_kj its column of C for output
+/// k, both in modal coordinates, and sums over all modes i:
 ///
-///     w_i = 1 / max(|l_i - l_j|, 0.01 l_j),  q = sqrt(sum b_i^2 w_i),  r = sqrt(sum c_i^2 w_i)
-///     v_j = max_k(|c_kj| / r_k) max_l(|b_jl| / q_l) / (2 l_j)
+///     w_i = 1 / max(|l_i - l_j|, 0.01 |l_j|)
+///     q_m = sqrt(sum |b_im|^2 w_i),  r_k = sqrt(sum |c_ki|^2 w_i)
+///     v_j = max_k(|c_kj| / r_k) max_m(|b_jm| / q_m) / (2 |l_j|)
 ///
-/// Without it the transfer changes by at most v_j / zeta_j of the other modes' part there. A mode
-/// is dropped if its v is below ten times its own rounding bound or 1e-17, and both below 1e-9, or
-/// if v is below the resolution; an undecided mode is kept. Modes of equal frequency and damping
-/// are rotated among themselves first, so that unreachable ones are separate. An unreachable mode
-/// becomes a relation between states, an unobservable one likewise: the others keep name and
-/// meaning.
+/// Without mode j the transfer changes by at most v_j / zeta_j of the other modes' part near it
+/// (zeta_j: its damping ratio). A mode is dropped if its v is below ten times its own rounding
+/// bound or 1e-17, and both below 1e-9, or if v is below the resolution; an undecided mode is kept.
+/// Modes of equal frequency and damping are rotated among themselves first, so that unreachable
+/// ones are separate. An unreachable mode becomes a relation between states, an unobservable one
+/// likewise: the others keep name and meaning.
 ///
 /// Undamped or proportionally damped models are treated as symmetric eigenproblems (l = omega^2),
 /// those of closed chains with the help of their energy, the others by the eigenvalues of A (l =
@@ -94,18 +99,17 @@ struct Minimized {
 ///    effect, and those whose bound is above 1e-14, which may hide an effect;
 ///  - downwards, kept modes below 1e-9 within 1e4 of their bound, and any within ten times their
 ///    bound; integrators and states of such small models within 1e4 of their rounding.
-/// A decided order is that of all data which rounding distinguishes from the given ones: effects
-/// below their own bound (two frequencies one ulp apart) count as zero, and only exact arithmetic
-/// decides about them. Modes are vectors of one size in the states' own units
-/// (linalg::similarity_scaling_of_parts): in other units of the model the verdict is the same
-/// except for decisions at rounding level, which count as undecided. `System::state_space` first
-/// sets entries to 0 that its factors cannot distinguish from 0 (32 times the largest of four
-/// samples of rounding), unless that costs the transfer digits. With `exact_order` the least
-/// visible modes leave until the order is that one. The transfer is measured before and after, near
-/// the removed modes: if it has changed by more than 1e-8 and ten times the resolution, the whole
-/// model is the result, and the notes report it. Cost O(n^3). Throws not_finite for entries that
-/// are not, and size for matrices that do not fit each other or the names of states, inputs and
-/// outputs.
+/// A decided order holds up to rounding of the data: effects below their own rounding bound (two
+/// frequencies one ulp apart) count as zero, and only exact arithmetic decides about them. Modes
+/// are vectors of one size in the states' own units (linalg::similarity_scaling_of_parts): in other
+/// units of the model the verdict is the same except for decisions at rounding level, which count
+/// as undecided. `System::state_space` first sets entries to 0 that its factors cannot distinguish
+/// from 0 (32 times the largest of four samples of rounding), unless that costs the transfer
+/// digits. With `exact_order` the least visible modes leave until the order is that one. The
+/// transfer is measured before and after, near the removed modes: if it has changed by more than
+/// 1e-8 and ten times the resolution, the whole model is the result, and the notes report it. Cost
+/// O(n^3). Throws not_finite for entries that are not finite, and size for matrices that do not fit
+/// each other or the names of states, inputs and outputs.
 Minimized minimize(const StateSpace& model, const MinimizeOptions& options = {});
 
 }  // namespace titop
