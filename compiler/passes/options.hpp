@@ -16,8 +16,8 @@ struct Options {
   /// Up to this many states, `state_space()` also removes states without effect on the transfer
   /// (pass `minimize`, O(n^3)); beyond it only those that the structure shows. 0: never.
   int minimize_up_to = 100;
-  /// Folder for Graphviz files of the diagram as written (00-diagram.dot) and after each of the
-  /// seven graph passes (01-check.dot ... 07-close.dot); empty: none.
+  /// Folder for Graphviz files of the diagram as written (00-diagram.dot) and after each graph
+  /// pass (01-check.dot, 02-lower.dot, ...); empty: none.
   std::string dump_to = {};
   /// Relative tolerance (half-bandwidth, below 1) of the minimal realization; 0: rounding level
   /// only.
