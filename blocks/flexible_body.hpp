@@ -70,17 +70,17 @@ class FlexibleBody {
   /// The same body with -Z etad in place of -diag(2 xi omega) etad: damping that couples the modes
   /// clamped at P, such as that of the modes of a free body (analysis/damping). Z: N x N,
   /// symmetric, positive semidefinite [rad/s]. Throws size, not_finite, and bad_modes for a Z that
-  /// is not, or if modes have other values. O(N^3).
+  /// is not symmetric or not semidefinite, or if some modes have ModeValues. O(N^3).
   FlexibleBody damped_by(const Eigen::MatrixXd& Z) const;
   /// Z, or diag(2 xi omega): the modes' damping matrix, N x N, parameters at their nominal values.
   /// Throws not_rational for a body with a loss factor.
   Eigen::MatrixXd damping() const;
-  /// The same body with structural damping in place of xi: its stiffness at s = j omega is
-  /// (1 + j eta sign(omega)) diag(omega^2) [Craig and Kurdila 2006, 4]. That is no rational
-  /// function of s, and has no state-space model: `compile` throws not_rational;
-  /// `frequency_response` of the diagram (analysis/damping/structural_damping.hpp) takes it. At
-  /// resonances it is modal damping of xi = eta / 2. Throws bad_value unless eta > 0 and finite,
-  /// bad_modes if the body has a damping matrix or modes have other values.
+  /// The same body with structural damping in place of xi: its stiffness at s = j omega is (1 + j
+  /// eta sign(omega)) diag(omega^2) [Craig and Kurdila 2006, 4]. This stiffness is no rational
+  /// function of s and has no state-space model: `compile` throws not_rational; use
+  /// `frequency_response` of the diagram (analysis/damping/structural_damping.hpp). At resonances
+  /// it equals modal damping of xi = eta / 2. Throws bad_value unless eta > 0 and finite, bad_modes
+  /// if the body has a damping matrix or some modes have ModeValues.
   FlexibleBody with_loss_factor(double eta) const;
 
   /// Data from which its block is made.

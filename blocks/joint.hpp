@@ -37,7 +37,7 @@ struct Joint {
     Handle& operator=(const Handle& other) { return detail::rebind(*this, other); }
     Children<6> child;   ///< mount of the body
     DualPort<6> parent;  ///< mount of the joint
-    /// The axis of this name. Throws unknown_name, with those that there are.
+    /// The axis of this name. Throws unknown_name with the valid names.
     AxisPorts axis(std::string_view name) const;
 
    private:

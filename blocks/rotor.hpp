@@ -57,8 +57,8 @@ struct Rotor {
 };
 BlockPtr as_block(const Rotor& spec);
 
-/// Imbalance of a rotor, both in one plane through the axis: masses m at e u + z a from the centre
-/// of mass A, u a unit vector across the axis.
+/// Static and dynamic imbalance of a rotor, both in one plane through the axis: masses m at e u +
+/// z a from the centre of mass A, u a unit vector across the axis.
 struct Imbalance {
   double static_kgm = 0;    ///< sum of m e [kg m]
   double dynamic_kgm2 = 0;  ///< sum of m e z: product of inertia about A [kg m^2]

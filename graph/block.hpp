@@ -51,9 +51,9 @@ struct Interface {
   std::vector<ChannelSpec> channels;
   std::vector<PortSpec> inputs, outputs;
   std::vector<std::string> states;
-  /// Optional: per state the one that is its rate, -1 if none is; empty: no state has a rate. A
-  /// state with a rate is a coordinate: its row of A has one entry, 1, at its rate, and its row of
-  /// B none. Closed chains need it, and the symmetric form of the whole model.
+  /// Optional: for each state the index of its rate, -1 if it has none; empty: no state has a rate.
+  /// A state with a rate is a coordinate: its row of A has one entry, 1, at its rate, and its row
+  /// of B none. Closed chains need it, and the symmetric form of the whole model.
   std::vector<int> rates = {};
   std::vector<int> by_name = {};  ///< optional, for very many channels: their indices, by name
 

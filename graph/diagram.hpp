@@ -80,8 +80,8 @@ class Diagram {
 
   /// A loop point: returns `signal`, as a plain signal, for use in its place. It changes nothing
   /// until `loop(system, "name")` (analysis/control/loop.hpp) cuts the loop there, for S, T, L and
-  /// margins. A node named `name` of the size of the signal. Throws unknown_name for a signal of
-  /// another diagram. O(terms).
+  /// margins. Adds a node called `name`, of the size of the signal. Throws unknown_name for a
+  /// signal of another diagram. O(terms).
   ///
   ///     hub.parent.force.angular = -d.loop_point("attitude", law.out);
   Reading loop_point(std::string name, const Rhs& signal);

@@ -21,7 +21,7 @@ StateSpace model_of(const BlockPtr& block);
 StateSpace invert(const BlockPtr& block, const std::vector<std::string>& channels);
 
 /// The same for a model: pairs {input, output}, counted from 0, each number once. Throws size
-/// for matrices or names that do not fit, bad_value for a number that is not there or named twice,
+/// for matrices or names that do not fit, bad_value for a number out of range or named twice,
 /// and improper, with the rank, if D is singular there or below 1e-14 of its other entries.
 /// O(n^2 + pairs^3).
 StateSpace invert(const StateSpace& model, const std::vector<std::pair<int, int>>& pairs);

@@ -167,8 +167,8 @@ class DualPort {
         position(graph, accel_signal, Term::Of::position),
         rate(graph, accel_signal, Term::Of::rate) {}
   DualPort(const DualPort&) = default;
-  /// `a.parent = b.child` would look like an equation and be none: write mount(a, b.child). To walk
-  /// along a chain keep the points in a list: `sites.push_back(panel.child)`.
+  /// Deleted: `a.parent = b.child` would look like an equation, but rebind the port. Write mount(a,
+  /// b.child). Along a chain keep the points in a list: `sites.push_back(panel.child)`.
   DualPort& operator=(const DualPort&) = delete;
 
   Port<N, Kind::accel> accel;  ///< [m/s^2; rad/s^2]

@@ -72,7 +72,7 @@ constexpr bool never = false;
 template <class T>
 concept Parametric = std::same_as<T, Param> || std::same_as<T, Value>;
 
-/// Whatever is constant in an equation: a number or a parameter.
+/// A constant of an equation: a number or a parameter.
 template <class T>
 concept Constant = std::is_arithmetic_v<T> || Parametric<T>;
 
@@ -83,7 +83,7 @@ concept ConstantsWithParameter = Constant<L> && Constant<R> && (Parametric<L> ||
 }  // namespace detail
 
 // A `Value` is a number, or a number times one parameter: other functions of parameters are
-// refused, with what to write instead.
+// refused, with the text to write instead.
 
 template <detail::Parametric L, detail::Parametric R>
 Value operator*(const L&, const R&) {

@@ -72,9 +72,9 @@ struct FullCertificate {
   /// smallest eigenvalue of the Hermitian part of G(s) / s, rows and columns scaled to diagonal 1,
   /// over the grid and around the poles right of the axis that affect a transfer. Negative: the
   /// model can deliver energy (a controller may do that; a structure may not). A force that moves
-  /// another's point and not its own counts as -1. The diagonal counts 64 units of rounding more,
-  /// of the largest entry in its unit; if that is not enough, also 1e-3 of the terms that cancel,
-  /// by double against long double.
+  /// another's point and not its own counts as -1. 64 units of rounding of the
+  /// largest entry in its unit are added to the diagonal; if that is not enough, also 1e-3 of the
+  /// terms that cancel, by double against long double.
   struct Passivity : Checked {
     int pairs = 0;
     double least = 0;

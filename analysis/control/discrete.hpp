@@ -16,7 +16,7 @@ enum class Discretization {
 
 /// A discrete model and its period.
 struct DiscreteModel {
-  StateSpace model;   ///< states as of the continuous one only with a zero-order hold
+  StateSpace model;   ///< has the continuous model's states only with a zero-order hold
   double period = 0;  ///< [s]
 
   /// C (z - A)^-1 B + D at z = exp(j omega period). Throws singular if that is a pole. O(n^3).
@@ -35,14 +35,15 @@ DiscreteModel discretize(const StateSpace& model, double period,
                          Discretization method = Discretization::zero_order_hold,
                          double prewarp = 0);
 
-/// `first`, then `second`: y2 of u1. The loop transfer of a continuous plant with a discrete law is
-/// series(law, discretize(plant, period)). Throws size if the outputs of the first are not as many
-/// as the inputs of the second, bad_value for different periods.
+/// The series connection, from the inputs of `first` to the outputs of `second`. The loop transfer
+/// of a continuous plant with a discrete law is series(law, discretize(plant, period)). Throws size
+/// if the outputs of the first are not as many as the inputs of the second, bad_value for different
+/// periods.
 DiscreteModel series(const DiscreteModel& first, const DiscreteModel& second);
 
 /// Margins of a discrete loop transfer: exactly those of L on the unit circle, by w = (2 / period)
 /// (z - 1) / (z + 1), which maps it on the axis; frequencies are omega of z = exp(j omega period),
-/// pi / period at most. LoopMargins::delay is the turn of the phase margin over omega: exact for
+/// pi / period at most. LoopMargins::delay is the phase margin over omega: exact for
 /// delays of whole periods. Throws as `margins`, and singular if L has a pole at z = -1.
 Margins margins(const DiscreteModel& L);
 

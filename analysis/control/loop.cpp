@@ -43,7 +43,7 @@ Graph without_ports(const Graph& from, std::vector<RigidMotion>& motions) {
   return g;
 }
 
-/// The signals of a cut: u is what the diagram goes on with, r what it returns.
+/// The signals of a cut: u is fed into the diagram after the cut, r returns to it.
 struct Cut {
   int r = -1, u = -1;  ///< the loop point's input and output
   int d = -1;          ///< the new external input

@@ -24,28 +24,30 @@ struct LoopCrossing {
   std::complex<double> L;
 };
 
-/// A disk of gains and phases, the same for all frequencies, that may be multiplied to every input
-/// of the loop, independently of each other, without making it unstable: alpha = 2/||S - T||_inf,
-/// at most 2; gains (1 + delta) / (1 - delta) with |delta| < alpha / 2. Of one loop it is the
-/// largest; of several a lower bound, which depends on the units of their signals [Blight, Dailey,
-/// Gangsaas, Int. J. Control 59 (1994); Seiler, Packard, Gahinet, IEEE Control Syst. 40 (2020)].
+/// A disk of complex factors, gains with phases: each input of the loop may be multiplied by any
+/// factor in it, independently of the others, and the loop stays stable. The factors are (1 +
+/// delta) / (1 - delta) with |delta| < alpha / 2, alpha = 2/||S - T||_inf, at most 2. For one loop
+/// it is the largest such disk; for several alpha is a lower bound, which depends on the units of
+/// their signals [Blight, Dailey, Gangsaas, Int. J. Control 59 (1994); Seiler, Packard, Gahinet,
+/// IEEE Control Syst. 40 (2020)].
 struct DiskMargin {
   double alpha = 0;  ///< 0 to 2
   double omega = 0;  ///< where ||S - T|| is reached [rad/s]
   double least_gain() const { return (2 - alpha) / (2 + alpha); }
-  double largest_gain() const { return (2 + alpha) / (2 - alpha); }  ///< infinite of alpha = 2
+  double largest_gain() const { return (2 + alpha) / (2 - alpha); }  ///< infinite for alpha = 2
   double phase() const { return 2 * std::atan(alpha / 2); }          ///< [rad], at a gain of 1
 };
 
-/// Margins of one loop, all others closed. Infinite: nothing of this kind makes it unstable. All
-/// are 0 if the closed loop is not stable.
+/// Margins of one loop, all others closed. A margin is infinite if no change of its kind makes the
+/// loop unstable; all are 0 if the closed loop is not stable.
 struct LoopMargins {
   std::string point;      ///< "attitude(2)"
   MarginAt larger_gain;   ///< least factor above 1 that brings L to -1; see `decibels`
-  MarginAt smaller_gain;  ///< largest factor below 1 that does; 0: none
-  MarginAt phase;         ///< least turn of L, in either direction, that does [rad]; see `degrees`
-  MarginAt delay;    ///< least additional delay that does [s]; 0 if |L| >= 1 at high frequencies
-  MarginAt nearest;  ///< least distance of L(j omega) to -1: 1/||S||_inf
+  MarginAt smaller_gain;  ///< largest factor below 1 that brings L to -1; 0: none
+  MarginAt phase;         ///< least phase shift, of either sign, that brings L to -1 [rad]
+  MarginAt delay;         ///< least additional delay that brings L to -1 [s]; 0 if |L| >= 1 at high
+                          ///< frequencies
+  MarginAt nearest;       ///< least distance of L(j omega) to -1: 1/||S||_inf
   DiskMargin disk;
   std::vector<LoopCrossing> unit;      ///< all crossings of |L| = 1, by frequency
   std::vector<LoopCrossing> negative;  ///< all crossings of the negative real axis, by frequency
@@ -81,22 +83,22 @@ struct MarginOptions {
 
 /// Margins of a loop by its state-space model L (n x n). Frequencies at which |L| = 1, or at which
 /// L is real, are zeros of L(s) L(-s) - 1 and of L(s) - L(-s) (transmission_zeros), refined on L
-/// itself by bracketing [Alefeld, Potra, Shi 1995], and searched for between all poles and zeros of
-/// L, too, so that rounding of a zero loses none: 1e-12 of a frequency, or 1e-8 where two of them
-/// merge (the curve touches the circle or the axis). Norms by `norm_hinf`.
+/// itself by bracketing [Alefeld, Potra, Shi 1995]. They are also searched for between all poles
+/// and zeros of L, so that none is missed by rounding of a zero. Accuracy: 1e-12 of a frequency, or
+/// 1e-8 where two of them merge (the curve touches the circle or the axis). Norms by `norm_hinf`.
 ///
-/// Modes that the loop does not move, or does not see, are not in L: their stability is that of
-/// System::poles(). A margin holds for changes of this loop alone.
+/// Modes that are unreachable or unobservable from the cut are not in L: System::poles() shows
+/// their stability. A margin holds for changes of this loop alone.
 ///
-/// Throws size for L that is not square or does not fit itself, not_finite, ill_posed if 1 + L is
-/// singular at high frequencies, bad_value for a delay that is negative or not finite, in more than
-/// one loop, in a loop with a direct term, or of more than 1e5 quarter turns where L matters, and
-/// for more than kMostStatesOfHinf states (norm_hinf). O(1000 n^3).
+/// Throws size for an L that is not square or whose matrices do not fit each other, not_finite,
+/// ill_posed if 1 + L is singular at high frequencies, bad_value for a delay that is negative or
+/// not finite, in more than one loop, in a loop with a direct term, or of more than 1e5 quarter
+/// turns where L matters, and for more than kMostStatesOfHinf states (norm_hinf). O(1000 n^3).
 Margins margins(const StateSpace& L, const MarginOptions& options = {});
 /// Of ControlLoop::L.state_space(): of the minimal L, with the names of the loop points.
 Margins margins(const ControlLoop& loop, const MarginOptions& options = {});
 
-/// A table, with dB and degrees; says so if the loop is not stable.
+/// A table, with dB and degrees; if the loop is not stable, the counts of unstable poles instead.
 std::string to_string(const Margins& margins);
 
 }  // namespace titop

@@ -49,7 +49,7 @@ class Derivatives {
   /// row or to 1e-11 of the matrices' row over p (compiler/passes/open/differences.hpp).
   const std::vector<std::string>& by_differences() const { return by_differences_; }
   /// The system with w and z among its inputs and outputs, from which all derivatives follow: its
-  /// certificate() is theirs, with the list of by_differences().
+  /// certificate() holds for them, with the list of by_differences().
   System opened() const { return System(opened_); }
 
   /// dH/dp at s, outputs x inputs [unit of H per unit of p]: the product of M_yw and M_zu, each
@@ -83,7 +83,7 @@ class Derivatives {
   /// neighbouring values, or if the norm is 0. O(states^3).
   Slopes h2() const;
   /// The largest singular value of the transfer over a band (norm_hinf), with slopes Re(u^H dH v),
-  /// u and v its singular vectors: the peak's own motion along the frequencies does not matter.
+  /// u and v its singular vectors: the shift of the peak's frequency has no effect of first order.
   /// Found on System::state_space(): poles on the axis that no input reaches or no output sees do
   /// not count, unless omega itself is one. Throws as norm_hinf does (also for more than 600
   /// states), and bad_value where the peak has no derivative: two peaks of one height, or two equal

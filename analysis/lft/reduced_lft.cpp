@@ -164,7 +164,7 @@ MatrixXd ReducedLft::error(double omega, const ParameterList& values) const {
     throw Error(Code::singular,
                 fmt::format("omega = {:.6g} rad/s is at a pole of the reduced LFT there", omega),
                 "take another omega, or other values");
-  const MatrixXcd by_z = delta.asDiagonal() * n.z;  // w of what is added to z
+  const MatrixXcd by_z = delta.asDiagonal() * n.z;  // w per addition to z
   const MatrixXd size = by_z.cwiseAbs();
   // N = N_r (I - E_zw Delta N_r)^-1
   const MatrixXd full = product(size, neumann(product(s.E_zw(), size)));

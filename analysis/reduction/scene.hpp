@@ -58,7 +58,7 @@ namespace detail {
 void check(const Scene& scene);
 
 /// The graph with these inputs and outputs only; single scalars become inputs and outputs of their
-/// own. Throws unknown_name with the names there are. O(graph).
+/// own. Throws unknown_name with the valid names. O(graph).
 Graph restricted(const Graph& graph, const Scene& scene);
 
 }  // namespace detail

@@ -32,9 +32,9 @@ class Excitation {
   /// with the steps that fit). Throws bad_value for a period that is not positive, size for no
   /// sample.
   static Excitation held(Eigen::MatrixXd samples, double period);
-  /// A record: column k at times[k], ascending, linear in between, constant before and after; jumps
-  /// are two equal times, and steps must end there (`simulate` throws bad_value). Throws size,
-  /// bad_value.
+  /// A record: column k at times[k], ascending, linear in between, constant before and after. Two
+  /// equal times make a jump, at which a step must end (else `simulate` throws bad_value). Throws
+  /// size, bad_value.
   static Excitation recorded(std::vector<double> times, Eigen::MatrixXd samples);
 
  private:

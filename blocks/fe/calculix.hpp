@@ -12,8 +12,8 @@
 /// To have a structure with places where other bodies attach: make each place a `*RIGID BODY` with
 /// a REF NODE (its three displacements) and a ROT NODE (whose "displacements" 1..3 are the
 /// rotations of the body), leave it free (no `*BOUNDARY`), and run the deck. The deck must be in SI
-/// units. Of `*COUPLING`, beams and shells CalculiX makes nodes of its own, whose rows have no
-/// position: write rigid bodies and solid elements.
+/// units. For `*COUPLING`, beams and shells CalculiX creates nodes whose rows have no position: use
+/// rigid bodies and solid elements instead.
 namespace titop::fe {
 
 /// The four files of one run.

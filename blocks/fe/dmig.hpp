@@ -23,8 +23,9 @@ std::vector<std::string> dmig_names(const std::filesystem::path& path);
 /// Throws bad_file, all mistakes together, with file and line: a DMIG card in free fields, in small
 /// letters or with tabs, a field that is no number, a component outside 0 to 6, an entry twice with
 /// different values, a column before its matrix's header, a complex or rectangular matrix, entries
-/// without value, an unknown name (with those there are), a last line without line end (its number
-/// may be cut short). A file truncated at the end of a line looks complete: missing entries are 0.
+/// without value, an unknown name (with the names in the file), a last line without line end (its
+/// number may be cut short). A file truncated at the end of a line looks complete: missing entries
+/// are 0.
 GridMatrices read_dmig(const std::filesystem::path& path, const std::string& stiffness,
                        const std::string& mass);
 

@@ -7,8 +7,8 @@ namespace titop::fe {
 
 enum class FileKind { op4, op2, dmig, modal_csv, calculix };
 
-/// By extension (CalculiX) or content. Throws bad_file for another kind, with what to ask of the
-/// program that wrote it.
+/// By extension (CalculiX) or content. Throws bad_file for another kind, with the output to request
+/// from the program that wrote it.
 FileKind kind_of_file(const std::filesystem::path& file);
 
 }  // namespace titop::fe

@@ -33,11 +33,11 @@ void check(const GridMatrices& matrices);
 GridMatrices grid_matrices(std::string name, const Eigen::MatrixXd& K, const Eigen::MatrixXd& M,
                            const std::vector<int>& grids, double digits);
 
-/// Rows that are 0 in both K and M, such as rotations of grids on solids, and scalar points that no
-/// mode took. A mesh with them has no modes: drop them, `m = without(m, empty_rows(m))`.
+/// Rows that are 0 in both K and M, such as rotations of grids on solids, and scalar points without
+/// a mode. A mesh with them has no modes: drop them, `m = without(m, empty_rows(m))`.
 std::vector<GridDof> empty_rows(const GridMatrices& matrices);
 
-/// The matrices without these rows and columns. Throws unknown_name for a row that is not there.
+/// The matrices without these rows and columns. Throws unknown_name for a row that does not exist.
 GridMatrices without(GridMatrices matrices, const std::vector<GridDof>& rows);
 
 /// Position of a grid. It becomes a point of the mesh, and an interface if it has a name.
@@ -60,7 +60,7 @@ Mesh to_mesh(const GridMatrices& matrices, const std::vector<Grid>& grids);
 /// Rigid motions (n x 6) by statics, for data without positions: displacements of all rows for unit
 /// displacements of this grid's six components without other loads, R = [1; -K_ff^-1 K_fr]; columns
 /// of components that the grid does not have (planar models) are 0. Relative error: that of K's
-/// digits times the condition number of K_ff. Throws unknown_name for a grid that is not there,
+/// digits times the condition number of K_ff. Throws unknown_name for a grid that does not exist,
 /// bad_modes if K_ff is not positive definite. Cost n^3 / 3.
 Eigen::MatrixXd rigid_motions_by_statics(const GridMatrices& matrices, int grid);
 

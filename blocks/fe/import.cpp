@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 using Names = std::vector<std::string>;
 
-/// One import: what it reads is told in `result.text`.
+/// One import; `result.text` lists the contents of the file.
 class Importer {
  public:
   Importer(const fs::path& file, const ImportOptions& options) : file_(file), options_(options) {}

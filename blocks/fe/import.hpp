@@ -13,7 +13,7 @@ namespace titop::fe {
 
 /// Data that the file itself does not contain.
 struct ImportOptions {
-  /// Parent port, one of `Import::ports`; empty: the file is only looked into.
+  /// Parent port, one of `Import::ports`; empty: the contents are listed, no body is made.
   std::string parent = {};
   std::vector<std::string> children = {};  ///< child ports, of `Import::ports`
   DataUnits units = {};                    ///< of the file; a CSV has its own line of them
@@ -47,7 +47,8 @@ struct Import {
 /// Throws the errors of the readers, of `to_mesh` and `modal_data`; bad_value for options that the
 /// kind of file does not take (a CSV of modes: any; the modes of an OP2: grids, modes but for xi;
 /// an OP2's matrices: grids; CalculiX: grids, stiffness, mass); bad_file for a file of another
-/// kind, with what to ask of the program; unknown_name for matrices or ports that are not there.
+/// kind, with the output to request from the program; unknown_name for matrices or ports that do
+/// not exist.
 Import import_body(const std::filesystem::path& file, const ImportOptions& options = {});
 
 }  // namespace titop::fe

@@ -39,7 +39,7 @@ std::vector<Grid> op2_grids(const Op2File& file);
 /// rigid mass. `digits`: 7, those of OUGV1 and LAMA. D_P leaves out the mass that is lumped at the
 /// clamped grid. Undamped.
 ///
-/// Throws bad_file for what is missing, with the lines that write it, for generalised masses that
+/// Throws bad_file for missing tables, with the lines that write them, for generalised masses that
 /// differ from 1 by more than 1e-5, and for support forces that contradict MPFACS; bad_value for a
 /// parent that moves in the modes; unknown_name for grids without position or shapes.
 ModalData op2_modal_data(const Op2File& file, const std::string& parent,

@@ -32,8 +32,8 @@ struct Op4Matrix {
 std::vector<Op4Matrix> read_op4(const std::filesystem::path& path,
                                 const std::vector<std::string>& only = {});
 
-/// The matrix of this name (capitals or not). Throws unknown_name with those there are, bad_file
-/// for one that was not read, or that is there several times with different values.
+/// The matrix of this name (capitals or not). Throws unknown_name with the names in the file,
+/// bad_file for one that was not read, or that occurs several times with different values.
 const Op4Matrix& find_matrix(const std::vector<Op4Matrix>& matrices, const std::string& name);
 
 }  // namespace titop::fe

@@ -30,8 +30,8 @@ struct Certificate {
   /// that System::apply computes, for one random input, over the output's size (of one unit). Up to
   /// 1e-9 it counts as 0; above, 1e4 times a sample of the rounding of both is subtracted, and up
   /// to 32 times the digits that double loses there (see the log) it is 0. The two share the
-  /// blocks' matrices and the coefficients; the elimination, the integrals and the map of dependent
-  /// states are others. Negative if not compared: at an instant, where `residual` itself checks the
+  /// blocks' matrices and the coefficients, but not the elimination, the integrals and the map of
+  /// dependent states. Negative if not compared: at an instant, where `residual` itself checks the
   /// signals of apply.
   double apply_against_transfer = -1;
   /// Largest difference between xdot, y of the dense model and of the factors, for one random x and

@@ -152,8 +152,8 @@ void leave_out_lost(std::vector<Sample>& samples, std::vector<T>& not_tried) {
   }
 }
 
-/// Counts what double gets wrong in the outputs as their rounding: an output that is 0 because
-/// states cancel may be that alone.
+/// Adds the error of double in the outputs to their rounding: an output that is 0 because states
+/// cancel may be rounding alone.
 void find_rounding(Sample& p, const Factored& d, const solve::RowMatrix<T>& u,
                    const std::vector<int>& units) try {
   using Finer = std::complex<solve::DoubleDouble>;

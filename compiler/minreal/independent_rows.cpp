@@ -77,7 +77,7 @@ SeparatedRows separate(const NoisyRows& of) {
   const Index all = R.cols(), pivots = std::min(R.rows(), all);
   VectorXd noise(all);
   for (Index j = 0; j < all; ++j) noise(j) = of.noise(place(j));
-  // Rounding in what is left of row j beside the first `taken` ones: its own and theirs.
+  // Rounding in the remainder of row j beside the first `taken` ones: its own and theirs.
   const auto bound = [&](Index j, Index taken) {
     const VectorXd part = R.col(j).head(taken);
     const VectorXd share =
@@ -105,7 +105,7 @@ NoisyRows weighted(const std::vector<int>& number, const MatrixXd& scaled, const
   return {number, rows(number, Eigen::all), noise(number)};
 }
 
-/// Separates the rows, and what is left of them again in units of their rounding: returns the
+/// Separates the rows, and their remainders again in units of their rounding: returns the
 /// clearly independent rows, and the others with their remainders.
 SeparatedRows separate_twice(const NoisyRows& open) {
   SeparatedRows result = separate(open);

@@ -23,9 +23,10 @@ struct Pole {
   /// `unlike_bodies`; else -1. Set by System::poles.
   double least_xi = -1, largest_xi = -1;
 
-  /// An assembled mode that is damped otherwise than its bodies: less than a fifth of the least xi,
-  /// of bodies that have half of it or more, or more than five times the largest, if no other block
-  /// takes part, no equation reads a rate and no one-way block has states (dampers, controllers).
+  /// True for an assembled mode whose damping ratio differs from those of its bodies: it is below a
+  /// fifth of their least xi, if these bodies have half of the mode or more; or above five times
+  /// their largest xi, if no other block takes part, no equation reads a rate and no one-way block
+  /// has states (dampers, controllers).
   bool unlike_bodies() const { return largest_xi >= 0; }
 };
 
@@ -42,7 +43,7 @@ std::string xi_of_bodies(const Pole& pole);
 ///
 /// `rounding`: of the entries of A, as of a dense model with cancellation; empty: 2.2e-16 of each.
 /// System::poles gives that of the factors, and for a minimal model 2.2e-16 of each entry and as
-/// much again for every state that has left.
+/// much again for every removed state.
 /// `energy`: potential energy x' E x / 2, if known; models whose coordinates share springs and
 /// masses (closed chains) are solved as symmetric problems by it, if every coordinate has
 /// stiffness and no state has been removed.

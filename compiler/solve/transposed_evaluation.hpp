@@ -6,7 +6,7 @@ namespace titop::detail {
 
 /// Rows of the transfer at one s, by solutions of the transposed joint system: with z = L^-1 R u
 /// and y = G z + H u they are G L^-1 R + H, where L'v = G'w gives v'R for the weights w of the
-/// outputs. A row costs what a column costs in Evaluation, and depends on all inputs.
+/// outputs. A row costs as much as a column in Evaluation, and depends on all inputs.
 template <class T>
 class TransposedEvaluation final : public RefinedSolution<T> {
  public:
@@ -30,7 +30,7 @@ class TransposedEvaluation final : public RefinedSolution<T> {
   struct Weighted {};  ///< right-hand sides only
   TransposedEvaluation(Weighted, const Evaluation<T>& point, std::vector<int> ports);
   void add_weighted(int signal, const solve::RowMatrix<T>& weights);
-  /// Of these unknowns, added to what the outputs take from the inputs at once.
+  /// Of these unknowns, added to the direct terms from inputs to outputs.
   solve::RowMatrix<T> inputs_of(const solve::RowMatrix<T>& unknowns, solve::RowMatrix<T> own) const;
   solve::RowMatrix<T> residual(solve::RowMatrix<double>* magnitudes) const override {
     return point_.rows_.transposed_residual(rhs_, this->unknowns_, magnitudes);

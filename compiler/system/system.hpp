@@ -179,9 +179,9 @@ class System {
   /// The name, the numbers of states, inputs and outputs, and the notes as text, one per line.
   std::string log() const;
   /// Notes on writing and minimizing the model of state_space(), and, if that has been minimized,
-  /// on modes that are damped unlike their bodies (Pole::unlike_bodies); makes it if that has not
-  /// been done, at the cost of state_space() and poles() and the errors of the former. So do the
-  /// next two.
+  /// on modes that are damped unlike their bodies (Pole::unlike_bodies). The first call makes the
+  /// model, at the cost of state_space() and poles() and with the errors of state_space();
+  /// dense_log() does the same. dense_seconds() makes the model without its poles.
   const std::vector<Note>& dense_notes() const&;
   std::vector<Note> dense_notes() const&& { return dense_notes(); }
   /// The same as text, one per line.

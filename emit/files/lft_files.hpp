@@ -24,8 +24,8 @@ void write_matlab(const Lft& f, const std::filesystem::path& file);
 void write_numpy(const Lft& f, const std::filesystem::path& folder, const std::string& name);
 
 /// One JSON object: "format" ("titop lft 1"), "states", "inputs", "outputs", "A", "B", "C", "D",
-/// "states_at_least", "not_decided" (null if the lower bounds are) and "parameters", a list with
-/// the fields above, "first" and "where".
+/// "states_at_least", "not_decided" (null if the lower bounds are known) and "parameters", a list
+/// with the fields above, "first" and "where".
 std::string lft_json(const Lft& f);
 void write_json(const Lft& f, const std::filesystem::path& file);
 
