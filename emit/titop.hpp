@@ -56,6 +56,7 @@
 #include <titop/emit/report/plots.hpp>
 #include <titop/emit/report/report.hpp>
 #include <titop/graph/diagram.hpp>
+#include <titop/graph/diagram_of_model.hpp>
 #include <titop/graph/invert.hpp>
 #include <titop/graph/mount.hpp>
 #include <titop/graph/nodes/gain.hpp>
