@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <system_error>
+#include <tuple>
 
 namespace titop::command_line {
 
@@ -27,7 +28,16 @@ const char* const kUsage = R"(usage:
                                            and ports: OP4, OP2, DMIG punch, CSV of modes, CalculiX;
                                            with -o and --parent a body: BODY.json, a diagram of it
                                            alone, or BODY.csv, its modal data
+  titop margins DIAGRAM.json               stability margins of the loop at every loop point
+  titop simulate DIAGRAM.json FILE.csv     outputs over time; needs --step, --until, and --record or
+                                           --unit-step
+  titop sweep DIAGRAM.json POINTS.csv FILE.csv  poles at every row of POINTS, whose first line names
+                                           parameters; with --omega frequency responses
+  titop reduce DIAGRAM.json FILE           a reduced model of the band, FILE.m, FILE.py or FILE.hpp,
+                                           its steps and its error bound; needs --band
+  titop --version
 options:
+  --set NAME=VALUE                         value of a parameter; once for each
   --fold COUNT                             draw, report: at most so many boxes, each whole subtrees;
                                            draw: all if left out; report: 40, 0 for all
   -o FILE                                  report: the HTML file; certify: also writes JSON;
@@ -41,8 +51,16 @@ options:
   --modes COUNT                            import: lowest modes that are kept, and residual vectors
                                            of all ports; all modes if left out
   --xi RATIO                               import: damping ratio of all modes
-  --band LOW HIGH                          report: of the frequency responses, Hz
-  --until SECONDS                          report: of the step responses
+  --band LOW HIGH                          report: of the frequency responses, Hz; reduce
+  --inputs NAME,NAME --outputs NAME,NAME   reduce: those that the model has; all if left out
+  --accuracy ERROR                         reduce: relative to the peaks, 1e-3 if left out
+  --until SECONDS                          report: of the step responses; simulate
+  --step SECONDS                           simulate: between the times of the result
+  --record FILE.csv                        simulate: inputs over time, columns time [s] and inputs by
+                                           name, linear in between; jumps are two equal times
+  --unit-step INPUT                        simulate: this input is 1, the others are 0
+  --delay SECONDS                          margins: an additional delay in the loop
+  --part I/N                               sweep: the I-th of N parts of the rows
   --no-diagrams                            report: without drawings, which need Graphviz
   --sample-time SECONDS                    for .hpp: also `step`
   --omega LOW HIGH COUNT                   for .csv: rad/s, logarithmic
@@ -84,7 +102,35 @@ std::vector<double> logarithmic(double low, double high, int count) {
   return list;
 }
 
+/// NAME=VALUE.
+std::pair<std::string, double> assignment(const std::string& option, const std::string& text) {
+  const std::size_t at = text.find('=');
+  if (at == 0 || at == std::string::npos)
+    throw Misuse{fmt::format("{} needs NAME=VALUE, not '{}'", option, text)};
+  return {text.substr(0, at), number(option, text.substr(at + 1))};
+}
+
+/// I/N.
+std::pair<int, int> part(const std::string& option, const std::string& text) {
+  const std::size_t at = text.find('/');
+  if (at == std::string::npos) throw Misuse{fmt::format("{} needs I/N, not '{}'", option, text)};
+  const int parts = count(option, number(option, text.substr(at + 1)), 1),
+            part = count(option, number(option, text.substr(0, at)), 1);
+  if (part > parts) throw Misuse{fmt::format("{}: there is no part {} of {}", option, part, parts)};
+  return {part, parts};
+}
+
 }  // namespace
+
+std::vector<std::string> separated(const std::string& list) {
+  std::vector<std::string> words;
+  for (std::size_t at = 0; at < list.size();) {
+    const std::size_t end = std::min(list.find(',', at), list.size());
+    words.push_back(list.substr(at, end - at));
+    at = end + 1;
+  }
+  return words;
+}
 
 Arguments parse(const std::vector<std::string>& all) {
   Arguments a;
@@ -96,8 +142,8 @@ Arguments parse(const std::vector<std::string>& all) {
     };
     const auto next = [&] { return number(option, word()); };
     if (option == "-o" || option.starts_with("--")) {
-      if (std::find(a.given.begin(), a.given.end(), option) != a.given.end())
-        throw Misuse{fmt::format("{} is there twice", option)};
+      const bool again = std::find(a.given.begin(), a.given.end(), option) != a.given.end();
+      if (again && option != "--set") throw Misuse{fmt::format("{} is there twice", option)};
       a.given.push_back(option);
     }
     if (option == "--compiled") {
@@ -110,7 +156,7 @@ Arguments parse(const std::vector<std::string>& all) {
       a.to = word();
     } else if (option == "--band") {
       a.band = {next(), next()};
-      if (!(a.band[0] > 0 && a.band[1] > a.band[0])) throw Misuse{"--band needs 0 < LOW < HIGH"};
+      if (!(a.band[0] >= 0 && a.band[1] > a.band[0])) throw Misuse{"--band needs 0 <= LOW < HIGH"};
     } else if (option == "--until") {
       a.until = seconds(option, next());
     } else if (option == "--sample-time") {
@@ -137,6 +183,24 @@ Arguments parse(const std::vector<std::string>& all) {
       a.modes = count(option, next());
     } else if (option == "--xi") {
       a.xi = next();
+    } else if (option == "--set") {
+      a.set.push_back(assignment(option, word()));
+    } else if (option == "--inputs") {
+      a.inputs = word();
+    } else if (option == "--outputs") {
+      a.outputs = word();
+    } else if (option == "--accuracy") {
+      a.accuracy = next();
+    } else if (option == "--record") {
+      a.record = word();
+    } else if (option == "--unit-step") {
+      a.unit_step = word();
+    } else if (option == "--step") {
+      a.step = seconds(option, next());
+    } else if (option == "--delay") {
+      a.delay = seconds(option, next());
+    } else if (option == "--part") {
+      std::tie(a.part, a.parts) = part(option, word());
     } else if (option.starts_with("--")) {
       throw Misuse{fmt::format("there is no option {}", option)};
     } else {

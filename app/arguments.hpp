@@ -20,7 +20,13 @@ struct Arguments {
   std::vector<double> band;  ///< LOW HIGH
   double until = 0;
   double sample_time = 0;
-  std::vector<double> omega;       ///< all frequencies
+  std::vector<double> omega;    ///< all frequencies
+  ParameterList set;            ///< values of parameters, in the order of the options
+  std::string inputs, outputs;  ///< of a scene, between commas; empty: all
+  double accuracy = Scene{}.accuracy;
+  std::string record, unit_step;  ///< inputs over time: a file, or the name of one
+  double step = 0, delay = 0;     ///< [s]
+  int part = 1, parts = 1;
   std::vector<std::string> given;  ///< options, as typed
   int minimize_up_to = Options{}.minimize_up_to;
 };
@@ -33,6 +39,9 @@ struct Misuse {
 /// Reads all words behind the program's name. Throws Misuse for an option that does not exist, is
 /// there twice, lacks a value or has a wrong one.
 Arguments parse(const std::vector<std::string>& all);
+
+/// The words of a list between commas.
+std::vector<std::string> separated(const std::string& list);
 
 /// The text of titop --help, without that of `generate`.
 extern const char* const kUsage;

@@ -16,6 +16,8 @@
 #include <vector>
 
 #include "arguments.hpp"
+#include "commands/analyses.hpp"
+#include "commands/diagram.hpp"
 #include "generate/command.hpp"
 
 namespace {
@@ -26,10 +28,6 @@ using namespace titop::command_line;
 
 Misuse unknown_ending(const Arguments& a) {
   return {fmt::format("'{}' has an unknown extension", a.words[2])};
-}
-
-System compiled(const Arguments& a) {
-  return compile(read_diagram(a.words[1]), {.minimize_up_to = a.minimize_up_to});
 }
 
 void check(const Arguments& a) {
@@ -77,28 +75,16 @@ void draw(const Arguments& a) {
   if (!picture && !kind.empty() && kind != ".dot" && kind != ".gv") throw unknown_ending(a);
   const DotOptions options{.fold = std::max(a.fold, 0)};
   const std::string text =
-      a.compiled ? to_dot(compiled(a).stage(), options) : to_dot(read_diagram(a.words[1]), options);
+      a.compiled ? to_dot(compiled(a).stage(), options) : to_dot(diagram_of(a), options);
   emit::write_file(a.words[2], picture ? drawn(text, a.words[2], kind.substr(1)) : text);
 }
 
 void report(const Arguments& a) {
   ReportOptions options{.diagrams = a.diagrams, .until = a.until};
   if (a.fold >= 0) options.fold = a.fold;
+  if (!a.band.empty() && a.band[0] == 0) throw Misuse{"report needs --band 0 < LOW < HIGH"};
   if (!a.band.empty()) options.band_hz = {a.band[0], a.band[1]};
   write_report(compiled(a), a.to, options);
-}
-
-constexpr const char* kKeepDigits =
-    "  frequency responses keep the digits (titop export DIAGRAM.json FILE.csv), in C++ also\n"
-    "  System::transfer, apply and simulate; a reduced model of the required band may keep them:\n"
-    "  compile(d, Scene{.band_hz = {LOW, HIGH}})\n";
-
-/// The log is not printed by an export.
-void warn_of_lost_digits(const System& system) {
-  const std::vector<std::string> warnings = dense_warnings(system);
-  std::string text;
-  for (const std::string& w : warnings) text += fmt::format("warning: {}\n", w);
-  if (!warnings.empty()) std::fputs((text + kKeepDigits).c_str(), stderr);
 }
 
 void export_model(const Arguments& a) {
@@ -113,16 +99,6 @@ void export_model(const Arguments& a) {
   if (kind == ".m") return write_matlab(system, file);
   if (kind == ".py") return write_numpy(system, folder, name);
   write(generate_cpp(system, {.name = name, .sample_time = a.sample_time}), folder);
-}
-
-std::vector<std::string> separated(const std::string& list) {
-  std::vector<std::string> words;
-  for (std::size_t at = 0; at < list.size();) {
-    const std::size_t end = std::min(list.find(',', at), list.size());
-    words.push_back(list.substr(at, end - at));
-    at = end + 1;
-  }
-  return words;
 }
 
 fe::ImportOptions import_options(const Arguments& a) {
@@ -165,14 +141,15 @@ void generate_scene(const std::vector<std::string>& words) try {
 struct Command {
   const char* name;
   std::size_t words;             ///< with its own
+  std::size_t read;              ///< of these: its own and the files that it reads
   int (*run)(const Arguments&);  ///< exit code
   std::string_view options;      ///< that it takes, each between blanks
 };
-constexpr std::string_view kModel = " --minimize-up-to ",
-                           kHeader = " --minimize-up-to --sample-time ",
-                           kResponse = " --minimize-up-to --omega ";
+constexpr std::string_view kModel = " --set --minimize-up-to ",
+                           kHeader = " --set --minimize-up-to --sample-time ",
+                           kResponse = " --set --minimize-up-to --omega ";
 
-/// Refuses options without effect on this command, and output over the diagram file.
+/// Refuses options without effect on this command, and output over a file that is read.
 void check_words(const Command& command, const Arguments& a) {
   if (a.words.size() != command.words)
     throw Misuse{fmt::format("{} takes {} files", command.name, command.words - 1)};
@@ -184,11 +161,14 @@ void check_words(const Command& command, const Arguments& a) {
     if (options.find(" " + option + " ") == std::string_view::npos)
       throw Misuse{fmt::format("{}{} does not have the option {}", command.name,
                                kind.empty() ? "" : " to a file " + kind, option)};
-  std::vector<std::string> written(a.words.begin() + 2, a.words.end());
+  const auto own = a.words.begin() + static_cast<std::ptrdiff_t>(command.read);
+  std::vector<std::string> written(own, a.words.end()), read(a.words.begin() + 1, own);
   if (!a.to.empty()) written.push_back(a.to);
+  if (!a.record.empty()) read.push_back(a.record);
   for (const std::string& to : written)
-    if (std::error_code none; fs::equivalent(to, a.words[1], none))
-      throw Misuse{fmt::format("{} is the file that is read: write to another one", to)};
+    for (const std::string& from : read)
+      if (std::error_code none; fs::equivalent(to, from, none))
+        throw Misuse{fmt::format("{} is the file that is read: write to another one", to)};
 }
 
 template <void (*F)(const Arguments&)>
@@ -197,13 +177,19 @@ int done(const Arguments& a) {
   return 0;
 }
 constexpr Command kCommands[] = {
-    {"check", 2, done<check>, kModel},
-    {"compile", 2, done<show>, kModel},
-    {"certify", 2, certify_scene, " --minimize-up-to -o "},
-    {"draw", 3, done<draw>, " --compiled --fold --minimize-up-to "},
-    {"report", 2, done<report>, " --fold -o --band --until --no-diagrams --minimize-up-to "},
-    {"export", 3, done<export_model>, kModel},
-    {"import", 2, done<import_file>,
+    {"check", 2, 2, done<check>, kModel},
+    {"compile", 2, 2, done<show>, kModel},
+    {"certify", 2, 2, certify_scene, " --set --minimize-up-to -o "},
+    {"draw", 3, 2, done<draw>, " --set --compiled --fold --minimize-up-to "},
+    {"report", 2, 2, done<report>,
+     " --set --fold -o --band --until --no-diagrams --minimize-up-to "},
+    {"export", 3, 2, done<export_model>, kModel},
+    {"margins", 2, 2, done<margins_of_loops>, " --set --delay --minimize-up-to "},
+    {"simulate", 3, 2, done<simulate_inputs>, " --set --step --until --record --unit-step "},
+    {"sweep", 4, 3, done<sweep_table>, " --set --omega --part --minimize-up-to "},
+    {"reduce", 3, 2, done<reduce_scene>,
+     " --set --band --inputs --outputs --accuracy --sample-time "},
+    {"import", 2, 2, done<import_file>,
      " -o --parent --children --grids --matrices --units --mass --modes --xi "}};
 
 bool asks_for_help(const std::vector<std::string>& all) {
@@ -218,6 +204,10 @@ std::string usage() { return fmt::format("{}{}", command_line::kUsage, generate:
 int run(const std::vector<std::string>& all) {
   if (asks_for_help(all)) {
     std::fputs(usage().c_str(), stdout);
+    return 0;
+  }
+  if (all.size() == 1 && all[0] == "--version") {
+    std::fputs("titop " TITOP_VERSION "\n", stdout);
     return 0;
   }
   if (!all.empty() && all[0] == "generate") {

@@ -1,0 +1,21 @@
+#pragma once
+
+#include "arguments.hpp"
+
+/// Commands that analyse a diagram. Each throws Misuse or the errors of the library.
+namespace titop::command_line {
+
+/// margins: stability margins of every loop point.
+void margins_of_loops(const Arguments& a);
+
+/// simulate: the outputs over time as CSV, for a record of inputs or a step of one of them.
+void simulate_inputs(const Arguments& a);
+
+/// sweep: poles, or with --omega frequency responses, of every point of a table of parameter
+/// values as CSV, of the rows of --part only.
+void sweep_table(const Arguments& a);
+
+/// reduce: the reduced model of a scene as .m, .py or .hpp; prints its steps and its bound.
+void reduce_scene(const Arguments& a);
+
+}  // namespace titop::command_line
