@@ -6,7 +6,9 @@
 #include <complex>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <titop/blocks/diagram_file/diagram_file.hpp>
 #include <titop/titop.hpp>
@@ -341,4 +343,21 @@ TEST_CASE("invalid command lines: exit code 2, and one line on stderr with the r
   CHECK(has_line(shell.titop("export masses.json m.py --sample-time 0.01").err,
                  {"export", ".py", "--sample-time"}));
   CHECK(shell.titop("check masses.json").code == 0);  // no scene is written over
+}
+
+TEST_CASE("the manual page names every command of --help, and no other") {
+  const Shell shell;
+  std::ifstream file(TITOP_SOURCE_DIR "/docs/titop.1");
+  std::set<std::string> documented, existing;
+  for (std::string line, before; std::getline(file, line); before = line)
+    if (before == ".TP" && line.starts_with(".B ")) documented.insert(line.substr(3));
+  std::istringstream help(shell.titop("--help").out);
+  for (std::string line; std::getline(help, line);)
+    if (std::istringstream words(line); line.starts_with("  titop ")) {
+      std::string titop, command;
+      words >> titop >> command;
+      if (!command.starts_with("-")) existing.insert(command);
+    }
+  CHECK(existing.size() >= 12);
+  CHECK(documented == existing);
 }
