@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <titop/analysis/control/margins.hpp>
 #include <titop/emit/report/pairs.hpp>
 #include <titop/emit/report/plot.hpp>
 #include <titop/emit/report/sweep.hpp>
@@ -24,6 +25,9 @@ std::string step_plots(const Subject& subject, const std::vector<IoPair>& pairs)
 /// zero.
 Plot bode_plot(const Subject& subject, const Sweep& sweep, const std::vector<IoPair>& pairs);
 Plot step_plot(const Subject& subject, const std::vector<IoPair>& pairs);
+/// L of each loop point with the others closed, at these frequencies [rad/s].
+Plot nyquist_plot(const ControlLoop& loop, const Margins& margins,
+                  const std::vector<double>& omega);
 std::optional<Plot> sigma_plot(const Sweep& sweep, const std::vector<UnitGroup>& outputs,
                                const std::vector<UnitGroup>& inputs);
 

@@ -51,44 +51,6 @@ void add(Plot& plot, const std::string& label, Curve curve, PointStyle mark) {
   plot.frames.front().marks.push_back(mark);
 }
 
-/// L of loop i with all others closed, without large parts: they are gaps.
-Curve nyquist_curve(const ControlLoop& loop, int i, const std::vector<double>& omega) {
-  constexpr double kLargest = 30;
-  Curve c;
-  for (const double w : omega) {
-    Complex value(HUGE_VAL, 0);
-    try {
-      const Eigen::MatrixXcd S = loop.S.transfer({0, w});
-      value = 1.0 / S(i, i) - 1.0;  // 1 / (1 + L_i) is S's own entry
-    } catch (const Error& error) {
-      if (!error.has(Code::singular)) throw;
-    }
-    const bool shown = std::abs(value) < kLargest;
-    c.x.push_back(shown ? value.real() : report::kNone);
-    c.y.push_back(shown ? value.imag() : report::kNone);
-  }
-  return c;
-}
-
-Curve circle() {
-  Curve c;
-  for (int k = 0; k <= 180; ++k) {
-    const Complex point = std::polar(1.0, k * report::kTwoPi / 180);
-    c.x.push_back(point.real()), c.y.push_back(point.imag());
-  }
-  return c;
-}
-
-std::string verdict(const Margins& m) {
-  if (!m.stable) return "The closed loop is not stable.";
-  std::string text;
-  for (const LoopMargins& l : m.loops)
-    text += fmt::format("{}{}: nearest to -1 at {:.4g} rad/s, distance {:.4g}, disk margin {:.4g}.",
-                        text.empty() ? "" : " ", l.point, l.nearest.omega, l.nearest.value,
-                        l.disk.alpha);
-  return text;
-}
-
 Curve poles_of(const std::vector<Pole>& poles, double highest) {
   Curve c;
   for (const Pole& p : poles) {
@@ -133,21 +95,7 @@ std::string plot_sigma(const System& system, const PlotOptions& options) {
 }
 
 std::string plot_nyquist(const ControlLoop& loop, const PlotOptions& options) {
-  const Margins m = margins(loop);
-  const std::vector<double> omega = frequencies(loop.L, options);
-  Plot plot{.title = "Nyquist curve",
-            .caption = verdict(m),
-            .x = {.label = "real part", .unit = "", .low = -3, .high = 3},
-            .labels = {},
-            .x_data = {},
-            .frames = {{.y = {.label = "imaginary part", .unit = "", .low = -3, .high = 3},
-                        .curves = {},
-                        .height = 440}}};
-  for (std::size_t i = 0; i < m.loops.size(); ++i)
-    add(plot, m.loops[i].point, nyquist_curve(loop, static_cast<int>(i), omega), PointStyle::line);
-  add(plot, "unit circle", circle(), PointStyle::line);
-  add(plot, "-1", {{-1}, {0}}, PointStyle::cross);
-  return finished(std::move(plot), options);
+  return finished(report::nyquist_plot(loop, margins(loop), frequencies(loop.L, options)), options);
 }
 
 std::string plot_poles(const System& system, const PlotOptions& options) {

@@ -37,16 +37,18 @@ std::string report_html(const System& system, const ReportOptions& options) {
   if (system.order() <= options.full_up_to) full = certify(system, Full{});
   const FullCertificate* checked = full ? &*full : nullptr;
   report::Responses responses = report::responses(s);
-  const ReportSection sections[] = {
+  std::vector<ReportSection> sections = {
       {"scene", "The scene", report::scene_section(s)},
       {"poles", "Poles", report::poles_section(s)},
       {"frequency", "Frequency responses", std::move(responses.frequency)},
       {"time", "Step responses", std::move(responses.time)},
+      {"margins", "Stability margins", report::margins_section(s)},
       {"certificate", "Certificate", report::certificate_section(s, checked)},
       {"order", "Order, and removed states", report::order_section(s, checked)},
       {"passes", "Passes", report::passes_section(s, checked)},
       {"states", "States", names_of_states(system)},
   };
+  std::erase_if(sections, [](const ReportSection& section) { return section.html.empty(); });
   const std::string title = options.title.empty() ? system.stage().graph.name : options.title;
   std::string body = fmt::format(
       "<header>\n<h1>{}</h1>\n<p class=\"about\">Compiled model of the "
