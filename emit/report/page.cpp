@@ -76,6 +76,7 @@ figure.diagram { margin: 10px 0 24px; }
 svg.drawing { height: auto; max-width: 100%; }
 .large svg.drawing { max-width: none; }
 figure.plot text { fill: var(--ink); }
+.mark { stroke: var(--c2); stroke-width: 1.8; }
 figure.plot .tick { font-size: 12px; fill: var(--soft); font-variant-numeric: tabular-nums; }
 .x-label, .y-label { font-size: 12.5px; }
 .fine, .grid, .zero, .frame, .curve { fill: none; }

@@ -35,6 +35,7 @@ class Scale {
 
   std::string title() const {
     const std::string factor = exponent_ ? power_of_ten(exponent_) : "";
+    if (factor.empty() && axis_.unit.empty()) return axis_.label;
     const std::string space = factor.empty() || axis_.unit.empty() ? "" : " ";
     return fmt::format("{} [{}{}{}]", axis_.label, factor, space, axis_.unit);
   }
@@ -166,6 +167,17 @@ std::string curve_path(const std::vector<double>& x, const std::vector<double>& 
   return path.text();
 }
 
+PointStyle mark_of(const Frame& frame, std::size_t curve) {
+  return curve < frame.marks.size() ? frame.marks[curve] : PointStyle::line;
+}
+
+/// A cross or a circle of 8 pixels.
+std::string mark_at(double x, double y, PointStyle mark) {
+  return mark == PointStyle::cross
+             ? fmt::format("M{:.1f} {:.1f}l8 8m0 -8l-8 8", x - 4, y - 4)
+             : fmt::format("M{:.1f} {:.1f}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0", x - 4, y);
+}
+
 /// Points one by one, those outside of the frame left out.
 std::string marks_path(const std::vector<double>& x, const std::vector<double>& y,
                        const Scale& across, const Scale& up, int height, PointStyle mark) {
@@ -173,10 +185,7 @@ std::string marks_path(const std::vector<double>& x, const std::vector<double>& 
   for (std::size_t i = 0; i < x.size(); ++i) {
     const double a = across.place(x[i]), b = up.place(y[i]);
     if (!(a >= 0 && a <= 1 && b >= 0 && b <= 1)) continue;
-    const double px = kInner * a, py = height * (1 - b);
-    text += mark == PointStyle::cross
-                ? fmt::format("M{:.1f} {:.1f}l8 8m0 -8l-8 8", px - 4, py - 4)
-                : fmt::format("M{:.1f} {:.1f}a4 4 0 1 0 8 0a4 4 0 1 0 -8 0", px - 4, py);
+    text += mark_at(kInner * a, height * (1 - b), mark);
   }
   return text;
 }
@@ -208,7 +217,7 @@ std::string draw(const Plot& plot, const Frame& frame, const Scale& across, doub
   text += fmt::format(R"(<svg x="{}" y="{}" width="{}" height="{}">)", kLeft, top, kInner,
                       frame.height);
   for (std::size_t i = 0; i < frame.curves.size(); ++i) {
-    const PointStyle mark = i < frame.marks.size() ? frame.marks[i] : PointStyle::line;
+    const PointStyle mark = mark_of(frame, i);
     const std::string path =
         mark == PointStyle::line
             ? curve_path(plot.x_data[i], frame.curves[i], across, up, frame.height)
@@ -228,12 +237,16 @@ std::string draw(const Plot& plot, const Frame& frame, const Scale& across, doub
   return text;
 }
 
-std::string legend(const std::vector<std::string>& labels) {
+std::string legend(const Plot& plot) {
   std::string text = R"(<ul class="legend">)";
-  for (std::size_t i = 0; i < labels.size(); ++i)
+  for (std::size_t i = 0; i < plot.labels.size(); ++i) {
+    const PointStyle mark = mark_of(plot.frames.front(), i);
+    const bool line = mark == PointStyle::line;
     text += fmt::format(
-        R"(<li><svg class="sample" width="36" height="10" viewBox="0 0 36 10" aria-hidden="true"><path class="{}" d="M1 5H35"/></svg>{}</li>)",
-        style(i), diagram::html(labels[i]));
+        R"(<li><svg class="sample" width="36" height="10" viewBox="0 0 36 10" aria-hidden="true"><path class="{}" d="{}"/></svg>{}</li>)",
+        line ? style(i) : "curve mark", line ? "M1 5H35" : mark_at(18, 5, mark),
+        diagram::html(plot.labels[i]));
+  }
   return text + "</ul>";
 }
 
@@ -282,7 +295,7 @@ std::string figure(const Plot& plot) {
   return fmt::format(
       R"(<figure class="plot"><h4>{0}</h4>{1}<svg role="img" aria-label="{0}" viewBox="0 0 {2} {3}">{4}</svg>{5}</figure>)"
       "\n",
-      name, legend(plot.labels), d.width, d.height, d.svg,
+      name, legend(plot), d.width, d.height, d.svg,
       plot.caption.empty() ? "" : "<figcaption>" + diagram::html(plot.caption) + "</figcaption>");
 }
 
