@@ -4,7 +4,6 @@
 #include <latch>
 #include <titop/compiler/realization/kept.hpp>
 #include <titop/compiler/realization/terms.hpp>
-#include <titop/compiler/realization/uneven.hpp>
 #include <titop/compiler/realization/write_model.hpp>
 #include <titop/compiler/solve/factored.hpp>
 #include <titop/compiler/solve/piece_matrix.hpp>
@@ -35,7 +34,6 @@ class DenseWriter {
         k_(*d.skeleton),
         m_(m),
         w_(writing_of(d)),
-        half_(w_->reciprocity && w_->reciprocity->holds(d.numbers)),
         states_(d.layout().order()),
         rows_(states_ + static_cast<Index>(d.layout().outputs.size())),
         threads_(threads) {}
@@ -64,23 +62,15 @@ class DenseWriter {
     const std::size_t tasks = kFirst + batches;
     const int count = thread_count(threads(batches), tasks);
     kept.rooms.resize(std::max(kept.rooms.size(), at(count)));
-    std::vector<OwnTerms> own(batches);
-    const auto write = [&](std::size_t batch, bool half, Room& room) {
+    const auto write = [&](std::size_t batch, Room& room) {
       room.clear_for(w_, at(rows_ * width_));
       first.wait();
-      own[batch] = columns(propagation, kept.coefficients.data(), batch, half, room);
+      columns(propagation, kept.coefficients.data(), batch, room);
     };
     std::atomic<std::size_t> next{0};
     parallel(tasks, count, [&] {
-      return [this, &prepare, &write, &room = kept.rooms[next++]](std::size_t i) {
-        i < kFirst ? prepare(i) : write(i - kFirst, half_, room);
-      };
-    });
-    const auto uneven = half_ ? uneven_batches(*w_, own) : std::vector<std::size_t>();
-    next = 0;
-    parallel(uneven.size(), count, [&] {
-      return [&uneven, &write, &room = kept.rooms[next++]](std::size_t i) {
-        write(uneven[i], false, room);
+      return [&prepare, &write, &room = kept.rooms[next++]](std::size_t i) {
+        i < kFirst ? prepare(i) : write(i - kFirst, room);
       };
     });
     if (kept.is_large()) kept = {};
@@ -115,10 +105,9 @@ class DenseWriter {
   // --- columns ---------------------------------------------------------------------------------
 
   /// Solves for the sources of a batch and writes their columns. The values of [xdot; y] are stored
-  /// row by row; rows that are not read contain those of another batch. Returns the accelerations
-  /// of the modes of the sources by forces of their own.
-  OwnTerms columns(const solve::Propagation& propagation, const double* coefficients,
-                   std::size_t batch, bool half, Room& room) {
+  /// row by row.
+  void columns(const solve::Propagation& propagation, const double* coefficients, std::size_t batch,
+               Room& room) {
     const Index m = w_->width(batch);
     propagation.begin(m, room.space);
     Index first = 0;
@@ -126,18 +115,9 @@ class DenseWriter {
       act(w_->sources[i], first, propagation, room.space);
       first += w_->sources[i].columns;
     }
-    propagation.solve(room.space, half ? w_->lowest[batch] : 0, w_->always);
-    for (const Writing::Target& t : w_->targets)
-      if (reads(t, batch, half)) read(t, coefficients, m, room);
-    write_columns(batch, half, room);
-    if (half) write_rows(batch, room.values.data());
-    return own_terms(batch, room.values.data());
-  }
-
-  /// False if the target's values are known from other batches by symmetry.
-  bool reads(const Writing::Target& t, std::size_t batch, bool half) const {
-    return !half || t.source < 0 || !w_->has_counterparts(batch) ||
-           at(t.source) >= w_->batches[batch];
+    propagation.solve(room.space);
+    for (const Writing::Target& t : w_->targets) read(t, coefficients, m, room);
+    write_columns(batch, room);
   }
 
   /// The target's rows of all m columns.
@@ -170,17 +150,16 @@ class DenseWriter {
     }
   }
 
-  /// Rows of xdot that targets of this batch have.
-  std::vector<Writing::IndexRange> rows_of(std::size_t batch, bool half) const {
+  /// Rows of xdot that targets have.
+  std::vector<Writing::IndexRange> rows_of_states() const {
     std::vector<Writing::IndexRange> rows;
     for (const Writing::Target& t : w_->targets)
-      if (t.row < states_ && reads(t, batch, half))
-        Writing::add_range(rows, {t.row - t.still, t.rows + t.still});
+      if (t.row < states_) Writing::add_range(rows, {t.row - t.still, t.rows + t.still});
     return rows;
   }
 
   /// The columns of these sources from the values of their solutions.
-  void write_columns(std::size_t batch, bool half, Room& room) {
+  void write_columns(std::size_t batch, Room& room) {
     room.state.clear(), room.output.clear();
     for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i) {
       const Writing::Source& s = w_->sources[i];
@@ -193,7 +172,7 @@ class DenseWriter {
     }
     const auto count = static_cast<Index>(room.state.size());
     const double* const values = room.values.data();
-    for (const Writing::IndexRange& r : rows_of(batch, half))
+    for (const Writing::IndexRange& r : rows_of_states())
       solve::scale_transposed(r.size, count, values + r.first * width_, width_, room.state.data(),
                               r.first);
     solve::scale_transposed(rows_ - states_, count, values + states_ * width_, width_,
@@ -210,33 +189,6 @@ class DenseWriter {
     if (!s.modal) return {first};
     const Modal& modal = *block(s.node).modal;
     return {first, -modal.stiffness(j), first + s.columns * matrix.rows(), -modal.damping(j)};
-  }
-
-  /// Fills by symmetry the entries that later targets would read of these sources.
-  void write_rows(std::size_t batch, const double* values) {
-    std::vector<solve::ModalRange> bodies;
-    for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i)
-      if (const Writing::Source& s = w_->sources[i]; s.modal)
-        bodies.push_back({s.first, s.columns});
-      else
-        values += s.columns;  // these stand first
-    for (const Writing::Target& t : w_->targets) {
-      if (t.source < 0 || at(t.source) < w_->batches[batch + 1]) continue;
-      const Writing::Source& s = w_->sources[at(t.source)];
-      for (Index j = 0; j < t.rows; ++j)
-        solve::scale_rates(bodies, values + (t.row + j) * width_,
-                           column_of(m_.A, s.first + j, s, j), j + 1 < t.rows ? states_ : 0);
-    }
-  }
-
-  OwnTerms own_terms(std::size_t batch, const double* values) const {
-    OwnTerms result;
-    for (std::size_t i = w_->batches[batch]; i < w_->batches[batch + 1]; ++i) {
-      const Writing::Source& s = w_->sources[i];
-      for (Index j = 0; j < s.columns; ++j, ++values)
-        if (s.modal) result.take(std::abs(1 + values[(s.first + s.columns + j) * width_]));
-    }
-    return result;
   }
 
   /// The block's own A, with all its inputs at 0.
@@ -258,7 +210,6 @@ class DenseWriter {
   const Skeleton& k_;
   StateSpace& m_;
   std::shared_ptr<const Writing> w_;
-  bool half_;  ///< half of a symmetric matrix is enough
   Index states_;
   Index rows_;       ///< of [xdot; y]
   Index width_ = 0;  ///< columns of the widest batch: from row to row of values

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <functional>
 #include <span>
 #include <titop/compiler/realization/writing.hpp>
 #include <titop/compiler/solve/factored.hpp>
@@ -55,13 +54,6 @@ struct WritingBuilder {
     std::stable_sort(
         w.sources.begin(), w.sources.end(),
         [](const Writing::Source& a, const Writing::Source& b) { return a.front < b.front; });
-    const auto is_modal = [](const Writing::Source& s) { return s.modal; };
-    Index columns = 0;
-    for (const Writing::Source& s : w.sources) columns += s.columns;
-    if (columns > Writing::kBatch && std::ranges::any_of(w.sources, is_modal))
-      w.reciprocity = reciprocity_of(d);
-    if (w.reciprocity)
-      std::stable_partition(w.sources.begin(), w.sources.end(), std::not_fn(is_modal));
   }
 
   void find_batches() {
@@ -77,58 +69,14 @@ struct WritingBuilder {
                         {}, [](const Writing::Source& s) { return std::pair(s.modal, s.first); });
   }
 
-  // --- half of a symmetric matrix --------------------------------------------------------------
-
-  /// Per node its modal source, -1 for none.
-  std::vector<int> modal_sources() const {
-    std::vector<int> result(g.nodes.size(), -1);
-    for (std::size_t i = 0; i < w.sources.size(); ++i)
-      if (w.sources[i].modal) result[at(w.sources[i].node)] = static_cast<int>(i);
-    return result;
-  }
-
-  int front_of(Index unknown) const {
-    const auto& fronts = k.joint.plan->fronts;
-    const auto next =
-        std::upper_bound(fronts.begin(), fronts.end(), unknown,
-                         [](Index u, const solve::Front& f) { return u < f.first_unknown; });
-    return static_cast<int>(next - fronts.begin()) - 1;
-  }
-
-  void find_needs() {
-    w.lowest.assign(w.batches.size() - 1, 0);
-    if (!w.reciprocity) return;
-    const solve::Plan& plan = *k.joint.plan;
-    const auto& fronts = plan.fronts;
-    w.always.assign(fronts.size(), false);
-    std::vector<int> needs;
-    for (const Writing::Source& s : w.sources) needs.push_back(s.front);
-    for (const Writing::Target& t : w.targets)
-      for (const Writing::IndexRange& r : t.unknowns)
-        for (Index u = r.first; u < r.first + r.size; ++u)
-          if (t.source >= 0)
-            needs[at(t.source)] = std::min(needs[at(t.source)], front_of(u));
-          else
-            w.always[at(front_of(u))] = true;
-    for (std::size_t f = 0; f < fronts.size(); ++f)
-      if (w.always[f])
-        for (const int v : plan.list(fronts[f].border))
-          w.always[at(front_of(plan.first[at(v)]))] = true;
-    for (std::size_t i = needs.size(); i-- > 1;) needs[i - 1] = std::min(needs[i - 1], needs[i]);
-    for (std::size_t b = 0; b < w.lowest.size(); ++b)
-      if (w.has_counterparts(b)) w.lowest[b] = needs[w.batches[b]];
-  }
-
   // --- targets ---------------------------------------------------------------------------------
 
   void find_targets() {
-    const std::vector<int> source_of = modal_sources();
     for (const int i : layout.state_nodes) {
       const Node& node = g.nodes[at(i)];
       // Coordinates move with their rates, in any case: no input enters their rows.
       Writing::Target t;
       t.still = modes(i);
-      if (w.reciprocity) t.source = source_of[at(i)];
       t.row = layout.state_first[at(i)] + t.still;
       t.rows = g.signals[at(node.state)].size - t.still;
       for (int s = node.first_signal; s < node.state; ++s)
@@ -196,7 +144,6 @@ Writing::Writing(const Factored& data) {
   builder.find_sources();
   builder.find_batches();
   builder.find_targets();
-  builder.find_needs();
   for (const int i : data.layout().state_nodes) modal.emplace_back(i, builder.modes(i) > 0);
 }
 

@@ -2,8 +2,6 @@
 
 #include <Eigen/Core>
 #include <memory>
-#include <optional>
-#include <titop/compiler/realization/reciprocity.hpp>
 #include <utility>
 #include <vector>
 
@@ -16,10 +14,6 @@ struct Factored;
 /// the response to one state or input that acts on some rows of the joint system (a source); every
 /// row of xdot and y reads some unknowns (a target). A body with N modes acts through its N modal
 /// forces, not its 2 N states: half the columns.
-///
-/// If modal forces and accelerations are reciprocal (ReciprocalPairs), the sources of a batch are
-/// solved for the targets of these and later ones only. The values for earlier targets are known by
-/// symmetry from their columns: they are written into the rows of this batch.
 struct Writing {
   static constexpr Eigen::Index kBatch = 48;  ///< columns at a time
 
@@ -60,25 +54,16 @@ struct Writing {
     std::vector<TargetTerm> terms = {};
     std::vector<IndexRange> unknowns = {};
     Eigen::Index coefficients = 0;  ///< where they begin: rows x inner, row-major
-    int source = -1;  ///< of the same modes: their columns have its values in earlier batches;
-                      ///< -1: it reads in every batch
   };
 
-  std::vector<Source> sources;       ///< fronts ascend from batch to batch; with `reciprocity`
-                                     ///< modal ones come last
-  std::vector<Target> targets;       ///< rows ascend
-  std::vector<std::size_t> batches;  ///< first sources, and the end
-  std::optional<ReciprocalPairs> reciprocity;  ///< none if one batch is all
-  std::vector<int> lowest;   ///< per batch: the first front that its sources, and targets of these
-                             ///< and later ones, need; 0 if all are needed
-  std::vector<char> always;  ///< per front: do targets that read all sources need it?
+  std::vector<Source> sources;              ///< fronts ascend from batch to batch
+  std::vector<Target> targets;              ///< rows ascend
+  std::vector<std::size_t> batches;         ///< first sources, and the end
   std::vector<std::pair<int, bool>> modal;  ///< nodes with states: by their modes?
   Eigen::Index coefficients = 0;            ///< of all targets
 
   /// False if blocks have got or lost their modal form.
   bool fits(const Factored& data) const;
-  /// True for batches of modal sources alone, with `reciprocity`.
-  bool has_counterparts(std::size_t batch) const { return sources[batches[batch]].modal; }
   /// Columns of a batch, up to a multiple of 8: no sum depends on their number.
   Eigen::Index width(std::size_t batch) const;
 };

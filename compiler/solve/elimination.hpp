@@ -10,9 +10,8 @@
 #include <vector>
 
 /// Elimination along the junctions: a row-merging LU of a block-sparse square system, front by
-/// front in the order of the plan. Symmetry is not used here: controllers and exchanged channels
-/// have none, and pivots chosen by size keep digits that a fixed symmetric order would lose. (The
-/// dense model exploits it: realization/reciprocity.hpp.)
+/// front in the order of the plan. Symmetry is not used: controllers and exchanged channels have
+/// none, and pivots chosen by size keep digits that a fixed symmetric order would lose.
 /// Instantiated for double, and for complex numbers of double, long double, double-double and 50
 /// digits.
 namespace titop::solve {

@@ -188,30 +188,4 @@ TITOP_WIDE void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, co
   }
 }
 
-TITOP_WIDE void scale_rates(std::span<const ModalRange> bodies, const double* x,
-                            const Destination& to, std::ptrdiff_t next) {
-  constexpr std::ptrdiff_t n = 4, line = 8;
-  for (const ModalRange& p : bodies) {
-    for (std::ptrdiff_t j = next + p.first; next > 0 && j < next + p.first + 2 * p.size; j += line)
-      __builtin_prefetch(to.first + j, 1), __builtin_prefetch(to.second + j, 1);
-    if (p.size < n) {
-      for (std::ptrdiff_t j = 0; j < p.size; ++j) {
-        to.first[p.first + j] = to.second[p.first + j] = 0;
-        to.first[p.first + p.size + j] = to.by * x[j] + 0.0;
-        to.second[p.first + p.size + j] = to.by_second * x[j] + 0.0;
-      }
-    } else {
-      for (std::ptrdiff_t j = 0; j < p.size; j += n) {
-        const std::ptrdiff_t c = std::min(j, p.size - n);
-        Four entries;
-        load(entries, x + c);
-        store(to.first + p.first + c, Four{});
-        store(to.second + p.first + c, Four{});
-        store_both(entries, to, p.first + p.size + c);
-      }
-    }
-    x += p.size;
-  }
-}
-
 }  // namespace titop::solve

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <span>
 
 /// The products that write the dense model. In all of them the sum over `inner` runs in order, for
 /// any number of columns: the same bits for any batches of columns, and on every processor.
@@ -39,15 +38,5 @@ struct Destination {
 /// `to` from `first` on, in the order of x.
 void scale_transposed(std::ptrdiff_t rows, std::ptrdiff_t columns, const double* x,
                       std::ptrdiff_t stride, const Destination* to, std::ptrdiff_t first);
-
-/// First modal coordinate of a body, and their number; their rates follow.
-struct ModalRange {
-  std::ptrdiff_t first = 0, size = 0;
-};
-/// Multiples of the entries of x, one body's after the other's, go to the rates of `to`, which has
-/// both columns; the coordinates there become 0. `next`: so many numbers behind these columns are
-/// those of the next call; they are prefetched.
-void scale_rates(std::span<const ModalRange> bodies, const double* x, const Destination& to,
-                 std::ptrdiff_t next = 0);
 
 }  // namespace titop::solve

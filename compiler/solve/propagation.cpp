@@ -179,11 +179,10 @@ void Propagation::activate(Space& space) const {
   std::sort(space.active.begin(), space.active.end());
 }
 
-void Propagation::solve(Space& space, int lowest, std::span<const char> also) const {
+void Propagation::solve(Space& space) const {
   activate(space);
   for (const int f : space.active) forward(f, space);
-  for (int i = static_cast<int>(plan_.fronts.size()) - 1; i >= 0; --i)
-    if (i >= lowest || also[at(i)]) back(i, space);
+  for (int i = static_cast<int>(plan_.fronts.size()) - 1; i >= 0; --i) back(i, space);
 }
 
 }  // namespace titop::solve

@@ -39,9 +39,8 @@ class Propagation {
   /// Right-hand sides of a row group (its rows x m, row-major), to add to: 0 at first.
   double* rhs(int row_group, Space& space) const;
 
-  /// The unknowns (unknowns x m, row-major) go to space.z. Of fronts below `lowest` (none of which
-  /// has right-hand sides) only those that are `also` needed, with all that their borders need.
-  void solve(Space& space, int lowest = 0, std::span<const char> also = {}) const;
+  /// The unknowns (unknowns x m, row-major) go to space.z.
+  void solve(Space& space) const;
 
  private:
   void activate(Space& space) const;

@@ -92,29 +92,6 @@ TEST_CASE("scale_transposed: every entry in its place, once or twice, and nothin
     }
 }
 
-TEST_CASE("scale_rates: rates, zeros for coordinates, and nothing beside") {
-  Rng rng(11);
-  const auto at = [](std::ptrdiff_t i) { return static_cast<std::size_t>(i); };
-  const std::vector<titop::solve::ModalRange> bodies{{40, 6}, {1, 1},   {4, 4},
-                                                     {60, 3}, {14, 11}, {36, 2}};
-  const std::ptrdiff_t entries = 6 + 1 + 4 + 3 + 11 + 2;
-  auto x = numbers(rng, entries);
-  x[0] = -0.0;
-  std::vector<double> first(70, 7), second = first,  // from 70 on, memory is only prefetched
-      plain_first = first, plain_second = first;
-  std::ptrdiff_t next = 0;
-  for (const auto& p : bodies)
-    for (std::ptrdiff_t j = 0; j < p.size; ++j, ++next) {
-      plain_first[at(p.first + j)] = plain_second[at(p.first + j)] = 0;
-      plain_first[at(p.first + p.size + j)] = 0.3 * x[at(next)];
-      plain_second[at(p.first + p.size + j)] = -0.7 * x[at(next)];
-    }
-  titop::solve::scale_rates(bodies, x.data(), {first.data(), 0.3, second.data(), -0.7}, 35);
-  CHECK(first == plain_first);
-  CHECK(second == plain_second);
-  CHECK_FALSE(std::signbit(first[46]));
-}
-
 TEST_CASE("substitutions: as plain loops, to the last bit, at every width") {
   Rng rng(7);
   for (const std::ptrdiff_t pivots : {1, 6, 13})
