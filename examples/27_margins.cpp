@@ -1,7 +1,8 @@
 // The margins of an attitude loop: the satellite of scenes/satellite.cpp, whose hub is turned by a
 // PD law per axis with an actuator's lag and a delay. The loop is cut where the law's torque enters
 // (d.loop_point), three axes at once. Each axis alone, all three together, and the same from M, D,
-// K and the law on paper; then with twice the gain that the margin allows.
+// K and the law on paper; then with twice the gain that the margin allows. At last the law as a
+// digital controller runs it, with samples of the attitude 100 times a second.
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -33,13 +34,16 @@ Lti first_order(double gain, double pole, double corner) {
   return {.A = -corner * I, .B = I, .C = pole * I, .D = gain * I};
 }
 
+/// The law of all three axes.
+Lti law_block() { return first_order(kd * actuator, (kp - kd * actuator) * actuator, actuator); }
+
 Diagram controlled(const FlexibleBody& beam) {
   Diagram d{"controlled"};
   auto T = d.input("T", 3);  // disturbance on the hub [N m]
   auto gain = d.param("gain", 1.0);
   auto hub = d.add("hub", scenes::hub_spec);
   auto boom1 = d.add("boom1", beam), boom2 = d.add("boom2", beam);
-  auto law = d.add("law", first_order(kd * actuator, (kp - kd * actuator) * actuator, actuator));
+  auto law = d.add("law", law_block());
   auto late = d.add("late", first_order(-1, 4 / delay, 2 / delay));
   mount(boom1, hub.child("C1"), Rotation::about(scenes::turn1, scenes::angle1));
   auto drive = hinge(d, "drive", boom2, hub.child("C2"),
@@ -77,6 +81,28 @@ double loop_error(const ControlLoop& loop, const Margins& m, const by_hand::Stru
   return worst;
 }
 
+/// The law at equal steps: it reads the attitude and turns the hub back.
+DiscreteModel sampled_law(double period) {
+  const Lti law = law_block();
+  return discretize({law.A,
+                     law.B,
+                     -law.C,
+                     -law.D,
+                     {"x1", "x2", "x3"},
+                     {"attitude(1)", "attitude(2)", "attitude(3)"},
+                     {"T(1)", "T(2)", "T(3)"}},
+                    period, Discretization::tustin);
+}
+
+/// The attitude under a torque of 1 N m about z from time 0 on, with the loop of the diagram open.
+Trajectory pushed(const System& satellite) {
+  const DiscreteModel law = sampled_law(0.01);
+  return simulate(
+      satellite.update({{"gain", 0}}),
+      Excitation::sampled(law.model, law.period, Excitation::step(Eigen::Vector3d(0, 0, 1))),
+      {.step = 0.005, .until = 60});
+}
+
 }  // namespace
 
 int main() {
@@ -94,6 +120,11 @@ int main() {
   const Margins twice = margins(loop(system.update({{"gain", 2 * allowed}}), "torque"));
   std::printf("\nat %.2f times the gain: %s", 2 * allowed, to_string(twice).c_str());
   ok &= !twice.stable && twice.nyquist.agree;
+
+  const Trajectory t = pushed(system);
+  std::printf("sampled 100 times a second: at rest after a push of 1 N m at %.6f rad\n",
+              t.y(2, Eigen::last));
+  ok &= by_hand::agrees("1 / kp", std::abs(t.y(2, Eigen::last) * kp - 1), 1e-6);
 
   write_plot(plot_nyquist(torque), "nyquist.svg");
   write_plot(plot_bode(torque.L, "torque(3)", "torque(3)"), "bode.svg");

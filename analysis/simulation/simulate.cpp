@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <titop/analysis/simulation/held_law.hpp>
 #include <titop/analysis/simulation/simulate.hpp>
 #include <titop/analysis/simulation/steppers.hpp>
 #include <titop/compiler/solve/evaluate.hpp>
@@ -274,11 +275,15 @@ Trajectory move(const System& system, const Excitation& excitation, const Simula
   result.outputs = system.outputs();
   result.y.resize(std::ssize(result.outputs), steps + 1);
   result.x.resize(x.size(), s.keep_states ? steps + 1 : 1);
+  detail::HeldLaw law(system, excitation, s.step);
   VectorXd last = inputs_of(system, excitation, 0, s.step).first;
   for (Index k = 0;; ++k) {
     const double now = static_cast<double>(k) * s.step;
     Excitation::Ends u{last, {}};
     if (k < steps) u = inputs_of(system, excitation, now, static_cast<double>(k + 1) * s.step);
+    if (k < steps && law.samples_at(k)) law.sample(system.apply(x, last + law.inputs()).y);
+    last = u.second;
+    law.add_to(u);
     result.time.push_back(now);
     const auto [xdot, y] = system.apply(x, u.first);
     result.y.col(k) = y;
@@ -287,7 +292,6 @@ Trajectory move(const System& system, const Excitation& excitation, const Simula
     motion.look({k, k == steps, x, u.first, y, xdot});
     if (k == steps) break;
     x = motion.step(x, u.first, u.second);
-    last = u.second;
   }
   result.error = motion.error();
   return result;

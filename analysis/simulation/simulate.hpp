@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <memory>
 #include <titop/compiler/system/system.hpp>
 #include <vector>
 
@@ -36,9 +37,30 @@ class Excitation {
   /// equal times make a jump, at which a step must end (else `simulate` throws bad_value). Throws
   /// size, bad_value.
   static Excitation recorded(std::vector<double> times, Eigen::MatrixXd samples);
+  /// A discrete law in the loop, as of a digital controller: at the times k * period
+  ///
+  ///     u(k) = C x(k) + D y(k),   x(k + 1) = A x(k) + B y(k),   x(0) = 0
+  ///
+  /// with y the outputs just before, and u held until the next sample. Its inputs are outputs of
+  /// the system, its outputs inputs of the system, by their names; the sign of the feedback is the
+  /// law's own, a delay of whole periods some states of it. `more` excites the inputs beside it.
+  /// Trajectory::error is that of the system under these inputs: it does not contain their change
+  /// by errors of y. `simulate` throws unknown_name for names that the system does not have,
+  /// bad_value if the period is not a whole number of steps. Throws size for matrices that do not
+  /// fit each other or the names, not_finite, bad_value for a period that is not positive.
+  ///
+  ///     const DiscreteModel law = discretize(pd, 0.1, Discretization::tustin);
+  ///     simulate(system, Excitation::sampled(law.model, law.period), {.step = 0.02, .until = 60});
+  static Excitation sampled(StateSpace law, double period, Excitation more = none());
+
+  /// The law of `sampled`, null of others, and its period [s]. Valid as long as the Excitation.
+  const StateSpace* law() const { return law_.get(); }
+  double period() const { return period_; }
 
  private:
   Over over_;
+  std::shared_ptr<const StateSpace> law_ = {};
+  double period_ = 0;
 };
 
 /// Method of a step. Cost per step of n states, b bodies; error per unit of time of steps h.
