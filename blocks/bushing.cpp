@@ -160,7 +160,7 @@ BlockPtr as_block(const Bushing& spec) {
 }
 
 Bushing::Handle bushing(Diagram& d, std::string name, const DualPort<6>& a, const DualPort<6>& b,
-                        const Rotation& T_ba, const Bushing& spec, std::source_location at) {
+                        const Rotation& T_ba, const Bushing& spec, SourceLine at) {
   const Bushing::Handle result = d.add(name, spec, at);
   // Its ends are massless: the force of each is added to the sum of forces at its point.
   detail::mount(result.child.accel, result.child.reaction, a.accel, a.force, {}, at, -1);

@@ -93,7 +93,7 @@ template <class Handle>
   requires HasParent<Handle, 6>
 Bushing::Handle bushing(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,
                         const Rotation& T_ba, const Bushing& spec,
-                        std::source_location at = std::source_location::current()) {
+                        SourceLine at = std::source_location::current()) {
   const Bushing::Handle result = d.add(name, spec, at);
   detail::mount_through(result, name, body, site, T_ba, at);
   return result;
@@ -106,6 +106,6 @@ Bushing::Handle bushing(Diagram& d, std::string name, const Handle& body, const 
 ///     bushing(d, "snubber", wheel.child("rim"), hub.child("S"), T_ba, {.stiffness = k});
 Bushing::Handle bushing(Diagram& d, std::string name, const DualPort<6>& a, const DualPort<6>& b,
                         const Rotation& T_ba, const Bushing& spec,
-                        std::source_location at = std::source_location::current());
+                        SourceLine at = std::source_location::current());
 
 }  // namespace titop

@@ -27,7 +27,7 @@ ModalData without_modes(const RigidBody& body) {
 /// Returns make(); adds the source line that creates the body to its mistakes. A body of a scene
 /// file has no source line: the reader adds its place.
 template <class Make>
-std::invoke_result_t<Make> told_at(const std::source_location& at, Make make) {
+std::invoke_result_t<Make> told_at(const SourceLine& at, Make make) {
   try {
     return make();
   } catch (const Error& error) {
@@ -79,7 +79,7 @@ MatrixXd modal_input(const ModalData& d) {
   return W;
 }
 
-FlexibleBody::FlexibleBody(ModalData given, std::source_location at) {
+FlexibleBody::FlexibleBody(ModalData given, SourceLine at) {
   const auto data = std::make_shared<const ModalData>(std::move(given));
   told_at(at, [&] {
     detail::check_modal_data(*data);
@@ -129,9 +129,9 @@ MatrixXd FlexibleBody::damping() const {
   return MatrixXd((2 * m.xi.cwiseProduct(m.omega)).asDiagonal());
 }
 
-FlexibleBody::FlexibleBody(const Beam& beam, std::source_location at)
+FlexibleBody::FlexibleBody(const Beam& beam, SourceLine at)
     : FlexibleBody(told_at(at, [&] { return modal_data(beam); }), at) {}
-FlexibleBody::FlexibleBody(const RigidBody& body, std::source_location at)
+FlexibleBody::FlexibleBody(const RigidBody& body, SourceLine at)
     : FlexibleBody(told_at(at, [&] { return without_modes(body); }), at) {}
 
 ModalData FlexibleBody::nominal() const {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <source_location>
 #include <titop/blocks/fe/beam.hpp>
 #include <titop/blocks/fe/modal_data.hpp>
 #include <titop/blocks/rigid_body.hpp>
@@ -58,11 +57,11 @@ struct ModeValues {
 /// parameter, sqrt(E / E0); of another density or length it has other shapes too.
 class FlexibleBody {
  public:
-  FlexibleBody(ModalData data, std::source_location at = std::source_location::current());
+  FlexibleBody(ModalData data, SourceLine at = std::source_location::current());
   /// Through modal_data(beam).
-  FlexibleBody(const Beam& beam, std::source_location at = std::source_location::current());
+  FlexibleBody(const Beam& beam, SourceLine at = std::source_location::current());
   /// No modes; parameters at their nominal values.
-  FlexibleBody(const RigidBody& body, std::source_location at = std::source_location::current());
+  FlexibleBody(const RigidBody& body, SourceLine at = std::source_location::current());
   /// Values of `body` are kept for modes that `values` does not name. Throws bad_modes for one that
   /// is damped by a matrix or has a loss factor.
   FlexibleBody(const FlexibleBody& body, const ModeValues& values);

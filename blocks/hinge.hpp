@@ -47,7 +47,7 @@ template <class Handle>
   requires HasParent<Handle, 6>
 Hinge::Handle hinge(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,
                     const Rotation& T_ba, const Vector3d& axis,
-                    std::source_location at = std::source_location::current()) {
+                    SourceLine at = std::source_location::current()) {
   const Hinge::Handle joint = d.add(name, Hinge{axis}, at);
   detail::mount_through(joint, name, body, site, T_ba, at);
   return joint;

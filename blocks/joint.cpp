@@ -58,8 +58,7 @@ std::vector<Axis> planar(const Vector3d& normal) {
   return {along(across), along(n.cross(across)), about(n, "angle")};
 }
 
-void detail::release_axes(const Joint::Handle& joint, const Joint& spec,
-                          const std::source_location& at) {
+void detail::release_axes(const Joint::Handle& joint, const Joint& spec, const SourceLine& at) {
   for (const AxisNames& n : names_of(spec.axes))
     drive_by_zero(joint.axis(n.channel).force, /*accumulate=*/true, at);
 }

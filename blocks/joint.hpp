@@ -57,7 +57,7 @@ std::vector<Axis> planar(const Vector3d& normal);  ///< "angle" about it, "axis1
 
 namespace detail {
 /// Frees every axis that is not driven.
-void release_axes(const Joint::Handle& joint, const Joint& spec, const std::source_location& at);
+void release_axes(const Joint::Handle& joint, const Joint& spec, const SourceLine& at);
 }  // namespace detail
 
 /// Mounts `body` on the child point `site` through a joint called `name` with the free `axes` (in
@@ -75,7 +75,7 @@ template <class Handle>
   requires HasParent<Handle, 6>
 Joint::Handle joint(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,
                     const Rotation& T_ba, const std::vector<Axis>& axes,
-                    std::source_location at = std::source_location::current()) {
+                    SourceLine at = std::source_location::current()) {
   const Joint spec{axes};
   const Joint::Handle result = d.add(name, spec, at);
   detail::mount_through(result, name, body, site, T_ba, at);

@@ -6,8 +6,7 @@
 
 namespace titop {
 
-void momentum(const DualPort<6>& port, const Value& h, const Vector3d& axis,
-              std::source_location at) {
+void momentum(const DualPort<6>& port, const Value& h, const Vector3d& axis, SourceLine at) {
   const Graph* g = port.accel.graph();
   if (!g)
     throw Error(Code::unknown_name, "momentum: the port is of no diagram",

@@ -27,6 +27,6 @@ namespace titop {
 ///
 ///     momentum(hub.child("B"), 50.0, {0, 1, 0});  // 50 N m s about the hub's y axis
 void momentum(const DualPort<6>& port, const Value& h, const Vector3d& axis,
-              std::source_location at = std::source_location::current());
+              SourceLine at = std::source_location::current());
 
 }  // namespace titop

@@ -132,7 +132,7 @@ Rotor::Handle::Handle(Graph* graph, int node)
       angle(graph, detail::port_signal(*graph, node, "angle")),
       speed(graph, detail::port_signal(*graph, node, "speed")) {}
 
-void Rotor::connect(const Handle& rotor, std::source_location at) const {
+void Rotor::connect(const Handle& rotor, SourceLine at) const {
   if (!momentum.is_parameter() && momentum.nominal() == 0) return;
   Graph& g = *rotor.parent.accel.graph();
   const std::size_t first = g.equations.size();
@@ -149,7 +149,7 @@ BlockPtr as_block(const Rotor& spec) {
 }
 
 void unbalance(Diagram& d, const Rotor::Handle& rotor, std::string name, const Imbalance& imbalance,
-               double speed, std::source_location at) {
+               double speed, SourceLine at) {
   const Graph& g = d.graph();
   if (rotor.speed.graph() != &g)
     throw Error(Code::unknown_name,

@@ -53,7 +53,7 @@ struct Rotor {
     Reading speed;                ///< nu, change of the speed [rad/s]
   };
   /// The gyroscopic term.
-  void connect(const Handle& rotor, std::source_location at) const;
+  void connect(const Handle& rotor, SourceLine at) const;
 };
 BlockPtr as_block(const Rotor& spec);
 
@@ -73,6 +73,6 @@ struct Imbalance {
 ///
 ///     unbalance(d, wheel, "imbalance", {.static_kgm = 7e-6, .dynamic_kgm2 = 2e-7}, 300.0);
 void unbalance(Diagram& d, const Rotor::Handle& rotor, std::string name, const Imbalance& imbalance,
-               double speed, std::source_location at = std::source_location::current());
+               double speed, SourceLine at = std::source_location::current());
 
 }  // namespace titop

@@ -48,7 +48,7 @@ template <class Handle>
   requires HasParent<Handle, 6>
 Slide::Handle slide(Diagram& d, std::string name, const Handle& body, const DualPort<6>& site,
                     const Rotation& T_ba, const Vector3d& axis,
-                    std::source_location at = std::source_location::current()) {
+                    SourceLine at = std::source_location::current()) {
   const Slide::Handle joint = d.add(name, Slide{axis}, at);
   detail::mount_through(joint, name, body, site, T_ba, at);
   return joint;

@@ -5,7 +5,7 @@
 namespace titop {
 
 Joint::Handle slosh(Diagram& d, const std::string& name, const DualPort<6>& site, const Slosh& spec,
-                    std::source_location at) {
+                    SourceLine at) {
   const auto [b, c] = across(unit_direction(about(spec.axis)));
   auto liquid =
       d.add(name, RigidBody{.mass = spec.mass, .inertia = Matrix3d(Matrix3d::Zero())}, at);

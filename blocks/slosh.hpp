@@ -25,6 +25,6 @@ struct Slosh {
 ///                       {.mass = 60, .stiffness = 10, .damping = 0.2});
 ///     d.output("level") = fuel.axis("b").position;
 Joint::Handle slosh(Diagram& d, const std::string& name, const DualPort<6>& site, const Slosh& spec,
-                    std::source_location at = std::source_location::current());
+                    SourceLine at = std::source_location::current());
 
 }  // namespace titop

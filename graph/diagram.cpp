@@ -8,8 +8,7 @@
 namespace titop {
 namespace {
 
-void note(Graph& graph, Code code, std::string message, std::string hint,
-          const std::source_location& at) {
+void note(Graph& graph, Code code, std::string message, std::string hint, const SourceLine& at) {
   graph.mistakes.push_back(
       {code, std::move(message), {"written at " + to_string(at)}, std::move(hint)});
 }
@@ -26,8 +25,7 @@ Diagram Diagram::clone() const {
   return copy;
 }
 
-int Diagram::add_block(std::string name, const std::function<BlockPtr()>& make,
-                       std::source_location at) {
+int Diagram::add_block(std::string name, const std::function<BlockPtr()>& make, SourceLine at) {
   BlockPtr block;
   try {
     block = make();
@@ -47,7 +45,7 @@ int Diagram::add_block(std::string name, const std::function<BlockPtr()>& make,
   return add_node(*graph_, std::move(name), std::move(block), at);
 }
 
-InputRef Diagram::input(std::string name, int size, std::source_location at) {
+InputRef Diagram::input(std::string name, int size, SourceLine at) {
   if (size < 1) {
     note(*graph_, Code::size, fmt::format("input {} has size {}", name, size),
          "give it at least one scalar", at);
@@ -56,7 +54,7 @@ InputRef Diagram::input(std::string name, int size, std::source_location at) {
   return {graph_.get(), add_input(*graph_, std::move(name), size, at)};
 }
 
-OutputRef Diagram::output(std::string name, int size, std::source_location at) {
+OutputRef Diagram::output(std::string name, int size, SourceLine at) {
   if (size < 1) {
     note(*graph_, Code::size, fmt::format("output {} has size {}", name, size),
          "give it at least one scalar", at);
@@ -67,7 +65,7 @@ OutputRef Diagram::output(std::string name, int size, std::source_location at) {
   return {graph_.get(), index};
 }
 
-Param Diagram::param(std::string name, double value, std::source_location at) {
+Param Diagram::param(std::string name, double value, SourceLine at) {
   if (!std::isfinite(value))
     note(*graph_, Code::not_finite, fmt::format("parameter {} is {}", name, value),
          "give it a finite value", at);

@@ -55,7 +55,7 @@ class Diagram {
   /// block, with the node's name.
   template <BlockSpec Spec>
   typename Spec::Handle add(std::string name, const Spec& spec,
-                            std::source_location at = std::source_location::current()) {
+                            SourceLine at = std::source_location::current()) {
     const int node = add_block(
         std::move(name), [&] { return as_block(spec); }, at);
     const typename Spec::Handle handle{graph_.get(), node};
@@ -65,18 +65,15 @@ class Diagram {
 
   /// External input: `size` plain scalars; quantity and frame are those of the signals that it
   /// drives. `compile` reports size (below 1) and duplicate_name, here and below. O(1).
-  InputRef input(std::string name, int size = 1,
-                 std::source_location at = std::source_location::current());
+  InputRef input(std::string name, int size = 1, SourceLine at = std::source_location::current());
 
   /// External output of `size` scalars, to be set once by `=`.
-  OutputRef output(std::string name, int size = 1,
-                   std::source_location at = std::source_location::current());
+  OutputRef output(std::string name, int size = 1, SourceLine at = std::source_location::current());
 
   /// A parameter: a number with a name and this nominal value, for use wherever a block or an
   /// equation takes a number. Its unit is that of the number which it replaces. `compile` reports
   /// not_finite. O(1).
-  Param param(std::string name, double value,
-              std::source_location at = std::source_location::current());
+  Param param(std::string name, double value, SourceLine at = std::source_location::current());
 
   /// A loop point: returns `signal`, as a plain signal, for use in its place. It changes nothing
   /// until `loop(system, "name")` (analysis/control/loop.hpp) cuts the loop there, for S, T, L and
@@ -90,7 +87,7 @@ class Diagram {
   const Graph& graph() const { return *graph_; }
 
  private:
-  int add_block(std::string name, const std::function<BlockPtr()>& make, std::source_location at);
+  int add_block(std::string name, const std::function<BlockPtr()>& make, SourceLine at);
   std::unique_ptr<Graph> graph_;
 };
 

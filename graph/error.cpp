@@ -30,8 +30,8 @@ std::string_view to_string(Code code) {
   return "unknown";
 }
 
-std::string to_string(const std::source_location& where) {
-  if (where.line() == 0) return "a diagram file";  // no source line: read, not written in C++
+std::string to_string(const SourceLine& where) {
+  if (where.line() == 0) return "a diagram file";  // no source line: read from a file
   std::string_view path = where.file_name();
   const auto last = path.rfind('/');
   if (last != std::string_view::npos && last > 0) {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include <exception>
-#include <source_location>
 #include <string>
 #include <string_view>
+#include <titop/graph/source_line.hpp>
 #include <vector>
 
 namespace titop {
@@ -46,7 +46,7 @@ struct Mistake {
 };
 
 /// "examples/fig17.cpp:21"; the last two parts of the path only.
-std::string to_string(const std::source_location& where);
+std::string to_string(const SourceLine& where);
 
 /// Thrown for the user's mistakes: all that were found in one stage, together.
 /// what() is the whole printed text, one paragraph per mistake:

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <concepts>
-#include <source_location>
 #include <titop/graph/graph.hpp>
 #include <vector>
 
@@ -116,10 +115,10 @@ Expr operator/(const L& l, const P&) {
 
 /// The literal 0, and nothing else: `= 0` compiles; `= 0.0`, `= false` and `= 3` do not.
 struct Zero {
-  std::source_location where;
+  SourceLine where;
 
   template <std::same_as<int> Int>
-  consteval Zero(Int value, std::source_location at = std::source_location::current()) : where(at) {
+  consteval Zero(Int value, SourceLine at = std::source_location::current()) : where(at) {
     if (value != 0) throw "only 0 may be written here; other constants need an input";
   }
 };
@@ -128,7 +127,7 @@ struct Zero {
 class Rhs {
  public:
   template <Readable T>
-  Rhs(const T& expression, std::source_location at = std::source_location::current())
+  Rhs(const T& expression, SourceLine at = std::source_location::current())
       : expression_(expression.expr()), where_(at) {}
   Rhs(Zero zero) : where_(zero.where) {}
   template <detail::Constant C>
@@ -140,11 +139,11 @@ class Rhs {
   }
 
   const Expr& expr() const { return expression_; }
-  const std::source_location& where() const { return where_; }
+  const SourceLine& where() const { return where_; }
 
  private:
   Expr expression_;
-  std::source_location where_;
+  SourceLine where_;
 };
 
 }  // namespace titop

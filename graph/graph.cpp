@@ -202,7 +202,7 @@ std::string print(const Graph& graph, const Equation& equation) {
   return text;
 }
 
-int add_node(Graph& graph, std::string name, BlockPtr block, std::source_location where) {
+int add_node(Graph& graph, std::string name, BlockPtr block, SourceLine where) {
   const int node = static_cast<int>(graph.nodes.size());
   const Interface& face = block->interface();
   const bool framed = block->has_frame();
@@ -255,7 +255,7 @@ int add_node(Graph& graph, std::string name, BlockPtr block, std::source_locatio
   return node;
 }
 
-int add_input(Graph& graph, std::string name, int size, std::source_location where) {
+int add_input(Graph& graph, std::string name, int size, SourceLine where) {
   const int index = static_cast<int>(graph.inputs.size());
   const int signal = static_cast<int>(graph.signals.size());
   graph.signals.push_back(Signal{.role = Signal::Role::external, .spec = index, .size = size});

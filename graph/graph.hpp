@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
-#include <source_location>
 #include <string>
 #include <titop/graph/block.hpp>
 #include <titop/graph/error.hpp>
@@ -81,7 +80,7 @@ struct Node {
   int state = -1;        ///< its state signal, -1 if it has no states
   int declared = 0;      ///< position in the user's order
   bool lowered = false;  ///< `lower` has turned its rows into equations
-  std::source_location where = {};
+  SourceLine where = {};
 };
 
 /// Part of a term's coefficient. Factors act from the last to the first.
@@ -109,7 +108,7 @@ struct Equation {
   bool of_spec = false;   ///< written by `add`: it drives no point by itself
   Part part = {};
   std::vector<Term> terms = {};
-  std::source_location where = {};
+  SourceLine where = {};
 };
 
 /// An external input and its signal.
@@ -117,7 +116,7 @@ struct Input {
   std::string name = {};
   int signal = -1, size = 1;
   int declared = 0;  ///< position in the user's order
-  std::source_location where = {};
+  SourceLine where = {};
   int parameter = -1;  ///< w of this opened parameter (compiler/passes/open); its z: the output of
                        ///< the same name
 };
@@ -128,7 +127,7 @@ struct Output {
   int size = 1;
   bool set = false;  ///< it has its equation
   std::vector<Term> terms = {};
-  std::source_location where = {};
+  SourceLine where = {};
   int declared = 0;  ///< position in the user's order
 };
 
@@ -136,7 +135,7 @@ struct Output {
 struct Parameter {
   std::string name = {};
   double value = 0;  ///< nominal
-  std::source_location where = {};
+  SourceLine where = {};
 };
 
 /// A diagram as data; places in these lists are the indices above.
@@ -174,9 +173,9 @@ std::string print(const Graph& graph, const Term& term);
 /// The equation as the user might write it.
 std::string print(const Graph& graph, const Equation& equation);
 /// Adds a node with all its signals and channels; returns its index. O(ports).
-int add_node(Graph& graph, std::string name, BlockPtr block, std::source_location where);
+int add_node(Graph& graph, std::string name, BlockPtr block, SourceLine where);
 /// Adds an external input with its signal; returns the signal.
-int add_input(Graph& graph, std::string name, int size, std::source_location where = {});
+int add_input(Graph& graph, std::string name, int size, SourceLine where = {});
 /// The node's input signal whose first row in the block's u is `column`. O(log channels).
 int input_signal(const Graph& graph, int node, int column);
 /// One past the last signal of this node.

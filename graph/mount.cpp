@@ -33,7 +33,7 @@ bool is_parent(const SignalRef& s) {
 }  // namespace
 
 void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, SignalRef site_force,
-           const Rotation& T_ba, const std::source_location& at, double sign) {
+           const Rotation& T_ba, const SourceLine& at, double sign) {
   const std::string a = frame_of(child_accel), b = frame_of(site_accel);
   const bool scalar = a.empty() || b.empty();  // no axes to rotate, or one axis of a frame
   const Rotation T = T_ba.nameless() ? T_ba.named(b, a) : T_ba;
@@ -46,7 +46,7 @@ void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, S
 }
 
 Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::string& joint,
-                  const std::source_location& at) {
+                  const SourceLine& at) {
   if (T_ba.nameless()) return T_ba;
   const std::string body = frame_of(body_accel);
   const auto is_it = [&](const Node& node) { return node.name == T_ba.from(); };
@@ -67,7 +67,7 @@ Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::
   return T_ba.named({}, {});  // already reported
 }
 
-void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location& at) {
+void drive_by_zero(SignalRef signal, bool accumulate, const SourceLine& at) {
   SettableSignal(signal).set(Rhs(Expr{}, at), accumulate, 1);
 }
 

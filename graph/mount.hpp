@@ -16,8 +16,8 @@ namespace detail {
 /// child.accel = T_ba^-1 site.accel, site.force += sign * T_ba child_force. The frames of T_ba are
 /// named after the two nodes if it has no names of its own.
 void mount(SignalRef child_accel, SignalRef child_force, SignalRef site_accel, SignalRef site_force,
-           const Rotation& T_ba, const std::source_location& at, double sign = 1);
-void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location& at);
+           const Rotation& T_ba, const SourceLine& at, double sign = 1);
+void drive_by_zero(SignalRef signal, bool accumulate, const SourceLine& at);
 }  // namespace detail
 
 /// Fixes `body` (frame a, at its parent point P) to the child point `site` of another body (frame
@@ -30,7 +30,7 @@ void drive_by_zero(SignalRef signal, bool accumulate, const std::source_location
 template <class Handle>
   requires HasParent<Handle, 6>
 void mount(const Handle& body, const DualPort<6>& site, const Rotation& T_ba = {},
-           std::source_location at = std::source_location::current()) {
+           SourceLine at = std::source_location::current()) {
   detail::mount(body.parent.accel, body.parent.reaction, site.accel, site.force, T_ba, at);
 }
 
@@ -41,7 +41,7 @@ void mount(const Handle& body, const DualPort<6>& site, const Rotation& T_ba = {
 template <class Handle>
   requires HasParent<Handle, 1>
 void mount(const Handle& body, const DualPort<1>& site,
-           std::source_location at = std::source_location::current()) {
+           SourceLine at = std::source_location::current()) {
   detail::mount(body.parent.accel, body.parent.reaction, site.accel, site.force, {}, at);
 }
 
@@ -50,12 +50,12 @@ namespace detail {
 /// which the body is mounted, in the body's frame. Notes a mistake if it is named after another
 /// block.
 Rotation to_joint(const Rotation& T_ba, const SignalRef& body_accel, const std::string& joint,
-                  const std::source_location& at);
+                  const SourceLine& at);
 
 /// Mounts `body` on `site` through the joint of this name, in whose frame the body is.
 template <class Joint, class Handle>
 void mount_through(const Joint& joint, const std::string& name, const Handle& body,
-                   const DualPort<6>& site, const Rotation& T_ba, const std::source_location& at) {
+                   const DualPort<6>& site, const Rotation& T_ba, const SourceLine& at) {
   mount(joint, site, to_joint(T_ba, body.parent.accel, name, at), at);
   mount(body, joint.child, {}, at);
 }
@@ -66,13 +66,13 @@ void mount_through(const Joint& joint, const std::string& name, const Handle& bo
 /// of mount.
 ///     point.accel = T_ba^-1 * site.accel;   site.force += -(T_ba * point.reaction);
 inline void weld(const DualPort<6>& point, const DualPort<6>& site, const Rotation& T_ba = {},
-                 std::source_location at = std::source_location::current()) {
+                 SourceLine at = std::source_location::current()) {
   detail::mount(point.accel, point.reaction, site.accel, site.force, T_ba, at, -1);
 }
 
 /// The same on a single axis.
 inline void weld(const DualPort<1>& point, const DualPort<1>& site,
-                 std::source_location at = std::source_location::current()) {
+                 SourceLine at = std::source_location::current()) {
   detail::mount(point.accel, point.reaction, site.accel, site.force, {}, at, -1);
 }
 
@@ -80,12 +80,12 @@ inline void weld(const DualPort<1>& point, const DualPort<1>& site,
 /// driven or released: `ground(beam.parent.along({0, 0, 1}))`. `compile` reports two_equations.
 /// O(1).
 template <int N>
-void ground(const DualPort<N>& point, std::source_location at = std::source_location::current()) {
+void ground(const DualPort<N>& point, SourceLine at = std::source_location::current()) {
   detail::drive_by_zero(point.accel, /*accumulate=*/false, at);
 }
 template <class Handle>
   requires(HasParent<Handle, 6> || HasParent<Handle, 1>)
-void ground(const Handle& body, std::source_location at = std::source_location::current()) {
+void ground(const Handle& body, SourceLine at = std::source_location::current()) {
   ground(body.parent, at);
 }
 
@@ -93,12 +93,12 @@ void ground(const Handle& body, std::source_location at = std::source_location::
 /// added by `+=`, else 0. After `b.parent.accel.linear = 0; release(b);` the body is pinned at P.
 /// `compile` reports two_equations. O(1).
 template <int N>
-void release(const DualPort<N>& point, std::source_location at = std::source_location::current()) {
+void release(const DualPort<N>& point, SourceLine at = std::source_location::current()) {
   detail::drive_by_zero(point.force, /*accumulate=*/true, at);
 }
 template <class Handle>
   requires(HasParent<Handle, 6> || HasParent<Handle, 1>)
-void release(const Handle& body, std::source_location at = std::source_location::current()) {
+void release(const Handle& body, SourceLine at = std::source_location::current()) {
   release(body.parent, at);
 }
 

@@ -150,8 +150,7 @@ bool belongs_to(const Value& v, const Graph& graph) {
   return v.owner() == &graph && v.index() < static_cast<int>(graph.parameters.size());
 }
 
-void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms,
-                             const std::source_location& at) {
+void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms, const SourceLine& at) {
   const auto look_at = [&](const Value& v) {
     if (!v.is_parameter() || belongs_to(v, graph)) return;
     graph.mistakes.push_back(
@@ -179,12 +178,12 @@ int only_child(const Graph& graph, int node) {
   return found;
 }
 
-void note_missing(Graph& graph, const std::vector<Term>& terms, const std::source_location& at) {
+void note_missing(Graph& graph, const std::vector<Term>& terms, const SourceLine& at) {
   for (const Term& term : terms)
     if (term.signal <= -2) note_unknown_channel(graph, -2 - term.signal, "child", at);
 }
 
-void note_unknown_channel(Graph& graph, int node, std::string_view name, std::source_location at) {
+void note_unknown_channel(Graph& graph, int node, std::string_view name, SourceLine at) {
   std::string names;
   for (const ChannelSpec& c : face_of(graph, node).channels)
     if (c.takes == Takes::force) names += (names.empty() ? "" : ", ") + c.name;

@@ -217,7 +217,7 @@ class Children : public DualPort<N> {
   Children(Graph* graph, int node);
   /// The child channel of this name; an unknown name is reported with the valid ones.
   DualPort<N> operator()(std::string_view name,
-                         std::source_location at = std::source_location::current()) const;
+                         SourceLine at = std::source_location::current()) const;
 
  private:
   Graph* graph_ = nullptr;
@@ -241,12 +241,11 @@ int find_child(const Graph& graph, int node, std::string_view name);
 /// True for a parameter (not a number) that this graph has.
 bool belongs_to(const Value& parameter, const Graph& graph);
 /// Notes the mistake "parameter of another diagram" for every such parameter in these terms.
-void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms,
-                             const std::source_location& at);
+void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms, const SourceLine& at);
 /// Notes the mistake "not exactly one child" for every such port in these terms.
-void note_missing(Graph& graph, const std::vector<Term>& terms, const std::source_location& at);
+void note_missing(Graph& graph, const std::vector<Term>& terms, const SourceLine& at);
 /// Notes the mistake "no channel of this name", with the names that exist; once per line.
-void note_unknown_channel(Graph& graph, int node, std::string_view name, std::source_location at);
+void note_unknown_channel(Graph& graph, int node, std::string_view name, SourceLine at);
 /// Index of the only channel of size N that is not "parent", -1 if there are several or none.
 int only_child(const Graph& graph, int node);
 }  // namespace detail
@@ -260,7 +259,7 @@ Children<N>::Children(Graph* graph, int node)
       node_(node) {}
 
 template <int N>
-DualPort<N> Children<N>::operator()(std::string_view name, std::source_location at) const {
+DualPort<N> Children<N>::operator()(std::string_view name, SourceLine at) const {
   const int spec = detail::find_child(*graph_, node_, name);
   if (spec >= 0) return detail::channel<N>(graph_, node_, spec);
   detail::note_unknown_channel(*graph_, node_, name, at);

@@ -38,7 +38,7 @@ MatrixXd damping_of_free_modes(const ModalData& d, const ModalDamping& xi) {
 
 FlexibleBody damping_of_assembly(const Diagram& part, const std::string& root,
                                  const std::vector<AssemblyPort>& ports, const ModalDamping& xi,
-                                 RootBoundary boundary, std::source_location at) {
+                                 RootBoundary boundary, SourceLine at) {
   ModalData data = detail::assembled_part(part, root, ports);
   if (boundary == RootBoundary::clamped || data.omega.size() == 0) {
     data.xi = data.omega.unaryExpr([&](double omega) { return xi.at(omega); });

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <initializer_list>
-#include <source_location>
 #include <string>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/graph/diagram.hpp>
@@ -84,6 +83,6 @@ struct AssemblyPort {
 FlexibleBody damping_of_assembly(const Diagram& part, const std::string& root,
                                  const std::vector<AssemblyPort>& ports, const ModalDamping& xi,
                                  RootBoundary boundary = RootBoundary::clamped,
-                                 std::source_location at = std::source_location::current());
+                                 SourceLine at = std::source_location::current());
 
 }  // namespace titop

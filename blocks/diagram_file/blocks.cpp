@@ -419,7 +419,7 @@ FlexibleBody read_body(const JsonPlace& p) {
     data.children.push_back(
         {c.at("name").text(), c.at("PC").vector(3), c.at("Phi_C").matrix(6, n)});
   }
-  return {data, std::source_location{}};
+  return {data, SourceLine{}};
 }
 
 }  // namespace titop::diagram_file

@@ -17,7 +17,7 @@ using diagram_file::JsonPlace;
 namespace {
 
 /// No source line: later messages give the place in the file instead.
-constexpr std::source_location kRead = {};
+constexpr SourceLine kRead = {};
 
 /// A block that is made already.
 struct Ready {

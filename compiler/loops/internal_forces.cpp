@@ -127,7 +127,7 @@ struct ForceJudge {
   std::vector<Mistake> mistakes = {};
   std::vector<Note> notes = {};
 
-  void found(const std::string& reader, int signal, const std::source_location& where,
+  void found(const std::string& reader, int signal, const SourceLine& where,
              const std::vector<std::string>& causes = {}) {
     const Graph& g = k.stage.graph;
     std::string joints;

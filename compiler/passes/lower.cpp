@@ -19,13 +19,13 @@ struct Lowered {
   std::vector<Equation> equations = {};
   std::vector<Origin> origins = {};
 
-  std::vector<Term> terms(Origin origin, const std::source_location& where) {
+  std::vector<Term> terms(Origin origin, const SourceLine& where) {
     std::vector<Term> result = l.collect(where, [&] { return l.written_out(origin); });
     origins.push_back(std::move(origin));
     return result;
   }
 
-  void equation(Origin origin, int target, Part part, const std::source_location& where) {
+  void equation(Origin origin, int target, Part part, const SourceLine& where) {
     std::vector<Term> list = terms(std::move(origin), where);
     equations.push_back(
         {.target = target, .part = std::move(part), .terms = std::move(list), .where = where});

@@ -13,7 +13,7 @@ namespace titop::passes {
 /// Place where an item of the diagram was written: its source line, or its place in the diagram
 /// file, whose lists have the same order.
 struct Written {
-  const std::source_location& where;
+  const SourceLine& where;
   const char* list;  ///< "equations"
   std::ptrdiff_t index;
 

@@ -71,7 +71,7 @@ struct Lowering {
   /// The expanded right-hand side of one equation or output; its mistakes are kept, with its source
   /// line.
   template <class F>
-  auto collect(const std::source_location& where, F find) -> decltype(find());
+  auto collect(const SourceLine& where, F find) -> decltype(find());
   Amount terms(const std::vector<Term>& list);
   /// All that drives the channel's force.
   Amount force(int channel);
@@ -99,7 +99,7 @@ struct Lowering {
 };
 
 template <class F>
-auto Lowering::collect(const std::source_location& where, F find) -> decltype(find()) {
+auto Lowering::collect(const SourceLine& where, F find) -> decltype(find()) {
   try {
     return find();
   } catch (const Error& error) {

@@ -16,7 +16,7 @@ std::string name_of_motion(const std::string& w, bool position) {
 /// The pairs that terms of rates and positions need and that are not there.
 std::set<std::pair<int, Level>> unopened(const Stage& stage, const Graph& g) {
   Lowering l(g, stage.values, std::make_shared<const Drives>(g), stage.motions);
-  const auto look = [&](const std::vector<Term>& terms, const std::source_location& where) {
+  const auto look = [&](const std::vector<Term>& terms, const SourceLine& where) {
     for (const Term& t : terms)
       if (t.of == Term::Of::position || t.of == Term::Of::rate)
         l.collect(where, [&] { return l.terms({t}); });  // mistakes: found again by `lower`

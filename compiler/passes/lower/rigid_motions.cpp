@@ -110,7 +110,7 @@ void add_rigid_motions(Stage& stage, Graph& g) {
   std::set<RigidMotion> missing;
   {
     Lowering l(g, stage.values, std::make_shared<const Drives>(g), stage.motions);
-    const auto look = [&](const std::vector<Term>& terms, const std::source_location& where) {
+    const auto look = [&](const std::vector<Term>& terms, const SourceLine& where) {
       for (const Term& t : terms)
         if (t.of == Term::Of::position || t.of == Term::Of::rate)
           l.collect(where, [&] { return l.terms({t}); });
