@@ -31,6 +31,7 @@
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/fe/modal_csv.hpp>
 #include <titop/blocks/fe/op4.hpp>
+#include <titop/blocks/fe/plate.hpp>
 #include <titop/blocks/fe/scaled.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/hinge.hpp>

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <numbers>
 #include <titop/blocks/fe/beam.hpp>
+#include <titop/blocks/fe/hermite.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/graph/error.hpp>
 #include <utility>
@@ -21,8 +22,6 @@ void require_positive(double value, const char* subject) {
     throw Error(Code::bad_value, fmt::format("{} is {}, not a positive number", subject, value),
                 "give it in metres");
 }
-
-double shear_modulus(const Material& m) { return m.G ? *m.G : m.E / (2 * (1 + *m.nu)); }
 
 double polar_moment(const Section& s) { return s.I_x ? *s.I_x : s.I_y + s.I_z; }
 
@@ -44,15 +43,10 @@ void add_bar(fe::Mesh& mesh, Index first, int component, double stiffness, doubl
 void add_bending(fe::Mesh& mesh, Index first, int deflection, int rotation, double sign, double EI,
                  double mass, double h) {
   const double k = EI / (h * h * h), m = mass / 420, a = sign * h;
-  Eigen::Matrix4d K, M;
-  K << 12, 6 * a, -12, 6 * a, 6 * a, 4 * h * h, -6 * a, 2 * h * h, -12, -6 * a, 12, -6 * a, 6 * a,
-      2 * h * h, -6 * a, 4 * h * h;
-  M << 156, 22 * a, 54, -13 * a, 22 * a, 4 * h * h, 13 * a, -3 * h * h, 54, 13 * a, 156, -22 * a,
-      -13 * a, -3 * h * h, -22 * a, 4 * h * h;
   const std::vector<Index> rows = {first + deflection, first + rotation, first + 6 + deflection,
                                    first + 6 + rotation};
-  mesh.K(rows, rows) += k * K;
-  mesh.M(rows, rows) += m * M;
+  mesh.K(rows, rows) += k * fe::hermite_bending(a);
+  mesh.M(rows, rows) += m * fe::hermite_mass(a);
 }
 
 }  // namespace
@@ -104,23 +98,8 @@ void check(const Beam& beam) {
   positive(beam.section.I_z, "section.I_z");
   positive(beam.section.J, "section.J");
   positive(polar_moment(beam.section), "section.I_x");
-  positive(beam.material.E, "material.E");
-  positive(beam.material.rho, "material.rho");
   positive(beam.elements, "elements");
-  if (beam.material.nu.has_value() == beam.material.G.has_value())
-    mistakes.push_back({Code::bad_value,
-                        fmt::format("material of the beam has {} of nu and G",
-                                    beam.material.nu ? "both" : "neither"),
-                        {},
-                        "give one of them: either follows from the other and E"});
-  else if (const auto nu = beam.material.nu; nu && !(*nu > -1 && *nu <= 0.5))
-    mistakes.push_back(
-        {Code::bad_value,
-         fmt::format("material.nu of the beam is {}, not above -1 and up to 0.5", *nu),
-         {},
-         "Poisson's ratio is a fraction, 0.33 of aluminium"});
-  else
-    positive(shear_modulus(beam.material), "shear modulus");
+  add_mistakes(beam.material, "beam", mistakes);
   if (!mistakes.empty()) throw Error(std::move(mistakes));
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <titop/blocks/fe/material.hpp>
 #include <titop/blocks/fe/mesh.hpp>
 #include <titop/blocks/fe/modal_data.hpp>
 #include <vector>
@@ -27,14 +28,6 @@ Section circle(double diameter);
 
 /// Circular tube. [m] Throws `bad_value` unless outer > inner >= 0.
 Section tube(double outer_diameter, double inner_diameter);
-
-/// Isotropic, linear elastic.
-struct Material {
-  double E = 0;                   ///< Young's modulus [Pa]
-  std::optional<double> nu = {};  ///< Poisson's ratio, -1 < nu <= 0.5; G = E / (2 (1 + nu))
-  std::optional<double> G = {};   ///< shear modulus [Pa]; give either nu or G
-  double rho = 0;                 ///< density [kg/m^3]
-};
 
 /// Uniform three-dimensional Euler-Bernoulli beam from P at the origin to C at (length, 0, 0):
 /// axial, torsion and two bendings, no shear deformation and no rotary inertia of bending.

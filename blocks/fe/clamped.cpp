@@ -19,14 +19,21 @@ constexpr double kSameMass = 1e-3;  ///< of three printed digits
 /// The directions in which the mesh is rigid, if that is wanted.
 std::array<bool, 6> rigid_directions(const Mesh& mesh, const Vector3d& P,
                                      const ModeOptions& options) {
-  if (!options.rigid) return {};
+  if (!options.rigid && !mesh.rigid) return {};
   const std::array<bool, 6> still = still_directions(mesh, P);
-  if (std::ranges::find(still, true) == still.end())
+  if (options.rigid && std::ranges::find(still, true) == still.end())
     throw Error(Code::bad_value,
                 fmt::format("mesh {} moves in all six directions, and ModeOptions::rigid is given",
                             mesh.name),
                 "leave it out: the mass comes from M");
   return still;
+}
+
+/// The rigid mass that is given, about P.
+std::optional<Matrix6> given_mass(const Mesh& mesh, const Vector3d& P, const ModeOptions& options) {
+  if (options.rigid || !mesh.rigid) return options.rigid;
+  const Matrix6 at_origin = tau(P);
+  return Matrix6(at_origin.transpose() * *mesh.rigid * at_origin);
 }
 
 /// Throws unless the rigid mass that is given is that of M in the directions in which M moves.
@@ -40,9 +47,8 @@ void require_same_mass(const Mesh& mesh, const Clamped& c, const Matrix6& given)
       const auto name = [](Index k) { return component_name(static_cast<int>(k)); };
       throw Error(
           Code::bad_value,
-          fmt::format("ModeOptions::rigid has the mass {:.6g} for {}, {} about the parent, where "
-                      "mesh {} has "
-                      "{:.6g}",
+          fmt::format("the rigid mass that is given (ModeOptions::rigid, Mesh::rigid) has {:.6g} "
+                      "for {}, {} about the parent, where mesh {} has {:.6g}",
                       given(i, j), name(i), name(j), mesh.name, c.D_P(i, j)),
           "give mass, centre of mass and inertia of the whole body, in the units of the mesh, as "
           "its M has them");
@@ -69,11 +75,12 @@ Clamped clamp(const Mesh& mesh, const std::string& parent, const ModeOptions& op
   const MatrixXd MR = mesh.M * R;
   const Matrix6 D_P = R.transpose() * MR;
   c.D_P = (D_P + D_P.transpose()) / 2;
-  if (options.rigid) require_same_mass(mesh, c, *options.rigid);
+  const std::optional<Matrix6> given = given_mass(mesh, P, options);
+  if (given) require_same_mass(mesh, c, *given);
   for (int i = 0; i < 6; ++i)
     for (int j = 0; j < 6; ++j)
       if (c.rigid.at(static_cast<std::size_t>(i)) || c.rigid.at(static_cast<std::size_t>(j)))
-        c.D_P(i, j) = (*options.rigid)(i, j);
+        c.D_P(i, j) = (*given)(i, j);
   c.M_rf = MR(c.f, Eigen::all).transpose();
   c.M = mesh.M(c.f, c.f);
   c.K = mesh.K(c.f, c.f);

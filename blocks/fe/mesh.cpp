@@ -77,14 +77,13 @@ bool check_indices(const Mesh& mesh, std::vector<Mistake>& mistakes) {
   const std::size_t before = mistakes.size();
   for (std::size_t i = 0; i < mesh.dofs.size(); ++i) {
     const Dof& dof = mesh.dofs[i];
-    if (dof.point < mesh.points.size() && dof.component >= 0 && dof.component <= kGeneralised)
-      continue;
+    if (dof.point < mesh.points.size() && dof.component >= 0 && dof.component <= kTwist) continue;
     mistakes.push_back({Code::bad_value,
                         fmt::format("row {} of mesh {} is component {} of point {}, there are {} "
                                     "points of 6 components",
                                     i, mesh.name, dof.component, dof.point, mesh.points.size()),
                         {},
-                        "points count from 0, components are 0 to 5, or kGeneralised"});
+                        "points count from 0, components are 0 to 5, kGeneralised or kTwist"});
   }
   for (const MeshInterface& interface : mesh.interfaces)
     if (interface.point >= mesh.points.size())
@@ -155,6 +154,7 @@ std::string dof_name(const Mesh& mesh, Index row) {
   for (const MeshInterface& interface : mesh.interfaces)
     if (interface.point == dof.point) name = interface.name;
   if (dof.component == kGeneralised) return name;
+  if (dof.component == kTwist) return name + ".wxy";
   return fmt::format("{}.{}", name, component_name(dof.component));
 }
 

@@ -19,13 +19,16 @@ struct MeshPoint {
 };
 
 constexpr int kGeneralised = 6;
+constexpr int kTwist = 7;
 
 /// One row of M and K: a displacement of a point along a body axis (component 0, 1, 2: x, y, z)
 /// or its rotation about one (3, 4, 5: rx, ry, rz). Or a generalised coordinate, such as that of a
-/// fixed-interface mode, independent of rigid motion (kGeneralised; a separate point names it).
+/// fixed-interface mode, independent of rigid motion (kGeneralised; a separate point names it). Or
+/// the second derivative of a plate's deflection by x and y [1/m], which no rigid motion changes
+/// (kTwist, of a point with z, rx, ry).
 struct Dof {
   std::size_t point = 0;  ///< index into Mesh::points
-  int component = 0;      ///< 0..5, or kGeneralised
+  int component = 0;      ///< 0..5, kGeneralised or kTwist
 };
 
 /// A point under a second name, where other bodies may be attached. It must have all six dofs, but
@@ -35,17 +38,27 @@ struct MeshInterface {
   std::size_t point = 0;  ///< index into Mesh::points
 };
 
+/// Points along an edge, in order.
+struct MeshEdge {
+  std::string name;
+  std::vector<std::size_t> points;  ///< indices into Mesh::points
+};
+
 /// A free-free structure: no degree of freedom is fixed. SI units, body axes.
 struct Mesh {
   std::string name;               ///< for messages
   std::vector<MeshPoint> points;  ///< names differ
   std::vector<Dof> dofs;          ///< n, one per row of M and K
   std::vector<MeshInterface>
-      interfaces;             ///< names differ from each other and from the points' names
-  Eigen::MatrixXd M;          ///< n x n, symmetric, semidefinite [kg, kg m, kg m^2]
-  Eigen::MatrixXd K;          ///< n x n, symmetric, semidefinite [N/m, N, N m]
-  double digits = 15;         ///< decimal digits that M and K carry
-  double position_noise = 0;  ///< relative error of the positions (`grids_by_statics`)
+      interfaces;                    ///< names differ from each other and from the points' names
+  Eigen::MatrixXd M;                 ///< n x n, symmetric, semidefinite [kg, kg m, kg m^2]
+  Eigen::MatrixXd K;                 ///< n x n, symmetric, semidefinite [N/m, N, N m]
+  double digits = 15;                ///< decimal digits that M and K carry
+  double position_noise = 0;         ///< relative error of the positions (`grids_by_statics`)
+  std::vector<MeshEdge> edges = {};  ///< named edges, of a plate "x0", "x1", "y0", "y1"
+  /// Of meshes that move in some directions only: mass matrix of the whole body about the origin of
+  /// its frame, which is rigid in the others. `ModeOptions::rigid` replaces it.
+  std::optional<Matrix6> rigid = {};
 };
 
 /// Throws, all together: inconsistent sizes of M and K (`size`), entries that are not finite
@@ -63,7 +76,7 @@ double asymmetry(const Mesh& mesh);
 /// `ModalData` of a mesh begin with it. Cost n^2.
 Mesh symmetrised(Mesh mesh);
 
-/// "17.x", "C.ry" (an interface's name before its point's). Row counts from 0.
+/// "17.x", "C.ry", "3,4.wxy" (an interface's name before its point's). Row counts from 0.
 std::string dof_name(const Mesh& mesh, Eigen::Index row);
 
 /// Index into Mesh::points of the interface or point of this name; throws `unknown_name` with the
@@ -109,7 +122,7 @@ struct ModeOptions {
   /// about P of the whole body, `rigid_mass(m, inertia, from the centre of mass to P)`. D_P has
   /// its rows and columns in the still directions, in which the body is rigid; interfaces need no
   /// degrees of freedom there. In the other directions it must agree with R'MR to 1e-3 of its
-  /// diagonal. Without it such models are refused.
+  /// diagonal. Without it, and without Mesh::rigid, such models are refused.
   std::optional<Matrix6> rigid = {};
 };
 

@@ -34,7 +34,7 @@ MatrixXd point_masses(const Mesh& mesh) {
 
 std::optional<MassProperties> from_geometry(const Mesh& mesh) {
   for (const Dof& dof : mesh.dofs)
-    if (dof.component == kGeneralised) return std::nullopt;
+    if (dof.component >= kGeneralised) return std::nullopt;
   const MatrixXd masses = point_masses(mesh);
   const double tolerance = 1e-6 * std::abs(masses.col(0).sum());
   Matrix6 D = Matrix6::Zero();
@@ -73,7 +73,10 @@ MatrixXd sizes_at_points(const Mesh& mesh, const MatrixXd& R) {
     return static_cast<Index>(dof.point) + (dof.component < 3 ? 0 : points);
   };
   for (Index i = 0; i < R.rows(); ++i) squares.row(place(i)) += R.row(i).cwiseAbs2();
-  for (Index i = 0; i < R.rows(); ++i) result.row(i) = squares.row(place(i)).cwiseSqrt();
+  for (Index i = 0; i < R.rows(); ++i) {
+    const bool moves = mesh.dofs[static_cast<std::size_t>(i)].component < kGeneralised;
+    result.row(i) = (moves ? 1.0 : 0.0) * squares.row(place(i)).cwiseSqrt();
+  }
   return result;
 }
 

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <titop/blocks/fe/material.hpp>
+#include <titop/blocks/fe/mesh.hpp>
+#include <vector>
+
+namespace titop {
+
+/// Bending stiffness of an orthotropic plate whose principal axes are x and y: moments per length
+/// M_x = D11 w_xx + D12 w_yy, M_y = D12 w_xx + D22 w_yy, M_xy = 2 D66 w_xy. [N m] For sandwiches
+/// and laminates; D11 = D22 = D, D12 = nu D, D66 = (1 - nu) D / 2 with
+/// D = E thickness^3 / (12 (1 - nu^2)) is the isotropic one.
+struct PlateStiffness {
+  double D11 = 0, D12 = 0, D22 = 0, D66 = 0;
+};
+
+/// Rectangular plate of uniform thickness in the plane z = 0, 0 <= x <= a, 0 <= y <= b: Kirchhoff's
+/// thin plate, no shear deformation and no rotary inertia. It bends along z, rx, ry and is rigid in
+/// its plane (x, y, rz).
+///
+///     Plate panel{.a = 2.0, .b = 1.0, .thickness = 0.02,
+///                 .material = {.E = 70e9, .nu = 0.33, .rho = 2700}, .elements = {8, 4}};
+///     fe::Mesh mesh = plate_mesh(panel);
+///     auto p1 = d.add("p1", FlexibleBody{fe::modal_data(mesh, "0,2", {"8,2"}, {.kept = 10})});
+struct Plate {
+  double a = 0, b = 0;                   ///< sides along x and y [m]
+  double thickness = 0;                  ///< [m]
+  Material material = {};                ///< isotropic; with D its rho alone
+  std::optional<PlateStiffness> D = {};  ///< in place of E, nu, G
+  std::array<int, 2> elements = {8, 8};  ///< along x and y, of equal size
+};
+
+/// Throws `bad_value`, all mistakes together: values that are not positive and finite, fewer than
+/// one element, a material with both or neither of nu and G, a Poisson's ratio, given or by
+/// E / (2 G) - 1, of -1 or less or above 0.5, a D that is not positive definite, E, nu or G beside
+/// D.
+void check(const Plate& plate);
+
+/// Legal values that are probably mistakes, one line each, with its number: E below 1e8 Pa (data in
+/// MPa), a thickness above a tenth of the shorter side (a thin plate's frequencies are then too
+/// high).
+std::vector<std::string> implausible(const Plate& plate);
+
+/// Free mesh of (elements + 1) nodes a side, "i,j" counted from 0 along x and y, with z, rx, ry and
+/// wxy each, and the edges "x0", "x1" (x = 0, x = a; along y), "y0", "y1" (along x). Bicubic
+/// Hermite functions [Bogner, Fox and Schmit 1965]: w, w_x = -ry, w_y = rx and w_xy are continuous,
+/// the mass is consistent; frequencies converge from above, the relative error of an omega falls
+/// with h^4. Mesh::rigid is the plate's mass. An interface at one node transmits z, rx, ry there
+/// and leaves wxy free: clamped or loaded by a moment at one node, a plate does not converge with
+/// the mesh (its slope there grows with the logarithm of 1/h). Dense: 4 (elements + 1)^2 rows.
+fe::Mesh plate_mesh(const Plate& plate);
+
+}  // namespace titop
