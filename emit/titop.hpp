@@ -26,10 +26,12 @@
 #include <titop/blocks/fe/dmig.hpp>
 #include <titop/blocks/fe/grids.hpp>
 #include <titop/blocks/fe/import.hpp>
+#include <titop/blocks/fe/interfaces.hpp>
 #include <titop/blocks/fe/mesh.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/fe/modal_csv.hpp>
+#include <titop/blocks/fe/node_sets.hpp>
 #include <titop/blocks/fe/op4.hpp>
 #include <titop/blocks/fe/plate.hpp>
 #include <titop/blocks/fe/scaled.hpp>

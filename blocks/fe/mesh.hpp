@@ -44,6 +44,16 @@ struct MeshEdge {
   std::vector<std::size_t> points;  ///< indices into Mesh::points
 };
 
+/// An interface along a straight edge (`shapes`, `moments`): the coordinates of its shapes beside
+/// the six degrees of freedom of the point of its name.
+struct MeshLine {
+  std::string name;                 ///< of the interface
+  int axis = 0;                     ///< body axis along which it runs
+  double length = 0;                ///< [m]
+  std::vector<LineShape> shapes;    ///< one coordinate each
+  std::vector<std::size_t> points;  ///< those that name the coordinates, kGeneralised
+};
+
 /// A free-free structure: no degree of freedom is fixed. SI units, body axes.
 struct Mesh {
   std::string name;               ///< for messages
@@ -56,6 +66,7 @@ struct Mesh {
   double digits = 15;                ///< decimal digits that M and K carry
   double position_noise = 0;         ///< relative error of the positions (`grids_by_statics`)
   std::vector<MeshEdge> edges = {};  ///< named edges, of a plate "x0", "x1", "y0", "y1"
+  std::vector<MeshLine> lines = {};  ///< interfaces that are edges (`with_interface`)
   /// Of meshes that move in some directions only: mass matrix of the whole body about the origin of
   /// its frame, which is rigid in the others. `ModeOptions::rigid` replaces it.
   std::optional<Matrix6> rigid = {};
@@ -109,8 +120,9 @@ struct ModeOptions {
   /// Number of lowest clamped modes; all of them if absent.
   std::optional<int> kept = {};
   /// Interfaces that get residual vectors, which make their static response exact: for a child the
-  /// six responses to a unit wrench there, for the parent those to a unit acceleration. At most six
-  /// modes more for each; name every child with a heavy or stiff load.
+  /// six responses to a unit wrench there, for the parent those to a unit acceleration, and for
+  /// either the response to a unit force of each shape of its line. At most six modes more for
+  /// each, and one per shape; name every child with a heavy or stiff load.
   std::vector<std::string> residual = {};
   /// Damping ratios: none (undamped), one (for all), one per kept mode (a residual vector takes
   /// that of the highest kept mode) or one per mode with the residual ones.
@@ -141,6 +153,9 @@ struct ModeOptions {
 /// Massless degrees of freedom (M_ff singular) have infinite modes. If all modes are kept, these
 /// are condensed exactly, which requires that no child moves in them; if a number of modes is
 /// given, they are truncated like other high modes, and residual vectors contain their static part.
+///
+/// Lines of the parent and the children become ModalData::lines; those of other interfaces move
+/// freely. A parent or child at a single node of a plate is noted in ModalData::warnings.
 ///
 /// Throws the errors of `check` and `interface_rows`; `duplicate_name` for a child named twice;
 /// `bad_value` for `rigid` if the mesh moves in all six directions, or has another mass in those in

@@ -153,14 +153,19 @@ ChildRank child_rank(const ModalData& data, const ModalChild& child) {
 }
 
 DataDigits data_digits(const ModalData& data) {
-  const auto ports = static_cast<Index>(data.children.size()) + 1;
-  DataDigits result{VectorXd::Zero(6 * ports), shape_noise(data), noise_of(data)};
-  for (Index c = 0; c + 1 < ports; ++c) {
+  const auto children = static_cast<Index>(data.children.size());
+  Index row = 6 * children;
+  for (const ModalLine& line : data.lines) row += static_cast<Index>(line.shapes.size());
+  DataDigits result{VectorXd::Zero(row + 6), shape_noise(data), noise_of(data)};
+  for (Index c = 0; c < children; ++c) {
     const ModalChild& child = data.children[static_cast<std::size_t>(c)];
     const Vector6 sizes = row_sizes(child);
     for (int i = 0; i < 6; ++i)
       if (!child.Phi_C.row(i).isZero(0)) result.size(6 * c + i) = sizes(i);
   }
+  row = 6 * children;
+  for (const ModalLine& line : data.lines)
+    for (const double size : line.Phi.rowwise().norm()) result.size(row++) = size;
   result.size.tail<6>() = data.D_P.diagonal().cwiseSqrt();
   return result;
 }

@@ -189,6 +189,10 @@ void require_writable(const std::string& name) {
 std::string modal_csv(const ModalData& data) {
   require_sizes(data);
   for (const ModalChild& c : data.children) require_writable(c.name);
+  if (!data.lines.empty())
+    throw Error(Code::bad_value,
+                fmt::format("line {} cannot be written to a table of modes", data.lines[0].name),
+                "write a diagram of the body: write_diagram(diagram_of_body(data), file)");
   std::string text = fmt::format("digits, {}\n", data.digits);
   for (int i = 0; i < 6; ++i) {
     text += "D_P";

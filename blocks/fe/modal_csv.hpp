@@ -29,7 +29,8 @@ ModalData read_modal_csv(const std::filesystem::path& path);
 
 /// The same data as such a text, in SI units; reading it gives them back to the last bit. Throws
 /// size for matrices that do not fit the modes, bad_value for a child's name that cannot be written
-/// to a field: with a comma, # or line end, with blanks at its ends, or empty.
+/// to a field: with a comma, # or line end, with blanks at its ends, or empty; and for data with
+/// lines, which such a text does not hold.
 std::string modal_csv(const ModalData& data);
 
 }  // namespace titop::fe

@@ -128,12 +128,28 @@ SymmetricModes clamped_modes(const Clamped& c, const std::vector<std::string>& c
   return modes;
 }
 
-/// Unit wrenches at a child (n_f x 6), or the inertia loads of unit accelerations of the parent.
+/// Rows of the coordinates of the line of this name, in the order of its shapes; none if the
+/// interface is no line.
+std::vector<Index> line_rows(const Mesh& mesh, const std::string& name) {
+  std::vector<Index> rows;
+  for (const MeshLine& line : mesh.lines)
+    if (line.name == name)
+      for (const std::size_t point : line.points)
+        rows.push_back(std::ranges::find(mesh.dofs, point, &Dof::point) - mesh.dofs.begin());
+  return rows;
+}
+
+/// Unit wrenches at a child, or the inertia loads of unit accelerations of the parent, and unit
+/// forces of the shapes of its line: n_f rows.
 MatrixXd unit_loads(const Clamped& c, const std::string& parent, const std::string& name) {
-  if (find_point(c.mesh, name) == find_point(c.mesh, parent)) return c.M_rf.transpose();
-  MatrixXd B = MatrixXd::Zero(c.M.rows(), 6);
-  const auto rows = loaded_rows(c, {name});
-  for (std::size_t j = 0; j < rows.size(); ++j) B(rows[j], static_cast<Index>(j)) = 1;
+  const bool at_parent = find_point(c.mesh, name) == find_point(c.mesh, parent);
+  std::vector<Index> rows = at_parent ? std::vector<Index>{} : loaded_rows(c, {name});
+  for (const Index row : line_rows(c.mesh, name))
+    rows.push_back(std::find(c.f.begin(), c.f.end(), row) - c.f.begin());
+  const auto count = static_cast<Index>(rows.size());
+  MatrixXd B = MatrixXd::Zero(c.M.rows(), count + (at_parent ? 6 : 0));
+  for (Index j = 0; j < count; ++j) B(rows[static_cast<std::size_t>(j)], j) = 1;
+  if (at_parent) B.rightCols(6) = c.M_rf.transpose();
   return B;
 }
 
@@ -182,17 +198,37 @@ SymmetricModes residual_modes(const Clamped& c, const SymmetricModes& kept, cons
 
 void add_residual(const Clamped& c, const std::string& parent, const ModeOptions& options,
                   SymmetricModes& modes) {
-  const auto count = static_cast<Index>(options.residual.size());
-  MatrixXd loads(c.M.rows(), 6 * count);
-  for (Index i = 0; i < count; ++i)
-    loads.middleCols(6 * i, 6) =
-        unit_loads(c, parent, options.residual[static_cast<std::size_t>(i)]);
+  MatrixXd loads(c.M.rows(), 0);
+  for (const std::string& name : options.residual) {
+    const MatrixXd more = unit_loads(c, parent, name);
+    loads.conservativeResize(Eigen::NoChange, loads.cols() + more.cols());
+    loads.rightCols(more.cols()) = more;
+  }
   const SymmetricModes more = residual_modes(c, modes, loads);
   const Index N = modes.lambda.size(), total = N + more.lambda.size();
   modes.lambda.conservativeResize(total);
   modes.lambda.tail(total - N) = more.lambda;
   modes.V.conservativeResize(Eigen::NoChange, total);
   modes.V.rightCols(total - N) = more.V;
+}
+
+ModalLine line_of(const Mesh& mesh, const MeshLine& line, const MatrixXd& Phi) {
+  return {line.name, line.axis, line.length, line.shapes,
+          Phi(line_rows(mesh, line.name), Eigen::all)};
+}
+
+/// Warns of a clamp or a moment at one node of a plate.
+void warn_of_plate_node(const Mesh& mesh, const std::string& name, bool parent,
+                        std::vector<std::string>& warnings) {
+  const std::size_t point = find_point(mesh, name);
+  if (std::ranges::none_of(
+          mesh.dofs, [&](const Dof& dof) { return dof.point == point && dof.component == kTwist; }))
+    return;
+  warnings.push_back(
+      fmt::format("{} is one node of {}: {} there does not converge with the mesh (the slope grows "
+                  "with the logarithm of 1/h): use fe::rigid or fe::average over the real "
+                  "footprint",
+                  name, mesh.name, parent ? "a clamp" : "a moment"));
 }
 
 void require_distinct(const Mesh& mesh, const std::vector<std::string>& children) {
@@ -235,6 +271,12 @@ ModalData modal_data(const Mesh& given, const std::string& parent,
     for (std::size_t i = 0; i < 6; ++i)
       if (rows.at(i) >= 0) child.Phi_C.row(static_cast<Index>(i)) = Phi.row(rows.at(i));
   }
+  for (const MeshLine& line : mesh.lines)
+    if (line.name == parent || std::ranges::find(children, line.name) != children.end())
+      data.lines.push_back(line_of(mesh, line, Phi));
+  warn_of_plate_node(mesh, parent, true, data.warnings);
+  for (const std::string& child : children)
+    if (child != parent) warn_of_plate_node(mesh, child, false, data.warnings);
   return data;
 }
 

@@ -24,6 +24,11 @@ ModalData scaled(ModalData data, const DataUnits& units) {
     child.Phi_C.topRows(child.Phi_C.rows() / 2) /= root;
     child.Phi_C.bottomRows(child.Phi_C.rows() / 2) /= root * L;
   }
+  for (ModalLine& line : data.lines) {
+    line.length *= L;
+    for (std::size_t i = 0; i < line.shapes.size(); ++i)
+      line.Phi.row(static_cast<Eigen::Index>(i)) /= line.shapes[i].component < 3 ? root : root * L;
+  }
   return data;
 }
 

@@ -1,0 +1,207 @@
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <titop/blocks/fe/interfaces.hpp>
+#include <titop/blocks/fe/plate.hpp>
+#include <titop/graph/error.hpp>
+#include <titop/graph/linalg/eigen.hpp>
+#include <titop/graph/linalg/symmetric.hpp>
+#include <vector>
+
+#include "dynamics.hpp"
+#include "support/mistakes.hpp"
+
+/// Edges as interfaces: shapes and moments by hand, and two half plates welded along a cut, whose
+/// frequencies enclose those of the whole plate.
+
+using namespace titop;
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using fe_test::relative;
+
+namespace {
+
+/// Half of a square plate whose frequencies are omega a^2 sqrt(rho h / D), nu = 0.3.
+fe::Mesh half_plate(int along_x, int along_y) {
+  return plate_mesh({.a = 0.5,
+                     .b = 1,
+                     .thickness = 0.01,
+                     .material = {.rho = 100},
+                     .D = PlateStiffness{1, 0.3, 1, 0.35},
+                     .elements = {along_x, along_y}});
+}
+
+Index row_of(const fe::Mesh& mesh, std::size_t point, int component) {
+  for (std::size_t i = 0; i < mesh.dofs.size(); ++i)
+    if (mesh.dofs[i].point == point && mesh.dofs[i].component == component)
+      return static_cast<Index>(i);
+  return -1;
+}
+
+/// Rows of the interface's point (z, rx, ry), then of its shapes.
+std::vector<Index> rows_of(const fe::Mesh& mesh, const std::string& name) {
+  std::vector<Index> rows;
+  for (const int c : {2, 3, 4}) rows.push_back(row_of(mesh, fe::find_point(mesh, name), c));
+  for (const fe::MeshLine& line : mesh.lines)
+    if (line.name == name)
+      for (const std::size_t point : line.points)
+        rows.push_back(row_of(mesh, point, fe::kGeneralised));
+  return rows;
+}
+
+/// Omegas of a, clamped along x0, with b welded to its end: the coordinates of both lines are the
+/// same, with these signs.
+VectorXd welded(const fe::Mesh& a, const fe::Mesh& b) {
+  const std::vector<Index> next = rows_of(a, "next"), prev = rows_of(b, "prev");
+  REQUIRE(next.size() == prev.size());
+  const Index n = a.M.rows(), all = n + b.M.rows();
+  MatrixXd T = MatrixXd::Zero(all, all - static_cast<Index>(prev.size()));
+  T.topLeftCorner(n, n).setIdentity();
+  Index column = n;
+  for (Index i = 0; i < b.M.rows(); ++i) {
+    const auto at = std::find(prev.begin(), prev.end(), i);
+    T(n + i, at == prev.end() ? column++ : next[static_cast<std::size_t>(at - prev.begin())]) = 1;
+  }
+  std::vector<Index> free;
+  const std::vector<Index> root = rows_of(a, "root");
+  for (Index i = 0; i < T.cols(); ++i)
+    if (std::find(root.begin(), root.end(), i) == root.end()) free.push_back(i);
+  const auto assembled = [&](const MatrixXd& A, const MatrixXd& B) {
+    MatrixXd S = MatrixXd::Zero(all, all);
+    S.topLeftCorner(n, n) = A;
+    S.bottomRightCorner(B.rows(), B.rows()) = B;
+    return MatrixXd((T.transpose() * S * T)(free, free));
+  };
+  return eigh_definite(assembled(a.K, b.K), assembled(a.M, b.M)).lambda.cwiseSqrt();
+}
+
+VectorXd cut_plate(int along_x, int along_y, int behind, int m, bool restricted) {
+  fe::Mesh a = half_plate(along_x, along_y), b = half_plate(along_x, behind);
+  const auto coupling = [&](const fe::NodeSet& edge) {
+    return restricted ? fe::shapes(edge, fe::legendre(m)) : fe::moments(edge, fe::legendre(m));
+  };
+  a = fe::with_interface(a, "root", fe::rigid(fe::edge(a, "x0")));
+  a = fe::with_interface(a, "next", coupling(fe::edge(a, "x1")));
+  return welded(a, fe::with_interface(b, "prev", coupling(fe::edge(b, "x0"))));
+}
+
+}  // namespace
+
+TEST_CASE("two halves of a plate, welded by m polynomials: the same in another program") {
+  struct Case {
+    int behind, m;
+    bool restricted;
+    std::vector<double> omega;
+  };
+  // 4 x 6 elements before the cut; matching and not matching behind it.
+  for (const Case& c : {
+           Case{6, 2, true, {3.491788840, 8.514202979, 21.918825284, 31.030708961}},
+           Case{6, 2, false, {3.471543828, 8.230923515, 20.132926689, 23.230510795}},
+           Case{6, 3, true, {3.473561051, 8.514202979, 21.299291137, 28.214040292}},
+           Case{6, 3, false, {3.471702988, 8.230923515, 21.265996347, 27.026626056}},
+           Case{6, 4, true, {3.473561051, 8.511460688, 21.299291137, 28.214040292}},
+           Case{6, 4, false, {3.471702988, 8.453488299, 21.265996347, 27.026626056}},
+           Case{5, 3, true, {3.473565258, 8.514447776, 21.299518397, 28.220766488}},
+           Case{5, 3, false, {3.471705546, 8.231278298, 21.266140318, 27.032160516}},
+       }) {
+    const VectorXd omega = cut_plate(4, 6, c.behind, c.m, c.restricted);
+    for (std::size_t k = 0; k < c.omega.size(); ++k) {
+      INFO("behind ", c.behind, ", m ", c.m, ", restricted ", c.restricted, ", mode ", k + 1);
+      CHECK(relative(omega(static_cast<Index>(k)), c.omega[k]) <= 1e-8);
+    }
+  }
+}
+
+TEST_CASE("the whole plate's frequencies lie between, and the bounds close in") {
+  // 8 x 6 elements without a cut, in another program.
+  const std::vector<double> exact = {3.472102693, 8.510327217, 21.293861534, 27.208952530};
+  std::vector<double> width(4, 1e9);
+  for (const int m : {2, 4, 6}) {
+    const VectorXd above = cut_plate(4, 6, 6, m, true), below = cut_plate(4, 6, 6, m, false);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const auto i = static_cast<Index>(k);
+      CHECK(below(i) <= exact[k] * (1 + 1e-9));
+      CHECK(above(i) >= exact[k] * (1 - 1e-9));
+      CHECK(above(i) - below(i) <= width[k] * (1 + 1e-9));
+      width[k] = above(i) - below(i);
+    }
+  }
+  for (std::size_t k = 0; k < 4; ++k) CHECK(width[k] <= 4e-3 * exact[k]);
+}
+
+TEST_CASE("shapes of an edge along x: displacements and slopes by hand") {
+  // Along x the rotation about the edge is rx = w_y, the slope of w is -ry.
+  const fe::Mesh plain = plate_mesh({.a = 2,
+                                     .b = 1,
+                                     .thickness = 0.01,
+                                     .material = {.E = 70e9, .nu = 0.3, .rho = 2700},
+                                     .elements = {4, 2}});
+  const fe::NodeSet edge = fe::edge(plain, "y1");
+  const fe::Mesh mesh = fe::with_interface(plain, "e", fe::shapes(edge, fe::legendre(4)));
+  REQUIRE(mesh.lines.size() == 1);
+  const fe::MeshLine& line = mesh.lines[0];
+  CHECK(line.axis == 0);
+  CHECK(line.length == 2);
+  std::vector<std::string> names;
+  for (const LineShape& s : line.shapes) names.push_back(to_string(s));
+  CHECK(names == std::vector<std::string>{"z2", "z3", "rx1", "rx2", "rx3"});
+  CHECK(mesh.M.rows() == plain.M.rows() - 5 * 4 + 3 + 5);
+  // z, rx, ry, wxy of the nodes per coordinate x = (z, rx, ry), P2, P3 of w, P1, P2, P3 of w_y.
+  MatrixXd T = MatrixXd::Zero(20, 8);
+  for (Index i = 0; i <= 4; ++i) {
+    const double x = -1 + 0.5 * double(i);  // m from the middle, and half lengths
+    T(4 * i, 0) = 1;
+    T.row(4 * i + 1)(1) = 1;
+    T(4 * i, 2) = -x, T(4 * i + 2, 2) = 1;
+    T(4 * i, 3) = (3 * x * x - 1) / 2, T(4 * i + 2, 3) = -3 * x;
+    T(4 * i, 4) = (5 * x * x * x - 3 * x) / 2, T(4 * i + 2, 4) = -(15 * x * x - 3) / 2;
+    T(4 * i + 1, 5) = x, T(4 * i + 3, 5) = 1;
+    T(4 * i + 1, 6) = (3 * x * x - 1) / 2, T(4 * i + 3, 6) = 3 * x;
+    T(4 * i + 1, 7) = (5 * x * x * x - 3 * x) / 2, T(4 * i + 3, 7) = (15 * x * x - 3) / 2;
+  }
+  std::vector<Index> rows;
+  for (const std::size_t point : edge.points)
+    for (const int c : {2, 3, 4, fe::kTwist}) rows.push_back(row_of(plain, point, c));
+  const std::vector<Index> tied = rows_of(mesh, "e");
+  for (const auto& [S, S_tied] : {std::pair{&plain.K, &mesh.K}, {&plain.M, &mesh.M}}) {
+    const MatrixXd expected = T.transpose() * (*S)(rows, rows) * T;
+    CHECK(((*S_tied)(tied, tied) - expected).cwiseAbs().maxCoeff() <=
+          1e-12 * expected.cwiseAbs().maxCoeff());
+  }
+}
+
+TEST_CASE("lines in the modal data: coordinates of the parent's and the child's shapes") {
+  const fe::Mesh plain = half_plate(2, 3);
+  fe::Mesh mesh =
+      fe::with_interface(plain, "prev", fe::shapes(fe::edge(plain, "x0"), fe::legendre(3)));
+  mesh = fe::with_interface(mesh, "next", fe::moments(fe::edge(mesh, "x1"), fe::legendre(3)));
+  const ModalData data = fe::modal_data(mesh, "prev", {"next"});
+  REQUIRE(data.lines.size() == 2);
+  // Flexibility of the shapes against each other: the rows of K^-1 clamped at the parent's point.
+  std::vector<Index> free;
+  const std::vector<Index> prev = rows_of(mesh, "prev"), next = rows_of(mesh, "next");
+  for (Index i = 0; i < mesh.K.rows(); ++i)
+    if (std::find(prev.begin(), prev.begin() + 3, i) == prev.begin() + 3) free.push_back(i);
+  MatrixXd B = MatrixXd::Zero(static_cast<Index>(free.size()), 6), Phi(6, data.omega.size());
+  for (Index k = 0; k < 3; ++k)
+    for (const auto& [rows, column] : {std::pair{&prev, k}, {&next, k + 3}})
+      B(std::find(free.begin(), free.end(), (*rows)[static_cast<std::size_t>(3 + k)]) -
+            free.begin(),
+        column) = 1;
+  Phi << data.lines[0].Phi, data.lines[1].Phi;
+  const MatrixXd expected = B.transpose() * solve_definite(mesh.K(free, free), B);
+  const MatrixXd found = Phi * data.omega.cwiseAbs2().cwiseInverse().asDiagonal() * Phi.transpose();
+  CHECK((found - expected).cwiseAbs().maxCoeff() <= 1e-10 * expected.cwiseAbs().maxCoeff());
+  // With a few modes and residual vectors the flexibility is the same.
+  const ModalData few =
+      fe::modal_data(mesh, "prev", {"next"}, {.kept = 4, .residual = {"prev", "next"}});
+  CHECK(few.omega.size() < data.omega.size());
+  MatrixXd Phi_few(6, few.omega.size());
+  Phi_few << few.lines[0].Phi, few.lines[1].Phi;
+  const MatrixXd kept =
+      Phi_few * few.omega.cwiseAbs2().cwiseInverse().asDiagonal() * Phi_few.transpose();
+  CHECK((kept - expected).cwiseAbs().maxCoeff() <= 1e-7 * expected.cwiseAbs().maxCoeff());
+  CHECK(fe::modal_data(mesh, "next", {}).lines.size() == 1);
+}
