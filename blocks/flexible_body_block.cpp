@@ -8,6 +8,7 @@
 #include <titop/blocks/opened_flexible_body.hpp>
 #include <titop/blocks/specified.hpp>
 #include <titop/graph/modal_form.hpp>
+#include <titop/graph/with_warnings.hpp>
 
 namespace titop::detail {
 
@@ -53,7 +54,10 @@ std::shared_ptr<const Dynamics> coupled_dynamics(Modal modal, const MatrixXd& Z)
 constexpr const char* kKeepMore =
     "keep more modes or residual vectors there, or lock only the other degrees of freedom";
 
-class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, public FromData {
+class FlexibleBodyBlock : public Block,
+                          public Specified<FlexibleBody::Spec>,
+                          public FromData,
+                          public WithWarnings {
  public:
   FlexibleBodyBlock(std::shared_ptr<const FlexibleBody::Spec> spec,
                     std::shared_ptr<const Shapes> shapes)
@@ -77,6 +81,7 @@ class FlexibleBodyBlock : public Block, public Specified<FlexibleBody::Spec>, pu
     return body_kinematics(shapes->PC, Phi);
   }
   std::vector<Value> values() const override { return list_of(spec_->values); }
+  std::vector<std::string> warnings() const override { return spec_->data->warnings; }
   std::optional<Opened> opened(ParameterValues values,
                                std::span<const int> parameters) const override {
     const auto at = made_at(values);

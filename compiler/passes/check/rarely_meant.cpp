@@ -7,6 +7,7 @@
 #include <titop/compiler/passes/check/springs.hpp>
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/linalg/rounding.hpp>
+#include <titop/graph/with_warnings.hpp>
 
 namespace titop::passes {
 namespace {
@@ -177,7 +178,19 @@ std::vector<Note> degree_notes(const std::vector<RotationAngle>& angles, Paramet
   return result;
 }
 
+namespace {
+
+void note_warnings_of_blocks(Checker& c) {
+  for (const Node& node : c.graph.nodes)
+    if (const auto* block = dynamic_cast<const WithWarnings*>(node.block.get()))
+      for (const std::string& line : block->warnings())
+        c.notes.push_back({Note::Kind::warning, "check", fmt::format("{}: {}", node.name, line)});
+}
+
+}  // namespace
+
 void note_rarely_meant(Checker& c, ParameterValues values) {
+  note_warnings_of_blocks(c);
   note_negative_springs(c, values);
   note_signs_of_inputs(c);
   note_no_outputs(c);
