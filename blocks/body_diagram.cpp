@@ -11,6 +11,13 @@ Diagram diagram_of_body(const ModalData& data, const std::string& name) {
     body.child(child.name).force += d.input("F_" + child.name, 6);
     d.output("a_" + child.name, 6) = body.child(child.name).accel;
   }
+  for (const ModalLine& line : data.lines)
+    for (const LineShape& shape : line.shapes) {
+      const std::string channel = channel_of(line, shape);
+      const DualPort<1> port = body.line(line.name).shape(shape);
+      port.force += d.input("F_" + channel);
+      d.output("a_" + channel) = port.accel;
+    }
   return d;
 }
 

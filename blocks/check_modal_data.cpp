@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <titop/blocks/check_modal_data.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
@@ -24,6 +25,10 @@ void check_shapes(const ModalData& d) {
     if (c.Phi_C.cols() != n || (n > 0 && c.Phi_C.rows() != 6))
       refuse("Phi_C of " + c.name, c.Phi_C.rows(), c.Phi_C.cols(),
              fmt::format("6 x {}, a column per mode", n));
+  for (const ModalLine& line : d.lines)
+    if (line.Phi.cols() != n || line.Phi.rows() != static_cast<Eigen::Index>(line.shapes.size()))
+      refuse("Phi of line " + line.name, line.Phi.rows(), line.Phi.cols(),
+             fmt::format("{} x {}, a row per shape", line.shapes.size(), n));
 }
 
 std::string entry(int i, int j) {
@@ -38,6 +43,24 @@ void require_finite(const MatrixXd& m, const std::string& name) {
                     fmt::format("{} of the modal data has {} in row {}, column {}", name, m(i, j),
                                 i + 1, j + 1),
                     "give finite numbers");
+}
+
+void check_lines(const ModalData& d) {
+  for (const ModalLine& line : d.lines) {
+    require_finite(line.Phi, "Phi of line " + line.name);
+    const bool along = line.axis >= 0 && line.axis < 3 && line.length > 0;
+    if (!along || std::ranges::any_of(line.shapes, [&](const LineShape& s) {
+          return s.degree < 1 || s.component < 0 ||
+                 (s.component >= 3 && s.component != 3 + line.axis);
+        }))
+      throw Error(
+          Code::bad_value,
+          fmt::format("line {} of the modal data has axis {}, length {} and shapes that do "
+                      "not fit them",
+                      line.name, line.axis, line.length),
+          "axis is 0, 1 or 2; shapes are displacements 0, 1, 2 or the rotation 3 + axis, of "
+          "degree 1 or more");
+  }
 }
 
 /// Modes of a structure with much damping in proportion to stiffness are above 1 if they are
@@ -56,6 +79,7 @@ void check_values(const ModalData& d) {
     require_finite(c.PC, "PC of " + c.name);
     require_finite(c.Phi_C, "Phi_C of " + c.name);
   }
+  check_lines(d);
   if (d.xi.size() > 0 && d.xi.minCoeff() > kMostDamped)
     throw Error(Code::bad_modes,
                 fmt::format("no mode oscillates: the least damping ratio is {}", d.xi.minCoeff()),

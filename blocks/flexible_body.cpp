@@ -70,11 +70,27 @@ void keep_others(std::vector<ModeValues::Entry>& entries,
 
 }  // namespace
 
+Eigen::Index shapes_of_lines(const ModalData& d) {
+  Eigen::Index count = 0;
+  for (const ModalLine& line : d.lines) count += static_cast<Eigen::Index>(line.shapes.size());
+  return count;
+}
+
+std::string channel_of(const ModalLine& line, const LineShape& shape) {
+  return line.name + "." + to_string(shape);
+}
+
 MatrixXd modal_input(const ModalData& d) {
   const auto n = d.omega.size();
-  MatrixXd W(n, static_cast<Eigen::Index>(6 * d.children.size()) + 6);
+  Eigen::Index column = static_cast<Eigen::Index>(6 * d.children.size());
+  MatrixXd W(n, column + shapes_of_lines(d) + 6);
   for (std::size_t i = 0; i < d.children.size(); ++i)
     if (n > 0) W.middleCols<6>(static_cast<Eigen::Index>(6 * i)) = d.children[i].Phi_C.transpose();
+  for (const ModalLine& line : d.lines) {
+    const auto count = static_cast<Eigen::Index>(line.shapes.size());
+    if (n > 0) W.middleCols(column, count) = line.Phi.transpose();
+    column += count;
+  }
   if (n > 0) W.rightCols<6>() = -d.L_P;
   return W;
 }

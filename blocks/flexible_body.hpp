@@ -3,6 +3,7 @@
 #include <map>
 #include <titop/blocks/fe/beam.hpp>
 #include <titop/blocks/fe/modal_data.hpp>
+#include <titop/blocks/line_port.hpp>
 #include <titop/blocks/rigid_body.hpp>
 #include <titop/graph/diagram.hpp>
 
@@ -34,7 +35,9 @@ struct ModeValues {
 ///
 /// with the direct terms of (14): between two children Phi_C1 Phi_C2', from P (tau_CP - Phi_C L_P),
 /// at P -D_P0 with the residual mass D_P0 = D_P - L_P' L_P. States: eta1 ... etaN [m sqrt(kg)],
-/// then their rates. Frame: the node's own. No child: the clamped-free appendage of Fig. 15.
+/// then their rates. Frame: the node's own. No child: the clamped-free appendage of Fig. 15. Every
+/// shape of a line (ModalData::lines) is a scalar channel between the children and P, with a row of
+/// Phi in W and no rigid term (blocks/line_port.hpp).
 ///
 /// The data are checked once, when it is made, and then shared by all nodes that use it. Throws,
 /// with the line that makes it, bad_modes (shapes, omega <= 0, xi < 0 or all above 1, D_P0 negative
@@ -99,7 +102,7 @@ class FlexibleBody {
   ModalData nominal() const;
   const BlockPtr& block() const { return block_; }
 
-  using Handle = BodyHandle;
+  using Handle = FlexibleBodyHandle;
 
  private:
   std::shared_ptr<const Spec> spec_;
@@ -115,7 +118,14 @@ BlockPtr as_block(const FlexibleBody& body);
 /// `FlexibleBody`.
 Diagram diagram_of_body(const ModalData& data, const std::string& name = "body");
 
-/// The modes' input matrix W = [Phi_C' ..., -L_P], N x (6 children + 6).
+/// The modes' input matrix W = [Phi_C' ..., Phi' of lines ..., -L_P], N x (6 children + shapes +
+/// 6).
 Eigen::MatrixXd modal_input(const ModalData& data);
+
+/// Number of shapes of all lines.
+Eigen::Index shapes_of_lines(const ModalData& data);
+
+/// Name of the scalar channel of a shape, "C.z2".
+std::string channel_of(const ModalLine& line, const LineShape& shape);
 
 }  // namespace titop

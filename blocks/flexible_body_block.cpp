@@ -33,9 +33,12 @@ std::shared_ptr<const Shapes> shapes_of(const ModalData& data) {
     names.push_back(c.name);
     s->PC.push_back(c.PC);
   }
-  s->face = body_interface(names, static_cast<int>(data.omega.size()));
+  std::vector<std::string> shapes;
+  for (const ModalLine& line : data.lines)
+    for (const LineShape& shape : line.shapes) shapes.push_back(channel_of(line, shape));
+  s->face = body_interface(names, static_cast<int>(data.omega.size()), shapes);
   s->W = modal_input(data);
-  s->rigid = rigid_part(s->PC, data.D_P);
+  s->rigid = rigid_part(s->PC, data.D_P, shapes_of_lines(data));
   s->digits = data_digits(data);
   return s;
 }
@@ -78,7 +81,9 @@ class FlexibleBodyBlock : public Block,
     std::vector<MatrixXd> Phi;
     for (std::size_t c = 0; c < shapes->PC.size(); ++c)
       Phi.push_back(shapes->W.middleCols<6>(static_cast<Eigen::Index>(6 * c)).transpose());
-    return body_kinematics(shapes->PC, Phi);
+    const Index points = static_cast<Index>(6 * shapes->PC.size());
+    return body_kinematics(shapes->PC, Phi,
+                           shapes->W.middleCols(points, shapes->W.cols() - points - 6).transpose());
   }
   std::vector<Value> values() const override { return list_of(spec_->values); }
   std::vector<std::string> warnings() const override { return spec_->data->warnings; }
@@ -95,9 +100,8 @@ class FlexibleBodyBlock : public Block,
   }
   const DataDigits& digits() const override { return digits_; }
   Cause beyond_digits(int channel, const VectorXd& direction, double left) const override {
-    const std::string where = combination(direction);
-    const auto c = static_cast<std::size_t>(channel);
-    if (c == spec_->data->children.size())
+    const std::string where = direction.size() == 6 ? combination(direction) : "its direction";
+    if (is_parent(channel))
       return {fmt::format("has no residual mass in {}: of D_P its modes leave {:.1e} there, the "
                           "noise of the data is {:.0e}",
                           where, left, digits_.mass),
@@ -105,12 +109,12 @@ class FlexibleBodyBlock : public Block,
                           where)};
     return {fmt::format("has modes that do not move {} in {}: by {:.1e} of its other motions, the "
                         "noise of the data is {:.0e}",
-                        spec_->data->children[c].name, where, left, digits_.shapes),
+                        name_of(channel), where, left, digits_.shapes),
             kKeepMore};
   }
   std::optional<Cause> why_singular(int channel, ParameterValues values) const override {
     const ModalData data = data_with(*spec_->data, spec_->values, at(values));
-    if (channel == static_cast<int>(data.children.size())) {
+    if (is_parent(channel)) {
       const ResidualMass r = residual_mass(data);
       return Cause{
           fmt::format("has no residual mass in {}", component_name(r.component)),
@@ -118,6 +122,8 @@ class FlexibleBodyBlock : public Block,
                       "motion there",
                       component_name(r.component))};
     }
+    if (channel >= static_cast<int>(data.children.size()))
+      return Cause{fmt::format("has modes that do not move {}", name_of(channel)), kKeepMore};
     const ModalChild& c = data.children[static_cast<std::size_t>(channel)];
     const ChildRank rank = child_rank(data, c);
     std::string blocked;
@@ -151,6 +157,13 @@ class FlexibleBodyBlock : public Block,
         if (size == 0) size = std::abs(e.value.nominal());
       }
     }
+  }
+
+  bool is_parent(int channel) const {
+    return channel + 1 == static_cast<int>(shapes_->face.channels.size());
+  }
+  const std::string& name_of(int channel) const {
+    return shapes_->face.channels[static_cast<std::size_t>(channel)].name;
   }
 
   static NumberOf at(ParameterValues values) {

@@ -77,7 +77,7 @@ class ModalPairs {
     for (std::size_t c = 0; c < children.size(); ++c)
       if (const auto of = spec_.values.Phi_C.find(children[c].name); of != spec_.values.Phi_C.end())
         add(of->second, static_cast<Index>(6 * c), 1, static_cast<int>(c));
-    add(spec_.values.L_P, static_cast<Index>(6 * children.size()), -1, -1);
+    add(spec_.values.L_P, W_.cols() - 6, -1, -1);
     return result;
   }
 

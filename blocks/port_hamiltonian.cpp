@@ -64,7 +64,7 @@ PortHamiltonian port_hamiltonian(const FlexibleBody& body) {
   s.N = W.transpose();
   std::vector<Vector3d> PC;
   for (const ModalChild& c : d.children) PC.push_back(c.PC);
-  s.P = rigid_part(PC, d.D_P);
+  s.P = rigid_part(PC, d.D_P, shapes_of_lines(d));
   return s;
 }
 

@@ -49,17 +49,20 @@ void check_inertia(double mass, const Matrix3d& inertia) {
         "the inertia really about the centre of mass?");
 }
 
-Interface body_interface(const std::vector<std::string>& children, int modes) {
+Interface body_interface(const std::vector<std::string>& children, int modes,
+                         const std::vector<std::string>& shapes) {
   Interface face;
   std::set<std::string> seen;
-  for (const std::string& name : children) {
+  const auto add = [&](const std::string& name, int size) {
     if (name.empty() || name == "parent" || !seen.insert(name).second)
       throw Error(Code::duplicate_name, fmt::format("a second point is called \"{}\"", name),
                   "give every child point a name of its own, other than \"parent\"");
-    face.channels.push_back({name, 6, Takes::force});
-  }
+    face.channels.push_back({name, size, Takes::force});
+  };
+  for (const std::string& name : children) add(name, 6);
+  for (const std::string& name : shapes) add(name, 1);
   face.channels.push_back({"parent", 6, Takes::accel});
-  if (children.size() > 16) {
+  if (face.channels.size() > 17) {
     face.by_name.resize(face.channels.size());
     std::iota(face.by_name.begin(), face.by_name.end(), 0);
     std::sort(face.by_name.begin(), face.by_name.end(), [&](int a, int b) {
@@ -80,8 +83,8 @@ Matrix6 symmetric(const Matrix6& D_P) { return (D_P + D_P.transpose()) / 2; }
 
 }  // namespace
 
-MatrixXd rigid_part(const std::vector<Vector3d>& PC, const Matrix6& D_P) {
-  const auto n = static_cast<Eigen::Index>(6 * PC.size());
+MatrixXd rigid_part(const std::vector<Vector3d>& PC, const Matrix6& D_P, Eigen::Index shapes) {
+  const auto n = static_cast<Eigen::Index>(6 * PC.size()) + shapes;
   MatrixXd D = MatrixXd::Zero(n + 6, n + 6);
   for (std::size_t i = 0; i < PC.size(); ++i) {
     const Matrix6 tau_CP = tau(-PC[i]);
@@ -93,18 +96,19 @@ MatrixXd rigid_part(const std::vector<Vector3d>& PC, const Matrix6& D_P) {
   return D;
 }
 
-Kinematics body_kinematics(const std::vector<Vector3d>& PC, const std::vector<MatrixXd>& Phi_C) {
+Kinematics body_kinematics(const std::vector<Vector3d>& PC, const std::vector<MatrixXd>& Phi_C,
+                           const MatrixXd& Phi) {
   Kinematics k;
-  k.reference = static_cast<int>(PC.size());
-  for (const Vector3d& v : PC) k.tau.emplace_back(tau(-v));
-  k.tau.emplace_back(Matrix6::Identity());
-  const auto modes = Phi_C.empty() ? 0 : Phi_C.front().cols();
-  for (const MatrixXd& Phi : Phi_C) {
-    MatrixXd on_states = MatrixXd::Zero(6, 2 * modes);
-    on_states.leftCols(modes) = Phi;
-    k.Phi.push_back(std::move(on_states));
-  }
-  k.Phi.emplace_back(MatrixXd::Zero(6, 2 * modes));
+  k.reference = static_cast<int>(PC.size()) + static_cast<int>(Phi.rows());
+  const auto modes = Phi_C.empty() ? Phi.cols() : Phi_C.front().cols();
+  const auto add = [&](const MatrixXd& tau_CP, const MatrixXd& by_modes) {
+    k.tau.push_back(tau_CP);
+    k.Phi.emplace_back(MatrixXd::Zero(by_modes.rows(), 2 * modes));
+    k.Phi.back().leftCols(modes) = by_modes;
+  };
+  for (std::size_t c = 0; c < PC.size(); ++c) add(tau(-PC[c]), Phi_C[c]);
+  for (Eigen::Index i = 0; i < Phi.rows(); ++i) add(MatrixXd::Zero(1, 6), Phi.row(i));
+  add(Matrix6::Identity(), MatrixXd::Zero(6, modes));
   return k;
 }
 

@@ -38,6 +38,7 @@
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/hinge.hpp>
 #include <titop/blocks/joint.hpp>
+#include <titop/blocks/line_port.hpp>
 #include <titop/blocks/momentum.hpp>
 #include <titop/blocks/port_hamiltonian.hpp>
 #include <titop/blocks/posture.hpp>

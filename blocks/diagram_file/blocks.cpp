@@ -400,11 +400,34 @@ Json body_json(const ModalData& data) {
                {"D_P", rows(data.D_P)},     {"digits", data.digits}, {"children", Json::array()}};
   for (const ModalChild& c : data.children)
     json["children"].push_back({{"name", c.name}, {"PC", list(c.PC)}, {"Phi_C", rows(c.Phi_C)}});
+  for (const ModalLine& line : data.lines) {
+    Json shapes = Json::array();
+    for (const LineShape& s : line.shapes)
+      shapes.push_back({{"component", s.component + 1}, {"degree", s.degree}});
+    json["lines"].push_back({{"name", line.name},
+                             {"axis", line.axis + 1},
+                             {"length", line.length},
+                             {"shapes", shapes},
+                             {"Phi", rows(line.Phi)}});
+  }
   return json;
 }
 
+ModalLine read_line(const JsonPlace& p, Index modes) {
+  p.only({"name", "axis", "length", "shapes", "Phi"});
+  ModalLine line{p.at("name").text(), p.at("axis").integer() - 1, p.at("length").number(), {}, {}};
+  const JsonPlace shapes = p.at("shapes");
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    const JsonPlace s = shapes.item(i);
+    s.only({"component", "degree"});
+    line.shapes.push_back({s.at("component").integer() - 1, s.at("degree").integer()});
+  }
+  line.Phi = p.at("Phi").matrix(static_cast<Index>(line.shapes.size()), modes);
+  return line;
+}
+
 FlexibleBody read_body(const JsonPlace& p) {
-  p.only({"omega", "xi", "L_P", "D_P", "digits", "children"});
+  p.only({"omega", "xi", "L_P", "D_P", "digits", "children", "lines"});
   ModalData data;
   data.omega = p.at("omega").vector();
   const Index n = data.omega.size();
@@ -419,6 +442,9 @@ FlexibleBody read_body(const JsonPlace& p) {
     data.children.push_back(
         {c.at("name").text(), c.at("PC").vector(3), c.at("Phi_C").matrix(6, n)});
   }
+  if (p.has("lines"))
+    for (std::size_t i = 0; i < p.at("lines").size(); ++i)
+      data.lines.push_back(read_line(p.at("lines").item(i), n));
   return {data, SourceLine{}};
 }
 

@@ -1,0 +1,165 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <titop/blocks/flexible_body.hpp>
+#include <titop/blocks/line_port.hpp>
+#include <titop/blocks/specified.hpp>
+#include <titop/graph/error.hpp>
+#include <utility>
+
+namespace titop {
+
+namespace {
+
+constexpr double kSameLength = 1e-6;  ///< of printed coordinates
+constexpr double kSameAxis = 1e-9;    ///< of the cosine of a right angle, as of Rotation::matrix
+
+std::string list_of_shapes(const ModalLine& line) {
+  std::string all;
+  for (const LineShape& s : line.shapes) all += (all.empty() ? "" : ", ") + to_string(s);
+  return all;
+}
+
+bool is_rotation(const LineShape& shape) { return shape.component >= 3; }
+
+/// A body axis of line a as one of b's, with its sign.
+struct Turned {
+  int axis;
+  double sign;
+};
+
+Turned turned(const LinePort& a, const LinePort& b, const Matrix3d& T, int axis) {
+  Eigen::Index to = 0;
+  const double size = T.col(axis).cwiseAbs().maxCoeff(&to);
+  if (!(size >= 1 - kSameAxis))
+    throw Error(
+        Code::bad_value,
+        fmt::format("lines {} and {} meet under axes that are not parallel", a.name, b.name),
+        "T_ba must turn the body's axes into each other: put a mounting rotation between "
+        "bodies, or turn the mesh");
+  return {static_cast<int>(to), T(to, axis) > 0 ? 1.0 : -1.0};
+}
+
+/// The shape of b that is the shape of a in frame b, and its sign: P_k(-s) = (-1)^k P_k(s).
+std::pair<LineShape, double> shape_in(const LinePort& a, const LinePort& b, const Matrix3d& T,
+                                      const LineShape& shape) {
+  const Turned along = turned(a, b, T, a.line.axis);
+  const Turned of = turned(a, b, T, shape.component % 3);
+  const double flip = along.sign < 0 && shape.degree % 2 == 1 ? -1 : 1;
+  return {{of.axis + (is_rotation(shape) ? 3 : 0), shape.degree}, flip * of.sign};
+}
+
+void require_same(const LinePort& a, const LinePort& b, const Rotation& T_ba) {
+  if (!T_ba.values().empty())
+    throw Error(Code::bad_value,
+                fmt::format("lines {} and {} meet by a rotation with parameters", a.name, b.name),
+                "give its number: the shapes of a line do not turn");
+  if (a.is_parent && b.is_parent)
+    throw Error(
+        Code::bad_value, fmt::format("lines {} and {} are both parents", a.name, b.name),
+        "one of the bodies must have its line as a child: modal_data(mesh, parent, {line})");
+  const double longer = std::max(a.line.length, b.line.length);
+  if (!(std::abs(a.line.length - b.line.length) <= kSameLength * longer))
+    throw Error(Code::bad_value,
+                fmt::format("line {} has the length {:.9g} m, line {} {:.9g} m", a.name,
+                            a.line.length, b.name, b.line.length),
+                "weld edges of one length: take the common segment, fe::segment(mesh, edge, from, "
+                "to)");
+  const Matrix3d T = T_ba.nominal();
+  const bool fits = turned(a, b, T, a.line.axis).axis == b.line.axis &&
+                    a.line.shapes.size() == b.line.shapes.size() &&
+                    std::ranges::all_of(a.line.shapes, [&](const LineShape& s) {
+                      const LineShape wanted = shape_in(a, b, T, s).first;
+                      return std::ranges::any_of(b.line.shapes, [&](const LineShape& t) {
+                        return t.component == wanted.component && t.degree == wanted.degree;
+                      });
+                    });
+  if (!fits)
+    throw Error(Code::size,
+                fmt::format("line {} along {} has the shapes {}, line {} along {} has {}", a.name,
+                            "xyz"[a.line.axis], list_of_shapes(a.line), b.name, "xyz"[b.line.axis],
+                            list_of_shapes(b.line)),
+                "give both edges the same number of polynomials, fe::legendre(m), and T_ba between "
+                "their frames");
+}
+
+/// Equal motion and opposite forces of the shapes of both lines.
+void tie_shapes(const LinePort& a, const LinePort& b, const Matrix3d& T, bool rotations,
+                const std::source_location& at) {
+  for (std::size_t i = 0; i < a.line.shapes.size(); ++i) {
+    if (!rotations && is_rotation(a.line.shapes[i])) continue;
+    const auto [shape, sign] = shape_in(a, b, T, a.line.shapes[i]);
+    const DualPort<1>& mine = a.shape_ports[i];
+    const DualPort<1> other = b.shape(shape);
+    const auto signed_by = [sign = sign](const Expr& e) { return sign > 0 ? e : e.negated(); };
+    mine.accel = Rhs(signed_by(other.accel.expr()), at);
+    other.force += Rhs(signed_by(mine.reaction.expr()).negated(), at);
+  }
+}
+
+struct ParentOnly {
+  DualPort<6> parent;
+};
+
+}  // namespace
+
+DualPort<1> LinePort::shape(const LineShape& wanted) const {
+  for (std::size_t i = 0; i < line.shapes.size(); ++i)
+    if (line.shapes[i].component == wanted.component && line.shapes[i].degree == wanted.degree)
+      return shape_ports[i];
+  throw Error(Code::unknown_name, fmt::format("line {} has no shape {}", name, to_string(wanted)),
+              "its shapes are " + list_of_shapes(line));
+}
+
+FlexibleBodyHandle::FlexibleBodyHandle(Graph* graph, int node)
+    : BodyHandle(graph, node), graph_(graph), node_(node) {}
+
+LinePort FlexibleBodyHandle::line(const std::string& name) const {
+  const Node& node = graph_->nodes[static_cast<std::size_t>(node_)];
+  const auto& data = *dynamic_cast<const Specified<FlexibleBody::Spec>&>(*node.block).spec().data;
+  const auto found = std::ranges::find(data.lines, name, &ModalLine::name);
+  if (found == data.lines.end()) {
+    std::string names;
+    for (const ModalLine& l : data.lines) names += (names.empty() ? "" : ", ") + l.name;
+    throw Error(Code::unknown_name, fmt::format("{} has no line {}", node.name, name),
+                names.empty() ? "give its mesh one: fe::with_interface(mesh, name, fe::shapes(...))"
+                              : "its lines are " + names);
+  }
+  const int child_channel = detail::find_child(*graph_, node_, name);
+  LinePort port{node.name + "." + name,
+                child_channel < 0 ? parent : detail::channel<6>(graph_, node_, child_channel),
+                child_channel < 0,
+                {found->name, found->axis, found->length, found->shapes, {}},
+                {}};
+  for (const LineShape& shape : found->shapes)
+    port.shape_ports.push_back(detail::channel<1>(
+        graph_, node_, detail::find_channel(*graph_, node_, channel_of(*found, shape))));
+  return port;
+}
+
+void weld(const LinePort& a, const LinePort& b, const Rotation& T_ba, std::source_location at) {
+  if (b.is_parent && !a.is_parent) return weld(b, a, T_ba.inverse(), at);
+  require_same(a, b, T_ba);
+  if (a.is_parent)
+    mount(ParentOnly{a.point}, b.point, T_ba, at);
+  else
+    weld(a.point, b.point, T_ba, at);
+  tie_shapes(a, b, T_ba.nominal(), /*rotations=*/true, at);
+}
+
+Hinge::Handle hinge_line(Diagram& d, const std::string& name, const LinePort& a, const LinePort& b,
+                         const Rotation& T_ba, std::source_location at) {
+  require_same(a, b, T_ba);
+  if (!a.is_parent)
+    throw Error(Code::bad_value,
+                fmt::format("line {}, which turns by {}, is not its body's parent", a.name, name),
+                "modal_data(mesh, line, {...}) makes it the parent; to close a chain write a joint "
+                "and weld");
+  const Hinge::Handle joint =
+      hinge(d, name, ParentOnly{a.point}, b.point, T_ba, Vector3d::Unit(a.line.axis), at);
+  tie_shapes(a, b, T_ba.nominal(), /*rotations=*/false, at);
+  return joint;
+}
+
+}  // namespace titop

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <string>
+#include <titop/blocks/fe/modal_data.hpp>
+#include <titop/blocks/hinge.hpp>
+#include <titop/blocks/rigid_body.hpp>
+#include <titop/graph/mount.hpp>
+#include <vector>
+
+/// Edges of flexible bodies as interfaces: the six channels at the middle of a line and one scalar
+/// channel for each of its shapes.
+namespace titop {
+
+/// A line of a body, `panel.line("next")`.
+struct LinePort {
+  std::string name;                      ///< "p1.next"
+  DualPort<6> point;                     ///< the child at its middle, or the parent
+  bool is_parent = false;                ///< the body hangs on it
+  ModalLine line;                        ///< axis, length and shapes; Phi is empty
+  std::vector<DualPort<1>> shape_ports;  ///< one per shape
+
+  /// The channel of this shape. Throws unknown_name with those that the line has.
+  DualPort<1> shape(const LineShape& shape) const;
+};
+
+/// Ports of a flexible body: those of a body, and its lines.
+struct FlexibleBodyHandle : BodyHandle {
+  FlexibleBodyHandle(Graph* graph, int node);
+  FlexibleBodyHandle(const FlexibleBodyHandle&) = default;
+  FlexibleBodyHandle& operator=(const FlexibleBodyHandle& other) {
+    return detail::rebind(*this, other);
+  }
+  /// The line of this name, of a child or of the parent. Throws unknown_name with those it has.
+  LinePort line(const std::string& name) const;
+
+ private:
+  Graph* graph_;
+  int node_;
+};
+
+/// Fixes line `a` to line `b` along their whole length: `mount` of the bodies at their middles if a
+/// is its body's parent (or b is), else `weld`, and equal motion and opposite forces of every
+/// shape. T_ba: components in frame a to those in frame b, a rotation of the axes into each other;
+/// numbers, no parameter. The meshes of the edges need not match: both move, or are measured, by
+/// the same polynomials.
+///
+/// If both lines are `fe::shapes`, the scene is stiffer than the edges welded point by point, if
+/// both are `fe::moments`, softer; more polynomials bring them together.
+///
+/// Throws size for lines with other shapes, bad_value for lengths that differ by more than 1e-6,
+/// two parents, axes that T_ba does not turn into each other, and a T_ba with parameters;
+/// `compile` reports the errors of mount and weld.
+void weld(const LinePort& a, const LinePort& b, const Rotation& T_ba = {},
+          std::source_location at = std::source_location::current());
+
+/// A hinge along the whole line, as between solar panels: `a`, which must be its body's parent,
+/// turns about the line against `b`. As `weld`, but for the rotation about the line: as a rigid
+/// motion it is the hinge's angle, and its shapes are free on both sides.
+///
+///     auto h = hinge_line(d, "h1", p2.line("inner"), p1.line("outer"));
+///     h.torque = 20 * h.angle + 0.1 * h.rate;
+Hinge::Handle hinge_line(Diagram& d, const std::string& name, const LinePort& a, const LinePort& b,
+                         const Rotation& T_ba = {},
+                         std::source_location at = std::source_location::current());
+
+}  // namespace titop
