@@ -86,7 +86,7 @@ void require_same(const LinePort& a, const LinePort& b, const Rotation& T_ba) {
 
 /// Equal motion and opposite forces of the shapes of both lines.
 void tie_shapes(const LinePort& a, const LinePort& b, const Matrix3d& T, bool rotations,
-                const std::source_location& at) {
+                const SourceLine& at) {
   for (std::size_t i = 0; i < a.line.shapes.size(); ++i) {
     if (!rotations && is_rotation(a.line.shapes[i])) continue;
     const auto [shape, sign] = shape_in(a, b, T, a.line.shapes[i]);
@@ -138,7 +138,7 @@ LinePort FlexibleBodyHandle::line(const std::string& name) const {
   return port;
 }
 
-void weld(const LinePort& a, const LinePort& b, const Rotation& T_ba, std::source_location at) {
+void weld(const LinePort& a, const LinePort& b, const Rotation& T_ba, SourceLine at) {
   if (b.is_parent && !a.is_parent) return weld(b, a, T_ba.inverse(), at);
   require_same(a, b, T_ba);
   if (a.is_parent)
@@ -149,7 +149,7 @@ void weld(const LinePort& a, const LinePort& b, const Rotation& T_ba, std::sourc
 }
 
 Hinge::Handle hinge_line(Diagram& d, const std::string& name, const LinePort& a, const LinePort& b,
-                         const Rotation& T_ba, std::source_location at) {
+                         const Rotation& T_ba, SourceLine at) {
   require_same(a, b, T_ba);
   if (!a.is_parent)
     throw Error(Code::bad_value,

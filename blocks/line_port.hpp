@@ -51,7 +51,7 @@ struct FlexibleBodyHandle : BodyHandle {
 /// two parents, axes that T_ba does not turn into each other, and a T_ba with parameters;
 /// `compile` reports the errors of mount and weld.
 void weld(const LinePort& a, const LinePort& b, const Rotation& T_ba = {},
-          std::source_location at = std::source_location::current());
+          SourceLine at = std::source_location::current());
 
 /// A hinge along the whole line, as between solar panels: `a`, which must be its body's parent,
 /// turns about the line against `b`. As `weld`, but for the rotation about the line: as a rigid
@@ -61,6 +61,6 @@ void weld(const LinePort& a, const LinePort& b, const Rotation& T_ba = {},
 ///     h.torque = 20 * h.angle + 0.1 * h.rate;
 Hinge::Handle hinge_line(Diagram& d, const std::string& name, const LinePort& a, const LinePort& b,
                          const Rotation& T_ba = {},
-                         std::source_location at = std::source_location::current());
+                         SourceLine at = std::source_location::current());
 
 }  // namespace titop
