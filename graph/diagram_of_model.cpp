@@ -6,6 +6,8 @@
 namespace titop {
 
 Diagram diagram_of_model(const StateSpace& m, const std::string& name) {
+  require_fitting(m, "diagram_of_model");
+  require_names(m, "diagram_of_model");
   Diagram d{name};
   const auto model = d.add("model", Lti{.A = m.A, .B = m.B, .C = m.C, .D = m.D});
   const auto part = [](Eigen::Index size, Eigen::Index i) -> Eigen::MatrixXd {

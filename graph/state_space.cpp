@@ -42,6 +42,14 @@ void require_fitting(const StateSpace& m, const std::string& user) {
   if (!mistakes.empty()) throw Error(std::move(mistakes));
 }
 
+void require_names(const StateSpace& m, const std::string& user) {
+  if (std::ssize(m.inputs) == m.B.cols() && std::ssize(m.outputs) == m.C.rows()) return;
+  throw Error(Code::size,
+              fmt::format("{}: the model has {} inputs and {} outputs, and names of {} and {}",
+                          user, m.B.cols(), m.C.rows(), m.inputs.size(), m.outputs.size()),
+              "fill StateSpace::inputs and StateSpace::outputs: one name for each");
+}
+
 Eigen::MatrixXcd StateSpace::transfer(std::complex<double> s) const {
   check_finite(s, "the model");
   require_fitting(*this, "transfer");

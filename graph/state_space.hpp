@@ -34,6 +34,8 @@ struct StateSpace {
 /// Throws size, with all matrices that do not fit: A must be n x n, B n x nu, C ny x n, D ny x nu,
 /// with n the rows of A, nu the columns of B and ny the rows of C. `user`: for the message.
 void require_fitting(const StateSpace& model, const std::string& user);
+/// Throws size unless every input and every output has a name.
+void require_names(const StateSpace& model, const std::string& user);
 
 /// Column of the only entry in this row of A if it is 1 and off the diagonal, else -1: xdot of the
 /// state is another state.

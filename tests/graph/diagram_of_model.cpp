@@ -47,4 +47,7 @@ TEST_CASE("diagram_of_model: matrices that do not fit are refused") {
   m = lag();
   m.A(0, 0) = std::nan("");
   CHECK_THROWS_AS(diagram_of_model(m, "m"), Error);
+  m = lag();
+  m.inputs.pop_back();
+  CHECK(titop_test::error_of([&] { diagram_of_model(m, "m"); }).has(Code::size));
 }
