@@ -97,10 +97,9 @@ DiscreteModel sampled_law(double period) {
 /// The attitude under a torque of 1 N m about z from time 0 on, with the loop of the diagram open.
 Trajectory pushed(const System& satellite) {
   const DiscreteModel law = sampled_law(0.01);
-  return simulate(
-      satellite.update({{"gain", 0}}),
-      Excitation::sampled(law.model, law.period, Excitation::step(Eigen::Vector3d(0, 0, 1))),
-      {.step = 0.005, .until = 60});
+  return simulate(satellite.update({{"gain", 0}}),
+                  Excitation::sampled(law, Excitation::step(Eigen::Vector3d(0, 0, 1))),
+                  {.step = 0.005, .until = 60});
 }
 
 }  // namespace

@@ -99,10 +99,6 @@ class Unwarp {
 
 }  // namespace
 
-Eigen::MatrixXcd DiscreteModel::at(double omega) const {
-  return model.transfer(std::polar(1.0, omega * period));
-}
-
 DiscreteModel discretize(const StateSpace& model, double period, Discretization method,
                          double prewarp) {
   require_fitting(model, "discretize");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <titop/analysis/control/margins.hpp>
+#include <titop/analysis/simulation/discrete_model.hpp>
 #include <titop/graph/nodes/lti.hpp>
 #include <titop/graph/state_space.hpp>
 
@@ -12,15 +13,6 @@ enum class Discretization {
   zero_order_hold,   ///< exact for inputs held over each step, as by a digital controller
   first_order_hold,  ///< exact for inputs that are linear in each step; u(k + 1) is known at k + 1
   tustin             ///< s = c (z - 1) / (z + 1): for laws and filters; no aliasing, stays stable
-};
-
-/// A discrete model and its period.
-struct DiscreteModel {
-  StateSpace model;   ///< has the continuous model's states only with a zero-order hold
-  double period = 0;  ///< [s]
-
-  /// C (z - A)^-1 B + D at z = exp(j omega period). Throws singular if that is a pole. O(n^3).
-  Eigen::MatrixXcd at(double omega) const;
 };
 
 /// The model at this period [s]. Holds by `hold` (analysis/simulation/hold.hpp), the first-order

@@ -50,27 +50,20 @@ Excitation Excitation::held(MatrixXd samples, double period) {
   });
 }
 
-Excitation Excitation::sampled(StateSpace law, double period, Excitation more) {
-  require_fitting(law, "Excitation::sampled");
-  if (std::ssize(law.inputs) != law.D.cols() || std::ssize(law.outputs) != law.D.rows())
-    throw Error(
-        Code::size,
-        fmt::format("Excitation::sampled: the law has {} inputs and {} outputs, and names of "
-                    "{} and {}",
-                    law.D.cols(), law.D.rows(), law.inputs.size(), law.outputs.size()),
-        "name each input like the output of the system that it reads, each output like the "
-        "input that it drives");
-  if (!law.A.allFinite() || !law.B.allFinite() || !law.C.allFinite() || !law.D.allFinite())
+Excitation Excitation::sampled(DiscreteModel law, Excitation more) {
+  const StateSpace& m = law.model;
+  require_fitting(m, "Excitation::sampled");
+  require_names(m, "Excitation::sampled");
+  if (!m.A.allFinite() || !m.B.allFinite() || !m.C.allFinite() || !m.D.allFinite())
     throw Error(Code::not_finite, "Excitation::sampled: the law is not finite",
                 "give finite matrices");
-  if (!(period > 0) || !std::isfinite(period))
-    throw Error(Code::bad_value, fmt::format("Excitation::sampled has period {} s", period),
+  if (!(law.period > 0) || !std::isfinite(law.period))
+    throw Error(Code::bad_value, fmt::format("Excitation::sampled has period {} s", law.period),
                 "give a positive period");
   if (more.law_)
     throw Error(Code::bad_value, "Excitation::sampled: there are two laws",
                 "write them as one law, with the inputs and outputs of both");
-  more.law_ = std::make_shared<const StateSpace>(std::move(law));
-  more.period_ = period;
+  more.law_ = std::make_shared<const DiscreteModel>(std::move(law));
   return more;
 }
 

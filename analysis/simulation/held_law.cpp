@@ -29,8 +29,9 @@ std::vector<int> places_of(const std::vector<std::string>& of_law,
 
 /// Steps of a period.
 Index steps_of_period(double period, double step) {
+  constexpr double kMost = 1e9;
   const double steps = period / step, whole = std::round(steps);
-  if (whole < 1 || std::abs(steps - whole) > 1e-9 * whole)
+  if (!(whole >= 1 && whole <= kMost) || std::abs(steps - whole) > 1e-9 * whole)
     throw Error(
         Code::bad_value,
         fmt::format("the sampled law has a period of {} s, and the step is {} s", period, step),
@@ -41,9 +42,10 @@ Index steps_of_period(double period, double step) {
 }  // namespace
 
 HeldLaw::HeldLaw(const System& system, const Excitation& excitation, double step)
-    : law_(excitation.law()), inputs_(Eigen::VectorXd::Zero(std::ssize(system.inputs()))) {
-  if (!law_) return;
-  every_ = steps_of_period(excitation.period(), step);
+    : inputs_(Eigen::VectorXd::Zero(std::ssize(system.inputs()))) {
+  if (!excitation.law()) return;
+  law_ = &excitation.law()->model;
+  every_ = steps_of_period(excitation.law()->period, step);
   reads_ = places_of(law_->inputs, system.outputs(), "output");
   drives_ = places_of(law_->outputs, system.inputs(), "input");
   x_ = Eigen::VectorXd::Zero(law_->order());

@@ -5,7 +5,8 @@
 /// The discrete law of Excitation::sampled in one simulation. For the library's own files.
 namespace titop::detail {
 
-/// States and outputs of the law from sample to sample; without a law the inputs are 0.
+/// States and outputs of the law from sample to sample; without a law the inputs are 0. It is
+/// linear: for deviations of y it has the deviations of the inputs.
 class HeldLaw {
  public:
   /// Throws unknown_name for inputs and outputs of the law that the system does not have,
@@ -21,7 +22,7 @@ class HeldLaw {
   void add_to(Excitation::Ends& ends) const;
 
  private:
-  const StateSpace* law_;
+  const StateSpace* law_ = nullptr;
   Eigen::Index every_ = 1;        ///< steps of a period
   std::vector<int> reads_ = {};   ///< per input of the law: output of the system
   std::vector<int> drives_ = {};  ///< per output of the law: input of the system

@@ -172,24 +172,36 @@ class RuleStepping : public TimeStepping {
   std::unique_ptr<detail::StepRule> rule_;
 };
 
+/// Takes the sample of this time, if there is one, of the law for a deviation of the states.
+void sample(detail::HeldLaw& law, const OutputPeaks& outputs, const Now& now,
+            const VectorXd& deviation) {
+  if (!now.last && law.samples_at(now.step)) law.sample(outputs.outputs(deviation, law.inputs()));
+}
+
 /// Exact steps of the dense model. Its error by rounding of A and B is the difference of their xdot
 /// from the factors', propagated by the same steps.
 class Exact : public TimeStepping {
  public:
-  Exact(const System& system, const detail::Factored& d, double h, Index steps)
+  Exact(const System& system, const detail::Factored& d, const detail::HeldLaw& law, double h,
+        Index steps)
       : rule_(system, h),
         sizes_(d),
+        law_(law),
         every_(std::max<Index>(1, (steps + kLooks - 1) / kLooks)),
         weight_(static_cast<double>(every_)),
         off_(VectorXd::Zero(system.order())) {}
   void look(const Now& now) override {
     sizes_.add(now.y);
+    sample(law_, sizes_, now, off_);
     if (now.step % every_ != 0 && !now.last) return;
-    sizes_.add_off(now, sizes_.outputs(off_, VectorXd::Zero(now.u.size())));
+    sizes_.add_off(now, sizes_.outputs(off_, law_.inputs()));
     off_ += weight_ * rule_.of(rule_.xdot(now.x, now.u) - now.xdot);
   }
   VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) override {
-    return rule_.step(x, u0, u1, off_);
+    VectorXd next = rule_.step(x, u0, u1, off_);
+    if (!law_.inputs().isZero(0))
+      off_ += rule_.step(VectorXd::Zero(x.size()), law_.inputs(), law_.inputs());
+    return next;
   }
   VectorXd error() const override { return sizes_.relative(); }
 
@@ -197,6 +209,7 @@ class Exact : public TimeStepping {
   static constexpr Index kLooks = 1000;  ///< in one motion: a look costs as much as some steps
   detail::ExactRule rule_;
   OutputPeaks sizes_;
+  detail::HeldLaw law_;  ///< of the deviation
   Index every_;
   double weight_;
   VectorXd off_;
@@ -205,17 +218,19 @@ class Exact : public TimeStepping {
 /// Midpoint at half the step, against that at the step.
 class Halved : public TimeStepping {
  public:
-  Halved(const detail::Factored& d, double h, VectorXd x0)
+  Halved(const detail::Factored& d, const detail::HeldLaw& law, double h, VectorXd x0)
       : half_(detail::midpoint_rule(d, h / 2)),
         whole_(detail::midpoint_rule(d, h)),
         other_(std::move(x0)),
-        sizes_(d) {}
+        sizes_(d),
+        law_(law) {}
   void look(const Now& now) override {
     sizes_.add(now.y);
-    sizes_.add_off(now, sizes_.outputs(other_, now.u) - now.y);
+    sample(law_, sizes_, now, other_ - now.x);
+    sizes_.add_off(now, sizes_.outputs(other_, now.u + law_.inputs()) - now.y);
   }
   VectorXd step(const VectorXd& x, const VectorXd& u0, const VectorXd& u1) override {
-    other_ = whole_->step(other_, u0, u1);
+    other_ = whole_->step(other_, u0 + law_.inputs(), u1 + law_.inputs());
     const VectorXd u = (u0 + u1) / 2;
     return half_->step(half_->step(x, u0, u), u, u1);
   }
@@ -225,6 +240,7 @@ class Halved : public TimeStepping {
   std::unique_ptr<detail::StepRule> half_, whole_;
   VectorXd other_;
   OutputPeaks sizes_;
+  detail::HeldLaw law_;  ///< of the difference of `other_`
 };
 
 /// `exact`: by how much the exact step was off; negative if it was not tried.
@@ -248,47 +264,50 @@ void refuse_inaccurate(const System& system, const Simulation& s, const VectorXd
                   of_exact));
 }
 
-void refuse_overflow(const System& system, double time) {
+void refuse_overflow(const System& system, const Excitation& excitation, double time) {
   throw Error(Code::not_finite,
               fmt::format("the response of {} overflows at {} s", system.stage().graph.name, time),
-              "look at its poles: it is unstable; stop earlier");
+              excitation.law()
+                  ? "the loop with the sampled law is unstable: look at the law's sign and period, "
+                    "and at margins(series(law, discretize(model, period)))"
+                  : "look at its poles: it is unstable; stop earlier");
 }
 
 std::unique_ptr<TimeStepping> motion_of(const System& system, const detail::Factored& d,
-                                        const Simulation& s, Stepper stepper, Index steps,
-                                        const VectorXd& x0) {
+                                        const detail::HeldLaw& law, const Simulation& s,
+                                        Stepper stepper, Index steps, const VectorXd& x0) {
   switch (stepper) {
     case Stepper::rk4: return std::make_unique<RuleStepping>(detail::rk4_rule(system, s.step));
     case Stepper::midpoint:
       if (s.stepper == Stepper::midpoint)
         return std::make_unique<RuleStepping>(detail::midpoint_rule(d, s.step));
-      return std::make_unique<Halved>(d, s.step, x0);
-    default: return std::make_unique<Exact>(system, d, s.step, steps);
+      return std::make_unique<Halved>(d, law, s.step, x0);
+    default: return std::make_unique<Exact>(system, d, law, s.step, steps);
   }
 }
 
-Trajectory move(const System& system, const Excitation& excitation, const Simulation& s,
-                Stepper stepper, TimeStepping& motion, VectorXd x, Index steps) {
+Trajectory move(const System& system, const Excitation& excitation, detail::HeldLaw law,
+                const Simulation& s, Stepper stepper, TimeStepping& motion, VectorXd x,
+                Index steps) {
   Trajectory result;
   result.stepper = stepper;
   result.states = system.states();
   result.outputs = system.outputs();
   result.y.resize(std::ssize(result.outputs), steps + 1);
   result.x.resize(x.size(), s.keep_states ? steps + 1 : 1);
-  detail::HeldLaw law(system, excitation, s.step);
   VectorXd last = inputs_of(system, excitation, 0, s.step).first;
   for (Index k = 0;; ++k) {
     const double now = static_cast<double>(k) * s.step;
     Excitation::Ends u{last, {}};
     if (k < steps) u = inputs_of(system, excitation, now, static_cast<double>(k + 1) * s.step);
-    if (k < steps && law.samples_at(k)) law.sample(system.apply(x, last + law.inputs()).y);
     last = u.second;
+    if (k < steps && law.samples_at(k)) law.sample(system.apply(x, u.first + law.inputs()).y);
     law.add_to(u);
     result.time.push_back(now);
     const auto [xdot, y] = system.apply(x, u.first);
     result.y.col(k) = y;
     result.x.col(s.keep_states ? k : 0) = x;
-    if (!x.allFinite() || !y.allFinite()) refuse_overflow(system, now);
+    if (!x.allFinite() || !y.allFinite()) refuse_overflow(system, excitation, now);
     motion.look({k, k == steps, x, u.first, y, xdot});
     if (k == steps) break;
     x = motion.step(x, u.first, u.second);
@@ -302,9 +321,10 @@ Trajectory move(const System& system, const Excitation& excitation, const Simula
 Trajectory simulate(const System& system, const Excitation& excitation, const Simulation& s) {
   const Index steps = steps_of(s);
   const VectorXd x0 = start_of(system, s.x0);
+  const detail::HeldLaw law(system, excitation, s.step);
   const auto by = [&](Stepper stepper) {
-    const auto motion = motion_of(system, *system.data_, s, stepper, steps, x0);
-    return move(system, excitation, s, stepper, *motion, x0, steps);
+    const auto motion = motion_of(system, *system.data_, law, s, stepper, steps, x0);
+    return move(system, excitation, law, s, stepper, *motion, x0, steps);
   };
   if (s.stepper != Stepper::automatic) return by(s.stepper);
   double exact = -1;

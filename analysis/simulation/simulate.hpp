@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <functional>
 #include <memory>
+#include <titop/analysis/simulation/discrete_model.hpp>
 #include <titop/compiler/system/system.hpp>
 #include <vector>
 
@@ -41,26 +42,24 @@ class Excitation {
   ///
   ///     u(k) = C x(k) + D y(k),   x(k + 1) = A x(k) + B y(k),   x(0) = 0
   ///
-  /// with y the outputs just before, and u held until the next sample. Its inputs are outputs of
-  /// the system, its outputs inputs of the system, by their names; the sign of the feedback is the
-  /// law's own, a delay of whole periods some states of it. `more` excites the inputs beside it.
-  /// Trajectory::error is that of the system under these inputs: it does not contain their change
-  /// by errors of y. `simulate` throws unknown_name for names that the system does not have,
-  /// bad_value if the period is not a whole number of steps. Throws size for matrices that do not
-  /// fit each other or the names, not_finite, bad_value for a period that is not positive.
+  /// and u is held until the next sample. y are the outputs just before u changes, after a jump of
+  /// `more`. The law's inputs are outputs of the system, its outputs inputs of the system, by their
+  /// names; the sign of the feedback is the law's own, a delay of whole periods some states of it.
+  /// The values of `more` are added to those of the law. `simulate` throws unknown_name for names
+  /// that the system does not have, bad_value if the period is not a whole number of steps. Throws
+  /// size for matrices that do not fit each other or the names, not_finite, bad_value for a period
+  /// that is not positive and for a second law in `more`.
   ///
   ///     const DiscreteModel law = discretize(pd, 0.1, Discretization::tustin);
-  ///     simulate(system, Excitation::sampled(law.model, law.period), {.step = 0.02, .until = 60});
-  static Excitation sampled(StateSpace law, double period, Excitation more = none());
+  ///     simulate(system, Excitation::sampled(law), {.step = 0.02, .until = 60});
+  static Excitation sampled(DiscreteModel law, Excitation more = none());
 
-  /// The law of `sampled`, null of others, and its period [s]. Valid as long as the Excitation.
-  const StateSpace* law() const { return law_.get(); }
-  double period() const { return period_; }
+  /// The law of `sampled`, null of others. Valid as long as the Excitation.
+  const DiscreteModel* law() const { return law_.get(); }
 
  private:
   Over over_;
-  std::shared_ptr<const StateSpace> law_ = {};
-  double period_ = 0;
+  std::shared_ptr<const DiscreteModel> law_ = {};
 };
 
 /// Method of a step. Cost per step of n states, b bodies; error per unit of time of steps h.
