@@ -56,8 +56,8 @@ options:
   --accuracy ERROR                         reduce: relative to the peaks, 1e-3 if left out
   --until SECONDS                          report: of the step responses; simulate
   --step SECONDS                           simulate: between the times of the result
-  --record FILE.csv                        simulate: inputs over time, columns time [s] and inputs by
-                                           name, linear in between; jumps are two equal times
+  --record FILE.csv                        simulate: inputs over time: a column time, in seconds, and
+                                           inputs by name; linear in between, jumps are two equal times
   --unit-step INPUT                        simulate: this input is 1, the others are 0
   --delay SECONDS                          margins: an additional delay in the loop
   --part I/N                               sweep: the I-th of N parts of the rows
@@ -66,7 +66,7 @@ options:
   --omega LOW HIGH COUNT                   for .csv: rad/s, logarithmic
   --minimize-up-to STATES                  100 if left out; 0: never
 exit code: 0 done, 1 refused (errors on stderr), 2 invalid command line,
-           3 certify: a check failed (the lines that begin with FAULT)
+           3 certify: a check failed (the lines that begin with FAULT); margins: not stable
 )";
 
 namespace {
@@ -126,7 +126,10 @@ std::vector<std::string> separated(const std::string& list) {
   std::vector<std::string> words;
   for (std::size_t at = 0; at < list.size();) {
     const std::size_t end = std::min(list.find(',', at), list.size());
-    words.push_back(list.substr(at, end - at));
+    std::string word = list.substr(at, end - at);
+    word.erase(0, std::min(word.find_first_not_of(' '), word.size()));
+    word.erase(word.find_last_not_of(' ') + 1);
+    words.push_back(std::move(word));
     at = end + 1;
   }
   return words;
@@ -137,7 +140,8 @@ Arguments parse(const std::vector<std::string>& all) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     const std::string& option = all[i];
     const auto word = [&]() -> const std::string& {
-      if (++i == all.size()) throw Misuse{fmt::format("{} needs more", option)};
+      if (++i == all.size() || all[i].starts_with("--"))
+        throw Misuse{fmt::format("{} needs more", option)};
       return all[i];
     };
     const auto next = [&] { return number(option, word()); };
@@ -185,6 +189,9 @@ Arguments parse(const std::vector<std::string>& all) {
       a.xi = next();
     } else if (option == "--set") {
       a.set.push_back(assignment(option, word()));
+      for (std::size_t k = 0; k + 1 < a.set.size(); ++k)
+        if (a.set[k].first == a.set.back().first)
+          throw Misuse{fmt::format("--set {} is there twice", a.set[k].first)};
     } else if (option == "--inputs") {
       a.inputs = word();
     } else if (option == "--outputs") {
@@ -201,7 +208,7 @@ Arguments parse(const std::vector<std::string>& all) {
       a.delay = seconds(option, next());
     } else if (option == "--part") {
       std::tie(a.part, a.parts) = part(option, word());
-    } else if (option.starts_with("--")) {
+    } else if (option.starts_with("-")) {
       throw Misuse{fmt::format("there is no option {}", option)};
     } else {
       a.words.push_back(option);

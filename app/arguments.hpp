@@ -24,9 +24,10 @@ struct Arguments {
   ParameterList set;            ///< values of parameters, in the order of the options
   std::string inputs, outputs;  ///< of a scene, between commas; empty: all
   double accuracy = Scene{}.accuracy;
-  std::string record, unit_step;  ///< inputs over time: a file, or the name of one
-  double step = 0, delay = 0;     ///< [s]
-  int part = 1, parts = 1;
+  std::string record;              ///< file with the inputs over time
+  std::string unit_step;           ///< name of the input that is 1
+  double step = 0, delay = 0;      ///< [s]
+  int part = 1, parts = 1;         ///< of the rows of a sweep: this part of so many
   std::vector<std::string> given;  ///< options, as typed
   int minimize_up_to = Options{}.minimize_up_to;
 };

@@ -1,5 +1,6 @@
-// The command line. Exit codes: 0 done, 1 the scene or a file is refused (the errors are on
-// stderr), 2 not understood, 3 compiled, but the full certificate does not hold.
+// The command line. Exit codes: 0 done, 1 the diagram or a file is refused (the errors are on
+// stderr), 2 not understood, 3 compiled, but the full certificate does not hold, or a loop is not
+// stable.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -152,15 +153,18 @@ constexpr std::string_view kModel = " --set --minimize-up-to ",
 /// Refuses options without effect on this command, and output over a file that is read.
 void check_words(const Command& command, const Arguments& a) {
   if (a.words.size() != command.words)
-    throw Misuse{fmt::format("{} takes {} files", command.name, command.words - 1)};
+    throw Misuse{fmt::format("{} takes {} file{}", command.name, command.words - 1,
+                             command.words == 2 ? "" : "s")};
   std::string_view options = command.options;
   const std::string kind = a.words.size() > 2 ? fs::path(a.words[2]).extension().string() : "";
   if (std::string_view(command.name) == "export")
     options = kind == ".hpp" ? kHeader : kind == ".csv" ? kResponse : kModel;
   for (const std::string& option : a.given)
     if (options.find(" " + option + " ") == std::string_view::npos)
-      throw Misuse{fmt::format("{}{} does not have the option {}", command.name,
-                               kind.empty() ? "" : " to a file " + kind, option)};
+      throw Misuse{fmt::format(
+          "{}{} does not have the option {}", command.name,
+          kind.empty() || std::string_view(command.name) != "export" ? "" : " to a file " + kind,
+          option)};
   const auto own = a.words.begin() + static_cast<std::ptrdiff_t>(command.read);
   std::vector<std::string> written(own, a.words.end()), read(a.words.begin() + 1, own);
   if (!a.to.empty()) written.push_back(a.to);
@@ -184,9 +188,9 @@ constexpr Command kCommands[] = {
     {"report", 2, 2, done<report>,
      " --set --fold -o --band --until --no-diagrams --minimize-up-to "},
     {"export", 3, 2, done<export_model>, kModel},
-    {"margins", 2, 2, done<margins_of_loops>, " --set --delay --minimize-up-to "},
+    {"margins", 2, 2, margins_of_loops, " --set --delay --minimize-up-to "},
     {"simulate", 3, 2, done<simulate_inputs>, " --set --step --until --record --unit-step "},
-    {"sweep", 4, 3, done<sweep_table>, " --set --omega --part --minimize-up-to "},
+    {"sweep", 4, 3, sweep_table, " --set --omega --part --minimize-up-to "},
     {"reduce", 3, 2, done<reduce_scene>,
      " --set --band --inputs --outputs --accuracy --sample-time "},
     {"import", 2, 2, done<import_file>,

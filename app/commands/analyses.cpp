@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <titop/emit/text/csv.hpp>
 #include <titop/emit/text/write_file.hpp>
 
 #include "commands/diagram.hpp"
@@ -28,22 +29,30 @@ Eigen::Index place_of_input(const System& system, const std::string& name,
   const std::vector<std::string>& names = system.inputs();
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end())
-    throw Error(Code::unknown_name, fmt::format("{}: there is no input {}", from, name),
-                fmt::format("the inputs are {}", fmt::join(names, ", ")));
+    throw Error(
+        Code::unknown_name, fmt::format("{}: there is no input {}", from, name),
+        names.empty() ? "it has none" : fmt::format("the inputs are {}", fmt::join(names, ", ")));
   return found - names.begin();
 }
 
 /// A table of "time" and inputs, those that are left out at 0.
 Excitation recorded_inputs(const System& system, const std::string& file) {
   const Table table = read_table(file);
-  if (table.names.front() != "time")
+  if (table.names.front() != "time" && table.names.front() != "time [s]")
     throw Error(Code::bad_file,
                 fmt::format("{}: the first column is {}", file, table.names.front()),
-                "begin with a column named time [s], ascending");
+                "call the first column time; it has seconds, ascending");
   const auto columns = static_cast<Eigen::Index>(table.rows.size());
   Eigen::MatrixXd u = Eigen::MatrixXd::Zero(std::ssize(system.inputs()), columns);
   std::vector<double> times;
-  for (const std::vector<double>& row : table.rows) times.push_back(row.front());
+  for (std::size_t r = 0; r < table.rows.size(); ++r) {
+    times.push_back(table.rows[r].front());
+    if (r > 0 && times[r] < times[r - 1])
+      throw Error(
+          Code::bad_file,
+          fmt::format("{}: the time {} s after {} s", table.place(r), times[r], times[r - 1]),
+          "give ascending times; a jump is two equal times");
+  }
   for (std::size_t c = 1; c < table.names.size(); ++c) {
     const Eigen::Index input = place_of_input(system, table.names[c], file);
     for (Eigen::Index k = 0; k < columns; ++k)
@@ -53,8 +62,6 @@ Excitation recorded_inputs(const System& system, const std::string& file) {
 }
 
 Excitation excitation_of(const System& system, const Arguments& a) {
-  if (a.record.empty() == a.unit_step.empty())
-    throw Misuse{"simulate needs --record FILE.csv or --unit-step INPUT"};
   if (!a.record.empty()) return recorded_inputs(system, a.record);
   Eigen::VectorXd u = Eigen::VectorXd::Zero(std::ssize(system.inputs()));
   u(place_of_input(system, a.unit_step, "--unit-step")) = 1;
@@ -67,8 +74,22 @@ std::pair<std::size_t, std::size_t> part_of(const Arguments& a, std::size_t rows
   return {rows * (part - 1) / parts, rows * part / parts};
 }
 
-std::string numbers(const std::vector<double>& row) {
-  return fmt::format("{}", fmt::join(row, ","));
+ParameterList point_of(const Table& table, const std::vector<double>& row) {
+  ParameterList point;
+  for (std::size_t c = 0; c < table.names.size(); ++c) point.emplace_back(table.names[c], row[c]);
+  return point;
+}
+
+/// Every column must be a parameter.
+void require_parameters(const System& system, const Table& table) {
+  std::vector<std::string> names;
+  for (const auto& parameter : system.parameters()) names.push_back(parameter.first);
+  for (const std::string& column : table.names)
+    if (std::find(names.begin(), names.end(), column) == names.end())
+      throw Error(Code::unknown_name,
+                  fmt::format("{}: the diagram has no parameter {}", table.file, column),
+                  names.empty() ? "it has none"
+                                : fmt::format("its parameters are {}", fmt::join(names, ", ")));
 }
 
 /// A line for each pole, or pair of them.
@@ -99,40 +120,64 @@ std::vector<std::string> columns_of(const System& system, const Arguments& a,
   std::vector<std::string> names = {"point"};
   names.insert(names.end(), parameters.begin(), parameters.end());
   if (a.omega.empty()) {
-    names.insert(names.end(), {"hertz", "damping", "re", "im"});
-    return names;
+    names.insert(names.end(), {"pole_hertz", "pole_damping", "pole_re", "pole_im"});
+  } else {
+    names.push_back("rad_per_s");
+    for (const std::string& out : system.outputs())
+      for (const std::string& in : system.inputs())
+        for (const char* part : {"re", "im"})
+          names.push_back(fmt::format("{}({}/{})", part, out, in));
   }
-  names.push_back("rad_per_s");
-  for (const std::string& out : system.outputs())
-    for (const std::string& in : system.inputs())
-      for (const char* part : {"re", "im"})
-        names.push_back(fmt::format("{}({}/{})", part, out, in));
+  for (auto i = names.begin(); i != names.end(); ++i)
+    if (std::find(names.begin(), i, *i) != i)
+      throw Error(Code::duplicate_name, fmt::format("two columns of the result are called {}", *i),
+                  "give the parameter, input or output another name");
   return names;
+}
+
+/// A pole right of the axis by more than the rounding of its modulus.
+bool has_unstable_pole(const System& system) {
+  constexpr double kRight = 1e-9;
+  for (const Pole& p : system.poles())
+    if (p.s.real() > kRight * p.omega) return true;
+  return false;
 }
 
 }  // namespace
 
-void margins_of_loops(const Arguments& a) {
+int margins_of_loops(const Arguments& a) {
   const System system = compiled(a);
   const std::vector<std::string> points = loop_points(system);
   if (points.empty())
     throw Error(Code::unknown_name, fmt::format("{}: the diagram has no loop point", a.words[1]),
                 "write one where the loop is to be cut, d.loop_point(\"attitude\", law.out), a "
                 "block of type LoopPoint in the file");
-  for (const std::string& point : points)
-    print(fmt::format("loop at {}\n{}", point,
-                      to_string(margins(loop(system, point), {.delay = a.delay}))));
+  bool stable = true;
+  for (const std::string& point : points) {
+    const Margins m = margins(loop(system, point), {.delay = a.delay});
+    stable &= m.stable;
+    print(fmt::format("loop at {}\n{}", point, to_string(m)));
+  }
+  // Modes that a loop does not move, or does not see, are not in its L.
+  const bool hidden = stable && has_unstable_pole(system);
+  if (hidden)
+    print("the diagram has a pole right of the axis that no loop has: titop compile lists it\n");
+  return stable && !hidden ? 0 : 3;
 }
 
 void simulate_inputs(const Arguments& a) {
   require_csv(a.words[2]);
   if (a.step == 0 || a.until == 0) throw Misuse{"simulate needs --step SECONDS --until SECONDS"};
+  if (a.record.empty() && a.unit_step.empty())
+    throw Misuse{"simulate needs --record FILE.csv or --unit-step INPUT"};
+  if (!a.record.empty() && !a.unit_step.empty())
+    throw Misuse{"simulate takes --record or --unit-step, not both"};
   const System system = compiled(a);
   const Trajectory t =
       simulate(system, excitation_of(system, a), {.step = a.step, .until = a.until});
   std::vector<std::string> names = {"time"};
   names.insert(names.end(), t.outputs.begin(), t.outputs.end());
-  std::string text = header_of(names) + "\n";
+  std::string text = emit::csv_line(names) + "\n";
   for (std::size_t k = 0; k < t.time.size(); ++k) {
     text += fmt::format("{}", t.time[k]);
     for (Eigen::Index i = 0; i < t.y.rows(); ++i)
@@ -145,26 +190,31 @@ void simulate_inputs(const Arguments& a) {
       t.error.size() ? fmt::format(", estimated error {:.1e}", t.error.maxCoeff()) : ""));
 }
 
-void sweep_table(const Arguments& a) {
+int sweep_table(const Arguments& a) {
+  require_csv(a.words[2]);
   require_csv(a.words[3]);
   const Table table = read_table(a.words[2]);
-  const auto [first, end] = part_of(a, table.rows.size());
-  std::vector<ParameterList> points;
-  for (std::size_t r = first; r < end; ++r) {
-    ParameterList& point = points.emplace_back();
-    for (std::size_t c = 0; c < table.names.size(); ++c)
-      point.emplace_back(table.names[c], table.rows[r][c]);
-  }
+  const auto [begin, end] = part_of(a, table.rows.size());
   const System system = compiled(a);
-  std::vector<std::string> lines(points.size());
-  const auto visit = [&](std::size_t i, const System& at) {
-    const std::string point = fmt::format("{},{}", first + i + 1, numbers(table.rows[first + i]));
-    lines[i] = a.omega.empty() ? poles_at(at, point) : responses_at(at, a.omega, point);
+  require_parameters(system, table);
+  std::string text = emit::csv_line(columns_of(system, a, table.names)) + "\n";
+  // Each row for itself: one that is refused leaves the others.
+  std::vector<std::string> lines(end - begin), faults(end - begin);
+  const auto visit = [&, begin = begin](std::size_t i, const System&) {
+    const std::vector<double>& row = table.rows[begin + i];
+    const std::string point = fmt::format("{},{}", begin + i + 1, fmt::join(row, ","));
+    try {
+      const System at = system.update(point_of(table, row));
+      lines[i] = a.omega.empty() ? poles_at(at, point) : responses_at(at, a.omega, point);
+    } catch (const Error& error) {
+      faults[i] = fmt::format("{}: {}\n", table.place(begin + i), error.what());
+    }
   };
-  sweep(system, points, visit, {.progress = progress_line()});
-  std::string text = header_of(columns_of(system, a, table.names)) + "\n";
+  sweep(system, std::vector<ParameterList>(lines.size()), visit, {.progress = progress_line()});
   for (const std::string& line : lines) text += line;
   emit::write_file(a.words[3], text);
+  for (const std::string& fault : faults) std::fputs(fault.c_str(), stderr);
+  return std::all_of(faults.begin(), faults.end(), [](auto& f) { return f.empty(); }) ? 0 : 1;
 }
 
 void reduce_scene(const Arguments& a) {

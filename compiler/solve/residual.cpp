@@ -99,6 +99,7 @@ void JointRows<T>::by_products(Take take, TakeNumber take_number) const {
   }
 }
 
+/// As magnitudes of the residual, |left| |right| |x|.
 template <class T>
 RowMatrix<double> JointRows<T>::rhs_terms(const RowMatrix<T>& known,
                                           std::span<const int> first) const {
@@ -107,30 +108,28 @@ RowMatrix<double> JointRows<T>::rhs_terms(const RowMatrix<T>& known,
   const RowMatrix<double> x =
       known.unaryExpr([](const T& entry) -> double { return size_of(entry); });
   RowMatrix<double> result = RowMatrix<double>::Zero(plan.unknowns, m);
+  std::vector<double> room;
   for (int r = 0; r < static_cast<int>(joint_.rows.size()); ++r) {
     double* const to = result.data() + plan.row_first[at(r)] * m;
-    const auto size_of_signal = [&](int signal) { return x.data() + first[at(signal)] * m; };
-    const auto add = [&](const Dense<T>& c, int signal) {
-      add_sizes(view(c, 0, static_cast<int>(c.rows()), 0, static_cast<int>(c.cols())),
-                size_of_signal(signal), m, to);
+    const auto add = [&](const auto* left, const RowMatrix<double>* right, int signal, int size) {
+      add_sizes_of_products(left, right, x.data() + first[at(signal)] * m, size * m, m, to, room);
     };
     for (const Piece& p : joint_.row(r)) {
       if (p.entry >= 0) continue;
-      if (!written_out(p) && p.right < 0)
+      const RowMatrix<double>* right = p.right < 0 ? nullptr : coefficients_[at(p.right)].get();
+      const int size = right ? static_cast<int>(right->rows()) : p.size;
+      if (!written_out(p))
         with_left(
-            p, m_, coefficients_,
-            [&](const auto& left) { add_sizes(left, size_of_signal(p.signal), m, to); },
-            [&] { solve::add(p.size * m, 1.0, size_of_signal(p.signal), to); });
-      else if (!written_out(p))
-        add(dense(p, m_, coefficients_), p.signal);
+            p, m_, coefficients_, [&](const auto& left) { add(&left, right, p.signal, size); },
+            [&] { add(static_cast<const View<double>*>(nullptr), right, p.signal, size); });
       else if (p.of != Piece::Left::state)
         by_inputs(p, [&](const Dense<T>& by_u, const SignalTerm& meaning) {
           if (joint_.variable_of[at(meaning.signal)] >= 0) return;
-          if (meaning.coefficient < 0)
-            add(by_u, meaning.signal);
-          else
-            add(by_u.lazyProduct(lifted<T>(*coefficients_[at(meaning.coefficient)])),
-                meaning.signal);
+          const auto left =
+              view(by_u, 0, static_cast<int>(by_u.rows()), 0, static_cast<int>(by_u.cols()));
+          add(&left,
+              meaning.coefficient < 0 ? nullptr : coefficients_[at(meaning.coefficient)].get(),
+              meaning.signal, static_cast<int>(by_u.cols()));
         });
     }
   }

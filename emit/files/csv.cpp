@@ -1,21 +1,10 @@
 #include <fmt/format.h>
 
 #include <titop/emit/files/files.hpp>
+#include <titop/emit/text/csv.hpp>
 #include <titop/emit/text/write_file.hpp>
 
 namespace titop {
-
-namespace {
-
-/// A field as in RFC 4180.
-std::string field(const std::string& text) {
-  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
-}  // namespace
 
 void write_csv(const System& system, std::span<const double> omega,
                const std::filesystem::path& file) {
@@ -23,7 +12,7 @@ void write_csv(const System& system, std::span<const double> omega,
   for (const std::string& out : system.outputs())
     for (const std::string& in : system.inputs())
       for (const char* part : {"re", "im"})
-        text += fmt::format(",{}", field(fmt::format("{}({}/{})", part, out, in)));
+        text += fmt::format(",{}", emit::csv_field(fmt::format("{}({}/{})", part, out, in)));
   text += "\n";
   const std::vector<Eigen::MatrixXcd> response = system.frequency_response(omega);
   for (std::size_t k = 0; k < omega.size(); ++k) {

@@ -111,13 +111,19 @@ std::string table_of(const Margins& m) {
   return text + "</table></div>\n" + of_all_loops(m);
 }
 
+/// By the poles of the loop: the report's band may leave out the crossings.
+std::vector<double> frequencies_of_loop(const ControlLoop& cut) {
+  const ReportOptions plain;
+  return sweep_frequencies(subject(cut.L, plain));
+}
+
 std::string section_of(const Subject& s, const std::string& point) {
   const std::string head = fmt::format("<h3>Loop point {}</h3>\n", escaped(point));
   try {
     const ControlLoop cut = loop(s.system, point);
     const Margins m = margins(cut);
     return head + (m.stable ? table_of(m) : unstable(m)) + "<div class=\"figures\">\n" +
-           figure(nyquist_plot(cut, m, sweep_frequencies(s))) + "</div>\n";
+           figure(nyquist_plot(cut, m, frequencies_of_loop(cut))) + "</div>\n";
   } catch (const Error& error) {
     return head +
            fmt::format("<p class=\"note\">No margins: {}</p>\n", escaped_lines(error.what()));
@@ -145,8 +151,13 @@ Plot nyquist_plot(const ControlLoop& loop, const Margins& m, const std::vector<d
 
 std::string margins_section(const Subject& s) {
   std::string text;
-  if (s.system.order() > s.options.full_up_to) return text;
-  for (const std::string& point : loop_points(s.system)) text += section_of(s, point);
+  const std::vector<std::string> points = loop_points(s.system);
+  if (!points.empty() && s.system.order() > s.options.full_up_to)
+    return fmt::format(
+        "<p class=\"note\">Not computed: {} states are more than {} "
+        "(ReportOptions::full_up_to). <code>titop margins</code> has no limit.</p>\n",
+        s.system.order(), s.options.full_up_to);
+  for (const std::string& point : points) text += section_of(s, point);
   if (text.empty()) return text;
   return "<p>Of each loop alone, the others closed: the gains and the phase that bring the loop "
          "transfer L to −1, the least additional delay, the nearest point of L(jω) to −1, and "

@@ -2,6 +2,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <sstream>
 #include <titop/blocks/diagram_file/diagram_file.hpp>
@@ -70,14 +71,17 @@ TEST_CASE("sweep: poles of a mass on a spring at every row, and a part of the ro
   Run r = shell.titop("sweep mass.json points.csv poles.csv");
   CHECK(r.code == 0);
   CHECK(r.out.empty());
-  CHECK(shell.names("poles.csv") == "point,k,c,hertz,damping,re,im");
+  CHECK(shell.names("poles.csv") == "point,k,c,pole_hertz,pole_damping,pole_re,pole_im");
   const auto rows = shell.numbers("poles.csv");
   REQUIRE(rows.size() == 3);
+  const double k[] = {8, 18, 32}, c[] = {0.4, 0.6, 0};
   for (std::size_t i = 0; i < 3; ++i) {
     const std::vector<double>& row = rows[i];
     REQUIRE(row.size() == 7);
     CHECK(row[0] == static_cast<double>(i + 1));
-    const double omega = std::sqrt(row[1] / 2), xi = row[2] / (2 * 2 * omega);
+    CHECK(row[1] == k[i]);
+    CHECK(row[2] == c[i]);
+    const double omega = std::sqrt(k[i] / 2), xi = c[i] / (2 * 2 * omega);
     CHECK(near(row[3], omega / (2 * std::numbers::pi), row[3]));
     CHECK(near(row[4], xi, 1));
     CHECK(near(row[5], -xi * omega, omega));
@@ -89,6 +93,17 @@ TEST_CASE("sweep: poles of a mass on a spring at every row, and a part of the ro
   REQUIRE(second.size() == 2);
   CHECK(second[0] == rows[1]);
   CHECK(second[1] == rows[2]);
+}
+
+TEST_CASE("sweep: a row that is refused is reported with its line, and leaves the others") {
+  const Shell shell;
+  // With a byte-order mark and a name in quotation marks, as spreadsheets write them.
+  shell.folder.write("points.csv", "\xEF\xBB\xBF\"k\"\r\n8\r\n0\r\n18\r\n");
+  // 2 rad/s is the pole of k = 8.
+  const Run r = shell.titop("sweep mass.json points.csv g.csv --set c=0 --omega 2 3 2");
+  CHECK(r.code == 1);
+  CHECK(has_names(r.err, {"points.csv:2", "singular"}));
+  CHECK(shell.numbers("g.csv").size() == 4);
 }
 
 TEST_CASE("sweep: frequency responses at every row") {
@@ -134,7 +149,7 @@ TEST_CASE("margins: of K / (s (s + 1)^2), whose gain margin is 2 / K at 1 rad/s"
   r = shell.titop("margins loop.json --set K=0.5");
   CHECK(has_line(r.out, {"+12.04", "1"}));
   r = shell.titop("margins loop.json --set K=3");
-  CHECK(r.code == 0);
+  CHECK(r.code == 3);
   CHECK(!has(r.out, "dB"));
   r = shell.titop("margins mass.json");
   CHECK(r.code == 1);
@@ -147,7 +162,11 @@ TEST_CASE("reduce: the model, its bound and generated code") {
   CHECK(r.code == 0);
   CHECK(r.out == to_string(compile(read_diagram(shell.folder.path / "mass.json"),
                                    Scene{.band_hz = {0, 2}})));
-  CHECK(has(shell.folder.read("small.m"), "function"));
+  std::filesystem::create_directory(shell.folder.path / "expected");
+  write_matlab(compile(read_diagram(shell.folder.path / "mass.json"), Scene{.band_hz = {0, 2}})
+                   .state_space(),
+               shell.folder.path / "expected" / "small.m");
+  CHECK(shell.folder.read("small.m") == shell.folder.read("expected/small.m"));
   r = shell.titop(
       "reduce mass.json small.hpp --band 0 2 --inputs u --outputs x --sample-time 0.01");
   CHECK(r.code == 0);
@@ -189,7 +208,10 @@ TEST_CASE("tables and options that do not fit are refused") {
                 {"bad-file", "no_time.csv", "time"}));
   for (const char* words :
        {"sweep mass.json points.csv", "sweep mass.json points.csv out.txt",
-        "sweep mass.json points.csv points.csv", "sweep mass.json points.csv out.csv --part 3/2",
+        "sweep mass.json points.csv points.csv", "sweep mass.json mass.json out.csv",
+        "margins loop.json -d 0.1", "simulate mass.json o.csv --record --step 1 --until 2",
+        "simulate mass.json o.csv --step 1 --until 2 --unit-step u --record points.csv",
+        "margins loop.json --set K=1 --set K=2", "sweep mass.json points.csv out.csv --part 3/2",
         "sweep mass.json points.csv out.csv --part 2", "simulate mass.json o.csv --unit-step u",
         "simulate mass.json o.csv --step 1 --until 2", "reduce mass.json small.m",
         "reduce mass.json small.json --band 0 1", "reduce mass.json s.m --band 0 1 --sample-time 1",
