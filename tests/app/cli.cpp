@@ -213,7 +213,7 @@ TEST_CASE("export reports on stderr the digits lost by A, B, C, D, and how to ke
     const Run r = shell.titop(std::string("export uneven.json ") + file);
     for (const std::string& text : warnings) CHECK(has(r.err, "warning: " + text + "\n"));
     CHECK(has(r.err, "export DIAGRAM.json FILE.csv"));
-    CHECK(has(r.err, "compile(d, Scene{.band_hz"));
+    CHECK(has(r.err, "titop reduce DIAGRAM.json FILE --band"));
     CHECK(r.out.empty());
   }
   CHECK(has(shell.folder.read("m.m"), "% Warning: " + warnings[0]));
