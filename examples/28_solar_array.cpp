@@ -140,7 +140,7 @@ double error_by_hand(Edges edges) {
 /// The slowest frequencies [Hz], ascending.
 std::vector<double> frequencies(Edges edges, int polynomials) {
   const System system =
-      compile(satellite(edges, {.kept = 6, .polynomials = polynomials}), {.minimize_up_to = 400});
+      compile(satellite(edges, {.kept = 6, .polynomials = polynomials}), {.minimize_up_to = 0});
   std::vector<double> result;
   for (const Pole& pole : system.poles())
     if (pole.omega > 0) result.push_back(pole.omega / (2 * 3.14159265358979));

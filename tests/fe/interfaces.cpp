@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 #include <titop/blocks/fe/beam.hpp>
+#include <titop/blocks/fe/calculix.hpp>
 #include <titop/blocks/fe/interfaces.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/blocks/fe/plate.hpp>
@@ -159,6 +160,46 @@ TEST_CASE("rigid end of a beam: as if its last element were rigid; average of a 
   const double G = 70e9 / 2.66, J = rectangle(0.06, 0.04).J;
   // theta_3 + theta_4 over 2 for half a torque at each: (1.5 + 1.5 + 1.5 + 2) / 4 = 1.625 m.
   CHECK(relative(compliance(mean)(3, 3), 1.625 / (G * J)) <= 1e-10);
+}
+
+TEST_CASE("average and rigid cross-section of solid elements: compliance by hand") {
+  const fe::Mesh plain =
+      fe::read_calculix(fe::calculix_files(TITOP_DATA_DIR "/calculix_beam/beam_free_mat"),
+                        {{"P", 900001}, {"C", 900003}});
+  const fe::NodeSet ring = fe::box(plain, {0.9, -1, -1}, {0.9, 1, 1});
+  REQUIRE(ring.points.size() == 8);
+  // Mean displacement, and (sum (r x)'(r x))^-1 sum r x u.
+  MatrixXd A = MatrixXd::Zero(6, plain.K.rows());
+  Matrix3d inertia = Matrix3d::Zero();
+  for (const std::size_t i : ring.points) {
+    const Matrix3d r = cross(plain.points[i].position - Vector3d(0.9, 0, 0));
+    inertia += r.transpose() * r;
+  }
+  for (const std::size_t i : ring.points)
+    for (int c = 0; c < 3; ++c) {
+      const Index row = row_of(plain, plain.points[i].name, c);
+      A(c, row) = 1.0 / 8;
+      A.col(row).tail<3>() =
+          inertia.inverse() * cross(plain.points[i].position - Vector3d(0.9, 0, 0)).col(c);
+    }
+  std::vector<Index> free;
+  for (Index i = 0; i < plain.K.rows(); ++i)
+    if (plain.dofs[static_cast<std::size_t>(i)].point != fe::find_point(plain, "P"))
+      free.push_back(i);
+  const MatrixXd F = A(Eigen::all, free);
+  const MatrixXd by_hand = F * solve_definite(plain.K(free, free), F.transpose());
+  const auto with = [&](const fe::Coupling& coupling) {
+    return compliance(fe::modal_data(fe::with_interface(plain, "ring", coupling), "P", {"ring"}));
+  };
+  // 14 digits of K leave 9 of its bending stiffness.
+  const MatrixXd average = with(fe::average(ring));
+  CHECK(apart(average, by_hand) <= 1e-7);
+  // A constraint makes it stiffer: less by a semidefinite matrix, a small one.
+  const MatrixXd less = average - with(fe::rigid(ring));
+  const VectorXd scale = average.diagonal().cwiseSqrt().cwiseInverse();
+  CHECK(eigh(scale.asDiagonal() * less * scale.asDiagonal()).lambda(0) >= -1e-7);
+  CHECK(less(1, 1) > 0);
+  CHECK(less(1, 1) < 0.05 * average(1, 1));
 }
 
 TEST_CASE("nodes by name, box, edge, parts of edges and lines") {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <string>
+#include <titop/blocks/fe/beam.hpp>
 #include <titop/blocks/fe/interfaces.hpp>
 #include <titop/blocks/fe/plate.hpp>
 #include <titop/graph/error.hpp>
@@ -204,4 +205,68 @@ TEST_CASE("lines in the modal data: coordinates of the parent's and the child's 
       Phi_few * few.omega.cwiseAbs2().cwiseInverse().asDiagonal() * Phi_few.transpose();
   CHECK((kept - expected).cwiseAbs().maxCoeff() <= 1e-7 * expected.cwiseAbs().maxCoeff());
   CHECK(fe::modal_data(mesh, "next", {}).lines.size() == 1);
+}
+
+TEST_CASE("an edge of nodes with six degrees of freedom: shapes and moments of a beam's axis") {
+  const fe::Mesh beam = beam_mesh({.length = 2.5,
+                                   .section = rectangle(0.06, 0.04),
+                                   .material = {.E = 70e9, .nu = 0.33, .rho = 2700},
+                                   .elements = 5});
+  const fe::NodeSet axis = fe::segment(beam, {1, 0, 0}, {2.5, 0, 0});
+  REQUIRE(axis.points.size() == 4);
+  const double half = 0.75;
+  // Of each component x, y, z, rx its coefficients of P0, P1, P2 by the trapezoidal rule.
+  MatrixXd V(4, 3), T = MatrixXd::Zero(24, 6 + 6), A = MatrixXd::Zero(12, 24);
+  for (Index i = 0; i < 4; ++i) {
+    const double s = -1 + 2 * double(i) / 3, P2 = (3 * s * s - 1) / 2;
+    V.row(i) << 1, s, P2;
+    const auto row = [&](int component) { return 6 * i + component; };
+    for (int c = 0; c < 6; ++c) T(row(c), c) = 1;
+    T(row(1), 5) = half * s, T(row(2), 4) = -half * s;
+    T(row(0), 6) = s, T(row(0), 7) = P2;              // x1, x2
+    T(row(1), 8) = P2, T(row(5), 8) = 3 * s / half;   // y2
+    T(row(2), 9) = P2, T(row(4), 9) = -3 * s / half;  // z2
+    T(row(3), 10) = s, T(row(3), 11) = P2;            // rx1, rx2
+  }
+  const VectorXd weights = (VectorXd(4) << 0.5, 1, 1, 0.5).finished();
+  const MatrixXd VW = V.transpose() * weights.asDiagonal();
+  const MatrixXd fit = solve_definite(VW * V, VW);
+  const std::vector<std::vector<Index>> into = {{0, 6, 7}, {1, 5, 8}, {2, 4, 9}, {3, 10, 11}};
+  for (Index c = 0; c < 4; ++c)
+    for (Index k = 0; k < 3; ++k)
+      for (Index i = 0; i < 4; ++i) A(into[std::size_t(c)][std::size_t(k)], 6 * i + c) = fit(k, i);
+  A.row(5) /= half, A.row(4) /= -half;
+  const auto interface_of = [&](const fe::Coupling& coupling, MatrixXd& compliance) {
+    const fe::Mesh mesh = fe::with_interface(beam, "e", coupling);
+    std::vector<std::string> names;
+    for (const LineShape& s : mesh.lines.at(0).shapes) names.push_back(to_string(s));
+    CHECK(names == std::vector<std::string>{"x1", "x2", "y2", "z2", "rx1", "rx2"});
+    const ModalData data = fe::modal_data(mesh, "P", {"e"});
+    MatrixXd Phi(12, data.omega.size());
+    Phi << data.children[0].Phi_C, data.lines.at(0).Phi;
+    compliance = Phi * data.omega.cwiseAbs2().cwiseInverse().asDiagonal() * Phi.transpose();
+  };
+  MatrixXd free, constrained;
+  interface_of(fe::moments(axis, fe::legendre(3)), free);
+  interface_of(fe::shapes(axis, fe::legendre(3)), constrained);
+  const std::vector<Index> rest = [&] {
+    std::vector<Index> rows;
+    for (Index i = 6; i < beam.K.rows(); ++i) rows.push_back(i);
+    return rows;
+  }();
+  const MatrixXd K = beam.K(rest, rest);
+  MatrixXd edge = MatrixXd::Zero(30, 24);  // rows of nodes 2 to 5 among those of 1 to 5
+  edge.bottomRows(24).setIdentity();
+  const MatrixXd by_moments = A * edge.transpose() * solve_definite(K, edge * A.transpose());
+  MatrixXd S = MatrixXd::Zero(30, 6 + 12);
+  S.topLeftCorner(6, 6).setIdentity();
+  S.bottomRightCorner(24, 12) = T;
+  const MatrixXd by_shapes =
+      solve_definite(S.transpose() * K * S, MatrixXd::Identity(18, 18)).bottomRightCorner(12, 12);
+  for (const auto& [found, expected] :
+       {std::pair{&free, &by_moments}, {&constrained, &by_shapes}}) {
+    const VectorXd scale = expected->diagonal().cwiseSqrt().cwiseInverse();
+    CHECK((scale.asDiagonal() * (*found - *expected) * scale.asDiagonal()).cwiseAbs().maxCoeff() <=
+          1e-9);
+  }
 }

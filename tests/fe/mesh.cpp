@@ -92,11 +92,11 @@ TEST_CASE("a mesh that contradicts itself") {
   CHECK(says(twice, Code::duplicate_name, {"beam", "C.rx"}));
   mesh = boom();
   mesh.dofs[8] = {9, 2};
-  mesh.dofs[9].component = 7;
+  mesh.dofs[9].component = 8;
   mesh.interfaces[0].point = 5;
   const Error outside = error_of([&] { check(mesh); });
   CHECK(says(outside, Code::bad_value, {"row 8", "beam", "component 2", "point 9"}));
-  CHECK(says(outside, Code::bad_value, {"row 9", "beam", "component 7", "point 1"}));
+  CHECK(says(outside, Code::bad_value, {"row 9", "beam", "component 8", "point 1"}));
   CHECK(says(outside, Code::bad_value, {"P", "beam", "point 5", "5"}));
 }
 
