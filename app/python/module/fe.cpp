@@ -1,0 +1,192 @@
+#include "python.hpp"
+
+namespace titop::python {
+namespace {
+
+// Matrices that a script may replace are given away as copies: a view would outlive its memory.
+template <class Data, class M>
+auto copy_of(M Data::*matrix) {
+  return [matrix](const Data& data) -> M { return data.*matrix; };
+}
+template <class Data, class M>
+auto set(M Data::*matrix) {
+  return [matrix](Data& data, const M& value) { data.*matrix = value; };
+}
+template <class Data>
+auto set_numbers(Eigen::VectorXd Data::*vector) {
+  return [vector](Data& data, const Numbers& value) { data.*vector = vector_of(value); };
+}
+
+void bind_modal_data(py::module_& m) {
+  py::class_<ModalChild>(m, "ModalChild",
+                         "A child point of a flexible body: PC from P [m]; Phi_C (6 x N), "
+                         "displacements [1/sqrt(kg)] and rotations of the modes there.")
+      .def(py::init([](const std::string& name, const Vector3d& PC, const Eigen::MatrixXd& Phi_C) {
+             return ModalChild{name, PC, Phi_C};
+           }),
+           "name"_a, "PC"_a, "Phi_C"_a)
+      .def_readwrite("name", &ModalChild::name)
+      .def_property("PC", copy_of(&ModalChild::PC), set(&ModalChild::PC), "From P [m].")
+      .def_property("Phi_C", copy_of(&ModalChild::Phi_C), set(&ModalChild::Phi_C), "6 x N.");
+  py::class_<ModalData>(
+      m, "ModalData",
+      "Modes of a body clamped at P, mass-normalised: omega (N) [rad/s], xi (N) [-], L_P (N x 6) "
+      "[sqrt(kg), sqrt(kg) m], D_P (6 x 6) rigid mass matrix about P, children, digits of the "
+      "data. "
+      "`children` is a list of copies: assign it to change it.")
+      .def(py::init([](const Numbers& omega, const Numbers& xi, const Eigen::MatrixXd& L_P,
+                       const Matrix6& D_P, const std::vector<ModalChild>& children, double digits) {
+             return ModalData{vector_of(omega), vector_of(xi), L_P, D_P, children, digits};
+           }),
+           py::kw_only(), "omega"_a, "xi"_a, "L_P"_a, "D_P"_a,
+           "children"_a = std::vector<ModalChild>(), "digits"_a = 15.0)
+      .def_property("omega", copy_of(&ModalData::omega), set_numbers(&ModalData::omega),
+                    "N [rad/s].")
+      .def_property("xi", copy_of(&ModalData::xi), set_numbers(&ModalData::xi), "N [-].")
+      .def_property("L_P", copy_of(&ModalData::L_P), set(&ModalData::L_P), "N x 6.")
+      .def_property("D_P", copy_of(&ModalData::D_P), set(&ModalData::D_P), "6 x 6.")
+      .def_readwrite("children", &ModalData::children)
+      .def_readwrite("digits", &ModalData::digits);
+}
+
+void bind_beams(py::module_& m) {
+  py::class_<Section>(m, "Section",
+                      "Cross-section of a beam along x: area [m^2], I_y, I_z, J, I_x [m^4].")
+      .def(py::init([](double area, double I_y, double I_z, double J, std::optional<double> I_x) {
+             return Section{area, I_y, I_z, J, I_x};
+           }),
+           py::kw_only(), "area"_a, "I_y"_a, "I_z"_a, "J"_a, "I_x"_a = py::none())
+      .def_readonly("area", &Section::area)
+      .def_readonly("I_y", &Section::I_y)
+      .def_readonly("I_z", &Section::I_z)
+      .def_readonly("J", &Section::J);
+  m.def("rectangle", &rectangle, "width_y"_a, "height_z"_a, "Section of a solid rectangle [m].");
+  m.def("circle", &circle, "diameter"_a, "Section of a solid circle [m].");
+  m.def("tube", &tube, "outer_diameter"_a, "inner_diameter"_a, "Section of a circular tube [m].");
+  py::class_<Material>(m, "Material",
+                       "Isotropic: E [Pa], either Poisson's ratio nu or shear modulus G [Pa], "
+                       "density rho [kg/m^3].")
+      .def(py::init([](double E, std::optional<double> nu, std::optional<double> G, double rho) {
+             return Material{E, nu, G, rho};
+           }),
+           py::kw_only(), "E"_a, "nu"_a = py::none(), "G"_a = py::none(), "rho"_a);
+  py::class_<Beam>(m, "Beam",
+                   "Uniform Euler-Bernoulli beam from P at the origin to C at (length, 0, 0) [m], "
+                   "of equal finite elements; `modes` selects those that are kept.")
+      .def(py::init([](double length, const Section& section, const Material& material,
+                       int elements, const fe::ModeOptions& modes) {
+             return Beam{length, section, material, elements, modes};
+           }),
+           py::kw_only(), "length"_a, "section"_a, "material"_a, "elements"_a = 10,
+           "modes"_a = fe::ModeOptions());
+}
+
+void bind_modes(py::module_& m) {
+  py::class_<fe::ModeOptions>(
+      m, "ModeOptions",
+      "Which modes of a mesh are kept: the number of lowest ones (all without it), interfaces with "
+      "residual vectors, damping ratios xi (none, one, or one per mode), or Rayleigh damping "
+      "(mass [1/s], stiffness [s]); of planar models the rigid mass matrix (6 x 6) about P.")
+      .def(py::init([](std::optional<int> kept, const std::vector<std::string>& residual,
+                       const std::vector<double>& xi,
+                       const std::optional<std::pair<double, double>>& rayleigh,
+                       const std::optional<Matrix6>& rigid) {
+             fe::ModeOptions o{.kept = kept, .residual = residual, .xi = xi, .rigid = rigid};
+             if (rayleigh) o.rayleigh = fe::Rayleigh{rayleigh->first, rayleigh->second};
+             return o;
+           }),
+           py::kw_only(), "kept"_a = py::none(), "residual"_a = std::vector<std::string>(),
+           "xi"_a = std::vector<double>(), "rayleigh"_a = py::none(), "rigid"_a = py::none());
+}
+
+void bind_meshes(py::module_& m) {
+  py::class_<fe::Mesh>(m, "Mesh", "A finite-element model, free in space: M and K (n x n), points.")
+      .def_readonly("name", &fe::Mesh::name)
+      .def_readonly("M", &fe::Mesh::M, "n x n [kg, kg m, kg m^2].")
+      .def_readonly("K", &fe::Mesh::K, "n x n [N/m, N, N m].")
+      .def_readonly("digits", &fe::Mesh::digits, "Decimal digits of M and K.");
+  m.def(
+      "read_calculix",
+      [](const std::filesystem::path& stem, const std::map<std::string, int>& interfaces) {
+        std::vector<fe::CalculixInterface> list;
+        for (const auto& [name, node] : interfaces) list.push_back({name, node});
+        return fe::read_calculix(fe::calculix_files(stem), list);
+      },
+      "stem"_a, "interfaces"_a, Unlocked(),
+      "The free mesh of stem.sti, .mas, .dof and .inp (*FREQUENCY, SOLVER=MATRIXSTORAGE); "
+      "interfaces {name: reference node}.");
+  m.def("beam_mesh", &beam_mesh, "beam"_a, "The free mesh of a beam, interfaces P and C.");
+  m.def(
+      "modal_data",
+      [](const fe::Mesh& mesh, const std::string& parent, const std::vector<std::string>& children,
+         const fe::ModeOptions& modes) { return fe::modal_data(mesh, parent, children, modes); },
+      "mesh"_a, "parent"_a, "children"_a, "modes"_a = fe::ModeOptions(), Unlocked(),
+      "Modes of the mesh clamped at the interface `parent`.");
+  m.def(
+      "modal_data", [](const Beam& beam) { return modal_data(beam); }, "beam"_a,
+      "Modes of a beam clamped at P with the child C.");
+  m.def(
+      "mesh_report", [](const fe::Mesh& mesh) { return to_string(fe::mesh_report(mesh)); },
+      "mesh"_a, "Mass properties and rigid-body check as text.");
+  m.def(
+      "modal_report", [](const ModalData& data) { return to_string(modal_report(data)); }, "data"_a,
+      "Mass, residual mass, children and effective masses as text.");
+}
+
+void bind_readers(py::module_& m) {
+  m.def("read_modal_csv", &fe::read_modal_csv, "path"_a, "Modal data of a text file.");
+  m.def("modal_csv", &fe::modal_csv, "data"_a, "The same data as such a text.");
+  m.def(
+      "read_op4",
+      [](const std::filesystem::path& path, const std::vector<std::string>& only) {
+        std::map<std::string, Eigen::MatrixXd> result;
+        for (fe::Op4Matrix& matrix : fe::read_op4(path, only))
+          if (matrix.unread.empty()) result[matrix.name] = std::move(matrix.value);
+        return result;
+      },
+      "path"_a, "only"_a = std::vector<std::string>(),
+      "{name: matrix} of a file of Nastran's OUTPUT4; of a name that repeats the last.");
+  m.def(
+      "scaled",
+      [](const ModalData& data, double length, double mass, double time) {
+        return scaled(data, {length, mass, time});
+      },
+      "data"_a, py::kw_only(), "length"_a = 1.0, "mass"_a = 1.0, "time"_a = 1.0,
+      "Data of these units [m], [kg], [s] in SI.");
+  py::class_<fe::Import>(m, "Import", "Contents of a file, its checks, and the body.")
+      .def_readonly("text", &fe::Import::text, "One fact per line.")
+      .def_readonly("ports", &fe::Import::ports, "Grids or points that may be parent or child.")
+      .def_readonly("body", &fe::Import::body, "ModalData in SI if a parent was named, else None.");
+  m.def(
+      "import_body",
+      [](const std::filesystem::path& file, const std::string& parent,
+         const std::vector<std::string>& children, const fe::ModeOptions& modes,
+         const std::array<double, 3>& units, const std::filesystem::path& grids,
+         const std::string& stiffness, const std::string& mass) {
+        return fe::import_body(file, {.parent = parent,
+                                      .children = children,
+                                      .units = {units[0], units[1], units[2]},
+                                      .modes = modes,
+                                      .grids = grids,
+                                      .stiffness = stiffness,
+                                      .mass = mass});
+      },
+      "file"_a, py::kw_only(), "parent"_a = "", "children"_a = std::vector<std::string>(),
+      "modes"_a = fe::ModeOptions(), "units"_a = std::array<double, 3>{1, 1, 1}, "grids"_a = "",
+      "stiffness"_a = "", "mass"_a = "", Unlocked(),
+      "From a file of Nastran (OP4, OP2, DMIG), CalculiX or modal data (CSV) to a body, with all "
+      "checks; units (length [m], mass [kg], time [s]) of the file.");
+}
+
+}  // namespace
+
+void bind_fe(py::module_& m) {
+  py::module_ fe = m.def_submodule("fe", "Finite-element models, files, and bodies from them.");
+  bind_modal_data(m);
+  bind_modes(fe);
+  bind_beams(m);
+  bind_meshes(fe);
+  bind_readers(fe);
+}
+
+}  // namespace titop::python

@@ -1,0 +1,115 @@
+#include "python.hpp"
+
+namespace titop::python {
+namespace {
+
+using Values = std::map<std::string, double>;
+
+ParameterList list_of_values(const Values& values) { return {values.begin(), values.end()}; }
+
+std::vector<ParameterList> lists_of(const std::vector<Values>& points) {
+  std::vector<ParameterList> result;
+  for (const Values& point : points) result.push_back(list_of_values(point));
+  return result;
+}
+
+void bind_isolated(py::module_& m) {
+  py::class_<ParameterRange>(m, "ParameterRange", "The values that a parameter may take.");
+  m.def("percent", &percent, "of_nominal"_a, "So many percent below and above the nominal value.");
+  m.def("between", &between, "least"_a, "largest"_a, "From least to largest.");
+  m.def("full_turn", &full_turn, "Every value of an angle.");
+  py::class_<ParameterMap>(m, "ParameterMap", "From a parameter's value to delta in [-1, 1].")
+      .def_readonly("nominal", &ParameterMap::nominal)
+      .def_readonly("from_", &ParameterMap::from)
+      .def_readonly("to", &ParameterMap::to)
+      .def("delta", &ParameterMap::delta, "p"_a)
+      .def("value", &ParameterMap::value, "delta"_a);
+  py::class_<Delta>(m, "Delta", "A parameter in an Lft.")
+      .def_readonly("parameter", &Delta::parameter)
+      .def_readonly("first", &Delta::first)
+      .def_readonly("size", &Delta::size, "Occurrences.")
+      .def_readonly("at_least", &Delta::at_least, "Lower bound of them; 0: not computed.")
+      .def_readonly("map", &Delta::map)
+      .def_property_readonly("minimal", &Delta::minimal);
+  py::class_<Lft>(m, "Lft", "Parameters isolated from the model: w = Delta z; printed as a table.")
+      .def_property_readonly(
+          "m", [](const Lft& f) { return f.m(); },
+          "The StateSpace M, inputs [w; u], outputs [z; y].")
+      .def_property_readonly("deltas", [](const Lft& f) { return f.deltas(); })
+      .def_property_readonly("occurrences", &Lft::occurrences)
+      .def(
+          "at", [](const Lft& f, const Values& v) { return f.at(list_of_values(v)); }, "values"_a,
+          Unlocked(), "The StateSpace with Delta closed at {parameter: value}.")
+      .def(
+          "transfers",
+          [](const Lft& f, std::complex<double> s, const std::vector<Values>& points) {
+            std::vector<Eigen::MatrixXcd> result;
+            {
+              const py::gil_scoped_release unlocked;
+              result = f.transfers(s, lists_of(points));
+            }
+            return stacked(result);
+          },
+          "s"_a, "values"_a,
+          "The transfers at s for each {parameter: value}: n x outputs x inputs.")
+      .def("__str__", [](const Lft& f) { return to_string(f); });
+  m.def(
+      "lft",
+      [](const System& s, const std::vector<std::pair<std::string, ParameterRange>>& ranges) {
+        return lft(s, ranges);
+      },
+      "system"_a, "ranges"_a, Unlocked(),
+      "Isolates parameters, [(name, percent(20)), (name, between(a, b))].");
+  m.def(
+      "lft",
+      [](const System& s, const py::dict& ranges) {
+        ParameterRanges list;
+        for (const auto& [name, range] : ranges)
+          list.emplace_back(name.cast<std::string>(), range.cast<ParameterRange>());
+        const py::gil_scoped_release unlocked;
+        return lft(s, list);
+      },
+      "system"_a, "ranges"_a, "The same of {name: range}, in this order.");
+}
+
+void bind_derivatives(py::module_& m) {
+  py::class_<PoleSlopes>(m, "PoleSlopes", "A pole and how fast it moves with each parameter.")
+      .def_readonly("s", &PoleSlopes::s, "[rad/s]")
+      .def_readonly("count", &PoleSlopes::count, "Equal poles.")
+      .def_readonly("slopes", &PoleSlopes::slopes, "Per parameter [rad/s per unit].")
+      .def_readonly("defective", &PoleSlopes::defective);
+  py::class_<Slopes>(m, "Slopes", "A number and its derivatives by the parameters.")
+      .def_readonly("value", &Slopes::value)
+      .def_readonly("slopes", &Slopes::slopes);
+  py::class_<PeakSlopes, Slopes>(m, "PeakSlopes", "The largest gain and its derivatives.")
+      .def_readonly("omega", &PeakSlopes::omega, "[rad/s]");
+  py::class_<Derivatives>(m, "Derivatives", "Exact derivatives of a model by its parameters.")
+      .def_property_readonly("parameters", [](const Derivatives& g) { return g.parameters(); })
+      .def(
+          "transfer",
+          [](const Derivatives& g, std::complex<double> s, const std::string& p) {
+            return g.transfer(s, p);
+          },
+          "s"_a, "p"_a, Unlocked(), "dH/dp at s, outputs x inputs.")
+      .def("matrices", &Derivatives::matrices, "p"_a, Unlocked(), "dA, dB, dC, dD by p.")
+      .def("poles", &Derivatives::poles, Unlocked(), "Poles with their slopes.")
+      .def("h2", &Derivatives::h2, Unlocked(), "H2 norm and its slopes.")
+      .def(
+          "peak",
+          [](const Derivatives& g, const std::array<double, 2>& band_hz) {
+            return g.peak({.band_hz = band_hz});
+          },
+          py::kw_only(), "band_hz"_a = HinfOptions().band_hz, Unlocked(),
+          "The largest gain over a band [Hz] and its slopes.");
+  m.def("derivatives", &derivatives, "system"_a, "parameters"_a, Unlocked(),
+        "Derivatives by these parameters at the system's present values.");
+}
+
+}  // namespace
+
+void bind_lft(py::module_& m) {
+  bind_isolated(m);
+  bind_derivatives(m);
+}
+
+}  // namespace titop::python

@@ -1,0 +1,220 @@
+#include "python.hpp"
+
+namespace titop::python {
+
+Options options_of(int minimize_up_to, const std::string& dump_to, double resolution,
+                   const std::string& internal_forces, int exact_up_to) {
+  return {minimize_up_to, dump_to, resolution,
+          named<InternalForces>(
+              internal_forces, "internal_forces",
+              {{"refuse", InternalForces::refuse}, {"minimal_norm", InternalForces::minimal_norm}}),
+          exact_up_to};
+}
+
+namespace {
+
+/// The poles of a model, as a list with a table.
+struct PoleList {
+  std::vector<Pole> poles;
+};
+
+std::string escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text)
+    result += c == '<' ? "&lt;" : c == '>' ? "&gt;" : c == '&' ? "&amp;" : std::string(1, c);
+  return result;
+}
+
+std::string html(const PoleList& list) {
+  std::string rows = "<table><tr><th>rad/s</th><th>Hz</th><th>damping</th><th>blocks</th></tr>";
+  for (const Pole& p : list.poles) {
+    std::string blocks;
+    for (const auto& [name, share] : p.blocks)
+      blocks += (blocks.empty() ? "" : ", ") + escaped(name) + " " +
+                std::to_string(static_cast<int>(100 * share + 0.5)) + " %";
+    rows += py::str("<tr><td>{:.7g}</td><td>{:.7g}</td><td>{:.4g}</td><td>{}</td></tr>")
+                .format(p.omega, p.hertz, p.damping, blocks)
+                .cast<std::string>();
+  }
+  return rows + "</table>";
+}
+
+void bind_poles(py::module_& m) {
+  py::class_<Pole>(m, "Pole",
+                   "One pole, or a conjugate pair (the one with positive imaginary part).")
+      .def_readonly("s", &Pole::s, "[rad/s]")
+      .def_readonly("pair", &Pole::pair, "True for s and its conjugate.")
+      .def_readonly("omega", &Pole::omega, "|s| [rad/s].")
+      .def_readonly("hertz", &Pole::hertz, "|s| / 2 pi [Hz].")
+      .def_readonly("damping", &Pole::damping, "-Re(s) / |s|; 0 of s = 0.")
+      .def_readonly("blocks", &Pole::blocks, "[(block, share)] of those that take part.")
+      .def_property_readonly("unlike_bodies", &Pole::unlike_bodies,
+                             "True of an assembled mode that is damped otherwise than its bodies.")
+      .def("__repr__", [](const Pole& p) { return to_string(std::vector<Pole>{p}); });
+  py::class_<PoleList>(m, "Poles", "Poles by frequency; printed as a table.")
+      .def("__len__", [](const PoleList& l) { return l.poles.size(); })
+      .def("__getitem__",
+           [](const PoleList& l, py::ssize_t i) {
+             const auto n = static_cast<py::ssize_t>(l.poles.size());
+             if (i < 0) i += n;
+             if (i < 0 || i >= n) throw py::index_error();
+             return l.poles[static_cast<std::size_t>(i)];
+           })
+      .def("__getitem__",
+           [](const PoleList& l, const py::slice& slice) {
+             std::size_t start = 0, stop = 0, step = 0, count = 0;
+             if (!slice.compute(l.poles.size(), &start, &stop, &step, &count))
+               throw py::error_already_set();
+             PoleList part;
+             for (std::size_t i = 0; i < count; ++i, start += step)
+               part.poles.push_back(l.poles[start]);
+             return part;
+           })
+      .def("__str__", [](const PoleList& l) { return to_string(l.poles); })
+      .def("_repr_html_", &html);
+}
+
+/// A view into a matrix of the model, which stays alive with it.
+template <class M>
+py::object view(const py::object& model, const M& matrix) {
+  return py::cast(matrix, py::return_value_policy::reference_internal, model);
+}
+
+void bind_state_space(py::module_& m) {
+  py::class_<StateSpace> type(
+      m, "StateSpace",
+      "xdot = A x + B u, y = C x + D u with names of states, inputs and outputs. The matrices are "
+      "read-only views without a copy; `A, B, C, D = model` takes them.");
+  type.def(py::init([](const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, const Eigen::MatrixXd& C,
+                       const Eigen::MatrixXd& D, const std::vector<std::string>& states,
+                       const std::vector<std::string>& inputs,
+                       const std::vector<std::string>& outputs) {
+             return StateSpace{A, B, C, D, states, inputs, outputs};
+           }),
+           "A"_a, "B"_a, "C"_a, "D"_a, py::kw_only(), "states"_a = std::vector<std::string>(),
+           "inputs"_a = std::vector<std::string>(), "outputs"_a = std::vector<std::string>())
+      .def_readonly("A", &StateSpace::A, "n x n.")
+      .def_readonly("B", &StateSpace::B, "n x inputs.")
+      .def_readonly("C", &StateSpace::C, "outputs x n.")
+      .def_readonly("D", &StateSpace::D, "outputs x inputs.")
+      .def_readonly("states", &StateSpace::states)
+      .def_readonly("inputs", &StateSpace::inputs)
+      .def_readonly("outputs", &StateSpace::outputs)
+      .def_property_readonly("order", &StateSpace::order, "Number of states.")
+      .def("transfer", &StateSpace::transfer, "s"_a, Unlocked(),
+           "C (s - A)^-1 B + D at s [rad/s], outputs x inputs, complex.")
+      .def(
+          "poles", [](const StateSpace& s) { return PoleList{poles(s)}; }, "Its poles.")
+      .def("__len__", [](const StateSpace&) { return 4; })
+      .def("__iter__",
+           [](const py::object& self) {
+             const auto& s = self.cast<const StateSpace&>();
+             return py::iter(py::make_tuple(view(self, s.A), view(self, s.B), view(self, s.C),
+                                            view(self, s.D)));
+           })
+      .def("__str__", [](const StateSpace& s) { return to_string(s); });
+  m.def(
+      "invert",
+      [](const StateSpace& model, const std::vector<std::pair<int, int>>& pairs) {
+        return invert(model, pairs);
+      },
+      "model"_a, "pairs"_a,
+      "The model with inputs and outputs exchanged, pairs (input, output) from 0.");
+}
+
+template <class Spec>
+void def_model_of(py::module_& m) {
+  m.def(
+      "model_of", [](const Spec& spec) { return model_of(spec); }, "block"_a,
+      "A block alone, by its ports' names.");
+  m.def(
+      "invert",
+      [](const Spec& spec, const std::vector<std::string>& channels) {
+        return invert(spec, channels);
+      },
+      "block"_a, "channels"_a,
+      "A block with input and output exchanged in channels: \"parent\", \"C1.angular\", "
+      "\"parent(3)\".");
+}
+
+void bind_energy(py::module_& m) {
+  py::class_<PortHamiltonian>(m, "PortHamiltonian",
+                              "A block as xdot = (J - R) Q x + G u, y = N pdot + P u, x = [q; p], "
+                              "of energy H = x' Q x / 2.")
+      .def_readonly("Q", &PortHamiltonian::Q, "2n x 2n.")
+      .def_readonly("J", &PortHamiltonian::J, "2n x 2n, skew.")
+      .def_readonly("R", &PortHamiltonian::R, "2n x 2n, dissipation.")
+      .def_readonly("G", &PortHamiltonian::G, "2n x inputs.")
+      .def_readonly("N", &PortHamiltonian::N, "outputs x n.")
+      .def_readonly("P", &PortHamiltonian::P, "outputs x inputs.")
+      .def(
+          "energy",
+          [](const PortHamiltonian& h, const Numbers& x) { return h.energy(vector_of(x)); }, "x"_a,
+          "H [J].")
+      .def(
+          "supplied",
+          [](const PortHamiltonian& h, const Numbers& x, const Numbers& u) {
+            return h.supplied(vector_of(x), vector_of(u));
+          },
+          "x"_a, "u"_a, "Power at the ports [W].")
+      .def(
+          "dissipated",
+          [](const PortHamiltonian& h, const Numbers& x) { return h.dissipated(vector_of(x)); },
+          "x"_a, "[W]")
+      .def("state_space", &PortHamiltonian::state_space);
+  m.def(
+      "port_hamiltonian", [](const SpringMass& spec) { return port_hamiltonian(spec); }, "block"_a,
+      "A SpringMass as a port-Hamiltonian system.");
+  m.def(
+      "port_hamiltonian", [](const FlexibleBody& body) { return port_hamiltonian(body); },
+      "block"_a, "A FlexibleBody as a port-Hamiltonian system.");
+}
+
+void bind_certificates(py::module_& m) {
+  py::class_<Certificate>(m, "Certificate", "The checks of a system; every number dimensionless.")
+      .def_readonly("residual", &Certificate::residual,
+                    "Largest backward error of all equations as written.")
+      .def_readonly("dense_error", &Certificate::dense_error,
+                    "Error of A, B, C, D by rounding of their entries; negative: not evaluated.")
+      .def_readonly("weakest_pivot", &Certificate::weakest_pivot)
+      .def_readonly("margin", &Certificate::margin, "Of algebraic loops; 1 for none.")
+      .def("__str__", [](const Certificate& c) { return to_string(c); });
+  py::class_<OrderVerdict>(m, "OrderVerdict", "Reliability of the order of a model.")
+      .def_readonly("order", &OrderVerdict::order)
+      .def_readonly("lowest", &OrderVerdict::lowest)
+      .def_readonly("highest", &OrderVerdict::highest)
+      .def_readonly("exact", &OrderVerdict::exact, "Decided by exact arithmetic.")
+      .def_property_readonly("decided", &OrderVerdict::decided)
+      .def("__str__", [](const OrderVerdict& v) { return to_string(v); });
+  py::class_<FullCertificate>(m, "FullCertificate",
+                              "The certificate on request, each item with its own oracle.")
+      .def_readonly("faults", &FullCertificate::faults, "Failed checks in words.")
+      .def_property_readonly("holds", &FullCertificate::holds)
+      .def_readonly("order", &FullCertificate::order)
+      .def_property_readonly("poles_measured",
+                             [](const FullCertificate& c) { return c.poles.measured; })
+      .def_property_readonly("poles_count", [](const FullCertificate& c) { return c.poles.count; })
+      .def("__str__", [](const FullCertificate& c) { return to_string(c); });
+  py::class_<Note>(m, "Note", "A line of the compile log.")
+      .def_property_readonly("kind", [](const Note& n) { return std::string(to_string(n.kind)); })
+      .def_readonly("pass_", &Note::pass, "The compiler's pass.")
+      .def_readonly("text", &Note::text);
+}
+
+}  // namespace
+
+py::object pole_list(std::vector<Pole> poles) { return py::cast(PoleList{std::move(poles)}); }
+
+void bind_models(py::module_& m) {
+  bind_poles(m);
+  bind_state_space(m);
+  bind_energy(m);
+  bind_certificates(m);
+  def_model_of<SpringMass>(m);
+  def_model_of<RigidBody>(m);
+  def_model_of<FlexibleBody>(m);
+  def_model_of<Hinge>(m);
+  def_model_of<Lti>(m);
+}
+
+}  // namespace titop::python

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <pybind11/complex.h>
+#include <pybind11/eigen.h>
+#include <pybind11/functional.h>
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include <memory>
+#include <string>
+#include <titop/titop.hpp>
+#include <utility>
+#include <vector>
+
+#include "values.hpp"
+
+/// The Python module titop: the library's functions with Python's own means. Equations are
+/// assignments to attributes, errors carry the script's lines, matrices are NumPy arrays.
+namespace titop::python {
+
+namespace py = pybind11;
+using namespace pybind11::literals;
+
+/// Computations run without Python's lock, so that other threads of the interpreter go on.
+using Unlocked = py::call_guard<py::gil_scoped_release>;
+
+/// The line of the script that runs now, for messages of the library. None outside of a script.
+SourceLine here();
+
+/// A vector of matrices of one size as an array (matrices x rows x columns).
+py::array_t<std::complex<double>> stacked(const std::vector<Eigen::MatrixXcd>& matrices);
+
+/// pybind11 2.10 reads no vector of one number from a list.
+using Numbers = std::vector<double>;
+inline Eigen::VectorXd vector_of(const Numbers& numbers) {
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
+                                           static_cast<Eigen::Index>(numbers.size()));
+}
+
+/// The value of this name; ValueError with the names there are.
+template <class T>
+T named(const std::string& name, const char* what,
+        std::initializer_list<std::pair<const char*, T>> values) {
+  std::string names;
+  for (const auto& [key, value] : values) {
+    if (name == key) return value;
+    names += std::string(names.empty() ? "'" : ", '") + key + "'";
+  }
+  throw py::value_error(std::string(what) + " is one of " + names + ", not '" + name + "'");
+}
+
+/// Options of `compile` from keywords.
+Options options_of(int minimize_up_to, const std::string& dump_to, double resolution,
+                   const std::string& internal_forces, int exact_up_to);
+
+/// The poles as a list with a table.
+py::object pole_list(std::vector<Pole> poles);
+
+void bind_errors(py::module_& m);
+void bind_signals(py::module_& m);
+void bind_diagram(py::module_& m);
+void bind_mounting(py::module_& m);
+void bind_nodes(py::module_& m);
+void bind_bodies(py::module_& m);
+void bind_joints(py::module_& m);
+void bind_rotors(py::module_& m);
+void bind_fe(py::module_& m);
+void bind_models(py::module_& m);
+void bind_system(py::module_& m);
+void bind_simulation(py::module_& m);
+void bind_control(py::module_& m);
+void bind_margins(py::module_& m);
+void bind_reduction(py::module_& m);
+void bind_lft(py::module_& m);
+void bind_files(py::module_& m);
+
+}  // namespace titop::python

@@ -1,0 +1,96 @@
+#include "python.hpp"
+
+namespace titop::python {
+namespace {
+
+void bind_excitation(py::module_& m) {
+  py::class_<Excitation>(m, "Excitation",
+                         "Inputs over time; vectors in the order of System.inputs, matrices inputs "
+                         "x samples.")
+      .def_static("none", &Excitation::none, "All inputs are 0.")
+      .def_static(
+          "step", [](const Numbers& u) { return Excitation::step(vector_of(u)); }, "u"_a,
+          "u from time 0 on.")
+      .def_static(
+          "function",
+          [](const std::function<Numbers(double)>& u) {
+            return Excitation::function([u](double t) { return vector_of(u(t)); });
+          },
+          "u"_a, "u(t) of the time [s], without jumps inside a step.")
+      .def_static("held", &Excitation::held, "samples"_a, "period"_a,
+                  "Samples (inputs x samples) held for `period` [s] each.")
+      .def_static("recorded", &Excitation::recorded, "times"_a, "samples"_a,
+                  "A record, linear between its times [s]; jumps are two equal times.");
+}
+
+Trajectory run(const System& system, const Excitation& excitation, double step, double until,
+               const std::string& stepper, const Numbers& x0, bool keep_states, double accuracy) {
+  const Simulation simulation{.step = step,
+                              .until = until,
+                              .stepper = named<Stepper>(stepper, "stepper",
+                                                        {{"automatic", Stepper::automatic},
+                                                         {"exact", Stepper::exact},
+                                                         {"midpoint", Stepper::midpoint},
+                                                         {"rk4", Stepper::rk4}}),
+                              .x0 = vector_of(x0),
+                              .keep_states = keep_states,
+                              .accuracy = accuracy};
+  const py::gil_scoped_release unlocked;
+  return simulate(system, excitation, simulation);
+}
+
+void bind_simulate(py::module_& m) {
+  py::class_<Trajectory>(m, "Trajectory", "Result of simulate; a column per time, views of it.")
+      .def_property_readonly(
+          "time",
+          [](const py::object& self) {
+            const auto& t = self.cast<const Trajectory&>().time;
+            return py::array_t<double>(static_cast<py::ssize_t>(t.size()), t.data(), self);
+          },
+          "[s]: 0, step, ..., until.")
+      .def_readonly("y", &Trajectory::y, "outputs x times.")
+      .def_readonly("x", &Trajectory::x, "states x times, or their last column alone.")
+      .def_readonly("error", &Trajectory::error, "Estimated relative error per output.")
+      .def_property_readonly("stepper", [](const Trajectory& t) { return to_string(t.stepper); })
+      .def_readonly("states", &Trajectory::states)
+      .def_readonly("outputs", &Trajectory::outputs);
+  m.def("simulate", &run, "system"_a, "excitation"_a, py::kw_only(), "step"_a, "until"_a,
+        "stepper"_a = "automatic", "x0"_a = Numbers(), "keep_states"_a = false, "accuracy"_a = 0.01,
+        "The response from x0 (states in the order of System.states; none: 0) to the excitation, "
+        "in steps of `step` [s] until `until` [s]. stepper: automatic, exact, midpoint or rk4.");
+  m.def("rk4_limit", &rk4_limit, "system"_a, Unlocked(), "The largest step [s] that rk4 may take.");
+}
+
+using Values = std::map<std::string, double>;
+
+ParameterList list_of(const Values& values) { return {values.begin(), values.end()}; }
+
+/// visit(i, system) at every point, on all cores; its results in a list.
+py::list swept(const System& system, const std::vector<Values>& points, const py::function& visit,
+               int threads) {
+  std::vector<ParameterList> lists;
+  for (const Values& point : points) lists.push_back(list_of(point));
+  std::vector<py::object> results(points.size(), py::none());
+  {
+    const py::gil_scoped_release unlocked;
+    sweep(system, lists,
+          [&](std::size_t i, const System& at) {
+            const py::gil_scoped_acquire locked;
+            results[i] = visit(i, at);
+          },
+          {.threads = threads});
+  }
+  return py::cast(results);
+}
+
+}  // namespace
+
+void bind_simulation(py::module_& m) {
+  bind_excitation(m);
+  bind_simulate(m);
+  m.def("sweep", &swept, "system"_a, "points"_a, "visit"_a, "threads"_a = 0,
+        "[visit(i, system at points[i])] for a list of {parameter: value}, on all cores: Python's "
+        "lock is held in `visit` but not in the System's own computations.");
+}
+
+}  // namespace titop::python

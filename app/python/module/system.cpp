@@ -1,0 +1,184 @@
+#include "python.hpp"
+#include "signals.hpp"
+
+namespace titop::python {
+namespace {
+
+Precision precision_of(const std::string& name) {
+  return named<Precision>(name, "precision",
+                          {{"standard", Precision::standard},
+                           {"refined", Precision::refined},
+                           {"twofold", Precision::twofold},
+                           {"digits50", Precision::digits50},
+                           {"as_needed", Precision::as_needed}});
+}
+
+std::vector<Eigen::MatrixXcd> responses(const System& s, const std::vector<double>& omega,
+                                        int threads, const std::string& precision) {
+  const Precision how = precision_of(precision);
+  const py::gil_scoped_release unlocked;
+  return s.frequency_response(omega, threads, how);
+}
+
+using SystemType = py::class_<System>;
+
+void def_transfers(SystemType& type) {
+  type.def(
+          "transfer",
+          [](const System& s, std::complex<double> at, const std::string& precision) {
+            const Precision how = precision_of(precision);
+            const py::gil_scoped_release unlocked;
+            return s.transfer(at, how);
+          },
+          "s"_a, "precision"_a = "as_needed",
+          "Transfer matrix at s [rad/s], outputs x inputs, complex, through the factors: full "
+          "accuracy at any mass ratio, O(bodies). precision: standard, refined, twofold (32 "
+          "digits), digits50 or as_needed.")
+      .def(
+          "frequency_response",
+          [](const System& s, const std::vector<double>& omega, int threads,
+             const std::string& precision) {
+            return stacked(responses(s, omega, threads, precision));
+          },
+          "omega"_a, "threads"_a = 0, "precision"_a = "as_needed",
+          "transfer(j omega) for each omega [rad/s]: complex, frequencies x outputs x inputs; on "
+          "all cores, the same to the last bit for any number of threads.")
+      .def("static_gain", &System::static_gain, Unlocked(), "transfer(0), outputs x inputs, real.")
+      .def(
+          "apply",
+          [](const System& s, const Numbers& x, const Numbers& u) {
+            System::Rates r = s.apply(vector_of(x), vector_of(u));
+            return std::pair(std::move(r.xdot), std::move(r.y));
+          },
+          "x"_a, "u"_a, "(xdot, y) of the states x and inputs u, through the factors: O(bodies).");
+}
+
+void def_models(SystemType& type) {
+  type.def(
+          "state_space", [](const System& s) -> const StateSpace& { return s.state_space(); },
+          py::return_value_policy::reference_internal, Unlocked(),
+          "The dense model A, B, C, D with names, minimal up to minimize_up_to states.")
+      .def(
+          "write",
+          [](const System& s) {
+            StateSpace model;
+            s.write(model);
+            return model;
+          },
+          Unlocked(), "The dense model before minimal realization.")
+      .def(
+          "poles",
+          [](const System& s) {
+            std::vector<Pole> list;
+            {
+              const py::gil_scoped_release unlocked;
+              list = s.poles();
+            }
+            return pole_list(std::move(list));
+          },
+          "Poles of state_space() with frequency, damping and blocks.")
+      .def(
+          "order_verdict", [](const System& s) { return s.order_verdict(); }, Unlocked(),
+          "Reliability of the order of state_space().")
+      .def("certificate", py::overload_cast<>(&System::certificate, py::const_), Unlocked(),
+           "The checks of the factored system.")
+      .def("certificate", py::overload_cast<const StateSpace&>(&System::certificate, py::const_),
+           "written"_a, Unlocked(), "The same with the rounding error of this model of write().")
+      .def("dense_certificate", &System::dense_certificate, Unlocked(),
+           "The same with the checks of the dense model.");
+}
+
+void def_notes(SystemType& type) {
+  type.def_property_readonly("order", &System::order, "States, before minimal realization.")
+      .def_property_readonly("states", [](const System& s) { return s.states(); })
+      .def_property_readonly("inputs", [](const System& s) { return s.inputs(); })
+      .def_property_readonly("outputs", [](const System& s) { return s.outputs(); })
+      .def_property_readonly(
+          "parameters",
+          [](const System& s) {
+            py::dict result;
+            for (const auto& [name, value] : s.parameters()) result[py::str(name)] = value;
+            return result;
+          },
+          "{name: value} of the diagram's parameters.")
+      .def_property_readonly("notes", [](const System& s) { return s.notes(); })
+      .def("log", &System::log, Unlocked(), "Results of the passes, one per line.")
+      .def("dense_log", &System::dense_log, Unlocked(), "Notes on the dense model, one per line.")
+      .def(
+          "update",
+          [](const System& s, const std::map<std::string, double>& values) {
+            return s.update(ParameterList(values.begin(), values.end()));
+          },
+          "values"_a, Unlocked(),
+          "The system at other values of parameters, {name: value}, on the same plan.")
+      .def("__str__", &System::log, Unlocked())
+      .def("__repr__", [](const System& s) {
+        return "<titop.System: " + std::to_string(s.order()) + " states, " +
+               std::to_string(s.inputs().size()) + " inputs, " +
+               std::to_string(s.outputs().size()) + " outputs>";
+      });
+}
+
+}  // namespace
+
+void bind_system(py::module_& m) {
+  SystemType type(m, "System",
+                  "A compiled diagram: the elimination plan, the factors and the blocks' data. "
+                  "Immutable; may be shared between threads.");
+  def_transfers(type);
+  def_models(type);
+  def_notes(type);
+  m.def(
+      "compile",
+      [](const Diagram& d, int minimize_up_to, const std::string& dump_to, double resolution,
+         const std::string& internal_forces, int exact_up_to) {
+        const Options options =
+            options_of(minimize_up_to, dump_to, resolution, internal_forces, exact_up_to);
+        const py::gil_scoped_release unlocked;
+        return compile(d, options);
+      },
+      "diagram"_a, py::kw_only(), "minimize_up_to"_a = 100, "dump_to"_a = "", "resolution"_a = 0.0,
+      "internal_forces"_a = "refuse", "exact_up_to"_a = 0,
+      "Compiles a diagram. Raises Error with all mistakes of the first pass that finds any.");
+  m.def(
+      "certify", [](const System& s) { return certify(s); }, "system"_a, Unlocked(),
+      "The full certificate: transfers, poles, passivity, reciprocity and order over a grid.");
+  m.def(
+      "exact_order", [](const Diagram& d) { return to_string(exact_order(d.graph())); },
+      "diagram"_a, Unlocked(), "The minimal order in arithmetic without rounding, as text.");
+  m.def(
+      "frequency_response",
+      [](const Diagram& d, const std::vector<double>& omega, int threads) {
+        std::vector<Eigen::MatrixXcd> result;
+        {
+          const py::gil_scoped_release unlocked;
+          result = frequency_response(d, omega, threads);
+        }
+        return stacked(result);
+      },
+      "diagram"_a, "omega"_a, "threads"_a = 0,
+      "Transfers at s = j omega [rad/s] of a diagram with loss factors: frequencies x outputs x "
+      "inputs.");
+  m.def(
+      "damping_of_assembly",
+      [](const Diagram& part, const std::string& root,
+         const std::map<std::string, std::string>& ports, const py::object& xi,
+         const std::string& boundary) {
+        std::vector<AssemblyPort> list;
+        for (const auto& [name, port] : ports) list.push_back({name, port});
+        const auto where =
+            named<RootBoundary>(boundary, "boundary",
+                                {{"clamped", RootBoundary::clamped}, {"free", RootBoundary::free}});
+        if (py::isinstance<py::float_>(xi))
+          return damping_of_assembly(part, root, list, xi.cast<double>(), where, here());
+        std::vector<DampingPoint> table;
+        for (const auto& [hertz, ratio] : xi.cast<std::vector<std::pair<double, double>>>())
+          table.emplace_back(hertz, ratio);
+        return damping_of_assembly(part, root, list, ModalDamping(std::move(table)), where, here());
+      },
+      "part"_a, "root"_a, "ports"_a, "xi"_a, "boundary"_a = "clamped",
+      "A body made of a part of the scene in which each assembled mode has the damping ratio xi, a "
+      "number or a table [(Hz, ratio)]; ports {child: \"node.port\"}.");
+}
+
+}  // namespace titop::python

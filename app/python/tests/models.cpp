@@ -1,0 +1,183 @@
+// The diagrams and models of the C++ examples, for comparison with those of examples/python: the
+// examples themselves are compiled here, with a `compile` that also writes what it returns, and
+// run.
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <numbers>
+#include <random>
+#include <set>
+#include <sstream>
+#include <string>
+#include <titop/titop.hpp>
+
+#include "by_hand/by_hand.hpp"
+#include "scenes/cmg.hpp"
+#include "scenes/satellite.hpp"
+#include "scenes/satellite_by_hand.hpp"
+#include "scenes/sloshing.hpp"
+#include "scenes/solar_array_drive.hpp"
+#include "scenes/wheels.hpp"
+
+namespace reference {
+
+std::filesystem::path folder;
+std::map<std::string, int> seen;
+int left = 0;  ///< calls of `compile` before the example is stopped
+struct Done {};
+
+/// N.json: the diagram; N.bin: sizes and entries of A, B, C, D, column by column.
+void write(const titop::Diagram& d, const titop::StateSpace& m) {
+  const std::string text = titop::diagram_json(d);
+  if (const auto [place, isnew] = seen.try_emplace(text, static_cast<int>(seen.size())); isnew) {
+    const std::string name = std::to_string(place->second);
+    std::ofstream(folder / (name + ".json"), std::ios::binary) << text;
+    std::ofstream file(folder / (name + ".bin"), std::ios::binary);
+    for (const Eigen::MatrixXd* matrix : {&m.A, &m.B, &m.C, &m.D}) {
+      const std::int64_t sizes[] = {matrix->rows(), matrix->cols()};
+      file.write(reinterpret_cast<const char*>(sizes), sizeof sizes);
+      file.write(reinterpret_cast<const char*>(matrix->data()), 8 * matrix->size());
+    }
+  }
+  if (--left == 0) throw Done();
+}
+
+titop::System compile(const titop::Diagram& d, const titop::Options& options = {}) {
+  titop::System s = titop::compile(d, options);
+  write(d, s.state_space());
+  return s;
+}
+
+titop::ReducedSystem compile(const titop::Diagram& d, const titop::Scene& scene,
+                             const titop::Options& options = {}) {
+  titop::ReducedSystem s = titop::compile(d, scene, options);
+  write(d, s.state_space());
+  return s;
+}
+
+}  // namespace reference
+
+// Headers that the examples include stand above; with their guards they are empty below.
+#define compile ::reference::compile
+#define main program
+namespace e01 {
+#include "01_spring_mass.cpp"
+}
+namespace e02 {
+#include "02_five_masses.cpp"
+}
+namespace e03 {
+#include "03_locked_mass.cpp"
+}
+namespace e04 {
+#include "04_spacecraft.cpp"
+}
+namespace e05 {
+#include "05_robot_joint.cpp"
+}
+namespace e07 {
+#include "07_robot_arm.cpp"
+}
+namespace e08 {
+#include "08_see_the_passes.cpp"
+}
+namespace e10 {
+#include "10_parameters.cpp"
+}
+namespace e11 {
+#include "11_closed_chains.cpp"
+}
+namespace e12 {
+#include "12_joints.cpp"
+}
+namespace e13 {
+#include "13_singular_scenes.cpp"
+}
+namespace e14 {
+#include "14_reduction.cpp"
+}
+namespace e16 {
+#include "16_time_response.cpp"
+}
+namespace e17 {
+#include "17_report.cpp"
+}
+namespace e18 {
+#include "18_attitude_loop.cpp"
+}
+namespace e19 {
+#include "19_lft.cpp"
+}
+namespace e21 {
+#include "21_worst_case.cpp"
+}
+namespace e22 {
+#include "22_wheels.cpp"
+}
+namespace e23 {
+#include "23_damping.cpp"
+}
+namespace e24 {
+#include "24_cmg.cpp"
+}
+namespace e25 {
+#include "25_solar_array_drive.cpp"
+}
+namespace e26 {
+#include "26_sloshing.cpp"
+}
+namespace e27 {
+#include "27_margins.cpp"
+}
+#undef main
+
+int main(int, char** arguments) {
+  const std::filesystem::path all = arguments[1];
+  for (const auto& [name, run, count] : {std::tuple{"01_spring_mass", &e01::program, 1},
+                                         {"02_five_masses", &e02::program, 4},
+                                         {"03_locked_mass", &e03::program, 1},
+                                         {"04_spacecraft", &e04::program, 2},
+                                         {"05_robot_joint", &e05::program, 4},
+                                         {"07_robot_arm", &e07::program, 1},
+                                         {"08_see_the_passes", &e08::program, 1},
+                                         {"10_parameters", &e10::program, 2},
+                                         {"11_closed_chains", &e11::program, 2},
+                                         {"12_joints", &e12::program, 2},
+                                         {"13_singular_scenes", &e13::program, 3},
+                                         {"14_reduction", &e14::program, 1},
+                                         {"16_time_response", &e16::program, 1},
+                                         {"17_report", &e17::program, 1},
+                                         {"18_attitude_loop", &e18::program, 1},
+                                         {"19_lft", &e19::program, 1},
+                                         {"21_worst_case", &e21::program, 1},
+                                         {"22_wheels", &e22::program, 7},
+                                         {"23_damping", &e23::program, 3},
+                                         {"24_cmg", &e24::program, 1},
+                                         {"25_solar_array_drive", &e25::program, 1},
+                                         {"26_sloshing", &e26::program, 2},
+                                         {"27_margins", &e27::program, 1}}) {
+    reference::folder = all / name;
+    reference::seen.clear();
+    std::filesystem::create_directories(reference::folder);
+    reference::left = count;
+    try {
+      run();
+    } catch (const reference::Done&) {
+      continue;
+    }
+    std::fprintf(stderr, "%s compiles fewer diagrams than %d\n", name, count);
+    return 1;
+  }
+}
