@@ -20,7 +20,15 @@ void bind_excitation(py::module_& m) {
       .def_static("held", &Excitation::held, "samples"_a, "period"_a,
                   "Samples (inputs x samples) held for `period` [s] each.")
       .def_static("recorded", &Excitation::recorded, "times"_a, "samples"_a,
-                  "A record, linear between its times [s]; jumps are two equal times.");
+                  "A record, linear between its times [s]; jumps are two equal times.")
+      .def_static(
+          "sampled",
+          [](const DiscreteModel& law, const Excitation* more) {
+            return Excitation::sampled(law, more ? *more : Excitation::none());
+          },
+          "law"_a, "more"_a = py::none(),
+          "A discrete law in the loop: it samples the outputs that its inputs are called like, and "
+          "holds the inputs that its outputs are called like; `more` is added.");
 }
 
 Trajectory run(const System& system, const Excitation& excitation, double step, double until,
