@@ -1,6 +1,7 @@
 #pragma once
 
 /// titop: from a block diagram of flexible bodies to one minimal state-space model.
+#include <titop/analysis/bracket/interface_bracket.hpp>
 #include <titop/analysis/certify/certify_full.hpp>
 #include <titop/analysis/control/discrete.hpp>
 #include <titop/analysis/control/loop.hpp>

@@ -93,10 +93,10 @@ class Assembly {
   Index next_ = 6;
 };
 
-by_hand::Structure satellite_by_hand(Edges edges, const Detail& detail) {
+by_hand::Structure satellite_by_hand(Lumping lumping, const Detail& detail) {
   const fe::Mesh yoke = beam_mesh(yoke_spec());
-  const std::array<fe::Mesh, 2> panels = {panel_mesh(true, edges, detail),
-                                          panel_mesh(false, edges, detail)};
+  const std::array<fe::Mesh, 2> panels = {panel_mesh(true, lumping, detail),
+                                          panel_mesh(false, lumping, detail)};
   const Index shapes = detail.polynomials - 2;  // of displacement, of each line
   const Index count =
       yoke.M.rows() + (panels[0].M.rows() - 3) + 2 * (panels[1].M.rows() - 3 - shapes) + 2;
@@ -125,10 +125,10 @@ by_hand::Structure satellite_by_hand(Edges edges, const Detail& detail) {
 }
 
 /// Small meshes with all of their modes.
-double error_by_hand(Edges edges) {
+double error_by_hand(Lumping lumping) {
   const Detail small{.elements = {2, 3}};
-  const System system = compile(satellite(edges, small));
-  const by_hand::Structure right = satellite_by_hand(edges, small);
+  const System system = compile(satellite(lumping, small));
+  const by_hand::Structure right = satellite_by_hand(lumping, small);
   std::vector<by_hand::MatrixXcd> ours, expected;
   for (const by_hand::Complex s : by_hand::ray(0.01, 40, 12)) {
     ours.push_back(system.transfer(s));
@@ -137,28 +137,15 @@ double error_by_hand(Edges edges) {
   return by_hand::transfer_error(ours, expected, 3, 3);
 }
 
-/// The slowest frequencies [Hz], ascending.
-std::vector<double> frequencies(Edges edges, int polynomials) {
-  const System system =
-      compile(satellite(edges, {.kept = 6, .polynomials = polynomials}), {.minimize_up_to = 0});
-  std::vector<double> result;
-  for (const Pole& pole : system.poles())
-    if (pole.omega > 0) result.push_back(pole.omega / (2 * 3.14159265358979));
-  std::sort(result.begin(), result.end());
-  result.resize(6);
-  return result;
-}
-
 }  // namespace
 
 int main() {
-  std::printf("frequencies [Hz], edges by m polynomials\n");
-  for (const int m : {2, 3, 4})
-    for (const Edges edges : {Edges::measured, Edges::restricted}) {
-      std::printf("m = %d, %s", m, edges == Edges::restricted ? "above:" : "below:");
-      for (const double f : frequencies(edges, m)) std::printf(" %8.5f", f);
-      std::printf("\n");
-    }
-  const double off = std::max(error_by_hand(Edges::restricted), error_by_hand(Edges::measured));
+  const Detail detail{.kept = 6};
+  const InterfaceBracket bracket =
+      interface_bracket([&](Lumping lumping) { return satellite(lumping, detail); });
+  std::printf("the slowest modes, edges by %d polynomials\n%s", detail.polynomials,
+              to_string(bracket).c_str());
+  const double off =
+      std::max(error_by_hand(Lumping::constrained), error_by_hand(Lumping::released));
   return by_hand::agrees("transfers of both, from the matrices of all meshes", off, 1e-9) ? 0 : 1;
 }

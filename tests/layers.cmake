@@ -42,6 +42,7 @@ room(analysis/certify          compiler/passes compiler/definition compiler/cert
 room(analysis/reduction        compiler/system)
 # Above blocks: it makes bodies of parts of a scene.
 room(analysis/damping          blocks/fe blocks compiler/system analysis/reduction)
+room(analysis/bracket          compiler/system)
 room(analysis/norms)
 # Deeper than System: it cuts diagrams at loop points.
 room(analysis/control          compiler/passes compiler/minreal compiler/system analysis/norms

@@ -8,8 +8,6 @@ namespace scenes::solar_array {
 
 using namespace titop;
 
-enum class Edges { restricted, measured };
-
 /// The mesh of a panel, the modes that are kept and the polynomials of its edges.
 struct Detail {
   std::array<int, 2> elements = {4, 6};
@@ -34,7 +32,7 @@ inline Beam yoke_spec() {
 }
 
 /// Parent "yoke" along the middle third of its edge, or "inner" along all of it; child "outer".
-inline fe::Mesh panel_mesh(bool first, Edges edges, const Detail& detail) {
+inline fe::Mesh panel_mesh(bool first, Lumping lumping, const Detail& detail) {
   fe::Mesh mesh = plate_mesh({.a = 1.5,
                               .b = 2.4,
                               .thickness = 0.02,
@@ -43,35 +41,35 @@ inline fe::Mesh panel_mesh(bool first, Edges edges, const Detail& detail) {
                               .elements = detail.elements});
   const auto line = [&](const std::string& edge) {
     const fe::Legendre polynomials = fe::legendre(detail.polynomials);
-    return edges == Edges::restricted ? fe::shapes(fe::edge(mesh, edge), polynomials)
-                                      : fe::moments(fe::edge(mesh, edge), polynomials);
+    return lumping == Lumping::constrained ? fe::shapes(fe::edge(mesh, edge), polynomials)
+                                           : fe::moments(fe::edge(mesh, edge), polynomials);
   };
   const fe::NodeSet third = fe::segment(mesh, "x0", 1.0 / 3, 2.0 / 3);
   if (first)
-    mesh = fe::with_interface(mesh, "yoke",
-                              edges == Edges::restricted ? fe::rigid(third) : fe::average(third));
+    mesh = fe::with_interface(
+        mesh, "yoke", lumping == Lumping::constrained ? fe::rigid(third) : fe::average(third));
   else
     mesh = fe::with_interface(mesh, "inner", line("x0"));
   return fe::with_interface(mesh, "outer", line("x1"));
 }
 
-inline FlexibleBody panel_body(bool first, Edges edges, const Detail& detail) {
+inline FlexibleBody panel_body(bool first, Lumping lumping, const Detail& detail) {
   const std::string parent = first ? "yoke" : "inner";
   fe::ModeOptions modes{.kept = detail.kept};
   if (detail.kept) modes.residual = {parent, "outer"}, modes.xi = {0.002};
-  return fe::modal_data(panel_mesh(first, edges, detail), parent, {"outer"}, modes);
+  return fe::modal_data(panel_mesh(first, lumping, detail), parent, {"outer"}, modes);
 }
 
 /// Wrench W on the hub; its acceleration.
-inline Diagram satellite(Edges edges, const Detail& detail) {
+inline Diagram satellite(Lumping lumping, const Detail& detail) {
   Diagram d{"satellite"};
   auto W = d.input("W", 6);
   auto hub = d.add("hub", hub_spec());
   auto yoke = d.add("yoke", FlexibleBody{yoke_spec()});
-  auto p1 = d.add("p1", panel_body(true, edges, detail));
+  auto p1 = d.add("p1", panel_body(true, lumping, detail));
   mount(yoke, hub.child("array"));
   mount(p1, yoke.child);
-  const FlexibleBody panel = panel_body(false, edges, detail);
+  const FlexibleBody panel = panel_body(false, lumping, detail);
   auto p2 = d.add("p2", panel);
   auto p3 = d.add("p3", panel);
   auto h1 = hinge_line(d, "h1", p2.line("inner"), p1.line("outer"));

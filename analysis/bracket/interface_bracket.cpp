@@ -1,0 +1,116 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <numbers>
+#include <titop/analysis/bracket/interface_bracket.hpp>
+#include <titop/graph/error.hpp>
+#include <titop/graph/linalg/rounding.hpp>
+
+namespace titop {
+
+namespace {
+
+using Interval = InterfaceBracket::Interval;
+
+/// Frequencies of one model, ascending.
+struct Frequencies {
+  std::vector<double> elastic;
+  std::size_t rigid = 0;  ///< motions without stiffness
+};
+
+Frequencies frequencies(const System& system) {
+  Frequencies result;
+  for (const Pole& pole : system.poles()) result.elastic.push_back(pole.omega);
+  std::ranges::sort(result.elastic);
+  // The square root of the rounding of a mode's omega^2, beside that of the fastest.
+  const double still = result.elastic.empty() ? 0 : linalg::kHalfDigits * result.elastic.back();
+  const auto moves = std::ranges::upper_bound(result.elastic, still);
+  result.rigid = static_cast<std::size_t>(moves - result.elastic.begin());
+  result.elastic.erase(result.elastic.begin(), moves);
+  return result;
+}
+
+void require(bool holds, std::string mistake, const char* hint) {
+  if (!holds) throw Error(Code::bad_value, std::move(mistake), hint);
+}
+
+std::vector<Interval> of_frequencies(const System& constrained, const System& released, int modes) {
+  const Frequencies above = frequencies(constrained), below = frequencies(released);
+  require(above.rigid == below.rigid,
+          fmt::format("the scene has {} motions without stiffness if its interfaces are "
+                      "constrained, {} if they are released",
+                      above.rigid, below.rigid),
+          "build the same scene for both; average and moments hold all six motions of a body");
+  const auto count = static_cast<std::size_t>(std::max(modes, 0));
+  require(count <= std::min(above.elastic.size(), below.elastic.size()),
+          fmt::format("{} modes are asked of a scene with {} and {}", modes, above.elastic.size(),
+                      below.elastic.size()),
+          "ask for fewer, or keep more modes of its bodies");
+  std::vector<Interval> result;
+  for (std::size_t k = 0; k < count; ++k) result.push_back({below.elastic[k], above.elastic[k]});
+  return result;
+}
+
+std::vector<Interval> of_compliances(const System& constrained, const System& released,
+                                     const std::vector<std::pair<int, int>>& pairs) {
+  std::vector<Interval> result;
+  if (pairs.empty()) return result;
+  const Eigen::MatrixXd stiff = constrained.static_gain(), soft = released.static_gain();
+  for (const auto& [input, output] : pairs) {
+    require(input >= 0 && input < stiff.cols() && output >= 0 && output < stiff.rows(),
+            fmt::format("the pair of input {} and output {} is not in a scene with {} and {}",
+                        input, output, stiff.cols(), stiff.rows()),
+            "they count from 0, every component of a port by itself");
+    result.push_back({stiff(output, input), soft(output, input)});
+  }
+  return result;
+}
+
+double difference(const System& constrained, const System& released,
+                  const std::vector<double>& omega) {
+  if (omega.empty()) return 0;
+  const auto a = constrained.frequency_response(omega), b = released.frequency_response(omega);
+  Eigen::MatrixXd size = a[0].cwiseAbs(), apart = (a[0] - b[0]).cwiseAbs();
+  for (std::size_t k = 1; k < omega.size(); ++k) {
+    size = size.cwiseMax(a[k].cwiseAbs());
+    apart = apart.cwiseMax((a[k] - b[k]).cwiseAbs());
+  }
+  // Entries that are zero by nature have no relative difference.
+  const double zero = linalg::kAxisRounding * size.maxCoeff();
+  return (size.array() > zero).select(apart.cwiseQuotient(size), 0.0).maxCoeff();
+}
+
+}  // namespace
+
+InterfaceBracket interface_bracket(const std::function<Diagram(Lumping)>& scene,
+                                   const BracketOptions& options) {
+  const Options all_states{.minimize_up_to = 0};
+  const System constrained = compile(scene(Lumping::constrained), all_states);
+  const System released = compile(scene(Lumping::released), all_states);
+  require(
+      constrained.inputs() == released.inputs() && constrained.outputs() == released.outputs(),
+      fmt::format("the scene has {} inputs and {} outputs if its interfaces are constrained, {} "
+                  "and {} others if they are released",
+                  constrained.inputs().size(), constrained.outputs().size(),
+                  released.inputs().size(), released.outputs().size()),
+      "build the same scene for both, with other couplings alone");
+  return {of_frequencies(constrained, released, options.modes),
+          of_compliances(constrained, released, options.compliances),
+          difference(constrained, released, options.omega)};
+}
+
+std::string to_string(const InterfaceBracket& bracket) {
+  std::string text = "        below        above     width\n";
+  const auto line = [&](const Interval& i, double unit, const char* name) {
+    text += fmt::format("{:>13.7g}{:>13.7g}{:>10.3f} %  {}\n", i.below / unit, i.above / unit,
+                        100 * i.width() / i.above, name);
+  };
+  for (const Interval& i : bracket.omega) line(i, 2 * std::numbers::pi, "Hz");
+  for (const Interval& i : bracket.compliance) line(i, 1, "compliance");
+  if (bracket.transfer_difference > 0)
+    text += fmt::format("the transfers differ by {:.3g} % (an estimate)\n",
+                        100 * bracket.transfer_difference);
+  return text;
+}
+
+}  // namespace titop
