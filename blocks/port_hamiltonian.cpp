@@ -1,5 +1,8 @@
+#include <fmt/format.h>
+
 #include <titop/blocks/body_interface.hpp>
 #include <titop/blocks/port_hamiltonian.hpp>
+#include <titop/graph/error.hpp>
 
 namespace titop {
 
@@ -18,15 +21,29 @@ void set_structure(PortHamiltonian& s, const MatrixXd& damping) {
   s.R.bottomRightCorner(n, n) = damping;
 }
 
+void require_size(const char* name, const VectorXd& v, Eigen::Index size) {
+  if (v.size() == size) return;
+  throw Error(Code::size, fmt::format("PortHamiltonian: {} has {} entries", name, v.size()),
+              fmt::format("give {}", size));
+}
+
 }  // namespace
 
-double PortHamiltonian::energy(const VectorXd& x) const { return 0.5 * x.dot(Q * x); }
+double PortHamiltonian::energy(const VectorXd& x) const {
+  require_size("x", x, Q.rows());
+  return 0.5 * x.dot(Q * x);
+}
 
 double PortHamiltonian::supplied(const VectorXd& x, const VectorXd& u) const {
+  require_size("x", x, Q.rows());
+  require_size("u", u, G.cols());
   return (Q * x).dot(G * u);
 }
 
-double PortHamiltonian::dissipated(const VectorXd& x) const { return (Q * x).dot(R * (Q * x)); }
+double PortHamiltonian::dissipated(const VectorXd& x) const {
+  require_size("x", x, Q.rows());
+  return (Q * x).dot(R * (Q * x));
+}
 
 StateSpace PortHamiltonian::state_space() const {
   const auto n = N.cols();

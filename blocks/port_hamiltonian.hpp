@@ -21,7 +21,8 @@ struct PortHamiltonian {
   Eigen::MatrixXd N;  ///< outputs x n
   Eigen::MatrixXd P;  ///< outputs x inputs
 
-  double energy(const Eigen::VectorXd& x) const;  ///< H [J]
+  /// H [J]. These throw size for vectors of another size.
+  double energy(const Eigen::VectorXd& x) const;
   /// Power at the ports, (Q x)' G u [W]; dH/dt = supplied - dissipated.
   double supplied(const Eigen::VectorXd& x, const Eigen::VectorXd& u) const;
   /// (Q x)' R (Q x) >= 0 [W].

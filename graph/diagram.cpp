@@ -21,7 +21,9 @@ Diagram::Diagram(std::string name) : graph_(std::make_unique<Graph>()) {
 
 Diagram Diagram::clone() const {
   Diagram copy(graph_->name);
+  const std::uint64_t id = copy.graph_->id;
   *copy.graph_ = *graph_;
+  copy.graph_->id = id;
   return copy;
 }
 
@@ -70,7 +72,7 @@ Param Diagram::param(std::string name, double value, SourceLine at) {
     note(*graph_, Code::not_finite, fmt::format("parameter {} is {}", name, value),
          "give it a finite value", at);
   graph_->parameters.push_back({std::move(name), value, at});
-  return {static_cast<int>(graph_->parameters.size()) - 1, value, graph_.get()};
+  return {static_cast<int>(graph_->parameters.size()) - 1, value, graph_->id};
 }
 
 Reading Diagram::loop_point(std::string name, const Rhs& signal) {

@@ -1,10 +1,16 @@
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cmath>
 #include <optional>
 #include <titop/graph/graph.hpp>
 
 namespace titop {
+
+std::uint64_t next_graph_id() {
+  static std::atomic<std::uint64_t> last = 0;
+  return ++last;
+}
 
 using Eigen::MatrixXd;
 

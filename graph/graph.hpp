@@ -138,6 +138,9 @@ struct Parameter {
   SourceLine where = {};
 };
 
+/// A number that no call has returned before.
+std::uint64_t next_graph_id();
+
 /// A diagram as data; places in these lists are the indices above.
 struct Graph {
   std::string name = {};
@@ -149,6 +152,8 @@ struct Graph {
   std::vector<Output> outputs;
   std::vector<Parameter> parameters;
   std::vector<Mistake> mistakes;  ///< found while the user wrote it; thrown by `check`
+  /// Of the diagram, whose parameters have it: an address may be that of an earlier diagram.
+  std::uint64_t id = next_graph_id();
 };
 
 /// "A1.parent.accel", "K.in", "u".

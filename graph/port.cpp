@@ -147,7 +147,7 @@ int find_child(const Graph& graph, int node, std::string_view name) {
 }
 
 bool belongs_to(const Value& v, const Graph& graph) {
-  return v.owner() == &graph && v.index() < static_cast<int>(graph.parameters.size());
+  return v.owner() == graph.id && v.index() < static_cast<int>(graph.parameters.size());
 }
 
 void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms, const SourceLine& at) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
 #include <span>
 #include <string>
 #include <type_traits>
@@ -12,9 +13,9 @@ using ParameterValues = std::span<const double>;
 
 /// Handle of a parameter of a diagram: `auto k1 = d.param("k1", 10.0)`.
 struct Param {
-  int index = -1;               ///< position among the diagram's parameters
-  double nominal = 0;           ///< the value given when it was made
-  const void* owner = nullptr;  ///< its diagram's graph
+  int index = -1;           ///< position among the diagram's parameters
+  double nominal = 0;       ///< the value given when it was made
+  std::uint64_t owner = 0;  ///< Graph::id of its diagram
 };
 
 /// A number, or a parameter: wherever a block takes a number, it takes a `Value`, so
@@ -38,7 +39,7 @@ class Value {
   double parameter() const { return number_; }
   bool is_parameter() const { return index_ >= 0; }
   int index() const { return index_; }
-  const void* owner() const { return owner_; }
+  std::uint64_t owner() const { return owner_; }
 
   friend Value operator*(double scale, Value v) { return v.times(scale); }
   friend Value operator*(Value v, double scale) { return v.times(scale); }
@@ -55,7 +56,7 @@ class Value {
   double number_ = 0;
   double scale_ = 1;
   int index_ = -1;
-  const void* owner_ = nullptr;
+  std::uint64_t owner_ = 0;
 };
 
 inline Value operator-(const Param& p) { return {-1, p}; }

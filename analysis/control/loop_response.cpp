@@ -29,13 +29,8 @@ std::complex<double> LoopResponse::at(double omega) const {
 }
 
 std::vector<std::complex<double>> all_poles(const StateSpace& model) {
-  StateSpace m = model;
-  if (m.states.size() != static_cast<std::size_t>(m.order())) {
-    m.states.assign(static_cast<std::size_t>(m.order()), "x");
-    m.rates.clear();
-  }
   std::vector<std::complex<double>> all;
-  for (const Pole& p : poles(m)) {
+  for (const Pole& p : poles(model)) {
     all.push_back(p.s);
     if (p.pair) all.push_back(std::conj(p.s));
   }

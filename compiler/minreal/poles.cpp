@@ -8,6 +8,7 @@
 #include <titop/compiler/minreal/at_zero.hpp>
 #include <titop/compiler/minreal/poles.hpp>
 #include <titop/compiler/realization/modal.hpp>
+#include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/graded.hpp>
 
@@ -140,8 +141,15 @@ void deflate(StateSpace& m, MatrixXd& rounding, MatrixXd& energy, std::vector<Po
 }  // namespace
 
 std::vector<Pole> poles(const StateSpace& model, const MatrixXd& rounding, const MatrixXd& energy) {
+  if (model.A.rows() != model.A.cols())
+    throw Error(Code::size, fmt::format("poles: A is {} x {}", model.A.rows(), model.A.cols()),
+                "give a square A");
   std::vector<Pole> result;
   StateSpace rest{model.A, {}, {}, {}, model.states, {}, {}, model.rates};
+  if (std::ssize(rest.states) != rest.A.rows()) {  // without names all is one block
+    rest.states.assign(static_cast<std::size_t>(rest.A.rows()), "x");
+    rest.rates.clear();
+  }
   MatrixXd of_rest = rounding, energy_of_rest = energy;
   deflate(rest, of_rest, energy_of_rest, result);
   std::vector<Pole> others;

@@ -47,6 +47,7 @@ std::string xi_of_bodies(const Pole& pole);
 /// `energy`: potential energy x' E x / 2, if known; models whose coordinates share springs and
 /// masses (closed chains) are solved as symmetric problems by it, if every coordinate has
 /// stiffness and no state has been removed.
+/// A model without names of its states is one block "x". Throws size if A is not square.
 std::vector<Pole> poles(const StateSpace& model, const Eigen::MatrixXd& rounding = {},
                         const Eigen::MatrixXd& energy = {});
 

@@ -104,3 +104,13 @@ TEST_CASE("poles: a beam held at both ends is undamped, at the frequencies of it
     CHECK(std::abs(found[i].omega / exact(static_cast<Index>(i)) - 1) <= 1e-9);
   }
 }
+
+TEST_CASE("poles of a model without names, and of one that is not square") {
+  StateSpace m;
+  m.A = (Eigen::Matrix2d() << 0, 1, -4, 0).finished();
+  const std::vector<Pole> all = poles(m);
+  REQUIRE(all.size() == 1);
+  CHECK(std::abs(all.front().s - std::complex<double>(0, 2)) <= 1e-15);
+  m.A = Eigen::MatrixXd::Zero(2, 1);
+  CHECK_THROWS_AS(poles(m), Error);
+}
