@@ -23,14 +23,33 @@ const Dof& dof_of(const CoupledNodes& n, std::size_t i) {
   return n.mesh.dofs[static_cast<std::size_t>(n.rows[i])];
 }
 
-/// Eigenvectors of the Gram matrix G of the point's directions that the nodes do not determine, as
-/// twists; `length` makes rotations comparable with displacements.
-MatrixXd undetermined(const CoupledNodes& n, const MatrixXd& G) {
+/// The unit of every row in which rotations and a plate's twist are comparable with displacements.
+VectorXd row_units(const CoupledNodes& n) {
+  const double length = n.length > 0 ? n.length : 1;
+  VectorXd units(static_cast<Index>(n.rows.size()));
+  for (std::size_t i = 0; i < n.rows.size(); ++i) {
+    const int c = dof_of(n, i).component;
+    units(static_cast<Index>(i)) = c < 3 ? 1 : 1 / (c == kTwist ? length * length : length);
+  }
+  return units;
+}
+
+/// Of the radius of gyration: nodes that are farther off a line are beside it, however small the
+/// interface is in its mesh.
+constexpr double kSurelyBeside = 0.01;
+
+/// Directions of the point, as twists, that rows B of the nodes, with weights W, do not determine:
+/// turning about them moves the nodes by less than the accuracy of their places.
+MatrixXd undetermined(const CoupledNodes& n, const MatrixXd& B, const MatrixXd& W) {
+  const MatrixXd BR = B * row_units(n).cwiseInverse().asDiagonal() * n.R;
+  const MatrixXd G = BR.transpose() * W * BR;
   VectorXd scale = VectorXd::Ones(G.rows());
   for (Index i = 0; i < G.rows(); ++i)
     if (n.moving[static_cast<std::size_t>(i)] >= 3) scale(i) = n.length > 0 ? 1 / n.length : 1;
   const SymmetricModes modes = eigh(scale.asDiagonal() * G * scale.asDiagonal());
-  const double least = linalg::kAxisRounding * modes.lambda.tail(1).value();
+  const double arm =
+      std::min(place_tolerance(n.mesh) / (n.length > 0 ? n.length : 1), kSurelyBeside);
+  const double least = std::max(arm * arm, linalg::kAxisRounding) * modes.lambda.tail(1).value();
   const Index count = (modes.lambda.array() <= least).count();
   return scale.asDiagonal() * modes.V.leftCols(count);
 }
@@ -93,6 +112,7 @@ CoupledNodes coupled_nodes(const Mesh& mesh, const std::string& name, const Node
   for (const std::size_t i : nodes.points)
     n.length += (mesh.points[i].position - centre).squaredNorm() / double(nodes.points.size());
   n.length = std::sqrt(n.length);
+  if (n.length <= place_tolerance(mesh)) n.length = 0;
   const std::set<std::size_t> points(nodes.points.begin(), nodes.points.end());
   for (std::size_t i = 0; i < mesh.dofs.size(); ++i)
     if (points.contains(mesh.dofs[i].point)) n.rows.push_back(static_cast<Index>(i));
@@ -104,8 +124,7 @@ CoupledNodes coupled_nodes(const Mesh& mesh, const std::string& name, const Node
 }
 
 void require_determined(const CoupledNodes& n, const MatrixXd& B) {
-  const MatrixXd BR = B * n.R;
-  const MatrixXd free = undetermined(n, BR.transpose() * BR);
+  const MatrixXd free = undetermined(n, B, MatrixXd::Identity(B.rows(), B.rows()));
   if (free.cols() > 0) refuse_undetermined(n, free.col(0));
 }
 
@@ -115,8 +134,7 @@ Observation measure_of(const CoupledNodes& n) {
     if (dof_of(n, i).component < 3)
       rows.add(VectorXd::Unit(n.R.rows(), static_cast<Index>(i)), weight_of(n, dof_of(n, i).point));
   const Observation displaced = rows.stacked(n.R.rows());
-  const MatrixXd BR = displaced.B * n.R;
-  const MatrixXd free = undetermined(n, BR.transpose() * displaced.W * BR);
+  const MatrixXd free = undetermined(n, displaced.B, displaced.W);
   for (Index k = 0; k < free.cols(); ++k)
     for (const std::size_t point : n.set.points)
       rows.add(own_rotation(n, point, free.col(k)), weight_of(n, point));
@@ -149,11 +167,7 @@ Mesh replaced(const CoupledNodes& n, const MatrixXd& T, const std::vector<Dof>& 
 }
 
 MatrixXd null_basis(const CoupledNodes& n, const MatrixXd& A) {
-  VectorXd scale(A.cols());
-  for (std::size_t i = 0; i < n.rows.size(); ++i) {
-    const int c = dof_of(n, i).component;
-    scale(static_cast<Index>(i)) = c < 3 ? 1 : 1 / (c == kTwist ? n.length * n.length : n.length);
-  }
+  const VectorXd scale = row_units(n);
   MatrixXd scaled = A * scale.asDiagonal();
   const VectorXd norms = scaled.rowwise().norm();
   scaled = norms.cwiseInverse().asDiagonal() * scaled;

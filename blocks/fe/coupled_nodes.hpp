@@ -19,7 +19,7 @@ struct CoupledNodes {
   std::vector<Eigen::Index> rows = {};  ///< of the nodes, ascending
   std::vector<int> moving = {};         ///< directions of the point in which the mesh moves
   Eigen::MatrixXd R = {};               ///< rows x moving
-  double length = 0;                    ///< radius of gyration of the nodes [m]
+  double length = 0;                    ///< radius of gyration of the nodes [m]; 0: one place
 };
 
 CoupledNodes coupled_nodes(const Mesh& mesh, const std::string& name, const NodeSet& nodes,

@@ -22,6 +22,18 @@ bool is_line(const Coupling& coupling) {
   return coupling.kind == Coupling::Kind::shapes || coupling.kind == Coupling::Kind::moments;
 }
 
+/// Number of nodes without those at the place of another one.
+Index distinct_places(const Mesh& mesh, const NodeSet& set) {
+  const double room = place_tolerance(mesh);
+  std::vector<Vector3d> places;
+  for (const std::size_t i : set.points)
+    if (std::ranges::none_of(places, [&](const Vector3d& r) {
+          return (r - mesh.points[i].position).norm() <= room;
+        }))
+      places.push_back(mesh.points[i].position);
+  return static_cast<Index>(places.size());
+}
+
 void check_coupling(const Mesh& mesh, const std::string& name, const Coupling& coupling) {
   const NodeSet& set = coupling.nodes;
   const auto refuse = [&](Code code, const std::string& mistake, const char* hint) {
@@ -57,10 +69,12 @@ void check_coupling(const Mesh& mesh, const std::string& name, const Coupling& c
   if (coupling.count < 2)
     refuse(Code::bad_value, fmt::format("{} polynomials", coupling.count),
            "the first two are its rigid motion: legendre(2) or more");
-  if (coupling.count > count)
+  const Index places = distinct_places(mesh, set);
+  if (coupling.count > places)
     refuse(Code::bad_value,
-           fmt::format("{} polynomials for {} nodes of {}", coupling.count, count, set.name),
-           "fewer polynomials than nodes, or a finer mesh");
+           fmt::format("{} polynomials for {} nodes of {}{}", coupling.count, places, set.name,
+                       places < count ? " that differ in their places" : ""),
+           "not more polynomials than nodes, or a finer mesh");
 }
 
 Vector3d weighted_centre(const Mesh& mesh, const NodeSet& set) {

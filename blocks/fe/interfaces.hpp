@@ -8,7 +8,7 @@
 /// motion of a set of nodes.
 ///
 ///     fe::Mesh mesh = plate_mesh(panel);
-///     mesh = fe::with_interface(mesh, "yoke", fe::average(fe::segment(mesh, "x0", 0.4, 0.6)));
+///     mesh = fe::with_interface(mesh, "yoke", fe::average(fe::segment(mesh, "x0", 0.25, 0.75)));
 ///     mesh = fe::with_interface(mesh, "next", fe::shapes(fe::edge(mesh, "x1"), fe::legendre(3)));
 ///     FlexibleBody panel{fe::modal_data(mesh, "yoke", {"next"}, {.kept = 10})};
 ///
@@ -25,8 +25,8 @@
 namespace titop::fe {
 
 /// m Legendre polynomials along an edge, of degrees 0 to m - 1, for every displacement of its
-/// nodes and for their rotation about it. What the six degrees of freedom of the point move is left
-/// out: degree 0; of displacements across the edge degree 1.
+/// nodes and for their rotation about it, without the motions of the point's six degrees of
+/// freedom: degree 0, and of displacements across the edge degree 1.
 struct Legendre {
   int count = 0;
 };
@@ -66,10 +66,11 @@ Coupling moments(NodeSet edge, Legendre polynomials);
 /// average interface of one node is a second name for it.
 ///
 /// Throws bad_modes: a node without rows (it is part of another interface); nodes on one line that
-/// determine no rotation about it, with the axis. bad_value: more polynomials than nodes, fewer
-/// than 2; nodes of shapes that are not on one line along a body axis; a node named twice; weights
-/// that are not positive; duplicate_name: a name that the mesh has; size: a wrong number of
-/// weights. Cost n^2 r for n rows of the mesh, r of the nodes.
+/// determine no rotation about it, with the axis. bad_value: more polynomials than nodes at
+/// different places, fewer than 2; nodes of shapes that are not on one line along a body axis, or
+/// leave out another one between them; a node named twice; weights that are not positive;
+/// duplicate_name: a name that the mesh has; size: a wrong number of weights. Cost n^2 r for n rows
+/// of the mesh, r of the nodes.
 Mesh with_interface(const Mesh& mesh, const std::string& name, const Coupling& coupling);
 
 }  // namespace titop::fe

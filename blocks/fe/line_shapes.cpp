@@ -12,6 +12,8 @@
 namespace titop {
 
 std::string to_string(const LineShape& shape) {
+  if (shape.component < 0 || shape.component > 5)
+    return fmt::format("component {} of degree {}", shape.component, shape.degree);
   return fmt::format("{}{}", component_name(shape.component), shape.degree);
 }
 
@@ -24,8 +26,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 namespace {
-
-constexpr double kStraight = 1e-9;  ///< of the length: positions from text or sums of lengths
 
 unsigned degree_of(int degree) { return static_cast<unsigned>(degree); }
 
@@ -77,6 +77,51 @@ std::vector<int> components_of(const Mesh& mesh, const EdgeLine& line,
   return result;
 }
 
+/// Throws if a node with degrees of freedom is on the line between its nodes, and none of them.
+void require_all_between(const Mesh& mesh, const EdgeLine& line) {
+  const double room = place_tolerance(mesh);
+  for (const Dof& dof : mesh.dofs) {
+    if (dof.component >= kGeneralised) continue;
+    const Vector3d from_middle = mesh.points[dof.point].position - line.middle;
+    Vector3d across = from_middle;
+    across(line.axis) = 0;
+    if (across.norm() > room || std::abs(from_middle(line.axis)) > line.length / 2) continue;
+    const bool at_node = std::ranges::any_of(line.nodes.points, [&](std::size_t point) {
+      return point == dof.point ||
+             std::abs(mesh.points[point].position(line.axis) - line.middle(line.axis) -
+                      from_middle(line.axis)) <= room;
+    });
+    if (!at_node)
+      throw Error(Code::bad_value,
+                  fmt::format("{} of mesh {} leaves out node {}, which is on the line between them",
+                              line.nodes.name, mesh.name, mesh.points[dof.point].name),
+                  "it would move apart from the shapes: take all nodes of the line, "
+                  "fe::segment(mesh, A, B) or fe::edge");
+  }
+}
+
+/// True if the slope of this component is a row of every node, which then has cubic Hermite
+/// functions along the line. Only a plate's elements have them, not each node with rotations.
+bool is_hermite(const Mesh& mesh, const EdgeLine& line, const std::vector<Index>& rows,
+                const EdgeFunction& f) {
+  return f.slope >= 0 && all_have(mesh, line, rows, kTwist) && all_have(mesh, line, rows, f.slope);
+}
+
+/// Weights of a function's values, and of its slopes behind each: its mass matrix by Hermite's
+/// functions, or lumped.
+MatrixXd weights_of(const EdgeLine& line, bool hermite) {
+  const Index count = line.at.size(), width = hermite ? 2 * count : count;
+  MatrixXd weights = MatrixXd::Zero(width, width);
+  for (Index i = 0; i + 1 < count; ++i) {
+    const double h = (line.at(i + 1) - line.at(i)) * line.length / 2;
+    if (hermite)
+      weights.block<4, 4>(2 * i, 2 * i) += hermite_mass(h) * (h / 420);
+    else
+      weights.diagonal().segment<2>(i).array() += h / 2;
+  }
+  return weights;
+}
+
 }  // namespace
 
 EdgeLine line_of(const Mesh& mesh, const NodeSet& nodes) {
@@ -92,7 +137,7 @@ EdgeLine line_of(const Mesh& mesh, const NodeSet& nodes) {
   line.middle = (low + high) / 2;
   Vector3d spread = high - low;
   spread(axis) = 0;
-  if (!(spread.norm() <= kStraight * line.length) || line.length == 0)
+  if (!(spread.norm() <= place_tolerance(mesh)) || line.length <= place_tolerance(mesh))
     throw Error(Code::bad_value,
                 fmt::format("{} of mesh {} is no line along x, y or z: its nodes extend by {:.6g}, "
                             "{:.6g} and {:.6g}",
@@ -108,6 +153,7 @@ EdgeLine line_of(const Mesh& mesh, const NodeSet& nodes) {
   for (Index i = 0; i < count; ++i)
     line.at(i) = 2 * (place(line.nodes.points[static_cast<std::size_t>(i)]) - line.middle(axis)) /
                  line.length;
+  require_all_between(mesh, line);
   return line;
 }
 
@@ -135,29 +181,20 @@ VectorXd displacements(const Mesh& mesh, const EdgeLine& line, const std::vector
 }
 
 Observation measure_of(const Mesh& mesh, const EdgeLine& line, const std::vector<Index>& rows) {
-  const auto count = static_cast<Index>(line.nodes.points.size());
-  const bool plate = all_have(mesh, line, rows, kTwist);
-  const Index width = plate ? 2 * count : count;
-  const std::vector<int> components = components_of(mesh, line, rows);
-  // Weights of one function: its mass matrix, by Hermite's functions or lumped.
-  MatrixXd weights = MatrixXd::Zero(width, width);
-  for (Index i = 0; i + 1 < count; ++i) {
-    const double h = (line.at(i + 1) - line.at(i)) * line.length / 2;
-    if (plate)
-      weights.block<4, 4>(2 * i, 2 * i) += hermite_integrals(h).values;
-    else
-      weights.diagonal().segment<2>(i).array() += h / 2;
-  }
-  const auto functions = static_cast<Index>(components.size());
-  Observation m{MatrixXd::Zero(functions * width, static_cast<Index>(rows.size())),
-                MatrixXd::Zero(functions * width, functions * width)};
-  for (Index k = 0; k < functions; ++k) {
-    const EdgeFunction f = function_of(line, components[static_cast<std::size_t>(k)]);
-    m.W.block(k * width, k * width, width, width) = weights;
-    for (Index i = 0; i < count; ++i) {
+  Observation m{MatrixXd(0, static_cast<Index>(rows.size())), MatrixXd(0, 0)};
+  for (const int component : components_of(mesh, line, rows)) {
+    const EdgeFunction f = function_of(line, component);
+    const bool hermite = is_hermite(mesh, line, rows, f);
+    const MatrixXd weights = weights_of(line, hermite);
+    const Index first = m.B.rows(), total = first + weights.rows();
+    m.B.conservativeResizeLike(MatrixXd::Zero(total, m.B.cols()));
+    m.W.conservativeResizeLike(MatrixXd::Zero(total, total));
+    m.W.bottomRightCorner(weights.rows(), weights.rows()) = weights;
+    for (Index i = 0; i < line.at.size(); ++i) {
       const std::size_t point = line.nodes.points[static_cast<std::size_t>(i)];
-      m.B(k * width + (plate ? 2 * i : i), find_row(mesh, rows, point, f.value)) = 1;
-      if (plate) m.B(k * width + 2 * i + 1, find_row(mesh, rows, point, f.slope)) = f.sign;
+      const Index row = first + (hermite ? 2 * i : i);
+      m.B(row, find_row(mesh, rows, point, f.value)) = 1;
+      if (hermite) m.B(row + 1, find_row(mesh, rows, point, f.slope)) = f.sign;
     }
   }
   return m;

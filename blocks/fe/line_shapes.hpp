@@ -19,7 +19,8 @@ struct EdgeLine {
   NodeSet nodes;       ///< in this order
 };
 
-/// Throws bad_value if the nodes are not on one line along x, y or z.
+/// Throws bad_value if the nodes are not on one line along x, y or z, to `place_tolerance`, or if
+/// another node with degrees of freedom is between them.
 EdgeLine line_of(const Mesh& mesh, const NodeSet& nodes);
 
 /// The shapes of m polynomials, for components that all nodes of the line have.

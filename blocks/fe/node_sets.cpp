@@ -1,9 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <titop/blocks/fe/node_sets.hpp>
 #include <titop/graph/error.hpp>
+#include <titop/graph/linalg/rounding.hpp>
 #include <utility>
 
 namespace titop::fe {
@@ -12,8 +14,6 @@ using Eigen::Index;
 using Eigen::VectorXd;
 
 namespace {
-
-constexpr double kSamePlace = 1e-9;  ///< of the mesh: positions from text or sums of lengths
 
 std::string print(const Vector3d& r) {
   return fmt::format("({:.6g}, {:.6g}, {:.6g})", r.x(), r.y(), r.z());
@@ -70,19 +70,33 @@ const MeshEdge& find_edge(const Mesh& mesh, const std::string& name) {
                             : "its edges are " + names);
 }
 
-/// Length along the edge up to each of its points, divided by the whole.
-std::vector<double> fractions(const Mesh& mesh, const MeshEdge& edge) {
-  std::vector<double> result = {0};
+/// Index among the edge's points of the one at this fraction of its length.
+std::size_t node_at(const Mesh& mesh, const MeshEdge& edge, double fraction) {
+  std::vector<double> at = {0};
   for (std::size_t i = 1; i < edge.points.size(); ++i)
-    result.push_back(
-        result.back() +
+    at.push_back(
+        at.back() +
         (mesh.points[edge.points[i]].position - mesh.points[edge.points[i - 1]].position).norm());
-  const double length = result.back();
-  for (double& s : result) s /= length;
-  return result;
+  const double length = at.back(), place = fraction * length, room = place_tolerance(mesh);
+  double before = 0, behind = length;
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    if (std::abs(at[i] - place) <= room) return i;
+    (at[i] < place ? before : behind) = at[i];
+    if (at[i] > place) break;
+  }
+  throw Error(Code::bad_value,
+              fmt::format("edge {} of mesh {} has no node at {} of its length", edge.name,
+                          mesh.name, fraction),
+              fmt::format("a segment ends at nodes, here at {:.6g} or {:.6g}: take these, or a "
+                          "mesh with a node there",
+                          before / length, behind / length));
 }
 
 }  // namespace
+
+double place_tolerance(const Mesh& mesh) {
+  return 10 * std::max(linalg::kTextDigits, mesh.position_noise) * size_of(mesh);
+}
 
 NodeSet nodes(const Mesh& mesh, const std::vector<std::string>& names) {
   std::vector<std::size_t> points;
@@ -91,7 +105,7 @@ NodeSet nodes(const Mesh& mesh, const std::vector<std::string>& names) {
 }
 
 NodeSet box(const Mesh& mesh, const Vector3d& low, const Vector3d& high) {
-  const double room = kSamePlace * size_of(mesh);
+  const double room = place_tolerance(mesh);
   std::vector<std::size_t> points = points_where(mesh, [&](const Vector3d& r) {
     return ((r - low).array() >= -room).all() && ((high - r).array() >= -room).all();
   });
@@ -113,30 +127,14 @@ NodeSet segment(const Mesh& mesh, const std::string& name, double from, double t
     throw Error(Code::bad_value,
                 fmt::format("a segment of edge {} is given from {} to {}", name, from, to),
                 "give fractions of its length, from 0 to 1, the smaller one first");
-  const std::vector<double> at = fractions(mesh, whole);
-  std::vector<std::size_t> points;
-  double before = 0, behind = 1;
-  for (std::size_t i = 0; i < at.size(); ++i) {
-    if (at[i] < from - kSamePlace)
-      before = at[i];
-    else if (at[i] > to + kSamePlace)
-      behind = std::min(behind, at[i]);
-    else
-      points.push_back(whole.points[i]);
-  }
-  if (points.empty())
-    throw Error(Code::bad_value,
-                fmt::format("edge {} of mesh {} has no node from {} to {} of its length", name,
-                            mesh.name, from, to),
-                fmt::format("the nodes beside are at {:.6g} and {:.6g}: a finer mesh, or another "
-                            "segment",
-                            before, behind));
+  const std::size_t first = node_at(mesh, whole, from), last = node_at(mesh, whole, to);
   return with_lengths(mesh, fmt::format("edge {} from {:g} to {:g}", name, from, to),
-                      std::move(points));
+                      {whole.points.begin() + static_cast<std::ptrdiff_t>(first),
+                       whole.points.begin() + static_cast<std::ptrdiff_t>(last) + 1});
 }
 
 NodeSet segment(const Mesh& mesh, const Vector3d& A, const Vector3d& B) {
-  const double room = kSamePlace * size_of(mesh), length = (B - A).norm();
+  const double room = place_tolerance(mesh), length = (B - A).norm();
   const Vector3d along = length > 0 ? Vector3d((B - A) / length) : Vector3d::Zero();
   const auto place = [&](const Vector3d& r) { return along.dot(r - A); };
   std::vector<std::size_t> points = points_where(mesh, [&](const Vector3d& r) {

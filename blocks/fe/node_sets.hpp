@@ -15,10 +15,14 @@ struct NodeSet {
   Eigen::VectorXd weights;          ///< one per node, > 0
 };
 
+/// Distance below which two places are one [m]: 1e-5 of the largest distance in the mesh, of
+/// coordinates with five or six digits; ten times Mesh::position_noise of it if that is more.
+double place_tolerance(const Mesh& mesh);
+
 /// The points or interfaces of these names, with equal weights. Throws unknown_name.
 NodeSet nodes(const Mesh& mesh, const std::vector<std::string>& names);
 
-/// All points with degrees of freedom in this box, its faces included to 1e-9 of the mesh, with
+/// All points with degrees of freedom in this box, its faces included to `place_tolerance`, with
 /// equal weights. low, high: corners in the body's frame [m]. Throws bad_value if there are none.
 NodeSet box(const Mesh& mesh, const Vector3d& low, const Vector3d& high);
 
@@ -26,13 +30,13 @@ NodeSet box(const Mesh& mesh, const Vector3d& low, const Vector3d& high);
 /// unknown_name with the edges that the mesh has.
 NodeSet edge(const Mesh& mesh, const std::string& name);
 
-/// The nodes of the named edge at these fractions of its length, from 0 to 1, ends included; it
-/// ends at nodes. Throws unknown_name; bad_value unless 0 <= from < to <= 1, and if no node is
-/// there, with the fractions of its nodes beside.
+/// The nodes of the named edge between these fractions of its length, from 0 to 1, at which it must
+/// have nodes. Throws unknown_name; bad_value unless 0 <= from < to <= 1, and if an end is no node,
+/// with the fractions of the nodes beside.
 NodeSet segment(const Mesh& mesh, const std::string& edge, double from, double to);
 
-/// All points with degrees of freedom on the straight line from A to B [m], to 1e-9 of the mesh, in
-/// this order, with weights as of an edge. Throws bad_value if there are none.
+/// All points with degrees of freedom on the straight line from A to B [m], to `place_tolerance`,
+/// in this order, with weights as of an edge. Throws bad_value if there are none.
 NodeSet segment(const Mesh& mesh, const Vector3d& A, const Vector3d& B);
 
 }  // namespace titop::fe

@@ -49,7 +49,7 @@ fe::Coupling shapes(const fe::Mesh& mesh, const std::string& edge) {
 /// Held along a part of an edge, so that it bends and twists; "next" is its other end.
 fe::Mesh inner() {
   fe::Mesh mesh = panel(0.8, 2, 3);
-  mesh = fe::with_interface(mesh, "root", fe::rigid(fe::segment(mesh, "x0", 0, 0.34)));
+  mesh = fe::with_interface(mesh, "root", fe::rigid(fe::segment(mesh, "x0", 0, 1.0 / 3)));
   return fe::with_interface(mesh, "next", shapes(mesh, "x1"));
 }
 

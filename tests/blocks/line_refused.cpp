@@ -34,7 +34,7 @@ fe::Coupling shapes(const fe::Mesh& mesh, const std::string& edge) {
 /// Held along a part of an edge, so that it bends and twists; "next" is its other end.
 fe::Mesh inner() {
   fe::Mesh mesh = panel(0.8, 2, 3);
-  mesh = fe::with_interface(mesh, "root", fe::rigid(fe::segment(mesh, "x0", 0, 0.34)));
+  mesh = fe::with_interface(mesh, "root", fe::rigid(fe::segment(mesh, "x0", 0, 1.0 / 3)));
   return fe::with_interface(mesh, "next", shapes(mesh, "x1"));
 }
 
@@ -48,7 +48,7 @@ TEST_CASE("lines that do not fit are refused, with both") {
   fe::Mesh other = panel(0.5, 2, 3);
   other = fe::with_interface(other, "few", fe::shapes(fe::edge(other, "x0"), fe::legendre(3)));
   other = fe::with_interface(other, "part",
-                             fe::shapes(fe::segment(other, "x1", 0, 0.7), fe::legendre(3)));
+                             fe::shapes(fe::segment(other, "x1", 0, 2.0 / 3), fe::legendre(3)));
   fe::Mesh along = panel(0.6, 3, 2);
   along = fe::with_interface(along, "prev", shapes(along, "y0"));
   Diagram d{"wing"};

@@ -212,14 +212,17 @@ TEST_CASE("nodes by name, box, edge, parts of edges and lines") {
   CHECK(names(fe::edge(mesh, "y1")) == "0,2 1,2 2,2 3,2 4,2 ");
   CHECK(fe::edge(mesh, "y1").weights == (VectorXd(5) << 0.25, 0.5, 0.5, 0.5, 0.25).finished());
   CHECK(names(fe::segment(mesh, "y1", 0.25, 0.75)) == "1,2 2,2 3,2 ");
-  CHECK(names(fe::segment(mesh, "x0", 0.4, 0.6)) == "0,1 ");
+  CHECK(names(fe::segment(mesh, "x0", 0, 0.5)) == "0,0 0,1 ");
   CHECK(names(fe::segment(mesh, {2, 0, 0}, {0, 1, 0})) == "4,0 2,1 0,2 ");
   CHECK(names(fe::box(mesh, {0.4, 0.5, 0}, {1, 1, 0})) == "1,1 1,2 2,1 2,2 ");
   CHECK(names(fe::nodes(mesh, {"3,1", "0,0"})) == "3,1 0,0 ");
   CHECK(
       says(error_of([&] { fe::edge(mesh, "x2"); }), Code::unknown_name, {"plate", "x2", "x0, x1"}));
-  CHECK(says(error_of([&] { fe::segment(mesh, "y1", 0.3, 0.4); }), Code::bad_value,
-             {"y1", "0.3", "0.4", "0.25", "0.5"}));
+  // Ends that are no nodes: not the nodes inside, which are less than the segment.
+  CHECK(says(error_of([&] { fe::segment(mesh, "y1", 0.3, 0.75); }), Code::bad_value,
+             {"y1", "at 0.3", "0.25", "0.5"}));
+  CHECK(says(error_of([&] { fe::segment(mesh, "y1", 0.25, 0.6); }), Code::bad_value,
+             {"y1", "at 0.6", "0.5", "0.75"}));
   CHECK(says(error_of([&] { fe::segment(mesh, "y1", 0.6, 0.4); }), Code::bad_value, {"0.6"}));
   CHECK(says(error_of([&] {
                fe::box(mesh, {3, 0, 0}, {4, 1, 0});
