@@ -45,21 +45,46 @@ void require_finite(const MatrixXd& m, const std::string& name) {
                     "give finite numbers");
 }
 
+/// Degree 0, and of displacements across the line degree 1, are motions of its point.
+bool fits(const LineShape& shape, int axis) {
+  if (shape.component < 0 || (shape.component >= 3 && shape.component != 3 + axis)) return false;
+  return shape.degree >= (shape.component < 3 && shape.component != axis ? 2 : 1);
+}
+
+void check_line(const ModalLine& line) {
+  require_finite(line.Phi, "Phi of line " + line.name);
+  if (line.axis < 0 || line.axis > 2 || !(line.length > 0) || !std::isfinite(line.length))
+    throw Error(
+        Code::bad_value,
+        fmt::format("line {} of the modal data has the length {} m and runs along {}", line.name,
+                    line.length,
+                    line.axis < 0 || line.axis > 2 ? "none of x, y, z" : component_name(line.axis)),
+        "give its length and the body axis along which it runs");
+  for (const LineShape& shape : line.shapes)
+    if (!fits(shape, line.axis))
+      throw Error(Code::bad_value,
+                  fmt::format("line {} of the modal data, along {}, has the shape {}", line.name,
+                              component_name(line.axis), to_string(shape)),
+                  fmt::format("shapes are displacements across the line, of degree 2 or more, "
+                              "along it or its rotation {}, of degree 1 or more",
+                              component_name(3 + line.axis)));
+}
+
+/// A line that is no child's is the parent's.
 void check_lines(const ModalData& d) {
+  std::string children;
+  for (const ModalChild& c : d.children) children += (children.empty() ? "" : ", ") + c.name;
+  const ModalLine* of_parent = nullptr;
   for (const ModalLine& line : d.lines) {
-    require_finite(line.Phi, "Phi of line " + line.name);
-    const bool along = line.axis >= 0 && line.axis < 3 && line.length > 0;
-    if (!along || std::ranges::any_of(line.shapes, [&](const LineShape& s) {
-          return s.degree < 1 || s.component < 0 ||
-                 (s.component >= 3 && s.component != 3 + line.axis);
-        }))
-      throw Error(
-          Code::bad_value,
-          fmt::format("line {} of the modal data has axis {}, length {} and shapes that do "
-                      "not fit them",
-                      line.name, line.axis, line.length),
-          "axis is 0, 1 or 2; shapes are displacements 0, 1, 2 or the rotation 3 + axis, of "
-          "degree 1 or more");
+    check_line(line);
+    if (std::ranges::find(d.children, line.name, &ModalChild::name) != d.children.end()) continue;
+    if (of_parent)
+      throw Error(Code::unknown_name,
+                  fmt::format("lines {} and {} of the modal data are no children", of_parent->name,
+                              line.name),
+                  "one line may be the parent's, the others have the name of a child: " +
+                      (children.empty() ? "there is none" : children));
+    of_parent = &line;
   }
 }
 

@@ -40,6 +40,28 @@ Vector6 row_sizes(const ModalChild& child) {
   return sizes;
 }
 
+/// The same of a line's rows, with those of the child at its middle: displacements, or rotations
+/// times the line's length. A row of zeros is exact and has the size 0.
+VectorXd shape_sizes(const ModalData& data, const ModalLine& line) {
+  const VectorXd norms = line.Phi.rowwise().norm();
+  const auto is_rotation = [&](Index i) {
+    return line.shapes[static_cast<std::size_t>(i)].component >= 3;
+  };
+  double displacement = 0;
+  for (Index i = 0; i < norms.size(); ++i)
+    displacement = std::max(displacement, norms(i) * (is_rotation(i) ? line.length : 1));
+  for (const ModalChild& child : data.children)
+    if (child.name == line.name) {
+      const Vector6 point = child.Phi_C.rowwise().norm();
+      displacement = std::max(
+          {displacement, point.head<3>().maxCoeff(), point.tail<3>().maxCoeff() * line.length});
+    }
+  VectorXd sizes = VectorXd::Zero(norms.size());
+  for (Index i = 0; i < norms.size(); ++i)
+    if (norms(i) > 0) sizes(i) = is_rotation(i) ? displacement / line.length : displacement;
+  return sizes;
+}
+
 /// Rows that are negligible compared with the others.
 std::array<bool, 6> resting_rows(const ModalData& data, const ModalChild& child) {
   const double noise = shape_noise(data);
@@ -165,7 +187,7 @@ DataDigits data_digits(const ModalData& data) {
   }
   row = 6 * children;
   for (const ModalLine& line : data.lines)
-    for (const double size : line.Phi.rowwise().norm()) result.size(row++) = size;
+    for (const double size : shape_sizes(data, line)) result.size(row++) = size;
   result.size.tail<6>() = data.D_P.diagonal().cwiseSqrt();
   return result;
 }

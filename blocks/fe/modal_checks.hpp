@@ -54,9 +54,9 @@ std::string combination(const Vector6& w);
 
 /// Accuracy of the block's numbers (graph/data_digits.hpp): sizes of a child are its largest row
 /// norms of Phi_C, of translations and of rotations, made comparable by the distance from P; those
-/// of a shape its row norm of Phi; those of P the square roots of D_P's diagonal; the fraction of
-/// `mass` follows from `data.digits`, that of `shapes` is 1e-11 or more, the rounding of an
-/// eigenproblem.
+/// of a line's shapes the largest of their row norms and of its child's, made comparable by its
+/// length; those of P the square roots of D_P's diagonal; the fraction of `mass` follows from
+/// `data.digits`, that of `shapes` is 1e-11 or more, the rounding of an eigenproblem.
 DataDigits data_digits(const ModalData& data);
 
 /// fraction(k, j) = L_P(k, j)^2 / D_P(j, j): fraction of the rigid mass that moves with mode k if P

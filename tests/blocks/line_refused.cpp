@@ -75,12 +75,44 @@ TEST_CASE("lines that do not fit are refused, with both") {
                a.line("next").shape({2, 9});
              }),
              Code::unknown_name, {"a.next", "z9", "z2"}));
+  CHECK(says(error_of([&] {
+               a.line("next").shape({9, 1});
+             }),
+             Code::unknown_name, {"a.next", "component 9", "z2"}));
   ModalData wrong = fe::modal_data(along, "prev", {});
   wrong.lines[0].Phi.conservativeResize(4, Eigen::NoChange);
   CHECK(says(error_of([&] { FlexibleBody{wrong}; }), Code::bad_modes, {"prev", "4", "5"}));
   wrong = fe::modal_data(along, "prev", {});
-  wrong.lines[0].shapes[0].degree = 0;
-  CHECK(says(error_of([&] { FlexibleBody{wrong}; }), Code::bad_value, {"prev"}));
+  wrong.lines[0].shapes[0].degree = 1;  // z1 is the rotation of the point
+  CHECK(says(error_of([&] { FlexibleBody{wrong}; }), Code::bad_value, {"prev", "z1", "rx"}));
+  wrong = fe::modal_data(along, "prev", {});
+  wrong.lines[0].axis = 3;
+  CHECK(says(error_of([&] { FlexibleBody{wrong}; }), Code::bad_value, {"prev", "none of x, y, z"}));
+}
+
+TEST_CASE("one line may be the parent's, all others have the name of a child") {
+  fe::Mesh mesh = panel(0.5, 2, 3);
+  mesh = fe::with_interface(mesh, "prev", shapes(mesh, "x0"));
+  mesh = fe::with_interface(mesh, "next", shapes(mesh, "x1"));
+  ModalData data = fe::modal_data(mesh, "prev", {"next"});
+  CHECK(error_of([&] { FlexibleBody{data}; }).mistakes().empty());
+  for (ModalLine& line : data.lines)
+    if (line.name == "next") line.name = "nxet";
+  CHECK(says(error_of([&] { FlexibleBody{data}; }), Code::unknown_name, {"prev", "nxet", "next"}));
+}
+
+TEST_CASE("a shape that the kept modes move by rounding alone is refused") {
+  // The lowest mode of a square plate clamped along x0 is even in y, the rotation ry1 of x1 is odd.
+  fe::Mesh mesh = panel(0.6, 8, 8);
+  mesh = fe::with_interface(mesh, "root", fe::rigid(fe::edge(mesh, "x0")));
+  mesh = fe::with_interface(mesh, "next", fe::moments(fe::edge(mesh, "x1"), fe::legendre(2)));
+  Diagram d{"wing"};
+  auto a = d.add("a", FlexibleBody{fe::modal_data(mesh, "root", {"next"}, {.kept = 1})});
+  ground(a);
+  const DualPort<1> shape = a.line("next").shape({4, 1});
+  shape.accel = d.input("u");
+  d.output("f") = shape.reaction;
+  CHECK(says(titop_test::compile_error(d), Code::improper, {"a", "next.ry1"}));
 }
 
 TEST_CASE("a shape that no mode moves is refused by name, locked and driven") {
