@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/flexible_body.hpp>
 #include <titop/blocks/line_port.hpp>
 #include <titop/blocks/specified.hpp>
@@ -50,6 +51,24 @@ std::pair<LineShape, double> shape_in(const LinePort& a, const LinePort& b, cons
   return {{of.axis + (is_rotation(shape) ? 3 : 0), shape.degree}, flip * of.sign};
 }
 
+/// Refuses a shape of a that has a direction in which the nodes of b have no shapes at all.
+void require_one_plane(const LinePort& a, const LinePort& b, const Matrix3d& T) {
+  for (const LineShape& s : a.line.shapes) {
+    const LineShape wanted = shape_in(a, b, T, s).first;
+    if (std::ranges::find(b.line.shapes, wanted.component, &LineShape::component) !=
+        b.line.shapes.end())
+      continue;
+    throw Error(
+        Code::bad_value,
+        fmt::format("lines {} and {} do not meet in one plane: {} of {} is {} of {}, in which {} "
+                    "is rigid",
+                    a.name, b.name, component_name(s.component), a.name,
+                    component_name(wanted.component), b.name, b.name),
+        "T_ba turns panels into each other by half turns, or by quarter turns about their normal; "
+        "at another angle join points of rigid or average interfaces");
+  }
+}
+
 void require_same(const LinePort& a, const LinePort& b, const Rotation& T_ba) {
   if (!T_ba.values().empty())
     throw Error(Code::bad_value,
@@ -67,8 +86,9 @@ void require_same(const LinePort& a, const LinePort& b, const Rotation& T_ba) {
                 "weld edges of one length: take the common segment, fe::segment(mesh, edge, from, "
                 "to)");
   const Matrix3d T = T_ba.nominal();
-  const bool fits = turned(a, b, T, a.line.axis).axis == b.line.axis &&
-                    a.line.shapes.size() == b.line.shapes.size() &&
+  const bool same_axis = turned(a, b, T, a.line.axis).axis == b.line.axis;
+  if (same_axis) require_one_plane(a, b, T), require_one_plane(b, a, T.transpose());
+  const bool fits = same_axis && a.line.shapes.size() == b.line.shapes.size() &&
                     std::ranges::all_of(a.line.shapes, [&](const LineShape& s) {
                       const LineShape wanted = shape_in(a, b, T, s).first;
                       return std::ranges::any_of(b.line.shapes, [&](const LineShape& t) {
@@ -96,6 +116,16 @@ void tie_shapes(const LinePort& a, const LinePort& b, const Matrix3d& T, bool ro
     mine.accel = Rhs(signed_by(other.accel.expr()), at);
     other.force += Rhs(signed_by(mine.reaction.expr()).negated(), at);
   }
+}
+
+void hold_shapes(const LinePort& line, const SourceLine& at) {
+  for (const DualPort<1>& shape : line.shape_ports) ground(shape, at);
+}
+
+/// States that the rotation's shapes are free, which is meant here.
+void release_rotations(const LinePort& line, const SourceLine& at) {
+  for (std::size_t i = 0; i < line.line.shapes.size(); ++i)
+    if (is_rotation(line.line.shapes[i])) release(line.shape_ports[i], at);
 }
 
 struct ParentOnly {
@@ -138,6 +168,27 @@ LinePort FlexibleBodyHandle::line(const std::string& name) const {
   return port;
 }
 
+void ground(const LinePort& line, SourceLine at) {
+  ground(line.point, at);
+  hold_shapes(line, at);
+}
+
+void mount(const LinePort& line, const DualPort<6>& site, const Rotation& T_ba, SourceLine at) {
+  if (!line.is_parent)
+    throw Error(Code::bad_value,
+                fmt::format("line {} is mounted and is not its body's parent", line.name),
+                "modal_data(mesh, line, {...}) makes it the parent; to close a chain write weld");
+  weld(line, site, T_ba, at);
+}
+
+void weld(const LinePort& line, const DualPort<6>& site, const Rotation& T_ba, SourceLine at) {
+  if (line.is_parent)
+    mount(ParentOnly{line.point}, site, T_ba, at);
+  else
+    weld(line.point, site, T_ba, at);
+  hold_shapes(line, at);
+}
+
 void weld(const LinePort& a, const LinePort& b, const Rotation& T_ba, SourceLine at) {
   if (b.is_parent && !a.is_parent) return weld(b, a, T_ba.inverse(), at);
   require_same(a, b, T_ba);
@@ -159,6 +210,7 @@ Hinge::Handle hinge_line(Diagram& d, const std::string& name, const LinePort& a,
   const Hinge::Handle joint =
       hinge(d, name, ParentOnly{a.point}, b.point, T_ba, Vector3d::Unit(a.line.axis), at);
   tie_shapes(a, b, T_ba.nominal(), /*rotations=*/false, at);
+  release_rotations(a, at), release_rotations(b, at);
   return joint;
 }
 

@@ -191,6 +191,7 @@ void note_warnings_of_blocks(Checker& c) {
 
 void note_rarely_meant(Checker& c, ParameterValues values) {
   note_warnings_of_blocks(c);
+  note_free_lines(c);
   note_negative_springs(c, values);
   note_signs_of_inputs(c);
   note_no_outputs(c);
