@@ -149,7 +149,9 @@ std::string to_string(const MeshReport& report, const std::optional<DataUnits>& 
 VectorXd omega_uncertainty(const Mesh& given, const std::string& parent, int count) {
   check(given);
   const Mesh mesh = symmetrised(given);
-  const auto rows = interface_rows(mesh, parent);
+  const Vector3d P = mesh.points[find_point(mesh, parent)].position;
+  const auto rows =
+      interface_rows(mesh, parent, mesh.rigid ? still_directions(mesh, P) : std::array<bool, 6>{});
   std::vector<Index> f;
   for (Index i = 0; i < mesh.M.rows(); ++i)
     if (std::find(rows.begin(), rows.end(), i) == rows.end()) f.push_back(i);

@@ -80,6 +80,22 @@ void add_stiffness_mistakes(const Plate& plate, std::vector<Mistake>& mistakes) 
         "D11, D22, D66 are positive and D12^2 is below D11 D22, in N m");
 }
 
+constexpr double kMostBytes = 2.2e9;  ///< of M and of K; their modes take some days
+
+void add_size_mistake(const Plate& plate, std::vector<Mistake>& mistakes) {
+  const auto [nx, ny] = plate.elements;
+  const double rows = 4 * (double(nx) + 1) * (double(ny) + 1), bytes = 8 * rows * rows;
+  if (nx < 1 || ny < 1 || bytes <= kMostBytes) return;
+  mistakes.push_back(
+      {Code::bad_value,
+       fmt::format("{} x {} elements of the plate have {:.0f} rows: M and K, which are dense, "
+                   "take {:.3g} bytes each, above {:.3g}",
+                   nx, ny, rows, bytes, kMostBytes),
+       {},
+       "8 to 24 elements a side are accurate to 1e-3 (the error falls with h^4); for more take a "
+       "finite-element program and import its modes"});
+}
+
 Matrix6 mass_of(const Plate& plate) {
   const double a = plate.a, b = plate.b, m = plate.material.rho * plate.thickness * a * b;
   const Matrix3d I = (m / 12 * Vector3d(b * b, a * a, a * a + b * b)).asDiagonal().toDenseMatrix();
@@ -120,6 +136,7 @@ void check(const Plate& plate) {
   positive(plate.thickness, "thickness");
   positive(plate.elements[0], "elements[0]");
   positive(plate.elements[1], "elements[1]");
+  add_size_mistake(plate, mistakes);
   add_stiffness_mistakes(plate, mistakes);
   if (!mistakes.empty()) throw Error(std::move(mistakes));
 }

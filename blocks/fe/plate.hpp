@@ -34,9 +34,9 @@ struct Plate {
 };
 
 /// Throws `bad_value`, all mistakes together: values that are not positive and finite, fewer than
-/// one element, a material with both or neither of nu and G, a Poisson's ratio, given or by
-/// E / (2 G) - 1, of -1 or less or above 0.5, a D that is not positive definite, E, nu or G beside
-/// D.
+/// one element, more than 63 x 63 (M and K of 2.1 GB each), a material with both or neither of nu
+/// and G, a Poisson's ratio, given or by E / (2 G) - 1, of -1 or less or above 0.5, a D that is not
+/// positive definite, E, nu or G beside D.
 void check(const Plate& plate);
 
 /// Legal values that are probably mistakes, one line each, with its number: E below 1e8 Pa (data in

@@ -233,6 +233,10 @@ TEST_CASE("plates that cannot be are refused, all mistakes at once") {
   plate = unit_plate(2);
   plate.material.E = 70e9;
   CHECK(says(error_of([&] { plate_mesh(plate); }), Code::bad_value, {"both", "D", "E"}));
+  // 161604 rows: M alone would take 209 GB.
+  plate = unit_plate(200);
+  CHECK(says(error_of([&] { plate_mesh(plate); }), Code::bad_value, {"200 x 200", "161604"}));
+  CHECK(error_of([] { check(unit_plate(63)); }).mistakes().empty());
   // A sandwich: E / (2 G) - 1 is no Poisson's ratio.
   plate = {.a = 1, .b = 1, .thickness = 0.02, .material = {.E = 70e9, .G = 20e9, .rho = 300}};
   CHECK(
