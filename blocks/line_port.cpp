@@ -156,7 +156,7 @@ LinePort FlexibleBodyHandle::line(const std::string& name) const {
                 names.empty() ? "give its mesh one: fe::with_interface(mesh, name, fe::shapes(...))"
                               : "its lines are " + names);
   }
-  const int child_channel = detail::find_child(*graph_, node_, name);
+  const int child_channel = detail::find_child(*graph_, node_, name, 6);
   LinePort port{node.name + "." + name,
                 child_channel < 0 ? parent : detail::channel<6>(graph_, node_, child_channel),
                 child_channel < 0,

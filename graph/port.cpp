@@ -138,12 +138,16 @@ int find_channel(const Graph& graph, int node, std::string_view name) {
   return face_of(graph, node).find_channel(name);
 }
 
-int find_child(const Graph& graph, int node, std::string_view name) {
+namespace {
+
+bool is_child(const ChannelSpec& c, int size) { return c.takes == Takes::force && c.size == size; }
+
+}  // namespace
+
+int find_child(const Graph& graph, int node, std::string_view name, int size) {
   const int spec = find_channel(graph, node, name);
-  return spec >= 0 &&
-                 face_of(graph, node).channels[static_cast<std::size_t>(spec)].takes == Takes::force
-             ? spec
-             : -1;
+  const auto& channels = face_of(graph, node).channels;
+  return spec >= 0 && is_child(channels[static_cast<std::size_t>(spec)], size) ? spec : -1;
 }
 
 bool belongs_to(const Value& v, const Graph& graph) {
@@ -167,11 +171,11 @@ void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms, const
     }
 }
 
-int only_child(const Graph& graph, int node) {
+int only_child(const Graph& graph, int node, int size) {
   int found = -1;
   const auto& channels = face_of(graph, node).channels;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    if (channels[i].name == "parent" || channels[i].takes != Takes::force) continue;
+    if (channels[i].name == "parent" || !is_child(channels[i], size)) continue;
     if (found >= 0) return -1;
     found = static_cast<int>(i);
   }
@@ -179,14 +183,19 @@ int only_child(const Graph& graph, int node) {
 }
 
 void note_missing(Graph& graph, const std::vector<Term>& terms, const SourceLine& at) {
-  for (const Term& term : terms)
-    if (term.signal <= -2) note_unknown_channel(graph, -2 - term.signal, "child", at);
+  for (const Term& term : terms) {
+    if (term.signal > -2) continue;
+    const int node = -2 - term.signal;
+    int size = 0;  // child points have as many degrees of freedom as the parent, shapes have one
+    for (const ChannelSpec& c : face_of(graph, node).channels) size = std::max(size, c.size);
+    note_unknown_channel(graph, node, "child", size, at);
+  }
 }
 
-void note_unknown_channel(Graph& graph, int node, std::string_view name, SourceLine at) {
+void note_unknown_channel(Graph& graph, int node, std::string_view name, int size, SourceLine at) {
   std::string names;
   for (const ChannelSpec& c : face_of(graph, node).channels)
-    if (c.takes == Takes::force) names += (names.empty() ? "" : ", ") + c.name;
+    if (is_child(c, size)) names += (names.empty() ? "" : ", ") + c.name;
   const std::string& who = graph.nodes[static_cast<std::size_t>(node)].name;
   Mistake mistake{Code::unknown_name, {}, {}, {}};
   mistake.message = name == "child"

@@ -236,33 +236,35 @@ DualPort<N> channel(Graph* graph, int node, int spec) {
 int port_signal(const Graph& graph, int node, std::string_view name);
 /// Index of the block's channel `name`, -1 if there is none.
 int find_channel(const Graph& graph, int node, std::string_view name);
-/// The same among its child channels only.
-int find_child(const Graph& graph, int node, std::string_view name);
+/// The same among its child channels of this size only: the shapes of a body's lines are scalar
+/// ones.
+int find_child(const Graph& graph, int node, std::string_view name, int size);
 /// True for a parameter (not a number) that this graph has.
 bool belongs_to(const Value& parameter, const Graph& graph);
 /// Notes the mistake "parameter of another diagram" for every such parameter in these terms.
 void note_foreign_parameters(Graph& graph, const std::vector<Term>& terms, const SourceLine& at);
 /// Notes the mistake "not exactly one child" for every such port in these terms.
 void note_missing(Graph& graph, const std::vector<Term>& terms, const SourceLine& at);
-/// Notes the mistake "no channel of this name", with the names that exist; once per line.
-void note_unknown_channel(Graph& graph, int node, std::string_view name, SourceLine at);
-/// Index of the only channel of size N that is not "parent", -1 if there are several or none.
-int only_child(const Graph& graph, int node);
+/// Notes the mistake "no channel of this name", with the names of this size that exist; once per
+/// line.
+void note_unknown_channel(Graph& graph, int node, std::string_view name, int size, SourceLine at);
+/// Index of the only channel of this size that is not "parent", -1 if there are several or none.
+int only_child(const Graph& graph, int node, int size);
 }  // namespace detail
 
 template <int N>
 Children<N>::Children(Graph* graph, int node)
-    : DualPort<N>(detail::only_child(*graph, node) < 0
+    : DualPort<N>(detail::only_child(*graph, node, N) < 0
                       ? DualPort<N>(graph, -2 - node, -2 - node)
-                      : detail::channel<N>(graph, node, detail::only_child(*graph, node))),
+                      : detail::channel<N>(graph, node, detail::only_child(*graph, node, N))),
       graph_(graph),
       node_(node) {}
 
 template <int N>
 DualPort<N> Children<N>::operator()(std::string_view name, SourceLine at) const {
-  const int spec = detail::find_child(*graph_, node_, name);
+  const int spec = detail::find_child(*graph_, node_, name, N);
   if (spec >= 0) return detail::channel<N>(graph_, node_, spec);
-  detail::note_unknown_channel(*graph_, node_, name, at);
+  detail::note_unknown_channel(*graph_, node_, name, N, at);
   return {graph_, -1, -1};
 }
 

@@ -112,6 +112,7 @@ fe::Mesh beam_mesh(const Beam& beam) {
   const double mass = rho * beam.section.area * h;
   fe::Mesh mesh;
   mesh.name = "beam";
+  mesh.warnings = implausible(beam);
   for (std::size_t i = 0; i < nodes; ++i) {
     const double x = beam.length * static_cast<double>(i) / beam.elements;
     mesh.points.push_back({std::to_string(i), Vector3d(x, 0, 0)});

@@ -48,7 +48,7 @@ struct Beam {
 void check(const Beam& beam);
 
 /// Legal values that are probably mistakes, one line each, with its number: E below 1e8 Pa (data in
-/// MPa).
+/// MPa). In Mesh::warnings, and so in the log of `compile`.
 std::vector<std::string> implausible(const Beam& beam);
 
 /// Free mesh of elements + 1 points "0", "1", ... along x, six degrees of freedom each, and the

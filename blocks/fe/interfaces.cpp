@@ -145,7 +145,7 @@ Mesh with_motion(const CoupledMotion& m, const std::string& name) {
     add(fmt::format("{} rest {}", name, k));
   Mesh mesh = replaced(m.nodes, m.T, dofs);
   mesh.points.insert(mesh.points.end(), points.begin(), points.end());
-  mesh.interfaces.push_back({name, centre});
+  mesh.interfaces.push_back({name, centre, m.nodes.set.points});
   if (!m.shapes.empty()) mesh.lines.push_back(std::move(line));
   return mesh;
 }

@@ -209,11 +209,17 @@ std::array<Index, 6> interface_rows(const Mesh& mesh, const std::string& name,
     planar = planar && still.at(c);
   }
   if (missing.empty()) return rows;
-  const char* hint = planar ? "the whole mesh leaves these directions out: give the rigid mass "
+  std::string hint = planar ? "the whole mesh leaves these directions out: give the rigid mass "
                               "matrix about the parent (ModeOptions::rigid), and the body is rigid "
                               "in them"
                             : "tie it to a node with rotations (a rigid body element) in the "
                               "finite-element program";
+  for (const MeshInterface& other : mesh.interfaces)
+    if (std::ranges::find(other.nodes, point) != other.nodes.end())
+      hint = fmt::format(
+          "its rows belong to the interface {}: name that, or leave this node out "
+          "of it",
+          other.name);
   throw Error(Code::bad_modes,
               fmt::format("point {} of mesh {} cannot be an interface: it has no degree of "
                           "freedom {}",

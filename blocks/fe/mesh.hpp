@@ -35,7 +35,8 @@ struct Dof {
 /// for directions in which the whole mesh is rigid (`ModeOptions::rigid`).
 struct MeshInterface {
   std::string name;
-  std::size_t point = 0;  ///< index into Mesh::points
+  std::size_t point = 0;                ///< index into Mesh::points
+  std::vector<std::size_t> nodes = {};  ///< whose rows it replaces (`with_interface`)
 };
 
 /// Points along an edge, in order.
@@ -70,6 +71,7 @@ struct Mesh {
   /// Of meshes that move in some directions only: mass matrix of the whole body about the origin of
   /// its frame, which is rigid in the others. `ModeOptions::rigid` replaces it.
   std::optional<Matrix6> rigid = {};
+  std::vector<std::string> warnings = {};  ///< `implausible` of the data; into ModalData::warnings
 };
 
 /// Throws, all together: inconsistent sizes of M and K (`size`), entries that are not finite
@@ -155,7 +157,8 @@ struct ModeOptions {
 /// given, they are truncated like other high modes, and residual vectors contain their static part.
 ///
 /// Lines of the parent and the children become ModalData::lines; those of other interfaces move
-/// freely. A parent or child at a single node of a plate is noted in ModalData::warnings.
+/// freely. A parent or child at a single node of a plate is noted in ModalData::warnings, behind
+/// Mesh::warnings.
 ///
 /// Throws the errors of `check` and `interface_rows`; `duplicate_name` for a child named twice;
 /// `bad_value` for `rigid` if the mesh moves in all six directions, or has another mass in those in

@@ -260,6 +260,7 @@ ModalData modal_data(const Mesh& given, const std::string& parent,
   data.L_P = modes.V.transpose() * c.M_rf.transpose();
   data.D_P = c.D_P;
   data.digits = mesh.digits;
+  data.warnings = mesh.warnings;
   MatrixXd Phi = MatrixXd::Zero(mesh.M.rows(), modes.V.cols());  // the clamped rows stay zero
   Phi(c.f, Eigen::all) = modes.V;
   const Vector3d P = mesh.points[find_point(mesh, parent)].position;

@@ -165,6 +165,7 @@ fe::Mesh plate_mesh(const Plate& plate) {
       4 * D66 * product(x.slopes, y.slopes);
   fe::Mesh mesh;
   mesh.name = "plate";
+  mesh.warnings = implausible(plate);
   mesh.rigid = mass_of(plate);
   add_points(plate, mesh);
   const auto n = static_cast<Index>(mesh.dofs.size());

@@ -120,3 +120,20 @@ TEST_CASE("the log warns of a parent's line that is held at its point alone") {
           hinge.torque = 0;
         }) == 0);
 }
+
+TEST_CASE(
+    "a body whose only child is a line: child is that point, and no shape has a child's name") {
+  Diagram d{"wall"};
+  auto a = d.add("a", square("tip", "root"));
+  ground(a);
+  a.child.force += d.input("F", 6);
+  d.output("by_name", 6) = a.child("root").accel;
+  d.output("alone", 6) = a.child.accel;
+  const Eigen::MatrixXcd both = compile(d).transfer({0.1, 5});
+  CHECK(both.topRows(6) == both.bottomRows(6));
+  CHECK(both.norm() > 0);
+  a.child("root.z2").force += d.input("G", 6);
+  const Error unknown = titop_test::compile_error(d);
+  CHECK(says(unknown, Code::unknown_name, {"a", "root.z2", "its child points are: root"}));
+  CHECK_FALSE(says(unknown, Code::unknown_name, {"root.z3"}));
+}

@@ -101,7 +101,8 @@ TEST_CASE("mass and rigid motion are unchanged, and the interface is at its node
     const ModalData data = fe::modal_data(mesh, "0,2", {"C"});
     const double x = coupling.nodes.points.size() == 9 ? 1.5 : 2;
     CHECK((data.children[0].PC - Vector3d(x, 0, 0)).norm() <= 1e-14);
-    CHECK(says(error_of([&] { fe::modal_data(mesh, "4,2", {}); }), Code::bad_modes, {"4,2", "z"}));
+    CHECK(says(error_of([&] { fe::modal_data(mesh, "4,2", {}); }), Code::bad_modes,
+               {"4,2", "z", "belong to the interface C"}));
   }
 }
 

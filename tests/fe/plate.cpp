@@ -5,6 +5,7 @@
 #include <functional>
 #include <numbers>
 #include <string>
+#include <titop/blocks/fe/interfaces.hpp>
 #include <titop/blocks/fe/mesh_checks.hpp>
 #include <titop/blocks/fe/modal_checks.hpp>
 #include <titop/blocks/fe/plate.hpp>
@@ -255,4 +256,10 @@ TEST_CASE("legal plates that are probably mistakes") {
   REQUIRE(lines.size() == 2);
   CHECK(titop_test::has_names(lines[0], {"7e+04"}));
   CHECK(titop_test::has_names(lines[1], {"thickness", "0.06", "0.5"}));
+  // They reach the body's log.
+  plate.elements = {1, 1};
+  const fe::Mesh mesh = plate_mesh(plate);
+  CHECK(mesh.warnings == lines);
+  const fe::Mesh held = fe::with_interface(mesh, "P", fe::rigid(fe::edge(mesh, "x0")));
+  CHECK(fe::modal_data(held, "P", {}).warnings == lines);
 }
