@@ -12,6 +12,14 @@ namespace {
 
 using Interval = InterfaceBracket::Interval;
 
+constexpr const char* kNoTheorem =
+    "the theorem does not hold for this scene: keep the modes of its bodies, leave out laws, and "
+    "pair a force with the displacement of its own point";
+
+void require(bool holds, std::string mistake, const char* hint) {
+  if (!holds) throw Error(Code::bad_value, std::move(mistake), hint);
+}
+
 /// Frequencies of one model, ascending.
 struct Frequencies {
   std::vector<double> elastic;
@@ -20,18 +28,26 @@ struct Frequencies {
 
 Frequencies frequencies(const System& system) {
   Frequencies result;
-  for (const Pole& pole : system.poles()) result.elastic.push_back(pole.omega);
+  for (const Pole& pole : system.poles()) {
+    require(pole.pair || pole.omega == 0,
+            fmt::format("the scene has a real pole at {:.4g} rad/s", pole.s.real()),
+            "leave out filters and dampers: the theorem is that of an undamped structure");
+    if (pole.pair)
+      result.elastic.push_back(pole.omega);
+    else
+      ++result.rigid;
+  }
   std::ranges::sort(result.elastic);
-  // The square root of the rounding of a mode's omega^2, beside that of the fastest.
-  const double still = result.elastic.empty() ? 0 : linalg::kHalfDigits * result.elastic.back();
-  const auto moves = std::ranges::upper_bound(result.elastic, still);
-  result.rigid = static_cast<std::size_t>(moves - result.elastic.begin());
-  result.elastic.erase(result.elastic.begin(), moves);
   return result;
 }
 
-void require(bool holds, std::string mistake, const char* hint) {
-  if (!holds) throw Error(Code::bad_value, std::move(mistake), hint);
+/// below <= above, up to rounding.
+Interval interval(double below, double above, const std::string& subject) {
+  require(below <= (1 + linalg::kHalfDigits) * above,
+          fmt::format("the {} is {:.7g} with released interfaces, {:.7g} with constrained ones",
+                      subject, below, above),
+          kNoTheorem);
+  return {below, above};
 }
 
 std::vector<Interval> of_frequencies(const System& constrained, const System& released, int modes) {
@@ -47,7 +63,9 @@ std::vector<Interval> of_frequencies(const System& constrained, const System& re
                       below.elastic.size()),
           "ask for fewer, or keep more modes of its bodies");
   std::vector<Interval> result;
-  for (std::size_t k = 0; k < count; ++k) result.push_back({below.elastic[k], above.elastic[k]});
+  for (std::size_t k = 0; k < count; ++k)
+    result.push_back(interval(below.elastic[k], above.elastic[k],
+                              fmt::format("frequency of mode {} [rad/s]", k + 1)));
   return result;
 }
 
@@ -61,7 +79,13 @@ std::vector<Interval> of_compliances(const System& constrained, const System& re
             fmt::format("the pair of input {} and output {} is not in a scene with {} and {}",
                         input, output, stiff.cols(), stiff.rows()),
             "they count from 0, every component of a port by itself");
-    result.push_back({stiff(output, input), soft(output, input)});
+    const double below = stiff(output, input), above = soft(output, input);
+    require(below <= (1 + linalg::kHalfDigits) * above,
+            fmt::format("the compliance of input {} and output {} is {:.7g} with constrained "
+                        "interfaces, {:.7g} with released ones",
+                        input, output, below, above),
+            kNoTheorem);
+    result.push_back({below, above});
   }
   return result;
 }
@@ -75,9 +99,11 @@ double difference(const System& constrained, const System& released,
     size = size.cwiseMax(a[k].cwiseAbs());
     apart = apart.cwiseMax((a[k] - b[k]).cwiseAbs());
   }
-  // Entries that are zero by nature have no relative difference.
-  const double zero = linalg::kAxisRounding * size.maxCoeff();
-  return (size.array() > zero).select(apart.cwiseQuotient(size), 0.0).maxCoeff();
+  // Entries that are zero by nature, beside those of their row and column, have no relative
+  // difference.
+  const Eigen::MatrixXd zero = linalg::kAxisRounding * size.rowwise().maxCoeff().cwiseSqrt() *
+                               size.colwise().maxCoeff().cwiseSqrt();
+  return (size.array() > zero.array()).select(apart.cwiseQuotient(size), 0.0).maxCoeff();
 }
 
 }  // namespace

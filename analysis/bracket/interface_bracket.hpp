@@ -40,12 +40,15 @@ struct InterfaceBracket {
 /// *Methods of Mathematical Physics* 1, VI]: constraints raise, and releases lower, each natural
 /// frequency of an undamped structure, in ascending order, and each static stiffness. It holds for
 /// meshes with all their modes (a few modes with residual vectors change the bounds by their own
-/// error), and for |s| of poles with modal damping; dampers of joints change |s| in second order.
+/// error). Damping, also that of the bodies' modes, changes |s| in second order of its ratio: leave
+/// it out if the intervals are not wide beside that.
 ///
 /// Throws the errors of `scene` and `compile`; bad_value if the two have different inputs or
-/// outputs or numbers of motions without stiffness, or less than `modes` modes, and for a pair that
-/// is not there; singular if a compliance is that of a free structure. Cost of the poles: O(n^3)
-/// for n states, twice.
+/// outputs or numbers of motions without stiffness, or less than `modes` modes, for a pair that
+/// is not there, for real poles (filters, modes damped beyond critical), and if an interval would
+/// be negative: the theorem does not hold for this scene (bodies without most of their modes, laws
+/// in the loop, pairs of different points); singular if a compliance is that of a free structure.
+/// Cost of the poles: O(n^3) for n states, twice.
 ///
 ///     const InterfaceBracket b = interface_bracket([](Lumping l) { return wing(l); });
 InterfaceBracket interface_bracket(const std::function<Diagram(Lumping)>& scene,
