@@ -91,3 +91,21 @@ TEST_CASE("points along a chain are kept in a list: ports are no names to assign
   };
   CHECK(chain(true) == chain(false));
 }
+
+TEST_CASE("a parameter of a diagram that is gone is refused, whatever its address was") {
+  for (int k = 0; k < 50; ++k) {
+    const SpringMass spec = [] {
+      Diagram other{"other"};
+      other.param("unused", 1);
+      return SpringMass{.mass = other.param("m", 7), .stiffness = 1};
+    }();
+    Diagram d{"mine"};
+    d.param("a", 1);
+    d.param("b", 99);
+    auto y = d.add("y", spec);
+    ground(y);
+    y.child.force = d.input("u");
+    d.output("q") = y.stretch;
+    CHECK_THROWS_AS(compile(d), Error);
+  }
+}
