@@ -95,6 +95,20 @@ class Equations(unittest.TestCase):
             self.assertAlmostEqual(gain[0, 0], 2 * value / (4 * value), 14)
 
 
+class Blocks(unittest.TestCase):
+    def test_every_block_has_ports(self):
+        body = titop.RigidBody(mass=2, inertia=[1, 1, 1])
+        blocks = [titop.Gain(), titop.MatrixGain(matrix=[[1]]), titop.Sum(), titop.Integrator(),
+                  titop.Lti(A=[[-1]], B=[[1]], C=[[1]]), titop.SpringMass(), body,
+                  titop.FlexibleBody(body), titop.Hinge([0, 0, 1]), titop.Slide([0, 0, 1]),
+                  titop.Joint(titop.ball()), titop.Bushing(stiffness=[1] * 6),
+                  titop.Rotor(mass=1, axial=1, transverse=1, axis=[0, 0, 1])]
+        d = titop.Diagram("d")
+        for block in blocks:
+            ports = d.add(type(block).__name__, block)
+            self.assertTrue(hasattr(ports, "parent") or hasattr(ports, "out"), ports)
+
+
 class Lifetimes(unittest.TestCase):
     def test_ports_keep_their_diagram(self):
         def port():
