@@ -16,8 +16,10 @@ std::vector<ModeValues::Entry> entries(const std::vector<ModeEntry>& list) {
 std::vector<ChildPoint> child_points(const py::dict& points) {
   std::vector<ChildPoint> result;
   for (const auto& [name, place] : points)
-    result.push_back(
-        {name.cast<std::string>(), place.is_none() ? Position() : place.cast<Position>()});
+    result.push_back({taken<std::string>(name, "the name of a child point"),
+                      place.is_none()
+                          ? Position()
+                          : taken<Position>(place, "a child point's vector of 3 from P [m]")});
   return result;
 }
 
@@ -52,7 +54,11 @@ void bind_rigid_body(py::module_& m) {
       .def(py::init([](const Value& mass, const py::object& inertia, const Position& PA,
                        const py::dict& children) {
              RigidBody body{.mass = mass, .PA = PA, .children = child_points(children)};
-             if (!inertia.is_none()) body.inertia = inertia.cast<Inertia>();
+             if (!inertia.is_none())
+               body.inertia = taken<Inertia>(
+                   inertia,
+                   "an inertia [kg m^2] of three principal moments, six entries (xx, yy, "
+                   "zz, xy, xz, yz) or 3 x 3");
              return body;
            }),
            py::kw_only(), "mass"_a = 1.0, "inertia"_a = py::none(),

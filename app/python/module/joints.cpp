@@ -105,7 +105,10 @@ void bind_bushing(py::module_& m) {
                       "Spring-damper of six axes (x, y, z, rx, ry, rz) between two points: "
                       "stiffness [N/m, N, N m/rad] and damping, six values or a 6 x 6 matrix.")
       .def(py::init([](const SixAxes& stiffness, const py::object& damping) {
-             return Bushing{stiffness, damping.is_none() ? SixAxes() : damping.cast<SixAxes>()};
+             return Bushing{stiffness,
+                            damping.is_none()
+                                ? SixAxes()
+                                : taken<SixAxes>(damping, "a damping of six values or 6 x 6")};
            }),
            py::kw_only(), "stiffness"_a, "damping"_a = py::none());
   Ports<Bushing::Handle>(m, "BushingPorts", "Ports of a bushing in a diagram.")

@@ -45,7 +45,7 @@ void bind_isolated(py::module_& m) {
           [](const Lft& f, std::complex<double> s, const std::vector<Values>& points) {
             std::vector<Eigen::MatrixXcd> result;
             {
-              const py::gil_scoped_release unlocked;
+              const LockReleased unlocked;
               result = f.transfers(s, lists_of(points));
             }
             return stacked(result);
@@ -65,8 +65,9 @@ void bind_isolated(py::module_& m) {
       [](const System& s, const py::dict& ranges) {
         ParameterRanges list;
         for (const auto& [name, range] : ranges)
-          list.emplace_back(name.cast<std::string>(), range.cast<ParameterRange>());
-        const py::gil_scoped_release unlocked;
+          list.emplace_back(taken<std::string>(name, "the name of a parameter"),
+                            taken<ParameterRange>(range, "percent(20) or between(a, b)"));
+        const LockReleased unlocked;
         return lft(s, list);
       },
       "system"_a, "ranges"_a, "The same of {name: range}, in this order.");

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "lock.hpp"
 #include "values.hpp"
 
 /// The Python module titop: the library's functions with Python's own means. Equations are
@@ -24,7 +25,7 @@ namespace py = pybind11;
 using namespace pybind11::literals;
 
 /// Computations run without Python's lock, so that other threads of the interpreter go on.
-using Unlocked = py::call_guard<py::gil_scoped_release>;
+using Unlocked = py::call_guard<LockReleased>;
 
 /// The line of the script that runs now, for messages of the library. None outside of a script.
 SourceLine here();
@@ -57,6 +58,15 @@ Options options_of(int minimize_up_to, const std::string& dump_to, double resolu
 
 /// The poles as a list with a table.
 py::object pole_list(std::vector<Pole> poles);
+
+/// The object as a T (Position, Inertia, SixAxes); TypeError with `expected` and what came.
+template <class T>
+T taken(const py::handle& object, const char* expected) {
+  py::detail::make_caster<T> caster;
+  if (caster.load(object, true)) return py::detail::cast_op<T>(std::move(caster));
+  throw py::type_error("titop: " + std::string(expected) + " is expected, not " +
+                       py::repr(object).cast<std::string>());
+}
 
 void bind_errors(py::module_& m);
 void bind_signals(py::module_& m);

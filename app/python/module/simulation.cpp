@@ -13,8 +13,14 @@ void bind_excitation(py::module_& m) {
           "u from time 0 on.")
       .def_static(
           "function",
-          [](const std::function<Numbers(double)>& u) {
-            return Excitation::function([u](double t) { return vector_of(u(t)); });
+          [](const py::function& u) {
+            const std::shared_ptr<py::function> kept(
+                new py::function(u), [](py::function* f) { with_lock([&] { delete f; }); });
+            return Excitation::function([kept](double t) {
+              return with_lock([&] {
+                return vector_of(taken<Numbers>((*kept)(t), "u(t), a sequence of numbers,"));
+              });
+            });
           },
           "u"_a, "u(t) of the time [s], without jumps inside a step.")
       .def_static("held", &Excitation::held, "samples"_a, "period"_a,
@@ -43,7 +49,7 @@ Trajectory run(const System& system, const Excitation& excitation, double step, 
                               .x0 = vector_of(x0),
                               .keep_states = keep_states,
                               .accuracy = accuracy};
-  const py::gil_scoped_release unlocked;
+  const LockReleased unlocked;
   return simulate(system, excitation, simulation);
 }
 
@@ -80,12 +86,9 @@ py::list swept(const System& system, const std::vector<Values>& points, const py
   for (const Values& point : points) lists.push_back(list_of(point));
   std::vector<py::object> results(points.size(), py::none());
   {
-    const py::gil_scoped_release unlocked;
+    const LockReleased unlocked;
     sweep(system, lists,
-          [&](std::size_t i, const System& at) {
-            const py::gil_scoped_acquire locked;
-            results[i] = visit(i, at);
-          },
+          [&](std::size_t i, const System& at) { with_lock([&] { results[i] = visit(i, at); }); },
           {.threads = threads});
   }
   return py::cast(results);

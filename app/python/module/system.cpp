@@ -16,7 +16,7 @@ Precision precision_of(const std::string& name) {
 std::vector<Eigen::MatrixXcd> responses(const System& s, const std::vector<double>& omega,
                                         int threads, const std::string& precision) {
   const Precision how = precision_of(precision);
-  const py::gil_scoped_release unlocked;
+  const LockReleased unlocked;
   return s.frequency_response(omega, threads, how);
 }
 
@@ -27,7 +27,7 @@ void def_transfers(SystemType& type) {
           "transfer",
           [](const System& s, std::complex<double> at, const std::string& precision) {
             const Precision how = precision_of(precision);
-            const py::gil_scoped_release unlocked;
+            const LockReleased unlocked;
             return s.transfer(at, how);
           },
           "s"_a, "precision"_a = "as_needed",
@@ -71,7 +71,7 @@ void def_models(SystemType& type) {
           [](const System& s) {
             std::vector<Pole> list;
             {
-              const py::gil_scoped_release unlocked;
+              const LockReleased unlocked;
               list = s.poles();
             }
             return pole_list(std::move(list));
@@ -134,7 +134,7 @@ void bind_system(py::module_& m) {
          const std::string& internal_forces, int exact_up_to) {
         const Options options =
             options_of(minimize_up_to, dump_to, resolution, internal_forces, exact_up_to);
-        const py::gil_scoped_release unlocked;
+        const LockReleased unlocked;
         return compile(d, options);
       },
       "diagram"_a, py::kw_only(), "minimize_up_to"_a = 100, "dump_to"_a = "", "resolution"_a = 0.0,
@@ -151,7 +151,7 @@ void bind_system(py::module_& m) {
       [](const Diagram& d, const std::vector<double>& omega, int threads) {
         std::vector<Eigen::MatrixXcd> result;
         {
-          const py::gil_scoped_release unlocked;
+          const LockReleased unlocked;
           result = frequency_response(d, omega, threads);
         }
         return stacked(result);
@@ -169,10 +169,11 @@ void bind_system(py::module_& m) {
         const auto where =
             named<RootBoundary>(boundary, "boundary",
                                 {{"clamped", RootBoundary::clamped}, {"free", RootBoundary::free}});
-        if (py::isinstance<py::float_>(xi))
-          return damping_of_assembly(part, root, list, xi.cast<double>(), where, here());
+        if (Value ratio; read(xi, ratio) && !ratio.is_parameter())
+          return damping_of_assembly(part, root, list, ratio.nominal(), where, here());
         std::vector<DampingPoint> table;
-        for (const auto& [hertz, ratio] : xi.cast<std::vector<std::pair<double, double>>>())
+        for (const auto& [hertz, ratio] : taken<std::vector<std::pair<double, double>>>(
+                 xi, "a damping ratio, or a table [(Hz, ratio)],"))
           table.emplace_back(hertz, ratio);
         return damping_of_assembly(part, root, list, ModalDamping(std::move(table)), where, here());
       },
