@@ -15,6 +15,17 @@ SourceLine here() {
   return {files->insert(file).first->c_str(), PyFrame_GetLineNumber(frame)};
 }
 
+void warn(const std::vector<Note>& notes, const std::vector<Note>& known) {
+  const py::object category = py::module_::import("titop.errors").attr("CompileWarning");
+  for (const Note& note : notes) {
+    const auto equal = [&](const Note& n) { return n.pass == note.pass && n.text == note.text; };
+    if (note.kind != Note::Kind::warning || std::any_of(known.begin(), known.end(), equal))
+      continue;
+    if (PyErr_WarnEx(category.ptr(), (note.pass + ": " + note.text).c_str(), 1) < 0)
+      throw py::error_already_set();
+  }
+}
+
 namespace {
 
 /// titop.Error of titop/errors.py, with the list of mistakes.

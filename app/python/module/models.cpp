@@ -198,7 +198,11 @@ void bind_certificates(py::module_& m) {
   py::class_<Note>(m, "Note", "A line of the compile log.")
       .def_property_readonly("kind", [](const Note& n) { return std::string(to_string(n.kind)); })
       .def_readonly("pass_", &Note::pass, "The compiler's pass.")
-      .def_readonly("text", &Note::text);
+      .def_readonly("text", &Note::text)
+      .def("__repr__", [](const Note& n) {
+        return "<titop.Note: " + std::string(to_string(n.kind)) + ", pass " + n.pass + ": " +
+               n.text + ">";
+      });
 }
 
 }  // namespace

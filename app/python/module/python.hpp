@@ -59,6 +59,21 @@ Options options_of(int minimize_up_to, const std::string& dump_to, double resolu
 /// The poles as a list with a table.
 py::object pole_list(std::vector<Pole> poles);
 
+/// Python's warning titop.CompileWarning at the script's line for each note of this kind; those
+/// that `known` has are left out. With warnings as errors: their exception.
+void warn(const std::vector<Note>& notes, const std::vector<Note>& known = {});
+
+/// make(), without the lock, and then the warnings of its result.
+template <class F>
+auto warned(F make, const std::vector<Note>& known = {}) {
+  auto result = [&] {
+    const LockReleased unlocked;
+    return make();
+  }();
+  warn(result.notes(), known);
+  return result;
+}
+
 /// The object as a T (Position, Inertia, SixAxes); TypeError with `expected` and what came.
 template <class T>
 T taken(const py::handle& object, const char* expected) {

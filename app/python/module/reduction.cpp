@@ -111,8 +111,7 @@ void bind_reduction(py::module_& m) {
          double resolution, const std::string& internal_forces, int exact_up_to) {
         const Options options =
             options_of(minimize_up_to, dump_to, resolution, internal_forces, exact_up_to);
-        const LockReleased unlocked;
-        return compile(d, scene, options);
+        return warned([&] { return compile(d, scene, options); });
       },
       "diagram"_a, "scene"_a, py::kw_only(), "minimize_up_to"_a = 100, "dump_to"_a = "",
       "resolution"_a = 0.0, "internal_forces"_a = "refuse", "exact_up_to"_a = 0,

@@ -107,10 +107,10 @@ void def_notes(SystemType& type) {
       .def(
           "update",
           [](const System& s, const std::map<std::string, double>& values) {
-            return s.update(ParameterList(values.begin(), values.end()));
+            return warned([&] { return s.update(ParameterList(values.begin(), values.end())); },
+                          s.notes());
           },
-          "values"_a, Unlocked(),
-          "The system at other values of parameters, {name: value}, on the same plan.")
+          "values"_a, "The system at other values of parameters, {name: value}, on the same plan.")
       .def("__str__", &System::log, Unlocked())
       .def("__repr__", [](const System& s) {
         return "<titop.System: " + std::to_string(s.order()) + " states, " +
@@ -134,12 +134,12 @@ void bind_system(py::module_& m) {
          const std::string& internal_forces, int exact_up_to) {
         const Options options =
             options_of(minimize_up_to, dump_to, resolution, internal_forces, exact_up_to);
-        const LockReleased unlocked;
-        return compile(d, options);
+        return warned([&] { return compile(d, options); });
       },
       "diagram"_a, py::kw_only(), "minimize_up_to"_a = 100, "dump_to"_a = "", "resolution"_a = 0.0,
       "internal_forces"_a = "refuse", "exact_up_to"_a = 0,
-      "Compiles a diagram. Raises Error with all mistakes of the first pass that finds any.");
+      "Compiles a diagram. Raises Error with all mistakes of the first pass that finds any, and "
+      "warns (CompileWarning) of each note of the kind \"warning\".");
   m.def(
       "certify", [](const System& s) { return certify(s); }, "system"_a, Unlocked(),
       "The full certificate: transfers, poles, passivity, reciprocity and order over a grid.");

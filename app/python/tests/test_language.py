@@ -5,6 +5,7 @@ import sys
 import threading
 import time
 import unittest
+import warnings
 
 import numpy as np
 import titop
@@ -107,6 +108,44 @@ class Blocks(unittest.TestCase):
         for block in blocks:
             ports = d.add(type(block).__name__, block)
             self.assertTrue(hasattr(ports, "parent") or hasattr(ports, "out"), ports)
+
+
+class Warnings(unittest.TestCase):
+    def diagram(self):
+        d = titop.Diagram("d")
+        z = d.add("z", titop.SpringMass())
+        z.parent.accel = 0
+        z.child.force = d.input("u")
+        d.input("unread")
+        d.output["x"] = z.stretch
+        return d
+
+    def test_notes_of_the_log_that_warn(self):
+        with self.assertWarnsRegex(titop.CompileWarning, "unread") as warned:
+            system = titop.compile(self.diagram())
+        self.assertEqual(warned.filename, __file__)
+        notes = [note for note in system.notes if note.kind == "warning"]
+        self.assertEqual(len(notes), 1)
+        self.assertIn("unread", repr(notes[0]))
+        self.assertIn("warning", repr(notes[0]))
+
+    def test_as_errors(self):
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", titop.CompileWarning)
+            self.assertRaises(titop.CompileWarning, titop.compile, self.diagram())
+
+    def test_update_repeats_none(self):
+        d = titop.Diagram("d")
+        z = d.add("z", titop.SpringMass(stiffness=d.param("k", 2.0)))
+        z.parent.accel = 0
+        z.child.force = d.input("u")
+        d.input("unread")
+        d.output["x"] = z.stretch
+        with self.assertWarns(titop.CompileWarning):
+            system = titop.compile(d)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            system.update({"k": 3.0})
 
 
 class Lifetimes(unittest.TestCase):

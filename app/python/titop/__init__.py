@@ -17,7 +17,7 @@ import sys as _sys
 from . import _titop
 from ._titop import *
 from ._titop import fe
-from .errors import Error, Mistake
+from .errors import CompileWarning, Error, Mistake
 from .control import control
 from .pictures import (Report, Svg, plot_bode, plot_nyquist, plot_poles, plot_sigma, plot_step,
                        report)

@@ -27,6 +27,8 @@ class Mistake:
     hint: str
     places: list[str]
 
+class CompileWarning(UserWarning): ...
+
 class Error(Exception):
     mistakes: list[Mistake]
     def has(self, code: str) -> bool: ...

@@ -27,6 +27,10 @@ class Mistake:
         return f"Mistake({self.code!r}, {self.message!r}, places={self.places})"
 
 
+class CompileWarning(UserWarning):
+    """A note of the kind "warning" of System.notes: lost digits, or input that is rarely intended."""
+
+
 class Error(Exception):
     """All mistakes that were found in one stage, together; `str` is the whole text."""
 
