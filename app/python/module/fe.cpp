@@ -3,10 +3,11 @@
 namespace titop::python {
 namespace {
 
-// Matrices that a script may replace are given away as copies: a view would outlive its memory.
+// Matrices that a script may replace are given away as copies, since a view would outlive its
+// memory; read-only ones, since what a script writes into a copy is lost.
 template <class Data, class M>
 auto copy_of(M Data::*matrix) {
-  return [matrix](const Data& data) -> M { return data.*matrix; };
+  return [matrix](const Data& data) { return read_only(py::array(py::cast(M(data.*matrix)))); };
 }
 template <class Data, class M>
 auto set(M Data::*matrix) {
@@ -32,8 +33,8 @@ void bind_modal_data(py::module_& m) {
       m, "ModalData",
       "Modes of a body clamped at P, mass-normalised: omega (N) [rad/s], xi (N) [-], L_P (N x 6) "
       "[sqrt(kg), sqrt(kg) m], D_P (6 x 6) rigid mass matrix about P, children, digits of the "
-      "data. "
-      "`children` is a list of copies: assign it to change it.")
+      "data. The arrays are read-only copies and `children` is a tuple of copies: to change one, "
+      "assign a new array or list.")
       .def(py::init([](const Numbers& omega, const Numbers& xi, const Eigen::MatrixXd& L_P,
                        const Matrix6& D_P, const std::vector<ModalChild>& children, double digits) {
              return ModalData{vector_of(omega), vector_of(xi), L_P, D_P, children, digits};
@@ -45,7 +46,9 @@ void bind_modal_data(py::module_& m) {
       .def_property("xi", copy_of(&ModalData::xi), set_numbers(&ModalData::xi), "N [-].")
       .def_property("L_P", copy_of(&ModalData::L_P), set(&ModalData::L_P), "N x 6.")
       .def_property("D_P", copy_of(&ModalData::D_P), set(&ModalData::D_P), "6 x 6.")
-      .def_readwrite("children", &ModalData::children)
+      .def_property(
+          "children", [](const ModalData& data) { return py::tuple(py::cast(data.children)); },
+          set(&ModalData::children), "A tuple of copies: change one and assign them all.")
       .def_readwrite("digits", &ModalData::digits);
 }
 

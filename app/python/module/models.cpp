@@ -71,7 +71,34 @@ void bind_poles(py::module_& m) {
              return part;
            })
       .def("__str__", [](const PoleList& l) { return to_string(l.poles); })
+      .def("__repr__", [](const PoleList& l) { return to_string(l.poles); })
       .def("_repr_html_", &html);
+}
+
+/// The names as given, or x1, x2, ... if none are. Throws size for another number of them.
+std::vector<std::string> names_or_numbers(std::vector<std::string> names, Eigen::Index count,
+                                          const std::string& letter, const char* what) {
+  if (names.empty())
+    for (Eigen::Index i = 1; i <= count; ++i) names.push_back(letter + std::to_string(i));
+  if (static_cast<Eigen::Index>(names.size()) != count)
+    throw Error(Code::size,
+                "StateSpace: " + std::to_string(names.size()) + " names for " +
+                    std::to_string(count) + " " + what,
+                "give one name for each of the " + std::string(what) + ", or none");
+  return names;
+}
+
+StateSpace model_by_hand(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B,
+                         const Eigen::MatrixXd& C, const Eigen::MatrixXd& D,
+                         const std::vector<std::string>& states,
+                         const std::vector<std::string>& inputs,
+                         const std::vector<std::string>& outputs) {
+  StateSpace model{A, B, C, D, states, inputs, outputs};
+  require_fitting(model, "StateSpace");
+  model.states = names_or_numbers(states, A.rows(), "x", "states");
+  model.inputs = names_or_numbers(inputs, B.cols(), "u", "inputs");
+  model.outputs = names_or_numbers(outputs, C.rows(), "y", "outputs");
+  return model;
 }
 
 /// A view into a matrix of the model, which stays alive with it.
@@ -83,16 +110,12 @@ py::object view(const py::object& model, const M& matrix) {
 void bind_state_space(py::module_& m) {
   py::class_<StateSpace> type(
       m, "StateSpace",
-      "xdot = A x + B u, y = C x + D u with names of states, inputs and outputs. The matrices are "
-      "read-only views without a copy; `A, B, C, D = model` takes them.");
-  type.def(py::init([](const Eigen::MatrixXd& A, const Eigen::MatrixXd& B, const Eigen::MatrixXd& C,
-                       const Eigen::MatrixXd& D, const std::vector<std::string>& states,
-                       const std::vector<std::string>& inputs,
-                       const std::vector<std::string>& outputs) {
-             return StateSpace{A, B, C, D, states, inputs, outputs};
-           }),
-           "A"_a, "B"_a, "C"_a, "D"_a, py::kw_only(), "states"_a = std::vector<std::string>(),
-           "inputs"_a = std::vector<std::string>(), "outputs"_a = std::vector<std::string>())
+      "xdot = A x + B u, y = C x + D u with names of states, inputs and outputs; without names x1, "
+      "u1, y1, ... The matrices are read-only views without a copy; `A, B, C, D = model` takes "
+      "them.");
+  type.def(py::init(&model_by_hand), "A"_a, "B"_a, "C"_a, "D"_a, py::kw_only(),
+           "states"_a = std::vector<std::string>(), "inputs"_a = std::vector<std::string>(),
+           "outputs"_a = std::vector<std::string>())
       .def_readonly("A", &StateSpace::A, "n x n.")
       .def_readonly("B", &StateSpace::B, "n x inputs.")
       .def_readonly("C", &StateSpace::C, "outputs x n.")

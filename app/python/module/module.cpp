@@ -15,6 +15,11 @@ py::array_t<std::complex<double>> stacked(const std::vector<Eigen::MatrixXcd>& m
   return result;
 }
 
+py::array read_only(py::array array) {
+  array.attr("setflags")("write"_a = false);
+  return array;
+}
+
 }  // namespace titop::python
 
 PYBIND11_MODULE(_titop, m) {

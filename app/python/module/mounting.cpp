@@ -56,11 +56,14 @@ void bind_points(py::module_& m) {
   };
   const auto accel = driven([](const auto& p) { return detail::SignalRef(p.accel); }, Kind::accel);
   const auto force = driven([](const auto& p) { return detail::SignalRef(p.force); }, Kind::force);
-  py::class_<TwoWayPort>(
+  py::class_<TwoWayPort> type(
       m, "DualPort",
       "A pair of acceleration and wrench at one point, in its body's frame; size 6 (linear; "
-      "angular) or 1. Per degree of freedom one is driven, the other one can be read.")
-      .def_property(
+      "angular) or 1. Per degree of freedom one is driven, the other one can be read.");
+  refuse_comparison(type,
+                    "titop: points are not compared. Write mount(a, b.child), or an equation of "
+                    "one signal by `=`: a.child.force = signal.");
+  type.def_property(
           "accel", accel, [accel](const TwoWayPort& p, const py::object& v) { accel(p).set(v); },
           "Acceleration [m/s^2; rad/s^2].")
       .def_property(

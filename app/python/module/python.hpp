@@ -33,11 +33,23 @@ SourceLine here();
 /// A vector of matrices of one size as an array (matrices x rows x columns).
 py::array_t<std::complex<double>> stacked(const std::vector<Eigen::MatrixXcd>& matrices);
 
+/// The same array, into which a script cannot write.
+py::array read_only(py::array array);
+
 /// pybind11 2.10 reads no vector of one number from a list.
 using Numbers = std::vector<double>;
 inline Eigen::VectorXd vector_of(const Numbers& numbers) {
   return Eigen::Map<const Eigen::VectorXd>(numbers.data(),
                                            static_cast<Eigen::Index>(numbers.size()));
+}
+
+/// a == b and a != b raise TypeError with this text in place of a comparison: `port == signal` as a
+/// statement would be an equation that is never written.
+template <class T>
+void refuse_comparison(py::class_<T>& type, const char* text) {
+  const auto refuse = [text](const T&, const py::object&) -> bool { throw py::type_error(text); };
+  type.attr("__hash__") = py::module_::import("builtins").attr("object").attr("__hash__");
+  type.def("__eq__", refuse).def("__ne__", refuse);
 }
 
 /// The value of this name; ValueError with the names there are.

@@ -17,7 +17,9 @@ constexpr const char* kNoConstant =
 }
 
 bool is_zero(const py::handle& value) {
-  return PyLong_CheckExact(value.ptr()) && PyLong_AsLong(value.ptr()) == 0;
+  int overflow = 0;
+  return PyLong_CheckExact(value.ptr()) && PyLong_AsLongAndOverflow(value.ptr(), &overflow) == 0 &&
+         overflow == 0;
 }
 
 LinearSum sum(const AnySignal& left, const AnySignal& right, double sign) {
@@ -52,8 +54,12 @@ LinearSum over(const AnySignal& signal, const py::object& divisor) {
   return {signal.diagram, signal.expr() / k.nominal()};
 }
 
-LinearSum matrix_times(const AnySignal& signal, const py::array_t<double>& M) {
-  if (M.ndim() != 2) throw py::type_error("titop: M @ x takes a matrix of two dimensions");
+LinearSum matrix_times(const AnySignal& signal, const py::object& object) {
+  const py::array M = py::array::ensure(object);
+  if (!M || M.ndim() != 2) throw py::type_error("titop: M @ x takes a matrix of two dimensions");
+  if (const char kind = M.dtype().kind(); kind != 'f' && kind != 'i' && kind != 'u')
+    throw py::type_error("titop: M @ x takes a matrix of real numbers, not of " +
+                         py::str(M.dtype()).cast<std::string>());
   return {signal.diagram, M.cast<Eigen::MatrixXd>() * signal.expr()};
 }
 
@@ -89,6 +95,9 @@ void bind_any(py::module_& m) {
       .def("__truediv__", &over)
       .def("__rmatmul__", &matrix_times)
       .def("__repr__", &text_of);
+  refuse_comparison(type,
+                    "titop: signals are not compared. An equation is an assignment: write `=`, "
+                    "block.port = signal.");
 }
 
 void bind_ports(py::module_& m) {

@@ -59,7 +59,8 @@ void bind_simulate(py::module_& m) {
           "time",
           [](const py::object& self) {
             const auto& t = self.cast<const Trajectory&>().time;
-            return py::array_t<double>(static_cast<py::ssize_t>(t.size()), t.data(), self);
+            return read_only(
+                py::array_t<double>(static_cast<py::ssize_t>(t.size()), t.data(), self));
           },
           "[s]: 0, step, ..., until.")
       .def_readonly("y", &Trajectory::y, "outputs x times.")

@@ -33,8 +33,48 @@ bool read_matrix(const std::vector<py::object>& rows, std::size_t n, std::vector
   return true;
 }
 
+/// True of a complex number or a truth value, also of NumPy, which float() would accept or warn of.
+bool is_no_real(const py::handle& object) {
+  if (py::isinstance<py::bool_>(object) || PyComplex_Check(object.ptr())) return true;
+  if (!py::hasattr(object, "dtype")) return false;
+  const auto kind = py::str(object.attr("dtype").attr("kind")).cast<std::string>();
+  return kind == "c" || kind == "b";
+}
+
+/// The same number, or the same multiple of the same parameter.
+bool same(const Value& a, const Value& b) {
+  return a.nominal() == b.nominal() && a.index() == b.index() && a.scale() == b.scale();
+}
+
 bool has_parameter(const std::vector<Value>& values) {
   return std::any_of(values.begin(), values.end(), [](const Value& v) { return v.is_parameter(); });
+}
+
+/// Difference of two numbers that are equal but for rounding, relative to the largest entry: as for
+/// an inertia without parameters.
+constexpr double kRounding = 1e-9;
+
+/// Refuses a matrix with parameters whose entries (i, j) and (j, i) differ: the library takes one
+/// of them for both. n rows.
+void require_symmetric(const std::vector<Value>& values, std::size_t n, Code code,
+                       const char* what) {
+  if (!has_parameter(values)) return;
+  double size = 0;
+  for (const Value& v : values) size = std::max(size, std::abs(v.nominal()));
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const Value &upper = values[n * i + j], &lower = values[n * j + i];
+      const bool differ = upper.is_parameter() || lower.is_parameter()
+                              ? !same(upper, lower)
+                              : std::abs(upper.nominal() - lower.nominal()) > kRounding * size;
+      if (differ) {
+        const std::string row = std::to_string(i + 1), column = std::to_string(j + 1);
+        throw Error(code,
+                    std::string(what) + " is not symmetric: its entries (" + row + ", " + column +
+                        ") and (" + column + ", " + row + ") differ",
+                    "write the same number or the same parameter at both");
+      }
+    }
 }
 
 Eigen::MatrixXd numbers(const std::vector<Value>& values, Eigen::Index n) {
@@ -52,7 +92,7 @@ bool read(const py::handle& object, Value& value) {
     value = object.cast<const Parameter&>().value;
     return true;
   }
-  if (py::isinstance<py::bool_>(object) || !PyNumber_Check(object.ptr())) return false;
+  if (!PyNumber_Check(object.ptr()) || is_no_real(object)) return false;
   const double number = PyFloat_AsDouble(object.ptr());
   if (PyErr_Occurred()) {
     PyErr_Clear();
@@ -76,6 +116,7 @@ bool read(const py::handle& object, Inertia& inertia) {
   const std::vector<py::object> list = items(object);
   std::vector<Value> v;
   if (read_matrix(list, 3, v)) {
+    require_symmetric(v, 3, Code::bad_inertia, "the inertia");
     if (has_parameter(v))
       inertia = Inertia(v[0], v[4], v[8], v[1], v[2], v[5]);
     else
@@ -91,6 +132,7 @@ bool read(const py::handle& object, SixAxes& matrix) {
   const std::vector<py::object> list = items(object);
   std::vector<Value> v;
   if (read_matrix(list, 6, v)) {
+    require_symmetric(v, 6, Code::bad_value, "the matrix of six axes");
     matrix = SixAxes(numbers(v, 6));
     for (int i = 0; i < 6; ++i)
       for (int j = i; j < 6; ++j)

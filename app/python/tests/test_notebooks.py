@@ -49,6 +49,7 @@ class Notebooks(unittest.TestCase):
         poles = self.system.poles()
         self.assertEqual(len(poles), 2)
         self.assertEqual(poles._repr_html_().count("<tr>"), 3)
+        self.assertEqual(repr(poles), str(poles))
         self.assertEqual(poles[-1].omega, list(poles)[1].omega)
         numbers = np.roots(np.polyadd(np.polymul([2, 0.4, 50], [1, 3]), [7]))
         for p in poles:
