@@ -133,6 +133,18 @@ class TenMistakes(unittest.TestCase):
                     lines.append(linecache.getline(__file__, int(line)))
                 self.assertTrue(any(words in line for line in lines), lines)
 
+    def test_places_with_spaces(self):
+        script = ('import titop\nd = titop.Diagram("d")\nz = d.add("z", titop.SpringMass())\n'
+                  'z.parent.accel = 0\nz.parent.accel = d.input("u")\ntitop.compile(d)\n')
+        for file in "/home/a user/my models/a b.py", "models/a b.py", "a b.py", "<cell 3>":
+            with self.subTest(file), self.assertRaises(titop.Error) as raised:
+                exec(compile(script, file, "exec"), {})
+            name = "/".join(file.split("/")[-2:])
+            places = [p for mistake in raised.exception.mistakes for p in mistake.places]
+            self.assertEqual(set(places) & {f"{name}:4", f"{name}:5"},
+                             {f"{name}:4", f"{name}:5"})
+            self.assertTrue(all(place.startswith(name + ":") for place in places), places)
+
     def test_all_mistakes_together(self):
         def write(d):
             mount_forgotten(d)

@@ -1,8 +1,4 @@
 """Mistakes in a diagram, a block or a file, with their places."""
-import re
-
-_PLACE = re.compile(r"(\S+:\d+)$")
-
 
 class Mistake:
     """One mistake.
@@ -15,13 +11,12 @@ class Mistake:
     noticed at once the line that runs.
     """
 
-    def __init__(self, code, message, details, hint, raised_at):
+    def __init__(self, code, message, details, hint, places):
         self.code = code
         self.message = message
         self.details = details
         self.hint = hint
-        found = (_PLACE.search(line) for line in [message, *details, hint])
-        self.places = [place.group(1) for place in found if place] or [raised_at]
+        self.places = places
 
     def __repr__(self):
         return f"Mistake({self.code!r}, {self.message!r}, places={self.places})"
