@@ -1,6 +1,7 @@
 """What would be lost without a word is refused: comparisons in place of equations, writing into
 copies, half of a matrix, imaginary parts, models whose matrices do not fit."""
 import gc
+import pickle
 import unittest
 
 import numpy as np
@@ -43,6 +44,19 @@ class Comparisons(Refusals):
     def test_keys_of_a_dict(self):
         force, child = self.z.child.force, self.z.child
         self.assertEqual({force: 1, child: 2}[force], 1)
+
+
+class Pickle(Refusals):
+    def test_of_diagrams_and_systems(self):
+        d = titop.Diagram("d")
+        z = d.add("z", titop.SpringMass())
+        z.parent.accel = 0
+        z.child.force = d.input("u")
+        d.output["x"] = z.stretch
+        for thing in d, z, z.stretch, titop.SpringMass(), titop.compile(d):
+            self.refused(lambda: pickle.dumps(thing), "pickle")
+        other = titop.parse_diagram(pickle.loads(pickle.dumps(titop.diagram_json(d))))
+        self.assertEqual(titop.compile(other).static_gain().tolist(), [[1]])
 
 
 class Copies(Refusals):
