@@ -7,6 +7,7 @@ Json body_json(const ModalData& data) {
                {"D_P", rows(data.D_P)},     {"digits", data.digits}, {"children", Json::array()}};
   for (const ModalChild& c : data.children)
     json["children"].push_back({{"name", c.name}, {"PC", list(c.PC)}, {"Phi_C", rows(c.Phi_C)}});
+  if (!data.warnings.empty()) json["warnings"] = data.warnings;
   for (const ModalLine& line : data.lines) {
     Json shapes = Json::array();
     for (const LineShape& s : line.shapes)
@@ -38,7 +39,7 @@ ModalLine read_line(const JsonPlace& p, Eigen::Index modes) {
 }  // namespace
 
 FlexibleBody read_body(const JsonPlace& p) {
-  p.only({"omega", "xi", "L_P", "D_P", "digits", "children", "lines"});
+  p.only({"omega", "xi", "L_P", "D_P", "digits", "children", "lines", "warnings"});
   ModalData data;
   data.omega = p.at("omega").vector();
   const Eigen::Index n = data.omega.size();
@@ -53,6 +54,8 @@ FlexibleBody read_body(const JsonPlace& p) {
     data.children.push_back(
         {c.at("name").text(), c.at("PC").vector(3), c.at("Phi_C").matrix(6, n)});
   }
+  for (std::size_t i = 0; p.has("warnings") && i < p.at("warnings").size(); ++i)
+    data.warnings.push_back(p.at("warnings").item(i).text());
   if (p.has("lines"))
     for (std::size_t i = 0; i < p.at("lines").size(); ++i)
       data.lines.push_back(read_line(p.at("lines").item(i), n));

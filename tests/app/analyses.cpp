@@ -98,7 +98,7 @@ TEST_CASE("sweep: poles of a mass on a spring at every row, and a part of the ro
 TEST_CASE("sweep: a row that is refused is reported with its line, and leaves the others") {
   const Shell shell;
   // With a byte-order mark and a name in quotation marks, as spreadsheets write them.
-  shell.folder.write("points.csv", "\xEF\xBB\xBF\"k\"\r\n8\r\n0\r\n18\r\n");
+  shell.folder.write("points.csv", "\xEF\xBB\xBF\"k\"\r\n8\r\n0\r\n50\r\n");
   // 2 rad/s is the pole of k = 8.
   const Run r = shell.titop("sweep mass.json points.csv g.csv --set c=0 --omega 2 3 2");
   CHECK(r.code == 1);
