@@ -13,7 +13,7 @@
 #include <titop/compiler/loops/reflections.hpp>
 #include <titop/compiler/loops/second_order.hpp>
 #include <titop/compiler/loops/still.hpp>
-#include <titop/compiler/passes/lower/amounts.hpp>
+#include <titop/compiler/passes/lower/lowering.hpp>
 #include <titop/compiler/passes/passes.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/eigen.hpp>

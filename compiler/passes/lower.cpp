@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <titop/compiler/passes/lower/amounts.hpp>
 #include <titop/compiler/passes/lower/by_name.hpp>
+#include <titop/compiler/passes/lower/lowering.hpp>
 #include <titop/compiler/passes/lower/open_motions.hpp>
 #include <titop/compiler/passes/lower/rigid_motions.hpp>
 #include <titop/compiler/passes/passes.hpp>

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <titop/compiler/passes/lower/amounts.hpp>
+#include <titop/compiler/passes/lower/lowering.hpp>
 #include <titop/compiler/passes/lower/open_motions.hpp>
 #include <titop/graph/linalg/index.hpp>
 

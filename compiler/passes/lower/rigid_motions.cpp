@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <titop/compiler/passes/lower/amounts.hpp>
 #include <titop/compiler/passes/lower/by_name.hpp>
+#include <titop/compiler/passes/lower/lowering.hpp>
 #include <titop/compiler/passes/lower/rigid_motions.hpp>
 #include <titop/graph/drives.hpp>
 #include <titop/graph/linalg/index.hpp>
