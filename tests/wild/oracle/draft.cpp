@@ -27,6 +27,16 @@ int Draft::add(Node node, const Matrix3d& R, const Vector3d& p) {
   return static_cast<int>(scene.nodes.size()) - 1;
 }
 
+int Draft::add_turned(Node node, const Matrix3d& frame, const Vector3d& p) {
+  const Matrix3d T = rotation();
+  return add(std::move(node), frame * T, p);
+}
+
+MatrixXd Draft::matrix(int low, int high, Eigen::Index rows, Eigen::Index cols) {
+  const double size = factor(low, high);
+  return size * rng.matrix(rows, cols);
+}
+
 Vector3d Draft::unit() {
   if (rng.chance(0.3)) return Vector3d::Unit(rng.below(3));
   Vector3d r = rng.matrix(3, 1);
@@ -164,7 +174,7 @@ void Draft::tree(int bodies, double beams) {
   const auto one = [&] { return beams > 0 && rng.chance(beams) ? beam() : body(); };
   for (int i = 0; i < bodies; ++i) {
     if (i == 0) {
-      list.push_back(add(one(), rotation()));
+      list.push_back(add_turned(one(), Matrix3d::Identity()));
       base(list.back());
       continue;
     }
@@ -176,7 +186,7 @@ void Draft::tree(int bodies, double beams) {
       b = {j, 0};
       list.push_back(add(one(), frame(j), place(b)));
     } else {
-      list.push_back(add(one(), frame(on) * rotation(), place(b)));
+      list.push_back(add_turned(one(), frame(on), place(b)));
     }
     mount({list.back(), -1}, b);
   }
@@ -252,8 +262,8 @@ Node Draft::controller(int states, int ins, int outs) {
     default: break;
   }
   if (rng.chance(0.3)) n.A = (rng.matrix(states, states).array() > 0.2).select(n.A, 0.0).eval();
-  n.B = factor(-3, 4) * rng.matrix(states, ins);
-  n.C = factor(-3, 4) * rng.matrix(outs, states);
+  n.B = matrix(-3, 4, states, ins);
+  n.C = matrix(-3, 4, outs, states);
   n.D = rng.chance(0.5) ? MatrixXd(MatrixXd::Zero(outs, ins)) : rng.matrix(outs, ins);
   return n;
 }

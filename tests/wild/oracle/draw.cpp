@@ -111,7 +111,9 @@ Scene draw_half_ties(Rng& rng) {
   Draft d(rng);
   const int bodies = 2 + rng.below(2);
   for (int i = 0; i < bodies; ++i) {
-    const int node = d.add(d.body(), d.rotation(), Vector3d(rng.matrix(3, 1)));
+    const Node body = d.body();
+    const Matrix3d R = d.rotation();
+    const int node = d.add(body, R, Vector3d(rng.matrix(3, 1)));
     if (i == 0) {
       d.base(node);
       continue;
@@ -162,12 +164,15 @@ Scene draw_controller(Rng& rng) {
     };
     if (!mechanics || rng.chance(0.5))
       feed({.measured = Measured::input, .axis = d.input(1 + rng.below(2))}, 1);
-    if (mechanics) feed(d.any_motion(), d.factor(-6, 1));
+    if (mechanics) {
+      const Reading motion = d.any_motion();
+      feed(motion, d.factor(-6, 1));
+    }
     if (i > 0) feed({.measured = Measured::out, .at = {first + i - 1, -1}}, 1);
     const int node = d.add(n);
     if (rng.chance(0.3))
       d.scene.nodes[at(node)].in.push_back(
-          {{.measured = Measured::out, .at = {node, -1}}, d.factor(-6, 1) * rng.matrix(ins, outs)});
+          {{.measured = Measured::out, .at = {node, -1}}, d.matrix(-6, 1, ins, outs)});
     d.scene.outputs.push_back({.measured = Measured::out, .at = {node, -1}});
     if (mechanics && rng.chance(0.7)) {
       const int body = d.any_motion().at.node;
@@ -176,10 +181,10 @@ Scene draw_controller(Rng& rng) {
       const Point where = b.kind == Node::Kind::mass ? Point{body, 0} : d.site(body);
       const int size = b.kind == Node::Kind::mass ? 1 : 3;
       const int half = size == 1 ? 0 : 1 + rng.below(2);
-      d.scene.loads.push_back({where,
-                               half,
-                               {{{.measured = Measured::out, .at = {node, -1}},
-                                 d.factor(-6, 1) * rng.matrix(size, outs)}}});
+      d.scene.loads.push_back(
+          {where,
+           half,
+           {{{.measured = Measured::out, .at = {node, -1}}, d.matrix(-6, 1, size, outs)}}});
     }
   }
   if (mechanics) d.outputs(1 + rng.below(2));

@@ -4,7 +4,8 @@
 #include "wild/oracle/scene.hpp"
 
 /// Random scenes, small, with many special cases. The same seed gives the same scene on every
-/// machine.
+/// machine and by every compiler: no expression draws twice, as operands and arguments have no
+/// order.
 namespace wild {
 
 using titop_test::Rng;
@@ -30,8 +31,12 @@ class Draft {
 
   int add(Node node, const Matrix3d& R = Matrix3d::Identity(),
           const Vector3d& p = Vector3d::Zero());
+  /// In a frame of its own, turned against `frame`.
+  int add_turned(Node node, const Matrix3d& frame, const Vector3d& p = Vector3d::Zero());
   /// Factor spread evenly over octaves.
   double factor(int low, int high) { return rng.octaves(low, high); }
+  /// Entries between -1 and 1, times one factor.
+  MatrixXd matrix(int low, int high, Eigen::Index rows, Eigen::Index cols);
   Vector3d unit();
   Matrix3d rotation();
   /// A body, rigid or with modes, hanging nowhere yet.

@@ -29,7 +29,8 @@ std::vector<int> draw_bodies(Draft& d, int count) {
   const Matrix3d R = d.rotation();
   if (d.rng.chance(0.4)) {
     const int root = d.bushing({}, Vector3d::Zero());
-    bodies = {d.add(d.body(), d.frame(root) * (d.rng.chance(0.7) ? Matrix3d::Identity() : R))};
+    const Node body = d.body();
+    bodies = {d.add(body, d.frame(root) * (d.rng.chance(0.7) ? Matrix3d::Identity() : R))};
     d.mount({bodies[0], -1}, {root, 0});
   } else {
     bodies = {d.add(d.body(), R)};

@@ -72,7 +72,7 @@ int place(Draft& d, const Appendage& a, int hub, const Matrix3d& T) {
 
 Scene draw_equal(Rng& rng) {
   Draft d(rng);
-  const int hub = d.add(d.body(), d.rotation());
+  const int hub = d.add_turned(d.body(), Matrix3d::Identity());
   if (rng.chance(0.5)) d.base(hub);
   const Appendage a = draw_appendage(d, d.scene.nodes[at(hub)]);
   const int count = 2 + rng.below(3);

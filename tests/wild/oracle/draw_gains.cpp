@@ -62,7 +62,7 @@ std::vector<int> draw_net(Draft& d) {
   std::vector<int> list;
   for (int i = 0; i < count; ++i) {
     const int ins = 1 + d.rng.below(3), outs = 1 + d.rng.below(3);
-    list.push_back(d.add(d.gain(d.factor(-3, 3) * d.rng.matrix(outs, ins))));
+    list.push_back(d.add(d.gain(d.matrix(-3, 3, outs, ins))));
   }
   for (int i = 0; i < count; ++i) {
     Node& n = d.scene.nodes[at(first + i)];
@@ -70,7 +70,7 @@ std::vector<int> draw_net(Draft& d) {
     for (int k = 0; k < from; ++k) {
       const int other = first + d.rng.below(count);
       const Eigen::Index size = d.scene.nodes[at(other)].D.rows();
-      n.in.push_back({out(other), d.factor(-3, 2) * d.rng.matrix(n.D.cols(), size)});
+      n.in.push_back({out(other), d.matrix(-3, 2, n.D.cols(), size)});
     }
   }
   return list;
@@ -116,9 +116,8 @@ void close_around(Draft& d, int node) {
   const bool one = b.kind == Node::Kind::mass;
   const Point where = one ? Point{body, 0} : d.site(body);
   const Eigen::Index outs = d.scene.nodes[at(node)].D.rows();
-  d.scene.loads.push_back({where,
-                           one ? 0 : 1 + d.rng.below(2),
-                           {{out(node), d.factor(-6, 3) * d.rng.matrix(one ? 1 : 3, outs)}}});
+  d.scene.loads.push_back(
+      {where, one ? 0 : 1 + d.rng.below(2), {{out(node), d.matrix(-6, 3, one ? 1 : 3, outs)}}});
 }
 
 /// Loop gains are 2^-nearest from 1, or farther.
