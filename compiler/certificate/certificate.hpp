@@ -51,7 +51,7 @@ struct Certificate {
   /// of the units of inputs and outputs; in other units of states and time other entries are
   /// rounded. Above 1e-9 and up to 100 states it is at most 30 times the error of the model's own
   /// outputs, as the residual itself is rounded at a point of very small mass. Negative in a
-  /// certificate of the factors alone, if the model has no states, no inputs or no outputs, and if
+  /// certificate of the factors alone, if the model has no inputs or no outputs, and if
   /// the factors have no digit at any s. Above 1e-9 dense_log() warns, with output and input (up to
   /// eight units).
   double dense_error = -1;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <optional>
 #include <titop/compiler/certificate/dense_check.hpp>
 #include <titop/compiler/certificate/residual.hpp>
 #include <titop/compiler/certificate/surroundings.hpp>
@@ -37,15 +38,16 @@ constexpr Index kPolesUpTo = 600;  ///< states; more take seconds
 
 /// Inputs of one unit side by side in one column, at random; in two if they are few: by chance one
 /// sample of rounding may be small. Those of many units must share columns, scaled so that they
-/// have effects of like size on the states.
+/// have effects of like size on the states; without states, on the outputs.
 solve::RowMatrix<T> tried_inputs(const StateSpace& m, const std::vector<int>& units) {
   const Index n = std::ssize(units), columns = 2 * n <= kColumns ? 2 * n : std::min(n, kColumns);
   solve::RowMatrix<T> u = solve::RowMatrix<T>::Zero(m.B.cols(), columns);
+  const MatrixXd& effect = m.order() > 0 ? m.B : m.D;
   SteadyRandom random;
   for (Index k = 0, first = 0; k < std::max(n, columns); ++k) {
     if (k == n) first = 0;
     const int size = units[at(k % n)];
-    const double push = m.B.middleCols(first, size).cwiseAbs().maxCoeff();
+    const double push = effect.middleCols(first, size).cwiseAbs().maxCoeff();
     const double scale = columns < n && push > 0 ? 1 / push : 1;
     for (const Index end = first + size; first < end; ++first)
       u(first, k % columns) = scale * T(random.next(), random.next());
@@ -84,19 +86,42 @@ std::vector<solve::RowMatrix<T>> moved(const MatrixXd& A,
   return result;
 }
 
+/// The outputs in finer arithmetic, rounded; none if that has no digit either.
+std::optional<solve::RowMatrix<T>> finer_outputs(const Factored& d, T s,
+                                                 const solve::RowMatrix<T>& u) try {
+  using Finer = std::complex<solve::DoubleDouble>;
+  const solve::RowMatrix<Finer> inputs = solve::lifted<Finer>(u);
+  const Evaluation<Finer> point(d, solve::Scalar<Finer>::from(s), inputs,
+                                solve::Refinement::settled);
+  const solve::RowMatrix<Finer> y = point.outputs();
+  solve::RowMatrix<T> rounded(y.rows(), y.cols());
+  for (Index i = 0; i < y.size(); ++i) rounded(i) = solve::Scalar<Finer>::round(y(i));
+  if (!rounded.allFinite()) return {};
+  return rounded;
+} catch (const Error&) {
+  return {};
+}
+
 /// C x + D u - y beyond the rounding of both: that of one product is negligible, entries of C and D
-/// that are not those of the factors are not.
-solve::RowMatrix<T> off_by_outputs(const StateSpace& m, const solve::RowMatrix<T>& x,
-                                   const solve::RowMatrix<T>& u, const solve::RowMatrix<T>& y,
-                                   const solve::RowMatrix<T>& rounding) {
-  solve::RowMatrix<T> off = m.C * x + m.D * u - y;
+/// that are not those of the factors are not. Where rounding of y may hide a difference above
+/// kWarn, y is that of finer arithmetic.
+solve::RowMatrix<T> off_by_outputs(const Factored& d, const StateSpace& m, T s,
+                                   const solve::RowMatrix<T>& x, const solve::RowMatrix<T>& u,
+                                   const solve::RowMatrix<T>& y, const MatrixXd& rounding,
+                                   const std::vector<int>& units) {
+  const solve::RowMatrix<T> model = m.C * x + m.D * u;
   const MatrixXd terms =
       m.C.cwiseAbs() * x.cwiseAbs() + m.D.cwiseAbs() * u.cwiseAbs() + MatrixXd(y.cwiseAbs());
-  for (Index i = 0; i < off.rows(); ++i)
-    for (Index j = 0; j < off.cols(); ++j)
-      if (std::abs(off(i, j)) <= kNoise * (kEpsilon * terms(i, j) + std::abs(rounding(i, j))))
-        off(i, j) = 0;
-  return off;
+  const auto beyond = [&](const solve::RowMatrix<T>& off, const MatrixXd& of_outputs) {
+    const MatrixXd least = kNoise * (kEpsilon * terms + of_outputs);
+    return solve::RowMatrix<T>((off.cwiseAbs().array() <= least.array()).select(T(0), off));
+  };
+  const solve::RowMatrix<T> all = model - y, off = beyond(all, rounding);
+  const MatrixXd size = by_unit(y, units), hidden = by_unit(all - off, units);
+  const MatrixXd noise = kNoise * by_unit(rounding.cast<T>(), units);
+  if (!(size.array() > noise.array() && hidden.array() > kWarn * size.array()).any()) return off;
+  const std::optional<solve::RowMatrix<T>> exact = finer_outputs(d, s, u);
+  return exact ? beyond(model - *exact, MatrixXd::Zero(y.rows(), y.cols())) : off;
 }
 
 /// The residual of the factors' states in the equations of the dense model, A x + B u - s x, mapped
@@ -125,12 +150,14 @@ std::vector<Sample> sample(const Factored& d, const StateSpace& m, const solve::
   for (std::size_t i = 0; i < list.size(); ++i) {
     const solve::RowMatrix<T> left = Ax[i] + m.B * u - list[i] * x[i];
     const auto& y = points[i].outputs();
-    const solve::RowMatrix<T> change = points[i].forced(d.states.expanded(left)) +
-                                       off_by_outputs(m, x[i], u, y, points[i].rounding());
+    const MatrixXd rounding = points[i].rounding().cwiseAbs();
+    const solve::RowMatrix<T> change =
+        points[i].forced(d.states.expanded(left)) +
+        off_by_outputs(d, m, list[i], x[i], u, y, rounding, units.rows);
     result.push_back({list[i],
                       std::abs(list[i]) < kBelow * where.slowest,
                       y,
-                      {by_unit(y, units.rows), by_unit(points[i].rounding(), units.rows)},
+                      {by_unit(y, units.rows), by_unit(rounding.cast<T>(), units.rows)},
                       by_unit(change, units.rows)});
   }
   return result;
@@ -153,18 +180,11 @@ void leave_out_lost(std::vector<Sample>& samples, std::vector<T>& not_tried) {
 }
 
 /// Adds the error of double in the outputs to their rounding: an output that is 0 because states
-/// cancel may be rounding alone.
+/// cancel may be rounding alone. Without digits in finer arithmetic the estimate by double stays.
 void find_rounding(Sample& p, const Factored& d, const solve::RowMatrix<T>& u,
-                   const std::vector<int>& units) try {
-  using Finer = std::complex<solve::DoubleDouble>;
-  const solve::RowMatrix<Finer> inputs = solve::lifted<Finer>(u);
-  const Evaluation<Finer> point(d, solve::Scalar<Finer>::from(p.s), inputs,
-                                solve::Refinement::settled);
-  const solve::RowMatrix<Finer> y = point.outputs();
-  solve::RowMatrix<T> off = p.y;
-  for (Index i = 0; i < off.size(); ++i) off(i) -= solve::Scalar<Finer>::round(y(i));
-  if (off.allFinite()) p.sizes.rounding = p.sizes.rounding.cwiseMax(by_unit(off, units));
-} catch (const Error&) {  // no digit here either: the estimate by double stays
+                   const std::vector<int>& units) {
+  if (const std::optional<solve::RowMatrix<T>> y = finer_outputs(d, p.s, u))
+    p.sizes.rounding = p.sizes.rounding.cwiseMax(by_unit(p.y - *y, units));
 }
 
 constexpr Index kAnsweredUpTo = 100;  ///< states
@@ -175,6 +195,7 @@ constexpr double kLuck = 30;          ///< by which one answer may be closer tha
 /// kLuck.
 void bound_by_answer(Sample& p, const StateSpace& m, const solve::RowMatrix<T>& u,
                      const std::vector<int>& units) {
+  if (m.order() == 0) return;  // the difference is that of D
   const linalg::Solution x = linalg::solve(
       p.s * Eigen::MatrixXcd::Identity(m.order(), m.order()) - m.A, Eigen::MatrixXcd(m.B * u));
   if (!(x.rcond > 0) || !x.z.allFinite()) return;
@@ -232,7 +253,8 @@ DenseError worst_of(const std::vector<Sample>& samples) {
 DenseError::Worst where_used(const std::vector<Sample>& samples, const MatrixXd& A) {
   double lowest = 0;
   try {
-    if (A.rows() <= kPolesUpTo) lowest = kBelow * linalg::eigenvalues(A).cwiseAbs().minCoeff();
+    if (A.rows() > 0 && A.rows() <= kPolesUpTo)
+      lowest = kBelow * linalg::eigenvalues(A).cwiseAbs().minCoeff();
   } catch (const Error&) {  // no poles: all s count
   }
   DenseError::Worst worst;
@@ -254,7 +276,7 @@ DenseError by_input(DenseError e, int units) {
 }  // namespace
 
 DenseError dense_error(const Factored& d, const StateSpace& m) {
-  if (m.B.cols() == 0 || m.C.rows() == 0 || m.A.size() == 0) return {{-1}, {-1}};
+  if (m.B.cols() == 0 || m.C.rows() == 0) return {{-1}, {-1}};
   const Measure units = measure(d.graph(), {});
   const solve::RowMatrix<T> u = tried_inputs(m, units.cols);
   std::vector<T> not_tried;

@@ -133,7 +133,7 @@ void warn_of_lost_digits(const Factored& d, const DenseError& e, std::vector<Not
     const std::string s = fmt::format("{:.3g}{:+.3g}j", w.s.real(), w.s.imag());
     notes.push_back({Note::Kind::warning, "dense",
                      fmt::format(fmt::runtime(text), s, digits_of(d, w)) +
-                         "; System::transfer and apply keep all digits"});
+                         "; System::transfer keeps all digits"});
   };
   if (e.beside_largest.error > kWarn)
     warn("written as A, B, C, D the model keeps {1} at s = {0}", e.beside_largest);
