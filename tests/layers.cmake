@@ -54,7 +54,9 @@ room(emit/text)
 # Deeper than System: names of any encoding are cleaned by compiler/diagram.
 room(emit/files                compiler/diagram compiler/system analysis/certify analysis/lft
                                emit/text)
-room(emit/cpp                  compiler/system analysis/simulation analysis/certify emit/text)
+# Deeper than System: it writes the modes of the second-order form.
+room(emit/cpp                  compiler/realization compiler/system analysis/simulation
+                               analysis/certify emit/text)
 # Deeper than System: it draws System::stage(), a type of compiler/passes.
 room(emit/report               compiler/passes compiler/diagram compiler/system analysis/simulation
                                analysis/certify analysis/reduction analysis/control emit/text)

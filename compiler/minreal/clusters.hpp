@@ -2,13 +2,13 @@
 
 #include <Eigen/Core>
 #include <titop/compiler/minreal/modes.hpp>
+#include <titop/compiler/realization/proportional.hpp>
 #include <titop/graph/linalg/rounding.hpp>
 
 /// Common to both kinds of modes: modes of one frequency, and ranks. For the compiler's own files.
 namespace titop::minreal {
 
 using linalg::kEpsilon;
-inline constexpr double kSameFrequency = 1e-9;  ///< relative: as close as this, modes are equal
 inline constexpr double kNoPart = 1e-8;     ///< of a cluster's largest: smaller ones do not count
 inline constexpr double kClearRank = 1e-6;  ///< least singular value that is no rounding
 inline constexpr double kClearRow = 1e-10;  ///< likewise of a whole row

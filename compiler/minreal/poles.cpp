@@ -7,10 +7,9 @@
 #include <optional>
 #include <titop/compiler/minreal/at_zero.hpp>
 #include <titop/compiler/minreal/poles.hpp>
-#include <titop/compiler/realization/modal.hpp>
+#include <titop/compiler/realization/proportional.hpp>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/dense.hpp>
-#include <titop/graph/linalg/graded.hpp>
 
 /// Poles of any model, with their blocks.
 namespace titop {
@@ -51,18 +50,16 @@ std::vector<Pole> roots(double w2, double z) {
   return {make_pole(fast != 0 ? w2 / fast : 0, false), make_pole(fast, false)};
 }
 
-/// Poles of yddot + Z ydot + S y = 0 if Z is diagonal in the modes of S; false if it is not, or
-/// if they show that S is not symmetric.
+/// Poles of yddot + Z ydot + S y = 0; false if it has no proportional_modes.
 bool proportional_poles(const StateSpace& model, const SecondOrder& form, std::vector<Pole>& out) {
-  const GradedModes all = eigh_graded(form.S);
-  const std::optional<VectorXd> Z = diagonal_in(all, form.Z);
-  if (!Z || !symmetric_in(all, form.S, form.skew)) return false;
-  const auto& [lambda, V] = all.modes;
+  const std::optional<ProportionalModes> modes = proportional_modes(form);
+  if (!modes) return false;
+  const auto& [lambda, V] = modes->undamped.modes;
   const MatrixXd right = form.D * V, left = form.D_inverse.transpose() * V;
   for (Eigen::Index k = 0; k < lambda.size(); ++k) {
     VectorXd share = VectorXd::Zero(model.A.rows());
     share(form.q) = right.col(k).cwiseProduct(left.col(k)).cwiseAbs();
-    for (Pole& p : roots(lambda(k), (*Z)(k))) {
+    for (Pole& p : roots(lambda(k), modes->z(k))) {
       set_blocks(p, model, share);
       out.push_back(std::move(p));
     }

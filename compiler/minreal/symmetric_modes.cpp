@@ -2,8 +2,6 @@
 #include <cmath>
 #include <numeric>
 #include <titop/compiler/minreal/clusters.hpp>
-#include <titop/graph/linalg/eigen.hpp>
-#include <titop/graph/linalg/graded.hpp>
 #include <titop/graph/linalg/index.hpp>
 
 /// Undamped and proportionally damped models.
@@ -17,39 +15,6 @@ using Eigen::VectorXd;
 constexpr double kNoTerm = 1e-12;  ///< of the terms of a sum: a smaller sum is rounding
 
 using linalg::at;
-
-struct ModeRange {
-  Index first, count;
-};
-
-/// Modes, by rising lambda, whose frequencies are equal up to rounding and this part of lambda.
-std::vector<ModeRange> equal_frequencies(const GradedModes& e, double same) {
-  const VectorXd& lambda = e.modes.lambda;
-  const double all_alike = 100 * kEpsilon * lambda.cwiseAbs().maxCoeff();
-  std::vector<ModeRange> result;
-  for (Index i = 0; i < lambda.size(); ++i) {
-    const double size = std::abs(lambda(i));
-    const double rounding = e.graded ? std::min(all_alike, 4 * e.relative * size) : all_alike;
-    if (i == 0 || lambda(i) - lambda(i - 1) > rounding + same * size)
-      result.push_back({i, 1});
-    else
-      ++result.back().count;
-  }
-  return result;
-}
-
-/// Any vectors will do for modes of one frequency: those in which damping does not couple them.
-const GradedModes& turn_by_damping(const MatrixXd& Z, GradedModes& e) {
-  for (const auto& [first, count] : equal_frequencies(e, kSameFrequency)) {
-    if (count == 1) continue;
-    auto V = e.modes.V.middleCols(first, count);
-    const MatrixXd in = V.transpose() * Z * V;
-    const double size = in.cwiseAbs().maxCoeff(),
-                 skew = (in - in.transpose()).cwiseAbs().maxCoeff();
-    if (skew <= kAsymmetry * size) V = (V * eigh((in + in.transpose()) / 2).V).eval();
-  }
-  return e;
-}
 
 /// Modes of one frequency are counted as equal if their dampings are equal, too. Sorts those of one
 /// frequency by their damping z.
@@ -194,13 +159,12 @@ std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolut
   s.D = std::move(form.D), s.D_inverse = std::move(form.D_inverse);
   const Ports p = ports(model, s);
   if (p.bq.size() && p.bq.cwiseAbs().maxCoeff() > 0) return std::nullopt;
-  GradedModes e = eigh_graded(form.S);
-  std::optional<VectorXd> z = diagonal_in(e, form.Z);
-  if (!z) z = diagonal_in(turn_by_damping(form.Z, e), form.Z);
-  if (!z || !symmetric_in(e, form.S, form.skew)) return std::nullopt;
+  std::optional<ProportionalModes> proportional = proportional_modes(form);
+  if (!proportional) return std::nullopt;
+  auto& [e, z] = *proportional;
   ModeSet& m = s.modes;
-  find_clusters(e, *z, resolution, m);
-  if (mixes_levels(e, *z, p, m) || shares_a_pole(e.modes.lambda, *z, m)) return std::nullopt;
+  find_clusters(e, z, resolution, m);
+  if (mixes_levels(e, z, p, m) || shares_a_pole(e.modes.lambda, z, m)) return std::nullopt;
   s.Q = e.modes.V;
   m.lambda = e.modes.lambda.cwiseAbs();
   const Parts parts = find_parts(form.S, s.Q.cwiseAbs(), m);
@@ -212,7 +176,7 @@ std::optional<Symmetric> symmetric_modes(const StateSpace& model, double resolut
   const MatrixXd pq = s.Q.transpose() * p.cq, pv = m.omega.asDiagonal() * s.Q.transpose() * p.cv;
   m.c = (pq.array().square() + pv.array().square()).sqrt();
   balance_sides(parts, m);
-  find_mixing(e, *z, m);
+  find_mixing(e, z, m);
   find_rigid(p, s.Q, m);
   return s;
 }

@@ -3,11 +3,11 @@
 #include <limits>
 #include <optional>
 #include <titop/analysis/simulation/hold.hpp>
+#include <titop/compiler/realization/proportional.hpp>
 #include <titop/compiler/system/system_data.hpp>
 #include <titop/emit/cpp/form.hpp>
 #include <titop/graph/linalg/dense.hpp>
 #include <titop/graph/linalg/eigen.hpp>
-#include <titop/graph/linalg/graded.hpp>
 
 namespace titop::emit {
 
@@ -48,20 +48,19 @@ struct BlockDiagonalForm {
 
 /// [q; qdot] = scale V [m; mdot] for the modes V of the symmetric form, pairs (m, mdot) one after
 /// the other. None if there is no such form or damping couples its modes.
-std::optional<BlockDiagonalForm> proportional_modes(const StateSpace& model) {
+std::optional<BlockDiagonalForm> oscillators(const StateSpace& model) {
   const SecondOrder second = second_order(model);
   if (!second.found) return std::nullopt;
-  const GradedModes all = eigh_graded(second.S);
-  const std::optional<Eigen::VectorXd> Z = diagonal_in(all, second.Z);
-  if (!Z || !symmetric_in(all, second.S, second.skew)) return std::nullopt;
-  const SymmetricModes& sym = all.modes;
+  const std::optional<ProportionalModes> found = proportional_modes(second);
+  if (!found) return std::nullopt;
+  const SymmetricModes& sym = found->undamped.modes;
   const Eigen::VectorXd scale = second.D.diagonal();  // diagonal without an energy
   const Index n = model.A.rows(), count = sym.lambda.size();
   BlockDiagonalForm modes{MatrixXl::Zero(n, n), MatrixXl::Zero(n, n), MatrixXl::Zero(n, n)};
   for (Index k = 0; k < count; ++k) {
     modes.A(2 * k, 2 * k + 1) = 1;
     modes.A(2 * k + 1, 2 * k) = -sym.lambda(k);
-    modes.A(2 * k + 1, 2 * k + 1) = -(*Z)(k);
+    modes.A(2 * k + 1, 2 * k + 1) = -found->z(k);
     for (Index i = 0; i < count; ++i) {
       const Index rows[] = {second.q[static_cast<std::size_t>(i)],
                             second.qdot[static_cast<std::size_t>(i)]};
@@ -257,7 +256,7 @@ ModelForm own_form(const StateSpace& model) {
 }
 
 ModelForm modal_form(const StateSpace& model) {
-  std::optional<BlockDiagonalForm> modes = proportional_modes(model);
+  std::optional<BlockDiagonalForm> modes = oscillators(model);
   if (!modes) modes = general_modes(model.A);
   ModelForm form;
   form.modal = true;
