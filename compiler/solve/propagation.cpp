@@ -22,7 +22,7 @@ Propagation::Propagation(const Factors<double>& factors, std::vector<double>& ro
   std::size_t total = 0;
   place_.reserve(plan_.fronts.size());
   for (const Front& f : plan_.fronts) {
-    FrontPlace p{padded(f.pivot_count), padded(f.border_count + f.pivot_count), total};
+    FrontPlace p{padded(f.pivot_count), f.border_count + f.pivot_count, total};
     p.unknowns = p.lower + at(f.row_count * p.by_pivots);
     total = p.unknowns + at(f.pivot_count * p.by_all);
     place_.push_back(p);
@@ -66,9 +66,7 @@ void Propagation::form_front(std::size_t index) {
   for (std::ptrdiff_t r = 0; r < pivots; ++r, row += p.by_all) {
     for (std::ptrdiff_t j = 0; j < border; ++j) row[j] = -lu[r * n + pivots + j];
     std::copy_n(lower + r * p.by_pivots, pivots, row + border);
-    std::fill(row + n, row + p.by_all, 0.0);
   }
-  substitute_upper(pivots, p.by_all, lu, n, formed_.data() + p.unknowns);
 }
 
 /// The rows of a front as they come: nullptr if nothing has reached them yet.
@@ -131,20 +129,13 @@ void Propagation::back(int index, Space& space) const {
   for (const int v : plan_.list(f.border))
     for (int i = 0; i < plan_.structure.variable_size[at(v)]; ++i)
       space.with.push_back(space.z.data() + (plan_.first[at(v)] + i) * m);
-  const double* const* from = nullptr;
   if (const int used = space.is_active[at(index)] ? space.used[at(index)] : 0; used > 0) {
     const double* const* const own = space.pivots.data() + f.first_unknown;
-    if (f.pivot_count == 1) {  // a division rounds once, a product with the inverse twice
-      const double pivot = factors_.made(at(index)).lu.front();
-      for (std::ptrdiff_t j = 0; j < m; ++j) top[j] = own[0][j] / pivot;
-      space.from.assign(1, top);
-      from = space.from.data();
-    } else {
-      space.with.insert(space.with.end(), own, own + used);
-    }
+    space.with.insert(space.with.end(), own, own + used);
   }
   multiply(f.pivot_count, static_cast<std::ptrdiff_t>(space.with.size()), m,
-           formed_.data() + p.unknowns, p.by_all, space.with.data(), from, top, m);
+           formed_.data() + p.unknowns, p.by_all, space.with.data(), nullptr, top, m);
+  substitute_upper(f.pivot_count, m, factors_.made(at(index)).lu.data(), f.columns(), top);
 }
 
 void Propagation::begin(std::ptrdiff_t m, Space& space) const {

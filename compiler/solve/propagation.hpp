@@ -5,10 +5,11 @@
 namespace titop::solve {
 
 /// Many right-hand sides, each with a few nonzero rows, for the dense model. Forward only along
-/// these rows' fronts and their ancestors. Each front becomes a few small products, formed once:
-/// with its rows split into those of the pivots, r, and the rest, r', it passes r' - L' L^-1 r
-/// upwards, and in back substitution its unknowns are U^-1 L^-1 r - U^-1 (border of U) (border
-/// unknowns). O(unknowns x front size) per column.
+/// these rows' fronts and their ancestors. Each front has a few small matrices, formed once: with
+/// its rows split into those of the pivots, r, and the rest, r', it passes r' - L' L^-1 r upwards,
+/// and its unknowns are U^-1 (L^-1 r - (border of U) (border unknowns)). L^-1 is formed, as its
+/// multipliers are bounded; U^-1 is not: of a front with unlike pivots the error of its entries
+/// grows with the square of their ratio. O(unknowns x front size) per column.
 class Propagation {
  public:
   /// `room`: memory of the products; it must outlive this object, and is not cleared. Call `form`
@@ -50,11 +51,11 @@ class Propagation {
   void order_columns(std::size_t front);
   void form_front(std::size_t front);
 
-  /// Places of a front's matrices, row-major, rows padded to 8.
+  /// Places of a front's matrices, row-major.
   struct FrontPlace {
-    std::ptrdiff_t by_pivots = 0, by_all = 0;  ///< from row to row
+    std::ptrdiff_t by_pivots = 0, by_all = 0;  ///< from row to row; the first a multiple of 8
     std::size_t lower = 0;                     ///< L^-1, and below it -L' L^-1: rows x pivots
-    std::size_t unknowns = 0;  ///< -U^-1 (border of U), and to its right U^-1 L^-1: pivots x both
+    std::size_t unknowns = 0;  ///< -(border of U), and to its right L^-1: pivots x both
     int carried = 0;           ///< pivots' rows that came from children: the first columns
   };
 

@@ -94,5 +94,5 @@ TEST_CASE("import: what is not understood, and what is refused") {
   const Run twice = shell.titop("import " + cantilever + "cantilever.csv --units 1e-3 1 1 --xi 1");
   CHECK(twice.code == 1);
   CHECK(has_names(twice.err, {"cantilever.csv", "--units", "--xi"}));
-  CHECK(app_test::has(shell.titop("--help").out, "OP4, OP2, DMIG"));
+  CHECK(app_test::has(shell.titop("--help").out, "OP4, OP2, f06, DMIG"));
 }

@@ -134,7 +134,7 @@ TEST_CASE("rounding error of A, B, C, D: certificate, report and generated code 
   CHECK(lost == 2);
 }
 
-TEST_CASE("digits lost far below the modes of a floating frame are reported, and no fault") {
+TEST_CASE("digits lost where outputs of a floating frame are small are reported, and no fault") {
   const System system = compile(frame());
   const FullCertificate c = certify(system);
   CAPTURE(to_string(c));
@@ -142,7 +142,6 @@ TEST_CASE("digits lost far below the modes of a floating frame are reported, and
   CHECK(is_exported(system));
   CHECK(all_hold(system, 0));
   CHECK(c.basic.dense_error <= 0.1 * c.basic.dense_error_where_small);
-  CHECK(std::abs(c.basic.dense_error_where_small_s) < c.grid.lowest);
   CHECK(has_line(to_string(c.basic), {two_digits(c.basic.dense_error_where_small),
                                       at_s(c.basic.dense_error_where_small_s)}));
 }
