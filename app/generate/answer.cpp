@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <boost/multiprecision/eigen.hpp>
 #include <complex>
-#include <random>
 #include <titop/graph/linalg/eigen.hpp>
 
 #include "generate/assembly.hpp"
@@ -80,11 +79,11 @@ Json transfer(const FirstOrder<Digits>& m, Complex s) {
 
 /// Two points near every pole, at the scene's own frequencies.
 std::vector<Complex> points(const std::vector<Complex>& poles, std::uint64_t seed) {
-  std::mt19937_64 engine(seed ^ 0xF00D);
+  Mersenne draws(seed ^ 0xF00D);
   std::vector<Complex> list;
   while (list.size() < 2) {
-    const double mantissa = 16 + static_cast<double>(engine() % 16);
-    const double omega = std::ldexp(mantissa, static_cast<int>(engine() % 8) - 4);
+    const double mantissa = 16 + draws.below(16);
+    const double omega = std::ldexp(mantissa, draws.below(8) - 4);
     const Complex s(omega / 4, omega);
     const bool beside = std::all_of(poles.begin(), poles.end(), [&](const Complex& p) {
       return std::abs(s - p) > 0.05 * std::abs(s);

@@ -1,5 +1,4 @@
-#include <Eigen/Cholesky>
-#include <random>
+#include <titop/graph/linalg/eigen.hpp>
 #include <tuple>
 
 #include "generate/assembly.hpp"
@@ -8,11 +7,10 @@
 namespace titop::generate {
 namespace {
 
-/// Whole numbers from a generator that the standard defines to the bit.
-class Dice {
+/// Whole numbers and ratios of them.
+class Dice : public Mersenne {
  public:
-  explicit Dice(std::uint64_t seed) : engine_(seed) {}
-  int below(int n) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(n)); }
+  using Mersenne::Mersenne;
   int between(int low, int high) { return low + below(high - low + 1); }
   bool chance(int percent) { return below(100) < percent; }
   /// From 2^low to 2^high, five bits.
@@ -48,9 +46,6 @@ class Dice {
                                        {Ratio(2, 7), Ratio(-3, 7), Ratio(6, 7)}};
     return kDirections[below(7)];
   }
-
- private:
-  std::mt19937_64 engine_;
 };
 
 class Artist {
@@ -82,9 +77,6 @@ class Artist {
   }
   bool damped() {
     return o_.damping == Damping::all || (o_.damping == Damping::some && dice_.chance(50));
-  }
-  int parent_of(int i) {
-    return o_.shape == Shape::chain ? i - 1 : o_.shape == Shape::star ? 0 : dice_.below(i);
   }
   Base::Kind base_kind() {
     static constexpr Base::Kind kKinds[] = {Base::Kind::ground, Base::Kind::free,
@@ -133,7 +125,7 @@ class Artist {
     if (dice_.chance(15)) b.stiffness_parameter = "k_" + b.name;
     if (i > 0) {
       b.base.kind = Base::Kind::mounted;
-      b.base.on = {parent_of(i), "child"};
+      b.base.on = {parent_of(o_.shape, i, dice_), "child"};
     } else {
       b.base.kind = base_kind();
       if (b.base.kind == Base::Kind::imposed ||
@@ -240,7 +232,7 @@ class Artist {
       b.L.emplace_back();
       for (int j = 0; j < 6; ++j) b.L.back().push_back(dice_.fraction());
     }
-    while (!carries(b))
+    while (modes > 0 && !carries(b))
       for (auto& row : b.L)
         for (Ratio& x : row) x = x * Ratio(1, 2);
     for (const char* name : {"C1", "C2", "C3", "T"}) b.points.push_back(point(name, modes));
@@ -256,19 +248,11 @@ class Artist {
 
   /// The modes have less than the body's mass: D_P - L'L is positive, with a margin.
   static bool carries(const Body& b) {
-    Eigen::Matrix3d rho = Eigen::Matrix3d::Zero();
-    const Mat3 x = cross(b.PA);
-    for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t j = 0; j < 3; ++j)
-        rho(static_cast<int>(i), static_cast<int>(j)) = -x[i][j].value();
-    Eigen::Matrix<double, 6, 6> D = Eigen::Matrix<double, 6, 6>::Zero();
-    const double m = b.mass.value();
-    D.topLeftCorner<3, 3>() = m * Eigen::Matrix3d::Identity();
-    D.topRightCorner<3, 3>() = m * rho;
-    D.bottomLeftCorner<3, 3>() = m * rho.transpose();
-    D.bottomRightCorner<3, 3>() = m * rho.transpose() * rho;
-    for (int i = 0; i < 3; ++i) D(3 + i, 3 + i) += b.inertia[static_cast<std::size_t>(i)].value();
-    D *= 0.7;
+    const Rows mass = rigid_mass(b);
+    Eigen::Matrix<double, 6, 6> D;
+    for (int i = 0; i < 6; ++i)
+      for (int j = 0; j < 6; ++j)
+        D(i, j) = 0.7 * mass[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)].value();
     for (const auto& row : b.L) {
       Eigen::Matrix<double, 6, 1> l;
       for (int j = 0; j < 6; ++j) l(j) = row[static_cast<std::size_t>(j)].value();
@@ -287,7 +271,7 @@ class Artist {
       return add_body(b);
     }
     b.base.kind = Base::Kind::mounted;
-    const int on = bodies_[static_cast<std::size_t>(parent_of(i))];
+    const int on = bodies_[static_cast<std::size_t>(parent_of(o_.shape, i, dice_))];
     b.base.on = {on, "C" + std::to_string(dice_.between(1, 3))};
     b.base.turned = dice_.chance(75);
     b.base.T = b.base.turned ? dice_.rotation() : unit3();

@@ -5,19 +5,16 @@
 #include <string>
 
 #include "generate/plan.hpp"
+#include "generate/shape.hpp"
 
 /// Random scenes with their answers, for testing titop and other programs with. A scene is drawn as
 /// plain data, written as a diagram file, and answered from equations of motion that are assembled
 /// by hand (assembly.hpp), without the library.
 namespace titop::generate {
 
-enum class Family { scalar, spatial };  ///< spring-masses; bodies, hinges and slides in space
-enum class Shape { chain, tree, star };
-enum class Damping { none, some, all };
-
 struct GenerateOptions {
   std::uint64_t seed = 1;
-  Family family = Family::scalar;
+  Family family = Family::scalar;  ///< mixed is spatial: all such scenes have spring-masses
   Shape shape = Shape::tree;
   int bodies = 6;
   int loops = 0;  ///< chains that close, through the ground or among themselves

@@ -171,4 +171,19 @@ inline Mat3 cross(const Vec3& v) {
   return {{{0, -v[2], v[1]}, {v[2], 0, -v[0]}, {-v[1], v[0], 0}}};
 }
 
+/// D_P = tau_AP' diag(m, I_A) tau_AP with AP = -PA: [m, m (*AP); m (*AP)', I_A - m (*AP)^2].
+inline Rows rigid_mass(const Body& b) {
+  const Mat3 x = cross(-b.PA), xx = transposed(x) * x;
+  Rows D(6, std::vector<Ratio>(6));
+  for (std::size_t i = 0; i < 3; ++i) {
+    D[i][i] = b.mass;
+    for (std::size_t j = 0; j < 3; ++j) {
+      D[i][3 + j] = b.mass * x[i][j];
+      D[3 + j][i] = D[i][3 + j];
+      D[3 + i][3 + j] = b.mass * xx[i][j] + (i == j ? b.inertia[i] : Ratio(0));
+    }
+  }
+  return D;
+}
+
 }  // namespace titop::generate

@@ -136,21 +136,6 @@ class PlanWriter {
         {"D_P", rows(rigid_mass(body))}, {"digits", 15},        {"children", points}};
   }
 
-  /// D_P = tau_AP' diag(m, I_A) tau_AP with AP = -PA: [m, m (*AP); m (*AP)', I_A - m (*AP)^2].
-  static Rows rigid_mass(const Body& b) {
-    const Mat3 x = cross(-b.PA), xx = transposed(x) * x;
-    Rows D(6, std::vector<Ratio>(6));
-    for (std::size_t i = 0; i < 3; ++i) {
-      D[i][i] = b.mass;
-      for (std::size_t j = 0; j < 3; ++j) {
-        D[i][3 + j] = b.mass * x[i][j];
-        D[3 + j][i] = D[i][3 + j];
-        D[3 + i][3 + j] = b.mass * xx[i][j] + (i == j ? b.inertia[i] : Ratio(0));
-      }
-    }
-    return D;
-  }
-
   /// The equations of a block's parent point.
   void hang(int i) {
     const PlannedBlock& b = block(i);

@@ -123,7 +123,7 @@ void row(const char* task, Case c, int n, const char* method, const char* precis
 
 /// True if the library's own lines are as exact as promised.
 bool transfers(Case c, int n, bool quick) {
-  const Diagram diagram = scene(c, n);
+  const Diagram diagram = case_diagram(c, n);
   const System system = compile(diagram, {.minimize_up_to = 0});
   std::vector<Entry> methods;
   add_library(methods, system);
@@ -171,7 +171,7 @@ void response(Case c, int n, const char* method, const char* precision, const Re
 }
 
 void responses(Case c, int n) {
-  const System system = compile(scene(c, n), {.minimize_up_to = 0});
+  const System system = compile(case_diagram(c, n), {.minimize_up_to = 0});
   std::vector<double> omega;
   for (int k = 0; k < 100; ++k) omega.push_back(0.11 * std::pow(1e4, k / 99.0));
   Responses exact;

@@ -26,7 +26,7 @@ double since(Clock::time_point start) {
 
 /// Writes one row. False if the certificate finds a fault.
 bool row(Case c, int n, int rounds) {
-  const Diagram diagram = scene(c, n), varied = scene(c, n, {.varies = Varies::all});
+  const Diagram diagram = case_diagram(c, n), varied = case_diagram(c, n, {.varies = Varies::all});
   const titop::Options options{.minimize_up_to = 0};
   const System first = compile(varied, options);
   StateSpace dense;

@@ -17,11 +17,11 @@ System compiled(const Diagram& diagram) { return compile(diagram, {.minimize_up_
 
 Prepared diagram(Case c, int n) {
   const auto kept = std::make_shared<std::optional<Diagram>>();
-  return {[=] { kept->emplace(scene(c, n)); }, {}};
+  return {[=] { kept->emplace(case_diagram(c, n)); }, {}};
 }
 
 Prepared whole(Case c, int n) {
-  const auto built = std::make_shared<Diagram>(scene(c, n));
+  const auto built = std::make_shared<Diagram>(case_diagram(c, n));
   const auto kept = std::make_shared<std::optional<System>>();
   return {[=] { kept->emplace(compiled(*built)); }, {}};
 }
@@ -32,13 +32,13 @@ Prepared changed(Case c, int n, Varies varies) {
     std::optional<System> last = {};
     double p = 1;
   };
-  const auto data = std::make_shared<Data>(Data{compiled(scene(c, n, {.varies = varies}))});
+  const auto data = std::make_shared<Data>(Data{compiled(case_diagram(c, n, {.varies = varies}))});
   const auto once = [=] {
     data->p = data->p == 1.0625 ? 1.125 : 1.0625;  // never that of `first`
     data->last.emplace(data->first.update({{"p", data->p}}));
   };
   return {once, [=] {  // compared at one s with a compile at the same value
-            const System fresh = compiled(scene(c, n, {.varies = varies, .p = data->p}));
+            const System fresh = compiled(case_diagram(c, n, {.varies = varies, .p = data->p}));
             const std::complex<double> s{1, 3};
             using List = std::vector<Eigen::MatrixXcd>;
             return difference(List{data->last->transfer(s)}, List{fresh.transfer(s)});

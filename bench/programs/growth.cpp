@@ -54,10 +54,10 @@ double best(int repetitions, F f) {
 }
 
 void point(Case c, int n, int repetitions) {
-  compile(scene(c, 10), {.minimize_up_to = 0});
+  compile(case_diagram(c, 10), {.minimize_up_to = 0});
   const double before = resident();
   const auto start = Clock::now();
-  const titop::Diagram diagram = scene(c, n, {.varies = Varies::one});
+  const titop::Diagram diagram = case_diagram(c, n, {.varies = Varies::one});
   const double built = since(start), with_diagram = resident();
   const auto compile_start = Clock::now();
   const titop::System system = compile(diagram, {.minimize_up_to = 0});

@@ -27,7 +27,7 @@ struct Motion {
   VectorXd x0 = {};
   double fastest = 0;  ///< [rad/s]
 
-  Motion(Case c, int n) : system(compile(scene(c, n), {.minimize_up_to = 0})) {
+  Motion(Case c, int n) : system(compile(case_diagram(c, n), {.minimize_up_to = 0})) {
     system.write(model);
     x0 = VectorXd::Zero(system.order());
     for (Index i = 0; i < x0.size(); ++i)  // coordinates: their rows have one entry, for their rate

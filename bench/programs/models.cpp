@@ -1,9 +1,9 @@
 #include <complex>
 #include <cstring>
 #include <memory>
-#include <random>
 #include <utility>
 
+#include "generate/draws.hpp"
 #include "methods/dense_lu.hpp"
 #include "methods/sparse_lu.hpp"
 #include "support/agreement.hpp"
@@ -22,12 +22,7 @@ using titop::System;
 
 System compiled(const Diagram& diagram) { return compile(diagram, {.minimize_up_to = 0}); }
 
-VectorXd random(Eigen::Index size) {
-  std::mt19937_64 engine{7};
-  VectorXd v(size);
-  for (double& x : v) x = static_cast<double>(engine() >> 11) * 0x1p-52 - 1;
-  return v;
-}
+VectorXd random(Eigen::Index size) { return titop::generate::Mersenne(7).matrix(size, 1); }
 
 /// [xdot; y] for random x and u.
 struct Probe {
@@ -53,7 +48,7 @@ struct Reference {
   Network network;
   Probe probe;
   explicit Reference(Case c, int n)
-      : system(compiled(scene(c, n))), network(network_of(system)), probe(system) {}
+      : system(compiled(case_diagram(c, n))), network(network_of(system)), probe(system) {}
   double from(const StateSpace& model) const {
     StateSpace mine;
     system.write(mine);
@@ -70,7 +65,7 @@ Prepared titop_compile(Case c, int n) {
     Diagram diagram;
     StateSpace model;
   };
-  const auto data = std::make_shared<Data>(Data{scene(c, n), {}});
+  const auto data = std::make_shared<Data>(Data{case_diagram(c, n), {}});
   return {[=] { compiled(data->diagram).write(data->model, threads); },
           [=] {  // the dense model against the factors
             const System system = compiled(data->diagram);
@@ -85,7 +80,7 @@ Prepared titop_factor(Case c, int n) {
     Probe probe;
     VectorXd product = {};
   };
-  Diagram diagram = scene(c, n);
+  Diagram diagram = case_diagram(c, n);
   const Probe probe(compiled(diagram));
   const auto data = std::make_shared<Data>(Data{std::move(diagram), probe});
   return {[=] { data->product = data->probe(compiled(data->diagram)); }, {}};
@@ -104,7 +99,7 @@ struct Sweep {
 
   Sweep(Case scene_case, int size)
       : c(scene_case), n(size), system(compiled(at(1))), probe(system) {}
-  Diagram at(double value) const { return scene(c, n, {.varies = Varies::all, .p = value}); }
+  Diagram at(double value) const { return case_diagram(c, n, {.varies = Varies::all, .p = value}); }
   System next() {
     p = p == 1.0625 ? 1.125 : 1.0625;
     return system.update({{"p", p}});
@@ -134,7 +129,7 @@ Prepared titop_descriptor(Case c, int n) {
     Diagram diagram;
     titop::Descriptor model = {};
   };
-  const auto data = std::make_shared<Data>(Data{scene(c, n)});
+  const auto data = std::make_shared<Data>(Data{case_diagram(c, n)});
   return {[=] { data->model = compiled(data->diagram).descriptor(); }, {}};
 }
 
@@ -152,7 +147,7 @@ Prepared by_effect(Case c, int n) {
     titop::Minimized result = {};
   };
   const auto data = std::make_shared<Data>();
-  compiled(scene(c, n)).write(data->model);
+  compiled(case_diagram(c, n)).write(data->model);
   return {[=] { data->result = titop::minimize(data->model); },
           [=] {
             const std::complex<double> s(0.2, 3);
@@ -204,7 +199,7 @@ Prepared sparse_refactor(Case c, int n) { return sparse_product(c, n, Order::kep
 // --- floors -----------------------------------------------------------------------------------
 
 Prepared memset_of_A(Case c, int n) {
-  const auto order = static_cast<std::size_t>(compiled(scene(c, n)).order());
+  const auto order = static_cast<std::size_t>(compiled(case_diagram(c, n)).order());
   const auto A = std::make_shared<std::vector<double>>(order * order, 1.0);
   return {[=] {
             std::memset(A->data(), 0, A->size() * sizeof(double));

@@ -4,9 +4,9 @@
 
 #include <cstdlib>
 #include <exception>
-#include <random>
 #include <stdexcept>
 
+#include "generate/draws.hpp"
 #include "support/cases.hpp"
 #include "support/matfile.hpp"
 
@@ -18,15 +18,8 @@ namespace {
 using Eigen::MatrixXcd;
 using Eigen::MatrixXd;
 
-MatrixXd random(Eigen::Index rows, Eigen::Index cols) {
-  std::mt19937_64 engine{11};
-  MatrixXd m(rows, cols);
-  for (double& x : m.reshaped()) x = static_cast<double>(engine() >> 11) * 0x1p-52 - 1;
-  return m;
-}
-
 void write(const std::string& name, int n, const std::string& path) {
-  const titop::System system = compile(scene(case_of(name), n), {.minimize_up_to = 0});
+  const titop::System system = compile(case_diagram(case_of(name), n), {.minimize_up_to = 0});
   const Network net = network_of(system);
   titop::StateSpace m;
   system.write(m);
@@ -34,7 +27,7 @@ void write(const std::string& name, int n, const std::string& path) {
   for (Eigen::Index i = 0; i < blocks.rows(); ++i)
     for (Eigen::Index k = 0; k < 3; ++k)
       blocks(i, k) = net.blocks[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)];
-  const MatrixXd V = random(m.A.cols() + m.B.cols(), 3);
+  const MatrixXd V = titop::generate::Mersenne(11).matrix(m.A.cols() + m.B.cols(), 3);
   MatrixXd MV(m.A.rows() + m.C.rows(), 3);
   MV.topRows(m.A.rows()) = m.A * V.topRows(m.A.cols()) + m.B * V.bottomRows(m.B.cols());
   MV.bottomRows(m.C.rows()) = m.C * V.topRows(m.A.cols()) + m.D * V.bottomRows(m.B.cols());

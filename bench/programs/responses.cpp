@@ -25,7 +25,7 @@ struct Setup {
   VectorXd x, u, product = {};
 
   Setup(Case c, int n, int points)
-      : system(compile(scene(c, n), {.minimize_up_to = 0})),
+      : system(compile(case_diagram(c, n), {.minimize_up_to = 0})),
         network(network_of(system)),
         omega(frequencies(points)),
         x(VectorXd::LinSpaced(system.order(), -1, 1)),

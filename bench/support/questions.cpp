@@ -2,8 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <numbers>
-
+#include "generate/diagrams/modes.hpp"
 #include "scenes/frame.hpp"
 #include "scenes/satellite.hpp"
 
@@ -12,9 +11,7 @@ namespace {
 
 using namespace titop;
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 using scenes::frame;
-using std::numbers::pi;
 
 /// Its tip carries 50 times its mass.
 Diagram heavy(const FlexibleBody& beam) {
@@ -54,32 +51,6 @@ Diagram loop(const FlexibleBody& beam) {
   return d;
 }
 
-/// So many clamped modes in clusters of ten, damping 0.5 %, three points.
-FlexibleBody clusters(int modes) {
-  std::uint64_t state = 6;
-  const auto random = [&] {  // splitmix64, in [-1, 1)
-    std::uint64_t z = (state += 0x9E3779B97F4A7C15ull);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ull;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBull;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-52 - 1;
-  };
-  ModalData data;
-  data.omega.resize(modes);
-  data.xi = VectorXd::Constant(modes, 0.005);
-  data.L_P = MatrixXd(modes, 6);
-  data.D_P = Matrix6::Identity() * 1000;
-  for (const char* name : {"C1", "C2", "C3"})
-    data.children.push_back({name, Vector3d(1, 2, 3), MatrixXd(6, modes)});
-  for (int j = 0; j < modes; ++j) {
-    const int cluster = j / 10;
-    data.omega(j) = 2 * pi * (1 + 0.8 * cluster) * (1 + 0.02 * random());
-    for (int k = 0; k < 6; ++k) data.L_P(j, k) = random();
-    for (auto& child : data.children)
-      for (int k = 0; k < 6; ++k) child.Phi_C(k, j) = 0.1 * random();
-  }
-  return FlexibleBody(data);
-}
-
 Diagram generated(const FlexibleBody& structure) {
   Diagram d{"generated"};
   auto U = d.input("U", 3);
@@ -100,7 +71,9 @@ std::vector<Question> questions(bool quick) {
   if (quick) modes.kept = 12;
   const FlexibleBody undamped = scenes::read_boom(modes);
   modes.xi = {0.005};
-  const FlexibleBody damped = scenes::read_boom(modes), many = clusters(quick ? 40 : 500);
+  const FlexibleBody damped = scenes::read_boom(modes),
+                     many = titop::generate::clustered_modes(
+                         {.modes = quick ? 40 : 500, .points = 3, .width = 0.04, .carried = true});
   std::vector<Question> all;
   const auto ask = [&](Diagram (*build)(const FlexibleBody&), const FlexibleBody& body,
                        double band_hz, bool structure = true) {

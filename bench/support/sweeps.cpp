@@ -249,7 +249,9 @@ Extreme ties(double delta) {
 // --- bodies with six degrees of freedom
 // -----------------------------------------------------------
 
-Extreme masses_6(double ratio) { return {scene(Case::D, 6, {.ratio = std::sqrt(ratio)}), kPoints}; }
+Extreme masses_6(double ratio) {
+  return {case_diagram(Case::D, 6, {.ratio = std::sqrt(ratio)}), kPoints};
+}
 
 /// 2 m of aluminium with a lever of some length at both ends.
 titop::Beam aluminium() {

@@ -11,17 +11,18 @@
 #include <titop/graph/invert.hpp>
 #include <titop/graph/nodes/lti.hpp>
 
+#include "generate/diagrams/modes.hpp"
 #include "matrices.hpp"
 #include "support/mistakes.hpp"
-#include "support/random_scene.hpp"
+#include "support/rng.hpp"
 
 /// RigidBody, FlexibleBody, Hinge and Lti against their equations typed from the paper, their
 /// inverses, and their refusals.
 
 using namespace titop;
 using namespace blocks_test;
+using titop::generate::random_modes;
 using titop_test::error_of;
-using titop_test::random_modes;
 using titop_test::Rng;
 using titop_test::says;
 

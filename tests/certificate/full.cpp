@@ -3,8 +3,8 @@
 #include <cmath>
 #include <titop/titop.hpp>
 
+#include "generate/diagrams/random_diagram.hpp"
 #include "support/names.hpp"
-#include "support/random_scene.hpp"
 
 /// certify(system, Full): confirmed results, faults found, and checks without a verdict.
 
@@ -254,7 +254,7 @@ TEST_CASE("100 random graphs: no fault, most orders decided") {
   int decided = 0, passive = 0, exact = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     CAPTURE(seed);
-    const auto scene = titop_test::random_scene(titop_test::random_options(seed));
+    const auto scene = titop::generate::random_diagram(titop::generate::random_options(seed));
     const FullCertificate c = certify(compile(scene.build()), {.points = 8});
     CAPTURE(to_string(c));
     CHECK(c.holds());

@@ -1,6 +1,6 @@
+#include "generate/diagrams/random_diagram.hpp"
 #include "support/alone.hpp"
 #include "support/certified.hpp"
-#include "support/random_scene.hpp"
 #include "support/structured_lti.hpp"
 
 /// Faults planted in models, in number: each is found, and the models without one have none.
@@ -24,8 +24,8 @@ TEST_CASE("random scenes: no fault; of planted ones each that changes the transf
   titop_test::FaultCount count;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     CAPTURE(seed);
-    check_faults(titop_test::random_scene(titop_test::random_options(seed)).build(), seed, 1,
-                 count);
+    check_faults(titop::generate::random_diagram(titop::generate::random_options(seed)).build(),
+                 seed, 1, count);
   }
   CHECK(count.minimal + count.written >= 4);
   CHECK(count.missed == 0);

@@ -11,8 +11,8 @@
 #include <titop/graph/linalg/index.hpp>
 #include <titop/titop.hpp>
 
+#include "generate/diagrams/random_diagram.hpp"
 #include "support/notes.hpp"
-#include "support/random_scene.hpp"
 #include "support/rng.hpp"
 
 /// Every input and every output in units of its own, powers of ten from 1e-9 to 1e9: the difference
@@ -262,7 +262,8 @@ TEST_CASE("errors of the dense model are the same in all units, for few inputs a
 
 TEST_CASE("an entry of 1e-17 of its row and column is no loss of digits") {
   // A 0 after a rotation of frames has digits in the factors, and others in A, B, C, D.
-  const System system = compile(titop_test::random_scene(titop_test::random_options(186)).build());
+  const System system =
+      compile(titop::generate::random_diagram(titop::generate::random_options(186)).build());
   const StateSpace& dense = system.state_space();
   const Certificate c = system.dense_certificate();
   CHECK(c.dense_error <= 1e-12);

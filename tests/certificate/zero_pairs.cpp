@@ -6,7 +6,7 @@
 #include <titop/compiler/system/elimination_terms.hpp>
 #include <titop/titop.hpp>
 
-#include "support/random_scene.hpp"
+#include "generate/diagrams/random_diagram.hpp"
 
 /// Pairs of input and output that are 0 by symmetry: the certificate neither takes their rounding
 /// for a fault, in any units, nor misses a fault in them.
@@ -168,8 +168,9 @@ TEST_CASE("difference: blocks of three share their size, scalars have their own"
 TEST_CASE("rounding by frames of a 0 that is exact in the factors is no fault") {
   // Among the random scenes: of a torque in cu6 the factors have 0 in py12 at every s, the dense D
   // 7e-17.
-  const System system = compile(titop_test::random_scene(titop_test::random_options(2092)).build(),
-                                {.minimize_up_to = 100});
+  const System system =
+      compile(titop::generate::random_diagram(titop::generate::random_options(2092)).build(),
+              {.minimize_up_to = 100});
   const FullCertificate c = certify(system, {.points = 8});
   CAPTURE(to_string(c));
   CHECK(c.holds());

@@ -4,13 +4,14 @@
 #include <titop/blocks/diagram_file/diagram_file.hpp>
 #include <titop/titop.hpp>
 
+#include "generate/diagrams/random_diagram.hpp"
 #include "support/close.hpp"
 #include "support/five_masses.hpp"
 #include "support/folder.hpp"
 #include "support/mistakes.hpp"
-#include "support/random_scene.hpp"
 
 using namespace titop;
+using namespace titop::generate;
 using namespace titop_test;
 
 namespace {
@@ -116,9 +117,9 @@ TEST_CASE("scenes of the paper and random scenes come back to the last bit") {
   check_round_trip(five_masses_scene({1, 2, 3, 4, 5}, {10, 26, 33, 20, 95}));
   for (std::uint64_t seed = 1; seed <= 25; ++seed) {
     INFO("seed ", seed);
-    SceneOptions options = random_options(seed);
+    RandomOptions options = random_options(seed);
     options.incomplete = false;
-    check_round_trip(random_scene(options).build());
+    check_round_trip(random_diagram(options).build());
   }
 }
 

@@ -4,15 +4,16 @@
 
 #include <optional>
 
+#include "generate/diagrams/units.hpp"
 #include "scenes/by_hand.hpp"
-#include "support/random_scene.hpp"
+#include "support/rng.hpp"
 
 /// Random networks of spring-masses with points that have no mass, and the same as M, D, K.
 namespace index_reduction_test {
 
 using namespace scenes_test;
+using titop::generate::Units;
 using titop_test::Rng;
-using titop_test::Units;
 
 /// Springs between masses, some through points without mass from which several springs fan out.
 struct Network {
@@ -30,7 +31,7 @@ class RandomNetwork {
     const int masses = 2 + rng_.below(5);
     titop::Diagram d{"network"};
     auto force = d.input("u");
-    const titop_test::Dim stiffness{0, 1, -2}, damping{0, 1, -1};
+    const titop::generate::Dim stiffness{0, 1, -2}, damping{0, 1, -1};
     std::vector<titop::SpringMass::Handle> z;
     const auto spring = [&](double mass) {
       const double k = rng_.octaves(3, 8), c = rng_.chance(0.4) ? rng_.octaves(-2, 2) : 0;

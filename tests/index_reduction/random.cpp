@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include "generate/diagrams/random_diagram.hpp"
 #include "networks.hpp"
 #include "support/mistakes.hpp"
 #include "support/notes.hpp"
@@ -43,7 +44,7 @@ TEST_CASE("units of 1e-9 to 1e9 change the verdict on no random scene") {
     Units units;
     for (double* factor : {&units.length, &units.mass, &units.time})
       *factor = std::pow(10.0, rng.below(19) - 9);
-    const auto scene = titop_test::random_scene(titop_test::random_options(seed));
+    const auto scene = titop::generate::random_diagram(titop::generate::random_options(seed));
     System ours = compile(scene.build(), {.minimize_up_to = 0}), theirs = ours;
     REQUIRE_NOTHROW(theirs = compile(scene.build(units), {.minimize_up_to = 0}));
     CHECK(theirs.states() == ours.states());

@@ -4,11 +4,12 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 
+#include "generate/diagrams/units.hpp"
 #include "scenes/by_hand.hpp"
 #include "support/close.hpp"
 #include "support/mistakes.hpp"
 #include "support/notes.hpp"
-#include "support/random_scene.hpp"
+#include "support/rng.hpp"
 
 /// Motions that no equation determines and on which no output depends (a massless strut rotates
 /// freely about its own axis): set to 0 and noted; refused by name if something depends on them.
@@ -16,6 +17,7 @@
 
 using namespace scenes_test;
 using namespace titop;
+using namespace titop::generate;
 using namespace titop_test;
 
 namespace {

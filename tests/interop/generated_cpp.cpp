@@ -6,12 +6,13 @@
 #include <cstdlib>
 #include <titop/titop.hpp>
 
+#include "generate/diagrams/random_diagram.hpp"
 #include "support/five_masses.hpp"
 #include "support/folder.hpp"
-#include "support/random_scene.hpp"
 #include "support/skip.hpp"
 
 using namespace titop;
+using namespace titop::generate;
 using namespace titop_test;
 
 namespace {
@@ -180,9 +181,9 @@ TEST_CASE("generated models of random scenes") {
   const Workshop shop(available[0]);
   int tried = 0;
   for (std::uint64_t seed = 1; tried < 3; ++seed) {
-    SceneOptions options = random_options(seed);
+    RandomOptions options = random_options(seed);
     options.incomplete = false;
-    const System system = compile(random_scene(options).build());
+    const System system = compile(random_diagram(options).build());
     if (system.order() == 0) continue;
     ++tried;
     INFO("seed ", seed);

@@ -1,5 +1,5 @@
+#include "generate/diagrams/random_diagram.hpp"
 #include "support/certified.hpp"
-#include "support/random_scene.hpp"
 #include "support/structured_lti.hpp"
 
 /// Certificates of 2,100 right models and of more than 500 with a planted fault.
@@ -19,8 +19,8 @@ TEST_CASE("2,000 structured Lti and 100 random scenes: no fault; 500 planted fau
   }
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     CAPTURE(seed);
-    check_faults(titop_test::random_scene(titop_test::random_options(seed)).build(), seed, 1,
-                 count);
+    check_faults(titop::generate::random_diagram(titop::generate::random_options(seed)).build(),
+                 seed, 1, count);
   }
   CHECK(count.right == 2100);
   CHECK(count.minimal >= 500);

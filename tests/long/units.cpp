@@ -6,8 +6,8 @@
 /// 10,000 random changes of all units by factors from 1e-9 to 1e9: no verdict flips.
 
 using namespace titop;
+using titop::generate::Units;
 using titop_test::Rng;
-using titop_test::Units;
 
 namespace {
 
@@ -61,7 +61,8 @@ TEST_CASE("10,000 changes of units: random scenes, points without mass, feedthro
     Rng rng(seed);
     const Units units = random_units(rng);
     if (seed % 4 == 0) {
-      const auto scene = titop_test::random_scene(titop_test::random_options(seed % 400));
+      const auto scene =
+          titop::generate::random_diagram(titop::generate::random_options(seed % 400));
       CHECK(verdict(scene.build(units)) == verdict(scene.build()));
     } else if (seed % 4 == 1) {
       const double share = seed % 8 == 1 ? 1 : 1 - 1e-13;
@@ -77,7 +78,7 @@ TEST_CASE("10,000 changes of units: random scenes, points without mass, feedthro
 TEST_CASE("10,000 changes of units: the certain part of the minimal order") {
   int all = 0, other_interval = 0;
   for (std::uint64_t seed = 1; seed <= 1000; ++seed) {
-    const auto scene = titop_test::random_scene(titop_test::random_options(seed));
+    const auto scene = titop::generate::random_diagram(titop::generate::random_options(seed));
     const Said here(scene.build(), 100);
     Rng rng(seed);
     for (int k = 0; k < 10; ++k) {

@@ -2,11 +2,12 @@
 #include <numbers>
 #include <titop/titop.hpp>
 
+#include "generate/diagrams/random_diagram.hpp"
 #include "support/five_masses.hpp"
 #include "support/half_ties.hpp"
 #include "support/lossy_row.hpp"
 #include "support/planted.hpp"
-#include "support/random_scene.hpp"
+#include "support/rng.hpp"
 #include "support/small_scenes.hpp"
 
 /// Verdict of the certificate alone on some thirty fixed graphs: 0 if it finds no fault, 1 if it
@@ -259,7 +260,7 @@ int run() {
   if (check(in_tune(), "in tune")) return 1;
   if (check(nearly_in_tune(), "nearly in tune", {.resolution = kNobody})) return 1;
   for (const std::uint64_t seed : {3U, 15U, 27U})
-    if (check(titop_test::random_scene(titop_test::random_options(seed)).build(),
+    if (check(titop::generate::random_diagram(titop::generate::random_options(seed)).build(),
               "random " + std::to_string(seed)))
       return 1;
   for (const std::uint64_t seed : {1U, 2U, 3U})

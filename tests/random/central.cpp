@@ -10,6 +10,7 @@
 /// The central property, on 200 seeded random diagrams: every pass keeps the transfer and satisfies
 /// its own postcondition, and the compiled system agrees with the equations as written.
 
+using namespace titop::generate;
 using namespace titop_test;
 
 namespace {
@@ -26,7 +27,7 @@ TEST_CASE("random graphs: every pass keeps the transfer to 1e-9, and its promise
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     CAPTURE(seed);
     PassError error{1, "threw"};
-    CHECK_NOTHROW(error = pass_error(random_scene(random_options(seed))));
+    CHECK_NOTHROW(error = pass_error(random_diagram(random_options(seed))));
     CAPTURE(error.pass);
     CHECK(error.worst <= 1e-9);
   }
@@ -36,7 +37,7 @@ TEST_CASE("random graphs: factors, dense model and apply agree with the equation
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     CAPTURE(seed);
     SystemError error{1, 1, 1};
-    CHECK_NOTHROW(error = system_error(random_scene(random_options(seed))));
+    CHECK_NOTHROW(error = system_error(random_diagram(random_options(seed))));
     CHECK(error.factored <= 1e-9);
     CHECK(error.dense <= 1e-9);
     CHECK(error.apply <= 1e-11);
@@ -46,12 +47,12 @@ TEST_CASE("random graphs: factors, dense model and apply agree with the equation
 TEST_CASE("random graphs: the minimized model has the same transfer to 1e-9") {
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed)
     for (const Damping damping : {Damping::some, Damping::all}) {
-      SceneOptions options = random_options(seed);
+      RandomOptions options = random_options(seed);
       if (damping == Damping::all) options.damping = damping, options.controllers = false;
       CAPTURE(seed);
       CAPTURE(options.controllers);
       double error = 1;
-      CHECK_NOTHROW(error = minimize_error(random_scene(options)));
+      CHECK_NOTHROW(error = minimize_error(random_diagram(options)));
       CHECK(error <= 1e-9);
     }
 }
@@ -77,7 +78,7 @@ TEST_CASE("promises of split and close: broken before the pass") {
 TEST_CASE("random graphs: the generator covers its promises") {
   int no_input = 0, no_output = 0, removed = 0, inverted = 0, loops = 0, unchecked = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
-    const titop::System system = titop::compile(random_scene(random_options(seed)).build(),
+    const titop::System system = titop::compile(random_diagram(random_options(seed)).build(),
                                                 {.minimize_up_to = 0, .dump_to = {}});
     no_input += system.inputs().empty();
     no_output += system.outputs().empty();

@@ -10,14 +10,15 @@
 /// Random scenes with dense controllers of 3 to 12 states around them, of every kind of
 /// random_lti.hpp, against all equations at once in 100 digits.
 
+using namespace titop::generate;
 using namespace titop_test;
 
 namespace {
 
 constexpr std::uint64_t kScenes = 60;
 
-SceneOptions options_of(std::uint64_t seed) {
-  SceneOptions options = random_options(seed);
+RandomOptions options_of(std::uint64_t seed) {
+  RandomOptions options = random_options(seed);
   options.bodies = 1 + static_cast<int>(seed % 3);
   options.assemblies = 1;
   options.incomplete = false;
@@ -30,12 +31,13 @@ SceneOptions options_of(std::uint64_t seed) {
 TEST_CASE("random graphs with controllers of 3 to 12 states: transfers and dense model to 1e-9") {
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     CAPTURE(seed);
-    const Scene scene = random_scene(options_of(seed));
+    const RandomDiagram scene = random_diagram(options_of(seed));
     const titop::Diagram diagram = scene.build();
     const titop::System system = titop::compile(diagram, {.minimize_up_to = 0});
     CHECK(system.certificate().residual <= 1e-9);
     const std::complex<double> s = points(seed, 1).front();
-    const auto rows = Scene::blocks(scene.outputs), cols = Scene::blocks(scene.inputs);
+    const auto rows = RandomDiagram::blocks(scene.outputs),
+               cols = RandomDiagram::blocks(scene.inputs);
     const std::vector<Eigen::MatrixXcd> exact{
         as_declared(diagram.graph(), dense_truth(diagram.graph(), s).transfer)};
     const auto error = [&](const Eigen::MatrixXcd& y) {
@@ -51,7 +53,7 @@ TEST_CASE("random graphs with controllers of 3 to 12 states: every pass keeps th
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     CAPTURE(seed);
     PassError error{1, "threw"};
-    CHECK_NOTHROW(error = pass_error(random_scene(options_of(seed))));
+    CHECK_NOTHROW(error = pass_error(random_diagram(options_of(seed))));
     CAPTURE(error.pass);
     CHECK(error.worst <= 1e-9);
   }
@@ -60,8 +62,8 @@ TEST_CASE("random graphs with controllers of 3 to 12 states: every pass keeps th
 TEST_CASE("random graphs with controllers of 3 to 12 states: the same in other units") {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     CAPTURE(seed);
-    CHECK(units_error(random_scene(options_of(seed)), {.length = 1e3, .mass = 1e-3, .time = 10}) <=
-          1e-9);
+    CHECK(units_error(random_diagram(options_of(seed)),
+                      {.length = 1e3, .mass = 1e-3, .time = 10}) <= 1e-9);
   }
 }
 
@@ -70,7 +72,7 @@ TEST_CASE("random graphs with controllers of 3 to 12 states: in and out of loops
   int in_loops = 0, direct = 0, wide = 0;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     const titop::System system =
-        titop::compile(random_scene(options_of(seed)).build(), {.minimize_up_to = 0});
+        titop::compile(random_diagram(options_of(seed)).build(), {.minimize_up_to = 0});
     const titop::Graph& g = system.stage().now();
     for (const titop::Node& node : g.nodes) {
       if (node.block->type() != "Lti") continue;

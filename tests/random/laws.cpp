@@ -9,12 +9,13 @@
 /// Laws of every diagram, on the same random ones: the order of writing and the units do not
 /// matter; undamped poles lie on the axis, damped ones left of it.
 
+using namespace titop::generate;
 using namespace titop_test;
 using titop::compile;
 
 TEST_CASE("random graphs: shuffled adds and equations give the same model to the last bit") {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
-    const Scene scene = random_scene(random_options(seed));
+    const RandomDiagram scene = random_diagram(random_options(seed));
     for (const titop::Options& options : {titop::Options{.minimize_up_to = 0}, titop::Options{}}) {
       const titop::StateSpace model = compile(scene.build(), options).state_space();
       for (const std::uint64_t order : {seed, seed + 1000}) {
@@ -36,14 +37,14 @@ TEST_CASE("random graphs: units leave verdict and transfer unchanged") {
     units.time = std::pow(10.0, rng.below(7) - 3);
     CAPTURE(seed);
     double error = 1;
-    CHECK_NOTHROW(error = units_error(random_scene(random_options(seed)), units));
+    CHECK_NOTHROW(error = units_error(random_diagram(random_options(seed)), units));
     CHECK(error <= 1e-9);
   }
 }
 
 TEST_CASE("random graphs: powers of ten from 1e-12 to 1e12 in one unit change numbers alone") {
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const Scene scene = random_scene(random_options(seed));
+    const RandomDiagram scene = random_diagram(random_options(seed));
     for (const double factor : {1e-12, 1e-6, 1e6, 1e12})
       for (const Units& units :
            {Units{.length = factor}, Units{.mass = factor}, Units{.time = factor}}) {
@@ -156,10 +157,10 @@ struct Poles {
 };
 
 Poles poles_of(std::uint64_t seed, Damping damping) {
-  SceneOptions options = random_options(seed);
+  RandomOptions options = random_options(seed);
   options.damping = damping;
   options.controllers = false;
-  const Scene scene = random_scene(options);
+  const RandomDiagram scene = random_diagram(options);
   const auto list = compile(scene.build()).poles();
   Poles result;
   result.loose = scene.loose;

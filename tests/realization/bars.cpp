@@ -4,7 +4,8 @@
 #include <titop/graph/modal_form.hpp>
 #include <titop/titop.hpp>
 
-#include "support/random_scene.hpp"
+#include "generate/diagrams/modes.hpp"
+#include "support/rng.hpp"
 
 /// The dense model of many modal bodies against `apply`, column by column; and the coupling of the
 /// modes of reciprocal structures, which is symmetric.
@@ -325,7 +326,7 @@ TEST_CASE("dense model: flexible bodies in space, in a tree, on hubs") {
   const auto F = d.input("F", 6);
   std::vector<BodyHandle> body;
   for (int i = 0; i < 40; ++i) {
-    ModalData data = titop_test::random_modes(rng, kModes, {"a", "b"}, false);
+    ModalData data = titop::generate::random_modes(rng, kModes, {"a", "b"}, false);
     for (int k = 0; k < kModes; ++k) data.omega(k) = std::exp2(k);
     data.xi.setConstant(1. / 128);
     body.push_back(d.add(fmt::format("b{}", i * 7 % 40 + 1), FlexibleBody(std::move(data))));

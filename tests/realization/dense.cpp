@@ -6,9 +6,10 @@
 #include <limits>
 #include <titop/titop.hpp>
 
+#include "generate/diagrams/modes.hpp"
 #include "support/mistakes.hpp"
 #include "support/notes.hpp"
-#include "support/random_scene.hpp"
+#include "support/rng.hpp"
 
 /// Rounding error of the dense model: predicted, and measured.
 
@@ -26,8 +27,8 @@ System chain(double ratio) {
   for (int i = 0; i < 10; ++i)
     body.push_back(
         d.add(fmt::format("b{}", i + 1),
-              FlexibleBody(titop_test::scaled(titop_test::random_modes(rng, 6, {"C"}, true),
-                                              {.mass = i % 2 ? ratio : 1}))));
+              FlexibleBody(titop::scaled(titop::generate::random_modes(rng, 6, {"C"}, true),
+                                         {.mass = i % 2 ? ratio : 1}))));
   body.front().parent.force = -U;
   for (std::size_t i = 1; i < body.size(); ++i)
     mount(body[i], body[i - 1].child, Rotation::matrix(rng.rotation()));

@@ -3,8 +3,8 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/titop.hpp>
 
+#include "generate/diagrams/random_diagram.hpp"
 #include "support/close.hpp"
-#include "support/random_scene.hpp"
 #include "support/rng.hpp"
 
 /// The sparse model before elimination: solved without elimination it has the same transfer.
@@ -65,10 +65,10 @@ TEST_CASE("descriptor: entries grow linearly with the bodies") {
 TEST_CASE("descriptor: of bodies with six degrees of freedom and joints, too") {
   int compared = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    titop_test::SceneOptions options = titop_test::random_options(seed);
-    options.family = seed % 2 ? titop_test::Family::spatial : titop_test::Family::mixed;
+    titop::generate::RandomOptions options = titop::generate::random_options(seed);
+    options.family = seed % 2 ? titop::generate::Family::spatial : titop::generate::Family::mixed;
     options.incomplete = false;
-    const System system = compile(titop_test::random_scene(options).build());
+    const System system = compile(titop::generate::random_diagram(options).build());
     const Descriptor m = system.descriptor();
     if (m.inputs.empty() || m.outputs.empty() || m.A.rows() == 0 || m.A.rows() > 400) continue;
     const std::complex<double> s{0.7, 5};

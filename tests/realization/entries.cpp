@@ -7,8 +7,9 @@
 #include <titop/graph/linalg/index.hpp>
 #include <titop/graph/mount.hpp>
 
+#include "generate/diagrams/modes.hpp"
 #include "solve/oracle.hpp"
-#include "support/random_scene.hpp"
+#include "support/rng.hpp"
 
 /// The entries of the dense A of well-conditioned scenes, one by one, against 150 digits.
 
@@ -82,7 +83,7 @@ struct Chain {
   Chain(std::uint64_t seed, int n) {
     Rng rng(seed);
     for (int i = 0; i < n; ++i) {
-      data.push_back(titop_test::random_modes(rng, 6, {"C"}, true));
+      data.push_back(titop::generate::random_modes(rng, 6, {"C"}, true));
       T.push_back(Rotation::matrix(rng.rotation()).nominal());
     }
   }

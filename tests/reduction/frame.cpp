@@ -4,7 +4,6 @@
 
 #include "scenes.hpp"
 #include "support/close.hpp"
-#include "support/random_scene.hpp"
 
 using namespace titop;
 using namespace titop_test;
@@ -100,7 +99,7 @@ TEST_CASE("a theorem counts every pole: more samples, and the bound holds") {
 TEST_CASE("the result does not depend on units") {
   // Lengths in mm and masses in g: the same modes, ports scaled.
   const FlexibleBody beam = slim_beam(5);
-  Units units{.length = 1000, .mass = 1000, .time = 1};
+  const DataUnits units{.length = 1000, .mass = 1000, .time = 1};
   const ReducedSystem a = compile(frame(beam), with_accuracy(question, 1e-4));
   const ReducedSystem b =
       compile(frame(FlexibleBody(scaled(beam.data(), units))), with_accuracy(question, 1e-4));

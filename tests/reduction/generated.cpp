@@ -1,7 +1,7 @@
 #include <doctest/doctest.h>
 
 #include "against.hpp"
-#include "support/rng.hpp"
+#include "generate/diagrams/modes.hpp"
 
 /// Lightly damped modes in clusters with few small terms, compared with the sum over modes written
 /// out.
@@ -13,25 +13,6 @@ using Eigen::VectorXd;
 using Complex = std::complex<double>;
 
 namespace {
-
-/// Clamped modes in clusters of ten, 2 % wide, damping 0.5 %; two points that move.
-ModalData clusters(int modes) {
-  Rng rng(6);
-  ModalData data;
-  data.omega.resize(modes);
-  data.xi = VectorXd::Constant(modes, 0.005);
-  data.L_P = MatrixXd::Zero(modes, 6);
-  data.D_P = Matrix6::Identity() * 1000;
-  for (const char* name : {"C1", "C2"})
-    data.children.push_back({name, Vector3d(1, 2, 3), MatrixXd(6, modes)});
-  for (int j = 0; j < modes; ++j) {
-    const double centre = 1 + 0.8 * (j / 10);  // [Hz]
-    data.omega(j) = 2 * std::numbers::pi * centre * (1 + 0.01 * rng.between(-1, 1));
-    for (ModalChild& child : data.children)
-      for (int k = 0; k < 6; ++k) child.Phi_C(k, j) = 0.1 * rng.between(-1, 1);
-  }
-  return data;
-}
 
 /// Force at the first point; acceleration there and rate at the second one.
 Diagram structure(const ModalData& data) {
@@ -67,7 +48,7 @@ Truth sum_of_modes(const ModalData& m) {
 }  // namespace
 
 TEST_CASE("120 clustered modes of damping 0.5 %: one nested sequence, errors below their bounds") {
-  const ModalData data = clusters(120);
+  const ModalData data = generate::clustered_modes({.modes = 120});
   const Diagram d = structure(data);
   const Truth truth = sum_of_modes(data);
   titop::Scene scene{.band_hz = {0, 3}};
@@ -91,7 +72,7 @@ TEST_CASE("120 clustered modes of damping 0.5 %: one nested sequence, errors bel
 }
 
 TEST_CASE("the modes of the band that are kept are the structure's, with their damping") {
-  const ModalData data = clusters(60);
+  const ModalData data = generate::clustered_modes({.modes = 60});
   const titop::Scene scene{.band_hz = {0, 3}, .accuracy = 1e-3};
   const ReducedSystem r = compile(structure(data), scene);
   int exact = 0;

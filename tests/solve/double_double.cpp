@@ -6,7 +6,7 @@
 #include <titop/compiler/solve/double_double.hpp>
 
 #include "oracle.hpp"
-#include "support/random_scene.hpp"
+#include "support/rng.hpp"
 
 /// Sums, products and quotients of numbers of two doubles each, against 150 digits.
 

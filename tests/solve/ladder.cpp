@@ -7,9 +7,10 @@
 #include <titop/graph/nodes/gain.hpp>
 #include <titop/graph/nodes/lti.hpp>
 
+#include "generate/diagrams/modes.hpp"
 #include "oracle.hpp"
 #include "support/mistakes.hpp"
-#include "support/random_scene.hpp"
+#include "support/rng.hpp"
 
 /// The same elimination in every precision, against the oracle's own 150 digits.
 
@@ -26,8 +27,8 @@ struct Chain {
   Chain() {
     Rng rng(7);
     for (int i = 0; i < 5; ++i)
-      data.push_back(titop_test::scaled(titop_test::random_modes(rng, 6, {"C"}, true),
-                                        {.mass = i % 2 ? 1e-6 : 1}));
+      data.push_back(titop::scaled(titop::generate::random_modes(rng, 6, {"C"}, true),
+                                   {.mass = i % 2 ? 1e-6 : 1}));
   }
   Diagram diagram() const {
     Diagram d{"chain"};
@@ -364,7 +365,7 @@ Diagram far_end(const FlexibleBody& spec, int n) {
 
 TEST_CASE("precision: decay along a chain, to the smallest numbers, is no loss") {
   Rng rng(11);
-  const FlexibleBody spec(titop_test::random_modes(rng, 6, {"C"}, true));
+  const FlexibleBody spec(titop::generate::random_modes(rng, 6, {"C"}, true));
   const double s =
       compile(far_end(spec, 2)).certificate().s;  // where any number of them is checked
   const auto left = [&](int n) {

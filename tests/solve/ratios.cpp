@@ -6,8 +6,9 @@
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/mount.hpp>
 
+#include "generate/diagrams/modes.hpp"
 #include "oracle.hpp"
-#include "support/random_scene.hpp"
+#include "support/rng.hpp"
 
 /// Bodies of very different mass in one chain, against 150 digits: the factors keep them at every
 /// ratio.
@@ -36,14 +37,14 @@ struct Flexible {
   Flexible(std::uint64_t seed, int n, double ratio, Modes modes) {
     Rng rng(seed);
     for (int i = 0; i < n; ++i) {
-      ModalData one = titop_test::random_modes(rng, 6, {"C"}, true);
+      ModalData one = titop::generate::random_modes(rng, 6, {"C"}, true);
       Eigen::MatrixXd& Phi_C = one.children.front().Phi_C;
       if (modes == Modes::bending) Phi_C.row(0).setZero(), Phi_C.row(3).setZero();
       if (modes == Modes::independent) {
         const Eigen::MatrixXd Q = Eigen::HouseholderQR<Eigen::MatrixXd>(Phi_C).householderQ();
         Phi_C = Q / std::sqrt(one.D_P(0, 0));
       }
-      data.push_back(titop_test::scaled(one, {.mass = scale(i, ratio)}));
+      data.push_back(titop::scaled(one, {.mass = scale(i, ratio)}));
       // As `Rotation` will store it: it repairs the last digit.
       T.push_back(Rotation::matrix(rng.rotation()).nominal());
     }

@@ -2,9 +2,10 @@
 
 #include <titop/titop.hpp>
 
+#include "generate/diagrams/lti.hpp"
 #include "support/close.hpp"
 #include "support/dense_truth.hpp"
-#include "support/random_lti.hpp"
+#include "support/rng.hpp"
 
 /// Blocks without modal form: (s - A)^-1 of three and more states, with pivots in other rows.
 namespace {
@@ -59,8 +60,8 @@ TEST_CASE("A companion matrix with a loop that leaves an integrator") {
 
 namespace {
 
+using titop::generate::LtiKind;
 using titop_test::DenseTruth;
-using titop_test::LtiKind;
 using titop_test::Rng;
 
 /// Alone, behind a loop around itself, in a ring with another, or in a loop through a matrix.
@@ -68,14 +69,14 @@ titop::Diagram random_place(Rng& rng, LtiKind kind, int states, int place) {
   const int m = 1 + rng.below(3), outputs = place == 0 ? 1 + rng.below(3) : m;
   titop::Diagram d("random");
   const auto u = d.input("u", m);
-  const auto K = d.add("K", titop_test::random_lti(rng, kind, states, m, outputs));
+  const auto K = d.add("K", titop::generate::random_lti(rng, kind, states, m, outputs));
   if (place == 0) {
     K.in = u;
   } else if (place == 1) {
     K.in = u + K.out;
   } else if (place == 2) {
-    const LtiKind other = titop_test::kLtiKinds[rng.below(6)];
-    const auto L = d.add("L", titop_test::random_lti(rng, other, 1 + rng.below(6), m, m));
+    const LtiKind other = titop::generate::kLtiKinds[rng.below(6)];
+    const auto L = d.add("L", titop::generate::random_lti(rng, other, 1 + rng.below(6), m, m));
     K.in = u - L.out;
     L.in = K.out;
   } else {
@@ -105,7 +106,7 @@ TEST_CASE("0 to 12 states of every kind, in and out of loops, in every precision
   const Complex points[] = {0.9, {0, 3}, {0.3, 2}, {0, 1e3}, {-0.5, 0.25}};
   int tried = 0;
   for (int n = 0; n <= 12; ++n)
-    for (const LtiKind kind : titop_test::kLtiKinds)
+    for (const LtiKind kind : titop::generate::kLtiKinds)
       for (int place = 0; place < 4; ++place) {
         CAPTURE(n);
         CAPTURE(static_cast<int>(kind));

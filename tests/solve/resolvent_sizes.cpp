@@ -3,7 +3,8 @@
 #include <titop/compiler/solve/response.hpp>
 #include <titop/compiler/solve/scalar.hpp>
 
-#include "support/random_lti.hpp"
+#include "generate/diagrams/lti.hpp"
+#include "support/rng.hpp"
 
 /// (s - A)^-1 in every scalar type, 0 to 12 states: the residual (s - A) x - r in 100 digits
 /// against the bound of Gaussian elimination with row pivoting, |residual| <= 3 n^3 growth eps
@@ -13,10 +14,10 @@ namespace {
 using Eigen::Index;
 using Eigen::MatrixXd;
 using titop::detail::Resolvent;
+using titop::generate::LtiKind;
 using titop::solve::Dense;
 using titop::solve::lift;
 using titop::solve::Scalar;
-using titop_test::LtiKind;
 using titop_test::Rng;
 using Exact = boost::multiprecision::cpp_complex_100;
 using Real = boost::multiprecision::cpp_bin_float_100;
@@ -69,10 +70,10 @@ void check_sizes(const T& s) {
       8;  // of random matrices it is about n^(2/3) [Trefethen, Schreiber 1990]
   Rng rng(4601);
   for (Index n = 0; n <= 12; ++n)
-    for (const LtiKind kind : titop_test::kLtiKinds) {
+    for (const LtiKind kind : titop::generate::kLtiKinds) {
       CAPTURE(n);
       CAPTURE(static_cast<int>(kind));
-      const titop::Dynamics d = dynamics(titop_test::random_lti(rng, kind, n, 3, 1));
+      const titop::Dynamics d = dynamics(titop::generate::random_lti(rng, kind, n, 3, 1));
       const Resolvent<T> resolvent(d, s);
       CHECK(!resolvent.singular());
       const Dense<T> r = titop::solve::lifted<T>(d.B);
@@ -91,7 +92,7 @@ void check_singular() {
   for (Index n = 1; n <= 12; ++n) {
     CAPTURE(n);
     // s - A has a column of zeros, behind others that have swapped rows.
-    titop::Dynamics d = dynamics(titop_test::random_lti(rng, LtiKind::permuted, n, 1, 1));
+    titop::Dynamics d = dynamics(titop::generate::random_lti(rng, LtiKind::permuted, n, 1, 1));
     const Index zero = rng.below(static_cast<int>(n));
     d.A.col(zero).setZero();
     d.A(zero, zero) = 2;

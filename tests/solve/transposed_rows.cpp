@@ -7,9 +7,9 @@
 #include <titop/graph/declared.hpp>
 #include <titop/titop.hpp>
 
+#include "generate/diagrams/random_diagram.hpp"
 #include "lft/n17.hpp"
 #include "support/lossy_row.hpp"
-#include "support/random_scene.hpp"
 #include "support/transfer_error.hpp"
 
 /// Rows of transfers, by solves with the transposed factors, against columns in other precisions.
@@ -38,7 +38,8 @@ detail::TransferPart rows_of(const detail::SystemData& data, std::complex<double
 TEST_CASE("rows of the transfers of random scenes are those of their columns in 50 digits") {
   int compared = 0;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
-    const Diagram d = titop_test::random_scene(titop_test::random_options(seed)).build();
+    const Diagram d =
+        titop::generate::random_diagram(titop::generate::random_options(seed)).build();
     const auto data = detail::compile_graph(d.graph(), {});
     const Graph& g = data->graph();
     if (g.outputs.empty() || g.inputs.empty()) continue;

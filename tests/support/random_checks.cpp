@@ -6,6 +6,7 @@
 #include <titop/graph/linalg/index.hpp>
 
 #include "support/promises.hpp"
+#include "support/rng.hpp"
 #include "support/transfer_error.hpp"
 
 namespace titop_test {
@@ -57,7 +58,7 @@ MatrixXcd as_declared(const Graph& g, const MatrixXcd& G) {
   return result;
 }
 
-PassError pass_error(const Scene& scene) {
+PassError pass_error(const RandomDiagram& scene) {
   struct Pass {
     const char* name;
     Stage (*run)(Stage);
@@ -71,7 +72,8 @@ PassError pass_error(const Scene& scene) {
                       {"order", passes::order, demand_ordered},
                       {"close", passes::close, demand_closed}};
   const Diagram diagram = scene.build();
-  const auto rows = Scene::blocks(scene.outputs), cols = Scene::blocks(scene.inputs);
+  const auto rows = RandomDiagram::blocks(scene.outputs),
+             cols = RandomDiagram::blocks(scene.inputs);
   const std::complex<double> s = points(diagram.graph().nodes.size(), 1).front();
   const std::vector<MatrixXcd> exact{transfer(diagram.graph(), s)};
   Stage stage = as_written(diagram.graph());
@@ -109,9 +111,10 @@ double rates_error(const System& system, const StateSpace& m, std::uint64_t seed
 
 }  // namespace
 
-SystemError system_error(const Scene& scene) {
+SystemError system_error(const RandomDiagram& scene) {
   const Diagram diagram = scene.build();
-  const auto rows = Scene::blocks(scene.outputs), cols = Scene::blocks(scene.inputs);
+  const auto rows = RandomDiagram::blocks(scene.outputs),
+             cols = RandomDiagram::blocks(scene.inputs);
   const System system = compile(diagram, {.minimize_up_to = 0, .dump_to = {}});
   const StateSpace& model = system.state_space();
   std::vector<MatrixXcd> exact, factored, dense;
@@ -129,15 +132,15 @@ SystemError system_error(const Scene& scene) {
   return error;
 }
 
-double minimize_error(const Scene& scene) {
+double minimize_error(const RandomDiagram& scene) {
   const System system = compile(scene.build());
   std::vector<MatrixXcd> exact, minimized;
   for (const auto s : points(13 + scene.adds.size(), 3)) {
     exact.push_back(system.transfer(s));
     minimized.push_back(system.state_space().transfer(s));
   }
-  return transfer_error(minimized, exact, Scene::blocks(scene.outputs),
-                        Scene::blocks(scene.inputs));
+  return transfer_error(minimized, exact, RandomDiagram::blocks(scene.outputs),
+                        RandomDiagram::blocks(scene.inputs));
 }
 
 namespace {
@@ -184,18 +187,19 @@ std::string difference_by_name(const StateSpace& a, const StateSpace& b) {
   return {};
 }
 
-double units_error(const Scene& scene, const Units& units) {
+double units_error(const RandomDiagram& scene, const Units& units) {
   const Options plain{.minimize_up_to = 0, .dump_to = {}};
   const System ours = compile(scene.build(), plain), theirs = compile(scene.build(units), plain);
-  const VectorXd in = Scene::factors(scene.inputs, units),
-                 out = Scene::factors(scene.outputs, units);
+  const VectorXd in = RandomDiagram::factors(scene.inputs, units),
+                 out = RandomDiagram::factors(scene.outputs, units);
   std::vector<MatrixXcd> a, b;
   for (const auto s : points(11 + scene.adds.size(), 3)) {
     a.push_back(ours.transfer(s));
     b.push_back(out.cwiseInverse().asDiagonal() * theirs.transfer(s / units.time) *
                 in.asDiagonal());
   }
-  return transfer_error(b, a, Scene::blocks(scene.outputs), Scene::blocks(scene.inputs));
+  return transfer_error(b, a, RandomDiagram::blocks(scene.outputs),
+                        RandomDiagram::blocks(scene.inputs));
 }
 
 }  // namespace titop_test

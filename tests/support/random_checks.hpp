@@ -5,10 +5,13 @@
 #include <titop/compiler/system/system.hpp>
 #include <vector>
 
-#include "support/random_scene.hpp"
+#include "generate/diagrams/random_diagram.hpp"
 
 /// Measurements on a random scene; the tests compare them with their tolerances.
 namespace titop_test {
+
+using titop::generate::RandomDiagram;
+using titop::generate::Units;
 
 /// Points on a line s = sigma + j omega, away from all stable poles, inside the range
 /// of the scenes' frequencies.
@@ -23,23 +26,23 @@ struct PassError {
   double worst = 0;
   std::string pass;
 };
-PassError pass_error(const Scene& scene);
+PassError pass_error(const RandomDiagram& scene);
 
 /// System and dense model against transfer(diagram.graph(), s); apply against the dense model; the
 /// error of the dense model that its certificate states, also beside small outputs.
 struct SystemError {
   double factored = 0, dense = 0, apply = 0, stated = 0;
 };
-SystemError system_error(const Scene& scene);
+SystemError system_error(const RandomDiagram& scene);
 
 /// Minimized model against the factors.
-double minimize_error(const Scene& scene);
+double minimize_error(const RandomDiagram& scene);
 
 /// "" if both models have the same entries, bit by bit, under the same names; otherwise the first
 /// difference.
 std::string difference_by_name(const titop::StateSpace& a, const titop::StateSpace& b);
 
 /// Compiles in other units and brings the transfer back.
-double units_error(const Scene& scene, const Units& units);
+double units_error(const RandomDiagram& scene, const Units& units);
 
 }  // namespace titop_test

@@ -2,9 +2,9 @@
 
 #include <titop/graph/nodes/lti.hpp>
 
-#include "support/rng.hpp"
+#include "generate/draws.hpp"
 
-namespace titop_test {
+namespace titop::generate {
 
 /// Kinds of controller matrices that elimination of s - A must handle.
 enum class LtiKind {
@@ -19,7 +19,7 @@ inline constexpr LtiKind kLtiKinds[] = {LtiKind::dense,    LtiKind::scaled,     
                                         LtiKind::singular, LtiKind::integrators, LtiKind::unstable};
 
 /// A controller of so many states, inputs and outputs; every other one has a direct term.
-titop::Lti random_lti(Rng& rng, LtiKind kind, Eigen::Index states, Eigen::Index inputs,
-                      Eigen::Index outputs);
+Lti random_lti(Rng& rng, LtiKind kind, Eigen::Index states, Eigen::Index inputs,
+               Eigen::Index outputs);
 
-}  // namespace titop_test
+}  // namespace titop::generate

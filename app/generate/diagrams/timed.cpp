@@ -1,4 +1,4 @@
-#include "cases.hpp"
+#include "generate/diagrams/timed.hpp"
 
 #include <fmt/format.h>
 
@@ -6,18 +6,20 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
-#include <random>
 #include <stdexcept>
+#include <titop/blocks/fe/beam.hpp>
+#include <titop/blocks/flexible_body.hpp>
+#include <titop/blocks/hinge.hpp>
+#include <titop/blocks/rigid_body.hpp>
+#include <titop/blocks/spring_mass.hpp>
 #include <titop/graph/linalg/index.hpp>
+#include <titop/graph/mount.hpp>
+#include <titop/graph/nodes/lti.hpp>
+#include <vector>
 
-namespace titop_bench {
+#include "generate/shape.hpp"
 
-using titop::Beam;
-using titop::Diagram;
-using titop::FlexibleBody;
-using titop::Rotation;
-using titop::SpringMass;
-using titop::Value;
+namespace titop::generate {
 
 namespace {
 
@@ -25,25 +27,13 @@ constexpr std::array kNames{"A", "BL", "C", "D", "F", "K", "T", "CB", "R", "G"};
 
 using titop::linalg::at;
 
-class Random {
- public:
-  double between(double low, double high) {
-    return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53;
-  }
-  int below(int n) { return static_cast<int>(engine_() % static_cast<unsigned>(n)); }
-  Eigen::Vector3d axis() {
-    const double x = between(-1, 1), y = between(-1, 1);
-    return {x, y, between(-1, 1)};
-  }
-
- private:
-  std::mt19937_64 engine_{20150401};
-};
+/// Of each diagram.
+constexpr std::uint64_t kSeed = 20150401;
 
 /// The diagram's parameter, and which bodies have it.
 class Variation {
  public:
-  Variation(Diagram& d, const SceneOptions& options, int n) : varies_(options.varies), one_(n / 2) {
+  Variation(Diagram& d, const CaseOptions& options, int n) : varies_(options.varies), one_(n / 2) {
     if (varies_ != Varies::nothing) p_ = d.param("p", options.p);
   }
   Value operator()(double number, int body) const {
@@ -53,22 +43,23 @@ class Variation {
  private:
   Varies varies_;
   int one_;
-  std::optional<titop::Param> p_;
+  std::optional<Param> p_;
 };
 
 /// BL is the same structure as A: half of every mass but the last is the parent mass of the next.
-Diagram scalar(Case c, int n, const SceneOptions& options) {
+Diagram scalar(Case c, int n, const CaseOptions& options) {
   Diagram d{"case " + name_of(c)};
-  Random random;
+  Mersenne draws(kSeed);
   const Variation varied(d, options, n);
+  const Shape shape = c == Case::C ? Shape::tree : Shape::chain;
   auto u = d.input("u");
   std::vector<SpringMass::Handle> z;
   z.reserve(at(n));
   double half = 0;
   for (int i = 0; i < n; ++i) {
-    const double m = random.between(0.5, 2) * (i % 2 ? options.ratio : 1 / options.ratio);
+    const double m = draws.between(0.5, 2) * (i % 2 ? options.ratio : 1 / options.ratio);
     const double own = c == Case::BL && i + 1 < n ? m / 2 : m;
-    const double stiffness = random.between(50, 200);
+    const double stiffness = draws.between(50, 200);
     z.push_back(d.add(fmt::format("z{}", i + 1), SpringMass{.mass = varied(own, i),
                                                             .stiffness = stiffness,
                                                             .damping = 0.1,
@@ -77,7 +68,7 @@ Diagram scalar(Case c, int n, const SceneOptions& options) {
     if (i == 0)
       ground(z[0]);
     else
-      mount(z.back(), z[at(c == Case::C ? random.below(i) : i - 1)].child);
+      mount(z.back(), z[at(parent_of(shape, i, draws))].child);
   }
   z.back().child.force = u;
   d.output("a") = z.back().child.accel;
@@ -87,30 +78,31 @@ Diagram scalar(Case c, int n, const SceneOptions& options) {
 /// 2 m of aluminium, its lowest six modes clamped at P. E and rho together: the frequencies stay.
 FlexibleBody beam(double scale) {
   return Beam{.length = 2.0,
-              .section = titop::rectangle(0.06, 0.04),
+              .section = rectangle(0.06, 0.04),
               .material = {.E = 70e9 * scale, .nu = 0.33, .rho = 2700 * scale},
               .elements = 4,
               .modes = {.kept = 6, .xi = {0.005}}};
 }
 
 /// 40 N m/rad and a lag of 0.2 s.
-titop::Lti controller() {
+Lti controller() {
   const auto scalar = [](double x) { return Eigen::MatrixXd::Constant(1, 1, x); };
   return {.A = scalar(-5), .B = scalar(1), .C = scalar(3), .D = scalar(40)};
 }
 
-void controlled_hinge(Diagram& d, int i, const FlexibleBody::Handle& body,
-                      const titop::DualPort<6>& site, const Rotation& T) {
+void controlled_hinge(Diagram& d, int i, const FlexibleBody::Handle& body, const DualPort<6>& site,
+                      const Rotation& T) {
   auto h = hinge(d, fmt::format("J{}", i + 1), body, site, T, {0, 0, 1});
   auto K = d.add(fmt::format("K{}", i + 1), controller());
   K.in = h.angle;
   h.torque = K.out + 8.0 * h.rate;
 }
 
-Diagram flexible(Case c, int n, const SceneOptions& options) {
+Diagram flexible(Case c, int n, const CaseOptions& options) {
   Diagram d{"case " + name_of(c)};
-  Random random;
+  Mersenne draws(kSeed);
   const Variation varied(d, options, n);
+  const Shape shape = c == Case::T ? Shape::binary : c == Case::CB ? Shape::comb : Shape::chain;
   const FlexibleBody light = beam(1 / options.ratio);
   const FlexibleBody heavy = options.ratio == 1 ? light : beam(options.ratio);
   auto U = d.input("U", 6);
@@ -120,10 +112,9 @@ Diagram flexible(Case c, int n, const SceneOptions& options) {
   b[0].parent.force = -U;
   for (int i = 1; i < n; ++i) {
     b.push_back(d.add(fmt::format("B{}", i + 1), i % 2 ? heavy : light));
-    const int on = c == Case::T ? (i - 1) / 2 : c == Case::CB && i % 2 == 0 ? i - 2 : i - 1;
-    const auto& site = b[at(on)].child;
-    const Eigen::Vector3d axis = random.axis();
-    const Rotation T = Rotation::about(axis, varied(random.between(0.1, 3), i));
+    const auto& site = b[at(parent_of(shape, i, draws))].child;
+    const Eigen::Vector3d axis = draws.matrix(3, 1);
+    const Rotation T = Rotation::about(axis, varied(draws.between(0.1, 3), i));
     if (c == Case::K)
       controlled_hinge(d, i, b.back(), site, T);
     else
@@ -133,20 +124,21 @@ Diagram flexible(Case c, int n, const SceneOptions& options) {
   return d;
 }
 
-Diagram fan(int n, const SceneOptions& options) {
+Diagram fan(int n, const CaseOptions& options) {
   Diagram d{"case F"};
-  Random random;
+  Mersenne draws(kSeed);
   const Variation varied(d, options, n);
-  titop::RigidBody hub{.mass = 1000, .inertia = Eigen::Vector3d(400, 500, 600).asDiagonal()};
-  for (int i = 0; i < n; ++i) hub.children.push_back({fmt::format("C{}", i + 1), random.axis()});
+  RigidBody hub{.mass = 1000, .inertia = Eigen::Vector3d(400, 500, 600).asDiagonal()};
+  for (int i = 0; i < n; ++i)
+    hub.children.push_back({fmt::format("C{}", i + 1), draws.matrix(3, 1)});
   const FlexibleBody wing = beam(1);
   auto U = d.input("U", 6);
   auto B = d.add("B", hub);
   B.parent.force = -U;
   for (int i = 0; i < n; ++i) {
     auto A = d.add(fmt::format("A{}", i + 1), wing);
-    const Eigen::Vector3d axis = random.axis();
-    const Rotation T = Rotation::about(axis, varied(random.between(0.1, 3), i));
+    const Eigen::Vector3d axis = draws.matrix(3, 1);
+    const Rotation T = Rotation::about(axis, varied(draws.between(0.1, 3), i));
     mount(A, B.child(fmt::format("C{}", i + 1)), T);
     if (i + 1 == n) d.output("a", 6) = A.child.accel;
   }
@@ -172,10 +164,10 @@ Diagram grid(int n) {
   Diagram d{"case G"};
   const int m = static_cast<int>(std::lround(std::sqrt(n)));
   const FlexibleBody body = beam(1);
-  const titop::RigidBody node{
+  const RigidBody node{
       .mass = 5, .inertia = 0.1 * Eigen::Matrix3d::Identity(), .children = {{"E"}, {"N"}, {"S"}}};
   const Rotation up = Rotation::about({0, 0, 1}, std::numbers::pi / 2);
-  std::vector<titop::BodyHandle> nodes;
+  std::vector<BodyHandle> nodes;
   nodes.reserve(at(m * m));
   for (int j = 0; j < m; ++j)
     for (int i = 0; i < m; ++i) {
@@ -212,7 +204,7 @@ Case case_of(const std::string& name) {
   throw std::invalid_argument("no case " + name);
 }
 
-Diagram scene(Case c, int n, const SceneOptions& options) {
+Diagram case_diagram(Case c, int n, const CaseOptions& options) {
   switch (c) {
     case Case::A:
     case Case::BL:
@@ -228,11 +220,4 @@ Diagram scene(Case c, int n, const SceneOptions& options) {
   throw std::invalid_argument("no such case");
 }
 
-std::vector<double> frequencies(int count) {
-  std::vector<double> omega;
-  for (int k = 0; k < count; ++k)
-    omega.push_back(0.11 * std::pow(1e4, k / std::max(1.0, count - 1.0)));
-  return omega;
-}
-
-}  // namespace titop_bench
+}  // namespace titop::generate

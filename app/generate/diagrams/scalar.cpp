@@ -1,11 +1,7 @@
-#include <titop/graph/mount.hpp>
-
-#include "support/random_draft.hpp"
+#include "generate/diagrams/draft.hpp"
 
 /// Assemblies with one degree of freedom per junction.
-namespace titop_test {
-
-using namespace titop;
+namespace titop::generate {
 
 std::string draw_spring(Draft& d, bool free) {
   const std::string name = d.fresh("z");
@@ -39,7 +35,7 @@ void draw_force(Draft& d, const std::string& z) {
     d.add([=](Build& b) { b.gains.emplace(g, b.d.add(g, Gain{.gain = -0.75})); });
   else
     d.add([=](Build& b) {
-      titop::MatrixGain both{Eigen::MatrixXd::Constant(1, 2, 0.5)};
+      MatrixGain both{Eigen::MatrixXd::Constant(1, 2, 0.5)};
       both.matrix(0, 1) = -1.25;
       b.gains.emplace(g, b.d.add(g, both));
     });
@@ -77,25 +73,6 @@ void draw_output(Draft& d, const std::string& z) {
   }
 }
 
-enum class Root { ground, prescribed, released };
-
-Root draw_root(Draft& d, const std::string& z) {
-  Root root = static_cast<Root>(d.rng.below(3));
-  if (root == Root::prescribed && !d.may_prescribe()) root = Root::released;
-  if (root == Root::ground) {
-    d.equation([=](Build& b) { ground(b.springs.at(z)); });
-  } else if (root == Root::prescribed) {
-    const std::string a = d.input({kAccel});
-    d.equation([=](Build& b) { b.springs.at(z).parent.accel = b.inputs.at(a); });
-  } else if (d.has_inputs) {
-    const std::string u = d.input({kForce});
-    d.equation([=](Build& b) { b.springs.at(z).parent.force = -b.inputs.at(u); });
-  } else {
-    d.equation([=](Build& b) { release(b.springs.at(z)); });
-  }
-  return root;
-}
-
 void draw_mount(Draft& d, const std::string& z, const std::string& on) {
   if (d.rng.chance(0.5)) {
     d.equation([=](Build& b) { mount(b.springs.at(z), b.springs.at(on).child); });
@@ -113,7 +90,7 @@ void draw_tip(Draft& d, const std::string& z, Root root) {
       d.output({kForce}, [=](Build& b) { return b.springs.at(z).child.reaction.expr(); });
   } else if (d.may_prescribe() && d.rng.chance(0.2)) {
     const std::string a = d.input({kAccel});
-    if (root != Root::released) ++d.scene.loose;
+    if (root != Root::released) ++d.drawn.loose;
     d.equation([=](Build& b) { b.springs.at(z).child.accel = b.inputs.at(a); });
   }
 }
@@ -130,7 +107,9 @@ void draw_scalar(Draft& d, int count) {
   const std::vector<int> parent = draw_tree(d, count);
   std::vector<std::string> z;
   for (int i = 0; i < count; ++i) z.push_back(draw_spring(d, i == 0));
-  const Root root = draw_root(d, z.front());
+  const auto first = [name = z.front()](Build& b) { return b.springs.at(name); };
+  const Root root = draw_root(d, 3);
+  hold_root(d, root, first, {kAccel}, {kForce});
   for (std::size_t i = 1; i < z.size(); ++i)
     draw_mount(d, z[i], z[static_cast<std::size_t>(parent[i])]);
   for (const std::string& name : z) use_spring(d, name);
@@ -143,4 +122,4 @@ void draw_scalar(Draft& d, int count) {
     d.output({kLength}, [=](Build& b) { return b.springs.at(seen).position.expr(); });
 }
 
-}  // namespace titop_test
+}  // namespace titop::generate

@@ -1,18 +1,20 @@
 #include <titop/blocks/fe/beam.hpp>
+#include <titop/blocks/hinge.hpp>
+#include <titop/blocks/rigid_body.hpp>
+#include <titop/blocks/slide.hpp>
 #include <titop/graph/linalg/eigen.hpp>
-#include <titop/graph/mount.hpp>
 
-#include "support/random_draft.hpp"
+#include "generate/diagrams/draft.hpp"
+#include "generate/diagrams/modes.hpp"
 
 /// Assemblies with six degrees of freedom per junction.
-namespace titop_test {
+namespace titop::generate {
 
-using namespace titop;
 using Eigen::MatrixXd;
 
 namespace {
 
-struct Body {
+struct DrawnBody {
   std::string name;
   std::vector<std::string> sites;  ///< one per body mounted here, and "T" for everything else
   int modes = 0;
@@ -38,7 +40,7 @@ ModalData beam_with(const std::vector<std::string>& sites, bool damped) {
   return data;
 }
 
-Scene::Step rigid_step(Rng& rng, const Body& body) {
+RandomDiagram::Step rigid_step(Rng& rng, const DrawnBody& body) {
   const ModalData like = random_modes(rng, 0, body.sites, false);
   const double m = like.D_P(0, 0);
   const Vector3d PA = rng.matrix(3, 1);
@@ -52,8 +54,8 @@ Scene::Step rigid_step(Rng& rng, const Body& body) {
   };
 }
 
-Body draw_body(Draft& d, int children) {
-  Body body{d.fresh("b"), {}, 0};
+DrawnBody draw_body(Draft& d, int children) {
+  DrawnBody body{d.fresh("b"), {}, 0};
   d.bodies.push_back(body.name);
   for (int i = 1; i <= children; ++i) body.sites.push_back(fmt::format("C{}", i));
   body.sites.push_back("T");
@@ -94,7 +96,7 @@ void draw_mechanism(Draft& d, const std::string& h, bool turns) {
   if ((kind == 2 && !d.has_inputs) || (kind == 5 && !d.may_prescribe())) kind = 1;
   const double k = d.rng.octaves(2, 8);
   const double c = kind == 1 && !d.damped() ? 0 : d.rng.octaves(-2, 2);
-  if (kind != 1 && kind != 3) ++d.scene.loose;
+  if (kind != 1 && kind != 3) ++d.drawn.loose;
   if (kind == 0) d.equation([=](Build& b) { b.joints.at(h).axis.force = 0; });
   if (kind == 4) d.equation([=](Build& b) { b.joints.at(h).axis.accel = 0; });
   if (kind == 1)
@@ -134,7 +136,7 @@ bool draw_axis_joint(Draft& d, const std::string& h) {
   return turns;
 }
 
-void draw_joint(Draft& d, const Body& body, const Body& on, const std::string& site) {
+void draw_joint(Draft& d, const DrawnBody& body, const DrawnBody& on, const std::string& site) {
   const Rotation T = draw_rotation(d);
   const std::string a = body.name, p = on.name;
   const int kind = d.rng.below(4);
@@ -155,8 +157,6 @@ void draw_joint(Draft& d, const Body& body, const Body& on, const std::string& s
     d.equation([=](Build& b) { mount(b.bodies.at(a), b.bodies.at(p).child(site), T); });
   }
 }
-
-enum class Root { ground, prescribed, released, pinned, turning, sliding };
 
 void hold_partly(Draft& d, const std::string& a, Root root) {
   if (root == Root::sliding) {
@@ -180,25 +180,6 @@ void hold_partly(Draft& d, const std::string& a, Root root) {
     else
       f = 0;
   });
-}
-
-Root draw_root(Draft& d, const std::string& a) {
-  Root root = static_cast<Root>(d.rng.below(6));
-  if (root == Root::prescribed && !d.may_prescribe()) root = Root::released;
-  if (root == Root::ground) {
-    d.equation([=](Build& b) { ground(b.bodies.at(a)); });
-  } else if (root == Root::prescribed) {
-    const std::string u = d.input(dual(kAccel, kAngularAccel));
-    d.equation([=](Build& b) { b.bodies.at(a).parent.accel = b.inputs.at(u); });
-  } else if (root == Root::released && d.has_inputs) {
-    const std::string u = d.input(dual(kForce, kTorque));
-    d.equation([=](Build& b) { b.bodies.at(a).parent.force = -b.inputs.at(u); });
-  } else if (root == Root::released) {
-    d.equation([=](Build& b) { release(b.bodies.at(a)); });
-  } else {
-    hold_partly(d, a, root);
-  }
-  return root;
 }
 
 void draw_force(Draft& d, const std::string& a) {
@@ -267,7 +248,7 @@ void draw_slosh(Draft& d, const std::string& a) {
 }
 
 /// Fixes the tip: by the ground if nothing else does, by an input if the modes can follow.
-void draw_tip(Draft& d, const Body& body, Root root) {
+void draw_tip(Draft& d, const DrawnBody& body, Root root) {
   const std::string a = body.name;
   const Vector3d r = draw_axis(d);
   const int kind = d.rng.below(2);
@@ -283,7 +264,7 @@ void draw_tip(Draft& d, const Body& body, Root root) {
   } else if (d.may_prescribe() && body.modes >= 6 && !body.stiff && d.rng.chance(0.3)) {
     const std::string u =
         d.input(kind == 0 ? dual(kAccel, kAngularAccel) : std::vector<Dim>{kAccel});
-    if (root != Root::released) d.scene.loose += kind == 0 ? 6 : 1;
+    if (root != Root::released) d.drawn.loose += kind == 0 ? 6 : 1;
     d.equation([=](Build& b) {
       const auto C = b.bodies.at(a).child("T");
       if (kind == 0) C.accel = b.inputs.at(u);
@@ -307,14 +288,19 @@ void draw_spatial(Draft& d, int count, bool with_springs) {
   const std::vector<int> parent = draw_tree(d, count);
   std::vector<int> children(parent.size(), 0);
   for (std::size_t i = 1; i < parent.size(); ++i) ++children[static_cast<std::size_t>(parent[i])];
-  std::vector<Body> bodies;
+  std::vector<DrawnBody> bodies;
   for (const int c : children) bodies.push_back(draw_body(d, c));
-  const Root root = draw_root(d, bodies.front().name);
+  const auto first = [name = bodies.front().name](Build& b) { return b.bodies.at(name); };
+  const Root root = draw_root(d, 6);
+  if (root <= Root::released)
+    hold_root(d, root, first, dual(kAccel, kAngularAccel), dual(kForce, kTorque));
+  else
+    hold_partly(d, bodies.front().name, root);
   for (std::size_t i = parent.size(); i-- > 1;) {
     const auto p = static_cast<std::size_t>(parent[i]);
     draw_joint(d, bodies[i], bodies[p], fmt::format("C{}", children[p]--));
   }
-  for (const Body& body : bodies) {
+  for (const DrawnBody& body : bodies) {
     if (d.has_inputs && d.rng.chance(0.25)) draw_force(d, body.name);
     if (d.has_outputs && d.rng.chance(0.25)) draw_output(d, body.name);
     if (d.options.controllers && d.rng.chance(0.2)) draw_controller(d, body.name);
@@ -328,4 +314,4 @@ void draw_spatial(Draft& d, int count, bool with_springs) {
     read_support(d, bodies.front().name, bodies.back().name);
 }
 
-}  // namespace titop_test
+}  // namespace titop::generate

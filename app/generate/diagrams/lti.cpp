@@ -1,9 +1,9 @@
-#include "support/random_lti.hpp"
+#include "generate/diagrams/lti.hpp"
 
 #include <algorithm>
 #include <numeric>
 
-namespace titop_test {
+namespace titop::generate {
 namespace {
 
 using Eigen::Index;
@@ -25,7 +25,8 @@ MatrixXd whole_numbers(Rng& rng, Index rows, Index cols) {
 MatrixXd state_matrix(Rng& rng, LtiKind kind, Index n) {
   if (kind == LtiKind::singular) {
     const Index rank = n - 1 - rng.below(2) * (n > 2);
-    return whole_numbers(rng, n, rank) * whole_numbers(rng, rank, n);
+    const MatrixXd right = whole_numbers(rng, rank, n), left = whole_numbers(rng, n, rank);
+    return left * right;
   }
   MatrixXd A = 2 * rng.matrix(n, n);
   const std::vector<Index> order = permutation(rng, n);
@@ -48,9 +49,8 @@ MatrixXd state_matrix(Rng& rng, LtiKind kind, Index n) {
 
 }  // namespace
 
-titop::Lti random_lti(Rng& rng, LtiKind kind, Index states, Index inputs, Index outputs) {
-  titop::Lti K{
-      .A = MatrixXd(0, 0), .B = rng.matrix(states, inputs), .C = rng.matrix(outputs, states)};
+Lti random_lti(Rng& rng, LtiKind kind, Index states, Index inputs, Index outputs) {
+  Lti K{.A = MatrixXd(0, 0), .B = rng.matrix(states, inputs), .C = rng.matrix(outputs, states)};
   if (states > 0) K.A = state_matrix(rng, kind, states);
   if (kind == LtiKind::scaled)
     for (Index i = 0; i < states; ++i) {
@@ -62,4 +62,4 @@ titop::Lti random_lti(Rng& rng, LtiKind kind, Index states, Index inputs, Index 
   return K;
 }
 
-}  // namespace titop_test
+}  // namespace titop::generate

@@ -1,41 +1,35 @@
-#include "support/random_scene.hpp"
+#include "generate/diagrams/random_diagram.hpp"
 
-#include <titop/graph/linalg/eigen.hpp>
+#include "generate/diagrams/draft.hpp"
 
-#include "support/random_draft.hpp"
-
-namespace titop_test {
+namespace titop::generate {
 
 using Eigen::MatrixXd;
-using namespace titop;
 
-double Dim::factor(const Units& u) const {
-  return std::pow(u.length, length) * std::pow(u.mass, mass) * std::pow(u.time, time);
-}
-
-Diagram Scene::build(const Units& units) const {
+Diagram RandomDiagram::build(const Units& units) const {
   Build b(name, units);
   for (const Step& step : adds) step(b);
   for (const Step& step : equations) step(b);
   return std::move(b.d);
 }
 
-Diagram Scene::shuffled(std::uint64_t seed) const {
-  Scene other = *this;
+Diagram RandomDiagram::shuffled(std::uint64_t seed) const {
+  RandomDiagram other = *this;
   Rng rng(seed);
   rng.shuffle(other.adds);
   rng.shuffle(other.equations);
   return other.build();
 }
 
-Eigen::VectorXd Scene::factors(const std::vector<std::vector<Dim>>& dims, const Units& units) {
+Eigen::VectorXd RandomDiagram::factors(const std::vector<std::vector<Dim>>& dims,
+                                       const Units& units) {
   std::vector<double> all;
   for (const auto& signal : dims)
     for (const Dim& dim : signal) all.push_back(dim.factor(units));
   return Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Eigen::Index>(all.size()));
 }
 
-std::vector<Eigen::Index> Scene::blocks(const std::vector<std::vector<Dim>>& dims) {
+std::vector<Eigen::Index> RandomDiagram::blocks(const std::vector<std::vector<Dim>>& dims) {
   std::vector<Eigen::Index> result;
   for (const auto& signal : dims)
     for (std::size_t i = 0, step = signal.size() % 3 == 0 ? 3 : 1; i < signal.size(); i += step)
@@ -44,12 +38,14 @@ std::vector<Eigen::Index> Scene::blocks(const std::vector<std::vector<Dim>>& dim
 }
 
 std::vector<int> draw_tree(Draft& d, int count) {
-  std::vector<int> parent;
-  for (int i = 0; i < count; ++i)
-    parent.push_back(d.options.shape == Shape::chain  ? i - 1
-                     : d.options.shape == Shape::star ? (i == 0 ? -1 : 0)
-                                                      : (i == 0 ? -1 : d.rng.below(i)));
+  std::vector<int> parent{-1};
+  for (int i = 1; i < count; ++i) parent.push_back(parent_of(d.options.shape, i, d.rng));
   return parent;
+}
+
+Root draw_root(Draft& d, int kinds) {
+  const Root root = static_cast<Root>(d.rng.below(kinds));
+  return root == Root::prescribed && !d.may_prescribe() ? Root::released : root;
 }
 
 std::string draw_filter(Draft& d, Dim in, Dim out, double gain, double direct) {
@@ -69,48 +65,9 @@ std::string draw_filter(Draft& d, Dim in, Dim out, double gain, double direct) {
   return name;
 }
 
-ModalData random_modes(Rng& rng, int modes, const std::vector<std::string>& children, bool damped) {
-  const double m = rng.octaves(-1, 4), radius = rng.between(0.3, 1);
-  const Vector3d parts = Vector3d::Constant(0.2) + rng.matrix(3, 1).cwiseAbs();
-  const Matrix3d T = rng.rotation();
-  const Vector3d principal(parts(0) + parts(1), parts(1) + parts(2), parts(2) + parts(0));
-  const Matrix3d inertia = m * radius * radius * T * principal.asDiagonal() * T.transpose();
-  ModalData data;
-  data.D_P = rigid_mass(m, (inertia + inertia.transpose()) / 2, rng.matrix(3, 1));
-  data.omega.resize(modes);
-  data.xi.resize(modes);
-  for (int i = 0; i < modes; ++i) {
-    data.omega(i) = rng.octaves(0, 7);
-    data.xi(i) = damped ? rng.between(0.005, 0.02) : 0;
-  }
-  const MatrixXd share = rng.matrix(modes, 6);
-  const MatrixXd root = data.D_P.llt().matrixU();
-  data.L_P = modes ? MatrixXd(0.8 / std::sqrt(share.squaredNorm()) * share * root) : MatrixXd(0, 6);
-  for (const std::string& child : children) {
-    MatrixXd Phi = rng.matrix(6, modes) / std::sqrt(m);
-    Phi.bottomRows(3) /= radius;
-    data.children.push_back({child, 2 * rng.matrix(3, 1), Phi});
-  }
-  return data;
-}
-
-ModalData scaled(ModalData data, const Units& u) {
-  Vector6 length = Vector6::Ones();
-  length.tail<3>().setConstant(u.length);
-  const double root = std::sqrt(u.mass);
-  data.omega /= u.time;
-  data.L_P = root * data.L_P * length.asDiagonal();
-  data.D_P = u.mass * length.asDiagonal() * data.D_P * length.asDiagonal();
-  for (ModalChild& c : data.children) {
-    c.PC *= u.length;
-    c.Phi_C = length.cwiseInverse().asDiagonal() * c.Phi_C / root;
-  }
-  return data;
-}
-
-SceneOptions random_options(std::uint64_t seed, bool larger) {
+RandomOptions random_options(std::uint64_t seed, bool larger) {
   Rng rng(seed ^ 0x5EEDull);
-  SceneOptions o;
+  RandomOptions o;
   o.seed = seed;
   const int kind = rng.below(20);
   o.family = kind < 8 ? Family::scalar : kind < 14 ? Family::spatial : Family::mixed;
@@ -124,9 +81,9 @@ SceneOptions random_options(std::uint64_t seed, bool larger) {
   return o;
 }
 
-Scene random_scene(const SceneOptions& options) {
+RandomDiagram random_diagram(const RandomOptions& options) {
   Draft d(options);
-  d.scene.name = fmt::format("random {}", options.seed);
+  d.drawn.name = fmt::format("random {}", options.seed);
   const bool no_inputs = options.incomplete && d.rng.chance(0.1);
   const bool no_outputs = options.incomplete && d.rng.chance(0.1);
   for (int a = 0; a < options.assemblies; ++a) {
@@ -142,7 +99,7 @@ Scene random_scene(const SceneOptions& options) {
   }
   d.has_inputs = !no_inputs, d.has_outputs = !no_outputs;
   draw_controllers(d, options.large_controllers);
-  return std::move(d.scene);
+  return std::move(d.drawn);
 }
 
-}  // namespace titop_test
+}  // namespace titop::generate

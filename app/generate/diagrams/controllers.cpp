@@ -1,10 +1,9 @@
-#include "support/random_draft.hpp"
-#include "support/random_lti.hpp"
+#include "generate/diagrams/draft.hpp"
+#include "generate/diagrams/lti.hpp"
 
-/// Controllers of 3 to 12 states and several inputs and outputs around the scene drawn before.
-namespace titop_test {
+/// Controllers of 3 to 12 states and several inputs and outputs around the diagram drawn before.
+namespace titop::generate {
 
-using namespace titop;
 using Eigen::Index;
 using Eigen::MatrixXd;
 
@@ -105,4 +104,4 @@ void draw_controllers(Draft& d, int count) {
   }
 }
 
-}  // namespace titop_test
+}  // namespace titop::generate
