@@ -67,7 +67,8 @@ TEST_CASE("SpringMass: response with damping solves the block's own equations") 
                        .parent_mass = rng.between(0, 2)};
     const auto block = as_block(z);
     const auto d = block->dynamics({});
-    const Complex s(rng.between(0.1, 1), rng.octaves(-2, 6));
+    const double omega = rng.octaves(-2, 6), sigma = rng.between(0.1, 1);
+    const Complex s(sigma, omega);
     const auto r = block->response(s, {});
     const MatrixXcd states = s * r.X - d->A * r.X - d->B;
     CHECK(states.cwiseAbs().maxCoeff() <=

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <random>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/skeel.hpp>
 #include <vector>
+
+#include "support/rng.hpp"
 
 using Eigen::MatrixXd;
 using titop::linalg::skeel_radius;
@@ -60,7 +61,7 @@ TEST_CASE("Margin of a ring of n equal gains: as by hand") {
 }
 
 TEST_CASE("Margin of a ring: as by hand in any units, in any order, beside another ring") {
-  std::mt19937 random(7);
+  titop_test::Rng rng(7);
   for (const int n : {2, 3, 6, 13, 60})
     for (const double product : {-0.7, 1e-9, 0.999, 40.0}) {
       CAPTURE(n);
@@ -68,10 +69,10 @@ TEST_CASE("Margin of a ring: as by hand in any units, in any order, beside anoth
       // Units of the unknowns up to 250 orders of magnitude apart, of the equations as well.
       std::vector<int> order(static_cast<std::size_t>(n));
       std::iota(order.begin(), order.end(), 0);
-      std::shuffle(order.begin(), order.end(), random);
+      rng.shuffle(order);
       Eigen::VectorXd row(n), column(n);
-      for (double& x : row) x = std::ldexp(1, static_cast<int>(random() % 800) - 400);
-      for (double& x : column) x = std::ldexp(1, static_cast<int>(random() % 800) - 400);
+      for (double& x : row) x = std::ldexp(1, rng.below(800) - 400);
+      for (double& x : column) x = std::ldexp(1, rng.below(800) - 400);
       MatrixXd L = MatrixXd::Zero(n, n);
       for (int i = 0; i < n; ++i) {
         const int r = order[static_cast<std::size_t>(i)], next = (i + 1) % n;
@@ -88,11 +89,11 @@ TEST_CASE("Margin of a ring: as by hand in any units, in any order, beside anoth
 }
 
 TEST_CASE("Margin of a loop that is no ring: the largest eigenvalue, compared with Eigen") {
-  std::mt19937 random(3);
+  titop_test::Rng rng(3);
   for (const int n : {3, 4, 7, 12, 13, 30}) {
     CAPTURE(n);
     MatrixXd L = MatrixXd::Identity(n, n);
-    for (double& x : L.reshaped()) x += static_cast<double>(random() % 2001) / 1000 - 1;
+    for (double& x : L.reshaped()) x += rng.below(2001) / 1000.0 - 1;
     const MatrixXd product = L.inverse().cwiseAbs() * L.cwiseAbs();
     const double radius =
         Eigen::EigenSolver<MatrixXd>(product, false).eigenvalues().cwiseAbs().maxCoeff();

@@ -58,7 +58,8 @@ inline std::vector<Fraction> random_parts(Rng& rng, bool unstable, bool integral
   const int modes = 1 + rng.below(most);
   for (int k = 0; k < modes; ++k) {
     const double w = std::pow(10, rng.between(-1, 1.5)), xi = std::pow(10, rng.between(-6, -0.3));
-    const double share = size * rng.between(0.05, 1) * (rng.chance(0.3) ? -0.02 : 1);
+    const double part = rng.between(0.05, 1), sign = rng.chance(0.3) ? -0.02 : 1;
+    const double share = size * part * sign;
     parts.push_back({true, 2 * xi * w, w * w, share * rng.between(0.2, 2), share * w * 0.3});
   }
   const int lags = 1 + rng.below(2);

@@ -14,8 +14,8 @@ TEST_CASE("170 random single loops") {
   double largest = 0;
   while (done < 170) {
     const bool unstable_plant = rng.chance(0.4);
-    const auto parts =
-        random_parts(rng, unstable_plant, rng.chance(0.4), std::pow(10, rng.between(-2, 0.5)));
+    const double size = std::pow(10, rng.between(-2, 0.5));
+    const auto parts = random_parts(rng, unstable_plant, rng.chance(0.4), size);
     const StateSpace L = model_of(parts);
     const Margins m = margins(L);
     CHECK(m.nyquist.agree);

@@ -3,13 +3,13 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <random>
 #include <string>
 #include <titop/graph/error.hpp>
 #include <titop/graph/linalg/eigen.hpp>
 #include <titop/graph/linalg/symmetric.hpp>
 
 #include "support/mistakes.hpp"
+#include "support/rng.hpp"
 
 /// The symmetric eigenproblems: residuals, orthogonality, the loss of digits of a slender structure
 /// by each method, refusals.
@@ -24,9 +24,7 @@ using titop_test::says;
 namespace {
 
 MatrixXd random_definite(Index n, unsigned seed) {
-  std::mt19937 generator(seed);
-  std::normal_distribution<double> normal;
-  const MatrixXd A = MatrixXd::NullaryExpr(n, n, [&] { return normal(generator); });
+  const MatrixXd A = std::sqrt(3.0) * titop_test::Rng(seed).matrix(n, n);  // of variance 1
   return A * A.transpose() + 0.1 * double(n) * MatrixXd::Identity(n, n);
 }
 

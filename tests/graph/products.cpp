@@ -1,7 +1,8 @@
 #include <doctest/doctest.h>
 
-#include <random>
 #include <titop/graph/linalg/eigen.hpp>
+
+#include "support/rng.hpp"
 
 // Products of matrices, as the library compiles them, against sums in long double.
 namespace {
@@ -12,24 +13,22 @@ template <class T>
 using Matrix = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
 using Exact = std::complex<long double>;
 
-std::mt19937_64 generator(20261128);
+titop_test::Rng rng(20261128);
 
 template <class T>
 T number() {
-  std::normal_distribution<double> normal;
   if constexpr (std::is_same_v<T, Complex>)
-    return {normal(generator), normal(generator)};
+    return {rng.between(-2, 2), rng.between(-2, 2)};
   else
-    return normal(generator);
+    return rng.between(-2, 2);
 }
 
 /// Columns differ in size by up to 1e16, rows by up to 1e8.
 template <class T>
 Matrix<T> scaled_random(Index rows, Index cols) {
-  std::uniform_real_distribution<double> power(-4, 4);
   Matrix<T> m = Matrix<T>::NullaryExpr(rows, cols, [] { return number<T>(); });
-  for (Index i = 0; i < rows; ++i) m.row(i) *= std::pow(10, power(generator));
-  for (Index j = 0; j < cols; ++j) m.col(j) *= std::pow(10, 2 * power(generator));
+  for (Index i = 0; i < rows; ++i) m.row(i) *= std::pow(10, rng.between(-4, 4));
+  for (Index j = 0; j < cols; ++j) m.col(j) *= std::pow(10, rng.between(-8, 8));
   return m;
 }
 

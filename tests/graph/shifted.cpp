@@ -5,9 +5,10 @@
 #include <boost/multiprecision/cpp_complex.hpp>
 #include <boost/multiprecision/eigen.hpp>
 #include <numeric>
-#include <random>
 #include <titop/graph/linalg/shifted.hpp>
 #include <titop/titop.hpp>
+
+#include "support/rng.hpp"
 
 // (s - A)^-1 B by one Schur form, against solutions in 50 digits.
 namespace {
@@ -20,23 +21,20 @@ using Complex50 = boost::multiprecision::cpp_complex_50;
 using Matrix50 = Eigen::Matrix<Complex50, Eigen::Dynamic, Eigen::Dynamic>;
 using titop::linalg::ShiftedSolver;
 
-std::mt19937_64 generator(46);
+titop_test::Rng rng(46);
 
-MatrixXd random(Index rows, Index cols) {
-  std::normal_distribution<double> normal;
-  return MatrixXd::NullaryExpr(rows, cols, [&] { return normal(generator); });
-}
+/// Entries of either sign with the variance 1.
+MatrixXd random(Index rows, Index cols) { return std::sqrt(3.0) * rng.matrix(rows, cols); }
 
 /// States in units that differ by up to 1e12, in random order.
 void change_units(MatrixXd& A, MatrixXd& B) {
-  std::uniform_real_distribution<double> power(-6, 6);
   const Eigen::VectorXd unit =
-      Eigen::VectorXd::NullaryExpr(A.rows(), [&] { return std::pow(10, power(generator)); });
+      Eigen::VectorXd::NullaryExpr(A.rows(), [&] { return std::pow(10, rng.between(-6, 6)); });
   A = (unit.asDiagonal() * A * unit.cwiseInverse().asDiagonal()).eval();
   B = (unit.asDiagonal() * B).eval();
   std::vector<Index> order(static_cast<std::size_t>(A.rows()));
   std::iota(order.begin(), order.end(), 0);
-  std::shuffle(order.begin(), order.end(), generator);
+  rng.shuffle(order);
   A = A(order, order).eval();
   B = B(order, Eigen::all).eval();
 }

@@ -73,8 +73,10 @@ MatrixXd made_singular(MatrixXd L, std::uint64_t seed) {
   rng.shuffle(rows);
   const std::size_t count = static_cast<std::size_t>(2 + rng.below(std::min(n - 2, 3)));
   L.row(rows[0]).setZero();
-  for (std::size_t k = 1; k <= count && k < rows.size(); ++k)
-    L.row(rows[0]) += std::ldexp(rng.chance(0.5) ? 1 : -1, rng.below(3) - 1) * L.row(rows[k]);
+  for (std::size_t k = 1; k <= count && k < rows.size(); ++k) {
+    const int power = rng.below(3) - 1;
+    L.row(rows[0]) += std::ldexp(rng.sign(), power) * L.row(rows[k]);
+  }
   return L;
 }
 

@@ -101,7 +101,8 @@ TEST_CASE("improper: a direction across the motion at once is none, to rounding"
     const Matrix6 K = random_stiffness(rng, i % 4);
     const Matrix6 C = i % 2 ? Matrix6(0.3 * K) : Matrix6::Zero();
     auto arm = d.add("arm", Bushing{.stiffness = K, .damping = C});
-    mount(arm, hub.child("C"), Rotation::about(random_vector(rng), rng.between(0, 3)));
+    const double angle = rng.between(0, 3);
+    mount(arm, hub.child("C"), Rotation::about(random_vector(rng), angle));
     // The arm's end gives way to the wrench along `at_once`: the reading is across that.
     Vector6 wrench, read;
     wrench << random_vector(rng), random_vector(rng);

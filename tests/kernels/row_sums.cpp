@@ -62,9 +62,12 @@ TEST_CASE("divisor: complex quotients to a few units of the last place, whatever
   for (int i = 0; i < 4000; ++i) {
     // Real and imaginary parts may differ by as much as they like.
     const auto number = [&] {
-      const double re = rng.between(-1, 1) * std::pow(10, rng.between(-140, 140));
-      return std::complex<double>(
-          re, rng.between(-1, 1) * (i % 2 ? std::abs(re) : std::pow(10, rng.between(-140, 140))));
+      const auto any = [&] {
+        const double mantissa = rng.between(-1, 1);
+        return mantissa * std::pow(10, rng.between(-140, 140));
+      };
+      const double re = any();
+      return std::complex<double>(re, i % 2 ? rng.between(-1, 1) * std::abs(re) : any());
     };
     const std::complex<double> a = number(), b = number();
     const std::complex<double> found = titop::solve::Divisor<std::complex<double>>(b)(a);

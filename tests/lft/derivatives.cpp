@@ -2,10 +2,10 @@
 
 #include <Eigen/LU>
 #include <cmath>
-#include <random>
 
 #include "lft/n17.hpp"
 #include "support/mistakes.hpp"
+#include "support/rng.hpp"
 
 /// Derivatives against closed forms, and against central differences of transfers in 50 digits.
 
@@ -209,8 +209,8 @@ TEST_CASE("the H2 norm of a slow mode beside a fast one") {
 }
 
 TEST_CASE("an undamped structure has no H2 norm, whatever rounding makes of its poles") {
-  std::mt19937_64 random(5);
-  const auto draw = [&] { return 0.5 + static_cast<double>(random() % 1000) / 250.0; };
+  titop_test::Rng rng(5);
+  const auto draw = [&] { return rng.between(0.5, 4.5); };
   for (int i = 0; i < 100; ++i) {
     CAPTURE(i);
     Diagram d{"undamped"};
@@ -227,12 +227,10 @@ TEST_CASE("an undamped structure has no H2 norm, whatever rounding makes of its 
 TEST_CASE("two equal real poles that rounding splits are one pole with two slopes") {
   // A = T diag(-5, -5, -1) T^-1, of which the entry A11 moves: the slopes of the pair are 0 and the
   // entry 11 of its projector.
-  std::mt19937_64 random(3);
-  const auto draw = [&] { return static_cast<double>(random() % 2001) / 1000.0 - 1; };
+  titop_test::Rng rng(3);
   for (int i = 0; i < 100; ++i) {
     CAPTURE(i);
-    const Eigen::Matrix3d T =
-        2 * Eigen::Matrix3d::Identity() + Eigen::Matrix3d::NullaryExpr([&] { return draw(); });
+    const Eigen::Matrix3d T = 2 * Eigen::Matrix3d::Identity() + rng.matrix(3, 3);
     const Eigen::Matrix3d inverse = T.inverse();
     const Eigen::MatrixXd A = T * Eigen::Vector3d(-5, -5, -1).asDiagonal() * inverse;
     Diagram d{"pair"};

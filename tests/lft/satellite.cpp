@@ -1,10 +1,10 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include <random>
 #include <titop/graph/linalg/eigen.hpp>
 
 #include "lft/n17.hpp"
+#include "support/rng.hpp"
 
 /// Occurrences of the satellite's parameters as exact integers, and closing against update.
 
@@ -57,13 +57,12 @@ TEST_CASE("closing the parameters equals compiling anew") {
     const System system = compile(s.diagram());
     const Lft f = lft(system, ranges(s));
     INFO(to_string(f), " margin ", f.rank_margin().kept, " ", f.rank_margin().dropped);
-    std::mt19937 random(3);
-    std::uniform_real_distribution<double> share(-0.999, 0.999);
+    titop_test::Rng rng(3);
     double worst = 0;
     for (int i = 0; i < (rates ? 50 : 200); ++i) {
       ParameterList values;
       for (const Delta& d : f.deltas())
-        values.emplace_back(d.parameter, d.map.value(share(random)));
+        values.emplace_back(d.parameter, d.map.value(rng.between(-0.999, 0.999)));
       const StateSpace at = f.at(values);
       const System other = system.update(values);
       const std::complex<double> z =

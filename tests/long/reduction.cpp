@@ -44,8 +44,9 @@ Random random_structure(std::uint64_t seed) {
     const std::string name = "b" + std::to_string(i);
     const FlexibleBody beam = random_beam(rng, r.undamped);
     bodies.push_back(r.diagram.add(name, beam));
-    const Rotation turn = Rotation::about(
-        {rng.between(-1, 1), rng.between(-1, 1), rng.between(0.1, 1)}, rng.between(-3, 3));
+    const double angle = rng.between(-3, 3);
+    const Rotation turn =
+        Rotation::about({rng.between(-1, 1), rng.between(-1, 1), rng.between(0.1, 1)}, angle);
     if (i == 0 && clamped) bodies[0].parent.accel = 0;
     if (i == 0 && !clamped) bodies[0].parent.force = 0;
     const int on = i > 0 ? rng.below(i) : -1;

@@ -159,25 +159,22 @@ TEST_CASE("residues are rational numbers modulo two primes") {
 }
 
 TEST_CASE("numbers of 53 bits: a hundred coupled states, and a hundred that follow from fifty") {
-  std::mt19937_64 generator(7);
-  std::normal_distribution<double> normal;
-  const auto random = [&](int rows, int cols) {
-    return MatrixXd::NullaryExpr(rows, cols, [&] { return normal(generator); }).eval();
-  };
+  titop_test::Rng rng(7);
   const auto order = [](const MatrixXd& A, const MatrixXd& B, const MatrixXd& C) {
     StateSpace m{A, B, C, MatrixXd::Zero(1, 1), {}, {"u"}, {"y"}};
     for (int i = 0; i < A.rows(); ++i) m.states.push_back(fmt::format("x{}", i));
     return exact_order(m).order;
   };
-  CHECK(order(random(100, 100), random(100, 1), random(1, 100)) == 100);
+  const MatrixXd coupled = rng.matrix(100, 100), driven = rng.matrix(100, 1);
+  CHECK(order(coupled, driven, rng.matrix(1, 100)) == 100);
   // The same part twice: the difference of the two is not moved.
-  const MatrixXd A = random(50, 50), B = random(50, 1);
+  const MatrixXd A = rng.matrix(50, 50), B = rng.matrix(50, 1);
   MatrixXd twice = MatrixXd::Zero(100, 100), both(100, 1);
   twice.topLeftCorner(50, 50) = twice.bottomRightCorner(50, 50) = A;
   both << B, B;
-  CHECK(order(twice, both, random(1, 100)) == 50);
+  CHECK(order(twice, both, rng.matrix(1, 100)) == 50);
   twice(70, 70) = std::nextafter(twice(70, 70), 10);
-  CHECK(order(twice, both, random(1, 100)) == 100);
+  CHECK(order(twice, both, rng.matrix(1, 100)) == 100);
 }
 
 TEST_CASE("undecided exact orders have a reason") {

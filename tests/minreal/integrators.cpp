@@ -160,11 +160,14 @@ TEST_CASE("two dozen integrators in whole numbers: states removed by rounding ar
     CAPTURE(seed);
     titop_test::Rng rng(static_cast<std::uint64_t>(seed));
     const Index k = whole(rng, 12, 24), r = 2;
-    const auto sparse = [&] { return whole(rng, -2, 2) * (whole(rng, 0, 2) == 0); };
+    const auto sparse = [&] {
+      const auto entry = whole(rng, -2, 2);
+      return entry * (whole(rng, 0, 2) == 0);
+    };
     MatrixXd A = MatrixXd::NullaryExpr(r + k, r + k, sparse).triangularView<Eigen::StrictlyLower>();
     A.topLeftCorner(r, r) << -1, 1, 0, -2;
-    const StateSpace m =
-        model(A, MatrixXd::NullaryExpr(r + k, 2, sparse), MatrixXd::NullaryExpr(2, r + k, sparse));
+    const MatrixXd C = MatrixXd::NullaryExpr(2, r + k, sparse);
+    const StateSpace m = model(A, MatrixXd::NullaryExpr(r + k, 2, sparse), C);
     check_nothing_lost(m);
     const Minimized result = minimize(m);
     if (minreal::minimize_unmeasured(m, {}).order.removed.empty()) continue;

@@ -105,7 +105,8 @@ TEST_CASE("whole clusters: 400 planted Jordan blocks, at 0 and elsewhere: never 
   int right = 0;
   for (int trial = 0; trial < 400; ++trial) {
     const Index k = 1 + rng.below(3), r = rng.below(int(k) + 1), q = rng.below(int(k) + 1);
-    const Planted p = planted(rng, k, r, q, rng.chance(0.5) ? 0 : -1, rng.below(3));
+    const int others = rng.below(3);
+    const Planted p = planted(rng, k, r, q, rng.chance(0.5) ? 0 : -1, others);
     CAPTURE(trial);
     const Minimized m = minimize(p.model);
     CAPTURE(to_string(m.order));

@@ -2,10 +2,10 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 #include <titop/titop.hpp>
 
 #include "support/mistakes.hpp"
+#include "support/rng.hpp"
 
 /// The H-infinity norm against closed forms, and against the gain on a fine grid.
 
@@ -155,15 +155,13 @@ TEST_CASE("matrices: singular values and vectors of turned channels") {
 
 TEST_CASE(
     "forty modes: never below the gain on a grid, nor above it by more than the grid's error") {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> share(-1, 1);
+  titop_test::Rng rng(5);
   for (int scene = 0; scene < 3; ++scene) {
     const Eigen::Index n = 40;
     const Eigen::VectorXd omega =
-        Eigen::VectorXd::NullaryExpr(n, [&] { return std::pow(10, 1 + share(random)); });
+        Eigen::VectorXd::NullaryExpr(n, [&] { return std::pow(10, rng.between(0, 2)); });
     const Eigen::VectorXd xi = Eigen::VectorXd::Constant(n, 0.002);
-    const MatrixXd b = MatrixXd::NullaryExpr(n, 2, [&] { return share(random); }),
-                   c = MatrixXd::NullaryExpr(3, n, [&] { return share(random); });
+    const MatrixXd b = rng.matrix(n, 2), c = rng.matrix(3, n);
     const StateSpace m = modes(omega, xi, b, c);
     const HinfNorm found = norm_hinf(m);
     double largest = 0;

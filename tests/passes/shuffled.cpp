@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
-#include <random>
 #include <titop/titop.hpp>
 
 #include "support/five_masses.hpp"
+#include "support/rng.hpp"
 
 // The model does not depend on the order in which a scene is written, to the last bit: rows and
 // columns follow the declarations, their entries do not.
@@ -18,9 +18,7 @@ namespace {
 
 /// Runs these steps in an order determined by the seed; seed 0: as given.
 void run(std::vector<std::function<void()>> steps, unsigned seed) {
-  std::mt19937 random(seed);
-  if (seed != 0)
-    for (std::size_t i = steps.size(); i > 1; --i) std::swap(steps[i - 1], steps[random() % i]);
+  if (seed != 0) Rng(seed).shuffle(steps);
   for (const auto& step : steps) step();
 }
 

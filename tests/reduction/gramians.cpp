@@ -166,7 +166,8 @@ TEST_CASE("integrals, poles on the axis or right of it and the rest are told apa
   A(0, 1) = 1;
   A.block<1, 6>(1, 2) = rng.matrix(1, 6);
   A.block<6, 1>(2, 8) = rng.matrix(6, 1);
-  const StateSpace m = model(A, rng.matrix(n, 1), rng.matrix(1, n));
+  const MatrixXd C = rng.matrix(1, n), B = rng.matrix(n, 1);
+  const StateSpace m = model(A, B, C);
   const detail::Split s = detail::split(m);
   CHECK(s.integrals.order() == 3);
   CHECK(s.integrals.A.isUpperTriangular(0));
@@ -200,7 +201,8 @@ TEST_CASE("two poles at 0 that rounding parts stay together") {
 TEST_CASE("truncation costs at most twice the sum of the dropped singular values, everywhere") {
   Rng rng(12);
   const Index n = 10;
-  const StateSpace m = model(random_stable(rng, n), rng.matrix(n, 2), rng.matrix(3, n));
+  const MatrixXd C = rng.matrix(3, n), B = rng.matrix(n, 2), A = random_stable(rng, n);
+  const StateSpace m = model(A, B, C);
   const detail::Split s = detail::split(m);
   const detail::Balancing b = detail::balance(s, {VectorXd::Ones(2), VectorXd::Ones(3)});
   REQUIRE(b.sigma.size() == n);

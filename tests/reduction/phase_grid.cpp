@@ -31,10 +31,11 @@ Rational random_rational(titop_test::Rng& rng, double low, double high) {
     const bool close = !f.poles.empty() && rng.chance(0.3);
     const double x = close ? f.poles.back().real() * (1 + 1e-4 * rng.unit())
                            : rng.between(low - (high - low), high + (high - low));
-    const double y = (rng.chance(0.5) ? 1 : -1) * (high - low) * std::pow(10, -4 * rng.unit());
+    const double sign = rng.sign(), y = sign * (high - low) * std::pow(10, -4 * rng.unit());
     f.poles.emplace_back(x, y);
     // Residues of the size of a lightly damped mode there.
-    f.residues.emplace_back(Complex(rng.between(-1, 1), rng.between(-1, 1)) * y);
+    const double im = rng.between(-1, 1);
+    f.residues.push_back(Complex(rng.between(-1, 1), im) * y);
   }
   f.direct = {rng.between(-0.1, 0.1), rng.between(-0.1, 0.1)};
   return f;

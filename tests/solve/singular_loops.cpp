@@ -77,9 +77,10 @@ MatrixXd near_singular(MatrixXd L, Rng& rng, double distance) {
   rng.shuffle(rows);
   L.row(rows[0]) *= distance;
   const int count = 2 + rng.below(3);
-  for (int k = 1; k <= count; ++k)
-    L.row(rows[0]) += std::ldexp(rng.chance(0.5) ? 1 : -1, rng.below(3) - 1) *
-                      L.row(rows[static_cast<std::size_t>(k)]);
+  for (int k = 1; k <= count; ++k) {
+    const int power = rng.below(3) - 1;
+    L.row(rows[0]) += std::ldexp(rng.sign(), power) * L.row(rows[static_cast<std::size_t>(k)]);
+  }
   if (column) L.transposeInPlace();
   return L;
 }

@@ -17,7 +17,8 @@ Matrix3d rotation(Rng& rng) {
 Body draw_body(Rng& rng, bool flexible) {
   Body b;
   b.mass = rng.between(0.5, 3);
-  b.inertia = Vector3d(rng.between(1, 1.5), rng.between(1, 1.5), rng.between(1, 1.5)).asDiagonal();
+  b.inertia.setZero();
+  for (const Index i : {2, 1, 0}) b.inertia(i, i) = rng.between(1, 1.5);
   b.PA = vector(rng, 0.5);
   b.D_P = titop::rigid_mass(b.mass, b.inertia, -b.PA);
   if (rng.chance(0.7)) b.turn = rotation(rng);
@@ -123,7 +124,7 @@ void draw_momenta(Rng& rng, Sketch& s, double size) {
     if (i > 0 && rng.chance(0.5)) continue;
     Body& b = s.bodies[i];
     const int point = rng.below(static_cast<int>(b.points.size()) + 1) - 1;
-    const double h = (rng.chance(0.5) ? 1 : -1) * rng.between(0.2, 1) * size;
+    const double sign = rng.sign(), h = sign * rng.between(0.2, 1) * size;
     b.momenta.push_back({point, h, vector(rng, 1)});
   }
 }

@@ -92,7 +92,8 @@ struct LtiBuilder {
     return list.begin()[rng.below(static_cast<int>(list.size()))];
   }
   double gain() {
-    return pick({0.25, 0.5, 0.75, 1, 1.25, 1.5, 2, 3, 4}) * (rng.chance(0.5) ? 1 : -1);
+    const double size = pick({0.25, 0.5, 0.75, 1, 1.25, 1.5, 2, 3, 4});
+    return size * rng.sign();
   }
   /// 1 / (s + pole)^n, or with a zero as well.
   Lti multiple(double pole, int n, bool zero) {
@@ -117,7 +118,11 @@ struct LtiBuilder {
       case 1: return multiple(pick({0.5, 1, 2, 4, 1.0 / 64, 64}), 1, false);
       case 2: return oscillator(0, false);
       case 3: return oscillator(0.125, false);
-      case 4: return multiple(pick({0.5, 1, 2, 4}), 2 + rng.below(2), rng.chance(0.5));
+      case 4: {
+        const bool zero = rng.chance(0.5);
+        const int times = 2 + rng.below(2);
+        return multiple(pick({0.5, 1, 2, 4}), times, zero);
+      }
       default: return oscillator(0.0625, true);
     }
   }
